@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`python -m slipfront.figures DIR [--experiment CSV]`"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+import matplotlib
+
+from slipfront.figures import criteria, events, plate, space_time
+from slipfront.figures.drawing import Drawing
+from slipfront.figures.report import write_report
+from slipfront.figures.results import Results, read_results
+from slipfront.figures.style import RC
+from slipfront.read import DataError
+
+
+def draw_all(results: Results) -> list[Drawing]:
+    """Every figure, in the order of the report."""
+    return [
+        plate.setup(results),
+        criteria.static_ratio_mu_k(results),
+        events.three_events(results),
+        criteria.dynamic_ratio_along_x(results),
+        criteria.dynamic_criterion(results),
+        criteria.energy(results),
+        *(space_time.space_time(results, name) for name in results.runs),
+    ]
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(
+        prog="python -m slipfront.figures",
+        description="Draws the figures (PNG, PDF) and the report (HTML) of a reproduction into DIR/figures.",
+    )
+    parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront reproduce`")
+    parser.add_argument(
+        "--experiment",
+        metavar="CSV",
+        type=Path,
+        help="measured points to draw into figure 2: columns static_ratio and v_over_c_L or v_m_per_s",
+    )
+    options = parser.parse_args(arguments)
+    folder = options.dir / "figures"
+    try:
+        results = read_results(options.dir, options.experiment)
+        with matplotlib.rc_context(RC):
+            drawings = draw_all(results)
+            folder.mkdir(exist_ok=True)
+            for drawing in drawings:
+                drawing.save(folder)
+        report = write_report(results, drawings, folder)
+    except DataError as error:
+        print(f"slipfront.figures: error: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"slipfront.figures: error: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 2
+    print(f"figures: {folder} ({len(drawings)}, each as PNG and PDF)")
+    print(f"report:  {report}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

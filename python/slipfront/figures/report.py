@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report: one page of HTML with every figure, its caption, the scorecard and the fronts."""
+
+from __future__ import annotations
+
+import base64
+from html import escape
+from pathlib import Path
+
+from slipfront.figures.drawing import Drawing
+from slipfront.figures.results import Results
+
+STYLE = """
+body { font: 15px/1.5 system-ui, sans-serif; color: #111; background: #fff; }
+body { max-width: 62em; margin: 2em auto; padding: 0 1em; }
+h1 { font-size: 1.6em; } h2 { font-size: 1.25em; margin-top: 2.2em; }
+figure { margin: 2em 0; } figure img { max-width: 100%; display: block; }
+figcaption { font-size: 0.9em; color: #333; margin-top: 0.5em; max-width: 52em; }
+.column img { width: 34em; } .page img { width: 100%; }
+table { border-collapse: collapse; font-size: 0.87em; }
+th, td { text-align: left; vertical-align: top; padding: 0.3em 0.7em; }
+thead { border-bottom: 1px solid #111; } tbody tr { border-bottom: 1px solid #ddd; }
+td.verdict { text-align: center; font-weight: bold; }
+.yes { color: #117733; } .no { color: #b2182b; } .open { color: #666; }
+.scroll { overflow-x: auto; }
+"""
+VERDICTS = {
+    True: ("✓", "yes", "holds"),
+    False: ("✗", "no", "does not hold"),
+    None: ("–", "open", "not decided"),
+}
+
+
+def text(value) -> str:
+    """A value of a JSON file for the page: floats to 4 digits, null as a dash."""
+    if value is None:
+        return "–"
+    return escape(f"{value:.4g}" if isinstance(value, float) else str(value))
+
+
+def formatted(value, form: str, factor: float = 1.0) -> str:
+    """A number of a JSON file in a given form; null or none as a dash."""
+    return f"{factor * value:{form}}" if isinstance(value, int | float) else "–"
+
+
+def table(header: list[str], rows: list[list[str]]) -> str:
+    """Cells are pieces of HTML; one that starts with <td is taken as it is."""
+    head = "".join(f"<th>{h}</th>" for h in header)
+    body = "\n".join(
+        "<tr>" + "".join(c if c.startswith("<td") else f"<td>{c}</td>" for c in row) + "</tr>" for row in rows
+    )
+    head = f"<thead><tr>{head}</tr></thead>"
+    return f'<div class="scroll"><table>\n{head}\n<tbody>\n{body}\n</tbody></table></div>'
+
+
+def scorecard_table(scorecard: list[dict]) -> str:
+    rows = []
+    for entry in scorecard:
+        sign, kind, meaning = VERDICTS.get(entry["holds"], VERDICTS[None])
+        verdict = f'<td class="verdict {kind}" title="{meaning}">{sign}</td>'
+        rows.append(
+            [*(text(entry[key]) for key in ("id", "claim", "paper", "measured")), verdict, text(entry["how"])]
+        )
+    return table(["", "Claim", "Paper", "Measured", "Holds", "How tested"], rows)
+
+
+def scorecard_summary(scorecard: list[dict]) -> str:
+    count = {key: sum(entry["holds"] is key for entry in scorecard) for key in (True, False)}
+    rest = len(scorecard) - sum(count.values())
+    return (
+        f"Of {len(scorecard)} statements {count[True]} hold (✓), {count[False]} do not (✗), {rest} could "
+        "not be decided (–)."
+    )
+
+
+def fit_table(results: Results) -> str:
+    fit = results.analysis["fit"] or {}
+    rows = []
+    for name in ("a", "b", "c"):
+        own = fit.get(name) or {}
+        interval = f"{formatted(own.get('low'), '.3f')} to {formatted(own.get('high'), '.3f')}"
+        paper = f"{getattr(results.paper_fit, name):.2f}"
+        if name == "a":
+            paper += f" ± {results.paper_a_band:.2f}"
+        rows.append([f"<i>{name}</i>", formatted(own.get("value"), ".3f"), interval, paper])
+    return table(["", "This program", "Confidence interval", "Paper"], rows) + (
+        f"<p>Points: {text(fit.get('n_points'))}; rms about the fit: "
+        f"{formatted(fit.get('rms_over_c_L'), '.3f')} c<sub>L</sub>; within the paper's band: "
+        f"{formatted(results.analysis.get('share_in_paper_band'), '.0f', 100)} % of the points.</p>"
+    )
+
+
+def spread_table(results: Results) -> str:
+    labels = {
+        "t_s_over_p_s": "t<sub>s</sub>/p<sub>s</sub>",
+        "t_d_over_p_d": "t<sub>d</sub>/p<sub>d</sub>",
+        "energy": "(U<sub>r</sub> − U<sub>s</sub>)/U<sub>s</sub>",
+    }
+    spread = results.analysis.get("spread")
+    if not isinstance(spread, dict):
+        return ""
+    rows = [[labels.get(key, escape(key)), text(value)] for key, value in spread.items()]
+    return "<h2>Spread of the front speeds</h2>" + table(
+        ["Events compared at equal", "Relative spread"], rows
+    )
+
+
+def front_table(results: Results) -> str:
+    rows = []
+    for name, run in results.runs.items():
+        for f in run.info.get("fronts", []):
+            rows.append(
+                [
+                    escape(name),
+                    text(f.get("id")),
+                    text(f.get("direction")),
+                    formatted(f.get("start_x_m"), ".1f", 1e3),
+                    formatted(f.get("start_s"), ".1f", 1e6),
+                    formatted(f.get("end_x_m"), ".1f", 1e3),
+                    formatted(f.get("end_s"), ".1f", 1e6),
+                    text(f.get("end")).replace("_", " "),
+                    text(f.get("mode")),
+                ]
+            )
+    header = ["Event", "Front", "Direction", "From (mm)", "at (µs)", "to (mm)", "at (µs)", "End", "Slip"]
+    return table(header, rows)
+
+
+def origin(results: Results) -> str:
+    """Which program made the runs; each distinct version once."""
+    made = {(run.info.get("version"), run.info.get("commit")) for run in results.runs.values()}
+    return ", ".join(
+        f"slipfront {text(version)}, commit {text(commit)}" for version, commit in sorted(made, key=str)
+    )
+
+
+def figure_html(drawing: Drawing, folder: Path) -> str:
+    image = base64.b64encode((folder / f"{drawing.name}.png").read_bytes()).decode()
+    kind = "page" if drawing.figure.get_figwidth() > 5 else "column"
+    title = escape(drawing.name)
+    return (
+        f'<figure id="{title}" class="{kind}"><img alt="{title}" src="data:image/png;base64,{image}">\n'
+        f'<figcaption>{drawing.caption} <a href="{title}.pdf">PDF</a></figcaption></figure>'
+    )
+
+
+def write_report(results: Results, drawings: list[Drawing], folder: Path) -> Path:
+    """Writes index.html beside the figures' files, with the images inside it."""
+    parts = [
+        "<!DOCTYPE html>",
+        '<html lang="en"><head><meta charset="utf-8">',
+        "<title>slipfront: slip fronts at a frictional interface</title>",
+        '<meta name="viewport" content="width=device-width, initial-scale=1">',
+        f"<style>{STYLE}</style></head><body>",
+        "<h1>Slip fronts at a frictional interface</h1>",
+        "<p>Reproduction of Kammer, Yastrebov, Spijker, Molinari, <i>On the propagation of slip fronts at "
+        f"frictional interfaces</i>, Tribology Letters 48, 27–32 (2012). Runs by {origin(results)}.</p>",
+        "<h2>Scorecard</h2>",
+        f"<p>{scorecard_summary(results.scorecard)}</p>",
+        scorecard_table(results.scorecard),
+        "<h2>Figures</h2>",
+        *(figure_html(drawing, folder) for drawing in drawings),
+        "<h2>Fit of the energy criterion</h2>",
+        "<p>V<sub>tip</sub>/c<sub>L</sub> = a + b exp(−c √r), r = (U<sub>r</sub> − "
+        "U<sub>s</sub>)/U<sub>s</sub></p>",
+        fit_table(results),
+        spread_table(results),
+        "<h2>Fronts</h2>",
+        "<p>All fronts found, short ones included; direction +1 is that of the imposed shear.</p>",
+        front_table(results),
+        "</body></html>",
+    ]
+    file = folder / "index.html"
+    file.write_text("\n".join(part for part in parts if part) + "\n", encoding="utf-8")
+    return file

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Slip rate along the interface over time."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm
+from matplotlib.lines import Line2D
+
+from slipfront.figures import style
+from slipfront.figures.drawing import Drawing
+from slipfront.figures.results import Results, drawn_fronts, start
+from slipfront.read import Run
+
+RATE_RANGE_M_PER_S = (1e-2, 10.0)
+FRONT_COLOUR = "#cc3311"
+WAVES = {"c_L": "-", "c_S": (0, (4, 2)), "c_R": (0, (1, 1.2))}
+
+
+def draw_waves(ax: Axes, run: Run) -> None:
+    """Lines of the wave speeds from the start of the first front, both ways where there is room."""
+    began = start(run)
+    if began is None:
+        return
+    width_m = run.parameter("plate.width_m")
+    for direction in (-1, 1):
+        room_m = width_m - began[0] if direction > 0 else began[0]
+        if room_m < 0.1 * width_m:
+            continue
+        for wave, line in WAVES.items():
+            end_s = began[1] + room_m / run.fact(f"wave_speeds.{wave}_m_per_s")
+            ax.plot(
+                style.mm([began[0], began[0] + direction * room_m]),
+                1e6 * np.array([began[1], end_s]),
+                color="0.25",
+                linestyle=line,
+                linewidth=0.5,
+                gid=f"{wave}:{direction}",
+            )
+
+
+def space_time(results: Results, name: str) -> Drawing:
+    run = results.runs[name]
+    history = run.history
+    figure = style.new_figure(style.COLUMN_MM, 72)
+    ax = figure.subplots()
+    rate = np.abs(history.slip_rate_m_per_s)
+    image = ax.pcolormesh(
+        style.mm(history.x_m),
+        1e6 * history.time_s,
+        np.ma.masked_less(rate, RATE_RANGE_M_PER_S[0]),
+        shading="nearest",
+        cmap="YlGnBu",
+        norm=LogNorm(*RATE_RANGE_M_PER_S),
+        rasterized=True,
+    )
+    draw_waves(ax, run)
+    for front in drawn_fronts(run):
+        ax.plot(
+            style.mm(front.x_m),
+            1e6 * front.onset_s,
+            color=FRONT_COLOUR,
+            linewidth=0.9,
+            gid=f"{name}:{front.id}",
+        )
+    style.x_axis(ax, run)
+    ax.set(ylabel="$t$ (µs)", ylim=(1e6 * history.time_s[0], 1e6 * history.time_s[-1]))
+    handles = [Line2D([], [], color=FRONT_COLOUR, linewidth=0.9, label="front")]
+    for wave, line in WAVES.items():
+        handles.append(
+            Line2D([], [], color="0.25", linestyle=line, linewidth=0.5, label=rf"$c_\mathrm{{{wave[-1]}}}$")
+        )
+    ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, columnspacing=1.2)
+    figure.colorbar(image, ax=ax, label="slip rate $|v|$ (m/s)", extend="max", pad=0.02, aspect=30)
+    label = style.EVENT_STYLES[name].label.replace("$\\mu_k", "μ<sub>k</sub>").replace("$", "")
+    return Drawing(
+        f"space_time_{name}",
+        figure,
+        f"Slip rate along the interface over time, {label} event; logarithmic scale, white below "
+        f"{RATE_RANGE_M_PER_S[0]:g} m/s. Red: onsets of the fronts at least 10 mm long. Thin lines from the "
+        "start of the first front: c<sub>L</sub> (solid), c<sub>S</sub> (dashed), c<sub>R</sub> (dotted).",
+    )

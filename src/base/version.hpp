@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace slipfront {
+
+/// Version of the program, "0.1.0".
+const char* version();
+
+/// Commit it was built from, with "-dirty" where files were changed since; "unknown" outside a repository.
+const char* commit();
+
+/// "slipfront 0.1.0 (commit)".
+std::string version_line();
+
+}  // namespace slipfront

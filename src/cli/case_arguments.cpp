@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.hpp"
+
+namespace slipfront::cli {
+
+std::vector<io::Override> CaseArguments::overrides() const {
+  std::vector<io::Override> overrides;
+  for (const std::string& text : set) overrides.push_back(io::parse_override(text));
+  return overrides;
+}
+
+std::shared_ptr<CaseArguments> add_case_arguments(CLI::App& command) {
+  auto arguments = std::make_shared<CaseArguments>();
+  command.add_option("CASE", arguments->file, "Case file (TOML)")->required()->type_name("FILE");
+  command
+      .add_option("--set", arguments->set,
+                  "Set a key of the case, e.g. --set friction.mu_k=1.0; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  return arguments;
+}
+
+}  // namespace slipfront::cli

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.hpp"
+
+namespace slipfront::cli {
+
+void add_keys(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("keys", "Print the reference of all keys of a case file (Markdown)");
+  command->callback([] { fmt::print("{}", io::schema_reference()); });
+}
+
+}  // namespace slipfront::cli

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/version.hpp"
+#include "cli/commands.hpp"
+
+namespace {
+
+enum ExitCode { done = 0, internal_error = 1, user_error = 2, blow_up = 3, interrupted = 130 };
+
+/// A user's error starts with its place, FILE:LINE, so that editors find it; the rest with the program's
+/// name.
+int report(ExitCode code, const std::string& message) {
+  fmt::print(stderr, "{}\n", message);
+  return code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Slip fronts at frictional interfaces", "slipfront");
+  app.set_version_flag("--version", slipfront::version_line());
+  app.require_subcommand(1);
+  slipfront::cli::add_run(app);
+  slipfront::cli::add_reproduce(app);
+  slipfront::cli::add_info(app);
+  slipfront::cli::add_validate(app);
+  slipfront::cli::add_keys(app);
+  try {
+    app.parse(argc, argv);
+    return done;
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    const std::vector<std::string> unused = app.remaining();
+    if (!unused.empty() && app.get_subcommands().empty())
+      return report(user_error,
+                    fmt::format("slipfront: no subcommand {}; see slipfront --help", unused.front()));
+    return report(user_error, fmt::format("slipfront: {}; see slipfront --help", error.what()));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try { return run(argc, argv); } catch (const slipfront::UserError& error) {
+  return report(user_error, error.what());
+} catch (const slipfront::BlowUp& error) {
+  return report(blow_up, fmt::format("slipfront: {}", error.what()));
+} catch (const slipfront::Interrupted& error) {
+  return report(interrupted, fmt::format("slipfront: {}", error.what()));
+} catch (const std::bad_alloc&) {
+  return report(
+      internal_error,
+      "slipfront: not enough memory; use larger elements, fewer snapshots or a longer history interval");
+} catch (const std::exception& error) {
+  return report(internal_error, fmt::format("slipfront: internal error: {}", error.what()));
+} catch (...) {
+  return report(internal_error, "slipfront: internal error of unknown kind");
+}

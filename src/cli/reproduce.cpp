@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "paper/reproduce.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <thread>
+
+#include "base/error.hpp"
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "io/log.hpp"
+
+namespace slipfront::cli {
+namespace {
+
+void print_report(const paper::ReproduceReport& report, const std::string& dir) {
+  int n_hold = 0, n_not = 0, n_open = 0;
+  fmt::print("\nScorecard of Kammer, Yastrebov, Spijker, Molinari (2012)\n\n");
+  for (const auto& c : report.claims) {
+    const char* verdict = !c.holds ? "not tested" : *c.holds ? "holds" : "does not hold";
+    (!c.holds ? n_open : *c.holds ? n_hold : n_not) += 1;
+    fmt::print("{:<4}{:<15}{} [{}]\n{:19}{}\n", c.id, verdict, c.claim, c.paper, "", c.measured);
+  }
+  fmt::print("\n{} claims hold, {} do not hold, {} not tested\n\n", n_hold, n_not, n_open);
+  for (const auto& t : report.timings) fmt::print("{:8.2f} s  {}\n", t.wall_s, t.part);
+  for (const auto& warning : report.warnings) fmt::print("warning: {}\n", warning);
+  fmt::print("results: {}\n", dir);
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("reproduce", "Run everything behind the paper and test its claims");
+  auto options = std::make_shared<paper::ReproduceOptions>();
+  auto dir = std::make_shared<std::string>("results");
+  command->add_option("-o,--output", *dir, "Folder for the results")->type_name("DIR")->capture_default_str();
+  command->add_flag("--quick", options->quick,
+                    "Elements of 2 mm and fewer studies: a second instead of half a minute");
+  command->add_flag("--overwrite", options->overwrite, "Replace the results that the folder already holds");
+  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command->add_option("--threads", options->threads, "Runs side by side")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->callback([options, dir] {
+    options->dir = *dir;
+    catch_interrupts();
+    std::optional<io::Progress> progress;
+    const auto report =
+        paper::reproduce(*options, [&](std::size_t done, std::size_t total, const std::string&) {
+          if (!progress) progress.emplace("runs", static_cast<std::int64_t>(total));
+          progress->update(static_cast<std::int64_t>(done));
+          return !interrupt_wanted();
+        });
+    progress.reset();
+    print_report(report, *dir);
+  });
+}
+
+}  // namespace slipfront::cli

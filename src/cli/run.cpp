@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/run.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "base/error.hpp"
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "fronts/measures.hpp"
+#include "io/log.hpp"
+#include "io/results.hpp"
+
+namespace slipfront::cli {
+namespace {
+
+struct RunArguments {
+  std::string dir;
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
+  const auto& event = result.event;
+  fmt::print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
+             initial.critical_shear_m);
+  if (initial.ramp)
+    fmt::print("by the ramp at {:.5g} m ({:+.3f} %), after {} beginnings of slip at the edges\n",
+               initial.ramp->spontaneous.shear_m,
+               100 * (initial.ramp->spontaneous.shear_m / initial.critical_shear_m - 1),
+               initial.ramp->record.onsets.size());
+  fmt::print(
+      "{} steps of {:.4g} s ({} sub-steps at the interface), {:.3g} s of wall time, {:.0f} million node "
+      "updates/s\n",
+      event.steps, result.step_s, result.config.time.interface_substeps, result.stepping_wall_s,
+      1e-6 * static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s);
+  for (const auto& front : result.fronts) {
+    const auto speeds = fronts::speed_summary(front, 0);
+    fmt::print("front {}: x = {:.4f} to {:.4f} m, {:.1f} to {:.1f} us, mean speed {:.2f} c_L, {}, ends: {}\n",
+               front.id, front.points.front().x_m, front.points.back().x_m,
+               1e6 * front.points.front().onset_s, 1e6 * front.points.back().onset_s,
+               speeds.mean_m_per_s / result.speeds.c_L, fronts::name(front.mode), fronts::name(front.end));
+  }
+  for (const auto& warning : result.warnings) fmt::print("note: {}\n", warning);
+  fmt::print("results: {}\n", dir);
+}
+
+void run_case(const CaseArguments& arguments, const RunArguments& options) {
+  const io::Case config = arguments.read();
+  io::prepare_output_folder(options.dir, options.overwrite);
+  catch_interrupts();
+  const auto with_progress = [&](const char* label) {
+    // The total is known only when the first step is done.
+    return [label, quiet = options.quiet, progress = std::shared_ptr<io::Progress>()](
+               std::int64_t step, std::int64_t total) mutable {
+      if (!progress) progress = std::make_shared<io::Progress>(label, total, quiet);
+      progress->update(step);
+      return !interrupt_wanted();
+    };
+  };
+  try {
+    const auto initial = run::make_initial_state(config, with_progress("ramp"));
+    const auto result = run::run_event(config, initial, with_progress("event"));
+    run::write(options.dir, result, initial);
+    if (result.event.end == solve::EventEnd::blow_up)
+      throw BlowUp(result.event.blow_up + "; what there is was kept in " + options.dir);
+    if (result.event.end == solve::EventEnd::interrupted)
+      throw Interrupted(fmt::format("interrupted at t = {:.4g} s; what there is was kept in {}",
+                                    result.event.time_s, options.dir));
+    if (!options.quiet) print_summary(result, initial, options.dir);
+  } catch (const UserError& error) {
+    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+  }
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
+  const auto arguments = add_case_arguments(*command);
+  auto options = std::make_shared<RunArguments>();
+  command->add_option("-o,--output", options->dir, "Folder for the results")->required()->type_name("DIR");
+  command->add_flag("--overwrite", options->overwrite, "Replace the results that the folder already holds");
+  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
+  command->callback([arguments, options] { run_case(*arguments, *options); });
+}
+
+}  // namespace slipfront::cli

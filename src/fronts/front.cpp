@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fronts/front.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "fronts/measures.hpp"
+#include "fronts/trace.hpp"
+
+namespace slipfront::fronts {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// A tip this near to a node, in element lengths, is at the node: l* and positions are rounded numbers (0.67
+// mm stands for an element of 0.6667 mm).
+constexpr double position_tolerance = 0.02;
+constexpr double position_rounding = 1e-6;
+constexpr double share_from_l_star = 5.0;  // no slipping share nearer to the start
+constexpr double acceleration_half_width_m = 3e-3;
+constexpr int acceleration_side_points = 4;
+
+// std::lerp may return a number where one end is NaN.
+double interpolate(double from, double to, double fraction) {
+  return from + fraction * (to - from);
+}
+
+/// First onset of each node, and its place in record.onsets. [nodes]
+struct FirstOnsets {
+  std::vector<double> time_s;  // infinite where the node never slips
+  std::vector<std::size_t> index;
+};
+
+FirstOnsets first_onsets(const SlipRecord& record) {
+  FirstOnsets first{std::vector<double>(record.x_m.size(), infinity),
+                    std::vector<std::size_t>(record.x_m.size())};
+  for (std::size_t k = 0; k < record.onsets.size(); ++k) {
+    const Onset& onset = record.onsets[k];
+    SLIPFRONT_ASSERT(onset.node >= 0 && onset.node < std::ssize(record.x_m),
+                     "onsets name nodes of the interface");
+    if (onset.time_s < first.time_s[onset.node]) {
+      first.time_s[onset.node] = onset.time_s;
+      first.index[onset.node] = k;
+    }
+  }
+  return first;
+}
+
+/// Begins and ends of slip of each node, in the order of time. [nodes]
+struct SlipTimes {
+  std::vector<std::vector<double>> begin_s;
+  std::vector<std::vector<double>> end_s;
+};
+
+SlipTimes slip_times(const SlipRecord& record) {
+  SlipTimes times{std::vector<std::vector<double>>(record.x_m.size()),
+                  std::vector<std::vector<double>>(record.x_m.size())};
+  for (const Onset& onset : record.onsets) times.begin_s[onset.node].push_back(onset.time_s);
+  for (const Stop& stop : record.stops) {
+    SLIPFRONT_ASSERT(stop.node >= 0 && stop.node < std::ssize(record.x_m),
+                     "stops name nodes of the interface");
+    times.end_s[stop.node].push_back(stop.time_s);
+  }
+  return times;
+}
+
+double last_until(const std::vector<double>& times_s, double time_s) {
+  const auto after = std::ranges::upper_bound(times_s, time_s);
+  return after == times_s.begin() ? -infinity : *(after - 1);
+}
+
+bool is_slipping(const SlipTimes& times, int node, double time_s) {
+  const double begun_s = last_until(times.begin_s[node], time_s);
+  return begun_s > -infinity && last_until(times.end_s[node], time_s) <= begun_s;
+}
+
+/// l* at a node: one element where that is longer.
+double local_l_star_m(std::span<const double> x_m, int node, double l_star_m) {
+  if (node > 0) l_star_m = std::max(l_star_m, x_m[node] - x_m[node - 1]);
+  if (node + 1 < std::ssize(x_m)) l_star_m = std::max(l_star_m, x_m[node + 1] - x_m[node]);
+  return l_star_m;
+}
+
+/// Motion of a tip along its path. [points of the path]
+struct Passage {
+  std::vector<double> run_m;       // distance from the start, ascending
+  std::vector<double> time_s;      // when the tip passes: never falls along the path
+  std::vector<std::size_t> onset;  // the onset, in record.onsets, by which it passes
+};
+
+Passage passage(const SlipRecord& record, const FirstOnsets& first, const Path& path) {
+  const std::size_t n = path.nodes.size();
+  Passage tip{std::vector<double>(n), std::vector<double>(n), std::vector<std::size_t>(n)};
+  double earliest_s = infinity;
+  std::size_t earliest = 0;
+  for (std::size_t k = n;
+       k-- > 0;) {  // from the far end: a node passes at the latest when one beyond it slips
+    const int node = path.nodes[k];
+    tip.run_m[k] = std::abs(record.x_m[node] - record.x_m[path.nodes[0]]);
+    if (first.time_s[node] < earliest_s) {
+      earliest_s = first.time_s[node];
+      earliest = first.index[node];
+    }
+    tip.time_s[k] = earliest_s;
+    tip.onset[k] = earliest;
+  }
+  return tip;
+}
+
+/// Two neighbouring points of a path around a position, and the position's share of the way from the first to
+/// the second.
+struct Bracket {
+  std::size_t behind = 0;
+  std::size_t ahead = 0;
+  double fraction = 0;
+};
+
+/// @pre run_m lies within the path.
+Bracket bracket(const Passage& tip, double run_m) {
+  const auto upper = std::ranges::lower_bound(tip.run_m, run_m);
+  const auto ahead = static_cast<std::size_t>(std::max(upper - tip.run_m.begin(), std::ptrdiff_t{1}));
+  const std::size_t behind = ahead - 1;
+  return {behind, ahead, (run_m - tip.run_m[behind]) / (tip.run_m[ahead] - tip.run_m[behind])};
+}
+
+double time_at(const Passage& tip, const Bracket& at) {
+  return interpolate(tip.time_s[at.behind], tip.time_s[at.ahead], at.fraction);
+}
+
+double tip_speed_m_per_s(const Passage& tip, double run_m, double l_star_m) {
+  const double from_m = run_m - 0.5 * l_star_m;
+  const double to_m = run_m + 0.5 * l_star_m;
+  if (from_m < 0.0 || to_m > tip.run_m.back()) return undefined;
+  const double time_s = time_at(tip, bracket(tip, to_m)) - time_at(tip, bracket(tip, from_m));
+  return time_s > 0.0 ? l_star_m / time_s : undefined;
+}
+
+/// Tractions of a node at an onset; undefined beyond the halo.
+Traction traction_at(const SlipRecord& record, std::size_t onset, int node) {
+  const int offset = node - record.onsets[onset].node;
+  if (std::abs(offset) > record.halo) return {undefined, undefined};
+  return record.around_onset(onset)[static_cast<std::size_t>(offset + record.halo)];
+}
+
+/// Tractions of `node` when the tip is at run_m, which it has to reach before it reaches the node.
+Traction traction_ahead(const SlipRecord& record, const Passage& tip, double run_m, int node,
+                        double reaches_node_s) {
+  Bracket at = bracket(tip, run_m);
+  if (at.fraction < position_tolerance) at.fraction = 0.0;
+  if (at.fraction > 1.0 - position_tolerance) at.fraction = 1.0;
+  if (time_at(tip, at) >= reaches_node_s) return {undefined, undefined};  // a jump
+  const Traction ahead = traction_at(record, tip.onset[at.ahead], node);
+  if (at.fraction == 1.0) return ahead;
+  const Traction behind = traction_at(record, tip.onset[at.behind], node);
+  if (at.fraction == 0.0) return behind;
+  return {interpolate(behind.t_Pa, ahead.t_Pa, at.fraction),
+          interpolate(behind.p_Pa, ahead.p_Pa, at.fraction)};
+}
+
+/// Length of the contiguous zone that slips behind a tip at `node`, not farther back than `start`.
+double slipping_length_m(std::span<const double> x_m, const SlipTimes& slip, int node, int start,
+                         double time_s, double tolerated_gap_m) {
+  const int back = start < node ? -1 : 1;
+  int rear = node;
+  for (int k = node; k != start;) {
+    k += back;
+    const bool near = k == rear + back || std::abs(x_m[k] - x_m[rear]) <= tolerated_gap_m;
+    if (!near) break;
+    if (is_slipping(slip, k, time_s)) rear = k;
+  }
+  return std::abs(x_m[node] - x_m[rear]);
+}
+
+SlipMode mode_of(const std::vector<FrontPoint>& points, const FrontOptions& options) {
+  int defined = 0, crack = 0, pulse = 0;
+  for (const FrontPoint& point : points) {
+    if (std::isnan(point.slipping_share)) continue;
+    ++defined;
+    if (point.slipping_share > options.crack_share) ++crack;
+    if (point.slipping_share < options.pulse_share) ++pulse;
+  }
+  const double enough = options.mode_fraction * defined;
+  if (defined > 0 && crack >= enough) return SlipMode::crack;
+  if (defined > 0 && pulse >= enough) return SlipMode::pulse;
+  return SlipMode::mixed;
+}
+
+Front measure(const SlipRecord& record, const StaticState& state, const FirstOnsets& first,
+              const SlipTimes& slip, const Path& path, const FrontOptions& options) {
+  Front front;
+  front.direction = path.direction;
+  front.end = path.end;
+  const Passage tip = passage(record, first, path);
+  std::vector<double> speed_m_per_s;
+  for (std::size_t k = 0; k < path.nodes.size(); ++k) {
+    const int node = path.nodes[k];
+    const double run_m = tip.run_m[k];
+    const double l_star_m = local_l_star_m(record.x_m, node, options.l_star_m);
+    FrontPoint point;
+    point.node = node;
+    point.x_m = record.x_m[node];
+    point.onset_s = first.time_s[node];
+    point.v_tip_m_per_s = tip_speed_m_per_s(tip, run_m, l_star_m);
+    point.t_s_Pa = state.t_s_Pa[node];
+    point.p_s_Pa = state.p_s_Pa[node];
+    const Traction at_onset = traction_at(record, first.index[node], node);
+    point.t_r_Pa = at_onset.t_Pa;
+    point.p_r_Pa = at_onset.p_Pa;
+
+    const bool included = point.x_m >= options.exclude_left_m && point.x_m <= options.exclude_right_m;
+    if (included && run_m > l_star_m * (1.0 + position_tolerance)) {
+      const Traction ahead = traction_ahead(record, tip, run_m - l_star_m, node, tip.time_s[k]);
+      point.t_d_Pa = ahead.t_Pa;
+      point.p_d_Pa = ahead.p_Pa;
+      if (!std::isnan(ahead.t_Pa)) {
+        point.U_s_J_per_m3 = energy_density_J_per_m3(ahead, options.elasticity);
+        point.U_r_J_per_m3 =
+            energy_density_J_per_m3({options.mu_s * at_onset.p_Pa, at_onset.p_Pa}, options.elasticity);
+      }
+    }
+    if (run_m >= share_from_l_star * l_star_m) {
+      point.slipping_share =
+          slipping_length_m(record.x_m, slip, node, path.nodes[0], tip.time_s[k], reach_m(options)) / run_m;
+    }
+    speed_m_per_s.push_back(point.v_tip_m_per_s);
+    front.points.push_back(point);
+  }
+  const std::vector<double> slope =
+      local_slopes(tip.run_m, speed_m_per_s, acceleration_half_width_m, acceleration_side_points);
+  for (std::size_t k = 0; k < slope.size(); ++k) front.points[k].accelerating = slope[k] > 0.0;
+  front.mode = mode_of(front.points, options);
+  return front;
+}
+
+}  // namespace
+
+double energy_density_J_per_m3(const Traction& traction, const Elasticity& elasticity) {
+  const double nu = elasticity.poissons_ratio;
+  const double normal = elasticity.plane_strain ? 1.0 - nu * nu : 1.0;
+  return (2.0 * (1.0 + nu) * traction.t_Pa * traction.t_Pa + normal * traction.p_Pa * traction.p_Pa) /
+         (2.0 * elasticity.youngs_modulus_Pa);
+}
+
+std::string_view name(End end) {
+  switch (end) {
+    case End::arrest:
+      return "arrest";
+    case End::meets_front:
+      return "meets_front";
+    case End::contact_end:
+      return "contact_end";
+    case End::record_end:
+      return "record_end";
+  }
+  return "unknown";
+}
+
+std::string_view name(SlipMode mode) {
+  switch (mode) {
+    case SlipMode::crack:
+      return "crack";
+    case SlipMode::pulse:
+      return "pulse";
+    case SlipMode::mixed:
+      return "mixed";
+  }
+  return "unknown";
+}
+
+std::vector<Front> find_fronts(const SlipRecord& record, const StaticState& state,
+                               const FrontOptions& options) {
+  const std::size_t n = record.x_m.size();
+  SLIPFRONT_ASSERT(state.x_m == record.x_m && state.t_s_Pa.size() == n && state.p_s_Pa.size() == n,
+                   "the static state is given at the record's nodes");
+  SLIPFRONT_ASSERT(
+      record.around.size() == record.onsets.size() * (2 * static_cast<std::size_t>(record.halo) + 1),
+      "tractions are kept around every onset");
+  SLIPFRONT_ASSERT(options.l_star_m > 0.0, "the speed is taken over a length");
+
+  const FirstOnsets first = first_onsets(record);
+  const SlipTimes slip = slip_times(record);
+  std::vector<Front> fronts;
+  for (const Path& path : trace_paths(record.x_m, first.time_s, state.p_s_Pa, record.end_time_s, options)) {
+    const double length_m = std::abs(record.x_m[path.nodes.back()] - record.x_m[path.nodes.front()]);
+    if (path.nodes.size() < 2 || length_m < options.min_length_m * (1.0 - position_rounding)) continue;
+    fronts.push_back(measure(record, state, first, slip, path, options));
+  }
+  std::ranges::stable_sort(fronts, {}, [](const Front& front) { return front.points.front().onset_s; });
+  for (std::size_t k = 0; k < fronts.size(); ++k) fronts[k].id = static_cast<int>(k);
+  return fronts;
+}
+
+}  // namespace slipfront::fronts

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "fronts/record.hpp"
+
+namespace slipfront::fronts {
+
+inline constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+/// What of the solid the energy density needs.
+struct Elasticity {
+  double youngs_modulus_Pa = 0;
+  double poissons_ratio = 0;
+  bool plane_strain = false;
+};
+
+/// Heuristic energy density of the tractions (t, p) with the in-plane stress left out, J/m3 (Kammer et al.
+/// 2012, Eq. 2): (2 (1 + nu) t^2 + p^2) / (2E) in plane stress; p^2 becomes (1 - nu^2) p^2 in plane strain.
+double energy_density_J_per_m3(const Traction& traction, const Elasticity& elasticity);
+
+/// How fronts are found and measured. Lengths in m, times in s.
+struct FrontOptions {
+  double l_star_m = 0.67e-3;     ///< length over which the speed is taken; one element where that is longer
+  double arrest_time_s = 20e-6;  ///< a tip that waits longer than this for its next onset has arrested
+  double min_length_m =
+      2e-3;                  ///< a shorter path, or a jump ahead no longer than this, is no front of its own
+  double crack_share = 0.5;  ///< crack-like above this share of slipping length to distance run
+  double pulse_share = 0.2;  ///< pulse-like below it
+  double mu_s = 0;           ///< static friction coefficient, for U_r = U(p_r, mu_s p_r)
+  Elasticity elasticity;
+  double exclude_left_m =
+      -std::numeric_limits<double>::infinity();  ///< no t_d, p_d at x below it (trigger zone)
+  double exclude_right_m = std::numeric_limits<double>::infinity();  ///< ... nor above it
+  double mode_fraction = 0.8;  ///< of a front's points with a slipping share that must agree on its mode
+};
+
+/// Why a front ends.
+enum class End {
+  arrest,       ///< no onset ahead for arrest_time_s
+  meets_front,  ///< the interface ahead has slipped already, or slips under another front
+  contact_end,  ///< no node ahead, or the next one is out of contact before the event (p_s <= 0)
+  record_end,   ///< the record ends while the front may still run
+};
+std::string_view name(End end);
+
+/// Kind of slip by the share of the distance run that still slips behind the tip.
+enum class SlipMode { crack, pulse, mixed };
+std::string_view name(SlipMode mode);
+
+/// A front's passage over one node. What is undefined there is NaN.
+struct FrontPoint {
+  std::int32_t node = 0;
+  double x_m = 0;
+  double onset_s = 0;
+  double v_tip_m_per_s = undefined;  ///< speed over l*, centred at x, positive in the front's own direction
+  double t_s_Pa = undefined, p_s_Pa = undefined;  ///< before the event
+  double t_d_Pa = undefined, p_d_Pa = undefined;  ///< when the front is l* short of x
+  double t_r_Pa = undefined, p_r_Pa = undefined;  ///< at the onset
+  double U_s_J_per_m3 = undefined;                ///< U(p_d, t_d)
+  double U_r_J_per_m3 = undefined;                ///< U(p_r, mu_s p_r)
+  double slipping_share = undefined;              ///< slipping length behind the tip over the distance run
+  bool accelerating = false;                      ///< v_tip rises along the path, see find_fronts
+};
+
+/// A path of onsets, continuous in x, in one direction.
+struct Front {
+  int id = 0;
+  int direction = 0;               ///< +1 or -1 along x
+  std::vector<FrontPoint> points;  ///< in the order of travel
+  End end = End::record_end;
+  SlipMode mode = SlipMode::mixed;  ///< of the whole path
+};
+
+/// Finds all fronts in the first onsets of a record and measures them. Sorted by the time of their start.
+///
+/// Paths. Onsets are taken in the order of time. An onset ahead of a tip belongs to that front if it is the
+/// next node, or no farther than min_length_m, and comes within arrest_time_s of the tip's last one; of
+/// several tips the nearest takes it (of two at the same distance the one that has waited longer). Any other
+/// onset is a nucleation, the start of one front to each side. So a node that slips a little early, late,
+/// long before or never does not split a front. A node that a front jumps over is a point of it if it slips
+/// within arrest_time_s of that; otherwise it is missing in it. Paths shorter than min_length_m are left out
+/// of the result.
+///
+/// Measures. The tip passes x when the first node at or beyond x on the path slips; between nodes the time
+/// is linear in x. l* at a node is the longest of l_star_m and the elements beside the node.
+/// - v_tip: l* over the time from x - l*/2 to x + l*/2. Undefined where that leaves the path or takes no
+///   time.
+/// - t_d, p_d: linear in tip position between the two nodes that bracket the tip (a tip within 2 % of their
+///   distance from a node is at that node). Undefined, with U_s and U_r, within l* of the start, outside
+///   exclude_*, where the tip jumps over x - l* and x at once, and where the halo is too small: l*/element
+///   length + 1 nodes are enough where the path has no gap.
+/// - slipping_share: at the tip's passage, the length of the contiguous slipping zone behind the tip over
+///   the distance from the start. Sticking nodes between slipping ones no farther than min_length_m apart do
+///   not end the zone. Undefined within 5 l* of the start.
+/// - mode: crack (pulse) if at least mode_fraction of the defined shares are above crack_share (below
+///   pulse_share).
+/// - accelerating: the least-squares slope of v_tip over the points within 3 mm (at least 4 on each side,
+///   where there are as many) is positive.
+///
+/// @pre state.x_m equals record.x_m; onset nodes are valid; `around` is complete.
+std::vector<Front> find_fronts(const SlipRecord& record, const StaticState& state,
+                               const FrontOptions& options);
+
+}  // namespace slipfront::fronts

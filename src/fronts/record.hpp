@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace slipfront::fronts {
+
+/// Tractions of the plane on the plate: p >= 0 in compression, t > 0 when it opposes sliding to +x. Pa.
+struct Traction {
+  double t_Pa = 0;
+  double p_Pa = 0;
+};
+
+/// A node begins to slip.
+struct Onset {
+  std::int32_t node = 0;  ///< index along the interface, left to right
+  double time_s = 0;      ///< located inside the step, where |t|/p passes the static friction coefficient
+};
+
+/// A slipping node sticks again.
+struct Stop {
+  std::int32_t node = 0;
+  double time_s = 0;
+};
+
+/// What a run records of its interface at full time resolution: every beginning and end of slip, and the
+/// tractions around each beginning. All that front analysis needs, whatever the decimation of the history.
+struct SlipRecord {
+  std::vector<double> x_m;       ///< [nodes] positions along the interface, ascending
+  int halo = 0;                  ///< nodes on each side whose tractions are kept at an onset
+  std::vector<Onset> onsets;     ///< in the order of time; a node that slips again appears again
+  std::vector<Traction> around;  ///< [onsets x (2 halo + 1)] tractions of nodes node - halo ... node + halo
+                                 ///< at the onset's time; nodes beyond the interface's ends are NaN
+  std::vector<Stop> stops;       ///< in the order of time
+  double end_time_s = 0;         ///< the record covers [0, end_time_s]
+
+  /// Tractions of nodes node - halo ... node + halo at onset k.
+  std::span<const Traction> around_onset(std::size_t k) const {
+    const std::size_t n = 2 * static_cast<std::size_t>(halo) + 1;
+    return {around.data() + k * n, n};
+  }
+};
+
+/// Time history of an interface, from a run or from elsewhere. Matrices are row-major [times x nodes].
+struct History {
+  std::vector<double> time_s;             ///< [times], ascending
+  std::vector<double> x_m;                ///< [nodes], ascending
+  std::vector<double> slip_m;             ///< displacement of the plate along x since the start
+  std::vector<double> slip_rate_m_per_s;  ///< positive to +x
+  std::vector<double> t_Pa;
+  std::vector<double> p_Pa;
+};
+
+/// Tractions before the event, at the nodes of the interface. [nodes]
+struct StaticState {
+  std::vector<double> x_m;
+  std::vector<double> t_s_Pa;
+  std::vector<double> p_s_Pa;
+};
+
+/// Rebuilds the record from a history: a node slips while |slip rate| > threshold_m_per_s; the onset lies
+/// where the slip rate, interpolated linearly in time, passes the threshold; tractions are interpolated to
+/// that time. A node that slips at the first time has its onset there.
+/// @pre threshold_m_per_s > 0, halo >= 0, matrices of matching sizes.
+SlipRecord record_from_history(const History& history, double threshold_m_per_s, int halo);
+
+}  // namespace slipfront::fronts

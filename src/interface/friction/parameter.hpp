@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace slipfront::interface {
+
+/// A friction law's parameter as the case file sees it; the schema, its checks and its help come from here.
+template <class Law>
+struct Parameter {
+  const char* key;  ///< in the table [friction], with its unit
+  double Law::*member;
+  double min;  ///< smallest value allowed
+  double max;  ///< largest value allowed
+  const char* help;
+};
+
+}  // namespace slipfront::interface

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "interface/friction/parameter.hpp"
+
+namespace slipfront::interface {
+
+/// mu(v) = mu_k + (mu_s - mu_k) exp(-|v| sqrt((mu_s - mu_k) / alpha)): Kammer et al. 2012, Eq. 1.
+struct VelocityWeakening {
+  static constexpr const char* name = "velocity_weakening";
+  static constexpr const char* help =
+      "falls from mu_s at rest to mu_k at speed, over about sqrt(alpha / (mu_s - mu_k))";
+
+  double mu_s = 1.3;
+  double mu_k = 0.6;
+  double alpha_m2_per_s2 = 0.1;
+
+  static constexpr std::array<Parameter<VelocityWeakening>, 3> parameters() {
+    return {
+        {{"mu_s", &VelocityWeakening::mu_s, 0, 100, "friction coefficient at rest"},
+         {"mu_k", &VelocityWeakening::mu_k, 0, 100, "friction coefficient at high slip rate, at most mu_s"},
+         {"alpha_m2_per_s2", &VelocityWeakening::alpha_m2_per_s2, 1e-12, 1e12,
+          "transition parameter alpha"}}};
+  }
+  /// Empty, or what is wrong with the parameters together.
+  const char* inconsistency() const { return mu_k > mu_s ? "mu_k must be at most mu_s" : ""; }
+
+  double static_coefficient() const { return mu_s; }
+
+  /// The law with its constants folded, for the loop over nodes.
+  struct Evaluator {
+    double kinetic, drop, rate_s_per_m;
+    double operator()(double speed_m_per_s) const {
+      return kinetic + drop * std::exp(-speed_m_per_s * rate_s_per_m);
+    }
+  };
+  Evaluator evaluator() const { return {mu_k, mu_s - mu_k, std::sqrt((mu_s - mu_k) / alpha_m2_per_s2)}; }
+};
+
+}  // namespace slipfront::interface

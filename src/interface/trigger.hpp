@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+
+namespace slipfront::interface {
+
+/// What starts the event.
+enum class EventKind {
+  none,         ///< nothing: the common state is left to itself
+  spontaneous,  ///< the shear is raised statically just past the critical one
+  left,         ///< added tangential traction next to the left edge of contact
+  right,        ///< added tangential traction next to the right edge of contact
+};
+
+/// An external force on the plate next to an edge of contact, along +x, not part of the reported t:
+/// amount * (mu_s p_s - t_s) * tributary length, times a ramp in time.
+struct Trigger {
+  double zone_m = 10e-3;  ///< measured inward from the outermost node in contact
+  double amount = 5;      ///< added traction over what is missing to mu_s p_s
+  double ramp_s = 5e-6;   ///< rises linearly from zero over this time
+  double duration_s = std::numeric_limits<double>::infinity();  ///< taken away this long after its start
+};
+
+/// Time factor of the trigger, 0 to 1.
+inline double trigger_factor(const Trigger& trigger, double time_s) {
+  if (time_s >= trigger.duration_s) return 0;
+  return time_s >= trigger.ramp_s ? 1 : time_s / trigger.ramp_s;
+}
+
+}  // namespace slipfront::interface

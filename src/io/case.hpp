@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "interface/friction/registry.hpp"
+#include "interface/trigger.hpp"
+#include "mesh/plate.hpp"
+#include "solid/material.hpp"
+#include "solve/settings.hpp"
+
+namespace slipfront::io {
+
+/// How fronts are found and measured; see fronts::FrontOptions.
+struct FrontSettings {
+  double l_star_m = 0.67e-3;
+  double arrest_time_s = 20e-6;
+  double min_length_m = 2e-3;
+  double crack_share = 0.5;
+  double pulse_share = 0.2;
+  double trigger_margin_m = 10e-3;  ///< t_d, p_d are left out within the trigger zone plus this
+};
+
+/// What a run writes besides its fronts.
+struct Output {
+  double history_interval_s = 0.5e-6;    ///< spacing of the rows of interface.h5
+  std::vector<double> snapshot_times_s;  ///< whole-plate fields, written to fields.vtkhdf
+};
+
+/// One run, completely. Every member is an entry of the schema (io/schema.hpp).
+struct Case {
+  std::string title;
+  mesh::Plate plate;
+  solid::Material material;
+  solve::Loading loading;
+  interface::FrictionLaw friction;
+  interface::EventKind event = interface::EventKind::spontaneous;
+  interface::Trigger trigger;
+  solve::TimeStepping time;
+  FrontSettings fronts;
+  Output output;
+};
+
+}  // namespace slipfront::io

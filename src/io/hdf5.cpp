@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/hdf5.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "base/error.hpp"
+
+namespace slipfront::io::hdf5 {
+namespace {
+
+/// Failures are reported by the exceptions alone (a setting of the calling thread). Nor may HDF5 clean up at
+/// the program's end: every file is closed by its handle, and after a failed close, as on a full disk, it
+/// would crash.
+void prepare_library() {
+  [[maybe_unused]] static const herr_t once = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+std::size_t count(const Shape& shape) {
+  return static_cast<std::size_t>(
+      std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()));
+}
+
+[[noreturn]] void throw_write(const File& file, const std::string& name) {
+  throw UserError("{}: cannot write {}; check that the disk is not full", file.path.string(), name);
+}
+
+Handle open_object(const File& file, const std::string& name) {
+  Handle object(H5Oopen(file.handle.get(), name.c_str(), H5P_DEFAULT), H5Oclose);
+  if (!object.valid())
+    throw UserError("{}: has no {}; check that it is the right file", file.path.string(), name);
+  return object;
+}
+
+Handle new_dataset(const File& file, const std::string& name, hid_t type, const Shape& shape) {
+  const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  Handle dataset(
+      H5Dcreate2(file.handle.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose);
+  if (!dataset.valid()) throw_write(file, name);
+  return dataset;
+}
+
+template <class T>
+void write_values(const File& file, const std::string& name, hid_t type, std::span<const T> values,
+                  const Shape& shape) {
+  SLIPFRONT_ASSERT(values.size() == count(shape), "values do not fill the shape of their data set");
+  const Handle dataset = new_dataset(file, name, type, shape);
+  if (values.empty()) return;
+  if (H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    throw_write(file, name);
+}
+
+void write_attribute(const File& file, const std::string& object, const std::string& name, hid_t type,
+                     const Handle& space, const void* data) {
+  const Handle owner = open_object(file, object);
+  const Handle attribute(H5Acreate2(owner.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose);
+  if (!attribute.valid() || H5Awrite(attribute.get(), type, data) < 0) throw_write(file, object + "." + name);
+}
+
+}  // namespace
+
+File create_file(const std::filesystem::path& path) {
+  prepare_library();
+  Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  if (!handle.valid())
+    throw UserError("{}: cannot be created; check that its folder exists and can be written", path.string());
+  return {path, std::move(handle)};
+}
+
+File open_file(const std::filesystem::path& path) {
+  prepare_library();
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw UserError("{}: does not exist; check the path", path.string());
+  Handle handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!handle.valid())
+    throw UserError("{}: cannot be read; check that it is a complete HDF5 file", path.string());
+  return {path, std::move(handle)};
+}
+
+void close(File file) {
+  if (H5Fflush(file.handle.get(), H5F_SCOPE_GLOBAL) < 0) throw_write(file, "its data");
+}
+
+void create_group(const File& file, const std::string& name) {
+  const Handle group(H5Gcreate2(file.handle.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                     H5Gclose);
+  if (!group.valid()) throw_write(file, name);
+}
+
+void write(const File& file, const std::string& name, std::span<const double> values, const Shape& shape) {
+  write_values(file, name, H5T_NATIVE_DOUBLE, values, shape);
+}
+
+void write(const File& file, const std::string& name, std::span<const std::int64_t> values,
+           const Shape& shape) {
+  write_values(file, name, H5T_NATIVE_INT64, values, shape);
+}
+
+void write(const File& file, const std::string& name, std::span<const std::uint8_t> values,
+           const Shape& shape) {
+  write_values(file, name, H5T_NATIVE_UINT8, values, shape);
+}
+
+void create(const File& file, const std::string& name, const Shape& shape) {
+  new_dataset(file, name, H5T_NATIVE_DOUBLE, shape);
+}
+
+void write_rows(const File& file, const std::string& name, hsize_t first_row,
+                std::span<const double> values) {
+  if (values.empty()) return;
+  const Handle dataset(H5Dopen2(file.handle.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  SLIPFRONT_ASSERT(space.valid(), "rows of a data set that was not created");
+  Shape shape(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
+  H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+  Shape start(shape.size(), 0);
+  start[0] = first_row;
+  const hsize_t rows = shape[0];
+  shape[0] = 1;
+  SLIPFRONT_ASSERT(values.size() % count(shape) == 0, "rows of a data set are not whole");
+  shape[0] = values.size() / count(shape);
+  SLIPFRONT_ASSERT(first_row + shape[0] <= rows, "rows beyond the end of their data set");
+  const Handle block(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr) < 0 ||
+      H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, block.get(), space.get(), H5P_DEFAULT, values.data()) < 0)
+    throw_write(file, name);
+}
+
+void set_attribute(const File& file, const std::string& object, const std::string& name,
+                   const std::string& text) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  const char* data = text.c_str();
+  write_attribute(file, object, name, type.get(), Handle(H5Screate(H5S_SCALAR), H5Sclose), &data);
+}
+
+void set_ascii_attribute(const File& file, const std::string& object, const std::string& name,
+                         const std::string& text) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), text.size());
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  write_attribute(file, object, name, type.get(), Handle(H5Screate(H5S_SCALAR), H5Sclose), text.c_str());
+}
+
+void set_attribute(const File& file, const std::string& object, const std::string& name,
+                   std::span<const std::int64_t> values) {
+  const hsize_t length = values.size();
+  Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
+  if (length == 1) space = Handle(H5Screate(H5S_SCALAR), H5Sclose);
+  write_attribute(file, object, name, H5T_NATIVE_INT64, space, values.data());
+}
+
+std::string text_attribute(const File& file, const std::string& object, const std::string& name) {
+  const Handle owner = open_object(file, object);
+  const Handle attribute(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
+  const Handle type(attribute.valid() ? H5Aget_type(attribute.get()) : -1, H5Tclose);
+  if (!type.valid() || H5Tis_variable_str(type.get()) <= 0)
+    throw UserError("{}: {} has no text attribute {}", file.path.string(), object, name);
+  char* data = nullptr;
+  if (H5Aread(attribute.get(), type.get(), &data) < 0 || !data)
+    throw UserError("{}: cannot read the attribute {} of {}", file.path.string(), name, object);
+  const std::string text = data;
+  H5free_memory(data);
+  return text;
+}
+
+Array read(const File& file, const std::string& name) {
+  const Handle dataset(H5Dopen2(file.handle.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid())
+    throw UserError("{}: has no data set {}; check that it is the right file", file.path.string(), name);
+  const Handle type(H5Dget_type(dataset.get()), H5Tclose);
+  const H5T_class_t kind = H5Tget_class(type.get());
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER)
+    throw UserError("{}: data set {} does not hold numbers", file.path.string(), name);
+  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  Array array;
+  array.shape.resize(static_cast<std::size_t>(std::max(rank, 0)));
+  H5Sget_simple_extent_dims(space.get(), array.shape.data(), nullptr);
+  array.values.resize(H5Sget_simple_extent_type(space.get()) == H5S_NULL ? 0 : count(array.shape));
+  if (!array.values.empty() &&
+      H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0)
+    throw UserError("{}: data set {} cannot be read; the file may be incomplete", file.path.string(), name);
+  return array;
+}
+
+}  // namespace slipfront::io::hdf5

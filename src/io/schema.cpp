@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/schema.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <string_view>
+
+#include "base/error.hpp"
+#include "io/document.hpp"
+#include "io/entries.hpp"
+
+namespace slipfront::io {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const char* blanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file))
+    throw UserError("{}: is a folder; name the case file in it", file.string());
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad())
+    throw UserError("{}: cannot be read ({}); check the path", file.string(), std::strerror(errno));
+  return text;
+}
+
+/// Levenshtein's distance: the fewest letters to insert, remove or replace.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+/// The candidate nearest to `text`, if it is near enough to be meant.
+std::optional<std::string> nearest(const std::string& text, const std::vector<std::string>& candidates) {
+  std::optional<std::string> best;
+  std::size_t least = std::max<std::size_t>(2, text.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t distance = edit_distance(text, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+const Entry* find_entry(const std::vector<Entry>& entries, const std::string& key) {
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+/// The friction law, other than `except`, that has a parameter of this key; null where none has.
+const LawEntries* law_with(const std::string& key, const LawEntries* except) {
+  for (const LawEntries& law : friction_laws())
+    if (&law != except && find_entry(law.entries, key)) return &law;
+  return nullptr;
+}
+
+std::vector<std::string> tables_of(const std::vector<Entry>& entries) {
+  std::vector<std::string> tables;
+  for (const Entry& entry : entries) {
+    const std::string table = table_of(entry.key);
+    if (!table.empty() && (tables.empty() || tables.back() != table)) tables.push_back(table);
+  }
+  return tables;
+}
+
+bool contains_word(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+  return unit.empty() ? number : number + " " + unit;
+}
+
+std::string_view kind_name(Kind kind) {
+  switch (kind) {
+    case Kind::number:
+      return "a number";
+    case Kind::integer:
+      return "an integer";
+    case Kind::flag:
+      return "true or false";
+    case Kind::text:
+      return "a string";
+    case Kind::word:
+      return "a word in quotes";
+    case Kind::numbers:
+      return "a list of numbers";
+  }
+  return "";
+}
+
+// --- Overrides
+// ---------------------------------------------------------------------------------------------------
+
+std::string place_of(const Override& override) {
+  return one_line(fmt::format("--set {}={}", override.first, override.second));
+}
+
+bool takes_bare_text(const std::string& key) {
+  const Entry* entry = find_entry(common_entries(), key);
+  return entry && (entry->kind == Kind::word || entry->kind == Kind::text);
+}
+
+Setting to_setting(const Override& override) {
+  const auto& [key, text] = override;
+  const bool in_quotes = !text.empty() && (text.front() == '"' || text.front() == '\'');
+  Value value = takes_bare_text(key) && !in_quotes ? Value(text) : parse_value(text);
+  return {one_line(key), std::move(value), place_of(override), 0};
+}
+
+const Setting* find_setting(const Document& document, const std::string& key) {
+  const auto found = std::find_if(document.settings.begin(), document.settings.end(),
+                                  [&](const Setting& setting) { return setting.key == key; });
+  return found == document.settings.end() ? nullptr : &*found;
+}
+
+void apply(const std::vector<Override>& overrides, Document& document) {
+  for (const Override& override : overrides) {
+    auto& settings = document.settings;
+    settings.erase(std::remove_if(settings.begin(), settings.end(),
+                                  [&](const Setting& setting) { return setting.key == override.first; }),
+                   settings.end());
+    settings.push_back(to_setting(override));
+  }
+}
+
+/// Where an override names the law, what the file says of other laws is out of date rather than wrong.
+void drop_parameters_of_other_laws(const Case& config, Document& document) {
+  const Setting* law = find_setting(document, "friction.law");
+  if (!law || !law->is_override()) return;
+  const LawEntries& current = law_of(config);
+  auto& settings = document.settings;
+  settings.erase(std::remove_if(settings.begin(), settings.end(),
+                                [&](const Setting& setting) {
+                                  return !setting.is_override() &&
+                                         !find_entry(current.entries, setting.key) &&
+                                         law_with(setting.key, &current);
+                                }),
+                 settings.end());
+}
+
+// --- Single keys
+// -------------------------------------------------------------------------------------------------
+
+[[noreturn]] void throw_unknown_table(const TableHeader& table, const std::vector<std::string>& tables) {
+  const auto guess = nearest(table.key, tables);
+  if (guess) throw UserError("{}: unknown table [{}]; did you mean [{}]?", table.place, table.key, *guess);
+  throw UserError("{}: unknown table [{}]; tables are {}", table.place, table.key, fmt::join(tables, ", "));
+}
+
+[[noreturn]] void throw_unknown_key(const Setting& setting, const std::vector<Entry>& entries,
+                                    const Case& config) {
+  const std::string& key = setting.key;
+  if (const LawEntries* other = law_with(key, &law_of(config)))
+    throw UserError(
+        "{}: {} belongs to the friction law {}, but friction.law is {}; remove the key or set the law",
+        setting.place, key, other->name, law_of(config).name);
+  std::vector<std::string> keys;
+  for (const Entry& entry : entries) {
+    // The right name in the wrong table is the likelier slip than any misspelling.
+    if (leaf_of(entry.key) == leaf_of(key))
+      throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, entry.key);
+    keys.push_back(entry.key);
+  }
+  if (const auto guess = nearest(key, keys))
+    throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, *guess);
+  throw UserError("{}: unknown key {}; `slipfront keys` lists all keys", setting.place, key);
+}
+
+[[noreturn]] void throw_wrong_type(const Entry& entry, const Setting& setting, const Value& default_value) {
+  const std::string& key = entry.key;
+  const std::string value = entry.kind == Kind::numbers ? "[1e-5, 2e-5]" : toml_text(default_value);
+  const std::string example = setting.is_override() ? fmt::format("--set {}={}", key, value)
+                                                    : fmt::format("{} = {}", leaf_of(key), value);
+  throw UserError("{}: {} must be {}, is {}; write for example {}", setting.place, key, kind_name(entry.kind),
+                  type_name(setting.value), example);
+}
+
+void require_in_range(const Entry& entry, const Setting& setting, double value) {
+  if (contains(entry.range, value)) return;
+  const std::string unit = unit_of(entry.key);
+  std::string allowed = describe(entry.range, unit);
+  if (!std::isfinite(value) && entry.range.max_open)
+    allowed = "a finite number" + (allowed.empty() ? "" : " " + allowed);
+  throw UserError("{}: {} is {}; it must be {}", setting.place, entry.key,
+                  with_unit(fmt::format("{}", value), unit), allowed);
+}
+
+/// The setting's value in the type that the entry takes; an integer does for a number.
+Value checked(const Entry& entry, const Setting& setting, const Value& default_value) {
+  const Value& value = setting.value;
+  switch (entry.kind) {
+    case Kind::number: {
+      const auto* integer = std::get_if<std::int64_t>(&value);
+      if (!integer && !std::holds_alternative<double>(value)) break;
+      const double number = integer ? static_cast<double>(*integer) : std::get<double>(value);
+      require_in_range(entry, setting, number);
+      return number;
+    }
+    case Kind::integer:
+      if (!std::holds_alternative<std::int64_t>(value)) break;
+      require_in_range(entry, setting, static_cast<double>(std::get<std::int64_t>(value)));
+      return value;
+    case Kind::flag:
+      if (!std::holds_alternative<bool>(value)) break;
+      return value;
+    case Kind::text:
+      if (!std::holds_alternative<std::string>(value)) break;
+      return value;
+    case Kind::word: {
+      const auto* word = std::get_if<std::string>(&value);
+      if (!word) break;
+      if (contains_word(entry.words, *word)) return value;
+      const auto guess = nearest(*word, entry.words);
+      throw UserError("{}: {} is {}; it must be one of {}{}", setting.place, entry.key, toml_text(value),
+                      fmt::join(entry.words, ", "), guess ? fmt::format(" (did you mean {}?)", *guess) : "");
+    }
+    case Kind::numbers: {
+      const auto* list = std::get_if<std::vector<double>>(&value);
+      if (!list) break;
+      for (const double number : *list) require_in_range(entry, setting, number);
+      return value;
+    }
+  }
+  throw_wrong_type(entry, setting, default_value);
+}
+
+void assign(const Entry& entry, const Setting& setting, Case& config) {
+  entry.set(config, checked(entry, setting, entry.get(config)));
+}
+
+void check_tables(const Document& document, const std::vector<Entry>& entries) {
+  const std::vector<std::string> tables = tables_of(entries);
+  for (const TableHeader& table : document.tables) {
+    if (contains_word(tables, table.key)) continue;
+    if (const Entry* entry = find_entry(entries, table.key))
+      throw UserError("{}: {} must be {}, is a table; write it as a key", table.place, table.key,
+                      kind_name(entry->kind));
+    throw_unknown_table(table, tables);
+  }
+  for (const Setting& setting : document.settings)
+    if (contains_word(tables, setting.key))
+      throw UserError("{}: {} is a table, not a key; set its keys, {}.NAME, one by one", setting.place,
+                      setting.key, setting.key);
+}
+
+// --- Keys together
+// -----------------------------------------------------------------------------------------------
+
+/// Place of the first of these keys that is set, an override before the file; `name` where none is.
+std::string place_of(const Document& document, const std::vector<std::string>& keys,
+                     const std::string& name) {
+  std::string place = name;
+  for (const std::string& key : keys) {
+    const Setting* setting = find_setting(document, key);
+    if (!setting) continue;
+    if (setting->is_override()) return setting->place;
+    if (place == name) place = setting->place;
+  }
+  return place;
+}
+
+void check_friction(const Case& config, const Document& document, const std::string& name) {
+  const LawEntries& law = law_of(config);
+  const std::string message = law.inconsistency(config);
+  if (message.empty()) return;
+  std::vector<std::string> keys;
+  for (const Entry& entry : law.entries)
+    if (message.find(leaf_of(entry.key)) != std::string::npos) keys.push_back(entry.key);
+  keys.push_back("friction.law");
+  std::string values;
+  for (const Entry& entry : law.entries)
+    values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", leaf_of(entry.key),
+                          toml_text(entry.get(config)));
+  throw UserError("{}: friction: {} ({})", place_of(document, keys, name), message, values);
+}
+
+/// Relations between keys that need no mesh; mesh::make_plate checks the rest of the geometry.
+void check_relations(const Case& config, const Document& document, const std::string& name) {
+  const auto require = [&](bool holds, const std::vector<std::string>& keys, const std::string& message) {
+    if (!holds) throw UserError("{}: {}", place_of(document, keys, name), message);
+  };
+  const auto& plate = config.plate;
+  const auto& loading = config.loading;
+  const double shorter_m = std::min(plate.width_m, plate.height_m);
+  require(plate.element_size_m <= shorter_m, {"plate.element_size_m", "plate.width_m", "plate.height_m"},
+          fmt::format("plate.element_size_m is {} m; it must be at most the plate's shorter side, {} m",
+                      plate.element_size_m, shorter_m));
+  const double tilt_m = std::max(loading.tilt_left_m, loading.tilt_right_m);
+  require(
+      tilt_m < plate.height_m, {"loading.tilt_left_m", "loading.tilt_right_m", "plate.height_m"},
+      fmt::format(
+          "loading.tilt_left_m and tilt_right_m go up to {} m; they must be less than plate.height_m, {} m",
+          tilt_m, plate.height_m));
+  require(loading.edge_margin_m < 0.5 * plate.width_m, {"loading.edge_margin_m", "plate.width_m"},
+          fmt::format("loading.edge_margin_m is {} m; it must be less than half of plate.width_m, {} m",
+                      loading.edge_margin_m, 0.5 * plate.width_m));
+  require(config.trigger.zone_m <= plate.width_m, {"event.trigger_zone_m", "plate.width_m"},
+          fmt::format("event.trigger_zone_m is {} m; it must be at most plate.width_m, {} m",
+                      config.trigger.zone_m, plate.width_m));
+  require(
+      config.time.step_factor <= 1 || config.time.allow_unstable, {"time.step_factor", "time.allow_unstable"},
+      fmt::format(
+          "time.step_factor is {}, beyond the stable step; use at most 1, or set time.allow_unstable = true",
+          config.time.step_factor));
+  require(config.fronts.pulse_share <= config.fronts.crack_share,
+          {"fronts.pulse_share", "fronts.crack_share"},
+          fmt::format("fronts.pulse_share is {}; it must be at most fronts.crack_share, {}",
+                      config.fronts.pulse_share, config.fronts.crack_share));
+  const auto& times = config.output.snapshot_times_s;
+  const auto fall = std::adjacent_find(times.begin(), times.end(), std::greater_equal<>());
+  if (fall != times.end())
+    require(false, {"output.snapshot_times_s"},
+            fmt::format("output.snapshot_times_s has {} s before {} s; write the times in ascending order",
+                        *fall, *std::next(fall)));
+}
+
+// --- Reference
+// ---------------------------------------------------------------------------------------------------
+
+std::string reference_row(const Entry& entry, const Case& defaults) {
+  std::string type(kind_name(entry.kind));
+  std::string allowed = describe(entry.range, "");
+  if (entry.kind == Kind::word) {
+    type = "word";
+    allowed = fmt::format("`\"{}\"`", fmt::join(entry.words, "\"`, `\""));
+  }
+  for (const std::string_view article : {"a ", "an "})
+    if (type.rfind(article, 0) == 0) type.erase(0, article.size());
+  std::string help;
+  for (const char c : entry.help) help += c == '|' ? std::string("\\|") : std::string(1, c);
+  return fmt::format("| `{}` | {} | {} | `{}` | {} | {} |\n", leaf_of(entry.key), type, unit_of(entry.key),
+                     toml_text(entry.get(defaults)), allowed, help);
+}
+
+constexpr std::string_view reference_head =
+    "| key | type | unit | default | allowed | meaning |\n|---|---|---|---|---|---|\n";
+
+}  // namespace
+
+Override parse_override(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string key = trimmed(text.substr(0, equals));
+  if (equals == std::string::npos || key.empty())
+    throw UserError("--set {}: is not of the form key=value; write for example --set friction.mu_k=1.0",
+                    one_line(text));
+  return {key, trimmed(text.substr(equals + 1))};
+}
+
+Case parse_case(const std::string& text, const std::string& name, const std::vector<Override>& overrides) {
+  Document document = parse_document(text, name);
+  apply(overrides, document);
+  check_tables(document, common_entries());
+
+  Case config;
+  // The law first: it decides which keys there are.
+  if (const Setting* law = find_setting(document, "friction.law"))
+    assign(*find_entry(common_entries(), "friction.law"), *law, config);
+  drop_parameters_of_other_laws(config, document);
+  const std::vector<Entry> entries = entries_of(config);
+  for (const Setting& setting : document.settings) {
+    const Entry* entry = find_entry(entries, setting.key);
+    if (!entry) throw_unknown_key(setting, entries, config);
+    if (entry->key != "friction.law") assign(*entry, setting, config);
+  }
+  check_friction(config, document, name);
+  check_relations(config, document, name);
+  return config;
+}
+
+Case read_case(const std::filesystem::path& file, const std::vector<Override>& overrides) {
+  return parse_case(read_text(file), file.string(), overrides);
+}
+
+std::string to_toml(const Case& config) {
+  std::string text;
+  std::string open_table;
+  for (const Entry& entry : entries_of(config)) {
+    const std::string table = table_of(entry.key);
+    if (table != open_table) text += fmt::format("\n[{}]\n", table);
+    open_table = table;
+    text += fmt::format("{} = {}  # {}\n", leaf_of(entry.key), toml_text(entry.get(config)), entry.help);
+  }
+  return text;
+}
+
+std::string schema_reference() {
+  std::string text =
+      "# Keys of the case file\n\n"
+      "A key that is not set keeps its default. On the command line, `--set table.key=value` wins over the "
+      "file.\n"
+      "All quantities are in SI units, named by the ending of the key.\n\n";
+  text += reference_head;
+  const Case defaults;
+  std::string open_table;
+  for (const Entry& entry : common_entries()) {
+    const std::string table = table_of(entry.key);
+    if (table != open_table) text += fmt::format("\n## [{}]\n\n{}", table, reference_head);
+    open_table = table;
+    text += reference_row(entry, defaults);
+    if (entry.key != "friction.law") continue;
+    for (const LawEntries& law : friction_laws()) {
+      Case of_law;
+      of_law.friction = law.defaults;
+      text += fmt::format("\nWith `law = \"{}\"` ({}):\n\n{}", law.name, law.help, reference_head);
+      for (const Entry& parameter : law.entries) text += reference_row(parameter, of_law);
+    }
+  }
+  return text;
+}
+
+std::string locate_key(const std::filesystem::path& file, const std::string& key,
+                       const std::vector<Override>& overrides) {
+  const auto override = std::find_if(overrides.rbegin(), overrides.rend(),
+                                     [&](const Override& candidate) { return candidate.first == key; });
+  if (override != overrides.rend()) return place_of(*override);
+  try {
+    const Document document = parse_document(read_text(file), file.string());
+    return place_of(document, {key}, file.string());
+  } catch (const UserError&) {
+    return file.string();
+  }
+}
+
+std::string with_place(const std::filesystem::path& file, const std::string& message,
+                       const std::vector<Override>& overrides) {
+  std::string first_key;
+  std::size_t first = std::string::npos;
+  const auto consider = [&](const std::vector<Entry>& entries) {
+    for (const Entry& entry : entries) {
+      if (table_of(entry.key).empty()) continue;
+      const std::size_t position = message.find(entry.key);
+      if (position == std::string::npos) continue;
+      if (first_key.empty() || position < first ||
+          (position == first && entry.key.size() > first_key.size())) {
+        first = position;
+        first_key = entry.key;
+      }
+    }
+  };
+  consider(common_entries());
+  for (const LawEntries& law : friction_laws()) consider(law.entries);
+  const std::string place = first_key.empty() ? file.string() : locate_key(file, first_key, overrides);
+  return fmt::format("{}: {}", place, message);
+}
+
+}  // namespace slipfront::io

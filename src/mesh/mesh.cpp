@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/error.hpp"
+
+namespace slipfront::mesh {
+
+std::vector<bool> orphans(const Mesh& mesh) {
+  std::vector<bool> orphan(mesh.x_m.size(), true);
+  for (const Cell& cell : mesh.cells)
+    for (const Node n : cell) orphan[n] = false;
+  return orphan;
+}
+
+std::vector<double> tributary_lengths_m(const Mesh& mesh) {
+  std::vector<double> length_m(mesh.lower.size(), 0.0);
+  for (std::size_t i = 0; i + 1 < mesh.lower.size(); ++i) {
+    const Node a = mesh.lower[i];
+    const Node b = mesh.lower[i + 1];
+    const double half = 0.5 * std::hypot(mesh.x_m[b] - mesh.x_m[a], mesh.y_m[b] - mesh.y_m[a]);
+    length_m[i] += half;
+    length_m[i + 1] += half;
+  }
+  return length_m;
+}
+
+Quality quality(const Mesh& mesh) {
+  SLIPFRONT_ASSERT(!mesh.cells.empty(), "the quality of a mesh without cells is not defined");
+  constexpr double pi = std::numbers::pi;
+  double min_angle = std::numeric_limits<double>::infinity();
+  double max_angle = 0;
+  double min_square = std::numeric_limits<double>::infinity();
+  for (const Cell& cell : mesh.cells) {
+    for (int corner = 0; corner < 4; ++corner) {
+      const Node here = cell[corner];
+      const Node next = cell[(corner + 1) % 4];
+      const Node last = cell[(corner + 3) % 4];
+      const double ax = mesh.x_m[next] - mesh.x_m[here];
+      const double ay = mesh.y_m[next] - mesh.y_m[here];
+      const double bx = mesh.x_m[last] - mesh.x_m[here];
+      const double by = mesh.y_m[last] - mesh.y_m[here];
+      double angle = std::atan2(ax * by - ay * bx, ax * bx + ay * by);
+      if (angle < 0) angle += 2 * pi;  // a reflex corner
+      min_angle = std::min(min_angle, angle);
+      max_angle = std::max(max_angle, angle);
+      min_square = std::min(min_square, ax * ax + ay * ay);
+    }
+  }
+  return {min_angle * 180 / pi, max_angle * 180 / pi, std::sqrt(min_square)};
+}
+
+}  // namespace slipfront::mesh

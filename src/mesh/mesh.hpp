@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace slipfront::mesh {
+
+using Node = std::int32_t;
+
+/// Four-node cells with their node numbers counterclockwise.
+using Cell = std::array<Node, 4>;
+
+/// The logical grid under the node numbers: node (column i, row j) is j * (columns + 1) + i.
+///
+/// A plate's nodes are always numbered by such a grid, whatever is done to its corners; cells may be moved,
+/// folded or taken away, and a grid number without a cell is an orphan (see orphans). The two lower corners
+/// of a fillet are such, so take the plate's width from `top`.
+struct Grid {
+  int columns = 0;       ///< cells along x
+  int rows = 0;          ///< cells along y
+  double spacing_m = 0;  ///< side of the regular square cell
+  int stride() const { return columns + 1; }
+  Node node(int i, int j) const { return j * stride() + i; }
+};
+
+/// Nodes, four-node cells and the named node sets of a plate standing on the rigid plane y = 0.
+struct Mesh {
+  Grid grid;
+  std::vector<double> x_m;  ///< [nodes] along the interface, from the left edge
+  std::vector<double> y_m;  ///< [nodes] up from the rigid plane; the gap of a lower node
+  std::vector<Cell> cells;
+  std::vector<Node> lower;  ///< candidates for contact, x ascending, rounded corners included
+  std::vector<Node> top;    ///< nodes of the loaded edge, left to right
+
+  Node n_nodes() const { return static_cast<Node>(x_m.size()); }
+};
+
+/// For each node, whether no cell uses it. Orphans carry no mass and take no part in anything.
+std::vector<bool> orphans(const Mesh& mesh);
+
+/// Length of lower boundary that belongs to each node of `mesh.lower`: half of each adjoining segment,
+/// measured along the arcs' chords. The first and the last node have one segment only. [lower], m.
+std::vector<double> tributary_lengths_m(const Mesh& mesh);
+
+/// Smallest and largest interior angle over all cells (degrees), smallest cell side (m).
+struct Quality {
+  double min_angle_deg = 0;
+  double max_angle_deg = 0;
+  double min_side_m = 0;
+};
+Quality quality(const Mesh& mesh);
+
+}  // namespace slipfront::mesh

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+namespace slipfront::mesh {
+
+/// How the two lower corners of the plate are rounded.
+enum class Corner {
+  none,    ///< right angles
+  relief,  ///< a shallow arc, tangent to the base, that rises by relief_height_m over relief_length_m
+  fillet,  ///< a quarter circle of fillet_radius_m
+};
+
+/// A rectangle on the rigid plane y = 0 with its lower left corner at the origin.
+struct Plate {
+  double width_m = 0.2;
+  double height_m = 0.1;
+  double element_size_m = 0.1 / 150;  ///< width and height must be whole multiples of it, to 1e-6
+  Corner corner = Corner::relief;
+  double relief_length_m = 5e-3;
+  double relief_height_m = 0.5e-3;
+  double relief_depth_m = 10e-3;  ///< height over which the relief's shift of the nodes fades out
+  double fillet_radius_m = 5e-3;
+};
+
+/// Meshes the plate with four-node cells that are squares away from the corners, exact to rounding when the
+/// sides are exact multiples.
+///
+/// - none: cell j * columns + i lies between grid nodes (i, j) and (i + 1, j + 1).
+/// - relief: the same cells. A circle of radius (length^2 + height^2)/(2 height) touches the base at
+///   relief_length_m from the edge; nodes above it move up by its rise times (1 - y/relief_depth_m). The
+///   height may be at most half of the length and half of the depth, so that no angle gets below 36 degrees
+///   and no cell less high than half an element.
+/// - fillet: a few rows of cells are wrapped around each corner, see fillet.hpp.
+///
+/// @throws UserError for an impossible geometry, naming the quantity to change.
+Mesh make_plate(const Plate& plate);
+
+}  // namespace slipfront::mesh

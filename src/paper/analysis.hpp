@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "paper/scorecard.hpp"
+
+namespace slipfront::paper {
+
+/// scorecard.json: a list of id, claim, paper, measured, holds (true, false, or null where not tested), how.
+void write_scorecard(const std::filesystem::path& file, const std::vector<Claim>& claims);
+
+/// analysis.json: the fit of V_tip/c_L against the energy rise with its intervals, the paper's fit, the
+/// spreads against the three criteria, and for every study point the speeds, kinds of slip, changes against
+/// the paper's runs, fit and spreads.
+void write_analysis(const std::filesystem::path& file, const Reproduction& runs);
+
+}  // namespace slipfront::paper

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "paper/cases.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace slipfront::paper {
+
+namespace {
+
+constexpr double width_m = 0.2;
+
+io::Case base_case(interface::EventKind event, bool quick) {
+  io::Case c;  // the defaults are the paper's
+  c.event = event;
+  c.plate.element_size_m = width_m / (quick ? 100 : 300);
+  return c;
+}
+
+interface::VelocityWeakening& law(io::Case& c) {
+  return std::get<interface::VelocityWeakening>(c.friction);
+}
+
+using Change = std::function<void(io::Case&)>;
+
+/// The events of one study point: the paper's with one change, at a history spacing that keeps their files
+/// small.
+StudyPoint make_point(std::string value, double number, bool quick, std::vector<interface::EventKind> events,
+                      const Change& change) {
+  StudyPoint point{std::move(value), number, {}};
+  for (const auto event : events) {
+    io::Case c = base_case(event, quick);
+    c.output.history_interval_s = 2e-6;
+    change(c);
+    const char* name = event == interface::EventKind::left    ? "left"
+                       : event == interface::EventKind::right ? "right"
+                                                              : "spontaneous";
+    c.title = fmt::format("{}, {}", name, point.value);
+    point.cases.push_back({name, c});
+  }
+  return point;
+}
+
+}  // namespace
+
+std::vector<NamedCase> paper_cases(bool quick) {
+  using enum interface::EventKind;
+  std::vector<NamedCase> cases = {{"spontaneous", base_case(spontaneous, quick)},
+                                  {"left", base_case(left, quick)},
+                                  {"right", base_case(right, quick)},
+                                  {"spontaneous_mu_k_1.0", base_case(spontaneous, quick)}};
+  law(cases[3].config).mu_k = 1.0;
+  const std::vector<std::string> titles = {"spontaneous, mu_k = 0.6", "triggered on the left, mu_k = 0.6",
+                                           "triggered on the right, mu_k = 0.6", "spontaneous, mu_k = 1.0"};
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    cases[k].config.title = titles[k];
+    for (int t = 1; t <= 20; ++t) cases[k].config.output.snapshot_times_s.push_back(t * 10 * 1e-6);
+  }
+  return cases;
+}
+
+std::vector<Study> studies(bool quick) {
+  using enum interface::EventKind;
+  const std::vector<interface::EventKind> all = {spontaneous, left, right};
+  const std::vector<interface::EventKind> triggered = {left, right};
+  std::vector<Study> list;
+  const auto numbers = [&](const char* name, const char* key, const char* why,
+                           const std::vector<double>& values, const std::vector<interface::EventKind>& events,
+                           const std::function<void(io::Case&, double)>& set) {
+    Study study{name, key, why, {}};
+    for (const double value : values)
+      study.points.push_back(
+          make_point(fmt::format("{:g}", value), value, quick, events, [&](io::Case& c) { set(c, value); }));
+    list.push_back(std::move(study));
+  };
+
+  numbers("mu_k", "friction.mu_k", "kind of slip (C20, C21)", {0.4, 0.6, 0.8, 1.0, 1.1, 1.2}, all,
+          [](io::Case& c, double v) { law(c).mu_k = v; });
+  numbers("alpha", "friction.alpha_m2_per_s2", "speed of fronts (C22)", {0.01, 0.03, 0.1, 0.3, 1}, all,
+          [](io::Case& c, double v) { law(c).alpha_m2_per_s2 = v; });
+  const std::vector<int> columns = quick ? std::vector<int>{50, 100} : std::vector<int>{300, 200, 150, 100};
+  Study mesh{"element_size", "plate.element_size_m", "dependence on the mesh", {}};
+  for (const int n : columns)
+    mesh.points.push_back(make_point(fmt::format("{:.3g}", width_m / n), width_m / n, quick, all,
+                                     [&](io::Case& c) { c.plate.element_size_m = width_m / n; }));
+  list.push_back(std::move(mesh));
+  if (quick) return list;
+
+  numbers("substeps", "time.interface_substeps", "dependence on the time step at the interface",
+          {1, 3, 9, 18, 36, 72}, all,
+          [](io::Case& c, double v) { c.time.interface_substeps = static_cast<int>(v); });
+  numbers("damping", "material.stiffness_damping_s", "dependence on the damping",
+          {0.05e-6, 0.1e-6, 0.2e-6, 0.4e-6}, all,
+          [](io::Case& c, double v) { c.material.stiffness_damping_s = v; });
+
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Study corner{"corner", "plate.corner", "rounding of the corners, not given in the paper", {}};
+  corner.points.push_back(make_point("relief", nan, quick, all, [](io::Case&) {}));
+  corner.points.push_back(
+      make_point("none", nan, quick, all, [](io::Case& c) { c.plate.corner = mesh::Corner::none; }));
+  for (const double radius : {2e-3, 5e-3, 10e-3})
+    corner.points.push_back(
+        make_point(fmt::format("fillet_{:g}mm", radius * 1e3), radius, quick, all, [&](io::Case& c) {
+          c.plate.corner = mesh::Corner::fillet;
+          c.plate.fillet_radius_m = radius;
+        }));
+  list.push_back(std::move(corner));
+
+  Study top{"top", "loading.top_during_tilt", "top edge held or free along x while it is tilted", {}};
+  top.points.push_back(make_point("held", nan, quick, all, [](io::Case&) {}));
+  top.points.push_back(make_point("free", nan, quick, all,
+                                  [](io::Case& c) { c.loading.top_during_tilt = solve::TopEdge::free; }));
+  list.push_back(std::move(top));
+
+  numbers("trigger_amount", "event.trigger_amount", "strength of the trigger", {2, 3.5, 5, 7, 10}, triggered,
+          [](io::Case& c, double v) { c.trigger.amount = v; });
+  numbers("trigger_zone", "event.trigger_zone_m", "length of the trigger zone", {5e-3, 10e-3, 15e-3},
+          triggered, [](io::Case& c, double v) { c.trigger.zone_m = v; });
+  numbers("trigger_ramp", "event.trigger_ramp_s", "rise time of the trigger", {1e-6, 5e-6, 10e-6}, triggered,
+          [](io::Case& c, double v) { c.trigger.ramp_s = v; });
+  numbers("trigger_duration", "event.trigger_duration_s", "trigger taken away again", {15e-6, 30e-6, 60e-6},
+          triggered, [](io::Case& c, double v) { c.trigger.duration_s = v; });
+  numbers("l_star", "fronts.l_star_m", "length over which speed and tractions are taken",
+          {0.67e-3, 1.33e-3, 2.67e-3, 5.33e-3}, all, [](io::Case& c, double v) { c.fronts.l_star_m = v; });
+
+  // The ramp takes a third of a second of physical time: elements of 2 mm.
+  Study method{"loading_method",
+               "loading.method",
+               "critical state by equilibria or by the explicit ramp, elements of 2 mm",
+               {}};
+  for (const auto& [word, value] :
+       {std::pair{"direct", solve::LoadingMethod::direct}, {"ramp", solve::LoadingMethod::ramp}})
+    method.points.push_back(make_point(word, nan, quick, {spontaneous}, [&, m = value](io::Case& c) {
+      c.plate.element_size_m = width_m / 100;
+      c.loading.method = m;
+    }));
+  list.push_back(std::move(method));
+  return list;
+}
+
+}  // namespace slipfront::paper

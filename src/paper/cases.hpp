@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/case.hpp"
+
+namespace slipfront::paper {
+
+/// A run of the reproduction.
+struct NamedCase {
+  std::string name;  ///< its folder below the output folder
+  io::Case config;
+};
+
+/// The paper's four events: spontaneous, left, right (mu_k = 0.6) and spontaneous_mu_k_1.0. The same as the
+/// files of cases/kammer2012. `quick`: elements of 2 mm.
+std::vector<NamedCase> paper_cases(bool quick);
+
+/// One value of a study's parameter, with its runs.
+struct StudyPoint {
+  std::string value;             ///< as it stands in the case file
+  double number = 0;             ///< NaN for words
+  std::vector<NamedCase> cases;  ///< named by their event: spontaneous, left, right
+};
+
+/// Runs that differ from the paper's in one parameter.
+struct Study {
+  std::string name;
+  std::string key;  ///< of the case file
+  std::string why;
+  std::vector<StudyPoint> points;
+  bool own_reference = false;  ///< changes are counted from the first point instead of the paper's runs
+};
+
+/// All studies: friction (mu_k, alpha), mesh, time step, damping, corner, top edge, trigger, l*, loading
+/// method. `quick`: the friction and mesh studies alone, with elements of 2 mm and, for the mesh, 4 and 2 mm.
+std::vector<Study> studies(bool quick);
+
+}  // namespace slipfront::paper

@@ -1,0 +1,569 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "paper/scorecard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "fronts/measures.hpp"
+
+namespace slipfront::paper {
+
+namespace {
+
+using fronts::Front;
+using fronts::FrontPoint;
+
+constexpr double leave_out_m = 5e-3;  ///< next to a spontaneous nucleation, left out of maxima
+constexpr double mm = 1e3;
+
+std::string percent(double share) {
+  return fmt::format("{:.0f} %", 100 * share);
+}
+
+/// Points of a front that count and have a speed.
+std::vector<const FrontPoint*> speed_points(const Outcome& o, const Front& front, double leave_out = 0) {
+  std::vector<const FrontPoint*> points;
+  for (const auto& p : front.points)
+    if (counts(o, front, p, leave_out) && std::isfinite(p.v_tip_m_per_s)) points.push_back(&p);
+  return points;
+}
+
+/// Highest speed of a front over c_L and where; zero without points.
+struct Peak {
+  double v_over_c_L = 0, x_m = fronts::undefined;
+};
+Peak peak_speed(const Outcome& o, const Front* front) {
+  Peak peak;
+  if (front == nullptr) return peak;
+  for (const auto* p : speed_points(o, *front, leave_out_m))
+    if (p->v_tip_m_per_s / o.speeds.c_L > peak.v_over_c_L) peak = {p->v_tip_m_per_s / o.speeds.c_L, p->x_m};
+  return peak;
+}
+
+double max_speed(const Outcome& o) {
+  double v = 0;
+  for (const auto& front : o.fronts) v = std::max(v, peak_speed(o, &front).v_over_c_L);
+  return v;
+}
+
+/// Length of the longest run of neighbouring points that satisfy a condition, over all fronts of a run.
+double longest_stretch_m(const Outcome& o, double leave_out,
+                         const std::function<bool(const FrontPoint&)>& condition) {
+  double longest = 0;
+  for (const auto& front : o.fronts) {
+    double begin = fronts::undefined;
+    for (const auto& p : front.points) {
+      const bool in = counts(o, front, p, leave_out) && std::isfinite(p.v_tip_m_per_s) && condition(p);
+      if (!in) begin = fronts::undefined;
+      if (in && std::isnan(begin)) begin = p.x_m;
+      if (in) longest = std::max(longest, std::abs(p.x_m - begin));
+    }
+  }
+  return longest;
+}
+
+double speed_ratio_correlation(const Outcome& o, const Front* front) {
+  if (front == nullptr) return fronts::undefined;
+  std::vector<double> x, y;
+  for (const auto* p : speed_points(o, *front)) {
+    x.push_back(p->t_s_Pa / p->p_s_Pa);
+    y.push_back(p->v_tip_m_per_s);
+  }
+  return fronts::rank_correlation(x, y);
+}
+
+/// Speed over c_L against a criterion, of all points of the runs that a condition picks, as one series.
+fronts::Series pick(std::span<const Outcome* const> outcomes, Criterion criterion,
+                    const std::function<bool(const Front&, const FrontPoint&)>& condition) {
+  fronts::Series series;
+  for (const auto* o : outcomes) {
+    for (const auto& front : o->fronts) {
+      for (const auto* p : speed_points(*o, front)) {
+        const double x = criterion_value(*p, criterion);
+        if (!std::isfinite(x) || !condition(front, *p)) continue;
+        series.x.push_back(x);
+        series.y.push_back(p->v_tip_m_per_s / o->speeds.c_L);
+      }
+    }
+  }
+  return series;
+}
+
+enum class Kind { crack, pulse, mixed };
+
+Kind kind_of(const Outcome& o, const FrontPoint& p) {
+  if (p.slipping_share > o.config.fronts.crack_share) return Kind::crack;
+  return p.slipping_share < o.config.fronts.pulse_share ? Kind::pulse : Kind::mixed;
+}
+
+class Scorecard {
+ public:
+  explicit Scorecard(const Reproduction& runs)
+      : r_(runs), three_{&runs.spontaneous, &runs.left, &runs.right}, collapse_(collapse(three_)) {}
+
+  std::vector<Claim> all() {
+    wave_speeds();
+    static_state();
+    mu_k_1();
+    speeds_of_events();
+    criteria();
+    energy();
+    slip_modes();
+    transition_parameter();
+    longitudinal_wave();
+    add("E1", "mu_k = 1.0 agrees quantitatively with the experiments", "Fig. 2", "not tested: no data file",
+        std::nullopt, "only with a user's file of experimental points");
+    return std::move(claims_);
+  }
+
+ private:
+  void add(const char* id, const char* claim, const char* paper, std::string measured,
+           std::optional<bool> holds, const char* how) {
+    claims_.push_back({id, claim, paper, std::move(measured), holds, how});
+  }
+
+  void wave_speeds() {
+    const auto& s = r_.spontaneous.speeds;
+    add("C1", "c_L = 1584 m/s and c_S = 890 m/s follow from E, nu, rho in plane stress", "Table 1",
+        fmt::format("c_L = {:.1f} m/s, c_S = {:.1f} m/s", s.c_L, s.c_S),
+        std::abs(s.c_L - 1584) <= 1 && std::abs(s.c_S - 890) <= 1, "each within 1 m/s");
+  }
+
+  void static_state() {
+    const auto& o = r_.spontaneous;
+    const double w = o.config.plate.width_m;
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t k = 0; k < o.common.x_m.size(); ++k) {
+      if (o.common.x_m[k] < o.inside_from_m || o.common.x_m[k] > o.inside_to_m) continue;
+      const double ratio = o.common.t_s_Pa[k] / o.common.p_s_Pa[k];
+      least = std::min(least, ratio);
+      most = std::max(most, ratio);
+    }
+    const double from_edge = std::min(o.peak_x_m, w - o.peak_x_m);
+    add("C2", "t_s/p_s is nonuniform with its maximum far from the edges", "Set-up",
+        fmt::format("maximum {:.1f} mm from the nearer edge, minimum inside {} of it", from_edge * mm,
+                    percent(least / most)),
+        from_edge > 0.2 * w && least < 0.6 * most,
+        "maximum more than 0.2 w from both edges; minimum inside below 0.6 of it");
+    const double off = std::abs(o.first_onset_x_m - o.peak_x_m);
+    add("C3", "slip nucleates spontaneously at that maximum", "Set-up",
+        fmt::format("first onset {:.2f} mm from it", off * mm), off <= 2e-3,
+        "first onset inside within 2 mm of it (of several at once, the farthest)");
+  }
+
+  void mu_k_1() {
+    const auto& o = r_.spontaneous_mu_k_1;
+    const auto* against = main_front(o, -1);
+    const auto* along = main_front(o, 1);
+    const double c_against = speed_ratio_correlation(o, against), c_along = speed_ratio_correlation(o, along);
+    add("C4", "mu_k = 1.0: V_tip grows with t_s/p_s", "Fig. 2",
+        fmt::format("rank correlation {:.2f} against the shear, {:.2f} along", c_against, c_along),
+        c_against > 0.8 && c_along > 0.8, "rank correlation above 0.8 for each direction");
+    const std::array<const Outcome*, 1> one = {&o};
+    const auto series = [&](int direction) {
+      return pick(one, Criterion::static_ratio,
+                  [direction](const Front& f, const FrontPoint&) { return f.direction == direction; });
+    };
+    const auto ratio = fronts::ratio_at_equal_x(series(1), series(-1), criterion_bins);
+    add("C5", "mu_k = 1.0: the front along the shear is considerably slower", "Fig. 2",
+        fmt::format("V along / V against = {:.2f} ({:.2f} to {:.2f} over {} bins)", ratio.median, ratio.low,
+                    ratio.high, ratio.n_bins),
+        ratio.median < 0.9, "median over bins of t_s/p_s of V along / V against below 0.9");
+    if (against == nullptr) {
+      add("C6", "mu_k = 1.0: the front against the shear arrests not far from the initiation zone", "Results",
+          "no front against the shear", false,
+          "arrest within 50 mm of nucleation, more than 20 mm from the edge");
+      return;
+    }
+    const double run = fronts::length_m(*against), edge = against->points.back().x_m;
+    add("C6", "mu_k = 1.0: the front against the shear arrests not far from the initiation zone", "Results",
+        fmt::format("{} after {:.1f} mm, {:.1f} mm from the edge",
+                    against->end == fronts::End::arrest ? "arrest" : name(against->end), run * mm, edge * mm),
+        against->end == fronts::End::arrest && run < 50e-3 && edge > 20e-3,
+        "arrest within 50 mm of nucleation, more than 20 mm from the edge");
+  }
+
+  void speeds_of_events() {
+    double slow = 0;
+    for (const auto* o : {&r_.spontaneous, &r_.left, &r_.right, &r_.spontaneous_mu_k_1})
+      slow = std::max(slow, longest_stretch_m(*o, 0, [&](const FrontPoint& p) {
+                        return p.v_tip_m_per_s < 0.1 * o->speeds.c_L;
+                      }));
+    add("C7", "no slow fronts under this loading", "Results",
+        fmt::format("longest stretch below 0.1 c_L: {:.1f} mm", slow * mm), slow <= 10e-3,
+        "V_tip below 0.1 c_L nowhere over more than 10 mm, in all four events");
+
+    const auto& s = r_.spontaneous;
+    const double against = speed_ratio_correlation(s, main_front(s, -1)),
+                 along = speed_ratio_correlation(s, main_front(s, 1));
+    add("C8", "mu_k = 0.6, spontaneous: fast toward both edges, slower as t_s/p_s falls", "Fig. 3d",
+        fmt::format("rank correlation {:.2f} against the shear, {:.2f} along", against, along),
+        against > 0.8 && along > 0.8, "rank correlation of V_tip and t_s/p_s above 0.8, both directions");
+
+    double fast = 0;
+    for (const auto* o : three_)
+      fast = std::max(fast, longest_stretch_m(*o, leave_out_m, [&](const FrontPoint& p) {
+                        return p.v_tip_m_per_s > o->speeds.c_L;
+                      }));
+    add("C9", "supersonic fronts occur", "Results",
+        fmt::format("longest stretch above c_L: {:.1f} mm", fast * mm), fast >= 10e-3,
+        "V_tip above c_L over at least 10 mm, 5 mm next to spontaneous nucleation left out");
+
+    std::string text;
+    bool holds = true;
+    for (const auto* o : {&r_.left, &r_.right}) {
+      const auto* front = main_front(*o, o->config.event == interface::EventKind::left ? 1 : -1);
+      const auto points = front != nullptr ? speed_points(*o, *front) : std::vector<const FrontPoint*>{};
+      if (points.empty()) {
+        holds = false;
+        text += fmt::format("{}{}: no front", text.empty() ? "" : "; ", o->name);
+        continue;
+      }
+      const Peak peak = peak_speed(*o, front);
+      const auto end_mean = [&](double x_end) {
+        double sum = 0;
+        int n = 0;
+        for (const auto* p : points)
+          if (std::abs(p->x_m - x_end) <= 10e-3) sum += p->v_tip_m_per_s / o->speeds.c_L, ++n;
+        return sum / n;
+      };
+      const double first = end_mean(points.front()->x_m) / peak.v_over_c_L,
+                   last = end_mean(points.back()->x_m) / peak.v_over_c_L;
+      const double off = std::abs(peak.x_m - o->peak_x_m);
+      holds = holds && off <= 10e-3 && first < 0.9 && last < 0.9;
+      text += fmt::format(
+          "{}{}: peak {:.2f} c_L {:.1f} mm from the maximum, first 10 mm at {} and last at {} of it",
+          text.empty() ? "" : "; ", o->name, peak.v_over_c_L, off * mm, percent(first), percent(last));
+    }
+    add("C10", "edge-triggered fronts start slowly, accelerate, peak at the maximal t_s/p_s, decelerate",
+        "Fig. 3d", text, holds,
+        "peak within 10 mm of the maximum; means of the first and last 10 mm below 0.9 of the peak; trigger "
+        "zone and margin left out");
+
+    const double left = max_speed(r_.left), spontaneous = max_speed(r_.spontaneous),
+                 right = max_speed(r_.right);
+    add("C11", "the left-triggered maximum is at most 60 % of that of the other two", "Results",
+        fmt::format("left {:.2f}, spontaneous {:.2f}, right {:.2f} c_L: {} and {}", left, spontaneous, right,
+                    percent(left / spontaneous), percent(left / right)),
+        left <= 0.6 * spontaneous && left <= 0.6 * right,
+        "ratio of maxima to each at most 0.6; 5 mm next to spontaneous nucleation, trigger zones and margins "
+        "left out");
+  }
+
+  void criteria() {
+    add("C12", "no unique V_tip for a given t_s/p_s", "Fig. 3d",
+        fmt::format("median relative spread {} over {} bins", percent(collapse_.static_ratio.median_relative),
+                    collapse_.static_ratio.n_bins),
+        collapse_.static_ratio.median_relative > 0.2,
+        "spread at equal t_s/p_s over the fronts of the three cases above 20 %: (largest - smallest median) "
+        "/ mean, median over bins");
+
+    double difference = 0, n = 0, below = 0;
+    for (const auto* o : three_) {
+      const double mu_s = interface::static_coefficient(o->config.friction);
+      for (const auto& front : o->fronts) {
+        for (const auto& p : front.points) {
+          if (!counts(*o, front, p) || !std::isfinite(p.t_d_Pa)) continue;
+          const double s = p.t_s_Pa / p.p_s_Pa, d = p.t_d_Pa / p.p_d_Pa;
+          difference += std::abs(d - s) / s;
+          below += d < 0.9 * mu_s ? 1 : 0;
+          n += 1;
+        }
+      }
+    }
+    add("C13", "t_d/p_d differs significantly from t_s/p_s and is far from mu_s over most of the path",
+        "Fig. 4",
+        fmt::format("mean relative difference {}, below 0.9 mu_s over {} of the path",
+                    percent(difference / n), percent(below / n)),
+        difference / n > 0.1 && below / n > 0.5,
+        "mean relative difference above 10 %; below 0.9 mu_s over more than half the path");
+
+    add("C14", "the spread of V_tip is smaller against t_d/p_d than against t_s/p_s", "Fig. 5",
+        fmt::format("median relative spread {} against t_d/p_d, {} against t_s/p_s",
+                    percent(collapse_.dynamic_ratio.median_relative),
+                    percent(collapse_.static_ratio.median_relative)),
+        collapse_.dynamic_ratio.median_relative < collapse_.static_ratio.median_relative,
+        "same measure as C12, smaller");
+
+    const auto by_direction = [&](int direction) {
+      return pick(three_, Criterion::dynamic_ratio,
+                  [direction](const Front& f, const FrontPoint&) { return f.direction == direction; });
+    };
+    const auto ratio = fronts::ratio_at_equal_x(by_direction(-1), by_direction(1), criterion_bins);
+    add("C15", "at equal t_d/p_d fronts against the sliding are faster", "Fig. 5",
+        fmt::format("V against / V along = {:.2f} ({:.2f} to {:.2f} over {} bins)", ratio.median, ratio.low,
+                    ratio.high, ratio.n_bins),
+        ratio.median > 1, "median over bins of t_d/p_d above 1, the three cases together");
+
+    std::string text;
+    bool holds = true;
+    for (const auto* o : {&r_.left, &r_.right}) {
+      const auto* main = main_front(*o, o->config.event == interface::EventKind::left ? 1 : -1);
+      const std::array<const Outcome*, 1> one = {o};
+      const auto branch = [&](bool accelerating) {
+        return pick(one, Criterion::dynamic_ratio, [=](const Front& f, const FrontPoint& p) {
+          return &f == main && p.accelerating == accelerating;
+        });
+      };
+      const auto both = fronts::ratio_at_equal_x(branch(true), branch(false), criterion_bins);
+      holds = holds && both.median > 1;
+      text += fmt::format("{}{}: {:.2f} ({:.2f} to {:.2f} over {} bins)", text.empty() ? "" : "; ", o->name,
+                          both.median, both.low, both.high, both.n_bins);
+    }
+    add("C16", "at equal t_d/p_d accelerating fronts are faster than decelerating ones", "Fig. 5", text,
+        holds, "V accelerating / V decelerating above 1 within each edge-triggered front");
+
+    std::array<double, 2> length = {0, 0};  // against, along
+    std::array<int, 2> count = {0, 0};
+    for (const auto* o : three_) {
+      for (const auto& front : o->fronts) {
+        Front counted = front;
+        std::erase_if(counted.points, [&](const FrontPoint& p) { return !counts(*o, front, p); });
+        for (const auto& stretch : fronts::speed_falls_ratio_rises(counted)) {
+          length[front.direction > 0] = std::max(length[front.direction > 0], stretch.length_m);
+          ++count[front.direction > 0];
+        }
+      }
+    }
+    add("C17", "V_tip drops while t_d/p_d rises only for fronts against the sliding", "Fig. 5",
+        fmt::format("against: {} stretches, longest {:.1f} mm; along: {}, longest {:.1f} mm", count[0],
+                    length[0] * mm, count[1], length[1] * mm),
+        count[0] > 0 && count[1] == 0,
+        "stretches of at least 5 mm: found against the sliding, none along it");
+  }
+
+  void energy() {
+    const auto& c = collapse_;
+    const PaperFit paper;
+    if (!c.fitted) {
+      add("C18", "all three cases collapse against (U_r-U_s)/U_s on a + b exp(-c sqrt(.))", "Fig. 6",
+          "too few points for a fit", std::nullopt,
+          "rms about our own fit; share of points within the paper's band");
+    } else {
+      add("C18", "all three cases collapse against (U_r-U_s)/U_s on a + b exp(-c sqrt(.))", "Fig. 6",
+          fmt::format("(a) rms {:.3f} c_L about a = {:.2f} [{:.2f}, {:.2f}], b = {:.2f} [{:.2f}, {:.2f}], c "
+                      "= {:.2f} [{:.2f}, {:.2f}]; "
+                      "(b) {} of {} points within the paper's band",
+                      c.fit.rms, c.fit.a.value, c.fit.a.low, c.fit.a.high, c.fit.b.value, c.fit.b.low,
+                      c.fit.b.high, c.fit.c.value, c.fit.c.low, c.fit.c.high, percent(c.share_in_paper_band),
+                      c.n_points),
+          c.fit.rms <= paper.band && c.share_in_paper_band >= 0.8,
+          "(a) rms about our own fit at most 0.07 c_L; (b) at least 80 % of the points within a = 0.76 +- "
+          "0.07, b = 1.80, c = 3.05");
+    }
+    int outside = 0, near_end = 0;
+    for (const auto* o : three_) {
+      for (const auto& front : o->fronts) {
+        const bool stops = front.end == fronts::End::arrest || front.end == fronts::End::contact_end;
+        for (const auto* p : speed_points(*o, front)) {
+          const double rise = criterion_value(*p, Criterion::energy_rise);
+          if (!std::isfinite(rise) ||
+              (rise >= 0 && std::abs(p->v_tip_m_per_s / o->speeds.c_L - paper(rise)) <= paper.band))
+            continue;
+          ++outside;
+          near_end += stops && std::abs(p->x_m - front.points.back().x_m) <= 20e-3;
+        }
+      }
+    }
+    add("C19", "points outside the band are fronts decelerating rapidly before arrest", "Fig. 6",
+        outside == 0
+            ? "no points outside"
+            : fmt::format("{} of {} points outside the band", percent(double(near_end) / outside), outside),
+        outside == 0 || near_end >= 0.7 * outside,
+        "at least 70 % of them lie in the last 20 mm before arrest");
+  }
+
+  const StudyOutcome* study(const char* name) const {
+    const auto found =
+        std::ranges::find(r_.studies, name, [](const StudyOutcome& s) { return s.study.name; });
+    return found == r_.studies.end() ? nullptr : &*found;
+  }
+
+  void slip_modes() {
+    const auto* mu_k = study("mu_k");
+    if (mu_k == nullptr) {
+      add("C20", "larger mu_s - mu_k: crack-like; smaller: pulse-like; mixed modes exist", "Results",
+          "not tested: no studies", std::nullopt, "mu_k = 0.4 to 1.2");
+      add("C21", "V_tip against the stress state does not depend on the type of slip", "Results",
+          "not tested: no studies", std::nullopt, "mu_k = 0.4 to 1.2");
+      return;
+    }
+    std::string text;
+    std::array<int, 3> total = {0, 0, 0};
+    bool falls = true;
+    double before = std::numeric_limits<double>::infinity(), first = fronts::undefined, last = 0;
+    std::vector<const Outcome*> all;
+    for (std::size_t k = 0; k < mu_k->outcomes.size(); ++k) {
+      std::array<int, 3> n = {0, 0, 0};
+      for (const auto& o : mu_k->outcomes[k]) {
+        all.push_back(&o);
+        for (const auto& front : o.fronts)
+          for (const auto& p : front.points)
+            if (std::isfinite(p.slipping_share)) ++n[static_cast<int>(kind_of(o, p))];
+      }
+      const int sum = n[0] + n[1] + n[2];
+      const double crack = sum > 0 ? double(n[0]) / sum : fronts::undefined;
+      text += fmt::format("{}{}: {}", text.empty() ? "share of crack-like path " : ", ",
+                          mu_k->study.points[k].value, sum > 0 ? percent(crack) : "no front");
+      for (int j = 0; j < 3; ++j) total[j] += n[j];
+      if (sum == 0) continue;
+      if (std::isnan(first)) first = crack;
+      falls = falls && crack <= before;
+      before = last = crack;
+    }
+    const int sum = total[0] + total[1] + total[2];
+    text += fmt::format("; of all: crack {}, pulse {}, mixed {}", percent(double(total[0]) / sum),
+                        percent(double(total[1]) / sum), percent(double(total[2]) / sum));
+    add("C20", "larger mu_s - mu_k: crack-like; smaller: pulse-like; mixed modes exist", "Results", text,
+        falls && last < first && total[0] > 0 && total[1] > 0 && total[2] > 0,
+        "mu_k = 0.4 to 1.2, three events each: share of crack-like path falls at every step; each kind "
+        "occurs");
+
+    const auto of_kind = [&](Kind kind) {
+      fronts::Series series;
+      for (const auto* o : all) {
+        const std::array<const Outcome*, 1> one = {o};
+        const auto part = pick(one, Criterion::energy_rise, [&](const Front&, const FrontPoint& p) {
+          return std::isfinite(p.slipping_share) && kind_of(*o, p) == kind;
+        });
+        series.x.insert(series.x.end(), part.x.begin(), part.x.end());
+        series.y.insert(series.y.end(), part.y.begin(), part.y.end());
+      }
+      return series;
+    };
+    const std::array<fronts::Series, 3> kinds = {of_kind(Kind::crack), of_kind(Kind::pulse),
+                                                 of_kind(Kind::mixed)};
+    const double difference = median_difference(kinds);
+    const double band = 2 * PaperFit{}.band;
+    add("C21", "V_tip against the stress state does not depend on the type of slip", "Results",
+        std::isfinite(difference)
+            ? fmt::format("median difference between kinds {:.3f} c_L ({} crack, {} pulse, {} mixed points)",
+                          difference, kinds[0].x.size(), kinds[1].x.size(), kinds[2].x.size())
+            : "only one kind of slip",
+        std::isfinite(difference) ? std::optional(difference < band) : std::nullopt,
+        "over the mu_k study: at equal (U_r-U_s)/U_s the largest difference of the kinds' medians, median "
+        "over bins, below the band's 0.14 c_L");
+  }
+
+  /// Median over bins of x of the largest difference of the series' medians of y, in bins that at least two
+  /// reach.
+  static double median_difference(std::span<const fronts::Series> kinds) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const auto& s : kinds)
+      for (const double x : s.x) low = std::min(low, x), high = std::max(high, x);
+    std::vector<double> differences;
+    for (int bin = 0; bin < criterion_bins; ++bin) {
+      std::vector<double> medians;
+      for (const auto& s : kinds) {
+        std::vector<double> y;
+        for (std::size_t k = 0; k < s.x.size(); ++k)
+          if (std::clamp(static_cast<int>((s.x[k] - low) / (high - low) * criterion_bins), 0,
+                         criterion_bins - 1) == bin)
+            y.push_back(s.y[k]);
+        if (!y.empty()) medians.push_back(fronts::median(y));
+      }
+      if (medians.size() < 2) continue;
+      const auto [least, most] = std::ranges::minmax(medians);
+      differences.push_back(most - least);
+    }
+    return fronts::median(differences);
+  }
+
+  void transition_parameter() {
+    const auto* alpha = study("alpha");
+    const char* how =
+        "alpha = 0.01 to 1 m2/s2, spontaneous: mean V_tip falls at every step; from least to largest alpha "
+        "it drops more in the first and last "
+        "fifth of the path than between";
+    if (alpha == nullptr) {
+      add("C22", "higher alpha: slower, above all at initiation and arrest", "Results",
+          "not tested: no studies", std::nullopt, how);
+      return;
+    }
+    // Mean speed by fifths of the path, over both fronts of the spontaneous event.
+    std::string text;
+    std::vector<std::array<double, 5>> fifths;
+    std::vector<double> means;
+    for (std::size_t k = 0; k < alpha->outcomes.size(); ++k) {
+      std::array<double, 5> sum{}, n{};
+      for (const auto& o : alpha->outcomes[k]) {
+        if (o.config.event != interface::EventKind::spontaneous) continue;
+        for (const int direction : {-1, 1}) {
+          const auto* front = main_front(o, direction);
+          if (front == nullptr) continue;
+          for (const auto* p : speed_points(o, *front, leave_out_m)) {
+            const double s = std::abs(p->x_m - front->points.front().x_m) / fronts::length_m(*front);
+            const int fifth = std::min(4, static_cast<int>(5 * s));
+            sum[fifth] += p->v_tip_m_per_s / o.speeds.c_L;
+            n[fifth] += 1;
+          }
+        }
+      }
+      double total = 0, points = 0;
+      for (int j = 0; j < 5; ++j) total += sum[j], points += n[j], sum[j] /= n[j];
+      text += fmt::format("{}{}: {}", text.empty() ? "mean V_tip/c_L at alpha = " : ", ",
+                          alpha->study.points[k].value,
+                          points > 0 ? fmt::format("{:.2f}", total / points) : "no front");
+      if (points == 0) continue;
+      fifths.push_back(sum);
+      means.push_back(total / points);
+    }
+    bool falls = means.size() > 1;
+    for (std::size_t k = 1; k < means.size(); ++k) falls = falls && means[k] < means[k - 1];
+    bool ends = false;
+    if (means.size() > 1) {
+      std::array<double, 5> drop{};
+      for (int j = 0; j < 5; ++j) drop[j] = 1 - fifths.back()[j] / fifths.front()[j];
+      const double middle = (drop[1] + drop[2] + drop[3]) / 3;
+      ends = drop[0] > middle && drop[4] > middle;
+      text += fmt::format("; relative drop in the first fifth {}, between {}, in the last {}",
+                          percent(drop[0]), percent(middle), percent(drop[4]));
+    }
+    add("C22", "higher alpha: slower, above all at initiation and arrest", "Results", text, falls && ends,
+        how);
+  }
+
+  void longitudinal_wave() {
+    const auto& o = r_.left;
+    const auto* front = main_front(o, 1);
+    double supershear = 0, behind = 0;
+    double least_lag = std::numeric_limits<double>::infinity();
+    if (front != nullptr) {
+      const double source = o.contact_from_m + o.config.trigger.zone_m;
+      for (const auto* p : speed_points(o, *front)) {
+        if (p->v_tip_m_per_s <= o.speeds.c_S) continue;
+        const double lag = source + o.speeds.c_L * p->onset_s - p->x_m;
+        least_lag = std::min(least_lag, lag);
+        supershear += 1;
+        behind += lag > 0 ? 1 : 0;
+      }
+    }
+    add("C23", "the super-shear tip follows the longitudinal wave front", "Fig. 3a",
+        supershear > 0
+            ? fmt::format(
+                  "tip behind c_L (t - t_trigger) at {} of the super-shear points, by at least {:.1f} mm",
+                  percent(behind / supershear), least_lag * mm)
+            : "no super-shear points",
+        supershear > 0 && behind == supershear,
+        "left-triggered: wherever V_tip exceeds c_S the tip is behind the wave from the trigger zone's inner "
+        "end");
+  }
+
+  const Reproduction& r_;
+  std::array<const Outcome*, 3> three_;
+  Collapse collapse_;
+  std::vector<Claim> claims_;
+};
+
+}  // namespace
+
+std::vector<Claim> scorecard(const Reproduction& runs) {
+  return Scorecard(runs).all();
+}
+
+}  // namespace slipfront::paper

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "io/schema.hpp"
+#include "mesh/plate.hpp"
+#include "solve/stepper.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double top_speed_m_per_s(const io::Case& config) {
+  return config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
+}
+
+/// Nodes in contact that slip or are open at rest, said in one line; empty where all stick.
+std::string contact_warning(const solve::Equilibrium& state) {
+  const auto n_slip = std::ranges::count(state.contact, solve::Contact::slip);
+  const auto n_open = std::ranges::count(state.contact, solve::Contact::open);
+  if (n_slip + n_open == 0) return {};
+  return fmt::format(
+      "before the event {} interface nodes are open and {} slip at mu_s p, all outside {:.4g} to {:.4g} m",
+      n_open, n_slip, state.inside_from_m, state.inside_to_m);
+}
+
+}  // namespace
+
+WaveSpeeds wave_speeds(const solid::Material& m) {
+  return {solid::longitudinal_speed_m_per_s(m), solid::shear_speed_m_per_s(m),
+          solid::rayleigh_speed_m_per_s(m)};
+}
+
+std::string initial_state_key(const io::Case& config) {
+  io::Case relevant;
+  relevant.plate = config.plate;
+  relevant.material = config.material;
+  relevant.loading = config.loading;
+  relevant.friction = interface::Coulomb { interface::static_coefficient(config.friction) };
+  if (config.loading.method == solve::LoadingMethod::ramp) {
+    // Nodes at the edges slip during the ramp, by the law itself.
+    relevant.friction = config.friction;
+    relevant.time = config.time;
+  } else {
+    relevant.material.density_kg_per_m3 = io::Case{}.material.density_kg_per_m3;
+    relevant.material.stiffness_damping_s = io::Case{}.material.stiffness_damping_s;
+  }
+  return io::to_toml(relevant);
+}
+
+InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor) {
+  const auto start = Clock::now();
+  const double mu_s = interface::static_coefficient(config.friction);
+  const double margin = config.loading.critical_margin;
+  InitialState initial;
+  initial.mesh = mesh::make_plate(config.plate);
+  initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
+  const solve::Statics statics(initial.mesh, config.material, config.loading, mu_s);
+  initial.n_unknowns = statics.n_unknowns();
+  initial.factor_bytes = statics.factor_bytes();
+  initial.critical_shear_m = statics.shear_to(mu_s).shear_m;
+  if (config.loading.method == solve::LoadingMethod::direct) {
+    initial.common = statics.shear_to((1 - margin) * mu_s);
+    initial.spontaneous = statics.shear_to((1 + margin) * mu_s);
+  } else {
+    auto plain = config.time;
+    plain.interface_substeps = 1;
+    solve::Stepper stepper(initial.mesh, config.material, config.friction, plain);
+    initial.ramp = solve::run_ramp(stepper, statics.shear_by(0), config.loading, mu_s,
+                                   top_speed_m_per_s(config), initial.critical_shear_m, monitor);
+    if (initial.ramp->interrupted) throw Interrupted("interrupted during the ramp; nothing was written");
+    initial.common = initial.ramp->common;
+    initial.spontaneous = initial.ramp->spontaneous;
+  }
+  initial.wall_s = seconds_since(start);
+  return initial;
+}
+
+fronts::FrontOptions front_options(const io::Case& config, const InitialState& initial) {
+  fronts::FrontOptions o;
+  o.l_star_m = config.fronts.l_star_m;
+  o.arrest_time_s = config.fronts.arrest_time_s;
+  o.min_length_m = config.fronts.min_length_m;
+  o.crack_share = config.fronts.crack_share;
+  o.pulse_share = config.fronts.pulse_share;
+  o.mu_s = interface::static_coefficient(config.friction);
+  o.elasticity = {config.material.youngs_modulus_Pa, config.material.poissons_ratio,
+                  config.material.plane == solid::Plane::strain};
+  const double margin = config.trigger.zone_m + config.fronts.trigger_margin_m;
+  const double contact_from = initial.common.inside_from_m - config.loading.edge_margin_m;
+  const double contact_to = initial.common.inside_to_m + config.loading.edge_margin_m;
+  if (config.event == interface::EventKind::left) o.exclude_left_m = contact_from + margin;
+  if (config.event == interface::EventKind::right) o.exclude_right_m = contact_to - margin;
+  return o;
+}
+
+Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor) {
+  Result result;
+  result.config = config;
+  result.speeds = wave_speeds(config.material);
+  const double mu_s = interface::static_coefficient(config.friction);
+  const auto& state =
+      config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
+
+  solve::Stepper stepper(initial.mesh, config.material, config.friction, config.time);
+  stepper.start(state, top_speed_m_per_s(config));
+  stepper.set_trigger(config.trigger,
+                      solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger, mu_s));
+  result.stable_step_s = stepper.stable_step_s();
+  result.step_s = stepper.step_s();
+  result.node_updates_per_step = stepper.node_updates_per_step();
+
+  const auto start = Clock::now();
+  const bool triggered =
+      config.event == interface::EventKind::left || config.event == interface::EventKind::right;
+  result.event = solve::run_event(stepper, state, mu_s, result.speeds.c_L,
+                                  triggered ? config.trigger : interface::Trigger{.ramp_s = 0}, config.time,
+                                  {config.output.history_interval_s, config.output.snapshot_times_s},
+                                  solve::halo_for(initial.mesh, config.fronts.l_star_m), monitor);
+  result.stepping_wall_s = seconds_since(start);
+
+  result.fronts =
+      fronts::find_fronts(result.event.record, initial.common.tractions, front_options(config, initial));
+  if (auto warning = contact_warning(initial.common); !warning.empty()) result.warnings.push_back(warning);
+  if (config.fronts.l_star_m < 0.99 * initial.mesh.grid.spacing_m)
+    result.warnings.push_back(fmt::format(
+        "fronts.l_star_m = {:.4g} m is below the element size: one element is used", config.fronts.l_star_m));
+  if (config.time.step_factor > 1)
+    result.warnings.push_back("the step is above the largest stable one (time.allow_unstable)");
+  if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
+  return result;
+}
+
+Info info(const io::Case& config) {
+  Info info;
+  info.speeds = wave_speeds(config.material);
+  const auto mesh = mesh::make_plate(config.plate);
+  info.n_nodes = mesh.n_nodes();
+  info.n_cells = static_cast<std::int64_t>(mesh.cells.size());
+  info.n_interface = static_cast<std::int64_t>(mesh.lower.size());
+
+  solve::Stepper stepper(mesh, config.material, config.friction, config.time);
+  info.n_irregular = static_cast<std::int64_t>(stepper.plate().irregular.size());
+  info.stable_step_s = stepper.stable_step_s();
+  info.step_s = stepper.step_s();
+  info.substep_s = stepper.substep_s();
+  info.n_steps = static_cast<std::int64_t>(std::ceil(config.time.end_s / info.step_s));
+  info.node_updates = static_cast<double>(info.n_steps) * stepper.node_updates_per_step();
+
+  const double n_unknowns = 2.0 * static_cast<double>(info.n_nodes);
+  info.factor_bytes = solve::estimated_factor_bytes(n_unknowns);
+  const double matrix_bytes = 2.5 * 18 * 16 * n_unknowns / 2;
+  const double fields =
+      static_cast<double>(info.n_nodes) * (2 + 4 + 1 + 4) * 8 + static_cast<double>(info.n_cells) * 16;
+  info.memory_bytes = info.factor_bytes + matrix_bytes + fields;
+
+  // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
+  solve::Equilibrium rest;
+  rest.u_m = rest.u_per_shear = solid::Field(static_cast<std::size_t>(info.n_nodes));
+  rest.contact.assign(mesh.lower.size(), solve::Contact::open);
+  for (const auto n : mesh.lower) rest.tractions.x_m.push_back(mesh.x_m[n]);
+  rest.tractions.t_s_Pa.assign(mesh.lower.size(), 0.0);
+  rest.tractions.p_s_Pa = rest.tractions.t_s_Pa;
+  stepper.start(rest, 0);
+  solve::Recorder recorder(rest, 1, 0);
+  stepper.advance(recorder);
+  const auto start = Clock::now();
+  int steps = 0;
+  do {
+    stepper.advance(recorder);
+    ++steps;
+  } while (seconds_since(start) < 5e-3);
+  info.node_updates_per_s = steps * stepper.node_updates_per_step() / seconds_since(start);
+  // The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
+  const double statics_s = 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
+  info.expected_s = info.node_updates / info.node_updates_per_s + statics_s;
+  return info;
+}
+
+}  // namespace slipfront::run

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fronts/front.hpp"
+#include "io/case.hpp"
+#include "mesh/mesh.hpp"
+#include "solve/event.hpp"
+#include "solve/statics.hpp"
+
+namespace slipfront::run {
+
+/// The loaded plate before any event: the same for all events of one plate, material, loading and mu_s, so
+/// that it is computed once and shared.
+struct InitialState {
+  mesh::Mesh mesh;
+  std::vector<double> tributary_m;  ///< [lower]
+  solve::Equilibrium common;        ///< at t/p = (1 - critical_margin) mu_s inside
+  solve::Equilibrium spontaneous;   ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
+  double critical_shear_m = 0;      ///< shear at t/p = mu_s inside, found directly
+  std::int64_t n_unknowns = 0;
+  double factor_bytes = 0;
+  double wall_s = 0;
+  std::optional<solve::Ramp> ramp;  ///< where loading.method is ramp
+};
+
+/// @throws UserError, BlowUp, Interrupted as its parts do.
+InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor);
+
+/// A text that is the same for two cases if and only if they share their initial state.
+std::string initial_state_key(const io::Case& config);
+
+/// Wave speeds in the plane chosen, m/s.
+struct WaveSpeeds {
+  double c_L = 0, c_S = 0, c_R = 0;
+};
+WaveSpeeds wave_speeds(const solid::Material& material);
+
+/// A run with all it found.
+struct Result {
+  io::Case config;
+  WaveSpeeds speeds;
+  double stable_step_s = 0, step_s = 0;
+  double node_updates_per_step = 0;
+  double stepping_wall_s = 0;
+  solve::Event event;
+  std::vector<fronts::Front> fronts;
+  std::vector<std::string> warnings;
+};
+
+/// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
+/// ends the event early and is told by event.end.
+Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor);
+
+/// How a case's fronts are measured.
+fronts::FrontOptions front_options(const io::Case& config, const InitialState& initial);
+
+/// Writes the run's folder: case.resolved.toml, run.json, interface.h5, fronts.csv, static.csv, and
+/// fields.vtkhdf where there are snapshots. The folder must have been prepared (io::prepare_output_folder).
+void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
+
+/// Derived quantities of a case, found without solving anything.
+struct Info {
+  WaveSpeeds speeds;
+  std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0, n_irregular = 0;
+  double stable_step_s = 0, step_s = 0, substep_s = 0;
+  std::int64_t n_steps = 0;       ///< to time.end_s
+  double node_updates = 0;        ///< of the event
+  double memory_bytes = 0;        ///< the largest of statics and event
+  double factor_bytes = 0;        ///< of the static factorisation, estimated
+  double expected_s = 0;          ///< at the kernel rate measured on the spot, statics estimated
+  double node_updates_per_s = 0;  ///< measured on the spot
+};
+Info info(const io::Case& config);
+
+}  // namespace slipfront::run

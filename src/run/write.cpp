@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/version.hpp"
+#include "io/results.hpp"
+#include "io/schema.hpp"
+#include "run/run.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+const char* name(solve::EventEnd end) {
+  switch (end) {
+    case solve::EventEnd::end_time:
+      return "end_time";
+    case solve::EventEnd::quiet:
+      return "quiet";
+    case solve::EventEnd::interrupted:
+      return "interrupted";
+    case solve::EventEnd::blow_up:
+      return "blow_up";
+  }
+  return "";
+}
+
+Json energy_json(const solve::EnergyState& e) {
+  return {{"strain_J_per_m", e.strain},
+          {"kinetic_J_per_m", e.kinetic},
+          {"top_work_J_per_m", e.top_work},
+          {"trigger_work_J_per_m", e.trigger_work}};
+}
+
+Json statics_json(const InitialState& initial) {
+  Json json = {{"critical_shear_m", initial.critical_shear_m},
+               {"common_shear_m", initial.common.shear_m},
+               {"common_peak_t_over_p", initial.common.peak_ratio},
+               {"peak_x_m", initial.common.peak_x_m},
+               {"inside_from_m", initial.common.inside_from_m},
+               {"inside_to_m", initial.common.inside_to_m},
+               {"unknowns", initial.n_unknowns},
+               {"factor_bytes", initial.factor_bytes},
+               {"wall_s", initial.wall_s}};
+  if (initial.ramp) {
+    const auto& ramp = *initial.ramp;
+    Json slip = Json::object();
+    if (!ramp.record.onsets.empty()) {
+      double from = ramp.record.x_m.back(), to = ramp.record.x_m.front();
+      for (const auto& onset : ramp.record.onsets) {
+        from = std::min(from, ramp.record.x_m[onset.node]);
+        to = std::max(to, ramp.record.x_m[onset.node]);
+      }
+      slip = {{"from_x_m", from}, {"to_x_m", to}, {"first_s", ramp.record.onsets.front().time_s}};
+    }
+    json["ramp"] = {{"critical_shear_m", ramp.spontaneous.shear_m},
+                    {"relative_to_direct", ramp.spontaneous.shear_m / initial.critical_shear_m - 1},
+                    {"steps", ramp.steps},
+                    {"onsets_before_critical", ramp.record.onsets.size()},
+                    {"slip_before_critical", slip}};
+  }
+  return json;
+}
+
+Json fronts_json(const std::vector<fronts::Front>& fronts) {
+  Json list = Json::array();
+  for (const auto& front : fronts) {
+    list.push_back({{"id", front.id},
+                    {"direction", front.direction},
+                    {"start_x_m", front.points.front().x_m},
+                    {"start_s", front.points.front().onset_s},
+                    {"end_x_m", front.points.back().x_m},
+                    {"end_s", front.points.back().onset_s},
+                    {"end", fronts::name(front.end)},
+                    {"mode", fronts::name(front.mode)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial) {
+  const auto& event = result.event;
+  io::write_text(dir / "case.resolved.toml", io::to_toml(result.config));
+  io::write_static(dir / "static.csv", initial.common.tractions);
+  io::write_history(dir / "interface.h5", event.history);
+  io::write_fronts(dir / "fronts.csv", result.fronts);
+  if (!event.snapshots.empty()) {
+    std::vector<io::Snapshot> snapshots;
+    for (const auto& s : event.snapshots)
+      snapshots.push_back({s.time_s, s.u_m.x, s.u_m.y, s.v_m_per_s.x, s.v_m_per_s.y});
+    io::write_snapshots(dir / "fields.vtkhdf", initial.mesh, snapshots);
+  }
+
+  auto warnings = result.warnings;
+  if (!event.blow_up.empty()) warnings.push_back(event.blow_up);
+  const Json json = {{"version", version()},
+                     {"commit", commit()},
+                     {"compiler", std::string("g++ ") + __VERSION__},
+                     {"host", host_name()},
+                     {"title", result.config.title},
+                     {"end", name(event.end)},
+                     {"mesh",
+                      {{"columns", initial.mesh.grid.columns},
+                       {"rows", initial.mesh.grid.rows},
+                       {"nodes", initial.mesh.n_nodes()},
+                       {"cells", initial.mesh.cells.size()}}},
+                     {"wave_speeds",
+                      {{"c_L_m_per_s", result.speeds.c_L},
+                       {"c_S_m_per_s", result.speeds.c_S},
+                       {"c_R_m_per_s", result.speeds.c_R}}},
+                     {"stable_dt_s", result.stable_step_s},
+                     {"dt_s", result.step_s},
+                     {"interface_dt_s", result.step_s / result.config.time.interface_substeps},
+                     {"steps", event.steps},
+                     {"time_s", event.time_s},
+                     {"wall_s", result.stepping_wall_s},
+                     {"node_updates_per_s", static_cast<double>(event.steps) * result.node_updates_per_step /
+                                                result.stepping_wall_s},
+                     {"statics", statics_json(initial)},
+                     {"energy_at_start", energy_json(event.energy_at_start)},
+                     {"energy_at_end", energy_json(event.energy_at_end)},
+                     {"onsets", event.record.onsets.size()},
+                     {"fronts", fronts_json(result.fronts)},
+                     {"warnings", warnings}};
+  io::write_text(dir / "run.json", json.dump(2) + "\n");
+}
+
+}  // namespace slipfront::run

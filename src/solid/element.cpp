@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solid/element.hpp"
+
+#include <cmath>
+
+#include "base/error.hpp"
+
+namespace slipfront::solid {
+
+namespace {
+
+constexpr double gauss = 0.57735026918962576;  // 1/sqrt(3)
+constexpr std::array<std::array<double, 2>, 4> gauss_points = {
+    {{-gauss, -gauss}, {gauss, -gauss}, {gauss, gauss}, {-gauss, gauss}}};
+constexpr std::array<double, 4> xi_of_node = {-1, 1, 1, -1};
+constexpr std::array<double, 4> eta_of_node = {-1, -1, 1, 1};
+
+struct ShapeAtPoint {
+  std::array<double, 4> value, d_dx, d_dy;
+  double jacobian;
+};
+
+ShapeAtPoint shape_at(const CellCoordinates& c, double xi, double eta) {
+  ShapeAtPoint s{};
+  std::array<double, 4> d_dxi{}, d_deta{};
+  double x_xi = 0, x_eta = 0, y_xi = 0, y_eta = 0;
+  for (int a = 0; a < 4; ++a) {
+    s.value[a] = 0.25 * (1 + xi_of_node[a] * xi) * (1 + eta_of_node[a] * eta);
+    d_dxi[a] = 0.25 * xi_of_node[a] * (1 + eta_of_node[a] * eta);
+    d_deta[a] = 0.25 * eta_of_node[a] * (1 + xi_of_node[a] * xi);
+    x_xi += d_dxi[a] * c[2 * a];
+    x_eta += d_deta[a] * c[2 * a];
+    y_xi += d_dxi[a] * c[2 * a + 1];
+    y_eta += d_deta[a] * c[2 * a + 1];
+  }
+  s.jacobian = x_xi * y_eta - x_eta * y_xi;
+  SLIPFRONT_ASSERT(s.jacobian > 0, "cell is not convex and counterclockwise");
+  for (int a = 0; a < 4; ++a) {
+    s.d_dx[a] = (y_eta * d_dxi[a] - y_xi * d_deta[a]) / s.jacobian;
+    s.d_dy[a] = (x_xi * d_deta[a] - x_eta * d_dxi[a]) / s.jacobian;
+  }
+  return s;
+}
+
+}  // namespace
+
+CellCoordinates cell_coordinates(const mesh::Mesh& mesh, const mesh::Cell& cell) {
+  CellCoordinates c{};
+  for (int a = 0; a < 4; ++a) {
+    c[2 * a] = mesh.x_m[cell[a]];
+    c[2 * a + 1] = mesh.y_m[cell[a]];
+  }
+  return c;
+}
+
+CellStiffness cell_stiffness(const CellCoordinates& coordinates, const Material& material) {
+  const auto D = elasticity_Pa(material);
+  const double P = D[0], coupling = D[1], G = D[8];
+  CellStiffness K{};
+  for (const auto& [xi, eta] : gauss_points) {
+    const ShapeAtPoint s = shape_at(coordinates, xi, eta);
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) {
+        const double xx = s.d_dx[a] * s.d_dx[b], xy = s.d_dx[a] * s.d_dy[b];
+        const double yx = s.d_dy[a] * s.d_dx[b], yy = s.d_dy[a] * s.d_dy[b];
+        K[(2 * a) * 8 + 2 * b] += (P * xx + G * yy) * s.jacobian;
+        K[(2 * a) * 8 + 2 * b + 1] += (coupling * xy + G * yx) * s.jacobian;
+        K[(2 * a + 1) * 8 + 2 * b] += (coupling * yx + G * xy) * s.jacobian;
+        K[(2 * a + 1) * 8 + 2 * b + 1] += (P * yy + G * xx) * s.jacobian;
+      }
+    }
+  }
+  return K;
+}
+
+std::array<double, 4> cell_mass(const CellCoordinates& coordinates, const Material& material) {
+  std::array<double, 4> m{};
+  for (const auto& [xi, eta] : gauss_points) {
+    const ShapeAtPoint s = shape_at(coordinates, xi, eta);
+    for (int a = 0; a < 4; ++a) m[a] += material.density_kg_per_m3 * s.value[a] * s.jacobian;
+  }
+  return m;
+}
+
+std::vector<double> lumped_mass(const mesh::Mesh& mesh, const Material& material) {
+  std::vector<double> mass(mesh.n_nodes(), 0.0);
+  for (const auto& cell : mesh.cells) {
+    const auto m = cell_mass(cell_coordinates(mesh, cell), material);
+    for (int a = 0; a < 4; ++a) mass[cell[a]] += m[a];
+  }
+  return mass;
+}
+
+}  // namespace slipfront::solid

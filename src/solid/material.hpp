@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+namespace slipfront::solid {
+
+enum class Plane { stress, strain };
+
+/// Isotropic linear elasticity of a body of unit thickness, with damping proportional to the stiffness.
+struct Material {
+  double youngs_modulus_Pa = 2.6e9;
+  double poissons_ratio = 0.37;
+  double density_kg_per_m3 = 1200;
+  Plane plane = Plane::stress;
+  double stiffness_damping_s = 0.1e-6;  ///< beta_R: the internal force is K (u + beta_R v)
+};
+
+double shear_modulus_Pa(const Material& material);
+/// Stiffness of uniaxial strain within the plane: rho c_L^2.
+double longitudinal_modulus_Pa(const Material& material);
+double longitudinal_speed_m_per_s(const Material& material);  ///< c_L in the plane chosen
+double shear_speed_m_per_s(const Material& material);         ///< c_S
+double rayleigh_speed_m_per_s(const Material& material);      ///< c_R, root of the Rayleigh function
+
+/// Plane elasticity matrix for (e_xx, e_yy, 2 e_xy), row-major, Pa.
+std::array<double, 9> elasticity_Pa(const Material& material);
+
+}  // namespace slipfront::solid

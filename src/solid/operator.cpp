@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solid/operator.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "solid/element.hpp"
+#include "solid/kernels.hpp"
+
+namespace slipfront::solid {
+
+namespace {
+
+/// Cells around each node in compressed form: cells of node n are cell[first[n]] ... cell[first[n + 1] - 1].
+struct CellsOfNodes {
+  std::vector<std::int32_t> first, cell;
+};
+
+CellsOfNodes cells_of_nodes(const mesh::Mesh& mesh) {
+  CellsOfNodes c;
+  c.first.assign(mesh.n_nodes() + 1, 0);
+  for (const auto& nodes : mesh.cells)
+    for (const auto n : nodes) ++c.first[n + 1];
+  for (std::size_t n = 0; n + 1 < c.first.size(); ++n) c.first[n + 1] += c.first[n];
+  c.cell.resize(4 * mesh.cells.size());
+  auto next = c.first;
+  for (std::size_t k = 0; k < mesh.cells.size(); ++k)
+    for (const auto n : mesh.cells[k]) c.cell[next[n]++] = static_cast<std::int32_t>(k);
+  return c;
+}
+
+/// Whether the cell is a square of the grid's spacing between grid neighbours, lowest left node first.
+bool is_regular(const mesh::Mesh& mesh, const mesh::Cell& cell) {
+  const int stride = mesh.grid.stride();
+  const mesh::Node corner = cell[0];
+  if (cell[1] != corner + 1 || cell[2] != corner + stride + 1 || cell[3] != corner + stride) return false;
+  const double h = mesh.grid.spacing_m;
+  const double tolerance = 1e-9 * h;
+  const auto c = cell_coordinates(mesh, cell);
+  const std::array<double, 8> square = {0, 0, h, 0, h, h, 0, h};
+  for (int k = 0; k < 8; ++k)
+    if (std::abs(c[k] - c[k % 2] - square[k]) > tolerance) return false;
+  return true;
+}
+
+std::array<double, 4> block_of(const CellStiffness& K, int a, int b) {
+  return {K[(2 * a) * 8 + 2 * b], K[(2 * a) * 8 + 2 * b + 1], K[(2 * a + 1) * 8 + 2 * b],
+          K[(2 * a + 1) * 8 + 2 * b + 1]};
+}
+
+void set_stencils(Operator& op, const Material& material) {
+  const double h = op.grid.spacing_m;
+  const CellStiffness K = cell_stiffness({0, 0, h, 0, h, h, 0, h}, material);
+  // Blocks of the node at the lower left corner of a cell against the cell's four nodes; the other corners
+  // follow from the symmetries of the square.
+  const auto self = block_of(K, 0, 0), side = block_of(K, 0, 1), diagonal = block_of(K, 0, 2),
+             up = block_of(K, 0, 3);
+  const double interior_mass = material.density_kg_per_m3 * h * h;
+  const double edge_mass = 0.5 * interior_mass;
+  op.interior = {.centre = 4 * self[0] / interior_mass,
+                 .along = 2 * side[0] / interior_mass,
+                 .across = 2 * up[0] / interior_mass,
+                 .corner = diagonal[0] / interior_mass,
+                 .twist = diagonal[1] / interior_mass};
+  op.lower_edge = {.centre_x = 2 * self[0] / edge_mass,
+                   .side_x = side[0] / edge_mass,
+                   .up_x = 2 * up[0] / edge_mass,
+                   .corner_x = diagonal[0] / edge_mass,
+                   .centre_y = 2 * self[3] / edge_mass,
+                   .side_y = side[3] / edge_mass,
+                   .up_y = 2 * up[3] / edge_mass,
+                   .corner_y = diagonal[3] / edge_mass,
+                   .shear = side[1] / edge_mass,
+                   .twist = diagonal[1] / edge_mass};
+}
+
+}  // namespace
+
+BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::span<const mesh::Node> nodes,
+                        std::span<const double> mass_kg) {
+  std::vector<std::int32_t> row_of(mesh.n_nodes(), -1);
+  for (std::size_t r = 0; r < nodes.size(); ++r) row_of[nodes[r]] = static_cast<std::int32_t>(r);
+  std::vector<std::vector<std::pair<mesh::Node, std::array<double, 4>>>> rows(nodes.size());
+  for (const auto& cell : mesh.cells) {
+    if (std::ranges::none_of(cell, [&](mesh::Node n) { return row_of[n] >= 0; })) continue;
+    const auto K = cell_stiffness(cell_coordinates(mesh, cell), material);
+    for (int a = 0; a < 4; ++a) {
+      if (row_of[cell[a]] < 0) continue;
+      auto& row = rows[row_of[cell[a]]];
+      for (int b = 0; b < 4; ++b) {
+        const auto block = block_of(K, a, b);
+        const auto known = std::ranges::find(row, cell[b], [](const auto& entry) { return entry.first; });
+        if (known == row.end()) {
+          row.emplace_back(cell[b], block);
+        } else {
+          for (int k = 0; k < 4; ++k) known->second[k] += block[k];
+        }
+      }
+    }
+  }
+  BlockRows result;
+  result.node.assign(nodes.begin(), nodes.end());
+  result.first.push_back(0);
+  for (std::size_t r = 0; r < nodes.size(); ++r) {
+    std::ranges::sort(rows[r], {}, [](const auto& entry) { return entry.first; });
+    const double scale = mass_kg.empty() ? 1.0 : 1.0 / mass_kg[nodes[r]];
+    for (auto& [neighbour, block] : rows[r]) {
+      for (double& value : block) value *= scale;
+      result.neighbour.push_back(neighbour);
+      result.block.push_back(block);
+    }
+    result.first.push_back(static_cast<std::int32_t>(result.neighbour.size()));
+  }
+  return result;
+}
+
+Operator make_operator(const mesh::Mesh& mesh, const Material& material,
+                       const std::vector<bool>& force_irregular) {
+  Operator op;
+  op.grid = mesh.grid;
+  op.mass_kg = lumped_mass(mesh, material);
+  op.is_top.assign(mesh.n_nodes(), false);
+  for (const auto n : mesh.top) op.is_top[n] = true;
+  set_stencils(op, material);
+
+  std::vector<bool> regular_cell(mesh.cells.size());
+  for (std::size_t k = 0; k < mesh.cells.size(); ++k) regular_cell[k] = is_regular(mesh, mesh.cells[k]);
+  const CellsOfNodes around = cells_of_nodes(mesh);
+  const auto has_stencil = [&](int i, int j) {
+    if (i == 0 || i == op.grid.columns) return false;
+    const mesh::Node n = op.grid.node(i, j);
+    if (!force_irregular.empty() && force_irregular[n]) return false;
+    if (around.first[n + 1] - around.first[n] != (j == 0 ? 2 : 4)) return false;
+    for (auto k = around.first[n]; k < around.first[n + 1]; ++k)
+      if (!regular_cell[around.cell[k]]) return false;
+    return true;
+  };
+
+  op.spans.resize(op.grid.rows + 1);
+  std::vector<mesh::Node> irregular;
+  for (int j = 0; j <= op.grid.rows; ++j) {
+    for (int i = 0; i <= op.grid.columns; ++i) {
+      const mesh::Node n = op.grid.node(i, j);
+      if (op.is_top[n] || op.mass_kg[n] == 0) continue;
+      if (!has_stencil(i, j)) {
+        irregular.push_back(n);
+      } else if (!op.spans[j].empty() && op.spans[j].back().end == i) {
+        ++op.spans[j].back().end;
+      } else {
+        op.spans[j].push_back({i, i + 1});
+      }
+    }
+  }
+  op.irregular = assemble_rows(mesh, material, irregular, op.mass_kg);
+  op.top = assemble_rows(mesh, material, mesh.top);
+  return op;
+}
+
+void apply(const Operator& op, const Field& w, Field& a) {
+  std::ranges::fill(a.x, 0.0);
+  std::ranges::fill(a.y, 0.0);
+  const int stride = op.grid.stride();
+  const auto row = [&](int j) { return ConstRow{w.x.data() + j * stride, w.y.data() + j * stride}; };
+  for (int j = 0; j <= op.grid.rows; ++j) {
+    for (const Span span : op.spans[j]) {
+      double* a_x = a.x.data() + j * stride;
+      double* a_y = a.y.data() + j * stride;
+      if (j == 0) {
+        add_lower_row(op.lower_edge, span, row(0), row(1), a_x, a_y);
+      } else {
+        add_interior_row(op.interior, span, row(j - 1), row(j), row(j + 1), a_x, a_y);
+      }
+    }
+  }
+  for_each_row_product(op.irregular, w, [&](std::size_t r, double x, double y) {
+    a.x[op.irregular.node[r]] = x;
+    a.y[op.irregular.node[r]] = y;
+  });
+}
+
+double strain_energy_J_per_m(const Operator& op, const Field& u) {
+  Field a(u.size());
+  apply(op, u, a);
+  double energy = 0;
+  for (std::size_t n = 0; n < u.size(); ++n) energy += op.mass_kg[n] * (u.x[n] * a.x[n] + u.y[n] * a.y[n]);
+  for_each_row_product(op.top, u, [&](std::size_t r, double x, double y) {
+    energy += u.x[op.top.node[r]] * x + u.y[op.top.node[r]] * y;
+  });
+  return 0.5 * energy;
+}
+
+double kinetic_energy_J_per_m(const Operator& op, const Field& v) {
+  double energy = 0;
+  for (std::size_t n = 0; n < v.size(); ++n) energy += op.mass_kg[n] * (v.x[n] * v.x[n] + v.y[n] * v.y[n]);
+  return 0.5 * energy;
+}
+
+double top_force_x_N_per_m(const Operator& op, const Field& w) {
+  double force = 0;
+  for_each_row_product(op.top, w, [&](std::size_t, double x, double) { force += x; });
+  return force;
+}
+
+double largest_frequency_rad_per_s(const Operator& op) {
+  // Lanczos on the symmetric M^-1/2 K M^-1/2 without reorthogonalisation: copies of converged Ritz values do
+  // not disturb the largest one. The start vector is a fixed pseudo-random sequence.
+  const std::size_t n = op.mass_kg.size();
+  std::vector<double> root_mass(n);
+  Field q(n), q_before(n), w(n), a(n);
+  std::uint64_t state = 1;
+  const auto random = [&state] {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5;
+  };
+  double norm2 = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    root_mass[k] = std::sqrt(op.mass_kg[k]);
+    if (op.is_top[k] || op.mass_kg[k] == 0) continue;
+    q.x[k] = random();
+    q.y[k] = random();
+    norm2 += q.x[k] * q.x[k] + q.y[k] * q.y[k];
+  }
+  double beta = std::sqrt(norm2);
+  for (std::size_t k = 0; k < n; ++k) q.x[k] /= beta, q.y[k] /= beta;
+  beta = 0;
+
+  constexpr int max_iterations = 300;
+  constexpr double tolerance = 1e-3;
+  std::vector<double> diagonal, off_diagonal;
+  double largest = 0;
+  for (int iteration = 1; iteration <= max_iterations; ++iteration) {
+    for (std::size_t k = 0; k < n; ++k) {
+      const double scale = root_mass[k] > 0 ? 1 / root_mass[k] : 0;
+      w.x[k] = q.x[k] * scale;
+      w.y[k] = q.y[k] * scale;
+    }
+    apply(op, w, a);
+    double alpha = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      a.x[k] = a.x[k] * root_mass[k] - beta * q_before.x[k];
+      a.y[k] = a.y[k] * root_mass[k] - beta * q_before.y[k];
+      alpha += a.x[k] * q.x[k] + a.y[k] * q.y[k];
+    }
+    double next2 = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      a.x[k] -= alpha * q.x[k];
+      a.y[k] -= alpha * q.y[k];
+      next2 += a.x[k] * a.x[k] + a.y[k] * a.y[k];
+    }
+    diagonal.push_back(alpha);
+    beta = std::sqrt(next2);
+    const bool exhausted = beta <= 1e-12 * std::abs(alpha);
+    if (iteration % 10 == 0 || exhausted || iteration == max_iterations) {
+      const auto size = static_cast<Eigen::Index>(diagonal.size());
+      const Eigen::Map<const Eigen::VectorXd> d(diagonal.data(), size);
+      const Eigen::Map<const Eigen::VectorXd> e(off_diagonal.data(), size - 1);
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> tridiagonal;
+      tridiagonal.computeFromTridiagonal(d, e);
+      const double ritz = tridiagonal.eigenvalues()(size - 1);
+      // The residual bounds the distance to the nearest eigenvalue; added, it makes the estimate err on the
+      // safe side.
+      const double residual = beta * std::abs(tridiagonal.eigenvectors()(size - 1, size - 1));
+      largest = ritz + residual;
+      if (exhausted || residual < tolerance * ritz) break;
+    }
+    off_diagonal.push_back(beta);
+    for (std::size_t k = 0; k < n; ++k) {
+      q_before.x[k] = q.x[k];
+      q_before.y[k] = q.y[k];
+      q.x[k] = a.x[k] / beta;
+      q.y[k] = a.y[k] / beta;
+    }
+  }
+  SLIPFRONT_ASSERT(largest > 0 && std::isfinite(largest), "stiffness has no positive eigenvalue");
+  return std::sqrt(largest);
+}
+
+double stable_step_s(double omega, double stiffness_damping_s) {
+  const double xi = 0.5 * stiffness_damping_s * omega;
+  return 2 / (omega * (std::sqrt(1 + xi * xi) + xi));
+}
+
+}  // namespace slipfront::solid

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "solid/material.hpp"
+
+namespace slipfront::solid {
+
+/// A vector field over the nodes, component by component. [nodes]
+struct Field {
+  std::vector<double> x, y;
+  Field() = default;
+  explicit Field(std::size_t n) : x(n, 0.0), y(n, 0.0) {}
+  std::size_t size() const { return x.size(); }
+};
+
+/// Acceleration M^-1 K of a node amid four equal squares, written with the square's symmetries (1/s2):
+/// a_x = centre w_x + along (E + W) + across (N + S) + corner (NE + NW + SE + SW) of w_x
+///       + twist (NE + SW - NW - SE) of w_y, and the same for y with `along` and `across` exchanged.
+struct InteriorStencil {
+  double centre, along, across, corner, twist;
+};
+
+/// The same for a node of the lower edge, with two equal squares above it and none below.
+/// a_x = centre_x w_x + side_x (E + W) + up_x N + corner_x (NE + NW) + shear (E - W of w_y) + twist (NE - NW
+/// of w_y) a_y = centre_y w_y + side_y (E + W) + up_y N + corner_y (NE + NW) - shear (E - W of w_x) + twist
+/// (NE - NW of w_x)
+struct LowerEdgeStencil {
+  double centre_x, side_x, up_x, corner_x;
+  double centre_y, side_y, up_y, corner_y;
+  double shear, twist;
+};
+
+/// Rows of a block-sparse matrix for a list of nodes: any mesh.
+struct BlockRows {
+  std::vector<mesh::Node> node;     ///< [rows]
+  std::vector<std::int32_t> first;  ///< [rows + 1] into neighbour and block
+  std::vector<mesh::Node> neighbour;
+  std::vector<std::array<double, 4>> block;  ///< xx, xy, yx, yy
+  std::size_t size() const { return node.size(); }
+};
+
+/// Calls f(row, x, y) with the components of the row's product with w, for each row.
+template <class F>
+void for_each_row_product(const BlockRows& rows, const Field& w, F&& f) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    double x = 0, y = 0;
+    for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+      const auto& b = rows.block[k];
+      const double w_x = w.x[rows.neighbour[k]], w_y = w.y[rows.neighbour[k]];
+      x += b[0] * w_x + b[1] * w_y;
+      y += b[2] * w_x + b[3] * w_y;
+    }
+    f(r, x, y);
+  }
+}
+
+/// Nodes [begin, end) of one grid row, by column.
+struct Span {
+  int begin = 0, end = 0;
+};
+
+/// The plate's stiffness over its lumped mass, as the explicit scheme needs it: a stencil for the nodes of
+/// the regular part, block rows for all others.
+struct Operator {
+  mesh::Grid grid;
+  std::vector<double> mass_kg;  ///< [nodes], per unit thickness; 0 for orphans
+  InteriorStencil interior{};
+  LowerEdgeStencil lower_edge{};
+  std::vector<std::vector<Span>> spans;  ///< [grid rows + 1] nodes with a stencil (row 0: lower edge)
+  BlockRows irregular;                   ///< M^-1 K of all other nodes that may move
+  BlockRows top;                         ///< K (no mass) of the loaded edge's nodes, N/m
+  std::vector<bool> is_top;              ///< [nodes]
+};
+
+/// Builds the operator. Nodes for which `force_irregular` is true get block rows even where a stencil would
+/// do (empty: none).
+Operator make_operator(const mesh::Mesh& mesh, const Material& material,
+                       const std::vector<bool>& force_irregular = {});
+
+/// Block rows of K, or of M^-1 K where `mass_kg` is given, for the nodes listed.
+BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::span<const mesh::Node> nodes,
+                        std::span<const double> mass_kg = {});
+
+/// a = M^-1 K w for all nodes that may move; 0 for the loaded edge and orphans.
+void apply(const Operator& op, const Field& w, Field& a);
+
+/// Strain energy 1/2 u . K u, the loaded edge's part included, J per unit thickness.
+double strain_energy_J_per_m(const Operator& op, const Field& u);
+/// Kinetic energy 1/2 v . M v, J per unit thickness.
+double kinetic_energy_J_per_m(const Operator& op, const Field& v);
+
+/// Force of the loaded edge on the plate along x, N per unit thickness; w = u + beta_R v.
+double top_force_x_N_per_m(const Operator& op, const Field& w);
+
+/// Largest natural frequency (rad/s) with the loaded edge held, from Lanczos iterations; an upper bound up to
+/// the residual tolerance of 1e-3.
+double largest_frequency_rad_per_s(const Operator& op);
+
+/// Largest stable step of the explicit scheme whose damping force acts on the last half-step velocity:
+/// (2 / omega) (sqrt(1 + xi^2) - xi), xi = beta_R omega / 2.
+double stable_step_s(double largest_frequency_rad_per_s, double stiffness_damping_s);
+
+}  // namespace slipfront::solid

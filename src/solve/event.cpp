@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solve/event.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+
+namespace slipfront::solve {
+
+namespace {
+
+constexpr std::int64_t check_interval = 50;
+
+/// Watches that the motion stays physical.
+class Watch {
+ public:
+  Watch(const Stepper& stepper, double top_speed, double c_L)
+      : stepper_(stepper),
+        top_speed_(top_speed),
+        c_L_(c_L),
+        start_(energies()),
+        last_time_s_(stepper.time_s()) {
+    last_top_force_ = stepper.top_force_x_N_per_m();
+  }
+
+  const EnergyState& start() const { return start_; }
+
+  EnergyState now() {
+    EnergyState e = energies();
+    const double force = stepper_.top_force_x_N_per_m();
+    top_work_ += 0.5 * (force + last_top_force_) * top_speed_ * (stepper_.time_s() - last_time_s_);
+    last_top_force_ = force;
+    last_time_s_ = stepper_.time_s();
+    e.top_work = top_work_;
+    return e;
+  }
+
+  /// Empty, or what is wrong with the motion.
+  std::string trouble() {
+    double fastest = 0;
+    for (const double v : stepper_.interface_state().slip_rate_m_per_s) {
+      if (!std::isfinite(v)) return "the slip rate is not a number";
+      fastest = std::max(fastest, std::abs(v));
+    }
+    if (fastest > c_L_) return fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", fastest);
+    if (stepper_.step() % check_interval != 0) return {};
+    const EnergyState e = now();
+    const double total = e.strain + e.kinetic;
+    if (!std::isfinite(total)) return "the energy is not a number";
+    const double supplied = start_.strain + start_.kinetic + std::abs(e.top_work) + std::abs(e.trigger_work);
+    if (total > 1.01 * supplied)
+      return fmt::format("the energy has grown to {:.4g} J/m with {:.4g} J/m supplied", total, supplied);
+    return {};
+  }
+
+ private:
+  EnergyState energies() const {
+    EnergyState e;
+    e.kinetic = stepper_.kinetic_energy_J_per_m();
+    e.strain = stepper_.energy_J_per_m() - e.kinetic;
+    e.trigger_work = stepper_.trigger_work_J_per_m();
+    return e;
+  }
+
+  const Stepper& stepper_;
+  double top_speed_, c_L_;
+  EnergyState start_;
+  double last_time_s_, last_top_force_ = 0, top_work_ = 0;
+};
+
+std::string blow_up_message(const Stepper& stepper, const std::string& trouble) {
+  return fmt::format("the run blew up at step {} (t = {:.6g} s): {}; reduce time.step_factor", stepper.step(),
+                     stepper.time_s(), trouble);
+}
+
+}  // namespace
+
+std::vector<double> trigger_forces(const Equilibrium& state, std::span<const double> tributary_m,
+                                   interface::EventKind kind, const interface::Trigger& trigger,
+                                   double mu_s) {
+  const auto& s = state.tractions;
+  std::vector<double> force(s.x_m.size(), 0.0);
+  if (kind != interface::EventKind::left && kind != interface::EventKind::right) return force;
+  const auto in_contact = [&](std::size_t k) { return state.contact[k] != Contact::open; };
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    if (!in_contact(k)) continue;
+    first = std::min(first, s.x_m[k]);
+    last = std::max(last, s.x_m[k]);
+  }
+  for (std::size_t k = 0; k < force.size(); ++k) {
+    const double from_edge = kind == interface::EventKind::left ? s.x_m[k] - first : last - s.x_m[k];
+    if (in_contact(k) && from_edge <= trigger.zone_m * (1 + 1e-9))
+      force[k] = trigger.amount * (mu_s * s.p_s_Pa[k] - s.t_s_Pa[k]) * tributary_m[k];
+  }
+  return force;
+}
+
+int halo_for(const mesh::Mesh& mesh, double l_star_m) {
+  return static_cast<int>(std::ceil(l_star_m / mesh.grid.spacing_m - 0.01)) + 1;
+}
+
+Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L,
+                const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
+                int halo, const Monitor& monitor) {
+  Event event;
+  Recorder recorder(state, mu_s, halo);
+  const double top_speed = stepper.v_m_per_s().x[stepper.plate().top.node.front()];
+  Watch watch(stepper, top_speed, c_L);
+  event.energy_at_start = watch.start();
+  event.history.x_m = state.tractions.x_m;
+
+  const double quiet_from = std::isfinite(trigger.ramp_s) ? trigger.ramp_s : 0;
+  const auto n_steps = static_cast<std::int64_t>(std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12)));
+  std::int64_t n_samples = 0;
+  std::size_t next_snapshot = 0;
+  const auto take_snapshots = [&] {
+    while (next_snapshot < sampling.snapshot_times_s.size() &&
+           stepper.time_s() >= sampling.snapshot_times_s[next_snapshot]) {
+      event.snapshots.push_back({stepper.time_s(), stepper.u_m(), stepper.v_m_per_s()});
+      ++next_snapshot;
+    }
+  };
+  while (stepper.step() < n_steps) {
+    take_snapshots();
+    const bool sample = stepper.time_s() >= static_cast<double>(n_samples) * sampling.history_interval_s;
+    if (sample) n_samples = static_cast<std::int64_t>(stepper.time_s() / sampling.history_interval_s) + 1;
+    stepper.advance(recorder, sample ? &event.history : nullptr);
+    if (auto trouble = watch.trouble(); !trouble.empty()) {
+      event.end = EventEnd::blow_up;
+      event.blow_up = blow_up_message(stepper, trouble);
+      break;
+    }
+    if (stepper.time_s() - std::max(recorder.last_slip_time_s(), quiet_from) > time.quiet_s) {
+      event.end = EventEnd::quiet;
+      break;
+    }
+    if (stepper.step() % check_interval == 0 && !monitor(stepper.step(), n_steps)) {
+      event.end = EventEnd::interrupted;
+      break;
+    }
+  }
+  take_snapshots();
+  event.steps = stepper.step();
+  event.time_s = stepper.time_s();
+  event.energy_at_end = watch.now();
+  event.record = recorder.take(event.time_s);
+  return event;
+}
+
+Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
+              double top_speed, double expected_shear_m, const Monitor& monitor) {
+  Ramp ramp;
+  stepper.start(tilted, top_speed);
+  Recorder recorder(tilted, mu_s, 0);
+  const auto most = static_cast<std::int64_t>(2 * expected_shear_m / (top_speed * stepper.step_s()));
+
+  // The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.
+  const auto state_now = [&] {
+    Equilibrium e = tilted;
+    const auto& s = stepper.interface_state();
+    e.u_m = stepper.u_m();
+    for (std::size_t n = 0; n < e.u_per_shear.size(); ++n) {
+      e.u_per_shear.x[n] = stepper.v_m_per_s().x[n] / top_speed;
+      e.u_per_shear.y[n] = stepper.v_m_per_s().y[n] / top_speed;
+    }
+    e.shear_m = top_speed * stepper.time_s();
+    e.tractions.t_s_Pa = s.t_Pa;
+    e.tractions.p_s_Pa = s.p_Pa;
+    double first = std::numeric_limits<double>::infinity(), last = -first;
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      e.contact[k] = s.p_Pa[k] > 0 ? (s.slipping[k] != 0 ? Contact::slip : Contact::stick) : Contact::open;
+      if (e.contact[k] == Contact::open) continue;
+      first = std::min(first, e.tractions.x_m[k]);
+      last = std::max(last, e.tractions.x_m[k]);
+    }
+    e.inside_from_m = first + loading.edge_margin_m;
+    e.inside_to_m = last - loading.edge_margin_m;
+    e.peak_ratio = 0;
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      const double x = e.tractions.x_m[k];
+      if (x < e.inside_from_m || x > e.inside_to_m || s.p_Pa[k] <= 0 || s.t_Pa[k] / s.p_Pa[k] <= e.peak_ratio)
+        continue;
+      e.peak_ratio = s.t_Pa[k] / s.p_Pa[k];
+      e.peak_x_m = x;
+    }
+    return e;
+  };
+  // The contact's extent changes slowly; the peak is looked for between bounds that are renewed at the
+  // checks.
+  double from = tilted.inside_from_m, to = tilted.inside_to_m;
+  const auto peak_now = [&] {
+    const auto& s = stepper.interface_state();
+    double peak = 0;
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      const double x = tilted.tractions.x_m[k];
+      if (x >= from && x <= to && s.p_Pa[k] > 0) peak = std::max(peak, s.t_Pa[k] / s.p_Pa[k]);
+    }
+    return peak;
+  };
+
+  bool have_common = false;
+  for (;;) {
+    stepper.advance(recorder);
+    const double peak = peak_now();
+    if (!std::isfinite(stepper.u_m().x[stepper.plate().grid.node(1, 1)]) || !std::isfinite(peak))
+      throw BlowUp(blow_up_message(stepper, "the displacement is not a number"));
+    if (!have_common && peak >= mu_s * (1 - loading.critical_margin)) {
+      ramp.common = state_now();
+      have_common = true;
+    }
+    if (peak >= mu_s * (1 - ramp_handover)) {
+      ramp.spontaneous = state_now();
+      break;
+    }
+    if (stepper.step() % 1000 == 0) {
+      const Equilibrium e = state_now();
+      from = e.inside_from_m;
+      to = e.inside_to_m;
+      if (!monitor(stepper.step(), most / 2)) {
+        ramp.interrupted = true;
+        break;
+      }
+    }
+    if (stepper.step() > most)
+      throw UserError("the ramp does not bring t/p inside the interface to mu_s within a shear of {:.4g} m",
+                      2 * expected_shear_m);
+  }
+  ramp.steps = stepper.step();
+  ramp.record = recorder.take(stepper.time_s());
+  return ramp;
+}
+
+}  // namespace slipfront::solve

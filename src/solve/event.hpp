@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "fronts/record.hpp"
+#include "interface/trigger.hpp"
+#include "mesh/mesh.hpp"
+#include "solve/statics.hpp"
+#include "solve/stepper.hpp"
+
+namespace slipfront::solve {
+
+/// Asked once in a while during long work with the steps done and their total; returns false to interrupt it.
+using Monitor = std::function<bool(std::int64_t step, std::int64_t total)>;
+
+/// What to keep of an event besides its onsets.
+struct Sampling {
+  double history_interval_s = 0.5e-6;
+  std::vector<double> snapshot_times_s;  ///< ascending
+};
+
+/// Motion of the whole plate at one instant. The velocity belongs to half a step (half a sub-step in the
+/// interface layer) earlier.
+struct Snapshot {
+  double time_s = 0;
+  solid::Field u_m, v_m_per_s;
+};
+
+/// Why an event ended.
+enum class EventEnd { end_time, quiet, interrupted, blow_up };
+
+/// Energies at one instant, J per unit thickness.
+struct EnergyState {
+  double strain = 0, kinetic = 0;
+  double top_work = 0;      ///< done by the loaded edge since the start (trapezoidal rule over the checks)
+  double trigger_work = 0;  ///< done by the trigger since the start
+};
+
+/// A slip event as it was computed.
+struct Event {
+  EventEnd end = EventEnd::end_time;
+  std::string blow_up;  ///< which step, and why
+  std::int64_t steps = 0;
+  double time_s = 0;
+  fronts::SlipRecord record;
+  fronts::History history;
+  std::vector<Snapshot> snapshots;
+  EnergyState energy_at_start, energy_at_end;
+};
+
+/// Trigger forces on the interface nodes: amount (mu_s p_s - t_s) over the zone next to an edge of contact, N
+/// per unit thickness. [lower]
+std::vector<double> trigger_forces(const Equilibrium& state, std::span<const double> tributary_m,
+                                   interface::EventKind kind, const interface::Trigger& trigger, double mu_s);
+
+/// Halo of the slip record that t_d, p_d at a distance l_star_m ahead of the tip need.
+int halo_for(const mesh::Mesh& mesh, double l_star_m);
+
+/// Steps a started stepper until the end time, or until no node has slipped for time.quiet_s after the
+/// trigger's ramp. Every 50 steps the motion is checked: numbers finite, slip rates below c_L, and energy not
+/// above what there was at the start plus what the loaded edge and the trigger have added, by more than 1 %.
+Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L_m_per_s,
+                const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
+                int halo, const Monitor& monitor);
+
+/// States that the explicit ramp reaches, and what happened on the way.
+struct Ramp {
+  Equilibrium common;         ///< at (1 - critical_margin) mu_s inside
+  Equilibrium spontaneous;    ///< just before mu_s is reached inside
+  fronts::SlipRecord record;  ///< of all slip during the ramp
+  std::int64_t steps = 0;
+  bool interrupted = false;
+};
+
+/// Relative distance to mu_s at which the ramp hands over to the spontaneous event.
+inline constexpr double ramp_handover = 1e-5;
+
+/// Moves the loaded edge of the tilted plate at top_speed_m_per_s by explicit steps until t/p inside the
+/// interface reaches mu_s.
+/// @throws BlowUp, and UserError where mu_s is not reached within twice the shear `expected_shear_m`.
+Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
+              double top_speed_m_per_s, double expected_shear_m, const Monitor& monitor);
+
+}  // namespace slipfront::solve

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solve/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slipfront::solve {
+
+Recorder::Recorder(const Equilibrium& before, double mu_s, int halo)
+    : mu_s_(mu_s), previous_t_Pa_(before.tractions.t_s_Pa), previous_p_Pa_(before.tractions.p_s_Pa) {
+  record_.x_m = before.tractions.x_m;
+  record_.halo = halo;
+  for (const auto contact : before.contact) {
+    previous_slipping_.push_back(contact == Contact::slip);
+    n_slipping_ += previous_slipping_.back();
+  }
+}
+
+void Recorder::observe(double time_s, const interface::Interface& state, bool changed) {
+  if (changed) {
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      if (state.slipping[i] == previous_slipping_[i]) continue;
+      if (state.slipping[i] != 0) {
+        add_onset(i, time_s, state);
+        ++n_slipping_;
+      } else {
+        record_.stops.push_back({static_cast<std::int32_t>(i), time_s});
+        --n_slipping_;
+      }
+      previous_slipping_[i] = state.slipping[i];
+    }
+  }
+  if (n_slipping_ > 0) last_slip_s_ = time_s;
+  std::ranges::copy(state.t_Pa, previous_t_Pa_.begin());
+  std::ranges::copy(state.p_Pa, previous_p_Pa_.begin());
+  previous_time_s_ = time_s;
+}
+
+void Recorder::add_onset(std::size_t node, double time_s, const interface::Interface& state) {
+  // |t| / (mu_s p) passes 1 between the last time and this one; a node that was not pressed has no ratio to
+  // interpolate and begins to slip now.
+  double part = 1;
+  if (previous_p_Pa_[node] > 0 && time_s > previous_time_s_) {
+    const double before = std::abs(previous_t_Pa_[node]) / (mu_s_ * previous_p_Pa_[node]);
+    const double now = state.demand_Pa[node] / (mu_s_ * state.p_Pa[node]);
+    if (now > before) part = std::clamp((1 - before) / (now - before), 0.0, 1.0);
+  }
+  record_.onsets.push_back(
+      {static_cast<std::int32_t>(node), previous_time_s_ + part * (time_s - previous_time_s_)});
+  for (int k = -record_.halo; k <= record_.halo; ++k) {
+    const auto i = static_cast<std::ptrdiff_t>(node) + k;
+    if (i < 0 || i >= static_cast<std::ptrdiff_t>(state.size())) {
+      record_.around.push_back({std::nan(""), std::nan("")});
+      continue;
+    }
+    // At the node itself the traction rises to the strength: the demand, cut at mu_s p, not the weakened
+    // traction.
+    const double p = previous_p_Pa_[i] + part * (state.p_Pa[i] - previous_p_Pa_[i]);
+    const double t = k == 0 ? std::copysign(mu_s_ * p, state.t_Pa[i])
+                            : previous_t_Pa_[i] + part * (state.t_Pa[i] - previous_t_Pa_[i]);
+    record_.around.push_back({t, p});
+  }
+}
+
+fronts::SlipRecord Recorder::take(double end_time_s) {
+  record_.end_time_s = end_time_s;
+  // Onsets within one (sub-)step come in the order of nodes: put them in the order of time.
+  std::vector<std::size_t> order(record_.onsets.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return record_.onsets[k].time_s; });
+  fronts::SlipRecord sorted = record_;
+  const std::size_t n = 2 * static_cast<std::size_t>(record_.halo) + 1;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    sorted.onsets[k] = record_.onsets[order[k]];
+    std::ranges::copy(record_.around_onset(order[k]),
+                      sorted.around.begin() + static_cast<std::ptrdiff_t>(k * n));
+  }
+  return sorted;
+}
+
+}  // namespace slipfront::solve

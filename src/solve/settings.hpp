@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace slipfront::solve {
+
+/// How the critical shear is reached from the tilted equilibrium.
+enum class LoadingMethod {
+  direct,  ///< static equilibria by a sparse factorisation
+  ramp,    ///< explicit dynamics with the top edge moving
+};
+
+/// Whether the top edge's nodes may move along x while it is tilted.
+enum class TopEdge { held, free };
+
+/// Displacements of the top edge: pushed down along a line, then moved to +x.
+struct Loading {
+  double tilt_left_m = 0.37e-3;    ///< downward displacement at the left end
+  double tilt_right_m = 0.037e-3;  ///< ... at the right end, linear between
+  TopEdge top_during_tilt = TopEdge::held;
+  LoadingMethod method = LoadingMethod::direct;
+  double shear_speed_over_c_L = 1e-6;  ///< v_x / c_L of the top edge
+  double edge_margin_m = 10e-3;  ///< "inside" the interface leaves out this much at each end of the contact
+  double critical_margin =
+      1e-3;  ///< common state at t/p = (1 - margin) mu_s inside, spontaneous event at (1 + margin)
+};
+
+/// Explicit time stepping: Newmark with beta = 0, gamma = 1/2, the interface layer sub-cycled.
+struct TimeStepping {
+  double step_factor = 0.9;     ///< step over the largest stable one
+  bool allow_unstable = false;  ///< accept a step_factor above 1
+  int interface_rows = 4;       ///< rows of nodes next to the interface that are sub-cycled
+  int interface_substeps = 18;  ///< sub-steps per step there; 1 is the plain scheme
+  double end_s = 250e-6;        ///< end of the event
+  double quiet_s = 30e-6;       ///< end it earlier when no node has slipped for this long
+};
+
+}  // namespace slipfront::solve

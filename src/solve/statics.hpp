@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fronts/record.hpp"
+#include "mesh/mesh.hpp"
+#include "solid/material.hpp"
+#include "solid/operator.hpp"
+#include "solve/factorisation.hpp"
+#include "solve/settings.hpp"
+
+namespace slipfront::solve {
+
+/// Contact state of an interface node at rest.
+enum class Contact : std::uint8_t { stick, slip, open };
+
+/// Equilibrium of the plate with its interface, and how it changes with the shear.
+struct Equilibrium {
+  solid::Field u_m;               ///< [nodes] displacement
+  solid::Field u_per_shear;       ///< [nodes] change of u per unit displacement of the loaded edge along x
+  double shear_m = 0;             ///< displacement of the loaded edge along x since the tilt
+  std::vector<Contact> contact;   ///< [lower]
+  fronts::StaticState tractions;  ///< [lower]
+  double peak_ratio = 0;          ///< largest t/p inside
+  double peak_x_m = 0;            ///< where it is
+  double inside_from_m = 0, inside_to_m = 0;  ///< the part of the contact that counts as inside
+};
+
+/// Loading of the plate at rest: tilt, then shear until t/p inside the interface reaches a given value.
+///
+/// Nodes stick where they touch; a node whose pressure would be tensile is released; a node beyond mu_s slips
+/// at mu_s p, but inside only sticking is possible since the shear ends where mu_s is reached there. Every
+/// change of contact is solved on the condensed interface.
+class Statics {
+ public:
+  Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s);
+
+  /// The tilted plate before any shear.
+  const Equilibrium& tilted() const { return tilted_; }
+
+  /// Equilibrium at the shear at which the largest t/p inside equals `ratio`.
+  /// @throws UserError where no shear does it.
+  Equilibrium shear_to(double ratio) const;
+
+  /// Equilibrium at a given shear since the tilt.
+  Equilibrium shear_by(double shear_m) const;
+
+  std::int64_t n_unknowns() const { return held_->n_unknowns(); }
+  double factor_bytes() const { return held_->factor_bytes(); }
+
+ private:
+  template <class FindShear>
+  Equilibrium shear(FindShear&& find_shear) const;
+
+  const mesh::Mesh& mesh_;
+  Loading loading_;
+  double mu_s_;
+  std::vector<double> tributary_m_;
+  std::unique_ptr<Factorisation> held_;  ///< both displacements of the loaded edge prescribed
+  Factorisation::Load tilt_;             ///< the loaded edge where it stands after the tilt
+  Factorisation::Load unit_shear_;       ///< the loaded edge moved by 1 m along x
+  Equilibrium tilted_;
+};
+
+}  // namespace slipfront::solve

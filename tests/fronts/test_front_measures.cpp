@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is measured at the points of a front.
+#include <gtest/gtest.h>
+
+#include "fronts/measures.hpp"
+#include "synthetic.hpp"
+
+namespace slipfront::fronts::testing {
+namespace {
+
+constexpr double h = 0.2 / 300;
+constexpr double V = 1000.0;
+
+/// Constant speed from a nucleation in the middle, whatever the mesh and l*: the answer is exact, as tau is
+/// linear.
+void expect_constant_speed(int n, double spacing_m, double l_star_m) {
+  const auto x = nodes(n, spacing_m);
+  FrontOptions options = make_options();
+  options.l_star_m = l_star_m;
+  const auto fronts = find(make_record(x, bilateral(x, x[n / 2], V)), options);
+  ASSERT_EQ(fronts.size(), 2u);
+  const double half_m = 0.5 * std::max(l_star_m, spacing_m) * (1 - 1e-9);
+  for (const Front& front : fronts) {
+    for (const FrontPoint& point : front.points) {
+      const bool inside = std::abs(point.x_m - front.points.front().x_m) >= half_m &&
+                          std::abs(point.x_m - front.points.back().x_m) >= half_m;
+      ASSERT_EQ(std::isfinite(point.v_tip_m_per_s), inside) << point.x_m;
+      if (inside) {
+        EXPECT_NEAR(point.v_tip_m_per_s, V, 1e-9 * V);  // rounding
+      }
+    }
+  }
+}
+
+TEST(TipSpeed, ConstantSpeedIsExact) {
+  expect_constant_speed(301, h, 0.67e-3);
+}
+TEST(TipSpeed, LStarNotAMultipleOfTheSpacing) {
+  expect_constant_speed(301, h, 1.15e-3);
+}
+TEST(TipSpeed, FineMesh) {
+  expect_constant_speed(601, 0.2 / 600, 0.67e-3);
+}
+TEST(TipSpeed, CoarseMeshUsesOneElement) {
+  expect_constant_speed(101, 2e-3, 0.67e-3);
+}
+
+TEST(TipSpeed, AcceleratingFront) {
+  // dx/dt = V0 + k x, so tau = log(1 + k x / V0) / k.
+  constexpr double V0 = 500.0, k = 1e4;
+  const auto x = nodes(301, h);
+  std::vector<double> tau;
+  for (const double place : x) tau.push_back(std::log(1 + k * place / V0) / k);
+  const auto front = find(make_record(x, tau)).at(0);
+  for (std::size_t i = 1; i + 1 < front.points.size(); ++i) {
+    const double speed = V0 + k * x[i];
+    // Linear interpolation of tau is off by up to h^2/8 |tau''| = h^2/8 k/V^2 at each end of l*, here taken
+    // as h; the mean over l* instead of the value at x adds an order less. The speed at the near end is the
+    // lowest.
+    const double slowest = speed - k * h;
+    EXPECT_NEAR(front.points[i].v_tip_m_per_s / speed, 1.0, 2 * h / 8 * k / slowest);
+    EXPECT_TRUE(front.points[i].accelerating);
+  }
+
+  // The same path run backwards slows down.
+  std::vector<double> reversed;
+  for (const double place : x) reversed.push_back(tau.back() - std::log(1 + k * (x.back() - place) / V0) / k);
+  const auto slowing = find(make_record(x, reversed)).at(0);
+  for (const FrontPoint& point : slowing.points) EXPECT_FALSE(point.accelerating);
+}
+
+TEST(TipSpeed, AccelerationIsSmoothed) {
+  constexpr double V0 = 500.0, k = 1e4;
+  const auto x = nodes(301, h);
+  std::vector<double> tau;
+  // Onsets late and early by 2 % of a node's time in turn, which alternates the speed by 4 % about a rise
+  // of 1.3 % a node at the slow end.
+  for (int i = 0; i < 301; ++i) {
+    const double noise = (i % 2 == 0 ? 0.02 : -0.02) * h / (V0 + k * x[i]);
+    tau.push_back(std::log(1 + k * x[i] / V0) / k + noise);
+  }
+  const auto front = find(make_record(x, tau)).at(0);
+  for (const FrontPoint& point : front.points) EXPECT_TRUE(point.accelerating);
+}
+
+TEST(TipSpeed, WhereTheTipJumps) {
+  const auto x = nodes(301, h);
+  auto tau = bilateral(x, 0.0, V);
+  tau[102] = tau[100] + 0.01e-6;  // the tip jumps from node 100 to 102; node 101 slips in its own time
+  const auto record = make_record(x, tau);
+  FrontOptions options = make_options();
+  options.l_star_m = h;
+  const auto front = find(record, options).at(0);
+  ASSERT_EQ(front.points.size(), 301u);
+  for (const FrontPoint& point : front.points) EXPECT_FALSE(point.v_tip_m_per_s <= 0.0);
+  // From half-way between 100 and 101 to half-way between 101 and 102 it needs half of 0.01 us.
+  EXPECT_NEAR(front.points[101].v_tip_m_per_s, h / 0.005e-6, 1e-6 * h / 0.005e-6);
+  EXPECT_TRUE(std::isfinite(front.points[101].t_d_Pa));
+  EXPECT_TRUE(std::isnan(front.points[102].t_d_Pa));  // it is never l* before node 102
+  EXPECT_TRUE(std::isfinite(front.points[103].t_d_Pa));
+
+  tau = bilateral(x, 0.0, V);
+  tau[101] = tau[102];  // no time between them
+  EXPECT_TRUE(std::isfinite(find(make_record(x, tau), options).at(0).points[101].v_tip_m_per_s));
+  tau[100] = tau[101] = tau[102];
+  EXPECT_TRUE(std::isnan(find(make_record(x, tau), options).at(0).points[101].v_tip_m_per_s));
+}
+
+/// Tractions linear in the distance of a front that runs to +x from x = 0: t_d and p_d are exact.
+Traction ahead_of_tip(double x_m, double time_s) {
+  const double distance_m = x_m - V * time_s;
+  return {5.2e6 - 1e9 * distance_m, 4e6 + 0.5e9 * distance_m};
+}
+
+TEST(TipTractions, LinearInTipPosition) {
+  constexpr double l_star_m = 1.15e-3;
+  const auto x = nodes(301, h);
+  FrontOptions options = make_options();
+  options.l_star_m = l_star_m;
+  const auto fronts =
+      find(make_record(x, bilateral(x, 0.0, V), {.halo = 3, .traction = ahead_of_tip}), options);
+  for (const FrontPoint& point : fronts.at(0).points) {
+    const double rounding_Pa = 1e-3;  // of values of 1e6
+    EXPECT_NEAR(point.t_r_Pa, 5.2e6, rounding_Pa);
+    EXPECT_NEAR(point.p_r_Pa, 4e6, rounding_Pa);
+    EXPECT_EQ(point.t_s_Pa, 4e6);
+    EXPECT_EQ(point.p_s_Pa, 5e6);
+    if (point.x_m <= l_star_m) {
+      EXPECT_TRUE(std::isnan(point.t_d_Pa) && std::isnan(point.p_d_Pa));
+      EXPECT_TRUE(std::isnan(point.U_s_J_per_m3) && std::isnan(point.U_r_J_per_m3));
+      continue;
+    }
+    const double t_d_Pa = 5.2e6 - 1e9 * l_star_m, p_d_Pa = 4e6 + 0.5e9 * l_star_m;
+    EXPECT_NEAR(point.t_d_Pa, t_d_Pa, rounding_Pa);
+    EXPECT_NEAR(point.p_d_Pa, p_d_Pa, rounding_Pa);
+    const double U_s = (2 * 1.37 * t_d_Pa * t_d_Pa + p_d_Pa * p_d_Pa) / 5.2e9;
+    const double U_r = (2 * 1.37 * 5.2e6 * 5.2e6 + 4e6 * 4e6) / 5.2e9;
+    EXPECT_NEAR(point.U_s_J_per_m3, U_s, 1e-9 * U_s);
+    EXPECT_NEAR(point.U_r_J_per_m3, U_r, 1e-9 * U_r);
+    EXPECT_NEAR(relative_energy_rise(point), (U_r - U_s) / U_s, 1e-8);
+  }
+}
+
+TEST(TipTractions, RoundedLStarIsOneElement) {
+  const auto x = nodes(301, h);
+  const auto record = make_record(x, bilateral(x, 0.0, V), {.halo = 1, .traction = ahead_of_tip});
+  const auto front =
+      find(record).at(0);  // l* = 0.67 mm on elements of 0.6667 mm, tractions of the next node only
+  EXPECT_TRUE(std::isnan(front.points[1].t_d_Pa));
+  for (std::size_t k = 2; k < front.points.size(); ++k) {
+    EXPECT_NEAR(front.points[k].t_d_Pa, 5.2e6 - 1e9 * h, 1e-3);  // rounding of values of 1e6
+  }
+}
+
+TEST(TipTractions, LeftGoingFront) {
+  const auto x = nodes(301, h);
+  const auto traction = [&](double x_m, double time_s) { return ahead_of_tip(x.back() - x_m, time_s); };
+  FrontOptions options = make_options();
+  options.l_star_m = 1e-3;
+  const auto front =
+      find(make_record(x, bilateral(x, x.back(), V), {.halo = 3, .traction = traction}), options).at(0);
+  ASSERT_EQ(front.direction, -1);
+  for (std::size_t k = 2; k < front.points.size(); ++k) {
+    EXPECT_NEAR(front.points[k].t_d_Pa, 5.2e6 - 1e9 * 1e-3, 1e-3);
+  }
+}
+
+TEST(TipTractions, HaloTooSmall) {
+  const auto x = nodes(301, h);
+  FrontOptions options = make_options();
+  options.l_star_m = 1.15e-3;  // lies between the second and the first node before
+  const auto front = find(make_record(x, bilateral(x, 0.0, V), {.halo = 1}), options).at(0);
+  for (const FrontPoint& point : front.points)
+    EXPECT_TRUE(std::isnan(point.t_d_Pa) && std::isnan(point.U_s_J_per_m3));
+  EXPECT_TRUE(std::isfinite(front.points[10].t_r_Pa));
+}
+
+TEST(TipTractions, ExcludedZones) {
+  const auto x = nodes(301, h);
+  FrontOptions options = make_options();
+  options.exclude_left_m = 20.1e-3;
+  options.exclude_right_m = 180.1e-3;
+  const auto front = find(make_record(x, bilateral(x, 0.0, V)), options).at(0);
+  for (const FrontPoint& point : front.points) {
+    const bool inside = point.x_m > 20.1e-3 && point.x_m < 180.1e-3;
+    EXPECT_EQ(std::isfinite(point.t_d_Pa), inside);
+    EXPECT_EQ(std::isfinite(point.U_s_J_per_m3), inside);
+    EXPECT_EQ(std::isfinite(point.U_r_J_per_m3), inside);
+    EXPECT_TRUE(std::isfinite(point.t_r_Pa));
+  }
+}
+
+TEST(EnergyDensity, PlaneStressAndPlaneStrain) {
+  // (2 * 1.37 * 4 + 9) * 1e12 / 5.2e9
+  EXPECT_NEAR(energy_density_J_per_m3({2e6, 3e6}, {2.6e9, 0.37, false}), 19.96e12 / 5.2e9, 1e-9);
+  // 9 becomes (1 - 0.1369) * 9 = 7.7679
+  EXPECT_NEAR(energy_density_J_per_m3({-2e6, 3e6}, {2.6e9, 0.37, true}), 18.7279e12 / 5.2e9, 1e-9);
+}
+
+TEST(SlippingShare, Crack) {
+  const auto x = nodes(301, h);
+  const auto front = find(make_record(x, bilateral(x, 0.0, V))).at(0);
+  EXPECT_EQ(front.mode, SlipMode::crack);
+  for (const FrontPoint& point : front.points) {
+    if (point.x_m < 5 * 0.67e-3) {
+      EXPECT_TRUE(std::isnan(point.slipping_share));
+    } else {
+      EXPECT_DOUBLE_EQ(point.slipping_share, 1.0);
+    }
+  }
+}
+
+TEST(SlippingShare, Pulse) {
+  const auto x = nodes(301, h);
+  // Nodes slip for 5.1 us: at speed V the 7 nodes behind the tip slip, 4.67 mm.
+  const auto front =
+      find(make_record(x, bilateral(x, 0.0, V), {.duration_s = [](double) { return 5.1e-6; }})).at(0);
+  EXPECT_EQ(front.mode, SlipMode::pulse);  // below 0.2 from x = 23.3 mm on, 88 % of the path
+  for (std::size_t k = 20; k < front.points.size(); ++k) {
+    EXPECT_NEAR(front.points[k].slipping_share, 7 * h / x[k], 1e-12);
+  }
+}
+
+TEST(SlippingShare, Mixed) {
+  const auto x = nodes(301, h);
+  const auto duration_s = [](double x_m) { return x_m < 0.1 ? 150e-6 : 5.1e-6; };  // a crack, then a pulse
+  const auto front = find(make_record(x, bilateral(x, 0.0, V), {.duration_s = duration_s})).at(0);
+  EXPECT_EQ(front.mode, SlipMode::mixed);
+  EXPECT_DOUBLE_EQ(front.points[140].slipping_share, 1.0);
+  EXPECT_NEAR(front.points[290].slipping_share, 7 * h / x[290], 1e-12);
+}
+
+TEST(SlippingShare, ZoneIsContiguousButForShortGaps) {
+  const auto x = nodes(301, h);
+  const auto tau = bilateral(x, 0.0, V);
+  const auto with_sticking = [&](int first, int last) {
+    return find(make_record(x, tau,
+                            {.duration_s =
+                                 [&, first, last](double x_m) {
+                                   const bool sticks = x_m > x[first] - 0.1 * h && x_m < x[last] + 0.1 * h;
+                                   return sticks ? 0.5e-6 : never;
+                                 }}))
+        .at(0);
+  };
+  EXPECT_DOUBLE_EQ(with_sticking(100, 100).points[200].slipping_share, 1.0);
+  EXPECT_NEAR(with_sticking(100, 102).points[200].slipping_share, 97 * h / x[200], 1e-12);
+}
+
+TEST(SlippingShare, SlipAgain) {
+  const auto x = nodes(301, h);
+  auto record =
+      make_record(x, bilateral(x, 0.0, V), {.halo = 0, .duration_s = [](double) { return 5.1e-6; }});
+  // All nodes behind x[150] slip again from 110 us on.
+  for (int k = 0; k <= 150; ++k) {
+    record.onsets.push_back({k, 110e-6});
+    record.around.push_back({4e6, 5e6});
+  }
+  std::ranges::stable_sort(record.onsets, {}, &Onset::time_s);
+  const auto front = find(record).at(0);
+  ASSERT_EQ(front.points.size(), 301u);
+  EXPECT_NEAR(front.points[164].slipping_share, 7 * h / x[164], 1e-12);             // at 109 us
+  EXPECT_NEAR(front.points[290].slipping_share, 7 * h / x[290], 1e-12);             // 150 to 283 stick
+  EXPECT_DOUBLE_EQ(find(record).at(0).points[166].slipping_share, 7 * h / x[166]);  // 151 to 158 stick
+}
+
+TEST(SlippingShare, RejoinsSlipBehind) {
+  const auto x = nodes(301, h);
+  auto record =
+      make_record(x, bilateral(x, 0.0, V), {.halo = 0, .duration_s = [](double) { return 5.1e-6; }});
+  for (int k = 0; k <= 160; ++k) {  // once the front is at node 165, in contact with its slipping zone
+    record.onsets.push_back({k, 110.01e-6});
+    record.around.push_back({4e6, 5e6});
+  }
+  std::ranges::stable_sort(record.onsets, {}, &Onset::time_s);
+  EXPECT_DOUBLE_EQ(find(record).at(0).points[166].slipping_share, 1.0);
+}
+
+TEST(SpeedSummary, LeavesOutTheStart) {
+  Front front;
+  const double speed[] = {undefined, 3000, 1000, undefined, 1400, 1200};
+  for (int k = 0; k < 6; ++k) {
+    FrontPoint point;
+    point.x_m = 0.1 - 2e-3 * k;
+    point.v_tip_m_per_s = speed[k];
+    front.points.push_back(point);
+  }
+  const auto summary = speed_summary(front, 3.9e-3);
+  EXPECT_EQ(summary.n_points, 3);
+  EXPECT_DOUBLE_EQ(summary.mean_m_per_s, 1200);
+  EXPECT_DOUBLE_EQ(summary.max_m_per_s, 1400);
+  EXPECT_DOUBLE_EQ(summary.x_of_max_m, 0.092);
+  EXPECT_DOUBLE_EQ(speed_summary(front, 0).max_m_per_s, 3000);
+  EXPECT_TRUE(std::isnan(speed_summary(front, 1).mean_m_per_s));
+  EXPECT_DOUBLE_EQ(length_m(front), 0.01);
+}
+
+TEST(LocalSlopes, LineWithHoles) {
+  const std::vector<double> s{0, 1, 2, 3, 4, 5, 6};
+  const std::vector<double> y{1, 3, undefined, 7, 9, undefined, 13};
+  for (const double slope : local_slopes(s, y, 1.5, 2)) EXPECT_NEAR(slope, 2.0, 1e-12);
+  for (const double slope : local_slopes(s, std::vector<double>(7, undefined), 1.5, 2))
+    EXPECT_TRUE(std::isnan(slope));
+}
+
+TEST(LocalSlopes, WindowReachesHalfWidth) {
+  // |s| by hand: at s = 1 with half-width 2 the points -1 ... 3 have y = 1 0 1 2 3, slope (2*2 + 1*2 - 2 - 0)
+  // / 10.
+  std::vector<double> s, y;
+  for (int k = -10; k <= 10; ++k) {
+    s.push_back(k);
+    y.push_back(std::abs(k));
+  }
+  const auto slopes = local_slopes(s, y, 2.0, 1);
+  EXPECT_NEAR(slopes[11], 0.6, 1e-12);
+  EXPECT_NEAR(slopes[10], 0.0, 1e-12);
+  EXPECT_NEAR(slopes[20], 1.0, 1e-12);
+}
+
+/// Speed rises to 60 mm, falls after it; the ratio falls to 50 mm, rises up to `turn_m` and falls again.
+struct Curves {
+  std::vector<double> s, speed, ratio;
+};
+Curves curves(double turn_m, double noise) {
+  Curves c;
+  for (int k = 0; k < 301; ++k) {
+    const double s = k * h;
+    const double sign = k % 2 == 0 ? 1.0 : -1.0;
+    c.s.push_back(s);
+    c.speed.push_back(1000.0 - 1e4 * std::abs(s - 0.06) + sign * noise * 1000.0);
+    c.ratio.push_back(1.0 + (s < turn_m ? std::abs(s - 0.05) : turn_m - 0.05 - (s - turn_m)) - sign * noise);
+  }
+  return c;
+}
+
+TEST(Stretches, FallWhileTheOtherRises) {
+  for (const double noise :
+       {0.0, 1e-3}) {  // noise alternates by 2e-3, three times the change over one element
+    const auto c = curves(0.07, noise);
+    const auto found = find_stretches(c.s, c.speed, c.ratio);
+    ASSERT_EQ(found.size(), 1u);
+    // Slopes over +-2 mm of a symmetric peak change sign at the peak itself, to one element.
+    EXPECT_NEAR(c.s[found[0].first], 0.06, 1.01 * h);
+    EXPECT_NEAR(c.s[found[0].last], 0.07, 1.01 * h);
+    EXPECT_NEAR(found[0].length_m, 0.01, 2.02 * h);
+    EXPECT_NEAR(found[0].rise, 0.01, 2.02 * h + 2 * noise);
+    EXPECT_NEAR(found[0].fall, 100.0, 1e4 * 2.02 * h + 2e3 * noise);
+  }
+  const auto short_one = curves(0.063, 0.0);
+  EXPECT_TRUE(find_stretches(short_one.s, short_one.speed, short_one.ratio).empty());
+  EXPECT_EQ(find_stretches(short_one.s, short_one.speed, short_one.ratio, {.min_length_m = 2e-3}).size(), 1u);
+}
+
+TEST(Stretches, UndefinedPoints) {
+  auto c = curves(0.09, 0.0);
+  c.speed[110] = c.ratio[111] = undefined;
+  EXPECT_EQ(find_stretches(c.s, c.speed, c.ratio).size(), 1u);
+  c.speed[112] = undefined;
+  const auto found = find_stretches(c.s, c.speed, c.ratio);  // cut at 73 mm into 13 and 15 mm
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].last, 109u);
+  EXPECT_EQ(found[1].first, 113u);
+  EXPECT_TRUE(find_stretches({}, {}, {}).empty());
+}
+
+TEST(Stretches, OfAFront) {
+  const auto c = curves(0.07, 0.0);
+  Front front;
+  for (std::size_t k = 0; k < c.s.size(); ++k) {
+    FrontPoint point;
+    point.x_m = 0.2 - c.s[k];
+    point.v_tip_m_per_s = c.speed[k];
+    point.t_d_Pa = 3e6 * c.ratio[k];
+    point.p_d_Pa = 3e6;
+    front.points.push_back(point);
+  }
+  ASSERT_EQ(speed_falls_ratio_rises(front).size(), 1u);
+  EXPECT_NEAR(front.points[speed_falls_ratio_rises(front)[0].first].x_m, 0.14, 1.01 * h);
+  EXPECT_TRUE(speed_falls_ratio_rises(Front{}).empty());
+}
+
+}  // namespace
+}  // namespace slipfront::fronts::testing

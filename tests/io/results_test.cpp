@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/results.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <limits>
+
+#include "io/hdf5.hpp"
+#include "support.hpp"
+
+namespace slipfront::io {
+namespace {
+
+using test::error_of;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// Two times, three nodes; values that no shorter decimal stands for.
+fronts::History small_history() {
+  fronts::History history;
+  history.time_s = {0, 1e-6 / 3};
+  history.x_m = {0, 0.1, 0.2};
+  history.slip_m = {0, 1e-9, 2e-9, 1.0 / 3, 4e-9, 5e-9};
+  history.slip_rate_m_per_s = {0, 0.1, 0.2, 0.3, 0.4, 0.5};
+  history.t_Pa = {1e6, 2e6, 3e6, -4e6, 5e6, 6e6};
+  history.p_Pa = {7e6, 8e6, 9e6, 10e6, 11e6, 0};
+  return history;
+}
+
+void write_axes(const hdf5::File& file) {
+  hdf5::write(file, "time_s", std::vector<double>{0, 1}, {2});
+  hdf5::write(file, "x_m", std::vector<double>{0, 1, 2}, {3});
+}
+
+/// While it lives, a file of this process cannot grow beyond `bytes`: writing fails as on a full disk.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &old_);
+    rlimit limit = old_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit old_{};
+};
+
+TEST(OutputFolder, IsMadeWithItsParents) {
+  const test::TemporaryFolder folder;
+  prepare_output_folder(folder / "a" / "b", false);
+  EXPECT_TRUE(std::filesystem::is_directory(folder / "a" / "b"));
+  prepare_output_folder(folder / "a" / "b", false);  // there, but empty
+}
+
+TEST(OutputFolder, IsRefusedWhereItHoldsAnything) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "notes.txt", "mine");
+  EXPECT_EQ(error_of([&] { prepare_output_folder(folder.path(), false); }),
+            "output folder " + folder.path().string() +
+                ": is not empty; choose another or pass --overwrite to replace a run's results");
+  EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
+}
+
+TEST(OutputFolder, OverwriteRemovesTheResultsAndNothingElse) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv",
+                           "fields.vtkhdf", "notes.txt", "old.interface.h5"})
+    test::write_file(folder / name, "x");
+  std::filesystem::create_directory(folder / "figures");
+  test::write_file(folder / "figures" / "fronts.csv", "x");
+  prepare_output_folder(folder.path(), true);
+  std::vector<std::string> left;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
+    left.push_back(std::filesystem::relative(entry.path(), folder.path()).string());
+  EXPECT_THAT(left, ::testing::UnorderedElementsAre("notes.txt", "old.interface.h5", "figures",
+                                                    "figures/fronts.csv"));
+}
+
+TEST(OutputFolder, OverwriteLeavesTheTargetOfALinkAlone) {
+  const test::TemporaryFolder folder, elsewhere;
+  test::write_file(elsewhere / "run.json", "precious");
+  std::filesystem::create_symlink(elsewhere / "run.json", folder / "run.json");
+  prepare_output_folder(folder.path(), true);
+  EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(folder / "run.json")));
+  EXPECT_EQ(test::read_file(elsewhere / "run.json"), "precious");
+}
+
+TEST(OutputFolder, AFolderInPlaceOfAResultIsNotRemoved) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "run.json");
+  EXPECT_THAT(error_of([&] { prepare_output_folder(folder.path(), true); }),
+              HasSubstr("is a folder where a result"));
+  EXPECT_TRUE(std::filesystem::is_directory(folder / "run.json"));
+}
+
+TEST(OutputFolder, WhatCannotBeAFolderIsRefused) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "file", "x");
+  EXPECT_THAT(error_of([&] { prepare_output_folder(folder / "file", true); }),
+              EndsWith(": is a file; choose another name"));
+  EXPECT_THAT(error_of([&] { prepare_output_folder(folder / "file" / "inner", false); }),
+              HasSubstr(": cannot be made ("));
+  // Nobody, root included, makes folders in /proc.
+  EXPECT_THAT(error_of([] { prepare_output_folder("/proc/slipfront", false); }),
+              StartsWith("output folder /proc/slipfront: cannot be made ("));
+}
+
+TEST(HistoryFile, ReadsBackBitwise) {
+  const test::TemporaryFolder folder;
+  const fronts::History history = small_history();
+  write_history(folder / "interface.h5", history);
+  const fronts::History read = read_history(folder / "interface.h5");
+  EXPECT_EQ(read.time_s, history.time_s);
+  EXPECT_EQ(read.x_m, history.x_m);
+  EXPECT_EQ(read.slip_m, history.slip_m);
+  EXPECT_EQ(read.slip_rate_m_per_s, history.slip_rate_m_per_s);
+  EXPECT_EQ(read.t_Pa, history.t_Pa);
+  EXPECT_EQ(read.p_Pa, history.p_Pa);
+}
+
+TEST(HistoryFile, DataSetsHaveShapeUnitAndDescription) {
+  const test::TemporaryFolder folder;
+  write_history(folder / "interface.h5", small_history());
+  const hdf5::File file = hdf5::open_file(folder / "interface.h5");
+  const std::vector<std::pair<std::string, std::string>> units = {
+      {"time_s", "s"}, {"x_m", "m"},  {"slip_m", "m"}, {"slip_rate_m_per_s", "m/s"},
+      {"t_Pa", "Pa"},  {"p_Pa", "Pa"}};
+  for (const auto& [name, unit] : units) {
+    EXPECT_EQ(hdf5::text_attribute(file, name, "unit"), unit);
+    EXPECT_FALSE(hdf5::text_attribute(file, name, "description").empty());
+  }
+  EXPECT_THAT(hdf5::read(file, "time_s").shape, ElementsAre(2));
+  EXPECT_THAT(hdf5::read(file, "x_m").shape, ElementsAre(3));
+  EXPECT_THAT(hdf5::read(file, "t_Pa").shape, ElementsAre(2, 3));
+  EXPECT_EQ(hdf5::read(file, "t_Pa").values[3], -4e6);  // row 1, column 0
+}
+
+TEST(HistoryFile, AnEmptyHistoryReadsBack) {
+  const test::TemporaryFolder folder;
+  fronts::History history;
+  history.x_m = {0, 1};
+  write_history(folder / "interface.h5", history);
+  const fronts::History read = read_history(folder / "interface.h5");
+  EXPECT_TRUE(read.time_s.empty());
+  EXPECT_EQ(read.x_m, history.x_m);
+  EXPECT_TRUE(read.t_Pa.empty());
+}
+
+TEST(HistoryFile, OtherNumericTypesAreRead) {
+  const test::TemporaryFolder folder;
+  hdf5::File file = hdf5::create_file(folder / "other.h5");
+  write_axes(file);
+  for (const char* name : {"slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa"})
+    hdf5::write(file, name, std::vector<std::int64_t>{1, 2, 3, 4, 5, 6}, {2, 3});
+  hdf5::close(std::move(file));
+  EXPECT_THAT(read_history(folder / "other.h5").p_Pa, ElementsAre(1, 2, 3, 4, 5, 6));
+}
+
+TEST(HistoryFile, MissingOrMisshapedDataIsNamed) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "interface.h5";
+  const auto error = [&](auto fill) {
+    hdf5::File file = hdf5::create_file(path);
+    fill(file);
+    hdf5::close(std::move(file));
+    return error_of([&] { read_history(path); });
+  };
+  const std::vector<double> six = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(error([](const hdf5::File&) {}),
+            path.string() + ": has no data set time_s; check that it is the right file");
+  EXPECT_EQ(error([](const hdf5::File& file) { write_axes(file); }),
+            path.string() + ": has no data set slip_m; check that it is the right file");
+  EXPECT_EQ(error([&](const hdf5::File& file) {
+              write_axes(file);
+              hdf5::write(file, "slip_m", six, {3, 2});
+            }),
+            path.string() + ": slip_m has the shape [3, 2]; with time_s and x_m it must be [2, 3]");
+  EXPECT_EQ(error([&](const hdf5::File& file) {
+              hdf5::write(file, "time_s", six, {2, 3});
+            }),
+            path.string() + ": time_s has 2 dimensions; it must have one");
+  EXPECT_EQ(error([&](const hdf5::File& file) {
+              hdf5::write(file, "time_s", std::vector<double>{0, 2, 2}, {3});
+            }),
+            path.string() + ": time_s is 2 at index 2; its values must be finite and ascending");
+  EXPECT_EQ(error([](const hdf5::File& file) { hdf5::create_group(file, "time_s"); }),
+            path.string() + ": has no data set time_s; check that it is the right file");
+}
+
+TEST(HistoryFile, ForeignAndTruncatedFilesAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "interface.h5";
+  EXPECT_EQ(error_of([&] { read_history(path); }), path.string() + ": does not exist; check the path");
+  test::write_file(path, "no HDF5");
+  EXPECT_EQ(error_of([&] { read_history(path); }),
+            path.string() + ": cannot be read; check that it is a complete HDF5 file");
+  write_history(path, small_history());
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+  EXPECT_THAT(error_of([&] { read_history(path); }), StartsWith(path.string() + ": cannot be read"));
+}
+
+TEST(HistoryFile, HDF5PrintsNothingItself) {
+  const test::TemporaryFolder folder;
+  testing::internal::CaptureStderr();
+  error_of([&] { read_history(folder / "none.h5"); });
+  error_of([&] { write_history(folder / "none" / "interface.h5", small_history()); });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Writing, IntoAMissingFolderIsRefused) {
+  const test::TemporaryFolder folder;
+  const auto none = folder / "none";
+  EXPECT_EQ(error_of([&] { write_history(none / "interface.h5", small_history()); }),
+            (none / "interface.h5").string() +
+                ": cannot be created; check that its folder exists and can be written");
+  EXPECT_EQ(
+      error_of([&] { write_static(none / "static.csv", {}); }),
+      (none / "static.csv").string() +
+          ": cannot be written (No such file or directory); check that its folder exists and can be written");
+  EXPECT_THAT(error_of([&] { write_fronts(none / "fronts.csv", {}); }), HasSubstr("cannot be written"));
+  EXPECT_THAT(error_of([&] { write_snapshots(none / "fields.vtkhdf", {}, {}); }),
+              HasSubstr("cannot be created"));
+}
+
+TEST(Writing, AFullDiskIsNoticed) {
+  const test::TemporaryFolder folder;
+  fronts::History history;
+  history.time_s = {0};
+  fronts::StaticState state;
+  for (int i = 0; i < 20000; ++i) history.x_m.push_back(i);
+  for (auto* matrix : {&history.slip_m, &history.slip_rate_m_per_s, &history.t_Pa, &history.p_Pa})
+    matrix->assign(history.x_m.size(), 0);
+  state.x_m = state.t_s_Pa = state.p_s_Pa = history.x_m;
+  std::string history_error, static_error;
+  {
+    const FileSizeLimit limit(64 * 1024);
+    history_error = error_of([&] { write_history(folder / "interface.h5", history); });
+    static_error = error_of([&] { write_static(folder / "static.csv", state); });
+  }
+  EXPECT_THAT(history_error, HasSubstr("check that the disk is not full"));
+  EXPECT_THAT(static_error, HasSubstr("static.csv: cannot be written (File too large)"));
+}
+
+TEST(StaticFile, HasARowPerNodeAtFullPrecision) {
+  const test::TemporaryFolder folder;
+  write_static(folder / "static.csv",
+               {{0, 0.1}, {1.0 / 3, -2}, {4e6, std::numeric_limits<double>::quiet_NaN()}});
+  EXPECT_EQ(test::read_file(folder / "static.csv"),
+            "x_m,t_s_Pa,p_s_Pa\n"
+            "0,0.3333333333333333,4000000\n"
+            "0.1,-2,\n");
+}
+
+TEST(FrontsFile, HasARowPerFrontAndNodeWithUndefinedValuesEmpty) {
+  const test::TemporaryFolder folder;
+  fronts::FrontPoint first, second;
+  first.x_m = 0.1;
+  first.onset_s = 1e-6;
+  second = {7, 0.2, 2e-6, 1584.5, 1, 2, 3, 4, 5, 6, 7, 8, 0.5, true};
+  fronts::Front left, right;
+  left.id = 0;
+  left.direction = -1;
+  left.points = {first};
+  right.id = 1;
+  right.direction = 1;
+  right.points = {first, second};
+  write_fronts(folder / "fronts.csv", std::vector{left, right});
+  EXPECT_EQ(
+      test::read_file(folder / "fronts.csv"),
+      "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,U_s_J_per_m3,"
+      "U_r_J_per_m3\n"
+      "0,0.1,1e-06,-1,,,,,,,,,\n"
+      "1,0.1,1e-06,1,,,,,,,,,\n"
+      "1,0.2,2e-06,1,1584.5,1,2,3,4,5,6,7,8\n");
+}
+
+/// Two cells side by side and an orphan, node 6.
+mesh::Mesh two_cells() {
+  mesh::Mesh mesh;
+  mesh.x_m = {0, 1, 2, 0, 1, 2, 9};
+  mesh.y_m = {0, 0, 0, 1, 1, 1, 9};
+  mesh.cells = {{0, 1, 4, 3}, {1, 2, 5, 4}};
+  return mesh;
+}
+
+Snapshot snapshot(double time_s, double offset) {
+  Snapshot result;
+  result.time_s = time_s;
+  for (int i = 0; i < 7; ++i) {
+    result.u_x_m.push_back(offset + i);
+    result.u_y_m.push_back(offset - i);
+    result.v_x_m_per_s.push_back(10 * offset + i);
+    result.v_y_m_per_s.push_back(10 * offset - i);
+  }
+  return result;
+}
+
+// The layout is that of the VTKHDF specification, version 2.0, for a temporal unstructured grid.
+TEST(SnapshotFile, WritesTheMeshOnceAndAStepPerSnapshot) {
+  const test::TemporaryFolder folder;
+  const auto path = folder / "fields.vtkhdf";
+  write_snapshots(path, two_cells(), std::vector{snapshot(1e-5, 100), snapshot(2e-5, 200)});
+  const hdf5::File file = hdf5::open_file(path);
+  const auto values = [&](const std::string& name) { return hdf5::read(file, "/VTKHDF/" + name).values; };
+  const auto shape = [&](const std::string& name) { return hdf5::read(file, "/VTKHDF/" + name).shape; };
+  EXPECT_THAT(values("NumberOfPoints"), ElementsAre(7));
+  EXPECT_THAT(values("NumberOfCells"), ElementsAre(2));
+  EXPECT_THAT(values("NumberOfConnectivityIds"), ElementsAre(8));
+  EXPECT_THAT(shape("Points"), ElementsAre(7, 3));
+  EXPECT_EQ(values("Points")[3 * 4 + 1], 1.0);  // y of node 4
+  EXPECT_THAT(values("Connectivity"), ElementsAre(0, 1, 4, 3, 1, 2, 5, 4));
+  EXPECT_THAT(values("Offsets"), ElementsAre(0, 4, 8));
+  EXPECT_THAT(values("Types"), ElementsAre(9, 9));
+  EXPECT_THAT(values("Steps/Values"), ElementsAre(1e-5, 2e-5));
+  for (const char* name : {"PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets"})
+    EXPECT_THAT(values(std::string("Steps/") + name), ElementsAre(0, 0)) << name;
+  EXPECT_THAT(values("Steps/NumberOfParts"), ElementsAre(1, 1));
+  EXPECT_THAT(shape("Steps/CellOffsets"), ElementsAre(2, 1));
+  for (const char* field : {"displacement_m", "velocity_m_per_s"}) {
+    EXPECT_THAT(values(std::string("Steps/PointDataOffsets/") + field), ElementsAre(0, 7));
+    EXPECT_THAT(shape(std::string("PointData/") + field), ElementsAre(14, 3));
+  }
+  const std::vector<double> u = values("PointData/displacement_m");
+  EXPECT_EQ(u[3 * 2], 102.0);        // first step, node 2, x
+  EXPECT_EQ(u[3 * 2 + 1], 98.0);     // y
+  EXPECT_EQ(u[3 * 2 + 2], 0.0);      // z
+  EXPECT_EQ(u[3 * (7 + 2)], 202.0);  // second step
+  EXPECT_EQ(values("PointData/velocity_m_per_s")[3 * (7 + 6) + 1], 1994.0);
+}
+
+TEST(SnapshotFile, WithoutSnapshotsHoldsTheMesh) {
+  const test::TemporaryFolder folder;
+  write_snapshots(folder / "fields.vtkhdf", two_cells(), {});
+  const hdf5::File file = hdf5::open_file(folder / "fields.vtkhdf");
+  EXPECT_THAT(hdf5::read(file, "/VTKHDF/Points").shape, ElementsAre(7, 3));
+  EXPECT_THAT(error_of([&] { hdf5::read(file, "/VTKHDF/Steps/Values"); }), HasSubstr("has no data set"));
+}
+
+}  // namespace
+}  // namespace slipfront::io

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace slipfront::mesh {
+
+/// Sum of the cells' areas, m2.
+double area_m2(const Mesh& mesh);
+
+/// Smallest Jacobian determinant at any corner of any cell, relative to the regular square's; positive for
+/// convex, counterclockwise cells.
+double min_relative_jacobian(const Mesh& mesh);
+
+/// The nodes of the boundary in the order of its counterclockwise walk, from mesh.lower's first node. Empty,
+/// with a test failure, unless every edge has one cell or two that run through it in opposite directions, and
+/// the edges with one cell form a single closed loop.
+std::vector<Node> boundary_loop(const Mesh& mesh);
+
+/// Number of cells at each node.
+std::vector<int> valences(const Mesh& mesh);
+
+/// Fails unless the mesh equals its mirror image about the plate's middle: coordinates to rounding, cells
+/// exactly.
+void expect_mirror_symmetry(const Mesh& mesh);
+
+/// Fails if two nodes in use have the same place.
+void expect_no_duplicates(const Mesh& mesh);
+
+/// The largest free-vibration frequency of a cell (2x2 Gauss points, plane stress, nu = 0.37, row-sum lumped
+/// mass) over all cells, as the regular square's frequency divided by it: a lower bound of the stable time
+/// step relative to the regular mesh's (the largest frequency of a mesh is at most that of its stiffest
+/// cell).
+double relative_stable_step(const Mesh& mesh);
+
+}  // namespace slipfront::mesh

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/fillet.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+
+#include "checks.hpp"
+#include "mesh/plate.hpp"
+
+namespace slipfront::mesh {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+/// Radius in mm; elements along the plate's height of 40 mm.
+class Fillet : public ::testing::TestWithParam<std::tuple<int, int>> {
+ protected:
+  const double radius_m = std::get<0>(GetParam()) * 1e-3;
+  const Mesh mesh = make_plate(plate(Corner::fillet));
+  const double h = mesh.grid.spacing_m;
+
+  Plate plate(Corner corner) const {
+    Plate p;
+    p.width_m = 0.08;
+    p.height_m = 0.04;
+    p.element_size_m = 0.04 / std::get<1>(GetParam());
+    p.corner = corner;
+    p.fillet_radius_m = radius_m;
+    return p;
+  }
+  /// Chords of one quarter circle, from the lower nodes left of its end.
+  int n_chords() const {
+    return static_cast<int>(std::count_if(mesh.lower.begin(), mesh.lower.end(),
+                                          [&](Node n) { return mesh.x_m[n] <= radius_m * (1 + 1e-9); })) -
+           1;
+  }
+};
+
+TEST_P(Fillet, StableStepIsNearTheRegularMeshs) {
+  EXPECT_GE(relative_stable_step(mesh), 0.6);
+}
+
+TEST_P(Fillet, IsOneConformingSymmetricPiece) {
+  EXPECT_GT(min_relative_jacobian(mesh), 0);
+  expect_no_duplicates(mesh);
+  expect_mirror_symmetry(mesh);
+  const std::vector<Node> loop = boundary_loop(mesh);
+  ASSERT_GE(loop.size(), mesh.lower.size());
+  EXPECT_TRUE(std::equal(mesh.lower.begin(), mesh.lower.end(), loop.begin()));
+  EXPECT_NE(std::search(loop.begin(), loop.end(), mesh.top.rbegin(), mesh.top.rend()), loop.end());
+}
+
+TEST_P(Fillet, LowerSideIsBaseAndArcs) {
+  for (std::size_t i = 1; i < mesh.lower.size(); ++i)
+    EXPECT_LT(mesh.x_m[mesh.lower[i - 1]], mesh.x_m[mesh.lower[i]]);
+  const int n = n_chords();
+  EXPECT_EQ(n % 2, 0);
+  const std::size_t last = mesh.lower.size() - 1;
+  const double tolerance = 1e-12 * radius_m;
+  for (int a = 0; a <= n; ++a) {  // equal angles from the vertical edge to the base
+    const double angle = pi / 2 * a / n;
+    const Node left = mesh.lower[a];
+    const Node right = mesh.lower[last - a];
+    EXPECT_NEAR(mesh.x_m[left], radius_m * (1 - std::cos(angle)), tolerance);
+    EXPECT_NEAR(mesh.y_m[left], radius_m * (1 - std::sin(angle)), tolerance);
+    EXPECT_NEAR(mesh.x_m[right], 0.08 - radius_m * (1 - std::cos(angle)), tolerance);
+    EXPECT_NEAR(mesh.y_m[right], radius_m * (1 - std::sin(angle)), tolerance);
+  }
+  // The ends are the tangent points, exactly.
+  EXPECT_EQ(mesh.x_m[mesh.lower[0]], 0);
+  EXPECT_EQ(mesh.y_m[mesh.lower[0]], radius_m);
+  EXPECT_EQ(mesh.x_m[mesh.lower[n]], radius_m);
+  for (std::size_t i = n; i <= last - n; ++i) EXPECT_EQ(mesh.y_m[mesh.lower[i]], 0);
+}
+
+TEST_P(Fillet, AreaAndLengthAreThoseOfThePolygon) {
+  const int n = n_chords();
+  const double angle = pi / 2 / n;
+  // The chords' inside: a quarter of the square around the circle becomes n triangles.
+  const double corner = radius_m * radius_m * (1 - 0.5 * n * std::sin(angle));
+  const double area = 0.08 * 0.04 - 2 * corner;
+  EXPECT_NEAR(area_m2(mesh), area, static_cast<double>(mesh.cells.size()) * eps * area);
+
+  const double length = 0.08 - 2 * radius_m + 2 * n * 2 * radius_m * std::sin(angle / 2);
+  const std::vector<double> tributary = tributary_lengths_m(mesh);
+  ASSERT_EQ(tributary.size(), mesh.lower.size());
+  EXPECT_NEAR(std::accumulate(tributary.begin(), tributary.end(), 0.0), length,
+              static_cast<double>(tributary.size()) * eps * length);
+  EXPECT_NEAR(tributary.front(), radius_m * std::sin(angle / 2), 1e-12 * radius_m);
+}
+
+TEST_P(Fillet, FoldsTheCornersAndLeavesTheRestAlone) {
+  const Mesh regular = make_plate(plate(Corner::none));
+  const long cut = std::max(1L, std::lround((2 - pi / 2) / 2 * radius_m / h));
+  EXPECT_EQ(mesh.cells.size(), regular.cells.size() - static_cast<std::size_t>(2 * cut * cut));
+  const std::vector<bool> orphan = orphans(mesh);
+  EXPECT_EQ(std::count(orphan.begin(), orphan.end(), true), 2 * cut * (cut + 1));
+
+  std::vector<bool> on_boundary(mesh.x_m.size(), false);
+  for (const Node n : boundary_loop(mesh)) on_boundary[n] = true;
+  const std::vector<int> valence = valences(mesh);
+  int n_three = 0;
+  const double reach = 1.25 * radius_m + 5 * h;  // of the re-shaped patches
+  double moved_afar = 0;
+  for (Node n = 0; n < mesh.n_nodes(); ++n) {
+    if (!orphan[n] && !on_boundary[n]) {
+      if (valence[n] == 3)
+        ++n_three;
+      else
+        ASSERT_EQ(valence[n], 4);
+    }
+    const double x = regular.x_m[n], y = regular.y_m[n];
+    if (y > reach || (x > reach && x < 0.08 - reach))
+      moved_afar = std::max({moved_afar, std::abs(mesh.x_m[n] - x), std::abs(mesh.y_m[n] - y)});
+  }
+  EXPECT_EQ(n_three, 2);
+  EXPECT_EQ(moved_afar, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Fillet,
+                         ::testing::Combine(::testing::Values(2, 5, 10),
+                                            ::testing::Values(20, 30, 40, 60, 120, 240)));
+
+TEST(FilletLimits, RadiiBetweenWorkToo) {
+  // From the smallest radius allowed to 20 elements, in steps that meet every change of the fold's numbers.
+  Plate plate;
+  plate.width_m = 0.1;
+  plate.height_m = 0.05;
+  plate.element_size_m = 1e-3;
+  plate.corner = Corner::fillet;
+  for (double radius = 0.75; radius < 20; radius *= 1.04) {
+    plate.fillet_radius_m = radius * 1e-3;
+    const Mesh mesh = make_plate(plate);
+    EXPECT_GE(relative_stable_step(mesh), 0.6) << "radius " << radius << " elements";
+  }
+}
+
+TEST(FilletLimits, LargestRadiusIsGood) {
+  Plate plate;
+  plate.width_m = 0.06;
+  plate.height_m = 0.05;
+  plate.element_size_m = 1e-3;
+  plate.corner = Corner::fillet;
+  plate.fillet_radius_m = 27e-3;  // three elements of base and of edge are left at each corner
+  const Mesh mesh = make_plate(plate);
+  EXPECT_GE(relative_stable_step(mesh), 0.6);
+  EXPECT_FALSE(boundary_loop(mesh).empty());
+}
+
+TEST(FilletLimits, DefaultPlateCounts) {
+  Plate plate;
+  plate.corner = Corner::fillet;
+  const Mesh mesh = make_plate(plate);  // 5 mm, 0.667 mm: round(1.61) = 2
+  EXPECT_EQ(mesh.cells.size(), 300u * 150u - 2 * 4);
+  const std::vector<bool> orphan = orphans(mesh);
+  EXPECT_EQ(std::count(orphan.begin(), orphan.end(), true), 2 * 6);
+  for (Node n = 0; n < mesh.n_nodes(); ++n)
+    if (orphan[n]) {
+      EXPECT_NEAR(mesh.y_m[n], 5e-3 * (1 - std::numbers::sqrt2 / 2), 1e-15);
+    }
+}
+
+}  // namespace
+}  // namespace slipfront::mesh

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/plate.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "base/error.hpp"
+#include "checks.hpp"
+
+namespace slipfront::mesh {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+Plate small_plate(Corner corner) {
+  Plate plate;
+  plate.width_m = 0.04;
+  plate.height_m = 0.02;
+  plate.element_size_m = 0.02 / 30;
+  plate.corner = corner;
+  return plate;
+}
+
+std::string error_of(const Plate& plate) {
+  try {
+    make_plate(plate);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Plate, NumbersNodesAndCellsRowByRow) {
+  Plate plate;
+  plate.corner = Corner::none;
+  plate.width_m = 3;
+  plate.height_m = 2;
+  plate.element_size_m = 1;
+  const Mesh mesh = make_plate(plate);
+  EXPECT_EQ(mesh.grid.columns, 3);
+  EXPECT_EQ(mesh.grid.rows, 2);
+  EXPECT_EQ(mesh.grid.spacing_m, 1);
+  EXPECT_THAT(mesh.x_m, ElementsAre(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3));
+  EXPECT_THAT(mesh.y_m, ElementsAre(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2));
+  EXPECT_THAT(mesh.cells, ElementsAre(Cell{0, 1, 5, 4}, Cell{1, 2, 6, 5}, Cell{2, 3, 7, 6}, Cell{4, 5, 9, 8},
+                                      Cell{5, 6, 10, 9}, Cell{6, 7, 11, 10}));
+  EXPECT_THAT(mesh.lower, ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(mesh.top, ElementsAre(8, 9, 10, 11));
+  EXPECT_THAT(tributary_lengths_m(mesh), ElementsAre(0.5, 1, 1, 0.5));
+}
+
+TEST(Plate, CellsAreCongruentToRounding) {
+  const Mesh mesh = make_plate(small_plate(Corner::none));
+  const double h = mesh.grid.spacing_m;
+  double worst = 0;
+  for (const Cell& cell : mesh.cells) {
+    worst = std::max(worst, std::abs(mesh.x_m[cell[1]] - mesh.x_m[cell[0]] - h));
+    worst = std::max(worst, std::abs(mesh.y_m[cell[3]] - mesh.y_m[cell[0]] - h));
+  }
+  EXPECT_LE(worst, 2 * eps * 0.04);  // two coordinates, each of a rounded product and a rounded quotient
+  EXPECT_EQ(mesh.x_m[mesh.grid.columns], 0.04);
+  EXPECT_EQ(mesh.y_m[mesh.top.front()], 0.02);
+}
+
+TEST(Plate, TakesAnElementSizeThatFitsToOneInAMillion) {
+  Plate plate;
+  plate.corner = Corner::none;
+  plate.element_size_m = 0.0013333333;
+  const Mesh mesh = make_plate(plate);
+  EXPECT_EQ(mesh.grid.columns, 150);
+  EXPECT_EQ(mesh.grid.rows, 75);
+  EXPECT_EQ(mesh.grid.spacing_m, 0.2 / 150);
+}
+
+TEST(Plate, ReliefIsACircleTangentToTheBase) {
+  const Plate plate = small_plate(Corner::relief);
+  const Mesh mesh = make_plate(plate);
+  const double length = 5e-3, height = 0.5e-3;
+  const double radius = (length * length + height * height) / (2 * height);
+  EXPECT_DOUBLE_EQ(radius, 25.25e-3);
+  int n_on_arc = 0;
+  for (const Node n : mesh.lower) {
+    const double d = length - std::min(mesh.x_m[n], plate.width_m - mesh.x_m[n]);
+    if (d > 0) {
+      // The centre is right above the tangent point.
+      EXPECT_NEAR(std::hypot(d, radius - mesh.y_m[n]), radius, 1e-15);
+      EXPECT_GT(mesh.y_m[n], 0);
+      ++n_on_arc;
+    } else {
+      EXPECT_EQ(mesh.y_m[n], 0);
+    }
+  }
+  EXPECT_EQ(n_on_arc, 2 * 8);  // columns 0 to 7 of 0.667 mm
+  EXPECT_NEAR(mesh.y_m[0], height, 1e-18);
+  EXPECT_NEAR(mesh.y_m[mesh.grid.columns], height, 1e-18);
+}
+
+TEST(Plate, ReliefFadesOutWithHeight) {
+  Plate plate = small_plate(Corner::relief);
+  plate.element_size_m = 1e-3;
+  const Mesh mesh = make_plate(plate);
+  // Edge column: 0.5 mm times 1 - y/10 mm.
+  EXPECT_NEAR(mesh.y_m[mesh.grid.node(0, 1)], 1e-3 + 0.45e-3, 1e-17);
+  EXPECT_NEAR(mesh.y_m[mesh.grid.node(40, 6)], 6e-3 + 0.2e-3, 1e-17);
+  const Mesh regular = make_plate([&] {
+    Plate none = plate;
+    none.corner = Corner::none;
+    return none;
+  }());
+  EXPECT_EQ(mesh.x_m, regular.x_m);
+  for (Node n = 0; n < mesh.n_nodes(); ++n) {
+    const double inside = std::min(mesh.x_m[n], 0.04 - mesh.x_m[n]);
+    if (inside > 5.0001e-3 || regular.y_m[n] >= 10e-3) {
+      EXPECT_EQ(mesh.y_m[n], regular.y_m[n]);
+    }
+  }
+}
+
+TEST(Plate, ReliefTakesThePolygonUnderTheArcAway) {
+  const Plate plate = small_plate(Corner::relief);
+  const Mesh mesh = make_plate(plate);
+  const double radius = 25.25e-3, h = 0.02 / 30;
+  const auto rise = [&](int i) {
+    const double d = std::max(0.0, 5e-3 - i * h);
+    return radius - std::sqrt(radius * radius - d * d);
+  };
+  double removed = 0;
+  for (int i = 0; i < 8; ++i) removed += h * (rise(i) + rise(i + 1)) / 2;
+  const double expected = 0.04 * 0.02 - 2 * removed;
+  EXPECT_NEAR(area_m2(mesh), expected, static_cast<double>(mesh.cells.size()) * eps * expected);
+}
+
+class WellFormed : public ::testing::TestWithParam<Corner> {};
+
+TEST_P(WellFormed, OneConformingSymmetricPiece) {
+  const Plate plate = small_plate(GetParam());
+  const Mesh mesh = make_plate(plate);
+  EXPECT_GT(min_relative_jacobian(mesh), 0);
+  expect_no_duplicates(mesh);
+  expect_mirror_symmetry(mesh);
+  const std::vector<Node> loop = boundary_loop(mesh);
+  ASSERT_GE(loop.size(), mesh.lower.size());
+  EXPECT_TRUE(std::equal(mesh.lower.begin(), mesh.lower.end(), loop.begin()));
+  EXPECT_NE(std::search(loop.begin(), loop.end(), mesh.top.rbegin(), mesh.top.rend()), loop.end());
+  for (std::size_t i = 1; i < mesh.lower.size(); ++i)
+    EXPECT_LT(mesh.x_m[mesh.lower[i - 1]], mesh.x_m[mesh.lower[i]]);
+  EXPECT_EQ(mesh.x_m[mesh.lower.front()], 0);
+  EXPECT_DOUBLE_EQ(mesh.x_m[mesh.lower.back()], plate.width_m);
+}
+
+INSTANTIATE_TEST_SUITE_P(Corners, WellFormed,
+                         ::testing::Values(Corner::none, Corner::relief, Corner::fillet));
+
+TEST(Plate, ReliefHardlyShortensTheStableStep) {
+  // The lowest cells keep 1 - 0.5 mm/10 mm of their height.
+  EXPECT_GT(relative_stable_step(make_plate(small_plate(Corner::relief))), 0.94);
+}
+
+TEST(Plate, OrphansAreNodesWithoutCells) {
+  Mesh mesh = make_plate(small_plate(Corner::none));
+  std::vector<bool> orphan = orphans(mesh);
+  EXPECT_EQ(std::count(orphan.begin(), orphan.end(), true), 0);
+  mesh.cells.erase(mesh.cells.begin());  // only the corner node belonged to it alone
+  orphan = orphans(mesh);
+  EXPECT_TRUE(orphan[0]);
+  EXPECT_EQ(std::count(orphan.begin(), orphan.end(), true), 1);
+}
+
+TEST(Quality, OfAHandMadeCell) {
+  // A right trapezoid: base 2, top 1, left side 1, so 45 and 135 degrees on the right.
+  Mesh mesh;
+  mesh.x_m = {0, 2, 1, 0};
+  mesh.y_m = {0, 0, 1, 1};
+  mesh.cells = {{0, 1, 2, 3}};
+  const Quality q = quality(mesh);
+  EXPECT_NEAR(q.min_angle_deg, 45, 1e-12);
+  EXPECT_NEAR(q.max_angle_deg, 135, 1e-12);
+  EXPECT_NEAR(q.min_side_m, 1, 1e-15);
+}
+
+TEST(Quality, SeesAReflexAngle) {
+  Mesh mesh;
+  mesh.x_m = {0, 2, 0.5, 0};
+  mesh.y_m = {0, 0, 0.5, 2};  // an arrowhead with its notch at (0.5, 0.5)
+  mesh.cells = {{0, 1, 2, 3}};
+  EXPECT_GT(quality(mesh).max_angle_deg, 180);
+}
+
+TEST(PlateErrors, NameTheKeyAndSayWhatToDo) {
+  Plate plate;
+  plate.element_size_m = 0.0007;
+  // 200 mm/286 and 200 mm/284: the plate is twice as wide as high, so its columns are even.
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.element_size_m"), HasSubstr("0.0006993007"),
+                                     HasSubstr("0.00070422535")));
+  plate.element_size_m = 0.15;
+  EXPECT_THAT(error_of(plate),
+              AllOf(HasSubstr("plate.element_size_m"), HasSubstr("nearest that fit are 0.1")));
+  plate.element_size_m = 1e-7;
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.element_size_m"), HasSubstr("larger")));
+  plate.element_size_m = -1;
+  EXPECT_THAT(error_of(plate), HasSubstr("plate.element_size_m must be a positive length"));
+  plate = {};
+  plate.width_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(error_of(plate), HasSubstr("plate.width_m must be a positive length"));
+  plate = {};
+  plate.height_m = 0;
+  EXPECT_THAT(error_of(plate), HasSubstr("plate.height_m must be a positive length"));
+  plate = {};
+  plate.width_m = 0.1 * std::numbers::pi;  // no common measure with the height
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.element_size_m"), HasSubstr("nearest that fit")));
+}
+
+TEST(PlateErrors, ReliefHasToFit) {
+  Plate plate;
+  plate.relief_length_m = 0;
+  EXPECT_THAT(error_of(plate), HasSubstr("plate.relief_length_m must be a positive length"));
+  plate.relief_length_m = 0.5e-3;
+  EXPECT_THAT(error_of(plate),
+              AllOf(HasSubstr("plate.relief_length_m"), HasSubstr("shorter than an element")));
+  plate.relief_length_m = 0.1;
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.relief_length_m"), HasSubstr("flat base")));
+  plate = {};
+  plate.relief_height_m = -1e-3;
+  EXPECT_THAT(error_of(plate), HasSubstr("plate.relief_height_m must be a positive length"));
+  plate.relief_height_m = 3e-3;
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.relief_height_m"), HasSubstr("too steep")));
+  plate = {};
+  plate.relief_depth_m = 0.11;
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.relief_depth_m"), HasSubstr("does not fit")));
+  plate.relief_depth_m = 0.9e-3;
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.relief_depth_m"), HasSubstr("at least twice")));
+  plate.corner = Corner::none;  // the relief's keys do not matter then
+  EXPECT_EQ(error_of(plate), "no error");
+}
+
+TEST(PlateErrors, FilletHasToFit) {
+  Plate plate;
+  plate.corner = Corner::fillet;
+  plate.element_size_m = 2e-3;
+  plate.fillet_radius_m = 1.4e-3;
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.fillet_radius_m"), HasSubstr("at least 0.0015")));
+  plate.fillet_radius_m = 0.095;  // 100 mm less three elements
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.fillet_radius_m"), HasSubstr("at most 0.094")));
+  plate.fillet_radius_m = 0.094;
+  EXPECT_EQ(error_of(plate), "no error");
+  plate.fillet_radius_m = -1;
+  EXPECT_THAT(error_of(plate), HasSubstr("plate.fillet_radius_m must be a positive length"));
+  plate.fillet_radius_m = 5e-3;
+  plate.element_size_m = 0.05;
+  EXPECT_THAT(error_of(plate), AllOf(HasSubstr("plate.element_size_m"), HasSubstr("too large")));
+}
+
+}  // namespace
+}  // namespace slipfront::mesh

@@ -1,0 +1,441 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The figures show what the files say, for a made-up output folder with known contents."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import shutil
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from slipfront.figures import criteria, events, plate, space_time
+from slipfront.figures.__main__ import draw_all, main
+from slipfront.figures.results import drawn_fronts, read_results
+from slipfront.figures.style import RC
+from synthetic import FRONTS_HEADER, MU_S, WAVE_SPEEDS, write_csv, write_fields, write_output
+
+C_L = WAVE_SPEEDS["c_L_m_per_s"]
+FIGURES = [
+    "fig1_setup",
+    "fig2_static_ratio_mu_k_1.0",
+    "fig3_three_events",
+    "fig4_dynamic_ratio",
+    "fig5_dynamic_criterion",
+    "fig6_energy",
+    "space_time_left",
+    "space_time_spontaneous",
+    "space_time_right",
+    "space_time_spontaneous_mu_k_1.0",
+]
+
+
+@pytest.fixture(scope="session")
+def pristine(tmp_path_factory):
+    """An output folder that no test may change."""
+    return write_output(tmp_path_factory.mktemp("reproduction") / "out")
+
+
+@pytest.fixture(scope="session")
+def results(pristine):
+    return read_results(pristine)
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    """Fewer dots than in print: the tests look at what is drawn, not at its pixels."""
+    monkeypatch.setitem(RC, "savefig.dpi", 60)
+
+
+@pytest.fixture
+def output(pristine, tmp_path):
+    """A copy of it to change."""
+    return shutil.copytree(pristine, tmp_path / "out")
+
+
+def front_rows(folder, run: str, front_id: int) -> dict[str, np.ndarray]:
+    """Columns of one front in fronts.csv, read here without the package."""
+    with open(folder / run / "fronts.csv", newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if int(row["front_id"]) == front_id]
+    return {name: np.array([float(row[name]) if row[name] else np.nan for row in rows]) for name in rows[0]}
+
+
+def artist(figure: Figure, gid: str, panel: int = 0):
+    found = figure.axes[panel].findobj(lambda a: a.get_gid() == gid)
+    assert len(found) == 1, f"{len(found)} artists named {gid}"
+    return found[0]
+
+
+def gids(figure: Figure, panel: int = 0) -> set[str]:
+    return {a.get_gid() for a in figure.axes[panel].findobj() if a.get_gid()}
+
+
+def change_front_cells(file, change) -> None:
+    """Rewrites fronts.csv with change(row), a dictionary, for each row; None drops the row."""
+    with open(file, newline="") as stream:
+        rows = [change(row) for row in csv.DictReader(stream)]
+    write_csv(file, FRONTS_HEADER, [list(row.values()) for row in rows if row is not None])
+
+
+# The command
+
+
+def test_command_writes_figures_and_report(output, capsys):
+    assert main([str(output)]) == 0
+    made = output / "figures"
+    for name in FIGURES:
+        assert (made / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
+        assert (made / f"{name}.pdf").read_bytes()[:5] == b"%PDF-"
+    pictures = {f"{name}.{kind}" for name in FIGURES for kind in ("png", "pdf")}
+    assert {file.name for file in made.iterdir()} == {"index.html", *pictures}
+    out = capsys.readouterr().out
+    assert str(made) in out and str(made / "index.html") in out
+
+    html = (made / "index.html").read_text(encoding="utf-8")
+    assert html.count("<figure ") == len(FIGURES)
+    assert html.count('src="data:image/png;base64,') == len(FIGURES)
+    assert "http" not in html and "<script" not in html
+    assert set(re.findall(r'href="([^"]+)"', html)) == {f"{name}.pdf" for name in FIGURES}
+
+    scorecard = html.split("<h2>Scorecard</h2>")[1].split("</table>")[0]
+    rows = re.findall(r"<tr><td>.*?</tr>", scorecard)
+    assert len(rows) == 3
+    assert "c_L &lt; 1600 m/s &amp; more" in rows[0] and ">✓<" in rows[0] and "each within 1 m/s" in rows[0]
+    assert ">✗<" in rows[1] and "<td>0.7123</td>" in rows[1]
+    assert rows[2].count(">–<") == 2  # not measured, not decided
+    assert "Of 3 statements 1 hold (✓), 1 do not (✗), 1 could not be decided (–)." in html
+    assert "<td>0.500</td><td>0.450 to 0.550</td><td>0.76 ± 0.07</td>" in html
+    assert "Points: 512; rms about the fit: 0.081 c<sub>L</sub>; within the paper's band: 61 %" in html
+
+    fronts = html.split("<h2>Fronts</h2>")[1]
+    assert len(re.findall(r"<tr><td>", fronts)) == 1 + 3 + 1 + 3
+    assert "abc1234" in html
+
+
+def test_same_results_give_the_same_files(output, results):
+    for drawing in (criteria.energy(results), events.three_events(results)):
+        drawing.save(output)
+        first = [(output / f"{drawing.name}.{kind}").read_bytes() for kind in ("png", "pdf")]
+        drawing.save(output)
+        assert first == [(output / f"{drawing.name}.{kind}").read_bytes() for kind in ("png", "pdf")]
+
+
+# What the figures show
+
+
+@pytest.mark.parametrize("front_id, direction", [(1, -1), (2, 1)])
+def test_figure_2_shows_the_speeds_of_the_high_mu_k_run(pristine, results, front_id, direction):
+    figure = criteria.static_ratio_mu_k(results).figure
+    rows = front_rows(pristine, "spontaneous_mu_k_1.0", front_id)
+    line = artist(figure, f"spontaneous_mu_k_1.0:{front_id}")
+    np.testing.assert_allclose(line.get_xdata(), rows["t_s_Pa"] / rows["p_s_Pa"])
+    np.testing.assert_allclose(line.get_ydata(), rows["v_tip_m_per_s"] / C_L)
+    assert np.isnan(line.get_ydata()[[0, -1]]).all()
+    assert rows["direction"][0] == direction
+    assert (line.get_linestyle() == "-") == (direction < 0)
+
+
+def test_figure_2_shows_the_wave_speeds(results):
+    figure = criteria.static_ratio_mu_k(results).figure
+    for wave in ("c_L", "c_S", "c_R"):
+        level = artist(figure, wave).get_ydata()[0]
+        assert level == pytest.approx(WAVE_SPEEDS[f"{wave}_m_per_s"] / C_L)
+
+
+def test_short_fronts_are_left_out(results):
+    assert [front.id for front in results.runs["spontaneous"].fronts] == [1, 2, 3]
+    assert [front.id for front in drawn_fronts(results.runs["spontaneous"])] == [1, 2]
+    assert "spontaneous:3" not in gids(events.three_events(results).figure, panel=4)
+
+
+@pytest.mark.parametrize("run, front_id", [("left", 1), ("spontaneous", 1), ("spontaneous", 2), ("right", 1)])
+def test_figures_3_to_6_show_the_three_events(pristine, results, run, front_id):
+    rows = front_rows(pristine, run, front_id)
+    v = rows["v_tip_m_per_s"] / C_L
+    dynamic = rows["t_d_Pa"] / rows["p_d_Pa"]
+    static = np.divide(rows["t_s_Pa"], rows["p_s_Pa"], out=np.full(len(v), np.nan), where=rows["p_s_Pa"] > 0)
+    energy = (rows["U_r_J_per_m3"] - rows["U_s_J_per_m3"]) / rows["U_s_J_per_m3"]
+    assert np.isnan(dynamic).any() and np.isfinite(dynamic).any()
+    for figure, panel, x, y in (
+        (events.three_events(results).figure, 4, static, v),
+        (criteria.dynamic_ratio_along_x(results).figure, 0, 1e3 * rows["x_m"], dynamic),
+        (criteria.dynamic_criterion(results).figure, 0, dynamic, v),
+        (criteria.energy(results).figure, 0, energy, v),
+    ):
+        line = artist(figure, f"{run}:{front_id}", panel)
+        np.testing.assert_allclose(line.get_xdata(), x)
+        np.testing.assert_allclose(line.get_ydata(), y)
+
+
+def test_figure_4_shows_the_static_ratio_and_mu_s(results):
+    figure = criteria.dynamic_ratio_along_x(results).figure
+    run = results.runs["spontaneous"]
+    static = artist(figure, "static")
+    np.testing.assert_allclose(static.get_xdata(), 1e3 * run.static_x_m)
+    np.testing.assert_allclose(static.get_ydata(), run.static_ratio)
+    assert np.isnan(static.get_ydata()[0])  # no contact at the left edge node
+    assert artist(figure, "mu_s").get_ydata()[0] == MU_S
+
+
+def test_figure_6_shows_our_fit_and_the_papers_band(results):
+    figure = criteria.energy(results).figure
+    fit = artist(figure, "fit")
+    r = np.asarray(fit.get_xdata())
+    np.testing.assert_allclose(fit.get_ydata(), 0.5 + 1.7 * np.exp(-2.0 * np.sqrt(r)))
+    corners = artist(figure, "paper_band").get_paths()[0].vertices
+    at_zero = corners[np.isclose(corners[:, 0], 0)][:, 1]
+    assert at_zero.min() == pytest.approx(0.76 + 1.80 - 0.07)
+    assert at_zero.max() == pytest.approx(0.76 + 1.80 + 0.07)
+
+
+def test_figure_6_without_a_fit(output):
+    analysis = json.loads((output / "analysis.json").read_text())
+    analysis["fit"] = None
+    (output / "analysis.json").write_text(json.dumps(analysis))
+    drawing = criteria.energy(read_results(output))
+    assert "fit" not in gids(drawing.figure)
+    assert "paper_band" in gids(drawing.figure)
+    assert "Too few points" in drawing.caption
+
+
+def test_set_up_shows_maximum_nucleation_and_friction_law(results):
+    figure = plate.setup(results).figure
+    assert artist(figure, "nucleation").center == pytest.approx((145.0, 0.0))
+    assert artist(figure, "maximum", 1).get_xdata()[0] == pytest.approx(145.0)
+    for name, mu_k in (("spontaneous", 0.6), ("spontaneous_mu_k_1.0", 1.0)):
+        law = artist(figure, name, 2)
+        v, mu = np.asarray(law.get_xdata()), np.asarray(law.get_ydata())
+        np.testing.assert_allclose(mu, mu_k + (1.3 - mu_k) * np.exp(-v * np.sqrt((1.3 - mu_k) / 0.1)))
+
+
+def test_mesh_lines_are_those_of_the_grid(results):
+    run = results.runs["spontaneous"]
+    ends, boundary = plate.edges(run.fields.cells)
+    assert len(ends) == 40 * 21 + 41 * 20 and boundary.sum() == 2 * (40 + 20)
+    assert plate.on_coarse_grid(ends, columns=40, every=1).all()
+    assert plate.on_coarse_grid(ends, columns=40, every=10).sum() == 40 * 3 + 20 * 5
+    assert plate.coarsening(300, 150) == 6
+    assert plate.coarsening(40, 20) == 1
+
+
+def test_snapshots_are_chosen_by_the_fronts_positions(results):
+    run = results.runs["left"]
+    front = run.fronts[0]
+    chosen = events.choose_step(run)
+    distance = [abs((front.tip_m(t) or np.inf) - 0.6 * 0.2) for t in run.fields.time_s]
+    assert chosen == int(np.argmin(distance))
+
+    run = results.runs["spontaneous"]
+    time = run.fields.time_s[events.choose_step(run)]
+    positions = [x for _, x in events.tips(run, time)]
+    assert len(positions) == 2 and min(positions) > 0.01 and max(positions) < 0.19
+    assert abs(time - 32e-6) <= 5e-6  # nucleation at 2 us, snapshots every 10 us
+
+
+def test_snapshots_mark_start_and_tips(results):
+    figure = events.three_events(results).figure
+    for panel, (name, marker) in enumerate((("left", "s"), ("spontaneous", "o"), ("right", "^"))):
+        run = results.runs[name]
+        begin = artist(figure, "start", panel)
+        assert begin.get_marker() == marker
+        assert begin.get_xdata()[0] == pytest.approx(1e3 * run.fronts[0].x_m[0])
+        time = run.fields.time_s[events.choose_step(run)]
+        for front, x_m in events.tips(run, time):
+            assert artist(figure, f"tip:{front.id}", panel).get_xdata()[0] == pytest.approx(1e3 * x_m)
+            tail, head = artist(figure, f"way:{front.id}", panel)._posA_posB
+            assert np.sign(head[0] - tail[0]) == front.direction
+
+
+def test_snapshot_shows_the_magnitude_of_the_step_chosen(results):
+    run = results.runs["right"]
+    step = events.choose_step(run)
+    figure = events.three_events(results).figure
+    colours = next(c for c in figure.axes[2].collections if c.get_array() is not None)
+    speed = run.fields.speed_m_per_s(step)
+    assert speed.max() > 0.5
+    np.testing.assert_allclose(colours.get_array(), speed)
+    assert colours.get_clim() == (0, 2)
+
+
+def test_tip_is_interpolated_between_onsets(results):
+    front = results.runs["left"].fronts[0]
+    middle = 0.5 * (front.onset_s[3] + front.onset_s[4])
+    assert front.tip_m(middle) == pytest.approx(0.5 * (front.x_m[3] + front.x_m[4]))
+    assert front.tip_m(front.onset_s[-1] + 1e-9) is None
+    assert front.tip_m(front.onset_s[0] - 1e-9) is None
+
+
+def test_space_time_shows_onsets_and_slopes_of_the_wave_speeds(pristine, results):
+    figure = space_time.space_time(results, "right").figure
+    rows = front_rows(pristine, "right", 1)
+    line = artist(figure, "right:1")
+    np.testing.assert_allclose(line.get_xdata(), 1e3 * rows["x_m"])
+    np.testing.assert_allclose(line.get_ydata(), 1e6 * rows["onset_s"])
+    for wave in ("c_L", "c_S", "c_R"):
+        x, t = artist(figure, f"{wave}:-1").get_data()
+        assert (x[0], t[0]) == pytest.approx((1e3 * rows["x_m"][0], 1e6 * rows["onset_s"][0]))
+        assert -1e3 * np.diff(x)[0] / np.diff(t)[0] == pytest.approx(WAVE_SPEEDS[f"{wave}_m_per_s"])
+    assert "c_L:1" not in gids(figure)  # it starts next to the right edge
+
+
+def test_direction_is_told_by_the_markers_filling(results):
+    figure = events.three_events(results).figure
+    against = artist(figure, "spontaneous:1", 4).get_markerfacecolor()
+    along = artist(figure, "spontaneous:2", 4).get_markerfacecolor()
+    assert matplotlib.colors.same_color(along, "white") and not matplotlib.colors.same_color(against, "white")
+
+
+def test_points_outside_the_axes_are_counted(output):
+    fast = {"v_tip_m_per_s": repr(3.5 * C_L)}
+    change_front_cells(
+        output / "left" / "fronts.csv", lambda row: row | fast if 0.079 < float(row["x_m"]) < 0.091 else row
+    )
+    drawing = criteria.dynamic_criterion(read_results(output))
+    assert drawing.figure.axes[0].get_ylim() == (0, 3)
+    assert re.search(r" 3 of \d+ points lie outside the axes", drawing.caption)
+
+
+def test_fit_and_band_stay_inside_their_axes_range(results):
+    drawing = criteria.energy(results)
+    assert "outside the axes" not in drawing.caption
+    assert drawing.figure.axes[0].get_xlim()[0] == 0
+
+
+# Missing data
+
+
+def test_run_without_fronts_is_drawn(output):
+    for name in ("left", "spontaneous", "spontaneous_mu_k_1.0"):
+        change_front_cells(output / name / "fronts.csv", lambda row: None)
+    assert main([str(output)]) == 0
+    drawings = draw_all(read_results(output))
+    assert not any(gid.startswith("spontaneous") for gid in gids(drawings[1].figure))
+
+
+def test_lines_break_at_empty_cells(output):
+    hole = {"v_tip_m_per_s": "", "t_d_Pa": ""}
+    change_front_cells(
+        output / "left" / "fronts.csv", lambda row: row | hole if abs(float(row["x_m"]) - 0.1) < 1e-6 else row
+    )
+    line = artist(criteria.dynamic_criterion(read_results(output)).figure, "left:1")
+    at = [i for i, x in enumerate(front_rows(output, "left", 1)["x_m"]) if abs(x - 0.1) < 1e-6]
+    assert len(at) == 1
+    assert np.isnan(line.get_xdata()[at]).all() and np.isnan(line.get_ydata()[at]).all()
+    assert np.isfinite(line.get_xdata()[at[0] + 1]) and np.isfinite(line.get_ydata()[at[0] + 1])
+
+
+# Experimental data
+
+
+@pytest.mark.parametrize("column, factor", [("v_over_c_L", 1.0), ("v_m_per_s", C_L)])
+def test_experiment_is_drawn_over_figure_2(pristine, tmp_path, column, factor):
+    file = tmp_path / "measured.csv"
+    write_csv(file, ["static_ratio", column], [[0.7, 0.25 * factor], [1.1, 0.5 * factor]])
+    points = artist(criteria.static_ratio_mu_k(read_results(pristine, file)).figure, "experiment")
+    np.testing.assert_allclose(points.get_xdata(), [0.7, 1.1])
+    np.testing.assert_allclose(points.get_ydata(), [0.25, 0.5])
+
+
+def test_without_a_file_no_experiment_is_drawn(results):
+    drawing = criteria.static_ratio_mu_k(results)
+    assert "experiment" not in gids(drawing.figure)
+    assert "No file of experimental data was given" in drawing.caption
+    assert any("no experimental data given" in text.get_text() for text in drawing.figure.axes[0].texts)
+
+
+# Errors: one clear line, exit code 2
+
+
+def remove(path):
+    def act(output):
+        target = output / path
+        shutil.rmtree(target) if target.is_dir() else target.unlink()
+
+    return act
+
+
+def replace(path, old, new):
+    def act(output):
+        text = (output / path).read_text()
+        assert old in text
+        (output / path).write_text(text.replace(old, new, 1))
+
+    return act
+
+
+def overwrite(path, text):
+    return lambda output: (output / path).write_text(text)
+
+
+def drop_dataset(path, name):
+    def act(output):
+        import h5py
+
+        with h5py.File(output / path, "r+") as file:
+            del file[name]
+
+    return act
+
+
+@pytest.mark.parametrize(
+    "damage, file, says",
+    [
+        (remove("right"), "right", "no such folder"),
+        (remove("left/fronts.csv"), "left/fronts.csv", "No such file"),
+        (remove("left/interface.h5"), "left/interface.h5", "No such file"),
+        (remove("scorecard.json"), "scorecard.json", "No such file"),
+        (remove("analysis.json"), "analysis.json", "No such file"),
+        (replace("left/fronts.csv", "t_d_Pa", "t_x_Pa"), "left/fronts.csv", "no column 't_d_Pa'"),
+        (replace("left/fronts.csv", "\n1,", "\none,"), "left/fronts.csv:2", "'one' in column 'front_id'"),
+        (replace("left/static.csv", "x_m,", "x_m,more,"), "left/static.csv:2", "3 cells, the header has 4"),
+        (
+            replace("spontaneous/case.resolved.toml", "mu_k =", "mu_x ="),
+            "spontaneous/case.resolved.toml",
+            "'friction.mu_k'",
+        ),
+        (overwrite("left/case.resolved.toml", "a = = 1"), "left/case.resolved.toml", "not TOML"),
+        (replace("left/fronts.csv", ",1,", ",0,"), "left/fronts.csv", "column 'direction'"),
+        (overwrite("left/run.json", "{"), "left/run.json", "not JSON"),
+        (overwrite("left/run.json", "{}"), "left/run.json", "'wave_speeds.c_L_m_per_s'"),
+        (overwrite("left/interface.h5", "text"), "left/interface.h5", "not an HDF5 file"),
+        (drop_dataset("left/interface.h5", "slip_rate_m_per_s"), "left/interface.h5", "'slip_rate_m_per_s'"),
+        (drop_dataset("left/fields.vtkhdf", "VTKHDF/Steps/Values"), "left/fields.vtkhdf", "'Steps/Values'"),
+        (overwrite("scorecard.json", '[{"id": "C1"}]'), "scorecard.json", "entry 1 has no 'claim'"),
+        (overwrite("analysis.json", '{"fit": null}'), "analysis.json", "'paper_fit.a'"),
+    ],
+)
+def test_damaged_folder_gives_one_line(output, capsys, damage, file, says):
+    damage(output)
+    assert main([str(output)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and error.startswith("slipfront.figures: error: ")
+    assert str(output / file) in error and says in error
+    assert not (output / "figures").exists()
+
+
+def test_missing_output_folder_gives_one_line(tmp_path, capsys):
+    assert main([str(tmp_path / "nowhere")]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and "nowhere: no such folder" in error
+
+
+@pytest.mark.parametrize(
+    "text, says", [(None, "No such file"), ("static_ratio\n1\n", "'v_over_c_L' or 'v_m_per_s'")]
+)
+def test_bad_experiment_gives_one_line(output, tmp_path, capsys, text, says):
+    file = tmp_path / "measured.csv"
+    if text is not None:
+        file.write_text(text)
+    assert main([str(output), "--experiment", str(file)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and str(file) in error and says in error
+
+
+def test_folder_without_snapshots_gives_one_line(output, capsys):
+    write_fields(output / "right" / "fields.vtkhdf", 40, 20, np.array([]), [])
+    assert main([str(output)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and "right/fields.vtkhdf: no snapshots" in error
