@@ -89,11 +89,12 @@ class Fields:
 
 @dataclass(frozen=True)
 class History:
-    """Slip rate along the interface over time, from interface.h5."""
+    """Slip rate and pressure along the interface over time, from interface.h5."""
 
     time_s: np.ndarray  # [times]
     x_m: np.ndarray  # [nodes]
     slip_rate_m_per_s: np.ndarray  # [times, nodes]
+    p_Pa: np.ndarray  # [times, nodes]; zero where the contact is open
 
 
 @dataclass(frozen=True)
@@ -121,6 +122,16 @@ class Run:
     @property
     def c_L_m_per_s(self) -> float:
         return self.fact("wave_speeds.c_L_m_per_s")
+
+    @property
+    def kind(self) -> str:
+        """What starts the event: left, right or spontaneous."""
+        return str(self.case.get("event", {}).get("kind"))
+
+    def end_of(self, front: Front) -> str | None:
+        """How a front ends, from run.json; None where it is not told."""
+        ends = (f.get("end") for f in self.info.get("fronts", []) if f.get("id") == front.id)
+        return next(ends, None)
 
 
 def number(file: Path, table: dict, key: str) -> float:
@@ -229,12 +240,14 @@ def read_fronts(file: Path) -> list[Front]:
 
 def read_history(file: Path) -> History:
     with open_hdf5(file) as hdf5:
-        time_s, x_m, rate = (dataset(hdf5, name)[()] for name in ("time_s", "x_m", "slip_rate_m_per_s"))
-    if rate.shape != (len(time_s), len(x_m)):
-        raise DataError(f"{file}: slip_rate_m_per_s is {rate.shape}, not {(len(time_s), len(x_m))}")
+        time_s, x_m = (dataset(hdf5, name)[()] for name in ("time_s", "x_m"))
+        rate, p = (dataset(hdf5, name)[()] for name in ("slip_rate_m_per_s", "p_Pa"))
+    for name, data in (("slip_rate_m_per_s", rate), ("p_Pa", p)):
+        if data.shape != (len(time_s), len(x_m)):
+            raise DataError(f"{file}: {name} is {data.shape}, not {(len(time_s), len(x_m))}")
     if len(time_s) < 2 or len(x_m) < 2:
         raise DataError(f"{file}: fewer than two times or nodes")
-    return History(time_s, x_m, rate)
+    return History(time_s, x_m, rate, p)
 
 
 def read_fields(file: Path) -> Fields:

@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
   slipfront::cli::add_run(app);
   slipfront::cli::add_reproduce(app);
   slipfront::cli::add_info(app);
+  slipfront::cli::add_bench(app);
   slipfront::cli::add_validate(app);
   slipfront::cli::add_keys(app);
   try {

@@ -21,7 +21,7 @@ void print_report(const paper::ReproduceReport& report, const std::string& dir) 
   for (const auto& c : report.claims) {
     const char* verdict = !c.holds ? "not tested" : *c.holds ? "holds" : "does not hold";
     (!c.holds ? n_open : *c.holds ? n_hold : n_not) += 1;
-    fmt::print("{:<4}{:<15}{} [{}]\n{:19}{}\n", c.id, verdict, c.claim, c.paper, "", c.measured);
+    fmt::print("{:<6}{:<15}{} [{}]\n{:21}{}\n", c.id, verdict, c.claim, c.paper, "", c.measured);
   }
   fmt::print("\n{} claims hold, {} do not hold, {} not tested\n\n", n_hold, n_not, n_open);
   for (const auto& t : report.timings) fmt::print("{:8.2f} s  {}\n", t.wall_s, t.part);

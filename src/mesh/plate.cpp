@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "mesh/fillet.hpp"
 
 namespace slipfront::mesh {
@@ -67,11 +68,20 @@ Grid make_grid(const Plate& plate) {
   return grid;
 }
 
+/// Mesh, operator and motion of a plate, and what building them takes for a while.
+constexpr double bytes_per_node = 250;
+
 Mesh make_rectangle(const Plate& plate) {
   Mesh mesh;
   mesh.grid = make_grid(plate);
   const Grid& grid = mesh.grid;
-  const auto n_nodes = static_cast<std::size_t>(grid.stride()) * (grid.rows + 1);
+  const auto n_nodes = static_cast<std::size_t>(grid.stride()) * (static_cast<std::size_t>(grid.rows) + 1);
+  if (n_nodes > static_cast<std::size_t>(std::numeric_limits<Node>::max()))
+    throw UserError(
+        "plate.element_size_m = {:g} makes {} nodes, more than can be numbered; choose a larger one",
+        plate.element_size_m, n_nodes);
+  require_memory(bytes_per_node * static_cast<double>(n_nodes), fmt::format("a plate of {} nodes", n_nodes),
+                 "choose a larger plate.element_size_m");
   mesh.x_m.reserve(n_nodes);
   mesh.y_m.reserve(n_nodes);
   for (int j = 0; j <= grid.rows; ++j) {

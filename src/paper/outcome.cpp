@@ -76,7 +76,13 @@ double criterion_value(const fronts::FrontPoint& point, Criterion criterion) {
   return fronts::undefined;
 }
 
-std::vector<fronts::Series> criterion_series(std::span<const Outcome* const> outcomes, Criterion criterion) {
+bool in_tail(const fronts::Front& front, const fronts::FrontPoint& point) {
+  const bool stops = front.end == fronts::End::arrest || front.end == fronts::End::contact_end;
+  return stops && std::abs(point.x_m - front.points.back().x_m) <= tail_m;
+}
+
+std::vector<fronts::Series> criterion_series(std::span<const Outcome* const> outcomes, Criterion criterion,
+                                             bool without_tails) {
   std::vector<fronts::Series> list;
   for (const auto* outcome : outcomes) {
     for (const auto& front : outcome->fronts) {
@@ -85,7 +91,8 @@ std::vector<fronts::Series> criterion_series(std::span<const Outcome* const> out
         const double x = criterion_value(point, criterion);
         // The same points for every criterion: those where all are defined.
         if (!counts(*outcome, front, point) || !std::isfinite(point.v_tip_m_per_s) ||
-            !std::isfinite(point.U_s_J_per_m3) || !std::isfinite(x))
+            !std::isfinite(point.U_s_J_per_m3) || !std::isfinite(x) ||
+            (without_tails && in_tail(front, point)))
           continue;
         series.x.push_back(x);
         series.y.push_back(point.v_tip_m_per_s / outcome->speeds.c_L);
@@ -100,13 +107,13 @@ double PaperFit::operator()(double energy_rise) const {
   return a + b * std::exp(-c * std::sqrt(energy_rise));
 }
 
-Collapse collapse(std::span<const Outcome* const> outcomes) {
+Collapse collapse(std::span<const Outcome* const> outcomes, bool without_tails) {
   Collapse result;
   result.static_ratio =
-      spread_at_equal_x(criterion_series(outcomes, Criterion::static_ratio), criterion_bins);
+      spread_at_equal_x(criterion_series(outcomes, Criterion::static_ratio, without_tails), criterion_bins);
   result.dynamic_ratio =
-      spread_at_equal_x(criterion_series(outcomes, Criterion::dynamic_ratio), criterion_bins);
-  const auto energy = criterion_series(outcomes, Criterion::energy_rise);
+      spread_at_equal_x(criterion_series(outcomes, Criterion::dynamic_ratio, without_tails), criterion_bins);
+  const auto energy = criterion_series(outcomes, Criterion::energy_rise, without_tails);
   result.energy_rise = spread_at_equal_x(energy, criterion_bins);
   const PaperFit paper;
   std::size_t n_inside = 0;

@@ -52,9 +52,16 @@ enum class Criterion { static_ratio, dynamic_ratio, energy_rise };
 /// t_s/p_s, t_d/p_d or (U_r - U_s)/U_s of a point.
 double criterion_value(const fronts::FrontPoint& point, Criterion criterion);
 
-/// V_tip/c_L against a criterion, a series for each front of each run; points that count and are defined in
-/// both.
-std::vector<fronts::Series> criterion_series(std::span<const Outcome* const> outcomes, Criterion criterion);
+/// The last stretch before a front's end, where the paper sees its speed leave the energy criterion.
+inline constexpr double tail_m = 20e-3;
+
+/// Whether a point lies within tail_m of the end of a front that arrests or runs out of contact.
+bool in_tail(const fronts::Front& front, const fronts::FrontPoint& point);
+
+/// V_tip/c_L against a criterion, a series for each front of each run; points that count and for which the
+/// speed and all criteria are defined.
+std::vector<fronts::Series> criterion_series(std::span<const Outcome* const> outcomes, Criterion criterion,
+                                             bool without_tails = false);
 
 /// The paper's fit of Fig. 6 and its band.
 struct PaperFit {
@@ -70,7 +77,7 @@ struct Collapse {
   double share_in_paper_band = 0;
   std::size_t n_points = 0;
 };
-Collapse collapse(std::span<const Outcome* const> outcomes);
+Collapse collapse(std::span<const Outcome* const> outcomes, bool without_tails = false);
 
 /// Bins of a criterion's range in spreads and ratios.
 inline constexpr int criterion_bins = 20;

@@ -6,47 +6,22 @@
 extern "C" void openblas_set_num_threads(int n_threads);
 
 #include <cmath>
-#include <fstream>
-#include <string>
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "solid/element.hpp"
 #include "solve/dissection.hpp"
 
 namespace slipfront::solve {
-
-namespace {
-
-std::string gigabytes(double bytes) {
-  return fmt::format("{:.2f} GB", bytes * 1e-9);
-}
-
-void refuse_if_too_large(double bytes, std::int64_t n_unknowns) {
-  const double available = available_memory_bytes();
-  if (bytes > 0.9 * available)
-    throw UserError(
-        "the static solution of {} unknowns needs about {} for its factorisation, {} are available; choose a "
-        "larger "
-        "plate.element_size_m",
-        n_unknowns, gigabytes(bytes), gigabytes(available));
-}
-
-}  // namespace
 
 double estimated_factor_bytes(double n_unknowns) {
   // 8 bytes times the fill of nested dissection on a plane grid of four-node cells with two unknowns a node.
   return 8 * 9.0 * n_unknowns * std::log2(std::max(n_unknowns, 2.0));
 }
 
-double available_memory_bytes() {
-  std::ifstream file("/proc/meminfo");
-  std::string key, unit;
-  double kilobytes = 0;
-  while (file >> key >> kilobytes) {
-    std::getline(file, unit);
-    if (key == "MemAvailable:") return 1024 * kilobytes;
-  }
-  return 8e9;
+void require_statics_memory(double n_unknowns, double factor_bytes) {
+  require_memory(factor_bytes, fmt::format("the factorisation of {:.4g} static unknowns", n_unknowns),
+                 "choose a larger plate.element_size_m");
 }
 
 struct Factorisation::Cholmod {
@@ -92,7 +67,8 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
     if (!is_top[n] || top == TopConstraint::vertical) unknown_[2 * n] = n_unknowns_++;
     if (!is_top[n]) unknown_[2 * n + 1] = n_unknowns_++;
   }
-  refuse_if_too_large(estimated_factor_bytes(static_cast<double>(n_unknowns_)), n_unknowns_);
+  require_statics_memory(static_cast<double>(n_unknowns_),
+                         estimated_factor_bytes(static_cast<double>(n_unknowns_)));
 
   // Upper triangle of K as triplets, cell by cell.
   auto* common = &cholmod_->common;
@@ -138,9 +114,8 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
   cholmod_->factor = cholmod_l_analyze_p(matrix, identity.data(), nullptr, 0, common);
   cholmod_->check("analysis");
   factor_bytes_ = 8.0 * static_cast<double>(cholmod_->factor->xsize);
-  const double needed = factor_bytes_;
   try {
-    refuse_if_too_large(needed, n_unknowns_);
+    require_statics_memory(static_cast<double>(n_unknowns_), factor_bytes_);
   } catch (...) {
     cholmod_l_free_sparse(&matrix, common);
     throw;

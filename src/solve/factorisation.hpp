@@ -20,8 +20,9 @@ enum class TopConstraint { both, vertical };
 /// of a plane grid).
 double estimated_factor_bytes(double n_unknowns);
 
-/// Memory that can be allocated without swapping, bytes (Linux: MemAvailable).
-double available_memory_bytes();
+/// Refuses statics whose factor would not fit into the memory at hand.
+/// @throws UserError with the figures.
+void require_statics_memory(double n_unknowns, double factor_bytes);
 
 /// The plate's stiffness factorised once, with the interface condensed.
 ///

@@ -3,46 +3,99 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.results import DRAWN_LENGTH_M, HIGH_MU_K, Results, drawn_fronts
-from slipfront.read import Run
+from slipfront.figures.results import (
+    DRAWN_LENGTH_M,
+    HIGH_MU_K,
+    MAIN_LENGTH_M,
+    NUCLEATION_M,
+    TAIL_M,
+    Results,
+    at_nucleation,
+    away_from_trigger,
+    drawn_fronts,
+    in_tail,
+    main_fronts,
+)
+from slipfront.read import Front, Run
 
 SELECTION = (
-    f"Every front at least {1e3 * DRAWN_LENGTH_M:g} mm long is drawn, shorter ones are not; lines break "
-    "where a value is undefined, so close to the trigger zones for t<sub>d</sub>/p<sub>d</sub> and what "
-    "follows from it."
+    "Strong lines: main fronts, that is, the longest of an event in each direction if at least "
+    f"{1e3 * MAIN_LENGTH_M:g} mm long; thin pale lines: other fronts of at least {1e3 * DRAWN_LENGTH_M:g} mm"
 )
-HIGHEST_V = 3.0  # the speed diverges where a front nucleates: the axis must end somewhere
+NUCLEATION = f", and the first {1e3 * NUCLEATION_M:g} mm of a front that nucleates by itself"
+TAIL = f", and the last {1e3 * TAIL_M:g} mm before a front arrests or runs out of contact"
+OMITTED = "Points in and next to the trigger zones are left out."
+HIGHEST_V = 3.0  # the axis ends there at the latest: the speed diverges where fronts nucleate or meet
 LARGEST_RISE = 5.0  # the relative energy rise as well, where the stored energy vanishes
 DIRECTIONS = "Filled markers: the front runs against the imposed shear; open markers: along it."
+
+Measure = Callable[[Front], np.ndarray]
+
+
+def speed(run: Run) -> Measure:
+    return lambda front: front.v_tip_m_per_s / run.c_L_m_per_s
+
+
+def draw_fronts(ax: Axes, run: Run, x: Measure, y: Measure, weak=None, lines: dict | None = None) -> None:
+    """Two measures of a run's fronts against each other, without points next to a trigger zone.
+
+    weak(run, front) tells which points of main fronts are drawn pale; lines gives dashes by direction.
+    """
+    main = {front.id for front in main_fronts(run)}
+    for front in drawn_fronts(run):
+        shown = away_from_trigger(run, front.x_m)
+        x_shown, y_shown = np.where(shown, x(front), np.nan), np.where(shown, y(front), np.nan)
+        if front.id not in main:
+            style.draw_pale(ax, run, x_shown, y_shown, f"{run.name}:{front.id}:other")
+            continue
+        pale = weak(run, front) if weak is not None else np.full(len(shown), False)
+        style.draw_front(
+            ax, run, front, x_shown, y_shown, pale, lines[front.direction] if lines is not None else None
+        )
 
 
 def speed_over_static_ratio(ax: Axes, runs: list[Run]) -> None:
     for run in runs:
-        for front in drawn_fronts(run):
-            style.draw_front(ax, run, front, front.static_ratio, front.v_tip_m_per_s / run.c_L_m_per_s)
+        draw_fronts(ax, run, lambda front: front.static_ratio, speed(run), at_nucleation)
     ax.set(xlabel=style.STATIC_LABEL, ylabel=style.V_LABEL)
 
 
 def drawn_points(ax: Axes) -> np.ndarray:
-    """All points of the fronts drawn, without undefined ones. [points, 2]"""
+    """All points of the fronts drawn, each once, without undefined ones. [points, 2]"""
     lines = [np.column_stack(line.get_data()) for line in ax.lines if ":" in (line.get_gid() or "")]
     points = np.concatenate([np.empty((0, 2)), *lines])
-    return points[np.isfinite(points).all(axis=1)]
+    return np.unique(points[np.isfinite(points).all(axis=1)], axis=0)
+
+
+def largest(ax: Axes, axis: int) -> float:
+    """Largest coordinate along the strong lines; a running median of five passes over single outliers."""
+    top = 0.0
+    for line in ax.lines:
+        if (line.get_gid() or "").count(":") != 1:
+            continue
+        values = np.column_stack(line.get_data())
+        values = values[np.isfinite(values).all(axis=1), axis]
+        if len(values) >= 5:
+            values = np.median(np.lib.stride_tricks.sliding_window_view(values, 5), axis=1)
+        top = max(top, np.max(values, initial=0.0))
+    return float(top)
 
 
 def finish(ax: Axes, run: Run) -> str:
-    """Speed axis from zero to the fastest point but at most HIGHEST_V, with the wave speeds as thin lines.
+    """Speed axis from zero to the fastest main front but at most HIGHEST_V, with the wave speeds as thin lines.
 
     Returns a sentence for the caption where points lie outside the axes, else nothing.
     """
     points = drawn_points(ax)
-    ax.set_ylim(0, np.clip(1.06 * np.max(points[:, 1], initial=0.0), 1.15, HIGHEST_V))
+    ax.set_ylim(0, np.clip(1.08 * largest(ax, 1), 1.15, HIGHEST_V))
     style.wave_speed_lines(ax, run)
     beyond = ((points[:, 1] > ax.get_ylim()[1]) | (points[:, 0] > ax.get_xlim()[1])).sum()
     return f" {beyond} of {len(points)} points lie outside the axes." if beyond else ""
@@ -54,9 +107,7 @@ def static_ratio_mu_k(results: Results) -> Drawing:
     figure = style.new_figure(style.COLUMN_MM, 66)
     ax = figure.subplots()
     lines = {-1: "-", 1: (0, (4.5, 1.8))}
-    for front in drawn_fronts(run):
-        v = front.v_tip_m_per_s / run.c_L_m_per_s
-        style.draw_front(ax, run, front, front.static_ratio, v, line=lines[front.direction])
+    draw_fronts(ax, run, lambda front: front.static_ratio, speed(run), at_nucleation, lines)
     handles = [
         Line2D([], [], color=colour, linestyle=lines[-1], marker="o", label="against the shear"),
         Line2D(
@@ -94,8 +145,13 @@ def static_ratio_mu_k(results: Results) -> Drawing:
         figure,
         f"Front speed against the static stress ratio, μ<sub>k</sub> = {run.parameter('friction.mu_k')}: "
         f"solid against the imposed shear, dashed along it. Thin lines: wave speeds. "
-        f"{SELECTION}{outside} {measured}",
+        f"{SELECTION}{NUCLEATION}.{outside} {measured}",
     )
+
+
+def weak(run: Run, front: Front) -> np.ndarray:
+    """Points where no criterion is expected to hold: at nucleation and before the end. [points]"""
+    return at_nucleation(run, front) | in_tail(run, front)
 
 
 def dynamic_ratio_along_x(results: Results) -> Drawing:
@@ -113,17 +169,10 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
         zorder=1,
     )
     for run in results.events:
-        for front in drawn_fronts(run):
-            style.draw_front(ax, run, front, style.mm(front.x_m), front.dynamic_ratio)
+        draw_fronts(ax, run, lambda front: style.mm(front.x_m), lambda front: front.dynamic_ratio)
     mu_s = reference.parameter("friction.mu_s")
     ax.axhline(mu_s, gid="mu_s", **style.REFERENCE)
-    ax.annotate(
-        r"$\mu_s$",
-        (0.02, mu_s),
-        xycoords=ax.get_yaxis_transform(),
-        xytext=(0, 1.5),
-        textcoords="offset points",
-    )
+    style.name_level(ax, mu_s, r"$\mu_s$")
     style.x_axis(ax, reference)
     ax.set_ylabel(style.DYNAMIC_LABEL)
     ax.set_ylim(0, max(ax.get_ylim()[1], 1.12 * mu_s))
@@ -133,7 +182,7 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
         figure,
         "Dynamic stress ratio t<sub>d</sub>/p<sub>d</sub> at each point of the interface at the moment the "
         "front is l* short of it: not one instant but the whole passage. Thick grey line: the static ratio "
-        f"t<sub>s</sub>/p<sub>s</sub> before the events; thin line: μ<sub>s</sub>. {DIRECTIONS} {SELECTION}",
+        f"t<sub>s</sub>/p<sub>s</sub> before the events; thin line: μ<sub>s</sub>. {DIRECTIONS} {SELECTION}. {OMITTED}",
     )
 
 
@@ -141,8 +190,7 @@ def dynamic_criterion(results: Results) -> Drawing:
     figure = style.new_figure(style.COLUMN_MM, 66)
     ax = figure.subplots()
     for run in results.events:
-        for front in drawn_fronts(run):
-            style.draw_front(ax, run, front, front.dynamic_ratio, front.v_tip_m_per_s / run.c_L_m_per_s)
+        draw_fronts(ax, run, lambda front: front.dynamic_ratio, speed(run), weak)
     ax.set(xlabel=style.DYNAMIC_LABEL, ylabel=style.V_LABEL)
     outside = finish(ax, results.events[0])
     ax.legend(handles=style.event_handles(results.events), loc="upper left")
@@ -150,7 +198,7 @@ def dynamic_criterion(results: Results) -> Drawing:
         "fig5_dynamic_criterion",
         figure,
         "Front speed against the dynamic stress ratio t<sub>d</sub>/p<sub>d</sub> for the three events. "
-        f"Thin lines: wave speeds. {DIRECTIONS} {SELECTION}{outside}",
+        f"Thin lines: wave speeds. {DIRECTIONS} {SELECTION}{NUCLEATION}{TAIL}. {OMITTED}{outside}",
     )
 
 
@@ -158,9 +206,8 @@ def energy(results: Results) -> Drawing:
     figure = style.new_figure(style.COLUMN_MM, 66)
     ax = figure.subplots()
     for run in results.events:
-        for front in drawn_fronts(run):
-            style.draw_front(ax, run, front, front.energy_rise, front.v_tip_m_per_s / run.c_L_m_per_s)
-    right = np.clip(1.05 * np.max(drawn_points(ax)[:, 0], initial=0.0), 1.0, LARGEST_RISE)
+        draw_fronts(ax, run, lambda front: front.energy_rise, speed(run), weak)
+    right = np.clip(1.05 * largest(ax, 0), 1.0, LARGEST_RISE)
     r = right * np.linspace(0, 1, 400) ** 2  # closer at zero, where the fit is steep
     band = ax.fill_between(
         r,
@@ -180,10 +227,10 @@ def energy(results: Results) -> Drawing:
             results.fit(r),
             color="#7b3294",
             linestyle=(0, (1, 1)),
-            linewidth=1.3,
+            linewidth=1.6,
             label="fit, this program",
             gid="fit",
-            zorder=3,
+            zorder=1.5,  # below the fronts
         )
         handles.insert(3, line)
         text = (

@@ -18,4 +18,5 @@ class Drawing:
     def save(self, folder: Path) -> None:
         # Without the date, the same results give the same files.
         self.figure.savefig(folder / f"{self.name}.png", metadata={"Software": None})
+        self.figure.set_layout_engine("none")  # the layout is found; once is enough
         self.figure.savefig(folder / f"{self.name}.pdf", metadata={"CreationDate": None})

@@ -6,14 +6,13 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.patches import FancyArrowPatch
 
 from slipfront.figures import style
-from slipfront.figures.criteria import DIRECTIONS, SELECTION, finish, speed_over_static_ratio
+from slipfront.figures.criteria import DIRECTIONS, NUCLEATION, OMITTED, SELECTION, finish, speed_over_static_ratio
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.plate import edges
+from slipfront.figures.plate import draw_edges, edges
 from slipfront.figures.results import Results, drawn_fronts, start
 from slipfront.read import DataError, Front, Run
 
@@ -74,7 +73,7 @@ def draw_snapshot(ax: Axes, run: Run, step: int) -> None:
         rasterized=True,
     )
     ends, boundary = edges(fields.cells)
-    ax.add_collection(LineCollection(points[ends[boundary]], colors="black", linewidths=0.5))
+    draw_edges(ax, points[ends[boundary]], color="black", linewidth=0.5)
 
     event = style.EVENT_STYLES[run.name]
     began = start(run)
@@ -105,11 +104,14 @@ def draw_snapshot(ax: Axes, run: Run, step: int) -> None:
             zorder=7,
             gid=f"tip:{front.id}",
         )
-        from_x, y = 1e3 * x_m, 0.17 * height
+        length, y = 0.13 * height, 0.17 * height
+        from_x = 1e3 * x_m
+        if not 0 <= from_x + front.direction * length <= width:
+            from_x -= front.direction * length  # no room ahead of the tip: the arrow ends at it
         ax.add_patch(
             FancyArrowPatch(
                 (from_x, y),
-                (from_x + front.direction * 0.13 * height, y),
+                (from_x + front.direction * length, y),
                 facecolor="white",
                 arrowstyle="simple,head_width=4.5,head_length=4,tail_width=1.4",
                 edgecolor="black",
@@ -169,5 +171,5 @@ def three_events(results: Results) -> Drawing:
         "of the fronts that run, white arrows: where they go; black arrow: the imposed shear. Instants: of "
         "the snapshots, the one with the first front nearest to 60 % (a) and 45 % (c) of the width, and "
         "(b) nearest to 30 µs after nucleation with both tips inside. (d) Front speed against the static "
-        f"stress ratio for the three events; thin lines: wave speeds. {DIRECTIONS} {SELECTION}{outside}",
+        f"stress ratio for the three events; thin lines: wave speeds. {DIRECTIONS} {SELECTION}{NUCLEATION}. {OMITTED}{outside}",
     )

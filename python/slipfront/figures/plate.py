@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle, Rectangle
 
 from slipfront.figures import style
@@ -40,12 +39,19 @@ def on_coarse_grid(ends: np.ndarray, columns: int, every: int) -> np.ndarray:
 
 def static_maximum(run: Run) -> int | None:
     """Index of the largest static ratio inside the interface, that is, without the margin at its ends."""
-    margin_m = run.parameter("loading.edge_margin_m")
-    x = run.static_x_m
-    inside = (
-        (x >= margin_m) & (x <= run.parameter("plate.width_m") - margin_m) & np.isfinite(run.static_ratio)
-    )
-    return int(np.argmax(np.where(inside, run.static_ratio, -np.inf))) if inside.any() else None
+    x, ratio = run.static_x_m, run.static_ratio
+    inside = (x >= run.fact("statics.inside_from_m")) & (x <= run.fact("statics.inside_to_m"))
+    inside &= np.isfinite(ratio)
+    return int(np.argmax(np.where(inside, ratio, -np.inf))) if inside.any() else None
+
+
+def joined(segments: np.ndarray) -> np.ndarray:
+    """Segments [n, 2, 2] as the points of one broken line: files of a few lines are small and quick."""
+    return np.concatenate([segments, np.full((len(segments), 1, 2), np.nan)], axis=1).reshape(-1, 2)
+
+
+def draw_edges(ax: Axes, segments: np.ndarray, **look) -> None:
+    ax.plot(*joined(segments).T, solid_capstyle="round", **look)
 
 
 def draw_mesh(ax: Axes, fields: Fields, columns: int, rows: int) -> int:
@@ -54,13 +60,14 @@ def draw_mesh(ax: Axes, fields: Fields, columns: int, rows: int) -> int:
     ends, boundary = edges(fields.cells)
     every = coarsening(columns, rows)
     inner = on_coarse_grid(ends, columns, every) & ~boundary
-    ax.add_collection(LineCollection(points[ends[inner]], colors="0.6", linewidths=0.2, gid="mesh"))
-    ax.add_collection(LineCollection(points[ends[boundary]], colors="black", linewidths=0.7, gid="outline"))
+    draw_edges(ax, points[ends[inner]], color="0.6", linewidth=0.2, gid="mesh")
+    draw_edges(ax, points[ends[boundary]], color="black", linewidth=0.7, gid="outline")
 
     width, height = np.ptp(points, axis=0)
     zoom = ax.inset_axes([0.28 * width, 0.24 * height, 0.44 * width, 0.58 * height], transform=ax.transData)
-    zoom.add_collection(LineCollection(points[ends[~boundary]], colors="0.45", linewidths=0.3))
-    zoom.add_collection(LineCollection(points[ends[boundary]], colors="black", linewidths=0.7))
+    near = (points[ends].min(axis=1) <= (0.06 * width, 0.08 * height)).all(axis=1)
+    draw_edges(zoom, points[ends[near & ~boundary]], color="0.45", linewidth=0.3)
+    draw_edges(zoom, points[ends[near & boundary]], color="black", linewidth=0.7)
     zoom.axhspan(-0.02 * height, 0, facecolor="0.9", edgecolor="0.3", hatch="//////", linewidth=0)
     zoom.axhline(0, color="black", linewidth=0.7)
     zoom.set(xlim=(-0.004 * width, 0.056 * width), ylim=(-0.008 * height, 0.0711 * height), aspect="equal")
@@ -91,7 +98,7 @@ def draw_loading(ax: Axes, run: Run, width: float, height: float) -> None:
         )
     ax.plot(x, base + length, color="black", linewidth=0.6)
     ax.text(0, base + length[0] + 2, f"$u_y^1 = {1e3 * left:g}$ mm", ha="left", va="bottom")
-    ax.text(width, base + length[-1] + 2, f"$u_y^2 = {1e3 * right:g}$ mm", ha="right", va="bottom")
+    ax.text(width, base + length[-1] + 6, f"$u_y^2 = {1e3 * right:g}$ mm", ha="right", va="bottom")
     level = height * 1.3
     ax.annotate(
         "",
@@ -162,13 +169,7 @@ def draw_static_ratio(ax: Axes, run: Run) -> None:
     ax.plot(style.mm(run.static_x_m), run.static_ratio, color="black", gid="static")
     mu_s = run.parameter("friction.mu_s")
     ax.axhline(mu_s, gid="mu_s", **style.REFERENCE)
-    ax.annotate(
-        r"$\mu_s$",
-        (0.03, mu_s),
-        xycoords=ax.get_yaxis_transform(),
-        xytext=(0, 1.5),
-        textcoords="offset points",
-    )
+    style.name_level(ax, mu_s, r"$\mu_s$")
     peak = static_maximum(run)
     if peak is not None:
         ax.plot(

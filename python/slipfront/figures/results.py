@@ -8,12 +8,17 @@ from pathlib import Path
 
 import numpy as np
 
+from slipfront.figures.study import Study, read_studies
 from slipfront.read import DataError, Front, Run, number, read_experiment, read_json, read_run
 
 EVENTS = ("left", "spontaneous", "right")  # the three events of one initial state
 HIGH_MU_K = "spontaneous_mu_k_1.0"
 # Shorter fronts, mostly secondary ones late in a record, would hide the events' own in the plots of V_tip.
 DRAWN_LENGTH_M = 10e-3
+MAIN_LENGTH_M = 25e-3
+NUCLEATION_M = 5e-3  # the speed diverges where a front nucleates
+TAIL_M = 20e-3  # the last stretch before a front stops, where the paper sees it leave the energy criterion
+STOPS = ("arrest", "contact_end")
 
 
 @dataclass(frozen=True)
@@ -37,6 +42,8 @@ class Results:
     fit: Fit | None  # of this program's points; None where it found too few
     paper_fit: Fit
     paper_a_band: float
+    studies: list[Study]
+    timings: list[tuple[str, float]]  # part of the work, wall time in s; empty where none are told
     experiment: tuple[np.ndarray, np.ndarray] | None  # measured t_s / p_s, V_tip / c_L
 
     @property
@@ -47,6 +54,41 @@ class Results:
 def drawn_fronts(run: Run) -> list[Front]:
     """The fronts long enough to be drawn, in the order of their start."""
     return sorted((f for f in run.fronts if f.length_m >= DRAWN_LENGTH_M), key=lambda f: f.onset_s[0])
+
+
+def main_fronts(run: Run) -> list[Front]:
+    """The longest front in each direction, where it is at least MAIN_LENGTH_M long."""
+    longest = [
+        max((f for f in run.fronts if f.direction == way), key=lambda f: f.length_m, default=None)
+        for way in (-1, 1)
+    ]
+    return [f for f in longest if f is not None and f.length_m >= MAIN_LENGTH_M]
+
+
+def away_from_trigger(run: Run, x_m: np.ndarray) -> np.ndarray:
+    """Whether points lie outside the trigger zone and its margin; everywhere in a spontaneous event."""
+    if run.kind not in ("left", "right"):
+        return np.full(np.shape(x_m), True)
+    # The zone begins at the end of the contact, an edge margin outside of what counts as inside.
+    edge_m = run.parameter("loading.edge_margin_m")
+    omitted_m = run.parameter("event.trigger_zone_m") + run.parameter("fronts.trigger_margin_m")
+    if run.kind == "left":
+        return x_m >= run.fact("statics.inside_from_m") - edge_m + omitted_m
+    return x_m <= run.fact("statics.inside_to_m") + edge_m - omitted_m
+
+
+def at_nucleation(run: Run, front: Front) -> np.ndarray:
+    """Whether a front's points are near to where it nucleated by itself. [points]"""
+    if run.kind in ("left", "right"):
+        return np.full(len(front.x_m), False)
+    return np.abs(front.x_m - front.x_m[0]) < NUCLEATION_M
+
+
+def in_tail(run: Run, front: Front) -> np.ndarray:
+    """Whether a front's points are within TAIL_M of where it arrests or runs out of contact. [points]"""
+    if run.end_of(front) not in STOPS:
+        return np.full(len(front.x_m), False)
+    return np.abs(front.x_m - front.x_m[-1]) <= TAIL_M
 
 
 def start(run: Run) -> tuple[float, float] | None:
@@ -74,6 +116,15 @@ def read_scorecard(file: Path) -> list[dict]:
     return rows
 
 
+def read_timings(file: Path) -> list[tuple[str, float]]:
+    if not file.exists():  # written last: a folder may lack it
+        return []
+    rows = read_json(file)
+    if not isinstance(rows, list) or not all(isinstance(row, dict) and "part" in row for row in rows):
+        raise DataError(f"{file}: not a list of parts")
+    return [(str(row["part"]), number(file, row, "wall_s")) for row in rows]
+
+
 def read_results(folder: Path, experiment: Path | None = None) -> Results:
     if not folder.is_dir():
         raise DataError(f"{folder}: no such folder; DIR is the output folder of `slipfront reproduce`")
@@ -91,5 +142,7 @@ def read_results(folder: Path, experiment: Path | None = None) -> Results:
         fit=read_fit(file, analysis, "fit") if analysis["fit"] is not None else None,
         paper_fit=read_fit(file, analysis, "paper_fit"),
         paper_a_band=number(file, analysis, "paper_fit.a_band"),
+        studies=read_studies(file, analysis),
+        timings=read_timings(folder / "timings.json"),
         experiment=points,
     )

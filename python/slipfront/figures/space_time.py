@@ -5,15 +5,17 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
+from matplotlib.colors import ListedColormap, LogNorm
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.results import Results, drawn_fronts, start
 from slipfront.read import Run
 
-RATE_RANGE_M_PER_S = (1e-2, 10.0)
+RATE_RANGE_M_PER_S = (0.1, 30.0)
+OPEN_COLOUR = "0.8"
 FRONT_COLOUR = "#cc3311"
 WAVES = {"c_L": "-", "c_S": (0, (4, 2)), "c_R": (0, (1, 1.2))}
 
@@ -35,7 +37,8 @@ def draw_waves(ax: Axes, run: Run) -> None:
                 1e6 * np.array([began[1], end_s]),
                 color="0.25",
                 linestyle=line,
-                linewidth=0.5,
+                linewidth=0.6,
+                path_effects=style.outlined("white", 1.4),
                 gid=f"{wave}:{direction}",
             )
 
@@ -46,14 +49,25 @@ def space_time(results: Results, name: str) -> Drawing:
     figure = style.new_figure(style.COLUMN_MM, 72)
     ax = figure.subplots()
     rate = np.abs(history.slip_rate_m_per_s)
+    is_open = history.p_Pa <= 0
     image = ax.pcolormesh(
         style.mm(history.x_m),
         1e6 * history.time_s,
-        np.ma.masked_less(rate, RATE_RANGE_M_PER_S[0]),
+        np.ma.masked_where(is_open | (rate < RATE_RANGE_M_PER_S[0]), rate),
         shading="nearest",
         cmap="YlGnBu",
         norm=LogNorm(*RATE_RANGE_M_PER_S),
         rasterized=True,
+        gid="rate",
+    )
+    ax.pcolormesh(
+        style.mm(history.x_m),
+        1e6 * history.time_s,
+        np.ma.masked_where(~is_open, np.ones_like(rate)),
+        shading="nearest",
+        cmap=ListedColormap([OPEN_COLOUR]),
+        rasterized=True,
+        gid="open",
     )
     draw_waves(ax, run)
     for front in drawn_fronts(run):
@@ -71,13 +85,21 @@ def space_time(results: Results, name: str) -> Drawing:
         handles.append(
             Line2D([], [], color="0.25", linestyle=line, linewidth=0.5, label=rf"$c_\mathrm{{{wave[-1]}}}$")
         )
-    ax.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4, columnspacing=1.2)
+    handles.append(Patch(facecolor=OPEN_COLOUR, label="open"))
+    ax.legend(
+        handles=handles,
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.0),
+        ncols=5,
+        columnspacing=1.0,
+        handlelength=2.0,
+    )
     figure.colorbar(image, ax=ax, label="slip rate $|v|$ (m/s)", extend="max", pad=0.02, aspect=30)
     label = style.EVENT_STYLES[name].label.replace("$\\mu_k", "μ<sub>k</sub>").replace("$", "")
     return Drawing(
         f"space_time_{name}",
         figure,
         f"Slip rate along the interface over time, {label} event; logarithmic scale, white below "
-        f"{RATE_RANGE_M_PER_S[0]:g} m/s. Red: onsets of the fronts at least 10 mm long. Thin lines from the "
+        f"{RATE_RANGE_M_PER_S[0]:g} m/s, grey where the contact is open. Red: onsets of the fronts at least 10 mm long. Thin lines from the "
         "start of the first front: c<sub>L</sub> (solid), c<sub>S</sub> (dashed), c<sub>R</sub> (dotted).",
     )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import matplotlib.patheffects as path_effects
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -94,43 +95,65 @@ def outlined(colour: str, width: float) -> list:
     return [path_effects.withStroke(linewidth=width, foreground=colour)]
 
 
+def name_level(ax: Axes, level: float, label: str, below: bool = False) -> None:
+    """A label outside the right end of a horizontal line, where it hides nothing."""
+    ax.annotate(
+        label,
+        (1, level),
+        xycoords=ax.get_yaxis_transform(),
+        xytext=(2.5, 1.5 if below else -1.5),
+        textcoords="offset points",
+        ha="left",
+        va="top" if below else "bottom",
+        color="0.3",
+        fontsize=6,
+        annotation_clip=False,
+    )
+
+
 def wave_speed_lines(ax: Axes, run: Run, waves: tuple[str, ...] = ("c_L", "c_S", "c_R")) -> None:
     """Wave speeds over c_L as thin horizontal lines, named at the right end."""
     for wave in waves:
         level = run.fact(f"wave_speeds.{wave}_m_per_s") / run.c_L_m_per_s
         ax.axhline(level, linestyle=":" if wave == "c_R" else "-", gid=wave, **REFERENCE)
-        ax.annotate(
-            rf"$c_\mathrm{{{wave[-1]}}}$",
-            (1, level),
-            xycoords=ax.get_yaxis_transform(),
-            xytext=(-2, -1.5 if wave == "c_R" else 2.5),
-            textcoords="offset points",
-            ha="right",
-            va="top" if wave == "c_R" else "bottom",
-            color="0.35",
-            fontsize=6,
-        )
+        name_level(ax, level, rf"$c_\mathrm{{{wave[-1]}}}$", below=wave == "c_R")
 
 
-def draw_front(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, line=None) -> Line2D:
-    """A front's path in a plane of two of its measures; broken where one is undefined.
+def pale(colour: str) -> tuple:
+    """The colour mixed with white."""
+    return tuple(1 - 0.5 * (1 - np.array(to_rgb(colour))))
+
+
+def draw_front(
+    ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, weak: np.ndarray, line=None
+) -> None:
+    """A main front's path in a plane of two of its measures; broken where one is undefined.
 
     Markers, every 10 mm of path, are filled for a front against the imposed shear and open for one along it.
+    Its weak points are drawn as a thin pale line.
     """
     style = EVENT_STYLES[run.name]
-    spacing_m = np.median(np.abs(np.diff(front.x_m)))
-    every = max(1, round(10e-3 / spacing_m))
-    (drawn,) = ax.plot(
-        x,
-        y,
+    name = f"{run.name}:{front.id}"
+    every = max(1, round(10e-3 / np.median(np.abs(np.diff(front.x_m)))))
+    ax.plot(
+        np.where(weak, np.nan, x),
+        np.where(weak, np.nan, y),
         color=style.colour,
         linestyle=style.line if line is None else line,
         marker=style.marker,
         markevery=(every // 2, every),
         markerfacecolor=style.colour if front.direction < 0 else "white",
-        gid=f"{run.name}:{front.id}",
+        gid=name,
     )
-    return drawn
+    if weak.any():
+        # With one more point at each side the two lines meet.
+        wider = weak | np.roll(weak, 1) | np.roll(weak, -1)
+        wider[[0, -1]] = weak[[0, -1]]
+        draw_pale(ax, run, np.where(wider, x, np.nan), np.where(wider, y, np.nan), f"{name}:weak")
+
+
+def draw_pale(ax: Axes, run: Run, x: np.ndarray, y: np.ndarray, gid: str) -> None:
+    ax.plot(x, y, color=pale(EVENT_STYLES[run.name].colour), linewidth=0.5, zorder=1.2, gid=gid)
 
 
 def event_handles(runs: list[Run]) -> list[Line2D]:

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The two commands of the README and their parts. Each target does the set-up it needs and can be run again.
+SHELL := bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+
+APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv \
+  libfmt-dev libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev \
+  libhdf5-dev libsuitesparse-dev libopenblas-dev libgtest-dev libgmock-dev
+LINT_PACKAGES := clang-format-14 clang-tidy-14
+RESULTS ?= results
+EXPERIMENT ?=
+VENV := .venv
+PYTHON := $(VENV)/bin/python
+PROGRAM := build/release/slipfront
+
+.PHONY: help setup build test reproduce quick bench docs format format-check tidy clean
+
+help:  ## list the targets
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
+
+setup: packages $(VENV)/.installed  ## install the Debian packages that are missing and make the project's own venv
+
+.PHONY: packages
+packages:
+	@scripts/install-packages $(APT_PACKAGES)
+
+$(VENV)/.installed: pyproject.toml | packages
+	@echo "== Python environment $(VENV)"
+	python3 -m venv $(VENV)
+	$(PYTHON) -m pip install --quiet --disable-pip-version-check --upgrade pip
+	$(PYTHON) scripts/python-requirements.py | $(PYTHON) -m pip install --quiet --disable-pip-version-check -r /dev/stdin
+	@touch $@
+
+build: packages  ## build the program: build/release/slipfront
+	@echo "== Building $(PROGRAM)"
+	cmake --preset release
+	cmake --build --preset release
+
+test: build $(VENV)/.installed  ## all tests, C++ and Python
+	@scripts/run-tests build/release $(PYTHON)
+
+reproduce: build $(VENV)/.installed  ## everything behind the paper: runs, scorecard, figures, into results/
+	@echo "== Running the paper's cases into $(RESULTS)"
+	$(PROGRAM) reproduce -o $(RESULTS) --overwrite
+	@echo "== Drawing the figures"
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
+
+quick: build $(VENV)/.installed  ## the same in a second, on a coarse mesh, into results-quick/
+	$(PROGRAM) reproduce --quick -o $(RESULTS)-quick --overwrite
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-quick
+
+bench: build  ## node updates per second against the machine's bandwidth
+	$(PROGRAM) bench
+
+docs: build  ## renew docs/case-reference.md from the schema
+	$(PROGRAM) keys > docs/case-reference.md
+
+SOURCES = $(shell git ls-files 'src/*.cpp' 'src/*.hpp' 'tests/*.cpp' 'tests/*.hpp')
+
+lint-packages:
+	@scripts/install-packages $(LINT_PACKAGES)
+
+.PHONY: lint-packages
+format: lint-packages  ## format all C++ sources
+	clang-format-14 -i $(SOURCES)
+
+format-check: lint-packages  ## fail where a C++ source is not formatted
+	clang-format-14 --dry-run --Werror $(SOURCES)
+
+tidy: build lint-packages  ## clang-tidy over src, warnings are errors
+	run-clang-tidy-14 -quiet -p build/release '^$(CURDIR)/src/.*' > build/tidy.log 2>&1 || { grep -E 'error|warning' build/tidy.log | sort -u; exit 1; }
+	@echo "clang-tidy: no findings"
+
+clean:  ## remove build, venv and results
+	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The parameter studies of analysis.json."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from slipfront.read import DataError
+
+SPREADS = ("t_s_over_p_s", "t_d_over_p_d", "energy")
+
+
+@dataclass(frozen=True)
+class MainFront:
+    """The longest front of an event in its direction."""
+
+    start_x_m: float
+    end_x_m: float
+    end: str
+    mode: str
+    mean_over_c_L: float | None
+    max_over_c_L: float | None
+
+
+@dataclass(frozen=True)
+class StudyPoint:
+    """One value of the parameter; None where a number is undefined."""
+
+    value: str
+    number: float | None
+    fronts: dict[tuple[str, int], MainFront]  # by event and direction
+    change: dict[str, float | None]  # by event: median change of V_tip against the reference run
+    rms_over_c_L: float | None  # about the own fit of V_tip against the energy rise
+    share_in_paper_band: float | None
+    spread: dict[str, float | None]  # by the names in SPREADS
+
+
+@dataclass(frozen=True)
+class Study:
+    name: str
+    parameter: str  # key of the case file
+    why: str
+    points: list[StudyPoint]
+
+    @property
+    def unit(self) -> tuple[str, float]:
+        """Unit that the parameter is shown in, and the factor to it from SI."""
+        for ending, unit in (
+            ("_m2_per_s2", ("m²/s²", 1.0)),
+            ("_m", ("mm", 1e3)),
+            ("_s", ("µs", 1e6)),
+        ):
+            if self.parameter.endswith(ending):
+                return unit
+        return ("", 1.0)
+
+    @property
+    def numeric(self) -> bool:
+        return all(point.number is not None for point in self.points)
+
+    def shown(self, point: StudyPoint) -> str:
+        """The value as text, in the unit shown."""
+        if self.numeric:
+            return f"{point.number * self.unit[1]:.3g}"
+        return point.value.replace("_", " ")
+
+
+def read_point(point: dict) -> StudyPoint:
+    fronts: dict[tuple[str, int], MainFront] = {}
+    for event in point["events"]:
+        for f in sorted(event["fronts"], key=lambda f: abs(f["end_x_m"] - f["start_x_m"])):
+            fronts[event["event"], f["direction"]] = MainFront(  # the longest comes last
+                f["start_x_m"],
+                f["end_x_m"],
+                f["end"],
+                f["mode"],
+                f["mean_v_over_c_L"],
+                f["max_v_over_c_L"],
+            )
+    return StudyPoint(
+        value=str(point["value"]),
+        number=point["number"],
+        fronts=fronts,
+        change={e["event"]: e["speed_change"]["median"] for e in point["events"] if "speed_change" in e},
+        rms_over_c_L=point["fit"]["rms_over_c_L"] if point["fit"] is not None else None,
+        share_in_paper_band=point["share_in_paper_band"],
+        spread={name: point["spread"][name] for name in SPREADS},
+    )
+
+
+def read_studies(file: Path, analysis: dict) -> list[Study]:
+    """The studies of analysis.json; none where it has no such list."""
+    studies = []
+    for i, study in enumerate(analysis.get("studies", [])):
+        try:
+            points = [read_point(point) for point in study["points"]]
+            studies.append(Study(study["name"], study["parameter"], study["why"], points))
+        except KeyError as error:
+            raise DataError(f"{file}: study {i + 1} has no {error}") from None
+        except (TypeError, AttributeError):
+            raise DataError(f"{file}: study {i + 1} is not as expected") from None
+    return studies

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "interface/interface.hpp"
+
+namespace slipfront::interface {
+namespace {
+
+constexpr double dt = 1e-6;
+constexpr double mass = 0.4;             // kg/m2
+constexpr double impedance = mass / dt;  // Pa s/m
+const VelocityWeakening weakening{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1};
+
+/// One node on the plane that the trial velocity presses with p and drags with t_stop.
+Interface one_node(double t_stop_Pa, double p_Pa) {
+  Interface s(1);
+  s.mass_per_length_kg_m2[0] = mass;
+  s.v_x_m_per_s[0] = t_stop_Pa / impedance;
+  s.v_y_m_per_s[0] = -p_Pa / impedance;
+  return s;
+}
+
+TEST(Contact, FrictionStopsANodeWhereItCan) {
+  for (const double sign : {1.0, -1.0}) {
+    auto s = one_node(sign * 1.2e6, 1e6);
+    EXPECT_FALSE(update_contact(weakening, dt, s));
+    EXPECT_NEAR(s.p_Pa[0], 1e6, 1e-8);
+    EXPECT_NEAR(s.t_Pa[0], sign * 1.2e6, 1e-8);
+    EXPECT_NEAR(s.demand_Pa[0], 1.2e6, 1e-8);
+    EXPECT_EQ(s.v_x_m_per_s[0], 0);
+    EXPECT_EQ(s.slip_rate_m_per_s[0], 0);
+    EXPECT_EQ(s.slipping[0], 0);
+    EXPECT_NEAR(s.v_y_m_per_s[0], 0, 1e-15);
+  }
+}
+
+TEST(Contact, ANodeBeyondItsStrengthSlipsAgainstTheTraction) {
+  for (const double sign : {1.0, -1.0}) {
+    auto s = one_node(sign * 1.5e6, 1e6);
+    EXPECT_TRUE(update_contact(weakening, dt, s));
+    // It was at rest, so its strength is the static one.
+    EXPECT_NEAR(s.t_Pa[0], sign * 1.3e6, 1e-8);
+    EXPECT_NEAR(s.demand_Pa[0], 1.5e6, 1e-8);
+    EXPECT_EQ(s.slipping[0], 1);
+    EXPECT_NEAR(s.v_x_m_per_s[0], sign * 0.2e6 / impedance, 1e-14);
+    EXPECT_EQ(s.slip_rate_m_per_s[0], s.v_x_m_per_s[0]);
+
+    // The next step knows the slip rate.
+    const double rate = std::abs(s.slip_rate_m_per_s[0]);
+    s.v_x_m_per_s[0] = sign * 1.4e6 / impedance;
+    s.v_y_m_per_s[0] = -1e6 / impedance;
+    EXPECT_FALSE(update_contact(weakening, dt, s));
+    const double mu = 0.6 + 0.7 * std::exp(-rate * std::sqrt(7.0));
+    EXPECT_LT(mu, 1.2);
+    EXPECT_NEAR(s.t_Pa[0], sign * mu * 1e6, 1e-7);
+    EXPECT_EQ(s.slipping[0], 1);
+  }
+}
+
+TEST(Contact, ASlippingNodeSticksAgainAndRegainsItsStrength) {
+  auto s = one_node(1.5e6, 1e6);
+  EXPECT_TRUE(update_contact(weakening, dt, s));
+  // The weakened strength can stop it now.
+  s.v_x_m_per_s[0] = 0.5e6 / impedance;
+  s.v_y_m_per_s[0] = -1e6 / impedance;
+  EXPECT_TRUE(update_contact(weakening, dt, s));
+  EXPECT_EQ(s.slipping[0], 0);
+  EXPECT_EQ(s.slip_rate_m_per_s[0], 0);
+  EXPECT_NEAR(s.t_Pa[0], 0.5e6, 1e-8);
+  // Above mu_k p and the strength at the old slip rate, but below mu_s p.
+  s.v_x_m_per_s[0] = 1.29e6 / impedance;
+  s.v_y_m_per_s[0] = -1e6 / impedance;
+  EXPECT_FALSE(update_contact(weakening, dt, s));
+  EXPECT_EQ(s.slipping[0], 0);
+}
+
+TEST(Contact, ASeparatingNodeIsReleased) {
+  auto s = one_node(1.5e6, 1e6);
+  update_contact(weakening, dt, s);
+  ASSERT_EQ(s.slipping[0], 1);
+  s.v_x_m_per_s[0] = 0.3;
+  s.v_y_m_per_s[0] = 0.1;
+  EXPECT_TRUE(update_contact(weakening, dt, s));  // it ceases to slip by leaving the plane
+  EXPECT_EQ(s.p_Pa[0], 0);
+  EXPECT_EQ(s.t_Pa[0], 0);
+  EXPECT_EQ(s.slipping[0], 0);
+  EXPECT_EQ(s.v_x_m_per_s[0], 0.3);
+  EXPECT_EQ(s.v_y_m_per_s[0], 0.1);
+  EXPECT_FALSE(update_contact(weakening, dt, s));
+}
+
+TEST(Contact, AGapClosesExactlyAtTheStepsEnd) {
+  auto s = one_node(0, 0);
+  s.initial_gap_m[0] = 3e-7;
+  s.u_y_m[0] = -2e-7;
+  s.v_y_m_per_s[0] = -0.5;  // would go 0.4 um below the plane
+  update_contact(weakening, dt, s);
+  EXPECT_NEAR(s.p_Pa[0], 0.4 * impedance, 1e-8);
+  const double gap = s.initial_gap_m[0] + s.u_y_m[0] + dt * s.v_y_m_per_s[0];
+  EXPECT_NEAR(gap, 0, 1e-22);  // rounding of 1e-7
+
+  // In contact at rest afterwards.
+  s.u_y_m[0] += dt * s.v_y_m_per_s[0];
+  s.v_y_m_per_s[0] = -0.01;
+  update_contact(weakening, dt, s);
+  EXPECT_NEAR(s.p_Pa[0], 0.01 * impedance, 1e-8);
+  EXPECT_NEAR(s.v_y_m_per_s[0], 0, 1e-15);
+}
+
+TEST(Contact, AGapThatStaysOpenCarriesNothing) {
+  auto s = one_node(0, 0);
+  s.initial_gap_m[0] = 3e-7;
+  s.v_y_m_per_s[0] = -0.29;
+  s.v_x_m_per_s[0] = 1;
+  EXPECT_FALSE(update_contact(weakening, dt, s));
+  EXPECT_EQ(s.p_Pa[0], 0);
+  EXPECT_EQ(s.t_Pa[0], 0);
+  EXPECT_EQ(s.v_y_m_per_s[0], -0.29);
+  EXPECT_EQ(s.v_x_m_per_s[0], 1);
+  EXPECT_EQ(s.slipping[0], 0);
+}
+
+TEST(Contact, AReturningNodeSlipsAtTheSpeedItHas) {
+  auto s = one_node(0, 0);
+  s.v_x_m_per_s[0] = 2;
+  s.v_y_m_per_s[0] = 0.1;
+  update_contact(weakening, dt, s);  // in the air: moves at 2 m/s
+  s.u_y_m[0] += dt * s.v_y_m_per_s[0];
+  s.v_y_m_per_s[0] = -1;
+  EXPECT_TRUE(update_contact(weakening, dt, s));
+  EXPECT_EQ(s.slipping[0], 1);
+  EXPECT_NEAR(s.p_Pa[0], 0.9 * impedance, 1e-8);
+  EXPECT_NEAR(s.t_Pa[0] / s.p_Pa[0], 0.6 + 0.7 * std::exp(-2 * std::sqrt(7.0)), 1e-12);
+}
+
+TEST(Contact, TellsWhetherAnyNodeChanged) {
+  // Two changes in one step must not cancel.
+  Interface s(3);
+  for (int i = 0; i < 3; ++i) {
+    s.mass_per_length_kg_m2[i] = mass;
+    s.v_y_m_per_s[i] = -1e6 / impedance;
+    s.v_x_m_per_s[i] = (i == 1 ? 0.5e6 : 1.5e6) / impedance;
+  }
+  EXPECT_TRUE(update_contact(weakening, dt, s));
+  EXPECT_EQ(s.slipping, (std::vector<std::uint8_t>{1, 0, 1}));
+  // One begins while another ceases.
+  for (int i = 0; i < 3; ++i) {
+    s.v_y_m_per_s[i] = -1e6 / impedance;
+    s.v_x_m_per_s[i] = (i == 0 ? 0.1e6 : 2e6) / impedance;
+  }
+  EXPECT_TRUE(update_contact(weakening, dt, s));
+  EXPECT_EQ(s.slipping, (std::vector<std::uint8_t>{0, 1, 1}));
+}
+
+TEST(Contact, CoulombsLawDoesNotWeaken) {
+  auto s = one_node(0.5e6, 1e6);
+  update_contact(Coulomb{.mu = 0.4}, dt, s);
+  EXPECT_EQ(s.slipping[0], 1);
+  for (int k = 0; k < 2; ++k) {
+    s.v_x_m_per_s[0] = 0.5e6 / impedance;
+    s.v_y_m_per_s[0] = -1e6 / impedance;
+    update_contact(Coulomb{.mu = 0.4}, dt, s);
+    EXPECT_NEAR(s.t_Pa[0], 0.4e6, 1e-8);
+  }
+}
+
+TEST(Contact, ObeysItsConditionsWhateverTheTrial) {
+  // Signorini's and Coulomb's conditions at the step's end, and friction that never drives.
+  std::uint64_t state = 1;
+  const auto random = [&state] {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state >> 11) / 4503599627370496.0 - 1;
+  };
+  const int n = 10000;
+  Interface s(n);
+  for (int i = 0; i < n; ++i) {
+    s.mass_per_length_kg_m2[i] = mass * (1.5 + random());
+    s.initial_gap_m[i] = i % 2 == 0 ? 0 : 0.5e-6 * (1 + random());
+    s.v_x_m_per_s[i] = random();
+    s.v_y_m_per_s[i] = random();
+    s.slip_rate_m_per_s[i] = i % 3 == 0 ? 0 : random();
+  }
+  const Interface trial = s;
+  update_contact(weakening, dt, s);
+  int n_stick = 0, n_slip = 0, n_open = 0;
+  for (int i = 0; i < n; ++i) {
+    const double scale = s.mass_per_length_kg_m2[i] / dt;  // Pa per m/s
+    const double gap_rate = s.initial_gap_m[i] / dt + s.v_y_m_per_s[i];
+    const double mu = weakening.evaluator()(std::abs(trial.slip_rate_m_per_s[i]));
+    ASSERT_GE(s.p_Pa[i], 0);
+    ASSERT_GE(gap_rate, -1e-15);
+    ASSERT_LE(s.p_Pa[i] * gap_rate, 1e-15 * scale * 2);
+    ASSERT_LE(std::abs(s.t_Pa[i]), mu * s.p_Pa[i] * (1 + 1e-15));
+    ASSERT_GE(s.t_Pa[i] * s.v_x_m_per_s[i], 0);
+    // Momentum: the tractions are what changed the trial velocity.
+    ASSERT_NEAR(trial.v_x_m_per_s[i] - s.v_x_m_per_s[i], s.t_Pa[i] / scale, 1e-15);
+    ASSERT_NEAR(s.v_y_m_per_s[i] - trial.v_y_m_per_s[i], s.p_Pa[i] / scale, 4e-15);
+    if (s.p_Pa[i] == 0) {
+      ++n_open;
+      ASSERT_EQ(s.slipping[i], 0);
+    } else if (s.slipping[i] != 0) {
+      ++n_slip;
+      ASSERT_NEAR(std::abs(s.t_Pa[i]), mu * s.p_Pa[i], 1e-15 * scale * 4);
+    } else {
+      ++n_stick;
+      ASSERT_EQ(s.v_x_m_per_s[i], 0);
+    }
+  }
+  for (const int count : {n_stick, n_slip, n_open}) EXPECT_GT(count, n / 10);
+}
+
+}  // namespace
+}  // namespace slipfront::interface

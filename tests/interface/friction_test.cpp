@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include "interface/friction/registry.hpp"
+
+namespace slipfront::interface {
+namespace {
+
+/// Calls f(law) with a default-constructed law of each type in the registry.
+template <std::size_t k = 0, class F>
+void for_each_law(F&& f) {
+  if constexpr (k < std::variant_size_v<FrictionLaw>) {
+    f(std::variant_alternative_t<k, FrictionLaw>{});
+    for_each_law<k + 1>(f);
+  }
+}
+
+TEST(Registry, HoldsTheLawsTheCaseFileNames) {
+  std::set<std::string> names;
+  for_each_law([&](const auto& law) { names.insert(law.name); });
+  EXPECT_EQ(names, (std::set<std::string>{"velocity_weakening", "coulomb"}));
+  EXPECT_EQ(names.size(), std::variant_size_v<FrictionLaw>);
+}
+
+TEST(Registry, EachLawIsUsableByDefault) {
+  for_each_law([](const auto& law) {
+    SCOPED_TRACE(law.name);
+    EXPECT_STRNE(law.help, "");
+    EXPECT_STREQ(law.inconsistency(), "");
+    // Strength before slip is the static one; speed never makes it stronger or negative.
+    const auto mu = law.evaluator();
+    EXPECT_DOUBLE_EQ(mu(0), law.static_coefficient());
+    EXPECT_EQ(static_coefficient(FrictionLaw(law)), law.static_coefficient());
+    for (const double v : {1e-9, 1e-3, 1.0, 1e3}) {
+      EXPECT_GE(mu(v), 0);
+      EXPECT_LE(mu(v), mu(0));
+    }
+  });
+}
+
+TEST(Registry, ParametersReachTheirMembers) {
+  for_each_law([](auto law) {
+    using Law = decltype(law);
+    SCOPED_TRACE(law.name);
+    std::set<std::string> keys;
+    double value = 0.25;
+    for (const auto& p : Law::parameters()) {
+      EXPECT_TRUE(keys.insert(p.key).second) << p.key;
+      EXPECT_STRNE(p.help, "");
+      EXPECT_GE(law.*p.member, p.min) << p.key;
+      EXPECT_LE(law.*p.member, p.max) << p.key;
+      law.*p.member = value;
+      value += 0.125;
+    }
+    // Each parameter has a member of its own, and there is no other member.
+    value = 0.25;
+    for (const auto& p : Law::parameters()) {
+      EXPECT_EQ(law.*p.member, value) << p.key;
+      value += 0.125;
+    }
+    EXPECT_EQ(sizeof(Law), sizeof(double) * Law::parameters().size());
+  });
+}
+
+TEST(VelocityWeakening, FallsFromStaticToKinetic) {
+  const VelocityWeakening law{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1};
+  const auto mu = law.evaluator();
+  EXPECT_DOUBLE_EQ(mu(0), 1.3);
+  EXPECT_DOUBLE_EQ(mu(1e3), 0.6);
+  // By hand: sqrt(0.7 / 0.1) = 2.6457513 s/m; at 0.1 m/s 0.6 + 0.7 exp(-0.26457513) = 1.1372724.
+  EXPECT_NEAR(mu(0.1), 1.1372724, 5e-7);
+  double last = mu(0);
+  for (int k = 1; k <= 100; ++k) {
+    EXPECT_LT(mu(0.02 * k), last);
+    last = mu(0.02 * k);
+  }
+}
+
+TEST(VelocityWeakening, SlopeAtRestIsTheSteepest) {
+  // mu'(0) = -(mu_s - mu_k)^(3/2) / sqrt(alpha)
+  const VelocityWeakening law{.mu_s = 1.3, .mu_k = 1.0, .alpha_m2_per_s2 = 0.1};
+  const auto mu = law.evaluator();
+  EXPECT_NEAR((mu(1e-6) - mu(0)) / 1e-6, -std::pow(0.3, 1.5) / std::sqrt(0.1), 1e-5);
+}
+
+TEST(VelocityWeakening, EqualCoefficientsAreCoulombs) {
+  const VelocityWeakening law{.mu_s = 0.7, .mu_k = 0.7, .alpha_m2_per_s2 = 0.1};
+  EXPECT_STREQ(law.inconsistency(), "");
+  for (const double v : {0.0, 0.1, 10.0}) EXPECT_EQ(law.evaluator()(v), 0.7);
+}
+
+TEST(VelocityWeakening, RefusesAKineticCoefficientAboveTheStaticOne) {
+  const VelocityWeakening law{.mu_s = 0.7, .mu_k = 0.8, .alpha_m2_per_s2 = 0.1};
+  EXPECT_STREQ(law.inconsistency(), "mu_k must be at most mu_s");
+}
+
+TEST(Coulomb, DoesNotKnowTheSpeed) {
+  const Coulomb law{.mu = 0.4};
+  EXPECT_EQ(law.static_coefficient(), 0.4);
+  for (const double v : {0.0, 1e-6, 1.0, 1e6}) EXPECT_EQ(law.evaluator()(v), 0.4);
+}
+
+}  // namespace
+}  // namespace slipfront::interface

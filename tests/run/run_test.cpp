@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "base/error.hpp"
+#include "cases.hpp"
+#include "fronts/measures.hpp"
+
+namespace slipfront::run {
+namespace {
+
+using interface::EventKind;
+using test::coarse_case;
+using test::go_on;
+using test::law;
+
+/// Equilibria come from a solve with a condition number below 1e6, so to about 1e-10.
+constexpr double solve_error = 1e-9;
+
+const InitialState& coarse_state() {
+  static const InitialState initial = make_initial_state(coarse_case(), go_on);
+  return initial;
+}
+
+Result run(const io::Case& config) {
+  return run_event(config, coarse_state(), go_on);
+}
+
+/// The same bits, so that an undefined value equals itself.
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+bool same_bits(const solid::Field& a, const solid::Field& b) {
+  return same_bits(a.x, b.x) && same_bits(a.y, b.y);
+}
+
+/// Largest t/p inside, from the tractions themselves.
+double largest_ratio(const solve::Equilibrium& e) {
+  double most = 0;
+  for (std::size_t k = 0; k < e.tractions.x_m.size(); ++k) {
+    const double x = e.tractions.x_m[k];
+    if (x < e.inside_from_m || x > e.inside_to_m || e.tractions.p_s_Pa[k] <= 0) continue;
+    most = std::max(most, e.tractions.t_s_Pa[k] / e.tractions.p_s_Pa[k]);
+  }
+  return most;
+}
+
+const fronts::Front* longest(const std::vector<fronts::Front>& fronts, int direction) {
+  const fronts::Front* found = nullptr;
+  for (const auto& front : fronts)
+    if (front.direction == direction &&
+        (found == nullptr || fronts::length_m(front) > fronts::length_m(*found)))
+      found = &front;
+  return found;
+}
+
+TEST(InitialState, CommonIsBelowAndSpontaneousAboveTheStrength) {
+  const auto& initial = coarse_state();
+  EXPECT_NEAR(initial.common.peak_ratio, (1 - 1e-3) * 1.3, 1.3 * solve_error);
+  EXPECT_NEAR(initial.spontaneous.peak_ratio, (1 + 1e-3) * 1.3, 1.3 * solve_error);
+  EXPECT_DOUBLE_EQ(largest_ratio(initial.common), initial.common.peak_ratio);
+  EXPECT_DOUBLE_EQ(largest_ratio(initial.spontaneous), initial.spontaneous.peak_ratio);
+  EXPECT_LT(initial.common.shear_m, initial.critical_shear_m);
+  EXPECT_GT(initial.spontaneous.shear_m, initial.critical_shear_m);
+}
+
+TEST(InitialState, FollowsTheMargin) {
+  auto config = coarse_case();
+  config.loading.critical_margin = 0.02;
+  const auto initial = make_initial_state(config, go_on);
+  EXPECT_NEAR(initial.common.peak_ratio, 0.98 * 1.3, 1.3 * solve_error);
+  EXPECT_NEAR(initial.spontaneous.peak_ratio, 1.02 * 1.3, 1.3 * solve_error);
+  EXPECT_EQ(initial.critical_shear_m, coarse_state().critical_shear_m);
+}
+
+TEST(InitialState, PeakIsFarFromTheEdges) {
+  // Kammer et al. (2012): nucleation "far from the edges"; a fifth of the width is the scorecard's limit.
+  const auto& common = coarse_state().common;
+  EXPECT_GT(common.peak_x_m, 0.2 * 0.2);
+  EXPECT_LT(common.peak_x_m, 0.8 * 0.2);
+}
+
+TEST(InitialStateKey, IgnoresWhatOnlyConcernsTheEvent) {
+  const std::string key = initial_state_key(coarse_case());
+  const auto same = [&](const char* what, auto&& change) {
+    auto config = coarse_case();
+    change(config);
+    EXPECT_EQ(initial_state_key(config), key) << what;
+  };
+  same("mu_k", [](io::Case& c) { law(c).mu_k = 1.0; });
+  same("alpha", [](io::Case& c) { law(c).alpha_m2_per_s2 = 1.0; });
+  same("law", [](io::Case& c) {
+    c.friction = interface::Coulomb { 1.3 };
+  });
+  for (const auto event : {EventKind::none, EventKind::left, EventKind::right})
+    same("event", [event](io::Case& c) { c.event = event; });
+  same("trigger", [](io::Case& c) { c.trigger = {1e-3, 2, 1e-6, 1e-5}; });
+  same("time", [](io::Case& c) { c.time.step_factor = 0.1; });
+  same("l*", [](io::Case& c) { c.fronts.l_star_m = 5e-3; });
+  same("output", [](io::Case& c) { c.output = {1e-6, {1e-5}}; });
+  same("title", [](io::Case& c) { c.title = "another"; });
+  same("density", [](io::Case& c) { c.material.density_kg_per_m3 = 2400; });
+  same("damping", [](io::Case& c) { c.material.stiffness_damping_s = 0; });
+}
+
+TEST(InitialStateKey, TellsApartWhatChangesTheStatics) {
+  const std::string key = initial_state_key(coarse_case());
+  const auto differs = [&](const char* what, auto&& change) {
+    auto config = coarse_case();
+    change(config);
+    EXPECT_NE(initial_state_key(config), key) << what;
+  };
+  differs("width", [](io::Case& c) { c.plate.width_m = 0.4; });
+  differs("height", [](io::Case& c) { c.plate.height_m = 0.2; });
+  differs("element", [](io::Case& c) { c.plate.element_size_m = 2e-3; });
+  differs("corner", [](io::Case& c) { c.plate.corner = mesh::Corner::none; });
+  differs("relief", [](io::Case& c) { c.plate.relief_height_m = 0.4e-3; });
+  differs("E", [](io::Case& c) { c.material.youngs_modulus_Pa = 2.7e9; });
+  differs("nu", [](io::Case& c) { c.material.poissons_ratio = 0.3; });
+  differs("plane", [](io::Case& c) { c.material.plane = solid::Plane::strain; });
+  differs("tilt, left", [](io::Case& c) { c.loading.tilt_left_m = 0.38e-3; });
+  differs("tilt, right", [](io::Case& c) { c.loading.tilt_right_m = 0.04e-3; });
+  differs("top", [](io::Case& c) { c.loading.top_during_tilt = solve::TopEdge::free; });
+  differs("edge margin", [](io::Case& c) { c.loading.edge_margin_m = 5e-3; });
+  differs("critical margin", [](io::Case& c) { c.loading.critical_margin = 2e-3; });
+  differs("method", [](io::Case& c) { c.loading.method = solve::LoadingMethod::ramp; });
+  differs("mu_s", [](io::Case& c) { law(c).mu_s = 1.2; });
+  // Neighbouring doubles are two cases.
+  differs("last bit", [](io::Case& c) { law(c).mu_s = std::nextafter(1.3, 2.0); });
+}
+
+TEST(InitialStateKey, OfARampHoldsTheLawAndTheStep) {
+  auto config = coarse_case();
+  config.loading.method = solve::LoadingMethod::ramp;
+  const std::string key = initial_state_key(config);
+  auto other = config;
+  law(other).mu_k = 1.0;
+  EXPECT_NE(initial_state_key(other), key);
+  other = config;
+  other.time.step_factor = 0.5;
+  EXPECT_NE(initial_state_key(other), key);
+  other = config;
+  other.material.density_kg_per_m3 = 2400;
+  EXPECT_NE(initial_state_key(other), key);
+  other = config;
+  other.event = EventKind::left;
+  EXPECT_EQ(initial_state_key(other), key);
+}
+
+TEST(InitialStateKey, EqualKeysMeanEqualStates) {
+  auto config = coarse_case(EventKind::right);
+  config.material.density_kg_per_m3 = 2400;
+  config.material.stiffness_damping_s = 1e-6;
+  law(config).mu_k = 1.0;
+  ASSERT_EQ(initial_state_key(config), initial_state_key(coarse_case()));
+  const auto other = make_initial_state(config, go_on);
+  EXPECT_TRUE(same_bits(other.common.u_m, coarse_state().common.u_m));
+  EXPECT_TRUE(same_bits(other.spontaneous.u_m, coarse_state().spontaneous.u_m));
+  EXPECT_TRUE(same_bits(other.common.tractions.t_s_Pa, coarse_state().common.tractions.t_s_Pa));
+  EXPECT_EQ(other.critical_shear_m, coarse_state().critical_shear_m);
+}
+
+TEST(Event, SpontaneousFrontsRunBothWaysFromThePeak) {
+  const auto config = coarse_case(EventKind::spontaneous, 2e-3);
+  const auto initial = make_initial_state(config, go_on);
+  const auto result = run_event(config, initial, go_on);
+  ASSERT_FALSE(result.event.record.onsets.empty());
+  const auto& state = initial.spontaneous;
+  for (const int direction : {-1, 1}) {
+    const auto* front = longest(result.fronts, direction);
+    ASSERT_NE(front, nullptr) << direction;
+    // It starts at a node that the raised shear has brought above mu_s, inside, where the peak is.
+    const auto start = static_cast<std::size_t>(front->points.front().node);
+    EXPECT_GT(state.tractions.t_s_Pa[start], 1.3 * state.tractions.p_s_Pa[start]) << direction;
+    EXPECT_GT(front->points.front().x_m, state.inside_from_m);
+    EXPECT_LT(front->points.front().x_m, state.inside_to_m);
+    EXPECT_GT(fronts::length_m(*front), 20e-3) << direction;
+    for (std::size_t k = 1; k < front->points.size(); ++k)
+      EXPECT_GT(direction * (front->points[k].x_m - front->points[k - 1].x_m), 0);
+  }
+}
+
+TEST(Event, TriggersStartAFrontAtTheirEdge) {
+  for (const auto event : {EventKind::left, EventKind::right}) {
+    const auto config = coarse_case(event);
+    const auto result = run(config);
+    const int inward = event == EventKind::left ? 1 : -1;
+    const auto* front = longest(result.fronts, inward);
+    ASSERT_NE(front, nullptr) << inward;
+    const auto& common = coarse_state().common;
+    const double edge = event == EventKind::left ? common.inside_from_m - config.loading.edge_margin_m
+                                                 : common.inside_to_m + config.loading.edge_margin_m;
+    EXPECT_LE(std::abs(front->points.front().x_m - edge), config.trigger.zone_m * (1 + 1e-9)) << inward;
+    // It leaves the zone by itself and reaches the place of the largest t/p.
+    EXPECT_GT(inward * (front->points.back().x_m - common.peak_x_m), 0) << inward;
+    EXPECT_GT(result.event.energy_at_end.trigger_work, 0);
+  }
+}
+
+TEST(Event, DynamicTractionsAreLeftOutNextToTheTrigger) {
+  const auto config = coarse_case(EventKind::left);
+  const auto result = run(config);
+  const double inner =
+      coarse_state().common.inside_from_m - config.loading.edge_margin_m + 20e-3;  // zone and margin
+  const auto* front = longest(result.fronts, 1);
+  ASSERT_NE(front, nullptr);
+  int inside = 0, outside = 0;
+  for (const auto& p : front->points) {
+    EXPECT_TRUE(p.x_m >= inner || std::isnan(p.t_d_Pa)) << p.x_m;
+    inside += p.x_m < inner;
+    outside += p.x_m >= inner && std::isfinite(p.t_d_Pa);
+  }
+  EXPECT_GT(inside, 0);
+  EXPECT_GT(outside, 0);
+}
+
+TEST(Event, NothingSlipsInTheCommonStateLeftToItself) {
+  const auto result = run(coarse_case(EventKind::none));
+  // A node near an edge may stand at mu_s and creep with the loaded edge.
+  for (const auto& onset : result.event.record.onsets) {
+    const double x = result.event.record.x_m[onset.node];
+    EXPECT_TRUE(x < coarse_state().common.inside_from_m || x > coarse_state().common.inside_to_m) << x;
+  }
+  EXPECT_TRUE(result.fronts.empty());
+}
+
+TEST(Event, TwoRunsAreBitwiseEqual) {
+  for (const auto event : {EventKind::spontaneous, EventKind::left}) {
+    const auto config = coarse_case(event);
+    const auto again = make_initial_state(config, go_on);
+    EXPECT_TRUE(same_bits(again.common.u_m, coarse_state().common.u_m));
+    const auto a = run(config), b = run_event(config, again, go_on);
+    EXPECT_EQ(a.event.steps, b.event.steps);
+    EXPECT_TRUE(same_bits(a.event.history.time_s, b.event.history.time_s));
+    EXPECT_TRUE(same_bits(a.event.history.slip_m, b.event.history.slip_m));
+    EXPECT_TRUE(same_bits(a.event.history.slip_rate_m_per_s, b.event.history.slip_rate_m_per_s));
+    EXPECT_TRUE(same_bits(a.event.history.t_Pa, b.event.history.t_Pa));
+    EXPECT_TRUE(same_bits(a.event.history.p_Pa, b.event.history.p_Pa));
+    const auto &r = a.event.record, &s = b.event.record;
+    ASSERT_GT(r.onsets.size(), 10U);
+    ASSERT_EQ(r.onsets.size(), s.onsets.size());
+    ASSERT_EQ(r.stops.size(), s.stops.size());
+    for (std::size_t k = 0; k < r.onsets.size(); ++k) {
+      EXPECT_EQ(r.onsets[k].node, s.onsets[k].node);
+      EXPECT_EQ(r.onsets[k].time_s, s.onsets[k].time_s);
+    }
+    for (std::size_t k = 0; k < r.stops.size(); ++k) {
+      EXPECT_EQ(r.stops[k].node, s.stops[k].node);
+      EXPECT_EQ(r.stops[k].time_s, s.stops[k].time_s);
+    }
+    EXPECT_EQ(std::memcmp(r.around.data(), s.around.data(), r.around.size() * sizeof(r.around[0])), 0);
+  }
+}
+
+TEST(Event, SnapshotsAndHistoryDoNotDisturbTheMotion) {
+  auto config = coarse_case();
+  const auto plain = run(config);
+  config.output = {1e-6, {0, 20e-6, 60e-6}};
+  const auto other = run(config);
+  EXPECT_EQ(other.event.snapshots.size(), 3U);
+  EXPECT_NE(plain.event.history.time_s.size(), 0U);
+  ASSERT_EQ(plain.event.record.onsets.size(), other.event.record.onsets.size());
+  for (std::size_t k = 0; k < plain.event.record.onsets.size(); ++k)
+    EXPECT_EQ(plain.event.record.onsets[k].time_s, other.event.record.onsets[k].time_s);
+}
+
+TEST(Event, HistoryRowsKeepTheirSpacing) {
+  auto config = coarse_case();
+  config.output.history_interval_s = 10e-6;
+  const auto result = run(config);
+  const auto& times = result.event.history.time_s;
+  ASSERT_GT(times.size(), 5U);
+  EXPECT_EQ(times.front(), 0);
+  // A row is taken at the first step that is due, so at most a step late.
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    EXPECT_GE(times[k], static_cast<double>(k) * 10e-6 * (1 - 1e-12));
+    EXPECT_LT(times[k], static_cast<double>(k) * 10e-6 + result.step_s);
+  }
+}
+
+TEST(Event, InterruptionKeepsWhatThereIs) {
+  auto config = coarse_case();
+  config.time.quiet_s = std::numeric_limits<double>::infinity();
+  std::int64_t last = 0;
+  const auto result = run_event(config, coarse_state(), [&](std::int64_t step, std::int64_t total) {
+    EXPECT_GT(total, step);
+    last = step;
+    return step < 100;
+  });
+  EXPECT_EQ(result.event.end, solve::EventEnd::interrupted);
+  EXPECT_EQ(result.event.steps, last);
+  EXPECT_GE(last, 100);
+  EXPECT_FALSE(result.fronts.empty());
+  EXPECT_FALSE(result.event.history.time_s.empty());
+}
+
+TEST(Event, BlowUpIsToldWithItsStep) {
+  auto config = coarse_case();
+  config.time.step_factor = 1.4;
+  config.time.allow_unstable = true;
+  const auto result = run(config);
+  EXPECT_EQ(result.event.end, solve::EventEnd::blow_up);
+  EXPECT_NE(result.event.blow_up.find("step " + std::to_string(result.event.steps)), std::string::npos)
+      << result.event.blow_up;
+  EXPECT_NE(result.event.blow_up.find("time.step_factor"), std::string::npos);
+}
+
+TEST(Info, AgreesWithTheRun) {
+  for (const auto corner : {mesh::Corner::none, mesh::Corner::relief, mesh::Corner::fillet}) {
+    auto config = coarse_case();
+    config.plate.corner = corner;
+    config.time.quiet_s = std::numeric_limits<double>::infinity();  // to the end
+    const auto info = run::info(config);
+    const auto initial = make_initial_state(config, go_on);
+    const auto result = run_event(config, initial, go_on);
+    EXPECT_EQ(result.event.end, solve::EventEnd::end_time);
+    EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes());
+    EXPECT_EQ(info.n_cells, std::ssize(initial.mesh.cells));
+    EXPECT_EQ(info.n_interface, std::ssize(result.event.history.x_m));
+    EXPECT_EQ(info.stable_step_s, result.stable_step_s);
+    EXPECT_EQ(info.step_s, result.step_s);
+    EXPECT_DOUBLE_EQ(info.step_s, 0.9 * info.stable_step_s);
+    EXPECT_DOUBLE_EQ(info.substep_s, info.step_s / 18);
+    EXPECT_EQ(info.n_steps, result.event.steps);
+    EXPECT_DOUBLE_EQ(info.node_updates,
+                     static_cast<double>(result.event.steps) * result.node_updates_per_step);
+    EXPECT_EQ(info.speeds.c_L, result.speeds.c_L);
+    EXPECT_GE(info.memory_bytes, info.factor_bytes);
+    EXPECT_GT(info.expected_s, 0);
+  }
+}
+
+TEST(WaveSpeeds, OfThePaper) {
+  // Kammer et al. (2012), Table 1: 1584 and 890 m/s, printed to whole metres and to ten of them.
+  const auto speeds = wave_speeds(solid::Material{});
+  EXPECT_NEAR(speeds.c_L, 1584, 1);
+  EXPECT_NEAR(speeds.c_S, 890, 1);
+  EXPECT_LT(speeds.c_R, speeds.c_S);
+}
+
+TEST(Record, RebuiltFromTheHistoryGivesTheSameFronts) {
+  auto config = coarse_case(EventKind::spontaneous, 2e-3);
+  config.output.history_interval_s = 1e-12;  // a row at every step
+  const auto initial = make_initial_state(config, go_on);
+  const auto result = run_event(config, initial, go_on);
+  // A sticking node rests exactly; a slipping one moves at about 1 m/s.
+  const auto record = fronts::record_from_history(result.event.history, 1e-3, result.event.record.halo);
+  const auto rebuilt = fronts::find_fronts(record, initial.common.tractions, front_options(config, initial));
+  for (const int direction : {-1, 1}) {
+    const auto *a = longest(result.fronts, direction), *b = longest(rebuilt, direction);
+    ASSERT_NE(a, nullptr);
+    ASSERT_NE(b, nullptr);
+    // Both onsets of a node lie between the same two rows, or the rate passes the threshold a sub-step later.
+    const double tolerance_s = result.step_s * (1 + 1.0 / 18);
+    EXPECT_EQ(a->points.back().node, b->points.back().node);
+    // Which of the nodes that begin within one interval is the first, the history cannot tell.
+    const auto in_a = [&](int node) { return std::ranges::find(a->points, node, &fronts::FrontPoint::node); };
+    std::size_t n_common = 0;
+    for (const auto& p : b->points) {
+      const auto original = in_a(p.node);
+      if (original == a->points.end()) {
+        EXPECT_LE(p.onset_s, b->points.front().onset_s + tolerance_s) << direction << ' ' << p.node;
+        continue;
+      }
+      ++n_common;
+      EXPECT_NEAR(original->onset_s, p.onset_s, tolerance_s) << direction << ' ' << p.node;
+    }
+    const auto late = std::ranges::count_if(a->points, [&](const fronts::FrontPoint& p) {
+      return p.onset_s > a->points.front().onset_s + 2 * tolerance_s;
+    });
+    EXPECT_GT(late, 10);
+    EXPECT_GE(std::ssize(b->points), late);
+    EXPECT_GE(n_common, late);
+  }
+}
+
+TEST(Ramp, ReachesTheDirectCriticalShear) {
+  auto config = coarse_case(EventKind::spontaneous, 5e-3);
+  config.loading.method = solve::LoadingMethod::ramp;
+  std::int64_t asked = 0;
+  const auto initial = make_initial_state(config, [&](std::int64_t, std::int64_t) { return ++asked > 0; });
+  ASSERT_TRUE(initial.ramp.has_value());
+  EXPECT_GT(asked, 0);
+  EXPECT_GT(initial.ramp->steps, 10000);
+  // 0.5 % is the agreement asked for between the two ways.
+  EXPECT_NEAR(initial.ramp->spontaneous.shear_m, initial.critical_shear_m, 0.005 * initial.critical_shear_m);
+  EXPECT_GE(initial.common.peak_ratio, (1 - 1e-3) * 1.3);
+  EXPECT_LT(initial.common.peak_ratio, 1.3);
+  EXPECT_GE(initial.spontaneous.peak_ratio, (1 - solve::ramp_handover) * 1.3);
+
+  const auto result = run_event(config, initial, go_on);
+  const auto direct_config = coarse_case(EventKind::spontaneous, 5e-3);
+  const auto direct = make_initial_state(direct_config, go_on);
+  EXPECT_EQ(direct.critical_shear_m, initial.critical_shear_m);
+  EXPECT_EQ(direct.common.peak_x_m, initial.common.peak_x_m);
+  for (const int direction : {-1, 1}) {
+    const auto* front = longest(result.fronts, direction);
+    ASSERT_NE(front, nullptr);
+    EXPECT_NEAR(front->points.front().x_m, initial.common.peak_x_m, 5e-3 * (1 + 1e-9));
+  }
+}
+
+TEST(Ramp, CanBeInterrupted) {
+  auto config = coarse_case(EventKind::spontaneous, 5e-3);
+  config.loading.method = solve::LoadingMethod::ramp;
+  EXPECT_THROW(make_initial_state(config, [](std::int64_t, std::int64_t) { return false; }), Interrupted);
+}
+
+TEST(InitialState, RefusesAStrengthThatNoShearReaches) {
+  auto config = coarse_case();
+  law(config).mu_s = 100;
+  EXPECT_THROW(make_initial_state(config, go_on), UserError);
+}
+
+TEST(InitialState, RefusesATiltWithoutContact) {
+  auto config = coarse_case();
+  config.loading.tilt_left_m = config.loading.tilt_right_m = 0;
+  EXPECT_THROW(make_initial_state(config, go_on), UserError);
+}
+
+}  // namespace
+}  // namespace slipfront::run

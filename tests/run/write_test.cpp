@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "../io/support.hpp"
+#include "base/version.hpp"
+#include "cases.hpp"
+#include "io/hdf5.hpp"
+#include "io/results.hpp"
+#include "io/schema.hpp"
+#include "run/run.hpp"
+
+namespace slipfront::run {
+namespace {
+
+using nlohmann::json;
+using test::coarse_case;
+using test::go_on;
+
+/// One run written to a folder, shared by the tests.
+class WrittenRun : public testing::Test {
+ protected:
+  struct Shared {
+    test::TemporaryFolder folder;
+    io::Case config;
+    InitialState initial;
+    Result result;
+    Shared() {
+      config = coarse_case();
+      config.title = "a \"written\" run";
+      config.output.snapshot_times_s = {0, 10e-6, 30e-6};
+      initial = make_initial_state(config, go_on);
+      result = run_event(config, initial, go_on);
+      write(folder.path(), result, initial);
+    }
+  };
+  static void SetUpTestSuite() { shared = std::make_unique<Shared>(); }
+  static void TearDownTestSuite() { shared.reset(); }
+  static inline std::unique_ptr<Shared> shared;
+
+  const Shared& s = *shared;
+  std::string text(const char* name) const { return test::read_file(s.folder / name); }
+};
+
+std::set<std::string> names_in(const std::filesystem::path& dir) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(dir))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream stream(csv);
+  for (std::string line; std::getline(stream, line);) {
+    rows.emplace_back(1);
+    for (const char c : line) {
+      if (c == ',')
+        rows.back().emplace_back();
+      else
+        rows.back().back() += c;
+    }
+  }
+  return rows;
+}
+
+/// Exactly the number that was written; an empty field for what is undefined.
+void expect_field(const std::string& field, double value) {
+  if (std::isnan(value))
+    EXPECT_EQ(field, "");
+  else
+    EXPECT_EQ(std::stod(field), value);
+}
+
+TEST_F(WrittenRun, HasTheFilesByTheirNames) {
+  EXPECT_THAT(names_in(s.folder.path()),
+              testing::UnorderedElementsAre("case.resolved.toml", "run.json", "interface.h5", "fronts.csv",
+                                            "static.csv", "fields.vtkhdf"));
+}
+
+TEST_F(WrittenRun, WithoutSnapshotsHasNoFields) {
+  const test::TemporaryFolder folder;
+  auto result = s.result;
+  result.event.snapshots.clear();
+  write(folder.path(), result, s.initial);
+  EXPECT_THAT(names_in(folder.path()),
+              testing::UnorderedElementsAre("case.resolved.toml", "run.json", "interface.h5", "fronts.csv",
+                                            "static.csv"));
+}
+
+TEST_F(WrittenRun, ResolvedCaseReadsBackToTheSameCase) {
+  const auto again = io::read_case(s.folder / "case.resolved.toml");
+  EXPECT_EQ(io::to_toml(again), io::to_toml(s.config));
+  EXPECT_EQ(again.title, s.config.title);
+}
+
+TEST_F(WrittenRun, SummaryTellsTheRun) {
+  const json run = json::parse(text("run.json"));
+  for (const char* key : {"version", "commit",          "compiler",
+                          "host",    "title",           "end",
+                          "mesh",    "wave_speeds",     "stable_dt_s",
+                          "dt_s",    "interface_dt_s",  "steps",
+                          "time_s",  "wall_s",          "node_updates_per_s",
+                          "statics", "energy_at_start", "energy_at_end",
+                          "onsets",  "fronts",          "warnings"})
+    EXPECT_TRUE(run.contains(key)) << key;
+  EXPECT_EQ(run["version"], version());
+  EXPECT_EQ(run["title"], s.config.title);
+  EXPECT_EQ(run["end"], s.result.event.end == solve::EventEnd::quiet ? "quiet" : "end_time");
+  EXPECT_EQ(run["mesh"]["nodes"], s.initial.mesh.n_nodes());
+  EXPECT_EQ(run["wave_speeds"]["c_L_m_per_s"], s.result.speeds.c_L);
+  EXPECT_EQ(run["dt_s"], s.result.step_s);
+  EXPECT_EQ(run["steps"], s.result.event.steps);
+  EXPECT_EQ(run["time_s"], s.result.event.time_s);
+  EXPECT_EQ(run["onsets"], s.result.event.record.onsets.size());
+  EXPECT_EQ(run["statics"]["critical_shear_m"], s.initial.critical_shear_m);
+  EXPECT_EQ(run["statics"]["common_peak_t_over_p"], s.initial.common.peak_ratio);
+  EXPECT_FALSE(run["statics"].contains("ramp"));
+  ASSERT_EQ(run["fronts"].size(), s.result.fronts.size());
+  for (std::size_t k = 0; k < s.result.fronts.size(); ++k) {
+    const auto& front = s.result.fronts[k];
+    EXPECT_EQ(run["fronts"][k]["id"], front.id);
+    EXPECT_EQ(run["fronts"][k]["direction"], front.direction);
+    EXPECT_EQ(run["fronts"][k]["start_x_m"], front.points.front().x_m);
+    EXPECT_EQ(run["fronts"][k]["end_s"], front.points.back().onset_s);
+    EXPECT_EQ(run["fronts"][k]["end"], std::string(name(front.end)));
+    EXPECT_EQ(run["fronts"][k]["mode"], std::string(name(front.mode)));
+  }
+}
+
+TEST_F(WrittenRun, SummaryTellsHowTheRunEnded) {
+  for (const auto& [end, word] : {std::pair{solve::EventEnd::end_time, "end_time"},
+                                  {solve::EventEnd::quiet, "quiet"},
+                                  {solve::EventEnd::interrupted, "interrupted"},
+                                  {solve::EventEnd::blow_up, "blow_up"}}) {
+    const test::TemporaryFolder folder;
+    auto result = s.result;
+    result.event.end = end;
+    if (end == solve::EventEnd::blow_up) result.event.blow_up = "blew up at step 7";
+    write(folder.path(), result, s.initial);
+    const json run = json::parse(test::read_file(folder / "run.json"));
+    EXPECT_EQ(run["end"], word);
+    const bool told = !run["warnings"].empty() && run["warnings"].back() == "blew up at step 7";
+    EXPECT_EQ(told, end == solve::EventEnd::blow_up);
+  }
+}
+
+TEST_F(WrittenRun, StaticTractionsByColumn) {
+  const auto rows = rows_of(text("static.csv"));
+  EXPECT_THAT(rows[0], testing::ElementsAre("x_m", "t_s_Pa", "p_s_Pa"));
+  const auto& state = s.initial.common.tractions;
+  ASSERT_EQ(rows.size(), state.x_m.size() + 1);
+  for (std::size_t k = 0; k < state.x_m.size(); ++k) {
+    ASSERT_EQ(rows[k + 1].size(), 3U);
+    expect_field(rows[k + 1][0], state.x_m[k]);
+    expect_field(rows[k + 1][1], state.t_s_Pa[k]);
+    expect_field(rows[k + 1][2], state.p_s_Pa[k]);
+  }
+}
+
+TEST_F(WrittenRun, FrontsByColumn) {
+  const auto csv = text("fronts.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"
+            "U_s_J_per_m3,U_r_J_per_m3");
+  const auto rows = rows_of(csv);
+  std::size_t row = 1;
+  for (const auto& front : s.result.fronts) {
+    for (const auto& p : front.points) {
+      ASSERT_LT(row, rows.size());
+      ASSERT_EQ(rows[row].size(), 13U);
+      const std::array<double, 13> values = {static_cast<double>(front.id),
+                                             p.x_m,
+                                             p.onset_s,
+                                             static_cast<double>(front.direction),
+                                             p.v_tip_m_per_s,
+                                             p.t_s_Pa,
+                                             p.p_s_Pa,
+                                             p.t_d_Pa,
+                                             p.p_d_Pa,
+                                             p.t_r_Pa,
+                                             p.p_r_Pa,
+                                             p.U_s_J_per_m3,
+                                             p.U_r_J_per_m3};
+      for (std::size_t k = 0; k < values.size(); ++k) expect_field(rows[row][k], values[k]);
+      ++row;
+    }
+  }
+  EXPECT_GT(row, 10U);
+  EXPECT_EQ(row, rows.size());
+}
+
+TEST_F(WrittenRun, HistoryHasItsUnitsAndReadsBack) {
+  const auto path = s.folder / "interface.h5";
+  const auto file = io::hdf5::open_file(path);
+  for (const auto& [set, unit] : {std::pair{"time_s", "s"},
+                                  {"x_m", "m"},
+                                  {"slip_m", "m"},
+                                  {"slip_rate_m_per_s", "m/s"},
+                                  {"t_Pa", "Pa"},
+                                  {"p_Pa", "Pa"}}) {
+    EXPECT_EQ(io::hdf5::text_attribute(file, set, "unit"), unit);
+    EXPECT_FALSE(io::hdf5::text_attribute(file, set, "description").empty()) << set;
+  }
+  const auto history = io::read_history(path);
+  const auto& ours = s.result.event.history;
+  EXPECT_EQ(history.time_s, ours.time_s);
+  EXPECT_EQ(history.x_m, ours.x_m);
+  EXPECT_EQ(history.slip_m, ours.slip_m);
+  EXPECT_EQ(history.slip_rate_m_per_s, ours.slip_rate_m_per_s);
+  EXPECT_EQ(history.t_Pa, ours.t_Pa);
+  EXPECT_EQ(history.p_Pa, ours.p_Pa);
+}
+
+TEST_F(WrittenRun, FieldsHoldEverySnapshot) {
+  const auto file = io::hdf5::open_file(s.folder / "fields.vtkhdf");
+  const auto times = io::hdf5::read(file, "/VTKHDF/Steps/Values");
+  ASSERT_EQ(times.values.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    // Taken at the first step at or after the time asked for.
+    EXPECT_GE(times.values[k], s.config.output.snapshot_times_s[k]);
+    EXPECT_LT(times.values[k], s.config.output.snapshot_times_s[k] + s.result.step_s);
+  }
+  const auto n_nodes = static_cast<std::size_t>(s.initial.mesh.n_nodes());
+  const auto u = io::hdf5::read(file, "/VTKHDF/PointData/displacement_m");
+  ASSERT_EQ(u.values.size(), 3 * 3 * n_nodes);
+  for (std::size_t n = 0; n < n_nodes; ++n) {
+    EXPECT_EQ(u.values[3 * n], s.initial.spontaneous.u_m.x[n]);
+    EXPECT_EQ(u.values[3 * n + 1], s.initial.spontaneous.u_m.y[n]);
+  }
+}
+
+TEST(Write, OfARampTellsBothWays) {
+  auto config = coarse_case(interface::EventKind::spontaneous, 5e-3);
+  config.loading.method = solve::LoadingMethod::ramp;
+  const auto initial = make_initial_state(config, go_on);
+  const test::TemporaryFolder folder;
+  write(folder.path(), run_event(config, initial, go_on), initial);
+  const json ramp = json::parse(test::read_file(folder / "run.json"))["statics"]["ramp"];
+  EXPECT_EQ(ramp["critical_shear_m"], initial.ramp->spontaneous.shear_m);
+  EXPECT_DOUBLE_EQ(ramp["relative_to_direct"],
+                   initial.ramp->spontaneous.shear_m / initial.critical_shear_m - 1);
+  EXPECT_EQ(ramp["steps"], initial.ramp->steps);
+  EXPECT_EQ(ramp["onsets_before_critical"], initial.ramp->record.onsets.size());
+}
+
+}  // namespace
+}  // namespace slipfront::run

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solid/element.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "reference.hpp"
+
+namespace slipfront::solid {
+namespace {
+
+constexpr CellCoordinates square = {0, 0, 1e-3, 0, 1e-3, 1e-3, 0, 1e-3};
+constexpr CellCoordinates parallelogram = {1, 1, 3, 1.5, 3.4, 2.9, 1.4, 2.4};
+constexpr CellCoordinates distorted = {0, 0, 2, 0.3, 2.4, 1.7, -0.2, 1.2};
+
+Eigen::MatrixXd matrix(const CellStiffness& K) {
+  return Eigen::Map<const Eigen::Matrix<double, 8, 8, Eigen::RowMajor>>(K.data());
+}
+
+/// Nodal values of a displacement field.
+template <class F>
+Eigen::VectorXd nodal(const CellCoordinates& c, F&& field) {
+  Eigen::VectorXd u(8);
+  for (int a = 0; a < 4; ++a) u.segment<2>(2 * a) = field(Eigen::Vector2d(c[2 * a], c[2 * a + 1]));
+  return u;
+}
+
+TEST(Element, SquareHasTheTextbookStiffness) {
+  // Bilinear square in plane stress, times E / (1 - nu^2): first row of the matrix, nodes counterclockwise.
+  const Material m;
+  const double nu = m.poissons_ratio, scale = m.youngs_modulus_Pa / (1 - nu * nu);
+  const std::array<double, 8> row = {
+      1.0 / 2 - nu / 6,  1.0 / 8 + nu / 8, -1.0 / 4 - nu / 12,  -1.0 / 8 + 3 * nu / 8, -1.0 / 4 + nu / 12,
+      -1.0 / 8 - nu / 8, nu / 6,           1.0 / 8 - 3 * nu / 8};
+  const auto K = cell_stiffness(square, m);
+  for (int k = 0; k < 8; ++k) EXPECT_NEAR(K[k] / scale, row[k], 1e-14) << k;
+}
+
+TEST(Element, EqualsTheReferenceIntegration) {
+  for (const auto plane : {Plane::stress, Plane::strain}) {
+    const Material m{.poissons_ratio = 0.29, .plane = plane};
+    const double tolerance = 1e-13 * m.youngs_modulus_Pa;  // rounding of some ten operations an entry
+    for (const auto& cell : {square, parallelogram, distorted})
+      EXPECT_LE(reference::max_abs(matrix(cell_stiffness(cell, m)) - reference::stiffness(cell, m, 2)),
+                tolerance);
+    // On a parallelogram the integrand is a polynomial that two points a side integrate exactly.
+    EXPECT_LE((matrix(cell_stiffness(parallelogram, m)) - reference::stiffness(parallelogram, m, 3))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              tolerance);
+  }
+}
+
+TEST(Element, IsSymmetricWithThreeZeroEnergyModes) {
+  const Material m;
+  for (const auto& cell : {square, parallelogram, distorted}) {
+    const Eigen::MatrixXd K = matrix(cell_stiffness(cell, m));
+    EXPECT_LE(reference::max_abs(K - K.transpose()), 1e-15 * reference::max_abs(K) * 8);
+    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues();
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(values(k) / values(7), 0, 1e-14);
+    EXPECT_GT(values(3) / values(7), 0.01);  // no hourglass mode: full integration
+    // Their space is that of the rigid motions.
+    for (const Eigen::VectorXd& rigid : {nodal(cell, [](auto) { return Eigen::Vector2d(1, 0); }),
+                                         nodal(cell, [](auto) { return Eigen::Vector2d(0, 1); }),
+                                         nodal(cell, [](auto X) { return Eigen::Vector2d(-X.y(), X.x()); })})
+      EXPECT_LE((K * rigid).norm(), 1e-14 * K.norm() * rigid.norm());
+  }
+}
+
+TEST(Element, LinearFieldsGiveTheExactForcesAndEnergy) {
+  // Uniform stress: each edge's traction goes to its two nodes in halves, whatever the cell's shape.
+  const Material m;
+  Eigen::Matrix2d gradient;
+  gradient << 0.7, -0.3, 0.5, 1.1;
+  const Eigen::Vector3d strain(gradient(0, 0), gradient(1, 1), gradient(0, 1) + gradient(1, 0));
+  const Eigen::Vector3d sigma = reference::elasticity(m) * strain;
+  Eigen::Matrix2d stress;
+  stress << sigma(0), sigma(2), sigma(2), sigma(1);
+  for (const auto& cell : {square, parallelogram, distorted}) {
+    const Eigen::VectorXd u = nodal(cell, [&](Eigen::Vector2d X) -> Eigen::Vector2d {
+      return gradient * X + Eigen::Vector2d(0.2, -0.4);
+    });
+    Eigen::VectorXd expected = Eigen::VectorXd::Zero(8);
+    for (int a = 0; a < 4; ++a) {
+      const int b = (a + 1) % 4;
+      const Eigen::Vector2d outward(cell[2 * b + 1] - cell[2 * a + 1], cell[2 * a] - cell[2 * b]);
+      expected.segment<2>(2 * a) += 0.5 * stress * outward;
+      expected.segment<2>(2 * b) += 0.5 * stress * outward;
+    }
+    const Eigen::MatrixXd K = matrix(cell_stiffness(cell, m));
+    const double scale = K.norm() * u.norm();
+    EXPECT_LE((K * u - expected).norm(), 1e-14 * scale);
+    EXPECT_NEAR(0.5 * u.dot(K * u), 0.5 * strain.dot(sigma) * reference::area_m2(cell),
+                1e-14 * scale * u.norm());
+  }
+}
+
+TEST(Element, LumpedMassIsTheRowSumAndWeighsTheCell) {
+  const Material m;
+  for (const auto& cell : {square, parallelogram, distorted}) {
+    Eigen::Vector4d expected = Eigen::Vector4d::Zero();
+    reference::at_gauss_points(cell, 3, [&](const Eigen::Vector4d& N, const auto&, double w) {
+      expected += m.density_kg_per_m3 * w * N;
+    });
+    const auto mass = cell_mass(cell, m);
+    const double total = m.density_kg_per_m3 * reference::area_m2(cell);
+    for (int a = 0; a < 4; ++a) EXPECT_NEAR(mass[a] / total, expected(a) / total, 1e-15);
+    EXPECT_NEAR(std::accumulate(mass.begin(), mass.end(), 0.0) / total, 1, 1e-14);
+  }
+  for (const double part : cell_mass(square, m)) EXPECT_NEAR(part / (1200 * 1e-6 / 4), 1, 1e-14);
+}
+
+TEST(Element, PlatesWeighTheirArea) {
+  const Material m;
+  for (const auto corner : {mesh::Corner::none, mesh::Corner::relief, mesh::Corner::fillet}) {
+    const auto mesh = reference::small_plate(corner);
+    const auto mass = lumped_mass(mesh, m);
+    const auto orphan = mesh::orphans(mesh);
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+      EXPECT_EQ(mass[n] == 0, orphan[n]);
+      EXPECT_GE(mass[n], 0);
+    }
+    const double total = std::accumulate(mass.begin(), mass.end(), 0.0);
+    EXPECT_NEAR(total / (m.density_kg_per_m3 * reference::area_m2(mesh)), 1, 1e-13);
+    if (corner == mesh::Corner::none) {
+      EXPECT_NEAR(total / (1200 * 0.04 * 0.02), 1, 1e-13);
+    }
+  }
+}
+
+TEST(ElementDeathTest, RefusesATurnedCell) {
+  const CellCoordinates clockwise = {0, 0, 0, 1, 1, 1, 1, 0};
+  EXPECT_DEATH(cell_stiffness(clockwise, {}), "convex");
+}
+
+}  // namespace
+}  // namespace slipfront::solid

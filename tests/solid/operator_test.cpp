@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solid/operator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "reference.hpp"
+
+namespace slipfront::solid {
+namespace {
+
+using mesh::Corner;
+using reference::flat;
+using reference::random_field;
+using reference::small_plate;
+
+class OnPlate : public ::testing::TestWithParam<Corner> {
+ protected:
+  mesh::Mesh mesh_ = small_plate(GetParam());
+  Material material_;
+  Operator op_ = make_operator(mesh_, material_);
+  std::size_t n_ = static_cast<std::size_t>(mesh_.n_nodes());
+
+  /// M apply(w), and the force of op.top on the loaded edge: K w over all nodes.
+  Eigen::VectorXd force(const Field& w) const {
+    Field a(n_);
+    apply(op_, w, a);
+    Eigen::VectorXd f = flat(a);
+    for (std::size_t n = 0; n < n_; ++n) f.segment<2>(2 * n) *= op_.mass_kg[n];
+    for_each_row_product(op_.top, w, [&](std::size_t r, double x, double y) {
+      f(2 * op_.top.node[r]) += x;
+      f(2 * op_.top.node[r] + 1) += y;
+    });
+    return f;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Corners, OnPlate, ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                         [](const auto& corner) { return reference::name_of(corner.param); });
+
+TEST_P(OnPlate, EqualsTheAssembledStiffness) {
+  for (const auto plane : {Plane::stress, Plane::strain}) {
+    material_.plane = plane;
+    op_ = make_operator(mesh_, material_);
+    const auto K = reference::assembled_stiffness(mesh_, material_);
+    const Field w = random_field(n_, 1);
+    // Rounding of nine blocks a node, against the largest force.
+    const Eigen::VectorXd expected = K * flat(w);
+    EXPECT_LE(reference::max_abs(force(w) - expected), 1e-14 * reference::max_abs(expected));
+  }
+}
+
+TEST_P(OnPlate, LeavesTheLoadedEdgeAndOrphansAlone) {
+  const Field w = random_field(n_, 2);
+  Field a = random_field(n_, 3);
+  apply(op_, w, a);
+  const auto orphan = mesh::orphans(mesh_);
+  int n_orphans = 0;
+  for (std::size_t n = 0; n < n_; ++n) {
+    if (!orphan[n] && !op_.is_top[n]) continue;
+    EXPECT_EQ(a.x[n], 0);
+    EXPECT_EQ(a.y[n], 0);
+    n_orphans += orphan[n];
+  }
+  EXPECT_EQ(n_orphans > 0, GetParam() == Corner::fillet);
+}
+
+TEST_P(OnPlate, EachMovingNodeHasAStencilOrBlockRows) {
+  std::vector<int> times(n_, 0);
+  int n_stencils = 0;
+  for (int j = 0; j <= op_.grid.rows; ++j)
+    for (const auto& span : op_.spans[j])
+      for (int i = span.begin; i < span.end; ++i) ++times[op_.grid.node(i, j)], ++n_stencils;
+  for (const auto n : op_.irregular.node) ++times[n];
+  for (std::size_t n = 0; n < n_; ++n)
+    EXPECT_EQ(times[n], op_.is_top[n] || op_.mass_kg[n] == 0 ? 0 : 1) << "node " << n;
+  // 39 inner columns; 20 rows below the loaded edge.
+  EXPECT_EQ(n_stencils == 39 * 20, GetParam() == Corner::none);
+  EXPECT_GT(n_stencils, 39 * 20 / 2);
+}
+
+TEST_P(OnPlate, StencilsEqualTheAssembledBlockRows) {
+  std::vector<mesh::Node> with_stencil;
+  for (int j = 0; j <= op_.grid.rows; ++j)
+    for (const auto& span : op_.spans[j])
+      for (int i = span.begin; i < span.end; ++i) with_stencil.push_back(op_.grid.node(i, j));
+  const BlockRows rows = assemble_rows(mesh_, material_, with_stencil, op_.mass_kg);
+  const int stride = op_.grid.stride();
+  const auto& s = op_.interior;
+  const auto& e = op_.lower_edge;
+  const double tolerance = 1e-13 * s.centre;  // four elements' rounding
+  const auto expect_block = [&](const std::array<double, 4>& block, std::array<double, 4> expected) {
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(block[k], expected[k], tolerance);
+  };
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto n = rows.node[r];
+    const bool lower = n < stride;
+    ASSERT_EQ(rows.first[r + 1] - rows.first[r], lower ? 6 : 9);
+    for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+      const int di = rows.neighbour[k] % stride - n % stride, dj = rows.neighbour[k] / stride - n / stride;
+      const auto& block = rows.block[k];
+      if (lower) {
+        if (di == 0 && dj == 0) expect_block(block, {e.centre_x, 0, 0, e.centre_y});
+        if (di == 0 && dj == 1) expect_block(block, {e.up_x, 0, 0, e.up_y});
+        if (di != 0 && dj == 0) expect_block(block, {e.side_x, di * e.shear, -di * e.shear, e.side_y});
+        if (di != 0 && dj == 1) expect_block(block, {e.corner_x, di * e.twist, di * e.twist, e.corner_y});
+      } else {
+        if (di == 0 && dj == 0) expect_block(block, {s.centre, 0, 0, s.centre});
+        if (di != 0 && dj == 0) expect_block(block, {s.along, 0, 0, s.across});
+        if (di == 0 && dj != 0) expect_block(block, {s.across, 0, 0, s.along});
+        if (di != 0 && dj != 0)
+          expect_block(block, {s.corner, di * dj * s.twist, di * dj * s.twist, s.corner});
+      }
+    }
+  }
+}
+
+TEST_P(OnPlate, BlockRowsInPlaceOfStencilsChangeNothing) {
+  const Operator all_irregular = make_operator(mesh_, material_, std::vector<bool>(n_, true));
+  for (const auto& row : all_irregular.spans) EXPECT_TRUE(row.empty());
+  const Field w = random_field(n_, 4);
+  Field a(n_), b(n_);
+  apply(op_, w, a);
+  apply(all_irregular, w, b);
+  EXPECT_LE(reference::max_abs(flat(a) - flat(b)), 1e-14 * reference::max_abs(flat(a)));
+}
+
+TEST_P(OnPlate, PatchTest) {
+  // A linear displacement: no force on any inner node; on the boundary each edge's uniform traction in
+  // halves.
+  Eigen::Matrix2d gradient;
+  gradient << 0.7, -0.3, 0.5, 1.1;
+  const Eigen::Vector3d sigma =
+      reference::elasticity(material_) *
+      Eigen::Vector3d(gradient(0, 0), gradient(1, 1), gradient(0, 1) + gradient(1, 0));
+  Eigen::Matrix2d stress;
+  stress << sigma(0), sigma(2), sigma(2), sigma(1);
+  Field u(n_);
+  for (std::size_t n = 0; n < n_; ++n) {
+    const Eigen::Vector2d v = gradient * Eigen::Vector2d(mesh_.x_m[n], mesh_.y_m[n]);
+    u.x[n] = v.x();
+    u.y[n] = v.y();
+  }
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(2 * static_cast<Eigen::Index>(n_));
+  for (const auto& [a, b] : reference::boundary_edges(mesh_)) {
+    const Eigen::Vector2d outward(mesh_.y_m[b] - mesh_.y_m[a], mesh_.x_m[a] - mesh_.x_m[b]);
+    expected.segment<2>(2 * a) += 0.5 * stress * outward;
+    expected.segment<2>(2 * b) += 0.5 * stress * outward;
+  }
+  // Rounding against the terms of a row: stiffness times displacement, the latter of the order of the width.
+  const double scale = material_.youngs_modulus_Pa * 0.04;
+  EXPECT_LE(reference::max_abs(force(u) - expected), 1e-14 * scale);
+  EXPECT_GT(reference::max_abs(expected), 1e-3 * scale);
+
+  // The whole edge's force: the side edges' halves at its two corners cancel.
+  EXPECT_NEAR(top_force_x_N_per_m(op_, u), sigma(2) * 0.04, 1e-12 * scale);
+}
+
+TEST_P(OnPlate, RigidMotionGivesNoAcceleration) {
+  Field u(n_);
+  for (std::size_t n = 0; n < n_; ++n) {
+    u.x[n] = 0.02 - mesh_.y_m[n];
+    u.y[n] = -0.01 + mesh_.x_m[n];
+  }
+  Field a(n_);
+  apply(op_, u, a);
+  // Rounding against the largest term: centre stencil coefficient times displacement.
+  EXPECT_LE(reference::max_abs(flat(a)), 1e-14 * op_.interior.centre * 0.04 * 4);
+  // Each node adds the rounding of one force times its displacement.
+  EXPECT_NEAR(strain_energy_J_per_m(op_, u), 0,
+              static_cast<double>(n_) * 2.2e-16 * material_.youngs_modulus_Pa * 0.04 * 0.04);
+}
+
+TEST_P(OnPlate, IsSymmetricAndPositive) {
+  const Field u = random_field(n_, 5), v = random_field(n_, 6);
+  const double forth = flat(u).dot(force(v)), back = flat(v).dot(force(u)), energy = flat(u).dot(force(u));
+  EXPECT_GT(energy, 0);
+  EXPECT_NEAR(forth, back, 1e-13 * energy);
+  EXPECT_NEAR(strain_energy_J_per_m(op_, u), 0.5 * energy, 1e-13 * energy);
+}
+
+TEST_P(OnPlate, EnergiesOfUniformStrainAndMotion) {
+  const Eigen::Vector3d strain(1e-3, -2e-3, 0.5e-3);
+  Field u(n_), v(n_);
+  for (std::size_t n = 0; n < n_; ++n) {
+    u.x[n] = strain(0) * mesh_.x_m[n] + strain(2) * mesh_.y_m[n];
+    u.y[n] = strain(1) * mesh_.y_m[n];
+    v.x[n] = 3;
+    v.y[n] = -4;
+  }
+  const double area = reference::area_m2(mesh_);
+  const double expected = 0.5 * strain.dot(reference::elasticity(material_) * strain) * area;
+  EXPECT_NEAR(strain_energy_J_per_m(op_, u) / expected, 1, 1e-11);  // differences of large displacements
+  const double kinetic = 0.5 * material_.density_kg_per_m3 * area * 25;
+  EXPECT_NEAR(kinetic_energy_J_per_m(op_, v) / kinetic, 1, 1e-13);
+}
+
+}  // namespace
+}  // namespace slipfront::solid

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mesh/plate.hpp"
+#include "solid/element.hpp"
+#include "solid/material.hpp"
+#include "solid/operator.hpp"
+
+// The finite elements written a second time, with B matrices and any number of Gauss points, slow and plain.
+namespace slipfront::solid::reference {
+
+inline Eigen::Matrix3d elasticity(const Material& m) {
+  // The inverse of the compliance, so that nothing is shared with the code under test.
+  const double E = m.youngs_modulus_Pa, nu = m.poissons_ratio;
+  Eigen::Matrix3d compliance;
+  if (m.plane == Plane::stress) {
+    compliance << 1, -nu, 0, -nu, 1, 0, 0, 0, 2 * (1 + nu);
+  } else {
+    compliance << 1 - nu * nu, -nu * (1 + nu), 0, -nu * (1 + nu), 1 - nu * nu, 0, 0, 0, 2 * (1 + nu);
+  }
+  return (compliance / E).inverse();
+}
+
+/// Points and weights on [-1, 1].
+inline std::vector<std::array<double, 2>> gauss_rule(int n) {
+  if (n == 2) return {{-std::sqrt(1.0 / 3), 1}, {std::sqrt(1.0 / 3), 1}};
+  return {{-std::sqrt(0.6), 5.0 / 9}, {0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}};
+}
+
+/// Calls f(N, B, weight x Jacobian) at each Gauss point of the cell.
+template <class F>
+void at_gauss_points(const CellCoordinates& c, int n, F&& f) {
+  Eigen::Matrix<double, 4, 2> X;
+  for (int a = 0; a < 4; ++a) X.row(a) << c[2 * a], c[2 * a + 1];
+  for (const auto& [xi, w_xi] : gauss_rule(n)) {
+    for (const auto& [eta, w_eta] : gauss_rule(n)) {
+      Eigen::Vector4d N;
+      N << (1 - xi) * (1 - eta), (1 + xi) * (1 - eta), (1 + xi) * (1 + eta), (1 - xi) * (1 + eta);
+      Eigen::Matrix<double, 4, 2> dN;
+      dN << -(1 - eta), -(1 - xi), 1 - eta, -(1 + xi), 1 + eta, 1 + xi, -(1 + eta), 1 - xi;
+      N /= 4;
+      dN /= 4;
+      const Eigen::Matrix2d J = X.transpose() * dN;  // dx/dxi
+      const Eigen::Matrix<double, 4, 2> G = dN * J.inverse();
+      Eigen::Matrix<double, 3, 8> B = Eigen::Matrix<double, 3, 8>::Zero();
+      for (int a = 0; a < 4; ++a) {
+        B(0, 2 * a) = B(2, 2 * a + 1) = G(a, 0);
+        B(1, 2 * a + 1) = B(2, 2 * a) = G(a, 1);
+      }
+      f(N, B, w_xi * w_eta * J.determinant());
+    }
+  }
+}
+
+inline Eigen::MatrixXd stiffness(const CellCoordinates& c, const Material& m, int n_gauss) {
+  const Eigen::Matrix3d D = elasticity(m);
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(8, 8);
+  at_gauss_points(c, n_gauss, [&](const Eigen::Vector4d&, const Eigen::Matrix<double, 3, 8>& B, double w) {
+    K += w * B.transpose() * D * B;
+  });
+  return K;
+}
+
+inline double area_m2(const CellCoordinates& c) {
+  return 0.5 * ((c[4] - c[0]) * (c[7] - c[3]) - (c[6] - c[2]) * (c[5] - c[1]));
+}
+
+inline double area_m2(const mesh::Mesh& mesh) {
+  double area = 0;
+  for (const auto& cell : mesh.cells) area += area_m2(cell_coordinates(mesh, cell));
+  return area;
+}
+
+/// K over all nodes, loaded edge included, x and y of each node in turn.
+inline Eigen::SparseMatrix<double> assembled_stiffness(const mesh::Mesh& mesh, const Material& m) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& cell : mesh.cells) {
+    const Eigen::MatrixXd K = stiffness(cell_coordinates(mesh, cell), m, 2);
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < 8; ++b)
+        entries.emplace_back(2 * cell[a / 2] + a % 2, 2 * cell[b / 2] + b % 2, K(a, b));
+  }
+  Eigen::SparseMatrix<double> K(2 * mesh.n_nodes(), 2 * mesh.n_nodes());
+  K.setFromTriplets(entries.begin(), entries.end());
+  return K;
+}
+
+/// Boundary edges (those with one cell only), counterclockwise.
+inline std::vector<std::array<mesh::Node, 2>> boundary_edges(const mesh::Mesh& mesh) {
+  std::map<std::array<mesh::Node, 2>, int> uses;
+  for (const auto& cell : mesh.cells)
+    for (int a = 0; a < 4; ++a) ++uses[{cell[a], cell[(a + 1) % 4]}];
+  std::vector<std::array<mesh::Node, 2>> edges;
+  for (const auto& [edge, n] : uses)
+    if (!uses.contains({edge[1], edge[0]})) edges.push_back(edge);
+  return edges;
+}
+
+inline Eigen::VectorXd flat(const Field& u) {
+  Eigen::VectorXd v(2 * u.size());
+  for (std::size_t n = 0; n < u.size(); ++n) v(2 * n) = u.x[n], v(2 * n + 1) = u.y[n];
+  return v;
+}
+
+inline double max_abs(const Eigen::MatrixXd& m) {
+  double largest = 0;
+  for (const double value : m.reshaped()) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+/// A plate of 40 mm x 20 mm with 1 mm cells.
+inline mesh::Mesh small_plate(mesh::Corner corner) {
+  mesh::Plate plate;
+  plate.width_m = 0.04;
+  plate.height_m = 0.02;
+  plate.element_size_m = 1e-3;
+  plate.corner = corner;
+  return mesh::make_plate(plate);
+}
+
+/// Reproducible numbers in [-1, 1).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  double operator()() {
+    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state_ >> 11) / 4503599627370496.0 - 1;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+inline Field random_field(std::size_t n, std::uint64_t seed) {
+  Random random(seed);
+  Field u(n);
+  for (std::size_t k = 0; k < n; ++k) u.x[k] = random(), u.y[k] = random();
+  return u;
+}
+
+inline std::string name_of(mesh::Corner corner) {
+  return corner == mesh::Corner::none ? "none" : corner == mesh::Corner::relief ? "relief" : "fillet";
+}
+
+}  // namespace slipfront::solid::reference
