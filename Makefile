@@ -42,7 +42,7 @@ test: build $(VENV)/.installed  ## all tests, C++ and Python
 
 reproduce: build $(VENV)/.installed  ## everything behind the paper: runs, scorecard, figures, into results/
 	@echo "== Running the paper's cases into $(RESULTS)"
-	$(PROGRAM) reproduce -o $(RESULTS) --overwrite
+	$(PROGRAM) reproduce -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
 	@echo "== Drawing the figures"
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
 

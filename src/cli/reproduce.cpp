@@ -35,16 +35,22 @@ void add_reproduce(CLI::App& app) {
   CLI::App* command = app.add_subcommand("reproduce", "Run everything behind the paper and test its claims");
   auto options = std::make_shared<paper::ReproduceOptions>();
   auto dir = std::make_shared<std::string>("results");
+  auto experiment = std::make_shared<std::string>();
   command->add_option("-o,--output", *dir, "Folder for the results")->type_name("DIR")->capture_default_str();
   command->add_flag("--quick", options->quick,
                     "Elements of 2 mm and fewer studies: a second instead of half a minute");
   command->add_flag("--overwrite", options->overwrite, "Replace the results that the folder already holds");
+  command
+      ->add_option("--experiment", *experiment,
+                   "CSV of measured points for claim E1: static_ratio, v_over_c_L (or v_m_per_s)")
+      ->type_name("FILE");
   options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("--threads", options->threads, "Runs side by side")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  command->callback([options, dir] {
+  command->callback([options, dir, experiment] {
     options->dir = *dir;
+    options->experiment = *experiment;
     catch_interrupts();
     std::optional<io::Progress> progress;
     const auto report =

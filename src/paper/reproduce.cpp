@@ -110,6 +110,9 @@ class Runner {
 }  // namespace
 
 ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& monitor) {
+  std::optional<io::Experiment> experiment;
+  if (!options.experiment.empty())
+    experiment = io::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
   io::prepare_output_folder(options.dir, options.overwrite);
   const auto events = paper_cases(options.quick);
   const auto study_list = studies(options.quick);
@@ -130,7 +133,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   };
   Runner runner(options, monitor, events.size() + study_cases.size());
   auto four = runner.run(events);
-  Reproduction runs{four[0], four[1], four[2], four[3], {}};
+  Reproduction runs{four[0], four[1], four[2], four[3], {}, experiment};
   lap("statics, four events and their files");
   const auto event_blow_ups = runner.blow_ups;
   scorecard(runs);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/experiment.hpp"
 #include "paper/outcome.hpp"
 
 namespace slipfront::paper {
@@ -29,9 +30,10 @@ struct StudyOutcome {
 struct Reproduction {
   Outcome spontaneous, left, right, spontaneous_mu_k_1;
   std::vector<StudyOutcome> studies;
+  std::optional<io::Experiment> experiment;  ///< measured points, where the user has a file of them
 };
 
-/// Tests every claim. The tests and their limits are stated in docs/scorecard.md.
+/// Tests every claim; each row says how. Rows whose id ends in + are further tests beside the first one.
 std::vector<Claim> scorecard(const Reproduction& runs);
 
 }  // namespace slipfront::paper

@@ -13,6 +13,7 @@ import numpy as np
 WIDTH_M, HEIGHT_M = 0.2, 0.1
 WAVE_SPEEDS = {"c_L_m_per_s": 1584.0, "c_S_m_per_s": 889.0, "c_R_m_per_s": 820.0}
 MU_S = 1.3
+CONTACT_FROM_M, CONTACT_TO_M, EDGE_MARGIN_M = 0.005, 0.2, 10e-3
 E_PA, NU = 2.6e9, 0.37
 
 FRONTS_HEADER = [
@@ -101,6 +102,7 @@ def case_text(kind: str, mu_k: float, columns: int) -> str:
 width_m = {WIDTH_M}
 height_m = {HEIGHT_M}
 element_size_m = {WIDTH_M / columns}
+corner = "relief"
 [material]
 youngs_modulus_Pa = {E_PA}
 poissons_ratio = {NU}
@@ -116,6 +118,8 @@ alpha_m2_per_s2 = 0.1
 [event]
 kind = "{kind}"
 trigger_zone_m = 10e-3
+[fronts]
+trigger_margin_m = 10e-3
 """
 
 
@@ -177,14 +181,20 @@ def write_run(
     else:
         against_end = 0.010 if mu_k < 0.9 else 0.110
         fronts = [make_front(1, x_m, -1, peak, against_end, 2e-6), make_front(2, x_m, 1, peak, 0.2, 2e-6)]
-        # A short front of its own at the heavy edge: in the table, not in the drawings.
+        # Short fronts of their own: one in the table but not in the drawings, one drawn as a secondary front.
         fronts.append(make_front(3, x_m, -1, x_m[1] + 1e-12, 0.0, 0.0))
+        if mu_k < 0.9:
+            fronts.append(make_front(4, x_m, 1, 0.030, 0.045, 120e-6))
     write_csv(folder / "fronts.csv", FRONTS_HEADER, [row for front in fronts for row in front])
     info = {
         "version": "0.1.0",
         "commit": "abc1234",
         "wave_speeds": WAVE_SPEEDS,
         "mesh": {"columns": columns, "rows": rows},
+        "statics": {
+            "inside_from_m": CONTACT_FROM_M + EDGE_MARGIN_M,
+            "inside_to_m": CONTACT_TO_M - EDGE_MARGIN_M,
+        },
         "fronts": [
             {
                 "id": f[0][0],
@@ -193,7 +203,7 @@ def write_run(
                 "start_s": f[0][2],
                 "end_x_m": f[-1][1],
                 "end_s": f[-1][2],
-                "end": "contact_end",
+                "end": "contact_end" if abs(f[-1][1] - 0.1) > 0.08 else "meets_front",
                 "mode": "crack",
             }
             for f in fronts
@@ -217,11 +227,78 @@ def write_run(
             ("slip_m", np.zeros_like(rate), "m"),
             ("slip_rate_m_per_s", rate, "m/s"),
             ("t_Pa", np.zeros_like(rate), "Pa"),
-            ("p_Pa", np.zeros_like(rate), "Pa"),
+            ("p_Pa", np.where(x_m < CONTACT_FROM_M, 0, 5e6) + 0 * rate, "Pa"),
         ):
             hdf5[name] = data
             hdf5[name].attrs["unit"] = unit
     write_fields(folder / "fields.vtkhdf", columns, rows, np.linspace(5e-6, 245e-6, snapshots), fronts)
+
+
+def study_front(direction: int, start_m: float, largest: float) -> dict:
+    return {
+        "direction": direction,
+        "start_x_m": start_m,
+        "end_x_m": start_m + 0.04 * direction,
+        "end": "arrest",
+        "mode": "crack",
+        "mean_v_over_c_L": 0.6 * largest,
+        "max_v_over_c_L": largest,
+        "x_of_max_m": start_m,
+    }
+
+
+def study_point(value: str, number: float | None, change: float | None, events: dict[str, list]) -> dict:
+    return {
+        "value": value,
+        "number": number,
+        "events": [
+            {"event": name, "fronts": fronts, "speed_change": {"median": change, "n_points": 9}}
+            for name, fronts in events.items()
+        ],
+        "fit": {"rms_over_c_L": 0.11, "n_points": 9} if change is not None else None,
+        "share_in_paper_band": 0.5,
+        "spread": {"t_s_over_p_s": 0.31, "t_d_over_p_d": 0.2, "energy": None},
+    }
+
+
+def studies() -> list[dict]:
+    """A study by numbers and one by words."""
+
+    def events(largest: float, left_start_m: float = 0.010) -> dict[str, list]:
+        short = study_front(-1, 0.1, 9.9) | {"end_x_m": 0.09}  # beside the longest in its direction
+        return {
+            "left": [study_front(1, left_start_m, 0.8 * largest)],
+            "spontaneous": [study_front(-1, 0.145, largest), study_front(1, 0.145, 0.9 * largest), short],
+            "right": [study_front(-1, 0.190, 1.2 * largest)],
+        }
+
+    return [
+        {
+            "name": "mu_k",
+            "parameter": "friction.mu_k",
+            "why": "kind of slip",
+            "points": [
+                study_point("0.4", 0.4, 0.09, events(2.0)),
+                study_point("0.6", 0.6, 0.0, events(1.5)),
+                study_point("1.2", 1.2, None, {"left": [study_front(1, 0.14, 7.5)], "spontaneous": []}),
+            ],
+        },
+        {
+            "name": "element_size",
+            "parameter": "plate.element_size_m",
+            "why": "mesh",
+            "points": [study_point("0.001", 0.001, -0.02, events(1.4))],
+        },
+        {
+            "name": "corner",
+            "parameter": "plate.corner",
+            "why": "rounding",
+            "points": [
+                study_point("relief", None, 0.0, events(1.5)),
+                study_point("fillet_2mm", 0.002, 0.01, events(1.6)),
+            ],
+        },
+    ]
 
 
 def write_output(
@@ -243,6 +320,14 @@ def write_output(
             "measured": "1584.2, 888.9",
             "holds": True,
             "how": "each within 1 m/s",
+        },
+        {
+            "id": "C1+",
+            "claim": "claim one, other test",
+            "paper": "1584, 890",
+            "measured": "1584.2",
+            "holds": True,
+            "how": "otherwise",
         },
         {
             "id": "C2",
@@ -273,7 +358,9 @@ def write_output(
         "paper_fit": {"a": 0.76, "a_band": 0.07, "b": 1.80, "c": 3.05},
         "share_in_paper_band": 0.61,
         "spread": {"t_s_over_p_s": 0.5, "t_d_over_p_d": 0.3, "energy": 0.1},
-        "studies": [],
+        "studies": studies(),
     }
     (folder / "analysis.json").write_text(json.dumps(analysis))
+    timings = [{"part": "events", "wall_s": 1.25}, {"part": "studies", "wall_s": 20.5}]
+    (folder / "timings.json").write_text(json.dumps(timings))
     return folder

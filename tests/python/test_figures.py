@@ -12,11 +12,20 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from slipfront.figures import criteria, events, plate, space_time
+from slipfront.figures import criteria, events, plate, space_time, studies
 from slipfront.figures.__main__ import draw_all, main
-from slipfront.figures.results import drawn_fronts, read_results
+from slipfront.figures.results import drawn_fronts, main_fronts, read_results
 from slipfront.figures.style import RC
-from synthetic import FRONTS_HEADER, MU_S, WAVE_SPEEDS, write_csv, write_fields, write_output
+from synthetic import (
+    CONTACT_FROM_M,
+    CONTACT_TO_M,
+    FRONTS_HEADER,
+    MU_S,
+    WAVE_SPEEDS,
+    write_csv,
+    write_fields,
+    write_output,
+)
 
 C_L = WAVE_SPEEDS["c_L_m_per_s"]
 FIGURES = [
@@ -30,6 +39,8 @@ FIGURES = [
     "space_time_spontaneous",
     "space_time_right",
     "space_time_spontaneous_mu_k_1.0",
+    "studies",
+    "studies_criteria",
 ]
 
 
@@ -61,6 +72,19 @@ def front_rows(folder, run: str, front_id: int) -> dict[str, np.ndarray]:
     with open(folder / run / "fronts.csv", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if int(row["front_id"]) == front_id]
     return {name: np.array([float(row[name]) if row[name] else np.nan for row in rows]) for name in rows[0]}
+
+
+def shown(run: str, rows: dict[str, np.ndarray]) -> np.ndarray:
+    """Outside the trigger zone and its margin, 10 mm each."""
+    x = rows["x_m"]
+    if run == "left":
+        return x >= CONTACT_FROM_M + 0.02
+    return x <= CONTACT_TO_M - 0.02 if run == "right" else np.full(len(x), True)
+
+
+def at_nucleation(run: str, rows: dict[str, np.ndarray]) -> np.ndarray:
+    """The first 5 mm of a spontaneous front."""
+    return np.abs(rows["x_m"] - rows["x_m"][0]) < 5e-3 if run.startswith("spontaneous") else np.array(False)
 
 
 def artist(figure: Figure, gid: str, panel: int = 0):
@@ -98,21 +122,52 @@ def test_command_writes_figures_and_report(output, capsys):
     assert html.count("<figure ") == len(FIGURES)
     assert html.count('src="data:image/png;base64,') == len(FIGURES)
     assert "http" not in html and "<script" not in html
-    assert set(re.findall(r'href="([^"]+)"', html)) == {f"{name}.pdf" for name in FIGURES}
+    links = set(re.findall(r'href="([^"]+)"', html))
+    assert {link for link in links if not link.startswith("#")} == {f"{name}.pdf" for name in FIGURES}
+    assert all(f'id="{link[1:]}"' in html for link in links if link.startswith("#"))
 
-    scorecard = html.split("<h2>Scorecard</h2>")[1].split("</table>")[0]
+    scorecard = html.split(">Scorecard</h2>")[1].split("</table>")[0]
     rows = re.findall(r"<tr><td>.*?</tr>", scorecard)
-    assert len(rows) == 3
+    assert len(rows) == 4
+    assert "<td>C1+</td>" in rows[1]
     assert "c_L &lt; 1600 m/s &amp; more" in rows[0] and ">✓<" in rows[0] and "each within 1 m/s" in rows[0]
-    assert ">✗<" in rows[1] and "<td>0.7123</td>" in rows[1]
-    assert rows[2].count(">–<") == 2  # not measured, not decided
+    assert ">✗<" in rows[2] and "<td>0.7123</td>" in rows[2]
+    assert rows[3].count(">–<") == 2  # not measured, not decided
     assert "Of 3 statements 1 hold (✓), 1 do not (✗), 1 could not be decided (–)." in html
+    assert "Rows with a + (1) are further tests" in html
     assert "<td>0.500</td><td>0.450 to 0.550</td><td>0.76 ± 0.07</td>" in html
     assert "Points: 512; rms about the fit: 0.081 c<sub>L</sub>; within the paper's band: 61 %" in html
 
-    fronts = html.split("<h2>Fronts</h2>")[1]
-    assert len(re.findall(r"<tr><td>", fronts)) == 1 + 3 + 1 + 3
-    assert "abc1234" in html
+    fronts = html.split(">Fronts</h2>")[1].split("</table>")[0]
+    assert len(re.findall(r"<tr><td>", fronts)) == 1 + 4 + 1 + 3
+    assert "slipfront 0.1.0, commit abc1234" in html
+    timings = html.split(">Timings</h2>")[1]
+    assert "<td>events</td><td>1.2</td>" in timings and "<td>21.8</td>" in timings
+
+
+def test_report_lists_the_studies(output):
+    assert main([str(output)]) == 0
+    html = (output / "figures" / "index.html").read_text(encoding="utf-8")
+    body = html.split(">Studies</h2>")[1].split("<tbody>")[1].split("</table>")[0]
+    rows = [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in re.findall(r"<tr>.*?</tr>", body)]
+    assert [len(row) for row in rows] == [14, 13, 13, 14, 14, 13]  # the name spans a study's rows
+    fits = ["0.110", "50", "0.31", "0.20", "–"]
+    speeds = ["1.20 / 0.72", "1.50 / 0.90", "1.35 / 0.81", "1.80 / 1.08"]
+    assert rows[1] == ["<b>0.6</b>", *speeds, "0.0", "0.0", "0.0", *fits]  # bold: the paper's value
+    assert rows[2][:5] == ["1.2", "7.50 / 4.50*", "–", "–", "–"]  # starts elsewhere; no front
+    assert rows[3][1] == "1" and "(mm)" in rows[3][0] and rows[3][6] == "−2.0"
+    assert rows[4][1] == "<b>relief</b>" and rows[5][0] == "fillet 2mm"
+
+
+def test_folder_without_studies_and_timings_is_drawn(output):
+    analysis = json.loads((output / "analysis.json").read_text())
+    analysis["studies"] = []
+    (output / "analysis.json").write_text(json.dumps(analysis))
+    (output / "timings.json").unlink()
+    assert main([str(output)]) == 0
+    html = (output / "figures" / "index.html").read_text(encoding="utf-8")
+    assert html.count("<figure ") == len(FIGURES) - 2
+    assert "Studies</h2>" not in html and "Timings</h2>" not in html
 
 
 def test_same_results_give_the_same_files(output, results):
@@ -130,10 +185,13 @@ def test_same_results_give_the_same_files(output, results):
 def test_figure_2_shows_the_speeds_of_the_high_mu_k_run(pristine, results, front_id, direction):
     figure = criteria.static_ratio_mu_k(results).figure
     rows = front_rows(pristine, "spontaneous_mu_k_1.0", front_id)
+    weak = at_nucleation("spontaneous_mu_k_1.0", rows)
+    assert weak.any() and not weak.all()
     line = artist(figure, f"spontaneous_mu_k_1.0:{front_id}")
-    np.testing.assert_allclose(line.get_xdata(), rows["t_s_Pa"] / rows["p_s_Pa"])
-    np.testing.assert_allclose(line.get_ydata(), rows["v_tip_m_per_s"] / C_L)
-    assert np.isnan(line.get_ydata()[[0, -1]]).all()
+    ratio, v = rows["t_s_Pa"] / rows["p_s_Pa"], rows["v_tip_m_per_s"] / C_L
+    np.testing.assert_allclose(line.get_xdata(), np.where(weak, np.nan, ratio))
+    np.testing.assert_allclose(line.get_ydata(), np.where(weak, np.nan, v))
+    assert np.isnan(line.get_ydata()[-1])
     assert rows["direction"][0] == direction
     assert (line.get_linestyle() == "-") == (direction < 0)
 
@@ -145,10 +203,30 @@ def test_figure_2_shows_the_wave_speeds(results):
         assert level == pytest.approx(WAVE_SPEEDS[f"{wave}_m_per_s"] / C_L)
 
 
-def test_short_fronts_are_left_out(results):
-    assert [front.id for front in results.runs["spontaneous"].fronts] == [1, 2, 3]
-    assert [front.id for front in drawn_fronts(results.runs["spontaneous"])] == [1, 2]
-    assert "spontaneous:3" not in gids(events.three_events(results).figure, panel=4)
+def test_short_fronts_are_pale_or_left_out(results):
+    run = results.runs["spontaneous"]
+    assert [front.id for front in run.fronts] == [1, 2, 3, 4]
+    assert [front.id for front in drawn_fronts(run)] == [1, 2, 4]
+    assert {front.id for front in main_fronts(run)} == {1, 2}
+    figure = events.three_events(results).figure
+    names = gids(figure, panel=4)
+    assert not any(name.startswith("spontaneous:3") for name in names)
+    assert "spontaneous:4" not in names
+    secondary = artist(figure, "spontaneous:4:other", 4)
+    assert secondary.get_linewidth() < artist(figure, "spontaneous:1", 4).get_linewidth()
+    assert not matplotlib.colors.same_color(secondary.get_color(), "black")
+    assert secondary.get_marker() == "None"
+
+
+def test_last_stretch_is_pale_in_figures_5_and_6_alone(pristine, results):
+    rows = front_rows(pristine, "left", 1)
+    tail = rows["x_m"] >= rows["x_m"][-1] - 20.001e-3
+    v = rows["v_tip_m_per_s"] / C_L
+    pale = artist(criteria.energy(results).figure, "left:1:weak").get_ydata()
+    np.testing.assert_allclose(pale[tail], v[tail])
+    assert np.isnan(pale[~tail][:-1]).all() and np.isfinite(pale[~tail][-1])  # one more, to meet the other
+    assert "left:1:weak" in gids(criteria.dynamic_criterion(results).figure)
+    assert "left:1:weak" not in gids(events.three_events(results).figure, 4)
 
 
 @pytest.mark.parametrize("run, front_id", [("left", 1), ("spontaneous", 1), ("spontaneous", 2), ("right", 1)])
@@ -159,15 +237,18 @@ def test_figures_3_to_6_show_the_three_events(pristine, results, run, front_id):
     static = np.divide(rows["t_s_Pa"], rows["p_s_Pa"], out=np.full(len(v), np.nan), where=rows["p_s_Pa"] > 0)
     energy = (rows["U_r_J_per_m3"] - rows["U_s_J_per_m3"]) / rows["U_s_J_per_m3"]
     assert np.isnan(dynamic).any() and np.isfinite(dynamic).any()
-    for figure, panel, x, y in (
-        (events.three_events(results).figure, 4, static, v),
-        (criteria.dynamic_ratio_along_x(results).figure, 0, 1e3 * rows["x_m"], dynamic),
-        (criteria.dynamic_criterion(results).figure, 0, dynamic, v),
-        (criteria.energy(results).figure, 0, energy, v),
+    strong = shown(run, rows) & ~at_nucleation(run, rows)
+    before_end = np.abs(rows["x_m"] - rows["x_m"][-1]) > 20e-3  # every one of these fronts stops
+    assert strong.sum() < len(v)
+    for figure, panel, x, y, drawn in (
+        (events.three_events(results).figure, 4, static, v, strong),
+        (criteria.dynamic_ratio_along_x(results).figure, 0, 1e3 * rows["x_m"], dynamic, shown(run, rows)),
+        (criteria.dynamic_criterion(results).figure, 0, dynamic, v, strong & before_end),
+        (criteria.energy(results).figure, 0, energy, v, strong & before_end),
     ):
         line = artist(figure, f"{run}:{front_id}", panel)
-        np.testing.assert_allclose(line.get_xdata(), x)
-        np.testing.assert_allclose(line.get_ydata(), y)
+        np.testing.assert_allclose(line.get_xdata(), np.where(drawn, x, np.nan))
+        np.testing.assert_allclose(line.get_ydata(), np.where(drawn, y, np.nan))
 
 
 def test_figure_4_shows_the_static_ratio_and_mu_s(results):
@@ -281,6 +362,25 @@ def test_space_time_shows_onsets_and_slopes_of_the_wave_speeds(pristine, results
     assert "c_L:1" not in gids(figure)  # it starts next to the right edge
 
 
+def test_space_time_masks_open_contact(results):
+    history = results.runs["left"].history
+    drawn = artist(space_time.space_time(results, "left").figure, "rate").get_array()
+    assert drawn.mask[:, history.x_m < CONTACT_FROM_M].all()
+    np.testing.assert_array_equal(drawn.mask, history.p_Pa <= 0)
+    fast = ~drawn.mask & (np.abs(history.slip_rate_m_per_s) > 0.1)
+    assert fast.any()
+    np.testing.assert_allclose(drawn[fast], np.abs(history.slip_rate_m_per_s)[fast])
+
+
+def test_arrows_stay_inside_the_frame(results):
+    figure = events.three_events(results).figure
+    for panel in range(3):
+        for gid in gids(figure, panel):
+            if gid.startswith("way:"):
+                ends = [x for x, _ in artist(figure, gid, panel)._posA_posB]
+                assert min(ends) >= 0 and max(ends) <= 200
+
+
 def test_direction_is_told_by_the_markers_filling(results):
     figure = events.three_events(results).figure
     against = artist(figure, "spontaneous:1", 4).get_markerfacecolor()
@@ -298,10 +398,82 @@ def test_points_outside_the_axes_are_counted(output):
     assert re.search(r" 3 of \d+ points lie outside the axes", drawing.caption)
 
 
-def test_fit_and_band_stay_inside_their_axes_range(results):
+def count_in_caption(caption: str) -> tuple[int, int]:
+    found = re.search(r" (\d+) of (\d+) points lie outside the axes", caption)
+    return (int(found[1]), int(found[2])) if found else (0, 0)
+
+
+def test_a_single_outlier_does_not_set_the_axis(output, results):
+    usual = criteria.dynamic_criterion(results)
+    fast = {"v_tip_m_per_s": repr(10 * C_L)}
+    change_front_cells(
+        output / "left" / "fronts.csv", lambda row: row | fast if abs(float(row["x_m"]) - 0.1) < 1e-6 else row
+    )
+    drawing = criteria.dynamic_criterion(read_results(output))
+    top = drawing.figure.axes[0].get_ylim()[1]
+    assert top == pytest.approx(usual.figure.axes[0].get_ylim()[1], rel=0.05)
+    assert count_in_caption(drawing.caption)[0] == count_in_caption(usual.caption)[0] + 1
+
+
+def test_axes_hold_the_main_fronts(pristine, results):
     drawing = criteria.energy(results)
-    assert "outside the axes" not in drawing.caption
-    assert drawing.figure.axes[0].get_xlim()[0] == 0
+    ax = drawing.figure.axes[0]
+    assert ax.get_xlim()[0] == 0
+    outside, total = count_in_caption(drawing.caption)
+    defined = beyond = 0
+    for run, ids in (("left", (1,)), ("spontaneous", (1, 2, 4)), ("right", (1,))):
+        for front_id in ids:
+            rows = front_rows(pristine, run, front_id)
+            v = rows["v_tip_m_per_s"] / C_L
+            rise = (rows["U_r_J_per_m3"] - rows["U_s_J_per_m3"]) / rows["U_s_J_per_m3"]
+            use = shown(run, rows) & np.isfinite(v * rise)
+            defined += use.sum()
+            beyond += (use & ((v > ax.get_ylim()[1]) | (rise > ax.get_xlim()[1]))).sum()
+    assert (outside, total) == ((beyond, defined) if beyond else (0, 0))
+    assert beyond <= 0.05 * defined
+
+
+# Studies
+
+
+def study_panels(figure: Figure, index: int) -> tuple[int, int]:
+    return 2 * index, 2 * index + 1
+
+
+def test_studies_show_speeds_and_changes(results):
+    figure = studies.speeds(results).figure
+    upper, lower = study_panels(figure, 0)
+    for gid, y in (
+        ("max:spontaneous:-1", [2.0, 1.5, np.nan]),
+        ("max:spontaneous:1", [1.8, 1.35, np.nan]),
+        ("mean:right:-1", [1.44, 1.08, np.nan]),
+        ("max:left:1", [1.6, 1.2, np.nan]),  # the third starts elsewhere
+        ("other:left:1", [np.nan, np.nan, np.nan]),  # and lies above the axis
+    ):
+        np.testing.assert_allclose(artist(figure, gid, upper).get_ydata(), y)
+    assert artist(figure, "other:left:1:above", upper).get_text() == "7.5↑"
+    np.testing.assert_allclose(artist(figure, "change:spontaneous", lower).get_ydata(), [9, 0, np.nan])
+    assert [label.get_text() for label in figure.axes[lower].get_xticklabels()] == ["0.4", "0.6", "1.2"]
+    assert artist(figure, "max:spontaneous:-1", upper).get_linestyle() == "-"
+
+
+def test_studies_of_words_have_no_lines(results):
+    figure = studies.speeds(results).figure
+    upper, lower = study_panels(figure, 2)
+    assert artist(figure, "max:spontaneous:-1", upper).get_linestyle() == "None"
+    labels = [label.get_text() for label in figure.axes[lower].get_xticklabels()]
+    assert labels == ["relief", "fillet 2mm"]
+    assert figure.axes[lower].get_xlabel() == "plate.corner"
+
+
+def test_studies_mark_the_papers_value(results):
+    figure = studies.criteria(results).figure
+    assert artist(figure, "paper_value", 0).get_xdata()[0] == 1
+    assert "paper_value" not in gids(figure, 2)  # 5 mm in the synthetic runs, not among the values
+    assert artist(figure, "paper_value", 4).get_xdata()[0] == 0
+    np.testing.assert_allclose(artist(figure, "rms").get_ydata(), [0.11, 0.11, np.nan])
+    np.testing.assert_allclose(artist(figure, "spread:t_s_over_p_s", 1).get_ydata(), 0.31)
+    assert np.isnan(artist(figure, "spread:energy", 1).get_ydata()).all()
 
 
 # Missing data
@@ -399,12 +571,21 @@ def drop_dataset(path, name):
         (overwrite("left/case.resolved.toml", "a = = 1"), "left/case.resolved.toml", "not TOML"),
         (replace("left/fronts.csv", ",1,", ",0,"), "left/fronts.csv", "column 'direction'"),
         (overwrite("left/run.json", "{"), "left/run.json", "not JSON"),
-        (overwrite("left/run.json", "{}"), "left/run.json", "'wave_speeds.c_L_m_per_s'"),
+        (overwrite("left/run.json", "{}"), "left/run.json", "'statics.inside_from_m'"),
+        (replace("left/run.json", "c_L_m", "c_X_m"), "left/run.json", "'wave_speeds.c_L_m_per_s'"),
         (overwrite("left/interface.h5", "text"), "left/interface.h5", "not an HDF5 file"),
         (drop_dataset("left/interface.h5", "slip_rate_m_per_s"), "left/interface.h5", "'slip_rate_m_per_s'"),
+        (drop_dataset("left/interface.h5", "p_Pa"), "left/interface.h5", "'p_Pa'"),
         (drop_dataset("left/fields.vtkhdf", "VTKHDF/Steps/Values"), "left/fields.vtkhdf", "'Steps/Values'"),
         (overwrite("scorecard.json", '[{"id": "C1"}]'), "scorecard.json", "entry 1 has no 'claim'"),
         (overwrite("analysis.json", '{"fit": null}'), "analysis.json", "'paper_fit.a'"),
+        (
+            replace("analysis.json", '"speed_change": {"median"', '"speed_change": {"x"'),
+            "analysis.json",
+            "1 has",
+        ),
+        (replace("analysis.json", '"points": [', '"points": [3, '), "analysis.json", "study 1 is not as"),
+        (overwrite("timings.json", '[{"part": "a"}]'), "timings.json", "'wall_s'"),
     ],
 )
 def test_damaged_folder_gives_one_line(output, capsys, damage, file, says):

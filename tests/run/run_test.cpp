@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/run.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -308,7 +309,7 @@ TEST(Event, BlowUpIsToldWithItsStep) {
   config.time.allow_unstable = true;
   const auto result = run(config);
   EXPECT_EQ(result.event.end, solve::EventEnd::blow_up);
-  EXPECT_NE(result.event.blow_up.find("step " + std::to_string(result.event.steps)), std::string::npos)
+  EXPECT_NE(result.event.blow_up.find(fmt::format("step {}", result.event.steps)), std::string::npos)
       << result.event.blow_up;
   EXPECT_NE(result.event.blow_up.find("time.step_factor"), std::string::npos);
 }

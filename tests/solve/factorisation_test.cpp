@@ -17,7 +17,7 @@ using mesh::Corner;
 using support::flat;
 using support::max_abs;
 
-class OnPlate : public ::testing::TestWithParam<Corner> {
+class FactorisedPlate : public ::testing::TestWithParam<Corner> {
  protected:
   mesh::Mesh mesh_ = support::tiny_plate(GetParam());
   solid::Material material_;
@@ -60,10 +60,11 @@ class OnPlate : public ::testing::TestWithParam<Corner> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Corners, OnPlate, ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+INSTANTIATE_TEST_SUITE_P(Corners, FactorisedPlate,
+                         ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
                          [](const auto& corner) { return support::name_of(corner.param); });
 
-TEST_P(OnPlate, DissectionIsAPermutationWithTheInterfaceLast) {
+TEST_P(FactorisedPlate, DissectionIsAPermutationWithTheInterfaceLast) {
   const auto order = dissect(mesh_, mesh_.lower);
   const auto orphan = mesh::orphans(mesh_);
   std::vector<int> times(mesh_.n_nodes(), 0);
@@ -75,7 +76,7 @@ TEST_P(OnPlate, DissectionIsAPermutationWithTheInterfaceLast) {
   EXPECT_EQ(order, dissect(mesh_, mesh_.lower));
 }
 
-TEST_P(OnPlate, CondensedStiffnessIsTheSchurComplement) {
+TEST_P(FactorisedPlate, CondensedStiffnessIsTheSchurComplement) {
   for (const auto top : {TopConstraint::both, TopConstraint::vertical}) {
     const Factorisation f(mesh_, material_, top);
     const auto i = interface_unknowns(), m = inner_unknowns(top);
@@ -89,7 +90,7 @@ TEST_P(OnPlate, CondensedStiffnessIsTheSchurComplement) {
   }
 }
 
-TEST_P(OnPlate, CondensedStiffnessIsDefiniteWhereTheLoadedEdgeIsHeld) {
+TEST_P(FactorisedPlate, CondensedStiffnessIsDefiniteWhereTheLoadedEdgeIsHeld) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> held(
       Factorisation(mesh_, material_, TopConstraint::both).condensed_stiffness());
   EXPECT_GT(held.eigenvalues()(0), 1e-4 * held.eigenvalues()(n_interface_ - 1));
@@ -105,7 +106,7 @@ TEST_P(OnPlate, CondensedStiffnessIsDefiniteWhereTheLoadedEdgeIsHeld) {
   EXPECT_LE(max_abs(f.condensed_stiffness() * along), 1e-12 * largest);
 }
 
-TEST_P(OnPlate, DisplacementIsInEquilibrium) {
+TEST_P(FactorisedPlate, DisplacementIsInEquilibrium) {
   for (const auto top : {TopConstraint::both, TopConstraint::vertical}) {
     const Factorisation f(mesh_, material_, top);
     const auto load = f.load(random_top());
@@ -130,7 +131,7 @@ TEST_P(OnPlate, DisplacementIsInEquilibrium) {
   }
 }
 
-TEST_P(OnPlate, RigidTranslationTakesNoForce) {
+TEST_P(FactorisedPlate, RigidTranslationTakesNoForce) {
   for (const auto top : {TopConstraint::both, TopConstraint::vertical}) {
     const Factorisation f(mesh_, material_, top);
     const auto load =

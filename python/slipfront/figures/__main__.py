@@ -9,7 +9,7 @@ from pathlib import Path
 
 import matplotlib
 
-from slipfront.figures import criteria, events, plate, space_time
+from slipfront.figures import criteria, events, plate, space_time, studies
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.report import write_report
 from slipfront.figures.results import Results, read_results
@@ -27,6 +27,7 @@ def draw_all(results: Results) -> list[Drawing]:
         criteria.dynamic_criterion(results),
         criteria.energy(results),
         *(space_time.space_time(results, name) for name in results.runs),
+        *([studies.speeds(results), studies.criteria(results)] if results.studies else []),
     ]
 
 

@@ -76,21 +76,21 @@ def drawn_points(ax: Axes) -> np.ndarray:
 
 
 def largest(ax: Axes, axis: int) -> float:
-    """Largest coordinate along the strong lines; a running median of five passes over single outliers."""
+    """Largest coordinate along the strong lines; a running median of three passes over single outliers."""
     top = 0.0
     for line in ax.lines:
         if (line.get_gid() or "").count(":") != 1:
             continue
         values = np.column_stack(line.get_data())
         values = values[np.isfinite(values).all(axis=1), axis]
-        if len(values) >= 5:
-            values = np.median(np.lib.stride_tricks.sliding_window_view(values, 5), axis=1)
+        if len(values) >= 3:
+            values = np.median(np.lib.stride_tricks.sliding_window_view(values, 3), axis=1)
         top = max(top, np.max(values, initial=0.0))
     return float(top)
 
 
 def finish(ax: Axes, run: Run) -> str:
-    """Speed axis from zero to the fastest main front but at most HIGHEST_V, with the wave speeds as thin lines.
+    """Speed axis from zero to the fastest main front but at most HIGHEST_V, with thin lines at wave speeds.
 
     Returns a sentence for the caption where points lie outside the axes, else nothing.
     """
@@ -182,7 +182,8 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
         figure,
         "Dynamic stress ratio t<sub>d</sub>/p<sub>d</sub> at each point of the interface at the moment the "
         "front is l* short of it: not one instant but the whole passage. Thick grey line: the static ratio "
-        f"t<sub>s</sub>/p<sub>s</sub> before the events; thin line: μ<sub>s</sub>. {DIRECTIONS} {SELECTION}. {OMITTED}",
+        f"t<sub>s</sub>/p<sub>s</sub> before the events; thin line: μ<sub>s</sub>. {DIRECTIONS} "
+        f"{SELECTION}. {OMITTED}",
     )
 
 
@@ -207,7 +208,7 @@ def energy(results: Results) -> Drawing:
     ax = figure.subplots()
     for run in results.events:
         draw_fronts(ax, run, lambda front: front.energy_rise, speed(run), weak)
-    right = np.clip(1.05 * largest(ax, 0), 1.0, LARGEST_RISE)
+    right = np.clip(1.1 * largest(ax, 0), 1.0, LARGEST_RISE)
     r = right * np.linspace(0, 1, 400) ** 2  # closer at zero, where the fit is steep
     band = ax.fill_between(
         r,
@@ -248,5 +249,5 @@ def energy(results: Results) -> Drawing:
         "Front speed against the relative rise of the energy density at the tip, r = (U<sub>r</sub> − "
         f"U<sub>s</sub>)/U<sub>s</sub>. Grey: the paper's fit, a = {paper.a:.2f} ± "
         f"{results.paper_a_band:.2f}, b = {paper.b:.2f}, c = {paper.c:.2f}. {text} Thin lines: wave speeds. "
-        f"{DIRECTIONS} {SELECTION}{outside}",
+        f"{DIRECTIONS} {SELECTION}{NUCLEATION}{TAIL}. {OMITTED}{outside}",
     )

@@ -10,7 +10,14 @@ from matplotlib.colors import Normalize
 from matplotlib.patches import FancyArrowPatch
 
 from slipfront.figures import style
-from slipfront.figures.criteria import DIRECTIONS, NUCLEATION, OMITTED, SELECTION, finish, speed_over_static_ratio
+from slipfront.figures.criteria import (
+    DIRECTIONS,
+    NUCLEATION,
+    OMITTED,
+    SELECTION,
+    finish,
+    speed_over_static_ratio,
+)
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.plate import draw_edges, edges
 from slipfront.figures.results import Results, drawn_fronts, start
@@ -18,7 +25,7 @@ from slipfront.read import DataError, Front, Run
 
 COLOURS = "Blues_r"
 SPEED_RANGE_M_PER_S = (0.0, 2.0)
-AIM_OVER_WIDTH = {"left": 0.60, "right": 0.45}  # where the leading tip of a triggered event is shown
+AIM_OVER_WIDTH = {"left": 0.60, "right": 0.52}  # where the leading tip of a triggered event is shown
 SPONTANEOUS_AIM_S = 30e-6  # after nucleation ...
 WELL_INSIDE_OVER_WIDTH = 0.05  # ... with both tips at least this far from the edges, if there is such a step
 
@@ -145,7 +152,7 @@ def three_events(results: Results) -> Drawing:
     def axes(x: float, y: float, w: float, h: float) -> Axes:
         return figure.add_axes((x / width_mm, y / height_mm, w / width_mm, h / height_mm))
 
-    panels = [axes(4, 73, 80, 42), axes(92, 73, 80, 42), axes(4, 18, 80, 42)]
+    panels = [axes(4, 73, 80, 42), axes(90, 73, 80, 42), axes(4, 18, 80, 42)]
     for ax, letter, run in zip(panels, "abc", results.events, strict=True):
         draw_snapshot(ax, run, choose_step(run))
         ax.text(0, 1.05, f"({letter})", transform=ax.transAxes, fontweight="bold", va="bottom")
@@ -157,7 +164,7 @@ def three_events(results: Results) -> Drawing:
     )
     bar.set_ticks(np.linspace(*SPEED_RANGE_M_PER_S, 5))
     bar.ax.annotate("$|v|$ (m/s)", (1.06, 0.5), xycoords="axes fraction", va="center")
-    d = axes(103, 9, 69, 51)
+    d = axes(103, 9, 64, 51)
     speed_over_static_ratio(d, results.events)
     outside = finish(d, results.events[0])
     d.legend(handles=style.event_handles(results.events), loc="upper left")
@@ -169,7 +176,8 @@ def three_events(results: Results) -> Drawing:
         "the left edge, (b) nucleated spontaneously, (c) triggered at the right edge; the deformation is "
         "not drawn. Square, circle and triangle: where the first front starts; small white triangles: tips "
         "of the fronts that run, white arrows: where they go; black arrow: the imposed shear. Instants: of "
-        "the snapshots, the one with the first front nearest to 60 % (a) and 45 % (c) of the width, and "
+        "the snapshots, the one with the first front nearest to 60 % (a) and 52 % (c) of the width, and "
         "(b) nearest to 30 µs after nucleation with both tips inside. (d) Front speed against the static "
-        f"stress ratio for the three events; thin lines: wave speeds. {DIRECTIONS} {SELECTION}{NUCLEATION}. {OMITTED}{outside}",
+        f"stress ratio for the three events; thin lines: wave speeds. {DIRECTIONS} "
+        f"{SELECTION}{NUCLEATION}. {OMITTED}{outside}",
     )

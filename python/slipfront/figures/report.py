@@ -4,15 +4,18 @@
 from __future__ import annotations
 
 import base64
+import re
 from html import escape
 from pathlib import Path
 
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.results import Results
+from slipfront.figures.studies import is_another, paper_value
+from slipfront.figures.study import SPREADS
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #111; background: #fff; }
-body { max-width: 62em; margin: 2em auto; padding: 0 1em; }
+body { max-width: 64em; margin: 2em auto; padding: 0 1em; }
 h1 { font-size: 1.6em; } h2 { font-size: 1.25em; margin-top: 2.2em; }
 figure { margin: 2em 0; } figure img { max-width: 100%; display: block; }
 figcaption { font-size: 0.9em; color: #333; margin-top: 0.5em; max-width: 52em; }
@@ -23,6 +26,10 @@ thead { border-bottom: 1px solid #111; } tbody tr { border-bottom: 1px solid #dd
 td.verdict { text-align: center; font-weight: bold; }
 .yes { color: #117733; } .no { color: #b2182b; } .open { color: #666; }
 .scroll { overflow-x: auto; }
+.dense { font-size: 0.78em; } .dense th, .dense td { padding: 0.15em 0.35em; white-space: nowrap; }
+.dense td[rowspan] { white-space: normal; min-width: 8em; border-right: 1px solid #ddd; }
+.note { color: #555; }
+nav a { margin-right: 1.2em; }
 """
 VERDICTS = {
     True: ("✓", "yes", "holds"),
@@ -43,14 +50,18 @@ def formatted(value, form: str, factor: float = 1.0) -> str:
     return f"{factor * value:{form}}" if isinstance(value, int | float) else "–"
 
 
-def table(header: list[str], rows: list[list[str]]) -> str:
-    """Cells are pieces of HTML; one that starts with <td is taken as it is."""
+def table(
+    header: list[str], rows: list[list[str]], groups: list[tuple[str, int]] | None = None, kind: str = ""
+) -> str:
+    """Cells are pieces of HTML; one that starts with <td is taken as it is. Groups head several columns."""
     head = "".join(f"<th>{h}</th>" for h in header)
     body = "\n".join(
         "<tr>" + "".join(c if c.startswith("<td") else f"<td>{c}</td>" for c in row) + "</tr>" for row in rows
     )
-    head = f"<thead><tr>{head}</tr></thead>"
-    return f'<div class="scroll"><table>\n{head}\n<tbody>\n{body}\n</tbody></table></div>'
+    above = "".join(f'<th colspan="{n}">{name}</th>' for name, n in groups or [])
+    head = (f"<tr>{above}</tr>" if above else "") + f"<tr>{head}</tr>"
+    opening = f'<table class="{kind}">' if kind else "<table>"
+    return f'<div class="scroll">{opening}\n<thead>{head}</thead>\n<tbody>\n{body}\n</tbody></table></div>'
 
 
 def scorecard_table(scorecard: list[dict]) -> str:
@@ -65,11 +76,14 @@ def scorecard_table(scorecard: list[dict]) -> str:
 
 
 def scorecard_summary(scorecard: list[dict]) -> str:
-    count = {key: sum(entry["holds"] is key for entry in scorecard) for key in (True, False)}
-    rest = len(scorecard) - sum(count.values())
+    own = [entry for entry in scorecard if not entry["id"].endswith("+")]
+    count = {key: sum(entry["holds"] is key for entry in own) for key in (True, False)}
+    rest = len(own) - sum(count.values())
+    added = len(scorecard) - len(own)
+    more = f" Rows with a + ({added}) are further tests of the same statement, not counted." if added else ""
     return (
-        f"Of {len(scorecard)} statements {count[True]} hold (✓), {count[False]} do not (✗), {rest} could "
-        "not be decided (–)."
+        f"Of {len(own)} statements {count[True]} hold (✓), {count[False]} do not (✗), {rest} could "
+        f"not be decided (–).{more}"
     )
 
 
@@ -99,7 +113,7 @@ def spread_table(results: Results) -> str:
     spread = results.analysis.get("spread")
     if not isinstance(spread, dict):
         return ""
-    rows = [[labels.get(key, escape(key)), text(value)] for key, value in spread.items()]
+    rows = [[labels.get(key, escape(key)), formatted(value, ".2f")] for key, value in spread.items()]
     return "<h2>Spread of the front speeds</h2>" + table(
         ["Events compared at equal", "Relative spread"], rows
     )
@@ -126,6 +140,70 @@ def front_table(results: Results) -> str:
     return table(header, rows)
 
 
+def percent(value: float | None) -> str:
+    """A share as a change in per cent, with its sign."""
+    shown = "–" if value is None else f"{100 * value:+.1f}".replace("-", "−")
+    return "0.0" if shown in ("+0.0", "−0.0") else shown
+
+
+STUDY_FRONTS = (("left", 1), ("spontaneous", -1), ("spontaneous", 1), ("right", -1))
+STUDY_EVENTS = ("left", "spontaneous", "right")
+
+
+def study_table(results: Results) -> str:
+    """One row for each value of each study."""
+    rows = []
+    for study in results.studies:
+        paper = paper_value(study, results.runs["left"])
+        unit = f" ({study.unit[0]})" if study.numeric and study.unit[0] else ""
+        first = (
+            f'<td rowspan="{len(study.points)}"><b>{escape(study.name.replace("_", " "))}</b>{unit}<br>'
+            f'<span class="note">{escape(study.why)}</span></td>'
+        )
+        for i, point in enumerate(study.points):
+            value = escape(study.shown(point))
+            cells = [first] if i == 0 else []
+            cells.append(f"<td><b>{value}</b></td>" if i == paper else f"<td>{value}</td>")
+            for key in STUDY_FRONTS:
+                front = point.fronts.get(key)
+                if front is None:
+                    cells.append("–")
+                    continue
+                numbers = f"{formatted(front.max_over_c_L, '.2f')} / {formatted(front.mean_over_c_L, '.2f')}"
+                cells.append(f"<td>{numbers}*</td>" if is_another(results, point, *key) else numbers)
+            cells += [percent(point.change.get(event)) for event in STUDY_EVENTS]
+            cells += [
+                formatted(point.rms_over_c_L, ".3f"),
+                formatted(point.share_in_paper_band, ".0f", 100),
+                *(formatted(point.spread[name], ".2f") for name in SPREADS),
+            ]
+            rows.append(cells)
+    header = [
+        "Study",
+        "Value",
+        "left",
+        "spont. against",
+        "spont. along",
+        "right",
+        "left",
+        "spont.",
+        "right",
+        "rms (c<sub>L</sub>)",
+        "band (%)",
+        "t<sub>s</sub>/p<sub>s</sub>",
+        "t<sub>d</sub>/p<sub>d</sub>",
+        "energy",
+    ]
+    groups = [("", 2), ("V<sub>tip</sub>/c<sub>L</sub>, max / mean", 4), ("Change (%)", 3), ("Fit", 2)]
+    return table(header, rows, [*groups, ("Spread", 3)], "dense")
+
+
+def timing_table(results: Results) -> str:
+    rows = [[escape(part), f"{seconds:.1f}"] for part, seconds in results.timings]
+    rows.append(["<b>sum</b>", f"{sum(seconds for _, seconds in results.timings):.1f}"])
+    return table(["Part", "Wall time (s)"], rows)
+
+
 def origin(results: Results) -> str:
     """Which program made the runs; each distinct version once."""
     made = {(run.info.get("version"), run.info.get("commit")) for run in results.runs.values()}
@@ -138,10 +216,38 @@ def figure_html(drawing: Drawing, folder: Path) -> str:
     image = base64.b64encode((folder / f"{drawing.name}.png").read_bytes()).decode()
     kind = "page" if drawing.figure.get_figwidth() > 5 else "column"
     title = escape(drawing.name)
+    number = re.match(r"fig(\d+)_", drawing.name)
+    label = f"<b>Figure {number[1]} of the paper.</b> " if number else ""
     return (
         f'<figure id="{title}" class="{kind}"><img alt="{title}" src="data:image/png;base64,{image}">\n'
-        f'<figcaption>{drawing.caption} <a href="{title}.pdf">PDF</a></figcaption></figure>'
+        f'<figcaption>{label}{drawing.caption} <a href="{title}.pdf">PDF</a></figcaption></figure>'
     )
+
+
+def study_section(results: Results) -> list[str]:
+    if not results.studies:
+        return []
+    return [
+        '<h2 id="studies-table">Studies</h2>',
+        "<p>How much the results depend on each parameter; bold: the value of the paper's runs. Speeds: of "
+        "the longest front of an event in its direction, * where it starts more than 10 mm from that of the "
+        "paper's run. Change: median over the interface of the change of V<sub>tip</sub> against the "
+        "reference run. Fit: about each value's own a + b exp(−c √r), and the share of its points within the "
+        "paper's band. Spread: median relative spread of V<sub>tip</sub> at equal criterion.</p>",
+        study_table(results),
+    ]
+
+
+def timing_section(results: Results) -> list[str]:
+    return ['<h2 id="timings">Timings</h2>', timing_table(results)] if results.timings else []
+
+
+def navigation(results: Results) -> str:
+    parts = [("scorecard", "Scorecard"), ("figures", "Figures"), ("fit", "Fit")]
+    parts += [("studies-table", "Studies")] if results.studies else []
+    parts += [("fronts", "Fronts")]
+    parts += [("timings", "Timings")] if results.timings else []
+    return "<nav>" + "".join(f'<a href="#{place}">{name}</a>' for place, name in parts) + "</nav>"
 
 
 def write_report(results: Results, drawings: list[Drawing], folder: Path) -> Path:
@@ -155,19 +261,22 @@ def write_report(results: Results, drawings: list[Drawing], folder: Path) -> Pat
         "<h1>Slip fronts at a frictional interface</h1>",
         "<p>Reproduction of Kammer, Yastrebov, Spijker, Molinari, <i>On the propagation of slip fronts at "
         f"frictional interfaces</i>, Tribology Letters 48, 27–32 (2012). Runs by {origin(results)}.</p>",
-        "<h2>Scorecard</h2>",
+        navigation(results),
+        '<h2 id="scorecard">Scorecard</h2>',
         f"<p>{scorecard_summary(results.scorecard)}</p>",
         scorecard_table(results.scorecard),
-        "<h2>Figures</h2>",
+        '<h2 id="figures">Figures</h2>',
         *(figure_html(drawing, folder) for drawing in drawings),
-        "<h2>Fit of the energy criterion</h2>",
+        '<h2 id="fit">Fit of the energy criterion</h2>',
         "<p>V<sub>tip</sub>/c<sub>L</sub> = a + b exp(−c √r), r = (U<sub>r</sub> − "
         "U<sub>s</sub>)/U<sub>s</sub></p>",
         fit_table(results),
         spread_table(results),
-        "<h2>Fronts</h2>",
+        *study_section(results),
+        '<h2 id="fronts">Fronts</h2>',
         "<p>All fronts found, short ones included; direction +1 is that of the imposed shear.</p>",
         front_table(results),
+        *timing_section(results),
         "</body></html>",
     ]
     file = folder / "index.html"

@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap, LogNorm
+from matplotlib.colors import LogNorm
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.results import Results, drawn_fronts, start
+from slipfront.figures.results import DRAWN_LENGTH_M, Results, drawn_fronts, start
 from slipfront.read import Run
 
 RATE_RANGE_M_PER_S = (0.1, 30.0)
@@ -43,31 +44,26 @@ def draw_waves(ax: Axes, run: Run) -> None:
             )
 
 
+def cell_edges(x: np.ndarray) -> np.ndarray:
+    """Borders of the cells around ascending points, half-way between them."""
+    half = 0.5 * np.diff(x)
+    return np.concatenate([[x[0] - half[0]], x[:-1] + half, [x[-1] + half[-1]]])
+
+
 def space_time(results: Results, name: str) -> Drawing:
     run = results.runs[name]
     history = run.history
     figure = style.new_figure(style.COLUMN_MM, 72)
     ax = figure.subplots()
-    rate = np.abs(history.slip_rate_m_per_s)
-    is_open = history.p_Pa <= 0
-    image = ax.pcolormesh(
-        style.mm(history.x_m),
-        1e6 * history.time_s,
-        np.ma.masked_where(is_open | (rate < RATE_RANGE_M_PER_S[0]), rate),
-        shading="nearest",
-        cmap="YlGnBu",
+    # A floor below the range: the logarithm of zero would be drawn as open.
+    rate = np.maximum(np.abs(history.slip_rate_m_per_s), 0.1 * RATE_RANGE_M_PER_S[0])
+    image = ax.pcolorfast(
+        style.mm(cell_edges(history.x_m)),
+        1e6 * cell_edges(history.time_s),
+        np.ma.masked_where(history.p_Pa <= 0, rate),
+        cmap=colormaps["YlGnBu"].with_extremes(under="white", bad=OPEN_COLOUR),
         norm=LogNorm(*RATE_RANGE_M_PER_S),
-        rasterized=True,
         gid="rate",
-    )
-    ax.pcolormesh(
-        style.mm(history.x_m),
-        1e6 * history.time_s,
-        np.ma.masked_where(~is_open, np.ones_like(rate)),
-        shading="nearest",
-        cmap=ListedColormap([OPEN_COLOUR]),
-        rasterized=True,
-        gid="open",
     )
     draw_waves(ax, run)
     for front in drawn_fronts(run):
@@ -100,6 +96,7 @@ def space_time(results: Results, name: str) -> Drawing:
         f"space_time_{name}",
         figure,
         f"Slip rate along the interface over time, {label} event; logarithmic scale, white below "
-        f"{RATE_RANGE_M_PER_S[0]:g} m/s, grey where the contact is open. Red: onsets of the fronts at least 10 mm long. Thin lines from the "
+        f"{RATE_RANGE_M_PER_S[0]:g} m/s, grey where the contact is open. Red: onsets of the fronts at least "
+        f"{1e3 * DRAWN_LENGTH_M:g} mm long. Thin lines from the "
         "start of the first front: c<sub>L</sub> (solid), c<sub>S</sub> (dashed), c<sub>R</sub> (dotted).",
     )

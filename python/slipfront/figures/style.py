@@ -46,7 +46,7 @@ RC = {
     "lines.markeredgewidth": 0.6,
     "hatch.linewidth": 0.4,
     "pdf.fonttype": 42,
-    "savefig.dpi": 300,
+    "savefig.dpi": 250,
 }
 
 

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How much the results depend on each parameter: small multiples, one pair of panels per study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.transforms import blended_transform_factory
+
+from slipfront.figures import style
+from slipfront.figures.drawing import Drawing
+from slipfront.figures.results import Results, main_fronts
+from slipfront.figures.study import Study, StudyPoint
+from slipfront.read import Run
+
+COLUMNS = 4
+CELL_MM = 50.0  # height of a pair of panels
+LEGEND_MM = 11.0
+HIGHEST_V = 4.5
+HIGHEST_RMS = 0.3
+HIGHEST_SPREAD = 1.0
+SAME_START_M = 10e-3  # a main front that starts farther off is another than the paper's run has
+NAMES = {"mu_k": r"$\mu_k$", "alpha": r"$\alpha$", "l_star": "$l^*$"}
+
+# The main fronts followed: event, direction, and the shift of its markers over the width of the panel,
+# without which they would cover each other.
+FRONTS = (("left", 1, -0.033), ("spontaneous", -1, -0.011), ("spontaneous", 1, 0.011), ("right", -1, 0.033))
+SPREADS = (
+    ("t_s_over_p_s", style.STATIC_LABEL, "0.45", "D"),
+    ("t_d_over_p_d", style.DYNAMIC_LABEL, "#0072b2", "v"),
+    ("energy", style.ENERGY_LABEL, "#d55e00", "P"),
+)
+
+
+def paper_value(study: Study, run: Run) -> int | None:
+    """Index of the value that the paper's run has; None where it is not among the study's."""
+    value = run.case
+    for part in study.parameter.split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    for i, point in enumerate(study.points):
+        if isinstance(value, str):
+            same = point.value == value
+        else:
+            same = None not in (value, point.number) and bool(np.isclose(point.number, value))
+        if same:
+            return i
+    return None
+
+
+def title(study: Study) -> str:
+    return NAMES.get(study.name, study.name.replace("_", " "))
+
+
+def draw_values(
+    ax: Axes, study: Study, values: Iterable[float | None], offset: float, top: float, gid: str, **look
+) -> None:
+    """One number per value of the study, at equal distances; one above the axis is written at its end."""
+    x = np.arange(len(study.points)) + offset * len(study.points)
+    y = np.array([np.nan if v is None else v for v in values], dtype=float)
+    line = look.pop("linestyle")
+    inside = np.where(y > top, np.nan, y)
+    ax.plot(x, inside, linestyle=line if study.numeric else "none", gid=gid, **look)
+    for xi, yi in zip(x[y > top], y[y > top], strict=True):
+        ax.annotate(
+            f"{yi:.3g}↑",
+            (xi, 1),
+            xycoords=blended_transform_factory(ax.transData, ax.transAxes),
+            xytext=(0, -1),
+            textcoords="offset points",
+            ha="center",
+            va="top",
+            color=look["color"],
+            fontsize=5,
+            rotation=90,
+            gid=f"{gid}:above",
+        )
+
+
+def is_another(results: Results, point: StudyPoint, event: str, direction: int) -> bool:
+    """Whether the main front starts elsewhere than that of the paper's run."""
+    own = point.fronts.get((event, direction))
+    theirs = [f for f in main_fronts(results.runs[event]) if f.direction == direction]
+    return own is not None and bool(theirs) and abs(own.start_x_m - theirs[0].x_m[0]) > SAME_START_M
+
+
+def front_look(event: str, direction: int) -> dict:
+    look = style.EVENT_STYLES[event]
+    return {
+        "color": look.colour,
+        "linestyle": look.line if direction < 0 or event != "spontaneous" else (0, (1, 1)),
+        "marker": look.marker,
+        "markerfacecolor": look.colour if direction < 0 else "white",
+        "linewidth": 0.8,
+    }
+
+
+def draw_speeds(ax: Axes, results: Results, study: Study) -> None:
+    for event, direction, offset in FRONTS:
+        found = [point.fronts.get((event, direction)) for point in study.points]
+        another = [is_another(results, point, event, direction) for point in study.points]
+        look = front_look(event, direction)
+        key = f"{event}:{direction}"
+        largest = [f.max_over_c_L if f else None for f in found]
+        mean = [f.mean_over_c_L if f else None for f in found]
+        same = [None if other else v for v, other in zip(largest, another, strict=True)]
+        draw_values(ax, study, same, offset, HIGHEST_V, f"max:{key}", markersize=3.0, **look)
+        others = [v if other else None for v, other in zip(largest, another, strict=True)]
+        cross = look | {"marker": "x", "linestyle": "none"}
+        draw_values(ax, study, others, offset, HIGHEST_V, f"other:{key}", markersize=3.0, **cross)
+        dash = look | {"marker": "_", "color": look["color"], "linestyle": "none"}
+        draw_values(ax, study, mean, offset, HIGHEST_V, f"mean:{key}", markersize=5.0, **dash)
+    ax.axhline(1.0, **style.REFERENCE)
+    ax.set(ylim=(0, HIGHEST_V), yticks=[0, 1, 2, 3, 4])
+
+
+def draw_changes(ax: Axes, results: Results, study: Study) -> None:
+    for event in ("left", "spontaneous", "right"):
+        look = front_look(event, -1)
+        offset = next(offset for name, _, offset in FRONTS if name == event)
+        change = [point.change.get(event) for point in study.points]
+        percent = [None if v is None else 100 * v for v in change]
+        draw_values(ax, study, percent, offset, np.inf, f"change:{event}", markersize=3.0, **look)
+    ax.axhspan(-1, 1, color="0.9", linewidth=0, zorder=0)
+    ax.axhline(0, **style.REFERENCE)
+    ax.set_yscale("symlog", linthresh=1, linscale=0.6)
+    ax.set_ylim(-70, 70)
+    ax.set_yticks([-50, -10, -1, 1, 10, 50], labels=["−50", "−10", "−1", "+1", "+10", "+50"], fontsize=5.5)
+    ax.minorticks_off()
+
+
+def draw_rms(ax: Axes, results: Results, study: Study) -> None:
+    look = {"color": "black", "linestyle": "-", "marker": "o", "markersize": 3.0, "linewidth": 0.8}
+    rms = [point.rms_over_c_L for point in study.points]
+    draw_values(ax, study, rms, 0.0, HIGHEST_RMS, "rms", **look)
+    ax.axhspan(0, results.paper_a_band, color="0.9", linewidth=0, zorder=0)
+    ax.set(ylim=(0, HIGHEST_RMS), yticks=[0, 0.1, 0.2, 0.3])
+
+
+def draw_spreads(ax: Axes, results: Results, study: Study) -> None:
+    for (name, _, colour, marker), offset in zip(SPREADS, (-0.024, 0.0, 0.024), strict=True):
+        look = {"color": colour, "linestyle": "-", "marker": marker, "markersize": 3.0, "linewidth": 0.8}
+        values = [point.spread[name] for point in study.points]
+        draw_values(ax, study, values, offset, HIGHEST_SPREAD, f"spread:{name}", **look)
+    ax.set(ylim=(0, HIGHEST_SPREAD), yticks=[0, 0.5])
+
+
+def small_multiples(results: Results, upper, lower, labels: tuple[str, str], handles: list) -> Figure:
+    """Two panels above each other for every study: upper(ax, results, study) and lower(...)."""
+    n_rows = -(-len(results.studies) // COLUMNS)
+    height_mm = LEGEND_MM + CELL_MM * n_rows
+    figure = style.new_figure(style.PAGE_MM, height_mm, constrained=False)
+    for i, study in enumerate(results.studies):
+        row, column = divmod(i, COLUMNS)
+        left, width = 11 + 41.5 * column, 36.5
+        bottom = height_mm - LEGEND_MM - CELL_MM * (row + 1)
+
+        def axes(y: float, h: float, left=left, width=width, bottom=bottom) -> Axes:
+            place = (left / style.PAGE_MM, (bottom + y) / height_mm, width / style.PAGE_MM, h / height_mm)
+            return figure.add_axes(place)
+
+        pair = axes(27, 19), axes(11.5, 14)
+        for ax, draw, label in zip(pair, (upper, lower), labels, strict=True):
+            draw(ax, results, study)
+            ax.set_xlim(-0.5, len(study.points) - 0.5)
+            ax.set_xticks(range(len(study.points)), labels=[])
+            ax.tick_params(axis="x", top=False, direction="out")
+            if column == 0:
+                ax.set_ylabel(label)
+                ax.yaxis.set_label_coords(-0.19, 0.5)
+            else:
+                ax.tick_params(axis="y", labelleft=False)
+            paper = paper_value(study, results.runs["left"])
+            if paper is not None:
+                ax.axvline(paper, color="0.75", linewidth=5, alpha=0.4, zorder=0.2, gid="paper_value")
+        values = [study.shown(point) for point in study.points]
+        long = max(map(len, values)) > 5
+        pair[1].set_xticklabels(
+            values, rotation=20 if long else 0, ha="right" if long else "center", fontsize=5.5
+        )
+        pair[0].set_title(title(study), loc="left", fontweight="bold", pad=2.5)
+        unit = f" ({study.unit[0]})" if study.unit[0] and study.numeric else ""
+        pair[1].set_xlabel(key_without_unit(study) + unit, fontsize=6, color="0.25", labelpad=2)
+    figure.legend(handles=handles, loc="upper center", ncols=4, bbox_to_anchor=(0.5, 1 - 1 / height_mm))
+    return figure
+
+
+def key_without_unit(study: Study) -> str:
+    """The key in the case file without the unit at its end."""
+    for ending in ("_m2_per_s2", "_m", "_s"):
+        if study.parameter.endswith(ending):
+            return study.parameter.removesuffix(ending)
+    return study.parameter
+
+
+def handle(label: str, **look) -> Line2D:
+    return Line2D([], [], label=label, **look)
+
+
+SETTING = (
+    "One pair of panels per parameter, all else as in the paper's runs; its values at equal distances. Broad "
+    "grey stripe: the value of the paper's runs."
+)
+LEFT_OUT = (
+    "Numbers with an arrow lie above the axis. Left out as in the scorecard: points in and next to trigger "
+    "zones and within 5 mm of spontaneous nucleation."
+)
+
+
+def speeds(results: Results) -> Drawing:
+    names = {-1: "against the shear", 1: "along the shear"}
+    handles = [
+        handle(
+            style.EVENT_STYLES[event].label + (f", {names[way]}" if event == "spontaneous" else ""),
+            markersize=3.0,
+            **front_look(event, way),
+        )
+        for event, way, _ in FRONTS
+    ]
+    grey = {"color": "0.3", "linestyle": "none"}
+    handles.append(handle("maximum", marker="o", markersize=3.0, **grey))
+    handles.append(handle("mean", marker="_", markersize=5.0, **grey))
+    handles.append(handle("maximum, front from elsewhere", marker="x", markersize=3.0, **grey))
+    labels = (style.V_LABEL, "change (%)")
+    return Drawing(
+        "studies",
+        small_multiples(results, draw_speeds, draw_changes, labels, handles),
+        f"Dependence of the front speeds on what the paper leaves open or varies. {SETTING} Upper panels: "
+        "largest and mean V<sub>tip</sub> of the longest front of an event in its direction, a cross where "
+        "that front starts more than 10 mm from that of the paper's run (a daughter front); line: "
+        "c<sub>L</sub>. Lower panels: median over the interface of the change of V<sub>tip</sub> against the "
+        f"reference run at equal x, in per cent; grey: within 1 %, where the scale is linear. {LEFT_OUT}",
+    )
+
+
+def criteria(results: Results) -> Drawing:
+    handles = [handle("rms about the own fit", color="black", linestyle="-", marker="o", markersize=3.0)]
+    for _, label, colour, marker in SPREADS:
+        handles.append(handle(f"spread, {label}", color=colour, linestyle="-", marker=marker, markersize=3.0))
+    labels = (r"rms ($c_\mathrm{L}$)", "spread")
+    return Drawing(
+        "studies_criteria",
+        small_multiples(results, draw_rms, draw_spreads, labels, handles),
+        f"Dependence of the collapse on the same parameters. {SETTING} Upper panels: rms of "
+        "V<sub>tip</sub>/c<sub>L</sub> about the fit of a + b exp(−c √r) to each value's own runs; grey: "
+        "the half width of the paper's band. Lower panels: median relative spread of V<sub>tip</sub> between "
+        "the fronts at equal t<sub>s</sub>/p<sub>s</sub>, t<sub>d</sub>/p<sub>d</sub> and (U<sub>r</sub> − "
+        "U<sub>s</sub>)/U<sub>s</sub>. The studies of the trigger have two events instead of three, that of "
+        f"the loading method one: their levels compare only among themselves. {LEFT_OUT.split('.')[0]}.",
+    )

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The built program, run as a user runs it. Its path is the environment variable SLIPFRONT."""
+
+import os
+import resource
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# Elements of 5 mm: a run takes a few hundredths of a second.
+COARSE = """\
+title = "coarse"
+
+[plate]
+element_size_m = 5e-3
+
+[friction]
+law = "velocity_weakening"
+mu_s = 1.3
+mu_k = 0.6
+"""
+
+
+class Program:
+    """Runs the program in a folder of its own."""
+
+    def __init__(self, path, folder):
+        self.path = path
+        self.folder = folder
+
+    def __call__(self, *arguments, timeout_s=60, memory_bytes=None):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (memory_bytes, memory_bytes))
+
+        return subprocess.run(
+            [self.path, *map(str, arguments)],
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=timeout_s,
+            stdin=subprocess.DEVNULL,
+            preexec_fn=limit if memory_bytes else None,
+        )
+
+    def start(self, *arguments, **options):
+        return subprocess.Popen(
+            [self.path, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL, **options
+        )
+
+
+@pytest.fixture
+def program(tmp_path):
+    path = Path(os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")).resolve()
+    if not (path.is_file() and os.access(path, os.X_OK)):
+        pytest.fail(
+            f"{path} is no program: build it (cmake --preset release && cmake --build --preset release) "
+            "or set SLIPFRONT to its path",
+            pytrace=False,
+        )
+    return Program(path, tmp_path)
+
+
+@pytest.fixture
+def coarse(tmp_path):
+    """A case file that takes a moment to run."""
+    case = tmp_path / "coarse.toml"
+    case.write_text(COARSE)
+    return case
+
+
+@pytest.fixture
+def write_case(tmp_path):
+    def write(text, name="case.toml"):
+        case = tmp_path / name
+        case.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return case
+
+    return write

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Commands, options, help and exit codes."""
+
+import json
+import re
+
+import pytest
+from conftest import ROOT
+
+COMMANDS = ["run", "reproduce", "info", "bench", "validate", "keys"]
+CASES = sorted((ROOT / "cases/kammer2012").glob("*.toml"))
+
+
+def one_line(result):
+    """The only line on standard error of a call that failed by the user's mistake."""
+    assert result.returncode == 2, result
+    assert result.stdout == ""
+    lines = result.stderr.splitlines()
+    assert len(lines) == 1, result.stderr
+    return lines[0]
+
+
+def test_help_lists_every_command(program):
+    result = program("--help")
+    assert result.returncode == 0
+    assert result.stderr == ""
+    listed = re.findall(r"^  (\w+) {2,}\S", result.stdout.split("Subcommands:")[1], re.MULTILINE)
+    assert sorted(listed) == sorted(COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_of_a_command(program, command):
+    for flag in ("--help", "-h"):
+        result = program(command, flag)
+        assert result.returncode == 0
+        assert result.stderr == ""
+        assert f"Usage: slipfront {command}" in result.stdout
+
+
+def test_help_names_the_options(program):
+    assert {"--output", "--overwrite", "--quiet", "--set"} <= set(
+        re.findall(r"--\w+", program("run", "--help").stdout)
+    )
+    assert {"--output", "--overwrite", "--quick", "--threads"} <= set(
+        re.findall(r"--\w+", program("reproduce", "--help").stdout)
+    )
+
+
+def test_version(program):
+    result = program("--version")
+    assert result.returncode == 0
+    version = re.search(r"project\(slipfront VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    assert re.fullmatch(rf"slipfront {re.escape(version)} \(\S+\)\n", result.stdout)
+
+
+@pytest.mark.parametrize(
+    "arguments, told",
+    [
+        ([], "subcommand"),
+        (["frobnicate"], "frobnicate"),
+        (["--frobnicate"], "--frobnicate"),
+        (["run"], "CASE"),
+        (["run", "coarse.toml"], "--output"),
+        (["run", "-o", "out"], "CASE"),
+        (["run", "coarse.toml", "-o"], "--output"),
+        (["run", "coarse.toml", "-o", "out", "--frobnicate"], "--frobnicate"),
+        (["run", "coarse.toml", "another.toml", "-o", "out"], "another.toml"),
+        (["run", "coarse.toml", "-o", "out", "--set"], "--set"),
+        (["info"], "CASE"),
+        (["validate"], "CASE"),
+        (["keys", "plate"], "plate"),
+        (["reproduce", "--threads", "0", "-o", "out"], "--threads"),
+        (["reproduce", "--threads", "two", "-o", "out"], "--threads"),
+        (["reproduce", "coarse.toml", "-o", "out"], "coarse.toml"),
+    ],
+)
+def test_wrong_command_lines(program, coarse, arguments, told):
+    line = one_line(program(*arguments))
+    assert told in line
+    assert "--help" in line
+    assert not (coarse.parent / "out").exists()
+
+
+def test_keys_is_the_reference(program):
+    result = program("keys")
+    assert result.returncode == 0
+    assert result.stderr == ""
+    for table in ("plate", "material", "loading", "friction", "event", "time", "fronts", "output"):
+        assert f"## [{table}]" in result.stdout
+    for key in ("element_size_m", "mu_k", "trigger_zone_m", "interface_substeps", "snapshot_times_s"):
+        assert f"`{key}`" in result.stdout
+
+
+def test_there_are_the_papers_cases():
+    names = [case.stem for case in CASES]
+    assert names == ["left", "right", "spontaneous", "spontaneous_mu_k_1.0"]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
+def test_papers_cases_are_valid(program, case):
+    result = program("validate", case)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "valid" in result.stdout
+    assert str(case) in result.stdout
+
+
+def test_empty_case_is_valid(program, write_case):
+    assert program("validate", write_case("")).returncode == 0
+
+
+def test_case_with_other_line_ends_is_valid(program, write_case):
+    assert program("validate", write_case("[plate]\r\nelement_size_m = 2e-3\r\n")).returncode == 0
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
+def test_info_tells_what_follows(program, case):
+    result = program("info", case)
+    assert (result.returncode, result.stderr) == (0, "")
+    # Kammer et al. (2012), Table 1: c_L = 1584 m/s, c_S = 890 m/s.
+    speed = {name: float(v) for name, v in re.findall(r"(c_[LSR]) +([0-9.]+) m/s", result.stdout)}
+    assert abs(speed["c_L"] - 1584) <= 1
+    assert abs(speed["c_S"] - 890) <= 1
+    assert speed["c_R"] < speed["c_S"]
+    assert re.search(r"^nodes +45451 \(301 on the interface", result.stdout, re.MULTILINE)
+    assert re.search(r"^cells +45000$", result.stdout, re.MULTILINE)
+    for line in ("largest stable step", "step", "steps to the end", "memory", "node updates", "expected time"):
+        assert re.search(rf"^{line} +[0-9]", result.stdout, re.MULTILINE), line
+
+
+def test_info_follows_overrides(program, coarse):
+    before, after = program("info", coarse), program("info", coarse, "--set", "material.plane=strain")
+    assert after.returncode == 0
+    c_L = [float(re.search(r"c_L +([0-9.]+)", r.stdout)[1]) for r in (before, after)]
+    # Plane strain: c_L^2 = E (1 - nu) / (rho (1 + nu) (1 - 2 nu)); printed to 0.1 m/s.
+    nu = 0.37
+    assert abs(c_L[1] - (2.6e9 * (1 - nu) / (1200 * (1 + nu) * (1 - 2 * nu))) ** 0.5) <= 0.05 + 1e-9
+    assert c_L[1] > c_L[0]
+
+
+def test_info_agrees_with_the_run(program, coarse, tmp_path):
+    info = program("info", coarse).stdout
+    assert program("run", coarse, "-o", "out", "-q", "--set", "time.quiet_s=inf").returncode == 0
+    run = json.loads((tmp_path / "out/run.json").read_text())
+    assert int(re.search(r"steps to the end +(\d+)", info)[1]) == run["steps"]
+    assert int(re.search(r"nodes +(\d+)", info)[1]) == run["mesh"]["nodes"]
+    # Printed to four digits.
+    assert float(re.search(r"^step +(\S+) s", info, re.MULTILINE)[1]) == pytest.approx(run["dt_s"], rel=1e-3)

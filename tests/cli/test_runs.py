@@ -1,0 +1,343 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs from the command line: results, progress, interruption, blow-up."""
+
+import csv
+import fcntl
+import json
+import os
+import pty
+import re
+import signal
+import struct
+import subprocess
+import termios
+import time
+
+import h5py
+import numpy as np
+import pytest
+from conftest import ROOT
+
+FILES = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv"}
+
+# A run that goes on for minutes unless it is stopped.
+LONG = [
+    "--set", "time.end_s=10", "--set", "time.quiet_s=inf", "--set", "output.history_interval_s=1e-3",
+]  # fmt: skip
+
+
+def files_in(folder):
+    return {path.name for path in folder.iterdir()}
+
+
+def summary(folder):
+    return json.loads((folder / "run.json").read_text())
+
+
+def catches_interrupts(pid):
+    """Whether a process has taken SIGINT into its own hands (Linux)."""
+    with open(f"/proc/{pid}/status") as status:
+        caught = int(re.search(r"^SigCgt:\s*([0-9a-f]+)", status.read(), re.MULTILINE)[1], 16)
+    return bool(caught >> (signal.SIGINT - 1) & 1)
+
+
+def wait_until(condition, timeout_s=20):
+    end = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.01)
+
+
+def test_run_writes_its_folder(program, coarse, tmp_path):
+    result = program("run", coarse, "-o", "deep/out")
+    assert result.returncode == 0, result.stderr
+    out = tmp_path / "deep/out"
+    assert files_in(out) == FILES
+    assert "reaches mu_s at x = " in result.stdout
+    assert "results: deep/out" in result.stdout
+    run = summary(out)
+    assert run["end"] in ("end_time", "quiet")
+    assert run["title"] == "coarse"
+    for front in run["fronts"]:
+        assert re.search(rf"^front {front['id']}: .*{front['mode']}", result.stdout, re.MULTILINE)
+
+
+def test_fronts_file_has_its_columns(program, coarse, tmp_path):
+    assert program("run", coarse, "-o", "out", "-q").returncode == 0
+    with open(tmp_path / "out/fronts.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == (
+        "front_id x_m onset_s direction v_tip_m_per_s t_s_Pa p_s_Pa t_d_Pa p_d_Pa t_r_Pa p_r_Pa "
+        "U_s_J_per_m3 U_r_J_per_m3"
+    ).split()
+    assert {row["front_id"] for row in rows} == {str(f["id"]) for f in summary(tmp_path / "out")["fronts"]}
+    for row in rows:
+        assert row["direction"] in ("1", "-1")
+        if row["t_r_Pa"] and row["p_r_Pa"]:  # at the onset t = mu_s p
+            assert abs(float(row["t_r_Pa"])) == pytest.approx(1.3 * float(row["p_r_Pa"]), rel=1e-12)
+
+
+def test_history_is_hdf5_with_units(program, coarse, tmp_path):
+    assert program("run", coarse, "-o", "out", "-q").returncode == 0
+    with h5py.File(tmp_path / "out/interface.h5") as file:
+        assert {name: file[name].attrs["unit"] for name in file} == {
+            "time_s": "s", "x_m": "m", "slip_m": "m", "slip_rate_m_per_s": "m/s", "t_Pa": "Pa", "p_Pa": "Pa",
+        }  # fmt: skip
+        time_s, x_m = file["time_s"][:], file["x_m"][:]
+        assert np.all(np.diff(time_s) > 0)
+        assert np.all(np.diff(x_m) > 0)
+        for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa"):
+            assert file[name].shape == (len(time_s), len(x_m))
+            assert np.all(np.isfinite(file[name][:]))
+        assert np.all(file["p_Pa"][:] >= 0)
+
+
+def test_static_state_is_the_common_one(program, coarse, tmp_path):
+    states = {}
+    for kind in ("spontaneous", "left", "right"):
+        assert program("run", coarse, "-o", kind, "-q", "--set", f"event.kind={kind}").returncode == 0
+        states[kind] = (tmp_path / kind / "static.csv").read_bytes()
+    assert states["left"] == states["spontaneous"] == states["right"]
+    x, t, p = np.loadtxt(tmp_path / "left/static.csv", delimiter=",", skiprows=1, unpack=True)
+    statics = summary(tmp_path / "left")["statics"]
+    inside = (x >= statics["inside_from_m"]) & (x <= statics["inside_to_m"])
+    # critical_margin is 1e-3; the equilibrium is solved to about 1e-10.
+    assert np.max(t[inside] / p[inside]) == pytest.approx(0.999 * 1.3, rel=1e-9)
+
+
+def test_quiet_prints_nothing(program, coarse):
+    result = program("run", coarse, "-o", "out", "--quiet")
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+
+
+def test_resolved_case_runs_to_the_same_fronts(program, tmp_path):
+    case = ROOT / "cases/kammer2012/left.toml"
+    overrides = ["--set", "plate.element_size_m=4e-3", "--set", "friction.mu_k=0.7"]
+    assert program("run", case, "-o", "a", "-q", *overrides).returncode == 0
+    assert program("run", tmp_path / "a/case.resolved.toml", "-o", "b", "-q").returncode == 0
+    assert files_in(tmp_path / "a") == files_in(tmp_path / "b") == FILES | {"fields.vtkhdf"}
+    for name in ("fronts.csv", "static.csv", "case.resolved.toml"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+    assert len((tmp_path / "a/fronts.csv").read_text().splitlines()) > 10
+    with h5py.File(tmp_path / "a/interface.h5") as a, h5py.File(tmp_path / "b/interface.h5") as b:
+        for name in a:
+            assert np.array_equal(a[name][:], b[name][:]), name
+
+
+def test_overrides_win_over_the_file(program, coarse, tmp_path):
+    arguments = ["--set", "friction.mu_k=0.9", "--set", "friction.mu_k=1.0", "--set", "title=by hand"]
+    assert program("run", coarse, "-o", "out", "-q", *arguments).returncode == 0
+    resolved = (tmp_path / "out/case.resolved.toml").read_text()
+    assert re.search(r"^mu_k = 1\b", resolved, re.MULTILINE)
+    assert re.search(r'^title = "by hand"', resolved, re.MULTILINE)
+
+
+def test_coulomb_friction_by_the_file(program, write_case, tmp_path):
+    case = write_case('[plate]\nelement_size_m = 5e-3\n[friction]\nlaw = "coulomb"\nmu = 0.8\n')
+    result = program("run", case, "-o", "out")
+    assert result.returncode == 0, result.stderr
+    assert summary(tmp_path / "out")["statics"]["common_peak_t_over_p"] == pytest.approx(0.999 * 0.8, rel=1e-9)
+
+
+def test_coulomb_friction_by_overrides(program, coarse, tmp_path):
+    """The file's parameters of its own law do not stand in the way."""
+    result = program("run", coarse, "-o", "out", "--set", "friction.law=coulomb", "--set", "friction.mu=0.9")
+    assert result.returncode == 0, result.stderr
+    assert summary(tmp_path / "out")["statics"]["common_peak_t_over_p"] == pytest.approx(0.999 * 0.9, rel=1e-9)
+    assert re.search(r'^law = "coulomb"', (tmp_path / "out/case.resolved.toml").read_text(), re.MULTILINE)
+
+
+def test_coulomb_friction_by_its_name_alone(program, coarse, tmp_path):
+    result = program("run", coarse, "-o", "out", "-q", "--set", "friction.law=coulomb")
+    assert result.returncode == 0, result.stderr
+    assert files_in(tmp_path / "out") == FILES
+
+
+@pytest.mark.parametrize("corner", ["none", "relief", "fillet"])
+def test_every_corner_runs(program, coarse, corner):
+    result = program("run", coarse, "-o", "out", "-q", "--set", f"plate.corner={corner}")
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_ramp_agrees_with_the_direct_way(program, coarse, tmp_path):
+    result = program("run", coarse, "-o", "out", "--set", "loading.method=ramp")
+    assert result.returncode == 0, result.stderr
+    ramp = summary(tmp_path / "out")["statics"]["ramp"]
+    assert abs(ramp["relative_to_direct"]) < 0.005
+    assert "by the ramp at" in result.stdout
+
+
+def test_blow_up_keeps_what_there_is(program, coarse, tmp_path):
+    result = program(
+        "run", coarse, "-o", "out", "-q", "--set", "time.allow_unstable=true", "--set", "time.step_factor=1.4"
+    )
+    assert result.returncode == 3
+    lines = result.stderr.splitlines()
+    assert len(lines) == 1
+    step = int(re.search(r"\bstep (\d+)\b", lines[0])[1])
+    assert "time.step_factor" in lines[0]
+    assert "kept in out" in lines[0]
+    assert files_in(tmp_path / "out") == FILES
+    run = summary(tmp_path / "out")
+    assert run["end"] == "blow_up"
+    assert run["steps"] == step
+    assert any("blew up" in warning for warning in run["warnings"])
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
+def test_interruption_keeps_what_there_is(program, coarse, tmp_path, sent):
+    process = program.start(
+        "run", coarse, "-o", "out", *LONG, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        wait_until(lambda: catches_interrupts(process.pid))
+        time.sleep(0.3)  # into the event
+        process.send_signal(sent)
+        output, errors = process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 130
+    assert output == ""
+    last = errors.splitlines()[-1]
+    assert "interrupted at t = " in last
+    assert "kept in out" in last
+    assert files_in(tmp_path / "out") == FILES
+    run = summary(tmp_path / "out")
+    assert run["end"] == "interrupted"
+    assert 0 < run["time_s"] < 10
+    with h5py.File(tmp_path / "out/interface.h5") as file:
+        assert file["time_s"][-1] <= run["time_s"]
+    # What was kept is complete: it can be replaced, and run again.
+    assert program("run", coarse, "-o", "out", "-q", "--overwrite").returncode == 0
+    assert summary(tmp_path / "out")["end"] != "interrupted"
+
+
+def test_interruption_of_a_ramp(program, coarse, tmp_path):
+    # Half a step factor of a hundredth makes the ramp take minutes.
+    process = program.start(
+        "run", coarse, "-o", "out", "-q", "--set", "loading.method=ramp", "--set", "time.step_factor=0.005",
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        wait_until(lambda: catches_interrupts(process.pid))
+        time.sleep(0.2)
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 130
+    assert output == ""
+    assert len(errors.splitlines()) == 1
+    assert "interrupted" in errors
+
+
+def test_second_interrupt_ends_the_program(program, coarse):
+    process = program.start("run", coarse, "-o", "out", "-q", *LONG, stderr=subprocess.PIPE)
+    try:
+        wait_until(lambda: catches_interrupts(process.pid))
+        # Stopped, it cannot act on the first signal before the second is there.
+        process.send_signal(signal.SIGSTOP)
+        process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGCONT)
+        process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 130
+
+
+def test_progress_without_a_terminal_is_plain_lines(program, coarse):
+    result = program("run", coarse, "-o", "out", *with_end("0.05"))
+    assert result.returncode == 0
+    assert "\r" not in result.stderr
+    assert "\033" not in result.stderr
+    lines = result.stderr.splitlines()
+    assert lines
+    assert len(lines) <= 10
+    for line in lines:
+        assert re.fullmatch(r"event: \d+ %, \S+ steps/s, \S+( s)? to go", line)
+
+
+def with_end(end_s):
+    return [
+        "--set", f"time.end_s={end_s}", "--set", "time.quiet_s=inf", "--set", "output.history_interval_s=1e-4",
+    ]  # fmt: skip
+
+
+def test_progress_on_a_terminal(program, coarse):
+    master, slave = pty.openpty()
+    fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    process = program.start(
+        "run", coarse, "-o", "out", *with_end("0.05"), stdout=subprocess.DEVNULL, stderr=slave
+    )
+    os.close(slave)
+    shown = b""
+    try:
+        while True:
+            try:
+                chunk = os.read(master, 4096)
+            except OSError:  # the other end is closed
+                break
+            if not chunk:
+                break
+            shown += chunk
+        assert process.wait(timeout=20) == 0
+    finally:
+        process.kill()
+        process.wait()
+        os.close(master)
+    text = shown.decode()
+    drawn = re.findall(r"\revent|\r\x1b\[Kevent", text)
+    assert len(drawn) >= 2
+    percentages = [int(n) for n in re.findall(r"event: (\d+) %", text)]
+    assert percentages == sorted(percentages)
+    assert re.search(r"event: \d+ %, [0-9.e+]+ steps/s, \S+( s)? to go", text)
+    assert text.endswith("\n")
+
+
+def test_reproduce_quick(program, tmp_path):
+    result = program("reproduce", "--quick", "-o", "out", "--threads", "2")
+    assert result.returncode == 0, result.stderr
+    claims = json.loads((tmp_path / "out/scorecard.json").read_text())
+    assert {f"C{k}" for k in range(1, 24)} | {"E1"} <= {claim["id"] for claim in claims}
+    for claim in claims:
+        verdict = {True: "holds", False: "does not hold", None: "not tested"}[claim["holds"]]
+        assert re.search(
+            rf"^{re.escape(claim['id'])} +{verdict} +{re.escape(claim['claim'])}", result.stdout, re.MULTILINE
+        )
+        assert claim["measured"] in result.stdout
+    assert "results: out" in result.stdout
+    for folder in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0"):
+        assert FILES <= files_in(tmp_path / "out" / folder)
+    # Replaced on demand.
+    assert program("reproduce", "--quick", "-o", "out").returncode == 2
+    assert program("reproduce", "--quick", "-o", "out", "--overwrite").returncode == 0
+
+
+def test_reproduce_with_measured_points(program, tmp_path):
+    points = tmp_path / "points.csv"
+    points.write_text("# by hand\nstatic_ratio,v_over_c_L\n" + "".join(f"{0.5 + 0.05 * k},1.0\n" for k in range(16)))
+    result = program("reproduce", "--quick", "-o", "out", "--experiment", points)
+    assert result.returncode == 0, result.stderr
+    claims = {c["id"]: c for c in json.loads((tmp_path / "out/scorecard.json").read_text())}
+    assert claims["E1"]["holds"] is not None
+
+
+def test_reproduce_can_be_interrupted(program, tmp_path):
+    process = program.start("reproduce", "-o", "out", stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        wait_until(lambda: (tmp_path / "out/studies").exists())
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 130
+    assert output == ""
+    assert "interrupted" in errors.splitlines()[-1]
+    for folder in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0"):
+        assert FILES <= files_in(tmp_path / "out" / folder)
+        assert summary(tmp_path / "out" / folder)["end"] != "interrupted"
+    assert not (tmp_path / "out/scorecard.json").exists()

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "paper/reproduce.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "../io/support.hpp"
+#include "paper/cases.hpp"
+
+namespace slipfront::paper {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::TemporaryFolder;
+
+bool go_on(std::size_t, std::size_t, const std::string&) {
+  return true;
+}
+
+ReproduceOptions quick(const fs::path& dir, int threads, bool overwrite = false) {
+  ReproduceOptions options;
+  options.dir = dir;
+  options.quick = true;
+  options.overwrite = overwrite;
+  options.threads = threads;
+  return options;
+}
+
+/// Folders of all runs of the quick reproduction.
+std::vector<std::string> run_folders() {
+  std::vector<std::string> list;
+  for (const auto& c : paper_cases(true)) list.push_back(c.name);
+  for (const auto& study : studies(true))
+    for (const auto& point : study.points)
+      for (const auto& c : point.cases)
+        list.push_back("studies/" + study.name + "/" + point.value + "/" + c.name);
+  return list;
+}
+
+std::map<std::string, std::string> files_below(const fs::path& dir, const std::string& name) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(dir))
+    if (entry.path().filename() == name)
+      files[fs::relative(entry.path(), dir).string()] = test::read_file(entry.path());
+  return files;
+}
+
+/// A quick reproduction shared by the tests.
+class QuickReproduction : public testing::Test {
+ protected:
+  struct Shared {
+    TemporaryFolder folder;
+    ReproduceReport report;
+    std::multiset<std::string> done;
+    std::size_t total = 0, last_done = 0;
+    Shared() {
+      report =
+          reproduce(quick(folder.path(), 2), [&](std::size_t n, std::size_t of, const std::string& name) {
+            if (!name.empty()) done.insert(name);
+            total = of;
+            last_done = n;
+            return true;
+          });
+    }
+  };
+  static void SetUpTestSuite() { shared = std::make_unique<Shared>(); }
+  static void TearDownTestSuite() { shared.reset(); }
+  static inline std::unique_ptr<Shared> shared;
+  const Shared& s = *shared;
+};
+
+TEST_F(QuickReproduction, WritesEveryRun) {
+  for (const auto& name : run_folders()) {
+    for (const char* file : {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv"})
+      EXPECT_TRUE(fs::is_regular_file(s.folder.path() / name / file)) << name << '/' << file;
+    EXPECT_NE(json::parse(test::read_file(s.folder.path() / name / "run.json"))["end"], "interrupted");
+  }
+  for (const auto& c : paper_cases(true))
+    EXPECT_TRUE(fs::is_regular_file(s.folder.path() / c.name / "fields.vtkhdf")) << c.name;
+}
+
+TEST_F(QuickReproduction, TellsOfEveryRunOnce) {
+  EXPECT_THAT(s.done, testing::UnorderedElementsAreArray(run_folders()));
+  EXPECT_EQ(s.total, run_folders().size());
+  EXPECT_EQ(s.last_done, s.total);
+}
+
+TEST_F(QuickReproduction, ScorecardListsEveryClaim) {
+  const json list = json::parse(test::read_file(s.folder / "scorecard.json"));
+  ASSERT_TRUE(list.is_array());
+  ASSERT_EQ(list.size(), s.report.claims.size());
+  std::set<std::string> ids;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const auto& row = list[k];
+    for (const char* key : {"id", "claim", "paper", "measured", "how"})
+      EXPECT_TRUE(row[key].is_string() && !row[key].get<std::string>().empty()) << row.dump();
+    EXPECT_TRUE(row["holds"].is_boolean() || row["holds"].is_null()) << row.dump();
+    EXPECT_TRUE(ids.insert(row["id"]).second) << row["id"];
+    const auto& claim = s.report.claims[k];
+    EXPECT_EQ(row["id"], claim.id);
+    EXPECT_EQ(row["measured"], claim.measured);
+    EXPECT_EQ(row["holds"], claim.holds ? json(*claim.holds) : json(nullptr));
+  }
+  for (int k = 1; k <= 23; ++k) EXPECT_TRUE(ids.contains(fmt::format("C{}", k))) << k;
+  EXPECT_TRUE(ids.contains("E1"));
+}
+
+TEST_F(QuickReproduction, AnalysisAndTimingsAreComplete) {
+  const json analysis = json::parse(test::read_file(s.folder / "analysis.json"));
+  for (const char* key : {"fit", "paper_fit", "share_in_paper_band", "n_points", "spread", "studies"})
+    EXPECT_TRUE(analysis.contains(key)) << key;
+  EXPECT_EQ(analysis["paper_fit"]["a"], 0.76);
+  EXPECT_EQ(analysis["paper_fit"]["b"], 1.80);
+  EXPECT_EQ(analysis["paper_fit"]["c"], 3.05);
+  ASSERT_EQ(analysis["studies"].size(), studies(true).size());
+  for (std::size_t k = 0; k < studies(true).size(); ++k) {
+    EXPECT_EQ(analysis["studies"][k]["name"], studies(true)[k].name);
+    EXPECT_EQ(analysis["studies"][k]["points"].size(), studies(true)[k].points.size());
+  }
+  const json timings = json::parse(test::read_file(s.folder / "timings.json"));
+  ASSERT_EQ(timings.size(), s.report.timings.size());
+  for (const auto& t : timings) EXPECT_GE(t["wall_s"].get<double>(), 0);
+}
+
+TEST_F(QuickReproduction, DoesNotDependOnTheNumberOfThreads) {
+  const TemporaryFolder one;
+  const auto report = reproduce(quick(one.path(), 1), go_on);
+  const auto a = files_below(s.folder.path(), "fronts.csv"), b = files_below(one.path(), "fronts.csv");
+  EXPECT_EQ(a.size(), run_folders().size());
+  ASSERT_EQ(a.size(), b.size());
+  for (const auto& [name, text] : a) EXPECT_TRUE(b.contains(name) && b.at(name) == text) << name;
+  EXPECT_EQ(test::read_file(s.folder / "scorecard.json"), test::read_file(one / "scorecard.json"));
+  EXPECT_EQ(test::read_file(s.folder / "analysis.json"), test::read_file(one / "analysis.json"));
+}
+
+TEST(Reproduce, RefusesAFolderThatHoldsAnything) {
+  const TemporaryFolder folder;
+  test::write_file(folder / "notes.txt", "mine");
+  const auto error = test::error_of([&] { reproduce(quick(folder.path(), 1), go_on); });
+  EXPECT_THAT(error, testing::HasSubstr("is not empty"));
+  EXPECT_THAT(error, testing::HasSubstr("--overwrite"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
+TEST(Reproduce, OverwriteReplacesResultsAndNothingElse) {
+  const TemporaryFolder folder;
+  test::write_file(folder / "notes.txt", "mine");
+  test::write_file(folder / "scorecard.json", "old");
+  fs::create_directories(folder / "spontaneous");
+  test::write_file(folder / "spontaneous/fronts.csv", "old");
+  test::write_file(folder / "spontaneous/notes.txt", "mine");
+  reproduce(quick(folder.path(), 2, true), go_on);
+  EXPECT_EQ(test::read_file(folder / "notes.txt"), "mine");
+  EXPECT_EQ(test::read_file(folder / "spontaneous/notes.txt"), "mine");
+  EXPECT_NE(test::read_file(folder / "spontaneous/fronts.csv"), "old");
+  EXPECT_TRUE(json::parse(test::read_file(folder / "scorecard.json")).is_array());
+}
+
+TEST(Reproduce, InterruptionKeepsTheRunsThatWereDone) {
+  for (const int threads : {1, 2}) {
+    const TemporaryFolder folder;
+    std::vector<std::string> done;
+    EXPECT_THROW(reproduce(quick(folder.path(), threads),
+                           [&](std::size_t n, std::size_t, const std::string& name) {
+                             if (!name.empty() && n <= 3) done.push_back(name);
+                             return n < 3;
+                           }),
+                 Interrupted);
+    ASSERT_EQ(done.size(), 3U);
+    for (const auto& name : done) {
+      EXPECT_NE(json::parse(test::read_file(folder.path() / name / "run.json"))["end"], "interrupted")
+          << name;
+      EXPECT_TRUE(fs::is_regular_file(folder.path() / name / "fronts.csv"));
+    }
+    EXPECT_FALSE(fs::exists(folder / "scorecard.json"));
+    EXPECT_FALSE(fs::exists(folder / "studies"));
+  }
+}
+
+TEST(Reproduce, CanBeInterruptedAtOnce) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(
+      reproduce(quick(folder.path(), 2), [](std::size_t, std::size_t, const std::string&) { return false; }),
+      Interrupted);
+  EXPECT_FALSE(fs::exists(folder / "scorecard.json"));
+}
+
+}  // namespace
+}  // namespace slipfront::paper
