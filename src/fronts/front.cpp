@@ -140,7 +140,8 @@ double tip_speed_m_per_s(const Passage& tip, double run_m, double l_star_m) {
 Traction traction_at(const SlipRecord& record, std::size_t onset, int node) {
   const int offset = node - record.onsets[onset].node;
   if (std::abs(offset) > record.halo) return {undefined, undefined};
-  return record.around_onset(onset)[static_cast<std::size_t>(offset + record.halo)];
+  const int index = offset + record.halo;
+  return record.around_onset(onset)[static_cast<std::size_t>(index)];
 }
 
 /// Tractions of `node` when the tip is at run_m, which it has to reach before it reaches the node.

@@ -16,7 +16,7 @@ constexpr double width_m = 0.2;
 io::Case base_case(interface::EventKind event, bool quick) {
   io::Case c;  // the defaults are the paper's
   c.event = event;
-  c.plate.element_size_m = width_m / (quick ? 100 : 300);
+  c.plate.element_size_m = quick ? 2e-3 : 6.6666666666666667e-4;
   return c;
 }
 
@@ -57,7 +57,7 @@ std::vector<NamedCase> paper_cases(bool quick) {
                                            "triggered on the right, mu_k = 0.6", "spontaneous, mu_k = 1.0"};
   for (std::size_t k = 0; k < cases.size(); ++k) {
     cases[k].config.title = titles[k];
-    for (int t = 1; t <= 20; ++t) cases[k].config.output.snapshot_times_s.push_back(t * 10 * 1e-6);
+    for (int t = 1; t <= 20; ++t) cases[k].config.output.snapshot_times_s.push_back(t / 1e5);
   }
   return cases;
 }
@@ -131,6 +131,7 @@ std::vector<Study> studies(bool quick) {
                "loading.method",
                "critical state by equilibria or by the explicit ramp, elements of 2 mm",
                {}};
+  method.own_reference = true;
   for (const auto& [word, value] :
        {std::pair{"direct", solve::LoadingMethod::direct}, {"ramp", solve::LoadingMethod::ramp}})
     method.points.push_back(make_point(word, nan, quick, {spontaneous}, [&, m = value](io::Case& c) {

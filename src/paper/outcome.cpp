@@ -57,11 +57,15 @@ const fronts::Front* longest_front(const Outcome& outcome) {
 bool counts(const Outcome& outcome, const fronts::Front& front, const fronts::FrontPoint& point,
             double leave_out_m) {
   const double omitted = outcome.config.trigger.zone_m + outcome.config.fronts.trigger_margin_m;
-  if (outcome.config.event == interface::EventKind::left && point.x_m < outcome.contact_from_m + omitted)
-    return false;
-  if (outcome.config.event == interface::EventKind::right && point.x_m > outcome.contact_to_m - omitted)
-    return false;
-  return outcome.triggered() || std::abs(point.x_m - front.points.front().x_m) >= leave_out_m;
+  const bool left = outcome.config.event == interface::EventKind::left;
+  const bool right = outcome.config.event == interface::EventKind::right;
+  const auto near_trigger = [&](double x_m) {
+    return (left && x_m < outcome.contact_from_m + omitted) ||
+           (right && x_m > outcome.contact_to_m - omitted);
+  };
+  if (near_trigger(point.x_m)) return false;
+  const double start_m = front.points.front().x_m;
+  return near_trigger(start_m) || std::abs(point.x_m - start_m) >= leave_out_m;
 }
 
 double criterion_value(const fronts::FrontPoint& point, Criterion criterion) {

@@ -43,7 +43,7 @@ const fronts::Front* main_front(const Outcome& outcome, int direction);
 const fronts::Front* longest_front(const Outcome& outcome);
 
 /// Whether a point counts: outside the trigger zone and its margin and, with leave_out_m, not that near to
-/// the start of a spontaneous front.
+/// the start of a front that nucleated by itself.
 bool counts(const Outcome& outcome, const fronts::Front& front, const fronts::FrontPoint& point,
             double leave_out_m = 0);
 

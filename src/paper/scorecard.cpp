@@ -189,13 +189,17 @@ class Scorecard {
 
   void speeds_of_events() {
     double slow = 0;
-    for (const auto* o : {&r_.spontaneous, &r_.left, &r_.right, &r_.spontaneous_mu_k_1})
+    bool all_run = true;
+    for (const auto* o : {&r_.spontaneous, &r_.left, &r_.right, &r_.spontaneous_mu_k_1}) {
+      all_run = all_run && !o->fronts.empty();
       slow = std::max(slow, longest_stretch_m(*o, 0, [&](const FrontPoint& p) {
                         return p.v_tip_m_per_s < 0.1 * o->speeds.c_L;
                       }));
+    }
     add("C7", "no slow fronts under this loading", "Results",
-        fmt::format("longest stretch below 0.1 c_L: {:.1f} mm", slow * mm), slow <= 10e-3,
-        "V_tip below 0.1 c_L nowhere over more than 10 mm, in all four events");
+        fmt::format("longest stretch below 0.1 c_L: {:.1f} mm{}", slow * mm,
+                    all_run ? "" : "; an event without a front"),
+        all_run && slow <= 10e-3, "V_tip below 0.1 c_L nowhere over more than 10 mm, in all four events");
 
     const auto& s = r_.spontaneous;
     const double against = speed_ratio_correlation(s, main_front(s, -1)),
@@ -373,12 +377,17 @@ class Scorecard {
         }
       }
     }
-    add("C19", "points outside the band are fronts decelerating rapidly before arrest", "Fig. 6",
+    const char* claim = "points outside the band are fronts decelerating rapidly before arrest";
+    const char* how = "at least 70 % of them lie in the last 20 mm before arrest";
+    if (collapse_.n_points == 0) {
+      add("C19", claim, "Fig. 6", "no points", std::nullopt, how);
+      return;
+    }
+    add("C19", claim, "Fig. 6",
         outside == 0
             ? "no points outside"
             : fmt::format("{} of {} points outside the band", percent(double(near_end) / outside), outside),
-        outside == 0 || near_end >= 0.7 * outside,
-        "at least 70 % of them lie in the last 20 mm before arrest");
+        outside == 0 || near_end >= 0.7 * outside, how);
   }
 
   const StudyOutcome* study(const char* name) const {

@@ -3,6 +3,7 @@
 
 import os
 import resource
+import signal
 import subprocess
 from pathlib import Path
 
@@ -31,9 +32,13 @@ class Program:
         self.path = path
         self.folder = folder
 
-    def __call__(self, *arguments, timeout_s=60, memory_bytes=None):
+    def __call__(self, *arguments, timeout_s=60, memory_bytes=None, file_bytes=None):
         def limit():
-            resource.setrlimit(resource.RLIMIT_AS, (memory_bytes, memory_bytes))
+            if memory_bytes:
+                resource.setrlimit(resource.RLIMIT_AS, (memory_bytes, memory_bytes))
+            if file_bytes:
+                signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails instead
+                resource.setrlimit(resource.RLIMIT_FSIZE, (file_bytes, file_bytes))
 
         return subprocess.run(
             [self.path, *map(str, arguments)],
@@ -42,7 +47,7 @@ class Program:
             text=True,
             timeout=timeout_s,
             stdin=subprocess.DEVNULL,
-            preexec_fn=limit if memory_bytes else None,
+            preexec_fn=limit,
         )
 
     def start(self, *arguments, **options):

@@ -123,7 +123,14 @@ def test_info_tells_what_follows(program, case):
     assert speed["c_R"] < speed["c_S"]
     assert re.search(r"^nodes +45451 \(301 on the interface", result.stdout, re.MULTILINE)
     assert re.search(r"^cells +45000$", result.stdout, re.MULTILINE)
-    for line in ("largest stable step", "step", "steps to the end", "memory", "node updates", "expected time"):
+    for line in (
+        "largest stable step",
+        "step",
+        "steps to the end",
+        "memory",
+        "node updates",
+        "expected time",
+    ):
         assert re.search(rf"^{line} +[0-9]", result.stdout, re.MULTILINE), line
 
 

@@ -20,10 +20,14 @@ from conftest import ROOT
 
 FILES = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv"}
 
-# A run that goes on for minutes unless it is stopped.
-LONG = [
-    "--set", "time.end_s=10", "--set", "time.quiet_s=inf", "--set", "output.history_interval_s=1e-3",
-]  # fmt: skip
+
+def with_end(end_s):
+    """A run to this time, with few rows of history."""
+    settings = [f"time.end_s={end_s}", "time.quiet_s=inf", "output.history_interval_s=1e-4"]
+    return [part for setting in settings for part in ("--set", setting)]
+
+
+LONG = with_end("10")  # minutes, unless it is stopped
 
 
 def files_in(folder):
@@ -66,10 +70,10 @@ def test_fronts_file_has_its_columns(program, coarse, tmp_path):
     assert program("run", coarse, "-o", "out", "-q").returncode == 0
     with open(tmp_path / "out/fronts.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert list(rows[0]) == (
-        "front_id x_m onset_s direction v_tip_m_per_s t_s_Pa p_s_Pa t_d_Pa p_d_Pa t_r_Pa p_r_Pa "
-        "U_s_J_per_m3 U_r_J_per_m3"
-    ).split()
+    assert ",".join(rows[0]) == (
+        "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"
+        "U_s_J_per_m3,U_r_J_per_m3"
+    )
     assert {row["front_id"] for row in rows} == {str(f["id"]) for f in summary(tmp_path / "out")["fronts"]}
     for row in rows:
         assert row["direction"] in ("1", "-1")
@@ -136,14 +140,16 @@ def test_coulomb_friction_by_the_file(program, write_case, tmp_path):
     case = write_case('[plate]\nelement_size_m = 5e-3\n[friction]\nlaw = "coulomb"\nmu = 0.8\n')
     result = program("run", case, "-o", "out")
     assert result.returncode == 0, result.stderr
-    assert summary(tmp_path / "out")["statics"]["common_peak_t_over_p"] == pytest.approx(0.999 * 0.8, rel=1e-9)
+    peak = summary(tmp_path / "out")["statics"]["common_peak_t_over_p"]
+    assert peak == pytest.approx(0.999 * 0.8, rel=1e-9)
 
 
 def test_coulomb_friction_by_overrides(program, coarse, tmp_path):
     """The file's parameters of its own law do not stand in the way."""
     result = program("run", coarse, "-o", "out", "--set", "friction.law=coulomb", "--set", "friction.mu=0.9")
     assert result.returncode == 0, result.stderr
-    assert summary(tmp_path / "out")["statics"]["common_peak_t_over_p"] == pytest.approx(0.999 * 0.9, rel=1e-9)
+    peak = summary(tmp_path / "out")["statics"]["common_peak_t_over_p"]
+    assert peak == pytest.approx(0.999 * 0.9, rel=1e-9)
     assert re.search(r'^law = "coulomb"', (tmp_path / "out/case.resolved.toml").read_text(), re.MULTILINE)
 
 
@@ -214,7 +220,7 @@ def test_interruption_keeps_what_there_is(program, coarse, tmp_path, sent):
 
 
 def test_interruption_of_a_ramp(program, coarse, tmp_path):
-    # Half a step factor of a hundredth makes the ramp take minutes.
+    # Small steps make the ramp take minutes.
     process = program.start(
         "run", coarse, "-o", "out", "-q", "--set", "loading.method=ramp", "--set", "time.step_factor=0.005",
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -234,22 +240,21 @@ def test_interruption_of_a_ramp(program, coarse, tmp_path):
 
 
 def test_second_interrupt_ends_the_program(program, coarse):
-    process = program.start("run", coarse, "-o", "out", "-q", *LONG, stderr=subprocess.PIPE)
+    # The static solution of this mesh takes about a second, during which the first one is only noted.
+    process = program.start("run", coarse, "-o", "out", "-q", "--set", "plate.element_size_m=5e-4", *LONG)
     try:
         wait_until(lambda: catches_interrupts(process.pid))
-        # Stopped, it cannot act on the first signal before the second is there.
-        process.send_signal(signal.SIGSTOP)
-        process.send_signal(signal.SIGTERM)
-        process.send_signal(signal.SIGCONT)
-        process.communicate(timeout=20)
+        process.send_signal(signal.SIGINT)
+        wait_until(lambda: not catches_interrupts(process.pid))
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=20) == -signal.SIGINT
     finally:
         process.kill()
         process.wait()
-    assert process.returncode == 130
 
 
 def test_progress_without_a_terminal_is_plain_lines(program, coarse):
-    result = program("run", coarse, "-o", "out", *with_end("0.05"))
+    result = program("run", coarse, "-o", "out", *with_end("0.1"))
     assert result.returncode == 0
     assert "\r" not in result.stderr
     assert "\033" not in result.stderr
@@ -260,17 +265,11 @@ def test_progress_without_a_terminal_is_plain_lines(program, coarse):
         assert re.fullmatch(r"event: \d+ %, \S+ steps/s, \S+( s)? to go", line)
 
 
-def with_end(end_s):
-    return [
-        "--set", f"time.end_s={end_s}", "--set", "time.quiet_s=inf", "--set", "output.history_interval_s=1e-4",
-    ]  # fmt: skip
-
-
 def test_progress_on_a_terminal(program, coarse):
     master, slave = pty.openpty()
     fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
     process = program.start(
-        "run", coarse, "-o", "out", *with_end("0.05"), stdout=subprocess.DEVNULL, stderr=slave
+        "run", coarse, "-o", "out", *with_end("0.1"), stdout=subprocess.DEVNULL, stderr=slave
     )
     os.close(slave)
     shown = b""
@@ -310,7 +309,7 @@ def test_reproduce_quick(program, tmp_path):
         assert claim["measured"] in result.stdout
     assert "results: out" in result.stdout
     for folder in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0"):
-        assert FILES <= files_in(tmp_path / "out" / folder)
+        assert files_in(tmp_path / "out" / folder) >= FILES
     # Replaced on demand.
     assert program("reproduce", "--quick", "-o", "out").returncode == 2
     assert program("reproduce", "--quick", "-o", "out", "--overwrite").returncode == 0
@@ -318,7 +317,8 @@ def test_reproduce_quick(program, tmp_path):
 
 def test_reproduce_with_measured_points(program, tmp_path):
     points = tmp_path / "points.csv"
-    points.write_text("# by hand\nstatic_ratio,v_over_c_L\n" + "".join(f"{0.5 + 0.05 * k},1.0\n" for k in range(16)))
+    rows = "".join(f"{0.5 + 0.05 * k},1.0\n" for k in range(16))
+    points.write_text("# by hand\nstatic_ratio,v_over_c_L\n" + rows)
     result = program("reproduce", "--quick", "-o", "out", "--experiment", points)
     assert result.returncode == 0, result.stderr
     claims = {c["id"]: c for c in json.loads((tmp_path / "out/scorecard.json").read_text())}
@@ -326,18 +326,26 @@ def test_reproduce_with_measured_points(program, tmp_path):
 
 
 def test_reproduce_can_be_interrupted(program, tmp_path):
-    process = program.start("reproduce", "-o", "out", stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    events = [tmp_path / "out" / name for name in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0")]
+    process = program.start(
+        "reproduce", "-o", "out", stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     try:
-        wait_until(lambda: (tmp_path / "out/studies").exists())
+        # run.json is a run's last file.
+        wait_until(lambda: all((folder / "run.json").exists() for folder in events), timeout_s=60)
         process.send_signal(signal.SIGINT)
-        output, errors = process.communicate(timeout=20)
+        start = time.monotonic()
+        output, errors = process.communicate(timeout=60)
+        waited_s = time.monotonic() - start
     finally:
         process.kill()
         process.wait()
     assert process.returncode == 130
     assert output == ""
     assert "interrupted" in errors.splitlines()[-1]
-    for folder in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0"):
-        assert FILES <= files_in(tmp_path / "out" / folder)
-        assert summary(tmp_path / "out" / folder)["end"] != "interrupted"
+    # No longer than what is under way: a static solution of the finest mesh, under a second each.
+    assert waited_s < 5
+    for folder in events:
+        assert files_in(folder) >= FILES
+        assert summary(folder)["end"] != "interrupted"
     assert not (tmp_path / "out/scorecard.json").exists()

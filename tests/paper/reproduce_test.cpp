@@ -183,6 +183,17 @@ TEST(Reproduce, InterruptionKeepsTheRunsThatWereDone) {
   }
 }
 
+TEST(Reproduce, InterruptionLeavesNoEarlierVerdicts) {
+  const TemporaryFolder folder;
+  for (const char* name : {"scorecard.json", "analysis.json", "timings.json"})
+    test::write_file(folder / name, "of an earlier reproduction");
+  EXPECT_THROW(reproduce(quick(folder.path(), 1, true),
+                         [](std::size_t, std::size_t, const std::string&) { return false; }),
+               Interrupted);
+  for (const char* name : {"scorecard.json", "analysis.json", "timings.json"})
+    EXPECT_FALSE(fs::exists(folder / name)) << name;
+}
+
 TEST(Reproduce, CanBeInterruptedAtOnce) {
   const TemporaryFolder folder;
   EXPECT_THROW(

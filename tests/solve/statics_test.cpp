@@ -143,9 +143,14 @@ TEST_P(PaperTilt, StatesObeyContactAndEquilibrium) {
     const auto e = statics.shear_to(ratio);
     expect_equilibrium(mesh, e);
     expect_complementarity(mesh, e, put_down, ratio);
-    // The states of all three kinds are there to be checked.
+    // All kinds of states are there to be checked; slip only at an edge of contact, near the critical shear.
     EXPECT_GT(std::ranges::count(e.contact, Contact::open), 0);
     EXPECT_GT(std::ranges::count(e.contact, Contact::stick), 0);
+    EXPECT_EQ(std::ranges::count(e.contact, Contact::slip) > 0, ratio > 0.9 * mu_s);
+    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+      if (e.contact[k] != Contact::slip) continue;
+      EXPECT_FALSE(e.tractions.x_m[k] >= e.inside_from_m && e.tractions.x_m[k] <= e.inside_to_m);
+    }
   }
 }
 
@@ -259,6 +264,7 @@ TEST(Statics, CriticalShearOfACoarsePlateByDenseSolution) {
     EXPECT_LE(max_abs(flat(e.u_m) - u.col(0) - shear * u.col(1)), 1e-10 * shear);
     EXPECT_LE(max_abs(flat(e.u_per_shear) - u.col(1)), 1e-10);
     expect_complementarity(mesh, e, put_down, 0.999 * mu_s);
+    EXPECT_GT(std::ranges::count(e.contact, Contact::open), 0);
   }
 }
 

@@ -141,7 +141,7 @@ def draw_rms(ax: Axes, results: Results, study: Study) -> None:
 
 
 def draw_spreads(ax: Axes, results: Results, study: Study) -> None:
-    for (name, _, colour, marker), offset in zip(SPREADS, (-0.024, 0.0, 0.024), strict=True):
+    for (name, _, colour, marker), offset in zip(SPREADS, (-0.045, 0.0, 0.045), strict=True):
         look = {"color": colour, "linestyle": "-", "marker": marker, "markersize": 3.0, "linewidth": 0.8}
         values = [point.spread[name] for point in study.points]
         draw_values(ax, study, values, offset, HIGHEST_SPREAD, f"spread:{name}", **look)
