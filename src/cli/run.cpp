@@ -21,6 +21,16 @@ struct RunArguments {
   bool quiet = false;
 };
 
+/// The folder for the results; if nothing was written to it, the folders made for it go again.
+struct OutputFolder {
+  std::filesystem::path dir, outermost_made;
+  ~OutputFolder() {
+    std::error_code error;
+    for (auto p = dir; !outermost_made.empty(); p = p.parent_path())
+      if (!std::filesystem::remove(p, error) || error || p == outermost_made) return;
+  }
+};
+
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
   fmt::print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
@@ -48,7 +58,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
 
 void run_case(const CaseArguments& arguments, const RunArguments& options) {
   const io::Case config = arguments.read();
-  io::prepare_output_folder(options.dir, options.overwrite);
+  const OutputFolder folder{options.dir, io::claim_output_folder(options.dir, options.overwrite)};
   catch_interrupts();
   const auto with_progress = [&](const char* label) {
     // The total is known only when the first step is done.
@@ -62,6 +72,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
   try {
     const auto initial = run::make_initial_state(config, with_progress("ramp"));
     const auto result = run::run_event(config, initial, with_progress("event"));
+    io::remove_results(options.dir);
     run::write(options.dir, result, initial);
     if (result.event.end == solve::EventEnd::blow_up)
       throw BlowUp(result.event.blow_up + "; what there is was kept in " + options.dir);

@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "mesh/plate.hpp"
+#include "run/run.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 void validate(const CaseArguments& arguments) {
   const io::Case config = arguments.read();
   try {
-    mesh::make_plate(config.plate);
+    run::check(config);
   } catch (const UserError& error) {
     throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
   }

@@ -42,6 +42,10 @@ constexpr std::array<Column, 4> matrices = {{
     {"p_Pa", &History::p_Pa, "Pa", "contact pressure, positive in compression, [times, nodes]"},
 }};
 
+/// What a run writes.
+constexpr std::array<const char*, 6> result_files = {"case.resolved.toml", "run.json",   "interface.h5",
+                                                     "fronts.csv",         "static.csv", "fields.vtkhdf"};
+
 void write_column(const hdf5::File& file, const Column& column, const History& history,
                   const hdf5::Shape& shape) {
   hdf5::write(file, column.name, history.*column.values, shape);
@@ -99,13 +103,18 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
 }
 
 void prepare_output_folder(const std::filesystem::path& dir, bool overwrite) {
+  claim_output_folder(dir, overwrite);
+  remove_results(dir);
+}
+
+std::filesystem::path claim_output_folder(const std::filesystem::path& dir, bool overwrite) {
   namespace fs = std::filesystem;
-  static constexpr std::array<const char*, 6> names = {"case.resolved.toml", "run.json",   "interface.h5",
-                                                       "fronts.csv",         "static.csv", "fields.vtkhdf"};
   std::error_code error;
   const fs::file_status status = fs::status(dir, error);
   if (fs::exists(status) && !fs::is_directory(status))
     throw UserError("output folder {}: is a file; choose another name", dir.string());
+  fs::path made;
+  for (fs::path p = dir; !p.empty() && !fs::exists(p, error); p = p.parent_path()) made = p;
   fs::create_directories(dir, error);
   if (error)
     throw UserError("output folder {}: cannot be made ({}); choose another place", dir.string(),
@@ -117,16 +126,21 @@ void prepare_output_folder(const std::filesystem::path& dir, bool overwrite) {
   if (error)
     throw UserError("output folder {}: cannot be read ({}); choose another place", dir.string(),
                     error.message());
-  if (empty) return;
-  if (!overwrite)
+  if (!empty && !overwrite)
     throw UserError(
         "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
         dir.string());
-  for (const char* name : names) {
-    const fs::path file = dir / name;
-    if (fs::is_directory(fs::symlink_status(file, error)))
-      throw UserError("{}: is a folder where a result file is to go; move it away", file.string());
-    fs::remove(file, error);
+  for (const char* name : result_files)
+    if (fs::is_directory(fs::symlink_status(dir / name, error)))
+      throw UserError("{}: is a folder where a result file is to go; move it away", (dir / name).string());
+  return made;
+}
+
+void remove_results(const std::filesystem::path& dir) {
+  std::error_code error;
+  for (const char* name : result_files) {
+    const auto file = dir / name;
+    std::filesystem::remove(file, error);
     if (error)
       throw UserError("{}: cannot be removed ({}); remove it by hand", file.string(), error.message());
   }

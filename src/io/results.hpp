@@ -19,6 +19,13 @@ namespace slipfront::io {
 /// @throws UserError where that is refused or the folder cannot be written.
 void prepare_output_folder(const std::filesystem::path& dir, bool overwrite);
 
+/// The first half of it: makes sure that `dir` can take a run's results and makes it where it is missing, but
+/// removes nothing.
+/// @return the outermost folder that was made; empty where none was.
+std::filesystem::path claim_output_folder(const std::filesystem::path& dir, bool overwrite);
+/// The second half: removes the files of an earlier run.
+void remove_results(const std::filesystem::path& dir);
+
 /// Writes a text file, replacing what it held. @throws UserError where it cannot be written.
 void write_text(const std::filesystem::path& file, std::string_view text);
 

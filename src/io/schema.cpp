@@ -332,6 +332,9 @@ void check_relations(const Case& config, const Document& document, const std::st
       fmt::format(
           "time.step_factor is {}, beyond the stable step; use at most 1, or set time.allow_unstable = true",
           config.time.step_factor));
+  require(config.fronts.l_star_m < plate.width_m, {"fronts.l_star_m", "plate.width_m"},
+          fmt::format("fronts.l_star_m is {} m; it must be less than plate.width_m, {} m",
+                      config.fronts.l_star_m, plate.width_m));
   require(config.fronts.pulse_share <= config.fronts.crack_share,
           {"fronts.pulse_share", "fronts.crack_share"},
           fmt::format("fronts.pulse_share is {}; it must be at most fronts.crack_share, {}",

@@ -16,7 +16,7 @@ enum class Corner {
 struct Plate {
   double width_m = 0.2;
   double height_m = 0.1;
-  double element_size_m = 0.1 / 150;  ///< width and height must be whole multiples of it, to 1e-6
+  double element_size_m = 2e-3 / 3;  ///< width and height must be whole multiples of it, to 1e-6
   Corner corner = Corner::relief;
   double relief_length_m = 5e-3;
   double relief_height_m = 0.5e-3;

@@ -82,6 +82,10 @@ class Runner {
       missing.emplace_back(std::move(key), &c.config);
     }
     in_parallel(options_.threads, missing.size(), [&](std::size_t k) {
+      // The statics do not ask by themselves.
+      if (!continue_while_wanted()(0, 0))
+        throw Interrupted(
+            fmt::format("interrupted; the runs that were done are in {}", options_.dir.string()));
       states_.at(missing[k].first) = run::make_initial_state(*missing[k].second, continue_while_wanted());
     });
   }
@@ -114,6 +118,9 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   if (!options.experiment.empty())
     experiment = io::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
   io::prepare_output_folder(options.dir, options.overwrite);
+  // An interrupted reproduction must not leave the verdicts of an earlier one beside its runs.
+  for (const char* name : {"scorecard.json", "analysis.json", "timings.json"})
+    std::filesystem::remove(options.dir / name);
   const auto events = paper_cases(options.quick);
   const auto study_list = studies(options.quick);
 

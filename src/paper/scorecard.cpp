@@ -253,7 +253,7 @@ class Scorecard {
     add("C11", "the left-triggered maximum is at most 60 % of that of the other two", "Results",
         fmt::format("left {:.2f}, spontaneous {:.2f}, right {:.2f} c_L: {} and {}", left, spontaneous, right,
                     percent(left / spontaneous), percent(left / right)),
-        left <= 0.6 * spontaneous && left <= 0.6 * right,
+        left > 0 && left <= 0.6 * spontaneous && left <= 0.6 * right,
         "ratio of maxima to each at most 0.6; 5 mm next to spontaneous nucleation, trigger zones and margins "
         "left out");
   }

@@ -64,16 +64,23 @@ std::string initial_state_key(const io::Case& config) {
   return io::to_toml(relevant);
 }
 
+mesh::Mesh check(const io::Case& config) {
+  const double n_unknowns = approximate_unknowns(config.plate);
+  solve::require_statics_memory(n_unknowns, solve::estimated_factor_bytes(n_unknowns));
+  auto mesh = mesh::make_plate(config.plate);
+  solve::require_rows_fit(mesh, config.time);
+  return mesh;
+}
+
 InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor) {
   const auto start = Clock::now();
   const double mu_s = interface::static_coefficient(config.friction);
   const double margin = config.loading.critical_margin;
-  const double n_unknowns = approximate_unknowns(config.plate);
-  solve::require_statics_memory(n_unknowns, solve::estimated_factor_bytes(n_unknowns));
   InitialState initial;
-  initial.mesh = mesh::make_plate(config.plate);
+  initial.mesh = check(config);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
-  const solve::Statics statics(initial.mesh, config.material, config.loading, mu_s);
+  const solve::Statics statics(initial.mesh, config.material, config.loading, mu_s,
+                               interface::static_coefficient_key(config.friction));
   initial.n_unknowns = statics.n_unknowns();
   initial.factor_bytes = statics.factor_bytes();
   initial.critical_shear_m = statics.shear_to(mu_s).shear_m;
@@ -152,7 +159,7 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
 Info info(const io::Case& config) {
   Info info;
   info.speeds = wave_speeds(config.material);
-  const auto mesh = mesh::make_plate(config.plate);
+  const auto mesh = check(config);
   info.n_nodes = mesh.n_nodes();
   info.n_cells = static_cast<std::int64_t>(mesh.cells.size());
   info.n_interface = static_cast<std::int64_t>(mesh.lower.size());

@@ -29,6 +29,11 @@ struct InitialState {
   std::optional<solve::Ramp> ramp;  ///< where loading.method is ramp
 };
 
+/// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer.
+/// @return the mesh.
+/// @throws UserError
+mesh::Mesh check(const io::Case& config);
+
 /// @throws UserError, BlowUp, Interrupted as its parts do.
 InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor);
 

@@ -193,8 +193,13 @@ Equilibrium make_equilibrium(const mesh::Mesh& mesh, const ContactProblem& probl
 
 }  // namespace
 
-Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s)
-    : mesh_(mesh), loading_(loading), mu_s_(mu_s), tributary_m_(mesh::tributary_lengths_m(mesh)) {
+Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
+                 std::string mu_s_key)
+    : mesh_(mesh),
+      loading_(loading),
+      mu_s_(mu_s),
+      mu_s_key_(std::move(mu_s_key)),
+      tributary_m_(mesh::tributary_lengths_m(mesh)) {
   held_ = std::make_unique<Factorisation>(mesh, material, TopConstraint::both);
 
   Factorisation::Top tilt{std::vector<double>(mesh.top.size(), 0.0), {}};
@@ -221,7 +226,7 @@ Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const 
     problem.solve();
   } while (problem.correct(0, iteration > iterations_at_once, [](std::size_t) { return true; }));
   tilted_ = make_equilibrium(mesh, problem, 0, loading.edge_margin_m);
-  if (std::ranges::all_of(problem.contact, [](Contact c) { return c == Contact::open; }))
+  if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
     throw UserError(
         "the tilt leaves the plate without contact; increase loading.tilt_left_m or loading.tilt_right_m");
   tilted_.u_m = during_tilt.displacement(load, problem.u0);
@@ -279,17 +284,16 @@ Equilibrium Statics::shear_to(double ratio) const {
       const double t1 = problem.t_Pa(k, 1) - t0, p1 = problem.p_Pa(k, 1) - p0;
       if (t0 > ratio * p0)
         throw UserError(
-            "the tilt alone brings t/p inside the interface to {:.4g}, above {:.4g}; change the tilt, the "
-            "friction "
-            "coefficient or loading.edge_margin_m",
-            t0 / p0, ratio);
+            "the tilt alone brings t/p inside the interface to {:.4g}, not below {:.4g}; raise {} or change "
+            "the "
+            "tilt",
+            t0 / p0, ratio, mu_s_key_);
       const double rise = t1 - ratio * p1;
       if (rise > 0) shear = std::min(shear, (ratio * p0 - t0) / rise);
     }
     if (!std::isfinite(shear))
-      throw UserError(
-          "no shear brings t/p inside the interface to {:.4g}; change the tilt or the friction coefficient",
-          ratio);
+      throw UserError("no shear brings t/p inside the interface to {:.4g}; reduce {} or change the tilt",
+                      ratio, mu_s_key_);
     return shear;
   });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "fronts/record.hpp"
@@ -35,7 +36,10 @@ struct Equilibrium {
 /// change of contact is solved on the condensed interface.
 class Statics {
  public:
-  Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s);
+  /// @param mu_s_key  key of mu_s in the case file, for messages
+  /// @throws UserError where the tilt presses no node against the plane.
+  Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
+          std::string mu_s_key = "friction.mu_s");
 
   /// The tilted plate before any shear.
   const Equilibrium& tilted() const { return tilted_; }
@@ -57,6 +61,7 @@ class Statics {
   const mesh::Mesh& mesh_;
   Loading loading_;
   double mu_s_;
+  std::string mu_s_key_;
   std::vector<double> tributary_m_;
   std::unique_ptr<Factorisation> held_;  ///< both displacements of the loaded edge prescribed
   Factorisation::Load tilt_;             ///< the loaded edge where it stands after the tilt

@@ -28,6 +28,13 @@ std::vector<int> layers_from_interface(const mesh::Mesh& mesh, int most) {
 
 }  // namespace
 
+void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time) {
+  if (time.interface_rows >= mesh.grid.rows)
+    throw UserError(
+        "time.interface_rows = {} does not fit below the loaded edge of a mesh of {} rows; choose fewer",
+        time.interface_rows, mesh.grid.rows);
+}
+
 Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material, const interface::FrictionLaw& law,
                  const TimeStepping& time)
     : damping_s_(material.stiffness_damping_s),
@@ -42,10 +49,7 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material, const 
       v_(mesh.n_nodes()),
       start_u_(mesh.lower.size()),
       w_(6 * static_cast<std::size_t>(mesh.grid.stride())) {
-  if (layer_rows_ >= mesh.grid.rows)
-    throw UserError(
-        "time.interface_rows = {} does not fit below the loaded edge of a mesh of {} rows; choose fewer",
-        layer_rows_, mesh.grid.rows);
+  require_rows_fit(mesh, time);
 
   // The layer is the lowest rows of the grid and, around fillets, whatever lies as near to the interface.
   // Nodes whose stencil would mix the layer with the rest at one height get block rows.

@@ -14,6 +14,9 @@
 
 namespace slipfront::solve {
 
+/// @throws UserError where the interface rows do not fit into the mesh.
+void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time);
+
 /// Explicit motion of the plate: Newmark with beta = 0, gamma = 1/2 (displacements at whole steps, velocities
 /// at half steps), damping force on the last half-step velocity. The rows of nodes next to the interface are
 /// sub-cycled: in each step the other nodes move first, then the interface layer takes its sub-steps while

@@ -92,6 +92,17 @@ TEST_F(EventRun, EndsWhenItBlowsUp) {
   for (const double slip : event.history.slip_m) ASSERT_TRUE(std::isfinite(slip));
 }
 
+TEST_F(EventRun, EndsWhenEnergyComesFromNowhere) {
+  // Unstable by so little that the energy, looked at every 50 steps, tells before any slip rate does.
+  time_.step_factor = 1.02;
+  time_.allow_unstable = true;
+  time_.end_s = 1;
+  const Event event = run(calm_);
+  EXPECT_EQ(event.end, EventEnd::blow_up);
+  EXPECT_THAT(event.blow_up, HasSubstr("the energy has grown to"));
+  EXPECT_EQ(event.steps % 50, 0);
+}
+
 TEST_F(EventRun, SamplesAreSpacedAsAsked) {
   sampling_.history_interval_s = 7e-6;
   const Event event = run(calm_);

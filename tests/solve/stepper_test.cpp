@@ -346,7 +346,7 @@ class PlainScheme {
 class Scheme : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {};
 INSTANTIATE_TEST_SUITE_P(Layers, Scheme,
                          ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
-                                            ::testing::Values(1, 4), ::testing::Values(1, 5)),
+                                            ::testing::Values(1, 4, 7), ::testing::Values(1, 5)),
                          [](const auto& p) {
                            return support::name_of(std::get<0>(p.param)) + "_" +
                                   std::to_string(std::get<1>(p.param)) + "rows_" +

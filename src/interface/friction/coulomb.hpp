@@ -12,7 +12,7 @@ struct Coulomb {
   static constexpr const char* name = "coulomb";
   static constexpr const char* help = "one coefficient, at rest and in motion";
 
-  double mu = 0.5;
+  double mu = 1.3;
 
   static constexpr std::array<Parameter<Coulomb>, 1> parameters() {
     return {{{"mu", &Coulomb::mu, 0, 100, "friction coefficient"}}};
