@@ -31,7 +31,8 @@ bool update(const Evaluator& mu, double dt_s, Interface& s) {
     const double t_stop = s.v_x_m_per_s[i] * impedance;
     const double demand = std::abs(t_stop);
     const double strength = mu(std::abs(s.slip_rate_m_per_s[i])) * p;
-    const bool slips = demand > strength;
+    const bool slips =
+        !(demand <= strength);  // so that a motion that is not a number shows up as a slip rate
     const double t = slips ? std::copysign(strength, t_stop) : t_stop;
     const std::uint8_t slipping = slips && p > 0;
     changed |= static_cast<unsigned>(slipping ^ s.slipping[i]);

@@ -34,12 +34,14 @@ Json collapse_json(const Collapse& c) {
                    {"n_points", c.fit.n_points}};
   json["share_in_paper_band"] = number(c.share_in_paper_band);
   json["n_points"] = c.n_points;
-  json["spread"] = {{"t_s_over_p_s", number(c.static_ratio.median_relative)},
-                    {"t_d_over_p_d", number(c.dynamic_ratio.median_relative)},
-                    {"energy", number(c.energy_rise.median_relative)}};
-  json["spread_rms"] = {{"t_s_over_p_s", number(c.static_ratio.rms_relative)},
-                        {"t_d_over_p_d", number(c.dynamic_ratio.rms_relative)},
-                        {"energy", number(c.energy_rise.rms_relative)}};
+  const auto spread = [&](auto value) {
+    return Json{{"t_s_over_p_s", number(value(c.static_ratio))},
+                {"t_d_over_p_d", number(value(c.dynamic_ratio))},
+                {"energy", number(value(c.energy_rise))}};
+  };
+  json["spread"] = spread([](const Collapse::Spreads& s) { return s.cases.median_relative; });
+  json["spread_of_fronts"] = spread([](const Collapse::Spreads& s) { return s.fronts.median_relative; });
+  json["spread_rms"] = spread([](const Collapse::Spreads& s) { return s.cases.rms_relative; });
   return json;
 }
 

@@ -107,18 +107,34 @@ std::vector<fronts::Series> criterion_series(std::span<const Outcome* const> out
   return list;
 }
 
+std::vector<fronts::Series> case_series(std::span<const Outcome* const> outcomes, Criterion criterion) {
+  std::vector<fronts::Series> list;
+  for (const auto* outcome : outcomes) {
+    fronts::Series all;
+    for (const auto& front : criterion_series({&outcome, 1}, criterion)) {
+      all.x.insert(all.x.end(), front.x.begin(), front.x.end());
+      all.y.insert(all.y.end(), front.y.begin(), front.y.end());
+    }
+    if (!all.x.empty()) list.push_back(std::move(all));
+  }
+  return list;
+}
+
 double PaperFit::operator()(double energy_rise) const {
   return a + b * std::exp(-c * std::sqrt(energy_rise));
 }
 
 Collapse collapse(std::span<const Outcome* const> outcomes, bool without_tails) {
   Collapse result;
-  result.static_ratio =
-      spread_at_equal_x(criterion_series(outcomes, Criterion::static_ratio, without_tails), criterion_bins);
-  result.dynamic_ratio =
-      spread_at_equal_x(criterion_series(outcomes, Criterion::dynamic_ratio, without_tails), criterion_bins);
+  const auto spreads = [&](Criterion criterion) {
+    return Collapse::Spreads{
+        spread_at_equal_x(case_series(outcomes, criterion), criterion_bins),
+        spread_at_equal_x(criterion_series(outcomes, criterion, without_tails), criterion_bins)};
+  };
+  result.static_ratio = spreads(Criterion::static_ratio);
+  result.dynamic_ratio = spreads(Criterion::dynamic_ratio);
+  result.energy_rise = spreads(Criterion::energy_rise);
   const auto energy = criterion_series(outcomes, Criterion::energy_rise, without_tails);
-  result.energy_rise = spread_at_equal_x(energy, criterion_bins);
   const PaperFit paper;
   std::size_t n_inside = 0;
   std::size_t n_usable = 0;

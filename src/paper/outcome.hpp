@@ -63,6 +63,9 @@ bool in_tail(const fronts::Front& front, const fronts::FrontPoint& point);
 std::vector<fronts::Series> criterion_series(std::span<const Outcome* const> outcomes, Criterion criterion,
                                              bool without_tails = false);
 
+/// The same with all fronts of a run in one series.
+std::vector<fronts::Series> case_series(std::span<const Outcome* const> outcomes, Criterion criterion);
+
 /// The paper's fit of Fig. 6 and its band.
 struct PaperFit {
   double a = 0.76, b = 1.80, c = 3.05, band = 0.07;
@@ -71,7 +74,11 @@ struct PaperFit {
 
 /// How well one criterion orders the speeds of a set of runs.
 struct Collapse {
-  fronts::Spread static_ratio, dynamic_ratio, energy_rise;  ///< of V_tip/c_L at equal criterion
+  /// Spread of V_tip/c_L at equal criterion, between the runs and between all their fronts.
+  struct Spreads {
+    fronts::Spread cases, fronts;
+  };
+  Spreads static_ratio, dynamic_ratio, energy_rise;
   bool fitted = false;
   fronts::ExponentialFit fit;  ///< of V_tip/c_L against the energy rise
   double share_in_paper_band = 0;

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paper/reproduce.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <thread>
 
 #include "base/error.hpp"
@@ -35,10 +37,16 @@ void in_parallel(int threads, std::size_t n, const std::function<void(std::size_
       }
     }
   };
-  std::vector<std::thread> others;
-  for (int t = 1; t < threads; ++t) others.emplace_back(loop);
-  loop();
-  for (auto& thread : others) thread.join();
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (std::size_t t = 1; t < std::min(static_cast<std::size_t>(threads), n); ++t)
+        others.emplace_back(loop);
+    } catch (const std::system_error&) {
+      // No more threads to be had: those that are there do the work.
+    }
+    loop();
+  }
   if (failure) std::rethrow_exception(failure);
 }
 
@@ -57,7 +65,10 @@ class Runner {
       const auto& initial = states_.at(run::initial_state_key(config));
       const auto result = run::run_event(config, initial, continue_while_wanted());
       io::prepare_output_folder(options_.dir / name, options_.overwrite);
-      run::write(options_.dir / name, result, initial);
+      {
+        const std::lock_guard lock(files_);  // HDF5 need not be built for several threads
+        run::write(options_.dir / name, result, initial);
+      }
       outcomes[k] = make_outcome(config_name(name), result, initial);
       const std::lock_guard lock(mutex_);
       if (result.event.end == solve::EventEnd::blow_up)
@@ -107,7 +118,7 @@ class Runner {
   const RunMonitor& monitor_;
   std::size_t total_, done_ = 0;
   bool interrupted_ = false;
-  std::mutex mutex_;
+  std::mutex mutex_, files_;
   std::map<std::string, run::InitialState> states_;
 };
 

@@ -91,9 +91,10 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
     auto plain = config.time;
     plain.interface_substeps = 1;
     solve::Stepper stepper(initial.mesh, config.material, config.friction, plain);
-    initial.ramp = solve::run_ramp(stepper, statics.shear_by(0), config.loading, mu_s,
-                                   top_speed_m_per_s(config), initial.critical_shear_m, monitor);
-    if (initial.ramp->interrupted) throw Interrupted("interrupted during the ramp; nothing was written");
+    initial.ramp = solve::run_ramp(
+        stepper, statics.shear_by(0), config.loading, mu_s, top_speed_m_per_s(config),
+        solid::longitudinal_speed_m_per_s(config.material), initial.critical_shear_m, monitor);
+    if (initial.ramp->interrupted) throw Interrupted("interrupted during the ramp, before the event");
     initial.common = initial.ramp->common;
     initial.spontaneous = initial.ramp->spontaneous;
   }
@@ -150,6 +151,13 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
   if (config.fronts.l_star_m < 0.99 * initial.mesh.grid.spacing_m)
     result.warnings.push_back(fmt::format(
         "fronts.l_star_m = {:.4g} m is below the element size: one element is used", config.fronts.l_star_m));
+  const auto& before = result.event.energy_at_start;
+  const auto& after = result.event.energy_at_end;
+  if (after.trigger_work > 0.1 * before.strain)
+    result.warnings.push_back(
+        fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before: what "
+                    "happens behind the front is its doing",
+                    after.trigger_work, 100 * after.trigger_work / before.strain));
   if (config.time.step_factor > 1)
     result.warnings.push_back("the step is above the largest stable one (time.allow_unstable)");
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
@@ -174,10 +182,9 @@ Info info(const io::Case& config) {
 
   const double n_unknowns = 2.0 * static_cast<double>(info.n_nodes);
   info.factor_bytes = solve::estimated_factor_bytes(n_unknowns);
-  const double matrix_bytes = 2.5 * 18 * 16 * n_unknowns / 2;
   const double fields =
       static_cast<double>(info.n_nodes) * (2 + 4 + 1 + 4) * 8 + static_cast<double>(info.n_cells) * 16;
-  info.memory_bytes = info.factor_bytes + matrix_bytes + fields;
+  info.memory_bytes = solve::statics_bytes(n_unknowns, info.factor_bytes) + fields;
 
   // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
   solve::Equilibrium rest;

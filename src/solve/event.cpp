@@ -13,6 +13,17 @@ namespace {
 
 constexpr std::int64_t check_interval = 50;
 
+/// Nodes at the edges creep along with the loading; slip that is no faster than this multiple of the top's
+/// speed does not keep an event going.
+constexpr double creep_over_top_speed = 10;
+
+double fastest_slip(const interface::Interface& state) {
+  double fastest = 0;
+  for (std::size_t i = 0; i < state.size(); ++i)
+    fastest = std::max(fastest, state.slipping[i] * std::abs(state.slip_rate_m_per_s[i]));
+  return fastest;
+}
+
 /// Watches that the motion stays physical.
 class Watch {
  public:
@@ -113,8 +124,14 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   event.history.x_m = state.tractions.x_m;
 
   const double quiet_from = std::isfinite(trigger.ramp_s) ? trigger.ramp_s : 0;
-  const auto n_steps = static_cast<std::int64_t>(std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12)));
+  const double steps = std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12));
+  if (steps > 1e12)
+    throw UserError("time.end_s = {:g} takes {:g} steps of {:.4g} s; choose an earlier end", time.end_s,
+                    steps, stepper.step_s());
+  const auto n_steps = static_cast<std::int64_t>(steps);
+  const double sample_interval = std::max(sampling.history_interval_s, stepper.step_s());
   std::int64_t n_samples = 0;
+  double last_slip_s = 0;
   std::size_t next_snapshot = 0;
   const auto take_snapshots = [&] {
     while (next_snapshot < sampling.snapshot_times_s.size() &&
@@ -125,15 +142,17 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   };
   while (stepper.step() < n_steps) {
     take_snapshots();
-    const bool sample = stepper.time_s() >= static_cast<double>(n_samples) * sampling.history_interval_s;
-    if (sample) n_samples = static_cast<std::int64_t>(stepper.time_s() / sampling.history_interval_s) + 1;
+    const bool sample = stepper.time_s() >= static_cast<double>(n_samples) * sample_interval;
+    if (sample) n_samples = static_cast<std::int64_t>(stepper.time_s() / sample_interval) + 1;
     stepper.advance(recorder, sample ? &event.history : nullptr);
     if (auto trouble = watch.trouble(); !trouble.empty()) {
       event.end = EventEnd::blow_up;
       event.blow_up = blow_up_message(stepper, trouble);
       break;
     }
-    if (stepper.time_s() - std::max(recorder.last_slip_time_s(), quiet_from) > time.quiet_s) {
+    if (fastest_slip(stepper.interface_state()) > creep_over_top_speed * top_speed)
+      last_slip_s = stepper.time_s();
+    if (stepper.time_s() - std::max(last_slip_s, quiet_from) > time.quiet_s) {
       event.end = EventEnd::quiet;
       break;
     }
@@ -151,10 +170,11 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
 }
 
 Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
-              double top_speed, double expected_shear_m, const Monitor& monitor) {
+              double top_speed, double c_L, double expected_shear_m, const Monitor& monitor) {
   Ramp ramp;
   stepper.start(tilted, top_speed);
   Recorder recorder(tilted, mu_s, 0);
+  Watch watch(stepper, top_speed, c_L);
   const auto most = static_cast<std::int64_t>(2 * expected_shear_m / (top_speed * stepper.step_s()));
 
   // The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.
@@ -205,8 +225,7 @@ Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loadin
   for (;;) {
     stepper.advance(recorder);
     const double peak = peak_now();
-    if (!std::isfinite(stepper.u_m().x[stepper.plate().grid.node(1, 1)]) || !std::isfinite(peak))
-      throw BlowUp(blow_up_message(stepper, "the displacement is not a number"));
+    if (auto trouble = watch.trouble(); !trouble.empty()) throw BlowUp(blow_up_message(stepper, trouble));
     if (!have_common && peak >= mu_s * (1 - loading.critical_margin)) {
       ramp.common = state_now();
       have_common = true;

@@ -81,6 +81,6 @@ inline constexpr double ramp_handover = 1e-5;
 /// interface reaches mu_s.
 /// @throws BlowUp, and UserError where mu_s is not reached within twice the shear `expected_shear_m`.
 Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
-              double top_speed_m_per_s, double expected_shear_m, const Monitor& monitor);
+              double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m, const Monitor& monitor);
 
 }  // namespace slipfront::solve

@@ -2,6 +2,7 @@
 #include "solve/factorisation.hpp"
 
 #include <cholmod.h>
+#include <omp.h>
 
 extern "C" void openblas_set_num_threads(int n_threads);
 
@@ -19,8 +20,17 @@ double estimated_factor_bytes(double n_unknowns) {
   return 8 * 9.0 * n_unknowns * std::log2(std::max(n_unknowns, 2.0));
 }
 
+double statics_bytes(double n_unknowns, double factor_bytes) {
+  // Triplets of 36 entries a cell with one cell to two unknowns, then the sparse matrix of 9 blocks a node,
+  // upper half.
+  const double triplets = 0.5 * 36 * 24 * n_unknowns;
+  const double matrix = 10 * 16 * n_unknowns;
+  return std::max(triplets + matrix, matrix + factor_bytes);
+}
+
 void require_statics_memory(double n_unknowns, double factor_bytes) {
-  require_memory(factor_bytes, fmt::format("the factorisation of {:.4g} static unknowns", n_unknowns),
+  require_memory(statics_bytes(n_unknowns, factor_bytes),
+                 fmt::format("the factorisation of {:.4g} static unknowns", n_unknowns),
                  "choose a larger plate.element_size_m");
 }
 
@@ -30,6 +40,7 @@ struct Factorisation::Cholmod {
   Cholmod() {
     // Cases run side by side, and the result must not depend on the number of threads.
     openblas_set_num_threads(1);
+    omp_set_max_active_levels(0);  // CHOLMOD's own loops are too short for a team of threads
     cholmod_l_start(&common);
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.nmethods = 1;

@@ -20,7 +20,10 @@ enum class TopConstraint { both, vertical };
 /// of a plane grid).
 double estimated_factor_bytes(double n_unknowns);
 
-/// Refuses statics whose factor would not fit into the memory at hand.
+/// Bytes the statics need at their peak: assembly, or matrix and factor.
+double statics_bytes(double n_unknowns, double factor_bytes);
+
+/// Refuses statics that would not fit into the memory at hand.
 /// @throws UserError with the figures.
 void require_statics_memory(double n_unknowns, double factor_bytes);
 

@@ -30,7 +30,6 @@ void Recorder::observe(double time_s, const interface::Interface& state, bool ch
       previous_slipping_[i] = state.slipping[i];
     }
   }
-  if (n_slipping_ > 0) last_slip_s_ = time_s;
   std::ranges::copy(state.t_Pa, previous_t_Pa_.begin());
   std::ranges::copy(state.p_Pa, previous_p_Pa_.begin());
   previous_time_s_ = time_s;

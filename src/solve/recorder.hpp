@@ -20,7 +20,6 @@ class Recorder {
   void observe(double time_s, const interface::Interface& state, bool changed);
 
   std::size_t n_slipping() const { return n_slipping_; }
-  double last_slip_time_s() const { return last_slip_s_; }
 
   const fronts::SlipRecord& record() const { return record_; }
   fronts::SlipRecord take(double end_time_s);
@@ -34,7 +33,6 @@ class Recorder {
   std::vector<double> previous_t_Pa_, previous_p_Pa_;
   std::vector<std::uint8_t> previous_slipping_;
   std::size_t n_slipping_ = 0;
-  double last_slip_s_ = 0;
 };
 
 }  // namespace slipfront::solve

@@ -276,26 +276,30 @@ Equilibrium Statics::shear_by(double shear_m) const {
 }
 
 Equilibrium Statics::shear_to(double ratio) const {
-  return shear([&](const ContactProblem& problem, const Inside& inside) {
+  if (tilted_.peak_ratio > ratio)
+    throw UserError(
+        "the tilt alone brings t/p inside the interface to {:.4g}, not below {:.4g}; raise {} or change the "
+        "tilt",
+        tilted_.peak_ratio, ratio, mu_s_key_);
+  bool reached = true;
+  const Equilibrium e = shear([&](const ContactProblem& problem, const Inside& inside) {
+    // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a state
+    // that does not last until then is corrected, and the shear found again.
     double shear = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
       if (problem.contact[k] != Contact::stick || !inside.contains(mesh_.x_m[mesh_.lower[k]])) continue;
-      const double t0 = problem.t_Pa(k, 0), p0 = problem.p_Pa(k, 0);
-      const double t1 = problem.t_Pa(k, 1) - t0, p1 = problem.p_Pa(k, 1) - p0;
-      if (t0 > ratio * p0)
-        throw UserError(
-            "the tilt alone brings t/p inside the interface to {:.4g}, not below {:.4g}; raise {} or change "
-            "the "
-            "tilt",
-            t0 / p0, ratio, mu_s_key_);
-      const double rise = t1 - ratio * p1;
-      if (rise > 0) shear = std::min(shear, (ratio * p0 - t0) / rise);
+      const double excess = problem.t_Pa(k, 0) - ratio * problem.p_Pa(k, 0);
+      const double growth = problem.t_Pa(k, 1) - ratio * problem.p_Pa(k, 1) - excess;
+      if (growth > 0 && excess <= 0 && problem.p_Pa(k, -excess / growth) > 0)
+        shear = std::min(shear, -excess / growth);
     }
-    if (!std::isfinite(shear))
-      throw UserError("no shear brings t/p inside the interface to {:.4g}; reduce {} or change the tilt",
-                      ratio, mu_s_key_);
-    return shear;
+    reached = std::isfinite(shear);
+    return reached ? shear : 0.0;
   });
+  if (!reached)
+    throw UserError("no shear brings t/p inside the interface to {:.4g}; reduce {} or change the tilt", ratio,
+                    mu_s_key_);
+  return e;
 }
 
 }  // namespace slipfront::solve

@@ -48,7 +48,8 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material, const 
       u_(mesh.n_nodes()),
       v_(mesh.n_nodes()),
       start_u_(mesh.lower.size()),
-      w_(6 * static_cast<std::size_t>(mesh.grid.stride())) {
+      w_(6 * static_cast<std::size_t>(mesh.grid.stride())),
+      w_above_layer_(2 * static_cast<std::size_t>(mesh.grid.stride())) {
   require_rows_fit(mesh, time);
 
   // The layer is the lowest rows of the grid and, around fillets, whatever lies as near to the interface.
@@ -122,7 +123,7 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     interface_.p_Pa[k] = equilibrium.tractions.p_s_Pa[k];
     interface_.slipping[k] = equilibrium.contact[k] == Contact::slip;
   }
-  std::ranges::fill(trigger_force_N_, 0.0);
+  set_trigger({}, std::vector<double>(lower_.size(), 0.0));
   trigger_work_ = 0;
   step_ = 0;
 }
@@ -130,6 +131,9 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
 void Stepper::set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m) {
   trigger_ = trigger;
   trigger_force_N_ = std::move(force_N_per_m);
+  trigger_nodes_.clear();
+  for (std::size_t i = 0; i < trigger_force_N_.size(); ++i)
+    if (trigger_force_N_[i] != 0) trigger_nodes_.push_back(i);
 }
 
 void Stepper::compute_irregular(IrregularRows& part, double remaining_s) {
@@ -161,7 +165,7 @@ void Stepper::apply_irregular(const IrregularRows& part, double dt) {
   }
 }
 
-void Stepper::sweep(int first_row, int last_row, double dt, double remaining_s) {
+void Stepper::sweep(int first_row, int last_row, double dt, double remaining_s, const double* w_last_row) {
   const int stride = plate_.grid.stride();
   const auto interior = solid::scaled(plate_.interior, -dt);
   const auto lower_edge = solid::scaled(plate_.lower_edge, -dt);
@@ -169,13 +173,17 @@ void Stepper::sweep(int first_row, int last_row, double dt, double remaining_s) 
     double* row = w_.data() + static_cast<std::ptrdiff_t>(j % 3) * 2 * stride;
     return solid::ConstRow{row, row + stride};
   };
-  // u + beta_R v; the rows above the layer stand `remaining_s` ahead of a sub-step and are taken back to its
+  // u + beta_R v; the row above the layer stands `remaining_s` ahead of a sub-step and is taken back to its
   // time.
   const auto fill = [&](int j) {
     const std::ptrdiff_t o = static_cast<std::ptrdiff_t>(j) * stride;
     const double lead = j == last_row ? damping_s_ - remaining_s : damping_s_;
     double* row = w_.data() + static_cast<std::ptrdiff_t>(j % 3) * 2 * stride;
-    solid::combine_row(stride, lead, &u_.x[o], &u_.y[o], &v_.x[o], &v_.y[o], row, row + stride);
+    if (j == last_row && w_last_row != nullptr) {
+      std::copy(w_last_row, w_last_row + 2 * stride, row);
+    } else {
+      solid::combine_row(stride, lead, &u_.x[o], &u_.y[o], &v_.x[o], &v_.y[o], row, row + stride);
+    }
   };
   if (first_row > 0) fill(first_row - 1);
   if (first_row < last_row) fill(first_row);
@@ -195,9 +203,15 @@ void Stepper::sweep(int first_row, int last_row, double dt, double remaining_s) 
 
 void Stepper::advance(Recorder& recorder, fronts::History* sample) {
   // Block rows read the old motion of their neighbours, so they are computed before and applied after the
-  // sweep.
+  // sweep. The first sub-step of the layer, too, sees the motion before the step; with it, one sub-step is
+  // the plain scheme.
   compute_irregular(slow_, 0);
-  sweep(layer_rows_, plate_.grid.rows, step_s_, 0);
+  compute_irregular(fast_, 0);
+  const int stride = plate_.grid.stride();
+  const std::ptrdiff_t o = static_cast<std::ptrdiff_t>(layer_rows_) * stride;
+  solid::combine_row(stride, damping_s_, &u_.x[o], &u_.y[o], &v_.x[o], &v_.y[o], w_above_layer_.data(),
+                     w_above_layer_.data() + stride);
+  sweep(layer_rows_, plate_.grid.rows, step_s_, 0, nullptr);
   apply_irregular(slow_, step_s_);
   for (const auto n : top_) u_.x[n] += step_s_ * v_.x[n];
 
@@ -209,17 +223,19 @@ void Stepper::take_substep(int k, Recorder& recorder, fronts::History* sample) {
   const double dt = substep_s();
   const double remaining = step_s_ - k * dt;
   const double time = time_s() + k * dt;
-  compute_irregular(fast_, remaining);
-  sweep(0, layer_rows_, dt, remaining);
+  if (k > 0) compute_irregular(fast_, remaining);
+  sweep(0, layer_rows_, dt, remaining, k == 0 ? w_above_layer_.data() : nullptr);
   apply_irregular(fast_, dt);
 
-  const double trigger = trigger_factor(trigger_, time);
   for (std::size_t i = 0; i < lower_.size(); ++i) {
     const auto n = lower_[i];
-    interface_.v_x_m_per_s[i] = v_.x[n] + dt * trigger * trigger_force_N_[i] / lower_mass_kg_[i];
+    interface_.v_x_m_per_s[i] = v_.x[n];
     interface_.v_y_m_per_s[i] = v_.y[n];
     interface_.u_y_m[i] = u_.y[n];
   }
+  const double impulse_s = dt * trigger_factor(trigger_, time);
+  for (const auto i : trigger_nodes_)
+    interface_.v_x_m_per_s[i] += impulse_s * trigger_force_N_[i] / lower_mass_kg_[i];
   const bool changed = interface::update_contact(law_, dt, interface_);
   recorder.observe(time, interface_, changed);
   if (sample != nullptr) append_sample(*sample);
@@ -229,8 +245,9 @@ void Stepper::take_substep(int k, Recorder& recorder, fronts::History* sample) {
     v_.y[n] = interface_.v_y_m_per_s[i];
     u_.x[n] += dt * v_.x[n];
     u_.y[n] += dt * v_.y[n];
-    trigger_work_ += trigger * trigger_force_N_[i] * v_.x[n] * dt;
   }
+  for (const auto i : trigger_nodes_)
+    trigger_work_ += impulse_s * trigger_force_N_[i] * interface_.v_x_m_per_s[i];
 }
 
 void Stepper::append_sample(fronts::History& history) const {

@@ -70,7 +70,9 @@ class Stepper {
   void divide_rows(const mesh::Mesh& mesh, const std::vector<bool>& in_layer);
   void compute_irregular(IrregularRows& part, double remaining_s);
   void apply_irregular(const IrregularRows& part, double dt);
-  void sweep(int first_row, int last_row, double dt, double remaining_s);
+  /// Moves the nodes with a stencil in rows [first_row, last_row). `w_last_row`: u + beta_R v of row
+  /// last_row, x then y, or null where it follows from the motion `remaining_s` earlier.
+  void sweep(int first_row, int last_row, double dt, double remaining_s, const double* w_last_row);
   void take_substep(int k, Recorder& recorder, fronts::History* sample);
   void append_sample(fronts::History& history) const;
 
@@ -87,11 +89,13 @@ class Stepper {
   interface::Interface interface_;
   interface::Trigger trigger_;
   std::vector<double> trigger_force_N_;
+  std::vector<std::size_t> trigger_nodes_;  ///< where the force is not zero
   double trigger_work_ = 0;
 
   solid::Field u_, v_;
   solid::Field start_u_;   ///< interface displacement at the start: slip is counted from it. [lower]
   std::vector<double> w_;  ///< three rows of u + beta_R v, rolling
+  std::vector<double> w_above_layer_;  ///< u + beta_R v of the row above the layer before the step
   double top_speed_ = 0;
   std::int64_t step_ = 0;
 };
