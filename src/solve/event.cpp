@@ -17,13 +17,6 @@ constexpr std::int64_t check_interval = 50;
 /// speed does not keep an event going.
 constexpr double creep_over_top_speed = 10;
 
-double fastest_slip(const interface::Interface& state) {
-  double fastest = 0;
-  for (std::size_t i = 0; i < state.size(); ++i)
-    fastest = std::max(fastest, state.slipping[i] * std::abs(state.slip_rate_m_per_s[i]));
-  return fastest;
-}
-
 /// Watches that the motion stays physical.
 class Watch {
  public:
@@ -117,8 +110,8 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
                 int halo, const Monitor& monitor) {
   Event event;
-  Recorder recorder(state, mu_s, halo);
   const double top_speed = stepper.v_m_per_s().x[stepper.plate().top.node.front()];
+  Recorder recorder(state, mu_s, halo, creep_over_top_speed * top_speed);
   Watch watch(stepper, top_speed, c_L);
   event.energy_at_start = watch.start();
   event.history.x_m = state.tractions.x_m;
@@ -131,7 +124,6 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   const auto n_steps = static_cast<std::int64_t>(steps);
   const double sample_interval = std::max(sampling.history_interval_s, stepper.step_s());
   std::int64_t n_samples = 0;
-  double last_slip_s = 0;
   std::size_t next_snapshot = 0;
   const auto take_snapshots = [&] {
     while (next_snapshot < sampling.snapshot_times_s.size() &&
@@ -150,9 +142,7 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
       event.blow_up = blow_up_message(stepper, trouble);
       break;
     }
-    if (fastest_slip(stepper.interface_state()) > creep_over_top_speed * top_speed)
-      last_slip_s = stepper.time_s();
-    if (stepper.time_s() - std::max(last_slip_s, quiet_from) > time.quiet_s) {
+    if (stepper.time_s() - std::max(recorder.last_motion_s(), quiet_from) > time.quiet_s) {
       event.end = EventEnd::quiet;
       break;
     }

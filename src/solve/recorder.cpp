@@ -6,8 +6,11 @@
 
 namespace slipfront::solve {
 
-Recorder::Recorder(const Equilibrium& before, double mu_s, int halo)
-    : mu_s_(mu_s), previous_t_Pa_(before.tractions.t_s_Pa), previous_p_Pa_(before.tractions.p_s_Pa) {
+Recorder::Recorder(const Equilibrium& before, double mu_s, int halo, double creep_m_per_s)
+    : mu_s_(mu_s),
+      creep_m_per_s_(creep_m_per_s),
+      previous_t_Pa_(before.tractions.t_s_Pa),
+      previous_p_Pa_(before.tractions.p_s_Pa) {
   record_.x_m = before.tractions.x_m;
   record_.halo = halo;
   for (const auto contact : before.contact) {
@@ -29,6 +32,12 @@ void Recorder::observe(double time_s, const interface::Interface& state, bool ch
       }
       previous_slipping_[i] = state.slipping[i];
     }
+  }
+  if (n_slipping_ > 0) {
+    double fastest = 0;
+    for (std::size_t i = 0; i < state.size(); ++i)
+      fastest = std::max(fastest, state.slipping[i] * std::abs(state.slip_rate_m_per_s[i]));
+    if (fastest > creep_m_per_s_) last_motion_s_ = time_s;
   }
   std::ranges::copy(state.t_Pa, previous_t_Pa_.begin());
   std::ranges::copy(state.p_Pa, previous_p_Pa_.begin());

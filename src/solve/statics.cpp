@@ -297,8 +297,17 @@ Equilibrium Statics::shear_to(double ratio) const {
     return reached ? shear : 0.0;
   });
   if (!reached)
-    throw UserError("no shear brings t/p inside the interface to {:.4g}; reduce {} or change the tilt", ratio,
-                    mu_s_key_);
+    throw UserError(
+        "no shear brings t/p inside the interface to {:.4g}; reduce {}, or change the tilt or "
+        "loading.edge_margin_m",
+        ratio, mu_s_key_);
+  // Slip at mu_s p that has spread from an edge past the margin would itself count as the peak.
+  if (std::abs(e.peak_ratio - ratio) > 1e-6 * ratio)
+    throw UserError(
+        "slip spreads from an edge of contact past loading.edge_margin_m before t/p inside reaches {:.4g}; "
+        "reduce {} or "
+        "change the tilt",
+        ratio, mu_s_key_);
   return e;
 }
 

@@ -173,8 +173,9 @@ def test_binary_file_as_case(program, write_case):
 
 
 STATICS = [
-    # No traction ratio of this height can be reached; the peak t/p of the tilted plate is about 0.5.
-    ("strength_out_of_reach", "[friction]\nmu_s = 100\n", "mu_s = 100", ["mu_s"]),
+    # The margins at both ends leave nothing inside; the message names mu_s first, or the margin that is set.
+    ("nothing_inside", "[friction]\nmu_s = 1.2\n[loading]\nedge_margin_m = 0.0999\n", "mu_s = 1.2", ["mu_s", "edge_margin_m"]),
+    # The peak t/p of the tilted plate is about 0.5.
     ("strength_below_the_tilts", "[friction]\nmu_s = 0.1\nmu_k = 0.05\n", "mu_s = 0.1", ["tilt"]),
     (
         "tilt_without_contact",
@@ -254,7 +255,7 @@ class TestOutputFolder:
 
 @pytest.mark.parametrize(
     "wrong",
-    ["plate.element_size_m=3e-3", "friction.mu_s=100", "loading.tilt_left_m=-1", "time.interface_rows=30"],
+    ["plate.element_size_m=3e-3", "loading.edge_margin_m=0.0999", "loading.tilt_left_m=-1", "time.interface_rows=30"],
 )
 def test_wrong_case_does_not_cost_earlier_results(program, coarse, tmp_path, wrong):
     assert program("run", coarse, "-o", "out", "-q").returncode == 0

@@ -91,7 +91,7 @@ TEST(Collapse, RecoversThePapersCurve) {
   EXPECT_LT(c.fit.rms, 1e-6);
   EXPECT_EQ(c.n_points, c.fit.n_points);
   // One curve, so the spread over the fronts is what a bin's width leaves.
-  EXPECT_LT(c.energy_rise.median_relative, c.static_ratio.median_relative);
+  EXPECT_LT(c.energy_rise.cases.median_relative, c.static_ratio.cases.median_relative);
 }
 
 TEST(Collapse, CountsTheShareWithinTheBand) {

@@ -415,9 +415,31 @@ TEST(Ramp, CanBeInterrupted) {
   EXPECT_THROW(make_initial_state(config, [](std::int64_t, std::int64_t) { return false; }), Interrupted);
 }
 
-TEST(InitialState, RefusesAStrengthThatNoShearReaches) {
+TEST(InitialState, IsAtItsRatioOrRefused) {
+  // At high strength the heavy side lifts off and slips first; a state that is not what it says must not
+  // pass.
+  int reached = 0;
+  for (const double mu_s : {0.6, 0.8, 1.0, 1.3, 1.6, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0}) {
+    auto config = coarse_case();
+    law(config).mu_s = mu_s;
+    law(config).mu_k = 0.1;
+    try {
+      const auto initial = make_initial_state(config, go_on);
+      EXPECT_NEAR(initial.common.peak_ratio, (1 - 1e-3) * mu_s, mu_s * solve_error) << mu_s;
+      EXPECT_NEAR(initial.spontaneous.peak_ratio, (1 + 1e-3) * mu_s, mu_s * solve_error) << mu_s;
+      EXPECT_LT(initial.common.shear_m, initial.spontaneous.shear_m) << mu_s;
+      ++reached;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find("friction.mu_s"), std::string::npos) << error.what();
+      EXPECT_GT(mu_s, 1.3) << error.what();
+    }
+  }
+  EXPECT_GE(reached, 4);
+}
+
+TEST(InitialState, RefusesMarginsThatLeaveNoInside) {
   auto config = coarse_case();
-  law(config).mu_s = 100;
+  config.loading.edge_margin_m = 0.12;
   EXPECT_THROW(make_initial_state(config, go_on), UserError);
 }
 

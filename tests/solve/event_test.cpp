@@ -64,6 +64,23 @@ TEST_F(EventRun, EndsWhenNothingMoves) {
   EXPECT_LE(event.time_s, 27e-6 + step_s() * (1 + 1e-9));
 }
 
+TEST_F(EventRun, SlippingKeepsItGoing) {
+  time_.quiet_s = 20e-6;
+  time_.end_s = 1e-3;
+  none_.ramp_s = 0;
+  const Event event = run(statics_.shear_to(1.001 * mu_s));
+  EXPECT_EQ(event.end, EventEnd::quiet);
+  ASSERT_FALSE(event.record.onsets.empty());
+  // Slip faster than ten times the loading: the event goes on for 20 us after the last of it, to within a
+  // sample.
+  double last_s = 0;
+  for (std::size_t k = 0; k < event.history.slip_rate_m_per_s.size(); ++k)
+    if (std::abs(event.history.slip_rate_m_per_s[k]) > 10e-6 * c_L_ && event.history.p_Pa[k] > 0)
+      last_s = event.history.time_s[k / event.history.x_m.size()];
+  EXPECT_GT(last_s, 1e-6);
+  EXPECT_GT(event.time_s, last_s + 20e-6 - sampling_.history_interval_s - step_s());
+}
+
 TEST_F(EventRun, EndsWhenTheMonitorSaysSo) {
   time_.end_s = 1e-3;
   std::vector<std::int64_t> asked;
@@ -238,9 +255,9 @@ TEST(Ramp, ReachesTheStaticStates) {
   TimeStepping time;
   time.interface_substeps = 1;
   Stepper stepper(mesh, material, interface::Coulomb{.mu = mu_s}, time);
-  const double speed = 1e-5 * solid::longitudinal_speed_m_per_s(material);
+  const double c_L = solid::longitudinal_speed_m_per_s(material), speed = 1e-5 * c_L;
   const auto always = [](auto, auto) { return true; };
-  const Ramp ramp = run_ramp(stepper, tilted, loading, mu_s, speed, expected.shear_m, always);
+  const Ramp ramp = run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m, always);
   EXPECT_FALSE(ramp.interrupted);
   EXPECT_NEAR(ramp.common.shear_m / expected.shear_m, 1, 2e-3);
   EXPECT_EQ(ramp.common.peak_x_m, expected.peak_x_m);
@@ -254,11 +271,11 @@ TEST(Ramp, ReachesTheStaticStates) {
   }
 
   // It can be interrupted, and tells when mu_s is out of reach.
-  EXPECT_TRUE(run_ramp(stepper, tilted, loading, mu_s, speed, expected.shear_m, [](auto, auto) {
+  EXPECT_TRUE(run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m, [](auto, auto) {
                 return false;
               }).interrupted);
   try {
-    run_ramp(stepper, tilted, loading, mu_s, speed, 0.1 * expected.shear_m, always);
+    run_ramp(stepper, tilted, loading, mu_s, speed, c_L, 0.1 * expected.shear_m, always);
     FAIL() << "no error";
   } catch (const UserError& error) {
     EXPECT_THAT(error.what(), HasSubstr("the ramp does not bring t/p inside the interface to mu_s"));

@@ -118,12 +118,12 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
   const auto mesh = support::make_plate(0.02, 0.02, 1e-3, Corner::none);
   struct Case {
     int mode;
-    double damping_s, step_factor;
+    double damping_s;
   };
-  for (const Case& c : {Case{0, 0, 0.9}, Case{3, 0, 0.9}, Case{3, 1e-7, 0.05}}) {
+  for (const Case& c : {Case{0, 0}, Case{3, 0}, Case{0, 1e-7}, Case{3, 1e-7}, Case{0, 1e-6}}) {
     SCOPED_TRACE(testing::Message() << "mode " << c.mode << ", damping " << c.damping_s << " s");
     const solid::Material material{.poissons_ratio = 0, .stiffness_damping_s = c.damping_s};
-    Stepper stepper(mesh, material, support::paper_law, one_substep(c.step_factor));
+    Stepper stepper(mesh, material, support::paper_law, one_substep());
     const double k = (2 * c.mode + 1) * std::numbers::pi / (2 * 0.02), amplitude = 1e-6;
     solid::Field u(mesh.n_nodes());
     for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
@@ -133,16 +133,9 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
     Recorder recorder(e, 1.3, 0);
     const double dt = stepper.step_s();
     const double omega = 2 * solid::longitudinal_speed_m_per_s(material) / 1e-3 * std::sin(k * 1e-3 / 2);
-    // Undamped: rounding. Damped, for as long as the amplitude falls to 1/e: the layer (the lowest row) takes
-    // the damping from the row above with the velocity of the same step, not of the last. That adds inertia
-    // to one row, beta_R dt (c_L/h)^2 of its own, and shifts the frequency.
-    const double rows = mesh.grid.rows, decay_s = 2 / (c.damping_s * omega * omega);
-    const int n_steps = c.damping_s == 0 ? 2000 : static_cast<int>(decay_s / dt);
-    const double inertia = c.damping_s * dt * std::pow(solid::longitudinal_speed_m_per_s(material) / 1e-3, 2);
-    const double tolerance = c.damping_s == 0 ? 1e-9 : omega * decay_s * inertia / rows;
     double q = amplitude, rate = 0, worst = 0, least = amplitude, lateral = 0;
     const double sign = c.mode % 2 == 0 ? 1 : -1;
-    for (int step = 0; step < n_steps; ++step) {
+    for (int step = 0; step < 2000; ++step) {
       rate -= dt * omega * omega * (q + c.damping_s * rate);
       q += dt * rate;
       stepper.advance(recorder);
@@ -152,10 +145,13 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
         lateral = std::max(lateral, std::abs(stepper.u_m().x[n]));
       }
     }
-    EXPECT_LE(worst, tolerance * amplitude);
-    EXPECT_LE(lateral, tolerance * amplitude);
-    EXPECT_LT(tolerance, 0.02);
-    EXPECT_LT(least, -0.8 * amplitude);  // it oscillates
+    EXPECT_LE(worst, 1e-9 * amplitude);  // rounding of two thousand steps
+    EXPECT_LE(lateral, 1e-9 * amplitude);
+    EXPECT_LT(least, -0.1 * amplitude);  // it oscillates
+    // The damping is no small thing: the amplitude falls by exp(-beta_R omega^2 t / 2).
+    if (c.mode == 3 && c.damping_s > 0) {
+      EXPECT_LT(std::abs(q), 1e-3 * amplitude);
+    }
   }
 }
 
