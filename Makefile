@@ -53,8 +53,10 @@ quick: build $(VENV)/.installed  ## the same in a second, on a coarse mesh, into
 bench: build  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench
 
-docs: build  ## renew docs/case-reference.md from the schema
+docs: reproduce  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
+	$(PYTHON) scripts/scorecard-page.py $(RESULTS) docs/scorecard.md
+	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png docs/figures/
 
 SOURCES = $(shell git ls-files 'src/*.cpp' 'src/*.hpp' 'tests/*.cpp' 'tests/*.hpp')
 
