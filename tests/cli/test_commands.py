@@ -152,3 +152,7 @@ def test_info_agrees_with_the_run(program, coarse, tmp_path):
     assert int(re.search(r"nodes +(\d+)", info)[1]) == run["mesh"]["nodes"]
     # Printed to four digits.
     assert float(re.search(r"^step +(\S+) s", info, re.MULTILINE)[1]) == pytest.approx(run["dt_s"], rel=1e-3)
+
+
+def test_the_reference_page_is_current(program):
+    assert program("keys").stdout == (ROOT / "docs/case-reference.md").read_text(), "run: make docs"
