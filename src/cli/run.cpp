@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
-#include "fronts/measures.hpp"
+#include "fronts/fit.hpp"
 #include "io/log.hpp"
 #include "io/results.hpp"
 
@@ -46,11 +47,15 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
       event.steps, result.step_s, result.config.time.interface_substeps, result.stepping_wall_s,
       1e-6 * static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s);
   for (const auto& front : result.fronts) {
-    const auto speeds = fronts::speed_summary(front, 0);
-    fmt::print("front {}: x = {:.4f} to {:.4f} m, {:.1f} to {:.1f} us, mean speed {:.2f} c_L, {}, ends: {}\n",
-               front.id, front.points.front().x_m, front.points.back().x_m,
-               1e6 * front.points.front().onset_s, 1e6 * front.points.back().onset_s,
-               speeds.mean_m_per_s / result.speeds.c_L, fronts::name(front.mode), fronts::name(front.end));
+    // The median: nodes of a trigger zone slip at once, at speeds without meaning.
+    std::vector<double> speeds;
+    for (const auto& point : front.points) speeds.push_back(point.v_tip_m_per_s / result.speeds.c_L);
+    const double speed = fronts::median(speeds);
+    fmt::print("front {}: x = {:.4f} to {:.4f} m, {:.1f} to {:.1f} us, {}, {}, ends: {}\n", front.id,
+               front.points.front().x_m, front.points.back().x_m, 1e6 * front.points.front().onset_s,
+               1e6 * front.points.back().onset_s,
+               std::isfinite(speed) ? fmt::format("median speed {:.2f} c_L", speed) : "speed undefined",
+               fronts::name(front.mode), fronts::name(front.end));
   }
   for (const auto& warning : result.warnings) fmt::print("note: {}\n", warning);
   fmt::print("results: {}\n", dir);
