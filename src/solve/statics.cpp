@@ -282,7 +282,7 @@ Equilibrium Statics::shear_to(double ratio) const {
         "tilt",
         tilted_.peak_ratio, ratio, mu_s_key_);
   bool reached = true;
-  const Equilibrium e = shear([&](const ContactProblem& problem, const Inside& inside) {
+  Equilibrium e = shear([&](const ContactProblem& problem, const Inside& inside) {
     // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a state
     // that does not last until then is corrected, and the shear found again.
     double shear = std::numeric_limits<double>::infinity();
