@@ -304,9 +304,9 @@ Equilibrium Statics::shear_to(double ratio) const {
   // Slip at mu_s p that has spread from an edge past the margin would itself count as the peak.
   if (std::abs(e.peak_ratio - ratio) > 1e-6 * ratio)
     throw UserError(
-        "slip spreads from an edge of contact past loading.edge_margin_m before t/p inside reaches {:.4g}; "
-        "reduce {} or "
-        "change the tilt",
+        "slip spreads from an edge of contact before t/p inside reaches {:.4g}; reduce {}, or change the "
+        "tilt or "
+        "loading.edge_margin_m",
         ratio, mu_s_key_);
   return e;
 }

@@ -174,7 +174,14 @@ def test_binary_file_as_case(program, write_case):
 
 STATICS = [
     # The margins at both ends leave nothing inside; the message names mu_s first, or the margin that is set.
-    ("nothing_inside", "[friction]\nmu_s = 1.2\n[loading]\nedge_margin_m = 0.0999\n", "mu_s = 1.2", ["mu_s", "edge_margin_m"]),
+    (
+        "nothing_inside",
+        "[friction]\nmu_s = 1.2\n[loading]\nedge_margin_m = 0.0999\n",
+        "mu_s = 1.2",
+        ["mu_s", "edge_margin_m"],
+    ),
+    # At this strength slip spreads from the edges before t/p inside reaches it.
+    ("strength_out_of_reach", "[friction]\nmu_s = 100\n", "mu_s = 100", ["mu_s"]),
     # The peak t/p of the tilted plate is about 0.5.
     ("strength_below_the_tilts", "[friction]\nmu_s = 0.1\nmu_k = 0.05\n", "mu_s = 0.1", ["tilt"]),
     (
