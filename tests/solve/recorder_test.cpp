@@ -148,6 +148,25 @@ TEST(Recorder, InitiallySlippingNodesHaveNoOnsetUntilTheySlipAnew) {
   EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 1.5);  // ratio from 0.5 to 1.5
 }
 
+TEST(Recorder, CreepIsNoMotion) {
+  Recorder recorder(at_rest(), mu_s, 0, 1e-2);
+  auto s = unchanged();
+  recorder.observe(0, s, false);
+  EXPECT_EQ(recorder.last_motion_s(), 0);
+  set(s, 1, 3, 2, 4, true);
+  s.slip_rate_m_per_s[1] = -0.02;
+  recorder.observe(1, s, true);
+  EXPECT_EQ(recorder.last_motion_s(), 1);
+  s.slip_rate_m_per_s[1] = -0.009;  // slower than creep
+  s.slip_rate_m_per_s[3] = 5;       // in the air
+  recorder.observe(2, s, false);
+  EXPECT_EQ(recorder.last_motion_s(), 1);
+  EXPECT_EQ(recorder.n_slipping(), 1);
+  s.slip_rate_m_per_s[1] = 0.011;
+  recorder.observe(3, s, false);
+  EXPECT_EQ(recorder.last_motion_s(), 3);
+}
+
 TEST(Recorder, TimesAscend) {
   // Onsets found in the order of nodes, at times that run the other way within each step.
   Recorder recorder(at_rest(), mu_s, 0);
