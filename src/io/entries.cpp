@@ -249,7 +249,7 @@ std::vector<Entry> make_common_entries() {
       flag("time.allow_unstable", at(&Case::time, &TimeStepping::allow_unstable),
            "accept a step_factor above 1"),
       integer("time.interface_rows", at(&Case::time, &TimeStepping::interface_rows), between(1, 1e6),
-              "rows of nodes next to the interface that are sub-cycled"),
+              "rows of cells next to the interface that are sub-cycled"),
       integer("time.interface_substeps", at(&Case::time, &TimeStepping::interface_substeps), between(1, 1e6),
               "sub-steps per time step there; 1 for none"),
       number("time.end_s", at(&Case::time, &TimeStepping::end_s), above(0), "end of the event"),

@@ -173,7 +173,7 @@ Info info(const io::Case& config) {
   info.n_interface = static_cast<std::int64_t>(mesh.lower.size());
 
   solve::Stepper stepper(mesh, config.material, config.friction, config.time);
-  info.n_irregular = static_cast<std::int64_t>(stepper.plate().irregular.size());
+  info.n_irregular = static_cast<std::int64_t>(stepper.plate().whole.irregular.size());
   info.stable_step_s = stepper.stable_step_s();
   info.step_s = stepper.step_s();
   info.substep_s = stepper.substep_s();

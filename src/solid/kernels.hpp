@@ -18,10 +18,17 @@ inline InteriorStencil scaled(InteriorStencil s, double factor) {
   return s;
 }
 
-inline LowerEdgeStencil scaled(LowerEdgeStencil s, double factor) {
+inline EdgeStencil scaled(EdgeStencil s, double factor) {
   for (double* c : {&s.centre_x, &s.side_x, &s.up_x, &s.corner_x, &s.centre_y, &s.side_y, &s.up_y,
                     &s.corner_y, &s.shear, &s.twist})
     *c *= factor;
+  return s;
+}
+
+/// For squares below the node instead of above.
+inline EdgeStencil mirrored(EdgeStencil s) {
+  s.shear = -s.shear;
+  s.twist = -s.twist;
   return s;
 }
 
@@ -48,9 +55,9 @@ inline void add_interior_row(const InteriorStencil& s, Span span, ConstRow south
   }
 }
 
-/// v += stencil(w) over the span of the lower edge.
-inline void add_lower_row(const LowerEdgeStencil& s, Span span, ConstRow middle, ConstRow north,
-                          double* __restrict v_x, double* __restrict v_y) {
+/// v += stencil(w) over the span of an edge; `north` is the row on the side of the squares.
+inline void add_edge_row(const EdgeStencil& s, Span span, ConstRow middle, ConstRow north,
+                         double* __restrict v_x, double* __restrict v_y) {
   for (int i = span.begin; i < span.end; ++i) {
     v_x[i] += s.centre_x * middle.x[i] + s.side_x * (middle.x[i - 1] + middle.x[i + 1]) +
               s.up_x * north.x[i] + s.corner_x * (north.x[i - 1] + north.x[i + 1]) +

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/error.hpp"
 #include "solid/element.hpp"
@@ -65,26 +66,28 @@ void set_stencils(Operator& op, const Material& material) {
                  .across = 2 * up[0] / interior_mass,
                  .corner = diagonal[0] / interior_mass,
                  .twist = diagonal[1] / interior_mass};
-  op.lower_edge = {.centre_x = 2 * self[0] / edge_mass,
-                   .side_x = side[0] / edge_mass,
-                   .up_x = 2 * up[0] / edge_mass,
-                   .corner_x = diagonal[0] / edge_mass,
-                   .centre_y = 2 * self[3] / edge_mass,
-                   .side_y = side[3] / edge_mass,
-                   .up_y = 2 * up[3] / edge_mass,
-                   .corner_y = diagonal[3] / edge_mass,
-                   .shear = side[1] / edge_mass,
-                   .twist = diagonal[1] / edge_mass};
+  op.edge = {.centre_x = 2 * self[0] / edge_mass,
+             .side_x = side[0] / edge_mass,
+             .up_x = 2 * up[0] / edge_mass,
+             .corner_x = diagonal[0] / edge_mass,
+             .centre_y = 2 * self[3] / edge_mass,
+             .side_y = side[3] / edge_mass,
+             .up_y = 2 * up[3] / edge_mass,
+             .corner_y = diagonal[3] / edge_mass,
+             .shear = side[1] / edge_mass,
+             .twist = diagonal[1] / edge_mass};
 }
 
 }  // namespace
 
 BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::span<const mesh::Node> nodes,
-                        std::span<const double> mass_kg) {
+                        std::span<const double> mass_kg, const std::vector<bool>& in_part) {
   std::vector<std::int32_t> row_of(mesh.n_nodes(), -1);
   for (std::size_t r = 0; r < nodes.size(); ++r) row_of[nodes[r]] = static_cast<std::int32_t>(r);
   std::vector<std::vector<std::pair<mesh::Node, std::array<double, 4>>>> rows(nodes.size());
-  for (const auto& cell : mesh.cells) {
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    const auto& cell = mesh.cells[c];
+    if (!in_part.empty() && !in_part[c]) continue;
     if (std::ranges::none_of(cell, [&](mesh::Node n) { return row_of[n] >= 0; })) continue;
     const auto K = cell_stiffness(cell_coordinates(mesh, cell), material);
     for (int a = 0; a < 4; ++a) {
@@ -117,68 +120,110 @@ BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::s
   return result;
 }
 
-Operator make_operator(const mesh::Mesh& mesh, const Material& material,
-                       const std::vector<bool>& force_irregular) {
+Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   Operator op;
   op.grid = mesh.grid;
   op.mass_kg = lumped_mass(mesh, material);
   op.is_top.assign(mesh.n_nodes(), false);
   for (const auto n : mesh.top) op.is_top[n] = true;
   set_stencils(op, material);
+  op.whole = make_part(mesh, material, op, std::vector<bool>(mesh.cells.size(), true), 0);
+  op.top = assemble_rows(mesh, material, mesh.top);
+  return op;
+}
 
+Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator& plate,
+               const std::vector<bool>& in_part, int edge_row) {
+  const auto& grid = plate.grid;
   std::vector<bool> regular_cell(mesh.cells.size());
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) regular_cell[k] = is_regular(mesh, mesh.cells[k]);
   const CellsOfNodes around = cells_of_nodes(mesh);
-  const auto has_stencil = [&](int i, int j) {
-    if (i == 0 || i == op.grid.columns) return false;
-    const mesh::Node n = op.grid.node(i, j);
-    if (!force_irregular.empty() && force_irregular[n]) return false;
-    if (around.first[n + 1] - around.first[n] != (j == 0 ? 2 : 4)) return false;
+
+  // The squares of the part around a node with a stencil; nothing for a node that needs a block row.
+  const auto squares_around = [&](mesh::Node n, int j) -> std::optional<Squares> {
+    int above = 0, below = 0;
+    for (auto k = around.first[n]; k < around.first[n + 1]; ++k) {
+      const auto c = around.cell[k];
+      if (!regular_cell[c]) return std::nullopt;
+      if (!in_part[c]) continue;
+      (mesh.cells[c][0] == n || mesh.cells[c][1] == n ? above : below) += 1;
+    }
+    if (above == 2 && below == 2) return Squares::all;
+    if (j != 0 && j != edge_row) return std::nullopt;
+    if (above == 2 && below == 0) return Squares::above;
+    if (above == 0 && below == 2) return Squares::below;
+    return std::nullopt;
+  };
+  const auto touches_part = [&](mesh::Node n) {
     for (auto k = around.first[n]; k < around.first[n + 1]; ++k)
-      if (!regular_cell[around.cell[k]]) return false;
-    return true;
+      if (in_part[around.cell[k]]) return true;
+    return false;
   };
 
-  op.spans.resize(op.grid.rows + 1);
+  Part part;
   std::vector<mesh::Node> irregular;
-  for (int j = 0; j <= op.grid.rows; ++j) {
-    for (int i = 0; i <= op.grid.columns; ++i) {
-      const mesh::Node n = op.grid.node(i, j);
-      if (op.is_top[n] || op.mass_kg[n] == 0) continue;
-      if (!has_stencil(i, j)) {
+  for (int j = 0; j <= grid.rows; ++j) {
+    std::array<StencilRow, 3> of_row;
+    for (int i = 0; i <= grid.columns; ++i) {
+      const mesh::Node n = grid.node(i, j);
+      if (plate.is_top[n] || !touches_part(n)) continue;
+      const auto squares = squares_around(n, j);
+      if (!squares) {
         irregular.push_back(n);
-      } else if (!op.spans[j].empty() && op.spans[j].back().end == i) {
-        ++op.spans[j].back().end;
+        continue;
+      }
+      auto& spans = of_row[static_cast<int>(*squares)].spans;
+      if (!spans.empty() && spans.back().end == i) {
+        ++spans.back().end;
       } else {
-        op.spans[j].push_back({i, i + 1});
+        spans.push_back({i, i + 1});
+      }
+    }
+    for (const auto squares : {Squares::all, Squares::above, Squares::below}) {
+      auto& row = of_row[static_cast<int>(squares)];
+      if (row.spans.empty()) continue;
+      row.row = j;
+      row.squares = squares;
+      const mesh::Node first = grid.node(row.spans.front().begin, j);
+      const bool full_mass = around.first[first + 1] - around.first[first] == 4;
+      row.scale = squares == Squares::all || !full_mass ? 1 : 0.5;
+      part.stencil.push_back(std::move(row));
+    }
+  }
+  part.irregular = assemble_rows(mesh, material, irregular, plate.mass_kg, in_part);
+  return part;
+}
+
+void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
+  const int stride = op.grid.stride();
+  const auto row = [&](int j) {
+    return ConstRow{w.x.data() + static_cast<std::ptrdiff_t>(j) * stride,
+                    w.y.data() + static_cast<std::ptrdiff_t>(j) * stride};
+  };
+  for (const auto& [j, squares, scale, spans] : part.stencil) {
+    double* a_x = a.x.data() + static_cast<std::ptrdiff_t>(j) * stride;
+    double* a_y = a.y.data() + static_cast<std::ptrdiff_t>(j) * stride;
+    const auto edge = scaled(op.edge, scale);
+    for (const Span span : spans) {
+      if (squares == Squares::all) {
+        add_interior_row(op.interior, span, row(j - 1), row(j), row(j + 1), a_x, a_y);
+      } else if (squares == Squares::above) {
+        add_edge_row(edge, span, row(j), row(j + 1), a_x, a_y);
+      } else {
+        add_edge_row(mirrored(edge), span, row(j), row(j - 1), a_x, a_y);
       }
     }
   }
-  op.irregular = assemble_rows(mesh, material, irregular, op.mass_kg);
-  op.top = assemble_rows(mesh, material, mesh.top);
-  return op;
+  for_each_row_product(part.irregular, w, [&](std::size_t r, double x, double y) {
+    a.x[part.irregular.node[r]] += x;
+    a.y[part.irregular.node[r]] += y;
+  });
 }
 
 void apply(const Operator& op, const Field& w, Field& a) {
   std::ranges::fill(a.x, 0.0);
   std::ranges::fill(a.y, 0.0);
-  const int stride = op.grid.stride();
-  const auto row = [&](int j) { return ConstRow{w.x.data() + j * stride, w.y.data() + j * stride}; };
-  for (int j = 0; j <= op.grid.rows; ++j) {
-    for (const Span span : op.spans[j]) {
-      double* a_x = a.x.data() + j * stride;
-      double* a_y = a.y.data() + j * stride;
-      if (j == 0) {
-        add_lower_row(op.lower_edge, span, row(0), row(1), a_x, a_y);
-      } else {
-        add_interior_row(op.interior, span, row(j - 1), row(j), row(j + 1), a_x, a_y);
-      }
-    }
-  }
-  for_each_row_product(op.irregular, w, [&](std::size_t r, double x, double y) {
-    a.x[op.irregular.node[r]] = x;
-    a.y[op.irregular.node[r]] = y;
-  });
+  add_part(op, op.whole, w, a);
 }
 
 double strain_energy_J_per_m(const Operator& op, const Field& u) {

@@ -26,11 +26,12 @@ struct InteriorStencil {
   double centre, along, across, corner, twist;
 };
 
-/// The same for a node of the lower edge, with two equal squares above it and none below.
+/// The same for a node with two equal squares above it and none below; with the squares below it, north is
+/// south and `shear` and `twist` change sign.
 /// a_x = centre_x w_x + side_x (E + W) + up_x N + corner_x (NE + NW) + shear (E - W of w_y) + twist (NE - NW
 /// of w_y) a_y = centre_y w_y + side_y (E + W) + up_y N + corner_y (NE + NW) - shear (E - W of w_x) + twist
 /// (NE - NW of w_x)
-struct LowerEdgeStencil {
+struct EdgeStencil {
   double centre_x, side_x, up_x, corner_x;
   double centre_y, side_y, up_y, corner_y;
   double shear, twist;
@@ -65,27 +66,49 @@ struct Span {
   int begin = 0, end = 0;
 };
 
-/// The plate's stiffness over its lumped mass, as the explicit scheme needs it: a stencil for the nodes of
-/// the regular part, block rows for all others.
+/// Which of the four squares around a node belong to a part of the plate.
+enum class Squares { all, above, below };
+
+/// Nodes of one grid row that share a stencil.
+struct StencilRow {
+  int row = 0;
+  Squares squares = Squares::all;
+  double scale = 1;  ///< of the edge stencil: half a square's mass on either side over the node's mass
+  std::vector<Span> spans;
+};
+
+/// What some cells of the plate contribute to M^-1 K of the nodes that may move: stencils where the cells are
+/// equal squares, block rows elsewhere.
+struct Part {
+  std::vector<StencilRow> stencil;  ///< rows ascending
+  BlockRows irregular;
+};
+
+/// The plate's stiffness over its lumped mass, as the explicit scheme needs it.
 struct Operator {
   mesh::Grid grid;
   std::vector<double> mass_kg;  ///< [nodes], per unit thickness; 0 for orphans
   InteriorStencil interior{};
-  LowerEdgeStencil lower_edge{};
-  std::vector<std::vector<Span>> spans;  ///< [grid rows + 1] nodes with a stencil (row 0: lower edge)
-  BlockRows irregular;                   ///< M^-1 K of all other nodes that may move
-  BlockRows top;                         ///< K (no mass) of the loaded edge's nodes, N/m
-  std::vector<bool> is_top;              ///< [nodes]
+  EdgeStencil edge{};        ///< over the mass of a node on a straight edge
+  Part whole;                ///< all cells
+  BlockRows top;             ///< K (no mass) of the loaded edge's nodes, N/m
+  std::vector<bool> is_top;  ///< [nodes]
 };
 
-/// Builds the operator. Nodes for which `force_irregular` is true get block rows even where a stencil would
-/// do (empty: none).
-Operator make_operator(const mesh::Mesh& mesh, const Material& material,
-                       const std::vector<bool>& force_irregular = {});
+Operator make_operator(const mesh::Mesh& mesh, const Material& material);
 
-/// Block rows of K, or of M^-1 K where `mass_kg` is given, for the nodes listed.
+/// Part of the operator that the cells marked contribute. Stencils for nodes that have squares of the part on
+/// one side only are used in row 0 and in `edge_row`.
+Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator& plate,
+               const std::vector<bool>& in_part, int edge_row);
+
+/// Block rows of K, or of M^-1 K where `mass_kg` is given, for the nodes listed; of all cells, or of those
+/// marked.
 BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::span<const mesh::Node> nodes,
-                        std::span<const double> mass_kg = {});
+                        std::span<const double> mass_kg = {}, const std::vector<bool>& in_part = {});
+
+/// Adds a part's M^-1 K w to a.
+void add_part(const Operator& op, const Part& part, const Field& w, Field& a);
 
 /// a = M^-1 K w for all nodes that may move; 0 for the loaded edge and orphans.
 void apply(const Operator& op, const Field& w, Field& a);

@@ -69,10 +69,10 @@ TEST_P(OnPlate, LeavesTheLoadedEdgeAndOrphansAlone) {
 TEST_P(OnPlate, EachMovingNodeHasAStencilOrBlockRows) {
   std::vector<int> times(n_, 0);
   int n_stencils = 0;
-  for (int j = 0; j <= op_.grid.rows; ++j)
-    for (const auto& span : op_.spans[j])
-      for (int i = span.begin; i < span.end; ++i) ++times[op_.grid.node(i, j)], ++n_stencils;
-  for (const auto n : op_.irregular.node) ++times[n];
+  for (const auto& row : op_.whole.stencil)
+    for (const auto& span : row.spans)
+      for (int i = span.begin; i < span.end; ++i) ++times[op_.grid.node(i, row.row)], ++n_stencils;
+  for (const auto n : op_.whole.irregular.node) ++times[n];
   for (std::size_t n = 0; n < n_; ++n)
     EXPECT_EQ(times[n], op_.is_top[n] || op_.mass_kg[n] == 0 ? 0 : 1) << "node " << n;
   // 39 inner columns; 20 rows below the loaded edge.
@@ -82,13 +82,13 @@ TEST_P(OnPlate, EachMovingNodeHasAStencilOrBlockRows) {
 
 TEST_P(OnPlate, StencilsEqualTheAssembledBlockRows) {
   std::vector<mesh::Node> with_stencil;
-  for (int j = 0; j <= op_.grid.rows; ++j)
-    for (const auto& span : op_.spans[j])
-      for (int i = span.begin; i < span.end; ++i) with_stencil.push_back(op_.grid.node(i, j));
+  for (const auto& row : op_.whole.stencil)
+    for (const auto& span : row.spans)
+      for (int i = span.begin; i < span.end; ++i) with_stencil.push_back(op_.grid.node(i, row.row));
   const BlockRows rows = assemble_rows(mesh_, material_, with_stencil, op_.mass_kg);
   const int stride = op_.grid.stride();
   const auto& s = op_.interior;
-  const auto& e = op_.lower_edge;
+  const auto& e = op_.edge;
   const double tolerance = 1e-13 * s.centre;  // four elements' rounding
   const auto expect_block = [&](const std::array<double, 4>& block, std::array<double, 4> expected) {
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(block[k], expected[k], tolerance);
@@ -116,14 +116,31 @@ TEST_P(OnPlate, StencilsEqualTheAssembledBlockRows) {
   }
 }
 
-TEST_P(OnPlate, BlockRowsInPlaceOfStencilsChangeNothing) {
-  const Operator all_irregular = make_operator(mesh_, material_, std::vector<bool>(n_, true));
-  for (const auto& row : all_irregular.spans) EXPECT_TRUE(row.empty());
+TEST_P(OnPlate, PartsAddUpToTheWhole) {
+  // The lowest rows of cells and the rest, once divided at a row with edge stencils and once at any cells.
   const Field w = random_field(n_, 4);
-  Field a(n_), b(n_);
-  apply(op_, w, a);
-  apply(all_irregular, w, b);
-  EXPECT_LE(reference::max_abs(flat(a) - flat(b)), 1e-14 * reference::max_abs(flat(a)));
+  Field whole(n_);
+  apply(op_, w, whole);
+  const int edge_row = 4;
+  for (const bool along_a_row : {true, false}) {
+    std::vector<bool> first(mesh_.cells.size()), second(mesh_.cells.size());
+    for (std::size_t c = 0; c < first.size(); ++c) {
+      first[c] = along_a_row ? c / op_.grid.columns < edge_row : c % 3 == 0;
+      second[c] = !first[c];
+    }
+    Field sum(n_);
+    int n_edges = 0;
+    for (const auto& in_part : {first, second}) {
+      const Part part = make_part(mesh_, material_, op_, in_part, edge_row);
+      for (const auto& row : part.stencil) n_edges += row.row == edge_row && row.squares != Squares::all;
+      Field one(n_);
+      add_part(op_, part, w, one);
+      add_part(op_, part, w, sum);
+      EXPECT_GT(reference::max_abs(flat(one)), 0.1 * reference::max_abs(flat(whole)));
+    }
+    EXPECT_EQ(n_edges >= 2, along_a_row);
+    EXPECT_LE(reference::max_abs(flat(sum) - flat(whole)), 1e-13 * reference::max_abs(flat(whole)));
+  }
 }
 
 TEST_P(OnPlate, PatchTest) {

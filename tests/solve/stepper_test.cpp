@@ -135,10 +135,9 @@ TEST_P(FreeFlight, TheStableStepIsSharp) {
 }
 
 TEST(SubcycledFlight, EnergyStaysBounded) {
-  // Constant-velocity sub-cycling does not conserve energy exactly, even undamped. Found: no growth within
-  // 20000 steps. The energy's swing is that of a leapfrog whose displacements and velocities are half a step
-  // apart, omega dt/2 = 0.031 for the lowest mode, which the smooth start excites most (found: 0.02); a
-  // random start swings more but not increasingly.
+  // A symplectic scheme conserves an energy near its own, which shows as a swing without growth. The swing is
+  // that of a leapfrog whose displacements and velocities are half a step apart, omega dt/2 = 0.031 for the
+  // lowest mode, which the smooth start excites most; a random start swings more but not increasingly.
   for (const auto corner : {Corner::none, Corner::relief, Corner::fillet}) {
     SCOPED_TRACE(support::name_of(corner));
     const auto mesh = tiny_plate(corner);
@@ -243,34 +242,44 @@ TEST(OneSubstep, IsTheLeapfrogScheme) {
   }
 }
 
-/// The scheme written down plainly: whole matrix rows, one loop over nodes a sub-step. In the first sub-step
-/// the layer sees the slow nodes as they were before the step, velocities for the damping included.
+/// The scheme written down plainly: whole matrices, one for each kind of cells. The coarse cells push at the
+/// beginning of each step; nodes between the two kinds feel the coarse cells' force at the start in all
+/// sub-steps and its change in the pushes, and count for the coarse cells' damping with their mean velocity.
 class PlainScheme {
  public:
   PlainScheme(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& settings,
               double step_s)
       : mesh_(mesh),
-        K_(support::assembled_stiffness(mesh, material)),
         mass_(solid::lumped_mass(mesh, material)),
         damping_s_(material.stiffness_damping_s),
         step_s_(step_s),
         substeps_(settings.interface_substeps),
-        kind_(mesh.n_nodes(), slow),
+        kind_(mesh.n_nodes(), coarse),
         tributary_(mesh::tributary_lengths_m(mesh)) {
-    // The layer: the lowest rows of the grid, and what is as near to the interface in cells.
+    // Fine cells: as near to the interface, counted in cells.
     std::vector<int> distance(mesh.n_nodes(), 1000);
     for (const auto n : mesh.lower) distance[n] = 0;
-    for (int round = 1; round < settings.interface_rows; ++round) {
+    for (int round = 0; round < settings.interface_rows; ++round) {
       const auto last = distance;
       for (const auto& cell : mesh.cells)
         for (const auto a : cell)
           for (const auto b : cell) distance[a] = std::min(distance[a], last[b] + 1);
     }
-    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
-      if (n / mesh.grid.stride() < settings.interface_rows || distance[n] < settings.interface_rows)
-        kind_[n] = fast;
-    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
+    std::vector<bool> fine_cell, coarse_cell;
+    std::vector<bool> has_fine(mesh.n_nodes()), has_coarse(mesh.n_nodes());
+    for (const auto& cell : mesh.cells) {
+      int nearest = 1000;
+      for (const auto n : cell) nearest = std::min(nearest, distance[n]);
+      fine_cell.push_back(nearest < settings.interface_rows && substeps_ > 1);
+      coarse_cell.push_back(!fine_cell.back());
+      for (const auto n : cell) (fine_cell.back() ? has_fine : has_coarse)[n] = true;
+    }
+    K_fine_ = support::assembled_stiffness(mesh, material, fine_cell);
+    K_coarse_ = support::assembled_stiffness(mesh, material, coarse_cell);
+    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+      if (has_fine[n]) kind_[n] = has_coarse[n] ? shared : fine;
       if (mass_[n] == 0) kind_[n] = none;
+    }
     for (const auto n : mesh.lower) kind_[n] = contact;
     for (const auto n : mesh.top) kind_[n] = top;
   }
@@ -278,38 +287,33 @@ class PlainScheme {
   void start(const Equilibrium& e, double top_speed) {
     u = flat(e.u_m);
     v = top_speed * flat(e.u_per_shear);
+    u_before_ = u - step_s_ * v;
+    steady_ = K_coarse_ * (u + damping_s_ * v);
     trigger_force.assign(mesh_.lower.size(), 0);
   }
 
   void advance() {
-    // The slow nodes by a whole step, then the layer by sub-steps while the slow ones move on a line.
-    const Eigen::VectorXd u_old = u, v_old = v;
-    const Eigen::VectorXd f = K_ * (u + damping_s_ * v);
-    for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {
-      if (kind_[n] == slow) v.segment<2>(2 * n) -= step_s_ / mass_[n] * f.segment<2>(2 * n);
-      if (kind_[n] == slow) u.segment<2>(2 * n) += step_s_ * v.segment<2>(2 * n);
-      if (kind_[n] == top) u(2 * n) += step_s_ * v(2 * n);
-    }
-    const Eigen::VectorXd u_new = u;
+    Eigen::VectorXd v_coarse = v;
+    for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n)
+      if (kind_[n] == shared) v_coarse.segment<2>(2 * n) = (u - u_before_).segment<2>(2 * n) / step_s_;
+    u_before_ = u;
+    const Eigen::VectorXd f_coarse = K_coarse_ * (u + damping_s_ * v_coarse);
     const double dt = step_s_ / substeps_;
     for (int k = 0; k < substeps_; ++k) {
-      for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n)
-        if (kind_[n] == slow || kind_[n] == top)
-          u.segment<2>(2 * n) = u_old.segment<2>(2 * n) + k * dt * v.segment<2>(2 * n);
-      for (const auto n : mesh_.top) u(2 * n + 1) = u_old(2 * n + 1);
-      Eigen::VectorXd rate = v;
-      for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n)
-        if (kind_[n] == slow && k == 0) rate.segment<2>(2 * n) = v_old.segment<2>(2 * n);
-      const Eigen::VectorXd g = K_ * (u + damping_s_ * rate);
+      const Eigen::VectorXd f = K_fine_ * (u + damping_s_ * v);
       for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {
-        if (kind_[n] == fast || kind_[n] == contact)
-          v.segment<2>(2 * n) -= dt / mass_[n] * g.segment<2>(2 * n);
-        if (kind_[n] == fast) u.segment<2>(2 * n) += dt * v.segment<2>(2 * n);
+        if (kind_[n] == top) u(2 * n) += dt * v(2 * n);
+        if (kind_[n] == none || kind_[n] == top) continue;
+        const auto at = [&](const Eigen::VectorXd& field) { return field.segment<2>(2 * n); };
+        v.segment<2>(2 * n) -= dt / mass_[n] * at(f);
+        if (kind_[n] == shared) v.segment<2>(2 * n) -= dt / mass_[n] * at(steady_);
+        const Eigen::Vector2d held =
+            kind_[n] == shared ? Eigen::Vector2d(at(steady_)) : Eigen::Vector2d(0, 0);
+        if (k == 0) v.segment<2>(2 * n) -= step_s_ / mass_[n] * (at(f_coarse) - held);
+        if (kind_[n] != contact) u.segment<2>(2 * n) += dt * at(v);
       }
       touch(dt, time_s + k * dt);
     }
-    for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n)
-      if (kind_[n] == slow || kind_[n] == top) u.segment<2>(2 * n) = u_new.segment<2>(2 * n);
     time_s += step_s_;
   }
 
@@ -338,9 +342,10 @@ class PlainScheme {
     }
   }
 
-  enum Kind { slow, fast, contact, top, none };
+  enum Kind { coarse, shared, fine, contact, top, none };
   const mesh::Mesh& mesh_;
-  support::Sparse K_;
+  support::Sparse K_fine_, K_coarse_;
+  Eigen::VectorXd u_before_, steady_;
   std::vector<double> mass_;
   double damping_s_, step_s_;
   int substeps_;
@@ -351,7 +356,7 @@ class PlainScheme {
 class Scheme : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {};
 INSTANTIATE_TEST_SUITE_P(Layers, Scheme,
                          ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
-                                            ::testing::Values(1, 4, 7), ::testing::Values(1, 5)),
+                                            ::testing::Values(1, 4, 8), ::testing::Values(1, 5)),
                          [](const auto& p) {
                            return support::name_of(std::get<0>(p.param)) + "_" +
                                   std::to_string(std::get<1>(p.param)) + "rows_" +
@@ -400,7 +405,7 @@ TEST(Stepper, CountsTheNodesItMoves) {
   time.interface_rows = 4;
   time.interface_substeps = 18;
   const Stepper stepper(mesh, {}, paper_law, time);
-  EXPECT_EQ(stepper.node_updates_per_step(), 21 * (6 + 4 * 18));
+  EXPECT_EQ(stepper.node_updates_per_step(), 21 * (5 + 5 * 18));
   EXPECT_DOUBLE_EQ(stepper.step_s(), 0.9 * stepper.stable_step_s());
   EXPECT_DOUBLE_EQ(stepper.substep_s(), stepper.step_s() / 18);
 }
@@ -462,9 +467,11 @@ TEST_P(Substeps, StuckPlateFollowsTheTop) {
   for (int step = 0; step < 500; ++step) stepper.advance(recorder);
   const Eigen::VectorXd expected = flat(e.u_m) + speed * stepper.time_s() * flat(e.u_per_shear);
   // A uniform motion from the start would be exact; the stiffness damping shifts the force by beta_R v, which
-  // the stress takes up within the displacement v beta_R.
-  EXPECT_LE(max_abs(flat(stepper.u_m()) - expected), speed * material.stiffness_damping_s);
-  EXPECT_GT(speed * stepper.time_s(), 1000 * speed * material.stiffness_damping_s);
+  // the stress takes up within the displacement v beta_R. Between two pushes, the force of the coarse cells
+  // lags by up to a step: v step.
+  const double lag_s = material.stiffness_damping_s + (GetParam() > 1 ? stepper.step_s() : 0);
+  EXPECT_LE(max_abs(flat(stepper.u_m()) - expected), speed * lag_s);
+  EXPECT_GT(speed * stepper.time_s(), 200 * speed * lag_s);
 }
 
 TEST(Stepper, DampingDissipates) {
@@ -476,14 +483,17 @@ TEST(Stepper, DampingDissipates) {
     const auto e = random_flight(mesh, 1e-6, 1);
     stepper.start(e, 1);
     Recorder recorder(e, mu_s, 0);
-    // Energy at one instant fluctuates by the half step between u and v; over 100 steps the decay of the
-    // random motion is far larger.
+    // Energy at one instant fluctuates by the half step between u and v, and between pushes; its largest
+    // value in 400 steps falls.
     double last = stepper.energy_J_per_m();
-    for (int block = 0; block < 20; ++block) {
-      for (int step = 0; step < 100; ++step) stepper.advance(recorder);
-      const double energy = stepper.energy_J_per_m();
-      EXPECT_LT(energy, last) << block;
-      last = energy;
+    for (int block = 0; block < 6; ++block) {
+      double largest = 0;
+      for (int step = 0; step < 400; ++step) {
+        stepper.advance(recorder);
+        if (step >= 200) largest = std::max(largest, stepper.energy_J_per_m());
+      }
+      EXPECT_LT(largest, last) << substeps << " " << block;
+      last = largest;
     }
     ASSERT_FALSE(touches(stepper));
   }

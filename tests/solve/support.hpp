@@ -44,9 +44,12 @@ inline std::string name_of(mesh::Corner corner) {
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// K over all nodes, loaded edge included, x and y of each node in turn.
-inline Sparse assembled_stiffness(const mesh::Mesh& mesh, const solid::Material& material) {
+inline Sparse assembled_stiffness(const mesh::Mesh& mesh, const solid::Material& material,
+                                  const std::vector<bool>& of_cells = {}) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& cell : mesh.cells) {
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    if (!of_cells.empty() && !of_cells[c]) continue;
+    const auto& cell = mesh.cells[c];
     const auto K = solid::cell_stiffness(solid::cell_coordinates(mesh, cell), material);
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b)
