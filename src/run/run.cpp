@@ -151,8 +151,8 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
   if (config.fronts.l_star_m < 0.99 * initial.mesh.grid.spacing_m)
     result.warnings.push_back(fmt::format(
         "fronts.l_star_m = {:.4g} m is below the element size: one element is used", config.fronts.l_star_m));
-  const auto& before = result.event.energy_at_start;
-  const auto& after = result.event.energy_at_end;
+  const auto& before = result.event.energies.front();
+  const auto& after = result.event.energies.back();
   if (after.trigger_work > 0.1 * before.strain)
     result.warnings.push_back(
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before: what "

@@ -37,11 +37,15 @@ const char* name(solve::EventEnd end) {
   return "";
 }
 
-Json energy_json(const solve::EnergyState& e) {
+Json energy_json(const solve::Energies& e) {
   return {{"strain_J_per_m", e.strain},
           {"kinetic_J_per_m", e.kinetic},
           {"top_work_J_per_m", e.top_work},
-          {"trigger_work_J_per_m", e.trigger_work}};
+          {"trigger_work_J_per_m", e.trigger_work},
+          {"friction_work_J_per_m", e.friction_work},
+          {"contact_work_J_per_m", e.contact_work},
+          {"damping_work_J_per_m", e.damping_work},
+          {"coupling_work_J_per_m", e.coupling_work}};
 }
 
 Json statics_json(const InitialState& initial) {
@@ -130,8 +134,8 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
                      {"node_updates_per_s", static_cast<double>(event.steps) * result.node_updates_per_step /
                                                 result.stepping_wall_s},
                      {"statics", statics_json(initial)},
-                     {"energy_at_start", energy_json(event.energy_at_start)},
-                     {"energy_at_end", energy_json(event.energy_at_end)},
+                     {"energy_at_start", energy_json(event.energies.front())},
+                     {"energy_at_end", energy_json(event.energies.back())},
                      {"onsets", event.record.onsets.size()},
                      {"fronts", fronts_json(result.fronts)},
                      {"warnings", warnings}};

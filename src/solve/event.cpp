@@ -20,25 +20,14 @@ constexpr double creep_over_top_speed = 10;
 /// Watches that the motion stays physical.
 class Watch {
  public:
-  Watch(const Stepper& stepper, double top_speed, double c_L)
-      : stepper_(stepper),
-        top_speed_(top_speed),
-        c_L_(c_L),
-        start_(energies()),
-        last_time_s_(stepper.time_s()) {
-    last_top_force_ = stepper.top_force_x_N_per_m();
-  }
+  Watch(Stepper& stepper, double c_L) : stepper_(stepper), c_L_(c_L), energies_{stepper.energies()} {}
 
-  const EnergyState& start() const { return start_; }
+  /// At the start, every check_interval steps, and where `now` was called.
+  const std::vector<Energies>& energies() const { return energies_; }
 
-  EnergyState now() {
-    EnergyState e = energies();
-    const double force = stepper_.top_force_x_N_per_m();
-    top_work_ += 0.5 * (force + last_top_force_) * top_speed_ * (stepper_.time_s() - last_time_s_);
-    last_top_force_ = force;
-    last_time_s_ = stepper_.time_s();
-    e.top_work = top_work_;
-    return e;
+  const Energies& now() {
+    if (stepper_.time_s() > energies_.back().time_s) energies_.push_back(stepper_.energies());
+    return energies_.back();
   }
 
   /// Empty, or what is wrong with the motion.
@@ -50,28 +39,19 @@ class Watch {
     }
     if (fastest > c_L_) return fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", fastest);
     if (stepper_.step() % check_interval != 0) return {};
-    const EnergyState e = now();
-    const double total = e.strain + e.kinetic;
+    const Energies& e = now();
+    const double total = e.stored();
     if (!std::isfinite(total)) return "the energy is not a number";
-    const double supplied = start_.strain + start_.kinetic + std::abs(e.top_work) + std::abs(e.trigger_work);
+    const double supplied = energies_.front().stored() + std::abs(e.top_work) + std::abs(e.trigger_work);
     if (total > 1.01 * supplied)
       return fmt::format("the energy has grown to {:.4g} J/m with {:.4g} J/m supplied", total, supplied);
     return {};
   }
 
  private:
-  EnergyState energies() const {
-    EnergyState e;
-    e.kinetic = stepper_.kinetic_energy_J_per_m();
-    e.strain = stepper_.energy_J_per_m() - e.kinetic;
-    e.trigger_work = stepper_.trigger_work_J_per_m();
-    return e;
-  }
-
-  const Stepper& stepper_;
-  double top_speed_, c_L_;
-  EnergyState start_;
-  double last_time_s_, last_top_force_ = 0, top_work_ = 0;
+  Stepper& stepper_;
+  double c_L_;
+  std::vector<Energies> energies_;
 };
 
 std::string blow_up_message(const Stepper& stepper, const std::string& trouble) {
@@ -112,8 +92,7 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   Event event;
   const double top_speed = stepper.v_m_per_s().x[stepper.plate().top.node.front()];
   Recorder recorder(state, mu_s, halo, creep_over_top_speed * top_speed);
-  Watch watch(stepper, top_speed, c_L);
-  event.energy_at_start = watch.start();
+  Watch watch(stepper, c_L);
   event.history.x_m = state.tractions.x_m;
 
   const double quiet_from = std::isfinite(trigger.ramp_s) ? trigger.ramp_s : 0;
@@ -154,7 +133,8 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   take_snapshots();
   event.steps = stepper.step();
   event.time_s = stepper.time_s();
-  event.energy_at_end = watch.now();
+  watch.now();
+  event.energies = watch.energies();
   event.record = recorder.take(event.time_s);
   return event;
 }
@@ -164,7 +144,7 @@ Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loadin
   Ramp ramp;
   stepper.start(tilted, top_speed);
   Recorder recorder(tilted, mu_s, 0);
-  Watch watch(stepper, top_speed, c_L);
+  Watch watch(stepper, c_L);
   const auto most = static_cast<std::int64_t>(2 * expected_shear_m / (top_speed * stepper.step_s()));
 
   // The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.

@@ -31,13 +31,6 @@ struct Snapshot {
 /// Why an event ended.
 enum class EventEnd { end_time, quiet, interrupted, blow_up };
 
-/// Energies at one instant, J per unit thickness.
-struct EnergyState {
-  double strain = 0, kinetic = 0;
-  double top_work = 0;      ///< done by the loaded edge since the start (trapezoidal rule over the checks)
-  double trigger_work = 0;  ///< done by the trigger since the start
-};
-
 /// A slip event as it was computed.
 struct Event {
   EventEnd end = EventEnd::end_time;
@@ -47,7 +40,7 @@ struct Event {
   fronts::SlipRecord record;
   fronts::History history;
   std::vector<Snapshot> snapshots;
-  EnergyState energy_at_start, energy_at_end;
+  std::vector<Energies> energies;  ///< at the start, every 50 steps, and at the end
 };
 
 /// Trigger forces on the interface nodes: amount (mu_s p_s - t_s) over the zone next to an edge of contact, N

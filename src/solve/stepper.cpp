@@ -44,6 +44,9 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material, const 
       law_(law),
       substeps_(time.interface_substeps),
       lower_(mesh.lower),
+      tributary_m_(mesh::tributary_lengths_m(mesh)),
+      v_x_before_(mesh.lower.size()),
+      v_y_before_(mesh.lower.size()),
       interface_(mesh.lower.size()),
       trigger_force_N_(mesh.lower.size(), 0.0),
       u_(mesh.n_nodes()),
@@ -55,10 +58,9 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material, const 
   step_s_ = time.step_factor * stable_step_s_;
   divide_cells(mesh, material, time);
 
-  const auto tributary = mesh::tributary_lengths_m(mesh);
   for (std::size_t k = 0; k < lower_.size(); ++k) {
     interface_.initial_gap_m[k] = mesh.y_m[lower_[k]];
-    interface_.mass_per_length_kg_m2[k] = plate_.mass_kg[lower_[k]] / tributary[k];
+    interface_.mass_per_length_kg_m2[k] = plate_.mass_kg[lower_[k]] / tributary_m_[k];
     lower_mass_kg_.push_back(plate_.mass_kg[lower_[k]]);
   }
 }
@@ -93,7 +95,10 @@ void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& materi
     std::vector<std::int32_t> irregular_row(mesh.n_nodes(), -1);
     for (std::size_t r = 0; r < irregular.size(); ++r)
       irregular_row[irregular.node[r]] = static_cast<std::int32_t>(r);
-    std::vector<bool> shared(mesh.n_nodes(), false);
+    std::vector<bool> shared(mesh.n_nodes(), false), in_cells(mesh.n_nodes(), false);
+    for (std::size_t c = 0; c < in_level.size(); ++c)
+      if (in_level[c])
+        for (const auto n : mesh.cells[c]) in_cells[n] = true;
     for (std::size_t c = 0; c < in_level.size(); ++c)
       for (const auto n : mesh.cells[c])
         if (in_level[c] && level_of_node[n] > static_cast<int>(l) && !plate_.is_top[n]) shared[n] = true;
@@ -107,11 +112,14 @@ void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& materi
     level.shared.u_before_m = level.shared.push_m_per_s = level.shared.steady_m_per_s2 =
         solid::Field(n_shared);
     if (n_shared > 0) level.edge_push_m_per_s.resize(2 * static_cast<std::size_t>(mesh.grid.stride()));
-    if (n_shared > shared_v_.size()) shared_v_ = solid::Field(n_shared);
     for (const auto n : irregular.node) {
       level.takes_push.push_back(!shared[n]);
       level.moves.push_back(!in_contact[n] && !is_shared[n]);
     }
+    std::vector<mesh::Node> top;
+    for (const auto n : mesh.top)
+      if (in_cells[n]) top.push_back(n);
+    level.top_rows = solid::assemble_rows(mesh, material, top, {}, in_level);
     level.a_x.resize(irregular.size());
     level.a_y.resize(irregular.size());
   }
@@ -130,24 +138,31 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
   for (std::size_t k = 0; k < lower_.size(); ++k) {
     start_u_.x[k] = u_.x[lower_[k]];
     interface_.slip_rate_m_per_s[k] = v_.x[lower_[k]];
+    interface_.v_x_m_per_s[k] = v_.x[lower_[k]];
+    interface_.v_y_m_per_s[k] = v_.y[lower_[k]];
     interface_.t_Pa[k] = equilibrium.tractions.t_s_Pa[k];
     interface_.p_Pa[k] = equilibrium.tractions.p_s_Pa[k];
     interface_.slipping[k] = equilibrium.contact[k] == Contact::slip;
   }
   for (auto& level : levels_) {
+    level.damping_a = {};
     // The first look at the forces gives their steady part; it must not move anything.
     auto& shared = level.shared;
     if (shared.node.empty()) continue;
     const solid::Field u = u_, v = v_;
-    const auto set_places_before = [&] {
+    const auto zero = solid::Field(shared.node.size());
+    const auto set_motion_before = [&] {
       for (std::size_t k = 0; k < shared.node.size(); ++k) {
         const auto n = shared.node[k];
         shared.u_before_m.x[k] = u_.x[n] - level.step_s * v_.x[n];
         shared.u_before_m.y[k] = u_.y[n] - level.step_s * v_.y[n];
+        shared.v_last_m_per_s.x[k] = v_.x[n];
+        shared.v_last_m_per_s.y[k] = v_.y[n];
       }
     };
-    shared.steady_m_per_s2 = shared.push_m_per_s = solid::Field(shared.node.size());
-    set_places_before();
+    shared.steady_m_per_s2 = shared.v_last_m_per_s = shared.v_mean_before_m_per_s = zero;
+    shared.a_m_per_s2 = zero;
+    set_motion_before();
     push(level);
     for (std::size_t k = 0; k < shared.node.size(); ++k) {
       shared.steady_m_per_s2.x[k] = shared.push_m_per_s.x[k] / level.step_s;
@@ -155,12 +170,15 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     }
     u_ = u;
     v_ = v;
-    shared.push_m_per_s = solid::Field(shared.node.size());
-    set_places_before();
+    shared.push_m_per_s = shared.a_m_per_s2 = zero;
+    level.damping_a = {};
+    set_motion_before();
   }
   set_trigger({}, std::vector<double>(lower_.size(), 0.0));
-  trigger_work_ = 0;
+  works_ = {};
+  damping_power_ = 0;
   step_ = 0;
+  energies();
 }
 
 void Stepper::set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m) {
@@ -253,6 +271,8 @@ void Stepper::gather_push(Level& level) {
     const auto column = s.node[k] % stride;
     const double x = r < 0 ? level.edge_push_m_per_s[column] : -level.step_s * level.a_x[r];
     const double y = r < 0 ? level.edge_push_m_per_s[stride + column] : -level.step_s * level.a_y[r];
+    s.a_m_per_s2.x[k] = -x / level.step_s;
+    s.a_m_per_s2.y[k] = -y / level.step_s;
     s.push_m_per_s.x[k] = x - level.step_s * s.steady_m_per_s2.x[k];
     s.push_m_per_s.y[k] = y - level.step_s * s.steady_m_per_s2.y[k];
   }
@@ -262,8 +282,15 @@ void Stepper::move_shared(Level& coarser, double dt) {
   auto& s = coarser.shared;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto n = s.node[k];
-    v_.x[n] += dt * s.steady_m_per_s2.x[k] + s.push_m_per_s.x[k];
-    v_.y[n] += dt * s.steady_m_per_s2.y[k] + s.push_m_per_s.y[k];
+    const double kick_x = dt * s.steady_m_per_s2.x[k] + s.push_m_per_s.x[k];
+    const double kick_y = dt * s.steady_m_per_s2.y[k] + s.push_m_per_s.y[k];
+    v_.x[n] += kick_x;
+    v_.y[n] += kick_y;
+    const double half_mass = 0.5 * plate_.mass_kg[n];
+    works_.coupling_work +=
+        half_mass * (kick_x * (v_.x[n] + s.v_last_m_per_s.x[k]) + kick_y * (v_.y[n] + s.v_last_m_per_s.y[k]));
+    s.v_last_m_per_s.x[k] = v_.x[n];
+    s.v_last_m_per_s.y[k] = v_.y[n];
     u_.x[n] += dt * v_.x[n];
     u_.y[n] += dt * v_.y[n];
     s.push_m_per_s.x[k] = s.push_m_per_s.y[k] = 0;
@@ -271,22 +298,123 @@ void Stepper::move_shared(Level& coarser, double dt) {
 }
 
 void Stepper::push(Level& level) {
-  // For the level, a shared node's velocity is the mean one since its last push.
+  exchange_velocities(level);
+  if (!level.shared.node.empty()) add_coupling_work(level);
+  if (damping_work_ == DampingWork::every_step) add_damping_work(level);
   auto& s = level.shared;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
-    const auto n = s.node[k];
-    shared_v_.x[k] = std::exchange(v_.x[n], (u_.x[n] - s.u_before_m.x[k]) / level.step_s);
-    shared_v_.y[k] = std::exchange(v_.y[n], (u_.y[n] - s.u_before_m.y[k]) / level.step_s);
-    s.u_before_m.x[k] = u_.x[n];
-    s.u_before_m.y[k] = u_.y[n];
+    s.u_before_m.x[k] = u_.x[s.node[k]];
+    s.u_before_m.y[k] = u_.y[s.node[k]];
   }
+  solid::for_each_row_product(level.top_rows, u_, [&](std::size_t r, double x, double) {
+    works_.top_work += level.step_s * x * v_.x[level.top_rows.node[r]];
+  });
+  if (damping_s_ > 0)
+    solid::for_each_row_product(level.top_rows, v_, [&](std::size_t r, double x, double) {
+      works_.top_work += level.step_s * damping_s_ * x * v_.x[level.top_rows.node[r]];
+    });
   compute_irregular(level);
   sweep(level);
   gather_push(level);
+  restore_velocities(level);
+}
+
+void Stepper::exchange_velocities(const Level& level) {
+  const auto& s = level.shared;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
-    v_.x[s.node[k]] = shared_v_.x[k];
-    v_.y[s.node[k]] = shared_v_.y[k];
+    const auto n = s.node[k];
+    v_.x[n] = (u_.x[n] - s.u_before_m.x[k]) / level.step_s;
+    v_.y[n] = (u_.y[n] - s.u_before_m.y[k]) / level.step_s;
   }
+}
+
+void Stepper::restore_velocities(const Level& level) {
+  const auto& s = level.shared;
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    v_.x[s.node[k]] = s.v_last_m_per_s.x[k];
+    v_.y[s.node[k]] = s.v_last_m_per_s.y[k];
+  }
+}
+
+double Stepper::coupling_work(const Level& level) const {
+  // What the level's force at its last push has not done through the mean velocities around it; the works of
+  // its parts through the sub-steps' velocities are summed as they happen.
+  const auto& s = level.shared;
+  double work = 0;
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    const auto n = s.node[k];
+    const double impulse = 0.5 * level.step_s * plate_.mass_kg[n];
+    work += impulse * (s.a_m_per_s2.x[k] * (s.v_mean_before_m_per_s.x[k] + v_.x[n]) +
+                       s.a_m_per_s2.y[k] * (s.v_mean_before_m_per_s.y[k] + v_.y[n]));
+  }
+  return work;
+}
+
+double Stepper::inner_product(const Level& level, const solid::Field& a, const solid::Field& w,
+                              const solid::Field& z) const {
+  double sum = 0;
+  for (std::size_t n = 0; n < z.size(); ++n) sum += plate_.mass_kg[n] * (z.x[n] * a.x[n] + z.y[n] * a.y[n]);
+  solid::for_each_row_product(level.top_rows, w, [&](std::size_t r, double x, double y) {
+    sum += z.x[level.top_rows.node[r]] * x + z.y[level.top_rows.node[r]] * y;
+  });
+  return sum;
+}
+
+void Stepper::stiffness_product(const Level& level, const solid::Field& w, solid::Field& a) const {
+  a.x.assign(w.size(), 0.0);
+  a.y.assign(w.size(), 0.0);
+  solid::add_part(plate_, level.part, w, a);
+}
+
+double Stepper::damping_work(const Level& level) const {
+  // Of the last push, with the velocities after it.
+  return -0.5 * damping_s_ * level.step_s *
+         (level.v_K_v + inner_product(level, level.damping_a, level.damping_v, v_));
+}
+
+void Stepper::add_damping_work(Level& level) {
+  if (damping_s_ == 0) return;
+  if (level.damping_a.size() > 0) works_.damping_work += damping_work(level);
+  stiffness_product(level, v_, level.damping_a);
+  level.damping_v = v_;
+  level.v_K_v = inner_product(level, level.damping_a, v_, v_);
+}
+
+void Stepper::add_coupling_work(Level& level) {
+  auto& s = level.shared;
+  works_.coupling_work += coupling_work(level);
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    s.v_mean_before_m_per_s.x[k] = v_.x[s.node[k]];
+    s.v_mean_before_m_per_s.y[k] = v_.y[s.node[k]];
+  }
+}
+
+Energies Stepper::energies() {
+  Energies e = works_;
+  e.time_s = time_s();
+  e.kinetic = kinetic_energy_J_per_m();
+  double power = 0;
+  for (auto& level : levels_) {
+    exchange_velocities(level);
+    // 1/2 u K u' between the level's last two places.
+    stiffness_product(level, u_, scratch_);
+    e.strain += 0.5 * inner_product(level, scratch_, u_, u_) -
+                0.5 * level.step_s * inner_product(level, scratch_, u_, v_);
+    e.coupling_work += coupling_work(level);
+    if (damping_s_ > 0 && damping_work_ == DampingWork::every_step) {
+      if (level.damping_a.size() > 0) e.damping_work += damping_work(level);
+    } else if (damping_s_ > 0) {
+      stiffness_product(level, v_, scratch_);
+      power -= damping_s_ * inner_product(level, scratch_, v_, v_);
+    }
+    restore_velocities(level);
+  }
+  if (damping_work_ == DampingWork::sampled) {
+    e.damping_work = works_.damping_work += 0.5 * (power + damping_power_) * (e.time_s - works_.time_s);
+    damping_power_ = power;
+    works_.time_s = e.time_s;
+  }
+  return e;
 }
 
 void Stepper::advance(Recorder& recorder, fronts::History* sample) {
@@ -309,6 +437,8 @@ void Stepper::advance(Recorder& recorder, fronts::History* sample) {
 
 void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sample) {
   const double dt = substep_s();
+  std::ranges::copy(interface_.v_x_m_per_s, v_x_before_.begin());
+  std::ranges::copy(interface_.v_y_m_per_s, v_y_before_.begin());
   for (std::size_t i = 0; i < lower_.size(); ++i) {
     const auto n = lower_[i];
     interface_.v_x_m_per_s[i] = v_.x[n];
@@ -328,8 +458,17 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
     u_.x[n] += dt * v_.x[n];
     u_.y[n] += dt * v_.y[n];
   }
+  double friction_work = 0, contact_work = 0;
+  for (std::size_t i = 0; i < lower_.size(); ++i) {
+    const double half_impulse = 0.5 * dt * tributary_m_[i];
+    friction_work -= half_impulse * interface_.t_Pa[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
+    contact_work += half_impulse * interface_.p_Pa[i] * (interface_.v_y_m_per_s[i] + v_y_before_[i]);
+  }
+  works_.friction_work += friction_work;
+  works_.contact_work += contact_work;
   for (const auto i : trigger_nodes_)
-    trigger_work_ += impulse_s * trigger_force_N_[i] * interface_.v_x_m_per_s[i];
+    works_.trigger_work +=
+        0.5 * impulse_s * trigger_force_N_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
 }
 
 void Stepper::append_sample(fronts::History& history) const {
@@ -349,15 +488,6 @@ double Stepper::kinetic_energy_J_per_m() const {
 
 double Stepper::energy_J_per_m() const {
   return solid::strain_energy_J_per_m(plate_, u_) + kinetic_energy_J_per_m();
-}
-
-double Stepper::top_force_x_N_per_m() const {
-  solid::Field w = u_;
-  for (const auto n : plate_.top.neighbour) {
-    w.x[n] = u_.x[n] + damping_s_ * v_.x[n];
-    w.y[n] = u_.y[n] + damping_s_ * v_.y[n];
-  }
-  return solid::top_force_x_N_per_m(plate_, w);
 }
 
 }  // namespace slipfront::solve

@@ -8,6 +8,7 @@
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
+#include "solve/energies.hpp"
 #include "solve/recorder.hpp"
 #include "solve/settings.hpp"
 #include "solve/statics.hpp"
@@ -59,10 +60,13 @@ class Stepper {
   const solid::Field& v_m_per_s() const { return v_; }
   const interface::Interface& interface_state() const { return interface_; }
 
-  double energy_J_per_m() const;  ///< strain and kinetic
+  double energy_J_per_m() const;  ///< strain and kinetic, each of its own instant
   double kinetic_energy_J_per_m() const;
-  double top_force_x_N_per_m() const;  ///< of the loaded edge on the plate
-  double trigger_work_J_per_m() const { return trigger_work_; }
+
+  /// How the energies account for the damping; before start.
+  void set_damping_work(DampingWork how) { damping_work_ = how; }
+  /// Energies and works up to the last half (sub-)step.
+  Energies energies();
 
  private:
   /// Nodes between a level and the next finer one, which moves them.
@@ -73,6 +77,9 @@ class Stepper {
     solid::Field push_m_per_s;                ///< change of velocity that waits for the next sub-step
     /// Acceleration by the level's cells in the equilibrium at the start.
     solid::Field steady_m_per_s2;
+    // For the energies: velocity after the last sub-step; acceleration at the last push and the mean velocity
+    // before it.
+    solid::Field v_last_m_per_s, a_m_per_s2, v_mean_before_m_per_s;
   };
   /// Cells with one step; each level's step is a whole multiple of the next one's. The last level holds the
   /// interface.
@@ -85,6 +92,10 @@ class Stepper {
     std::vector<double> a_x, a_y;  ///< [irregular rows]
     std::vector<mesh::Node> top;   ///< nodes of the loaded edge that move with this level
     Shared shared;
+    solid::BlockRows top_rows;  ///< K of the level's cells, N/m
+    // Damping's work: M^-1 K v and v K v at the last push, v the level's velocity.
+    solid::Field damping_a, damping_v;
+    double v_K_v = 0;
     std::vector<double> edge_push_m_per_s;  ///< of the stencil row that is shared, x then y. [columns]
   };
 
@@ -98,6 +109,18 @@ class Stepper {
   void gather_push(Level& level);
   void move_shared(Level& coarser, double dt);
   void take_contact(double time_s, Recorder& recorder, fronts::History* sample);
+  /// The velocities as a level sees them: mean ones since its last push at shared nodes.
+  void exchange_velocities(const Level& level);
+  void restore_velocities(const Level& level);
+  // With the velocities as the level sees them:
+  void add_coupling_work(Level& level);
+  double coupling_work(const Level& level) const;
+  void add_damping_work(Level& level);
+  double damping_work(const Level& level) const;
+  void stiffness_product(const Level& level, const solid::Field& w, solid::Field& a) const;  ///< a = M^-1 K w
+  /// z K w, a as of stiffness_product.
+  double inner_product(const Level& level, const solid::Field& a, const solid::Field& w,
+                       const solid::Field& z) const;
   void append_sample(fronts::History& history) const;
 
   solid::Operator plate_;
@@ -109,16 +132,19 @@ class Stepper {
 
   std::vector<Level> levels_;  ///< coarsest first
   std::vector<mesh::Node> lower_;
+  std::vector<double> tributary_m_, v_x_before_, v_y_before_;  ///< [lower]
   std::vector<double> lower_mass_kg_;
   interface::Interface interface_;
   interface::Trigger trigger_;
   std::vector<double> trigger_force_N_;
   std::vector<std::size_t> trigger_nodes_;  ///< where the force is not zero
-  double trigger_work_ = 0;
+  DampingWork damping_work_ = DampingWork::sampled;
+  Energies works_;  ///< the works alone
+  double damping_power_ = 0;
+  solid::Field scratch_;
 
   solid::Field u_, v_;
   solid::Field start_u_;   ///< interface displacement at the start: slip is counted from it. [lower]
-  solid::Field shared_v_;  ///< room for the velocities of nodes that levels share
   std::vector<double> w_;  ///< three rows of u + beta_R v, rolling
   double top_speed_ = 0;
   std::int64_t step_ = 0;

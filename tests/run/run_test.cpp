@@ -202,7 +202,7 @@ TEST(Event, TriggersStartAFrontAtTheirEdge) {
     EXPECT_LE(std::abs(front->points.front().x_m - edge), config.trigger.zone_m * (1 + 1e-9)) << inward;
     // It leaves the zone by itself and reaches the place of the largest t/p.
     EXPECT_GT(inward * (front->points.back().x_m - common.peak_x_m), 0) << inward;
-    EXPECT_GT(result.event.energy_at_end.trigger_work, 0);
+    EXPECT_GT(result.event.energies.back().trigger_work, 0);
   }
 }
 

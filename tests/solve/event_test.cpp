@@ -164,8 +164,8 @@ TEST_F(EventRun, SlipReleasesEnergyAndTheBooksShowIt) {
   EXPECT_GT(event.record.onsets.size(), 10);
   // Nucleation is where t/p had its maximum.
   EXPECT_NEAR(event.record.x_m[event.record.onsets[0].node], spontaneous.peak_x_m, 1e-12);
-  const auto& a = event.energy_at_start;
-  const auto& b = event.energy_at_end;
+  const auto& a = event.energies.front();
+  const auto& b = event.energies.back();
   EXPECT_EQ(a.top_work, 0);
   EXPECT_EQ(b.trigger_work, 0);
   EXPECT_GT(b.top_work, 0);  // the edge pushes to +x and moves there
@@ -183,7 +183,7 @@ TEST_F(EventRun, TopWorkIsTheReactionTimesThePath) {
   for (std::size_t k = 0; k < tributary.size(); ++k)
     reaction += spontaneous.tractions.t_s_Pa[k] * tributary[k];
   // The ramp of shear adds 1e-4 to the force in this time.
-  EXPECT_NEAR(event.energy_at_end.top_work / (reaction * 1e-6 * c_L_ * event.time_s), 1, 1e-3);
+  EXPECT_NEAR(event.energies.back().top_work / (reaction * 1e-6 * c_L_ * event.time_s), 1, 1e-3);
 }
 
 TEST_F(EventRun, TriggersNucleateAtTheirEdge) {
@@ -204,7 +204,7 @@ TEST_F(EventRun, TriggersNucleateAtTheirEdge) {
     } else {
       EXPECT_GT(x, 0.17);
     }
-    EXPECT_GT(event.energy_at_end.trigger_work, 0);
+    EXPECT_GT(event.energies.back().trigger_work, 0);
   }
 }
 

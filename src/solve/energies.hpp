@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace slipfront::solve {
+
+/// Energies of the plate, and the work done on it since the start; J per unit thickness.
+///
+/// Each term is computed by itself from the discrete scheme: with v' = (v- + v+)/2 a node's mean velocity
+/// over a (sub-)step's kick, a force f does the work dt f v'; the kinetic energy is that of the last half
+/// step, the strain energy 1/2 u K u' with the displacements on either side of it. The sum of the changes is
+/// then zero but for rounding.
+struct Energies {
+  double time_s = 0;
+  double kinetic = 0, strain = 0;
+  double top_work = 0;  ///< of the moving edge
+  double trigger_work = 0;
+  double friction_work = 0;  ///< of the tangential traction; negative where it dissipates
+  double contact_work = 0;   ///< of the pressure: kinetic energy lost where a gap closes, negative
+  double damping_work = 0;   ///< of the stiffness damping
+  /// Of the coarse cells' force on nodes that move in sub-steps, beyond what these cells store; it stays
+  /// bounded.
+  double coupling_work = 0;
+
+  double stored() const { return kinetic + strain; }
+  double work() const {
+    return top_work + trigger_work + friction_work + contact_work + damping_work + coupling_work;
+  }
+};
+
+/// Whether the damping's work is summed over every step, which about doubles the time, or from samples at the
+/// times at which the energies are asked for (trapezoidal rule).
+enum class DampingWork { sampled, every_step };
+
+}  // namespace slipfront::solve

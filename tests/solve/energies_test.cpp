@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solve/energies.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "solve/event.hpp"
+#include "solve/stepper.hpp"
+#include "support.hpp"
+
+namespace slipfront::solve {
+namespace {
+
+using mesh::Corner;
+
+constexpr double mu_s = 1.3;
+
+TimeStepping stepping(int rows, int substeps) {
+  TimeStepping time;
+  time.interface_rows = rows;
+  time.interface_substeps = substeps;
+  return time;
+}
+
+/// A triggered event under a moving edge: stick, slip, opening and closing.
+class Books : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {
+ protected:
+  Corner corner() const { return std::get<0>(GetParam()); }
+  int rows() const { return std::get<1>(GetParam()); }
+  int substeps() const { return std::get<2>(GetParam()); }
+
+  struct Balance {
+    double worst_J = 0;    ///< largest difference between the stored energy and start + works
+    double largest_J = 0;  ///< largest single term
+    Energies last;
+    std::size_t n_onsets = 0;
+  };
+
+  Balance run(const solid::Material& material, double shear_ratio, double top_speed, bool triggered,
+              int steps, const interface::FrictionLaw& law) const {
+    const auto mesh = support::tiny_plate(corner());
+    const Loading loading{.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3};
+    const Statics statics(mesh, material, loading, mu_s);
+    const auto e = statics.shear_to(shear_ratio * mu_s);
+    Stepper stepper(mesh, material, law, stepping(rows(), substeps()));
+    stepper.set_damping_work(DampingWork::every_step);
+    stepper.start(e, top_speed);
+    if (triggered) {
+      const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
+      stepper.set_trigger(trigger, trigger_forces(e, mesh::tributary_lengths_m(mesh),
+                                                  interface::EventKind::left, trigger, mu_s));
+    }
+    Recorder recorder(e, mu_s, 0);
+    const Energies start = stepper.energies();
+    Balance balance;
+    for (int step = 0; step < steps; ++step) {
+      stepper.advance(recorder);
+      const Energies now = balance.last = stepper.energies();
+      balance.worst_J = std::max(balance.worst_J, std::abs(now.stored() - start.stored() - now.work()));
+      for (const double term : {now.kinetic, now.strain, now.top_work, now.trigger_work, now.friction_work})
+        balance.largest_J = std::max(balance.largest_J, std::abs(term));
+    }
+    balance.n_onsets = recorder.take(stepper.time_s()).onsets.size();
+    return balance;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Layers, Books,
+                         ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                                            ::testing::Values(1, 4), ::testing::Values(1, 5)),
+                         [](const auto& p) {
+                           return support::name_of(std::get<0>(p.param)) + "_" +
+                                  std::to_string(std::get<1>(p.param)) + "rows_" +
+                                  std::to_string(std::get<2>(p.param)) + "substeps";
+                         });
+
+TEST_P(Books, CloseWithEverythingOn) {
+  const auto b = run({}, 0.9, 0.2, true, 400, support::gentle_law);
+  EXPECT_GT(b.n_onsets, 5);
+  // Every term is there to be missed.
+  EXPECT_GT(b.last.kinetic, 1e-6 * b.largest_J);
+  EXPECT_GT(std::abs(b.last.top_work), 1e-6 * b.largest_J);
+  EXPECT_GT(b.last.trigger_work, 1e-6 * b.largest_J);
+  EXPECT_LT(b.last.friction_work, -1e-6 * b.largest_J);
+  EXPECT_LT(b.last.damping_work, -1e-6 * b.largest_J);
+  EXPECT_EQ(b.last.coupling_work != 0, substeps() > 1);
+  EXPECT_LE(b.worst_J, 1e-12 * b.largest_J);
+}
+
+TEST_P(Books, CloseWhenThePlateHitsThePlane) {
+  // From 1 um above the plane, downwards and sideways, the more so the lower: it lands, slides, and leaves
+  // again.
+  const auto mesh = support::tiny_plate(corner());
+  solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
+  std::ranges::fill(u.y, 1e-6);
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+    v.x[n] = 100 * (0.01 - mesh.y_m[n]);
+    v.y[n] = -200 * (0.01 - mesh.y_m[n]);
+  }
+  const auto e = support::in_flight(mesh, u, v);
+  Stepper stepper(mesh, {}, support::gentle_law, stepping(rows(), substeps()));
+  stepper.set_damping_work(DampingWork::every_step);
+  stepper.start(e, 1);
+  Recorder recorder(e, mu_s, 0);
+  const double start = stepper.energies().stored();
+  double worst = 0;
+  bool touched = false, left = false;
+  Energies now;
+  for (int step = 0; step < 1000; ++step) {
+    stepper.advance(recorder);
+    now = stepper.energies();
+    worst = std::max(worst, std::abs(now.stored() - start - now.work()));
+    const bool touches = std::ranges::any_of(stepper.interface_state().p_Pa, [](double p) { return p > 0; });
+    touched |= touches;
+    left |= touched && !touches;
+  }
+  EXPECT_TRUE(touched);
+  EXPECT_TRUE(left);
+  EXPECT_LT(now.contact_work, -1e-6 * start);
+  EXPECT_LT(now.friction_work, -1e-6 * start);
+  EXPECT_LE(worst, 1e-12 * start);
+}
+
+TEST_P(Books, CloseWithoutFrictionAndDamping) {
+  const auto b = run({.stiffness_damping_s = 0}, 0.3, 0, false, 400, interface::Coulomb{0});
+  EXPECT_EQ(b.last.damping_work, 0);
+  EXPECT_EQ(b.last.friction_work, 0);
+  EXPECT_GT(b.last.kinetic, 1e-3 * b.last.strain);  // the interface lets go at once
+  EXPECT_LE(b.worst_J, 1e-12 * b.largest_J);
+}
+
+}  // namespace
+}  // namespace slipfront::solve
