@@ -35,10 +35,10 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time) {
         time.interface_rows, mesh.grid.rows);
 }
 
-Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material, const interface::FrictionLaw& law,
-                 const TimeStepping& time)
+Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
+                 const interface::ContactModel& contact, const TimeStepping& time)
     : damping_s_(material.stiffness_damping_s),
-      law_(law),
+      contact_(contact),
       layer_rows_(time.interface_rows),
       substeps_(time.interface_substeps),
       lower_(mesh.lower),
@@ -123,6 +123,7 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     interface_.p_Pa[k] = equilibrium.tractions.p_s_Pa[k];
     interface_.slipping[k] = equilibrium.contact[k] == Contact::slip;
   }
+  start_contact(contact_, interface_);
   set_trigger({}, std::vector<double>(lower_.size(), 0.0));
   trigger_work_ = 0;
   step_ = 0;
@@ -236,7 +237,7 @@ void Stepper::take_substep(int k, Recorder& recorder, fronts::History* sample) {
   const double impulse_s = dt * trigger_factor(trigger_, time);
   for (const auto i : trigger_nodes_)
     interface_.v_x_m_per_s[i] += impulse_s * trigger_force_N_[i] / lower_mass_kg_[i];
-  const bool changed = interface::update_contact(law_, dt, interface_);
+  const bool changed = interface::update_contact(contact_, dt, interface_);
   recorder.observe(time, interface_, changed);
   if (sample != nullptr) append_sample(*sample);
   for (std::size_t i = 0; i < lower_.size(); ++i) {
@@ -244,7 +245,7 @@ void Stepper::take_substep(int k, Recorder& recorder, fronts::History* sample) {
     v_.x[n] = interface_.v_x_m_per_s[i];
     v_.y[n] = interface_.v_y_m_per_s[i];
     u_.x[n] += dt * v_.x[n];
-    u_.y[n] += dt * v_.y[n];
+    u_.y[n] = interface_.u_y_m[i] + dt * v_.y[n];
   }
   for (const auto i : trigger_nodes_)
     trigger_work_ += impulse_s * trigger_force_N_[i] * interface_.v_x_m_per_s[i];
