@@ -70,7 +70,7 @@ Row measure(const std::string& path, int columns, const solve::TimeStepping& tim
   mesh::Plate plate;
   plate.element_size_m = plate.width_m / columns;
   const auto mesh = mesh::make_plate(plate);
-  solve::Stepper stepper(mesh, {}, interface::VelocityWeakening{}, time);
+  solve::Stepper stepper(mesh, {}, {interface::VelocityWeakening{}}, time);
   solve::Equilibrium state;
   state.u_m = state.u_per_shear = solid::Field(static_cast<std::size_t>(mesh.n_nodes()));
   state.contact.assign(mesh.lower.size(), solve::Contact::stick);

@@ -9,6 +9,7 @@ namespace slipfront::interface {
 Interface::Interface(std::size_t n)
     : initial_gap_m(n),
       mass_per_length_kg_m2(n),
+      intact(n, 1.0),
       v_x_m_per_s(n),
       v_y_m_per_s(n),
       u_y_m(n),
@@ -16,41 +17,116 @@ Interface::Interface(std::size_t n)
       t_Pa(n),
       p_Pa(n),
       demand_Pa(n),
-      slipping(n) {}
+      strength_Pa(n),
+      slipping(n),
+      slip_m(n),
+      relaxed_Pa(n),
+      acceleration_m_per_s2(n),
+      locked(n) {}
 
 namespace {
 
-template <class Evaluator>
-bool update(const Evaluator& mu, double dt_s, Interface& s) {
+/// The coefficient of a node that may be weakened; exactly the law's where intact is 1.
+double weakened(double mu, double mu_k, double intact) {
+  return mu - (1 - intact) * (mu - mu_k);
+}
+
+/// Pressure of the direct algorithm: what the gap at the step's end needs to be closed.
+double press_direct(Interface& s, std::size_t i, double impedance, double per_step) {
+  const double gap_rate = (s.initial_gap_m[i] + s.u_y_m[i]) * per_step;
+  const double p = std::max(0.0, -(s.v_y_m_per_s[i] + gap_rate) * impedance);
+  s.v_y_m_per_s[i] += p / impedance;
+  return p;
+}
+
+/// Pressure of the predictor-corrector algorithm: what keeps the normal velocity of a locked node at zero.
+double press_locked(Interface& s, std::size_t i, double impedance, double per_step) {
+  const double v_y = s.v_y_m_per_s[i];
+  const bool was_locked = s.locked[i] != 0;
+  const bool stays = was_locked && v_y <= 0;
+  const bool lands = !was_locked && v_y + (s.initial_gap_m[i] + s.u_y_m[i]) * per_step < 0;
+  s.u_y_m[i] = lands ? -s.initial_gap_m[i] : s.u_y_m[i];
+  s.v_y_m_per_s[i] = stays || lands ? 0.0 : v_y;
+  s.locked[i] = stays || lands;
+  return stays ? -v_y * impedance : 0.0;
+}
+
+template <ContactAlgorithm algorithm, class Law, class Form>
+bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
+  constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
+  const auto mu = law.evaluator();
+  const double mu_k = law.kinetic_coefficient();
+  const double mu_at_rest = mu(0, 0);
   const double per_step = 1 / dt_s;
   unsigned changed = 0;
   for (std::size_t i = 0; i < s.size(); ++i) {
     const double impedance = s.mass_per_length_kg_m2[i] * per_step;
-    const double gap_rate = (s.initial_gap_m[i] + s.u_y_m[i]) * per_step;
-    const double p = std::max(0.0, -(s.v_y_m_per_s[i] + gap_rate) * impedance);
+    const double p =
+        predicts ? press_locked(s, i, impedance, per_step) : press_direct(s, i, impedance, per_step);
+
+    const double last_rate = s.slip_rate_m_per_s[i];
+    // Newmark's predictor v + a dt of the velocity at the step's beginning.
+    const double rate = predicts ? last_rate + 0.5 * dt_s * s.acceleration_m_per_s2[i] : last_rate;
+    const double speed = std::abs(rate);
+    const double mu_now = weakened(mu(speed, s.slip_m[i]), mu_k, s.intact[i]);
+    const double strength = form(mu_now, p, speed, s.relaxed_Pa[i]);
+
     const double t_stop = s.v_x_m_per_s[i] * impedance;
     const double demand = std::abs(t_stop);
-    const double strength = mu(std::abs(s.slip_rate_m_per_s[i])) * p;
-    const bool slips =
-        !(demand <= strength);  // so that a motion that is not a number shows up as a slip rate
-    const double t = slips ? std::copysign(strength, t_stop) : t_stop;
+    // Friction opposes the motion: that of the trial, or, by the predictor, that of a node under way.
+    const bool under_way = predicts && rate != 0 && p > 0;
+    const double direction = under_way ? rate : t_stop;
+    const double along = under_way ? std::copysign(1.0, rate) * t_stop : demand;
+    const bool slips = !(along <= strength);  // so that a motion that is not a number shows up as a slip rate
+    const double t = slips ? std::copysign(strength, direction) : t_stop;
+    const double v_x = slips ? s.v_x_m_per_s[i] - t / impedance : 0.0;
     const std::uint8_t slipping = slips && p > 0;
     changed |= static_cast<unsigned>(slipping ^ s.slipping[i]);
-    s.v_x_m_per_s[i] = slips ? s.v_x_m_per_s[i] - t / impedance : 0.0;
-    s.v_y_m_per_s[i] += p / impedance;
-    s.slip_rate_m_per_s[i] = s.v_x_m_per_s[i];
+
+    double slip = s.slip_m[i] + (slipping != 0 ? std::abs(v_x) * dt_s : 0.0);
+    if constexpr (Law::memory == SlipMemory::until_stick) slip = slips || p == 0 ? slip : 0.0;
+    const double mu_stuck = Law::memory == SlipMemory::none ? mu_at_rest : mu(0, slip);
+    const double strength_at_rest = form.at_rest(weakened(mu_stuck, mu_k, s.intact[i]), p, s.relaxed_Pa[i]);
+
+    if constexpr (predicts) s.acceleration_m_per_s2[i] = slips ? (v_x - last_rate) * per_step : 0.0;
+    s.v_x_m_per_s[i] = v_x;
+    s.slip_rate_m_per_s[i] = v_x;
     s.t_Pa[i] = t;
     s.p_Pa[i] = p;
     s.demand_Pa[i] = demand;
+    s.strength_Pa[i] = slips ? strength : strength_at_rest;
     s.slipping[i] = slipping;
+    s.slip_m[i] = slip;
   }
   return changed != 0;
 }
 
 }  // namespace
 
-bool update_contact(const FrictionLaw& law, double dt_s, Interface& state) {
-  return std::visit([&](const auto& l) { return update(l.evaluator(), dt_s, state); }, law);
+void start_contact(const ContactModel& model, Interface& s) {
+  const double mu = static_coefficient(model.law), mu_k = kinetic_coefficient(model.law);
+  with_form(model.regularisation, 0, [&](const auto& form) {
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const double mu_0 = weakened(mu, mu_k, s.intact[i]);
+      s.strength_Pa[i] = mu_0 * s.p_Pa[i];
+      s.relaxed_Pa[i] = form.initial(mu_0, s.p_Pa[i]);
+      s.slip_m[i] = 0;
+      s.acceleration_m_per_s2[i] = 0;
+      s.locked[i] = s.p_Pa[i] > 0;
+    }
+  });
+}
+
+bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
+  return std::visit(
+      [&](const auto& law) {
+        return with_form(model.regularisation, dt_s, [&](const auto& form) {
+          return model.algorithm == ContactAlgorithm::direct
+                     ? update<ContactAlgorithm::direct>(law, form, dt_s, state)
+                     : update<ContactAlgorithm::predictor_corrector>(law, form, dt_s, state);
+        });
+      },
+      model.law);
 }
 
 }  // namespace slipfront::interface

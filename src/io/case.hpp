@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "interface/friction/registry.hpp"
+#include "interface/interface.hpp"
 #include "interface/trigger.hpp"
 #include "mesh/plate.hpp"
 #include "solid/material.hpp"
@@ -35,11 +35,17 @@ struct Case {
   solid::Material material;
   solve::Loading loading;
   interface::FrictionLaw friction;
+  interface::Regularisation regularisation;
+  interface::ContactAlgorithm contact = interface::ContactAlgorithm::direct;
   interface::EventKind event = interface::EventKind::spontaneous;
   interface::Trigger trigger;
   solve::TimeStepping time;
   FrontSettings fronts;
   Output output;
 };
+
+inline interface::ContactModel contact_model(const Case& config) {
+  return {config.friction, config.regularisation, config.contact};
+}
 
 }  // namespace slipfront::io

@@ -166,7 +166,10 @@ Entry friction_law_entry() {
 }
 
 std::vector<Entry> make_common_entries() {
+  using interface::ContactAlgorithm;
   using interface::EventKind;
+  using interface::Regularisation;
+  using interface::Relaxed;
   using interface::Trigger;
   using mesh::Corner;
   using mesh::Plate;
@@ -227,6 +230,22 @@ std::vector<Entry> make_common_entries() {
              "common state at t/p = (1 - margin) mu_s, spontaneous event at (1 + margin) mu_s"),
 
       friction_law_entry(),
+      word<Relaxed>(
+          "friction.regularisation", at(&Case::regularisation, &Regularisation::relaxed),
+          {{"none", Relaxed::none}, {"strength", Relaxed::strength}, {"pressure", Relaxed::pressure}},
+          "what follows changes of pressure with a delay, at the rate (|v| + v*)/L + 1/t*"),
+      number("friction.relaxation_length_m", at(&Case::regularisation, &Regularisation::length_m),
+             above_or_infinite(0), "L of that rate"),
+      number("friction.relaxation_slip_rate_m_per_s",
+             at(&Case::regularisation, &Regularisation::slip_rate_m_per_s), at_least(0), "v* of that rate"),
+      number("friction.relaxation_time_s", at(&Case::regularisation, &Regularisation::time_s),
+             above_or_infinite(0), "t* of that rate"),
+
+      word<ContactAlgorithm>("contact.algorithm", at(&Case::contact),
+                             {{"direct", ContactAlgorithm::direct},
+                              {"predictor_corrector", ContactAlgorithm::predictor_corrector}},
+                             "pressure that closes the gap within the step, or normal velocity locked in "
+                             "contact with friction on the predicted slip rate"),
 
       word<EventKind>(
           "event.kind", at(&Case::event),

@@ -339,6 +339,16 @@ void check_relations(const Case& config, const Document& document, const std::st
           {"fronts.pulse_share", "fronts.crack_share"},
           fmt::format("fronts.pulse_share is {}; it must be at most fronts.crack_share, {}",
                       config.fronts.pulse_share, config.fronts.crack_share));
+  const auto& relaxation = config.regularisation;
+  if (relaxation.relaxed != interface::Relaxed::none) {
+    require(
+        std::isfinite(relaxation.length_m) || std::isfinite(relaxation.time_s), {"friction.regularisation"},
+        "friction.regularisation needs a finite friction.relaxation_length_m or relaxation_time_s; set one");
+    require(relaxation.slip_rate_m_per_s == 0 || std::isfinite(relaxation.length_m),
+            {"friction.relaxation_slip_rate_m_per_s"},
+            "friction.relaxation_slip_rate_m_per_s does nothing without a finite "
+            "friction.relaxation_length_m; set that, or remove it");
+  }
   const auto& times = config.output.snapshot_times_s;
   const auto fall = std::adjacent_find(times.begin(), times.end(), std::greater_equal<>());
   if (fall != times.end())
@@ -425,18 +435,23 @@ std::string schema_reference() {
   text += reference_head;
   const Case defaults;
   std::string open_table;
-  for (const Entry& entry : common_entries()) {
-    const std::string table = table_of(entry.key);
-    if (table != open_table) text += fmt::format("\n## [{}]\n\n{}", table, reference_head);
-    open_table = table;
-    text += reference_row(entry, defaults);
-    if (entry.key != "friction.law") continue;
+  const auto close_table = [&] {
+    if (open_table != "friction") return;
     for (const LawEntries& law : friction_laws()) {
       Case of_law;
       of_law.friction = law.defaults;
       text += fmt::format("\nWith `law = \"{}\"` ({}):\n\n{}", law.name, law.help, reference_head);
       for (const Entry& parameter : law.entries) text += reference_row(parameter, of_law);
     }
+  };
+  for (const Entry& entry : common_entries()) {
+    const std::string table = table_of(entry.key);
+    if (table != open_table) {
+      close_table();
+      text += fmt::format("\n## [{}]\n\n{}", table, reference_head);
+    }
+    open_table = table;
+    text += reference_row(entry, defaults);
   }
   return text;
 }

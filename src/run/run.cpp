@@ -56,6 +56,8 @@ std::string initial_state_key(const io::Case& config) {
   if (config.loading.method == solve::LoadingMethod::ramp) {
     // Nodes at the edges slip during the ramp, by the law itself.
     relevant.friction = config.friction;
+    relevant.regularisation = config.regularisation;
+    relevant.contact = config.contact;
     relevant.time = config.time;
   } else {
     relevant.material.density_kg_per_m3 = io::Case{}.material.density_kg_per_m3;
@@ -90,7 +92,7 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
   } else {
     auto plain = config.time;
     plain.interface_substeps = 1;
-    solve::Stepper stepper(initial.mesh, config.material, config.friction, plain);
+    solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), plain);
     initial.ramp = solve::run_ramp(
         stepper, statics.shear_by(0), config.loading, mu_s, top_speed_m_per_s(config),
         solid::longitudinal_speed_m_per_s(config.material), initial.critical_shear_m, monitor);
@@ -128,7 +130,7 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
   const auto& state =
       config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
 
-  solve::Stepper stepper(initial.mesh, config.material, config.friction, config.time);
+  solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), config.time);
   stepper.start(state, top_speed_m_per_s(config));
   stepper.set_trigger(config.trigger,
                       solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger, mu_s));
@@ -172,7 +174,7 @@ Info info(const io::Case& config) {
   info.n_cells = static_cast<std::int64_t>(mesh.cells.size());
   info.n_interface = static_cast<std::int64_t>(mesh.lower.size());
 
-  solve::Stepper stepper(mesh, config.material, config.friction, config.time);
+  solve::Stepper stepper(mesh, config.material, io::contact_model(config), config.time);
   info.n_irregular = static_cast<std::int64_t>(stepper.plate().whole.irregular.size());
   info.stable_step_s = stepper.stable_step_s();
   info.step_s = stepper.step_s();

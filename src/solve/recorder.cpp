@@ -7,10 +7,10 @@
 namespace slipfront::solve {
 
 Recorder::Recorder(const Equilibrium& before, double mu_s, int halo, double creep_m_per_s)
-    : mu_s_(mu_s),
-      creep_m_per_s_(creep_m_per_s),
+    : creep_m_per_s_(creep_m_per_s),
       previous_t_Pa_(before.tractions.t_s_Pa),
       previous_p_Pa_(before.tractions.p_s_Pa) {
+  for (const double p : previous_p_Pa_) previous_strength_Pa_.push_back(mu_s * p);
   record_.x_m = before.tractions.x_m;
   record_.halo = halo;
   for (const auto contact : before.contact) {
@@ -41,16 +41,18 @@ void Recorder::observe(double time_s, const interface::Interface& state, bool ch
   }
   std::ranges::copy(state.t_Pa, previous_t_Pa_.begin());
   std::ranges::copy(state.p_Pa, previous_p_Pa_.begin());
+  std::ranges::copy(state.strength_Pa, previous_strength_Pa_.begin());
   previous_time_s_ = time_s;
 }
 
 void Recorder::add_onset(std::size_t node, double time_s, const interface::Interface& state) {
-  // |t| / (mu_s p) passes 1 between the last time and this one; a node that was not pressed has no ratio to
-  // interpolate and begins to slip now.
+  // |t| / strength passes 1 between the last time and this one; a node without strength, open or not, has no
+  // ratio to interpolate and begins to slip now.
   double part = 1;
-  if (previous_p_Pa_[node] > 0 && time_s > previous_time_s_) {
-    const double before = std::abs(previous_t_Pa_[node]) / (mu_s_ * previous_p_Pa_[node]);
-    const double now = state.demand_Pa[node] / (mu_s_ * state.p_Pa[node]);
+  const double strength_before = previous_strength_Pa_[node], strength_now = state.strength_Pa[node];
+  if (strength_before > 0 && strength_now > 0 && time_s > previous_time_s_) {
+    const double before = std::abs(previous_t_Pa_[node]) / strength_before;
+    const double now = state.demand_Pa[node] / strength_now;
     if (now > before) part = std::clamp((1 - before) / (now - before), 0.0, 1.0);
   }
   record_.onsets.push_back(
@@ -61,10 +63,10 @@ void Recorder::add_onset(std::size_t node, double time_s, const interface::Inter
       record_.around.push_back({std::nan(""), std::nan("")});
       continue;
     }
-    // At the node itself the traction rises to the strength: the demand, cut at mu_s p, not the weakened
-    // traction.
+    // At the node itself the traction rises to the strength, interpolated as the others.
     const double p = previous_p_Pa_[i] + part * (state.p_Pa[i] - previous_p_Pa_[i]);
-    const double t = k == 0 ? std::copysign(mu_s_ * p, state.t_Pa[i])
+    const double strength = strength_before + part * (strength_now - strength_before);
+    const double t = k == 0 ? std::copysign(strength, state.t_Pa[i])
                             : previous_t_Pa_[i] + part * (state.t_Pa[i] - previous_t_Pa_[i]);
     record_.around.push_back({t, p});
   }

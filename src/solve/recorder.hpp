@@ -13,6 +13,7 @@ namespace slipfront::solve {
 class Recorder {
  public:
   /// @param before  the state at time 0, before the first (sub-)step; nodes that slip in it have no onset
+  /// @param mu_s    coefficient at rest in that state
   /// @param creep_m_per_s  slip no faster than this does not count in last_motion_s
   /// @param halo    nodes on each side whose tractions are kept at an onset
   Recorder(const Equilibrium& before, double mu_s, int halo, double creep_m_per_s = 0);
@@ -30,11 +31,11 @@ class Recorder {
  private:
   void add_onset(std::size_t node, double time_s, const interface::Interface& state);
 
-  double mu_s_, creep_m_per_s_;
+  double creep_m_per_s_;
   double last_motion_s_ = 0;
   fronts::SlipRecord record_;
   double previous_time_s_ = 0;
-  std::vector<double> previous_t_Pa_, previous_p_Pa_;
+  std::vector<double> previous_t_Pa_, previous_p_Pa_, previous_strength_Pa_;
   std::vector<std::uint8_t> previous_slipping_;
   std::size_t n_slipping_ = 0;
 };

@@ -37,11 +37,11 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time) {
         time.interface_rows, mesh.grid.rows);
 }
 
-Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material, const interface::FrictionLaw& law,
-                 const TimeStepping& time)
+Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
+                 const interface::ContactModel& contact, const TimeStepping& time)
     : plate_(solid::make_operator(mesh, material)),
       damping_s_(material.stiffness_damping_s),
-      law_(law),
+      contact_(contact),
       substeps_(time.interface_substeps),
       lower_(mesh.lower),
       tributary_m_(mesh::tributary_lengths_m(mesh)),
@@ -174,6 +174,7 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     level.damping_a = {};
     set_motion_before();
   }
+  start_contact(contact_, interface_);
   set_trigger({}, std::vector<double>(lower_.size(), 0.0));
   works_ = {};
   damping_power_ = 0;
@@ -448,22 +449,24 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
   const double impulse_s = dt * trigger_factor(trigger_, time);
   for (const auto i : trigger_nodes_)
     interface_.v_x_m_per_s[i] += impulse_s * trigger_force_N_[i] / lower_mass_kg_[i];
-  const bool changed = interface::update_contact(law_, dt, interface_);
+  const bool changed = interface::update_contact(contact_, dt, interface_);
   recorder.observe(time, interface_, changed);
   if (sample != nullptr) append_sample(*sample);
+  double contact_work = 0;
   for (std::size_t i = 0; i < lower_.size(); ++i) {
     const auto n = lower_[i];
+    // The impulse from the velocities: a landing by projection has no pressure.
+    contact_work += 0.5 * lower_mass_kg_[i] * (interface_.v_y_m_per_s[i] - v_.y[n]) *
+                    (interface_.v_y_m_per_s[i] + v_y_before_[i]);
     v_.x[n] = interface_.v_x_m_per_s[i];
     v_.y[n] = interface_.v_y_m_per_s[i];
     u_.x[n] += dt * v_.x[n];
-    u_.y[n] += dt * v_.y[n];
+    u_.y[n] = interface_.u_y_m[i] + dt * v_.y[n];
   }
-  double friction_work = 0, contact_work = 0;
-  for (std::size_t i = 0; i < lower_.size(); ++i) {
-    const double half_impulse = 0.5 * dt * tributary_m_[i];
-    friction_work -= half_impulse * interface_.t_Pa[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
-    contact_work += half_impulse * interface_.p_Pa[i] * (interface_.v_y_m_per_s[i] + v_y_before_[i]);
-  }
+  double friction_work = 0;
+  for (std::size_t i = 0; i < lower_.size(); ++i)
+    friction_work -=
+        0.5 * dt * tributary_m_[i] * interface_.t_Pa[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
   works_.friction_work += friction_work;
   works_.contact_work += contact_work;
   for (const auto i : trigger_nodes_)

@@ -30,7 +30,7 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time);
 class Stepper {
  public:
   /// @throws UserError where the interface rows do not fit into the mesh.
-  Stepper(const mesh::Mesh& mesh, const solid::Material& material, const interface::FrictionLaw& law,
+  Stepper(const mesh::Mesh& mesh, const solid::Material& material, const interface::ContactModel& contact,
           const TimeStepping& time);
 
   double stable_step_s() const { return stable_step_s_; }
@@ -125,7 +125,7 @@ class Stepper {
 
   solid::Operator plate_;
   double damping_s_;
-  interface::FrictionLaw law_;
+  interface::ContactModel contact_;
   double stable_step_s_ = 0, step_s_ = 0;
   int substeps_;
   double node_updates_per_step_ = 0;

@@ -26,7 +26,7 @@ Interface one_node(double t_stop_Pa, double p_Pa) {
 TEST(Contact, FrictionStopsANodeWhereItCan) {
   for (const double sign : {1.0, -1.0}) {
     auto s = one_node(sign * 1.2e6, 1e6);
-    EXPECT_FALSE(update_contact(weakening, dt, s));
+    EXPECT_FALSE(update_contact({weakening}, dt, s));
     EXPECT_NEAR(s.p_Pa[0], 1e6, 1e-8);
     EXPECT_NEAR(s.t_Pa[0], sign * 1.2e6, 1e-8);
     EXPECT_NEAR(s.demand_Pa[0], 1.2e6, 1e-8);
@@ -40,7 +40,7 @@ TEST(Contact, FrictionStopsANodeWhereItCan) {
 TEST(Contact, ANodeBeyondItsStrengthSlipsAgainstTheTraction) {
   for (const double sign : {1.0, -1.0}) {
     auto s = one_node(sign * 1.5e6, 1e6);
-    EXPECT_TRUE(update_contact(weakening, dt, s));
+    EXPECT_TRUE(update_contact({weakening}, dt, s));
     // It was at rest, so its strength is the static one.
     EXPECT_NEAR(s.t_Pa[0], sign * 1.3e6, 1e-8);
     EXPECT_NEAR(s.demand_Pa[0], 1.5e6, 1e-8);
@@ -52,7 +52,7 @@ TEST(Contact, ANodeBeyondItsStrengthSlipsAgainstTheTraction) {
     const double rate = std::abs(s.slip_rate_m_per_s[0]);
     s.v_x_m_per_s[0] = sign * 1.4e6 / impedance;
     s.v_y_m_per_s[0] = -1e6 / impedance;
-    EXPECT_FALSE(update_contact(weakening, dt, s));
+    EXPECT_FALSE(update_contact({weakening}, dt, s));
     const double mu = 0.6 + 0.7 * std::exp(-rate * std::sqrt(7.0));
     EXPECT_LT(mu, 1.2);
     EXPECT_NEAR(s.t_Pa[0], sign * mu * 1e6, 1e-7);
@@ -62,34 +62,34 @@ TEST(Contact, ANodeBeyondItsStrengthSlipsAgainstTheTraction) {
 
 TEST(Contact, ASlippingNodeSticksAgainAndRegainsItsStrength) {
   auto s = one_node(1.5e6, 1e6);
-  EXPECT_TRUE(update_contact(weakening, dt, s));
+  EXPECT_TRUE(update_contact({weakening}, dt, s));
   // The weakened strength can stop it now.
   s.v_x_m_per_s[0] = 0.5e6 / impedance;
   s.v_y_m_per_s[0] = -1e6 / impedance;
-  EXPECT_TRUE(update_contact(weakening, dt, s));
+  EXPECT_TRUE(update_contact({weakening}, dt, s));
   EXPECT_EQ(s.slipping[0], 0);
   EXPECT_EQ(s.slip_rate_m_per_s[0], 0);
   EXPECT_NEAR(s.t_Pa[0], 0.5e6, 1e-8);
   // Above mu_k p and the strength at the old slip rate, but below mu_s p.
   s.v_x_m_per_s[0] = 1.29e6 / impedance;
   s.v_y_m_per_s[0] = -1e6 / impedance;
-  EXPECT_FALSE(update_contact(weakening, dt, s));
+  EXPECT_FALSE(update_contact({weakening}, dt, s));
   EXPECT_EQ(s.slipping[0], 0);
 }
 
 TEST(Contact, ASeparatingNodeIsReleased) {
   auto s = one_node(1.5e6, 1e6);
-  update_contact(weakening, dt, s);
+  update_contact({weakening}, dt, s);
   ASSERT_EQ(s.slipping[0], 1);
   s.v_x_m_per_s[0] = 0.3;
   s.v_y_m_per_s[0] = 0.1;
-  EXPECT_TRUE(update_contact(weakening, dt, s));  // it ceases to slip by leaving the plane
+  EXPECT_TRUE(update_contact({weakening}, dt, s));  // it ceases to slip by leaving the plane
   EXPECT_EQ(s.p_Pa[0], 0);
   EXPECT_EQ(s.t_Pa[0], 0);
   EXPECT_EQ(s.slipping[0], 0);
   EXPECT_EQ(s.v_x_m_per_s[0], 0.3);
   EXPECT_EQ(s.v_y_m_per_s[0], 0.1);
-  EXPECT_FALSE(update_contact(weakening, dt, s));
+  EXPECT_FALSE(update_contact({weakening}, dt, s));
 }
 
 TEST(Contact, AGapClosesExactlyAtTheStepsEnd) {
@@ -97,7 +97,7 @@ TEST(Contact, AGapClosesExactlyAtTheStepsEnd) {
   s.initial_gap_m[0] = 3e-7;
   s.u_y_m[0] = -2e-7;
   s.v_y_m_per_s[0] = -0.5;  // would go 0.4 um below the plane
-  update_contact(weakening, dt, s);
+  update_contact({weakening}, dt, s);
   EXPECT_NEAR(s.p_Pa[0], 0.4 * impedance, 1e-8);
   const double gap = s.initial_gap_m[0] + s.u_y_m[0] + dt * s.v_y_m_per_s[0];
   EXPECT_NEAR(gap, 0, 1e-22);  // rounding of 1e-7
@@ -105,7 +105,7 @@ TEST(Contact, AGapClosesExactlyAtTheStepsEnd) {
   // In contact at rest afterwards.
   s.u_y_m[0] += dt * s.v_y_m_per_s[0];
   s.v_y_m_per_s[0] = -0.01;
-  update_contact(weakening, dt, s);
+  update_contact({weakening}, dt, s);
   EXPECT_NEAR(s.p_Pa[0], 0.01 * impedance, 1e-8);
   EXPECT_NEAR(s.v_y_m_per_s[0], 0, 1e-15);
 }
@@ -115,7 +115,7 @@ TEST(Contact, AGapThatStaysOpenCarriesNothing) {
   s.initial_gap_m[0] = 3e-7;
   s.v_y_m_per_s[0] = -0.29;
   s.v_x_m_per_s[0] = 1;
-  EXPECT_FALSE(update_contact(weakening, dt, s));
+  EXPECT_FALSE(update_contact({weakening}, dt, s));
   EXPECT_EQ(s.p_Pa[0], 0);
   EXPECT_EQ(s.t_Pa[0], 0);
   EXPECT_EQ(s.v_y_m_per_s[0], -0.29);
@@ -127,10 +127,10 @@ TEST(Contact, AReturningNodeSlipsAtTheSpeedItHas) {
   auto s = one_node(0, 0);
   s.v_x_m_per_s[0] = 2;
   s.v_y_m_per_s[0] = 0.1;
-  update_contact(weakening, dt, s);  // in the air: moves at 2 m/s
+  update_contact({weakening}, dt, s);  // in the air: moves at 2 m/s
   s.u_y_m[0] += dt * s.v_y_m_per_s[0];
   s.v_y_m_per_s[0] = -1;
-  EXPECT_TRUE(update_contact(weakening, dt, s));
+  EXPECT_TRUE(update_contact({weakening}, dt, s));
   EXPECT_EQ(s.slipping[0], 1);
   EXPECT_NEAR(s.p_Pa[0], 0.9 * impedance, 1e-8);
   EXPECT_NEAR(s.t_Pa[0] / s.p_Pa[0], 0.6 + 0.7 * std::exp(-2 * std::sqrt(7.0)), 1e-12);
@@ -144,25 +144,25 @@ TEST(Contact, TellsWhetherAnyNodeChanged) {
     s.v_y_m_per_s[i] = -1e6 / impedance;
     s.v_x_m_per_s[i] = (i == 1 ? 0.5e6 : 1.5e6) / impedance;
   }
-  EXPECT_TRUE(update_contact(weakening, dt, s));
+  EXPECT_TRUE(update_contact({weakening}, dt, s));
   EXPECT_EQ(s.slipping, (std::vector<std::uint8_t>{1, 0, 1}));
   // One begins while another ceases.
   for (int i = 0; i < 3; ++i) {
     s.v_y_m_per_s[i] = -1e6 / impedance;
     s.v_x_m_per_s[i] = (i == 0 ? 0.1e6 : 2e6) / impedance;
   }
-  EXPECT_TRUE(update_contact(weakening, dt, s));
+  EXPECT_TRUE(update_contact({weakening}, dt, s));
   EXPECT_EQ(s.slipping, (std::vector<std::uint8_t>{0, 1, 1}));
 }
 
 TEST(Contact, CoulombsLawDoesNotWeaken) {
   auto s = one_node(0.5e6, 1e6);
-  update_contact(Coulomb{.mu = 0.4}, dt, s);
+  update_contact({Coulomb{.mu = 0.4}}, dt, s);
   EXPECT_EQ(s.slipping[0], 1);
   for (int k = 0; k < 2; ++k) {
     s.v_x_m_per_s[0] = 0.5e6 / impedance;
     s.v_y_m_per_s[0] = -1e6 / impedance;
-    update_contact(Coulomb{.mu = 0.4}, dt, s);
+    update_contact({Coulomb{.mu = 0.4}}, dt, s);
     EXPECT_NEAR(s.t_Pa[0], 0.4e6, 1e-8);
   }
 }
@@ -184,12 +184,12 @@ TEST(Contact, ObeysItsConditionsWhateverTheTrial) {
     s.slip_rate_m_per_s[i] = i % 3 == 0 ? 0 : random();
   }
   const Interface trial = s;
-  update_contact(weakening, dt, s);
+  update_contact({weakening}, dt, s);
   int n_stick = 0, n_slip = 0, n_open = 0;
   for (int i = 0; i < n; ++i) {
     const double scale = s.mass_per_length_kg_m2[i] / dt;  // Pa per m/s
     const double gap_rate = s.initial_gap_m[i] / dt + s.v_y_m_per_s[i];
-    const double mu = weakening.evaluator()(std::abs(trial.slip_rate_m_per_s[i]));
+    const double mu = weakening.evaluator()(std::abs(trial.slip_rate_m_per_s[i]), 0);
     ASSERT_GE(s.p_Pa[i], 0);
     ASSERT_GE(gap_rate, -1e-15);
     ASSERT_LE(s.p_Pa[i] * gap_rate, 1e-15 * scale * 2);

@@ -25,7 +25,8 @@ void for_each_law(F&& f) {
 TEST(Registry, HoldsTheLawsTheCaseFileNames) {
   std::set<std::string> names;
   for_each_law([&](const auto& law) { names.insert(law.name); });
-  EXPECT_EQ(names, (std::set<std::string>{"velocity_weakening", "coulomb"}));
+  EXPECT_EQ(names, (std::set<std::string>{"velocity_weakening", "coulomb", "slip_weakening",
+                                          "slip_weakening_healing"}));
   EXPECT_EQ(names.size(), std::variant_size_v<FrictionLaw>);
 }
 
@@ -34,14 +35,35 @@ TEST(Registry, EachLawIsUsableByDefault) {
     SCOPED_TRACE(law.name);
     EXPECT_STRNE(law.help, "");
     EXPECT_STREQ(law.inconsistency(), "");
-    // Strength before slip is the static one; speed never makes it stronger or negative.
+    // Strength before slip is the static one; speed and slip never make it stronger, or weaker than the
+    // kinetic one, which they reach.
     const auto mu = law.evaluator();
-    EXPECT_DOUBLE_EQ(mu(0), law.static_coefficient());
+    EXPECT_DOUBLE_EQ(mu(0, 0), law.static_coefficient());
+    EXPECT_DOUBLE_EQ(mu(1e6, 1e6), law.kinetic_coefficient());
     EXPECT_EQ(static_coefficient(FrictionLaw(law)), law.static_coefficient());
-    for (const double v : {1e-9, 1e-3, 1.0, 1e3}) {
-      EXPECT_GE(mu(v), 0);
-      EXPECT_LE(mu(v), mu(0));
-    }
+    EXPECT_EQ(kinetic_coefficient(FrictionLaw(law)), law.kinetic_coefficient());
+    for (const double v : {0.0, 1e-9, 1e-3, 1.0, 1e3})
+      for (const double slip : {0.0, 1e-9, 1e-6, 1e-3}) {
+        EXPECT_GE(mu(v, slip), law.kinetic_coefficient());
+        EXPECT_LE(mu(v, slip), mu(0, 0));
+        EXPECT_EQ(friction_coefficient(FrictionLaw(law), v, slip), mu(v, slip));
+        EXPECT_EQ(friction_slope_s_per_m(FrictionLaw(law), v, slip), mu.slope_s_per_m(v, slip));
+        if (law.memory == SlipMemory::none) {
+          EXPECT_EQ(mu(v, slip), mu(v, 0));
+        }
+      }
+  });
+}
+
+TEST(Registry, SlopesAreTheDerivativesWithTheSlipRate) {
+  // Central differences of step d: their error is d^2/6 times the third derivative, at most 1e-8 * 0.7
+  // * 2.65^3 / 6 = 2.2e-8 here.
+  const double d = 1e-4;
+  for_each_law([&](const auto& law) {
+    SCOPED_TRACE(law.name);
+    const auto mu = law.evaluator();
+    for (const double v : {0.01, 0.3, 2.0})
+      EXPECT_NEAR(mu.slope_s_per_m(v, 1e-6), (mu(v + d, 1e-6) - mu(v - d, 1e-6)) / (2 * d), 3e-8);
   });
 }
 
@@ -72,14 +94,14 @@ TEST(Registry, ParametersReachTheirMembers) {
 TEST(VelocityWeakening, FallsFromStaticToKinetic) {
   const VelocityWeakening law{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1};
   const auto mu = law.evaluator();
-  EXPECT_DOUBLE_EQ(mu(0), 1.3);
-  EXPECT_DOUBLE_EQ(mu(1e3), 0.6);
+  EXPECT_DOUBLE_EQ(mu(0, 0), 1.3);
+  EXPECT_DOUBLE_EQ(mu(1e3, 0), 0.6);
   // By hand: sqrt(0.7 / 0.1) = 2.6457513 s/m; at 0.1 m/s 0.6 + 0.7 exp(-0.26457513) = 1.1372724.
-  EXPECT_NEAR(mu(0.1), 1.1372724, 5e-7);
-  double last = mu(0);
+  EXPECT_NEAR(mu(0.1, 0), 1.1372724, 5e-7);
+  double last = mu(0, 0);
   for (int k = 1; k <= 100; ++k) {
-    EXPECT_LT(mu(0.02 * k), last);
-    last = mu(0.02 * k);
+    EXPECT_LT(mu(0.02 * k, 0), last);
+    last = mu(0.02 * k, 0);
   }
 }
 
@@ -87,13 +109,14 @@ TEST(VelocityWeakening, SlopeAtRestIsTheSteepest) {
   // mu'(0) = -(mu_s - mu_k)^(3/2) / sqrt(alpha)
   const VelocityWeakening law{.mu_s = 1.3, .mu_k = 1.0, .alpha_m2_per_s2 = 0.1};
   const auto mu = law.evaluator();
-  EXPECT_NEAR((mu(1e-6) - mu(0)) / 1e-6, -std::pow(0.3, 1.5) / std::sqrt(0.1), 1e-5);
+  EXPECT_DOUBLE_EQ(mu.slope_s_per_m(0, 0), -std::pow(0.3, 1.5) / std::sqrt(0.1));
+  EXPECT_NEAR((mu(1e-6, 0) - mu(0, 0)) / 1e-6, -std::pow(0.3, 1.5) / std::sqrt(0.1), 1e-5);
 }
 
 TEST(VelocityWeakening, EqualCoefficientsAreCoulombs) {
   const VelocityWeakening law{.mu_s = 0.7, .mu_k = 0.7, .alpha_m2_per_s2 = 0.1};
   EXPECT_STREQ(law.inconsistency(), "");
-  for (const double v : {0.0, 0.1, 10.0}) EXPECT_EQ(law.evaluator()(v), 0.7);
+  for (const double v : {0.0, 0.1, 10.0}) EXPECT_EQ(law.evaluator()(v, 0), 0.7);
 }
 
 TEST(VelocityWeakening, RefusesAKineticCoefficientAboveTheStaticOne) {
@@ -104,7 +127,18 @@ TEST(VelocityWeakening, RefusesAKineticCoefficientAboveTheStaticOne) {
 TEST(Coulomb, DoesNotKnowTheSpeed) {
   const Coulomb law{.mu = 0.4};
   EXPECT_EQ(law.static_coefficient(), 0.4);
-  for (const double v : {0.0, 1e-6, 1.0, 1e6}) EXPECT_EQ(law.evaluator()(v), 0.4);
+  for (const double v : {0.0, 1e-6, 1.0, 1e6}) EXPECT_EQ(law.evaluator()(v, 0), 0.4);
+}
+
+TEST(SlipWeakening, FallsLinearlyOverTheCriticalSlip) {
+  const SlipWeakening law{.mu_s = 0.75, .mu_k = 0.25, .d_c_m = 4e-6};
+  const auto mu = law.evaluator();
+  EXPECT_DOUBLE_EQ(mu(0, 0), 0.75);
+  EXPECT_DOUBLE_EQ(mu(7, 1e-6), 0.625);
+  EXPECT_DOUBLE_EQ(mu(0, 3e-6), 0.375);
+  EXPECT_DOUBLE_EQ(mu(0, 4e-6), 0.25);
+  EXPECT_EQ(mu(0, 1), 0.25);
+  EXPECT_STREQ(SlipWeakeningHealing({.mu_s = 0.7, .mu_k = 0.8}).inconsistency(), "mu_k must be at most mu_s");
 }
 
 }  // namespace

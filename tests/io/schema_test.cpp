@@ -43,6 +43,10 @@ auto members(const solve::Loading& l) {
   const auto& [a, b, c, d, e, f, g] = l;
   return std::tuple(a, b, c, d, e, f, g);
 }
+auto members(const interface::Regularisation& r) {
+  const auto& [a, b, c, d] = r;
+  return std::tuple(a, b, c, d);
+}
 auto members(const interface::Trigger& t) {
   const auto& [a, b, c, d] = t;
   return std::tuple(a, b, c, d);
@@ -72,13 +76,16 @@ std::vector<double> members(const interface::FrictionLaw& friction) {
 }
 
 void expect_equal(const Case& a, const Case& b) {
-  const auto& [title, plate, material, loading, friction, event, trigger, time, fronts, output] = b;
+  const auto& [title, plate, material, loading, friction, regularisation, contact, event, trigger, time,
+               fronts, output] = b;
   EXPECT_EQ(a.title, title);
   EXPECT_EQ(members(a.plate), members(plate));
   EXPECT_EQ(members(a.material), members(material));
   EXPECT_EQ(members(a.loading), members(loading));
   EXPECT_EQ(a.friction.index(), friction.index());
   EXPECT_EQ(members(a.friction), members(friction));
+  EXPECT_EQ(members(a.regularisation), members(regularisation));
+  EXPECT_EQ(a.contact, contact);
   EXPECT_EQ(a.event, event);
   EXPECT_EQ(members(a.trigger), members(trigger));
   EXPECT_EQ(members(a.time), members(time));
@@ -94,6 +101,8 @@ Case changed_case() {
   c.material = {1.0e9 / 3, -0.25, 1.1e3, solid::Plane::strain, 0};
   c.loading = {1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, 1e-5, 0, 1e-4};
   c.friction = interface::VelocityWeakening { 1.25, 0.75, 1.0 / 3 };
+  c.regularisation = {interface::Relaxed::strength, 1e-5 / 3, 0.25, 2e-6};
+  c.contact = interface::ContactAlgorithm::predictor_corrector;
   c.event = interface::EventKind::right;
   c.trigger = {7e-3, 2.5, 0, 3e-5};
   c.time = {1.5, true, 7, 11, 1e-4, std::numeric_limits<double>::infinity()};
@@ -152,6 +161,12 @@ law = "velocity_weakening"
 mu_s = 0.9
 mu_k = 0.5
 alpha_m2_per_s2 = 0.2
+regularisation = "pressure"
+relaxation_length_m = 2e-5
+relaxation_slip_rate_m_per_s = 0.5
+relaxation_time_s = inf
+[contact]
+algorithm = "predictor_corrector"
 [event]
 kind = "left"
 trigger_zone_m = 0.03
@@ -183,6 +198,9 @@ snapshot_times_s = [1e-5, 2e-5]
   expected.material = {1e9, 0.25, 1000, solid::Plane::strain, 2e-7};
   expected.loading = {1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, 1e-5, 0.02, 0.01};
   expected.friction = interface::VelocityWeakening { 0.9, 0.5, 0.2 };
+  expected.regularisation = {interface::Relaxed::pressure, 2e-5, 0.5,
+                             std::numeric_limits<double>::infinity()};
+  expected.contact = interface::ContactAlgorithm::predictor_corrector;
   expected.event = interface::EventKind::left;
   expected.trigger = {0.03, 4, 6e-6, std::numeric_limits<double>::infinity()};
   expected.time = {0.5, true, 3, 9, 1e-4, 2e-5};
@@ -260,7 +278,10 @@ TEST(Schema, AKeyInTheWrongTableIsAnsweredWithTheRightOne) {
 TEST(Schema, UnknownTables) {
   EXPECT_EQ(parse_error("[plat]\nwidth_m = 1"), "c.toml:1: unknown table [plat]; did you mean [plate]?");
   EXPECT_EQ(parse_error("title = \"\"\n[contacts]"),
-            "c.toml:2: unknown table [contacts]; tables are plate, material, loading, friction, event, time, "
+            "c.toml:2: unknown table [contacts]; did you mean [contact]?");
+  EXPECT_EQ(parse_error("title = \"\"\n[boundaries]"),
+            "c.toml:2: unknown table [boundaries]; tables are plate, material, loading, friction, contact, "
+            "event, time, "
             "fronts, "
             "output");
   EXPECT_THAT(parse_error("[plate.inner]\nwidth_m = 1"), StartsWith("c.toml:1: unknown table [plate.inner]"));
@@ -342,7 +363,8 @@ TEST(Schema, OnlyOpenEndedTimesMayBeInfinite) {
   for (const Entry& entry : entries_of(Case{}))
     if (entry.kind == Kind::number && parse_error(entry.key + " = inf") == "(nothing thrown)")
       infinite.push_back(entry.key);
-  EXPECT_THAT(infinite, ::testing::ElementsAre("event.trigger_duration_s", "time.quiet_s"));
+  EXPECT_THAT(infinite, ::testing::ElementsAre("friction.relaxation_length_m", "friction.relaxation_time_s",
+                                               "event.trigger_duration_s", "time.quiet_s"));
 }
 
 TEST(Schema, RelationsBetweenKeys) {
@@ -363,6 +385,22 @@ TEST(Schema, RelationsBetweenKeys) {
   EXPECT_EQ(
       parse_error("[output]\nsnapshot_times_s = [0, 2e-5, 2e-5]"),
       "c.toml:2: output.snapshot_times_s has 2e-05 s before 2e-05 s; write the times in ascending order");
+}
+
+TEST(Schema, ARegularisationNeedsItsScale) {
+  EXPECT_EQ(parse_error("[friction]\nregularisation = \"strength\""),
+            "c.toml:2: friction.regularisation needs a finite friction.relaxation_length_m or "
+            "relaxation_time_s; set one");
+  for (const std::string scale : {"relaxation_length_m = 1e-5", "relaxation_time_s = 1e-6"})
+    EXPECT_EQ(
+        parse_case("[friction]\nregularisation = \"strength\"\n" + scale, "c.toml").regularisation.relaxed,
+        interface::Relaxed::strength);
+  EXPECT_EQ(parse_error("[friction]\nregularisation = \"pressure\"\nrelaxation_time_s = 1e-6\n"
+                        "relaxation_slip_rate_m_per_s = 0.1"),
+            "c.toml:4: friction.relaxation_slip_rate_m_per_s does nothing without a finite "
+            "friction.relaxation_length_m; set that, or remove it");
+  // Without a regularisation its scale may stay in the file, for comparisons by overrides.
+  EXPECT_EQ(parse_case("[friction]\nrelaxation_length_m = 1e-5", "c.toml").regularisation.length_m, 1e-5);
 }
 
 TEST(Schema, SyntaxErrorsHaveTheirLine) {

@@ -38,7 +38,7 @@ class Books : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {
   };
 
   Balance run(const solid::Material& material, double shear_ratio, double top_speed, bool triggered,
-              int steps, const interface::FrictionLaw& law) const {
+              int steps, const interface::ContactModel& law) const {
     const auto mesh = support::tiny_plate(corner());
     const Loading loading{.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3};
     const Statics statics(mesh, material, loading, mu_s);
@@ -122,7 +122,7 @@ TEST_P(Books, CloseWhenThePlateHitsThePlane) {
 }
 
 TEST_P(Books, CloseWithoutFrictionAndDamping) {
-  const auto b = run({.stiffness_damping_s = 0}, 0.3, 0, false, 400, interface::Coulomb{0});
+  const auto b = run({.stiffness_damping_s = 0}, 0.3, 0, false, 400, {interface::Coulomb{0}});
   EXPECT_EQ(b.last.damping_work, 0);
   EXPECT_EQ(b.last.friction_work, 0);
   EXPECT_GT(b.last.kinetic, 1e-3 * b.last.strain);  // the interface lets go at once

@@ -254,7 +254,7 @@ TEST(Ramp, ReachesTheStaticStates) {
   const auto tilted = statics.shear_by(0);
   TimeStepping time;
   time.interface_substeps = 1;
-  Stepper stepper(mesh, material, interface::Coulomb{.mu = mu_s}, time);
+  Stepper stepper(mesh, material, {interface::Coulomb{.mu = mu_s}}, time);
   const double c_L = solid::longitudinal_speed_m_per_s(material), speed = 1e-5 * c_L;
   const auto always = [](auto, auto) { return true; };
   const Ramp ramp = run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m, always);

@@ -26,6 +26,7 @@ interface::Interface unchanged() {
   s.t_Pa.assign(n_nodes, 1.0);
   s.p_Pa.assign(n_nodes, 4.0);
   s.demand_Pa.assign(n_nodes, 1.0);
+  s.strength_Pa.assign(n_nodes, mu_s * 4.0);
   return s;
 }
 
@@ -33,6 +34,7 @@ void set(interface::Interface& s, std::size_t node, double demand, double t, dou
   s.demand_Pa[node] = demand;
   s.t_Pa[node] = t;
   s.p_Pa[node] = p;
+  s.strength_Pa[node] = mu_s * p;
   s.slipping[node] = slips;
 }
 
@@ -165,6 +167,23 @@ TEST(Recorder, CreepIsNoMotion) {
   s.slip_rate_m_per_s[1] = 0.011;
   recorder.observe(3, s, false);
   EXPECT_EQ(recorder.last_motion_s(), 3);
+}
+
+TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
+  // A strength that is not mu_s p: relaxed, or of a weakened node. It falls from 2 Pa to 1.6 Pa while the
+  // demand rises from 1.6 Pa to 1.92 Pa: the ratio from 0.8 to 1.2, through 1 after half of the step.
+  Recorder recorder(at_rest(), mu_s, 0);
+  auto s = unchanged();
+  s.t_Pa[2] = 1.6;
+  recorder.observe(0, s, false);
+  set(s, 2, 1.92, 1.6, 4, true);
+  s.strength_Pa[2] = 1.6;
+  recorder.observe(1, s, true);
+  const auto record = recorder.take(1);
+  ASSERT_EQ(record.onsets.size(), 1);
+  EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 0.5);
+  EXPECT_DOUBLE_EQ(record.around_onset(0)[0].t_Pa, 1.8);
+  EXPECT_DOUBLE_EQ(record.around_onset(0)[0].p_Pa, 4);
 }
 
 TEST(Recorder, TimesAscend) {

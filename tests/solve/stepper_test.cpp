@@ -324,7 +324,7 @@ class PlainScheme {
 
  private:
   void touch(double dt, double now) {
-    const auto mu = gentle_law.evaluator();
+    const auto mu = std::get<interface::VelocityWeakening>(gentle_law.law).evaluator();
     for (std::size_t i = 0; i < mesh_.lower.size(); ++i) {
       const auto n = mesh_.lower[i];
       const double m = mass_[n], B = tributary_[i];
@@ -332,7 +332,7 @@ class PlainScheme {
       const double gap = mesh_.y_m[n] + u(2 * n + 1);
       const double p = std::max(0.0, -(y + gap / dt) * m / (dt * B));
       double t = x * m / (dt * B);
-      const double strength = mu(std::abs(slip_rate[i])) * p;
+      const double strength = mu(std::abs(slip_rate[i]), 0) * p;
       const bool sticks = std::abs(t) <= strength;
       if (!sticks) t = std::copysign(strength, t);
       v(2 * n) = sticks ? 0 : x - dt * B * t / m;

@@ -107,10 +107,18 @@ inline TimeStepping one_substep(double step_factor = 0.9) {
   return time;
 }
 
-inline const interface::VelocityWeakening paper_law { .mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1 };
+inline const interface::ContactModel paper_law {
+  interface::VelocityWeakening {
+    .mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1
+  }
+};
 
 /// Weakens with the slip rate, but so slowly that rounding is not amplified: the paper's law lets differences
 /// between two runs grow tenfold a step.
-inline const interface::VelocityWeakening gentle_law { .mu_s = 1.3, .mu_k = 1.0, .alpha_m2_per_s2 = 100 };
+inline const interface::ContactModel gentle_law {
+  interface::VelocityWeakening {
+    .mu_s = 1.3, .mu_k = 1.0, .alpha_m2_per_s2 = 100
+  }
+};
 
 }  // namespace slipfront::solve::support

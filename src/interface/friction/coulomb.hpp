@@ -11,6 +11,7 @@ namespace slipfront::interface {
 struct Coulomb {
   static constexpr const char* name = "coulomb";
   static constexpr const char* help = "one coefficient, at rest and in motion";
+  static constexpr SlipMemory memory = SlipMemory::none;
 
   double mu = 1.3;
 
@@ -21,10 +22,13 @@ struct Coulomb {
   const char* inconsistency() const { return ""; }
 
   double static_coefficient() const { return mu; }
+  double kinetic_coefficient() const { return mu; }
 
   struct Evaluator {
     double mu;
-    double operator()(double /*speed_m_per_s*/) const { return mu; }
+    double operator()(double /*speed_m_per_s*/, double /*slip_m*/) const { return mu; }
+    /// d mu / d|v|
+    double slope_s_per_m(double /*speed_m_per_s*/, double /*slip_m*/) const { return 0; }
   };
   Evaluator evaluator() const { return {mu}; }
 };

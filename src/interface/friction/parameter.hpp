@@ -13,4 +13,11 @@ struct Parameter {
   const char* help;
 };
 
+/// What a friction law knows of the slip so far.
+enum class SlipMemory {
+  none,         ///< nothing: the coefficient depends on the slip rate alone
+  lasting,      ///< the whole slip path
+  until_stick,  ///< the slip path since the node last stuck
+};
+
 }  // namespace slipfront::interface

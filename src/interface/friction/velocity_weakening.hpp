@@ -13,6 +13,7 @@ struct VelocityWeakening {
   static constexpr const char* name = "velocity_weakening";
   static constexpr const char* help =
       "falls from mu_s at rest to mu_k at speed, over about sqrt(alpha / (mu_s - mu_k))";
+  static constexpr SlipMemory memory = SlipMemory::none;
 
   double mu_s = 1.3;
   double mu_k = 0.6;
@@ -29,12 +30,17 @@ struct VelocityWeakening {
   const char* inconsistency() const { return mu_k > mu_s ? "mu_k must be at most mu_s" : ""; }
 
   double static_coefficient() const { return mu_s; }
+  double kinetic_coefficient() const { return mu_k; }
 
   /// The law with its constants folded, for the loop over nodes.
   struct Evaluator {
     double kinetic, drop, rate_s_per_m;
-    double operator()(double speed_m_per_s) const {
+    double operator()(double speed_m_per_s, double /*slip_m*/) const {
       return kinetic + drop * std::exp(-speed_m_per_s * rate_s_per_m);
+    }
+    /// d mu / d|v|
+    double slope_s_per_m(double speed_m_per_s, double /*slip_m*/) const {
+      return -drop * rate_s_per_m * std::exp(-speed_m_per_s * rate_s_per_m);
     }
   };
   Evaluator evaluator() const { return {mu_k, mu_s - mu_k, std::sqrt((mu_s - mu_k) / alpha_m2_per_s2)}; }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "interface/friction/parameter.hpp"
+
+namespace slipfront::interface {
+
+/// mu = mu_k + (mu_s - mu_k) max(0, 1 - slip/d_c): linear slip weakening (Ida 1972, Andrews 1976). The slip
+/// path counts for good, or, with healing, anew from each sticking.
+template <SlipMemory slip_memory>
+struct LinearSlipWeakening {
+  static constexpr bool heals = slip_memory == SlipMemory::until_stick;
+  static constexpr const char* name = heals ? "slip_weakening_healing" : "slip_weakening";
+  static constexpr const char* help = heals ? "falls linearly from mu_s to mu_k over the slip d_c since the "
+                                              "node last stuck"
+                                            : "falls linearly from mu_s to mu_k over the slip d_c, for good";
+  static constexpr SlipMemory memory = slip_memory;
+
+  double mu_s = 0.6;
+  double mu_k = 0.3;
+  double d_c_m = 4e-6;
+
+  static constexpr std::array<Parameter<LinearSlipWeakening>, 3> parameters() {
+    using L = LinearSlipWeakening;
+    return {{{"mu_s", &L::mu_s, 0, 100, "friction coefficient before slip"},
+             {"mu_k", &L::mu_k, 0, 100, "friction coefficient after the slip d_c, at most mu_s"},
+             {"d_c_m", &L::d_c_m, 1e-15, 1e3, "slip over which friction weakens"}}};
+  }
+  /// Empty, or what is wrong with the parameters together.
+  const char* inconsistency() const { return mu_k > mu_s ? "mu_k must be at most mu_s" : ""; }
+
+  double static_coefficient() const { return mu_s; }
+  double kinetic_coefficient() const { return mu_k; }
+
+  struct Evaluator {
+    double kinetic, drop, per_slip_per_m;
+    double operator()(double /*speed_m_per_s*/, double slip_m) const {
+      return kinetic + drop * std::max(0.0, 1 - slip_m * per_slip_per_m);
+    }
+    double slope_s_per_m(double /*speed_m_per_s*/, double /*slip_m*/) const { return 0; }
+  };
+  Evaluator evaluator() const { return {mu_k, mu_s - mu_k, 1 / d_c_m}; }
+};
+
+using SlipWeakening = LinearSlipWeakening<SlipMemory::lasting>;
+using SlipWeakeningHealing = LinearSlipWeakening<SlipMemory::until_stick>;
+
+}  // namespace slipfront::interface

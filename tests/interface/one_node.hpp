@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "interface/interface.hpp"
+
+namespace slipfront::interface::test {
+
+inline constexpr double dt = 1e-6;
+inline constexpr double mass = 0.4;             // kg/m2
+inline constexpr double impedance = mass / dt;  // Pa s/m
+
+/// Trial motion that presses the node with p and drags it with t_stop.
+inline void pull(Interface& s, double t_stop_Pa, double p_Pa) {
+  s.v_x_m_per_s[0] = t_stop_Pa / impedance;
+  s.v_y_m_per_s[0] = -p_Pa / impedance;
+}
+
+/// One node at rest on the plane under p.
+inline Interface resting_node(const ContactModel& model, double p_Pa) {
+  Interface s(1);
+  s.mass_per_length_kg_m2[0] = mass;
+  s.p_Pa[0] = p_Pa;
+  start_contact(model, s);
+  return s;
+}
+
+}  // namespace slipfront::interface::test
