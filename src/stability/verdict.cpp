@@ -57,6 +57,12 @@ std::string statement_of(const WellPosedness& w) {
     return fmt::format("ill-posed: shorter waves grow faster without bound ({}); the mesh decides",
                        drops ? "weakening beyond radiation damping" : "friction coupled to pressure");
   if (w.fastest_growth_per_s == 0) return "well-posed: no wave grows on a half-space";
+  if (w.growth_in_crossing > 1)
+    return fmt::format(
+        "bounded, not resolved: {} grow e-fold in {:.2g} s, while waves cross an element in {:.2g} s; the "
+        "mesh decides",
+        drops ? "waves of all lengths" : "the fastest waves", 1 / w.fastest_growth_per_s,
+        w.growth_in_crossing / w.fastest_growth_per_s);
   if (w.fastest_wavelength_m == 0)
     return "bounded: growth levels off at ever shorter waves; the mesh decides which of them is seen";
   if (w.fastest_wavelength_m < w.grid_wavelength_m)
@@ -108,6 +114,8 @@ WellPosedness well_posedness(const solid::Material& material, const interface::F
     w.fastest_growth_per_s = peak.growth_per_s;
     if (peak.growth_per_s > 0 && !peak.at_short_end) w.fastest_wavelength_m = 2 * pi / peak.wavenumber_per_m;
   }
+  w.growth_in_crossing =
+      w.fastest_growth_per_s * element_size_m / solid::longitudinal_speed_m_per_s(material);
   w.damping_length_m = material.stiffness_damping_s * solid::longitudinal_speed_m_per_s(material);
   w.damping_length_over_h = w.damping_length_m / element_size_m;
   w.statement = statement_of(w);

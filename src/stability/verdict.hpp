@@ -14,12 +14,13 @@ struct WellPosedness {
   double grid_wavelength_m = 0;         ///< 2 h, the shortest that the mesh carries
   double growth_at_grid_per_s = 0;      ///< of the fastest mode there, 0 where none grows
   bool unbounded = false;               ///< growth has no bound as the wavelength goes to zero: ill-posed
-  double weakening_over_radiation = 0;  ///< -mu'(0) p c_S/G; above 1 strength falls faster than waves allow
+  double weakening_over_radiation = 0;  ///< -mu'(0) p c_S/G; above 1 strength drops at once on slip
   /// Fastest growth among all waves up to the longest; infinite where unbounded, 0 where none grows.
   double fastest_growth_per_s = 0;
   /// Its wavelength; 0 where growth rises to the end of the search, at ever shorter waves.
   double fastest_wavelength_m = 0;
   double longest_wavelength_m = 0;  ///< of the search
+  double growth_in_crossing = 0;    ///< fastest growth times h/c_L: above 1 no step follows it
   double damping_length_m = 0;      ///< beta_R c_L: much shorter waves are overdamped
   double damping_length_over_h = 0;
   std::string statement;  ///< one plain line

@@ -96,6 +96,19 @@ TEST(WellPosedness, DampingGivesTheFastestWaveALength) {
   EXPECT_DOUBLE_EQ(w.damping_length_over_h, w.damping_length_m / h);
 }
 
+TEST(WellPosedness, DampingAloneDoesNotResolveStrongWeakening) {
+  solid::Material m;
+  const auto w = well_posedness(m, VelocityWeakening{}, 4.3e6, h, width);
+  EXPECT_FALSE(w.unbounded);
+  // Motion uniform in x: beta s = |m|^2 - 1; waves as long as the plate are close to it.
+  const double uniform =
+      (w.weakening_over_radiation * w.weakening_over_radiation - 1) / m.stiffness_damping_s;
+  EXPECT_NEAR(w.fastest_growth_per_s, uniform, 1e-3 * uniform);
+  EXPECT_DOUBLE_EQ(w.growth_in_crossing, w.fastest_growth_per_s * h / solid::longitudinal_speed_m_per_s(m));
+  EXPECT_GT(w.growth_in_crossing, 1);
+  EXPECT_THAT(w.statement, StartsWith("bounded, not resolved"));
+}
+
 TEST(WellPosedness, DelayOfTheStrengthBoundsGrowth) {
   const Regularisation delay{.relaxed = Relaxed::strength, .time_s = 2e-6};
   const auto w = well_posedness(undamped(), VelocityWeakening{}, 4.3e6, h, width, delay);
