@@ -64,7 +64,7 @@ std::string statement_of(const WellPosedness& w) {
         drops ? "waves of all lengths" : "the fastest waves", 1 / w.fastest_growth_per_s,
         w.growth_in_crossing / w.fastest_growth_per_s);
   if (w.fastest_wavelength_m == 0)
-    return "bounded: growth levels off at ever shorter waves; the mesh decides which of them is seen";
+    return "bounded: growth still rises at ever shorter waves; the mesh decides which of them is seen";
   if (w.fastest_wavelength_m < w.grid_wavelength_m)
     return fmt::format("bounded, not resolved: waves of {:.3g} m grow fastest, the mesh carries {:.3g} m",
                        w.fastest_wavelength_m, w.grid_wavelength_m);
