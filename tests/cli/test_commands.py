@@ -150,7 +150,6 @@ def test_info_follows_overrides(program, coarse):
 def test_info_tells_whether_sliding_is_well_posed(program, coarse):
     def verdict(mu, damping_s):
         law = ["--set", "friction.law=coulomb", "--set", f"friction.mu={mu}"]
-        # The folder's case sets keys of another law: start from the default case.
         result = program("info", coarse, *law, "--set", f"material.stiffness_damping_s={damping_s}")
         assert (result.returncode, result.stderr) == (0, "")
         return re.search(r"^uniform sliding +(.+)$", result.stdout, re.MULTILINE)[1]
