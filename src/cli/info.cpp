@@ -10,6 +10,13 @@
 namespace slipfront::cli {
 namespace {
 
+std::string fastest_wavelength(const stability::WellPosedness& w) {
+  if (w.fastest_wavelength_m == 0) return "ever shorter waves";
+  const bool longest = w.fastest_wavelength_m > 0.999 * w.longest_wavelength_m;
+  return fmt::format("a wavelength of {:.3g} m{}", w.fastest_wavelength_m,
+                     longest ? ", the longest on the interface" : "");
+}
+
 void print_info(const CaseArguments& arguments) {
   const io::Case config = arguments.read();
   run::Info info;
@@ -35,13 +42,24 @@ void print_info(const CaseArguments& arguments) {
   line("node updates",
        fmt::format("{:.4g} at {:.3g} million/s here", info.node_updates, info.node_updates_per_s * 1e-6));
   line("expected time", fmt::format("{:.2g} s", info.expected_s));
+  const auto& w = info.well_posedness;
+  line("nominal pressure", fmt::format("{:.4g} Pa", w.sliding.pressure_Pa));
+  line("weakening / radiation damping", fmt::format("{:.3g}", w.weakening_over_radiation));
+  line("growth at two elements",
+       fmt::format("{:.3g} /s at a wavelength of {:.3g} m", w.growth_at_grid_per_s, w.grid_wavelength_m));
+  if (w.fastest_growth_per_s > 0 && !w.unbounded)
+    line("fastest growth", fmt::format("{:.3g} /s at {}", w.fastest_growth_per_s, fastest_wavelength(w)));
+  line("damping length beta_R c_L",
+       fmt::format("{:.3g} m, {:.3g} elements", w.damping_length_m, w.damping_length_over_h));
+  line("uniform sliding", w.statement);
 }
 
 }  // namespace
 
 void add_info(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "info", "Print what follows from a case: wave speeds, step, size, memory, expected time");
+      "info",
+      "Print what follows from a case: wave speeds, step, size, memory, expected time, stability of sliding");
   const auto arguments = add_case_arguments(*command);
   command->callback([arguments] { print_info(*arguments); });
 }

@@ -208,6 +208,12 @@ Info info(const io::Case& config) {
   // The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
   const double statics_s = 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
   info.expected_s = info.node_updates / info.node_updates_per_s + statics_s;
+
+  const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
+  info.well_posedness = stability::well_posedness(
+      config.material, config.friction,
+      stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m),
+      config.plate.element_size_m, config.plate.width_m);
   return info;
 }
 

@@ -12,6 +12,7 @@
 #include "mesh/mesh.hpp"
 #include "solve/event.hpp"
 #include "solve/statics.hpp"
+#include "stability/verdict.hpp"
 
 namespace slipfront::run {
 
@@ -74,12 +75,13 @@ struct Info {
   WaveSpeeds speeds;
   std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0, n_irregular = 0;
   double stable_step_s = 0, step_s = 0, substep_s = 0;
-  std::int64_t n_steps = 0;       ///< to time.end_s
-  double node_updates = 0;        ///< of the event
-  double memory_bytes = 0;        ///< the largest of statics and event
-  double factor_bytes = 0;        ///< of the static factorisation, estimated
-  double expected_s = 0;          ///< at the kernel rate measured on the spot, statics estimated
-  double node_updates_per_s = 0;  ///< measured on the spot
+  std::int64_t n_steps = 0;                 ///< to time.end_s
+  double node_updates = 0;                  ///< of the event
+  double memory_bytes = 0;                  ///< the largest of statics and event
+  double factor_bytes = 0;                  ///< of the static factorisation, estimated
+  double expected_s = 0;                    ///< at the kernel rate measured on the spot, statics estimated
+  double node_updates_per_s = 0;            ///< measured on the spot
+  stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure
 };
 Info info(const io::Case& config);
 

@@ -130,6 +130,9 @@ def test_info_tells_what_follows(program, case):
         "memory",
         "node updates",
         "expected time",
+        "nominal pressure",
+        "growth at two elements",
+        "damping length beta_R c_L",
     ):
         assert re.search(rf"^{line} +[0-9]", result.stdout, re.MULTILINE), line
 
@@ -142,6 +145,26 @@ def test_info_follows_overrides(program, coarse):
     nu = 0.37
     assert abs(c_L[1] - (2.6e9 * (1 - nu) / (1200 * (1 + nu) * (1 - 2 * nu))) ** 0.5) <= 0.05 + 1e-9
     assert c_L[1] > c_L[0]
+
+
+def test_info_tells_whether_sliding_is_well_posed(program, coarse):
+    def verdict(mu, damping_s):
+        law = ["--set", "friction.law=coulomb", "--set", f"friction.mu={mu}"]
+        result = program("info", coarse, *law, "--set", f"material.stiffness_damping_s={damping_s}")
+        assert (result.returncode, result.stderr) == (0, "")
+        return re.search(r"^uniform sliding +(.+)$", result.stdout, re.MULTILINE)[1]
+
+    # On a rigid plane waves grow from mu = 1 on, and damping bounds their growth.
+    assert verdict(0.9, 0).startswith("well-posed")
+    assert verdict(1.3, 0).startswith("ill-posed")
+    assert verdict(1.3, 1e-6).startswith("well-posed")
+
+
+def test_nominal_pressure_is_that_of_a_free_column(program, coarse):
+    tilt = ["--set", "loading.tilt_left_m=3e-4", "--set", "loading.tilt_right_m=1e-4"]
+    text = program("info", coarse, *tilt).stdout
+    # E times the mean of the two over the height of 0.1 m.
+    assert float(re.search(r"nominal pressure +(\S+) Pa", text)[1]) == pytest.approx(2.6e9 * 2e-4 / 0.1)
 
 
 def test_info_agrees_with_the_run(program, coarse, tmp_path):

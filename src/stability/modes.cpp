@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stability/modes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <variant>
+
+#include "base/error.hpp"
+
+namespace slipfront::stability {
+namespace {
+
+constexpr Complex i_unit{0, 1};
+
+/// What both relations share, in units of k and c_S.
+struct Scaled {
+  double eta2;               ///< (c_L/c_S)^2
+  Complex damped;            ///< complex over elastic moduli, 1 + beta_R s
+  Complex P2;                ///< p^2 over damped: the waves see complex moduli
+  Complex a_d, a_s;          ///< decay rates in y, over k
+  Complex delayed_p;         ///< response of strength to pressure, over f
+  Complex strength_of_slip;  ///< response of strength to u_x at constant pressure, over G k
+};
+
+Scaled scaled(const solid::Material& material, const Sliding& sliding, double k, Complex p) {
+  const double G = solid::shear_modulus_Pa(material);
+  const double c_S = solid::shear_speed_m_per_s(material);
+  const Complex s = p * k * c_S;
+  Scaled r;
+  r.eta2 = solid::longitudinal_modulus_Pa(material) / G;
+  r.damped = 1.0 + material.stiffness_damping_s * s;
+  r.P2 = p * p / r.damped;
+  r.a_d = std::sqrt(1.0 + r.P2 / r.eta2);
+  r.a_s = std::sqrt(1.0 + r.P2);
+  const Complex delay = sliding.relaxed == interface::Relaxed::none
+                            ? Complex{1}
+                            : sliding.relaxation_rate_per_s / (sliding.relaxation_rate_per_s + s);
+  r.delayed_p = delay;
+  r.strength_of_slip = sliding.pressure_Pa * (sliding.slope_s_per_m * s + sliding.slip_slope_per_m) / (G * k);
+  if (sliding.relaxed == interface::Relaxed::strength) r.strength_of_slip *= delay;
+  return r;
+}
+
+Complex determinant(std::array<std::array<Complex, 4>, 4> m) {
+  Complex product = 1;
+  for (std::size_t c = 0; c < 4; ++c) {
+    std::size_t pivot = c;
+    for (std::size_t r = c + 1; r < 4; ++r)
+      if (std::abs(m[r][c]) > std::abs(m[pivot][c])) pivot = r;
+    if (m[pivot][c] == Complex{0}) return 0;
+    if (pivot != c) {
+      std::swap(m[pivot], m[c]);
+      product = -product;
+    }
+    product *= m[c][c];
+    for (std::size_t r = c + 1; r < 4; ++r) {
+      const Complex share = m[r][c] / m[c][c];
+      for (std::size_t j = c; j < 4; ++j) m[r][j] -= share * m[c][j];
+    }
+  }
+  return product;
+}
+
+std::vector<Mode> modes_of(const std::vector<Complex>& zeros, double rate_per_s) {
+  std::vector<Mode> modes;
+  for (const Complex p : zeros) modes.push_back({p * rate_per_s});
+  return modes;
+}
+
+}  // namespace
+
+double coefficient_slope_s_per_m(const interface::FrictionLaw& law, double speed_m_per_s) {
+  const auto slope_of = [speed_m_per_s](const auto& mu) {
+    const double mu_here = mu(speed_m_per_s);
+    // Forward differences over steps halved from 1 m/s, each row extrapolated (Neville) through the five
+    // before it; the estimate that changes least between orders is taken. The law's own scale need not be
+    // known.
+    constexpr int n_orders = 6;
+    std::array<double, n_orders> previous{}, row{};
+    double best = 0;
+    double best_change = std::numeric_limits<double>::infinity();
+    double step = 1;
+    for (int j = 0; j < 40; ++j, step *= 0.5) {
+      row[0] = (mu(speed_m_per_s + step) - mu_here) / step;
+      double factor = 2;
+      for (int order = 1; order <= std::min(j, n_orders - 1); ++order, factor *= 2) {
+        const auto o = static_cast<std::size_t>(order);
+        row[o] = row[o - 1] + (row[o - 1] - previous[o - 1]) / (factor - 1);
+        // Far above the law's scale the differences shrink like 1/step and mimic convergence to zero: a
+        // change counts relative to the slope itself. Rounding of mu is the other part of the error.
+        const double change = std::max(std::abs(row[o] - row[o - 1]), std::abs(row[o] - previous[o - 1])) +
+                              2 * std::numeric_limits<double>::epsilon() * std::abs(mu_here) / step;
+        const double relative = row[o] == 0 ? 1 : change / std::abs(row[o]);
+        if (relative < best_change) {
+          best_change = relative;
+          best = row[o];
+        }
+      }
+      previous = row;
+    }
+    return best;
+  };
+  return std::visit([&](const auto& l) { return slope_of(l.evaluator()); }, law);
+}
+
+Sliding uniform_sliding(const interface::FrictionLaw& law, double speed_m_per_s, double pressure_Pa,
+                        const interface::Regularisation& regularisation) {
+  Sliding s;
+  s.mu = std::visit([&](const auto& l) { return l.evaluator()(speed_m_per_s); }, law);
+  s.slope_s_per_m = coefficient_slope_s_per_m(law, speed_m_per_s);
+  s.pressure_Pa = pressure_Pa;
+  s.relaxed = regularisation.relaxed;
+  s.relaxation_rate_per_s = interface::relaxation_rate_per_s(regularisation, speed_m_per_s);
+  return s;
+}
+
+Complex half_space_relation(const solid::Material& material, const Sliding& sliding, double wavenumber_per_m,
+                            Complex p) {
+  const Scaled r = scaled(material, sliding, wavenumber_per_m, p);
+  // (1 - a_d a_s)/P^2, written so that nothing cancels at small P.
+  const Complex d = -(1 + 1 / r.eta2 + r.P2 / r.eta2) / (1.0 + r.a_d * r.a_s);
+  return r.damped * (r.a_d - i_unit * sliding.mu * r.delayed_p * (1.0 + 2.0 * d)) - r.strength_of_slip * d;
+}
+
+Complex layer_relation(const solid::Material& material, const Sliding& sliding, double wavenumber_per_m,
+                       double height_m, Complex p) {
+  const Scaled r = scaled(material, sliding, wavenumber_per_m, p);
+  const double height = wavenumber_per_m * height_m;
+  const Complex fall_d = std::exp(-r.a_d * height);
+  const Complex fall_s = std::exp(-r.a_s * height);
+  // Columns: the two potentials, falling from the interface and from the top. Rows: u_x and u_y at the top,
+  // u_y at the interface, friction.
+  std::array<std::array<Complex, 4>, 4> m;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const bool dilatation = c < 2;
+    const double sign = c % 2 == 0 ? -1 : 1;
+    const Complex a = sign * (dilatation ? r.a_d : r.a_s);
+    const Complex fall = dilatation ? fall_d : fall_s;
+    const Complex below = sign < 0 ? 1.0 : fall;
+    const Complex above = sign < 0 ? fall : 1.0;
+    const Complex u_x = dilatation ? i_unit : a;
+    const Complex u_y = dilatation ? a : -i_unit;
+    const Complex t = dilatation ? 2.0 * i_unit * a : r.P2 + 2.0;
+    const Complex pressure = dilatation ? -(r.P2 + 2.0) : 2.0 * i_unit * a;
+    const Complex friction = r.damped * (t - sliding.mu * r.delayed_p * pressure) - r.strength_of_slip * u_x;
+    m[0][c] = u_x * above;
+    m[1][c] = u_y * above;
+    m[2][c] = u_y * below;
+    m[3][c] = friction * below;
+  }
+  // The determinant is odd in a_d and in a_s: the quotient has no branch points.
+  return determinant(m) / (r.a_d * r.a_s);
+}
+
+std::vector<Mode> growing_modes(const solid::Material& material, const Sliding& sliding,
+                                double wavenumber_per_m) {
+  SLIPFRONT_ASSERT(wavenumber_per_m > 0, "modes are described by k > 0");
+  const auto f = [&](Complex p) { return half_space_relation(material, sliding, wavenumber_per_m, p); };
+  return modes_of(zeros_by_argument_principle(f, {}),
+                  wavenumber_per_m * solid::shear_speed_m_per_s(material));
+}
+
+std::optional<Mode> fastest_growing_mode(const solid::Material& material, const Sliding& sliding,
+                                         double wavenumber_per_m) {
+  const auto modes = growing_modes(material, sliding, wavenumber_per_m);
+  if (modes.empty()) return std::nullopt;
+  return modes.front();
+}
+
+std::vector<Mode> growing_layer_modes(const solid::Material& material, const Sliding& sliding,
+                                      double wavenumber_per_m, double height_m, double largest_rate_per_s) {
+  SLIPFRONT_ASSERT(wavenumber_per_m > 0 && height_m > 0, "modes are described by k > 0");
+  const double height = wavenumber_per_m * height_m;
+  const double rate_per_s = wavenumber_per_m * solid::shear_speed_m_per_s(material);
+  Sector sector;
+  // Below this the two potentials are too nearly the same for the determinant.
+  sector.min_modulus = 1e-3 * std::max(1.0, 1 / height);
+  sector.max_modulus = largest_rate_per_s / rate_per_s;
+  sector.phase_rate = 2 * height;
+  SLIPFRONT_ASSERT(sector.max_modulus > sector.min_modulus, "the largest rate is below the smallest one");
+  const auto f = [&](Complex p) { return layer_relation(material, sliding, wavenumber_per_m, height_m, p); };
+  return modes_of(zeros_by_argument_principle(f, sector), rate_per_s);
+}
+
+}  // namespace slipfront::stability

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stability/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace slipfront::stability {
+namespace {
+
+using interface::Relaxed;
+
+double growth_at(const solid::Material& material, const Sliding& sliding, double k) {
+  const auto mode = fastest_growing_mode(material, sliding, k);
+  return mode ? mode->growth_per_s() : 0;
+}
+
+struct Peak {
+  double growth_per_s = 0, wavenumber_per_m = 0;
+  bool at_short_end = false;
+};
+
+/// Fastest growth between two wavenumbers: a scan, ten to a decade, then golden sections about its best.
+Peak fastest_between(const solid::Material& material, const Sliding& sliding, double low, double high) {
+  const int n = 1 + static_cast<int>(std::ceil(10 * std::log10(high / low)));
+  const double ratio = std::pow(high / low, 1.0 / n);
+  Peak best;
+  int best_at = 0;
+  for (int i = 0; i <= n; ++i) {
+    const double k = low * std::pow(ratio, i);
+    const double growth = growth_at(material, sliding, k);
+    if (growth > best.growth_per_s) {
+      best = {growth, k, i == n};
+      best_at = i;
+    }
+  }
+  if (best.growth_per_s == 0 || best_at == 0 || best_at == n) return best;
+  double from = std::log(best.wavenumber_per_m / ratio), to = std::log(best.wavenumber_per_m * ratio);
+  while (to - from > 1e-3) {
+    const double a = from + 0.382 * (to - from), b = from + 0.618 * (to - from);
+    if (growth_at(material, sliding, std::exp(a)) > growth_at(material, sliding, std::exp(b)))
+      to = b;
+    else
+      from = a;
+  }
+  best.wavenumber_per_m = std::exp(0.5 * (from + to));
+  best.growth_per_s = growth_at(material, sliding, best.wavenumber_per_m);
+  return best;
+}
+
+std::string statement_of(const WellPosedness& w) {
+  const bool drops = w.weakening_over_radiation > 1;
+  if (w.unbounded)
+    return fmt::format("ill-posed: shorter waves grow faster without bound ({}); the mesh decides",
+                       drops ? "weakening beyond radiation damping" : "friction coupled to pressure");
+  if (w.fastest_growth_per_s == 0) return "well-posed: no wave grows on a half-space";
+  if (w.growth_in_crossing > 1)
+    return fmt::format(
+        "bounded, not resolved: {} grow e-fold in {:.2g} s, while waves cross an element in {:.2g} s; the "
+        "mesh decides",
+        drops ? "waves of all lengths" : "the fastest waves", 1 / w.fastest_growth_per_s,
+        w.growth_in_crossing / w.fastest_growth_per_s);
+  if (w.fastest_wavelength_m == 0)
+    return "bounded: growth still rises at ever shorter waves; the mesh decides which of them is seen";
+  if (w.fastest_wavelength_m < w.grid_wavelength_m)
+    return fmt::format("bounded, not resolved: waves of {:.3g} m grow fastest, the mesh carries {:.3g} m",
+                       w.fastest_wavelength_m, w.grid_wavelength_m);
+  if (w.fastest_wavelength_m > 0.999 * w.longest_wavelength_m)
+    return "well-posed: growth is bounded and fastest at the longest waves";
+  return fmt::format("well-posed: growth is bounded and fastest at {:.3g} m, {:.3g} elements",
+                     w.fastest_wavelength_m, 2 * w.fastest_wavelength_m / w.grid_wavelength_m);
+}
+
+}  // namespace
+
+bool growth_is_unbounded(const solid::Material& material, const Sliding& sliding) {
+  // Waves with |s| far above the relaxation rate feel nothing of what is delayed.
+  Sliding limit = sliding;
+  limit.relaxed = Relaxed::none;
+  limit.slip_slope_per_m = 0;
+  if (sliding.relaxed != Relaxed::none) limit.mu = 0;
+  if (sliding.relaxed == Relaxed::strength) limit.slope_s_per_m = 0;
+  solid::Material undamped = material;
+  undamped.stiffness_damping_s = 0;
+  if (material.stiffness_damping_s == 0) return !growing_modes(undamped, limit, 1).empty();
+  // Viscous stresses outgrow the slope: s = beta_R (k c_S)^2 P^2, with P a zero of the relation without
+  // both.
+  limit.slope_s_per_m = 0;
+  return std::ranges::any_of(growing_modes(undamped, limit, 1),
+                             [](const Mode& mode) { return (mode.s_per_s * mode.s_per_s).real() > 0; });
+}
+
+WellPosedness well_posedness(const solid::Material& material, const interface::FrictionLaw& law,
+                             double pressure_Pa, double element_size_m, double longest_wavelength_m,
+                             const interface::Regularisation& regularisation) {
+  constexpr double pi = std::numbers::pi;
+  WellPosedness w;
+  w.sliding = uniform_sliding(law, 0, pressure_Pa, regularisation);
+  w.grid_wavelength_m = 2 * element_size_m;
+  w.growth_at_grid_per_s = growth_at(material, w.sliding, pi / element_size_m);
+  w.unbounded = growth_is_unbounded(material, w.sliding);
+  w.weakening_over_radiation = -w.sliding.slope_s_per_m * pressure_Pa * solid::shear_speed_m_per_s(material) /
+                               solid::shear_modulus_Pa(material);
+  w.longest_wavelength_m = std::max(longest_wavelength_m, w.grid_wavelength_m);
+  if (w.unbounded) {
+    w.fastest_growth_per_s = std::numeric_limits<double>::infinity();
+  } else {
+    // Four decades beyond the mesh: there damping or delay has long decided.
+    const auto peak =
+        fastest_between(material, w.sliding, 2 * pi / w.longest_wavelength_m, 1e4 * pi / element_size_m);
+    w.fastest_growth_per_s = peak.growth_per_s;
+    if (peak.growth_per_s > 0 && !peak.at_short_end) w.fastest_wavelength_m = 2 * pi / peak.wavenumber_per_m;
+  }
+  w.growth_in_crossing =
+      w.fastest_growth_per_s * element_size_m / solid::longitudinal_speed_m_per_s(material);
+  w.damping_length_m = material.stiffness_damping_s * solid::longitudinal_speed_m_per_s(material);
+  w.damping_length_over_h = w.damping_length_m / element_size_m;
+  w.statement = statement_of(w);
+  return w;
+}
+
+double nominal_pressure_Pa(const solid::Material& material, double mean_compression_m, double height_m) {
+  const double P = solid::longitudinal_modulus_Pa(material);
+  const double G = solid::shear_modulus_Pa(material);
+  // Stiffness of uniaxial stress within the plane: E in plane stress, E/(1 - nu^2) in plane strain.
+  return 4 * G * (P - G) / P * mean_compression_m / height_m;
+}
+
+}  // namespace slipfront::stability

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "stability/modes.hpp"
+
+namespace slipfront::stability {
+
+/// Whether slow uniform sliding of a half-space, as a mesh sees it, has a growth that a finer mesh would not
+/// change.
+struct WellPosedness {
+  Sliding sliding;                      ///< in the limit of slow sliding
+  double grid_wavelength_m = 0;         ///< 2 h, the shortest that the mesh carries
+  double growth_at_grid_per_s = 0;      ///< of the fastest mode there, 0 where none grows
+  bool unbounded = false;               ///< growth has no bound as the wavelength goes to zero: ill-posed
+  double weakening_over_radiation = 0;  ///< -mu'(0) p c_S/G; above 1 strength drops at once on slip
+  /// Fastest growth among all waves up to the longest; infinite where unbounded, 0 where none grows.
+  double fastest_growth_per_s = 0;
+  /// Its wavelength; 0 where growth rises to the end of the search, at ever shorter waves.
+  double fastest_wavelength_m = 0;
+  double longest_wavelength_m = 0;  ///< of the search
+  double growth_in_crossing = 0;    ///< fastest growth times h/c_L: above 1 no step follows it
+  double damping_length_m = 0;      ///< beta_R c_L: much shorter waves are overdamped
+  double damping_length_over_h = 0;
+  std::string statement;  ///< one plain line
+};
+
+/// @param longest_wavelength_m such as the length of the interface.
+WellPosedness well_posedness(const solid::Material& material, const interface::FrictionLaw& law,
+                             double pressure_Pa, double element_size_m, double longest_wavelength_m,
+                             const interface::Regularisation& regularisation = {});
+
+/// Whether growth is unbounded as k grows, from the relation's limits (docs/stability.md).
+bool growth_is_unbounded(const solid::Material& material, const Sliding& sliding);
+
+/// Mean pressure of a plate of a height whose top is pushed down by a mean amount, its sides free.
+double nominal_pressure_Pa(const solid::Material& material, double mean_compression_m, double height_m);
+
+}  // namespace slipfront::stability

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stability/modes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "layer_by_elements.hpp"
+
+namespace slipfront::stability {
+namespace {
+
+using interface::Relaxed;
+
+solid::Material undamped() {
+  solid::Material m;
+  m.stiffness_damping_s = 0;
+  return m;
+}
+
+/// p0 for which a slope of -1 s/m is minus the radiation damping G/c_S.
+double radiation_pressure_Pa(const solid::Material& m) {
+  return solid::shear_modulus_Pa(m) / solid::shear_speed_m_per_s(m);
+}
+
+TEST(HalfSpace, ConstantCoefficientGrowsAsInTheReference) {
+  // Growth Re s/(k c_S), given to three decimals.
+  const struct { double f, growth; } known[] = {{1.1, 0.040}, {1.3, 0.106}, {2, 0.275}};
+  const auto m = undamped();
+  const double k = 314;
+  for (const auto& [f, growth] : known) {
+    const auto modes = growing_modes(m, {.mu = f, .pressure_Pa = 5e6}, k);
+    ASSERT_EQ(modes.size(), 1u) << f;
+    EXPECT_NEAR(modes[0].growth_per_s() / (k * solid::shear_speed_m_per_s(m)), growth, 5e-4);
+    EXPECT_GT(modes[0].velocity_m_per_s(k), 0) << "travels with the sliding";
+  }
+}
+
+TEST(HalfSpace, UnitCoefficientIsNeutralAtRootTwo) {
+  const auto m = undamped();
+  EXPECT_TRUE(growing_modes(m, {.mu = 0.99}, 100).empty());
+  EXPECT_TRUE(growing_modes(m, {.mu = 0.3}, 100).empty());
+  // The square roots' branch is that of a vanishing growth; |F| changes by about that growth.
+  EXPECT_LT(std::abs(half_space_relation(m, {.mu = 1}, 100, {1e-12, -std::numbers::sqrt2})), 1e-10);
+  const auto modes = growing_modes(m, {.mu = 1.001}, 100);
+  ASSERT_EQ(modes.size(), 1u);
+  // Near neutrality the mode moves in proportion to f - 1, by about a third of it (0.040 at 1.1).
+  EXPECT_NEAR(modes[0].velocity_m_per_s(100) / solid::shear_speed_m_per_s(m), std::numbers::sqrt2, 1e-3);
+}
+
+TEST(HalfSpace, WeakeningBeyondRadiationDampingGrows) {
+  const auto m = undamped();
+  Sliding sliding{.mu = 0.6, .slope_s_per_m = -1, .pressure_Pa = radiation_pressure_Pa(m)};
+  sliding.slope_s_per_m = -0.99;
+  EXPECT_TRUE(growing_modes(m, sliding, 100).empty());
+  sliding.slope_s_per_m = -1.01;
+  EXPECT_EQ(growing_modes(m, sliding, 100).size(), 1u);
+  // Without a length scale growth is proportional to k.
+  const double slow = fastest_growing_mode(m, sliding, 100)->growth_per_s();
+  EXPECT_NEAR(fastest_growing_mode(m, sliding, 700)->growth_per_s() / slow, 7, 1e-9);
+}
+
+TEST(HalfSpace, LongWavesFollowTheShearWaveImpedance) {
+  // k -> 0: motion uniform in x. Delayed strength: G/c_S s = -mu' p0 s r/(r + s), so s = r (|m| - 1).
+  const auto m = undamped();
+  Sliding sliding{.mu = 0, .slope_s_per_m = -3, .pressure_Pa = radiation_pressure_Pa(m)};
+  sliding.relaxed = Relaxed::strength;
+  sliding.relaxation_rate_per_s = 1e6;
+  // With mu = 0 the correction is of second order in k c_S/r = 9e-4.
+  EXPECT_NEAR(fastest_growing_mode(m, sliding, 1)->s_per_s.real(), 2e6, 2e6 * 1e-5);
+  // Damped, at once: sqrt(1 + beta s) = |m|.
+  solid::Material damped;
+  sliding.relaxed = Relaxed::none;
+  EXPECT_NEAR(fastest_growing_mode(damped, sliding, 1)->s_per_s.real(), 8 / damped.stiffness_damping_s,
+              8 / damped.stiffness_damping_s * 1e-5);
+}
+
+TEST(HalfSpace, DelayAndDampingEndGrowthAtShortWaves) {
+  const Sliding plain{.mu = 1.3, .pressure_Pa = 5e6};
+  EXPECT_TRUE(fastest_growing_mode(solid::Material{}, plain, 10).has_value());
+  EXPECT_TRUE(growing_modes(solid::Material{}, plain, 1e6).empty());
+}
+
+TEST(HalfSpace, NoModeIsMissed) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int n_modes = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    solid::Material m = trial % 2 ? undamped() : solid::Material{};
+    m.poissons_ratio = 0.1 + 0.35 * unit(random);
+    const double k = std::pow(10.0, 1 + 4 * unit(random));
+    Sliding s;
+    s.mu = 2.5 * unit(random);
+    s.pressure_Pa = radiation_pressure_Pa(m);
+    s.slope_s_per_m = 6 * (unit(random) - 0.7);
+    s.slip_slope_per_m = trial % 5 ? 0 : -k * 900 * unit(random);
+    s.relaxed = static_cast<Relaxed>(trial % 3);
+    s.relaxation_rate_per_s = k * 900 * std::pow(10.0, 2 * unit(random) - 1);
+    const auto f = [&](Complex p) { return half_space_relation(m, s, k, p); };
+    // Next to the axis the relation has branch points, which Newton's method alone cannot pass.
+    const double growth = 1e-3;
+    const auto by_argument = zeros_by_argument_principle(f, {.min_growth = growth});
+    const auto by_starts =
+        zeros_by_starts(f, {.min_modulus = 1e-3, .max_modulus = 1e4, .min_growth = growth}, 150, 31);
+    ASSERT_EQ(by_argument.size(), by_starts.size())
+        << "trial " << trial << ", fastest " << (by_argument.empty() ? 0.0 : by_argument[0]);
+    for (std::size_t i = 0; i < by_starts.size(); ++i)
+      EXPECT_LT(std::abs(by_argument[i] - by_starts[i]), 1e-8 * std::abs(by_starts[i])) << "trial " << trial;
+    n_modes += static_cast<int>(by_starts.size());
+  }
+  EXPECT_GT(n_modes, 30) << "the trials say little";
+}
+
+TEST(Roots, KnownZerosWithMultiplicity) {
+  const auto f = [](Complex p) {
+    const Complex twice = p - Complex{1, 2};
+    return (p - 3.0) * twice * twice * (p + 1.0) * (p - Complex{1e-4, -5e-2});
+  };
+  const auto zeros = zeros_by_argument_principle(f, {.min_modulus = 1e-6, .max_modulus = 1e6});
+  ASSERT_EQ(zeros.size(), 4u);
+  EXPECT_NEAR(std::abs(zeros[0] - 3.0), 0, 1e-10);
+  // Half the digits of a double zero.
+  EXPECT_NEAR(std::abs(zeros[1] - Complex{1, 2}), 0, 1e-6);
+  EXPECT_NEAR(std::abs(zeros[2] - Complex{1, 2}), 0, 1e-6);
+  EXPECT_NEAR(std::abs(zeros[3] - Complex{1e-4, -5e-2}), 0, 1e-10);
+}
+
+TEST(Layer, TendsToTheHalfSpace) {
+  const auto m = undamped();
+  const Sliding sliding{.mu = 2, .pressure_Pa = 5e6};
+  const double k = 100;
+  const Complex s = fastest_growing_mode(m, sliding, k)->s_per_s;
+  const double c_S = solid::shear_speed_m_per_s(m);
+  const Complex p = s / (k * c_S);
+  const double decay = std::sqrt(1.0 + p * p).real();  // of the shear potential, which reaches farther
+  for (const double kH : {8.0, 14.0, 20.0}) {
+    double nearest = 1e300;
+    for (const auto& mode : growing_layer_modes(m, sliding, k, kH / k, 4 * k * c_S))
+      nearest = std::min(nearest, std::abs(mode.s_per_s - s) / std::abs(s));
+    // The upper edge is felt through a wave that goes up and back; its factor is of order one.
+    EXPECT_LT(nearest, 5 * std::exp(-2 * decay * kH)) << kH;
+  }
+}
+
+TEST(Layer, ColumnInClosedForm) {
+  // k -> 0 and mu = 0: coth(s H/c_S) = |m|, with s H/c_S = atanh(1/|m|) + i pi n.
+  const auto m = undamped();
+  const double H = 0.1;
+  const double rate = solid::shear_speed_m_per_s(m) / H;
+  const Sliding sliding{.mu = 0, .slope_s_per_m = -2, .pressure_Pa = radiation_pressure_Pa(m)};
+  const auto modes = growing_layer_modes(m, sliding, 1e-3 / H, H, 8 * rate);
+  // n from -2 to 2, the last of |s| H/c_S = 6.31.
+  ASSERT_EQ(modes.size(), 5u);
+  for (const auto& mode : modes) {
+    const double n = std::round(mode.s_per_s.imag() / rate / std::numbers::pi);
+    const Complex expected{std::atanh(0.5), n * std::numbers::pi};
+    // Second order in kH = 1e-3.
+    EXPECT_LT(std::abs(mode.s_per_s / rate - expected), 1e-5);
+  }
+}
+
+struct LayerCase {
+  const char* name;
+  double kH, mu, slope, slip_slope_H, rate_H, beta_rate;
+  Relaxed relaxed;
+};
+
+class LayerByElements : public testing::TestWithParam<LayerCase> {};
+
+TEST_P(LayerByElements, SameModes) {
+  const auto& c = GetParam();
+  const double H = 0.1;
+  solid::Material m;
+  const double rate = solid::shear_speed_m_per_s(m) / H;
+  m.stiffness_damping_s = c.beta_rate / rate;
+  const double k = c.kH / H;
+  const Sliding sliding{c.mu,     c.slope, c.slip_slope_H * rate, radiation_pressure_Pa(m), c.rate_H * rate,
+                        c.relaxed};
+  const double cap = 8 * rate;
+  // Modes of little growth may have it or not with few elements: both sides leave them out.
+  const double counted = 0.03 * rate;
+  std::vector<Mode> modes;
+  for (const auto& mode : growing_layer_modes(m, sliding, k, H, cap))
+    if (mode.growth_per_s() > counted) modes.push_back(mode);
+  const auto coarse = layer_eigenvalues_by_elements(m, sliding, k, H, 32);
+  const auto fine = layer_eigenvalues_by_elements(m, sliding, k, H, 64);
+  const auto nearest = [](const std::vector<Complex>& all, Complex s) {
+    double distance = 1e300;
+    for (const auto& other : all) distance = std::min(distance, std::abs(other - s));
+    return distance;
+  };
+  ASSERT_FALSE(modes.empty());
+  for (const auto& mode : modes) {
+    const double far = nearest(coarse, mode.s_per_s), near = nearest(fine, mode.s_per_s);
+    // Linear elements and lumped mass err by (|s| H/c_S / n)^2 over about 10; halving the element divides
+    // the error by four, exactly only in the limit.
+    EXPECT_LT(near / std::abs(mode.s_per_s), std::pow(std::abs(mode.s_per_s) / rate / 64, 2))
+        << mode.s_per_s / rate;
+    EXPECT_GT(far / near, 3) << mode.s_per_s / rate;
+    EXPECT_LT(far / near, 5.5) << mode.s_per_s / rate;
+  }
+  // And none of the elements' growing modes is missing. Errors move a mode by less than the margin.
+  for (const auto& s : fine)
+    if (s.real() > counted + 0.02 * rate && std::abs(s) < 0.95 * cap) {
+      double distance = 1e300;
+      for (const auto& mode : modes) distance = std::min(distance, std::abs(mode.s_per_s - s));
+      EXPECT_LT(distance, 0.05 * std::abs(s)) << s / rate;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, LayerByElements,
+                         testing::Values(LayerCase{"constant_low", 2, 0.5, 0, 0, 0, 0, Relaxed::none},
+                                         LayerCase{"constant_high", 3, 1.3, 0, 0, 0, 0, Relaxed::none},
+                                         LayerCase{"weakening", 1, 0.6, -0.4, 0, 0, 0, Relaxed::none},
+                                         LayerCase{"weakening_damped", 2, 1.3, -0.7, 0, 0, 0.05,
+                                                   Relaxed::none},
+                                         LayerCase{"strength", 2, 1.3, -2, 0, 2, 0.02, Relaxed::strength},
+                                         LayerCase{"pressure", 2, 1.3, -0.5, 0, 3, 0.02, Relaxed::pressure},
+                                         LayerCase{"slip_weakening", 2, 0.8, 0, -6, 0, 0.01, Relaxed::none}),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST(Slope, MatchesTheLawsOwn) {
+  // Differences of doubles, extrapolated: about ten digits.
+  const interface::VelocityWeakening law;
+  const double rate = std::sqrt((law.mu_s - law.mu_k) / law.alpha_m2_per_s2);
+  for (const double v : {0.0, 0.01, 0.3, 2.0}) {
+    const double slope = -(law.mu_s - law.mu_k) * rate * std::exp(-v * rate);
+    EXPECT_NEAR(coefficient_slope_s_per_m(law, v), slope, 1e-8 * std::abs(slope)) << v;
+  }
+  interface::VelocityWeakening steep;
+  steep.alpha_m2_per_s2 = 1e-8;
+  const double slope = -0.7 * std::sqrt(0.7e8);
+  EXPECT_NEAR(coefficient_slope_s_per_m(steep, 0), slope, 1e-8 * -slope);
+  EXPECT_EQ(coefficient_slope_s_per_m(interface::Coulomb{}, 0.1), 0);
+}
+
+TEST(UniformSliding, TakesTheRateAtTheSpeed) {
+  const interface::Regularisation delay { Relaxed::pressure, 1e-6, 0.5, 4e-6 };
+  const auto s = uniform_sliding(interface::Coulomb{0.7}, 0.25, 2e6, delay);
+  EXPECT_DOUBLE_EQ(s.relaxation_rate_per_s, 0.75e6 + 0.25e6);
+  EXPECT_EQ(s.relaxed, Relaxed::pressure);
+  EXPECT_EQ(s.mu, 0.7);
+  EXPECT_EQ(s.pressure_Pa, 2e6);
+}
+
+}  // namespace
+}  // namespace slipfront::stability

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stability/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace slipfront::stability {
+namespace {
+
+using interface::Coulomb;
+using interface::Regularisation;
+using interface::Relaxed;
+using interface::VelocityWeakening;
+using testing::StartsWith;
+
+constexpr double h = 0.667e-3;
+constexpr double width = 0.2;
+
+solid::Material undamped() {
+  solid::Material m;
+  m.stiffness_damping_s = 0;
+  return m;
+}
+
+TEST(WellPosedness, CoulombOnARigidPlane) {
+  const auto low = well_posedness(undamped(), Coulomb{0.9}, 5e6, h, width);
+  EXPECT_FALSE(low.unbounded);
+  EXPECT_EQ(low.growth_at_grid_per_s, 0);
+  EXPECT_THAT(low.statement, StartsWith("well-posed"));
+  const auto high = well_posedness(undamped(), Coulomb{1.3}, 5e6, h, width);
+  EXPECT_TRUE(high.unbounded);
+  EXPECT_THAT(high.statement, StartsWith("ill-posed"));
+  // 0.106 k c_S, to the three decimals of the reference.
+  const double k_c_S = std::numbers::pi / h * solid::shear_speed_m_per_s(undamped());
+  EXPECT_NEAR(high.growth_at_grid_per_s / k_c_S, 0.106, 5e-4);
+  EXPECT_EQ(high.weakening_over_radiation, 0);
+}
+
+TEST(WellPosedness, VelocityWeakeningAgainstRadiation) {
+  // mu'(0) = -(mu_s - mu_k)^1.5/sqrt(alpha), G/c_S = sqrt(rho G).
+  const solid::Material m = undamped();
+  const auto w = well_posedness(m, VelocityWeakening{.mu_s = 0.9, .mu_k = 0.5}, 5e6, h, width);
+  const double expected =
+      std::pow(0.4, 1.5) / std::sqrt(0.1) * 5e6 / std::sqrt(m.density_kg_per_m3 * solid::shear_modulus_Pa(m));
+  EXPECT_NEAR(w.weakening_over_radiation, expected, 1e-8 * expected);
+  EXPECT_GT(expected, 1);
+  EXPECT_TRUE(w.unbounded);
+  EXPECT_TRUE(std::isinf(w.fastest_growth_per_s));
+}
+
+TEST(WellPosedness, LimitsAgreeWithGrowthFollowedToShortWaves) {
+  const Regularisation none;
+  for (const auto relaxed : {Relaxed::none, Relaxed::strength, Relaxed::pressure})
+    for (const double beta : {0.0, 1e-7})
+      for (const double mu : {0.6, 1.3})
+        for (const double slope : {0.0, -0.5, -2.0}) {
+          solid::Material m;
+          m.stiffness_damping_s = beta;
+          const double radiation = solid::shear_modulus_Pa(m) / solid::shear_speed_m_per_s(m);
+          const Sliding s{mu, slope, 0, radiation, 1e6, relaxed};
+          const auto growth = [&](double k) {
+            const auto mode = fastest_growing_mode(m, s, k);
+            return mode ? mode->growth_per_s() : 0;
+          };
+          // Both ends lie far beyond the rates 1e6 and 1e7 per second, k c_S = 1e10 and 1e12. Unbounded
+          // growth rises in proportion to k at least; bounded growth does not rise tenfold over two decades.
+          EXPECT_EQ(growth_is_unbounded(m, s), growth(1e9) > 10 * growth(1e7))
+              << static_cast<int>(relaxed) << " beta " << beta << " mu " << mu << " slope " << slope << ": "
+              << growth(1e7) << ", " << growth(1e9);
+        }
+}
+
+TEST(WellPosedness, DampingGivesTheFastestWaveALength) {
+  solid::Material m;
+  const auto w = well_posedness(m, Coulomb{1.3}, 5e6, h, width);
+  EXPECT_FALSE(w.unbounded);
+  ASSERT_GT(w.fastest_wavelength_m, 0);
+  const double c_S = solid::shear_speed_m_per_s(m);
+  // Scales with beta_R c_S: growth beta_R is a function of beta_R c_S k alone.
+  solid::Material twice = m;
+  twice.stiffness_damping_s *= 2;
+  const auto w2 = well_posedness(twice, Coulomb{1.3}, 5e6, h, width);
+  // The search ends at a relative width of 1e-3.
+  EXPECT_NEAR(w2.fastest_wavelength_m / w.fastest_wavelength_m, 2, 5e-3);
+  EXPECT_NEAR(w.fastest_growth_per_s / w2.fastest_growth_per_s, 2, 1e-4);
+  EXPECT_GT(w.fastest_wavelength_m, m.stiffness_damping_s * c_S);
+  // No other wave grows faster.
+  for (double k = 40; k < 1e7; k *= 1.07)
+    if (const auto mode = fastest_growing_mode(m, w.sliding, k)) {
+      EXPECT_LE(mode->growth_per_s(), w.fastest_growth_per_s * (1 + 1e-5)) << k;
+    }
+  EXPECT_DOUBLE_EQ(w.damping_length_m, 1e-7 * solid::longitudinal_speed_m_per_s(m));
+  EXPECT_DOUBLE_EQ(w.damping_length_over_h, w.damping_length_m / h);
+}
+
+TEST(WellPosedness, DampingAloneDoesNotResolveStrongWeakening) {
+  solid::Material m;
+  const auto w = well_posedness(m, VelocityWeakening{}, 4.3e6, h, width);
+  EXPECT_FALSE(w.unbounded);
+  // Motion uniform in x: beta s = |m|^2 - 1; waves as long as the plate are close to it.
+  const double uniform =
+      (w.weakening_over_radiation * w.weakening_over_radiation - 1) / m.stiffness_damping_s;
+  EXPECT_NEAR(w.fastest_growth_per_s, uniform, 1e-3 * uniform);
+  EXPECT_DOUBLE_EQ(w.growth_in_crossing, w.fastest_growth_per_s * h / solid::longitudinal_speed_m_per_s(m));
+  EXPECT_GT(w.growth_in_crossing, 1);
+  EXPECT_THAT(w.statement, StartsWith("bounded, not resolved"));
+}
+
+TEST(WellPosedness, DelayOfTheStrengthBoundsGrowth) {
+  const Regularisation delay{.relaxed = Relaxed::strength, .time_s = 2e-6};
+  const auto w = well_posedness(undamped(), VelocityWeakening{}, 4.3e6, h, width, delay);
+  EXPECT_FALSE(w.unbounded);
+  EXPECT_DOUBLE_EQ(w.sliding.relaxation_rate_per_s, 5e5);
+  // Of the order of the 1D motion's r (|m| - 1).
+  const double uniform = 5e5 * (w.weakening_over_radiation - 1);
+  EXPECT_GT(w.fastest_growth_per_s, 0.5 * uniform);
+  EXPECT_LT(w.fastest_growth_per_s, 2 * uniform);
+}
+
+TEST(NominalPressure, IsThatOfAFreeColumn) {
+  solid::Material m;
+  EXPECT_NEAR(nominal_pressure_Pa(m, 0.2035e-3, 0.1), 2.6e9 * 0.2035e-3 / 0.1, 1e-3);
+  m.plane = solid::Plane::strain;
+  EXPECT_NEAR(nominal_pressure_Pa(m, 1e-4, 0.1), 2.6e9 / (1 - 0.37 * 0.37) * 1e-3, 1e-3);
+}
+
+}  // namespace
+}  // namespace slipfront::stability
