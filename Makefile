@@ -8,13 +8,15 @@ APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv \
   libfmt-dev libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev \
   libhdf5-dev libsuitesparse-dev libopenblas-dev libgtest-dev libgmock-dev
 LINT_PACKAGES := clang-format-14 clang-tidy-14
+SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev libomp-14-dev
+COVERAGE_PACKAGES := gcovr
 RESULTS ?= results
 EXPERIMENT ?=
 VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce quick bench docs format format-check tidy clean
+.PHONY: help setup build test reproduce quick bench docs format format-check tidy sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -73,6 +75,20 @@ format-check: lint-packages  ## fail where a C++ source is not formatted
 tidy: build lint-packages  ## clang-tidy over src, warnings are errors
 	run-clang-tidy-14 -quiet -extra-arg=-Wno-unknown-warning-option -p build/release '^$(CURDIR)/src/.*' > build/tidy.log 2>&1 || { grep -E 'error|warning' build/tidy.log | sort -u; exit 1; }
 	@echo "clang-tidy: no findings"
+
+sanitize: packages  ## the C++ tests and coarse runs under the address, undefined-behaviour and thread sanitizers
+	@scripts/install-packages $(SANITIZER_PACKAGES)
+	cmake --preset asan
+	cmake --build --preset asan
+	cmake --preset tsan
+	cmake --build --preset tsan
+	@scripts/run-sanitizers build/asan build/tsan
+
+coverage: packages  ## lines of the numerical core that the C++ tests run: table, and page build/coverage/index.html
+	@scripts/install-packages $(COVERAGE_PACKAGES)
+	cmake --preset coverage
+	cmake --build --preset coverage
+	@scripts/run-coverage build/coverage
 
 clean:  ## remove build, venv and results
 	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick

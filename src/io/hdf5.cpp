@@ -36,9 +36,12 @@ Handle open_object(const File& file, const std::string& name) {
 
 Handle new_dataset(const File& file, const std::string& name, hid_t type, const Shape& shape) {
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  Handle dataset(
-      H5Dcreate2(file.handle.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-      H5Dclose);
+  // No time of writing, so that equal data make equal files.
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  if (!properties.valid() || H5Pset_obj_track_times(properties.get(), false) < 0) throw_write(file, name);
+  Handle dataset(H5Dcreate2(file.handle.get(), name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(),
+                            H5P_DEFAULT),
+                 H5Dclose);
   if (!dataset.valid()) throw_write(file, name);
   return dataset;
 }
