@@ -25,6 +25,10 @@ std::string percent(double share) {
   return fmt::format("{:.0f} %", 100 * share);
 }
 
+std::string share(double part, double whole) {
+  return whole > 0 ? percent(part / whole) : "no share";
+}
+
 /// Points of a front that count and have a speed.
 std::vector<const FrontPoint*> speed_points(const Outcome& o, const Front& front, double leave_out = 0) {
   std::vector<const FrontPoint*> points;
@@ -255,7 +259,7 @@ class Scorecard {
                  right = max_speed(r_.right);
     add("C11", "the left-triggered maximum is at most 60 % of that of the other two", "Results",
         fmt::format("left {:.2f}, spontaneous {:.2f}, right {:.2f} c_L: {} and {}", left, spontaneous, right,
-                    percent(left / spontaneous), percent(left / right)),
+                    share(left, spontaneous), share(left, right)),
         left > 0 && left <= 0.6 * spontaneous && left <= 0.6 * right,
         "ratio of maxima to each at most 0.6; 5 mm next to spontaneous nucleation, trigger zones and margins "
         "left out");

@@ -213,7 +213,7 @@ Info info(const io::Case& config) {
   info.well_posedness = stability::well_posedness(
       config.material, config.friction,
       stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m),
-      config.plate.element_size_m, config.plate.width_m);
+      config.plate.element_size_m, config.plate.width_m, config.regularisation);
   return info;
 }
 

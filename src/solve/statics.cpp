@@ -87,7 +87,7 @@ class ContactProblem {
   template <class MaySlip>
   bool correct(double shear, bool one_only, MaySlip&& may_slip) {
     double p_max = 0;
-    for (std::size_t k = 0; k < n_; ++k) p_max = std::max(p_max, p_Pa(k, shear));
+    for (std::size_t k = 0; k < n_; ++k) p_max = std::max(p_max, std::abs(p_Pa(k, shear)));
     const double tolerance = 1e-9;
     struct Change {
       std::size_t node;

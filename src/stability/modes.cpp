@@ -72,45 +72,15 @@ std::vector<Mode> modes_of(const std::vector<Complex>& zeros, double rate_per_s)
 
 }  // namespace
 
-double coefficient_slope_s_per_m(const interface::FrictionLaw& law, double speed_m_per_s) {
-  const auto slope_of = [speed_m_per_s](const auto& mu) {
-    const double mu_here = mu(speed_m_per_s);
-    // Forward differences over steps halved from 1 m/s, each row extrapolated (Neville) through the five
-    // before it; the estimate that changes least between orders is taken. The law's own scale need not be
-    // known.
-    constexpr int n_orders = 6;
-    std::array<double, n_orders> previous{}, row{};
-    double best = 0;
-    double best_change = std::numeric_limits<double>::infinity();
-    double step = 1;
-    for (int j = 0; j < 40; ++j, step *= 0.5) {
-      row[0] = (mu(speed_m_per_s + step) - mu_here) / step;
-      double factor = 2;
-      for (int order = 1; order <= std::min(j, n_orders - 1); ++order, factor *= 2) {
-        const auto o = static_cast<std::size_t>(order);
-        row[o] = row[o - 1] + (row[o - 1] - previous[o - 1]) / (factor - 1);
-        // Far above the law's scale the differences shrink like 1/step and mimic convergence to zero: a
-        // change counts relative to the slope itself. Rounding of mu is the other part of the error.
-        const double change = std::max(std::abs(row[o] - row[o - 1]), std::abs(row[o] - previous[o - 1])) +
-                              2 * std::numeric_limits<double>::epsilon() * std::abs(mu_here) / step;
-        const double relative = row[o] == 0 ? 1 : change / std::abs(row[o]);
-        if (relative < best_change) {
-          best_change = relative;
-          best = row[o];
-        }
-      }
-      previous = row;
-    }
-    return best;
-  };
-  return std::visit([&](const auto& l) { return slope_of(l.evaluator()); }, law);
-}
-
 Sliding uniform_sliding(const interface::FrictionLaw& law, double speed_m_per_s, double pressure_Pa,
                         const interface::Regularisation& regularisation) {
   Sliding s;
-  s.mu = std::visit([&](const auto& l) { return l.evaluator()(speed_m_per_s); }, law);
-  s.slope_s_per_m = coefficient_slope_s_per_m(law, speed_m_per_s);
+  // Weakening by slip is steepest at its beginning; far below any d_c.
+  constexpr double small_slip_m = 1e-12;
+  s.mu = interface::friction_coefficient(law, speed_m_per_s, 0);
+  s.slope_s_per_m = interface::friction_slope_s_per_m(law, speed_m_per_s, 0);
+  s.slip_slope_per_m =
+      (interface::friction_coefficient(law, speed_m_per_s, small_slip_m) - s.mu) / small_slip_m;
   s.pressure_Pa = pressure_Pa;
   s.relaxed = regularisation.relaxed;
   s.relaxation_rate_per_s = interface::relaxation_rate_per_s(regularisation, speed_m_per_s);

@@ -27,9 +27,6 @@ struct Sliding {
 Sliding uniform_sliding(const interface::FrictionLaw& law, double speed_m_per_s, double pressure_Pa,
                         const interface::Regularisation& regularisation = {});
 
-/// d mu / d|v| by one-sided differences towards higher speeds, extrapolated to a step of zero.
-double coefficient_slope_s_per_m(const interface::FrictionLaw& law, double speed_m_per_s);
-
 /// A perturbation that goes with exp(i k x + s t), k > 0.
 struct Mode {
   std::complex<double> s_per_s;

@@ -221,21 +221,6 @@ INSTANTIATE_TEST_SUITE_P(Laws, LayerByElements,
                                          LayerCase{"slip_weakening", 2, 0.8, 0, -6, 0, 0.01, Relaxed::none}),
                          [](const auto& instance) { return instance.param.name; });
 
-TEST(Slope, MatchesTheLawsOwn) {
-  // Differences of doubles, extrapolated: about ten digits.
-  const interface::VelocityWeakening law;
-  const double rate = std::sqrt((law.mu_s - law.mu_k) / law.alpha_m2_per_s2);
-  for (const double v : {0.0, 0.01, 0.3, 2.0}) {
-    const double slope = -(law.mu_s - law.mu_k) * rate * std::exp(-v * rate);
-    EXPECT_NEAR(coefficient_slope_s_per_m(law, v), slope, 1e-8 * std::abs(slope)) << v;
-  }
-  interface::VelocityWeakening steep;
-  steep.alpha_m2_per_s2 = 1e-8;
-  const double slope = -0.7 * std::sqrt(0.7e8);
-  EXPECT_NEAR(coefficient_slope_s_per_m(steep, 0), slope, 1e-8 * -slope);
-  EXPECT_EQ(coefficient_slope_s_per_m(interface::Coulomb{}, 0.1), 0);
-}
-
 TEST(UniformSliding, TakesTheRateAtTheSpeed) {
   const interface::Regularisation delay { Relaxed::pressure, 1e-6, 0.5, 4e-6 };
   const auto s = uniform_sliding(interface::Coulomb{0.7}, 0.25, 2e6, delay);
