@@ -16,7 +16,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce quick bench docs format format-check tidy sanitize coverage clean
+.PHONY: help setup build test reproduce quick bench docs format format-check verify tidy sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -51,6 +51,9 @@ reproduce: build $(VENV)/.installed  ## everything behind the paper: runs, score
 quick: build $(VENV)/.installed  ## the same in a second, on a coarse mesh, into results-quick/
 	$(PROGRAM) reproduce --quick -o $(RESULTS)-quick --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-quick
+
+verify: build  ## the long checks: the energy balance over a million steps
+	build/release/test_solve --gtest_also_run_disabled_tests --gtest_filter='*Million*'
 
 bench: build  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench

@@ -39,6 +39,11 @@ void add_reproduce(CLI::App& app) {
   command->add_option("-o,--output", *dir, "Folder for the results")->type_name("DIR")->capture_default_str();
   command->add_flag("--quick", options->quick,
                     "Elements of 2 mm and fewer studies: a second instead of half a minute");
+  command
+      ->add_flag("--regularised", options->regularised,
+                 "Studies of friction that responds to pressure with a delay, over the element size and the "
+                 "delay, in place of the paper's")
+      ->excludes("--quick");
   command->add_flag("--overwrite", options->overwrite, "Replace the results that the folder already holds");
   command
       ->add_option("--experiment", *experiment,

@@ -142,4 +142,59 @@ std::vector<Study> studies(bool quick) {
   return list;
 }
 
+std::vector<Study> regularised_studies() {
+  using enum interface::EventKind;
+  using interface::Relaxed;
+  const std::vector<interface::EventKind> all = {spontaneous, left, right};
+  std::vector<Study> list;
+
+  const auto over_meshes = [&](const char* name, const char* why, const Change& change) {
+    Study study{name, "plate.element_size_m", why, {}};
+    study.own_reference = true;
+    for (const int n : {600, 300, 150, 100})
+      study.points.push_back(
+          make_point(fmt::format("{:.3g}", width_m / n), width_m / n, false, all, [&](io::Case& c) {
+            c.plate.element_size_m = width_m / n;
+            change(c);
+          }));
+    list.push_back(std::move(study));
+  };
+  const auto delayed = [](Relaxed what, double time_s) {
+    return [=](io::Case& c) {
+      c.regularisation.relaxed = what;
+      c.regularisation.time_s = time_s;
+    };
+  };
+  over_meshes("element_size", "the paper's law, without a length scale", [](io::Case&) {});
+  over_meshes("element_size_strength", "strength relaxed over 0.5 us", delayed(Relaxed::strength, 0.5e-6));
+  over_meshes("element_size_pressure", "pressure relaxed over 0.5 us", delayed(Relaxed::pressure, 0.5e-6));
+  over_meshes("element_size_strength_undamped", "strength relaxed over 0.5 us, no bulk damping",
+              [&](io::Case& c) {
+                delayed(Relaxed::strength, 0.5e-6)(c);
+                c.material.stiffness_damping_s = 0;
+              });
+
+  const auto over_times = [&](const char* name, const char* why, Relaxed what) {
+    Study study{name, "friction.relaxation_time_s", why, {}};
+    study.own_reference = true;
+    for (const double t : {0.02e-6, 0.05e-6, 0.1e-6, 0.2e-6, 0.5e-6, 1e-6, 2e-6})
+      study.points.push_back(make_point(fmt::format("{:g}", t), t, false, all, delayed(what, t)));
+    list.push_back(std::move(study));
+  };
+  over_times("relaxation_time_strength", "strength relaxed at a constant rate", Relaxed::strength);
+  over_times("relaxation_time_pressure", "pressure relaxed at a constant rate", Relaxed::pressure);
+
+  Study length{"relaxation_length_strength",
+               "friction.relaxation_length_m",
+               "strength relaxed at the rate (|v| + 0.1 m/s)/L",
+               {}};
+  length.own_reference = true;
+  for (const double l : {0.01e-6, 0.03e-6, 0.1e-6, 0.3e-6, 1e-6, 3e-6})
+    length.points.push_back(make_point(fmt::format("{:g}", l), l, false, all, [&](io::Case& c) {
+      c.regularisation = {Relaxed::strength, l, 0.1, std::numeric_limits<double>::infinity()};
+    }));
+  list.push_back(std::move(length));
+  return list;
+}
+
 }  // namespace slipfront::paper

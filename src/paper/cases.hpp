@@ -38,4 +38,9 @@ struct Study {
 /// method. `quick`: the friction and mesh studies alone, with elements of 2 mm and, for the mesh, 4 and 2 mm.
 std::vector<Study> studies(bool quick);
 
+/// What becomes of the paper's events when friction responds to pressure with a delay: over the element size
+/// without and with it, over the relaxation time and length. Changes are counted from each study's first
+/// point: the finest mesh, the shortest delay.
+std::vector<Study> regularised_studies();
+
 }  // namespace slipfront::paper

@@ -133,7 +133,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   for (const char* name : {"scorecard.json", "analysis.json", "timings.json"})
     std::filesystem::remove(options.dir / name);
   const auto events = paper_cases(options.quick);
-  const auto study_list = studies(options.quick);
+  const auto study_list = options.regularised ? regularised_studies() : studies(options.quick);
 
   // All study runs as one list, so that the machine is busy to the end.
   std::vector<NamedCase> study_cases;

@@ -17,8 +17,8 @@ struct Energies {
   double friction_work = 0;  ///< of the tangential traction; negative where it dissipates
   double contact_work = 0;   ///< of the pressure: kinetic energy lost where a gap closes, negative
   double damping_work = 0;   ///< of the stiffness damping
-  /// Of the coarse cells' force on nodes that move in sub-steps, beyond what these cells store; it stays
-  /// bounded.
+  /// Of the coarse cells' force on nodes that move in sub-steps, beyond what these cells store. Bounded where
+  /// nothing dissipates.
   double coupling_work = 0;
 
   double stored() const { return kinetic + strain; }
