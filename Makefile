@@ -16,7 +16,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce quick bench docs format format-check verify tidy sanitize coverage clean
+.PHONY: help setup build test reproduce quick regularised bench docs format format-check verify tidy sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -58,6 +58,10 @@ verify: build  ## the long checks: the energy balance over a million steps
 bench: build  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench
 
+regularised: build $(VENV)/.installed  ## the same events with friction that has a length scale, into results-regularised/
+	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-regularised
+
 docs: reproduce  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
 	$(PYTHON) scripts/scorecard-page.py $(RESULTS) docs/scorecard.md
@@ -94,4 +98,4 @@ coverage: packages  ## lines of the numerical core that the C++ tests run: table
 	@scripts/run-coverage build/coverage
 
 clean:  ## remove build, venv and results
-	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick
+	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick $(RESULTS)-regularised
