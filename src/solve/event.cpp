@@ -107,7 +107,7 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   const auto take_snapshots = [&] {
     while (next_snapshot < sampling.snapshot_times_s.size() &&
            stepper.time_s() >= sampling.snapshot_times_s[next_snapshot]) {
-      event.snapshots.push_back({stepper.time_s(), stepper.u_m(), stepper.v_m_per_s()});
+      event.snapshots.push_back({stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()});
       ++next_snapshot;
     }
   };

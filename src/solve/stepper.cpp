@@ -485,6 +485,18 @@ void Stepper::append_sample(fronts::History& history) const {
   append(history.p_Pa, interface_.p_Pa);
 }
 
+solid::Field Stepper::mean_velocity_m_per_s() const {
+  solid::Field v = v_;
+  for (const auto& level : levels_) {
+    const auto& s = level.shared;
+    for (std::size_t k = 0; k < s.node.size(); ++k) {
+      v.x[s.node[k]] = (u_.x[s.node[k]] - s.u_before_m.x[k]) / level.step_s;
+      v.y[s.node[k]] = (u_.y[s.node[k]] - s.u_before_m.y[k]) / level.step_s;
+    }
+  }
+  return v;
+}
+
 double Stepper::kinetic_energy_J_per_m() const {
   return solid::kinetic_energy_J_per_m(plate_, v_);
 }

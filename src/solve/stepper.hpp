@@ -58,6 +58,9 @@ class Stepper {
   std::int64_t step() const { return step_; }
   const solid::Field& u_m() const { return u_; }
   const solid::Field& v_m_per_s() const { return v_; }
+  /// The same with the mean velocity over the last step at nodes between sub-cycled and other cells, which
+  /// the pushes set swinging within the step.
+  solid::Field mean_velocity_m_per_s() const;
   const interface::Interface& interface_state() const { return interface_; }
 
   double energy_J_per_m() const;  ///< strain and kinetic, each of its own instant
