@@ -43,8 +43,9 @@ constexpr std::array<Column, 4> matrices = {{
 }};
 
 /// What a run writes.
-constexpr std::array<const char*, 6> result_files = {"case.resolved.toml", "run.json",   "interface.h5",
-                                                     "fronts.csv",         "static.csv", "fields.vtkhdf"};
+constexpr std::array<const char*, 7> result_files = {"case.resolved.toml", "run.json",   "interface.h5",
+                                                     "fronts.csv",         "static.csv", "energy.csv",
+                                                     "fields.vtkhdf"};
 
 void write_column(const hdf5::File& file, const Column& column, const History& history,
                   const hdf5::Shape& shape) {
@@ -169,6 +170,18 @@ void write_static(const std::filesystem::path& file, const fronts::StaticState& 
   std::string text = "x_m,t_s_Pa,p_s_Pa\n";
   for (std::size_t i = 0; i < state.x_m.size(); ++i)
     text += fmt::format("{},{},{}\n", field(state.x_m[i]), field(state.t_s_Pa[i]), field(state.p_s_Pa[i]));
+  write_text(file, text);
+}
+
+void write_energies(const std::filesystem::path& file, std::span<const solve::Energies> energies) {
+  std::string text =
+      "time_s,strain_J_per_m,kinetic_J_per_m,top_work_J_per_m,trigger_work_J_per_m,friction_work_J_per_m,"
+      "contact_work_J_per_m,damping_work_J_per_m,coupling_work_J_per_m,imbalance_J_per_m\n";
+  for (const auto& e : energies)
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", field(e.time_s), field(e.strain), field(e.kinetic),
+                        field(e.top_work), field(e.trigger_work), field(e.friction_work),
+                        field(e.contact_work), field(e.damping_work), field(e.coupling_work),
+                        field(solve::imbalance_J_per_m(e, energies.front())));
   write_text(file, text);
 }
 

@@ -11,6 +11,7 @@
 #include "fronts/front.hpp"
 #include "fronts/record.hpp"
 #include "mesh/mesh.hpp"
+#include "solve/energies.hpp"
 
 namespace slipfront::io {
 
@@ -44,6 +45,10 @@ void write_static(const std::filesystem::path& file, const fronts::StaticState& 
 /// p_r_Pa, U_s_J_per_m3, U_r_J_per_m3, a row per front and node in the order of travel; what is undefined is
 /// left empty.
 void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts);
+
+/// energy.csv: time_s, the terms of solve::Energies with their unit, and imbalance_J_per_m, a row per
+/// instant; the first is the start.
+void write_energies(const std::filesystem::path& file, std::span<const solve::Energies> energies);
 
 /// Whole-plate fields at one instant. [nodes]
 struct Snapshot {

@@ -131,6 +131,7 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
       config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
 
   solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), config.time);
+  stepper.set_damping_work(config.output.damping_work);
   stepper.start(state, top_speed_m_per_s(config));
   stepper.set_trigger(config.trigger,
                       solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger, mu_s));
@@ -141,10 +142,11 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
   const auto start = Clock::now();
   const bool triggered =
       config.event == interface::EventKind::left || config.event == interface::EventKind::right;
-  result.event = solve::run_event(stepper, state, mu_s, result.speeds.c_L,
-                                  triggered ? config.trigger : interface::Trigger{.ramp_s = 0}, config.time,
-                                  {config.output.history_interval_s, config.output.snapshot_times_s},
-                                  solve::halo_for(initial.mesh, config.fronts.l_star_m), monitor);
+  result.event = solve::run_event(
+      stepper, state, mu_s, result.speeds.c_L, triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
+      config.time,
+      {config.output.history_interval_s, config.output.energy_interval_s, config.output.snapshot_times_s},
+      solve::halo_for(initial.mesh, config.fronts.l_star_m), monitor);
   result.stepping_wall_s = seconds_since(start);
 
   result.fronts =

@@ -101,6 +101,7 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   io::write_static(dir / "static.csv", initial.common.tractions);
   io::write_history(dir / "interface.h5", event.history);
   io::write_fronts(dir / "fronts.csv", result.fronts);
+  io::write_energies(dir / "energy.csv", event.energies);
   if (!event.snapshots.empty()) {
     std::vector<io::Snapshot> snapshots;
     for (const auto& s : event.snapshots)

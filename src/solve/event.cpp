@@ -11,7 +11,9 @@ namespace slipfront::solve {
 
 namespace {
 
-constexpr std::int64_t check_interval = 50;
+constexpr std::int64_t monitor_interval = 50;
+/// Most steps between two looks at the energy.
+constexpr std::int64_t energy_check_interval = 100;
 
 /// Nodes at the edges creep along with the loading; slip that is no faster than this multiple of the top's
 /// speed does not keep an event going.
@@ -20,29 +22,25 @@ constexpr double creep_over_top_speed = 10;
 /// Watches that the motion stays physical.
 class Watch {
  public:
-  Watch(Stepper& stepper, double c_L) : stepper_(stepper), c_L_(c_L), energies_{stepper.energies()} {}
+  Watch(Stepper& stepper, double c_L) : stepper_(stepper), c_L_(c_L), start_(stepper.energies()) {}
 
-  /// At the start, every check_interval steps, and where `now` was called.
-  const std::vector<Energies>& energies() const { return energies_; }
-
-  const Energies& now() {
-    if (stepper_.time_s() > energies_.back().time_s) energies_.push_back(stepper_.energies());
-    return energies_.back();
-  }
+  const Energies& start() const { return start_; }
 
   /// Empty, or what is wrong with the motion.
-  std::string trouble() {
+  /// @param known  energies that were taken after this step for another purpose; null for none
+  std::string trouble(const Energies* known) {
     double fastest = 0;
     for (const double v : stepper_.interface_state().slip_rate_m_per_s) {
       if (!std::isfinite(v)) return "the slip rate is not a number";
       fastest = std::max(fastest, std::abs(v));
     }
     if (fastest > c_L_) return fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", fastest);
-    if (stepper_.step() % check_interval != 0) return {};
-    const Energies& e = now();
+    if (known == nullptr && stepper_.step() - checked_step_ < energy_check_interval) return {};
+    checked_step_ = stepper_.step();
+    const Energies e = known != nullptr ? *known : stepper_.energies_but_damping();
     const double total = e.stored();
     if (!std::isfinite(total)) return "the energy is not a number";
-    const double supplied = energies_.front().stored() + std::abs(e.top_work) + std::abs(e.trigger_work);
+    const double supplied = start_.stored() + std::abs(e.top_work) + std::abs(e.trigger_work);
     if (total > 1.01 * supplied)
       return fmt::format("the energy has grown to {:.4g} J/m with {:.4g} J/m supplied", total, supplied);
     return {};
@@ -51,7 +49,8 @@ class Watch {
  private:
   Stepper& stepper_;
   double c_L_;
-  std::vector<Energies> energies_;
+  Energies start_;
+  std::int64_t checked_step_ = 0;
 };
 
 std::string blow_up_message(const Stepper& stepper, const std::string& trouble) {
@@ -102,7 +101,9 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
                     steps, stepper.step_s());
   const auto n_steps = static_cast<std::int64_t>(steps);
   const double sample_interval = std::max(sampling.history_interval_s, stepper.step_s());
-  std::int64_t n_samples = 0;
+  const double energy_interval = std::max(sampling.energy_interval_s, stepper.step_s());
+  event.energies.push_back(watch.start());
+  std::int64_t n_samples = 0, n_energies = 1;
   std::size_t next_snapshot = 0;
   const auto take_snapshots = [&] {
     while (next_snapshot < sampling.snapshot_times_s.size() &&
@@ -116,7 +117,12 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
     const bool sample = stepper.time_s() >= static_cast<double>(n_samples) * sample_interval;
     if (sample) n_samples = static_cast<std::int64_t>(stepper.time_s() / sample_interval) + 1;
     stepper.advance(recorder, sample ? &event.history : nullptr);
-    if (auto trouble = watch.trouble(); !trouble.empty()) {
+    const bool energies = stepper.time_s() >= static_cast<double>(n_energies) * energy_interval;
+    if (energies) {
+      n_energies = static_cast<std::int64_t>(stepper.time_s() / energy_interval) + 1;
+      event.energies.push_back(stepper.energies());
+    }
+    if (auto trouble = watch.trouble(energies ? &event.energies.back() : nullptr); !trouble.empty()) {
       event.end = EventEnd::blow_up;
       event.blow_up = blow_up_message(stepper, trouble);
       break;
@@ -125,7 +131,7 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
       event.end = EventEnd::quiet;
       break;
     }
-    if (stepper.step() % check_interval == 0 && !monitor(stepper.step(), n_steps)) {
+    if (stepper.step() % monitor_interval == 0 && !monitor(stepper.step(), n_steps)) {
       event.end = EventEnd::interrupted;
       break;
     }
@@ -133,8 +139,7 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   take_snapshots();
   event.steps = stepper.step();
   event.time_s = stepper.time_s();
-  watch.now();
-  event.energies = watch.energies();
+  if (event.energies.back().time_s < event.time_s) event.energies.push_back(stepper.energies());
   event.record = recorder.take(event.time_s);
   return event;
 }
@@ -195,7 +200,8 @@ Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loadin
   for (;;) {
     stepper.advance(recorder);
     const double peak = peak_now();
-    if (auto trouble = watch.trouble(); !trouble.empty()) throw BlowUp(blow_up_message(stepper, trouble));
+    if (auto trouble = watch.trouble(nullptr); !trouble.empty())
+      throw BlowUp(blow_up_message(stepper, trouble));
     if (!have_common && peak >= mu_s * (1 - loading.critical_margin)) {
       ramp.common = state_now();
       have_common = true;

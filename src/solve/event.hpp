@@ -18,6 +18,7 @@ using Monitor = std::function<bool(std::int64_t step, std::int64_t total)>;
 /// What to keep of an event besides its onsets.
 struct Sampling {
   double history_interval_s = 0.5e-6;
+  double energy_interval_s = 20e-6;
   std::vector<double> snapshot_times_s;  ///< ascending
 };
 
@@ -40,7 +41,7 @@ struct Event {
   fronts::SlipRecord record;
   fronts::History history;
   std::vector<Snapshot> snapshots;
-  std::vector<Energies> energies;  ///< at the start, every 50 steps, and at the end
+  std::vector<Energies> energies;  ///< at the start, at the given interval, and at the end
 };
 
 /// Trigger forces on the interface nodes: amount (mu_s p_s - t_s) over the zone next to an edge of contact, N
@@ -52,8 +53,9 @@ std::vector<double> trigger_forces(const Equilibrium& state, std::span<const dou
 int halo_for(const mesh::Mesh& mesh, double l_star_m);
 
 /// Steps a started stepper until the end time, or until no node has slipped for time.quiet_s after the
-/// trigger's ramp. Every 50 steps the motion is checked: numbers finite, slip rates below c_L, and energy not
-/// above what there was at the start plus what the loaded edge and the trigger have added, by more than 1 %.
+/// trigger's ramp. The motion is checked: in every step numbers finite and slip rates below c_L, with each of
+/// the energies and at least every 100 steps energy not above what there was at the start plus what the
+/// loaded edge and the trigger have added, by more than 1 %.
 Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L_m_per_s,
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
                 int halo, const Monitor& monitor);

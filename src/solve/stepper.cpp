@@ -390,11 +390,10 @@ void Stepper::add_coupling_work(Level& level) {
   }
 }
 
-Energies Stepper::energies() {
+Energies Stepper::energies_but_damping() {
   Energies e = works_;
   e.time_s = time_s();
   e.kinetic = kinetic_energy_J_per_m();
-  double power = 0;
   for (auto& level : levels_) {
     exchange_velocities(level);
     // 1/2 u K u' between the level's last two places.
@@ -402,9 +401,20 @@ Energies Stepper::energies() {
     e.strain += 0.5 * inner_product(level, scratch_, u_, u_) -
                 0.5 * level.step_s * inner_product(level, scratch_, u_, v_);
     e.coupling_work += coupling_work(level);
-    if (damping_s_ > 0 && damping_work_ == DampingWork::every_step) {
+    restore_velocities(level);
+  }
+  return e;
+}
+
+Energies Stepper::energies() {
+  Energies e = energies_but_damping();
+  if (damping_s_ == 0) return e;
+  double power = 0;
+  for (auto& level : levels_) {
+    exchange_velocities(level);
+    if (damping_work_ == DampingWork::every_step) {
       if (level.damping_a.size() > 0) e.damping_work += damping_work(level);
-    } else if (damping_s_ > 0) {
+    } else {
       stiffness_product(level, v_, scratch_);
       power -= damping_s_ * inner_product(level, scratch_, v_, v_);
     }

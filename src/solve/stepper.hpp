@@ -70,6 +70,8 @@ class Stepper {
   void set_damping_work(DampingWork how) { damping_work_ = how; }
   /// Energies and works up to the last half (sub-)step.
   Energies energies();
+  /// The same without a new sample of the damping's power, at half the cost: damping_work is incomplete.
+  Energies energies_but_damping();
 
  private:
   /// Nodes between a level and the next finer one, which moves them.

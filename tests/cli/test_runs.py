@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-FILES = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv"}
+FILES = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
 
 
 def with_end(end_s):
@@ -79,6 +79,21 @@ def test_fronts_file_has_its_columns(program, coarse, tmp_path):
         assert row["direction"] in ("1", "-1")
         if row["t_r_Pa"] and row["p_r_Pa"]:  # at the onset t = mu_s p
             assert abs(float(row["t_r_Pa"])) == pytest.approx(1.3 * float(row["p_r_Pa"]), rel=1e-12)
+
+
+def test_energies_balance(program, coarse, tmp_path):
+    keys = ("--set", "output.damping_work=every_step", "--set", "output.energy_interval_s=5e-6")
+    assert program("run", coarse, "-o", "out", "-q", *keys).returncode == 0
+    with open(tmp_path / "out/energy.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert ",".join(rows[0]) == (
+        "time_s,strain_J_per_m,kinetic_J_per_m,top_work_J_per_m,trigger_work_J_per_m,friction_work_J_per_m,"
+        "contact_work_J_per_m,damping_work_J_per_m,coupling_work_J_per_m,imbalance_J_per_m"
+    )
+    assert len(rows) > 5
+    assert float(rows[-1]["time_s"]) == summary(tmp_path / "out")["time_s"]
+    largest = max(abs(float(row[name])) for row in rows for name in row if name.endswith("_J_per_m"))
+    assert max(abs(float(row["imbalance_J_per_m"])) for row in rows) < 1e-10 * largest
 
 
 def test_history_is_hdf5_with_units(program, coarse, tmp_path):

@@ -81,7 +81,7 @@ TEST(OutputFolder, IsRefusedWhereItHoldsAnything) {
 TEST(OutputFolder, OverwriteRemovesTheResultsAndNothingElse) {
   const test::TemporaryFolder folder;
   for (const char* name : {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv",
-                           "fields.vtkhdf", "notes.txt", "old.interface.h5"})
+                           "energy.csv", "energy.csv", "fields.vtkhdf", "notes.txt", "old.interface.h5"})
     test::write_file(folder / name, "x");
   std::filesystem::create_directory(folder / "figures");
   test::write_file(folder / "figures" / "fronts.csv", "x");

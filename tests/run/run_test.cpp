@@ -287,6 +287,37 @@ TEST(Event, HistoryRowsKeepTheirSpacing) {
   }
 }
 
+TEST(Event, EnergiesKeepTheirSpacingAndBalance) {
+  auto config = coarse_case(EventKind::left);
+  config.output.energy_interval_s = 10e-6;
+  config.output.damping_work = solve::DampingWork::every_step;
+  const auto result = run(config);
+  const auto& energies = result.event.energies;
+  ASSERT_GT(energies.size(), 5U);
+  EXPECT_EQ(energies.front().time_s, 0);
+  EXPECT_EQ(energies.back().time_s, result.event.time_s);
+  double largest = 0, worst = 0;
+  for (std::size_t k = 0; k < energies.size(); ++k) {
+    const auto& e = energies[k];
+    if (k + 1 < energies.size()) {
+      EXPECT_GE(e.time_s, static_cast<double>(k) * 10e-6 * (1 - 1e-12));
+      EXPECT_LT(e.time_s, static_cast<double>(k) * 10e-6 + result.step_s);
+    }
+    for (const double term : {e.strain, e.kinetic, e.top_work, e.trigger_work, e.friction_work})
+      largest = std::max(largest, std::abs(term));
+    worst = std::max(worst, std::abs(solve::imbalance_J_per_m(e, energies.front())));
+  }
+  EXPECT_LT(energies.back().damping_work, 0);
+  // Rounding alone: a few hundred steps' sums of 1e3 terms at 1e-16 stay far below this.
+  EXPECT_LT(worst, 1e-10 * largest);
+  // Samples of the power leave an error in the damping's work, and change nothing else.
+  config.output.damping_work = solve::DampingWork::sampled;
+  const auto sampled = run(config).event.energies.back();
+  EXPECT_EQ(sampled.strain, energies.back().strain);
+  EXPECT_EQ(sampled.friction_work, energies.back().friction_work);
+  EXPECT_NE(sampled.damping_work, energies.back().damping_work);
+}
+
 TEST(Event, InterruptionKeepsWhatThereIs) {
   auto config = coarse_case();
   config.time.quiet_s = std::numeric_limits<double>::infinity();

@@ -79,7 +79,7 @@ void expect_field(const std::string& field, double value) {
 TEST_F(WrittenRun, HasTheFilesByTheirNames) {
   EXPECT_THAT(names_in(s.folder.path()),
               testing::UnorderedElementsAre("case.resolved.toml", "run.json", "interface.h5", "fronts.csv",
-                                            "static.csv", "fields.vtkhdf"));
+                                            "static.csv", "energy.csv", "fields.vtkhdf"));
 }
 
 TEST_F(WrittenRun, WithoutSnapshotsHasNoFields) {
@@ -89,7 +89,26 @@ TEST_F(WrittenRun, WithoutSnapshotsHasNoFields) {
   write(folder.path(), result, s.initial);
   EXPECT_THAT(names_in(folder.path()),
               testing::UnorderedElementsAre("case.resolved.toml", "run.json", "interface.h5", "fronts.csv",
-                                            "static.csv"));
+                                            "static.csv", "energy.csv"));
+}
+
+TEST_F(WrittenRun, EnergiesAreARowPerInstant) {
+  const auto rows = rows_of(text("energy.csv"));
+  const auto& energies = s.result.event.energies;
+  ASSERT_EQ(rows.size(), energies.size() + 1);
+  ASSERT_GT(energies.size(), 3U);
+  EXPECT_EQ(rows[0].front(), "time_s");
+  EXPECT_EQ(rows[0].back(), "imbalance_J_per_m");
+  for (std::size_t k = 0; k < energies.size(); ++k) {
+    const auto& e = energies[k];
+    const std::vector<double> values = {e.time_s,        e.strain,
+                                        e.kinetic,       e.top_work,
+                                        e.trigger_work,  e.friction_work,
+                                        e.contact_work,  e.damping_work,
+                                        e.coupling_work, e.stored() - energies[0].stored() - e.work()};
+    ASSERT_EQ(rows[k + 1].size(), values.size());
+    for (std::size_t c = 0; c < values.size(); ++c) expect_field(rows[k + 1][c], values[c]);
+  }
 }
 
 TEST_F(WrittenRun, ResolvedCaseReadsBackToTheSameCase) {
