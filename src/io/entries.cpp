@@ -298,7 +298,7 @@ std::vector<Entry> make_common_entries() {
       word<DampingWork>("output.damping_work", at(&Case::output, &Output::damping_work),
                         {{"sampled", DampingWork::sampled}, {"every_step", DampingWork::every_step}},
                         "work of the damping: from its power at the times of energy.csv, or exact from every "
-                        "step, which makes the run about eight times as long"),
+                        "step, which about doubles the time of a run"),
   };
 }
 

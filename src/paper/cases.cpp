@@ -168,11 +168,10 @@ std::vector<Study> regularised_studies() {
   over_meshes("element_size", "the paper's law, without a length scale", [](io::Case&) {});
   over_meshes("element_size_strength", "strength relaxed over 0.5 us", delayed(Relaxed::strength, 0.5e-6));
   over_meshes("element_size_pressure", "pressure relaxed over 0.5 us", delayed(Relaxed::pressure, 0.5e-6));
-  over_meshes("element_size_undamped", "strength relaxed over 0.5 us, no bulk damping",
-              [&](io::Case& c) {
-                delayed(Relaxed::strength, 0.5e-6)(c);
-                c.material.stiffness_damping_s = 0;
-              });
+  over_meshes("element_size_undamped", "strength relaxed over 0.5 us, no bulk damping", [&](io::Case& c) {
+    delayed(Relaxed::strength, 0.5e-6)(c);
+    c.material.stiffness_damping_s = 0;
+  });
 
   const auto over_times = [&](const char* name, const char* why, Relaxed what) {
     Study study{name, "friction.relaxation_time_s", why, {}};

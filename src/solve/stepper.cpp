@@ -116,6 +116,9 @@ void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& materi
       level.takes_push.push_back(!shared[n]);
       level.moves.push_back(!in_contact[n] && !is_shared[n]);
     }
+    const auto used = [&](auto from, auto to) { return std::find(from, to, true) - from; };
+    level.node_begin = used(in_cells.begin(), in_cells.end());
+    level.node_end = in_cells.size() - used(in_cells.rbegin(), in_cells.rend());
     std::vector<mesh::Node> top;
     for (const auto n : mesh.top)
       if (in_cells[n]) top.push_back(n);
@@ -354,7 +357,8 @@ double Stepper::coupling_work(const Level& level) const {
 double Stepper::inner_product(const Level& level, const solid::Field& a, const solid::Field& w,
                               const solid::Field& z) const {
   double sum = 0;
-  for (std::size_t n = 0; n < z.size(); ++n) sum += plate_.mass_kg[n] * (z.x[n] * a.x[n] + z.y[n] * a.y[n]);
+  for (std::size_t n = level.node_begin; n < level.node_end; ++n)
+    sum += plate_.mass_kg[n] * (z.x[n] * a.x[n] + z.y[n] * a.y[n]);
   solid::for_each_row_product(level.top_rows, w, [&](std::size_t r, double x, double y) {
     sum += z.x[level.top_rows.node[r]] * x + z.y[level.top_rows.node[r]] * y;
   });
@@ -362,8 +366,12 @@ double Stepper::inner_product(const Level& level, const solid::Field& a, const s
 }
 
 void Stepper::stiffness_product(const Level& level, const solid::Field& w, solid::Field& a) const {
-  a.x.assign(w.size(), 0.0);
-  a.y.assign(w.size(), 0.0);
+  a.x.resize(w.size());
+  a.y.resize(w.size());
+  std::fill(a.x.begin() + static_cast<std::ptrdiff_t>(level.node_begin),
+            a.x.begin() + static_cast<std::ptrdiff_t>(level.node_end), 0.0);
+  std::fill(a.y.begin() + static_cast<std::ptrdiff_t>(level.node_begin),
+            a.y.begin() + static_cast<std::ptrdiff_t>(level.node_end), 0.0);
   solid::add_part(plate_, level.part, w, a);
 }
 
@@ -377,7 +385,12 @@ void Stepper::add_damping_work(Level& level) {
   if (damping_s_ == 0) return;
   if (level.damping_a.size() > 0) works_.damping_work += damping_work(level);
   stiffness_product(level, v_, level.damping_a);
-  level.damping_v = v_;
+  level.damping_v.x.resize(v_.size());
+  level.damping_v.y.resize(v_.size());
+  for (std::size_t n = level.node_begin; n < level.node_end; ++n) {
+    level.damping_v.x[n] = v_.x[n];
+    level.damping_v.y[n] = v_.y[n];
+  }
   level.v_K_v = inner_product(level, level.damping_a, v_, v_);
 }
 

@@ -97,7 +97,8 @@ class Stepper {
     std::vector<double> a_x, a_y;  ///< [irregular rows]
     std::vector<mesh::Node> top;   ///< nodes of the loaded edge that move with this level
     Shared shared;
-    solid::BlockRows top_rows;  ///< K of the level's cells, N/m
+    std::size_t node_begin = 0, node_end = 0;  ///< its nodes' numbers lie in this range
+    solid::BlockRows top_rows;                 ///< K of the level's cells, N/m
     // Damping's work: M^-1 K v and v K v at the last push, v the level's velocity.
     solid::Field damping_a, damping_v;
     double v_K_v = 0;

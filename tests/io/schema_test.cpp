@@ -60,8 +60,8 @@ auto members(const FrontSettings& s) {
   return std::tuple(a, b, c, d, e, f);
 }
 auto members(const Output& o) {
-  const auto& [a, b] = o;
-  return std::tuple(a, b);
+  const auto& [a, b, c, d] = o;
+  return std::tuple(a, b, c, d);
 }
 
 /// Members of a friction law, by its own list of parameters.
