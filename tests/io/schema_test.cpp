@@ -189,6 +189,8 @@ pulse_share = 0.1
 trigger_margin_m = 5e-3
 [output]
 history_interval_s = 1e-6
+energy_interval_s = 1e-5
+damping_work = "every_step"
 snapshot_times_s = [1e-5, 2e-5]
 )",
                             "c.toml");
