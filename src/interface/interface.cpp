@@ -9,6 +9,7 @@ namespace slipfront::interface {
 Interface::Interface(std::size_t n)
     : initial_gap_m(n),
       mass_per_length_kg_m2(n),
+      tangential_mass_ratio(n, 1.0),
       intact(n, 1.0),
       v_x_m_per_s(n),
       v_y_m_per_s(n),
@@ -71,7 +72,8 @@ bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
     const double mu_now = weakened(mu(speed, s.slip_m[i]), mu_k, s.intact[i]);
     const double strength = form(mu_now, p, speed, s.relaxed_Pa[i]);
 
-    const double t_stop = s.v_x_m_per_s[i] * impedance;
+    const double impedance_x = impedance * s.tangential_mass_ratio[i];
+    const double t_stop = s.v_x_m_per_s[i] * impedance_x;
     const double demand = std::abs(t_stop);
     // Friction opposes the motion: that of the trial, or, by the predictor, that of a node under way.
     const bool under_way = predicts && rate != 0 && p > 0;
@@ -79,7 +81,7 @@ bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
     const double along = under_way ? std::copysign(1.0, rate) * t_stop : demand;
     const bool slips = !(along <= strength);  // so that a motion that is not a number shows up as a slip rate
     const double t = slips ? std::copysign(strength, direction) : t_stop;
-    const double v_x = slips ? s.v_x_m_per_s[i] - t / impedance : 0.0;
+    const double v_x = slips ? s.v_x_m_per_s[i] - t / impedance_x : 0.0;
     const std::uint8_t slipping = slips && p > 0;
     changed |= static_cast<unsigned>(slipping ^ s.slipping[i]);
 

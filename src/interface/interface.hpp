@@ -37,6 +37,8 @@ struct Interface {
   // Set once.
   std::vector<double> initial_gap_m;          ///< height of the undeformed node above the plane
   std::vector<double> mass_per_length_kg_m2;  ///< lumped mass over tributary length
+  /// Effective mass along x over that along y, mass_per_length_kg_m2: 1 but for nodes with dashpots.
+  std::vector<double> tangential_mass_ratio;
   /// 1 is the full law; mu = mu_k + intact (mu_law - mu_k), so that 0 is a node weakened for good.
   std::vector<double> intact;
   // The motion, gathered from and scattered to the plate.

@@ -173,6 +173,8 @@ std::vector<Entry> make_common_entries() {
   using interface::Trigger;
   using mesh::Corner;
   using mesh::Plate;
+  using mesh::Sides;
+  using mesh::Top;
   using solid::Material;
   using solid::Plane;
   using solve::DampingWork;
@@ -199,6 +201,13 @@ std::vector<Entry> make_common_entries() {
              "height over which the relief's shift of the nodes fades out"),
       number("plate.fillet_radius_m", at(&Case::plate, &Plate::fillet_radius_m), above(0),
              "radius of the fillet's quarter circle"),
+      word<Sides>("plate.sides", at(&Case::plate, &Plate::sides),
+                  {{"free", Sides::free}, {"periodic", Sides::periodic}, {"absorbing", Sides::absorbing}},
+                  "vertical edges: free of traction, the right one identical to the left one, or with "
+                  "dashpots that let waves out; other than free only with plate.corner = none"),
+      word<Top>("plate.top", at(&Case::plate, &Plate::top),
+                {{"loaded", Top::loaded}, {"absorbing", Top::absorbing}},
+                "upper edge: displacements prescribed, or free with dashpots"),
 
       number("material.youngs_modulus_Pa", at(&Case::material, &Material::youngs_modulus_Pa), above(0),
              "Young's modulus E"),

@@ -205,7 +205,10 @@ void write_snapshots(const std::filesystem::path& path, const mesh::Mesh& mesh,
   const auto n_points = static_cast<std::int64_t>(mesh.x_m.size());
   const auto n_cells = static_cast<std::int64_t>(mesh.cells.size());
   std::vector<std::int64_t> connectivity, offsets = {0};
-  for (const mesh::Cell& cell : mesh.cells) {
+  for (mesh::Cell cell : mesh.cells) {
+    // The last column of a periodic plate is drawn with nodes of its own.
+    for (mesh::Node& n : cell)
+      if (mesh.x_m[cell[0]] - mesh.x_m[n] > 0.5 * mesh.period_m && mesh.period_m > 0) n += mesh.grid.columns;
     connectivity.insert(connectivity.end(), cell.begin(), cell.end());
     offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
   }
@@ -252,8 +255,11 @@ void write_snapshots(const std::filesystem::path& path, const mesh::Mesh& mesh,
     hdf5::create(file, dataset, {n_steps * mesh.x_m.size(), 3});
     hdf5::write(file, "/VTKHDF/Steps/PointDataOffsets/" + name, data_offsets, {n_steps});
     for (std::size_t k = 0; k < n_steps; ++k) {
-      const std::vector<double> values = components(snapshots[k]);
+      std::vector<double> values = components(snapshots[k]);
       SLIPFRONT_ASSERT(values.size() == 3 * mesh.x_m.size(), "a snapshot does not fit its mesh");
+      for (int j = 0; mesh.period_m > 0 && j <= mesh.grid.rows; ++j)
+        std::copy_n(values.begin() + 3 * mesh.grid.node(0, j), 3,
+                    values.begin() + 3 * mesh.grid.node(mesh.grid.columns, j));
       hdf5::write_rows(file, dataset, k * mesh.x_m.size(), values);
     }
   };

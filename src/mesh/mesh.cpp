@@ -26,7 +26,18 @@ std::vector<double> tributary_lengths_m(const Mesh& mesh) {
     length_m[i] += half;
     length_m[i + 1] += half;
   }
+  if (mesh.period_m > 0) {
+    const double half = 0.5 * (mesh.x_m[mesh.lower.front()] + mesh.period_m - mesh.x_m[mesh.lower.back()]);
+    length_m.front() += half;
+    length_m.back() += half;
+  }
   return length_m;
+}
+
+double distance_x_m(const Mesh& mesh, Node from, Node to) {
+  const double distance = mesh.x_m[to] - mesh.x_m[from];
+  if (mesh.period_m == 0 || std::abs(distance) < 0.5 * mesh.period_m) return distance;
+  return distance - std::copysign(mesh.period_m, distance);
 }
 
 Quality quality(const Mesh& mesh) {
@@ -40,9 +51,9 @@ Quality quality(const Mesh& mesh) {
       const Node here = cell[corner];
       const Node next = cell[(corner + 1) % 4];
       const Node last = cell[(corner + 3) % 4];
-      const double ax = mesh.x_m[next] - mesh.x_m[here];
+      const double ax = distance_x_m(mesh, here, next);
       const double ay = mesh.y_m[next] - mesh.y_m[here];
-      const double bx = mesh.x_m[last] - mesh.x_m[here];
+      const double bx = distance_x_m(mesh, here, last);
       const double by = mesh.y_m[last] - mesh.y_m[here];
       double angle = std::atan2(ax * by - ay * bx, ax * bx + ay * by);
       if (angle < 0) angle += 2 * pi;  // a reflex corner

@@ -25,6 +25,12 @@ struct Grid {
   Node node(int i, int j) const { return j * stride() + i; }
 };
 
+/// A boundary node that lets waves out: length of its boundary with the normal along x, and along y.
+struct AbsorbingNode {
+  Node node = 0;
+  double side_m = 0, top_m = 0;
+};
+
 /// Nodes, four-node cells and the named node sets of a plate standing on the rigid plane y = 0.
 struct Mesh {
   Grid grid;
@@ -32,7 +38,11 @@ struct Mesh {
   std::vector<double> y_m;  ///< [nodes] up from the rigid plane; the gap of a lower node
   std::vector<Cell> cells;
   std::vector<Node> lower;  ///< candidates for contact, x ascending, rounded corners included
-  std::vector<Node> top;    ///< nodes of the loaded edge, left to right
+  std::vector<Node> top;    ///< nodes of the loaded edge, left to right; none where the top absorbs
+  /// Length after which the plate repeats along x, or 0. Cells of the last column then use the nodes of
+  /// column 0, and the nodes of the right edge are orphans.
+  double period_m = 0;
+  std::vector<AbsorbingNode> absorbing;
 
   Node n_nodes() const { return static_cast<Node>(x_m.size()); }
 };
@@ -40,8 +50,13 @@ struct Mesh {
 /// For each node, whether no cell uses it. Orphans carry no mass and take no part in anything.
 std::vector<bool> orphans(const Mesh& mesh);
 
+/// Distance along x between two nodes of one cell, from the first to the second; the shorter way round where
+/// the plate is periodic.
+double distance_x_m(const Mesh& mesh, Node from, Node to);
+
 /// Length of lower boundary that belongs to each node of `mesh.lower`: half of each adjoining segment,
-/// measured along the arcs' chords. The first and the last node have one segment only. [lower], m.
+/// measured along the arcs' chords. The first and the last node have one segment only, unless the plate is
+/// periodic. [lower], m.
 std::vector<double> tributary_lengths_m(const Mesh& mesh);
 
 /// Smallest and largest interior angle over all cells (degrees), smallest cell side (m).

@@ -150,10 +150,45 @@ void lift_corners(Mesh& mesh, const Plate& plate) {
   }
 }
 
+void join_sides(Mesh& mesh, const Plate& plate) {
+  const Grid& grid = mesh.grid;
+  if (grid.columns < 3)
+    throw UserError("plate.sides = periodic needs three columns of elements or more, not {}", grid.columns);
+  mesh.period_m = plate.width_m;
+  for (int j = 0; j < grid.rows; ++j) {
+    Cell& cell = mesh.cells[static_cast<std::size_t>(j) * grid.columns + grid.columns - 1];
+    cell[1] = grid.node(0, j);
+    cell[2] = grid.node(0, j + 1);
+  }
+  mesh.lower.pop_back();
+  mesh.top.pop_back();
+}
+
+/// Every edge between two nodes gives half of its length to each.
+void absorb(Mesh& mesh, const Plate& plate) {
+  const Grid& grid = mesh.grid;
+  const bool sides = plate.sides == Sides::absorbing, top = plate.top == Top::absorbing;
+  const bool periodic = mesh.period_m > 0;
+  for (int j = 0; j <= grid.rows; ++j)
+    for (int i = 0; i <= grid.columns - (periodic ? 1 : 0); ++i) {
+      AbsorbingNode a{grid.node(i, j)};
+      if (sides && (i == 0 || i == grid.columns) && (top || j < grid.rows))
+        a.side_m = grid.spacing_m * (j == 0 || j == grid.rows ? 0.5 : 1);
+      if (top && j == grid.rows)
+        a.top_m = grid.spacing_m * (!periodic && (i == 0 || i == grid.columns) ? 0.5 : 1);
+      if (a.side_m > 0 || a.top_m > 0) mesh.absorbing.push_back(a);
+    }
+  if (top) mesh.top.clear();
+}
+
 }  // namespace
 
 Mesh make_plate(const Plate& plate) {
   Mesh mesh = make_rectangle(plate);
+  if (plate.sides != Sides::free && plate.corner != Corner::none)
+    throw UserError("plate.sides other than free needs right-angled corners; set plate.corner = \"none\"");
+  if (plate.sides == Sides::periodic) join_sides(mesh, plate);
+  absorb(mesh, plate);
   switch (plate.corner) {
     case Corner::none:
       break;

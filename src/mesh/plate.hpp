@@ -12,6 +12,19 @@ enum class Corner {
   fillet,  ///< a quarter circle of fillet_radius_m
 };
 
+/// The two vertical edges.
+enum class Sides {
+  free,       ///< no traction
+  periodic,   ///< the right edge is the left one
+  absorbing,  ///< waves leave through dashpots
+};
+
+/// The upper edge.
+enum class Top {
+  loaded,     ///< its displacements are prescribed
+  absorbing,  ///< it moves freely, waves leave through dashpots
+};
+
 /// A rectangle on the rigid plane y = 0 with its lower left corner at the origin.
 struct Plate {
   double width_m = 0.2;
@@ -22,6 +35,8 @@ struct Plate {
   double relief_height_m = 0.5e-3;
   double relief_depth_m = 10e-3;  ///< height over which the relief's shift of the nodes fades out
   double fillet_radius_m = 5e-3;
+  Sides sides = Sides::free;  ///< others only with right-angled corners
+  Top top = Top::loaded;
 };
 
 /// Meshes the plate with four-node cells that are squares away from the corners, exact to rounding when the
@@ -33,6 +48,8 @@ struct Plate {
 ///   height may be at most half of the length and half of the depth, so that no angle gets below 36 degrees
 ///   and no cell less high than half an element.
 /// - fillet: a few rows of cells are wrapped around each corner, see fillet.hpp.
+///
+/// Periodic sides need three columns or more.
 ///
 /// @throws UserError for an impossible geometry, naming the quantity to change.
 Mesh make_plate(const Plate& plate);

@@ -45,6 +45,7 @@ Json energy_json(const solve::Energies& e) {
           {"friction_work_J_per_m", e.friction_work},
           {"contact_work_J_per_m", e.contact_work},
           {"damping_work_J_per_m", e.damping_work},
+          {"boundary_work_J_per_m", e.boundary_work},
           {"coupling_work_J_per_m", e.coupling_work}};
 }
 

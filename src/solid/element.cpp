@@ -47,7 +47,7 @@ ShapeAtPoint shape_at(const CellCoordinates& c, double xi, double eta) {
 CellCoordinates cell_coordinates(const mesh::Mesh& mesh, const mesh::Cell& cell) {
   CellCoordinates c{};
   for (int a = 0; a < 4; ++a) {
-    c[2 * a] = mesh.x_m[cell[a]];
+    c[2 * a] = mesh.x_m[cell[0]] + mesh::distance_x_m(mesh, cell[0], cell[a]);
     c[2 * a + 1] = mesh.y_m[cell[a]];
   }
   return c;

@@ -89,7 +89,8 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
                 int halo, const Monitor& monitor) {
   Event event;
-  const double top_speed = stepper.v_m_per_s().x[stepper.plate().top.node.front()];
+  const auto& top = stepper.plate().top.node;
+  const double top_speed = top.empty() ? 0 : stepper.v_m_per_s().x[top.front()];
   Recorder recorder(state, mu_s, halo, creep_over_top_speed * top_speed);
   Watch watch(stepper, c_L);
   event.history.x_m = state.tractions.x_m;

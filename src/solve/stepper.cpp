@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -47,6 +48,7 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
       tributary_m_(mesh::tributary_lengths_m(mesh)),
       v_x_before_(mesh.lower.size()),
       v_y_before_(mesh.lower.size()),
+      v_y_trial_(mesh.lower.size()),
       interface_(mesh.lower.size()),
       trigger_force_N_(mesh.lower.size(), 0.0),
       u_(mesh.n_nodes()),
@@ -56,13 +58,13 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
   require_rows_fit(mesh, time);
   stable_step_s_ = solid::stable_step_s(solid::largest_frequency_rad_per_s(plate_), damping_s_);
   step_s_ = time.step_factor * stable_step_s_;
-  divide_cells(mesh, material, time);
-
   for (std::size_t k = 0; k < lower_.size(); ++k) {
     interface_.initial_gap_m[k] = mesh.y_m[lower_[k]];
     interface_.mass_per_length_kg_m2[k] = plate_.mass_kg[lower_[k]] / tributary_m_[k];
     lower_mass_kg_.push_back(plate_.mass_kg[lower_[k]]);
   }
+  contact_mass_kg_ = lower_mass_kg_;
+  divide_cells(mesh, material, time);
 }
 
 void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& material,
@@ -126,9 +128,44 @@ void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& materi
     level.a_x.resize(irregular.size());
     level.a_y.resize(irregular.size());
   }
+  set_dashpots(mesh, material, level_of_node);
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
     if (level_of_node[n] >= 0 && !plate_.is_top[n])
       node_updates_per_step_ += substeps_ / levels_[level_of_node[n]].period;
+}
+
+void Stepper::set_dashpots(const mesh::Mesh& mesh, const solid::Material& material,
+                           std::span<const int> level_of_node) {
+  const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
+  const auto place = [](const std::vector<mesh::Node>& nodes, mesh::Node n) -> std::optional<std::size_t> {
+    const auto found = std::ranges::find(nodes, n);
+    if (found == nodes.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - nodes.begin());
+  };
+  for (const auto& [n, side_m, top_m] : mesh.absorbing) {
+    const std::size_t l = level_of_node[n];
+    auto& level = levels_[l];
+    const double factor = 0.5 * level.step_s * material.density_kg_per_m3 / plate_.mass_kg[n];
+    Dashpot dashpot{0, n, factor * (c_L * side_m + c_S * top_m), factor * (c_S * side_m + c_L * top_m)};
+    if (const auto i = place(lower_, n)) {
+      dashpot.at = *i;
+      contact_mass_kg_[*i] *= 1 + dashpot.d_y;
+      interface_.mass_per_length_kg_m2[*i] *= 1 + dashpot.d_y;
+      interface_.tangential_mass_ratio[*i] = (1 + dashpot.d_x) / (1 + dashpot.d_y);
+      contact_dashpots_.push_back(dashpot);
+      continue;
+    }
+    if (const auto k = l > 0 ? place(levels_[l - 1].shared.node, n) : std::nullopt) {
+      dashpot.at = *k;
+      levels_[l - 1].shared.dashpots.push_back(dashpot);
+      continue;
+    }
+    const auto row = place(level.part.irregular.node, n);
+    SLIPFRONT_ASSERT(row, "an absorbing node without a block row");
+    dashpot.at = *row;
+    level.takes_push[*row] = false;
+    level.dashpots.push_back(dashpot);
+  }
 }
 
 void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
@@ -210,7 +247,27 @@ void Stepper::compute_irregular(Level& level) {
   }
 }
 
+void Stepper::damp(const Dashpot& dashpot, double before_x, double before_y, double& trial_x,
+                   double& trial_y) {
+  const auto [at, node, d_x, d_y] = dashpot;
+  const double mean_x = 0.5 * (before_x + trial_x) / (1 + d_x);
+  const double mean_y = 0.5 * (before_y + trial_y) / (1 + d_y);
+  trial_x -= 2 * d_x * mean_x;
+  trial_y -= 2 * d_y * mean_y;
+  works_.boundary_work -= 2 * plate_.mass_kg[node] * (d_x * mean_x * mean_x + d_y * mean_y * mean_y);
+}
+
 void Stepper::apply_irregular(const Level& level) {
+  for (const auto& dashpot : level.dashpots) {
+    const auto n = dashpot.node;
+    double v_x = v_.x[n] - level.step_s * level.a_x[dashpot.at];
+    double v_y = v_.y[n] - level.step_s * level.a_y[dashpot.at];
+    damp(dashpot, v_.x[n], v_.y[n], v_x, v_y);
+    v_.x[n] = v_x;
+    v_.y[n] = v_y;
+    u_.x[n] += level.step_s * v_x;
+    u_.y[n] += level.step_s * v_y;
+  }
   const auto& node = level.part.irregular.node;
   for (std::size_t r = 0; r < node.size(); ++r) {
     if (!level.takes_push[r]) continue;
@@ -284,6 +341,16 @@ void Stepper::gather_push(Level& level) {
 
 void Stepper::move_shared(Level& coarser, double dt) {
   auto& s = coarser.shared;
+  for (const auto& dashpot : s.dashpots) {
+    const auto k = dashpot.at;
+    const auto n = dashpot.node;
+    const double kick_x = dt * s.steady_m_per_s2.x[k] + s.push_m_per_s.x[k];
+    const double kick_y = dt * s.steady_m_per_s2.y[k] + s.push_m_per_s.y[k];
+    double v_x = v_.x[n] + kick_x, v_y = v_.y[n] + kick_y;
+    damp(dashpot, s.v_last_m_per_s.x[k], s.v_last_m_per_s.y[k], v_x, v_y);
+    v_.x[n] = v_x - kick_x;
+    v_.y[n] = v_y - kick_y;
+  }
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto n = s.node[k];
     const double kick_x = dt * s.steady_m_per_s2.x[k] + s.push_m_per_s.x[k];
@@ -472,6 +539,12 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
   const double impulse_s = dt * trigger_factor(trigger_, time);
   for (const auto i : trigger_nodes_)
     interface_.v_x_m_per_s[i] += impulse_s * trigger_force_N_[i] / lower_mass_kg_[i];
+  for (const auto& [i, n, d_x, d_y] : contact_dashpots_) {
+    // The contact's tractions act on the effective mass m (1 + d).
+    interface_.v_x_m_per_s[i] = (interface_.v_x_m_per_s[i] - d_x * v_x_before_[i]) / (1 + d_x);
+    interface_.v_y_m_per_s[i] = (interface_.v_y_m_per_s[i] - d_y * v_y_before_[i]) / (1 + d_y);
+  }
+  std::ranges::copy(interface_.v_y_m_per_s, v_y_trial_.begin());
   const bool changed = interface::update_contact(contact_, dt, interface_);
   recorder.observe(time, interface_, changed);
   if (sample != nullptr) append_sample(*sample);
@@ -479,7 +552,7 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
   for (std::size_t i = 0; i < lower_.size(); ++i) {
     const auto n = lower_[i];
     // The impulse from the velocities: a landing by projection has no pressure.
-    contact_work += 0.5 * lower_mass_kg_[i] * (interface_.v_y_m_per_s[i] - v_.y[n]) *
+    contact_work += 0.5 * contact_mass_kg_[i] * (interface_.v_y_m_per_s[i] - v_y_trial_[i]) *
                     (interface_.v_y_m_per_s[i] + v_y_before_[i]);
     v_.x[n] = interface_.v_x_m_per_s[i];
     v_.y[n] = interface_.v_y_m_per_s[i];
@@ -490,6 +563,11 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
   for (std::size_t i = 0; i < lower_.size(); ++i)
     friction_work -=
         0.5 * dt * tributary_m_[i] * interface_.t_Pa[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
+  for (const auto& [i, n, d_x, d_y] : contact_dashpots_) {
+    const double mean_x = 0.5 * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
+    const double mean_y = 0.5 * (interface_.v_y_m_per_s[i] + v_y_before_[i]);
+    works_.boundary_work -= 2 * lower_mass_kg_[i] * (d_x * mean_x * mean_x + d_y * mean_y * mean_y);
+  }
   works_.friction_work += friction_work;
   works_.contact_work += contact_work;
   for (const auto i : trigger_nodes_)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "interface/interface.hpp"
@@ -74,9 +75,17 @@ class Stepper {
   Energies energies_but_damping();
 
  private:
+  /// An absorbing node: with the mass m and the constant c of its dashpot, d = c dt/(2 m), dt the step with
+  /// which it moves; v+ = ((1 - d) v- - dt a)/(1 + d), stable whatever c.
+  struct Dashpot {
+    std::size_t at = 0;  ///< row of the level, shared node, or interface node
+    mesh::Node node = 0;
+    double d_x = 0, d_y = 0;
+  };
   /// Nodes between a level and the next finer one, which moves them.
   struct Shared {
     std::vector<mesh::Node> node;
+    std::vector<Dashpot> dashpots;
     std::vector<std::int32_t> irregular_row;  ///< of the level; -1: in its stencil row
     solid::Field u_before_m;                  ///< place at the level's last push
     solid::Field push_m_per_s;                ///< change of velocity that waits for the next sub-step
@@ -92,7 +101,8 @@ class Stepper {
     double step_s = 0;
     int period = 1;  ///< in steps of the last level
     solid::Part part;
-    std::vector<bool> takes_push;  ///< [irregular rows] not shared with a finer level
+    std::vector<Dashpot> dashpots;
+    std::vector<bool> takes_push;  ///< [irregular rows] not shared with a finer level, no dashpot
     std::vector<bool> moves;       ///< [irregular rows] moved with the level's own push
     std::vector<double> a_x, a_y;  ///< [irregular rows]
     std::vector<mesh::Node> top;   ///< nodes of the loaded edge that move with this level
@@ -106,6 +116,10 @@ class Stepper {
   };
 
   void divide_cells(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time);
+  void set_dashpots(const mesh::Mesh& mesh, const solid::Material& material,
+                    std::span<const int> level_of_node);
+  /// Lets the dashpot act during a kick that alone would lead from `before` to `trial`, and counts its work.
+  void damp(const Dashpot& dashpot, double before_x, double before_y, double& trial_x, double& trial_y);
   /// Forces of a level's cells at their nodes' places, and the moves of the nodes that no finer level has.
   void push(Level& level);
   void compute_irregular(Level& level);
@@ -140,6 +154,9 @@ class Stepper {
   std::vector<mesh::Node> lower_;
   std::vector<double> tributary_m_, v_x_before_, v_y_before_;  ///< [lower]
   std::vector<double> lower_mass_kg_;
+  std::vector<double> contact_mass_kg_;  ///< along y, effective; see Dashpot. [lower]
+  std::vector<double> v_y_trial_;        ///< [lower]
+  std::vector<Dashpot> contact_dashpots_;
   interface::Interface interface_;
   interface::Trigger trigger_;
   std::vector<double> trigger_force_N_;

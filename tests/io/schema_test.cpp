@@ -32,8 +32,8 @@ std::string parse_error(const std::string& text, const std::vector<Override>& ov
 // Structured bindings name every member: one more member of a struct does not compile here until it is
 // listed, which reminds of its entry in the schema.
 auto members(const mesh::Plate& p) {
-  const auto& [a, b, c, d, e, f, g, h] = p;
-  return std::tuple(a, b, c, d, e, f, g, h);
+  const auto& [a, b, c, d, e, f, g, h, i, j] = p;
+  return std::tuple(a, b, c, d, e, f, g, h, i, j);
 }
 auto members(const solid::Material& m) {
   const auto& [a, b, c, d, e] = m;
@@ -97,7 +97,8 @@ void expect_equal(const Case& a, const Case& b) {
 Case changed_case() {
   Case c;
   c.title = "a \"title\" with \\ and\ttab, \xc2\xb5";
-  c.plate = {0.1 + 0.2, 1.0 / 3, 1e-3 / 7, mesh::Corner::fillet, 4e-3, 0.3e-3, 8e-3, 3e-3};
+  c.plate = {0.1 + 0.2, 1.0 / 3, 1e-3 / 7, mesh::Corner::fillet,   4e-3,
+             0.3e-3,    8e-3,    3e-3,     mesh::Sides::absorbing, mesh::Top::absorbing};
   c.material = {1.0e9 / 3, -0.25, 1.1e3, solid::Plane::strain, 0};
   c.loading = {1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, 1e-5, 0, 1e-4};
   c.friction = interface::VelocityWeakening { 1.25, 0.75, 1.0 / 3 };
