@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   slipfront::cli::add_run(app);
   slipfront::cli::add_reproduce(app);
+  slipfront::cli::add_study(app);
   slipfront::cli::add_info(app);
   slipfront::cli::add_bench(app);
   slipfront::cli::add_validate(app);

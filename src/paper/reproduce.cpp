@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paper/reproduce.hpp"
 
-#include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <exception>
-#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <system_error>
-#include <thread>
 
 #include "base/error.hpp"
 #include "io/results.hpp"
 #include "paper/analysis.hpp"
+#include "run/batch.hpp"
 
 namespace slipfront::paper {
 
@@ -21,62 +16,33 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Calls work(k) for k in [0, n) from several threads; the first exception ends it and is thrown here.
-void in_parallel(int threads, std::size_t n, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
-  std::mutex mutex;
-  const auto loop = [&] {
-    for (std::size_t k = next++; k < n; k = next++) {
-      try {
-        work(k);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = n;
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    try {
-      for (std::size_t t = 1; t < std::min(static_cast<std::size_t>(threads), n); ++t)
-        others.emplace_back(loop);
-    } catch (const std::system_error&) {
-      // No more threads to be had: those that are there do the work.
-    }
-    loop();
-  }
-  if (failure) std::rethrow_exception(failure);
-}
-
-/// Runs cases side by side, sharing their initial states.
+/// Runs cases and writes each to its folder.
 class Runner {
  public:
   Runner(const ReproduceOptions& options, const RunMonitor& monitor, std::size_t total)
-      : options_(options), monitor_(monitor), total_(total) {}
+      : options_(options),
+        monitor_(monitor),
+        total_(total),
+        batch_(
+            options.threads, [this] { return wanted({}); },
+            fmt::format("interrupted; the runs that were done are in {}", options.dir.string())) {}
 
-  /// The outcomes, in the order of the cases; every run is written to its folder.
+  /// The outcomes, in the order of the cases.
   std::vector<Outcome> run(const std::vector<NamedCase>& cases) {
-    compute_initial_states(cases);
+    std::vector<io::Case> configs;
+    for (const auto& c : cases) configs.push_back(c.config);
     std::vector<Outcome> outcomes(cases.size());
-    in_parallel(options_.threads, cases.size(), [&](std::size_t k) {
-      const auto& [name, config] = cases[k];
-      const auto& initial = states_.at(run::initial_state_key(config));
-      const auto result = run::run_event(config, initial, continue_while_wanted());
+    batch_.run(configs, [&](std::size_t k, const run::Result& result, const run::InitialState& initial) {
+      const auto& name = cases[k].name;
       io::prepare_output_folder(options_.dir / name, options_.overwrite);
       {
         const std::lock_guard lock(files_);  // HDF5 need not be built for several threads
         run::write(options_.dir / name, result, initial);
+        if (result.event.end == solve::EventEnd::blow_up)
+          blow_ups.push_back(name + ": " + result.event.blow_up);
       }
       outcomes[k] = make_outcome(config_name(name), result, initial);
-      const std::lock_guard lock(mutex_);
-      if (result.event.end == solve::EventEnd::blow_up)
-        blow_ups.push_back(name + ": " + result.event.blow_up);
-      if (!monitor_(++done_, total_, name)) interrupted_ = true;
-      if (interrupted_)
-        throw Interrupted(
-            fmt::format("interrupted; the runs that were done are in {}", options_.dir.string()));
+      wanted(name);
     });
     return outcomes;
   }
@@ -84,21 +50,12 @@ class Runner {
   std::vector<std::string> blow_ups;
 
  private:
-  void compute_initial_states(const std::vector<NamedCase>& cases) {
-    std::vector<std::pair<std::string, const io::Case*>> missing;
-    for (const auto& c : cases) {
-      auto key = run::initial_state_key(c.config);
-      if (states_.contains(key)) continue;
-      states_[key] = {};
-      missing.emplace_back(std::move(key), &c.config);
-    }
-    in_parallel(options_.threads, missing.size(), [&](std::size_t k) {
-      // The statics do not ask by themselves.
-      if (!continue_while_wanted()(0, 0))
-        throw Interrupted(
-            fmt::format("interrupted; the runs that were done are in {}", options_.dir.string()));
-      states_.at(missing[k].first) = run::make_initial_state(*missing[k].second, continue_while_wanted());
-    });
+  /// Tells the monitor, with the name of a run that is done.
+  bool wanted(const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    if (!name.empty()) ++done_;
+    interrupted_ = !monitor_(done_, total_, name) || interrupted_;
+    return !interrupted_;
   }
 
   /// The last part of a study's path names its event.
@@ -106,20 +63,12 @@ class Runner {
     return std::filesystem::path(name).filename().string();
   }
 
-  solve::Monitor continue_while_wanted() {
-    return [this](std::int64_t, std::int64_t) {
-      const std::lock_guard lock(mutex_);
-      interrupted_ = interrupted_ || !monitor_(done_, total_, {});
-      return !interrupted_;
-    };
-  }
-
   const ReproduceOptions& options_;
   const RunMonitor& monitor_;
   std::size_t total_, done_ = 0;
   bool interrupted_ = false;
   std::mutex mutex_, files_;
-  std::map<std::string, run::InitialState> states_;
+  run::Batch batch_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import matplotlib
 
-from slipfront.figures import criteria, events, plate, space_time, studies
+from slipfront.figures import convergence, criteria, events, plate, space_time, studies
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.report import write_report
 from slipfront.figures.results import Results, read_results
@@ -34,9 +34,15 @@ def draw_all(results: Results) -> list[Drawing]:
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.figures",
-        description="Draws the figures (PNG, PDF) and the report (HTML) of a reproduction into DIR/figures.",
+        description="Draws the figures (PNG, PDF) and the report (HTML) of a reproduction, or the figure of a "
+        "convergence study, into DIR/figures.",
     )
-    parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront reproduce`")
+    parser.add_argument(
+        "dir",
+        metavar="DIR",
+        type=Path,
+        help="output folder of `slipfront reproduce` or `slipfront study convergence`",
+    )
     parser.add_argument(
         "--experiment",
         metavar="CSV",
@@ -46,6 +52,13 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     folder = options.dir / "figures"
     try:
+        if (options.dir / "convergence.json").is_file():
+            with matplotlib.rc_context(RC):
+                drawing = convergence.convergence(options.dir)
+                folder.mkdir(exist_ok=True)
+                drawing.save(folder)
+            print(f"figure: {folder / 'convergence.png'} (and PDF)")
+            return 0
         results = read_results(options.dir, options.experiment)
         with matplotlib.rc_context(RC):
             drawings = draw_all(results)

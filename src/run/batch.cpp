@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/batch.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+/// Calls work(k) for k in [0, n) from several threads; the first exception ends it and is thrown here.
+void in_parallel(int threads, std::size_t n, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex mutex;
+  const auto loop = [&] {
+    for (std::size_t k = next++; k < n; k = next++) {
+      try {
+        work(k);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+        next = n;
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (std::size_t t = 1; t < std::min(static_cast<std::size_t>(threads), n); ++t)
+        others.emplace_back(loop);
+    } catch (const std::system_error&) {
+      // No more threads to be had: those that are there do the work.
+    }
+    loop();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+Batch::Batch(int threads, std::function<bool()> go_on, std::string interruption)
+    : threads_(threads), go_on_(std::move(go_on)), interruption_(std::move(interruption)) {}
+
+void Batch::run(std::span<const io::Case> cases, const Done& done) {
+  compute_initial_states(cases);
+  in_parallel(threads_, cases.size(), [&](std::size_t k) {
+    const auto& initial = states_.at(initial_state_key(cases[k]));
+    done(k, run_event(cases[k], initial, monitor()), initial);
+    if (!wanted()) throw Interrupted(interruption_);
+  });
+}
+
+void Batch::compute_initial_states(std::span<const io::Case> cases) {
+  std::vector<std::pair<std::string, const io::Case*>> missing;
+  for (const auto& config : cases) {
+    auto key = initial_state_key(config);
+    if (states_.contains(key)) continue;
+    states_[key] = {};
+    missing.emplace_back(std::move(key), &config);
+  }
+  in_parallel(threads_, missing.size(), [&](std::size_t k) {
+    if (!wanted()) throw Interrupted(interruption_);  // the statics do not ask by themselves
+    states_.at(missing[k].first) = make_initial_state(*missing[k].second, monitor());
+  });
+}
+
+bool Batch::wanted() {
+  const std::lock_guard lock(mutex_);
+  interrupted_ = interrupted_ || !go_on_();
+  return !interrupted_;
+}
+
+solve::Monitor Batch::monitor() {
+  return [this](std::int64_t, std::int64_t) { return wanted(); };
+}
+
+}  // namespace slipfront::run

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "study/convergence.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "fronts/fit.hpp"
+#include "fronts/measures.hpp"
+#include "io/schema.hpp"
+#include "run/batch.hpp"
+
+namespace slipfront::study {
+
+namespace {
+
+bool same(double a, double b) {
+  return std::abs(a - b) <= 1e-9 * std::abs(b);
+}
+
+/// Finds the case's own member and the last three above the limit.
+Plan finish(Plan plan) {
+  std::size_t n_positive = 0;
+  for (std::size_t k = 0; k < plan.members.size(); ++k) {
+    if (plan.members[k].step_size > 0) ++n_positive;
+    if (same(plan.members[k].value, plan.case_value)) plan.own = k;
+  }
+  SLIPFRONT_ASSERT(n_positive >= 3, "a sequence needs three step sizes");
+  std::iota(plan.last.begin(), plan.last.end(), n_positive - 3);
+  return plan;
+}
+
+std::vector<double> element_sizes(const io::Case& config, const ConvergenceOptions& options) {
+  const double h = config.plate.element_size_m;
+  auto sizes = options.element_sizes_m;
+  if (sizes.empty()) sizes = {2 * h, h, h / 2};
+  std::sort(sizes.rbegin(), sizes.rend());
+  sizes.erase(std::unique(sizes.begin(), sizes.end(), same), sizes.end());
+  if (sizes.size() < 3) throw UserError("--element-sizes: give at least three different sizes in m");
+  if (sizes.back() <= 0) throw UserError("--element-sizes: sizes must be above 0 m");
+  if (std::none_of(sizes.begin(), sizes.end(), [&](double s) { return same(s, h); }))
+    throw UserError("--element-sizes: the case's own plate.element_size_m = {:.8g} must be among them", h);
+  return sizes;
+}
+
+Plan element_plan(const io::Case& base, const std::vector<double>& sizes) {
+  Plan plan{"plate.element_size_m", base.plate.element_size_m, {}, {}, 0};
+  for (const double h : sizes) {
+    io::Case c = base;
+    // The case's own size to the last digit: it shares the base run.
+    c.plate.element_size_m = same(h, base.plate.element_size_m) ? base.plate.element_size_m : h;
+    plan.members.push_back({h, h, c});
+  }
+  return finish(std::move(plan));
+}
+
+Plan step_plan(const io::Case& base) {
+  const int n = base.time.interface_substeps;
+  if (n == 1 || base.time.interface_rows == 0) {
+    Plan plan{"time.step_factor", base.time.step_factor, {}, {}, 0};
+    for (const double factor : {1.0, 0.5, 0.25}) {
+      io::Case c = base;
+      c.time.step_factor *= factor;
+      plan.members.push_back({c.time.step_factor, c.time.step_factor, c});
+    }
+    return finish(std::move(plan));
+  }
+  Plan plan{"time.interface_substeps", static_cast<double>(n), {}, {}, 0};
+  for (const int m : {n / 2, n, 2 * n, 4 * n}) {
+    io::Case c = base;
+    c.time.interface_substeps = m;
+    plan.members.push_back({static_cast<double>(m), 1.0 / m, c});
+  }
+  return finish(std::move(plan));
+}
+
+Plan damping_plan(const io::Case& base) {
+  Plan plan{"material.stiffness_damping_s", base.material.stiffness_damping_s, {}, {}, 0};
+  for (const double factor : {2.0, 1.0, 0.5, 0.0}) {
+    io::Case c = base;
+    c.material.stiffness_damping_s *= factor;
+    plan.members.push_back({c.material.stiffness_damping_s, c.material.stiffness_damping_s, c});
+  }
+  return finish(std::move(plan));
+}
+
+/// What is kept of a run.
+struct Fronts {
+  std::vector<fronts::Front> main;  ///< the longest in each direction
+  double from_m = 0, to_m = 0;      ///< outside of trigger zones
+};
+
+std::vector<fronts::Front> main_fronts(const std::vector<fronts::Front>& all) {
+  std::vector<fronts::Front> main;
+  for (const int direction : {-1, 1}) {
+    const fronts::Front* longest = nullptr;
+    for (const auto& front : all)
+      if (front.direction == direction && (!longest || length_m(front) > length_m(*longest)))
+        longest = &front;
+    if (longest) main.push_back(*longest);
+  }
+  return main;
+}
+
+double speed_at(const std::vector<fronts::Front>& main, int direction, double x_m) {
+  for (const auto& front : main)
+    if (front.direction == direction) return v_tip_at(front, x_m);
+  return undefined;
+}
+
+/// Stations where the case itself has a speed.
+std::vector<Station> stations_of(const Fronts& own, double spacing_m) {
+  std::vector<Station> stations;
+  for (const auto& front : own.main) {
+    const double start_m = front.points.front().x_m, end_m = front.points.back().x_m;
+    const auto first = std::llround(std::ceil(std::min(start_m, end_m) / spacing_m));
+    for (auto k = first; static_cast<double>(k) * spacing_m <= std::max(start_m, end_m); ++k) {
+      const double x = static_cast<double>(k) * spacing_m;
+      if (std::abs(x - start_m) < nucleation_m || x < own.from_m || x > own.to_m) continue;
+      if (std::isfinite(v_tip_at(front, x))) stations.push_back({x, front.direction, {}, {}, undefined});
+    }
+  }
+  return stations;
+}
+
+Summary summarise_direction(const std::vector<Station>& stations, const Plan& plan, int direction,
+                            double tolerance) {
+  std::array<double, 3> q{};
+  for (std::size_t k = 0; k < 3; ++k) q[k] = plan.members[plan.last[k]].step_size;
+  std::vector<StationSummary> list;
+  int n_wanted = 0;
+  for (const auto& s : stations) {
+    if (direction != 0 && s.direction != direction) continue;
+    ++n_wanted;
+    const double own = s.v_tip_m_per_s[plan.own];
+    const auto f = [&](std::size_t k) { return s.v_tip_m_per_s[plan.last[k]]; };
+    list.push_back({s.error_m_per_s / own, s.limit.order, std::abs(f(0) - f(1)) / own / std::log(q[0] / q[1]),
+                    std::abs(f(1) - f(2)) / own / std::log(q[1] / q[2])});
+  }
+  return summarise(list, n_wanted, tolerance);
+}
+
+Sequence compare(const Plan& plan, const std::vector<Fronts>& runs, const ConvergenceOptions& options) {
+  Sequence sequence;
+  sequence.plan = plan;
+  const auto& own = runs[plan.members[plan.own].run];
+  sequence.stations = stations_of(own, options.station_spacing_m);
+  std::array<double, 3> q{}, f{};
+  for (std::size_t k = 0; k < 3; ++k) q[k] = plan.members[plan.last[k]].step_size;
+  std::vector<double> at_limit;
+  for (auto& s : sequence.stations) {
+    for (const auto& member : plan.members)
+      s.v_tip_m_per_s.push_back(speed_at(runs[member.run].main, s.direction, s.x_m));
+    for (std::size_t k = 0; k < 3; ++k) f[k] = s.v_tip_m_per_s[plan.last[k]];
+    const double v = s.v_tip_m_per_s[plan.own];
+    s.limit = extrapolate(q, f);
+    s.error_m_per_s = error_of(v, s.limit, f);
+    if (plan.members.back().step_size == 0)
+      at_limit.push_back(std::abs(s.v_tip_m_per_s.back() - s.limit.value) / v);
+  }
+  sequence.relative_difference_at_limit = fronts::median(at_limit);
+  sequence.both = summarise_direction(sequence.stations, plan, 0, options.tolerance);
+  sequence.left = summarise_direction(sequence.stations, plan, -1, options.tolerance);
+  sequence.right = summarise_direction(sequence.stations, plan, 1, options.tolerance);
+  return sequence;
+}
+
+}  // namespace
+
+double v_tip_at(const fronts::Front& front, double x_m) {
+  for (std::size_t k = 0; k + 1 < front.points.size(); ++k) {
+    const auto& a = front.points[k];
+    const auto& b = front.points[k + 1];
+    const double share = (x_m - a.x_m) / (b.x_m - a.x_m);
+    if (share < 0 || share > 1) continue;
+    if (share == 0) return a.v_tip_m_per_s;
+    if (share == 1) return b.v_tip_m_per_s;
+    return a.v_tip_m_per_s + share * (b.v_tip_m_per_s - a.v_tip_m_per_s);
+  }
+  return undefined;
+}
+
+std::vector<Plan> plan_convergence(const io::Case& config, const ConvergenceOptions& options) {
+  const auto sizes = element_sizes(config, options);
+  io::Case base = config;
+  base.fronts.l_star_m = std::max(base.fronts.l_star_m, sizes.front());
+  base.output.history_interval_s = 1e-5;  // histories and fields are not read
+  base.output.snapshot_times_s.clear();
+  std::vector<Plan> plans = {element_plan(base, sizes), step_plan(base)};
+  if (base.material.stiffness_damping_s > 0) plans.push_back(damping_plan(base));
+  return plans;
+}
+
+Convergence study_convergence(const io::Case& config, const ConvergenceOptions& options,
+                              const StudyMonitor& monitor) {
+  auto plans = plan_convergence(config, options);
+  std::vector<io::Case> cases;
+  std::map<std::string, std::size_t> index;
+  const auto add = [&](const io::Case& c) {
+    const auto [it, is_new] = index.try_emplace(io::to_toml(c), cases.size());
+    if (is_new) cases.push_back(c);
+    return it->second;
+  };
+  // The finest mesh takes longest: first.
+  for (auto& plan : plans)
+    for (auto it = plan.members.rbegin(); it != plan.members.rend(); ++it) it->run = add(it->config);
+  for (const auto& c : cases) run::check(c);
+
+  Convergence result;
+  result.options = options;
+  result.l_star_m = cases.front().fronts.l_star_m;
+  result.n_runs = cases.size();
+  std::vector<Fronts> runs(cases.size());
+  std::vector<std::string> blow_ups(cases.size());
+  std::atomic<std::size_t> done = 0;
+  run::Batch batch(
+      options.threads, [&] { return monitor(done, cases.size()); }, "interrupted; nothing was written");
+  batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial) {
+    const auto front_options = run::front_options(cases[k], initial);
+    runs[k].from_m = front_options.exclude_left_m;
+    runs[k].to_m = front_options.exclude_right_m;
+    if (r.event.end == solve::EventEnd::blow_up)
+      blow_ups[k] = r.event.blow_up;
+    else
+      runs[k].main = main_fronts(r.fronts);
+    ++done;
+  });
+  for (const auto& plan : plans) {
+    for (const auto& member : plan.members)
+      if (const auto& what = blow_ups[member.run]; !what.empty())
+        result.warnings.push_back(fmt::format("{} = {:g}: {}", plan.parameter, member.value, what));
+    result.sequences.push_back(compare(plan, runs, options));
+  }
+  return result;
+}
+
+}  // namespace slipfront::study

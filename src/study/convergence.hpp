@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fronts/front.hpp"
+#include "io/case.hpp"
+#include "study/sequence.hpp"
+
+namespace slipfront::study {
+
+struct ConvergenceOptions {
+  std::vector<double> element_sizes_m;  ///< empty: twice, once and half the case's
+  double station_spacing_m = 2e-3;
+  double tolerance = 0.02;  ///< relative error that counts as converged
+  int threads = 1;          ///< runs side by side; each result is the same for any number
+};
+
+/// A run of a sequence.
+struct Member {
+  double value = 0;      ///< of the parameter
+  double step_size = 0;  ///< q of sequence.hpp: falls towards the limit; 0 at the limit itself
+  io::Case config;
+  std::size_t run = 0;  ///< index of its run; sequences share runs
+};
+
+/// The case with one numerical parameter changed.
+struct Plan {
+  std::string parameter;  ///< key of the case file
+  double case_value = 0;
+  std::vector<Member> members;           ///< in the order of falling step size; a limit itself comes last
+  std::array<std::size_t, 3> last = {};  ///< the last three with a step size above 0
+  std::size_t own = 0;                   ///< the case's own
+};
+
+/// Sequences over plate.element_size_m, over time.interface_substeps (x 1/2, 1, 2, 4; time.step_factor x 1,
+/// 1/2, 1/4 where nothing is sub-cycled) and over material.stiffness_damping_s (x 2, 1, 1/2, 0; none where
+/// the case has no damping). fronts.l_star_m is raised to the largest element, so that all speeds are taken
+/// over the same length.
+/// @throws UserError where the element sizes are fewer than three, or leave out the case's.
+std::vector<Plan> plan_convergence(const io::Case& config, const ConvergenceOptions& options);
+
+/// Speeds at a station, for the members of a sequence.
+struct Station {
+  double x_m = 0;
+  int direction = 0;                  ///< of the front, +1 or -1 along x
+  std::vector<double> v_tip_m_per_s;  ///< [members]; NaN where the front does not pass or has no speed there
+  Limit limit;
+  double error_m_per_s = undefined;  ///< of the case's own value
+};
+
+struct Sequence {
+  Plan plan;
+  std::vector<Station> stations;  ///< those where the case itself has a speed
+  Summary both, left, right;      ///< all fronts; direction -1; direction +1
+  double relative_difference_at_limit =
+      undefined;  ///< median |extrapolated - computed at q = 0| / case's own
+};
+
+struct Convergence {
+  ConvergenceOptions options;
+  double l_star_m = 0;
+  std::vector<Sequence> sequences;
+  std::vector<std::string> warnings;
+  std::size_t n_runs = 0;
+};
+
+/// Told often how many runs are done; returns false to interrupt.
+using StudyMonitor = std::function<bool(std::size_t done, std::size_t total)>;
+
+/// Runs all sequences and compares V_tip of the main fronts, the longest in each direction, at stations x.
+/// V_tip over l* is linear in x between the nodes of a front. Left out are stations within nucleation_m of
+/// the start of the case's own front, where the speed diverges, and within a trigger zone and its margin. The
+/// run that blew up counts as one without fronts.
+/// @throws UserError, Interrupted
+Convergence study_convergence(const io::Case& config, const ConvergenceOptions& options,
+                              const StudyMonitor& monitor);
+
+inline constexpr double nucleation_m = 5e-3;
+
+/// V_tip of a front where its tip passes x, linear between its points; NaN beyond them.
+double v_tip_at(const fronts::Front& front, double x_m);
+
+/// convergence.csv (a row per sequence, station and value) and convergence.json (verdicts).
+void write_convergence(const std::filesystem::path& dir, const io::Case& config, const Convergence& result);
+
+}  // namespace slipfront::study
