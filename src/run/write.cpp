@@ -42,6 +42,7 @@ Json energy_json(const solve::Energies& e) {
           {"kinetic_J_per_m", e.kinetic},
           {"top_work_J_per_m", e.top_work},
           {"trigger_work_J_per_m", e.trigger_work},
+          {"prestress_work_J_per_m", e.prestress_work},
           {"friction_work_J_per_m", e.friction_work},
           {"contact_work_J_per_m", e.contact_work},
           {"damping_work_J_per_m", e.damping_work},

@@ -14,18 +14,19 @@ struct Energies {
   double kinetic = 0, strain = 0;
   double top_work = 0;  ///< of the moving edge
   double trigger_work = 0;
-  double friction_work = 0;  ///< of the tangential traction; negative where it dissipates
-  double contact_work = 0;   ///< of the pressure: kinetic energy lost where a gap closes, negative
-  double damping_work = 0;   ///< of the stiffness damping
-  double boundary_work = 0;  ///< of the absorbing boundaries\' dashpots, negative
+  double prestress_work = 0;  ///< of the uniform tractions on the interface nodes
+  double friction_work = 0;   ///< of the tangential traction; negative where it dissipates
+  double contact_work = 0;    ///< of the pressure: kinetic energy lost where a gap closes, negative
+  double damping_work = 0;    ///< of the stiffness damping
+  double boundary_work = 0;   ///< of the absorbing boundaries' dashpots, negative
   /// Of the coarse cells' force on nodes that move in sub-steps, beyond what these cells store. Bounded where
   /// nothing dissipates.
   double coupling_work = 0;
 
   double stored() const { return kinetic + strain; }
   double work() const {
-    return top_work + trigger_work + friction_work + contact_work + damping_work + boundary_work +
-           coupling_work;
+    return top_work + trigger_work + prestress_work + friction_work + contact_work + damping_work +
+           boundary_work + coupling_work;
   }
 };
 

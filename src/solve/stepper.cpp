@@ -216,6 +216,8 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
   }
   start_contact(contact_, interface_);
   set_trigger({}, std::vector<double>(lower_.size(), 0.0));
+  prestress_t_Pa_.clear();
+  prestress_p_Pa_.clear();
   works_ = {};
   damping_power_ = 0;
   step_ = 0;
@@ -228,6 +230,13 @@ void Stepper::set_trigger(const interface::Trigger& trigger, std::vector<double>
   trigger_nodes_.clear();
   for (std::size_t i = 0; i < trigger_force_N_.size(); ++i)
     if (trigger_force_N_[i] != 0) trigger_nodes_.push_back(i);
+}
+
+void Stepper::set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa) {
+  SLIPFRONT_ASSERT(t0_Pa.size() == lower_.size() && p0_Pa.size() == lower_.size(),
+                   "prestress of other nodes");
+  prestress_t_Pa_ = std::move(t0_Pa);
+  prestress_p_Pa_ = std::move(p0_Pa);
 }
 
 void Stepper::compute_irregular(Level& level) {
@@ -539,6 +548,11 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
   const double impulse_s = dt * trigger_factor(trigger_, time);
   for (const auto i : trigger_nodes_)
     interface_.v_x_m_per_s[i] += impulse_s * trigger_force_N_[i] / lower_mass_kg_[i];
+  for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i) {
+    const double per_pressure = dt * tributary_m_[i] / lower_mass_kg_[i];
+    interface_.v_x_m_per_s[i] += per_pressure * prestress_t_Pa_[i];
+    interface_.v_y_m_per_s[i] -= per_pressure * prestress_p_Pa_[i];
+  }
   for (const auto& [i, n, d_x, d_y] : contact_dashpots_) {
     // The contact's tractions act on the effective mass m (1 + d).
     interface_.v_x_m_per_s[i] = (interface_.v_x_m_per_s[i] - d_x * v_x_before_[i]) / (1 + d_x);
@@ -568,6 +582,10 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
     const double mean_y = 0.5 * (interface_.v_y_m_per_s[i] + v_y_before_[i]);
     works_.boundary_work -= 2 * lower_mass_kg_[i] * (d_x * mean_x * mean_x + d_y * mean_y * mean_y);
   }
+  for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i)
+    works_.prestress_work += 0.5 * dt * tributary_m_[i] *
+                             (prestress_t_Pa_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]) -
+                              prestress_p_Pa_[i] * (interface_.v_y_m_per_s[i] + v_y_before_[i]));
   works_.friction_work += friction_work;
   works_.contact_work += contact_work;
   for (const auto i : trigger_nodes_)

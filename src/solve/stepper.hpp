@@ -49,6 +49,10 @@ class Stepper {
   /// unit thickness
   void set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m);
 
+  /// External tractions on the interface nodes: t0 drives the plate to +x, p0 presses it down. [lower]; after
+  /// start.
+  void set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa);
+
   /// One step. Every contact update is shown to the recorder; the state at the beginning of the step is
   /// appended to `sample` where it is given.
   void advance(Recorder& recorder, fronts::History* sample = nullptr);
@@ -160,7 +164,8 @@ class Stepper {
   interface::Interface interface_;
   interface::Trigger trigger_;
   std::vector<double> trigger_force_N_;
-  std::vector<std::size_t> trigger_nodes_;  ///< where the force is not zero
+  std::vector<std::size_t> trigger_nodes_;               ///< where the force is not zero
+  std::vector<double> prestress_t_Pa_, prestress_p_Pa_;  ///< [lower], or empty
   DampingWork damping_work_ = DampingWork::sampled;
   Energies works_;  ///< the works alone
   double damping_power_ = 0;
