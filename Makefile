@@ -16,7 +16,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce quick regularised bench docs format format-check verify tidy sanitize coverage clean
+.PHONY: help setup build test reproduce quick regularised bench docs format format-check verify verification-pages tidy sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -52,8 +52,14 @@ quick: build $(VENV)/.installed  ## the same in a second, on a coarse mesh, into
 	$(PROGRAM) reproduce --quick -o $(RESULTS)-quick --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-quick
 
-verify: build  ## the long checks: the energy balance over a million steps
+verify: build $(VENV)/.installed  ## problems with known answers, with their pictures, and the energy balance over a million steps
+	$(PROGRAM) verify -o $(RESULTS)-verify
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures.verification $(RESULTS)-verify $(RESULTS)-verify/figures
 	build/release/test_solve --gtest_also_run_disabled_tests --gtest_filter='*Million*'
+
+verification-pages: verify  ## renew the numbers and pictures of docs/verification
+	$(PYTHON) scripts/verification-pages.py $(RESULTS)-verify docs/verification
+	cp $(RESULTS)-verify/figures/*.png docs/figures/
 
 bench: build  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench
@@ -98,4 +104,4 @@ coverage: packages  ## lines of the numerical core that the C++ tests run: table
 	@scripts/run-coverage build/coverage
 
 clean:  ## remove build, venv and results
-	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick $(RESULTS)-regularised
+	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick $(RESULTS)-regularised $(RESULTS)-verify

@@ -18,6 +18,7 @@ namespace slipfront::cli {
 void add_run(CLI::App& app);
 void add_reproduce(CLI::App& app);
 void add_study(CLI::App& app);
+void add_verify(CLI::App& app);
 void add_info(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_validate(CLI::App& app);

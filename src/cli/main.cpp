@@ -14,7 +14,7 @@
 
 namespace {
 
-enum ExitCode { done = 0, internal_error = 1, user_error = 2, blow_up = 3, interrupted = 130 };
+enum ExitCode { done = 0, internal_error = 1, user_error = 2, blow_up = 3, verification_failed = 4, interrupted = 130 };
 
 /// A user's error starts with its place, FILE:LINE, so that editors find it; the rest with the program's
 /// name.
@@ -30,6 +30,7 @@ int run(int argc, char** argv) {
   slipfront::cli::add_run(app);
   slipfront::cli::add_reproduce(app);
   slipfront::cli::add_study(app);
+  slipfront::cli::add_verify(app);
   slipfront::cli::add_info(app);
   slipfront::cli::add_bench(app);
   slipfront::cli::add_validate(app);
@@ -54,6 +55,8 @@ int main(int argc, char** argv) try { return run(argc, argv); } catch (const sli
   return report(user_error, error.what());
 } catch (const slipfront::BlowUp& error) {
   return report(blow_up, fmt::format("slipfront: {}", error.what()));
+} catch (const slipfront::VerificationFailed& error) {
+  return report(verification_failed, fmt::format("slipfront: {}", error.what()));
 } catch (const slipfront::Interrupted& error) {
   return report(interrupted, fmt::format("slipfront: {}", error.what()));
 } catch (const std::bad_alloc&) {

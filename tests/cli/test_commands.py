@@ -7,7 +7,7 @@ import re
 import pytest
 from conftest import ROOT
 
-COMMANDS = ["run", "reproduce", "study", "info", "bench", "validate", "keys"]
+COMMANDS = ["run", "reproduce", "study", "verify", "info", "bench", "validate", "keys"]
 CASES = sorted((ROOT / "cases/kammer2012").glob("*.toml"))
 
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include "mesh/plate.hpp"
+#include "solve/statics.hpp"
+#include "solve/stepper.hpp"
+
+namespace slipfront::verify {
+
+/// Starts a stepper from a motion u(node, time) that is known: displacements at time 0, velocities of the
+/// step before it. Every interface node is in the contact state given, with tractions t, p of the plane on
+/// it.
+struct Start {
+  std::function<double(mesh::Node, double time_s)> u_x_m = {}, u_y_m = {};  ///< empty for none
+  solve::Contact contact = solve::Contact::open;
+  double t_Pa = 0, p_Pa = 0;
+};
+
+/// @return the state from which the stepper was started, as a recorder needs it.
+solve::Equilibrium start(solve::Stepper& stepper, const mesh::Mesh& mesh, const Start& start);
+
+/// The whole plate with one step.
+inline solve::TimeStepping plain_stepping(double step_factor = 0.9) {
+  solve::TimeStepping time;
+  time.step_factor = step_factor;
+  time.interface_substeps = 1;
+  return time;
+}
+
+}  // namespace slipfront::verify

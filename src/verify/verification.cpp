@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verify/verification.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/version.hpp"
+#include "io/results.hpp"
+#include "verify/problems.hpp"
+
+namespace slipfront::verify {
+
+bool Check::holds() const {
+  return std::abs(measured - expected) <= tolerance;
+}
+
+bool Outcome::holds() const {
+  return !checks.empty() && std::ranges::all_of(checks, [](const Check& check) { return check.holds(); });
+}
+
+std::span<const Verification> verifications() {
+  static const std::array all = {
+      Verification{"plane_waves", "Speed and dispersion of plane longitudinal and shear waves", plane_waves},
+  };
+  return all;
+}
+
+void write_outcome(const std::filesystem::path& dir, const Verification& verification, Effort effort,
+                   const Outcome& outcome) {
+  using nlohmann::ordered_json;
+  ordered_json checks = ordered_json::array(), charts = ordered_json::array();
+  for (const auto& c : outcome.checks)
+    checks.push_back({{"quantity", c.quantity},
+                      {"unit", c.unit},
+                      {"measured", c.measured},
+                      {"expected", c.expected},
+                      {"tolerance", c.tolerance},
+                      {"reason", c.reason},
+                      {"holds", c.holds()}});
+  for (const auto& chart : outcome.charts) {
+    ordered_json curves = ordered_json::array();
+    for (const auto& c : chart.curves)
+      curves.push_back({{"label", c.label},
+                        {"kind", c.kind == Curve::Kind::theory ? "theory" : "program"},
+                        {"x", c.x},
+                        {"y", c.y}});
+    charts.push_back({{"x_label", chart.x_label},
+                      {"y_label", chart.y_label},
+                      {"log_x", chart.log_x},
+                      {"log_y", chart.log_y},
+                      {"curves", curves}});
+  }
+  const ordered_json all = {{"version", version_line()},
+                            {"name", verification.name},
+                            {"title", verification.title},
+                            {"effort", effort == Effort::quick ? "quick" : "full"},
+                            {"holds", outcome.holds()},
+                            {"checks", checks},
+                            {"charts", charts}};
+  io::write_text(dir / (verification.name + ".json"), all.dump(1) + "\n");
+}
+
+}  // namespace slipfront::verify
