@@ -28,7 +28,6 @@ struct Output {
   double history_interval_s = 0.5e-6;    ///< spacing of the rows of interface.h5
   std::vector<double> snapshot_times_s;  ///< whole-plate fields, written to fields.vtkhdf
   double energy_interval_s = 20e-6;      ///< spacing of the rows of energy.csv
-  solve::DampingWork damping_work = solve::DampingWork::sampled;
 };
 
 /// One run, completely. Every member is an entry of the schema (io/schema.hpp).

@@ -177,7 +177,6 @@ std::vector<Entry> make_common_entries() {
   using mesh::Top;
   using solid::Material;
   using solid::Plane;
-  using solve::DampingWork;
   using solve::Loading;
   using solve::LoadingMethod;
   using solve::TimeStepping;
@@ -304,10 +303,6 @@ std::vector<Entry> make_common_entries() {
               "ascending times of the whole-plate fields in fields.vtkhdf"),
       number("output.energy_interval_s", at(&Case::output, &Output::energy_interval_s), above(0),
              "spacing of the rows of energy.csv; one step where that is longer"),
-      word<DampingWork>("output.damping_work", at(&Case::output, &Output::damping_work),
-                        {{"sampled", DampingWork::sampled}, {"every_step", DampingWork::every_step}},
-                        "work of the damping: from its power at the times of energy.csv, or exact from every "
-                        "step, which about doubles the time of a run"),
   };
 }
 

@@ -135,7 +135,6 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
       config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
 
   solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), config.time);
-  stepper.set_damping_work(config.output.damping_work);
   stepper.start(state, top_speed_m_per_s(config));
   stepper.set_trigger(config.trigger,
                       solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger, mu_s));

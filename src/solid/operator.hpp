@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -46,19 +47,33 @@ struct BlockRows {
   std::size_t size() const { return node.size(); }
 };
 
-/// Calls f(row, x, y) with the components of the row's product with w, for each row.
-template <class F>
-void for_each_row_product(const BlockRows& rows, const Field& w, F&& f) {
+/// A vector of the plane.
+struct Pair {
+  double x = 0, y = 0;
+};
+
+/// Calls f(row, x, y) with the components of the row's product with w(node), for each row.
+template <std::invocable<mesh::Node> W, class F>
+void for_each_row_product(const BlockRows& rows, W&& w, F&& f) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     double x = 0, y = 0;
     for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
       const auto& b = rows.block[k];
-      const double w_x = w.x[rows.neighbour[k]], w_y = w.y[rows.neighbour[k]];
-      x += b[0] * w_x + b[1] * w_y;
-      y += b[2] * w_x + b[3] * w_y;
+      const Pair at = w(rows.neighbour[k]);
+      x += b[0] * at.x + b[1] * at.y;
+      y += b[2] * at.x + b[3] * at.y;
     }
     f(r, x, y);
   }
+}
+template <class F>
+void for_each_row_product(const BlockRows& rows, const Field& w, F&& f) {
+  for_each_row_product(
+      rows,
+      [&](mesh::Node n) {
+        return Pair{w.x[n], w.y[n]};
+      },
+      f);
 }
 
 /// Nodes [begin, end) of one grid row, by column.

@@ -35,8 +35,4 @@ inline double imbalance_J_per_m(const Energies& now, const Energies& start) {
   return now.stored() - start.stored() - now.work();
 }
 
-/// Whether the damping's work is summed over every step, several times the work of the steps, or from samples
-/// at the times at which the energies are asked for (trapezoidal rule).
-enum class DampingWork { sampled, every_step };
-
 }  // namespace slipfront::solve

@@ -37,11 +37,11 @@ class Watch {
     if (fastest > c_L_) return fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", fastest);
     if (known == nullptr && stepper_.step() - checked_step_ < energy_check_interval) return {};
     checked_step_ = stepper_.step();
-    const Energies e = known != nullptr ? *known : stepper_.energies_but_damping();
+    const Energies e = known != nullptr ? *known : stepper_.energies();
     const double total = e.stored();
     if (!std::isfinite(total)) return "the energy is not a number";
-    const double supplied = start_.stored() + std::abs(e.top_work) + std::abs(e.trigger_work) +
-                            std::abs(e.prestress_work);
+    const double supplied =
+        start_.stored() + std::abs(e.top_work) + std::abs(e.trigger_work) + std::abs(e.prestress_work);
     if (total > 1.01 * supplied)
       return fmt::format("the energy has grown to {:.4g} J/m with {:.4g} J/m supplied", total, supplied);
     return {};

@@ -64,6 +64,7 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
     lower_mass_kg_.push_back(plate_.mass_kg[lower_[k]]);
   }
   contact_mass_kg_ = lower_mass_kg_;
+  interior_mass_kg_ = material.density_kg_per_m3 * mesh.grid.spacing_m * mesh.grid.spacing_m;
   divide_cells(mesh, material, time);
 }
 
@@ -113,7 +114,9 @@ void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& materi
     const std::size_t n_shared = level.shared.node.size();
     level.shared.u_before_m = level.shared.push_m_per_s = level.shared.steady_m_per_s2 =
         solid::Field(n_shared);
-    if (n_shared > 0) level.edge_push_m_per_s.resize(2 * static_cast<std::size_t>(mesh.grid.stride()));
+    for (const auto& row : level.part.stencil)
+      if (row.squares != solid::Squares::all)
+        level.edge_kick_m_per_s.emplace_back(2 * static_cast<std::size_t>(mesh.grid.stride()));
     for (const auto n : irregular.node) {
       level.takes_push.push_back(!shared[n]);
       level.moves.push_back(!in_contact[n] && !is_shared[n]);
@@ -125,6 +128,7 @@ void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& materi
     for (const auto n : mesh.top)
       if (in_cells[n]) top.push_back(n);
     level.top_rows = solid::assemble_rows(mesh, material, top, {}, in_level);
+    level.top_force_N.resize(top.size());
     level.a_x.resize(irregular.size());
     level.a_y.resize(irregular.size());
   }
@@ -185,7 +189,6 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     interface_.slipping[k] = equilibrium.contact[k] == Contact::slip;
   }
   for (auto& level : levels_) {
-    level.damping_a = {};
     // The first look at the forces gives their steady part; it must not move anything.
     auto& shared = level.shared;
     if (shared.node.empty()) continue;
@@ -211,7 +214,6 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     u_ = u;
     v_ = v;
     shared.push_m_per_s = shared.a_m_per_s2 = zero;
-    level.damping_a = {};
     set_motion_before();
   }
   start_contact(contact_, interface_);
@@ -219,9 +221,20 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
   prestress_t_Pa_.clear();
   prestress_p_Pa_.clear();
   works_ = {};
-  damping_power_ = 0;
   step_ = 0;
-  energies();
+  if (damping_s_ > 0) begin_damping_work();
+}
+
+void Stepper::begin_damping_work() {
+  solid::Field before(u_.size());
+  for (auto& level : levels_) {
+    for (std::size_t n = level.node_begin; n < level.node_end; ++n) {
+      before.x[n] = u_.x[n] - level.step_s * v_.x[n];
+      before.y[n] = u_.y[n] - level.step_s * v_.y[n];
+    }
+    stiffness_product(level, before, scratch_);
+    level.products = {.u_K_u = inner_product(level, scratch_, before, before)};
+  }
 }
 
 void Stepper::set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m) {
@@ -240,20 +253,17 @@ void Stepper::set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa
 }
 
 void Stepper::compute_irregular(Level& level) {
-  const auto& rows = level.part.irregular;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    double x = 0, y = 0;
-    for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
-      const auto n = rows.neighbour[k];
-      const double w_x = u_.x[n] + damping_s_ * v_.x[n];
-      const double w_y = u_.y[n] + damping_s_ * v_.y[n];
-      const auto& b = rows.block[k];
-      x += b[0] * w_x + b[1] * w_y;
-      y += b[2] * w_x + b[3] * w_y;
-    }
+  const auto w = [&](mesh::Node n) {
+    return solid::Pair{u_.x[n] + damping_s_ * v_.x[n], u_.y[n] + damping_s_ * v_.y[n]};
+  };
+  solid::for_each_row_product(level.part.irregular, w, [&](std::size_t r, double x, double y) {
     level.a_x[r] = x;
     level.a_y[r] = y;
-  }
+  });
+  solid::for_each_row_product(level.top_rows, w, [&](std::size_t r, double x, double y) {
+    level.top_force_N[r] = {x, y};
+    works_.top_work += level.step_s * x * v_.x[level.top_rows.node[r]];
+  });
 }
 
 void Stepper::damp(const Dashpot& dashpot, double before_x, double before_y, double& trial_x,
@@ -289,7 +299,7 @@ void Stepper::apply_irregular(const Level& level) {
   }
 }
 
-void Stepper::sweep(Level& level) {
+Stepper::ForceProducts Stepper::sweep(Level& level) {
   const int stride = plate_.grid.stride();
   const double dt = level.step_s;
   const auto interior = solid::scaled(plate_.interior, -dt);
@@ -306,31 +316,49 @@ void Stepper::sweep(Level& level) {
       solid::combine_row(stride, damping_s_, &u_.x[o], &u_.y[o], &v_.x[o], &v_.y[o], row, row + stride);
     }
   };
+  solid::KickSums sums;
+  ForceProducts products;
+  auto edge_kick = level.edge_kick_m_per_s.begin();
   for (const auto& [j, squares, scale, spans] : level.part.stencil) {
     const std::ptrdiff_t o = static_cast<std::ptrdiff_t>(j) * stride;
+    double* v_x = &v_.x[o];
+    double* v_y = &v_.y[o];
     fill_to(squares == solid::Squares::above ? j : j - 1, squares == solid::Squares::below ? j : j + 1);
     if (squares == solid::Squares::all) {
       for (const auto span : spans) {
-        solid::add_interior_row(interior, span, w_row(j - 1), w_row(j), w_row(j + 1), &v_.x[o], &v_.y[o]);
-        solid::move_row(span, dt, &v_.x[o], &v_.y[o], &u_.x[o], &u_.y[o]);
+        if (damping_s_ > 0)
+          solid::add_interior_row(interior, span, w_row(j - 1), w_row(j), w_row(j + 1), v_x, v_y, sums);
+        else
+          solid::add_interior_row(interior, span, w_row(j - 1), w_row(j), w_row(j + 1), v_x, v_y);
+        solid::move_row(span, dt, v_x, v_y, &u_.x[o], &u_.y[o]);
       }
-    } else if (squares == solid::Squares::above) {
-      // The plate's lower edge, moved by the contact update; or nodes shared with the next level.
-      const auto edge = solid::scaled(plate_.edge, -dt * scale);
-      double* v_x = &v_.x[o];
-      double* v_y = &v_.y[o];
-      if (j > 0) {
-        std::ranges::fill(level.edge_push_m_per_s, 0.0);
-        v_x = level.edge_push_m_per_s.data();
-        v_y = v_x + stride;
-      }
-      for (const auto span : spans) solid::add_edge_row(edge, span, w_row(j), w_row(j + 1), v_x, v_y);
-    } else {
-      const auto edge = solid::mirrored(solid::scaled(plate_.edge, -dt * scale));
-      for (const auto span : spans)
-        solid::add_edge_row(edge, span, w_row(j), w_row(j - 1), &v_.x[o], &v_.y[o]);
+      continue;
     }
+    const auto above = solid::scaled(plate_.edge, -dt * scale);
+    const auto edge = squares == solid::Squares::above ? above : solid::mirrored(above);
+    const auto inner = w_row(squares == solid::Squares::above ? j + 1 : j - 1);
+    std::ranges::fill(*edge_kick, 0.0);
+    double* kick_x = edge_kick->data();
+    double* kick_y = kick_x + stride;
+    for (const auto span : spans) solid::add_edge_row(edge, span, w_row(j), inner, kick_x, kick_y);
+    ++edge_kick;
+    if (damping_s_ > 0)
+      for (const auto span : spans) {
+        const double* mass = &plate_.mass_kg[o];
+        const solid::ConstRow kick{kick_x, kick_y};
+        products.u_K_w -= solid::row_product(span, mass, kick, {&u_.x[o], &u_.y[o]}) / dt;
+        products.v_K_w -= solid::row_product(span, mass, kick, {v_x, v_y}) / dt;
+      }
+    // Nodes shared with the next level get the kick as a push; the others wait for the contact update or for
+    // the level before.
+    if (squares == solid::Squares::above && j > 0) continue;
+    for (const auto span : spans) solid::move_row(span, 1, kick_x, kick_y, v_x, v_y);
   }
+  const double m_over_dt = interior_mass_kg_ / dt;
+  products.u_K_w -= m_over_dt * (sums.w_d - damping_s_ * sums.v_d);
+  products.v_K_w -= m_over_dt * sums.v_d;
+  products.after_K_w -= m_over_dt * (sums.v_d + sums.d_d);
+  return products;
 }
 
 void Stepper::gather_push(Level& level) {
@@ -339,8 +367,8 @@ void Stepper::gather_push(Level& level) {
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto r = s.irregular_row[k];
     const auto column = s.node[k] % stride;
-    const double x = r < 0 ? level.edge_push_m_per_s[column] : -level.step_s * level.a_x[r];
-    const double y = r < 0 ? level.edge_push_m_per_s[stride + column] : -level.step_s * level.a_y[r];
+    const double x = r < 0 ? level.edge_kick_m_per_s[0][column] : -level.step_s * level.a_x[r];
+    const double y = r < 0 ? level.edge_kick_m_per_s[0][stride + column] : -level.step_s * level.a_y[r];
     s.a_m_per_s2.x[k] = -x / level.step_s;
     s.a_m_per_s2.y[k] = -y / level.step_s;
     s.push_m_per_s.x[k] = x - level.step_s * s.steady_m_per_s2.x[k];
@@ -380,21 +408,15 @@ void Stepper::move_shared(Level& coarser, double dt) {
 void Stepper::push(Level& level) {
   exchange_velocities(level);
   if (!level.shared.node.empty()) add_coupling_work(level);
-  if (damping_work_ == DampingWork::every_step) add_damping_work(level);
+  const double after_K_w = level.products.after_K_w + late_product(level);
   auto& s = level.shared;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     s.u_before_m.x[k] = u_.x[s.node[k]];
     s.u_before_m.y[k] = u_.y[s.node[k]];
   }
-  solid::for_each_row_product(level.top_rows, u_, [&](std::size_t r, double x, double) {
-    works_.top_work += level.step_s * x * v_.x[level.top_rows.node[r]];
-  });
-  if (damping_s_ > 0)
-    solid::for_each_row_product(level.top_rows, v_, [&](std::size_t r, double x, double) {
-      works_.top_work += level.step_s * damping_s_ * x * v_.x[level.top_rows.node[r]];
-    });
   compute_irregular(level);
-  sweep(level);
+  const auto sums = sweep(level);
+  if (damping_s_ > 0) add_damping_work(level, after_K_w, sums);
   gather_push(level);
   restore_velocities(level);
 }
@@ -451,23 +473,59 @@ void Stepper::stiffness_product(const Level& level, const solid::Field& w, solid
   solid::add_part(plate_, level.part, w, a);
 }
 
-double Stepper::damping_work(const Level& level) const {
-  // Of the last push, with the velocities after it.
-  return -0.5 * damping_s_ * level.step_s *
-         (level.v_K_v + inner_product(level, level.damping_a, level.damping_v, v_));
+double Stepper::late_product(const Level& level) const {
+  if (damping_s_ == 0) return 0;
+  double sum = 0;
+  const auto& irregular = level.part.irregular.node;
+  for (std::size_t r = 0; r < irregular.size(); ++r)
+    sum += plate_.mass_kg[irregular[r]] *
+           (v_.x[irregular[r]] * level.a_x[r] + v_.y[irregular[r]] * level.a_y[r]);
+  const int stride = plate_.grid.stride();
+  auto edge_kick = level.edge_kick_m_per_s.begin();
+  for (const auto& row : level.part.stencil) {
+    if (row.squares == solid::Squares::all) continue;
+    const std::ptrdiff_t o = static_cast<std::ptrdiff_t>(row.row) * stride;
+    const double* kick_x = edge_kick->data();
+    const double* kick_y = kick_x + stride;
+    ++edge_kick;
+    for (const auto span : row.spans)
+      sum -=
+          solid::row_product(span, &plate_.mass_kg[o], {kick_x, kick_y}, {&v_.x[o], &v_.y[o]}) / level.step_s;
+  }
+  for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
+    const auto n = level.top_rows.node[r];
+    sum += v_.x[n] * level.top_force_N[r].x + v_.y[n] * level.top_force_N[r].y;
+  }
+  return sum;
 }
 
-void Stepper::add_damping_work(Level& level) {
-  if (damping_s_ == 0) return;
-  if (level.damping_a.size() > 0) works_.damping_work += damping_work(level);
-  stiffness_product(level, v_, level.damping_a);
-  level.damping_v.x.resize(v_.size());
-  level.damping_v.y.resize(v_.size());
-  for (std::size_t n = level.node_begin; n < level.node_end; ++n) {
-    level.damping_v.x[n] = v_.x[n];
-    level.damping_v.y[n] = v_.y[n];
+void Stepper::add_damping_work(Level& level, double after_K_w, ForceProducts sums) {
+  const auto& irregular = level.part.irregular.node;
+  for (std::size_t r = 0; r < irregular.size(); ++r) {
+    const auto n = irregular[r];
+    sums.u_K_w += plate_.mass_kg[n] * (u_.x[n] * level.a_x[r] + u_.y[n] * level.a_y[r]);
+    sums.v_K_w += plate_.mass_kg[n] * (v_.x[n] * level.a_x[r] + v_.y[n] * level.a_y[r]);
   }
-  level.v_K_v = inner_product(level, level.damping_a, v_, v_);
+  for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
+    const auto n = level.top_rows.node[r];
+    sums.u_K_w += u_.x[n] * level.top_force_N[r].x + u_.y[n] * level.top_force_N[r].y;
+    sums.v_K_w += v_.x[n] * level.top_force_N[r].x + v_.y[n] * level.top_force_N[r].y;
+  }
+  auto& last = level.products;
+  const double dt = level.step_s, beta = damping_s_;
+  // With u' = u + dt v', v' the velocity after the last push: three unknowns, v' K u, v' K v', u' K u', in
+  // u' K w' = u' K u' + beta u' K v', v' K w' = v' K u + (dt + beta) v' K v', and u' K u' itself.
+  const double after_K_u = (sums.u_K_w - last.u_K_u - dt * sums.v_K_w) / (dt + beta);
+  if (last.begun) works_.damping_work += damping_work(level, after_K_w, after_K_u);
+  last.begun = true;
+  last.v_K_v = (sums.v_K_w - after_K_u) / (dt + beta);
+  last.u_K_u = sums.u_K_w - beta * (after_K_u + dt * last.v_K_v);
+  last.after_K_w = sums.after_K_w;
+}
+
+double Stepper::damping_work(const Level& level, double after_K_w, double after_K_u) const {
+  // dt f v' with the damping force f = -beta K v and the mean velocity; beta v' K v = v' K w - v' K u.
+  return -0.5 * level.step_s * (damping_s_ * level.products.v_K_v + after_K_w - after_K_u);
 }
 
 void Stepper::add_coupling_work(Level& level) {
@@ -479,40 +537,23 @@ void Stepper::add_coupling_work(Level& level) {
   }
 }
 
-Energies Stepper::energies_but_damping() {
+Energies Stepper::energies() {
   Energies e = works_;
   e.time_s = time_s();
   e.kinetic = kinetic_energy_J_per_m();
   for (auto& level : levels_) {
     exchange_velocities(level);
-    // 1/2 u K u' between the level's last two places.
     stiffness_product(level, u_, scratch_);
-    e.strain += 0.5 * inner_product(level, scratch_, u_, u_) -
-                0.5 * level.step_s * inner_product(level, scratch_, u_, v_);
+    const double u_K_u = inner_product(level, scratch_, u_, u_);
+    const double v_K_u = inner_product(level, scratch_, u_, v_);
+    e.strain += 0.5 * (u_K_u - level.step_s * v_K_u);  // 1/2 u K u' between the level's last two places
     e.coupling_work += coupling_work(level);
-    restore_velocities(level);
-  }
-  return e;
-}
-
-Energies Stepper::energies() {
-  Energies e = energies_but_damping();
-  if (damping_s_ == 0) return e;
-  double power = 0;
-  for (auto& level : levels_) {
-    exchange_velocities(level);
-    if (damping_work_ == DampingWork::every_step) {
-      if (level.damping_a.size() > 0) e.damping_work += damping_work(level);
-    } else {
-      stiffness_product(level, v_, scratch_);
-      power -= damping_s_ * inner_product(level, scratch_, v_, v_);
+    if (level.products.begun) {
+      // u' K u' = u K u + dt v' K (u + u'), v' the velocity after the last push.
+      const double after_K_u = (u_K_u - level.products.u_K_u) / level.step_s - v_K_u;
+      e.damping_work += damping_work(level, level.products.after_K_w + late_product(level), after_K_u);
     }
     restore_velocities(level);
-  }
-  if (damping_work_ == DampingWork::sampled) {
-    e.damping_work = works_.damping_work += 0.5 * (power + damping_power_) * (e.time_s - works_.time_s);
-    damping_power_ = power;
-    works_.time_s = e.time_s;
   }
   return e;
 }

@@ -71,12 +71,8 @@ class Stepper {
   double energy_J_per_m() const;  ///< strain and kinetic, each of its own instant
   double kinetic_energy_J_per_m() const;
 
-  /// How the energies account for the damping; before start.
-  void set_damping_work(DampingWork how) { damping_work_ = how; }
   /// Energies and works up to the last half (sub-)step.
   Energies energies();
-  /// The same without a new sample of the damping's power, at half the cost: damping_work is incomplete.
-  Energies energies_but_damping();
 
  private:
   /// An absorbing node: with the mass m and the constant c of its dashpot, d = c dt/(2 m), dt the step with
@@ -99,6 +95,16 @@ class Stepper {
     // before it.
     solid::Field v_last_m_per_s, a_m_per_s2, v_mean_before_m_per_s;
   };
+  /// Products with K of a level's cells, w = u + beta_R v: place u and velocity v before a push, velocity
+  /// after it where that is known within the push.
+  struct ForceProducts {
+    double u_K_w = 0, v_K_w = 0, after_K_w = 0;
+  };
+  /// What the next push needs of the last one's, for the damping's work.
+  struct Products {
+    double u_K_u = 0, v_K_v = 0, after_K_w = 0;
+    bool begun = false;  ///< whether there is a last push
+  };
   /// Cells with one step; each level's step is a whole multiple of the next one's. The last level holds the
   /// interface.
   struct Level {
@@ -113,10 +119,10 @@ class Stepper {
     Shared shared;
     std::size_t node_begin = 0, node_end = 0;  ///< its nodes' numbers lie in this range
     solid::BlockRows top_rows;                 ///< K of the level's cells, N/m
-    // Damping's work: M^-1 K v and v K v at the last push, v the level's velocity.
-    solid::Field damping_a, damping_v;
-    double v_K_v = 0;
-    std::vector<double> edge_push_m_per_s;  ///< of the stencil row that is shared, x then y. [columns]
+    /// Kicks of the stencil's edge rows, x then y, in their order. [2 columns]
+    std::vector<std::vector<double>> edge_kick_m_per_s;
+    std::vector<solid::Pair> top_force_N;  ///< K w of top_rows at the last push
+    Products products;
   };
 
   void divide_cells(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time);
@@ -127,7 +133,7 @@ class Stepper {
   /// Forces of a level's cells at their nodes' places, and the moves of the nodes that no finer level has.
   void push(Level& level);
   void compute_irregular(Level& level);
-  void sweep(Level& level);
+  ForceProducts sweep(Level& level);
   void apply_irregular(const Level& level);
   /// Collects what a level does to its shared nodes: its force without the steady part.
   void gather_push(Level& level);
@@ -139,8 +145,14 @@ class Stepper {
   // With the velocities as the level sees them:
   void add_coupling_work(Level& level);
   double coupling_work(const Level& level) const;
-  void add_damping_work(Level& level);
-  double damping_work(const Level& level) const;
+  void begin_damping_work();
+  /// The rest of after_K_w of the last push, now that all velocities after it are known.
+  double late_product(const Level& level) const;
+  /// Counts the damping's work at the last push, and completes the products of the new one by those over
+  /// block rows and loaded edge.
+  void add_damping_work(Level& level, double after_K_w, ForceProducts sums);
+  /// Of the last push. @param after_K_u  the velocity after it times K u at it
+  double damping_work(const Level& level, double after_K_w, double after_K_u) const;
   void stiffness_product(const Level& level, const solid::Field& w, solid::Field& a) const;  ///< a = M^-1 K w
   /// z K w, a as of stiffness_product.
   double inner_product(const Level& level, const solid::Field& a, const solid::Field& w,
@@ -149,6 +161,7 @@ class Stepper {
 
   solid::Operator plate_;
   double damping_s_;
+  double interior_mass_kg_ = 0;  ///< of a node amid four squares
   interface::ContactModel contact_;
   double stable_step_s_ = 0, step_s_ = 0;
   int substeps_;
@@ -166,9 +179,7 @@ class Stepper {
   std::vector<double> trigger_force_N_;
   std::vector<std::size_t> trigger_nodes_;               ///< where the force is not zero
   std::vector<double> prestress_t_Pa_, prestress_p_Pa_;  ///< [lower], or empty
-  DampingWork damping_work_ = DampingWork::sampled;
-  Energies works_;  ///< the works alone
-  double damping_power_ = 0;
+  Energies works_;                                       ///< the works alone
   solid::Field scratch_;
 
   solid::Field u_, v_;

@@ -82,7 +82,7 @@ def test_fronts_file_has_its_columns(program, coarse, tmp_path):
 
 
 def test_energies_balance(program, coarse, tmp_path):
-    keys = ("--set", "output.damping_work=every_step", "--set", "output.energy_interval_s=5e-6")
+    keys = ("--set", "output.energy_interval_s=5e-6")
     assert program("run", coarse, "-o", "out", "-q", *keys).returncode == 0
     with open(tmp_path / "out/energy.csv", newline="") as file:
         rows = list(csv.DictReader(file))

@@ -108,7 +108,7 @@ Case changed_case() {
   c.trigger = {7e-3, 2.5, 0, 3e-5};
   c.time = {1.5, true, 7, 11, 1e-4, std::numeric_limits<double>::infinity()};
   c.fronts = {1e-3, 1e-5, 3e-3, 0.625, 0.25, 5e-3};
-  c.output = {1e-7, {0, 1e-5, 1.0 / 3 * 1e-4}, 3e-5, solve::DampingWork::every_step};
+  c.output = {1e-7, {0, 1e-5, 1.0 / 3 * 1e-4}, 3e-5};
   return c;
 }
 
@@ -191,7 +191,6 @@ trigger_margin_m = 5e-3
 [output]
 history_interval_s = 1e-6
 energy_interval_s = 1e-5
-damping_work = "every_step"
 snapshot_times_s = [1e-5, 2e-5]
 )",
                             "c.toml");
@@ -208,7 +207,7 @@ snapshot_times_s = [1e-5, 2e-5]
   expected.trigger = {0.03, 4, 6e-6, std::numeric_limits<double>::infinity()};
   expected.time = {0.5, true, 3, 9, 1e-4, 2e-5};
   expected.fronts = {2e-3, 3e-5, 4e-3, 0.6, 0.1, 5e-3};
-  expected.output = {1e-6, {1e-5, 2e-5}, 1e-5, solve::DampingWork::every_step};
+  expected.output = {1e-6, {1e-5, 2e-5}, 1e-5};
   expect_equal(c, expected);
 }
 

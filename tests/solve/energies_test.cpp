@@ -45,8 +45,7 @@ class Books : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {
     const Statics statics(mesh, material, loading, mu_s);
     const auto e = statics.shear_to(shear_ratio * mu_s);
     Stepper stepper(mesh, material, law, stepping(rows(), substeps()));
-    stepper.set_damping_work(DampingWork::every_step);
-    stepper.start(e, top_speed);
+      stepper.start(e, top_speed);
     if (triggered) {
       const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
       stepper.set_trigger(trigger, trigger_forces(e, mesh::tributary_lengths_m(mesh),
@@ -113,7 +112,6 @@ TEST_P(Books, CloseWhenThePlateHitsThePlane) {
   }
   const auto e = support::in_flight(mesh, u, v);
   Stepper stepper(mesh, {}, support::gentle_law, stepping(rows(), substeps()));
-  stepper.set_damping_work(DampingWork::every_step);
   stepper.start(e, 1);
   Recorder recorder(e, mu_s, 0);
   const double start = stepper.energies().stored();
@@ -159,7 +157,6 @@ TEST_P(BoundaryBooks, CloseWhenThePlateHitsThePlane) {
   }
   const auto e = support::in_flight(mesh, u, v);
   Stepper stepper(mesh, {}, support::gentle_law, stepping(4, substeps));
-  stepper.set_damping_work(DampingWork::every_step);
   stepper.start(e, 1);
   Recorder recorder(e, mu_s, 0);
   const double start = stepper.energies().stored();
