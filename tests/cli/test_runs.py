@@ -370,8 +370,9 @@ def test_reproduce_can_be_interrupted(program, tmp_path):
 
 def test_convergence_study_and_its_figure_agree(program, coarse, tmp_path):
     """The medians that the figure draws from the table are those that the program tells."""
-    result = program("study", "convergence", coarse, "-o", "out", "--threads", "2")
-    assert result.returncode == 0
+    sizes = "5e-3,2.5e-3,2e-3"
+    result = program("study", "convergence", coarse, "-o", "out", "--threads", "2", "--element-sizes", sizes)
+    assert result.returncode == 0, result.stderr
     assert "plate.element_size_m" in result.stdout
     told = json.loads((tmp_path / "out/convergence.json").read_text())["sequences"]
     study = read_study(tmp_path / "out")

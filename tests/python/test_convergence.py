@@ -50,7 +50,8 @@ def rows_of_substeps() -> list[list]:
         for x in stations:
             for n in (9, 18, 36, 72):
                 if x == stations[0]:
-                    rows.append([x, direction, "time.interface_substeps", n, 1000 if n == 18 else "", "", "", ""])
+                    v = 1000 if n == 18 else ""
+                    rows.append([x, direction, "time.interface_substeps", n, v, "", "", ""])
                 else:
                     rows.append(
                         [x, direction, "time.interface_substeps", n, 1000 * (1 + 0.1 / n), 1000, 100 / n, 1]
@@ -219,7 +220,8 @@ def test_step_size_falls_with_the_number_of_substeps(study):
 def test_the_limit_itself_has_no_place_on_the_axis_of_errors(study):
     row = panels(study)[2]
     np.testing.assert_allclose(artist(row[2], "median:-1").get_xdata(), [2e-7, 1e-7, 5e-8])
-    np.testing.assert_allclose(artist(row[2], "order:-1").get_ydata(), artist(row[2], "median:-1").get_ydata())
+    median = artist(row[2], "median:-1")
+    np.testing.assert_allclose(artist(row[2], "order:-1").get_ydata(), median.get_ydata())
     np.testing.assert_allclose(artist(row[0], "speed:-1:3").get_ydata(), 1000 / C_L)
 
 

@@ -15,7 +15,8 @@ PAGE = "# Scorecard\n\n<!-- table -->\nold\n<!-- end of table -->\n\nText | belo
 
 
 def claim(name: str, holds: bool | None, **more) -> dict:
-    return {"id": name, "claim": "a|b", "paper": "Fig. 1", "measured": "0.79", "holds": holds, "how": "x"} | more
+    row = {"id": name, "claim": "a|b", "paper": "Fig. 1", "measured": "0.79", "holds": holds, "how": "x"}
+    return row | more
 
 
 def varied(parameter: str, value: float, moves: str) -> dict:

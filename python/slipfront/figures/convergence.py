@@ -267,8 +267,8 @@ def convergence(folder: Path) -> Drawing:
         fontsize=7.5,
     )
     caption = (
-        "Front speed for each value of a numerical parameter, the case's own thick; dots: extrapolated; bars: "
-        "error of the case's own, grey against the extrapolated value, orange where there is none: a lower "
+        "Front speed for each value of a numerical parameter, the case's own thick; dots: extrapolated; "
+        "bars: error of the case's own, grey against the extrapolated value, orange where there is none: a lower "
         "bound. Right: median error of each value, and the observed order (of the stations that have one)."
     )
     return Drawing("convergence", figure, caption)

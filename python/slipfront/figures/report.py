@@ -100,8 +100,8 @@ def variation_note(scorecard: list[dict]) -> str:
         return ""
     return (
         '<p class="note">Moves by: difference of each number from that of runs with '
-        f"{escape(' and '.join(sorted(varied)))}, one at a time, in the same unit, and the verdict there where "
-        "it is another. The paper's friction law has no limit with the mesh: these are no distances from a "
+        f"{escape(' and '.join(sorted(varied)))}, one at a time, in the same unit, and the verdict there "
+        "where it is another. The paper's friction law has no limit with the mesh: these are no distances from a "
         "converged value.</p>"
     )
 
