@@ -16,7 +16,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce quick regularised bench docs format format-check verify verification-pages tidy sanitize coverage clean
+.PHONY: help setup build test reproduce sensitivity quick regularised convergence bench docs format format-check verify verification-pages tidy sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -42,11 +42,19 @@ build: packages  ## build the program: build/release/slipfront
 test: build $(VENV)/.installed  ## all tests, C++ and Python
 	@scripts/run-tests build/release $(PYTHON)
 
+# The paper's runs and figures; the argument adds options.
+define REPRODUCE
+@echo "== Running the paper's cases into $(RESULTS)"
+$(PROGRAM) reproduce -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(1)
+@echo "== Drawing the figures"
+PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
+endef
+
 reproduce: build $(VENV)/.installed  ## everything behind the paper: runs, scorecard, figures, into results/
-	@echo "== Running the paper's cases into $(RESULTS)"
-	$(PROGRAM) reproduce -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
-	@echo "== Drawing the figures"
-	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
+	$(call REPRODUCE)
+
+sensitivity: build $(VENV)/.installed  ## the same, and how far each figure of the scorecard moves with mesh and step
+	$(call REPRODUCE,--sensitivity)
 
 quick: build $(VENV)/.installed  ## the same in a second, on a coarse mesh, into results-quick/
 	$(PROGRAM) reproduce --quick -o $(RESULTS)-quick --overwrite
@@ -68,7 +76,25 @@ regularised: build $(VENV)/.installed  ## the same events with friction that has
 	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-regularised
 
-docs: reproduce  ## renew the pages and figures of docs/ that the program writes
+# An event's studies, without and with a length scale in the friction, and their figures.
+define CONVERGENCE
+$(PROGRAM) study convergence cases/kammer2012/$(1).toml -o $(RESULTS)-convergence/plain/$(1) --overwrite $(2)
+$(PROGRAM) study convergence cases/kammer2012/$(1).toml -o $(RESULTS)-convergence/regularised/$(1) --overwrite $(2) $(DELAYED) \
+  --set 'title="$(1), mu_k = 0.6, strength relaxed over 0.5 us"'
+PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-convergence/plain/$(1)
+PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-convergence/regularised/$(1)
+endef
+DELAYED := --set friction.regularisation=strength --set friction.relaxation_time_s=0.5e-6
+FINE := --element-sizes 1.3333333333333333e-3,6.6666666666666667e-4,3.3333333333333333e-4,1.6666666666666667e-4
+
+convergence: build $(VENV)/.installed  ## front speeds over mesh, step and damping, into results-convergence/ and docs/figures
+	$(call CONVERGENCE,spontaneous,$(FINE))
+	$(call CONVERGENCE,left)
+	$(call CONVERGENCE,right)
+	cp $(RESULTS)-convergence/plain/spontaneous/figures/convergence.png docs/figures/convergence_plain.png
+	cp $(RESULTS)-convergence/regularised/spontaneous/figures/convergence.png docs/figures/convergence_regularised.png
+
+docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
 	$(PYTHON) scripts/scorecard-page.py $(RESULTS) docs/scorecard.md
 	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png docs/figures/
@@ -104,4 +130,4 @@ coverage: packages  ## lines of the numerical core that the C++ tests run: table
 	@scripts/run-coverage build/coverage
 
 clean:  ## remove build, venv and results
-	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick $(RESULTS)-regularised $(RESULTS)-verify
+	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick $(RESULTS)-regularised $(RESULTS)-convergence $(RESULTS)-verify

@@ -22,6 +22,10 @@ void print_report(const paper::ReproduceReport& report, const std::string& dir) 
     const char* verdict = !c.holds ? "not tested" : *c.holds ? "holds" : "does not hold";
     (!c.holds ? n_open : *c.holds ? n_hold : n_not) += 1;
     fmt::print("{:<6}{:<15}{} [{}]\n{:21}{}\n", c.id, verdict, c.claim, c.paper, "", c.measured);
+    for (const auto& v : c.variations) {
+      const std::string moves = describe(c, v);
+      if (!moves.empty()) fmt::print("{:21}at {} = {:g} it moves by: {}\n", "", v.key, v.value, moves);
+    }
   }
   fmt::print("\n{} claims hold, {} do not hold, {} not tested\n\n", n_hold, n_not, n_open);
   for (const auto& t : report.timings) fmt::print("{:8.2f} s  {}\n", t.wall_s, t.part);
@@ -44,6 +48,11 @@ void add_reproduce(CLI::App& app) {
                  "Studies of friction that responds to pressure with a delay, over the element size and the "
                  "delay, in place of the paper's")
       ->excludes("--quick");
+  command
+      ->add_flag(
+          "--sensitivity", options->sensitivity,
+          "Also with elements of 1 mm and with half the sub-steps: how far the scorecard's figures move")
+      ->excludes("--regularised");
   command->add_flag("--overwrite", options->overwrite, "Replace the results that the folder already holds");
   command
       ->add_option("--experiment", *experiment,

@@ -99,13 +99,26 @@ const Outcome* reference_of(const Outcome& o, const StudyOutcome& study, const R
 
 void write_scorecard(const std::filesystem::path& file, const std::vector<Claim>& claims) {
   Json list = Json::array();
-  for (const auto& c : claims)
-    list.push_back({{"id", c.id},
-                    {"claim", c.claim},
-                    {"paper", c.paper},
-                    {"measured", c.measured},
-                    {"holds", c.holds ? Json(*c.holds) : Json(nullptr)},
-                    {"how", c.how}});
+  const auto verdict = [](std::optional<bool> holds) { return holds ? Json(*holds) : Json(nullptr); };
+  for (const auto& c : claims) {
+    Json row = {{"id", c.id},
+                {"claim", c.claim},
+                {"paper", c.paper},
+                {"measured", c.measured},
+                {"holds", verdict(c.holds)},
+                {"how", c.how},
+                {"figures", Json::array()}};
+    for (const auto& f : c.figures)
+      row["figures"].push_back({{"name", f.name}, {"value", number(f.value)}, {"unit", f.unit}});
+    for (const auto& v : c.variations) {
+      Json differences = Json::array();
+      for (const double d : v.differences) differences.push_back(number(d));
+      row[v.name + "_variation"] = {{"parameter", v.key},         {"value", v.value},
+                                    {"measured", v.measured},     {"holds", verdict(v.holds)},
+                                    {"differences", differences}, {"moves", describe(c, v)}};
+    }
+    list.push_back(std::move(row));
+  }
   io::write_text(file, list.dump(2) + "\n");
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -140,6 +141,33 @@ std::vector<Study> studies(bool quick) {
     }));
   list.push_back(std::move(method));
   return list;
+}
+
+std::vector<Variation> variations(bool quick) {
+  const auto make = [&](const char* name, const char* key, double value, const Change& change) {
+    Variation variation{name, key, value, paper_cases(quick), {}};
+    const auto vary = [&](io::Case& c) {
+      change(c);
+      c.title += fmt::format(", {} = {:g}", key, value);
+    };
+    for (auto& c : variation.events) {
+      c.config.output.snapshot_times_s.clear();
+      vary(c.config);
+    }
+    for (auto& study : studies(quick)) {
+      if (std::ranges::find(scorecard_studies, study.name) == scorecard_studies.end()) continue;
+      for (auto& point : study.points)
+        for (auto& c : point.cases) vary(c.config);
+      variation.studies.push_back(std::move(study));
+    }
+    return variation;
+  };
+  const double element_size_m = quick ? 4e-3 : 1e-3;
+  const int substeps = io::Case{}.time.interface_substeps / 2;
+  return {make("mesh", "plate.element_size_m", element_size_m,
+               [=](io::Case& c) { c.plate.element_size_m = element_size_m; }),
+          make("step", "time.interface_substeps", substeps,
+               [=](io::Case& c) { c.time.interface_substeps = substeps; })};
 }
 
 std::vector<Study> regularised_studies() {

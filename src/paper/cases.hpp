@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/case.hpp"
@@ -37,6 +39,22 @@ struct Study {
 /// All studies: friction (mu_k, alpha), mesh, time step, damping, corner, top edge, trigger, l*, loading
 /// method. `quick`: the friction and mesh studies alone, with elements of 2 mm and, for the mesh, 4 and 2 mm.
 std::vector<Study> studies(bool quick);
+
+/// The studies that the scorecard reads.
+inline constexpr std::array<std::string_view, 2> scorecard_studies = {"mu_k", "alpha"};
+
+/// The runs of the scorecard at another value of a numerical parameter.
+struct Variation {
+  std::string name;  ///< its folder in variations/
+  std::string key;   ///< of the case file
+  double value = 0;
+  std::vector<NamedCase> events;  ///< those of paper_cases
+  std::vector<Study> studies;     ///< scorecard_studies
+};
+
+/// "mesh": elements of 1 mm; "step": half the sub-steps. Both are coarser than the paper's runs, so that they
+/// take less time. `quick`: elements of 4 mm.
+std::vector<Variation> variations(bool quick);
 
 /// What becomes of the paper's events when friction responds to pressure with a delay: over the element size
 /// without and with it, over the relaxation time and length. Changes are counted from each study's first

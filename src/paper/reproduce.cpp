@@ -2,8 +2,10 @@
 #include "paper/reproduce.hpp"
 
 #include <chrono>
+#include <iterator>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "base/error.hpp"
 #include "io/results.hpp"
@@ -71,9 +73,46 @@ class Runner {
   run::Batch batch_;
 };
 
+/// Cases of studies as one list, so that the machine is busy to the end.
+std::vector<NamedCase> list_cases(const std::vector<Study>& studies, const std::string& folder) {
+  std::vector<NamedCase> list;
+  for (const auto& study : studies)
+    for (const auto& point : study.points)
+      for (const auto& c : point.cases)
+        list.push_back(
+            {fmt::format("{}studies/{}/{}/{}", folder, study.name, point.value, c.name), c.config});
+  return list;
+}
+
+/// The outcomes of such a list, by study. Takes them away.
+std::vector<StudyOutcome> by_study(const std::vector<Study>& studies, std::span<Outcome> outcomes) {
+  std::vector<StudyOutcome> list;
+  auto next = std::make_move_iterator(outcomes.begin());
+  for (const auto& study : studies) {
+    StudyOutcome result{study, {}};
+    for (const auto& point : study.points) {
+      const auto end = next + static_cast<std::ptrdiff_t>(point.cases.size());
+      result.outcomes.emplace_back(next, end);
+      next = end;
+    }
+    list.push_back(std::move(result));
+  }
+  return list;
+}
+
+/// All cases of a variation in its own folder: the events first.
+std::vector<NamedCase> list_cases(const Variation& variation) {
+  const std::string folder = fmt::format("variations/{}/", variation.name);
+  std::vector<NamedCase> list;
+  for (const auto& c : variation.events) list.push_back({folder + c.name, c.config});
+  for (auto& c : list_cases(variation.studies, folder)) list.push_back(std::move(c));
+  return list;
+}
+
 }  // namespace
 
 ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& monitor) {
+  SLIPFRONT_ASSERT(!(options.regularised && options.sensitivity), "no variations of the delayed friction");
   std::optional<io::Experiment> experiment;
   if (!options.experiment.empty())
     experiment = io::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
@@ -84,12 +123,10 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   const auto events = paper_cases(options.quick);
   const auto study_list = options.regularised ? regularised_studies() : studies(options.quick);
 
-  // All study runs as one list, so that the machine is busy to the end.
-  std::vector<NamedCase> study_cases;
-  for (const auto& study : study_list)
-    for (const auto& point : study.points)
-      for (const auto& c : point.cases)
-        study_cases.push_back({fmt::format("studies/{}/{}/{}", study.name, point.value, c.name), c.config});
+  const auto study_cases = list_cases(study_list, "");
+  const auto variation_list = options.sensitivity ? variations(options.quick) : std::vector<Variation>{};
+  std::size_t n_runs = events.size() + study_cases.size();
+  for (const auto& variation : variation_list) n_runs += list_cases(variation).size();
 
   ReproduceReport report;
   auto last = Clock::now();
@@ -98,7 +135,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
     report.timings.push_back({part, std::chrono::duration<double>(now - last).count()});
     last = now;
   };
-  Runner runner(options, monitor, events.size() + study_cases.size());
+  Runner runner(options, monitor, n_runs);
   auto four = runner.run(events);
   Reproduction runs{four[0], four[1], four[2], four[3], {}, experiment};
   lap("statics, four events and their files");
@@ -107,17 +144,16 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   lap("analysis of the four events");
 
   auto outcomes = runner.run(study_cases);
-  auto next = outcomes.begin();
-  for (const auto& study : study_list) {
-    StudyOutcome result{study, {}};
-    for (const auto& point : study.points) {
-      result.outcomes.emplace_back(next, next + static_cast<std::ptrdiff_t>(point.cases.size()));
-      next += static_cast<std::ptrdiff_t>(point.cases.size());
-    }
-    runs.studies.push_back(std::move(result));
-  }
+  runs.studies = by_study(study_list, outcomes);
   lap("studies");
   report.claims = scorecard(runs);
+  for (const auto& variation : variation_list) {
+    auto all = runner.run(list_cases(variation));
+    const auto varied_studies = by_study(variation.studies, std::span(all).subspan(4));
+    add_variation(report.claims, variation,
+                  scorecard({all[0], all[1], all[2], all[3], varied_studies, experiment}));
+  }
+  if (!variation_list.empty()) lap("variations of mesh and step");
   write_scorecard(options.dir / "scorecard.json", report.claims);
   write_analysis(options.dir / "analysis.json", runs);
   lap("analysis and scorecard");

@@ -14,6 +14,7 @@ struct ReproduceOptions {
   std::filesystem::path dir;
   bool quick = false;                ///< elements of 2 mm, friction and mesh studies alone
   bool regularised = false;          ///< regularised_studies in place of the paper's
+  bool sensitivity = false;          ///< add the variations to the scorecard
   bool overwrite = false;            ///< replace the results of an earlier reproduction in `dir`
   std::filesystem::path experiment;  ///< CSV file of measured points (io::read_experiment); empty: none
   int threads = 2;                   ///< runs side by side; each result is the same for any number
@@ -34,8 +35,9 @@ struct ReproduceReport {
 /// Told of every run that is done; returns false to interrupt the reproduction.
 using RunMonitor = std::function<bool(std::size_t done, std::size_t total, const std::string& name)>;
 
-/// Runs everything behind the paper: the four events, the studies, the analysis. Writes a folder per run,
-/// scorecard.json, analysis.json and timings.json.
+/// Runs everything behind the paper: the four events, the studies, the analysis, and the variations where
+/// wanted. Writes a folder per run, scorecard.json, analysis.json and timings.json.
+/// @pre not both `regularised` and `sensitivity`: the scorecard's studies are those of the paper's friction
 /// @throws UserError for the folder; BlowUp where one of the four events blew up (all else is written first);
 /// Interrupted.
 ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& monitor);

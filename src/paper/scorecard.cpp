@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "fronts/measures.hpp"
 
@@ -129,14 +130,15 @@ class Scorecard {
 
  private:
   void add(const char* id, const char* claim, const char* paper, std::string measured,
-           std::optional<bool> holds, const char* how) {
-    claims_.push_back({id, claim, paper, std::move(measured), holds, how});
+           std::vector<Figure> figures, std::optional<bool> holds, const char* how) {
+    claims_.push_back({id, claim, paper, std::move(measured), holds, how, std::move(figures), {}});
   }
 
   void wave_speeds() {
     const auto& s = r_.spontaneous.speeds;
     add("C1", "c_L = 1584 m/s and c_S = 890 m/s follow from E, nu, rho in plane stress", "Table 1",
         fmt::format("c_L = {:.1f} m/s, c_S = {:.1f} m/s", s.c_L, s.c_S),
+        {{"c_L", s.c_L, "m/s"}, {"c_S", s.c_S, "m/s"}},
         std::abs(s.c_L - 1584) <= 1 && std::abs(s.c_S - 890) <= 1, "each within 1 m/s");
   }
 
@@ -154,11 +156,12 @@ class Scorecard {
     add("C2", "t_s/p_s is nonuniform with its maximum far from the edges", "Set-up",
         fmt::format("maximum {:.1f} mm from the nearer edge, minimum inside {} of it", from_edge * mm,
                     percent(least / most)),
+        {{"maximum", from_edge * mm, "mm"}, {"minimum", 100 * least / most, "%"}},
         from_edge > 0.2 * w && least < 0.6 * most,
         "maximum more than 0.2 w from both edges; minimum inside below 0.6 of it");
     const double off = std::abs(o.first_onset_x_m - o.peak_x_m);
     add("C3", "slip nucleates spontaneously at that maximum", "Set-up",
-        fmt::format("first onset {:.2f} mm from it", off * mm), off <= 2e-3,
+        fmt::format("first onset {:.2f} mm from it", off * mm), {{"distance", off * mm, "mm"}}, off <= 2e-3,
         "first onset inside within 2 mm of it (of several at once, the farthest)");
   }
 
@@ -169,7 +172,8 @@ class Scorecard {
     const double c_against = speed_ratio_correlation(o, against), c_along = speed_ratio_correlation(o, along);
     add("C4", "mu_k = 1.0: V_tip grows with t_s/p_s", "Fig. 2",
         fmt::format("rank correlation {:.2f} against the shear, {:.2f} along", c_against, c_along),
-        c_against > 0.8 && c_along > 0.8, "rank correlation above 0.8 for each direction");
+        {{"against", c_against, ""}, {"along", c_along, ""}}, c_against > 0.8 && c_along > 0.8,
+        "rank correlation above 0.8 for each direction");
     const std::array<const Outcome*, 1> one = {&o};
     const auto series = [&](int direction) {
       return pick(one, Criterion::static_ratio,
@@ -179,10 +183,11 @@ class Scorecard {
     add("C5", "mu_k = 1.0: the front along the shear is considerably slower", "Fig. 2",
         fmt::format("V along / V against = {:.2f} ({:.2f} to {:.2f} over {} bins)", ratio.median, ratio.low,
                     ratio.high, ratio.n_bins),
-        ratio.median < 0.9, "median over bins of t_s/p_s of V along / V against below 0.9");
+        {{"ratio", ratio.median, ""}}, ratio.median < 0.9,
+        "median over bins of t_s/p_s of V along / V against below 0.9");
     if (against == nullptr) {
       add("C6", "mu_k = 1.0: the front against the shear arrests not far from the initiation zone", "Results",
-          "no front against the shear", false,
+          "no front against the shear", {}, false,
           "arrest within 50 mm of nucleation, more than 20 mm from the edge");
       return;
     }
@@ -190,6 +195,7 @@ class Scorecard {
     add("C6", "mu_k = 1.0: the front against the shear arrests not far from the initiation zone", "Results",
         fmt::format("{} after {:.1f} mm, {:.1f} mm from the edge",
                     against->end == fronts::End::arrest ? "arrest" : name(against->end), run * mm, edge * mm),
+        {{"length", run * mm, "mm"}, {"from the edge", edge * mm, "mm"}},
         against->end == fronts::End::arrest && run < 50e-3 && edge > 20e-3,
         "arrest within 50 mm of nucleation, more than 20 mm from the edge");
   }
@@ -206,14 +212,16 @@ class Scorecard {
     add("C7", "no slow fronts under this loading", "Results",
         fmt::format("longest stretch below 0.1 c_L: {:.1f} mm{}", slow * mm,
                     all_run ? "" : "; an event without a front"),
-        all_run && slow <= 10e-3, "V_tip below 0.1 c_L nowhere over more than 10 mm, in all four events");
+        {{"stretch", slow * mm, "mm"}}, all_run && slow <= 10e-3,
+        "V_tip below 0.1 c_L nowhere over more than 10 mm, in all four events");
 
     const auto& s = r_.spontaneous;
     const double against = speed_ratio_correlation(s, main_front(s, -1)),
                  along = speed_ratio_correlation(s, main_front(s, 1));
     add("C8", "mu_k = 0.6, spontaneous: fast toward both edges, slower as t_s/p_s falls", "Fig. 3d",
         fmt::format("rank correlation {:.2f} against the shear, {:.2f} along", against, along),
-        against > 0.8 && along > 0.8, "rank correlation of V_tip and t_s/p_s above 0.8, both directions");
+        {{"against", against, ""}, {"along", along, ""}}, against > 0.8 && along > 0.8,
+        "rank correlation of V_tip and t_s/p_s above 0.8, both directions");
 
     double fast = 0;
     for (const auto* o : three_)
@@ -221,10 +229,11 @@ class Scorecard {
                         return p.v_tip_m_per_s > o->speeds.c_L;
                       }));
     add("C9", "supersonic fronts occur", "Results",
-        fmt::format("longest stretch above c_L: {:.1f} mm", fast * mm), fast >= 10e-3,
-        "V_tip above c_L over at least 10 mm, 5 mm next to spontaneous nucleation left out");
+        fmt::format("longest stretch above c_L: {:.1f} mm", fast * mm), {{"stretch", fast * mm, "mm"}},
+        fast >= 10e-3, "V_tip above c_L over at least 10 mm, 5 mm next to spontaneous nucleation left out");
 
     std::string text;
+    std::vector<Figure> figures;
     bool holds = true;
     for (const auto* o : {&r_.left, &r_.right}) {
       const auto* front = main_front(*o, o->config.event == interface::EventKind::left ? 1 : -1);
@@ -249,9 +258,13 @@ class Scorecard {
       text += fmt::format(
           "{}{}: peak {:.2f} c_L {:.1f} mm from the maximum, first 10 mm at {} and last at {} of it",
           text.empty() ? "" : "; ", o->name, peak.v_over_c_L, off * mm, percent(first), percent(last));
+      figures.insert(figures.end(), {{o->name + " peak", peak.v_over_c_L, "c_L"},
+                                     {o->name + " from the maximum", off * mm, "mm"},
+                                     {o->name + " first", 100 * first, "%"},
+                                     {o->name + " last", 100 * last, "%"}});
     }
     add("C10", "edge-triggered fronts start slowly, accelerate, peak at the maximal t_s/p_s, decelerate",
-        "Fig. 3d", text, holds,
+        "Fig. 3d", text, figures, holds,
         "peak within 10 mm of the maximum; means of the first and last 10 mm below 0.9 of the peak; trigger "
         "zone and margin left out");
 
@@ -260,6 +273,11 @@ class Scorecard {
     add("C11", "the left-triggered maximum is at most 60 % of that of the other two", "Results",
         fmt::format("left {:.2f}, spontaneous {:.2f}, right {:.2f} c_L: {} and {}", left, spontaneous, right,
                     share(left, spontaneous), share(left, right)),
+        {{"left", left, "c_L"},
+         {"spontaneous", spontaneous, "c_L"},
+         {"right", right, "c_L"},
+         {"left/spontaneous", spontaneous > 0 ? 100 * left / spontaneous : fronts::undefined, "%"},
+         {"left/right", right > 0 ? 100 * left / right : fronts::undefined, "%"}},
         left > 0 && left <= 0.6 * spontaneous && left <= 0.6 * right,
         "ratio of maxima to each at most 0.6; 5 mm next to spontaneous nucleation, trigger zones and margins "
         "left out");
@@ -274,11 +292,14 @@ class Scorecard {
       add(c12, "no unique V_tip for a given t_s/p_s", "Fig. 3d",
           fmt::format("median relative spread {} over {} bins", percent(of_static.median_relative),
                       of_static.n_bins),
-          of_static.median_relative > 0.2, how12);
+          {{"spread", 100 * of_static.median_relative, "%"}}, of_static.median_relative > 0.2, how12);
       add(c14, "the spread of V_tip is smaller against t_d/p_d than against t_s/p_s", "Fig. 5",
           fmt::format(
               "median relative spread {} against t_d/p_d, {} against t_s/p_s ({} against the energy rise)",
               percent(of_dynamic.median_relative), percent(of_static.median_relative), percent(by_energy)),
+          {{"t_d/p_d", 100 * of_dynamic.median_relative, "%"},
+           {"t_s/p_s", 100 * of_static.median_relative, "%"},
+           {"energy", 100 * by_energy, "%"}},
           of_dynamic.median_relative < of_static.median_relative, how14);
     };
     spread_claims(
@@ -309,6 +330,7 @@ class Scorecard {
         "Fig. 4",
         fmt::format("mean relative difference {}, below 0.9 mu_s over {} of the path",
                     percent(difference / n), percent(below / n)),
+        {{"difference", 100 * difference / n, "%"}, {"below", 100 * below / n, "%"}},
         difference / n > 0.1 && below / n > 0.5,
         "mean relative difference above 10 %; below 0.9 mu_s over more than half the path");
 
@@ -320,9 +342,11 @@ class Scorecard {
     add("C15", "at equal t_d/p_d fronts against the sliding are faster", "Fig. 5",
         fmt::format("V against / V along = {:.2f} ({:.2f} to {:.2f} over {} bins)", ratio.median, ratio.low,
                     ratio.high, ratio.n_bins),
-        ratio.median > 1, "median over bins of t_d/p_d above 1, the three cases together");
+        {{"ratio", ratio.median, ""}}, ratio.median > 1,
+        "median over bins of t_d/p_d above 1, the three cases together");
 
     std::string text;
+    std::vector<Figure> figures;
     bool holds = true;
     for (const auto* o : {&r_.left, &r_.right}) {
       const auto* main = main_front(*o, o->config.event == interface::EventKind::left ? 1 : -1);
@@ -336,9 +360,10 @@ class Scorecard {
       holds = holds && both.median > 1;
       text += fmt::format("{}{}: {:.2f} ({:.2f} to {:.2f} over {} bins)", text.empty() ? "" : "; ", o->name,
                           both.median, both.low, both.high, both.n_bins);
+      figures.push_back({o->name, both.median, ""});
     }
     add("C16", "at equal t_d/p_d accelerating fronts are faster than decelerating ones", "Fig. 5", text,
-        holds, "V accelerating / V decelerating above 1 within each edge-triggered front");
+        figures, holds, "V accelerating / V decelerating above 1 within each edge-triggered front");
 
     std::array<double, 2> length = {0, 0};  // against, along
     std::array<int, 2> count = {0, 0};
@@ -355,6 +380,10 @@ class Scorecard {
     add("C17", "V_tip drops while t_d/p_d rises only for fronts against the sliding", "Fig. 5",
         fmt::format("against: {} stretches, longest {:.1f} mm; along: {}, longest {:.1f} mm", count[0],
                     length[0] * mm, count[1], length[1] * mm),
+        {{"stretches against", static_cast<double>(count[0]), ""},
+         {"longest against", length[0] * mm, "mm"},
+         {"stretches along", static_cast<double>(count[1]), ""},
+         {"longest along", length[1] * mm, "mm"}},
         count[0] > 0 && count[1] == 0,
         "stretches of at least 5 mm: found against the sliding, none along it");
   }
@@ -362,7 +391,7 @@ class Scorecard {
   void collapse_claim(const char* id, const Collapse& c, const char* how) {
     const char* claim = "all three cases collapse against (U_r-U_s)/U_s on a + b exp(-c sqrt(.))";
     if (!c.fitted) {
-      add(id, claim, "Fig. 6", "too few points for a fit", std::nullopt, how);
+      add(id, claim, "Fig. 6", "too few points for a fit", {}, std::nullopt, how);
       return;
     }
     add(id, claim, "Fig. 6",
@@ -371,6 +400,11 @@ class Scorecard {
                     c.fit.rms, c.fit.a.value, c.fit.a.low, c.fit.a.high, c.fit.b.value, c.fit.b.low,
                     c.fit.b.high, c.fit.c.value, c.fit.c.low, c.fit.c.high, percent(c.share_in_paper_band),
                     c.n_points),
+        {{"rms", c.fit.rms, "c_L"},
+         {"a", c.fit.a.value, ""},
+         {"b", c.fit.b.value, ""},
+         {"c", c.fit.c.value, ""},
+         {"within the band", 100 * c.share_in_paper_band, "%"}},
         c.fit.rms <= PaperFit{}.band && c.share_in_paper_band >= 0.8, how);
   }
 
@@ -399,13 +433,14 @@ class Scorecard {
     const char* claim = "points outside the band are fronts decelerating rapidly before arrest";
     const char* how = "at least 70 % of them lie in the last 20 mm before arrest";
     if (collapse_.n_points == 0) {
-      add("C19", claim, "Fig. 6", "no points", std::nullopt, how);
+      add("C19", claim, "Fig. 6", "no points", {}, std::nullopt, how);
       return;
     }
     add("C19", claim, "Fig. 6",
         outside == 0
             ? "no points outside"
             : fmt::format("{} of {} points outside the band", percent(double(near_end) / outside), outside),
+        {{"share", outside > 0 ? 100.0 * near_end / outside : fronts::undefined, "%"}},
         outside == 0 || near_end >= 0.7 * outside, how);
   }
 
@@ -429,6 +464,7 @@ class Scorecard {
 
   void crack_share_claim(const char* id, const StudyOutcome& mu_k, bool spontaneous_only, const char* how) {
     std::string text;
+    std::vector<Figure> figures;
     std::array<int, 3> total = {0, 0, 0};
     bool falls = true;
     std::vector<double> shares;
@@ -439,14 +475,19 @@ class Scorecard {
                           mu_k.study.points[k].value, sum > 0 ? percent(double(n[0]) / sum) : "no front");
       for (int j = 0; j < 3; ++j) total[j] += n[j];
       if (sum == 0) continue;
+      figures.push_back({mu_k.study.points[k].value, 100.0 * n[0] / sum, "%"});
       falls = falls && (shares.empty() || double(n[0]) / sum <= shares.back());
       shares.push_back(double(n[0]) / sum);
     }
     const int sum = total[0] + total[1] + total[2];
     text += fmt::format("; of all: crack {}, pulse {}, mixed {}", percent(double(total[0]) / sum),
                         percent(double(total[1]) / sum), percent(double(total[2]) / sum));
+    if (sum > 0)
+      for (const auto& [kind, n] : {std::pair{"crack", total[0]}, {"pulse", total[1]}, {"mixed", total[2]}})
+        figures.push_back({kind, 100.0 * n / sum, "%"});
     add(id, "larger mu_s - mu_k: crack-like; smaller: pulse-like; mixed modes exist", "Results", text,
-        falls && shares.size() > 1 && shares.back() < shares.front() && std::ranges::min(total) > 0, how);
+        figures, falls && shares.size() > 1 && shares.back() < shares.front() && std::ranges::min(total) > 0,
+        how);
   }
 
   /// Speeds against the energy rise by kind of slip: crack, pulse, mixed.
@@ -476,8 +517,8 @@ class Scorecard {
     const auto* mu_k = study("mu_k");
     if (mu_k == nullptr) {
       add("C20", "larger mu_s - mu_k: crack-like; smaller: pulse-like; mixed modes exist", "Results",
-          "not tested: no studies", std::nullopt, how_share);
-      add("C21", independent, "Results", "not tested: no studies", std::nullopt, how_kind);
+          "not tested: no studies", {}, std::nullopt, how_share);
+      add("C21", independent, "Results", "not tested: no studies", {}, std::nullopt, how_kind);
       return;
     }
     crack_share_claim("C20", *mu_k, false, how_share);
@@ -491,6 +532,7 @@ class Scorecard {
       add(id, independent, "Results",
           known ? fmt::format("median difference between kinds {:.3f} c_L{}", difference, text)
                 : "only one kind of slip",
+          {{"difference", difference, "c_L"}},
           known ? std::optional(difference < 2 * PaperFit{}.band) : std::nullopt, how);
     };
     std::vector<const Outcome*> all;
@@ -547,11 +589,12 @@ class Scorecard {
         "fifth of the path than between";
     if (alpha == nullptr) {
       add("C22", "higher alpha: slower, above all at initiation and arrest", "Results",
-          "not tested: no studies", std::nullopt, how);
+          "not tested: no studies", {}, std::nullopt, how);
       return;
     }
     // Mean speed by fifths of the path, over both fronts of the spontaneous event.
     std::string text;
+    std::vector<Figure> figures;
     std::vector<std::array<double, 5>> fifths;
     std::vector<double> means;
     for (std::size_t k = 0; k < alpha->outcomes.size(); ++k) {
@@ -575,6 +618,7 @@ class Scorecard {
                           alpha->study.points[k].value,
                           points > 0 ? fmt::format("{:.2f}", total / points) : "no front");
       if (points == 0) continue;
+      figures.push_back({alpha->study.points[k].value, total / points, "c_L"});
       fifths.push_back(sum);
       means.push_back(total / points);
     }
@@ -588,9 +632,12 @@ class Scorecard {
       ends = drop[0] > middle && drop[4] > middle;
       text += fmt::format("; relative drop in the first fifth {}, between {}, in the last {}",
                           percent(drop[0]), percent(middle), percent(drop[4]));
+      figures.insert(figures.end(), {{"first fifth", 100 * drop[0], "%"},
+                                     {"between", 100 * middle, "%"},
+                                     {"last fifth", 100 * drop[4], "%"}});
     }
-    add("C22", "higher alpha: slower, above all at initiation and arrest", "Results", text, falls && ends,
-        how);
+    add("C22", "higher alpha: slower, above all at initiation and arrest", "Results", text, figures,
+        falls && ends, how);
   }
 
   void experiment() {
@@ -600,7 +647,7 @@ class Scorecard {
         "20 %, V the median "
         "speed of the mu_k = 1.0 run within 0.02 of the point's t_s/p_s";
     if (!r_.experiment) {
-      add("E1", claim, "Fig. 2", "not tested: no data", std::nullopt, how);
+      add("E1", claim, "Fig. 2", "not tested: no data", {}, std::nullopt, how);
       return;
     }
     const std::array<const Outcome*, 1> one = {&r_.spontaneous_mu_k_1};
@@ -619,6 +666,7 @@ class Scorecard {
         fmt::format(
             "median relative deviation {} over the {} of {} points within the range of t_s/p_s of our fronts",
             percent(deviation), deviations.size(), r_.experiment->static_ratio.size()),
+        {{"deviation", 100 * deviation, "%"}},
         deviations.empty() ? std::nullopt : std::optional(deviation <= 0.2), how);
   }
 
@@ -643,6 +691,9 @@ class Scorecard {
                   "tip behind c_L (t - t_trigger) at {} of the super-shear points, by at least {:.1f} mm",
                   percent(behind / supershear), least_lag * mm)
             : "no super-shear points",
+        supershear > 0 ? std::vector<Figure>{{"share", 100 * behind / supershear, "%"},
+                                             {"least distance", least_lag * mm, "mm"}}
+                       : std::vector<Figure>{},
         supershear > 0 && behind == supershear,
         "left-triggered: wherever V_tip exceeds c_S the tip is behind the wave from the trigger zone's inner "
         "end");
@@ -658,6 +709,41 @@ class Scorecard {
 
 std::vector<Claim> scorecard(const Reproduction& runs) {
   return Scorecard(runs).all();
+}
+
+void add_variation(std::vector<Claim>& claims, const Variation& variation, std::span<const Claim> varied) {
+  for (auto& claim : claims) {
+    const auto other = std::ranges::find(varied, claim.id, &Claim::id);
+    if (other == varied.end()) continue;
+    ClaimVariation result{variation.name, variation.key, variation.value, other->measured, other->holds, {}};
+    for (const auto& figure : claim.figures) {
+      const auto same = std::ranges::find(other->figures, figure.name, &Figure::name);
+      result.differences.push_back(same == other->figures.end() ? fronts::undefined
+                                                                : std::abs(same->value - figure.value));
+    }
+    claim.variations.push_back(std::move(result));
+  }
+}
+
+std::string describe(const Claim& claim, const ClaimVariation& variation) {
+  const auto difference = [](double d, const std::string& unit) {
+    const std::string ending = unit.empty() ? "" : " " + unit;
+    if (!std::isfinite(d)) return std::string("undefined");
+    if (d > 0 && d < 1e-3) return "< 0.001" + ending;
+    return (d < 10 ? fmt::format("{:.2g}", d) : fmt::format("{:.0f}", d)) + ending;
+  };
+  std::string text;
+  for (std::size_t k = 0; k < claim.figures.size(); ++k) {
+    if (k > 0) text += ", ";
+    if (claim.figures.size() > 1) text += claim.figures[k].name + ": ";
+    text += difference(variation.differences[k], claim.figures[k].unit);
+  }
+  if (variation.holds != claim.holds)
+    text += fmt::format("{}there {}", text.empty() ? "" : "; ",
+                        !variation.holds   ? "not tested"
+                        : *variation.holds ? "holds"
+                                           : "does not hold");
+  return text;
 }
 
 }  // namespace slipfront::paper

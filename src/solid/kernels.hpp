@@ -56,6 +56,7 @@ inline Pair interior_product(const InteriorStencil& s, int i, ConstRow south, Co
 /// v += stencil(w) over the span.
 inline void add_interior_row(const InteriorStencil& s, Span span, ConstRow south, ConstRow middle,
                              ConstRow north, double* __restrict v_x, double* __restrict v_y) {
+#pragma omp simd
   for (int i = span.begin; i < span.end; ++i) {
     const auto [x, y] = interior_product(s, i, south, middle, north);
     v_x[i] += x;

@@ -120,7 +120,7 @@ std::vector<Station> stations_of(const Fronts& own, double spacing_m) {
     for (auto k = first; static_cast<double>(k) * spacing_m <= std::max(start_m, end_m); ++k) {
       const double x = static_cast<double>(k) * spacing_m;
       if (std::abs(x - start_m) < nucleation_m || x < own.from_m || x > own.to_m) continue;
-      if (std::isfinite(v_tip_at(front, x))) stations.push_back({x, front.direction, {}, {}, undefined});
+      if (std::isfinite(v_tip_at(front, x))) stations.push_back({x, front.direction, {}, {}, {}});
     }
   }
   return stations;
@@ -137,7 +137,8 @@ Summary summarise_direction(const std::vector<Station>& stations, const Plan& pl
     ++n_wanted;
     const double own = s.v_tip_m_per_s[plan.own];
     const auto f = [&](std::size_t k) { return s.v_tip_m_per_s[plan.last[k]]; };
-    list.push_back({s.error_m_per_s / own, s.limit.order, std::abs(f(0) - f(1)) / own / std::log(q[0] / q[1]),
+    list.push_back({s.error_m_per_s[plan.own] / own, s.limit.order,
+                    std::abs(f(0) - f(1)) / own / std::log(q[0] / q[1]),
                     std::abs(f(1) - f(2)) / own / std::log(q[1] / q[2])});
   }
   return summarise(list, n_wanted, tolerance);
@@ -157,7 +158,7 @@ Sequence compare(const Plan& plan, const std::vector<Fronts>& runs, const Conver
     for (std::size_t k = 0; k < 3; ++k) f[k] = s.v_tip_m_per_s[plan.last[k]];
     const double v = s.v_tip_m_per_s[plan.own];
     s.limit = extrapolate(q, f);
-    s.error_m_per_s = error_of(v, s.limit, f);
+    for (const double value : s.v_tip_m_per_s) s.error_m_per_s.push_back(error_of(value, s.limit, f));
     if (plan.members.back().step_size == 0)
       at_limit.push_back(std::abs(s.v_tip_m_per_s.back() - s.limit.value) / v);
   }

@@ -50,7 +50,7 @@ struct Station {
   int direction = 0;                  ///< of the front, +1 or -1 along x
   std::vector<double> v_tip_m_per_s;  ///< [members]; NaN where the front does not pass or has no speed there
   Limit limit;
-  double error_m_per_s = undefined;  ///< of the case's own value
+  std::vector<double> error_m_per_s;  ///< [members], each against the limit: error_of
 };
 
 struct Sequence {

@@ -7,6 +7,7 @@
 
 #include "base/version.hpp"
 #include "io/results.hpp"
+#include "run/run.hpp"
 #include "study/convergence.hpp"
 
 namespace slipfront::study {
@@ -41,7 +42,7 @@ std::string csv(const Convergence& result) {
       for (std::size_t k = 0; k < s.v_tip_m_per_s.size(); ++k)
         fmt::format_to(out, "{},{},{},{},{},{},{},{}\n", cell(s.x_m), s.direction, sequence.plan.parameter,
                        cell(sequence.plan.members[k].value), cell(s.v_tip_m_per_s[k]), cell(s.limit.value),
-                       cell(s.error_m_per_s), cell(s.limit.order));
+                       cell(s.error_m_per_s[k]), cell(s.limit.order));
   return text;
 }
 
@@ -68,6 +69,7 @@ void write_convergence(const std::filesystem::path& dir, const io::Case& config,
                                 {"tolerance", result.options.tolerance},
                                 {"station_spacing_m", result.options.station_spacing_m},
                                 {"l_star_m", result.l_star_m},
+                                {"c_L_m_per_s", run::wave_speeds(config.material).c_L},
                                 {"n_runs", result.n_runs},
                                 {"sequences", sequences},
                                 {"warnings", result.warnings}};

@@ -17,6 +17,8 @@ import h5py
 import numpy as np
 import pytest
 from conftest import ROOT
+from slipfront.figures.__main__ import main as figures
+from slipfront.figures.convergence import read_study
 
 FILES = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
 
@@ -364,3 +366,36 @@ def test_reproduce_can_be_interrupted(program, tmp_path):
         assert files_in(folder) >= FILES
         assert summary(folder)["end"] != "interrupted"
     assert not (tmp_path / "out/scorecard.json").exists()
+
+
+def test_convergence_study_and_its_figure_agree(program, coarse, tmp_path):
+    """The medians that the figure draws from the table are those that the program tells."""
+    sizes = "5e-3,2.5e-3,2e-3"
+    result = program("study", "convergence", coarse, "-o", "out", "--threads", "2", "--element-sizes", sizes)
+    assert result.returncode == 0, result.stderr
+    assert "plate.element_size_m" in result.stdout
+    told = json.loads((tmp_path / "out/convergence.json").read_text())["sequences"]
+    study = read_study(tmp_path / "out")
+    assert [s.parameter for s in study.sequences] == [s["parameter"] for s in told]
+    compared = 0
+    for entry, sequence in zip(told, study.sequences, strict=True):
+        for direction in study.directions():
+            error = entry[f"direction_{direction:+d}"]["median_relative_error"]
+            if error is None:
+                continue
+            # Ten digits in the table.
+            assert sequence.median_error(direction)[sequence.own] == pytest.approx(error, rel=1e-6)
+            compared += 1
+    assert compared >= 3
+    assert figures([str(tmp_path / "out")]) == 0
+    assert (tmp_path / "out/figures/convergence.png").is_file()
+
+
+def test_reproduce_tells_how_far_the_scorecard_moves(program, tmp_path):
+    result = program("reproduce", "--quick", "--sensitivity", "-o", "out", "--threads", "2")
+    assert result.returncode == 0
+    assert "at plate.element_size_m = 0.004 it moves by" in result.stdout
+    row = next(r for r in json.loads((tmp_path / "out/scorecard.json").read_text()) if r["id"] == "C11")
+    assert row["mesh_variation"]["differences"][0] > 0
+    refused = program("reproduce", "--sensitivity", "--regularised", "-o", "other")
+    assert refused.returncode == 2 and "--sensitivity" in refused.stderr

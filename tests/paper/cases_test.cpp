@@ -153,5 +153,50 @@ TEST(Studies, ChangeOneParameterOfThePapersRuns) {
   }
 }
 
+/// Every case of a variation in the order of the paper's runs, and those.
+std::vector<std::pair<io::Case, io::Case>> pairs_of(const Variation& variation, bool quick) {
+  std::vector<std::pair<io::Case, io::Case>> list;
+  const auto events = paper_cases(quick);
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    list.emplace_back(variation.events[k].config, events[k].config);
+    list.back().second.output.snapshot_times_s.clear();
+  }
+  const auto all = studies(quick);
+  for (const auto& study : variation.studies) {
+    const auto& own = *find(all, study.name);
+    for (std::size_t k = 0; k < own.points.size(); ++k)
+      for (std::size_t j = 0; j < own.points[k].cases.size(); ++j)
+        list.emplace_back(study.points[k].cases[j].config, own.points[k].cases[j].config);
+  }
+  return list;
+}
+
+TEST(Variations, DifferFromTheRunsOfTheScorecardInOneParameter) {
+  for (const bool quick : {false, true}) {
+    const auto list = variations(quick);
+    ASSERT_EQ(list.size(), 2U);
+    for (const auto& variation : list) {
+      ASSERT_EQ(variation.events.size(), paper_cases(quick).size());
+      std::vector<std::string> names;
+      for (const auto& study : variation.studies) names.push_back(study.name);
+      EXPECT_THAT(names, ElementsAre("mu_k", "alpha"));
+      for (auto& [varied, own] : pairs_of(variation, quick)) {
+        io::Case expected = own;
+        expected.title = varied.title;
+        if (variation.name == "mesh")
+          expected.plate.element_size_m = variation.value;
+        else
+          expected.time.interface_substeps = static_cast<int>(variation.value);
+        EXPECT_EQ(io::to_toml(varied), io::to_toml(expected));
+        EXPECT_NE(io::to_toml(varied), io::to_toml(own));
+      }
+    }
+    EXPECT_EQ(list[0].key, "plate.element_size_m");
+    EXPECT_EQ(list[0].value, quick ? 4e-3 : 1e-3);
+    EXPECT_EQ(list[1].key, "time.interface_substeps");
+    EXPECT_EQ(list[1].value, 9);
+  }
+}
+
 }  // namespace
 }  // namespace slipfront::paper

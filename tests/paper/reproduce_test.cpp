@@ -154,6 +154,37 @@ TEST_F(QuickReproduction, EveryFileIsBitwiseTheSameForAnyNumberOfThreadsAndInEve
   }
 }
 
+TEST_F(QuickReproduction, SensitivityAddsVariationsAndChangesNothingElse) {
+  const TemporaryFolder folder;
+  auto options = quick(folder.path(), 2);
+  options.sensitivity = true;
+  const auto report = reproduce(options, go_on);
+  ASSERT_EQ(report.claims.size(), s.report.claims.size());
+  json with = json::parse(test::read_file(folder / "scorecard.json"));
+  for (std::size_t k = 0; k < with.size(); ++k) {
+    ASSERT_EQ(report.claims[k].variations.size(), 2U) << report.claims[k].id;
+    for (const auto& variation : report.claims[k].variations) {
+      auto& entry = with[k][variation.name + "_variation"];
+      EXPECT_EQ(entry["parameter"], variation.key);
+      EXPECT_EQ(entry["value"], variation.value);
+      EXPECT_EQ(entry["measured"], variation.measured);
+      EXPECT_EQ(entry["differences"].size(), with[k]["figures"].size());
+      EXPECT_EQ(entry["moves"], describe(report.claims[k], variation));
+      with[k].erase(variation.name + "_variation");
+    }
+  }
+  EXPECT_EQ(with, json::parse(test::read_file(s.folder / "scorecard.json")));
+  for (const auto& variation : variations(true)) {
+    const auto dir = folder.path() / "variations" / variation.name;
+    for (const char* run : {"left", "studies/mu_k/0.6/left", "studies/alpha/0.1/spontaneous"})
+      EXPECT_TRUE(fs::is_regular_file(dir / run / "fronts.csv")) << dir / run;
+  }
+  // The coarse study of the mesh has the runs of the mesh variation.
+  for (const char* event : {"left", "spontaneous", "right"})
+    EXPECT_EQ(test::read_file(folder.path() / "variations/mesh" / event / "fronts.csv"),
+              test::read_file(s.folder.path() / "studies/element_size/0.004" / event / "fronts.csv"));
+}
+
 TEST(Reproduce, RefusesAFolderThatHoldsAnything) {
   const TemporaryFolder folder;
   test::write_file(folder / "notes.txt", "mine");

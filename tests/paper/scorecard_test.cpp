@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paper/scorecard.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -72,6 +74,99 @@ TEST(Scorecard, GoodRunsHoldEveryClaim) {
         << id;
     EXPECT_EQ(claim.measured.find("nan"), std::string::npos) << id << ": " << claim.measured;
   }
+}
+
+TEST(Scorecard, EveryTestedRowStatesItsFigures) {
+  for (const auto& [id, claim] : claims_of(make_good())) {
+    EXPECT_EQ(claim.figures.empty(), !claim.holds.has_value()) << id;
+    std::set<std::string> names;
+    for (const auto& figure : claim.figures) {
+      EXPECT_TRUE(names.insert(figure.name).second) << id << ": " << figure.name;
+      // No point lies outside the band there, so that there is no share of them.
+      EXPECT_TRUE(std::isfinite(figure.value) || id == "C19") << id << ": " << figure.name;
+    }
+  }
+}
+
+TEST(Scorecard, FiguresAreTheNumbersOfTheText) {
+  const auto claims = claims_of(make_good());
+  for (const char* id : {"C1", "C4", "C5", "C8", "C15"}) {
+    for (const auto& figure : claims.at(id).figures) {
+      const std::string shown = fmt::format("{:.{}f}", figure.value, figure.unit == "m/s" ? 1 : 2);
+      EXPECT_THAT(claims.at(id).measured, testing::HasSubstr(shown)) << id << ": " << figure.name;
+    }
+  }
+  for (const char* id : {"C12", "C13", "C14", "C20"}) {
+    for (const auto& figure : claims.at(id).figures)
+      EXPECT_THAT(claims.at(id).measured, testing::HasSubstr(fmt::format("{:.0f} %", figure.value)))
+          << id << ": " << figure.name;
+  }
+}
+
+Variation named(const char* name) {
+  return {name, "plate.element_size_m", 1e-3, {}, {}};
+}
+
+TEST(ScorecardVariation, TellsByHowMuchTheFiguresDiffer) {
+  const auto good = make_good();
+  auto changed = good;
+  replace_front(changed.left, 0, square(0.8, 0.5));  // the maximum rises by a tenth
+  auto claims = scorecard(good);
+  add_variation(claims, named("mesh"), scorecard(changed));
+  add_variation(claims, named("step"), scorecard(good));
+  for (const auto& claim : claims) {
+    ASSERT_EQ(claim.variations.size(), 2U) << claim.id;
+    EXPECT_EQ(claim.variations[0].name, "mesh");
+    EXPECT_EQ(claim.variations[1].name, "step");
+    for (const auto& variation : claim.variations)
+      EXPECT_EQ(variation.differences.size(), claim.figures.size()) << claim.id;
+    // The same runs: no difference.
+    EXPECT_EQ(claim.variations[1].measured, claim.measured);
+    EXPECT_EQ(claim.variations[1].holds, claim.holds);
+    for (const double d : claim.variations[1].differences) EXPECT_TRUE(d == 0 || std::isnan(d)) << claim.id;
+  }
+  const auto& c11 = *std::ranges::find(claims, "C11", &Claim::id);
+  ASSERT_EQ(c11.figures[0].name, "left");
+  const double shape_max = shape(peak_x_m);
+  EXPECT_NEAR(c11.variations[0].differences[0], 0.1 * shape_max * shape_max, 1e-3);  // a point each 1 mm
+  EXPECT_EQ(c11.variations[0].differences[1], 0);                                    // spontaneous
+  EXPECT_EQ(c11.variations[0].differences[2], 0);                                    // right
+}
+
+Claim with_figures(std::vector<Figure> figures, std::optional<bool> holds) {
+  return {"C1", "claim", "Fig. 1", "text", holds, "how", std::move(figures), {}};
+}
+
+TEST(ScorecardVariation, MatchesFiguresByNameAndRowsById) {
+  std::vector<Claim> claims = {with_figures({{"a", 1, "mm"}, {"b", 2, "%"}, {"c", 3, ""}}, true)};
+  const std::vector<Claim> varied = {with_figures({{"b", 1.5, "%"}, {"a", 13, "mm"}}, false)};
+  add_variation(claims, named("mesh"), varied);
+  ASSERT_EQ(claims[0].variations.size(), 1U);
+  const auto& variation = claims[0].variations[0];
+  EXPECT_DOUBLE_EQ(variation.differences[0], 12);
+  EXPECT_DOUBLE_EQ(variation.differences[1], 0.5);
+  EXPECT_TRUE(std::isnan(variation.differences[2]));
+  EXPECT_EQ(describe(claims[0], variation), "a: 12 mm, b: 0.5 %, c: undefined; there does not hold");
+
+  auto other = with_figures({}, true);
+  other.id = "C2";
+  add_variation(claims, named("step"), std::vector<Claim>{other});
+  EXPECT_EQ(claims[0].variations.size(), 1U);
+}
+
+TEST(ScorecardVariation, IsDescribedWithTwoDigits) {
+  for (const auto& [difference, text] : std::map<double, std::string>{{0, "0 c_L"},
+                                                                      {1e-5, "< 0.001 c_L"},
+                                                                      {0.01234, "0.012 c_L"},
+                                                                      {9.87, "9.9 c_L"},
+                                                                      {123.4, "123 c_L"}}) {
+    std::vector<Claim> claims = {with_figures({{"a", 0, "c_L"}}, true)};
+    add_variation(claims, named("mesh"), std::vector{with_figures({{"a", -difference, "c_L"}}, true)});
+    EXPECT_EQ(describe(claims[0], claims[0].variations[0]), text);
+  }
+  std::vector<Claim> open = {with_figures({}, std::nullopt)};
+  add_variation(open, named("mesh"), std::vector{with_figures({}, true)});
+  EXPECT_EQ(describe(open[0], open[0].variations[0]), "there holds");
 }
 
 TEST(Scorecard, ExperimentsAreNotTestedWithoutData) {

@@ -433,6 +433,29 @@ def test_axes_hold_the_main_fronts(pristine, results):
     assert beyond <= 0.05 * defined
 
 
+def test_report_tells_how_far_the_scorecard_moves(output):
+    file = output / "scorecard.json"
+    scorecard = json.loads(file.read_text())
+    for row in scorecard[:2]:
+        row["mesh_variation"] = {
+            "parameter": "plate.element_size_m",
+            "value": 1e-3,
+            "measured": "1584.2",
+            "holds": True,
+            "differences": [0.25],
+            "moves": "< 0.001 m/s" if row["id"] == "C1" else "",
+        }
+    file.write_text(json.dumps(scorecard))
+    assert main([str(output)]) == 0
+    html = (output / "figures/index.html").read_text(encoding="utf-8")
+    rows = re.findall(r"<tr>.*?</tr>", html.split(">Scorecard</h2>")[1].split("</table>")[0])
+    assert "<th>With the mesh, moves by</th><th>How tested</th>" in rows[0]
+    assert "<td>&lt; 0.001 m/s</td><td>each within 1 m/s</td>" in rows[1]
+    assert "<td>–</td><td>otherwise</td>" in rows[2]  # nothing moves
+    assert "<td>–</td><td>ratio</td>" in rows[3]  # not run
+    assert "runs with plate.element_size_m = 0.001, one at a time" in html
+
+
 # Studies
 
 

@@ -64,15 +64,46 @@ def table(
     return f'<div class="scroll">{opening}\n<thead>{head}</thead>\n<tbody>\n{body}\n</tbody></table></div>'
 
 
+# Columns of `slipfront reproduce --sensitivity`.
+VARIATIONS = {"mesh_variation": "With the mesh, moves by", "step_variation": "With the step, moves by"}
+
+
 def scorecard_table(scorecard: list[dict]) -> str:
+    variations = [key for key in VARIATIONS if any(key in entry for entry in scorecard)]
     rows = []
     for entry in scorecard:
         sign, kind, meaning = VERDICTS.get(entry["holds"], VERDICTS[None])
         verdict = f'<td class="verdict {kind}" title="{meaning}">{sign}</td>'
         rows.append(
-            [*(text(entry[key]) for key in ("id", "claim", "paper", "measured")), verdict, text(entry["how"])]
+            [
+                *(text(entry[key]) for key in ("id", "claim", "paper", "measured")),
+                verdict,
+                *(text((entry.get(key) or {}).get("moves") or None) for key in variations),
+                text(entry["how"]),
+            ]
         )
-    return table(["", "Claim", "Paper", "Measured", "Holds", "How tested"], rows)
+    added = [VARIATIONS[key] for key in variations]
+    return variation_note(scorecard) + table(
+        ["", "Claim", "Paper", "Measured", "Holds", *added, "How tested"], rows
+    )
+
+
+def variation_note(scorecard: list[dict]) -> str:
+    """Which runs the columns of the variations come from."""
+    varied = {
+        f"{entry[key]['parameter']} = {entry[key]['value']:.4g}"
+        for entry in scorecard
+        for key in VARIATIONS
+        if key in entry
+    }
+    if not varied:
+        return ""
+    return (
+        '<p class="note">Moves by: difference of each number from that of runs with '
+        f"{escape(' and '.join(sorted(varied)))}, one at a time, in the same unit, and the verdict there "
+        "where it is another. The paper's friction law has no limit with the mesh: these are no distances from a "
+        "converged value.</p>"
+    )
 
 
 def scorecard_summary(scorecard: list[dict]) -> str:

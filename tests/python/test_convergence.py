@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The figure of a convergence study shows what the files say, for made-up speeds with known limits."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from slipfront.figures import convergence
+from slipfront.figures.__main__ import main
+from slipfront.figures.style import RC
+from synthetic import write_csv
+
+C_L = 1500.0
+X_LEFT_M, X_RIGHT_M = 2e-3 * np.arange(10, 60), 2e-3 * np.arange(75, 95)
+SIZES, OWN = [2e-3, 1e-3, 0.5e-3], 1
+HEADER = "x_m direction parameter value v_tip_m_per_s extrapolated_m_per_s error_m_per_s order".split()
+WITHOUT = {
+    "verdict": "too few stations",
+    "median_relative_error": None,
+    "median_order": None,
+    "growth": None,
+    "n_stations": 0,
+    "n_stations_of_case": 0,
+}
+
+
+def limit_left(x_m: float) -> float:
+    return 1000 + 4000 * x_m
+
+
+def rows_of_sizes() -> list[list]:
+    """To -x, V = V_0 + 1e5 h: first order. To +x, V rises by 200 with each halving: no limit."""
+    rows = []
+    for x in X_LEFT_M:
+        for h in SIZES:
+            v_0 = limit_left(x)
+            rows.append([x, -1, "plate.element_size_m", h, v_0 + 1e5 * h, v_0, 1e5 * h, 1])
+    for x in X_RIGHT_M:
+        for h, v, error in zip(SIZES, (1000, 1200, 1400), (400, 200, 400), strict=True):
+            rows.append([x, 1, "plate.element_size_m", h, v, "", error, ""])
+    return rows
+
+
+def rows_of_substeps() -> list[list]:
+    """Both directions: V = V_0 (1 + 0.1/n); nothing known at the first station."""
+    rows = []
+    for direction, stations in ((-1, X_LEFT_M), (1, X_RIGHT_M)):
+        for x in stations:
+            for n in (9, 18, 36, 72):
+                if x == stations[0]:
+                    v = 1000 if n == 18 else ""
+                    rows.append([x, direction, "time.interface_substeps", n, v, "", "", ""])
+                else:
+                    rows.append(
+                        [x, direction, "time.interface_substeps", n, 1000 * (1 + 0.1 / n), 1000, 100 / n, 1]
+                    )
+    return rows
+
+
+def rows_of_damping() -> list[list]:
+    rows = []
+    for x in X_LEFT_M:
+        for beta in (2e-7, 1e-7, 5e-8, 0):
+            v = 1000 + 1e15 * beta**2
+            rows.append([x, -1, "material.stiffness_damping_s", beta, v, 1000, v - 1000, 2])
+    return rows
+
+
+def summary(verdict: str, error: float, order: float | None, n: int) -> dict:
+    return {
+        "verdict": verdict,
+        "median_relative_error": error,
+        "median_order": order,
+        "growth": 0.5,
+        "n_stations": n,
+        "n_stations_of_case": n,
+    }
+
+
+def sequence(parameter: str, values: list, case_value: float, left: dict, right: dict) -> dict:
+    return {
+        "parameter": parameter,
+        "values": values,
+        "case_value": case_value,
+        "extrapolated_from": values[:3],
+        **left,
+        "direction_-1": left,
+        "direction_+1": right,
+    }
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    monkeypatch.setitem(RC, "savefig.dpi", 60)
+
+
+@pytest.fixture
+def study(tmp_path):
+    rows = rows_of_sizes() + rows_of_substeps() + rows_of_damping()
+    write_csv(tmp_path / "convergence.csv", HEADER, rows)
+    result = {
+        "version": "0",
+        "title": "made up",
+        "tolerance": 0.02,
+        "station_spacing_m": 2e-3,
+        "l_star_m": 2e-3,
+        "c_L_m_per_s": C_L,
+        "n_runs": 9,
+        "sequences": [
+            sequence(
+                "plate.element_size_m",
+                SIZES,
+                1e-3,
+                summary("not converged", 0.08, 1, 50),
+                summary("no limit", 0.1667, None, 20),
+            ),
+            sequence(
+                "time.interface_substeps",
+                [9, 18, 36, 72],
+                18,
+                summary("converged", 0.0055, 1, 49),
+                summary("converged", 0.0055, 1, 19),
+            ),
+            sequence(
+                "material.stiffness_damping_s",
+                [2e-7, 1e-7, 5e-8, 0],
+                1e-7,
+                summary("converged", 0.0099, 2, 50),
+                WITHOUT,
+            ),
+        ],
+        "warnings": [],
+    }
+    (tmp_path / "convergence.json").write_text(json.dumps(result))
+    return tmp_path
+
+
+def artist(ax, gid):
+    found = ax.findobj(lambda a: a.get_gid() == gid)
+    assert len(found) == 1, f"{len(found)} artists named {gid}"
+    return found[0]
+
+
+def gids(ax) -> set[str]:
+    return {a.get_gid() for a in ax.findobj() if a.get_gid()}
+
+
+def bars(ax, gid) -> np.ndarray:
+    """Bottom and top of the bars."""
+    segments = artist(ax, gid).get_segments()
+    return np.array([[s[0][1], s[1][1]] for s in segments])
+
+
+def panels(folder):
+    """[sequences][to -x, to +x, errors]"""
+    return np.array(convergence.convergence(folder).figure.axes).reshape(3, 3)
+
+
+def test_speeds_are_drawn_by_value_and_direction(study):
+    left, right = panels(study)[0][:2]
+    for k, h in enumerate(SIZES):
+        line = artist(left, f"speed:-1:{k}")
+        np.testing.assert_allclose(line.get_xdata(), 1e3 * X_LEFT_M)
+        np.testing.assert_allclose(line.get_ydata(), (limit_left(X_LEFT_M) + 1e5 * h) / C_L)
+        np.testing.assert_allclose(artist(right, f"speed:1:{k}").get_ydata(), (1000 + 200 * k) / C_L)
+    widths = [artist(left, f"speed:-1:{k}").get_linewidth() for k in range(3)]
+    assert widths[OWN] > max(widths[0], widths[2])
+    assert [t.get_text() for t in left.get_legend().get_texts()] == ["2 mm", "1 mm", "0.5 mm", "extrapolated"]
+
+
+def test_error_bars_reach_from_the_cases_own_speed_to_the_limit(study):
+    left, right = panels(study)[0][:2]
+    limit = limit_left(X_LEFT_M) / C_L
+    np.testing.assert_allclose(artist(left, "limit:-1").get_ydata(), limit)
+    np.testing.assert_allclose(bars(left, "error:-1"), np.transpose([limit, limit + 200 / C_L]))
+    assert len(bars(left, "bound:-1")) == 0
+    # Without a limit: nothing extrapolated, bounds instead.
+    assert np.isnan(artist(right, "limit:1").get_ydata()).all()
+    assert len(bars(right, "error:1")) == 0
+    np.testing.assert_allclose(bars(right, "bound:1"), [[1000 / C_L, 1400 / C_L]] * len(X_RIGHT_M))
+
+
+def test_titles_tell_the_verdict(study):
+    titles = [[ax.get_title(loc="left").replace("\n", " ") for ax in row[:2]] for row in panels(study)]
+    assert titles[0] == [
+        "to $-x$: not converged, error 8 %",
+        "to $+x$: no limit, error at least 17 %",
+    ]
+    assert titles[2] == ["to $-x$: converged, error 0.99 %", "to $+x$: too few stations"]
+    assert "made up" in convergence.convergence(study).figure.get_suptitle()
+
+
+def test_errors_fall_with_the_observed_order(study):
+    ax = panels(study)[0][2]
+    own = limit_left(X_LEFT_M) + 1e5 * SIZES[OWN]
+    expected = [100 * np.median(1e5 * h / own) for h in SIZES]
+    line = artist(ax, "median:-1")
+    np.testing.assert_allclose(line.get_xdata(), SIZES)
+    np.testing.assert_allclose(line.get_ydata(), expected)
+    np.testing.assert_allclose(artist(ax, "order:-1").get_ydata(), expected)  # exactly first order
+    np.testing.assert_allclose(artist(ax, "median:1").get_ydata(), 100 * np.array([400, 200, 400]) / 1200)
+    assert "order:1" not in gids(ax)
+    assert artist(ax, "tolerance").get_ydata()[0] == pytest.approx(2)
+    labels = [t.get_text() for t in ax.get_legend().get_texts()]
+    assert labels == ["to $-x$, order 1 (50 of 50)", "to $+x$, no order"]
+
+
+def test_step_size_falls_with_the_number_of_substeps(study):
+    ax = panels(study)[1][2]
+    np.testing.assert_allclose(artist(ax, "median:-1").get_xdata(), [1 / 9, 1 / 18, 1 / 36, 1 / 72])
+    assert [t.get_text() for t in ax.get_xticklabels()] == ["9", "18", "36", "72"]
+    # The station without speeds counts in no median.
+    own = 1000 * (1 + 0.1 / 18)
+    np.testing.assert_allclose(artist(ax, "median:-1").get_ydata(), [1e4 / n / own for n in (9, 18, 36, 72)])
+    assert ax.get_legend().get_texts()[0].get_text() == "to $-x$, order 1 (49 of 50)"
+
+
+def test_the_limit_itself_has_no_place_on_the_axis_of_errors(study):
+    row = panels(study)[2]
+    np.testing.assert_allclose(artist(row[2], "median:-1").get_xdata(), [2e-7, 1e-7, 5e-8])
+    median = artist(row[2], "median:-1")
+    np.testing.assert_allclose(artist(row[2], "order:-1").get_ydata(), median.get_ydata())
+    np.testing.assert_allclose(artist(row[0], "speed:-1:3").get_ydata(), 1000 / C_L)
+
+
+def change(folder, act) -> None:
+    file = folder / "convergence.json"
+    result = json.loads(file.read_text())
+    act(result)
+    file.write_text(json.dumps(result))
+
+
+def test_a_direction_without_enough_stations_is_left_out(study):
+    def forget(result):
+        for s in result["sequences"]:
+            s["direction_+1"] = WITHOUT
+
+    change(study, forget)
+    axes = convergence.convergence(study).figure.axes
+    assert len(axes) == 6
+    assert "median:1" not in gids(axes[1])
+
+
+def test_command_draws_the_figure(study, capsys):
+    assert main([str(study)]) == 0
+    assert (study / "figures/convergence.png").read_bytes()[:4] == b"\x89PNG"
+    assert (study / "figures/convergence.pdf").read_bytes()[:5] == b"%PDF-"
+    assert str(study / "figures/convergence.png") in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "file, old, new, says",
+    [
+        ("convergence.csv", "error_m_per_s", "error", "not a table"),
+        ("convergence.csv", "0.02,-1,plate", "0.02,left,plate", "not a table"),
+        ("convergence.json", "c_L_m_per_s", "c_X_m_per_s", "'c_L_m_per_s'"),
+        ("convergence.json", "direction_+1", "direction", "'direction_+1'"),
+        ("convergence.json", "{", "", "not JSON"),
+    ],
+)
+def test_damaged_folder_gives_one_line(study, capsys, file, old, new, says):
+    text = (study / file).read_text()
+    assert old in text
+    (study / file).write_text(text.replace(old, new, 1))
+    assert main([str(study)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and str(study / file) in error and says in error
+    assert not (study / "figures").exists()
+
+
+def test_study_without_fronts_gives_one_line(study, capsys):
+    write_csv(study / "convergence.csv", HEADER, [])
+
+    def forget(result):
+        for s in result["sequences"]:
+            s["direction_+1"] = s["direction_-1"] = WITHOUT
+
+    change(study, forget)
+    assert main([str(study)]) == 2
+    assert "no front has a station" in capsys.readouterr().err

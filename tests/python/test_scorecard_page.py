@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""scripts/scorecard-page.py renews the table of a page from scorecard.json and leaves its text alone."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts/scorecard-page.py"
+PAGE = "# Scorecard\n\n<!-- table -->\nold\n<!-- end of table -->\n\nText | below.\n"
+
+
+def claim(name: str, holds: bool | None, **more) -> dict:
+    row = {"id": name, "claim": "a|b", "paper": "Fig. 1", "measured": "0.79", "holds": holds, "how": "x"}
+    return row | more
+
+
+def varied(parameter: str, value: float, moves: str) -> dict:
+    return {"parameter": parameter, "value": value, "moves": moves}
+
+
+@pytest.fixture
+def write_page(tmp_path):
+    def write(scorecard: list[dict]) -> list[str]:
+        (tmp_path / "scorecard.json").write_text(json.dumps(scorecard))
+        page = tmp_path / "page.md"
+        page.write_text(PAGE)
+        subprocess.run([sys.executable, SCRIPT, tmp_path, page], check=True)
+        text = page.read_text()
+        assert text.startswith("# Scorecard\n\n<!-- table -->\n")
+        assert text.endswith("\n<!-- end of table -->\n\nText | below.\n")
+        return text.split("<!-- table -->\n")[1].split("\n<!-- end")[0].split("\n")
+
+    return write
+
+
+def test_table_without_variations(write_page):
+    assert write_page([claim("C1", True), claim("C2", False), claim("E1", None)]) == [
+        "| id | claim | our figure | verdict | test |",
+        "|---|---|---|---|---|",
+        "| C1 | a\\|b (Fig. 1) | 0.79 | holds | x |",
+        "| C2 | a\\|b (Fig. 1) | 0.79 | **does not hold** | x |",
+        "| E1 | a\\|b (Fig. 1) | 0.79 | not tested | x |",
+    ]
+
+
+def test_table_with_variations(write_page):
+    mesh = varied("plate.element_size_m", 1e-3, "0.11; there does not hold")
+    step = varied("time.interface_substeps", 9, "0.02")
+    nothing = varied("plate.element_size_m", 1e-3, "")
+    rows = write_page(
+        [
+            claim("C1", True, mesh_variation=mesh, step_variation=step),
+            claim("E1", None, mesh_variation=nothing),
+        ]
+    )
+    assert rows == [
+        "| id | claim | our figure | verdict | moves by, at plate.element_size_m = 0.001 | "
+        "moves by, at time.interface_substeps = 9 | test |",
+        "|---|---|---|---|---|---|---|",
+        "| C1 | a\\|b (Fig. 1) | 0.79 | holds | 0.11; **there does not hold** | 0.02 | x |",
+        "| E1 | a\\|b (Fig. 1) | 0.79 | not tested | - | - | x |",
+    ]
