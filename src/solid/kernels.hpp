@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "solid/operator.hpp"
 
 // The loops of the explicit step over plain arrays, one grid row at a time. Every pointer points to column 0
@@ -40,28 +43,76 @@ inline void combine_row(int n, double factor, const double* __restrict u_x, cons
   for (int i = 0; i < n; ++i) w_y[i] = u_y[i] + factor * v_y[i];
 }
 
-/// stencil(w) at column i.
-inline Pair interior_product(const InteriorStencil& s, int i, ConstRow south, ConstRow middle,
-                             ConstRow north) {
-  const double corners_x = (south.x[i - 1] + south.x[i + 1]) + (north.x[i - 1] + north.x[i + 1]);
-  const double corners_y = (south.y[i - 1] + south.y[i + 1]) + (north.y[i - 1] + north.y[i + 1]);
-  const double twist_x = (north.x[i + 1] - north.x[i - 1]) - (south.x[i + 1] - south.x[i - 1]);
-  const double twist_y = (north.y[i + 1] - north.y[i - 1]) - (south.y[i + 1] - south.y[i - 1]);
-  return {s.centre * middle.x[i] + s.along * (middle.x[i - 1] + middle.x[i + 1]) +
-              s.across * (south.x[i] + north.x[i]) + s.corner * corners_x + s.twist * twist_y,
-          s.centre * middle.y[i] + s.across * (middle.y[i - 1] + middle.y[i + 1]) +
-              s.along * (south.y[i] + north.y[i]) + s.corner * corners_y + s.twist * twist_x};
-}
-
 /// v += stencil(w) over the span.
 inline void add_interior_row(const InteriorStencil& s, Span span, ConstRow south, ConstRow middle,
                              ConstRow north, double* __restrict v_x, double* __restrict v_y) {
-#pragma omp simd
   for (int i = span.begin; i < span.end; ++i) {
-    const auto [x, y] = interior_product(s, i, south, middle, north);
-    v_x[i] += x;
-    v_y[i] += y;
+    const double corners_x = (south.x[i - 1] + south.x[i + 1]) + (north.x[i - 1] + north.x[i + 1]);
+    const double corners_y = (south.y[i - 1] + south.y[i + 1]) + (north.y[i - 1] + north.y[i + 1]);
+    const double twist_x = (north.x[i + 1] - north.x[i - 1]) - (south.x[i + 1] - south.x[i - 1]);
+    const double twist_y = (north.y[i + 1] - north.y[i - 1]) - (south.y[i + 1] - south.y[i - 1]);
+    v_x[i] += s.centre * middle.x[i] + s.along * (middle.x[i - 1] + middle.x[i + 1]) +
+              s.across * (south.x[i] + north.x[i]) + s.corner * corners_x + s.twist * twist_y;
+    v_y[i] += s.centre * middle.y[i] + s.across * (middle.y[i - 1] + middle.y[i + 1]) +
+              s.along * (south.y[i] + north.y[i]) + s.corner * corners_y + s.twist * twist_x;
   }
+}
+
+#ifdef __AVX512F__
+inline constexpr int lanes = 8;
+#else
+inline constexpr int lanes = 4;
+#endif
+
+/// Consecutive columns of a row; anywhere in memory.
+using Lanes = double __attribute__((vector_size(lanes * sizeof(double)), aligned(sizeof(double)), may_alias));
+inline Lanes load(const double* from) {
+  return *reinterpret_cast<const Lanes*>(from);
+}
+inline void store(double* to, Lanes values) {
+  *reinterpret_cast<Lanes*>(to) = values;
+}
+/// The values one column to the left of `here`, and one to the right.
+inline Lanes from_left(Lanes left, Lanes here) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(left, here, 7, 8, 9, 10, 11, 12, 13, 14);
+#else
+  return __builtin_shufflevector(left, here, 3, 4, 5, 6);
+#endif
+}
+inline Lanes from_right(Lanes here, Lanes right) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(here, right, 1, 2, 3, 4, 5, 6, 7, 8);
+#else
+  return __builtin_shufflevector(here, right, 1, 2, 3, 4);
+#endif
+}
+
+/// The interior stencil's terms by the column they come from, so that two vectors per component have to be
+/// shifted: unaligned loads of all neighbours cost more than the arithmetic.
+struct StencilTerms {
+  Lanes w_x, w_y;
+  Lanes own_x, own_y;            ///< for the columns themselves
+  Lanes to_right_x, to_right_y;  ///< for the columns to the right of them
+  Lanes to_left_x, to_left_y;
+};
+inline StencilTerms stencil_terms(const InteriorStencil& s, int i, ConstRow south, ConstRow middle,
+                                  ConstRow north) {
+  const Lanes south_x = load(south.x + i), south_y = load(south.y + i);
+  const Lanes north_x = load(north.x + i), north_y = load(north.y + i);
+  const Lanes sum_x = south_x + north_x, twist_x = s.twist * (north_x - south_x);
+  const Lanes sum_y = south_y + north_y, twist_y = s.twist * (north_y - south_y);
+  const Lanes w_x = load(middle.x + i), w_y = load(middle.y + i);
+  const Lanes beside_x = s.along * w_x + s.corner * sum_x;
+  const Lanes beside_y = s.across * w_y + s.corner * sum_y;
+  return {w_x,
+          w_y,
+          s.centre * w_x + s.across * sum_x,
+          s.centre * w_y + s.along * sum_y,
+          beside_x - twist_y,
+          beside_y - twist_x,
+          beside_x + twist_y,
+          beside_y + twist_x};
 }
 
 /// Sums over nodes of products with a kick d of the velocity: w d, v d with v before the kick, d d.
@@ -69,23 +120,84 @@ struct KickSums {
   double w_d = 0, v_d = 0, d_d = 0;
 };
 
-/// The same, and adds to the sums.
-inline void add_interior_row(const InteriorStencil& s, Span span, ConstRow south, ConstRow middle,
-                             ConstRow north, double* __restrict v_x, double* __restrict v_y, KickSums& sums) {
-  double w_d = 0, v_d = 0, d_d = 0;
-#pragma omp simd reduction(+ : w_d, v_d, d_d)
-  for (int i = span.begin; i < span.end; ++i) {
-    const auto [x, y] = interior_product(s, i, south, middle, north);
-    w_d += middle.x[i] * x + middle.y[i] * y;
-    v_d += v_x[i] * x + v_y[i] * y;
-    d_d += x * x + y * y;
-    v_x[i] += x;
-    v_y[i] += y;
+/// The same as add_interior_row, and u += dt v. Rows of w are read up to `lanes` columns beyond both ends of
+/// the span; what stands there does not matter.
+template <bool with_sums>
+void push_interior_row(const InteriorStencil& stencil, Span span, double dt, ConstRow south, ConstRow middle,
+                       ConstRow north, double* __restrict v_x, double* __restrict v_y, double* __restrict u_x,
+                       double* __restrict u_y, KickSums& sums) {
+  const InteriorStencil s = stencil;
+  Lanes w_d{}, v_d{}, d_d{};
+  int i = span.begin;
+  const auto before = stencil_terms(s, i - lanes, south, middle, north);
+  Lanes left_x = before.to_right_x, left_y = before.to_right_y;
+  auto here = stencil_terms(s, i, south, middle, north);
+  for (; i + lanes <= span.end; i += lanes) {
+    const auto right = stencil_terms(s, i + lanes, south, middle, north);
+    const Lanes d_x =
+        here.own_x + (from_left(left_x, here.to_right_x) + from_right(here.to_left_x, right.to_left_x));
+    const Lanes d_y =
+        here.own_y + (from_left(left_y, here.to_right_y) + from_right(here.to_left_y, right.to_left_y));
+    const Lanes before_x = load(v_x + i), before_y = load(v_y + i);
+    const Lanes after_x = before_x + d_x, after_y = before_y + d_y;
+    store(v_x + i, after_x);
+    store(v_y + i, after_y);
+    store(u_x + i, load(u_x + i) + dt * after_x);
+    store(u_y + i, load(u_y + i) + dt * after_y);
+    if constexpr (with_sums) {
+      w_d += here.w_x * d_x + here.w_y * d_y;
+      v_d += before_x * d_x + before_y * d_y;
+      d_d += d_x * d_x + d_y * d_y;
+    }
+    left_x = here.to_right_x;
+    left_y = here.to_right_y;
+    here = right;
   }
-  sums.w_d += w_d;
-  sums.v_d += v_d;
-  sums.d_d += d_d;
+  if (i < span.end) {
+    const auto right = stencil_terms(s, i + lanes, south, middle, north);
+    double d_x[lanes], d_y[lanes];
+    store(d_x,
+          here.own_x + (from_left(left_x, here.to_right_x) + from_right(here.to_left_x, right.to_left_x)));
+    store(d_y,
+          here.own_y + (from_left(left_y, here.to_right_y) + from_right(here.to_left_y, right.to_left_y)));
+    for (int k = 0; i < span.end; ++i, ++k) {
+      if constexpr (with_sums) {
+        sums.w_d += middle.x[i] * d_x[k] + middle.y[i] * d_y[k];
+        sums.v_d += v_x[i] * d_x[k] + v_y[i] * d_y[k];
+        sums.d_d += d_x[k] * d_x[k] + d_y[k] * d_y[k];
+      }
+      v_x[i] += d_x[k];
+      v_y[i] += d_y[k];
+      u_x[i] += dt * v_x[i];
+      u_y[i] += dt * v_y[i];
+    }
+  }
+  if constexpr (with_sums)
+    for (int k = 0; k < lanes; ++k) {
+      sums.w_d += w_d[k];
+      sums.v_d += v_d[k];
+      sums.d_d += d_d[k];
+    }
 }
+
+/// Three rows of w that roll with the sweep, padded by `lanes` at both ends, column 1 on a cache line.
+class RollingRows {
+ public:
+  explicit RollingRows(int columns)
+      : pitch_((columns + 2 * lanes + 7) / 8 * 8), values_(6 * static_cast<std::size_t>(pitch_) + 16, 0.0) {}
+
+  double* x(int row) {
+    constexpr std::size_t line = 64;
+    const auto address = reinterpret_cast<std::uintptr_t>(values_.data()) + 8 * (lanes + 1);
+    const auto offset = (line - address % line) % line / sizeof(double);
+    return values_.data() + offset + lanes + static_cast<std::ptrdiff_t>(row % 3) * 2 * pitch_;
+  }
+  double* y(int row) { return x(row) + pitch_; }
+
+ private:
+  int pitch_;
+  std::vector<double> values_;
+};
 
 /// v += stencil(w) over the span of an edge; `north` is the row on the side of the squares.
 inline void add_edge_row(const EdgeStencil& s, Span span, ConstRow middle, ConstRow north,

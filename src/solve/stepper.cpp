@@ -54,7 +54,7 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
       u_(mesh.n_nodes()),
       v_(mesh.n_nodes()),
       start_u_(mesh.lower.size()),
-      w_(6 * static_cast<std::size_t>(mesh.grid.stride())) {
+      w_(mesh.grid.stride()) {
   require_rows_fit(mesh, time);
   stable_step_s_ = solid::stable_step_s(solid::largest_frequency_rad_per_s(plate_), damping_s_);
   step_s_ = time.step_factor * stable_step_s_;
@@ -303,17 +303,13 @@ Stepper::ForceProducts Stepper::sweep(Level& level) {
   const int stride = plate_.grid.stride();
   const double dt = level.step_s;
   const auto interior = solid::scaled(plate_.interior, -dt);
-  const auto w_row = [&](int j) {
-    double* row = w_.data() + static_cast<std::ptrdiff_t>(j % 3) * 2 * stride;
-    return solid::ConstRow{row, row + stride};
-  };
+  const auto w_row = [&](int j) { return solid::ConstRow{w_.x(j), w_.y(j)}; };
   // Rows of w = u + beta_R v are filled just before the first row that reads them moves.
   int next = 0;
   const auto fill_to = [&](int first, int last) {
     for (next = std::max(next, first); next <= last; ++next) {
       const std::ptrdiff_t o = static_cast<std::ptrdiff_t>(next) * stride;
-      double* row = w_.data() + static_cast<std::ptrdiff_t>(next % 3) * 2 * stride;
-      solid::combine_row(stride, damping_s_, &u_.x[o], &u_.y[o], &v_.x[o], &v_.y[o], row, row + stride);
+      solid::combine_row(stride, damping_s_, &u_.x[o], &u_.y[o], &v_.x[o], &v_.y[o], w_.x(next), w_.y(next));
     }
   };
   solid::KickSums sums;
@@ -325,13 +321,10 @@ Stepper::ForceProducts Stepper::sweep(Level& level) {
     double* v_y = &v_.y[o];
     fill_to(squares == solid::Squares::above ? j : j - 1, squares == solid::Squares::below ? j : j + 1);
     if (squares == solid::Squares::all) {
-      for (const auto span : spans) {
-        if (damping_s_ > 0)
-          solid::add_interior_row(interior, span, w_row(j - 1), w_row(j), w_row(j + 1), v_x, v_y, sums);
-        else
-          solid::add_interior_row(interior, span, w_row(j - 1), w_row(j), w_row(j + 1), v_x, v_y);
-        solid::move_row(span, dt, v_x, v_y, &u_.x[o], &u_.y[o]);
-      }
+      const auto push_row = damping_s_ > 0 ? solid::push_interior_row<true> : solid::push_interior_row<false>;
+      for (const auto span : spans)
+        push_row(interior, span, dt, w_row(j - 1), w_row(j), w_row(j + 1), v_x, v_y, &u_.x[o], &u_.y[o],
+                 sums);
       continue;
     }
     const auto above = solid::scaled(plate_.edge, -dt * scale);

@@ -7,6 +7,7 @@
 #include "interface/interface.hpp"
 #include "interface/trigger.hpp"
 #include "mesh/mesh.hpp"
+#include "solid/kernels.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
 #include "solve/energies.hpp"
@@ -183,8 +184,8 @@ class Stepper {
   solid::Field scratch_;
 
   solid::Field u_, v_;
-  solid::Field start_u_;   ///< interface displacement at the start: slip is counted from it. [lower]
-  std::vector<double> w_;  ///< three rows of u + beta_R v, rolling
+  solid::Field start_u_;  ///< interface displacement at the start: slip is counted from it. [lower]
+  solid::RollingRows w_;  ///< of u + beta_R v
   double top_speed_ = 0;
   std::int64_t step_ = 0;
 };
