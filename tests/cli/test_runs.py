@@ -87,8 +87,9 @@ def test_energies_balance(program, coarse, tmp_path):
     with open(tmp_path / "out/energy.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert ",".join(rows[0]) == (
-        "time_s,strain_J_per_m,kinetic_J_per_m,top_work_J_per_m,trigger_work_J_per_m,friction_work_J_per_m,"
-        "contact_work_J_per_m,damping_work_J_per_m,coupling_work_J_per_m,imbalance_J_per_m"
+        "time_s,strain_J_per_m,kinetic_J_per_m,top_work_J_per_m,trigger_work_J_per_m,prestress_work_J_per_m,"
+        "friction_work_J_per_m,contact_work_J_per_m,damping_work_J_per_m,boundary_work_J_per_m,"
+        "coupling_work_J_per_m,imbalance_J_per_m"
     )
     assert len(rows) > 5
     assert float(rows[-1]["time_s"]) == summary(tmp_path / "out")["time_s"]
