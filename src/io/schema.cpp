@@ -154,7 +154,7 @@ void apply(const std::vector<Override>& overrides, Document& document) {
   }
 }
 
-/// Keys whose values decide which other keys there are.
+/// Keys whose values decide which later ones of these, and which other keys, there are.
 constexpr std::array deciding_keys = {"loading.method", "prestress.file", "event.kind", "nucleation.form"};
 
 bool applies(const Entry& entry, const Case& config) {
@@ -477,9 +477,11 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
   if (const Setting* law = find_setting(document, "friction.law"))
     assign(*find_entry(common_entries(), "friction.law"), *law, config);
   drop_parameters_of_other_laws(config, document);
-  for (const char* key : deciding_keys)
-    if (const Setting* setting = find_setting(document, key))
-      assign(*find_entry(common_entries(), key), *setting, config);
+  for (const char* key : deciding_keys) {
+    const Entry& entry = *find_entry(common_entries(), key);
+    if (const Setting* setting = find_setting(document, key); setting && applies(entry, config))
+      assign(entry, *setting, config);
+  }
   drop_keys_that_overrides_exclude(config, document);
   const std::vector<Entry> entries = entries_of(config);
   for (const Setting& setting : document.settings) {
