@@ -40,8 +40,8 @@ class Watch {
     const Energies e = known != nullptr ? *known : stepper_.energies_but_damping();
     const double total = e.stored();
     if (!std::isfinite(total)) return "the energy is not a number";
-    const double supplied = start_.stored() + std::abs(e.top_work) + std::abs(e.trigger_work) +
-                            std::abs(e.prestress_work);
+    const double supplied =
+        start_.stored() + std::abs(e.top_work) + std::abs(e.trigger_work) + std::abs(e.prestress_work);
     if (total > 1.01 * supplied)
       return fmt::format("the energy has grown to {:.4g} J/m with {:.4g} J/m supplied", total, supplied);
     return {};
