@@ -107,7 +107,6 @@ corner = "relief"
 youngs_modulus_Pa = {E_PA}
 poissons_ratio = {NU}
 [loading]
-method = "direct"
 tilt_left_m = 0.37e-3
 tilt_right_m = 0.037e-3
 edge_margin_m = 10e-3

@@ -74,8 +74,7 @@ def away_from_trigger(run: Run, x_m: np.ndarray) -> np.ndarray:
     if run.kind not in ("left", "right"):
         return np.full(np.shape(x_m), True)
     # The zone begins at the end of the contact, an edge margin outside of what counts as inside.
-    prescribed = run.parameter("loading.method") == "prestress"
-    edge_m = 0.0 if prescribed else run.parameter("loading.edge_margin_m")
+    edge_m = 0.0 if run.prescribed else run.parameter("loading.edge_margin_m")
     omitted_m = run.parameter("event.trigger_zone_m") + run.parameter("fronts.trigger_margin_m")
     if run.kind == "left":
         return x_m >= run.fact("statics.inside_from_m") - edge_m + omitted_m
