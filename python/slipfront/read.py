@@ -125,8 +125,13 @@ class Run:
 
     @property
     def kind(self) -> str:
-        """What starts the event: left, right or spontaneous."""
+        """What starts the event: left, right, spontaneous, ..."""
         return str(self.case.get("event", {}).get("kind"))
+
+    @property
+    def prescribed(self) -> bool:
+        """Whether the tractions before the event were given, not found by tilting and shearing the plate."""
+        return self.case.get("loading", {}).get("method") == "prestress"
 
     def end_of(self, front: Front) -> str | None:
         """How a front ends, from run.json; None where it is not told."""

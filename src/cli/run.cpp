@@ -34,8 +34,12 @@ struct OutputFolder {
 
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
-  fmt::print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
-             initial.critical_shear_m);
+  if (initial.prescribed)
+    fmt::print("prescribed tractions, t/p up to {:.4g} at x = {:.4g} m\n", initial.common.peak_ratio,
+               initial.common.peak_x_m);
+  else
+    fmt::print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
+               initial.critical_shear_m);
   if (initial.ramp)
     fmt::print("by the ramp at {:.5g} m ({:+.3f} %), after {} beginnings of slip at the edges\n",
                initial.ramp->spontaneous.shear_m,

@@ -209,8 +209,7 @@ Front measure(const SlipRecord& record, const StaticState& state, const FirstOns
     point.t_r_Pa = at_onset.t_Pa;
     point.p_r_Pa = at_onset.p_Pa;
 
-    const bool included = point.x_m >= options.exclude_left_m && point.x_m <= options.exclude_right_m;
-    if (included && run_m > l_star_m * (1.0 + position_tolerance)) {
+    if (!is_excluded(options, point.x_m) && run_m > l_star_m * (1.0 + position_tolerance)) {
       const Traction ahead = traction_ahead(record, tip, run_m - l_star_m, node, tip.time_s[k]);
       point.t_d_Pa = ahead.t_Pa;
       point.p_d_Pa = ahead.p_Pa;

@@ -36,8 +36,16 @@ struct FrontOptions {
   double exclude_left_m =
       -std::numeric_limits<double>::infinity();  ///< no t_d, p_d at x below it (trigger zone)
   double exclude_right_m = std::numeric_limits<double>::infinity();  ///< ... nor above it
+  double exclude_from_m = std::numeric_limits<double>::infinity();   ///< ... nor from here (nucleation patch)
+  double exclude_to_m = -std::numeric_limits<double>::infinity();    ///< ... to here
   double mode_fraction = 0.8;  ///< of a front's points with a slipping share that must agree on its mode
 };
+
+/// Whether x lies in a zone that is left out.
+inline bool is_excluded(const FrontOptions& o, double x_m) {
+  return x_m < o.exclude_left_m || x_m > o.exclude_right_m ||
+         (x_m >= o.exclude_from_m && x_m <= o.exclude_to_m);
+}
 
 /// Why a front ends.
 enum class End {
@@ -91,9 +99,9 @@ struct Front {
 /// - v_tip: l* over the time from x - l*/2 to x + l*/2. Undefined where that leaves the path or takes no
 ///   time.
 /// - t_d, p_d: linear in tip position between the two nodes that bracket the tip (a tip within 2 % of their
-///   distance from a node is at that node). Undefined, with U_s and U_r, within l* of the start, outside
-///   exclude_*, where the tip jumps over x - l* and x at once, and where the halo is too small: l*/element
-///   length + 1 nodes are enough where the path has no gap.
+///   distance from a node is at that node). Undefined, with U_s and U_r, within l* of the start, in the
+///   zones of exclude_*, where the tip jumps over x - l* and x at once, and where the halo is too small:
+///   l*/element length + 1 nodes are enough where the path has no gap.
 /// - slipping_share: at the tip's passage, the length of the contiguous slipping zone behind the tip over
 ///   the distance from the start. Sticking nodes between slipping ones no farther than min_length_m apart do
 ///   not end the zone. Undefined within 5 l* of the start.

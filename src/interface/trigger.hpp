@@ -11,6 +11,7 @@ enum class EventKind {
   spontaneous,  ///< the shear is raised statically just past the critical one
   left,         ///< added tangential traction next to the left edge of contact
   right,        ///< added tangential traction next to the right edge of contact
+  nucleation,   ///< a patch of given place, see Nucleation
 };
 
 /// An external force on the plate next to an edge of contact, along +x, not part of the reported t:

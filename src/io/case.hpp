@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "interface/interface.hpp"
+#include "interface/nucleation.hpp"
 #include "interface/trigger.hpp"
 #include "mesh/plate.hpp"
 #include "solid/material.hpp"
@@ -20,7 +21,15 @@ struct FrontSettings {
   double min_length_m = 2e-3;
   double crack_share = 0.5;
   double pulse_share = 0.2;
-  double trigger_margin_m = 10e-3;  ///< t_d, p_d are left out within the trigger zone plus this
+  double trigger_margin_m =
+      10e-3;  ///< t_d, p_d are left out within trigger zone or nucleation patch plus this
+};
+
+/// Tractions of the interface before the event under loading.method = prestress: uniform, or from a table.
+struct Prestress {
+  double t_Pa = 0;    ///< drives the plate to +x
+  double p_Pa = 1e6;  ///< positive in compression
+  std::string file;   ///< CSV table, see io/prestress.hpp; empty for uniform tractions
 };
 
 /// What a run writes besides its fronts.
@@ -36,11 +45,13 @@ struct Case {
   mesh::Plate plate;
   solid::Material material;
   solve::Loading loading;
+  Prestress prestress;
   interface::FrictionLaw friction;
   interface::Regularisation regularisation;
   interface::ContactAlgorithm contact = interface::ContactAlgorithm::direct;
   interface::EventKind event = interface::EventKind::spontaneous;
   interface::Trigger trigger;
+  interface::Nucleation nucleation;
   solve::TimeStepping time;
   FrontSettings fronts;
   Output output;

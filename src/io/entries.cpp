@@ -165,9 +165,16 @@ Entry friction_law_entry() {
           }};
 }
 
+Entry only_with(Condition condition, Entry entry) {
+  entry.only_with = std::move(condition);
+  return entry;
+}
+
 std::vector<Entry> make_common_entries() {
   using interface::ContactAlgorithm;
   using interface::EventKind;
+  using interface::Nucleation;
+  using interface::NucleationForm;
   using interface::Regularisation;
   using interface::Relaxed;
   using interface::Trigger;
@@ -181,6 +188,20 @@ std::vector<Entry> make_common_entries() {
   using solve::LoadingMethod;
   using solve::TimeStepping;
   using solve::TopEdge;
+
+  const Condition tilted = {"loading.method = direct or ramp",
+                            [](const Case& c) { return c.loading.method != LoadingMethod::prestress; }};
+  const Condition prestressed = {"loading.method = prestress",
+                                 [](const Case& c) { return c.loading.method == LoadingMethod::prestress; }};
+  const Condition uniform = {
+      "loading.method = prestress and no prestress.file",
+      [](const Case& c) { return c.loading.method == LoadingMethod::prestress && c.prestress.file.empty(); }};
+  const Condition nucleated = {"event.kind = nucleation",
+                               [](const Case& c) { return c.event == EventKind::nucleation; }};
+  const Condition overstressed = {
+      "event.kind = nucleation and nucleation.form = overstress", [](const Case& c) {
+        return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
+      }};
 
   return {
       text("title", at(&Case::title), "title of figures and reports"),
@@ -220,23 +241,42 @@ std::vector<Entry> make_common_entries() {
       number("material.stiffness_damping_s", at(&Case::material, &Material::stiffness_damping_s), at_least(0),
              "Rayleigh damping beta_R: the internal force is K (u + beta_R v)"),
 
-      number("loading.tilt_left_m", at(&Case::loading, &Loading::tilt_left_m), at_least(0),
-             "downward displacement of the top edge at its left end, linear between the ends"),
-      number("loading.tilt_right_m", at(&Case::loading, &Loading::tilt_right_m), at_least(0),
-             "the same at its right end"),
-      word<TopEdge>("loading.top_during_tilt", at(&Case::loading, &Loading::top_during_tilt),
-                    {{"held", TopEdge::held}, {"free", TopEdge::free}},
-                    "whether the top edge may move along x while it is tilted"),
-      word<LoadingMethod>(
-          "loading.method", at(&Case::loading, &Loading::method),
-          {{"direct", LoadingMethod::direct}, {"ramp", LoadingMethod::ramp}},
-          "way to the critical shear: static equilibria, or explicit dynamics with the top moving"),
+      only_with(tilted,
+                number("loading.tilt_left_m", at(&Case::loading, &Loading::tilt_left_m), at_least(0),
+                       "downward displacement of the top edge at its left end, linear between the ends")),
+      only_with(tilted, number("loading.tilt_right_m", at(&Case::loading, &Loading::tilt_right_m),
+                               at_least(0), "the same at its right end")),
+      only_with(tilted,
+                word<TopEdge>("loading.top_during_tilt", at(&Case::loading, &Loading::top_during_tilt),
+                              {{"held", TopEdge::held}, {"free", TopEdge::free}},
+                              "whether the top edge may move along x while it is tilted")),
+      word<LoadingMethod>("loading.method", at(&Case::loading, &Loading::method),
+                          {{"direct", LoadingMethod::direct},
+                           {"ramp", LoadingMethod::ramp},
+                           {"prestress", LoadingMethod::prestress}},
+                          "state before the event: tilt and shear to the critical one by static equilibria, "
+                          "the same by explicit dynamics with the top moving, or given tractions of the "
+                          "interface with the plate undeformed at rest"),
       number("loading.shear_speed_over_c_L", at(&Case::loading, &Loading::shear_speed_over_c_L),
-             strictly_between(0, 1), "speed of the top edge to +x over the longitudinal wave speed"),
-      number("loading.edge_margin_m", at(&Case::loading, &Loading::edge_margin_m), at_least(0),
-             "length at each end of the contact that does not count for the critical shear"),
-      number("loading.critical_margin", at(&Case::loading, &Loading::critical_margin), strictly_between(0, 1),
-             "common state at t/p = (1 - margin) mu_s, spontaneous event at (1 + margin) mu_s"),
+             {0, 1, false, true},
+             "speed of the top edge to +x over the longitudinal wave speed; 0, held still, only with "
+             "loading.method = prestress"),
+      only_with(tilted,
+                number("loading.edge_margin_m", at(&Case::loading, &Loading::edge_margin_m), at_least(0),
+                       "length at each end of the contact that does not count for the critical shear")),
+      only_with(tilted,
+                number("loading.critical_margin", at(&Case::loading, &Loading::critical_margin),
+                       strictly_between(0, 1),
+                       "common state at t/p = (1 - margin) mu_s, spontaneous event at (1 + margin) mu_s")),
+
+      only_with(uniform, number("prestress.t_Pa", at(&Case::prestress, &Prestress::t_Pa), any(),
+                                "uniform tangential traction, positive where it drives the plate to +x")),
+      only_with(uniform, number("prestress.p_Pa", at(&Case::prestress, &Prestress::p_Pa), above(0),
+                                "uniform pressure")),
+      only_with(prestressed,
+                text("prestress.file", at(&Case::prestress, &Prestress::file),
+                     "CSV table x_m,t_Pa,p_Pa of both instead, linear between its rows, from the first to "
+                     "the last node of the interface; its path is relative to the case file")),
 
       friction_law_entry(),
       word<Relaxed>(
@@ -261,8 +301,10 @@ std::vector<Entry> make_common_entries() {
           {{"none", EventKind::none},
            {"spontaneous", EventKind::spontaneous},
            {"left", EventKind::left},
-           {"right", EventKind::right}},
-          "start of the event: nothing, shear just past the critical one, or a trigger at an edge"),
+           {"right", EventKind::right},
+           {"nucleation", EventKind::nucleation}},
+          "start of the event: nothing, shear just past the critical one, a trigger at an edge, or a "
+          "nucleation patch"),
       number("event.trigger_zone_m", at(&Case::trigger, &Trigger::zone_m), above(0),
              "length of the trigger zone, inward from the outermost node in contact"),
       number("event.trigger_amount", at(&Case::trigger, &Trigger::amount), at_least(0),
@@ -271,6 +313,23 @@ std::vector<Entry> make_common_entries() {
              "time over which the trigger rises linearly"),
       number("event.trigger_duration_s", at(&Case::trigger, &Trigger::duration_s), above_or_infinite(0),
              "the trigger is taken away this long after its start"),
+
+      only_with(nucleated,
+                word<NucleationForm>(
+                    "nucleation.form", at(&Case::nucleation, &Nucleation::form),
+                    {{"weakened", NucleationForm::weakened}, {"overstress", NucleationForm::overstress}},
+                    "patch with a profile B(x): mu = mu_k + (1 - B) (mu of the law - mu_k), "
+                    "or an added tangential traction, with the trigger's ramp and duration")),
+      only_with(nucleated, number("nucleation.x_m", at(&Case::nucleation, &Nucleation::x_m), any(),
+                                  "centre of the patch, from the plate's left edge")),
+      only_with(nucleated,
+                number("nucleation.half_length_m", at(&Case::nucleation, &Nucleation::half_length_m),
+                       at_least(0), "B = 1 within this distance of the centre")),
+      only_with(nucleated, number("nucleation.taper_m", at(&Case::nucleation, &Nucleation::taper_m),
+                                  at_least(0), "B falls to 0 over this length, as half a cosine wave")),
+      only_with(overstressed,
+                number("nucleation.overstress_Pa", at(&Case::nucleation, &Nucleation::overstress_Pa), any(),
+                       "added tangential traction where B = 1")),
 
       number("time.step_factor", at(&Case::time, &TimeStepping::step_factor), above(0),
              "time step over the largest stable one; above 1 only with time.allow_unstable"),
@@ -295,7 +354,7 @@ std::vector<Entry> make_common_entries() {
       number("fronts.pulse_share", at(&Case::fronts, &FrontSettings::pulse_share), between(0, 1),
              "pulse-like below it"),
       number("fronts.trigger_margin_m", at(&Case::fronts, &FrontSettings::trigger_margin_m), at_least(0),
-             "t_d and p_d are left out within the trigger zone plus this"),
+             "t_d and p_d are left out within the trigger zone or nucleation patch plus this"),
 
       number("output.history_interval_s", at(&Case::output, &Output::history_interval_s), above(0),
              "spacing of the rows of interface.h5"),
@@ -367,6 +426,7 @@ const std::vector<Entry>& common_entries() {
 std::vector<Entry> entries_of(const Case& config) {
   std::vector<Entry> entries;
   for (const Entry& entry : common_entries()) {
+    if (entry.only_with && !entry.only_with->holds(config)) continue;
     entries.push_back(entry);
     if (entry.key != "friction.law") continue;
     const auto& parameters = law_of(config).entries;

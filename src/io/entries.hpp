@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,12 @@ bool contains(const Range& range, double value);
 /// "greater than 0 m", "at least 0 and at most 1", ...; empty where every finite number is allowed.
 std::string describe(const Range& range, const std::string& unit);
 
+/// A setting on which a key depends, e.g. "event.kind = nucleation".
+struct Condition {
+  std::string text;
+  std::function<bool(const Case&)> holds;
+};
+
 /// A key of the case file: everything the program knows about it. Its default is the struct's own.
 struct Entry {
   std::string key;  ///< dotted
@@ -37,6 +44,8 @@ struct Entry {
   std::function<Value(const Case&)> get;
   /// @pre the value is of the entry's kind and allowed: a double for a number, std::int64_t for an integer.
   std::function<void(Case&, const Value&)> set;
+  /// The setting without which the key does nothing, and may not be set.
+  std::optional<Condition> only_with = {};
 };
 
 /// The unit that a key ends with: "m" for plate.width_m, "kg/m3" for density_kg_per_m3; empty for a plain
@@ -60,7 +69,7 @@ const LawEntries& law_of(const Case& config);
 /// Keys of every case, in the order of the case file; those of the friction laws follow `friction.law`.
 const std::vector<Entry>& common_entries();
 
-/// All keys of a case with its friction law, in the order of the case file.
+/// All keys that a case can set, those of its friction law among them, in the order of the case file.
 std::vector<Entry> entries_of(const Case& config);
 
 /// The part before the last dot: "plate"; empty for a key outside all tables.

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -153,6 +154,29 @@ void apply(const std::vector<Override>& overrides, Document& document) {
   }
 }
 
+/// Keys whose values decide which later ones of these, and which other keys, there are.
+constexpr std::array deciding_keys = {"loading.method", "prestress.file", "event.kind", "nucleation.form"};
+
+bool applies(const Entry& entry, const Case& config) {
+  return !entry.only_with || entry.only_with->holds(config);
+}
+
+/// Where an override decides that a key of the file does not apply, that is out of date rather than wrong.
+void drop_keys_that_overrides_exclude(const Case& config, Document& document) {
+  const auto overridden = [&](const Entry& entry) {
+    return std::ranges::any_of(deciding_keys, [&](const char* key) {
+      const Setting* setting = find_setting(document, key);
+      return setting && setting->is_override() && entry.only_with->text.find(key) != std::string::npos;
+    });
+  };
+  std::vector<std::string> dropped;
+  for (const Entry& entry : common_entries())
+    if (!applies(entry, config) && overridden(entry)) dropped.push_back(entry.key);
+  std::erase_if(document.settings, [&](const Setting& setting) {
+    return !setting.is_override() && contains_word(dropped, setting.key);
+  });
+}
+
 /// Where an override names the law, what the file says of other laws is out of date rather than wrong.
 void drop_parameters_of_other_laws(const Case& config, Document& document) {
   const Setting* law = find_setting(document, "friction.law");
@@ -184,6 +208,9 @@ void drop_parameters_of_other_laws(const Case& config, Document& document) {
     throw UserError(
         "{}: {} belongs to the friction law {}, but friction.law is {}; remove the key or set the law",
         setting.place, key, other->name, law_of(config).name);
+  if (const Entry* entry = find_entry(common_entries(), key))
+    throw UserError("{}: {} applies only with {}; remove the key or set that", setting.place, key,
+                    entry->only_with->text);
   std::vector<std::string> keys;
   for (const Entry& entry : entries) {
     // The right name in the wrong table is the likelier slip than any misspelling.
@@ -304,6 +331,51 @@ void check_friction(const Case& config, const Document& document, const std::str
   throw UserError("{}: friction: {} ({})", place_of(document, keys, name), message, values);
 }
 
+using Require = std::function<void(bool holds, const std::vector<std::string>& keys, const std::string&)>;
+
+/// What a prescribed state, or the lack of one, asks of the other keys.
+void check_prestress(const Case& config, const Document& document, const Require& require) {
+  using interface::EventKind;
+  if (config.loading.method != solve::LoadingMethod::prestress) {
+    require(config.loading.shear_speed_over_c_L > 0, {"loading.shear_speed_over_c_L"},
+            "loading.shear_speed_over_c_L is 0; that holds the top edge still, choose loading.method = "
+            "prestress or a speed greater than 0");
+    return;
+  }
+  const bool uniform = find_setting(document, "prestress.t_Pa") && find_setting(document, "prestress.p_Pa");
+  require(uniform || !config.prestress.file.empty(), {"loading.method"},
+          "loading.method = prestress needs prestress.t_Pa and prestress.p_Pa, or prestress.file");
+  require(config.plate.corner == mesh::Corner::none, {"plate.corner", "loading.method"},
+          "loading.method = prestress needs plate.corner = none: the whole lower edge starts in contact");
+  require(config.event != EventKind::spontaneous, {"event.kind", "loading.method"},
+          "event.kind = spontaneous raises the shear past the critical one, which loading.method = prestress "
+          "does not know; choose nucleation, left, right or none");
+  const bool at_edge = config.event == EventKind::left || config.event == EventKind::right;
+  require(!at_edge || config.plate.sides != mesh::Sides::periodic, {"event.kind", "plate.sides"},
+          "event.kind = left and right need an edge, which plate.sides = periodic does not have; choose "
+          "nucleation");
+}
+
+void check_nucleation(const Case& config, const Require& require) {
+  if (config.event != interface::EventKind::nucleation) return;
+  const auto& n = config.nucleation;
+  const double width_m = config.plate.width_m;
+  require(n.x_m >= 0 && n.x_m <= width_m, {"nucleation.x_m", "plate.width_m"},
+          fmt::format("nucleation.x_m is {} m; it must be on the interface, at 0 to {} m", n.x_m, width_m));
+  require(n.half_length_m + n.taper_m > 0, {"nucleation.half_length_m", "nucleation.taper_m"},
+          "nucleation.half_length_m and nucleation.taper_m are both 0; give the patch a length");
+  require(config.plate.sides != mesh::Sides::periodic || 2 * (n.half_length_m + n.taper_m) <= width_m,
+          {"nucleation.half_length_m", "nucleation.taper_m", "plate.width_m"},
+          fmt::format("nucleation.half_length_m + taper_m is {} m; with plate.sides = periodic it must be at "
+                      "most half of plate.width_m, {} m",
+                      n.half_length_m + n.taper_m, 0.5 * width_m));
+  require(
+      n.form != interface::NucleationForm::weakened ||
+          interface::kinetic_coefficient(config.friction) < interface::static_coefficient(config.friction),
+      {"nucleation.form", "event.kind", "friction.law"},
+      "nucleation.form = weakened does nothing where the friction law does not weaken; choose overstress");
+}
+
 /// Relations between keys that need no mesh; mesh::make_plate checks the rest of the geometry.
 void check_relations(const Case& config, const Document& document, const std::string& name) {
   const auto require = [&](bool holds, const std::vector<std::string>& keys, const std::string& message) {
@@ -311,20 +383,25 @@ void check_relations(const Case& config, const Document& document, const std::st
   };
   const auto& plate = config.plate;
   const auto& loading = config.loading;
+  const bool at_edge =
+      config.event == interface::EventKind::left || config.event == interface::EventKind::right;
   const double shorter_m = std::min(plate.width_m, plate.height_m);
   require(plate.element_size_m <= shorter_m, {"plate.element_size_m", "plate.width_m", "plate.height_m"},
           fmt::format("plate.element_size_m is {} m; it must be at most the plate's shorter side, {} m",
                       plate.element_size_m, shorter_m));
+  check_prestress(config, document, require);
+  const bool tilted = loading.method != solve::LoadingMethod::prestress;
   const double tilt_m = std::max(loading.tilt_left_m, loading.tilt_right_m);
   require(
-      tilt_m < plate.height_m, {"loading.tilt_left_m", "loading.tilt_right_m", "plate.height_m"},
+      !tilted || tilt_m < plate.height_m, {"loading.tilt_left_m", "loading.tilt_right_m", "plate.height_m"},
       fmt::format(
           "loading.tilt_left_m and tilt_right_m go up to {} m; they must be less than plate.height_m, {} m",
           tilt_m, plate.height_m));
-  require(loading.edge_margin_m < 0.5 * plate.width_m, {"loading.edge_margin_m", "plate.width_m"},
+  require(!tilted || loading.edge_margin_m < 0.5 * plate.width_m, {"loading.edge_margin_m", "plate.width_m"},
           fmt::format("loading.edge_margin_m is {} m; it must be less than half of plate.width_m, {} m",
                       loading.edge_margin_m, 0.5 * plate.width_m));
-  require(config.trigger.zone_m <= plate.width_m, {"event.trigger_zone_m", "plate.width_m"},
+  require(!(tilted || at_edge) || config.trigger.zone_m <= plate.width_m,
+          {"event.trigger_zone_m", "plate.width_m"},
           fmt::format("event.trigger_zone_m is {} m; it must be at most plate.width_m, {} m",
                       config.trigger.zone_m, plate.width_m));
   require(
@@ -332,6 +409,7 @@ void check_relations(const Case& config, const Document& document, const std::st
       fmt::format(
           "time.step_factor is {}, beyond the stable step; use at most 1, or set time.allow_unstable = true",
           config.time.step_factor));
+  check_nucleation(config, require);
   require(config.fronts.l_star_m < plate.width_m, {"fronts.l_star_m", "plate.width_m"},
           fmt::format("fronts.l_star_m is {} m; it must be less than plate.width_m, {} m",
                       config.fronts.l_star_m, plate.width_m));
@@ -399,6 +477,12 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
   if (const Setting* law = find_setting(document, "friction.law"))
     assign(*find_entry(common_entries(), "friction.law"), *law, config);
   drop_parameters_of_other_laws(config, document);
+  for (const char* key : deciding_keys) {
+    const Entry& entry = *find_entry(common_entries(), key);
+    if (const Setting* setting = find_setting(document, key); setting && applies(entry, config))
+      assign(entry, *setting, config);
+  }
+  drop_keys_that_overrides_exclude(config, document);
   const std::vector<Entry> entries = entries_of(config);
   for (const Setting& setting : document.settings) {
     const Entry* entry = find_entry(entries, setting.key);
@@ -411,7 +495,11 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
 }
 
 Case read_case(const std::filesystem::path& file, const std::vector<Override>& overrides) {
-  return parse_case(read_text(file), file.string(), overrides);
+  Case config = parse_case(read_text(file), file.string(), overrides);
+  auto& table = config.prestress.file;
+  if (!table.empty())
+    table = std::filesystem::absolute(file.parent_path() / table).lexically_normal().string();
+  return config;
 }
 
 std::string to_toml(const Case& config) {

@@ -5,10 +5,17 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
+#include "interface/nucleation.hpp"
+#include "io/prestress.hpp"
 #include "io/schema.hpp"
 #include "mesh/plate.hpp"
+#include "solve/factorisation.hpp"
+#include "solve/prestress.hpp"
 #include "solve/stepper.hpp"
 
 namespace slipfront::run {
@@ -28,6 +35,43 @@ double top_speed_m_per_s(const io::Case& config) {
 /// Displacements of all nodes, from the plate's measures alone: for refusals before anything is built.
 double approximate_unknowns(const mesh::Plate& plate) {
   return 2 * (plate.width_m / plate.element_size_m + 1) * (plate.height_m / plate.element_size_m + 1);
+}
+
+bool is_prestressed(const io::Case& config) {
+  return config.loading.method == solve::LoadingMethod::prestress;
+}
+
+/// Bytes of the fields of a plate in motion.
+double fields_bytes(double n_nodes, double n_cells) {
+  return n_nodes * (2 + 4 + 1 + 4) * 8 + n_cells * 16;
+}
+
+fronts::StaticState prescribed_tractions(const io::Prestress& prestress, const mesh::Mesh& mesh) {
+  fronts::StaticState state;
+  for (const auto n : mesh.lower) state.x_m.push_back(mesh.x_m[n]);
+  if (!prestress.file.empty())
+    return io::prestress_at(io::read_prestress(prestress.file), state.x_m, prestress.file);
+  state.t_s_Pa.assign(state.x_m.size(), prestress.t_Pa);
+  state.p_s_Pa.assign(state.x_m.size(), prestress.p_Pa);
+  return state;
+}
+
+/// B at the nodes of the interface. [lower]
+std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::Mesh& mesh) {
+  std::vector<double> B;
+  for (const auto n : mesh.lower)
+    B.push_back(interface::nucleation_profile(nucleation, mesh.x_m[n], mesh.period_m));
+  return B;
+}
+
+/// Prescribed tractions beyond the static strength, said in one line; empty where there are none.
+std::string prestress_warning(const solve::Equilibrium& state, double mu_s) {
+  const auto& s = state.tractions;
+  std::int64_t n = 0;
+  for (std::size_t k = 0; k < s.x_m.size(); ++k) n += std::abs(s.t_s_Pa[k]) > mu_s * s.p_s_Pa[k] ? 1 : 0;
+  if (n == 0) return {};
+  return fmt::format("the prestress is beyond mu_s p at {} of {} interface nodes: they slip at once", n,
+                     s.x_m.size());
 }
 
 /// Nodes in contact that slip or are open at rest, said in one line; empty where all stick.
@@ -50,6 +94,11 @@ WaveSpeeds wave_speeds(const solid::Material& m) {
 std::string initial_state_key(const io::Case& config) {
   io::Case relevant;
   relevant.plate = config.plate;
+  if (is_prestressed(config)) {
+    relevant.loading.method = config.loading.method;
+    relevant.prestress = config.prestress;
+    return io::to_toml(relevant);
+  }
   relevant.material = config.material;
   relevant.loading = config.loading;
   relevant.friction = interface::Coulomb { interface::static_coefficient(config.friction) };
@@ -67,14 +116,25 @@ std::string initial_state_key(const io::Case& config) {
 }
 
 mesh::Mesh check(const io::Case& config) {
-  if (config.plate.sides == mesh::Sides::periodic || config.plate.top == mesh::Top::absorbing)
-    throw UserError(
-        "plate.sides = periodic and plate.top = absorbing have no static equilibrium under the loaded edge; "
-        "choose plate.sides = free or absorbing and plate.top = loaded");
   const double n_unknowns = approximate_unknowns(config.plate);
-  solve::require_statics_memory(n_unknowns, solve::estimated_factor_bytes(n_unknowns));
+  if (is_prestressed(config)) {
+    require_memory(fields_bytes(0.5 * n_unknowns, 0.5 * n_unknowns),
+                   fmt::format("a plate of {:.4g} nodes", 0.5 * n_unknowns),
+                   "choose a larger plate.element_size_m");
+  } else {
+    if (config.plate.sides == mesh::Sides::periodic)
+      throw UserError(
+          "plate.sides = periodic has no equilibrium under a tilted top edge; choose free or absorbing, or "
+          "loading.method = prestress");
+    if (config.plate.top == mesh::Top::absorbing)
+      throw UserError(
+          "plate.top = absorbing leaves no edge to tilt and shear; choose loaded, or loading.method = "
+          "prestress");
+    solve::require_statics_memory(n_unknowns, solve::estimated_factor_bytes(n_unknowns));
+  }
   auto mesh = mesh::make_plate(config.plate);
   solve::require_rows_fit(mesh, config.time);
+  if (is_prestressed(config)) prescribed_tractions(config.prestress, mesh);
   return mesh;
 }
 
@@ -85,6 +145,14 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
   InitialState initial;
   initial.mesh = check(config);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
+  if (is_prestressed(config)) {
+    initial.prescribed = true;
+    initial.common = solve::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh));
+    initial.spontaneous = initial.common;
+    initial.critical_shear_m = fronts::undefined;
+    initial.wall_s = seconds_since(start);
+    return initial;
+  }
   const solve::Statics statics(initial.mesh, config.material, config.loading, mu_s,
                                interface::static_coefficient_key(config.friction));
   initial.n_unknowns = statics.n_unknowns();
@@ -119,10 +187,21 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
   o.elasticity = {config.material.youngs_modulus_Pa, config.material.poissons_ratio,
                   config.material.plane == solid::Plane::strain};
   const double margin = config.trigger.zone_m + config.fronts.trigger_margin_m;
-  const double contact_from = initial.common.inside_from_m - config.loading.edge_margin_m;
-  const double contact_to = initial.common.inside_to_m + config.loading.edge_margin_m;
+  const double edge = initial.prescribed ? 0 : config.loading.edge_margin_m;
+  const double contact_from = initial.common.inside_from_m - edge;
+  const double contact_to = initial.common.inside_to_m + edge;
   if (config.event == interface::EventKind::left) o.exclude_left_m = contact_from + margin;
   if (config.event == interface::EventKind::right) o.exclude_right_m = contact_to - margin;
+  if (config.event == interface::EventKind::nucleation) {
+    const auto& n = config.nucleation;
+    const double reach = n.half_length_m + n.taper_m + config.fronts.trigger_margin_m;
+    o.exclude_from_m = n.x_m - reach;
+    o.exclude_to_m = n.x_m + reach;
+    // A patch that passes an edge of a periodic plate goes on at the other one.
+    const double period = initial.mesh.period_m;
+    if (period > 0 && o.exclude_from_m < 0) o.exclude_right_m = o.exclude_from_m + period;
+    if (period > 0 && o.exclude_to_m > period) o.exclude_left_m = o.exclude_to_m - period;
+  }
   return o;
 }
 
@@ -136,15 +215,29 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
 
   solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), config.time);
   stepper.start(state, top_speed_m_per_s(config));
-  stepper.set_trigger(config.trigger,
-                      solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger, mu_s));
+  if (initial.prescribed) stepper.set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
+  auto forces = solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger, mu_s);
+  if (config.event == interface::EventKind::nucleation) {
+    auto B = patch(config.nucleation, initial.mesh);
+    if (config.nucleation.form == interface::NucleationForm::weakened) {
+      for (double& b : B) b = 1 - b;
+      stepper.set_intact(std::move(B));
+    } else {
+      for (std::size_t k = 0; k < B.size(); ++k)
+        if (state.contact[k] != solve::Contact::open)
+          forces[k] = config.nucleation.overstress_Pa * B[k] * initial.tributary_m[k];
+    }
+  }
+  stepper.set_trigger(config.trigger, std::move(forces));
   result.stable_step_s = stepper.stable_step_s();
   result.step_s = stepper.step_s();
   result.node_updates_per_step = stepper.node_updates_per_step();
 
   const auto start = Clock::now();
-  const bool triggered =
-      config.event == interface::EventKind::left || config.event == interface::EventKind::right;
+  const bool triggered = config.event == interface::EventKind::left ||
+                         config.event == interface::EventKind::right ||
+                         (config.event == interface::EventKind::nucleation &&
+                          config.nucleation.form == interface::NucleationForm::overstress);
   result.event = solve::run_event(
       stepper, state, mu_s, result.speeds.c_L, triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
       config.time,
@@ -155,12 +248,14 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
   result.fronts =
       fronts::find_fronts(result.event.record, initial.common.tractions, front_options(config, initial));
   if (auto warning = contact_warning(initial.common); !warning.empty()) result.warnings.push_back(warning);
+  if (auto warning = initial.prescribed ? prestress_warning(state, mu_s) : ""; !warning.empty())
+    result.warnings.push_back(warning);
   if (config.fronts.l_star_m < 0.99 * initial.mesh.grid.spacing_m)
     result.warnings.push_back(fmt::format(
         "fronts.l_star_m = {:.4g} m is below the element size: one element is used", config.fronts.l_star_m));
   const auto& before = result.event.energies.front();
   const auto& after = result.event.energies.back();
-  if (after.trigger_work > 0.1 * before.strain)
+  if (!initial.prescribed && after.trigger_work > 0.1 * before.strain)
     result.warnings.push_back(
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before: what "
                     "happens behind the front is its doing",
@@ -188,10 +283,11 @@ Info info(const io::Case& config) {
   info.node_updates = static_cast<double>(info.n_steps) * stepper.node_updates_per_step();
 
   const double n_unknowns = 2.0 * static_cast<double>(info.n_nodes);
-  info.factor_bytes = solve::estimated_factor_bytes(n_unknowns);
-  const double fields =
-      static_cast<double>(info.n_nodes) * (2 + 4 + 1 + 4) * 8 + static_cast<double>(info.n_cells) * 16;
-  info.memory_bytes = solve::statics_bytes(n_unknowns, info.factor_bytes) + fields;
+  info.memory_bytes = fields_bytes(static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells));
+  if (!is_prestressed(config)) {
+    info.factor_bytes = solve::estimated_factor_bytes(n_unknowns);
+    info.memory_bytes += solve::statics_bytes(n_unknowns, info.factor_bytes);
+  }
 
   // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
   solve::Equilibrium rest;
@@ -211,14 +307,19 @@ Info info(const io::Case& config) {
   } while (seconds_since(start) < 5e-3);
   info.node_updates_per_s = stepper.node_updates_per_step() / fastest_s;
   // The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
-  const double statics_s = 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
+  const double statics_s =
+      is_prestressed(config) ? 0 : 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
   info.expected_s = info.node_updates / info.node_updates_per_s + statics_s;
 
   const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
-  info.well_posedness = stability::well_posedness(
-      config.material, config.friction,
-      stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m),
-      config.plate.element_size_m, config.plate.width_m, config.regularisation);
+  double pressure_Pa = stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m);
+  if (is_prestressed(config)) {
+    const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
+    pressure_Pa = std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
+  }
+  info.well_posedness =
+      stability::well_posedness(config.material, config.friction, pressure_Pa, config.plate.element_size_m,
+                                config.plate.width_m, config.regularisation);
   return info;
 }
 

@@ -17,12 +17,14 @@
 namespace slipfront::run {
 
 /// The loaded plate before any event: the same for all events of one plate, material, loading and mu_s, so
-/// that it is computed once and shared.
+/// that it is computed once and shared. Where the tractions are prescribed, common and spontaneous are that
+/// state.
 struct InitialState {
   mesh::Mesh mesh;
   std::vector<double> tributary_m;  ///< [lower]
   solve::Equilibrium common;        ///< at t/p = (1 - critical_margin) mu_s inside
   solve::Equilibrium spontaneous;   ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
+  bool prescribed = false;          ///< loading.method is prestress: no statics, no critical shear
   double critical_shear_m = 0;      ///< shear at t/p = mu_s inside, found directly
   std::int64_t n_unknowns = 0;
   double factor_bytes = 0;

@@ -51,6 +51,11 @@ Json energy_json(const solve::Energies& e) {
 }
 
 Json statics_json(const InitialState& initial) {
+  if (initial.prescribed)
+    return {{"common_peak_t_over_p", initial.common.peak_ratio},
+            {"peak_x_m", initial.common.peak_x_m},
+            {"inside_from_m", initial.common.inside_from_m},
+            {"inside_to_m", initial.common.inside_to_m}};
   Json json = {{"critical_shear_m", initial.critical_shear_m},
                {"common_shear_m", initial.common.shear_m},
                {"common_peak_t_over_p", initial.common.peak_ratio},

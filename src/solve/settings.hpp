@@ -3,10 +3,12 @@
 
 namespace slipfront::solve {
 
-/// How the critical shear is reached from the tilted equilibrium.
+/// How the state before the event comes about: by tilt and shear of the top edge, or prescribed.
 enum class LoadingMethod {
-  direct,  ///< static equilibria by a sparse factorisation
-  ramp,    ///< explicit dynamics with the top edge moving
+  direct,  ///< tilt, then shear by static equilibria from a sparse factorisation
+  ramp,    ///< tilt, then shear by explicit dynamics with the top edge moving
+  /// Tractions of the interface are given; the plate is at rest with u = 0, its motion is what they change.
+  prestress,
 };
 
 /// Whether the top edge's nodes may move along x while it is tilted.

@@ -216,6 +216,7 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     shared.push_m_per_s = shared.a_m_per_s2 = zero;
     set_motion_before();
   }
+  std::ranges::fill(interface_.intact, 1.0);
   start_contact(contact_, interface_);
   set_trigger({}, std::vector<double>(lower_.size(), 0.0));
   prestress_t_Pa_.clear();
@@ -250,6 +251,11 @@ void Stepper::set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa
                    "prestress of other nodes");
   prestress_t_Pa_ = std::move(t0_Pa);
   prestress_p_Pa_ = std::move(p0_Pa);
+}
+
+void Stepper::set_intact(std::vector<double> intact) {
+  SLIPFRONT_ASSERT(intact.size() == lower_.size(), "intact of other nodes");
+  interface_.intact = std::move(intact);
 }
 
 void Stepper::compute_irregular(Level& level) {

@@ -54,6 +54,9 @@ class Stepper {
   /// start.
   void set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa);
 
+  /// Weakens nodes for good, see Interface::intact; [lower], after start, which makes all of them intact.
+  void set_intact(std::vector<double> intact);
+
   /// One step. Every contact update is shown to the recorder; the state at the beginning of the step is
   /// appended to `sample` where it is given.
   void advance(Recorder& recorder, fronts::History* sample = nullptr);

@@ -90,7 +90,7 @@ Plan damping_plan(const io::Case& base) {
 /// What is kept of a run.
 struct Fronts {
   std::vector<fronts::Front> main;  ///< the longest in each direction
-  double from_m = 0, to_m = 0;      ///< outside of trigger zones
+  fronts::FrontOptions options;     ///< with the zones left out
 };
 
 std::vector<fronts::Front> main_fronts(const std::vector<fronts::Front>& all) {
@@ -119,7 +119,7 @@ std::vector<Station> stations_of(const Fronts& own, double spacing_m) {
     const auto first = std::llround(std::ceil(std::min(start_m, end_m) / spacing_m));
     for (auto k = first; static_cast<double>(k) * spacing_m <= std::max(start_m, end_m); ++k) {
       const double x = static_cast<double>(k) * spacing_m;
-      if (std::abs(x - start_m) < nucleation_m || x < own.from_m || x > own.to_m) continue;
+      if (std::abs(x - start_m) < nucleation_m || fronts::is_excluded(own.options, x)) continue;
       if (std::isfinite(v_tip_at(front, x))) stations.push_back({x, front.direction, {}, {}, {}});
     }
   }
@@ -220,9 +220,7 @@ Convergence study_convergence(const io::Case& config, const ConvergenceOptions& 
   run::Batch batch(
       options.threads, [&] { return monitor(done, cases.size()); }, "interrupted; nothing was written");
   batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial) {
-    const auto front_options = run::front_options(cases[k], initial);
-    runs[k].from_m = front_options.exclude_left_m;
-    runs[k].to_m = front_options.exclude_right_m;
+    runs[k].options = run::front_options(cases[k], initial);
     if (r.event.end == solve::EventEnd::blow_up)
       blow_ups[k] = r.event.blow_up;
     else

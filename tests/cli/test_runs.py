@@ -89,8 +89,9 @@ def test_energies_balance(program, coarse, tmp_path):
     with open(tmp_path / "out/energy.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert ",".join(rows[0]) == (
-        "time_s,strain_J_per_m,kinetic_J_per_m,top_work_J_per_m,trigger_work_J_per_m,friction_work_J_per_m,"
-        "contact_work_J_per_m,damping_work_J_per_m,coupling_work_J_per_m,imbalance_J_per_m"
+        "time_s,strain_J_per_m,kinetic_J_per_m,top_work_J_per_m,trigger_work_J_per_m,prestress_work_J_per_m,"
+        "friction_work_J_per_m,contact_work_J_per_m,damping_work_J_per_m,boundary_work_J_per_m,"
+        "coupling_work_J_per_m,imbalance_J_per_m"
     )
     assert len(rows) > 5
     assert float(rows[-1]["time_s"]) == summary(tmp_path / "out")["time_s"]
@@ -399,3 +400,60 @@ def test_reproduce_tells_how_far_the_scorecard_moves(program, tmp_path):
     assert row["mesh_variation"]["differences"][0] > 0
     refused = program("reproduce", "--sensitivity", "--regularised", "-o", "other")
     assert refused.returncode == 2 and "--sensitivity" in refused.stderr
+
+
+PRESTRESSED = """
+[plate]
+width_m = 0.1
+height_m = 0.02
+element_size_m = 1e-3
+corner = "none"
+sides = "periodic"
+top = "absorbing"
+[loading]
+method = "prestress"
+[prestress]
+file = "table.csv"
+[friction]
+law = "slip_weakening"
+regularisation = "pressure"
+relaxation_time_s = 2e-6
+[event]
+kind = "nucleation"
+[nucleation]
+x_m = 0.05
+half_length_m = 0.015
+taper_m = 5e-3
+[time]
+end_s = 60e-6
+"""
+
+
+def test_prescribed_tractions_from_a_table(program, write_case, tmp_path):
+    (tmp_path / "cases").mkdir()
+    (tmp_path / "cases/table.csv").write_text("x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.1,2.3e6,5e6\n")
+    write_case(PRESTRESSED, "cases/c.toml")
+    run = program("run", "cases/c.toml", "-o", "out")
+    assert run.returncode == 0, run.stderr
+    assert "prescribed tractions, t/p up to 0.4596 at x = 0.099 m" in run.stdout
+    static = list(csv.DictReader(open(tmp_path / "out/static.csv", newline="")))
+    assert len(static) == 100
+    assert float(static[50]["t_s_Pa"]) == pytest.approx(2.2e6, rel=1e-12)
+    assert {front["direction"] for front in summary(tmp_path / "out")["fronts"]} == {-1, 1}
+
+    again = program("run", "out/case.resolved.toml", "-o", "again", "-q")
+    assert again.returncode == 0, again.stderr
+    for name in ("fronts.csv", "energy.csv", "static.csv", "interface.h5", "case.resolved.toml"):
+        assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "again" / name).read_bytes()
+
+
+def test_wrong_table_is_named_with_the_line_of_its_key(program, write_case, tmp_path):
+    (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.05,2.3e6,5e6\n")
+    case = write_case(PRESTRESSED)
+    line = PRESTRESSED.splitlines().index('file = "table.csv"') + 1
+    for command in (["run", case, "-o", "out"], ["validate", case], ["info", case]):
+        failed = program(*command)
+        assert failed.returncode == 2
+        assert f"{case}:{line}: prestress.file: " in failed.stderr
+        assert "table.csv: covers x = 0 to 0.05 m" in failed.stderr
+    assert not (tmp_path / "out").exists()

@@ -51,6 +51,14 @@ auto members(const interface::Trigger& t) {
   const auto& [a, b, c, d] = t;
   return std::tuple(a, b, c, d);
 }
+auto members(const Prestress& p) {
+  const auto& [a, b, c] = p;
+  return std::tuple(a, b, c);
+}
+auto members(const interface::Nucleation& n) {
+  const auto& [a, b, c, d, e] = n;
+  return std::tuple(a, b, c, d, e);
+}
 auto members(const solve::TimeStepping& t) {
   const auto& [a, b, c, d, e, f] = t;
   return std::tuple(a, b, c, d, e, f);
@@ -76,18 +84,20 @@ std::vector<double> members(const interface::FrictionLaw& friction) {
 }
 
 void expect_equal(const Case& a, const Case& b) {
-  const auto& [title, plate, material, loading, friction, regularisation, contact, event, trigger, time,
-               fronts, output] = b;
+  const auto& [title, plate, material, loading, prestress, friction, regularisation, contact, event, trigger,
+               nucleation, time, fronts, output] = b;
   EXPECT_EQ(a.title, title);
   EXPECT_EQ(members(a.plate), members(plate));
   EXPECT_EQ(members(a.material), members(material));
   EXPECT_EQ(members(a.loading), members(loading));
+  EXPECT_EQ(members(a.prestress), members(prestress));
   EXPECT_EQ(a.friction.index(), friction.index());
   EXPECT_EQ(members(a.friction), members(friction));
   EXPECT_EQ(members(a.regularisation), members(regularisation));
   EXPECT_EQ(a.contact, contact);
   EXPECT_EQ(a.event, event);
   EXPECT_EQ(members(a.trigger), members(trigger));
+  EXPECT_EQ(members(a.nucleation), members(nucleation));
   EXPECT_EQ(members(a.time), members(time));
   EXPECT_EQ(members(a.fronts), members(fronts));
   EXPECT_EQ(members(a.output), members(output));
@@ -112,6 +122,19 @@ Case changed_case() {
   return c;
 }
 
+/// A case of prescribed tractions in which no member that it can set has its default.
+Case changed_prestress() {
+  Case c = changed_case();
+  c.plate.corner = mesh::Corner::none;
+  c.loading = {};
+  c.loading.method = solve::LoadingMethod::prestress;
+  c.loading.shear_speed_over_c_L = 0;
+  c.prestress = {1e6 / 3, 2e6 / 7, ""};
+  c.event = interface::EventKind::nucleation;
+  c.nucleation = {interface::NucleationForm::overstress, 0.1 / 3, 7e-3, 0, -2e5};
+  return c;
+}
+
 TEST(Schema, EmptyFileGivesTheDefaults) {
   expect_equal(parse_case("", "c.toml"), Case{});
 }
@@ -129,6 +152,105 @@ TEST(Schema, EveryKeyReadsBackFromToml) {
           << entry.key << " is not changed";
       expect_equal(parse_case(to_toml(changed), "c.toml"), changed);
     }
+}
+
+TEST(Schema, PrestressAndNucleationReadBackFromToml) {
+  const Case uniform = changed_prestress();
+  std::set<std::string> keys;
+  for (const Entry& entry : entries_of(uniform)) keys.insert(entry.key);
+  for (const Entry& entry : entries_of(uniform))
+    if (entry.key.starts_with("prestress.") || entry.key.starts_with("nucleation.")) {
+      EXPECT_EQ(toml_text(entry.get(uniform)) != toml_text(entry.get(Case{})), entry.key != "prestress.file")
+          << entry.key;
+    }
+  EXPECT_TRUE(keys.contains("nucleation.overstress_Pa"));
+  EXPECT_FALSE(keys.contains("loading.tilt_left_m"));
+  expect_equal(parse_case(to_toml(uniform), "c.toml"), uniform);
+
+  Case table = uniform;
+  table.prestress = {};
+  table.prestress.file = "table.csv";
+  expect_equal(parse_case(to_toml(table), "c.toml"), table);
+}
+
+TEST(Schema, PrestressAndNucleationKeysStandForTheirMembers) {
+  const Case c = parse_case(R"(
+[plate]
+corner = "none"
+sides = "periodic"
+[loading]
+method = "prestress"
+[prestress]
+t_Pa = 2e6
+p_Pa = 5e6
+[event]
+kind = "nucleation"
+[nucleation]
+form = "overstress"
+x_m = 0.12
+half_length_m = 0.02
+taper_m = 0.01
+overstress_Pa = 3e6
+)",
+                            "c.toml");
+  Case expected;
+  expected.plate.corner = mesh::Corner::none;
+  expected.plate.sides = mesh::Sides::periodic;
+  expected.loading.method = solve::LoadingMethod::prestress;
+  expected.prestress = {2e6, 5e6, ""};
+  expected.event = interface::EventKind::nucleation;
+  expected.nucleation = {interface::NucleationForm::overstress, 0.12, 0.02, 0.01, 3e6};
+  expect_equal(c, expected);
+}
+
+TEST(Schema, KeysThatDoNotApplyAreRefused) {
+  EXPECT_EQ(parse_error("[prestress]\nt_Pa = 1\n"),
+            "c.toml:2: prestress.t_Pa applies only with loading.method = prestress and no prestress.file; "
+            "remove the key or set that");
+  EXPECT_EQ(parse_error("[nucleation]\nx_m = 0.1\n"),
+            "c.toml:2: nucleation.x_m applies only with event.kind = nucleation; remove the key or set that");
+  EXPECT_EQ(parse_error("[event]\nkind = \"nucleation\"\n[nucleation]\noverstress_Pa = 1\n"),
+            "c.toml:4: nucleation.overstress_Pa applies only with event.kind = nucleation and "
+            "nucleation.form = overstress; remove the key or set that");
+  EXPECT_EQ(parse_error("[loading]\ntilt_left_m = 0\nmethod = \"prestress\"\n"),
+            "c.toml:2: loading.tilt_left_m applies only with loading.method = direct or ramp; remove the key "
+            "or set that");
+  EXPECT_THAT(parse_error("[loading]\nmethod = \"prestress\"\n[prestress]\nt_Pa = 1\np_Pa = 1\n"
+                          "file = \"a.csv\"\n"),
+              StartsWith("c.toml:4: prestress.t_Pa applies only with"));
+}
+
+TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
+  const std::string nucleated = to_toml(changed_prestress());
+  const Case left = parse_case(nucleated, "c.toml", {{"event.kind", "left"}});
+  EXPECT_EQ(members(left.nucleation), members(Case{}.nucleation));
+  EXPECT_EQ(left.event, interface::EventKind::left);
+  const Case table = parse_case(nucleated, "c.toml", {{"prestress.file", "t.csv"}});
+  EXPECT_EQ(table.prestress.p_Pa, Case{}.prestress.p_Pa);
+  const Case weakened = parse_case(nucleated, "c.toml", {{"nucleation.form", "weakened"}});
+  EXPECT_EQ(weakened.nucleation.overstress_Pa, Case{}.nucleation.overstress_Pa);
+  // An override of a key that does not apply is wrong all the same.
+  EXPECT_THAT(parse_error(nucleated, {{"event.kind", "left"}, {"nucleation.x_m", "0.1"}}),
+              StartsWith("--set nucleation.x_m=0.1: nucleation.x_m applies only with"));
+}
+
+TEST(Schema, WhatPrescribedTractionsAskOfOtherKeys) {
+  const std::string good = to_toml(changed_prestress());
+  EXPECT_THAT(parse_error("[loading]\nmethod = \"prestress\"\n"),
+              AllOf(StartsWith("c.toml:2: "), HasSubstr("needs prestress.t_Pa and prestress.p_Pa")));
+  EXPECT_THAT(parse_error(good, {{"plate.corner", "relief"}}), HasSubstr("needs plate.corner = none"));
+  EXPECT_THAT(parse_error(good, {{"event.kind", "spontaneous"}}), HasSubstr("choose nucleation"));
+  EXPECT_THAT(parse_error(good, {{"event.kind", "left"}, {"plate.sides", "periodic"}}),
+              HasSubstr("does not have"));
+  EXPECT_THAT(parse_error(good, {{"prestress.p_Pa", "0"}}), HasSubstr("greater than 0"));
+  EXPECT_THAT(parse_error(good, {{"nucleation.x_m", "1"}}), HasSubstr("it must be on the interface"));
+  EXPECT_THAT(parse_error(good, {{"nucleation.half_length_m", "0"}}), HasSubstr("give the patch a length"));
+  EXPECT_THAT(parse_error(good, {{"plate.sides", "periodic"}, {"nucleation.taper_m", "0.2"}}),
+              HasSubstr("at most half of plate.width_m"));
+  EXPECT_THAT(parse_error(good, {{"friction.law", "coulomb"}, {"nucleation.form", "weakened"}}),
+              HasSubstr("choose overstress"));
+  EXPECT_THAT(parse_error("[loading]\nshear_speed_over_c_L = 0\n"),
+              AllOf(StartsWith("c.toml:2: "), HasSubstr("prestress")));
 }
 
 TEST(Schema, TheKeysStandForTheirMembers) {
@@ -282,8 +404,9 @@ TEST(Schema, UnknownTables) {
   EXPECT_EQ(parse_error("title = \"\"\n[contacts]"),
             "c.toml:2: unknown table [contacts]; did you mean [contact]?");
   EXPECT_EQ(parse_error("title = \"\"\n[boundaries]"),
-            "c.toml:2: unknown table [boundaries]; tables are plate, material, loading, friction, contact, "
-            "event, time, "
+            "c.toml:2: unknown table [boundaries]; tables are plate, material, loading, prestress, friction, "
+            "contact, "
+            "event, nucleation, time, "
             "fronts, "
             "output");
   EXPECT_THAT(parse_error("[plate.inner]\nwidth_m = 1"), StartsWith("c.toml:1: unknown table [plate.inner]"));
@@ -349,8 +472,8 @@ TEST(Schema, ValuesOutOfRange) {
   EXPECT_EQ(parse_error("[output]\nsnapshot_times_s = [0, -1]"),
             "c.toml:2: output.snapshot_times_s is -1 s; it must be at least 0 s");
   EXPECT_EQ(parse_error("[event]\nkind = \"lft\""),
-            "c.toml:2: event.kind is \"lft\"; it must be one of none, spontaneous, left, right (did you mean "
-            "left?)");
+            "c.toml:2: event.kind is \"lft\"; it must be one of none, spontaneous, left, right, nucleation "
+            "(did you mean left?)");
 }
 
 TEST(Schema, NoNumberMayBeNan) {

@@ -101,11 +101,10 @@ TEST_F(WrittenRun, EnergiesAreARowPerInstant) {
   EXPECT_EQ(rows[0].back(), "imbalance_J_per_m");
   for (std::size_t k = 0; k < energies.size(); ++k) {
     const auto& e = energies[k];
-    const std::vector<double> values = {e.time_s,        e.strain,
-                                        e.kinetic,       e.top_work,
-                                        e.trigger_work,  e.friction_work,
-                                        e.contact_work,  e.damping_work,
-                                        e.coupling_work, e.stored() - energies[0].stored() - e.work()};
+    const std::vector<double> values = {
+        e.time_s,       e.strain,         e.kinetic,       e.top_work,
+        e.trigger_work, e.prestress_work, e.friction_work, e.contact_work,
+        e.damping_work, e.boundary_work,  e.coupling_work, e.stored() - energies[0].stored() - e.work()};
     ASSERT_EQ(rows[k + 1].size(), values.size());
     for (std::size_t c = 0; c < values.size(); ++c) expect_field(rows[k + 1][c], values[c]);
   }

@@ -66,11 +66,15 @@ def main_fronts(run: Run) -> list[Front]:
 
 
 def away_from_trigger(run: Run, x_m: np.ndarray) -> np.ndarray:
-    """Whether points lie outside the trigger zone and its margin; everywhere in a spontaneous event."""
+    """Whether points lie outside the trigger zone or patch and its margin; everywhere in other events."""
+    if run.kind == "nucleation":
+        reach_m = run.parameter("nucleation.half_length_m") + run.parameter("nucleation.taper_m")
+        distance_m = np.abs(x_m - run.parameter("nucleation.x_m"))
+        return distance_m > reach_m + run.parameter("fronts.trigger_margin_m")
     if run.kind not in ("left", "right"):
         return np.full(np.shape(x_m), True)
     # The zone begins at the end of the contact, an edge margin outside of what counts as inside.
-    edge_m = run.parameter("loading.edge_margin_m")
+    edge_m = 0.0 if run.prescribed else run.parameter("loading.edge_margin_m")
     omitted_m = run.parameter("event.trigger_zone_m") + run.parameter("fronts.trigger_margin_m")
     if run.kind == "left":
         return x_m >= run.fact("statics.inside_from_m") - edge_m + omitted_m

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs Problem A (docs/prestress.md) on several meshes and compares it with other codes: table and figure."""
+
+import argparse
+import csv
+import json
+import subprocess
+from pathlib import Path
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+CASE = Path(__file__).resolve().parent.parent / "cases/reference/rigid_flat_a.toml"
+CENTRE_M = 0.2  # of the nucleation patch in the case; x = 0 of the problem
+THRESHOLD_M_PER_S = 1e-3
+FROM_M, TO_M, END_S = 0.06, 0.14, 145e-6  # where and until when the problem's domain is free of reflections
+FIELDS = {"tau": "t_Pa", "p": "p_Pa", "v": "slip_rate_m_per_s", "slip": "slip_m"}
+LIMITS = {"tau": 0.03, "p": 0.03, "v": 0.03, "slip": 0.01}  # rms over range
+SNAPSHOTS_S = (60e-6, 90e-6, 120e-6)
+
+
+def arrival_limit_s(t):
+    return np.maximum(0.01 * t, 0.5e-6)
+
+
+class Run:
+    def __init__(self, folder):
+        with open(folder / "run.json") as file:
+            facts = json.load(file)
+        self.wall_s = facts["wall_s"]
+        with h5py.File(folder / "interface.h5") as file:
+            self.x_m = file["x_m"][:] - CENTRE_M
+            self.t_s = file["time_s"][:]
+            self.fields = {name: file[key][:] for name, key in FIELDS.items()}
+        # Slip rates are those of half a sub-step later.
+        self.v_t_s = self.t_s + 0.5 * facts["interface_dt_s"]
+
+    def arrivals_s(self, x_m):
+        """First time that the slip rate passes the threshold, linear between steps and nodes."""
+        v = self.fields["v"]
+        after = np.argmax(v > THRESHOLD_M_PER_S, axis=0)
+        node = np.arange(len(self.x_m))
+        before = np.maximum(after - 1, 0)
+        rise = v[after, node] - v[before, node]
+        part = np.divide(THRESHOLD_M_PER_S - v[before, node], rise, out=np.zeros_like(rise), where=rise > 0)
+        t = self.v_t_s[before] + part * (self.v_t_s[after] - self.v_t_s[before])
+        t[v[after, node] <= THRESHOLD_M_PER_S] = np.nan
+        return np.interp(x_m, self.x_m, t)
+
+    def field(self, name, t_s, x_m):
+        own_t_s = self.v_t_s if name == "v" else self.t_s
+        at_times = np.array([np.interp(t_s, own_t_s, column) for column in self.fields[name].T]).T
+        return np.array([np.interp(x_m, self.x_m, row) for row in at_times])
+
+
+class Reference:
+    def __init__(self, folder):
+        with open(folder / "problem_a_arrivals.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        x = np.array([float(row["x_m"]) for row in rows])
+        here = (np.abs(x) > FROM_M - 1e-6) & (np.abs(x) < TO_M + 1e-6)
+        self.x_m = x[here]
+        column = {key: np.array([float(row[key]) for row in rows])[here] for key in rows[0] if key != "x_m"}
+        self.arrivals_s = column["t_slip_uguca_extrap_s"]
+        self.other_s = column["t_slip_sem2dpack_1mm_s"]
+        fields = np.load(folder / "problem_a_fields.npz")
+        self.t_s = fields["t"][fields["t"] < END_S + 1e-9]
+        inside = np.abs(fields["x"]) < TO_M + 1e-6
+        self.fields_x_m = fields["x"][inside]
+        self.fields = {name: fields[name][: len(self.t_s), inside] for name in FIELDS}
+
+
+def compare(run, reference):
+    late_s = run.arrivals_s(reference.x_m) - reference.arrivals_s
+    measured = {"late_s": late_s}
+    # Where the front is too slow to arrive at all, it is late without bound.
+    size_s = np.where(np.isfinite(late_s), np.abs(late_s), np.inf)
+    measured["largest_s"] = size_s.max()
+    measured["beyond"] = int(np.sum(size_s > arrival_limit_s(reference.arrivals_s)))
+    outside = np.abs(reference.fields_x_m) > FROM_M - 1e-6
+    for name, expected in reference.fields.items():
+        error = run.field(name, reference.t_s, reference.fields_x_m) - expected
+        measured[name] = np.sqrt(np.mean(error**2)) / np.ptp(expected)
+        measured[name, "outside"] = np.sqrt(np.mean(error[:, outside] ** 2)) / np.ptp(expected[:, outside])
+    return measured
+
+
+def table(results, n_points):
+    lines = [
+        "| h (mm) | arrival, largest difference (us) | beyond its limit | tau | p | v | slip | stepping (s) |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for h_mm, run, m in results:
+        rms = " | ".join(f"{100 * m[name]:.2f} %, {100 * m[name, 'outside']:.2f} %" for name in FIELDS)
+        lines.append(
+            f"| {h_mm:g} | {1e6 * m['largest_s']:.2f} | {m['beyond']} of {n_points} | {rms} | {run.wall_s:.2g} |"
+        )
+    return "\n".join(lines)
+
+
+def draw(results, reference, picture):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
+    sides = [reference.x_m < 0, reference.x_m > 0]  # a gap between them
+    limit_us = 1e6 * arrival_limit_s(reference.arrivals_s)
+    for side in sides:
+        x_mm = 1e3 * reference.x_m[side]
+        left.fill_between(x_mm, -limit_us[side], limit_us[side], color="0.9", lw=0, label="limit")
+        other = 1e6 * (reference.other_s - reference.arrivals_s)
+        left.plot(x_mm, other[side], "k:", lw=1, label="SEM2DPACK, 1 mm")
+        for k, (h_mm, _, m) in enumerate(results):
+            left.plot(x_mm, 1e6 * m["late_s"][side], color=f"C{k}", lw=1, label=f"h = {h_mm:g} mm")
+    left.axhline(0, color="0.5", lw=0.5)
+    left.set(xlabel="x (mm)", ylabel="arrival less that of uguca, extrapolated (us)")
+    handles, labels = left.get_legend_handles_labels()
+    once = dict(zip(labels, handles, strict=True))
+    left.legend(once.values(), once.keys(), fontsize=7)
+    for time_s in SNAPSHOTS_S:
+        row = np.argmin(np.abs(reference.t_s - time_s))
+        right.plot(1e3 * reference.fields_x_m, reference.fields["v"][row], "k--", lw=1.4, zorder=3)
+        peak = np.argmax(reference.fields["v"][row])
+        at = (1e3 * reference.fields_x_m[peak], reference.fields["v"][row, peak])
+        above_it = {"xytext": (0, 4), "textcoords": "offset points", "ha": "center", "fontsize": 7}
+        right.annotate(f"{1e6 * time_s:.0f} us", at, **above_it)
+        for k, (_, run, _) in enumerate(results):
+            v = run.field("v", np.array([time_s]), run.x_m)[0]
+            right.plot(1e3 * run.x_m, v, color=f"C{k}", lw=0.8)
+    right.plot([], [], "k--", lw=1.4, label="uguca")
+    right.set(xlabel="x (mm)", ylabel="slip rate (m/s)", xlim=(-140, 140))
+    right.legend(fontsize=7)
+    figure.savefig(picture, dpi=110, metadata={"Software": None})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", default="build/release/slipfront")
+    parser.add_argument("--results", type=Path, default=Path("results-reference"))
+    parser.add_argument("--figure", type=Path, help="default: reference_a.png in the folder of the results")
+    parser.add_argument("--h-mm", type=float, nargs="+", default=[2, 1, 0.5, 0.25])
+    options = parser.parse_args()
+    reference = Reference(CASE.parent / "data")
+    results = []
+    for h_mm in options.h_mm:
+        folder = options.results / f"h_{h_mm:g}_mm"
+        size = f"plate.element_size_m={h_mm * 1e-3!r}"
+        subprocess.run(
+            [options.program, "run", str(CASE), "-o", str(folder), "--overwrite", "-q", "--set", size], check=True
+        )
+        run = Run(folder)
+        results.append((h_mm, run, compare(run, reference)))
+    print(table(results, len(reference.x_m)))
+    between = np.nanmax(np.abs(reference.other_s - reference.arrivals_s))
+    print(f"\nBetween the two reference codes (SEM2DPACK at 1 mm): {1e6 * between:.2f} us in arrivals.")
+    draw(results, reference, options.figure or options.results / "reference_a.png")
+    finest = results[-1][2]
+    holds = finest["beyond"] == 0 and all(
+        max(finest[name], finest[name, "outside"]) < limit for name, limit in LIMITS.items()
+    )
+    print(f"At h = {results[-1][0]:g} mm the limits {'hold' if holds else 'DO NOT HOLD'}.")
+    return 0 if holds else 1
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
