@@ -67,9 +67,10 @@ std::string initial_state_key(const io::Case& config) {
 }
 
 mesh::Mesh check(const io::Case& config) {
-  if (config.plate.sides == mesh::Sides::periodic || config.plate.top == mesh::Top::absorbing)
+  if (config.plate.sides == mesh::Sides::periodic || config.plate.top != mesh::Top::loaded)
     throw UserError(
-        "plate.sides = periodic and plate.top = absorbing have no static equilibrium under the loaded edge; "
+        "plate.sides = periodic, plate.top = free and plate.top = absorbing have no static equilibrium under "
+        "the loaded edge; "
         "choose plate.sides = free or absorbing and plate.top = loaded");
   const double n_unknowns = approximate_unknowns(config.plate);
   solve::require_statics_memory(n_unknowns, solve::estimated_factor_bytes(n_unknowns));

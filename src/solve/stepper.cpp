@@ -64,6 +64,10 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
     lower_mass_kg_.push_back(plate_.mass_kg[lower_[k]]);
   }
   contact_mass_kg_ = lower_mass_kg_;
+  if (contact.algorithm == interface::ContactAlgorithm::predictor_corrector) {
+    lower_rows_ = solid::assemble_rows(mesh, material, lower_);
+    landing_shift_m_.assign(mesh.n_nodes(), 0.0);
+  }
   divide_cells(mesh, material, time);
 }
 
@@ -571,8 +575,13 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
     v_.x[n] = interface_.v_x_m_per_s[i];
     v_.y[n] = interface_.v_y_m_per_s[i];
     u_.x[n] += dt * v_.x[n];
+    if (const double shift_m = interface_.u_y_m[i] - u_.y[n]; shift_m != 0) {
+      landing_shift_m_[n] = shift_m;
+      landing_nodes_.push_back(i);
+    }
     u_.y[n] = interface_.u_y_m[i] + dt * v_.y[n];
   }
+  if (!landing_nodes_.empty()) contact_work += landing_work(dt);
   double friction_work = 0;
   for (std::size_t i = 0; i < lower_.size(); ++i)
     friction_work -=
@@ -591,6 +600,26 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
   for (const auto i : trigger_nodes_)
     works_.trigger_work +=
         0.5 * impulse_s * trigger_force_N_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
+}
+
+double Stepper::landing_work(double dt_s) {
+  // A shift s between the places u, at which this sub-step's forces were taken, and u + s, from which it
+  // moves to u'': of the strain energies 1/2 u K u' before and 1/2 u'' K (u + s) after, the kicks' works
+  // leave open 1/2 s K (u + u''). All neighbours of the interface have moved by dt v.
+  double work = 0;
+  for (const auto i : landing_nodes_) {
+    double force = 0;
+    for (auto k = lower_rows_.first[i]; k < lower_rows_.first[i + 1]; ++k) {
+      const auto n = lower_rows_.neighbour[k];
+      const auto& b = lower_rows_.block[k];
+      force +=
+          b[2] * (2 * u_.x[n] - dt_s * v_.x[n]) + b[3] * (2 * u_.y[n] - dt_s * v_.y[n] - landing_shift_m_[n]);
+    }
+    work += 0.5 * landing_shift_m_[lower_[i]] * force;
+  }
+  for (const auto i : landing_nodes_) landing_shift_m_[lower_[i]] = 0;
+  landing_nodes_.clear();
+  return work;
 }
 
 void Stepper::append_sample(fronts::History& history) const {
