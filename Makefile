@@ -16,7 +16,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce quick regularised bench docs format format-check verify verification-pages tidy sanitize coverage clean
+.PHONY: help setup build test reproduce quick regularised contact-algorithms bench docs format format-check verify verification-pages tidy sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -64,6 +64,9 @@ verification-pages: verify  ## renew the numbers and pictures of docs/verificati
 bench: build  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench
 
+contact-algorithms: build $(VENV)/.installed  ## the paper's events with each contact algorithm: renews docs/contact-algorithms.md
+	PYTHONPATH=python $(PYTHON) scripts/contact-algorithms.py $(PROGRAM) cases/kammer2012 $(RESULTS)-contact docs/contact-algorithms.md docs/figures/contact_algorithms.png
+
 regularised: build $(VENV)/.installed  ## the same events with friction that has a length scale, into results-regularised/
 	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-regularised
@@ -104,4 +107,4 @@ coverage: packages  ## lines of the numerical core that the C++ tests run: table
 	@scripts/run-coverage build/coverage
 
 clean:  ## remove build, venv and results
-	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick $(RESULTS)-regularised $(RESULTS)-verify
+	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-quick $(RESULTS)-regularised $(RESULTS)-contact $(RESULTS)-verify
