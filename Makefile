@@ -16,7 +16,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce sensitivity quick regularised convergence reference bench docs format format-check verify verification-pages tidy sanitize coverage clean
+.PHONY: help setup build test reproduce sensitivity quick regularised convergence reference contact-algorithms bench docs format format-check verify verification-pages tidy sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -71,6 +71,9 @@ verification-pages: verify  ## renew the numbers and pictures of docs/verificati
 
 bench: build  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench
+
+contact-algorithms: build $(VENV)/.installed  ## the paper's events with each contact algorithm: renews docs/contact-algorithms.md
+	PYTHONPATH=python $(PYTHON) scripts/contact-algorithms.py $(PROGRAM) cases/kammer2012 $(RESULTS)-contact docs/contact-algorithms.md docs/figures/contact_algorithms.png
 
 regularised: build $(VENV)/.installed  ## the same events with friction that has a length scale, into results-regularised/
 	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite

@@ -225,9 +225,10 @@ std::vector<Entry> make_common_entries() {
                   {{"free", Sides::free}, {"periodic", Sides::periodic}, {"absorbing", Sides::absorbing}},
                   "vertical edges: free of traction, the right one identical to the left one, or with "
                   "dashpots that let waves out; other than free only with plate.corner = none"),
-      word<Top>("plate.top", at(&Case::plate, &Plate::top),
-                {{"loaded", Top::loaded}, {"absorbing", Top::absorbing}},
-                "upper edge: displacements prescribed, or free with dashpots"),
+      word<Top>(
+          "plate.top", at(&Case::plate, &Plate::top),
+          {{"loaded", Top::loaded}, {"free", Top::free}, {"absorbing", Top::absorbing}},
+          "upper edge: displacements prescribed, free of traction, or with dashpots that let waves out"),
 
       number("material.youngs_modulus_Pa", at(&Case::material, &Material::youngs_modulus_Pa), above(0),
              "Young's modulus E"),

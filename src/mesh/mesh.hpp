@@ -38,7 +38,7 @@ struct Mesh {
   std::vector<double> y_m;  ///< [nodes] up from the rigid plane; the gap of a lower node
   std::vector<Cell> cells;
   std::vector<Node> lower;  ///< candidates for contact, x ascending, rounded corners included
-  std::vector<Node> top;    ///< nodes of the loaded edge, left to right; none where the top absorbs
+  std::vector<Node> top;  ///< nodes of the loaded edge, left to right; none where the top is free or absorbs
   /// Length after which the plate repeats along x, or 0. Cells of the last column then use the nodes of
   /// column 0, and the nodes of the right edge are orphans.
   double period_m = 0;

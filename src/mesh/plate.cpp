@@ -168,17 +168,18 @@ void join_sides(Mesh& mesh, const Plate& plate) {
 void absorb(Mesh& mesh, const Plate& plate) {
   const Grid& grid = mesh.grid;
   const bool sides = plate.sides == Sides::absorbing, top = plate.top == Top::absorbing;
+  const bool loaded = plate.top == Top::loaded;
   const bool periodic = mesh.period_m > 0;
   for (int j = 0; j <= grid.rows; ++j)
     for (int i = 0; i <= grid.columns - (periodic ? 1 : 0); ++i) {
       AbsorbingNode a{grid.node(i, j)};
-      if (sides && (i == 0 || i == grid.columns) && (top || j < grid.rows))
+      if (sides && (i == 0 || i == grid.columns) && (!loaded || j < grid.rows))
         a.side_m = grid.spacing_m * (j == 0 || j == grid.rows ? 0.5 : 1);
       if (top && j == grid.rows)
         a.top_m = grid.spacing_m * (!periodic && (i == 0 || i == grid.columns) ? 0.5 : 1);
       if (a.side_m > 0 || a.top_m > 0) mesh.absorbing.push_back(a);
     }
-  if (top) mesh.top.clear();
+  if (!loaded) mesh.top.clear();
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ enum class Sides {
 /// The upper edge.
 enum class Top {
   loaded,     ///< its displacements are prescribed
+  free,       ///< no traction
   absorbing,  ///< it moves freely, waves leave through dashpots
 };
 

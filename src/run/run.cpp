@@ -126,10 +126,10 @@ mesh::Mesh check(const io::Case& config) {
       throw UserError(
           "plate.sides = periodic has no equilibrium under a tilted top edge; choose free or absorbing, or "
           "loading.method = prestress");
-    if (config.plate.top == mesh::Top::absorbing)
+    if (config.plate.top != mesh::Top::loaded)
       throw UserError(
-          "plate.top = absorbing leaves no edge to tilt and shear; choose loaded, or loading.method = "
-          "prestress");
+          "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
+          config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
     solve::require_statics_memory(n_unknowns, solve::estimated_factor_bytes(n_unknowns));
   }
   auto mesh = mesh::make_plate(config.plate);

@@ -16,9 +16,11 @@ struct Energies {
   double trigger_work = 0;
   double prestress_work = 0;  ///< of the uniform tractions on the interface nodes
   double friction_work = 0;   ///< of the tangential traction; negative where it dissipates
-  double contact_work = 0;    ///< of the pressure: kinetic energy lost where a gap closes, negative
-  double damping_work = 0;    ///< of the stiffness damping
-  double boundary_work = 0;   ///< of the absorbing boundaries' dashpots, negative
+  /// Of the pressure: kinetic energy lost where a gap closes, negative. Predictor-corrector contact also
+  /// shifts landing nodes onto the plane, against the plate's forces.
+  double contact_work = 0;
+  double damping_work = 0;   ///< of the stiffness damping
+  double boundary_work = 0;  ///< of the absorbing boundaries' dashpots, negative
   /// Of the coarse cells' force on nodes that move in sub-steps, beyond what these cells store. Bounded where
   /// nothing dissipates.
   double coupling_work = 0;

@@ -65,6 +65,10 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
   }
   contact_mass_kg_ = lower_mass_kg_;
   interior_mass_kg_ = material.density_kg_per_m3 * mesh.grid.spacing_m * mesh.grid.spacing_m;
+  if (contact.algorithm == interface::ContactAlgorithm::predictor_corrector) {
+    lower_rows_ = solid::assemble_rows(mesh, material, lower_);
+    landing_shift_m_.assign(mesh.n_nodes(), 0.0);
+  }
   divide_cells(mesh, material, time);
 }
 
@@ -513,12 +517,16 @@ void Stepper::add_damping_work(Level& level, double after_K_w, ForceProducts sum
   auto& last = level.products;
   const double dt = level.step_s, beta = damping_s_;
   // With u' = u + dt v', v' the velocity after the last push: three unknowns, v' K u, v' K v', u' K u', in
-  // u' K w' = u' K u' + beta u' K v', v' K w' = v' K u + (dt + beta) v' K v', and u' K u' itself.
-  const double after_K_u = (sums.u_K_w - last.u_K_u - dt * sums.v_K_w) / (dt + beta);
+  // u' K w' = u' K u' + beta u' K v', v' K w' = v' K u + (dt + beta) v' K v', and u' K u' itself. A landing
+  // has shifted u' besides.
+  const double v_K_w = sums.v_K_w - last.shift_K_v;
+  const double u_K_w = sums.u_K_w - last.shift_K_u - beta * last.shift_K_v;
+  const double after_K_u = (u_K_w - last.u_K_u - dt * v_K_w) / (dt + beta);
   if (last.begun) works_.damping_work += damping_work(level, after_K_w, after_K_u);
   last.begun = true;
-  last.v_K_v = (sums.v_K_w - after_K_u) / (dt + beta);
-  last.u_K_u = sums.u_K_w - beta * (after_K_u + dt * last.v_K_v);
+  last.v_K_v = (v_K_w - after_K_u) / (dt + beta);
+  last.u_K_u = sums.u_K_w - beta * (after_K_u + dt * last.v_K_v + last.shift_K_v);
+  last.shift_K_u = last.shift_K_v = 0;
   last.after_K_w = sums.after_K_w;
 }
 
@@ -549,8 +557,10 @@ Energies Stepper::energies() {
     e.coupling_work += coupling_work(level);
     if (level.products.begun) {
       // u' K u' = u K u + dt v' K (u + u'), v' the velocity after the last push.
-      const double after_K_u = (u_K_u - level.products.u_K_u) / level.step_s - v_K_u;
-      e.damping_work += damping_work(level, level.products.after_K_w + late_product(level), after_K_u);
+      const auto& last = level.products;
+      const double after_K_u =
+          (u_K_u - last.shift_K_u - last.u_K_u) / level.step_s - (v_K_u - last.shift_K_v);
+      e.damping_work += damping_work(level, last.after_K_w + late_product(level), after_K_u);
     }
     restore_velocities(level);
   }
@@ -611,8 +621,13 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
     v_.x[n] = interface_.v_x_m_per_s[i];
     v_.y[n] = interface_.v_y_m_per_s[i];
     u_.x[n] += dt * v_.x[n];
+    if (const double shift_m = interface_.u_y_m[i] - u_.y[n]; shift_m != 0) {
+      landing_shift_m_[n] = shift_m;
+      landing_nodes_.push_back(i);
+    }
     u_.y[n] = interface_.u_y_m[i] + dt * v_.y[n];
   }
+  if (!landing_nodes_.empty()) contact_work += landing_work(dt);
   double friction_work = 0;
   for (std::size_t i = 0; i < lower_.size(); ++i)
     friction_work -=
@@ -631,6 +646,33 @@ void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sam
   for (const auto i : trigger_nodes_)
     works_.trigger_work +=
         0.5 * impulse_s * trigger_force_N_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
+}
+
+double Stepper::landing_work(double dt_s) {
+  // A shift s between the places u, at which this sub-step's forces were taken, and u + s, from which it
+  // moves to u'': of the strain energies 1/2 u K u' before and 1/2 u'' K (u + s) after, the kicks' works
+  // leave open 1/2 s K (u + u''). All neighbours of the interface have moved by dt v.
+  double s_K_u = 0, s_K_v = 0, s_K_s = 0;
+  for (const auto i : landing_nodes_) {
+    double u = 0, v = 0, s = 0;
+    for (auto k = lower_rows_.first[i]; k < lower_rows_.first[i + 1]; ++k) {
+      const auto n = lower_rows_.neighbour[k];
+      const auto& b = lower_rows_.block[k];
+      u += b[2] * u_.x[n] + b[3] * u_.y[n];
+      v += b[2] * v_.x[n] + b[3] * v_.y[n];
+      s += b[3] * landing_shift_m_[n];
+    }
+    const double shift_m = landing_shift_m_[lower_[i]];
+    s_K_u += shift_m * u;
+    s_K_v += shift_m * v;
+    s_K_s += shift_m * s;
+  }
+  for (const auto i : landing_nodes_) landing_shift_m_[lower_[i]] = 0;
+  landing_nodes_.clear();
+  auto& products = levels_.back().products;
+  products.shift_K_v = s_K_v;
+  products.shift_K_u = 2 * s_K_u - s_K_s;
+  return 0.5 * (2 * s_K_u - dt_s * s_K_v - s_K_s);
 }
 
 void Stepper::append_sample(fronts::History& history) const {

@@ -108,6 +108,8 @@ class Stepper {
   struct Products {
     double u_K_u = 0, v_K_v = 0, after_K_w = 0;
     bool begun = false;  ///< whether there is a last push
+    /// Of the shift s of landing nodes since: s K v, and s K (u' + u' - s) with u' the place after it.
+    double shift_K_v = 0, shift_K_u = 0;
   };
   /// Cells with one step; each level's step is a whole multiple of the next one's. The last level holds the
   /// interface.
@@ -143,6 +145,9 @@ class Stepper {
   void gather_push(Level& level);
   void move_shared(Level& coarser, double dt);
   void take_contact(double time_s, Recorder& recorder, fronts::History* sample);
+  /// Work of the shifts that put landing nodes onto the plane, after the sub-step of length dt_s that began
+  /// with them.
+  double landing_work(double dt_s);
   /// The velocities as a level sees them: mean ones since its last push at shared nodes.
   void exchange_velocities(const Level& level);
   void restore_velocities(const Level& level);
@@ -177,6 +182,10 @@ class Stepper {
   std::vector<double> lower_mass_kg_;
   std::vector<double> contact_mass_kg_;  ///< along y, effective; see Dashpot. [lower]
   std::vector<double> v_y_trial_;        ///< [lower]
+  // Predictor-corrector contact only.
+  solid::BlockRows lower_rows_;             ///< K of the interface nodes, N/m
+  std::vector<double> landing_shift_m_;     ///< [nodes] upwards; 0 but for nodes that land
+  std::vector<std::size_t> landing_nodes_;  ///< of this sub-step, interface nodes
   std::vector<Dashpot> contact_dashpots_;
   interface::Interface interface_;
   interface::Trigger trigger_;

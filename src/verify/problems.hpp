@@ -6,6 +6,7 @@
 /// The problems, a file each.
 namespace slipfront::verify {
 
+Outcome impact(Effort effort);
 Outcome plane_waves(Effort effort);
 
 }  // namespace slipfront::verify

@@ -23,6 +23,7 @@ bool Outcome::holds() const {
 std::span<const Verification> verifications() {
   static const std::array all = {
       Verification{"plane_waves", "Speed and dispersion of plane longitudinal and shear waves", plane_waves},
+      Verification{"impact", "Impact of a free body on the plane", impact},
   };
   return all;
 }

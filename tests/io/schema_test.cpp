@@ -68,8 +68,8 @@ auto members(const FrontSettings& s) {
   return std::tuple(a, b, c, d, e, f);
 }
 auto members(const Output& o) {
-  const auto& [a, b, c, d] = o;
-  return std::tuple(a, b, c, d);
+  const auto& [a, b, c] = o;
+  return std::tuple(a, b, c);
 }
 
 /// Members of a friction law, by its own list of parameters.

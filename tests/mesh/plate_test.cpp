@@ -176,6 +176,21 @@ TEST(Plate, OrphansAreNodesWithoutCells) {
   EXPECT_EQ(std::count(orphan.begin(), orphan.end(), true), 1);
 }
 
+TEST(Plate, FreeTopIsNeitherLoadedNorAbsorbs) {
+  auto plate = small_plate(Corner::none);
+  plate.top = Top::free;
+  EXPECT_TRUE(make_plate(plate).top.empty());
+  EXPECT_TRUE(make_plate(plate).absorbing.empty());
+  // The upper ends of absorbing sides move and so absorb, too.
+  plate.sides = Sides::absorbing;
+  double side_m = 0;
+  for (const auto& a : make_plate(plate).absorbing) {
+    side_m += a.side_m;
+    EXPECT_EQ(a.top_m, 0);
+  }
+  EXPECT_NEAR(side_m, 2 * plate.height_m, 100 * eps);
+}
+
 TEST(Quality, OfAHandMadeCell) {
   // A right trapezoid: base 2, top 1, left side 1, so 45 and 135 degrees on the right.
   Mesh mesh;

@@ -148,7 +148,7 @@ TEST(Prestress, ColumnSlidesAtTheRateOfItsImpedance) {
     TimeStepping time;
     time.interface_substeps = 5;
     Stepper stepper(mesh, material, {interface::Coulomb{mu}}, time);
-      auto e = support::in_flight(mesh, solid::Field(mesh.n_nodes()), solid::Field(mesh.n_nodes()));
+    auto e = support::in_flight(mesh, solid::Field(mesh.n_nodes()), solid::Field(mesh.n_nodes()));
     const std::size_t n = mesh.lower.size();
     e.contact.assign(n, Contact::stick);
     e.tractions.t_s_Pa.assign(n, t0);

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "solve/event.hpp"
 #include "solve/stepper.hpp"
@@ -16,6 +18,8 @@ namespace {
 using mesh::Corner;
 
 constexpr double mu_s = 1.3;
+constexpr std::array algorithms = {interface::ContactAlgorithm::direct,
+                                   interface::ContactAlgorithm::predictor_corrector};
 
 TimeStepping stepping(int rows, int substeps) {
   TimeStepping time;
@@ -45,7 +49,7 @@ class Books : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {
     const Statics statics(mesh, material, loading, mu_s);
     const auto e = statics.shear_to(shear_ratio * mu_s);
     Stepper stepper(mesh, material, law, stepping(rows(), substeps()));
-      stepper.start(e, top_speed);
+    stepper.start(e, top_speed);
     if (triggered) {
       const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
       stepper.set_trigger(trigger, trigger_forces(e, mesh::tributary_lengths_m(mesh),
@@ -76,16 +80,18 @@ INSTANTIATE_TEST_SUITE_P(Layers, Books,
                          });
 
 TEST_P(Books, CloseWithEverythingOn) {
-  const auto b = run({}, 0.9, 0.2, true, 400, support::gentle_law);
-  EXPECT_GT(b.n_onsets, 5);
-  // Every term is there to be missed.
-  EXPECT_GT(b.last.kinetic, 1e-6 * b.largest_J);
-  EXPECT_GT(std::abs(b.last.top_work), 1e-6 * b.largest_J);
-  EXPECT_GT(b.last.trigger_work, 1e-6 * b.largest_J);
-  EXPECT_LT(b.last.friction_work, -1e-6 * b.largest_J);
-  EXPECT_LT(b.last.damping_work, -1e-6 * b.largest_J);
-  EXPECT_EQ(b.last.coupling_work != 0, substeps() > 1);
-  EXPECT_LE(b.worst_J, 1e-12 * b.largest_J);
+  for (const auto algorithm : algorithms) {
+    const auto b = run({}, 0.9, 0.2, true, 400, support::with_algorithm(support::gentle_law, algorithm));
+    EXPECT_GT(b.n_onsets, 5);
+    // Every term is there to be missed.
+    EXPECT_GT(b.last.kinetic, 1e-6 * b.largest_J);
+    EXPECT_GT(std::abs(b.last.top_work), 1e-6 * b.largest_J);
+    EXPECT_GT(b.last.trigger_work, 1e-6 * b.largest_J);
+    EXPECT_LT(b.last.friction_work, -1e-6 * b.largest_J);
+    EXPECT_LT(b.last.damping_work, -1e-6 * b.largest_J);
+    EXPECT_EQ(b.last.coupling_work != 0, substeps() > 1);
+    EXPECT_LE(b.worst_J, 1e-12 * b.largest_J);
+  }
 }
 
 // Run by `make verify`.
@@ -111,33 +117,38 @@ TEST_P(Books, CloseWhenThePlateHitsThePlane) {
     v.y[n] = -200 * (0.01 - mesh.y_m[n]);
   }
   const auto e = support::in_flight(mesh, u, v);
-  Stepper stepper(mesh, {}, support::gentle_law, stepping(rows(), substeps()));
-  stepper.start(e, 1);
-  Recorder recorder(e, mu_s, 0);
-  const double start = stepper.energies().stored();
-  double worst = 0;
-  bool touched = false, left = false;
-  Energies now;
-  for (int step = 0; step < 1000; ++step) {
-    stepper.advance(recorder);
-    now = stepper.energies();
-    worst = std::max(worst, std::abs(now.stored() - start - now.work()));
-    const bool touches = std::ranges::any_of(stepper.interface_state().p_Pa, [](double p) { return p > 0; });
-    touched |= touches;
-    left |= touched && !touches;
+  for (const auto algorithm : algorithms) {
+    Stepper stepper(mesh, {}, support::with_algorithm(support::gentle_law, algorithm),
+                    stepping(rows(), substeps()));
+    stepper.start(e, 1);
+    Recorder recorder(e, mu_s, 0);
+    const double start = stepper.energies().stored();
+    double worst = 0;
+    bool touched = false, left = false;
+    Energies now;
+    for (int step = 0; step < 1000; ++step) {
+      stepper.advance(recorder);
+      now = stepper.energies();
+      worst = std::max(worst, std::abs(now.stored() - start - now.work()));
+      const bool touches =
+          std::ranges::any_of(stepper.interface_state().p_Pa, [](double p) { return p > 0; });
+      touched |= touches;
+      left |= touched && !touches;
+    }
+    EXPECT_TRUE(touched);
+    EXPECT_TRUE(left);
+    EXPECT_LT(now.contact_work, -1e-6 * start);
+    EXPECT_LT(now.friction_work, -1e-6 * start);
+    EXPECT_LE(worst, 1e-12 * start);
   }
-  EXPECT_TRUE(touched);
-  EXPECT_TRUE(left);
-  EXPECT_LT(now.contact_work, -1e-6 * start);
-  EXPECT_LT(now.friction_work, -1e-6 * start);
-  EXPECT_LE(worst, 1e-12 * start);
 }
 
 class BoundaryBooks : public ::testing::TestWithParam<std::tuple<mesh::Sides, mesh::Top, int>> {};
 INSTANTIATE_TEST_SUITE_P(
     Edges, BoundaryBooks,
     ::testing::Combine(::testing::Values(mesh::Sides::free, mesh::Sides::periodic, mesh::Sides::absorbing),
-                       ::testing::Values(mesh::Top::loaded, mesh::Top::absorbing), ::testing::Values(1, 5)));
+                       ::testing::Values(mesh::Top::loaded, mesh::Top::free, mesh::Top::absorbing),
+                       ::testing::Values(1, 5)));
 
 TEST_P(BoundaryBooks, CloseWhenThePlateHitsThePlane) {
   const auto [sides, top, substeps] = GetParam();
@@ -156,26 +167,31 @@ TEST_P(BoundaryBooks, CloseWhenThePlateHitsThePlane) {
     v.y[n] = -200 * (0.01 - mesh.y_m[n]) * (1 + 0.1 * std::sin(314.159265 * mesh.x_m[n]));
   }
   const auto e = support::in_flight(mesh, u, v);
-  Stepper stepper(mesh, {}, support::gentle_law, stepping(4, substeps));
-  stepper.start(e, 1);
-  Recorder recorder(e, mu_s, 0);
-  const double start = stepper.energies().stored();
-  double worst = 0;
-  bool touched = false;
-  Energies now;
-  for (int step = 0; step < 500; ++step) {
-    stepper.advance(recorder);
-    now = stepper.energies();
-    worst = std::max(worst, std::abs(now.stored() - start - now.work()));
-    touched |= std::ranges::any_of(stepper.interface_state().p_Pa, [](double p) { return p > 0; });
+  for (const auto algorithm : algorithms) {
+    Stepper stepper(mesh, {}, support::with_algorithm(support::gentle_law, algorithm), stepping(4, substeps));
+    stepper.start(e, 1);
+    Recorder recorder(e, mu_s, 0);
+    const double start = stepper.energies().stored();
+    double worst = 0;
+    bool touched = false;
+    Energies now;
+    for (int step = 0; step < 500; ++step) {
+      stepper.advance(recorder);
+      now = stepper.energies();
+      worst = std::max(worst, std::abs(now.stored() - start - now.work()));
+      touched |= std::ranges::any_of(stepper.interface_state().p_Pa, [](double p) { return p > 0; });
+    }
+    EXPECT_TRUE(touched);
+    EXPECT_LT(now.contact_work, -1e-6 * start);
+    const bool absorbs = sides == mesh::Sides::absorbing || top == mesh::Top::absorbing;
+    EXPECT_EQ(now.boundary_work < -1e-3 * start, absorbs);
+    EXPECT_EQ(now.boundary_work != 0, absorbs);
+    // Rounding, as of the other books; and of u K u', where a free body has drifted by u.
+    const double drift_m = std::max(std::ranges::max(stepper.u_m().x), std::ranges::max(stepper.u_m().y));
+    const double rounding =
+        std::numeric_limits<double>::epsilon() * solid::Material{}.youngs_modulus_Pa * drift_m * drift_m;
+    EXPECT_LE(worst, 1e-12 * start + rounding * mesh.n_nodes());
   }
-  EXPECT_TRUE(touched);
-  EXPECT_LT(now.contact_work, -1e-6 * start);
-  const bool absorbs = sides == mesh::Sides::absorbing || top == mesh::Top::absorbing;
-  EXPECT_EQ(now.boundary_work < -1e-3 * start, absorbs);
-  EXPECT_EQ(now.boundary_work != 0, absorbs);
-  // Rounding, as of the other books.
-  EXPECT_LE(worst, 1e-12 * start);
 }
 
 TEST_P(Books, CloseWithoutFrictionAndDamping) {

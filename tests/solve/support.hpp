@@ -107,6 +107,12 @@ inline TimeStepping one_substep(double step_factor = 0.9) {
   return time;
 }
 
+inline interface::ContactModel with_algorithm(interface::ContactModel model,
+                                              interface::ContactAlgorithm algorithm) {
+  model.algorithm = algorithm;
+  return model;
+}
+
 inline const interface::ContactModel paper_law {
   interface::VelocityWeakening {
     .mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1

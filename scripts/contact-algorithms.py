@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the paper's events with each contact algorithm, compares their main fronts, and draws them.
+
+usage: contact-algorithms.py PROGRAM CASES RESULTS PAGE FIGURE
+Puts the table into PAGE between its marks."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from slipfront.figures.style import PAGE_MM, RC
+from slipfront.read import Front, read_fronts, read_json
+
+EVENTS = ("left", "spontaneous", "right", "spontaneous_mu_k_1.0")
+LAWS = {
+    "paper's law": [],
+    "strength relaxed over 0.5 us": [
+        "friction.regularisation=strength",
+        "friction.relaxation_time_s=0.5e-6",
+        "friction.relaxation_length_m=inf",
+    ],
+}
+BASE = "direct 18"  # the cases' own
+SUBSTEPS = (9, 18, 36, 72)
+ALGORITHMS = ("direct", "predictor_corrector")
+PERTURBED = "direct 18, E larger by 1e-9"
+VARIANTS = {
+    f"{algorithm} {n}": [f"contact.algorithm={algorithm}", f"time.interface_substeps={n}"]
+    for algorithm in ALGORITHMS
+    for n in SUBSTEPS
+} | {PERTURBED: ["material.youngs_modulus_Pa=2.6000000026e9"]}
+# What is compared: change, from, to.
+SPEED_PAIRS = (
+    ("E larger by 1e-9", BASE, PERTURBED),
+    ("direct, 36 for 18 sub-steps", BASE, "direct 36"),
+    ("direct, 72 for 18", BASE, "direct 72"),
+    ("predictor_corrector, 72 for 18", "predictor_corrector 18", "predictor_corrector 72"),
+    *((f"algorithm, at {n}", f"direct {n}", f"predictor_corrector {n}") for n in (18, 36, 72)),
+)
+ONSET_PAIRS = (SPEED_PAIRS[1], *SPEED_PAIRS[-3:])
+SHOWN = ("direct 18", "direct 36", "predictor_corrector 18", "predictor_corrector 36")
+NEAR_NUCLEATION_M = 5e-3  # the speed diverges there
+START, END = "<!-- table -->\n", "<!-- end of table -->"
+
+
+@dataclass(frozen=True)
+class Event:
+    fronts: list[Front]
+    friction_work_J_per_m: float
+    contact_work_J_per_m: float
+
+    def main(self, direction: int) -> Front | None:
+        """The longest front in a direction, where it is longer than 20 mm."""
+        long = [f for f in self.fronts if f.direction == direction and f.length_m > 20e-3]
+        return max(long, key=lambda f: f.length_m, default=None)
+
+
+def run(program: Path, case: Path, folder: Path, settings: list[str]) -> Event:
+    command = [program, "run", case, "-o", folder, "--overwrite", "--quiet"]
+    for setting in [*settings, "output.snapshot_times_s=[]", "output.history_interval_s=1e-5"]:
+        command += ["--set", setting]
+    subprocess.run(command, check=True)
+    info = read_json(folder / "run.json")
+    energy = info["energy_at_end"]
+    return Event(
+        read_fronts(folder / "fronts.csv"),
+        energy["friction_work_J_per_m"],
+        energy["contact_work_J_per_m"],
+    )
+
+
+def compare(a: Front, b: Front) -> tuple[np.ndarray, np.ndarray]:
+    """|V' - V|/V and |onset' - onset| (s) at nodes of both; no V beside nucleation and triggers."""
+    _, i, j = np.intersect1d(np.round(1e9 * a.x_m), np.round(1e9 * b.x_m), return_indices=True)
+    counts = np.abs(a.x_m[i] - a.x_m[0]) > NEAR_NUCLEATION_M
+    counts &= np.isfinite(a.dynamic_ratio[i])
+    v, w = a.v_tip_m_per_s[i][counts], b.v_tip_m_per_s[j][counts]
+    dv = np.abs(w - v) / v
+    return dv[np.isfinite(dv)], np.abs(b.onset_s[j] - a.onset_s[i])
+
+
+def arrow(direction: int) -> str:
+    return "to +x" if direction > 0 else "to -x"
+
+
+def two(values: np.ndarray, percentile: float, factor: float) -> str:
+    return f"{factor * np.median(values):.2g}, {factor * np.percentile(values, percentile):.2g}"
+
+
+def rows_of(law: str, event: str, results: dict[str, Event]) -> list[str]:
+    rows = []
+    for direction in (-1, 1):
+        of_variant = {name: result.main(direction) for name, result in results.items()}
+        if of_variant[BASE] is None:
+            continue
+        cells = [law, f"{event} {arrow(direction)}"]
+        for pairs, which in ((SPEED_PAIRS, 0), (ONSET_PAIRS, 1)):
+            for _, from_, to in pairs:
+                a, b = of_variant[from_], of_variant[to]
+                if a is None or b is None:
+                    cells.append("no such front")
+                    continue
+                percentile, factor = ((90, 1e2), (100, 1e6))[which]
+                cells.append(two(compare(a, b)[which], percentile, factor))
+        fronts = [of_variant[name] for name in SHOWN]
+        cells.append(" / ".join(f"{1e3 * front.x_m[-1]:.1f}" if front else "-" for front in fronts))
+        rows.append("| " + " | ".join(cells) + " |")
+    return rows
+
+
+def draw(all_results: dict[str, dict[str, dict[str, Event]]], c_L: float) -> Figure:
+    styles = {
+        "direct 18": ("#000000", "-"),
+        "direct 36": ("#88ccee", "-"),
+        "predictor_corrector 18": ("#d55e00", "--"),
+    }
+    figure = Figure(figsize=(PAGE_MM / 25.4, 6.5), layout="constrained")
+    axes = figure.subplots(len(EVENTS), len(LAWS), sharex=True, sharey="col", squeeze=False)
+    for column, (law, of_event) in enumerate(all_results.items()):
+        for row, (event, results) in enumerate(of_event.items()):
+            ax = axes[row, column]
+            for name, (colour, line) in styles.items():
+                for direction in (-1, 1):
+                    front = results[name].main(direction)
+                    if front is None:
+                        continue
+                    v = np.where(np.isfinite(front.dynamic_ratio), front.v_tip_m_per_s, np.nan) / c_L
+                    ax.plot(1e3 * front.x_m, v, color=colour, linestyle=line, linewidth=0.9,
+                            label=f"{name} sub-steps" if direction > 0 or event == "left" else None)
+            ax.set_title(f"{event}, {law}", loc="left")
+            ax.set_ylim(0, 2.5)
+        axes[-1, column].set_xlabel("$x$ (mm)")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("$V_\\mathrm{tip}/c_\\mathrm{L}$")
+    axes[0, 0].legend()
+    return figure
+
+
+def main(program: Path, cases: Path, folder: Path, page: Path, picture: Path) -> None:
+    titles = [f"V, %: {what}" for what, _, _ in SPEED_PAIRS]
+    titles += [f"onset, us: {what}" for what, _, _ in ONSET_PAIRS]
+    titles += ["last node, mm: " + " / ".join(SHOWN)]
+    table = ["| law | main front | " + " | ".join(titles) + " |", "|---" * (2 + len(titles)) + "|"]
+    works = [
+        "| law | event | algorithm | friction work, J/m: "
+        + " / ".join(map(str, SUBSTEPS))
+        + " sub-steps | contact work, mJ/m: the same |",
+        "|---" * 5 + "|",
+    ]
+    all_results: dict[str, dict[str, dict[str, Event]]] = {}
+    c_L = np.nan
+    for law, law_settings in LAWS.items():
+        for event in EVENTS:
+            results = {}
+            for name, settings in VARIANTS.items():
+                out = folder / f"{law}, {event}, {name}".replace(", ", "-").replace(" ", "_")
+                results[name] = run(program, cases / f"{event}.toml", out, law_settings + settings)
+                c_L = read_json(out / "run.json")["wave_speeds"]["c_L_m_per_s"]
+            all_results.setdefault(law, {})[event] = results
+            table += rows_of(law, event, results)
+            for algorithm in ALGORITHMS:
+                events = [results[f"{algorithm} {n}"] for n in SUBSTEPS]
+                friction = " / ".join(f"{e.friction_work_J_per_m:.1f}" for e in events)
+                contact = " / ".join(f"{1e3 * e.contact_work_J_per_m:.2g}" for e in events)
+                works.append(f"| {law} | {event} | {algorithm} | {friction} | {contact} |")
+            print(f"{law}, {event}: done", flush=True)
+    before, rest = page.read_text().split(START)
+    page.write_text(before + START + "\n".join([*table, "", *works]) + "\n" + END + rest.split(END)[1])
+    with matplotlib.rc_context(RC):
+        draw(all_results, c_L).savefig(picture, metadata={"Software": None})
+
+
+if __name__ == "__main__":
+    main(*map(Path, sys.argv[1:6]))
