@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "verify/body.hpp"
+#include "verify/join.hpp"
 #include "verify/orders.hpp"
 #include "verify/problems.hpp"
 
@@ -36,7 +37,7 @@ struct Depth {
   }
 };
 
-/// u_x = U(y) sin(k x - omega t), u_y = V(y) cos(k x - omega t) from the potentials f and g, a linear
+/// u_x = U(y) sin(k x) sin(omega t), u_y = V(y) cos(k x) sin(omega t) from the potentials f and g, a linear
 /// function of their four coefficients.
 struct LayerWave {
   double omega_rad_per_s = 0;
@@ -62,9 +63,9 @@ struct LayerWave {
         -a * p.even(y), -a * p.odd(y), k * b * s.odd(y), -k * s.even(y);
     return m;
   }
-  /// Rows of sigma_xy / sin and sigma_yy / cos at the lower edge.
-  Eigen::Matrix<double, 2, 4> stress_at_edge() const {
-    const auto m = motion(0);
+  /// Rows of sigma_xy and sigma_yy at a height, without the functions of x and t.
+  Eigen::Matrix<double, 2, 4> stress(double y) const {
+    const auto m = motion(y);
     const double G = solid::shear_modulus_Pa(material), P = solid::longitudinal_modulus_Pa(material);
     Eigen::Matrix<double, 2, 4> s;
     s.row(0) = G * (m.row(2) - k_rad_per_m * m.row(1));
@@ -74,10 +75,10 @@ struct LayerWave {
   /// Of the lower edge and the held upper one, each row of order 1.
   Eigen::Matrix4d conditions(Edge edge) const {
     const auto below = motion(0), above = motion(side_m);
-    const auto stress = stress_at_edge();
+    const auto edge_stress = stress(0);
     Eigen::Matrix4d m;
-    m.row(0) = stress.row(0);
-    m.row(1) = stress.row(1);
+    m.row(0) = edge_stress.row(0);
+    m.row(1) = edge_stress.row(1);
     if (edge == Edge::stuck) m.row(0) = below.row(0);
     if (edge != Edge::free) m.row(1) = below.row(1);
     m.row(2) = above.row(0);
@@ -86,10 +87,10 @@ struct LayerWave {
     return m;
   }
   double u_x(double x, double y, double time) const {
-    return motion(y).row(0).dot(coefficient) * std::sin(k_rad_per_m * x - omega_rad_per_s * time);
+    return motion(y).row(0).dot(coefficient) * std::sin(k_rad_per_m * x) * std::sin(omega_rad_per_s * time);
   }
   double u_y(double x, double y, double time) const {
-    return motion(y).row(1).dot(coefficient) * std::cos(k_rad_per_m * x - omega_rad_per_s * time);
+    return motion(y).row(1).dot(coefficient) * std::cos(k_rad_per_m * x) * std::sin(omega_rad_per_s * time);
   }
 };
 
@@ -123,10 +124,40 @@ LayerWave layer_wave(Edge edge, int n, const solid::Material& material) {
   return wave;
 }
 
-/// Relative errors in the L2 norm at the end.
+/// Relative errors in the L2 norm: of u and v at the end, of t and p over the time of the run.
 struct Errors {
   double u = 0, v = 0, t = 0, p = 0;
+  solid::Field u_end_m, rest_m;
 };
+
+/// Relative change of the frequency by the join above `rows` rows of cells: docs/verification/subcycling.md.
+double shift_by_join(const LayerWave& wave, double h_m, double step_s, const solve::TimeStepping& stepping) {
+  const auto& material = wave.material;
+  const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
+  const double G = solid::shear_modulus_Pa(material), P = solid::longitudinal_modulus_Pa(material);
+  const Eigen::Vector2d stress = wave.stress((stepping.interface_rows + 0.5) * h_m) * wave.coefficient;
+  const int n = stepping.interface_substeps;
+  const double join = thinning_of_join(c_S * step_s / h_m, n) * stress(0) * stress(0) / G +
+                      thinning_of_join(c_L * step_s / h_m, n) * stress(1) * stress(1) / P;
+  double inertia = 0;
+  constexpr int n_points = 1000;
+  for (int i = 0; i < n_points; ++i) {
+    const Eigen::Vector4d m = wave.motion((i + 0.5) / n_points * side_m) * wave.coefficient;
+    inertia += side_m / n_points * (m(0) * m(0) + m(1) * m(1));
+  }
+  const double omega = wave.omega_rad_per_s;
+  return 0.5 * h_m * join / (material.density_kg_per_m3 * omega * omega * inertia);
+}
+
+/// Of v - u over u.
+double relative_distance(const solid::Field& u, const solid::Field& v, const solid::Field& rest) {
+  double difference = 0, norm = 0;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    difference += std::pow(u.x[n] - v.x[n], 2) + std::pow(u.y[n] - v.y[n], 2);
+    norm += std::pow(u.x[n] - rest.x[n], 2) + std::pow(u.y[n] - rest.y[n], 2);
+  }
+  return std::sqrt(difference / norm);
+}
 
 Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double coarsest_h_m, bool subcycled) {
   const auto mesh = mesh::make_plate({.width_m = side_m,
@@ -136,8 +167,7 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
                                       .sides = mesh::Sides::periodic});
   const auto steps = steps_to(time_s, h_m, coarsest_h_m, wave.material);
   const double factor = factor_of_step(mesh, wave.material, steps.step_s);
-  solve::TimeStepping stepping;  // 18 sub-steps
-  stepping.interface_rows = 4;
+  solve::TimeStepping stepping;  // 4 rows of cells, 18 sub-steps
   stepping.step_factor = factor;
   solve::Stepper stepper(mesh, wave.material, {interface::Coulomb{edge == Edge::stuck ? 10.0 : 0.0}},
                          subcycled ? stepping : plain_stepping(factor));
@@ -167,22 +197,25 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
     }
     double relative() const { return exact > 0 ? std::sqrt(error / exact) : std::sqrt(error); }
   } u, v, t, p;
-  const Eigen::Vector2d stress = wave.stress_at_edge() * wave.coefficient;
+  const Eigen::Vector2d stress = wave.stress(0) * wave.coefficient;
   for (int step = 0; step < steps.n; ++step) {
     stepper.advance(recorder);
     const double then = stepper.time_s() - stepper.substep_s();  // of the last contact update
     for (std::size_t i = 0; i < mesh.lower.size() && edge != Edge::free; ++i) {
-      const double phase = k_rad_per_m * mesh.x_m[mesh.lower[i]] - wave.omega_rad_per_s * then;
-      if (edge == Edge::stuck) t.add(stepper.interface_state().t_Pa[i], stress(0) * std::sin(phase));
-      p.add(stepper.interface_state().p_Pa[i] - pressure_Pa, -stress(1) * std::cos(phase));
+      const double phase = k_rad_per_m * mesh.x_m[mesh.lower[i]];
+      const double course = std::sin(wave.omega_rad_per_s * then);
+      if (edge == Edge::stuck) t.add(stepper.interface_state().t_Pa[i], stress(0) * std::sin(phase) * course);
+      p.add(stepper.interface_state().p_Pa[i] - pressure_Pa, -stress(1) * std::cos(phase) * course);
     }
   }
   const double now = stepper.time_s();
+  auto at_rest = stepper.u_m();  // of the held edge
   const auto velocity = stepper.mean_velocity_m_per_s();
   for (int j = 0; j < mesh.grid.rows; ++j)
     for (int i = 0; i < mesh.grid.columns; ++i) {
       const auto n = mesh.grid.node(i, j);
-      const double rest = u_y(n, now) - wave.u_y(mesh.x_m[n], mesh.y_m[n], now);
+      at_rest.x[n] = 0;
+      const double rest = at_rest.y[n] = u_y(n, now) - wave.u_y(mesh.x_m[n], mesh.y_m[n], now);
       u.add(stepper.u_m().x[n], u_x(n, now));
       u.add(stepper.u_m().y[n] - rest, u_y(n, now) - rest);
       // The mean velocity over the last (sub-)step; over the last step between the two kinds of cells.
@@ -193,7 +226,7 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
       v.add(velocity.x[n], (u_x(n, after) - u_x(n, before)) / (after - before));
       v.add(velocity.y[n], (u_y(n, after) - u_y(n, before)) / (after - before));
     }
-  return {u.relative(), v.relative(), t.relative(), p.relative()};
+  return {u.relative(), v.relative(), t.relative(), p.relative(), stepper.u_m(), at_rest};
 }
 
 }  // namespace
@@ -202,37 +235,47 @@ Outcome manufactured(Effort effort) {
   Outcome outcome;
   const solid::Material material{.stiffness_damping_s = 0};
   const std::vector<int> columns =
-      effort == Effort::quick ? std::vector{16, 32, 64} : std::vector{32, 64, 128, 256};
-  for (const bool subcycled : {false, true}) {
-    Chart chart{.x_label = "h (mm)",
-                .y_label = fmt::format("relative error, {}", subcycled ? "4 rows x 18 sub-steps" : "plain"),
-                .log_x = true,
-                .log_y = true};
-    for (const auto& [edge, name] :
-         {std::pair{Edge::free, "free"}, std::pair{Edge::frictionless, "frictionless"},
-          std::pair{Edge::stuck, "stuck"}}) {
-      const auto wave = layer_wave(edge, 3, material);
-      const double time = 1.2 * 2 * std::numbers::pi / wave.omega_rad_per_s;
-      std::vector<double> h, u, v, t, p;
-      for (const int n : columns) {
-        const auto e = run(wave, edge, time, side_m / n, side_m / columns.front(), subcycled);
-        h.push_back(1e3 * side_m / n);
-        u.push_back(e.u), v.push_back(e.v), t.push_back(e.t), p.push_back(e.p);
-      }
-      const auto add = [&](const char* of, const std::vector<double>& error) {
-        outcome.checks.push_back({fmt::format("order of the error of {}, {} edge, {}", of, name,
-                                              subcycled ? "4 rows x 18 sub-steps" : "plain"),
-                                  "", observed_order(h, error), 2, 0.1, "the error's next term"});
-        chart.curves.push_back({fmt::format("{}, {}", of, name), Curve::Kind::program, h, error});
-      };
-      add("u", u);
-      add("v", v);
-      if (edge == Edge::stuck) add("t", t);
-      if (edge != Edge::free) add("p", p);
-      if (edge == Edge::stuck) chart.curves.push_back(order_line(2, h, u.back()));
+      effort == Effort::quick ? std::vector{32, 64, 128} : std::vector{32, 64, 128, 256};
+  const auto chart_of = [](const char* y_label) {
+    return Chart{.x_label = "h (mm)", .y_label = y_label, .log_x = true, .log_y = true};
+  };
+  Chart errors = chart_of("relative error, one step"), joined = chart_of("change of u by sub-cycling over u");
+  for (const auto& [edge, name] :
+       {std::pair{Edge::free, "free"}, std::pair{Edge::frictionless, "frictionless"},
+        std::pair{Edge::stuck, "stuck"}}) {
+    const auto wave = layer_wave(edge, 2, material);
+    constexpr double n_periods = 3.125;  // where u and v are as far from their zeros
+    const double time = n_periods * 2 * std::numbers::pi / wave.omega_rad_per_s;
+    std::vector<double> h, u, v, t, p, distance, expected;
+    for (const int n : columns) {
+      const double h_m = side_m / n, coarsest = side_m / columns.front();
+      const auto e = run(wave, edge, time, h_m, coarsest, false);
+      h.push_back(1e3 * h_m);
+      u.push_back(e.u), v.push_back(e.v), t.push_back(e.t), p.push_back(e.p);
+      const auto layered = run(wave, edge, time, h_m, coarsest, true);
+      distance.push_back(relative_distance(e.u_end_m, layered.u_end_m, e.rest_m));
+      expected.push_back(wave.omega_rad_per_s * time *
+                         shift_by_join(wave, h_m, steps_to(time, h_m, coarsest, material).step_s, {}));
     }
-    outcome.charts.push_back(std::move(chart));
+    const auto add = [&, name = name](const char* of, const std::vector<double>& error) {
+      outcome.checks.push_back({fmt::format("order of the error of {}, {} edge", of, name), "",
+                                observed_order(h, error), 2, 0.1, "the error's next term"});
+      errors.curves.push_back({fmt::format("{}, {}", of, name), Curve::Kind::program, h, error});
+    };
+    add("u", u);
+    add("v", v);
+    if (edge == Edge::stuck) add("t", t);
+    if (edge != Edge::free) add("p", p);
+    if (edge == Edge::stuck) errors.curves.push_back(order_line(2, h, v.back()));
+    if (edge == Edge::free) continue;  // no stress at the join either
+    outcome.checks.push_back(
+        {fmt::format("change of u by sub-cycling over u, h = {:.4f} mm, {} edge", h.back(), name), "",
+         distance.back(), expected.back(), expected.back() * (2 / (wave.omega_rad_per_s * time) + 0.1),
+         "the stress at the start has no part in it; second order in h"});
+    joined.curves.push_back({fmt::format("{}, theory of the join", name), Curve::Kind::theory, h, expected});
+    joined.curves.push_back({fmt::format("{}, program", name), Curve::Kind::program, h, distance});
   }
+  outcome.charts = {errors, joined};
   return outcome;
 }
 

@@ -12,6 +12,7 @@ Outcome rayleigh_wave(Effort effort);
 Outcome lamb(Effort effort);
 Outcome column(Effort effort);
 Outcome time_reversal(Effort effort);
+Outcome subcycling(Effort effort);
 Outcome symmetry(Effort effort);
 
 }  // namespace slipfront::verify
