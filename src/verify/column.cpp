@@ -73,7 +73,7 @@ Outcome column(Effort effort) {
     };
     const std::string name = fmt::format("tau0 {2:.2f} MPa, mu {0} to {1}", c.mu_s, c.mu_k, 1e-6 * c.tau0_Pa);
     rate.curves.push_back(
-        {fmt::format("theory, {}", name), Curve::Kind::theory, {0, 1, 1, 1.4}, {v, v, 0, 0}});
+        {rate.curves.empty() ? "theory" : "", Curve::Kind::theory, {0, 1, 1, 1.4}, {v, v, 0, 0}});
     program.label = name;
     const auto [t_1, u_1] = to(0.4 * return_s);
     const auto [t_2, u_2] = to(0.7 * return_s);

@@ -143,11 +143,9 @@ Outcome lamb(Effort effort) {
       for (std::size_t k = 0; k < distances_m.size(); ++k) {
         std::array<Curve, 2> theory, program;
         for (const int c : {0, 1}) {
-          const auto label = [&](const char* who) {
-            return fmt::format("{} at {:.0f} mm, {}", c == 0 ? "u_x" : "u_y", 1e3 * distances_m[k], who);
-          };
-          theory[c] = {label("theory"), Curve::Kind::theory, {}, {}};
-          program[c] = {label("program"), Curve::Kind::program, {}, {}};
+          const auto label = fmt::format("{} at {:.0f} mm", c == 0 ? "u_x" : "u_y", 1e3 * distances_m[k]);
+          theory[c] = {k + c == 0 ? "theory" : "", Curve::Kind::theory, {}, {}};
+          program[c] = {label, Curve::Kind::program, {}, {}};
         }
         for (std::size_t i = every - 1; i < s.t_s.size(); i += every) {
           const double x = distances_m[k], t = s.t_s[i];

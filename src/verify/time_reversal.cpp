@@ -29,7 +29,8 @@ Outcome time_reversal(Effort effort) {
       {.width_m = width, .height_m = height, .element_size_m = h, .corner = mesh::Corner::none});
   const double strain = pressure / solid::longitudinal_modulus_Pa(material);
   const int n_steps = effort == Effort::quick ? 500 : 5000;
-  Chart chart{.x_label = "steps, there and back", .y_label = "largest distance from the start (um)"};
+  Chart chart{
+      .x_label = "steps, there and back", .y_label = "distance from the start / largest", .log_y = true};
   for (const bool contact : {false, true})
     for (const bool subcycled : {false, true}) {
       // Undamped, without friction; in the air, or pressed down by more than the waves lift.
@@ -62,8 +63,7 @@ Outcome time_reversal(Effort effort) {
           const double distance = largest_difference(stepper.u_m(), state.u_m);
           if (contact) least_p = std::min(least_p, *std::ranges::min_element(stepper.interface_state().p_Pa));
           motion = std::max(motion, distance);
-          if ((from + i) % (n_steps / 25) == 0)
-            curve.x.push_back(from + i), curve.y.push_back(1e6 * distance);
+          if ((from + i) % (n_steps / 25) == 0) curve.x.push_back(from + i), curve.y.push_back(distance);
         }
       };
       go(0);
@@ -80,6 +80,7 @@ Outcome time_reversal(Effort effort) {
       if (contact)
         outcome.checks.push_back({fmt::format("nodes that ever leave the plane, {}", curve.label), "",
                                   least_p > 0 ? 0.0 : 1.0, 0, 0, "a landing would cost energy"});
+      for (double& y : curve.y) y /= motion;
       chart.curves.push_back(std::move(curve));
     }
   outcome.charts.push_back(std::move(chart));
