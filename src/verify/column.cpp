@@ -74,7 +74,7 @@ Outcome column(Effort effort) {
     const std::string name = fmt::format("tau0 {2:.2f} MPa, mu {0} to {1}", c.mu_s, c.mu_k, 1e-6 * c.tau0_Pa);
     rate.curves.push_back(
         {rate.curves.empty() ? "theory" : "", Curve::Kind::theory, {0, 1, 1, 1.4}, {v, v, 0, 0}});
-    program.label = name;
+    program.label = fmt::format("{:.2f} MPa, mu_k {}", 1e-6 * c.tau0_Pa, c.mu_k);
     const auto [t_1, u_1] = to(0.4 * return_s);
     const auto [t_2, u_2] = to(0.7 * return_s);
     outcome.checks.push_back({fmt::format("slip rate, {}", name), "m/s", (u_2 - u_1) / (t_2 - t_1), v,
