@@ -113,12 +113,12 @@ Outcome symmetry(Effort effort) {
                         std::abs(a.state.u_m.y[n] - b.state.u_m.y[image])});
     motion = std::max({motion, std::abs(a.u_m.x[n] + b.u_m.x[image]), std::abs(a.u_m.y[n] - b.u_m.y[image])});
   }
-  outcome.checks.push_back(
-      {"statics: largest difference of u over the largest u", "", statics / u_largest, 0, 1e-10, ""});
+  outcome.checks.push_back({"statics: largest difference of u over the largest u", "", statics / u_largest, 0,
+                            1e-11, "rounding times the condition of the stiffness, some 1e5"});
   outcome.checks.push_back({"number of onsets", "", static_cast<double>(b.onsets.size()),
                             static_cast<double>(a.onsets.size()), 0, "the same"});
   outcome.checks.push_back({"end of the event: largest difference of u over the largest u", "",
-                            motion / u_largest, 0, 1e-10, "the same, carried on"});
+                            motion / u_largest, 0, 1e-11, "the same, carried on"});
   double late = 0;
   Chart chart{.x_label = "x, of the mirrored plate from its right edge (mm)", .y_label = "first slip (us)"};
   Curve original{"plate", Curve::Kind::theory, {}, {}}, image{"mirrored plate", Curve::Kind::program, {}, {}};
@@ -133,7 +133,7 @@ Outcome symmetry(Effort effort) {
     image.y.push_back(1e6 * b.onsets[k].time_s);
   }
   outcome.checks.push_back({"largest difference of onset times over the sub-step", "", late / a.substep_s, 0,
-                            1e-6, "the same in t/p, which rises by more than 1e-4 in a sub-step"});
+                            1e-6, "1e-11 of u is 1e-9 of t/p, which rises by some 1e-3 in a sub-step"});
   chart.curves = {original, image};
   outcome.charts.push_back(std::move(chart));
   return outcome;

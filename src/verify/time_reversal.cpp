@@ -51,23 +51,25 @@ Outcome time_reversal(Effort effort) {
                  .p_Pa = contact ? pressure : 0});
       solve::Recorder recorder(state, 1, 0);
       double motion = 0;
-      Curve curve{fmt::format("{}, {}", contact ? "on the plane" : "in the air",
-                              subcycled ? "4 rows x 18 sub-steps" : "plain"),
+      Curve curve{fmt::format("{}, {}", contact ? "plane" : "air", subcycled ? "sub-cycled" : "one step"),
                   Curve::Kind::program,
                   {},
                   {}};
-      double least_p = pressure;
+      std::ptrdiff_t n_open = 0;
       const auto go = [&](int from) {
         for (int i = 1; i <= n_steps; ++i) {
           stepper.advance(recorder);
           const double distance = largest_difference(stepper.u_m(), state.u_m);
-          if (contact) least_p = std::min(least_p, *std::ranges::min_element(stepper.interface_state().p_Pa));
+          if (contact) n_open += std::ranges::count(stepper.interface_state().p_Pa, 0.0);
           motion = std::max(motion, distance);
           if ((from + i) % (n_steps / 25) == 0) curve.x.push_back(from + i), curve.y.push_back(distance);
         }
       };
       go(0);
       stepper.reverse(recorder);
+      auto turned = state;
+      turned.u_m = stepper.u_m();
+      turned.u_per_shear = stepper.v_m_per_s();
       go(n_steps);
       const double left = largest_difference(stepper.u_m(), state.u_m);
       outcome.checks.push_back(
@@ -78,10 +80,21 @@ Outcome time_reversal(Effort effort) {
            2 * n_steps * std::numeric_limits<double>::epsilon() * (contact ? strain * height : lift) / motion,
            "one rounding of the largest displacement a step"});
       if (contact)
-        outcome.checks.push_back({fmt::format("nodes that ever leave the plane, {}", curve.label), "",
-                                  least_p > 0 ? 0.0 : 1.0, 0, 0, "a landing would cost energy"});
+        outcome.checks.push_back({fmt::format("nodes off the plane at the end of a step, {}", curve.label),
+                                  "", static_cast<double>(n_open), 0, 0, "a landing would cost energy"});
       for (double& y : curve.y) y /= motion;
       chart.curves.push_back(std::move(curve));
+      if (!subcycled || contact) continue;
+      // The same way back, begun by a new start, with the steady part of the forces of the turned state.
+      stepper.start(turned, 1);
+      Curve restarted{"air, sub-cycled, new start", Curve::Kind::program, {}, {}};
+      for (int i = 1; i <= n_steps; ++i) {
+        stepper.advance(recorder);
+        if (i % (n_steps / 25) != 0) continue;
+        restarted.x.push_back(n_steps + i);
+        restarted.y.push_back(largest_difference(stepper.u_m(), state.u_m) / motion);
+      }
+      chart.curves.push_back(std::move(restarted));
     }
   outcome.charts.push_back(std::move(chart));
   return outcome;
