@@ -19,11 +19,6 @@ double observed_order(const std::vector<double>& h_m, const std::vector<double>&
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-void add_convergence(Chart& chart, std::string label, const std::vector<double>& h_m,
-                     const std::vector<double>& error) {
-  chart.curves.push_back({std::move(label), Curve::Kind::program, h_m, error});
-}
-
 Curve order_line(int order, const std::vector<double>& h_m, double last_error) {
   Curve line{fmt::format("slope {}", order), Curve::Kind::theory, h_m, {}};
   for (const double h : h_m) line.y.push_back(last_error * std::pow(h / h_m.back(), order));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -14,9 +13,7 @@ namespace slipfront::verify {
 /// Slope of log(error) over log(h) by least squares.
 double observed_order(const std::vector<double>& h_m, const std::vector<double>& error);
 
-/// Errors over the mesh size as points, and a line of slope `order` through the last of them.
-void add_convergence(Chart& chart, std::string label, const std::vector<double>& h_m,
-                     const std::vector<double>& error);
+/// A line of that slope through the last error.
 Curve order_line(int order, const std::vector<double>& h_m, double last_error);
 
 /// Step factor with which a mesh steps by step_s.
