@@ -137,6 +137,7 @@ void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& materi
     level.a_y.resize(irregular.size());
   }
   set_dashpots(mesh, material, level_of_node);
+  for (const int l : level_of_node) node_step_s_.push_back(l < 0 ? 0 : levels_[l].step_s);
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
     if (level_of_node[n] >= 0 && !plate_.is_top[n])
       node_updates_per_step_ += substeps_ / levels_[level_of_node[n]].period;
@@ -198,18 +199,9 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     if (shared.node.empty()) continue;
     const solid::Field u = u_, v = v_;
     const auto zero = solid::Field(shared.node.size());
-    const auto set_motion_before = [&] {
-      for (std::size_t k = 0; k < shared.node.size(); ++k) {
-        const auto n = shared.node[k];
-        shared.u_before_m.x[k] = u_.x[n] - level.step_s * v_.x[n];
-        shared.u_before_m.y[k] = u_.y[n] - level.step_s * v_.y[n];
-        shared.v_last_m_per_s.x[k] = v_.x[n];
-        shared.v_last_m_per_s.y[k] = v_.y[n];
-      }
-    };
     shared.steady_m_per_s2 = shared.v_last_m_per_s = shared.v_mean_before_m_per_s = zero;
     shared.a_m_per_s2 = zero;
-    set_motion_before();
+    set_motion_before(level);
     push(level);
     for (std::size_t k = 0; k < shared.node.size(); ++k) {
       shared.steady_m_per_s2.x[k] = shared.push_m_per_s.x[k] / level.step_s;
@@ -218,7 +210,7 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     u_ = u;
     v_ = v;
     shared.push_m_per_s = shared.a_m_per_s2 = zero;
-    set_motion_before();
+    set_motion_before(level);
   }
   std::ranges::fill(interface_.intact, 1.0);
   start_contact(contact_, interface_);
@@ -239,6 +231,17 @@ void Stepper::begin_damping_work() {
     }
     stiffness_product(level, before, scratch_);
     level.products = {.u_K_u = inner_product(level, scratch_, before, before)};
+  }
+}
+
+void Stepper::set_motion_before(Level& level) {
+  auto& s = level.shared;
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    const auto n = s.node[k];
+    s.u_before_m.x[k] = u_.x[n] - level.step_s * v_.x[n];
+    s.u_before_m.y[k] = u_.y[n] - level.step_s * v_.y[n];
+    s.v_last_m_per_s.x[k] = v_.x[n];
+    s.v_last_m_per_s.y[k] = v_.y[n];
   }
 }
 
@@ -567,22 +570,45 @@ Energies Stepper::energies() {
   return e;
 }
 
-void Stepper::advance(Recorder& recorder, fronts::History* sample) {
-  for (int k = 0; k < substeps_; ++k) {
-    const auto is_due = [&](const Level& level) { return k % level.period == 0; };
-    // All forces are those of the places and velocities before the sub-step.
-    for (auto& level : levels_)
-      if (is_due(level)) push(level);
-    for (std::size_t l = 0; l < levels_.size(); ++l) {
-      const auto& level = levels_[l];
-      if (!is_due(level)) continue;
-      apply_irregular(level);
-      if (l > 0) move_shared(levels_[l - 1], level.step_s);
-      for (const auto n : level.top) u_.x[n] += level.step_s * v_.x[n];
-    }
-    take_contact(time_s() + k * substep_s(), recorder, k == 0 ? sample : nullptr);
+void Stepper::advance_substep(int k, Recorder& recorder, fronts::History* sample) {
+  const auto is_due = [&](const Level& level) { return k % level.period == 0; };
+  // All forces are those of the places and velocities before the sub-step.
+  for (auto& level : levels_)
+    if (is_due(level)) push(level);
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    const auto& level = levels_[l];
+    if (!is_due(level)) continue;
+    apply_irregular(level);
+    if (l > 0) move_shared(levels_[l - 1], level.step_s);
+    for (const auto n : level.top) u_.x[n] += level.step_s * v_.x[n];
   }
+  take_contact(time_s() + k * substep_s(), recorder, sample);
+}
+
+void Stepper::advance(Recorder& recorder, fronts::History* sample) {
+  for (int k = 0; k < substeps_; ++k) advance_substep(k, recorder, k == 0 ? sample : nullptr);
   ++step_;
+}
+
+void Stepper::reverse(Recorder& recorder) {
+  // All cells push at the beginning of a step: the motion back begins with the velocities after these pushes,
+  // at the places before them. It keeps the steady forces on shared nodes, without which it would be another.
+  const auto u = u_;
+  advance_substep(0, recorder, nullptr);
+  u_ = u;
+  const auto negate = [](std::vector<double>& values) {
+    for (double& value : values) value = -value;
+  };
+  for (auto* v : {&v_.x, &v_.y, &interface_.v_x_m_per_s, &interface_.v_y_m_per_s,
+                  &interface_.slip_rate_m_per_s, &interface_.acceleration_m_per_s2})
+    negate(*v);
+  for (auto& level : levels_) {
+    set_motion_before(level);
+    level.shared.a_m_per_s2 = solid::Field(level.shared.node.size());
+    level.damping_a = {};
+  }
+  works_ = {};
+  works_.time_s = time_s();
 }
 
 void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sample) {

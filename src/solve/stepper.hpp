@@ -38,6 +38,8 @@ class Stepper {
   double stable_step_s() const { return stable_step_s_; }
   double step_s() const { return step_s_; }
   double substep_s() const { return step_s_ / substeps_; }
+  /// The (sub-)step with which a node moves; its velocity belongs to half of it before the displacement.
+  double step_s(mesh::Node n) const { return node_step_s_[n]; }
   const solid::Operator& plate() const { return plate_; }
 
   /// Nodes moved in one step, sub-steps counted, and nodes of the plate that move at all.
@@ -60,6 +62,11 @@ class Stepper {
   /// One step. Every contact update is shown to the recorder; the state at the beginning of the step is
   /// appended to `sample` where it is given.
   void advance(Recorder& recorder, fronts::History* sample = nullptr);
+
+  /// Turns the motion round: the steps to come go back through the displacements of those before, exactly but
+  /// for rounding where the forces do not depend on time and nothing dissipates. Time goes on. The contact is
+  /// updated once, which the recorder sees; the works start anew and lack the first step's coupling.
+  void reverse(Recorder& recorder);
 
   /// Time of the displacements. The velocities belong to half a step, or half a sub-step in the layer,
   /// earlier.
@@ -136,6 +143,8 @@ class Stepper {
                     std::span<const int> level_of_node);
   /// Lets the dashpot act during a kick that alone would lead from `before` to `trial`, and counts its work.
   void damp(const Dashpot& dashpot, double before_x, double before_y, double& trial_x, double& trial_y);
+  /// Motion of a level's shared nodes before now, as if it had been steady.
+  void set_motion_before(Level& level);
   /// Forces of a level's cells at their nodes' places, and the moves of the nodes that no finer level has.
   void push(Level& level);
   void compute_irregular(Level& level);
@@ -144,6 +153,7 @@ class Stepper {
   /// Collects what a level does to its shared nodes: its force without the steady part.
   void gather_push(Level& level);
   void move_shared(Level& coarser, double dt);
+  void advance_substep(int k, Recorder& recorder, fronts::History* sample);
   void take_contact(double time_s, Recorder& recorder, fronts::History* sample);
   /// Work of the shifts that put landing nodes onto the plane, after the sub-step of length dt_s that began
   /// with them.
@@ -175,6 +185,7 @@ class Stepper {
   double stable_step_s_ = 0, step_s_ = 0;
   int substeps_;
   double node_updates_per_step_ = 0;
+  std::vector<double> node_step_s_;  ///< [nodes]; 0 for orphans
 
   std::vector<Level> levels_;  ///< coarsest first
   std::vector<mesh::Node> lower_;

@@ -6,10 +6,10 @@ namespace slipfront::verify {
 solve::Equilibrium start(solve::Stepper& stepper, const mesh::Mesh& mesh, const Start& start) {
   solve::Equilibrium state;
   state.u_m = state.u_per_shear = solid::Field(static_cast<std::size_t>(mesh.n_nodes()));
-  const double dt = stepper.step_s();
   const auto orphan = mesh::orphans(mesh);
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
     if (orphan[n]) continue;
+    const double dt = stepper.step_s(n);
     const auto set = [&](const auto& motion, std::vector<double>& u, std::vector<double>& v) {
       if (!motion) return;
       u[n] = motion(n, 0);

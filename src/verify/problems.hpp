@@ -8,5 +8,12 @@ namespace slipfront::verify {
 
 Outcome impact(Effort effort);
 Outcome plane_waves(Effort effort);
+Outcome manufactured(Effort effort);
+Outcome rayleigh_wave(Effort effort);
+Outcome lamb(Effort effort);
+Outcome column(Effort effort);
+Outcome time_reversal(Effort effort);
+Outcome subcycling(Effort effort);
+Outcome symmetry(Effort effort);
 
 }  // namespace slipfront::verify

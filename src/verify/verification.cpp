@@ -24,6 +24,14 @@ std::span<const Verification> verifications() {
   static const std::array all = {
       Verification{"plane_waves", "Speed and dispersion of plane longitudinal and shear waves", plane_waves},
       Verification{"impact", "Impact of a free body on the plane", impact},
+      Verification{"manufactured", "Convergence towards exact waves of a layer on its plane", manufactured},
+      Verification{"subcycling", "Join between a sub-cycled layer and the other cells", subcycling},
+      Verification{"rayleigh_wave", "Speed and shape of the Rayleigh wave on the free lower edge",
+                   rayleigh_wave},
+      Verification{"lamb", "Line loads on the edge of a half-plane", lamb},
+      Verification{"column", "Sliding of a column with velocity-weakening friction", column},
+      Verification{"time_reversal", "Motion there and back", time_reversal},
+      Verification{"symmetry", "Turned cells and mirrored plates", symmetry},
   };
   return all;
 }
