@@ -239,6 +239,11 @@ void Stepper::set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa
   prestress_p_Pa_ = std::move(p0_Pa);
 }
 
+void Stepper::set_intact(std::vector<double> intact) {
+  SLIPFRONT_ASSERT(intact.size() == lower_.size(), "intact values of other nodes");
+  interface_.intact = std::move(intact);
+}
+
 void Stepper::compute_irregular(Level& level) {
   const auto& rows = level.part.irregular;
   for (std::size_t r = 0; r < rows.size(); ++r) {

@@ -53,6 +53,9 @@ class Stepper {
   /// start.
   void set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa);
 
+  /// How much of the full law each interface node keeps from now on, see Interface::intact. [lower]
+  void set_intact(std::vector<double> intact);
+
   /// One step. Every contact update is shown to the recorder; the state at the beginning of the step is
   /// appended to `sample` where it is given.
   void advance(Recorder& recorder, fronts::History* sample = nullptr);

@@ -7,5 +7,8 @@
 namespace slipfront::verify {
 
 Outcome plane_waves(Effort effort);
+Outcome growing_modes(Effort effort);
+Outcome slip_patch(Effort effort);
+Outcome crack(Effort effort);
 
 }  // namespace slipfront::verify
