@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "verify/extrapolation.hpp"
 #include "verify/loaded_plane.hpp"
@@ -143,17 +143,76 @@ Run run(double ratio, int elements_per_zone) {
   return run;
 }
 
+/// Half-length over r of a crack at rest under a stress drop within |x| < r alone, above the drop at which
+/// K = drop sqrt(pi r) is the crack's own; `load` is their ratio.
+double half_length_at_rest(double load) {
+  double low = 1, high = 100;
+  for (int j = 0; j < 60; ++j) {
+    const double a = 0.5 * (low + high);
+    (load * 2 / pi * std::sqrt(a) * std::asin(1 / a) > 1 ? low : high) = a;
+  }
+  return low;
+}
+
+constexpr double final_load = 2;
+
+struct Arrest {
+  std::vector<double> load, half_length;  ///< half-lengths over r
+  double half_length_at_end = 0, last_growth = 0;
+};
+
+/// The interface within |x| < r has lost its strength and is loaded slowly, as in `final_load`, then left
+/// alone. Outside, t0 is the residual strength.
+Arrest grow_and_stop(double r_over_zone, double width_over_r) {
+  constexpr int elements_per_zone = 4;
+  constexpr double h_m = 1e-3;
+  const double r_m = r_over_zone * elements_per_zone * h_m;
+  const auto law = law_of_zone(elements_per_zone * h_m);
+  const double K = std::sqrt(4 * sliding_stiffness_Pa(material()) * fracture_energy_J_per_m2(law));
+  const double first_drop_Pa = K / std::sqrt(pi * r_m);
+  LoadedBody body({.material = material(),
+                   .width_m = width_over_r * r_m,
+                   .height_m = 0.5 * width_over_r * r_m,
+                   .h_m = h_m,
+                   .pressure_Pa = p_Pa,
+                   .law = law});
+  body.weaken([&](double x) { return std::abs(x) < r_m - 0.5 * h_m ? 0.0 : 1.0; });
+  const double rise_s = 120 * r_m / c_S(), hold_s = 60 * r_m / c_S();
+  Arrest arrest;
+  const auto half_length = [&] { return slip_contour_m(body, 0.5 * law.d_c_m, r_m - 1.5 * h_m) / r_m; };
+  double before_last = 0;
+  while (body.time_s() < rise_s + hold_s) {
+    const double s = std::min(1.0, body.time_s() / rise_s);
+    const double load = final_load * s * s * (3 - 2 * s);
+    body.load([&](double x) {
+      // The node at r carries half of its length.
+      const double inside = std::clamp((r_m - std::abs(x)) / h_m + 0.5, 0.0, 1.0);
+      return residual_Pa + inside * load * first_drop_Pa;
+    });
+    body.advance();
+    if (s < 1) {
+      arrest.load.push_back(load);
+      arrest.half_length.push_back(half_length());
+    }
+    if (body.time_s() < rise_s + 0.5 * hold_s) before_last = half_length();
+  }
+  arrest.half_length_at_end = half_length();
+  arrest.last_growth = arrest.half_length_at_end - before_last;
+  return arrest;
+}
+
 }  // namespace
 
 Outcome crack(Effort effort) {
   const bool full = effort == Effort::full;
   Outcome outcome;
 
+  // Growth of a long crack.
   Chart path{.x_label = "time / t_c", .y_label = "tip / (c_S t_c)"};
   Chart speed{.x_label = "time / t_c", .y_label = "tip speed / c_S"};
   Curve place_theory{"theory", Curve::Kind::theory, {}, {}}, speed_theory = place_theory;
-  double x = 0;
   constexpr double dt = 0.01;
+  double x = 0;
   for (int j = 0; j < static_cast<int>(run_end / dt); ++j) {
     const double v = speed_at(1 / ((j + 0.5) * dt)) / c_S();
     speed_theory.x.push_back((j + 0.5) * dt);
@@ -162,25 +221,93 @@ Outcome crack(Effort effort) {
     place_theory.x.push_back((j + 1) * dt);
     place_theory.y.push_back(x);
   }
+  const std::vector<double> ratios = full
+                                         ? std::vector{4.0, 4 * std::numbers::sqrt2, 8.0}
+                                         : std::vector{2 * std::numbers::sqrt2, 4.0, 4 * std::numbers::sqrt2};
+  std::vector<Run> coarse, fine;
+  for (const double ratio : ratios) {
+    coarse.push_back(run(ratio, 8));
+    fine.push_back(run(ratio, 16));
+  }
+  constexpr double half_window = 0.1;  // in t_c, for speeds
+  const auto check = [&](const std::string& quantity, const auto& get, double expected) {
+    std::array<double, 3> at;
+    double mesh_part = 0;
+    for (std::size_t z = 0; z < 3; ++z) {
+      mesh_part = (get(fine[z]) - get(coarse[z])) / 3;
+      at[z] = get(fine[z]) + mesh_part;
+    }
+    const auto small_zone = limit(at[0], at[1], at[2], 1, 2);
+    outcome.checks.push_back(
+        {quantity + ", zone -> 0", "", small_zone.value, expected,
+         small_zone.uncertainty + std::abs(mesh_part),
+         fmt::format(
+             "last corrections of the extrapolations from zones of {:.2f}, {:.2f} and {:.2f} c_S t_c and "
+             "from 8 and 16 elements in each",
+             fine[0].zone, fine[1].zone, fine[2].zone)});
+  };
+  for (const double t : {1.5, 2.0, 2.5}) {
+    check(
+        fmt::format("tip speed over c_S at {} t_c", t),
+        [&](const Run& r) { return r.speed_at(t, half_window); }, speed_at(1 / t) / c_S());
+    // The path before is left out: while the tip is slow the zone is not short.
+    constexpr double from = 1.5;
+    if (t > from) {
+      const auto theory = [&](double time) {
+        return place_theory.y[static_cast<std::size_t>(std::lround(time / dt)) - 1];
+      };
+      check(
+          fmt::format("way of the tip over c_S t_c from {} to {} t_c", from, t),
+          [&](const Run& r) { return r.place_at(t) - r.place_at(from); }, theory(t) - theory(from));
+    }
+  }
   path.curves.push_back(std::move(place_theory));
   speed.curves.push_back(std::move(speed_theory));
-  for (const double ratio : full ? std::vector{4.0, 5.66, 8.0} : std::vector{4.0, 5.66}) {
-    const auto r = run(ratio, 8);
-    Curve points{fmt::format("zone {:.3f} c_S t_c", r.zone), Curve::Kind::program, {}, {}}, speeds = points;
-    for (double t = 0.2; t < run_end - 0.1; t += 0.1) {
-      points.x.push_back(t);
-      points.y.push_back(r.place_at(t));
+  for (const auto& r : fine) {
+    Curve places{fmt::format("zone {:.2f} c_S t_c", r.zone), Curve::Kind::program, {}, {}}, speeds = places;
+    for (double t = 0.3; t < run_end - half_window; t += 0.1) {
+      places.x.push_back(t);
+      places.y.push_back(r.place_at(t));
       speeds.x.push_back(t);
-      speeds.y.push_back(r.speed_at(t, 0.1));
+      speeds.y.push_back(r.speed_at(t, half_window));
     }
-    for (const double t : {1.5, 2.0, 2.5}) {
-      fmt::print("ratio {} zone {} t {} v {} theory {} place {}\n", ratio, r.zone, t, r.speed_at(t, 0.1),
-                 speed_at(1 / t) / c_S(), r.place_at(t));
-    }
-    path.curves.push_back(std::move(points));
+    path.curves.push_back(std::move(places));
     speed.curves.push_back(std::move(speeds));
   }
-  outcome.charts = {std::move(path), std::move(speed)};
+
+  // Slow growth and arrest.
+  Chart slow{.x_label = "stress drop / that of first growth", .y_label = "half-length / r"};
+  Curve rest{"theory", Curve::Kind::theory, {}, {}};
+  for (double load = 1; load <= final_load + 1e-9; load += 0.02) {
+    rest.x.push_back(load);
+    rest.y.push_back(half_length_at_rest(load));
+  }
+  slow.curves.push_back(std::move(rest));
+  constexpr double width = 32;  // over r
+  const std::vector<double> sizes = full ? std::vector{2.0, 4.0, 6.0} : std::vector{2.0, 3.0};
+  const double narrower = grow_and_stop(sizes[0], 0.5 * width).half_length_at_end;
+  double last_growth = 0, edges = 0;
+  for (const double size : sizes) {
+    const auto arrest = grow_and_stop(size, width);
+    // The edges' part goes with (r/width)^2.
+    if (size == sizes[0]) edges = (arrest.half_length_at_end - narrower) / -3;
+    outcome.checks.push_back(
+        {fmt::format("half-length over r at rest, {} times the first load, zone r/{}", final_load, size), "",
+         arrest.half_length_at_end, half_length_at_rest(final_load), 1 / size + std::abs(edges),
+         fmt::format("the tip is somewhere in its zone; the edges' part, {:.2g}", edges)});
+    last_growth = arrest.last_growth;
+    Curve points{fmt::format("zone r/{}", size), Curve::Kind::program, {}, {}};
+    const std::size_t every = arrest.load.size() / 40;
+    for (std::size_t k = every; k < arrest.load.size(); k += every) {
+      if (arrest.load[k] < 0.8) continue;
+      points.x.push_back(arrest.load[k]);
+      points.y.push_back(arrest.half_length[k]);
+    }
+    slow.curves.push_back(std::move(points));
+  }
+  outcome.checks.push_back({"growth over r in the second half of the hold", "", last_growth, 0,
+                            0.25 / sizes.back(), "one element"});
+  outcome.charts = {std::move(path), std::move(speed), std::move(slow)};
   return outcome;
 }
 

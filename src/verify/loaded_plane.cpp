@@ -6,7 +6,7 @@ namespace slipfront::verify {
 namespace {
 
 /// The pressure that friction sees stays what it was.
-constexpr interface::Regularisation constant_pressure{.relaxed = interface::Relaxed::pressure};
+constexpr interface::Regularisation constant_pressure { .relaxed = interface::Relaxed::pressure };
 
 mesh::Mesh make_mesh(const LoadedPlane& plane) {
   return mesh::make_plate({.width_m = plane.width_m,

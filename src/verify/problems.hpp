@@ -10,5 +10,6 @@ Outcome plane_waves(Effort effort);
 Outcome growing_modes(Effort effort);
 Outcome slip_patch(Effort effort);
 Outcome crack(Effort effort);
+Outcome layer_spectrum(Effort effort);
 
 }  // namespace slipfront::verify

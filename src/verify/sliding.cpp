@@ -105,8 +105,7 @@ Growth carry(const SlidingWave& w) {
                                       .corner = mesh::Corner::none,
                                       .sides = mesh::Sides::periodic});
   // The same c_L dt/h on every mesh, and a whole number of steps: errors then follow powers of h.
-  const int n_steps =
-      w.elements_per_wave * static_cast<int>(std::ceil(c_L * w.end_s / (0.85 * length)));
+  const int n_steps = w.elements_per_wave * static_cast<int>(std::ceil(c_L * w.end_s / (0.9 * length)));
   const double stable_s = solve::Stepper(mesh, w.material, w.contact, plain_stepping()).stable_step_s();
   solve::Stepper stepper(mesh, w.material, w.contact, plain_stepping(w.end_s / (n_steps * stable_s)));
   const auto phase = [&](mesh::Node n, double time) {
@@ -140,8 +139,7 @@ Growth carry(const SlidingWave& w) {
   const auto transform = [&] {
     Complex sum = 0;
     for (const auto n : mesh.lower)
-      sum += (stepper.u_m().x[n] - w.speed_m_per_s * stepper.time_s()) *
-             std::exp(-i_unit * k * mesh.x_m[n]);
+      sum += (stepper.u_m().x[n] - w.speed_m_per_s * stepper.time_s()) * std::exp(-i_unit * k * mesh.x_m[n]);
     return sum;
   };
   solve::Recorder recorder(state, mu, 0);

@@ -13,8 +13,8 @@ namespace slipfront::verify {
 using Complex = std::complex<double>;
 
 /// Displacements of a wave exp(i k x + s t) in an undamped body y > 0 that stays on the plane (u_y = 0 at
-/// y = 0), scaled to u_x = 1 at y = 0: two potentials that fall from the interface and, in a layer whose upper
-/// edge is held, two that fall from there.
+/// y = 0), scaled to u_x = 1 at y = 0: two potentials that fall from the interface and, in a layer whose
+/// upper edge is held, two that fall from there.
 class WaveShape {
  public:
   /// @param height_m  of the layer; 0 for a half-space
@@ -53,8 +53,8 @@ struct Growth {
   Complex rate_per_s() const;  ///< slope of the line of least squares
 };
 
-/// Lets the program carry the wave. For a half-space the body is as high as a longitudinal wave from its upper
-/// edge needs to arrive at the end; a layer's height is rounded to whole elements beforehand.
+/// Lets the program carry the wave. For a half-space the body is as high as a longitudinal wave from its
+/// upper edge needs to arrive at the end; a layer's height is rounded to whole elements beforehand.
 Growth carry(const SlidingWave& wave);
 
 }  // namespace slipfront::verify

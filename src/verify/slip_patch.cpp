@@ -89,13 +89,13 @@ Outcome slip_patch(Effort effort) {
     edge_law.y.push_back(at_width[2] + slope * (inverse_square - edges.x[2]));
   }
   const double edge_part = at_width[1] - edgeless.value;
-  outcome.checks.push_back(
-      {"edges' part of the slip: (8 a less 16 a) over (16 a less 32 a)", "",
-       (at_width[0] - at_width[1]) / (at_width[1] - at_width[2]), 4, 1,
-       "the next order, (a/width)^4, and what the dashpots leave of waves"});
+  outcome.checks.push_back({"edges' part of the slip: (8 a less 16 a) over (16 a less 32 a)", "",
+                            (at_width[0] - at_width[1]) / (at_width[1] - at_width[2]), 4, 1,
+                            "the next order, (a/width)^4, and what the dashpots leave of waves"});
 
   // The mesh's part: one domain, its edges' part taken off.
-  Curve against_h{"middle", Curve::Kind::program, {}, {}}, rms{"rms over the patch", Curve::Kind::program, {}, {}};
+  Curve against_h{"middle", Curve::Kind::program, {}, {}},
+      rms{"rms over the patch", Curve::Kind::program, {}, {}};
   std::vector<double> at_h;
   double rest = 0;
   const std::vector<int> meshes = full ? std::vector{10, 20, 40} : std::vector{5, 10, 20};
@@ -120,16 +120,17 @@ Outcome slip_patch(Effort effort) {
     against_h.y.push_back(std::abs(at_h.back() - 1));
     rms.x.push_back(1.0 / n);
     rms.y.push_back(std::sqrt(square / inside));
-    outcome.checks.push_back({fmt::format("slip in the middle over theory, h = a/{}, edges' part taken off", n),
-                              "", at_h.back(), 1, 1.0 / n,
-                              "the patch ends between the last node that slips and the next: h/a"});
+    outcome.checks.push_back(
+        {fmt::format("slip in the middle over theory, h = a/{}, edges' part taken off", n), "", at_h.back(),
+         1, 1.0 / n, "the patch ends between the last node that slips and the next: h/a"});
   }
   const auto converged = limit(at_h[0], at_h[1], at_h[2], 1, 2);
-  outcome.checks.push_back({"slip in the middle over theory, h -> 0, edges' part taken off", "", converged.value,
-                            1, converged.uncertainty + edgeless.uncertainty + std::abs(edge_part) / coarse,
-                            fmt::format("last corrections of the extrapolations in h and in a/width, and h/a of the "
-                                        "edges' part ({:.2g}), which is known on one mesh",
-                                        edge_part)});
+  outcome.checks.push_back(
+      {"slip in the middle over theory, h -> 0, edges' part taken off", "", converged.value, 1,
+       converged.uncertainty + edgeless.uncertainty + std::abs(edge_part) / coarse,
+       fmt::format("changes when the finest mesh and the widest body join the extrapolations, and h/a of the "
+                   "edges' part ({:.2g}), which is known on one mesh",
+                   edge_part)});
   outcome.checks.push_back({"order in h of the error in the middle", "",
                             std::log2(against_h.y[1] / against_h.y[2]), 1, 0.3,
                             "terms of higher order on meshes this coarse"});

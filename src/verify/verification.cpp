@@ -24,6 +24,7 @@ std::span<const Verification> verifications() {
   static const std::array all = {
       Verification{"plane_waves", "Speed and dispersion of plane longitudinal and shear waves", plane_waves},
       Verification{"growing_modes", "Growth of waves on uniform sliding", growing_modes},
+      Verification{"layer_spectrum", "Growth of waves on a sliding layer", layer_spectrum},
       Verification{"slip_patch", "Slip of a patch without strength", slip_patch},
       Verification{"crack", "A crack under friction that weakens with slip", crack},
   };
