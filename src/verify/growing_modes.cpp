@@ -90,8 +90,7 @@ Outcome growing_modes(Effort effort) {
            rate_unit_per_s();
   };
   for (const auto& response : responses) {
-    Curve theory{fmt::format("{}, theory", response.name), Curve::Kind::theory, {}, {}},
-        theory_speed = theory;
+    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}}, theory_speed = theory;
     for (int j = 0; j <= 64; ++j) {
       const double mu = 0.4 + 0.025 * j;
       const Complex p = mode(response.contact(mu));
@@ -101,8 +100,7 @@ Outcome growing_modes(Effort effort) {
       theory_speed.x.push_back(mu);
       theory_speed.y.push_back(-p.imag());
     }
-    Curve program{fmt::format("{}, program, h -> 0", response.name), Curve::Kind::program, {}, {}},
-        program_speed = program;
+    Curve program{response.name, Curve::Kind::program, {}, {}}, program_speed = program;
     for (const double mu : full ? std::vector{0.6, 1.0, 1.1, 1.3, 1.6, 2.0} : std::vector{1.0, 1.3}) {
       const auto contact = response.contact(mu);
       const Complex p = mode(contact);
@@ -118,7 +116,8 @@ Outcome growing_modes(Effort effort) {
       program_speed.x.push_back(mu);
       program_speed.y.push_back(-moves.value);
       const auto reason = fmt::format(
-          "change of the complex rate when the finest mesh joins the extrapolation: {}, {} and {} elements per wave",
+          "change of the complex rate when the finest mesh joins the extrapolation: {}, {} and {} elements "
+          "per wave",
           finest / 4, finest / 2, finest);
       outcome.checks.push_back({fmt::format("growth rate over k c_S, {}, mu = {}", response.name, mu), "",
                                 grows.value, p.real(), uncertainty, reason});
@@ -130,7 +129,7 @@ Outcome growing_modes(Effort effort) {
     speed.curves.push_back(std::move(theory_speed));
     speed.curves.push_back(std::move(program_speed));
 
-    Curve error{fmt::format("{}, mu = 1.3", response.name), Curve::Kind::program, {}, {}};
+    Curve error{response.name, Curve::Kind::program, {}, {}};
     const Complex p = mode(response.contact(1.3));
     for (int elements = 16; elements <= finest_for_order; elements *= 2) {
       error.x.push_back(2 * std::numbers::pi / elements);

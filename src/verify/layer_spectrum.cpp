@@ -25,7 +25,7 @@ struct Law {
 
 std::array<Law, 2> laws(double c_S) {
   return {{{"mu = 0.6", {interface::Coulomb{0.6}}, 2, 4},
-           {"mu = 1.3, pressure delayed by H/c_S",
+           {"mu = 1.3, delayed",
             {interface::Coulomb{1.3}, {.relaxed = interface::Relaxed::pressure, .time_s = H_m / c_S}},
             1,
             2}}};
@@ -48,19 +48,18 @@ Outcome layer_spectrum(Effort effort) {
           stability::growing_layer_modes(material, sliding, k, H_m, 4 * c_S * std::max(k, 1 / H_m));
       return modes.empty() ? Complex{0} : modes.front().s_per_s;
     };
-    Curve theory{fmt::format("{}, theory", law.name), Curve::Kind::theory, {}, {}}, theory_speed = theory;
-    for (double kH = 0.25; kH < 8.1; kH += full ? 0.0625 : 0.25) {
+    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}}, theory_speed = theory;
+    for (double kH = 0.25; kH < 7; kH += full ? 0.0625 : 0.25) {
       const Complex s = fastest(kH / H_m);
       theory.x.push_back(kH);
       theory.y.push_back(s.real() / unit_per_s);
       theory_speed.x.push_back(kH);
       theory_speed.y.push_back(-s.imag() * H_m / (kH * c_S));
     }
-    Curve program{fmt::format("{}, program, h -> 0", law.name), Curve::Kind::program, {}, {}},
-        program_speed = program;
+    Curve program{law.name, Curve::Kind::program, {}, {}}, program_speed = program;
     // Wave over height such that meshes of every level fit.
     for (const double waves_in_H :
-         full ? std::vector{0.25, 0.375, 0.5, 0.75, 1.0, 1.25} : std::vector{0.25, 0.75}) {
+         full ? std::vector{0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0} : std::vector{0.3, 0.8}) {
       const double kH = 2 * std::numbers::pi * waves_in_H, k = kH / H_m;
       const Complex s = fastest(k);
       std::array<Complex, 3> at;
@@ -85,7 +84,8 @@ Outcome layer_spectrum(Effort effort) {
       program_speed.x.push_back(kH);
       program_speed.y.push_back(-moves.value / kH);
       const std::string reason =
-          "change of the complex rate when the finest mesh joins the extrapolation: 24, 48 and 96 elements per height";
+          "change of the complex rate when the finest mesh joins the extrapolation: 24, 48 and 96 elements "
+          "per height";
       outcome.checks.push_back({fmt::format("growth rate H/c_S, {}, k H = {:.3g}", law.name, kH), "",
                                 grows.value, s.real() / unit_per_s, uncertainty, reason});
       outcome.checks.push_back({fmt::format("frequency H/c_S, {}, k H = {:.3g}", law.name, kH), "",

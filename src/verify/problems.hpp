@@ -11,5 +11,6 @@ Outcome growing_modes(Effort effort);
 Outcome slip_patch(Effort effort);
 Outcome crack(Effort effort);
 Outcome layer_spectrum(Effort effort);
+Outcome block(Effort effort);
 
 }  // namespace slipfront::verify

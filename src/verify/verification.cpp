@@ -26,6 +26,7 @@ std::span<const Verification> verifications() {
       Verification{"growing_modes", "Growth of waves on uniform sliding", growing_modes},
       Verification{"layer_spectrum", "Growth of waves on a sliding layer", layer_spectrum},
       Verification{"slip_patch", "Slip of a patch without strength", slip_patch},
+      Verification{"block", "Stick-slip of a block", block},
       Verification{"crack", "A crack under friction that weakens with slip", crack},
   };
   return all;
