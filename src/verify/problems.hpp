@@ -6,7 +6,6 @@
 /// The problems, a file each.
 namespace slipfront::verify {
 
-Outcome impact(Effort effort);
 Outcome plane_waves(Effort effort);
 Outcome manufactured(Effort effort);
 Outcome rayleigh_wave(Effort effort);
@@ -15,5 +14,11 @@ Outcome column(Effort effort);
 Outcome time_reversal(Effort effort);
 Outcome subcycling(Effort effort);
 Outcome symmetry(Effort effort);
+Outcome growing_modes(Effort effort);
+Outcome slip_patch(Effort effort);
+Outcome crack(Effort effort);
+Outcome layer_spectrum(Effort effort);
+Outcome impact(Effort effort);
+Outcome block(Effort effort);
 
 }  // namespace slipfront::verify

@@ -23,7 +23,6 @@ bool Outcome::holds() const {
 std::span<const Verification> verifications() {
   static const std::array all = {
       Verification{"plane_waves", "Speed and dispersion of plane longitudinal and shear waves", plane_waves},
-      Verification{"impact", "Impact of a free body on the plane", impact},
       Verification{"manufactured", "Convergence towards exact waves of a layer on its plane", manufactured},
       Verification{"subcycling", "Join between a sub-cycled layer and the other cells", subcycling},
       Verification{"rayleigh_wave", "Speed and shape of the Rayleigh wave on the free lower edge",
@@ -32,6 +31,12 @@ std::span<const Verification> verifications() {
       Verification{"column", "Sliding of a column with velocity-weakening friction", column},
       Verification{"time_reversal", "Motion there and back", time_reversal},
       Verification{"symmetry", "Turned cells and mirrored plates", symmetry},
+      Verification{"growing_modes", "Growth of waves on uniform sliding", growing_modes},
+      Verification{"layer_spectrum", "Growth of waves on a sliding layer", layer_spectrum},
+      Verification{"slip_patch", "Slip of a patch without strength", slip_patch},
+      Verification{"impact", "Impact of a free body on the plane", impact},
+      Verification{"block", "Stick-slip of a block", block},
+      Verification{"crack", "A crack under friction that weakens with slip", crack},
   };
   return all;
 }

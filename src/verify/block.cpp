@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "verify/body.hpp"
+#include "verify/problems.hpp"
+
+namespace slipfront::verify {
+
+namespace {
+
+constexpr double H_m = 0.1;
+constexpr double p_Pa = 1e6, mu_s = 0.6, mu_k = 0.4;
+
+/// A column that moves uniformly across, its top drawn at a constant speed. Times in T = 2 H/c_S, tractions
+/// in the strength drop D, speeds in D/(rho c_S), slip in D T/(rho c_S).
+struct Drive {
+  double top_speed = 0;
+  double first_traction = 0;  ///< uniform at time 0, the interface at rest
+  double end = 0;
+};
+
+struct History {
+  std::vector<double> time, traction, slip;
+};
+
+constexpr double drop_Pa = (mu_s - mu_k) * p_Pa;
+constexpr double strength = mu_s / (mu_s - mu_k), residual = mu_k / (mu_s - mu_k);
+
+/// By characteristics: v = f + g, t = g - f on the interface, f(t) the wave that leaves and
+/// g(t) = top_speed - f(t - 1) what comes back.
+History characteristics(const Drive& drive) {
+  constexpr int n = 2000;    // per T
+  std::vector<double> f(n);  // before time 0: at rest under the first traction, the top already moving
+  for (int j = 0; j < n; ++j) f[j] = -0.5 * drive.first_traction - drive.top_speed * ((j + 0.5) / n - 1);
+  History h;
+  bool slides = false;
+  double slip = 0;
+  for (int j = 0; j < static_cast<int>(drive.end * n); ++j) {
+    const double g = drive.top_speed - f[j % n];
+    if (!slides && 2 * g > strength) slides = true;
+    const double v = 2 * g - residual;
+    if (slides && v < 0) slides = false;
+    f[j % n] = slides ? g - residual : -g;
+    if (slides) slip += v / n;
+    h.time.push_back((j + 0.5) / n);
+    h.traction.push_back(g - f[j % n]);
+    h.slip.push_back(slip);
+  }
+  return h;
+}
+
+/// The same by the program. @param rows  of cells in the column
+History program(const Drive& drive, const solid::Material& material, int rows, double step_factor) {
+  const double h_m = H_m / rows, c_S = solid::shear_speed_m_per_s(material);
+  const double T_s = 2 * H_m / c_S, v_m_per_s = drop_Pa / (material.density_kg_per_m3 * c_S);
+  const auto mesh = mesh::make_plate({.width_m = 3 * h_m,
+                                      .height_m = H_m,
+                                      .element_size_m = h_m,
+                                      .corner = mesh::Corner::none,
+                                      .sides = mesh::Sides::periodic});
+  // Full weakening within one step of any slip.
+  const interface::SlipWeakeningHealing law { .mu_s = mu_s, .mu_k = mu_k, .d_c_m = 1e-15 };
+  // Constant pressure: otherwise waves of a few elements along x grow from rounding.
+  solve::Stepper stepper(mesh, material, {law, {.relaxed = interface::Relaxed::pressure}},
+                         plain_stepping(step_factor));
+  const double strain = drive.first_traction * drop_Pa / solid::shear_modulus_Pa(material);
+  const auto state = start(stepper, mesh,
+                           {.u_x_m =
+                                [&](mesh::Node n, double time) {
+                                  return mesh.y_m[n] * (strain + drive.top_speed * v_m_per_s * time / H_m);
+                                },
+                            .contact = solve::Contact::stick,
+                            .t_Pa = drive.first_traction * drop_Pa,
+                            .p_Pa = p_Pa});
+  stepper.set_prestress(std::vector<double>(mesh.lower.size(), 0.0),
+                        std::vector<double>(mesh.lower.size(), p_Pa));
+  solve::Recorder recorder(state, mu_s, 0);
+  History h;
+  while (stepper.time_s() < drive.end * T_s) {
+    // The tractions of a step belong to the places at its beginning.
+    const double slip_m = stepper.u_m().x[mesh.lower[0]];
+    h.time.push_back(stepper.time_s() / T_s);
+    stepper.advance(recorder);
+    h.traction.push_back(stepper.interface_state().t_Pa[0] / drop_Pa);
+    h.slip.push_back(slip_m / (v_m_per_s * T_s));
+  }
+  return h;
+}
+
+double value_at(const History& h, const std::vector<double>& values, double time) {
+  const auto i = static_cast<std::size_t>(std::ranges::lower_bound(h.time, time) - h.time.begin());
+  const double w = (time - h.time[i - 1]) / (h.time[i] - h.time[i - 1]);
+  return (1 - w) * values[i - 1] + w * values[i];
+}
+
+/// Few enough to be told apart.
+Curve points(const char* label, const std::vector<double>& time, const std::vector<double>& values) {
+  Curve curve{label, Curve::Kind::program, {}, {}};
+  const std::size_t every = time.size() / 58;
+  for (std::size_t i = every / 2; i < time.size(); i += every) {
+    curve.x.push_back(time[i]);
+    curve.y.push_back(values[i]);
+  }
+  return curve;
+}
+
+double mean(const History& h, double from, double to) {
+  double sum = 0;
+  int n = 0;
+  for (std::size_t i = 0; i < h.time.size(); ++i)
+    if (h.time[i] > from && h.time[i] < to) sum += h.traction[i], ++n;
+  return sum / n;
+}
+
+}  // namespace
+
+Outcome block(Effort effort) {
+  Outcome outcome;
+
+  // One event, the top all but at rest.
+  const solid::Material material{.stiffness_damping_s = 0};
+  const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
+  const Drive slow{.top_speed = 1e-4, .first_traction = strength * (1 - 1e-6), .end = 3};
+  Chart single{.x_label = "time c_S / 2 H", .y_label = "traction / strength drop"};
+  const auto exact = characteristics(slow);
+  single.curves.push_back({"theory", Curve::Kind::theory, exact.time, exact.traction});
+  for (const int rows :
+       effort == Effort::full ? std::vector{50, 100, 200, 400, 800, 1600} : std::vector{50, 200}) {
+    const auto h = program(slow, material, rows, 0.9);
+    // The step dt of c_L dt = 0.9 h spreads a front that has gone 2 H over the length l of an Airy function.
+    const double courant = 0.9 * c_S / c_L;
+    const double spread = std::cbrt((1 - courant * courant) / 8 * 2 * rows) / (2 * rows);
+    const double slip = h.slip.back();
+    outcome.checks.push_back({fmt::format("slip of an event over 2 H (t_s - t_k)/G, h = H/{}", rows), "",
+                              slip, 1, spread + courant / rows,
+                              "spread of the front by dispersion, over 2 H, and a step at either end"});
+    if (rows != 200) continue;
+    outcome.checks.push_back(
+        {fmt::format("drop of the traction over t_s - t_k, mean of 2 H/c_S after the event, "
+                     "h = H/{}",
+                     rows),
+         "", strength - mean(h, 1.5, 2.5), 2, 2 * (spread + courant / rows),
+         "as for the slip, which sets the drop at rest"});
+    single.curves.push_back(points("h = H/200", h.time, h.traction));
+  }
+
+  // Stick-slip. Damping that goes with h takes the ripples off the fronts, which would end a stick too early;
+  // in turn it spreads a front into a Gauss error function of standard deviation sqrt(beta t).
+  const int rows = effort == Effort::full ? 1000 : 250;
+  solid::Material damped = material;
+  damped.stiffness_damping_s = 0.3 * H_m / rows / c_S;
+  const Drive drive{.top_speed = 1 / 5.5, .first_traction = 0.9 * strength, .end = 24};
+  const auto theory = characteristics(drive);
+  const auto cycle = program(drive, damped, rows, 0.9);
+  const auto spread = [&](double time) { return std::sqrt(0.15 / rows * time); };  // in T
+  int n_events = 0;
+  double square = 0, allowed = 0;
+  int n_compared = 0;
+  for (double time = 1; time < drive.end - 1; time += 0.01) {
+    const double slip_before = value_at(theory, theory.slip, time - 0.01),
+                 slip = value_at(theory, theory.slip, time);
+    const bool rests_from_here = slip == value_at(theory, theory.slip, time + 0.5) && slip_before < slip;
+    if (rests_from_here) {
+      ++n_events;
+      const double later = time + 0.5;
+      outcome.checks.push_back(
+          {fmt::format("slip after event {} over 2 H (t_s - t_k)/G, h = H/{}", n_events, rows), "",
+           value_at(cycle, cycle.slip, later), slip, 2 * spread(later),
+           "spread of the fronts that begin and end each event"});
+    }
+    const double around = 3 * spread(time);
+    const double jump =
+        value_at(theory, theory.traction, time + around) - value_at(theory, theory.traction, time - around);
+    if (std::abs(jump) > 4 * drive.top_speed * around + 0.01) continue;
+    const double difference = value_at(cycle, cycle.traction, time) - value_at(theory, theory.traction, time);
+    square += difference * difference;
+    // The slope along a stick times the delay, and 2 per slip, the stiffness of the column.
+    const double tolerance = (2 * drive.top_speed + 2 * 2) * spread(time);
+    allowed += tolerance * tolerance;
+    ++n_compared;
+  }
+  outcome.checks.push_back(
+      {fmt::format("traction over t_s - t_k away from fronts: rms deviation, h = H/{}", rows), "",
+       std::sqrt(square / n_compared), 0, std::sqrt(allowed / n_compared),
+       "delay of the fronts, and the stiffness of the column times the slips' tolerance"});
+  Chart history{.x_label = "time c_S / 2 H", .y_label = "traction / strength drop"};
+  history.curves = {{"theory", Curve::Kind::theory, theory.time, theory.traction},
+                    points("program", cycle.time, cycle.traction)};
+  Chart slips{.x_label = "time c_S / 2 H", .y_label = "slip G / (2 H strength drop)"};
+  slips.curves = {{"theory", Curve::Kind::theory, theory.time, theory.slip},
+                  points("program", cycle.time, cycle.slip)};
+  outcome.charts = {std::move(single), std::move(history), std::move(slips)};
+  return outcome;
+}
+
+}  // namespace slipfront::verify

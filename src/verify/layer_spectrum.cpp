@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "stability/modes.hpp"
+#include "verify/extrapolation.hpp"
+#include "verify/problems.hpp"
+#include "verify/sliding.hpp"
+
+namespace slipfront::verify {
+
+namespace {
+
+constexpr double p_Pa = 1e6, V_m_per_s = 0.1, H_m = 0.1;
+
+struct Law {
+  const char* name;
+  interface::ContactModel contact;
+  int order, next_order;  ///< in h of the program's error
+};
+
+std::array<Law, 2> laws(double c_S) {
+  return {{{"mu = 0.6", {interface::Coulomb{0.6}}, 2, 4},
+           {"mu = 1.3, delayed",
+            {interface::Coulomb{1.3}, {.relaxed = interface::Relaxed::pressure, .time_s = H_m / c_S}},
+            1,
+            2}}};
+}
+
+}  // namespace
+
+Outcome layer_spectrum(Effort effort) {
+  const bool full = effort == Effort::full;
+  const solid::Material material{.stiffness_damping_s = 0};
+  const double c_S = solid::shear_speed_m_per_s(material), unit_per_s = c_S / H_m;
+  Outcome outcome;
+  Chart growth{.x_label = "k H", .y_label = "growth rate H / c_S"};
+  Chart speed{.x_label = "k H", .y_label = "phase speed / c_S"};
+  for (const auto& law : laws(c_S)) {
+    const auto sliding =
+        stability::uniform_sliding(law.contact.law, V_m_per_s, p_Pa, law.contact.regularisation);
+    const auto fastest = [&](double k) {
+      const auto modes =
+          stability::growing_layer_modes(material, sliding, k, H_m, 4 * c_S * std::max(k, 1 / H_m));
+      return modes.empty() ? Complex{0} : modes.front().s_per_s;
+    };
+    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}}, theory_speed = theory;
+    for (double kH = 0.25; kH < 7; kH += full ? 0.0625 : 0.25) {
+      const Complex s = fastest(kH / H_m);
+      theory.x.push_back(kH);
+      theory.y.push_back(s.real() / unit_per_s);
+      theory_speed.x.push_back(kH);
+      theory_speed.y.push_back(-s.imag() * H_m / (kH * c_S));
+    }
+    Curve program{law.name, Curve::Kind::program, {}, {}}, program_speed = program;
+    // Wave over height such that meshes of every level fit.
+    for (const double waves_in_H :
+         full ? std::vector{0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0} : std::vector{0.3, 0.8}) {
+      const double kH = 2 * std::numbers::pi * waves_in_H, k = kH / H_m;
+      const Complex s = fastest(k);
+      std::array<Complex, 3> at;
+      for (int level = 0; level < 3; ++level)
+        at[level] =
+            carry({.material = material,
+                   .contact = law.contact,
+                   .pressure_Pa = p_Pa,
+                   .speed_m_per_s = V_m_per_s,
+                   .wavenumber_per_m = k,
+                   .s_per_s = s,
+                   .height_m = H_m,
+                   .elements_per_wave = static_cast<int>(std::lround(24 / waves_in_H * std::exp2(level))),
+                   .end_s = 2 / unit_per_s})
+                .rate_per_s() /
+            unit_per_s;
+      const auto grows = limit(at[0].real(), at[1].real(), at[2].real(), law.order, law.next_order);
+      const auto moves = limit(at[0].imag(), at[1].imag(), at[2].imag(), law.order, law.next_order);
+      const double uncertainty = std::hypot(grows.uncertainty, moves.uncertainty);
+      program.x.push_back(kH);
+      program.y.push_back(grows.value);
+      program_speed.x.push_back(kH);
+      program_speed.y.push_back(-moves.value / kH);
+      const std::string reason =
+          "change of the complex rate when the finest mesh joins the extrapolation: 24, 48 and 96 elements "
+          "per height";
+      outcome.checks.push_back({fmt::format("growth rate H/c_S, {}, k H = {:.3g}", law.name, kH), "",
+                                grows.value, s.real() / unit_per_s, uncertainty, reason});
+      outcome.checks.push_back({fmt::format("frequency H/c_S, {}, k H = {:.3g}", law.name, kH), "",
+                                moves.value, s.imag() / unit_per_s, uncertainty, reason});
+    }
+    growth.curves.push_back(std::move(theory));
+    growth.curves.push_back(std::move(program));
+    speed.curves.push_back(std::move(theory_speed));
+    speed.curves.push_back(std::move(program_speed));
+  }
+  outcome.charts = {std::move(growth), std::move(speed)};
+  return outcome;
+}
+
+}  // namespace slipfront::verify

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verify/loaded_plane.hpp"
+
+namespace slipfront::verify {
+
+namespace {
+
+/// The pressure that friction sees stays what it was.
+constexpr interface::Regularisation constant_pressure { .relaxed = interface::Relaxed::pressure };
+
+mesh::Mesh make_mesh(const LoadedPlane& plane) {
+  return mesh::make_plate({.width_m = plane.width_m,
+                           .height_m = plane.height_m,
+                           .element_size_m = plane.h_m,
+                           .corner = mesh::Corner::none,
+                           .sides = mesh::Sides::absorbing,
+                           .top = mesh::Top::absorbing});
+}
+
+}  // namespace
+
+LoadedBody::LoadedBody(const LoadedPlane& plane)
+    : plane_(plane),
+      mesh_(make_mesh(plane)),
+      stepper_(mesh_, plane.material, {plane.law, constant_pressure}, plain_stepping()),
+      recorder_(start(stepper_, mesh_, {.contact = solve::Contact::stick, .p_Pa = plane.pressure_Pa}),
+                plane.law.mu_s, 0) {
+  for (const auto n : mesh_.lower) x_m_.push_back(mesh_.x_m[n] - 0.5 * plane.width_m);
+}
+
+std::vector<double> LoadedBody::at(const std::function<double(double)>& f) const {
+  std::vector<double> values;
+  for (const double x : x_m_) values.push_back(f(x));
+  return values;
+}
+
+void LoadedBody::load(const std::function<double(double)>& t0_Pa) {
+  stepper_.set_prestress(at(t0_Pa), std::vector<double>(x_m_.size(), plane_.pressure_Pa));
+}
+
+void LoadedBody::weaken(const std::function<double(double)>& intact) {
+  stepper_.set_intact(at(intact));
+}
+
+double sliding_stiffness_Pa(const solid::Material& material) {
+  const double G = solid::shear_modulus_Pa(material);
+  return 2 * G / (1 + G / solid::longitudinal_modulus_Pa(material));
+}
+
+}  // namespace slipfront::verify
