@@ -605,10 +605,10 @@ void Stepper::reverse(Recorder& recorder) {
   for (auto& level : levels_) {
     set_motion_before(level);
     level.shared.a_m_per_s2 = solid::Field(level.shared.node.size());
-    level.damping_a = {};
   }
   works_ = {};
   works_.time_s = time_s();
+  if (damping_s_ > 0) begin_damping_work();
 }
 
 void Stepper::take_contact(double time, Recorder& recorder, fronts::History* sample) {
