@@ -16,7 +16,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce sensitivity quick regularised convergence reference contact-algorithms bench docs format format-check verify verification-pages tidy sanitize coverage clean
+.PHONY: help setup build test reproduce sensitivity quick regularised convergence interface-step reference contact-algorithms bench docs format format-check verify verification-pages tidy sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -96,6 +96,10 @@ convergence: build $(VENV)/.installed  ## front speeds over mesh, step and dampi
 	$(call CONVERGENCE,right)
 	cp $(RESULTS)-convergence/plain/spontaneous/figures/convergence.png docs/figures/convergence_plain.png
 	cp $(RESULTS)-convergence/regularised/spontaneous/figures/convergence.png docs/figures/convergence_regularised.png
+
+interface-step: build $(VENV)/.installed  ## error of front speeds against the cost of sub-cycling, into results-interface-step/ and docs/figures
+	for event in left spontaneous right; do $(PROGRAM) study interface-step cases/kammer2012/$$event.toml -o $(RESULTS)-interface-step/$$event --overwrite; done
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures.interface_step docs/figures/interface_step.png $(RESULTS)-interface-step/{left,spontaneous,right}
 
 reference: build $(VENV)/.installed  ## Problem A of docs/prestress.md on four meshes against other codes, into results-reference/
 	$(PYTHON) scripts/compare-reference.py --program $(PROGRAM) --results $(RESULTS)-reference
