@@ -103,7 +103,7 @@ reference: build $(VENV)/.installed  ## Problem A of docs/prestress.md on four m
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
 	$(PYTHON) scripts/scorecard-page.py $(RESULTS) docs/scorecard.md
-	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png docs/figures/
+	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png $(RESULTS)/figures/energy_balance.png docs/figures/
 
 SOURCES = $(shell git ls-files 'src/*.cpp' 'src/*.hpp' 'tests/*.cpp' 'tests/*.hpp')
 
