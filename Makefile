@@ -78,6 +78,7 @@ contact-algorithms: build $(VENV)/.installed  ## the paper's events with each co
 regularised: build $(VENV)/.installed  ## the same events with friction that has a length scale, into results-regularised/
 	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-regularised
+	cp $(RESULTS)-regularised/figures/studies.png docs/figures/regularised_studies.png
 
 # An event's studies, without and with a length scale in the friction, and their figures.
 define CONVERGENCE
