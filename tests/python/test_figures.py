@@ -546,6 +546,20 @@ def test_studies_of_words_have_no_lines(results):
     assert figure.axes[lower].get_xlabel() == "plate.corner"
 
 
+def test_numbers_above_the_axis_stand_side_by_side(results):
+    ax = Figure().subplots()
+    for gid in ("first", "second"):
+        values = [9.0, 1.0, 8.0]
+        studies.draw_values(ax, results.studies[0], values, 0.0, 4.0, gid, linestyle="-", color="black")
+    offsets = [(text.get_gid(), text.xy[0], text.xyann[0]) for text in ax.texts]
+    assert offsets == [
+        ("first:above", 0, 0),
+        ("first:above", 2, 0),
+        ("second:above", 0, 6),
+        ("second:above", 2, 6),
+    ]
+
+
 def test_studies_mark_the_papers_value(results):
     figure = studies.criteria(results).figure
     assert artist(figure, "paper_value", 0).get_xdata()[0] == 1
