@@ -78,6 +78,7 @@ contact-algorithms: build $(VENV)/.installed  ## the paper's events with each co
 regularised: build $(VENV)/.installed  ## the same events with friction that has a length scale, into results-regularised/
 	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-regularised
+	cp $(RESULTS)-regularised/figures/studies.png docs/figures/regularised_studies.png
 
 # An event's studies, without and with a length scale in the friction, and their figures.
 define CONVERGENCE
@@ -107,7 +108,7 @@ reference: build $(VENV)/.installed  ## Problem A of docs/prestress.md on four m
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
 	$(PYTHON) scripts/scorecard-page.py $(RESULTS) docs/scorecard.md
-	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png docs/figures/
+	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png $(RESULTS)/figures/energy_balance.png docs/figures/
 
 SOURCES = $(shell git ls-files 'src/*.cpp' 'src/*.hpp' 'tests/*.cpp' 'tests/*.hpp')
 
