@@ -55,8 +55,9 @@ def draw(folders: list[Path]) -> Figure:
         ax.set_xticks([1, 2, 4, 8], labels=["1", "2", "4", "8"])
         ax.minorticks_off()
         if k == 0:
-            ax.set_ylabel("error of V_tip (%): 90 % of stations within; dots: median")
-            ax.legend()
+            ax.set_ylabel("error of V_tip (%)")
+            ax.legend(title="lines: 90 % of stations within; dots: median", title_fontsize=6, loc="lower left")
+            ax.set_ylim(bottom=ax.get_ylim()[0] / 20)
     return figure
 
 
