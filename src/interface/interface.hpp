@@ -12,9 +12,8 @@ namespace slipfront::interface {
 
 /// How contact is resolved within a (sub-)step.
 enum class ContactAlgorithm {
-  /// Closes gaps exactly at the step's end by a pressure; mu at the last half-step slip rate; friction
-  /// opposes
-  /// the motion that the forces would give.
+  /// Closes gaps exactly at the step's end by a pressure; mu at the mean slip rate of the step; friction
+  /// opposes the motion that the forces would give.
   direct,
   /// Locks the normal velocity in contact; a node that would pass the plane is put onto it, its normal
   /// velocity
@@ -54,10 +53,12 @@ struct Interface {
   std::vector<double> strength_Pa;
   std::vector<std::uint8_t> slipping;  ///< 1 where the node is in contact and slips
   // Memory of friction and contact.
-  std::vector<double> slip_m;      ///< slip path, the sum of |slip rate| dt in contact; see SlipMemory
-  std::vector<double> relaxed_Pa;  ///< strength or pressure by the regularisation; else 0
+  std::vector<double> slip_m;  ///< slip path, the sum of |slip rate| dt in contact; see SlipMemory
+  /// Strength or pressure by the regularisation, and what it follows; else 0.
+  std::vector<double> relaxed_Pa, target_Pa;
   std::vector<double> acceleration_m_per_s2;  ///< along x, of the last update; predictor-corrector only
   std::vector<std::uint8_t> locked;  ///< 1 where the normal velocity is locked; predictor-corrector only
+  bool begun = false;                ///< whether there was an update since start_contact
 
   explicit Interface(std::size_t n);
   std::size_t size() const { return t_Pa.size(); }

@@ -10,6 +10,7 @@
 #include "fronts/front.hpp"
 #include "io/case.hpp"
 #include "study/sequence.hpp"
+#include "study/speeds.hpp"
 
 namespace slipfront::study {
 
@@ -79,11 +80,6 @@ using StudyMonitor = std::function<bool(std::size_t done, std::size_t total)>;
 /// @throws UserError, Interrupted
 Convergence study_convergence(const io::Case& config, const ConvergenceOptions& options,
                               const StudyMonitor& monitor);
-
-inline constexpr double nucleation_m = 5e-3;
-
-/// V_tip of a front where its tip passes x, linear between its points; NaN beyond them.
-double v_tip_at(const fronts::Front& front, double x_m);
 
 /// convergence.csv (a row per sequence, station and value) and convergence.json (verdicts).
 void write_convergence(const std::filesystem::path& dir, const io::Case& config, const Convergence& result);

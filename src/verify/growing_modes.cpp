@@ -54,8 +54,8 @@ interface::ContactModel delayed(double mu) {
 }
 
 constexpr std::array<Response, 3> responses = {{{"constant mu", at_once, 2, 4},
-                                                {"mu falls with speed", weakening, 1, 2},
-                                                {"strength delayed", delayed, 1, 2}}};
+                                                {"mu falls with speed", weakening, 2, 3},
+                                                {"strength delayed", delayed, 2, 3}}};
 
 /// s/(k c_S) of the mode that grows; at mu = 1 of the constant law, of the neutral one.
 Complex mode(const interface::ContactModel& contact) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include "interface/interface.hpp"
 
 namespace slipfront::interface::test {
@@ -22,6 +24,18 @@ inline Interface resting_node(const ContactModel& model, double p_Pa) {
   s.p_Pa[0] = p_Pa;
   start_contact(model, s);
   return s;
+}
+
+/// Strength of a slipping node in a step: the coefficient at the mean of the last and the new slip rate, the
+/// new one with three tries from the last. All quantities along the motion.
+template <class Coefficient>
+double strength_under_way(Coefficient mu, double last_rate, double t_stop_Pa, double p_Pa) {
+  double rate = last_rate, strength = 0;
+  for (int k = 0; k < 3; ++k) {
+    strength = mu(std::abs(rate)) * p_Pa;
+    rate = 0.5 * (last_rate + (t_stop_Pa - strength) / impedance);
+  }
+  return strength;
 }
 
 }  // namespace slipfront::interface::test
