@@ -84,13 +84,14 @@ bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
     const bool under_way = predicts && rate != 0 && p > 0;
     const double direction = under_way ? rate : t_stop;
     const double along = under_way ? std::copysign(1.0, rate) * t_stop : demand;
-    double strength = 0, t = 0, v_x = 0;
+    double strength = 0, first_strength = 0, t = 0, v_x = 0;
     bool slips = false;
     Memory now;
     for (int k = 0; k < n_evaluations; ++k) {
       const double mu_now = weakened(mu(std::abs(rate), s.slip_m[i]), mu_k, s.intact[i]);
       now = step.now(mu_now, p);
       strength = Form::strength(mu_now, p, now);
+      first_strength = k == 0 ? strength : first_strength;
       slips = !(along <= strength);  // so that a motion that is not a number shows up as a slip rate
       t = slips ? std::copysign(strength, direction) : t_stop;
       v_x = slips ? s.v_x_m_per_s[i] - t / impedance_x : 0.0;
@@ -110,7 +111,8 @@ bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
     s.t_Pa[i] = t;
     s.p_Pa[i] = p;
     s.demand_Pa[i] = demand;
-    s.strength_Pa[i] = slips ? strength : strength_at_rest;
+    const double overcome = s.slipping[i] != 0 ? strength : first_strength;
+    s.strength_Pa[i] = slips ? overcome : strength_at_rest;
     s.slipping[i] = slipping;
     s.slip_m[i] = slip;
     s.relaxed_Pa[i] = now.relaxed_Pa;

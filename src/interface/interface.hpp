@@ -49,7 +49,8 @@ struct Interface {
   std::vector<double> slip_rate_m_per_s;  ///< last half-step velocity along x; 0 where the node sticks
   std::vector<double> t_Pa, p_Pa;
   std::vector<double> demand_Pa;  ///< |t| that would stop the node
-  /// Strength in the last update; of a node that sticks the one at rest, of an open node 0.
+  /// Strength in the last update; of a node that begins to slip the one that it has overcome, of a node that
+  /// sticks the one at rest, of an open node 0.
   std::vector<double> strength_Pa;
   std::vector<std::uint8_t> slipping;  ///< 1 where the node is in contact and slips
   // Memory of friction and contact.
