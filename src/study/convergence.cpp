@@ -2,7 +2,6 @@
 #include "study/convergence.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -11,7 +10,6 @@
 #include "fronts/fit.hpp"
 #include "fronts/measures.hpp"
 #include "io/schema.hpp"
-#include "run/batch.hpp"
 
 namespace slipfront::study {
 
@@ -105,18 +103,18 @@ Summary summarise_direction(const std::vector<Station>& stations, const Plan& pl
   return summarise(list, n_wanted, tolerance);
 }
 
-Sequence compare(const Plan& plan, const std::vector<MainFronts>& runs, const ConvergenceOptions& options) {
+Sequence compare(const Plan& plan, const std::vector<Run>& runs, const ConvergenceOptions& options) {
   Sequence sequence;
   sequence.plan = plan;
   const auto& own = runs[plan.members[plan.own].run];
-  for (const auto& [x_m, direction] : stations(own, options.station_spacing_m))
+  for (const auto& [x_m, direction] : stations(own.main, options.station_spacing_m))
     sequence.stations.push_back({x_m, direction, {}, {}, {}});
   std::array<double, 3> q{}, f{};
   for (std::size_t k = 0; k < 3; ++k) q[k] = plan.members[plan.last[k]].step_size;
   std::vector<double> at_limit;
   for (auto& s : sequence.stations) {
     for (const auto& member : plan.members)
-      s.v_tip_m_per_s.push_back(speed_at(runs[member.run], {s.x_m, s.direction}));
+      s.v_tip_m_per_s.push_back(speed_at(runs[member.run].main, {s.x_m, s.direction}));
     for (std::size_t k = 0; k < 3; ++k) f[k] = s.v_tip_m_per_s[plan.last[k]];
     const double v = s.v_tip_m_per_s[plan.own];
     s.limit = extrapolate(q, f);
@@ -135,10 +133,8 @@ Sequence compare(const Plan& plan, const std::vector<MainFronts>& runs, const Co
 
 std::vector<Plan> plan_convergence(const io::Case& config, const ConvergenceOptions& options) {
   const auto sizes = element_sizes(config, options);
-  io::Case base = config;
+  io::Case base = for_study(config);
   base.fronts.l_star_m = std::max(base.fronts.l_star_m, sizes.front());
-  base.output.history_interval_s = 1e-5;  // histories and fields are not read
-  base.output.snapshot_times_s.clear();
   std::vector<Plan> plans = {element_plan(base, sizes), step_plan(base)};
   if (base.material.stiffness_damping_s > 0) plans.push_back(damping_plan(base));
   return plans;
@@ -157,28 +153,15 @@ Convergence study_convergence(const io::Case& config, const ConvergenceOptions& 
   // The finest mesh takes longest: first.
   for (auto& plan : plans)
     for (auto it = plan.members.rbegin(); it != plan.members.rend(); ++it) it->run = add(it->config);
-  for (const auto& c : cases) run::check(c);
 
   Convergence result;
   result.options = options;
   result.l_star_m = cases.front().fronts.l_star_m;
   result.n_runs = cases.size();
-  std::vector<MainFronts> runs(cases.size());
-  std::vector<std::string> blow_ups(cases.size());
-  std::atomic<std::size_t> done = 0;
-  run::Batch batch(
-      options.threads, [&] { return monitor(done, cases.size()); }, "interrupted; nothing was written");
-  batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial) {
-    runs[k].options = run::front_options(cases[k], initial);
-    if (r.event.end == solve::EventEnd::blow_up)
-      blow_ups[k] = r.event.blow_up;
-    else
-      runs[k].fronts = main_fronts(r.fronts);
-    ++done;
-  });
+  const auto runs = run_cases(cases, options.threads, monitor);
   for (const auto& plan : plans) {
     for (const auto& member : plan.members)
-      if (const auto& what = blow_ups[member.run]; !what.empty())
+      if (const auto& what = runs[member.run].blow_up; !what.empty())
         result.warnings.push_back(fmt::format("{} = {:g}: {}", plan.parameter, member.value, what));
     result.sequences.push_back(compare(plan, runs, options));
   }

@@ -3,14 +3,13 @@
 
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "fronts/front.hpp"
 #include "io/case.hpp"
+#include "study/runs.hpp"
 #include "study/sequence.hpp"
-#include "study/speeds.hpp"
 
 namespace slipfront::study {
 
@@ -69,9 +68,6 @@ struct Convergence {
   std::vector<std::string> warnings;
   std::size_t n_runs = 0;
 };
-
-/// Told often how many runs are done; returns false to interrupt.
-using StudyMonitor = std::function<bool(std::size_t done, std::size_t total)>;
 
 /// Runs all sequences and compares V_tip of the main fronts, the longest in each direction, at stations x.
 /// V_tip over l* is linear in x between the nodes of a front. Left out are stations within nucleation_m of

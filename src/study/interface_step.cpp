@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -15,7 +14,6 @@
 #include "fronts/fit.hpp"
 #include "io/results.hpp"
 #include "io/schema.hpp"
-#include "run/batch.hpp"
 #include "study/sequence.hpp"
 
 namespace slipfront::study {
@@ -54,12 +52,10 @@ const char* name(Stepping::Kind kind) {
 }  // namespace
 
 InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOptions& options,
-                                   const std::function<bool(std::size_t, std::size_t)>& monitor) {
+                                   const StudyMonitor& monitor) {
   InterfaceStep result;
   result.options = options;
-  io::Case base = config;
-  base.output.history_interval_s = 1e-5;  // histories and fields are not read
-  base.output.snapshot_times_s.clear();
+  const io::Case base = for_study(config);
   const double factor = base.time.step_factor;
 
   std::vector<io::Case> cases;
@@ -83,33 +79,15 @@ InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOp
       result.all.push_back(
           {.kind = Stepping::Kind::layer, .step_factor = factor, .rows = rows, .substeps = substeps});
     }
-  for (const auto& c : cases) run::check(c);
   result.n_runs = cases.size();
-
-  std::vector<MainFronts> runs(cases.size());
-  std::vector<double> updates(cases.size()), times_s(cases.size());
-  std::vector<std::string> blow_ups(cases.size());
-  std::atomic<std::size_t> done = 0;
-  run::Batch batch(
-      options.threads, [&] { return monitor(done, cases.size()); }, "interrupted; nothing was written");
-  batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial) {
-    runs[k].options = run::front_options(cases[k], initial);
-    if (r.event.end == solve::EventEnd::blow_up)
-      blow_ups[k] = r.event.blow_up;
-    else
-      runs[k].fronts = main_fronts(r.fronts);
-    // Runs end at different times: cost per simulated time.
-    updates[k] = r.node_updates_per_step / r.step_s;
-    times_s[k] = r.stepping_wall_s;
-    ++done;
-  });
+  const auto runs = run_cases(cases, options.threads, monitor);
 
   std::array<double, 3> q{}, f{};
   std::vector<double> orders;
-  for (const auto& place : stations(runs[0], options.station_spacing_m)) {
+  for (const auto& place : stations(runs[0].main, options.station_spacing_m)) {
     for (std::size_t k = 0; k < 3; ++k) {
       q[k] = 1.0 / reference_divisors[k];
-      f[k] = speed_at(runs[2 - k], place);
+      f[k] = speed_at(runs[2 - k].main, place);
     }
     const Limit limit = extrapolate(q, f);
     if (!std::isfinite(limit.value)) continue;
@@ -122,14 +100,15 @@ InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOp
     result.warnings.push_back(
         fmt::format("only {} stations have a speed with a limit at small steps", result.stations.size()));
 
-  const double plain_updates = updates[first_compared];
+  // Runs end at different times: cost per simulated time.
+  const double plain_updates = runs[first_compared].node_updates_per_s;
   const std::size_t n_run = result.all.size();
   for (std::size_t k = 0; k < n_run; ++k) {
     auto& s = result.all[k];
     const std::size_t r = first_compared + k;
-    s.cost = updates[r] / plain_updates;
-    s.time_s = times_s[r];
-    for (const auto& place : result.stations) s.v_tip_m_per_s.push_back(speed_at(runs[r], place));
+    s.cost = runs[r].node_updates_per_s / plain_updates;
+    s.time_s = runs[r].stepping_wall_s;
+    for (const auto& place : result.stations) s.v_tip_m_per_s.push_back(speed_at(runs[r].main, place));
     set_errors(s, result.v_tip_m_per_s);
   }
   for (std::size_t a = 0; a < n_run; ++a)
@@ -157,10 +136,10 @@ InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOp
     if (within(result.all[k]) && (result.chosen < 0 || result.all[k].cost < result.all[result.chosen].cost))
       result.chosen = static_cast<int>(k);
   for (std::size_t k = 0; k < cases.size(); ++k)
-    if (!blow_ups[k].empty())
+    if (!runs[k].blow_up.empty())
       result.warnings.push_back(fmt::format("step_factor {:.3g}, {} rows, {} sub-steps: {}",
                                             cases[k].time.step_factor, cases[k].time.interface_rows,
-                                            cases[k].time.interface_substeps, blow_ups[k]));
+                                            cases[k].time.interface_substeps, runs[k].blow_up));
   return result;
 }
 

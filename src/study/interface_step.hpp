@@ -2,12 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "io/case.hpp"
-#include "study/speeds.hpp"
+#include "study/runs.hpp"
 
 namespace slipfront::study {
 
@@ -51,10 +50,9 @@ struct InterfaceStep {
 /// The reference is the whole plate with the case's step_factor over 16, 32 and 64, extrapolated to 0 at each
 /// station (sequence.hpp); compared with it are the plain scheme at the step_factor over 1, 2, 4, 8 and all
 /// pairs of rows and sub-steps that fit.
-/// @param monitor  told often how many runs of the total are done; false interrupts
 /// @throws UserError, Interrupted
 InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOptions& options,
-                                   const std::function<bool(std::size_t done, std::size_t total)>& monitor);
+                                   const StudyMonitor& monitor);
 
 /// interface_step.csv (a row per way of stepping), interface_step.json, and chosen.toml, the case with the
 /// chosen rows and sub-steps, where one is within the tolerance.

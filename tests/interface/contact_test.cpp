@@ -10,10 +10,10 @@
 namespace slipfront::interface {
 namespace {
 
-constexpr double dt = 1e-6;
-constexpr double mass = 0.4;             // kg/m2
-constexpr double impedance = mass / dt;  // Pa s/m
-const VelocityWeakening weakening{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1};
+using test::dt;
+using test::impedance;
+using test::mass;
+using test::weakening;
 
 /// One node on the plane that the trial velocity presses with p and drags with t_stop.
 Interface one_node(double t_stop_Pa, double p_Pa) {

@@ -12,9 +12,9 @@ using test::dt;
 using test::impedance;
 using test::pull;
 using test::resting_node;
+using test::rounding_Pa;
 
 // Tolerances: tractions of 1e6 Pa through a velocity and back, a few roundings of 1e-16 each: 1e-8 Pa.
-constexpr double rounding_Pa = 1e-8;
 
 TEST(SlipMemory, SlipWeakensForGood) {
   const ContactModel model{SlipWeakening{.mu_s = 0.6, .mu_k = 0.3, .d_c_m = 1e-6}};

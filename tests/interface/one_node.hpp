@@ -11,6 +11,9 @@ inline constexpr double dt = 1e-6;
 inline constexpr double mass = 0.4;             // kg/m2
 inline constexpr double impedance = mass / dt;  // Pa s/m
 
+inline constexpr double rounding_Pa = 1e-8;  // tractions of 1e6 Pa through a velocity and back
+inline const VelocityWeakening weakening{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1};
+
 /// Trial motion that presses the node with p and drags it with t_stop.
 inline void pull(Interface& s, double t_stop_Pa, double p_Pa) {
   s.v_x_m_per_s[0] = t_stop_Pa / impedance;

@@ -13,9 +13,8 @@ using test::dt;
 using test::impedance;
 using test::pull;
 using test::resting_node;
-
-constexpr double rounding_Pa = 1e-8;  // tractions of 1e6 Pa through a velocity and back
-const VelocityWeakening weakening{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1};
+using test::rounding_Pa;
+using test::weakening;
 
 ContactModel with(const FrictionLaw& law) {
   return {law, {}, ContactAlgorithm::predictor_corrector};
