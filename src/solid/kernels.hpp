@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/lanes.hpp"
 #include "solid/operator.hpp"
 
 // The loops of the explicit step over plain arrays, one grid row at a time. Every pointer points to column 0
@@ -58,24 +59,6 @@ inline void add_interior_row(const InteriorStencil& s, Span span, ConstRow south
   }
 }
 
-#ifdef __AVX512F__
-inline constexpr int lanes = 8;
-#else
-inline constexpr int lanes = 4;
-#endif
-
-/// Consecutive columns of a row.
-using Lanes = double __attribute__((vector_size(lanes * sizeof(double))));
-/// The same anywhere in memory: packed, so that no alignment is promised.
-struct __attribute__((packed, may_alias)) LanesInMemory {
-  Lanes values;
-};
-inline Lanes load(const double* from) {
-  return reinterpret_cast<const LanesInMemory*>(from)->values;
-}
-inline void store(double* to, Lanes values) {
-  reinterpret_cast<LanesInMemory*>(to)->values = values;
-}
 /// The values one column to the left of `here`, and one to the right.
 inline Lanes from_left(Lanes left, Lanes here) {
 #ifdef __AVX512F__
