@@ -138,17 +138,25 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
   std::vector<bool> regular_cell(mesh.cells.size());
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) regular_cell[k] = is_regular(mesh, mesh.cells[k]);
   const CellsOfNodes around = cells_of_nodes(mesh);
+  std::vector<bool> is_boundary(mesh.n_nodes(), false);
+  for (const auto n : mesh.lower) is_boundary[n] = true;
+  for (const auto& absorbing : mesh.absorbing) is_boundary[absorbing.node] = true;
 
   // The squares of the part around a node with a stencil; nothing for a node that needs a block row.
   const auto squares_around = [&](mesh::Node n, int j) -> std::optional<Squares> {
-    int above = 0, below = 0;
+    int above = 0, below = 0, right = 0, left = 0;
     for (auto k = around.first[n]; k < around.first[n + 1]; ++k) {
       const auto c = around.cell[k];
       if (!regular_cell[c]) return std::nullopt;
       if (!in_part[c]) continue;
       (mesh.cells[c][0] == n || mesh.cells[c][1] == n ? above : below) += 1;
+      (mesh.cells[c][0] == n || mesh.cells[c][3] == n ? right : left) += 1;
     }
     if (above == 2 && below == 2) return Squares::all;
+    if (around.first[n + 1] - around.first[n] == 2 && !is_boundary[n]) {
+      if (right == 2) return Squares::right;
+      if (left == 2) return Squares::left;
+    }
     if (j != 0 && j != edge_row) return std::nullopt;
     if (above == 2 && below == 0) return Squares::above;
     if (above == 0 && below == 2) return Squares::below;
@@ -163,7 +171,7 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
   Part part;
   std::vector<mesh::Node> irregular;
   for (int j = 0; j <= grid.rows; ++j) {
-    std::array<StencilRow, 3> of_row;
+    std::array<StencilRow, 5> of_row;
     for (int i = 0; i <= grid.columns; ++i) {
       const mesh::Node n = grid.node(i, j);
       if (plate.is_top[n] || !touches_part(n)) continue;
@@ -179,19 +187,39 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
         spans.push_back({i, i + 1});
       }
     }
-    for (const auto squares : {Squares::all, Squares::above, Squares::below}) {
+    for (const auto squares : {Squares::all, Squares::above, Squares::below, Squares::right, Squares::left}) {
       auto& row = of_row[static_cast<int>(squares)];
       if (row.spans.empty()) continue;
       row.row = j;
       row.squares = squares;
       const mesh::Node first = grid.node(row.spans.front().begin, j);
       const bool full_mass = around.first[first + 1] - around.first[first] == 4;
-      row.scale = squares == Squares::all || !full_mass ? 1 : 0.5;
+      row.scale = is_horizontal_edge(row) && full_mass ? 0.5 : 1;
       part.stencil.push_back(std::move(row));
     }
   }
   part.irregular = assemble_rows(mesh, material, irregular, plate.mass_kg, in_part);
   return part;
+}
+
+void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, ConstRow middle,
+                     ConstRow north, double* a_x, double* a_y) {
+  const auto edge = scaled(op.edge, row.scale);
+  for (const Span span : row.spans) {
+    if (row.squares == Squares::all) {
+      add_interior_row(op.interior, span, south, middle, north, a_x, a_y);
+    } else if (row.squares == Squares::above) {
+      add_edge_row(edge, span, middle, north, a_x, a_y);
+    } else if (row.squares == Squares::below) {
+      add_edge_row(mirrored(edge), span, middle, south, a_x, a_y);
+    } else {
+      const bool right = row.squares == Squares::right;
+      const Pair a =
+          side_kick(right ? edge : mirrored(edge), span.begin, right ? 1 : -1, south, middle, north);
+      a_x[span.begin] += a.x;
+      a_y[span.begin] += a.y;
+    }
+  }
 }
 
 void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
@@ -200,19 +228,11 @@ void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
     return ConstRow{w.x.data() + static_cast<std::ptrdiff_t>(j) * stride,
                     w.y.data() + static_cast<std::ptrdiff_t>(j) * stride};
   };
-  for (const auto& [j, squares, scale, spans] : part.stencil) {
-    double* a_x = a.x.data() + static_cast<std::ptrdiff_t>(j) * stride;
-    double* a_y = a.y.data() + static_cast<std::ptrdiff_t>(j) * stride;
-    const auto edge = scaled(op.edge, scale);
-    for (const Span span : spans) {
-      if (squares == Squares::all) {
-        add_interior_row(op.interior, span, row(j - 1), row(j), row(j + 1), a_x, a_y);
-      } else if (squares == Squares::above) {
-        add_edge_row(edge, span, row(j), row(j + 1), a_x, a_y);
-      } else {
-        add_edge_row(mirrored(edge), span, row(j), row(j - 1), a_x, a_y);
-      }
-    }
+  for (const auto& stencil : part.stencil) {
+    const int j = stencil.row;
+    add_stencil_row(op, stencil, row(std::max(j - 1, 0)), row(j), row(std::min(j + 1, op.grid.rows)),
+                    a.x.data() + static_cast<std::ptrdiff_t>(j) * stride,
+                    a.y.data() + static_cast<std::ptrdiff_t>(j) * stride);
   }
   for_each_row_product(part.irregular, w, [&](std::size_t r, double x, double y) {
     a.x[part.irregular.node[r]] += x;
