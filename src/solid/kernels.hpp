@@ -9,8 +9,8 @@
 #include "solid/operator.hpp"
 
 // The explicit step over plain arrays: the kick of one node by functions for any processor, and loops over
-// them, one grid row at a time. Every pointer points to column 0
-// of its row; rows of w never alias the rows that are written.
+// them, one grid row at a time. Every pointer points to column 0 of its row; rows of w never alias the rows
+// that are written.
 namespace slipfront::solid {
 
 inline InteriorStencil scaled(InteriorStencil s, double factor) {
@@ -61,6 +61,22 @@ inline void add_interior_row(const InteriorStencil& s, Span span, ConstRow south
     v_x[i] += d.x;
     v_y[i] += d.y;
   }
+}
+
+/// The values one column to the left of `here`, and one to the right.
+inline Lanes from_left(Lanes left, Lanes here) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(left, here, 7, 8, 9, 10, 11, 12, 13, 14);
+#else
+  return __builtin_shufflevector(left, here, 3, 4, 5, 6);
+#endif
+}
+inline Lanes from_right(Lanes here, Lanes right) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(here, right, 1, 2, 3, 4, 5, 6, 7, 8);
+#else
+  return __builtin_shufflevector(here, right, 1, 2, 3, 4);
+#endif
 }
 
 /// The interior stencil's terms by the column they come from, so that two vectors per component have to be
