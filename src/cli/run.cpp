@@ -12,6 +12,7 @@
 #include "fronts/fit.hpp"
 #include "io/log.hpp"
 #include "io/results.hpp"
+#include "io/stream.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -79,10 +80,14 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
     };
   };
   try {
-    const auto initial = run::make_initial_state(config, with_progress("ramp"));
-    const auto result = run::run_event(config, initial, with_progress("event"));
-    io::remove_results(options.dir);
-    run::write(options.dir, result, initial);
+    auto initial = run::make_initial_state(config, with_progress("ramp"));
+    const auto stepper = run::start_event(config, initial);
+    run::release_fields(initial);
+    io::ResultStream stream(options.dir, initial.common.tractions.x_m, initial.mesh,
+                            !config.output.snapshot_times_s.empty());
+    const auto result = run::run_event(config, initial, *stepper, with_progress("event"), &stream);
+    stream.publish();
+    run::write_beside_stream(options.dir, result, initial);
     if (result.event.end == solve::EventEnd::blow_up)
       throw BlowUp(result.event.blow_up + "; what there is was kept in " + options.dir);
     if (result.event.end == solve::EventEnd::interrupted)

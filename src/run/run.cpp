@@ -8,6 +8,10 @@
 #include <numeric>
 #include <utility>
 
+#ifdef __GLIBC__  // known from the headers above
+#include <malloc.h>
+#endif
+
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "interface/nucleation.hpp"
@@ -62,6 +66,10 @@ std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::M
   for (const auto n : mesh.lower)
     B.push_back(interface::nucleation_profile(nucleation, mesh.x_m[n], mesh.period_m));
   return B;
+}
+
+const solve::Equilibrium& event_state(const io::Case& config, const InitialState& initial) {
+  return config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
 }
 
 /// Prescribed tractions beyond the static strength, said in one line; empty where there are none.
@@ -205,30 +213,57 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
   return o;
 }
 
-Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor) {
-  Result result;
-  result.config = config;
-  result.speeds = wave_speeds(config.material);
-  const double mu_s = interface::static_coefficient(config.friction);
-  const auto& state =
-      config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
-
-  solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), config.time);
-  stepper.start(state, top_speed_m_per_s(config));
-  if (initial.prescribed) stepper.set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
-  auto forces = solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger, mu_s);
+std::unique_ptr<solve::Stepper> start_event(const io::Case& config, const InitialState& initial) {
+  const auto& state = event_state(config, initial);
+  auto stepper =
+      std::make_unique<solve::Stepper>(initial.mesh, config.material, io::contact_model(config), config.time);
+  stepper->start(state, top_speed_m_per_s(config));
+  if (initial.prescribed) stepper->set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
+  auto forces = solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger,
+                                      interface::static_coefficient(config.friction));
   if (config.event == interface::EventKind::nucleation) {
     auto B = patch(config.nucleation, initial.mesh);
     if (config.nucleation.form == interface::NucleationForm::weakened) {
       for (double& b : B) b = 1 - b;
-      stepper.set_intact(std::move(B));
+      stepper->set_intact(std::move(B));
     } else {
       for (std::size_t k = 0; k < B.size(); ++k)
         if (state.contact[k] != solve::Contact::open)
           forces[k] = config.nucleation.overstress_Pa * B[k] * initial.tributary_m[k];
     }
   }
-  stepper.set_trigger(config.trigger, std::move(forces));
+  stepper->set_trigger(config.trigger, std::move(forces));
+  return stepper;
+}
+
+void release_fields(InitialState& initial) {
+  const auto release = [](solve::Equilibrium& state) {
+    state.u_m = {};
+    state.u_per_shear = {};
+  };
+  release(initial.common);
+  release(initial.spontaneous);
+  if (initial.ramp) {
+    release(initial.ramp->common);
+    release(initial.ramp->spontaneous);
+  }
+#ifdef __GLIBC__
+  malloc_trim(0);  // freed fields may lie between others
+#endif
+}
+
+Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor) {
+  const auto stepper = start_event(config, initial);
+  return run_event(config, initial, *stepper, monitor);
+}
+
+Result run_event(const io::Case& config, const InitialState& initial, solve::Stepper& stepper,
+                 const solve::Monitor& monitor, solve::Sink* sink) {
+  Result result;
+  result.config = config;
+  result.speeds = wave_speeds(config.material);
+  const double mu_s = interface::static_coefficient(config.friction);
+  const auto& state = event_state(config, initial);
   result.stable_step_s = stepper.stable_step_s();
   result.step_s = stepper.step_s();
   result.node_updates_per_step = stepper.node_updates_per_step();
@@ -242,7 +277,7 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
       stepper, state, mu_s, result.speeds.c_L, triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
       config.time,
       {config.output.history_interval_s, config.output.energy_interval_s, config.output.snapshot_times_s},
-      solve::halo_for(initial.mesh, config.fronts.l_star_m), monitor);
+      solve::halo_for(initial.mesh, config.fronts.l_star_m), monitor, sink);
   result.stepping_wall_s = seconds_since(start);
 
   result.fronts =

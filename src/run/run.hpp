@@ -61,8 +61,18 @@ struct Result {
   std::vector<std::string> warnings;
 };
 
+/// The plate in a case's initial state, about to move.
+std::unique_ptr<solve::Stepper> start_event(const io::Case& config, const InitialState& initial);
+
+/// Gives back the displacements of an initial state, 64 bytes a node, which no started event needs.
+void release_fields(InitialState& initial);
+
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
 /// ends the event early and is told by event.end.
+/// @param sink  takes samples and snapshots; without one the event keeps them
+Result run_event(const io::Case& config, const InitialState& initial, solve::Stepper& started,
+                 const solve::Monitor& monitor, solve::Sink* sink = nullptr);
+/// Starts the event as well.
 Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor);
 
 /// How a case's fronts are measured.
@@ -71,6 +81,8 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
 /// Writes the run's folder: case.resolved.toml, run.json, interface.h5, fronts.csv, static.csv, and
 /// fields.vtkhdf where there are snapshots. The folder must have been prepared (io::prepare_output_folder).
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
+/// The same but for interface.h5 and fields.vtkhdf, which were written while the run went (io::ResultStream).
+void write_beside_stream(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
 
 /// Derived quantities of a case, found without solving anything.
 struct Info {

@@ -19,6 +19,13 @@ constexpr std::int64_t energy_check_interval = 100;
 /// speed does not keep an event going.
 constexpr double creep_over_top_speed = 10;
 
+/// Empties a history but for its places; the memory stays for the next rows.
+void clear_rows(fronts::History& history) {
+  for (auto* column :
+       {&history.time_s, &history.slip_m, &history.slip_rate_m_per_s, &history.t_Pa, &history.p_Pa})
+    column->clear();
+}
+
 /// Watches that the motion stays physical.
 class Watch {
  public:
@@ -86,9 +93,13 @@ int halo_for(const mesh::Mesh& mesh, double l_star_m) {
   return static_cast<int>(std::ceil(l_star_m / mesh.grid.spacing_m - 0.01)) + 1;
 }
 
+Snapshot take_snapshot(const Stepper& stepper) {
+  return {stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()};
+}
+
 Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L,
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
-                int halo, const Monitor& monitor) {
+                int halo, const Monitor& monitor, Sink* sink) {
   Event event;
   const auto& top = stepper.plate().top.node;
   const double top_speed = top.empty() ? 0 : stepper.v_m_per_s().x[top.front()];
@@ -106,11 +117,16 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   const double energy_interval = std::max(sampling.energy_interval_s, stepper.step_s());
   event.energies.push_back(watch.start());
   std::int64_t n_samples = 0, n_energies = 1;
+  fronts::History row;
+  auto& history = sink != nullptr ? row : event.history;
   std::size_t next_snapshot = 0;
   const auto take_snapshots = [&] {
     while (next_snapshot < sampling.snapshot_times_s.size() &&
            stepper.time_s() >= sampling.snapshot_times_s[next_snapshot]) {
-      event.snapshots.push_back({stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()});
+      if (sink != nullptr)
+        sink->snapshot(stepper);
+      else
+        event.snapshots.push_back(take_snapshot(stepper));
       ++next_snapshot;
     }
   };
@@ -118,7 +134,11 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
     take_snapshots();
     const bool sample = stepper.time_s() >= static_cast<double>(n_samples) * sample_interval;
     if (sample) n_samples = static_cast<std::int64_t>(stepper.time_s() / sample_interval) + 1;
-    stepper.advance(recorder, sample ? &event.history : nullptr);
+    stepper.advance(recorder, sample ? &history : nullptr);
+    if (sample && sink != nullptr) {
+      sink->sample(row);
+      clear_rows(row);
+    }
     const bool energies = stepper.time_s() >= static_cast<double>(n_energies) * energy_interval;
     if (energies) {
       n_energies = static_cast<std::int64_t>(stepper.time_s() / energy_interval) + 1;

@@ -10,6 +10,7 @@
 #include "base/version.hpp"
 #include "cases.hpp"
 #include "io/hdf5.hpp"
+#include "io/history.hpp"
 #include "io/results.hpp"
 #include "io/schema.hpp"
 #include "run/run.hpp"
