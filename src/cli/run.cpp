@@ -81,10 +81,9 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
   };
   try {
     auto initial = run::make_initial_state(config, with_progress("ramp"));
-    const auto stepper = run::start_event(config, initial);
-    run::release_fields(initial);
     io::ResultStream stream(options.dir, initial.common.tractions.x_m, initial.mesh,
                             !config.output.snapshot_times_s.empty());
+    const auto stepper = run::start_event(config, initial);
     const auto result = run::run_event(config, initial, *stepper, with_progress("event"), &stream);
     stream.publish();
     run::write_beside_stream(options.dir, result, initial);

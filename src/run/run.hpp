@@ -21,6 +21,7 @@ namespace slipfront::run {
 /// state.
 struct InitialState {
   mesh::Mesh mesh;
+  std::int64_t n_nodes = 0, n_cells = 0;
   std::vector<double> tributary_m;  ///< [lower]
   solve::Equilibrium common;        ///< at t/p = (1 - critical_margin) mu_s inside
   solve::Equilibrium spontaneous;   ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
@@ -61,18 +62,17 @@ struct Result {
   std::vector<std::string> warnings;
 };
 
-/// The plate in a case's initial state, about to move.
-std::unique_ptr<solve::Stepper> start_event(const io::Case& config, const InitialState& initial);
-
-/// Gives back the displacements of an initial state, 64 bytes a node, which no started event needs.
-void release_fields(InitialState& initial);
+/// The plate in a case's initial state, about to move. Takes what only this needs out of the initial state:
+/// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
+std::unique_ptr<solve::Stepper> start_event(const io::Case& config, InitialState& initial);
 
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
 /// ends the event early and is told by event.end.
-/// @param sink  takes samples and snapshots; without one the event keeps them
+/// @param started  by start_event
+/// @param sink     takes samples and snapshots; without one the event keeps them
 Result run_event(const io::Case& config, const InitialState& initial, solve::Stepper& started,
                  const solve::Monitor& monitor, solve::Sink* sink = nullptr);
-/// Starts the event as well.
+/// Starts the event as well, and leaves the initial state as it is.
 Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor);
 
 /// How a case's fronts are measured.

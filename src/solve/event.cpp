@@ -93,6 +93,17 @@ int halo_for(const mesh::Mesh& mesh, double l_star_m) {
   return static_cast<int>(std::ceil(l_star_m / mesh.grid.spacing_m - 0.01)) + 1;
 }
 
+double event_bytes(double n_nodes, double n_cells, bool with_snapshots) {
+  constexpr double number = sizeof(double), field = 2 * number;
+  const double mesh = field * n_nodes + sizeof(mesh::Cell) * n_cells;
+  const double state = 2 * field * n_nodes;                 // u_m, u_per_shear
+  const double motion = (number + 2 * field) * n_nodes;     // mass, u, v
+  const double frequency = (number + 4 * field) * n_nodes;  // solid::largest_frequency_rad_per_s
+  const double stepping = (number + field) * n_nodes;       // of the stepper besides
+  const double snapshot = with_snapshots ? 2 * field * n_nodes : 0;
+  return motion + std::max(mesh + state + frequency, stepping + snapshot);
+}
+
 Snapshot take_snapshot(const Stepper& stepper) {
   return {stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()};
 }

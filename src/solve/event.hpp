@@ -41,6 +41,11 @@ class Sink {
   virtual void snapshot(const Stepper& stepper) = 0;
 };
 
+/// Bytes of a plate in motion: the larger of what its stepper takes while it is built, the mesh and the state
+/// before the event beside it, and of the event itself with the snapshot that waits to be written. Exact but
+/// for the interface, the irregular nodes and the program itself.
+double event_bytes(double n_nodes, double n_cells, bool with_snapshots);
+
 /// Why an event ended.
 enum class EventEnd { end_time, quiet, interrupted, blow_up };
 

@@ -126,11 +126,13 @@ Complex layer_relation(const solid::Material& material, const Sliding& sliding, 
 }
 
 std::vector<Mode> growing_modes(const solid::Material& material, const Sliding& sliding,
-                                double wavenumber_per_m) {
+                                double wavenumber_per_m, std::span<const Mode> expected) {
   SLIPFRONT_ASSERT(wavenumber_per_m > 0, "modes are described by k > 0");
+  const double rate_per_s = wavenumber_per_m * solid::shear_speed_m_per_s(material);
   const auto f = [&](Complex p) { return half_space_relation(material, sliding, wavenumber_per_m, p); };
-  return modes_of(zeros_by_argument_principle(f, {}),
-                  wavenumber_per_m * solid::shear_speed_m_per_s(material));
+  std::vector<Complex> starts;
+  for (const Mode& mode : expected) starts.push_back(mode.s_per_s / rate_per_s);
+  return modes_of(zeros_by_argument_principle(f, {}, starts), rate_per_s);
 }
 
 std::optional<Mode> fastest_growing_mode(const solid::Material& material, const Sliding& sliding,
