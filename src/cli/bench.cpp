@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "base/memory.hpp"
 #include "base/version.hpp"
 #include "cli/commands.hpp"
 #include "fronts/fit.hpp"
 #include "mesh/plate.hpp"
+#include "solve/event.hpp"
 #include "solve/stepper.hpp"
 
 namespace slipfront::cli {
@@ -69,6 +71,9 @@ struct Row {
 Row measure(const std::string& path, int columns, const solve::TimeStepping& time) {
   mesh::Plate plate;
   plate.element_size_m = plate.width_m / columns;
+  const double n_nodes = (columns + 1) * (0.5 * columns + 1);
+  require_memory(solve::event_bytes(n_nodes, n_nodes, false), fmt::format("a plate of {:.4g} nodes", n_nodes),
+                 "free some memory");
   const auto mesh = mesh::make_plate(plate);
   solve::Stepper stepper(mesh, {}, {interface::VelocityWeakening{}}, time);
   solve::Equilibrium state;

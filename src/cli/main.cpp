@@ -80,9 +80,7 @@ int main(int argc, char** argv) try {
 } catch (const slipfront::Interrupted& error) {
   return report(interrupted, fmt::format("slipfront: {}", error.what()));
 } catch (const std::bad_alloc&) {
-  return report(
-      internal_error,
-      "slipfront: not enough memory; use larger elements, fewer snapshots or a longer history interval");
+  return report(internal_error, "slipfront: not enough memory; use larger elements");
 } catch (const std::exception& error) {
   return report(internal_error, fmt::format("slipfront: internal error: {}", error.what()));
 } catch (...) {
