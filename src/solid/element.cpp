@@ -20,7 +20,7 @@ struct ShapeAtPoint {
   double jacobian;
 };
 
-[[gnu::always_inline]] inline ShapeAtPoint shape_at(const CellCoordinates& c, double xi, double eta) {
+ShapeAtPoint shape_at(const CellCoordinates& c, double xi, double eta) {
   ShapeAtPoint s{};
   std::array<double, 4> d_dxi{}, d_deta{};
   double x_xi = 0, x_eta = 0, y_xi = 0, y_eta = 0;
