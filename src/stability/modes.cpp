@@ -25,6 +25,11 @@ struct Scaled {
   Complex strength_of_slip;  ///< response of strength to u_x at constant pressure, over G k
 };
 
+/// The plain quotient: moduli here are far from where squares overflow, for which the operator looks out.
+Complex quotient(Complex a, Complex b) {
+  return a * std::conj(b) / std::norm(b);
+}
+
 Scaled scaled(const solid::Material& material, const Sliding& sliding, double k, Complex p) {
   const double G = solid::shear_modulus_Pa(material);
   const double c_S = solid::shear_speed_m_per_s(material);
@@ -32,7 +37,7 @@ Scaled scaled(const solid::Material& material, const Sliding& sliding, double k,
   Scaled r;
   r.eta2 = solid::longitudinal_modulus_Pa(material) / G;
   r.damped = 1.0 + material.stiffness_damping_s * s;
-  r.P2 = p * p / r.damped;
+  r.P2 = quotient(p * p, r.damped);
   r.a_d = std::sqrt(1.0 + r.P2 / r.eta2);
   r.a_s = std::sqrt(1.0 + r.P2);
   const Complex delay = sliding.relaxed == interface::Relaxed::none
@@ -91,7 +96,7 @@ Complex half_space_relation(const solid::Material& material, const Sliding& slid
                             Complex p) {
   const Scaled r = scaled(material, sliding, wavenumber_per_m, p);
   // (1 - a_d a_s)/P^2, written so that nothing cancels at small P.
-  const Complex d = -(1 + 1 / r.eta2 + r.P2 / r.eta2) / (1.0 + r.a_d * r.a_s);
+  const Complex d = -quotient(1 + 1 / r.eta2 + r.P2 / r.eta2, 1.0 + r.a_d * r.a_s);
   return r.damped * (r.a_d - i_unit * sliding.mu * r.delayed_p * (1.0 + 2.0 * d)) - r.strength_of_slip * d;
 }
 
