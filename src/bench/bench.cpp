@@ -9,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "base/memory.hpp"
 #include "fronts/fit.hpp"
 #include "io/case.hpp"
 #include "mesh/plate.hpp"
@@ -158,6 +159,9 @@ class SlippingPlate {
 };
 
 Rate measure_path(const std::string& path, int columns, int substeps, const solve::Execution& execution) {
+  const double nodes = (columns + 1.0) * (columns / 2 + 1.0);
+  require_memory(solve::event_bytes(nodes, nodes, false), fmt::format("a plate of {:.4g} nodes", nodes),
+                 "free some memory");
   const double before = resident_bytes();
   SlippingPlate plate(columns, substeps, execution);
   auto& stepper = plate.stepper();
@@ -166,7 +170,6 @@ Rate measure_path(const std::string& path, int columns, int substeps, const solv
   const double updates = static_cast<double>(steps) * stepper.node_updates_per_step();
   Rate result{path, columns, columns / 2, execution.threads, stepper.steps_per_sweep()};
   result.node_updates_per_s = rate(updates, [&] { stepper.advance(plate.recorder(), steps, {}); });
-  const double nodes = (columns + 1.0) * (columns / 2 + 1.0);
   constexpr double enough_nodes = 1e6;
   if (nodes > enough_nodes) result.bytes_per_node = (resident_bytes() - before) / nodes;
   return result;

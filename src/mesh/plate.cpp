@@ -69,7 +69,7 @@ Grid make_grid(const Plate& plate) {
 }
 
 /// Mesh, operator and motion of a plate, and what building them takes for a while.
-constexpr double bytes_per_node = 250;
+constexpr double bytes_per_node = 180;
 
 Mesh make_rectangle(const Plate& plate) {
   Mesh mesh;
