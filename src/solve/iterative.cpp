@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/error.hpp"
 
@@ -11,6 +12,8 @@ namespace slipfront::solve {
 namespace {
 
 constexpr int most_cycles = 400;
+/// Columns of the coarsest level that finds contact states.
+constexpr int least_interface_cells = 64;
 
 template <class A, class B>
 double dot(const std::vector<A>& a, const std::vector<B>& b) {
@@ -49,51 +52,115 @@ void add(solid::Field& a, double gain, const B& b) {
   scale_add(1, a, gain, b);
 }
 
+/// Node of the finest level at the place of a level's node.
+mesh::Node finest_node(const Multigrid& multigrid, int level, mesh::Node n) {
+  for (; level > 0; --level) {
+    const auto& t = multigrid.transfer(level - 1);
+    const int stride = multigrid.grid(level).stride();
+    n = multigrid.grid(level - 1).node(t.x.place[n % stride], t.y.place[n / stride]);
+  }
+  return n;
+}
+
+/// The level's nodes at places of mesh.lower, in their order, and these places.
+struct LowerNodes {
+  std::vector<mesh::Node> node;
+  std::vector<std::size_t> in_mesh_lower;
+};
+LowerNodes lower_nodes(const mesh::Mesh& mesh, const Multigrid& multigrid, int level) {
+  const auto& grid = multigrid.grid(level);
+  std::map<mesh::Node, mesh::Node> at;  // by the finest node
+  for (const auto n : grid.block.node) at[finest_node(multigrid, level, n)] = n;
+  LowerNodes lower;
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    const auto found = at.find(mesh.lower[k]);
+    if (found == at.end()) continue;
+    lower.node.push_back(found->second);
+    lower.in_mesh_lower.push_back(k);
+  }
+  return lower;
+}
+
+void interpolate(const GridLevel& fine, const GridLevel& coarse, const Transfer& t, const solid::Field& from,
+                 solid::Field& to) {
+  for (int j = 0; j <= fine.rows; ++j)
+    for (int i = 0; i <= fine.columns; ++i) {
+      const auto n = fine.node(i, j);
+      const auto corner = coarse.node(t.x.left[i], t.y.left[j]);
+      const double wx = t.x.weight[i], wy = t.y.weight[j];
+      const auto value = [&](const std::vector<double>& f) {
+        return (1 - wy) * ((1 - wx) * f[corner] + wx * f[corner + 1]) +
+               wy * ((1 - wx) * f[corner + coarse.stride()] + wx * f[corner + coarse.stride() + 1]);
+      };
+      to.x[n] = value(from.x);
+      to.y[n] = value(from.y);
+    }
+  for (const auto& [n, entries] : t.special) {
+    to.x[n] = to.y[n] = 0;
+    for (const auto& e : entries) {
+      to.x[n] += static_cast<double>(e.weight) * from.x[e.coarse];
+      to.y[n] += static_cast<double>(e.weight) * from.y[e.coarse];
+    }
+  }
+  for (const auto n : fine.unused) to.x[n] = to.y[n] = 0;
+}
+
 class IterativeLoadCase : public LoadCase {
  public:
-  IterativeLoadCase(IterativeSolver& solver, const mesh::Mesh& mesh, TopConstraint constraint,
+  IterativeLoadCase(const mesh::Mesh& mesh, Multigrid& multigrid, int level, TopConstraint constraint,
                     const TopDisplacement& top, bool sheared, const solid::Field* start)
-      : solver_(solver), mesh_(mesh), constraint_(constraint), sheared_(sheared) {
-    const auto n = static_cast<std::size_t>(mesh.n_nodes());
-    u0_ = start != nullptr ? *start : solid::Field(n);
-    u1_ = solid::Field(sheared ? n : 0);
+      : mesh_(mesh),
+        equations_(mesh, multigrid, level),
+        constraint_(constraint),
+        top_(top),
+        sheared_(sheared) {
+    const auto& grid = equations_.grid();
+    u0_ = solid::Field(grid.n_nodes());
+    u1_ = solid::Field(sheared ? grid.n_nodes() : 0);
     // Uniform strain from the plane to the loaded edge.
-    const auto& grid = mesh.grid;
     const double height = mesh.y_m[mesh.top.front()];
-    const auto orphan = mesh::orphans(mesh);
     for (int j = 0; j <= grid.rows; ++j)
       for (int i = 0; i <= grid.columns; ++i) {
-        const auto node = grid.node(i, j);
-        if (orphan[node]) continue;
-        const double share = mesh.y_m[node] / height;
-        if (start == nullptr) u0_.y[node] = share * top.u_y_m[i];
-        if (start == nullptr && constraint == TopConstraint::both) u0_.x[node] = share * top.u_x_m[i];
-        if (sheared) u1_.x[node] = share;
+        const auto n = grid.node(i, j);
+        const auto in_mesh = equations_.finest(n);
+        const int column = in_mesh % mesh.grid.stride();
+        const double share = mesh.y_m[in_mesh] / height;
+        u0_.y[n] = start != nullptr ? start->y[in_mesh] : share * top.u_y_m[column];
+        u0_.x[n] = start != nullptr                    ? start->x[in_mesh]
+                   : constraint == TopConstraint::both ? share * top.u_x_m[column]
+                                                       : 0;
+        if (sheared) u1_.x[n] = share;
       }
-    for (std::size_t k = 0; k < mesh.top.size(); ++k) {
-      if (constraint == TopConstraint::both) u0_.x[mesh.top[k]] = top.u_x_m[k];
-      u0_.y[mesh.top[k]] = top.u_y_m[k];
-    }
+    set_fixed();
+  }
+
+  void begin_from(const LoadCase& coarser) override {
+    const auto& from = dynamic_cast<const IterativeLoadCase&>(coarser);
+    const auto& transfer = equations_.multigrid().transfer(equations_.level());
+    interpolate(equations_.grid(), from.equations_.grid(), transfer, from.u0_, u0_);
+    if (sheared_) interpolate(equations_.grid(), from.equations_.grid(), transfer, from.u1_, u1_);
+    set_fixed();
   }
 
   void solve(const Support& support, double accuracy) override {
-    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
-      const auto n = mesh_.lower[k];
+    const auto& lower = equations_.lower();
+    for (std::size_t k = 0; k < lower.size(); ++k) {
+      const auto n = lower[k];
       if (support.contact[k] == Contact::open) continue;
-      u0_.y[n] = -mesh_.y_m[n];
+      u0_.y[n] = -mesh_.y_m[equations_.finest(n)];
       if (sheared_) u1_.y[n] = 0;
       if (support.contact[k] != Contact::stick) continue;
       u0_.x[n] = support.anchor_x_m[k];
       if (sheared_) u1_.x[n] = 0;
     }
-    solver_.fix(constraint_, support);
-    solver_.solve(accuracy, u0_);
+    equations_.fix(constraint_, support);
+    equations_.solve(accuracy, u0_);
     u0 = at_interface(u0_);
-    f0 = solver_.interface_forces(u0_);
+    f0 = equations_.interface_forces(u0_);
     if (sheared_) {
-      solver_.solve(accuracy, u1_);
+      equations_.solve(accuracy, u1_);
       u1 = at_interface(u1_);
-      f1 = solver_.interface_forces(u1_);
+      f1 = equations_.interface_forces(u1_);
     } else {
       u1 = f1 = Eigen::VectorXd::Zero(u0.size());
     }
@@ -107,18 +174,37 @@ class IterativeLoadCase : public LoadCase {
   solid::Field displacement_per_shear() const override { return sheared_ ? u1_ : solid::Field(u0_.size()); }
 
  private:
+  /// Exactly the loaded edge's displacements, and 0 at numbers without a node.
+  void set_fixed() {
+    const auto& grid = equations_.grid();
+    for (int i = 0; i <= grid.columns; ++i) {
+      const auto n = grid.node(i, grid.rows);
+      const int column = equations_.finest(n) % mesh_.grid.stride();
+      if (constraint_ == TopConstraint::both) u0_.x[n] = top_.u_x_m[column];
+      u0_.y[n] = top_.u_y_m[column];
+      if (sheared_) u1_.x[n] = 1;
+      if (sheared_) u1_.y[n] = 0;
+    }
+    for (const auto n : grid.unused) {
+      u0_.x[n] = u0_.y[n] = 0;
+      if (sheared_) u1_.x[n] = u1_.y[n] = 0;
+    }
+  }
+
   Eigen::VectorXd at_interface(const solid::Field& u) const {
-    Eigen::VectorXd v(2 * mesh_.lower.size());
-    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
-      v(2 * k) = u.x[mesh_.lower[k]];
-      v(2 * k + 1) = u.y[mesh_.lower[k]];
+    const auto& lower = equations_.lower();
+    Eigen::VectorXd v(2 * lower.size());
+    for (std::size_t k = 0; k < lower.size(); ++k) {
+      v(2 * k) = u.x[lower[k]];
+      v(2 * k + 1) = u.y[lower[k]];
     }
     return v;
   }
 
-  IterativeSolver& solver_;
   const mesh::Mesh& mesh_;
+  LevelEquations equations_;
   TopConstraint constraint_;
+  TopDisplacement top_;
   bool sheared_;
   solid::Field u0_, u1_;
 };
@@ -133,45 +219,63 @@ double iterative_bytes(double n_unknowns) {
 }
 
 IterativeSolver::IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material)
-    : mesh_(mesh), multigrid_(mesh, material), buffer_(multigrid_.finest()) {
-  const auto& finest = multigrid_.finest();
-  fixed_.assign(finest.block.size(), 0);
-  n_unknowns_ = 2 * static_cast<std::int64_t>(finest.n_nodes() - finest.unused.size() - mesh.top.size());
-  const auto n = finest.n_nodes();
-  residual_ = direction_ = product_ = solid::Field(n);
-}
-
-double IterativeSolver::bytes() const {
-  return iterative_bytes(static_cast<double>(n_unknowns_));
+    : mesh_(mesh), multigrid_(mesh, material) {
+  const auto& grid = multigrid_.grid(0);
+  n_unknowns_ = 2 * static_cast<std::int64_t>(grid.n_nodes() - grid.unused.size() - mesh.top.size());
+  while (n_levels_ < multigrid_.n_levels() && multigrid_.grid(n_levels_).columns >= least_interface_cells)
+    ++n_levels_;
 }
 
 std::unique_ptr<LoadCase> IterativeSolver::load_case(TopConstraint constraint, const TopDisplacement& top,
-                                                     bool sheared, const solid::Field* start) {
-  return std::make_unique<IterativeLoadCase>(*this, mesh_, constraint, top, sheared, start);
+                                                     bool sheared, const solid::Field* start, int level) {
+  return std::make_unique<IterativeLoadCase>(mesh_, multigrid_, level, constraint, top, sheared, start);
 }
 
-void IterativeSolver::fix(TopConstraint constraint, const Support& support) {
+std::vector<std::size_t> IterativeSolver::interface_of(int level) const {
+  return lower_nodes(mesh_, multigrid_, level).in_mesh_lower;
+}
+
+LevelEquations::LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, int level)
+    : multigrid_(multigrid),
+      level_(level),
+      grid_(multigrid.grid(level)),
+      buffer_(grid_),
+      fixed_(grid_.block.size(), 0),
+      residual_(grid_.n_nodes()),
+      direction_(grid_.n_nodes()),
+      product_(grid_.n_nodes()) {
+  auto lower = lower_nodes(mesh, multigrid, level);
+  lower_ = std::move(lower.node);
+  in_mesh_lower_ = std::move(lower.in_mesh_lower);
+  for (int i = 0; i <= grid_.columns; ++i) top_.push_back(grid_.node(i, grid_.rows));
+}
+
+mesh::Node LevelEquations::finest(mesh::Node n) const {
+  return finest_node(multigrid_, level_, n);
+}
+
+void LevelEquations::fix(TopConstraint constraint, const Support& support) {
+  SLIPFRONT_ASSERT(support.contact.size() == lower_.size(), "size of the interface");
   FixedNodes fixed;
-  fixed.y = mesh_.top;
-  if (constraint == TopConstraint::both) fixed.x = mesh_.top;
-  const auto& finest = multigrid_.finest();
+  fixed.y = top_;
+  if (constraint == TopConstraint::both) fixed.x = top_;
   slip_.clear();
-  for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
-    const auto n = mesh_.lower[k];
+  for (std::size_t k = 0; k < lower_.size(); ++k) {
+    const auto n = lower_[k];
     if (support.contact[k] == Contact::stick) fixed.x.push_back(n);
     if (support.contact[k] != Contact::open) fixed.y.push_back(n);
     if (support.contact[k] == Contact::slip)
-      slip_.push_back({finest.block_row(n), support.slip_sign[k] * support.mu_s});
+      slip_.push_back({grid_.block_row(n), support.slip_sign[k] * support.mu_s});
   }
-  multigrid_.fix(fixed);
+  multigrid_.fix(fixed, level_);
   std::ranges::fill(fixed_, std::uint8_t{0});
-  for (const auto n : fixed.x) fixed_[finest.block_row(n)] |= 1;
-  for (const auto n : fixed.y) fixed_[finest.block_row(n)] |= 2;
+  for (const auto n : fixed.x) fixed_[grid_.block_row(n)] |= 1;
+  for (const auto n : fixed.y) fixed_[grid_.block_row(n)] |= 2;
 }
 
 template <class P>
-double IterativeSolver::multiply(const P& p, solid::Field& q, bool with_fixed) {
-  const auto& level = multigrid_.finest();
+double LevelEquations::multiply(const P& p, solid::Field& q, bool with_fixed) {
+  const auto& level = grid_;
   const int stride = level.stride();
   multiply_blocks(level.block, level.block.block, p.x.data(), p.y.data(), buffer_.blocks);
   double energy = 0;
@@ -208,15 +312,16 @@ double IterativeSolver::multiply(const P& p, solid::Field& q, bool with_fixed) {
   return energy;
 }
 
-int IterativeSolver::solve(double accuracy, solid::Field& u) {
-  const int cycles = slip_.empty() ? conjugate_gradients(accuracy, u) : bicgstab(accuracy, u);
-  n_cycles_ += cycles;
-  return cycles;
+void LevelEquations::solve(double accuracy, solid::Field& u) {
+  if (slip_.empty())
+    conjugate_gradients(accuracy, u);
+  else
+    bicgstab(accuracy, u);
 }
 
 // With z = B r and B near the inverse, r . z is the square of the error in the energy norm; z itself then
 // takes most of the last error away.
-int IterativeSolver::conjugate_gradients(double accuracy, solid::Field& u) {
+void LevelEquations::conjugate_gradients(double accuracy, solid::Field& u) {
   auto& r = residual_;
   auto& p = direction_;
   auto& q = product_;
@@ -229,7 +334,7 @@ int IterativeSolver::conjugate_gradients(double accuracy, solid::Field& u) {
     const double error2 = dot_fields(r, multigrid_.z());
     if (is_small(error2)) {
       add(u, 1, multigrid_.z());
-      return cycle;
+      return;
     }
     scale_add(cycle == 1 ? 0 : error2 / error2_before, p, 1, multigrid_.z());
     error2_before = error2;
@@ -240,7 +345,7 @@ int IterativeSolver::conjugate_gradients(double accuracy, solid::Field& u) {
   throw UserError("the iterative static solution does not converge; set loading.solver = direct");
 }
 
-int IterativeSolver::bicgstab(double accuracy, solid::Field& u) {
+void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
   if (shadow_.size() == 0) shadow_ = second_ = solid::Field(u.size());
   auto& r = residual_;
   auto& p = direction_;
@@ -265,7 +370,7 @@ int IterativeSolver::bicgstab(double accuracy, solid::Field& u) {
     multigrid_.apply(p);
     if (cycle == 1 && is_small(dot_fields(r, z))) {
       add(u, 1, z);
-      return cycle;
+      return;
     }
     multiply(z, v, false);
     alpha = rho / dot_fields(shadow_, v);
@@ -275,7 +380,7 @@ int IterativeSolver::bicgstab(double accuracy, solid::Field& u) {
     const double error2 = dot_fields(r, z);
     if (is_small(error2)) {
       add(u, 1, z);
-      return cycle + 1;
+      return;
     }
     multiply(z, t, false);
     omega = dot_fields(t, r) / dot_fields(t, t);
@@ -285,11 +390,11 @@ int IterativeSolver::bicgstab(double accuracy, solid::Field& u) {
   throw UserError("the iterative static solution does not converge; set loading.solver = direct");
 }
 
-Eigen::VectorXd IterativeSolver::interface_forces(const solid::Field& u) const {
-  const auto& rows = multigrid_.finest().block;
-  Eigen::VectorXd f(2 * mesh_.lower.size());
-  for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
-    const auto r = multigrid_.finest().block_row(mesh_.lower[k]);
+Eigen::VectorXd LevelEquations::interface_forces(const solid::Field& u) const {
+  const auto& rows = grid_.block;
+  Eigen::VectorXd f(2 * lower_.size());
+  for (std::size_t k = 0; k < lower_.size(); ++k) {
+    const auto r = grid_.block_row(lower_[k]);
     double x = 0, y = 0;
     for (auto e = rows.first[r]; e < rows.first[r + 1]; ++e) {
       const auto& b = rows.block[e];

@@ -70,21 +70,25 @@ Multigrid::Multigrid(const mesh::Mesh& mesh, const solid::Material& material) {
   }
 }
 
-const GridLevel& Multigrid::finest() const {
-  return levels_.front()->grid;
+const GridLevel& Multigrid::grid(int level) const {
+  return levels_[level]->grid;
+}
+
+const Transfer& Multigrid::transfer(int finer_level) const {
+  return levels_[finer_level]->transfer;
 }
 
 const GridField<float>& Multigrid::z() const {
-  return levels_.front()->u;
+  return levels_[top_level_]->u;
 }
 
-void Multigrid::fix(const FixedNodes& fixed) {
-  std::vector<std::uint8_t> of_finer;
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
+void Multigrid::fix(const FixedNodes& fixed, int first) {
+  top_level_ = first;
+  for (std::size_t l = first; l < levels_.size(); ++l) {
     auto& level = *levels_[l];
     auto& own = level.fixed;
     std::ranges::fill(own, std::uint8_t{0});
-    if (l == 0) {
+    if (l == static_cast<std::size_t>(first)) {
       const auto set = [&](const std::vector<mesh::Node>& nodes, std::uint8_t bit) {
         for (const auto n : nodes) {
           const auto r = level.grid.block_row(n);
@@ -110,12 +114,13 @@ void Multigrid::fix(const FixedNodes& fixed) {
 }
 
 void Multigrid::apply(const solid::Field& r) {
-  auto& b = levels_.front()->b;
+  auto& b = levels_[top_level_]->b;
+  n_cycles_ += top_level_ == 0 ? 1 : 0;
   for (std::size_t n = 0; n < r.size(); ++n) {
     b.x[n] = static_cast<float>(r.x[n]);
     b.y[n] = static_cast<float>(r.y[n]);
   }
-  cycle(0);
+  cycle(top_level_);
 }
 
 void Multigrid::cycle(std::size_t l) {

@@ -27,15 +27,18 @@ class Multigrid {
   Multigrid(const Multigrid&) = delete;
   Multigrid& operator=(const Multigrid&) = delete;
 
-  /// Prescribes displacements; a coarse node is fixed where the fine node at its place is.
-  void fix(const FixedNodes& fixed);
+  /// Prescribes displacements of a level's nodes, on which the cycles then begin; a coarse node is fixed
+  /// where the finer node at its place is.
+  void fix(const FixedNodes& fixed, int level = 0);
 
-  /// z = B r; 0 at fixed displacements.
+  /// z = B r on the level last fixed; 0 at fixed displacements.
   void apply(const solid::Field& r);
   const GridField<float>& z() const;
 
-  const GridLevel& finest() const;
   int n_levels() const { return static_cast<int>(levels_.size()); }
+  const GridLevel& grid(int level) const;
+  const Transfer& transfer(int finer_level) const;
+  int n_cycles() const { return n_cycles_; }  ///< begun on the finest level so far
 
  private:
   struct Level;
@@ -48,6 +51,8 @@ class Multigrid {
   void solve_coarsest();
 
   std::vector<std::unique_ptr<Level>> levels_;
+  int top_level_ = 0;  ///< on which cycles begin
+  int n_cycles_ = 0;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> coarsest_;
   std::vector<std::int32_t> coarsest_unknown_;  ///< [2 nodes] or -1
   Eigen::VectorXd coarsest_b_;

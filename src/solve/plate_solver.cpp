@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solve/plate_solver.hpp"
 
+#include <numeric>
+
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "solve/factorisation.hpp"
@@ -73,6 +75,7 @@ class CondensedLoadCase : public LoadCase {
     load.g_N += shear * unit_shear_.g_N;
     return plate_->displacement(load, u0 + shear * u1);
   }
+  void begin_from(const LoadCase&) override {}
   solid::Field displacement_per_shear() const override { return plate_->displacement(unit_shear_, u1); }
 
  private:
@@ -90,7 +93,7 @@ class DirectSolver : public PlateSolver {
         held_(std::make_shared<Factorisation>(mesh, material, TopConstraint::both)) {}
 
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
-                                      const solid::Field*) override {
+                                      const solid::Field*, int) override {
     auto plate = held_;
     if (constraint == TopConstraint::vertical)
       plate = std::make_shared<Factorisation>(mesh_, material_, constraint);
@@ -99,6 +102,12 @@ class DirectSolver : public PlateSolver {
   std::int64_t n_unknowns() const override { return held_->n_unknowns(); }
   double bytes() const override { return held_->factor_bytes(); }
   bool iterates() const override { return false; }
+  int n_levels() const override { return 1; }
+  std::vector<std::size_t> interface_of(int) const override {
+    std::vector<std::size_t> all(mesh_.lower.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+  }
 
  private:
   const mesh::Mesh& mesh_;

@@ -37,7 +37,7 @@ struct Support {
 
 /// The plate under its loaded edge, held by the plane: displacements of the interface and forces of the plane
 /// on it, affine in the shear: u0 + shear u1, f0 + shear f1. Vectors over the interface hold x and y of each
-/// node of mesh.lower in turn. Forces are per unit thickness.
+/// of the level's interface nodes in turn. Forces are per unit thickness.
 class LoadCase {
  public:
   virtual ~LoadCase() = default;
@@ -48,6 +48,8 @@ class LoadCase {
   virtual solid::Field displacement(double shear) const = 0;
   /// Its change with the shear.
   virtual solid::Field displacement_per_shear() const = 0;
+  /// Takes the solution of the same case on the next coarser level as the guess from which solve begins.
+  virtual void begin_from(const LoadCase& coarser) = 0;
 
   Eigen::VectorXd u0, u1, f0, f1;
 };
@@ -57,9 +59,12 @@ class PlateSolver {
  public:
   virtual ~PlateSolver() = default;
   /// The loaded edge at `top`, and where `sheared` moved on along x by the shear. `start`: a guess of the
-  /// displacement without shear, or null.
+  /// displacement without shear on the finest level, or null.
   virtual std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top,
-                                              bool sheared, const solid::Field* start) = 0;
+                                              bool sheared, const solid::Field* start, int level) = 0;
+  virtual int n_levels() const = 0;
+  /// Interface nodes of a level, as places in mesh.lower.
+  virtual std::vector<std::size_t> interface_of(int level) const = 0;
   virtual std::int64_t n_unknowns() const = 0;
   /// Bytes it holds.
   virtual double bytes() const = 0;

@@ -64,8 +64,8 @@ class Statics {
   Loading loading_;
   double mu_s_;
   std::string mu_s_key_;
-  std::vector<double> tributary_m_;
   std::unique_ptr<PlateSolver> solver_;
+  TopDisplacement tilted_top_;         ///< the loaded edge after the tilt
   std::unique_ptr<LoadCase> sheared_;  ///< the loaded edge where it stands after the tilt, then moved along x
   Equilibrium tilted_;
   /// Contact states of the last shear, where beginning with them pays.
