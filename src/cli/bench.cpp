@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -14,6 +16,7 @@
 #include "cli/commands.hpp"
 #include "fronts/fit.hpp"
 #include "mesh/plate.hpp"
+#include "solve/statics.hpp"
 #include "solve/stepper.hpp"
 
 namespace slipfront::cli {
@@ -91,6 +94,34 @@ std::string processor() {
   return "unknown processor";
 }
 
+/// The paper's plate, tilted and sheared to the three states that its events need.
+void bench_statics(int columns, solve::StaticSolver solver) {
+  mesh::Plate plate;
+  plate.element_size_m = plate.width_m / columns;
+  const double mu_s = interface::VelocityWeakening {
+  }.mu_s;
+  const auto mesh = mesh::make_plate(plate);
+  const auto start = Clock::now();
+  const auto cpu_start = std::clock();
+  solve::Loading loading;
+  loading.solver = solver;
+  const solve::Statics statics(mesh, {}, loading, mu_s);
+  const double critical_shear_m = statics.shear_to(mu_s).shear_m;
+  const auto common = statics.shear_to((1 - loading.critical_margin) * mu_s);
+  const auto spontaneous = statics.shear_to((1 + loading.critical_margin) * mu_s);
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const double n_unknowns = 2.0 * mesh.n_nodes();
+  fmt::print(
+      "{} x {}, {}, {:.3g} unknowns: {:.2f} s ({:.2f} s of processor), {} cycles, peak memory {:.2f} GB, "
+      "estimated {:.2f} GB, critical shear {:.12g} m\n",
+      mesh.grid.columns, mesh.grid.rows, solve::name_of(solve::choose_solver(solver, n_unknowns)), n_unknowns,
+      seconds, cpu_seconds, statics.solver().n_cycles(), 1024e-9 * static_cast<double>(usage.ru_maxrss),
+      1e-9 * solve::statics_bytes(solver, n_unknowns), critical_shear_m);
+}
+
 void bench(bool json) {
   const solve::TimeStepping plain{.interface_substeps = 1};
   const std::vector<Row> rows = {
@@ -134,7 +165,17 @@ void add_bench(CLI::App& app) {
       app.add_subcommand("bench", "Measure node updates per second against the machine's bandwidth");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON, for comparison between versions");
-  command->callback([json] { bench(*json); });
+  auto columns = std::make_shared<int>(0);
+  auto solver = std::make_shared<std::string>("iterative");
+  command->add_option("--statics", *columns, "Measure the statics of a plate of so many columns instead");
+  command->add_option("--solver", *solver, "... by this solver: auto, direct or iterative")
+      ->check(CLI::IsMember({"auto", "direct", "iterative"}));
+  command->callback([json, columns, solver] {
+    if (*columns == 0) return bench(*json);
+    for (const auto s :
+         {solve::StaticSolver::automatic, solve::StaticSolver::direct, solve::StaticSolver::iterative})
+      if (solve::name_of(s) == *solver) bench_statics(*columns, s);
+  });
 }
 
 }  // namespace slipfront::cli

@@ -2,6 +2,7 @@
 #include "solve/iterative.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -15,19 +16,34 @@ constexpr int most_cycles = 400;
 /// Columns of the coarsest level that finds contact states.
 constexpr int least_interface_cells = 64;
 
-template <class A, class B>
-double dot(const std::vector<A>& a, const std::vector<B>& b) {
-  // Sums of pieces, so that rounding does not grow with the number of nodes.
+/// Calls f(k, sums) for k < n and returns the sums; summed in pieces, so that rounding does not grow with the
+/// number of nodes.
+template <std::size_t n_sums, class F>
+std::array<double, n_sums> for_each_summing(std::size_t n, F&& f) {
   constexpr std::size_t piece = 4096;
-  double total = 0;
-  for (std::size_t begin = 0; begin < a.size(); begin += piece) {
-    const std::size_t end = std::min(a.size(), begin + piece);
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (std::size_t k = begin; k < end; ++k) sum += static_cast<double>(a[k]) * static_cast<double>(b[k]);
-    total += sum;
+  std::array<double, n_sums> total{};
+  for (std::size_t begin = 0; begin < n; begin += piece) {
+    const std::size_t end = std::min(n, begin + piece);
+    double sum0 = 0, sum1 = 0;
+#pragma omp simd reduction(+ : sum0, sum1)
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::array<double, 2> terms = f(k);
+      sum0 += terms[0];
+      sum1 += terms[1];
+    }
+    total[0] += sum0;
+    if constexpr (n_sums > 1) total[1] += sum1;
   }
   return total;
+}
+
+template <class A, class B>
+double dot(const std::vector<A>& a, const std::vector<B>& b) {
+  const A* __restrict x = a.data();
+  const B* __restrict y = b.data();
+  return for_each_summing<1>(a.size(), [=](std::size_t k) {
+    return std::array<double, 2>{static_cast<double>(x[k]) * static_cast<double>(y[k]), 0};
+  })[0];
 }
 
 template <class A, class B>
@@ -47,6 +63,40 @@ void scale_add(double factor, solid::Field& a, double gain, const B& b) {
   scale_add(factor, a.x, gain, b.x);
   scale_add(factor, a.y, gain, b.y);
 }
+/// p = r + beta (p - omega v)
+void next_direction(double beta, double omega, const std::vector<double>& r, const std::vector<double>& v,
+                    std::vector<double>& p) {
+  double* __restrict to = p.data();
+  const double* __restrict from_r = r.data();
+  const double* __restrict from_v = v.data();
+  for (std::size_t k = 0; k < p.size(); ++k) to[k] = from_r[k] + beta * (to[k] - omega * from_v[k]);
+}
+
+/// u += step z, r -= step q; returns the new r . with.
+template <class Z>
+double take_step(double step, const std::vector<Z>& z, const std::vector<double>& q, std::vector<double>& u,
+                 std::vector<double>& r, const std::vector<double>& with) {
+  const Z* __restrict from_z = z.data();
+  const double* __restrict from_q = q.data();
+  const double* __restrict other = with.data();
+  double* __restrict to_u = u.data();
+  double* __restrict to_r = r.data();
+  return for_each_summing<1>(u.size(), [=](std::size_t k) {
+    to_u[k] += step * static_cast<double>(from_z[k]);
+    to_r[k] -= step * from_q[k];
+    return std::array<double, 2>{to_r[k] * other[k], 0};
+  })[0];
+}
+
+/// t . r and t . t
+std::array<double, 2> two_dots(const std::vector<double>& t, const std::vector<double>& r) {
+  const double* __restrict a = t.data();
+  const double* __restrict b = r.data();
+  return for_each_summing<2>(t.size(), [=](std::size_t k) {
+    return std::array<double, 2>{a[k] * b[k], a[k] * a[k]};
+  });
+}
+
 template <class B>
 void add(solid::Field& a, double gain, const B& b) {
   scale_add(1, a, gain, b);
@@ -327,7 +377,7 @@ void LevelEquations::conjugate_gradients(double accuracy, solid::Field& u) {
   auto& q = product_;
   const double scale = std::sqrt(std::abs(multiply(u, r, true)));
   scale_add(-1, r, 0, u);
-  const auto is_small = [&](double error2) { return std::sqrt(std::max(error2, 0.0)) <= accuracy * scale; };
+  const auto is_small = [&](double error2) { return std::sqrt(std::abs(error2)) <= accuracy * scale; };
   double error2_before = 0;
   for (int cycle = 1; cycle <= most_cycles; ++cycle) {
     multigrid_.apply(r);
@@ -354,38 +404,37 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
   const double scale = std::sqrt(std::abs(multiply(u, r, true)));
   scale_add(-1, r, 0, u);
   shadow_ = r;
-  double rho = 1, alpha = 1, omega = 1;
+  double rho = dot_fields(shadow_, r), beta = 0, omega = 0;
   const auto& z = multigrid_.z();
-  const auto is_small = [&](double error2) { return std::sqrt(std::max(error2, 0.0)) <= accuracy * scale; };
+  const auto is_small = [&](double error2) { return std::sqrt(std::abs(error2)) <= accuracy * scale; };
+  p = r;
   for (int cycle = 1; cycle <= most_cycles; cycle += 2) {
-    const double rho_next = dot_fields(shadow_, r);
-    if (cycle == 1) {
-      p = r;
-    } else {
-      const double beta = rho_next / rho * alpha / omega;
-      add(p, -omega, v);
-      scale_add(beta, p, 1, r);
+    if (cycle > 1) {
+      next_direction(beta, omega, r.x, v.x, p.x);
+      next_direction(beta, omega, r.y, v.y, p.y);
     }
-    rho = rho_next;
     multigrid_.apply(p);
     if (cycle == 1 && is_small(dot_fields(r, z))) {
       add(u, 1, z);
       return;
     }
     multiply(z, v, false);
-    alpha = rho / dot_fields(shadow_, v);
-    add(u, alpha, z);
-    add(r, -alpha, v);
+    const double alpha = rho / dot_fields(shadow_, v);
+    take_step(alpha, z.x, v.x, u.x, r.x, shadow_.x);
+    take_step(alpha, z.y, v.y, u.y, r.y, shadow_.y);
     multigrid_.apply(r);
-    const double error2 = dot_fields(r, z);
-    if (is_small(error2)) {
+    if (is_small(dot_fields(r, z))) {
       add(u, 1, z);
       return;
     }
     multiply(z, t, false);
-    omega = dot_fields(t, r) / dot_fields(t, t);
-    add(u, omega, z);
-    add(r, -omega, t);
+    const auto [t_r_x, t_t_x] = two_dots(t.x, r.x);
+    const auto [t_r_y, t_t_y] = two_dots(t.y, r.y);
+    omega = (t_r_x + t_r_y) / (t_t_x + t_t_y);
+    const double rho_next =
+        take_step(omega, z.x, t.x, u.x, r.x, shadow_.x) + take_step(omega, z.y, t.y, u.y, r.y, shadow_.y);
+    beta = rho_next / rho * alpha / omega;
+    rho = rho_next;
   }
   throw UserError("the iterative static solution does not converge; set loading.solver = direct");
 }

@@ -46,6 +46,7 @@ class Multigrid {
   void smooth(Level& level, bool from_zero);
   void restrict_residual(Level& fine, Level& coarse);
   void prolong(const Level& coarse, Level& fine);
+  void damp_block_rows(Level& level);
   void estimate_largest_eigenvalue(Level& level);
   void factorise_coarsest();
   void solve_coarsest();

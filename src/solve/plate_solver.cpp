@@ -102,6 +102,7 @@ class DirectSolver : public PlateSolver {
   std::int64_t n_unknowns() const override { return held_->n_unknowns(); }
   double bytes() const override { return held_->factor_bytes(); }
   bool iterates() const override { return false; }
+  int n_cycles() const override { return 0; }
   int n_levels() const override { return 1; }
   std::vector<std::size_t> interface_of(int) const override {
     std::vector<std::size_t> all(mesh_.lower.size());

@@ -71,6 +71,8 @@ class PlateSolver {
   /// Whether each solution only costs what it has to change of the last one, so that beginning with the
   /// states of a similar case pays.
   virtual bool iterates() const = 0;
+  /// Multigrid cycles on the finest level so far; 0 where there are none.
+  virtual int n_cycles() const = 0;
 };
 
 /// Up to here a factorisation is chosen by StaticSolver::automatic.
