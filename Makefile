@@ -16,7 +16,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce sensitivity quick regularised convergence reference contact-algorithms bench docs format format-check verify verification-pages tidy sanitize coverage clean
+.PHONY: help setup build test reproduce sensitivity quick regularised convergence interface-step reference contact-algorithms bench docs format format-check verify verification-pages tidy sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -78,6 +78,7 @@ contact-algorithms: build $(VENV)/.installed  ## the paper's events with each co
 regularised: build $(VENV)/.installed  ## the same events with friction that has a length scale, into results-regularised/
 	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-regularised
+	cp $(RESULTS)-regularised/figures/studies.png docs/figures/regularised_studies.png
 
 # An event's studies, without and with a length scale in the friction, and their figures.
 define CONVERGENCE
@@ -97,13 +98,17 @@ convergence: build $(VENV)/.installed  ## front speeds over mesh, step and dampi
 	cp $(RESULTS)-convergence/plain/spontaneous/figures/convergence.png docs/figures/convergence_plain.png
 	cp $(RESULTS)-convergence/regularised/spontaneous/figures/convergence.png docs/figures/convergence_regularised.png
 
+interface-step: build $(VENV)/.installed  ## error of front speeds against the cost of sub-cycling, into results-interface-step/ and docs/figures
+	for event in left spontaneous right; do $(PROGRAM) study interface-step cases/kammer2012/$$event.toml -o $(RESULTS)-interface-step/$$event --overwrite; done
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures.interface_step docs/figures/interface_step.png $(RESULTS)-interface-step/{left,spontaneous,right}
+
 reference: build $(VENV)/.installed  ## Problem A of docs/prestress.md on four meshes against other codes, into results-reference/
 	$(PYTHON) scripts/compare-reference.py --program $(PROGRAM) --results $(RESULTS)-reference
 
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
 	$(PYTHON) scripts/scorecard-page.py $(RESULTS) docs/scorecard.md
-	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png docs/figures/
+	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png $(RESULTS)/figures/energy_balance.png docs/figures/
 
 SOURCES = $(shell git ls-files 'src/*.cpp' 'src/*.hpp' 'tests/*.cpp' 'tests/*.hpp')
 

@@ -122,10 +122,15 @@ def draw(results, reference, picture):
     for time_s in SNAPSHOTS_S:
         row = np.argmin(np.abs(reference.t_s - time_s))
         right.plot(1e3 * reference.fields_x_m, reference.fields["v"][row], "k--", lw=1.4, zorder=3)
-        peak = np.argmax(reference.fields["v"][row])
-        at = (1e3 * reference.fields_x_m[peak], reference.fields["v"][row, peak])
-        above_it = {"xytext": (0, 4), "textcoords": "offset points", "ha": "center", "fontsize": 7}
-        right.annotate(f"{1e6 * time_s:.0f} us", at, **above_it)
+        peak_m = reference.fields_x_m[np.argmax(reference.fields["v"][row])]
+        right.text(
+            1e3 * peak_m,
+            1.01,  # above the frame, where it hides nothing
+            f"{1e6 * time_s:.0f} us",
+            transform=right.get_xaxis_transform(),
+            ha="center",
+            fontsize=7,
+        )
         for k, (_, run, _) in enumerate(results):
             v = run.field("v", np.array([time_s]), run.x_m)[0]
             right.plot(1e3 * run.x_m, v, color=f"C{k}", lw=0.8)

@@ -135,7 +135,7 @@ def draw(all_results: dict[str, dict[str, dict[str, Event]]], c_L: float) -> Fig
                     ax.plot(1e3 * front.x_m, v, color=colour, linestyle=line, linewidth=0.9,
                             label=f"{name} sub-steps" if direction > 0 or event == "left" else None)
             ax.set_title(f"{event}, {law}", loc="left")
-            ax.set_ylim(0, 2.5)
+            ax.set_ylim(0, 3.2)
         axes[-1, column].set_xlabel("$x$ (mm)")
     for ax in axes[:, 0]:
         ax.set_ylabel("$V_\\mathrm{tip}/c_\\mathrm{L}$")

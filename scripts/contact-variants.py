@@ -123,16 +123,21 @@ def single(n: int) -> None:
 
 
 def many(n: int, pull: float = 0.1, flights: int = 20) -> None:
-    print(f"\n| {flights} flights, {n} elements | step | energy lost | landings |\n|---|---|---|---|")
+    print(
+        f"\n| {flights} flights, {n} elements | step | energy lost | landings | pull larger by 1e-12: lost | "
+        "landings |\n|---|---|---|---|---|---|"
+    )
     flight = 2 / pull
     for variant in VARIANTS:
         for r in (0.9, 0.3):
-            row = Row(variant, n, r, pull)
-            start = row.energy()
-            while row.time < flights * flight or row.touches:
-                row.step()
-            lost = 100 * (1 - row.energy() / start)
-            print(f"| {variant} | {r} | {lost:.1f} % | {(row.changes + 1) // 2} |")
+            cells = []
+            for change in (0.0, 1e-12):  # tells what is determined from what rounding decides
+                row = Row(variant, n, r, pull * (1 + change))
+                start = row.energy()
+                while row.time < flights * flight or row.touches:
+                    row.step()
+                cells += [f"{100 * (1 - row.energy() / start):.1f} %", str((row.changes + 1) // 2)]
+            print(f"| {variant} | {r} | {' | '.join(cells)} |")
 
 
 if __name__ == "__main__":

@@ -28,6 +28,19 @@ FRONT_COLUMNS = (
     "U_s_J_per_m3",
     "U_r_J_per_m3",
 )
+# Columns of energy.csv without their unit, J per m of thickness.
+ENERGY_TERMS = (
+    "strain",
+    "kinetic",
+    "top_work",
+    "trigger_work",
+    "prestress_work",
+    "friction_work",
+    "contact_work",
+    "damping_work",
+    "boundary_work",
+    "coupling_work",
+)
 VTK_QUAD = 9
 
 
@@ -98,6 +111,20 @@ class History:
 
 
 @dataclass(frozen=True)
+class Balance:
+    """energy.csv: changes of the stored energies, works done on the plate, and what they leave open."""
+
+    time_s: np.ndarray  # [rows]
+    terms: dict[str, np.ndarray]  # by the names of ENERGY_TERMS, J/m. [rows]
+    imbalance_J_per_m: np.ndarray  # [rows]
+
+    @property
+    def largest_J_per_m(self) -> float:
+        """Largest magnitude of any term at any time."""
+        return max(float(np.max(np.abs(values))) for values in self.terms.values())
+
+
+@dataclass(frozen=True)
 class Run:
     """One run's folder. `case` and `info` are case.resolved.toml and run.json as dictionaries."""
 
@@ -110,6 +137,7 @@ class Run:
     fronts: list[Front]
     history: History
     fields: Fields
+    balance: Balance
 
     def parameter(self, key: str) -> float:
         """Number of a dotted key of the case file."""
@@ -273,6 +301,19 @@ def read_fields(file: Path) -> Fields:
     return Fields(file, points, connectivity.reshape(-1, 4), time_s)
 
 
+def read_balance(file: Path) -> Balance:
+    columns = read_csv(file, ("time_s", *(f"{term}_J_per_m" for term in ENERGY_TERMS), "imbalance_J_per_m"))
+    if len(columns["time_s"]) < 2:
+        raise DataError(f"{file}: fewer than two rows")
+    for name, values in columns.items():
+        if np.isnan(values).any():
+            raise DataError(f"{file}: empty cell in column '{name}'")
+    terms = {term: columns[f"{term}_J_per_m"] for term in ENERGY_TERMS}
+    return Balance(
+        columns["time_s"], {term: v - v[0] for term, v in terms.items()}, columns["imbalance_J_per_m"]
+    )
+
+
 def read_run(folder: Path) -> Run:
     if not folder.is_dir():
         raise DataError(f"{folder}: no such folder; DIR is the output folder of `slipfront reproduce`")
@@ -287,6 +328,7 @@ def read_run(folder: Path) -> Run:
         fronts=read_fronts(folder / "fronts.csv"),
         history=read_history(folder / "interface.h5"),
         fields=read_fields(folder / "fields.vtkhdf"),
+        balance=read_balance(folder / "energy.csv"),
     )
 
 

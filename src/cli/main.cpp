@@ -14,7 +14,14 @@
 
 namespace {
 
-enum ExitCode { done = 0, internal_error = 1, user_error = 2, blow_up = 3, verification_failed = 4, interrupted = 130 };
+enum ExitCode {
+  done = 0,
+  internal_error = 1,
+  user_error = 2,
+  blow_up = 3,
+  verification_failed = 4,
+  interrupted = 130
+};
 
 /// A user's error starts with its place, FILE:LINE, so that editors find it; the rest with the program's
 /// name.

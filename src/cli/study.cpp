@@ -12,16 +12,49 @@
 #include "io/log.hpp"
 #include "io/results.hpp"
 #include "study/convergence.hpp"
+#include "study/interface_step.hpp"
 
 namespace slipfront::cli {
 namespace {
 
-struct StudyArguments {
+struct Target {
   std::string dir;
   bool overwrite = false;
   bool quiet = false;
+};
+
+struct StudyArguments {
+  Target target;
   study::ConvergenceOptions options;
 };
+
+struct InterfaceStepArguments {
+  Target target;
+  study::InterfaceStepOptions options;
+};
+
+void add_target(CLI::App& command, Target& target) {
+  command.add_option("-o,--output", target.dir, "Folder for the results")->required()->type_name("DIR");
+  command.add_flag("--overwrite", target.overwrite, "Replace the results that the folder already holds");
+  command.add_flag("-q,--quiet", target.quiet, "Print nothing but errors");
+}
+
+/// Runs a study with its progress shown; a user's mistake gets its place in the case file.
+template <class Study>
+void with_progress(const CaseArguments& arguments, const Target& target, Study&& study) {
+  io::claim_output_folder(target.dir, target.overwrite);
+  catch_interrupts();
+  std::optional<io::Progress> progress;
+  try {
+    study([&](std::size_t done, std::size_t n) {
+      if (!progress) progress.emplace("runs", static_cast<std::int64_t>(n), target.quiet);
+      progress->update(static_cast<std::int64_t>(done));
+      return !interrupt_wanted();
+    });
+  } catch (const UserError& error) {
+    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+  }
+}
 
 std::string number(double value, const char* unit = "", double factor = 1) {
   return std::isfinite(value) ? fmt::format("{:.3g}{}", factor * value, unit) : "-";
@@ -53,40 +86,63 @@ void print_table(const study::Convergence& result, const std::string& dir) {
   fmt::print("results: {}\n", dir);
 }
 
-void study_case(const CaseArguments& arguments, const StudyArguments& study) {
+void study_convergence(const CaseArguments& arguments, const StudyArguments& study) {
   const io::Case config = arguments.read();
   study::plan_convergence(config, study.options);  // mistakes in the options, before a folder is made
-  io::claim_output_folder(study.dir, study.overwrite);
-  catch_interrupts();
-  std::optional<io::Progress> progress;
-  try {
-    const auto result = study::study_convergence(config, study.options, [&](std::size_t done, std::size_t n) {
-      if (!progress) progress.emplace("runs", static_cast<std::int64_t>(n), study.quiet);
-      progress->update(static_cast<std::int64_t>(done));
-      return !interrupt_wanted();
-    });
-    progress.reset();
-    study::write_convergence(study.dir, config, result);
-    if (!study.quiet) print_table(result, study.dir);
-  } catch (const UserError& error) {
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
-  }
+  study::Convergence result;
+  with_progress(arguments, study.target, [&](const study::StudyMonitor& monitor) {
+    result = study::study_convergence(config, study.options, monitor);
+  });
+  study::write_convergence(study.target.dir, config, result);
+  if (!study.target.quiet) print_table(result, study.target.dir);
 }
 
-}  // namespace
+void print_table(const study::InterfaceStep& result, const std::string& dir) {
+  fmt::print("V_tip at {} stations against the limit of small steps (observed order {}); {} runs\n\n",
+             result.stations.size(), number(result.median_order), result.n_runs);
+  fmt::print("{:<34}{:>8}{:>10}{:>12}{:>12}\n", "stepping", "cost", "time", "median", "90 % within");
+  for (const auto& s : result.all) {
+    using Kind = study::Stepping::Kind;
+    const std::string what =
+        s.kind == Kind::plain ? fmt::format("plain, step_factor {:.4g}", s.step_factor)
+        : s.kind == Kind::layer
+            ? fmt::format("{} rows, {} sub-steps", s.rows, s.substeps)
+            : fmt::format("{} rows, {} and {}, extrapolated", s.rows, s.substeps / 2, s.substeps);
+    fmt::print("{:<34}{:>8.2f}{:>10}{:>12}{:>12}\n", what, s.cost, number(s.time_s, " s"),
+               number(s.median_error, " %", 100), number(s.p90_error, " %", 100));
+  }
+  fmt::print("\ncost: node updates over those of the plain scheme at the case's step_factor\n");
+  if (result.chosen >= 0) {
+    const auto& s = result.all[result.chosen];
+    fmt::print(
+        "cheapest within {:g} %: time.step_factor = {:.4g}, time.interface_rows = {}, "
+        "time.interface_substeps = {}; the case with it: {}/chosen.toml\n",
+        100 * result.options.tolerance, s.step_factor, s.rows, s.substeps, dir);
+  } else {
+    fmt::print("none is within {:g} %\n", 100 * result.options.tolerance);
+  }
+  for (const auto& warning : result.warnings) fmt::print("note: {}\n", warning);
+  fmt::print("results: {}\n", dir);
+}
 
-void add_study(CLI::App& app) {
-  CLI::App* group = app.add_subcommand("study", "Vary the numerical parameters of a case");
-  group->require_subcommand(1);
-  CLI::App* command = group->add_subcommand(
+void study_interface_step(const CaseArguments& arguments, const InterfaceStepArguments& study) {
+  const io::Case config = arguments.read();
+  study::InterfaceStep result;
+  with_progress(arguments, study.target, [&](const study::StudyMonitor& monitor) {
+    result = study::study_interface_step(config, study.options, monitor);
+  });
+  study::write_interface_step(study.target.dir, config, result);
+  if (!study.target.quiet) print_table(result, study.target.dir);
+}
+
+void add_convergence(CLI::App& group) {
+  CLI::App* command = group.add_subcommand(
       "convergence", "Front speeds over element size, interface step and damping, with their limits");
   const auto arguments = add_case_arguments(*command);
   auto study = std::make_shared<StudyArguments>();
   auto& options = study->options;
   options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  command->add_option("-o,--output", study->dir, "Folder for the results")->required()->type_name("DIR");
-  command->add_flag("--overwrite", study->overwrite, "Replace the results that the folder already holds");
-  command->add_flag("-q,--quiet", study->quiet, "Print nothing but errors");
+  add_target(*command, study->target);
   command
       ->add_option("--element-sizes", options.element_sizes_m,
                    "Element sizes in m, the case's among them; by default it times 2, 1, 1/2")
@@ -101,7 +157,45 @@ void add_study(CLI::App& app) {
   command->add_option("--threads", options.threads, "Runs side by side")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  command->callback([arguments, study] { study_case(*arguments, *study); });
+  command->callback([arguments, study] { study_convergence(*arguments, *study); });
+}
+
+void add_interface_step(CLI::App& group) {
+  CLI::App* command = group.add_subcommand("interface-step",
+                                           "Error of the front speeds against the cost of sub-cycling the "
+                                           "interface; the cheapest way within a tolerance");
+  const auto arguments = add_case_arguments(*command);
+  auto study = std::make_shared<InterfaceStepArguments>();
+  auto& options = study->options;
+  add_target(*command, study->target);
+  command
+      ->add_option("--tolerance", options.tolerance, "Relative error of V_tip that nine of ten stations keep")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--rows", options.rows, "Rows of cells to try")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--substeps", options.substeps, "Sub-steps to try")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 10000))
+      ->capture_default_str();
+  command->add_option("--station-spacing", options.station_spacing_m, "Distance of the stations, m")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--threads", options.threads, "Runs side by side; more than one falsifies the times")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->callback([arguments, study] { study_interface_step(*arguments, *study); });
+}
+
+}  // namespace
+
+void add_study(CLI::App& app) {
+  CLI::App* group = app.add_subcommand("study", "Vary the numerical parameters of a case");
+  group->require_subcommand(1);
+  add_convergence(*group);
+  add_interface_step(*group);
 }
 
 }  // namespace slipfront::cli

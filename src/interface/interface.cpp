@@ -22,6 +22,7 @@ Interface::Interface(std::size_t n)
       slipping(n),
       slip_m(n),
       relaxed_Pa(n),
+      target_Pa(n),
       acceleration_m_per_s2(n),
       locked(n) {}
 
@@ -52,9 +53,15 @@ double press_locked(Interface& s, std::size_t i, double impedance, double per_st
   return stays ? -v_y * impedance : 0.0;
 }
 
+/// Evaluations of the coefficient at the mean slip rate of the step, each with the rate that the one before
+/// gave. The first alone, at the last rate, leaves an error of first order in dt; from the second on it is of
+/// second order, and the third is nearer the solution of the implicit equation where friction weakens fast.
+constexpr int rate_evaluations = 3;
+
 template <ContactAlgorithm algorithm, class Law, class Form>
 bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
+  constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
   const auto mu = law.evaluator();
   const double mu_k = law.kinetic_coefficient();
   const double mu_at_rest = mu(0, 0);
@@ -65,30 +72,38 @@ bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
     const double p =
         predicts ? press_locked(s, i, impedance, per_step) : press_direct(s, i, impedance, per_step);
 
-    const double last_rate = s.slip_rate_m_per_s[i];
-    // Newmark's predictor v + a dt of the velocity at the step's beginning.
-    const double rate = predicts ? last_rate + 0.5 * dt_s * s.acceleration_m_per_s2[i] : last_rate;
-    const double speed = std::abs(rate);
-    const double mu_now = weakened(mu(speed, s.slip_m[i]), mu_k, s.intact[i]);
-    const double strength = form(mu_now, p, speed, s.relaxed_Pa[i]);
+    const double last_rate = s.slip_rate_m_per_s[i];  // since the last update
+    const auto step = form.step(std::abs(last_rate), {s.relaxed_Pa[i], s.target_Pa[i]});
 
     const double impedance_x = impedance * s.tangential_mass_ratio[i];
     const double t_stop = s.v_x_m_per_s[i] * impedance_x;
     const double demand = std::abs(t_stop);
+    // Newmark's predictor v + a dt of the velocity at the step's beginning.
+    double rate = predicts ? last_rate + 0.5 * dt_s * s.acceleration_m_per_s2[i] : last_rate;
     // Friction opposes the motion: that of the trial, or, by the predictor, that of a node under way.
     const bool under_way = predicts && rate != 0 && p > 0;
     const double direction = under_way ? rate : t_stop;
     const double along = under_way ? std::copysign(1.0, rate) * t_stop : demand;
-    const bool slips = !(along <= strength);  // so that a motion that is not a number shows up as a slip rate
-    const double t = slips ? std::copysign(strength, direction) : t_stop;
-    const double v_x = slips ? s.v_x_m_per_s[i] - t / impedance_x : 0.0;
+    double strength = 0, first_strength = 0, t = 0, v_x = 0;
+    bool slips = false;
+    Memory now;
+    for (int k = 0; k < n_evaluations; ++k) {
+      const double mu_now = weakened(mu(std::abs(rate), s.slip_m[i]), mu_k, s.intact[i]);
+      now = step.now(mu_now, p);
+      strength = Form::strength(mu_now, p, now);
+      first_strength = k == 0 ? strength : first_strength;
+      slips = !(along <= strength);  // so that a motion that is not a number shows up as a slip rate
+      t = slips ? std::copysign(strength, direction) : t_stop;
+      v_x = slips ? s.v_x_m_per_s[i] - t / impedance_x : 0.0;
+      rate = 0.5 * (last_rate + v_x);
+    }
     const std::uint8_t slipping = slips && p > 0;
     changed |= static_cast<unsigned>(slipping ^ s.slipping[i]);
 
     double slip = s.slip_m[i] + (slipping != 0 ? std::abs(v_x) * dt_s : 0.0);
     if constexpr (Law::memory == SlipMemory::until_stick) slip = slips || p == 0 ? slip : 0.0;
     const double mu_stuck = Law::memory == SlipMemory::none ? mu_at_rest : mu(0, slip);
-    const double strength_at_rest = form.at_rest(weakened(mu_stuck, mu_k, s.intact[i]), p, s.relaxed_Pa[i]);
+    const double strength_at_rest = Form::strength(weakened(mu_stuck, mu_k, s.intact[i]), p, now);
 
     if constexpr (predicts) s.acceleration_m_per_s2[i] = slips ? (v_x - last_rate) * per_step : 0.0;
     s.v_x_m_per_s[i] = v_x;
@@ -96,9 +111,12 @@ bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
     s.t_Pa[i] = t;
     s.p_Pa[i] = p;
     s.demand_Pa[i] = demand;
-    s.strength_Pa[i] = slips ? strength : strength_at_rest;
+    const double overcome = s.slipping[i] != 0 ? strength : first_strength;
+    s.strength_Pa[i] = slips ? overcome : strength_at_rest;
     s.slipping[i] = slipping;
     s.slip_m[i] = slip;
+    s.relaxed_Pa[i] = now.relaxed_Pa;
+    s.target_Pa[i] = now.target_Pa;
   }
   return changed != 0;
 }
@@ -107,11 +125,14 @@ bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
 
 void start_contact(const ContactModel& model, Interface& s) {
   const double mu = static_coefficient(model.law), mu_k = kinetic_coefficient(model.law);
+  s.begun = false;
   with_form(model.regularisation, 0, [&](const auto& form) {
     for (std::size_t i = 0; i < s.size(); ++i) {
       const double mu_0 = weakened(mu, mu_k, s.intact[i]);
       s.strength_Pa[i] = mu_0 * s.p_Pa[i];
-      s.relaxed_Pa[i] = form.initial(mu_0, s.p_Pa[i]);
+      const Memory memory = form.initial(mu_0, s.p_Pa[i]);
+      s.relaxed_Pa[i] = memory.relaxed_Pa;
+      s.target_Pa[i] = memory.target_Pa;
       s.slip_m[i] = 0;
       s.acceleration_m_per_s2[i] = 0;
       s.locked[i] = s.p_Pa[i] > 0;
@@ -120,9 +141,11 @@ void start_contact(const ContactModel& model, Interface& s) {
 }
 
 bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
+  const double since_last_s = state.begun ? dt_s : 0;
+  state.begun = true;
   return std::visit(
       [&](const auto& law) {
-        return with_form(model.regularisation, dt_s, [&](const auto& form) {
+        return with_form(model.regularisation, since_last_s, [&](const auto& form) {
           return model.algorithm == ContactAlgorithm::direct
                      ? update<ContactAlgorithm::direct>(law, form, dt_s, state)
                      : update<ContactAlgorithm::predictor_corrector>(law, form, dt_s, state);

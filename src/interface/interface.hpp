@@ -12,9 +12,8 @@ namespace slipfront::interface {
 
 /// How contact is resolved within a (sub-)step.
 enum class ContactAlgorithm {
-  /// Closes gaps exactly at the step's end by a pressure; mu at the last half-step slip rate; friction
-  /// opposes
-  /// the motion that the forces would give.
+  /// Closes gaps exactly at the step's end by a pressure; mu at the mean slip rate of the step; friction
+  /// opposes the motion that the forces would give.
   direct,
   /// Locks the normal velocity in contact; a node that would pass the plane is put onto it, its normal
   /// velocity
@@ -50,14 +49,17 @@ struct Interface {
   std::vector<double> slip_rate_m_per_s;  ///< last half-step velocity along x; 0 where the node sticks
   std::vector<double> t_Pa, p_Pa;
   std::vector<double> demand_Pa;  ///< |t| that would stop the node
-  /// Strength in the last update; of a node that sticks the one at rest, of an open node 0.
+  /// Strength in the last update; of a node that begins to slip the one that it has overcome, of a node that
+  /// sticks the one at rest, of an open node 0.
   std::vector<double> strength_Pa;
   std::vector<std::uint8_t> slipping;  ///< 1 where the node is in contact and slips
   // Memory of friction and contact.
-  std::vector<double> slip_m;      ///< slip path, the sum of |slip rate| dt in contact; see SlipMemory
-  std::vector<double> relaxed_Pa;  ///< strength or pressure by the regularisation; else 0
+  std::vector<double> slip_m;  ///< slip path, the sum of |slip rate| dt in contact; see SlipMemory
+  /// Strength or pressure by the regularisation, and what it follows; else 0.
+  std::vector<double> relaxed_Pa, target_Pa;
   std::vector<double> acceleration_m_per_s2;  ///< along x, of the last update; predictor-corrector only
   std::vector<std::uint8_t> locked;  ///< 1 where the normal velocity is locked; predictor-corrector only
+  bool begun = false;                ///< whether there was an update since start_contact
 
   explicit Interface(std::size_t n);
   std::size_t size() const { return t_Pa.size(); }

@@ -28,60 +28,85 @@ inline double relaxation_rate_per_s(const Regularisation& r, double speed_m_per_
   return (speed_m_per_s + r.slip_rate_m_per_s) / r.length_m + 1 / r.time_s;
 }
 
-// What is left of a deviation after one (sub-)step: exp(-rate dt), exact while the target is constant.
-
-struct ConstantDecay {
-  double factor;
-  ConstantDecay(const Regularisation& r, double dt_s)
-      : factor(std::exp(-dt_s * relaxation_rate_per_s(r, 0))) {}
-  double operator()(double /*speed_m_per_s*/) const { return factor; }
-};
-
-struct SlipRateDecay {
-  double at_rest, dt_per_length_s_per_m;
-  SlipRateDecay(const Regularisation& r, double dt_s)
-      : at_rest(dt_s * relaxation_rate_per_s(r, 0)), dt_per_length_s_per_m(dt_s / r.length_m) {}
-  double operator()(double speed_m_per_s) const {
-    return std::exp(-(at_rest + speed_m_per_s * dt_per_length_s_per_m));
+/// How a relaxed quantity q follows its target over a time dt in which the target goes linearly from T0 to
+/// T1: q1 = T1 - lag (T1 - T0) + left (q0 - T0), exact; left = exp(-x), lag = (1 - exp(-x))/x, x = rate dt.
+struct Following {
+  double left = 1, lag = 1;  ///< those of no time at all
+  explicit Following(double x) : left(std::exp(-x)), lag(x > 0 ? -std::expm1(-x) / x : 1) {}
+  double operator()(double from_Pa, double target_before_Pa, double target_Pa) const {
+    return target_Pa - lag * (target_Pa - target_before_Pa) + left * (from_Pa - target_before_Pa);
   }
 };
 
-// Strength of a node in its step. The relaxed quantity follows one equation whether the node sticks, slips or
-// is open; an open node (p = 0) forgets at the same rate, and has no strength whatever is left of its memory.
-// `at_rest` is the strength of a node that has just stuck, mu at rest given.
+struct ConstantRate {
+  Following following;
+  ConstantRate(const Regularisation& r, double dt_s) : following(dt_s * relaxation_rate_per_s(r, 0)) {}
+  Following operator()(double /*speed_m_per_s*/) const { return following; }
+};
+
+struct SlipRateDependent {
+  double at_rest, dt_per_length_s_per_m;
+  SlipRateDependent(const Regularisation& r, double dt_s)
+      : at_rest(dt_s * relaxation_rate_per_s(r, 0)), dt_per_length_s_per_m(dt_s / r.length_m) {}
+  Following operator()(double speed_m_per_s) const {
+    return Following(at_rest + speed_m_per_s * dt_per_length_s_per_m);
+  }
+};
+
+/// The relaxed quantity of a node at a contact update, and its target there.
+struct Memory {
+  double relaxed_Pa = 0, target_Pa = 0;
+};
+
+// How the strength of a node follows. `Step` holds what the time since the last update decides, at the slip
+// rate of that time; `now` is the memory with the coefficient of this update. The relaxed quantity follows
+// one equation whether the node sticks, slips or is open; an open node (p = 0) forgets at the same rate, and
+// has no strength whatever is left of its memory.
 
 /// The strength follows at once.
 struct Immediate {
-  double operator()(double mu, double p_Pa, double /*speed_m_per_s*/, double& /*relaxed_Pa*/) const {
-    return mu * p_Pa;
-  }
-  double at_rest(double mu, double p_Pa, double /*relaxed_Pa*/) const { return mu * p_Pa; }
-  double initial(double /*mu*/, double /*p_Pa*/) const { return 0; }
+  struct Step {
+    Memory now(double /*mu*/, double /*p_Pa*/) const { return {}; }
+  };
+  Step step(double /*speed_m_per_s*/, const Memory& /*before*/) const { return {}; }
+  static double strength(double mu, double p_Pa, const Memory& /*now*/) { return mu * p_Pa; }
+  static Memory initial(double /*mu*/, double /*p_Pa*/) { return {}; }
 };
 
 /// A stuck node keeps the strength with which it stuck and regains the static one at the rate for |v| = 0.
-template <class Decay>
+template <class Rate>
 struct RelaxedStrength {
-  Decay decay;
-  double operator()(double mu, double p_Pa, double speed_m_per_s, double& relaxed_Pa) const {
-    const double target = mu * p_Pa;
-    relaxed_Pa = target + decay(speed_m_per_s) * (relaxed_Pa - target);
-    return p_Pa > 0 ? relaxed_Pa : 0;
+  Rate rate;
+  struct Step {
+    Following following;
+    Memory before;
+    Memory now(double mu, double p_Pa) const {
+      return {following(before.relaxed_Pa, before.target_Pa, mu * p_Pa), mu * p_Pa};
+    }
+  };
+  Step step(double speed_m_per_s, const Memory& before) const { return {rate(speed_m_per_s), before}; }
+  static double strength(double /*mu*/, double p_Pa, const Memory& now) {
+    return p_Pa > 0 ? now.relaxed_Pa : 0;
   }
-  double at_rest(double /*mu*/, double p_Pa, double relaxed_Pa) const { return p_Pa > 0 ? relaxed_Pa : 0; }
-  double initial(double mu, double p_Pa) const { return mu * p_Pa; }
+  static Memory initial(double mu, double p_Pa) { return {mu * p_Pa, mu * p_Pa}; }
 };
 
 /// The coefficient acts at once, so that a stuck node has the static coefficient times the relaxed pressure.
-template <class Decay>
+template <class Rate>
 struct RelaxedPressure {
-  Decay decay;
-  double operator()(double mu, double p_Pa, double speed_m_per_s, double& relaxed_Pa) const {
-    relaxed_Pa = p_Pa + decay(speed_m_per_s) * (relaxed_Pa - p_Pa);
-    return at_rest(mu, p_Pa, relaxed_Pa);
+  Rate rate;
+  struct Step {
+    Following following;
+    Memory before;
+    Memory now(double /*mu*/, double p_Pa) const {
+      return {following(before.relaxed_Pa, before.target_Pa, p_Pa), p_Pa};
+    }
+  };
+  Step step(double speed_m_per_s, const Memory& before) const { return {rate(speed_m_per_s), before}; }
+  static double strength(double mu, double p_Pa, const Memory& now) {
+    return p_Pa > 0 ? mu * now.relaxed_Pa : 0;
   }
-  double at_rest(double mu, double p_Pa, double relaxed_Pa) const { return p_Pa > 0 ? mu * relaxed_Pa : 0; }
-  double initial(double /*mu*/, double p_Pa) const { return p_Pa; }
+  static Memory initial(double /*mu*/, double p_Pa) { return {p_Pa, p_Pa}; }
 };
 
 /// Calls f with the form that the settings name. The choice is made once per contact update.
@@ -89,11 +114,11 @@ template <class F>
 auto with_form(const Regularisation& r, double dt_s, F&& f) {
   const bool constant = std::isinf(r.length_m);
   if (r.relaxed == Relaxed::strength)
-    return constant ? f(RelaxedStrength<ConstantDecay>{{r, dt_s}})
-                    : f(RelaxedStrength<SlipRateDecay>{{r, dt_s}});
+    return constant ? f(RelaxedStrength<ConstantRate>{{r, dt_s}})
+                    : f(RelaxedStrength<SlipRateDependent>{{r, dt_s}});
   if (r.relaxed == Relaxed::pressure)
-    return constant ? f(RelaxedPressure<ConstantDecay>{{r, dt_s}})
-                    : f(RelaxedPressure<SlipRateDecay>{{r, dt_s}});
+    return constant ? f(RelaxedPressure<ConstantRate>{{r, dt_s}})
+                    : f(RelaxedPressure<SlipRateDependent>{{r, dt_s}});
   return f(Immediate{});
 }
 

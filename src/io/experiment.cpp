@@ -7,21 +7,9 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "io/fields.hpp"
 
 namespace slipfront::io {
-
-namespace {
-
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == ',') fields.emplace_back();
-    if (c != ',' && c != ' ' && c != '\t' && c != '\r') fields.back() += c;
-  }
-  return fields;
-}
-
-}  // namespace
 
 Experiment read_experiment(const std::filesystem::path& file, double c_L_m_per_s) {
   std::ifstream stream(file);

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <fstream>
 #include <string>
-#include <string_view>
 
 #include "base/error.hpp"
+#include "io/fields.hpp"
 
 namespace slipfront::io {
 
@@ -21,15 +21,6 @@ constexpr const char* header = "x_m,t_Pa,p_Pa";
 /// The key that names the file comes first, so that the message finds its place in the case file.
 std::string place(const std::filesystem::path& file) {
   return "prestress.file: " + file.string();
-}
-
-std::vector<std::string> fields_of(std::string_view line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == ',') fields.emplace_back();
-    if (c != ',' && c != ' ' && c != '\t' && c != '\r') fields.back() += c;
-  }
-  return fields;
 }
 
 }  // namespace

@@ -64,13 +64,17 @@ inline constexpr int lanes = 8;
 inline constexpr int lanes = 4;
 #endif
 
-/// Consecutive columns of a row; anywhere in memory.
-using Lanes = double __attribute__((vector_size(lanes * sizeof(double)), aligned(sizeof(double)), may_alias));
+/// Consecutive columns of a row.
+using Lanes = double __attribute__((vector_size(lanes * sizeof(double))));
+/// The same anywhere in memory: packed, so that no alignment is promised.
+struct __attribute__((packed, may_alias)) LanesInMemory {
+  Lanes values;
+};
 inline Lanes load(const double* from) {
-  return *reinterpret_cast<const Lanes*>(from);
+  return reinterpret_cast<const LanesInMemory*>(from)->values;
 }
 inline void store(double* to, Lanes values) {
-  *reinterpret_cast<Lanes*>(to) = values;
+  reinterpret_cast<LanesInMemory*>(to)->values = values;
 }
 /// The values one column to the left of `here`, and one to the right.
 inline Lanes from_left(Lanes left, Lanes here) {

@@ -2,7 +2,6 @@
 #include "study/convergence.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -11,7 +10,6 @@
 #include "fronts/fit.hpp"
 #include "fronts/measures.hpp"
 #include "io/schema.hpp"
-#include "run/batch.hpp"
 
 namespace slipfront::study {
 
@@ -87,45 +85,6 @@ Plan damping_plan(const io::Case& base) {
   return finish(std::move(plan));
 }
 
-/// What is kept of a run.
-struct Fronts {
-  std::vector<fronts::Front> main;  ///< the longest in each direction
-  fronts::FrontOptions options;     ///< with the zones left out
-};
-
-std::vector<fronts::Front> main_fronts(const std::vector<fronts::Front>& all) {
-  std::vector<fronts::Front> main;
-  for (const int direction : {-1, 1}) {
-    const fronts::Front* longest = nullptr;
-    for (const auto& front : all)
-      if (front.direction == direction && (!longest || length_m(front) > length_m(*longest)))
-        longest = &front;
-    if (longest) main.push_back(*longest);
-  }
-  return main;
-}
-
-double speed_at(const std::vector<fronts::Front>& main, int direction, double x_m) {
-  for (const auto& front : main)
-    if (front.direction == direction) return v_tip_at(front, x_m);
-  return undefined;
-}
-
-/// Stations where the case itself has a speed.
-std::vector<Station> stations_of(const Fronts& own, double spacing_m) {
-  std::vector<Station> stations;
-  for (const auto& front : own.main) {
-    const double start_m = front.points.front().x_m, end_m = front.points.back().x_m;
-    const auto first = std::llround(std::ceil(std::min(start_m, end_m) / spacing_m));
-    for (auto k = first; static_cast<double>(k) * spacing_m <= std::max(start_m, end_m); ++k) {
-      const double x = static_cast<double>(k) * spacing_m;
-      if (std::abs(x - start_m) < nucleation_m || fronts::is_excluded(own.options, x)) continue;
-      if (std::isfinite(v_tip_at(front, x))) stations.push_back({x, front.direction, {}, {}, {}});
-    }
-  }
-  return stations;
-}
-
 Summary summarise_direction(const std::vector<Station>& stations, const Plan& plan, int direction,
                             double tolerance) {
   std::array<double, 3> q{};
@@ -144,17 +103,18 @@ Summary summarise_direction(const std::vector<Station>& stations, const Plan& pl
   return summarise(list, n_wanted, tolerance);
 }
 
-Sequence compare(const Plan& plan, const std::vector<Fronts>& runs, const ConvergenceOptions& options) {
+Sequence compare(const Plan& plan, const std::vector<Run>& runs, const ConvergenceOptions& options) {
   Sequence sequence;
   sequence.plan = plan;
   const auto& own = runs[plan.members[plan.own].run];
-  sequence.stations = stations_of(own, options.station_spacing_m);
+  for (const auto& [x_m, direction] : stations(own.main, options.station_spacing_m))
+    sequence.stations.push_back({x_m, direction, {}, {}, {}});
   std::array<double, 3> q{}, f{};
   for (std::size_t k = 0; k < 3; ++k) q[k] = plan.members[plan.last[k]].step_size;
   std::vector<double> at_limit;
   for (auto& s : sequence.stations) {
     for (const auto& member : plan.members)
-      s.v_tip_m_per_s.push_back(speed_at(runs[member.run].main, s.direction, s.x_m));
+      s.v_tip_m_per_s.push_back(speed_at(runs[member.run].main, {s.x_m, s.direction}));
     for (std::size_t k = 0; k < 3; ++k) f[k] = s.v_tip_m_per_s[plan.last[k]];
     const double v = s.v_tip_m_per_s[plan.own];
     s.limit = extrapolate(q, f);
@@ -171,25 +131,10 @@ Sequence compare(const Plan& plan, const std::vector<Fronts>& runs, const Conver
 
 }  // namespace
 
-double v_tip_at(const fronts::Front& front, double x_m) {
-  for (std::size_t k = 0; k + 1 < front.points.size(); ++k) {
-    const auto& a = front.points[k];
-    const auto& b = front.points[k + 1];
-    const double share = (x_m - a.x_m) / (b.x_m - a.x_m);
-    if (share < 0 || share > 1) continue;
-    if (share == 0) return a.v_tip_m_per_s;
-    if (share == 1) return b.v_tip_m_per_s;
-    return a.v_tip_m_per_s + share * (b.v_tip_m_per_s - a.v_tip_m_per_s);
-  }
-  return undefined;
-}
-
 std::vector<Plan> plan_convergence(const io::Case& config, const ConvergenceOptions& options) {
   const auto sizes = element_sizes(config, options);
-  io::Case base = config;
+  io::Case base = for_study(config);
   base.fronts.l_star_m = std::max(base.fronts.l_star_m, sizes.front());
-  base.output.history_interval_s = 1e-5;  // histories and fields are not read
-  base.output.snapshot_times_s.clear();
   std::vector<Plan> plans = {element_plan(base, sizes), step_plan(base)};
   if (base.material.stiffness_damping_s > 0) plans.push_back(damping_plan(base));
   return plans;
@@ -208,28 +153,15 @@ Convergence study_convergence(const io::Case& config, const ConvergenceOptions& 
   // The finest mesh takes longest: first.
   for (auto& plan : plans)
     for (auto it = plan.members.rbegin(); it != plan.members.rend(); ++it) it->run = add(it->config);
-  for (const auto& c : cases) run::check(c);
 
   Convergence result;
   result.options = options;
   result.l_star_m = cases.front().fronts.l_star_m;
   result.n_runs = cases.size();
-  std::vector<Fronts> runs(cases.size());
-  std::vector<std::string> blow_ups(cases.size());
-  std::atomic<std::size_t> done = 0;
-  run::Batch batch(
-      options.threads, [&] { return monitor(done, cases.size()); }, "interrupted; nothing was written");
-  batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial) {
-    runs[k].options = run::front_options(cases[k], initial);
-    if (r.event.end == solve::EventEnd::blow_up)
-      blow_ups[k] = r.event.blow_up;
-    else
-      runs[k].main = main_fronts(r.fronts);
-    ++done;
-  });
+  const auto runs = run_cases(cases, options.threads, monitor);
   for (const auto& plan : plans) {
     for (const auto& member : plan.members)
-      if (const auto& what = blow_ups[member.run]; !what.empty())
+      if (const auto& what = runs[member.run].blow_up; !what.empty())
         result.warnings.push_back(fmt::format("{} = {:g}: {}", plan.parameter, member.value, what));
     result.sequences.push_back(compare(plan, runs, options));
   }

@@ -3,12 +3,12 @@
 
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "fronts/front.hpp"
 #include "io/case.hpp"
+#include "study/runs.hpp"
 #include "study/sequence.hpp"
 
 namespace slipfront::study {
@@ -69,9 +69,6 @@ struct Convergence {
   std::size_t n_runs = 0;
 };
 
-/// Told often how many runs are done; returns false to interrupt.
-using StudyMonitor = std::function<bool(std::size_t done, std::size_t total)>;
-
 /// Runs all sequences and compares V_tip of the main fronts, the longest in each direction, at stations x.
 /// V_tip over l* is linear in x between the nodes of a front. Left out are stations within nucleation_m of
 /// the start of the case's own front, where the speed diverges, and within a trigger zone and its margin. The
@@ -79,11 +76,6 @@ using StudyMonitor = std::function<bool(std::size_t done, std::size_t total)>;
 /// @throws UserError, Interrupted
 Convergence study_convergence(const io::Case& config, const ConvergenceOptions& options,
                               const StudyMonitor& monitor);
-
-inline constexpr double nucleation_m = 5e-3;
-
-/// V_tip of a front where its tip passes x, linear between its points; NaN beyond them.
-double v_tip_at(const fronts::Front& front, double x_m);
 
 /// convergence.csv (a row per sequence, station and value) and convergence.json (verdicts).
 void write_convergence(const std::filesystem::path& dir, const io::Case& config, const Convergence& result);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <complex>
 
 namespace slipfront::verify {
 
@@ -21,6 +23,18 @@ inline Limit limit(double at_4h, double at_2h, double at_h, int n, int m) {
   const double from_coarser = eliminate(at_4h, at_2h, n);
   const double value = eliminate(from_coarser, eliminate(at_2h, at_h, n), m);
   return {value, std::abs(value - from_coarser)};
+}
+
+/// The same of a complex number. The error of either part may be as large as that of the other: the
+/// uncertainty is that of the number.
+struct ComplexLimit {
+  std::complex<double> value;
+  double uncertainty = 0;
+};
+inline ComplexLimit limit(const std::array<std::complex<double>, 3>& at, int n, int m) {
+  const auto real = limit(at[0].real(), at[1].real(), at[2].real(), n, m);
+  const auto imag = limit(at[0].imag(), at[1].imag(), at[2].imag(), n, m);
+  return {{real.value, imag.value}, std::hypot(real.uncertainty, imag.uncertainty)};
 }
 
 }  // namespace slipfront::verify

@@ -76,20 +76,18 @@ Outcome layer_spectrum(Effort effort) {
                    .end_s = 2 / unit_per_s})
                 .rate_per_s() /
             unit_per_s;
-      const auto grows = limit(at[0].real(), at[1].real(), at[2].real(), law.order, law.next_order);
-      const auto moves = limit(at[0].imag(), at[1].imag(), at[2].imag(), law.order, law.next_order);
-      const double uncertainty = std::hypot(grows.uncertainty, moves.uncertainty);
+      const auto [rate, uncertainty] = limit(at, law.order, law.next_order);
       program.x.push_back(kH);
-      program.y.push_back(grows.value);
+      program.y.push_back(rate.real());
       program_speed.x.push_back(kH);
-      program_speed.y.push_back(-moves.value / kH);
+      program_speed.y.push_back(-rate.imag() / kH);
       const std::string reason =
           "change of the complex rate when the finest mesh joins the extrapolation: 24, 48 and 96 elements "
           "per height";
       outcome.checks.push_back({fmt::format("growth rate H/c_S, {}, k H = {:.3g}", law.name, kH), "",
-                                grows.value, s.real() / unit_per_s, uncertainty, reason});
+                                rate.real(), s.real() / unit_per_s, uncertainty, reason});
       outcome.checks.push_back({fmt::format("frequency H/c_S, {}, k H = {:.3g}", law.name, kH), "",
-                                moves.value, s.imag() / unit_per_s, uncertainty, reason});
+                                rate.imag(), s.imag() / unit_per_s, uncertainty, reason});
     }
     growth.curves.push_back(std::move(theory));
     growth.curves.push_back(std::move(program));

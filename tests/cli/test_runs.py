@@ -17,6 +17,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import ROOT
+from slipfront.figures import interface_step
 from slipfront.figures.__main__ import main as figures
 from slipfront.figures.convergence import read_study
 
@@ -457,3 +458,16 @@ def test_wrong_table_is_named_with_the_line_of_its_key(program, write_case, tmp_
         assert f"{case}:{line}: prestress.file: " in failed.stderr
         assert "table.csv: covers x = 0 to 0.05 m" in failed.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_interface_step_study_writes_a_case_that_runs(program, coarse, tmp_path):
+    options = ("--rows", "2", "--substeps", "2,4", "--tolerance", "0.5")
+    result = program("study", "interface-step", coarse, "-o", "out", *options)
+    assert result.returncode == 0, result.stderr
+    assert "cheapest within 50 %" in result.stdout
+    picture = tmp_path / "picture.png"
+    assert interface_step.main(picture, [tmp_path / "out"]) == 0
+    assert picture.is_file()
+    assert program("run", "out/chosen.toml", "-o", "again", "-q").returncode == 0
+    chosen = json.loads((tmp_path / "out/interface_step.json").read_text())["chosen"]
+    assert chosen["p90_error"] <= 0.5

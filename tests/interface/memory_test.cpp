@@ -12,9 +12,9 @@ using test::dt;
 using test::impedance;
 using test::pull;
 using test::resting_node;
+using test::rounding_Pa;
 
 // Tolerances: tractions of 1e6 Pa through a velocity and back, a few roundings of 1e-16 each: 1e-8 Pa.
-constexpr double rounding_Pa = 1e-8;
 
 TEST(SlipMemory, SlipWeakensForGood) {
   const ContactModel model{SlipWeakening{.mu_s = 0.6, .mu_k = 0.3, .d_c_m = 1e-6}};
@@ -84,11 +84,12 @@ TEST(Intact, InterpolatesBetweenTheKineticCoefficientAndTheLaw) {
     EXPECT_NEAR(s.strength_Pa[0], (0.6 + intact * 0.7) * 1e6, rounding_Pa);
     pull(s, 1.5e6, 1e6);
     update_contact(model, dt, s);
-    EXPECT_NEAR(s.t_Pa[0], (0.6 + intact * 0.7) * 1e6, rounding_Pa);
-    const double weakening = std::exp(-s.slip_rate_m_per_s[0] * std::sqrt(7.0));
+    const auto mu = [&](double v) { return 0.6 + intact * 0.7 * std::exp(-v * std::sqrt(7.0)); };
+    EXPECT_NEAR(s.t_Pa[0], test::strength_under_way(mu, 0, 1.5e6, 1e6), rounding_Pa);
+    const double rate = s.slip_rate_m_per_s[0];
     pull(s, 1.5e6, 1e6);
     update_contact(model, dt, s);
-    EXPECT_NEAR(s.t_Pa[0], (0.6 + intact * 0.7 * weakening) * 1e6, rounding_Pa);
+    EXPECT_NEAR(s.t_Pa[0], test::strength_under_way(mu, rate, 1.5e6, 1e6), rounding_Pa);
     // A node that sticks regains what is left of its static strength.
     pull(s, 0.1e6, 1e6);
     update_contact(model, dt, s);

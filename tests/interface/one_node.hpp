@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include "interface/interface.hpp"
 
 namespace slipfront::interface::test {
@@ -8,6 +10,9 @@ namespace slipfront::interface::test {
 inline constexpr double dt = 1e-6;
 inline constexpr double mass = 0.4;             // kg/m2
 inline constexpr double impedance = mass / dt;  // Pa s/m
+
+inline constexpr double rounding_Pa = 1e-8;  // tractions of 1e6 Pa through a velocity and back
+inline const VelocityWeakening weakening{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1};
 
 /// Trial motion that presses the node with p and drags it with t_stop.
 inline void pull(Interface& s, double t_stop_Pa, double p_Pa) {
@@ -22,6 +27,18 @@ inline Interface resting_node(const ContactModel& model, double p_Pa) {
   s.p_Pa[0] = p_Pa;
   start_contact(model, s);
   return s;
+}
+
+/// Strength of a slipping node in a step: the coefficient at the mean of the last and the new slip rate, the
+/// new one with three tries from the last. All quantities along the motion.
+template <class Coefficient>
+double strength_under_way(Coefficient mu, double last_rate, double t_stop_Pa, double p_Pa) {
+  double rate = last_rate, strength = 0;
+  for (int k = 0; k < 3; ++k) {
+    strength = mu(std::abs(rate)) * p_Pa;
+    rate = 0.5 * (last_rate + (t_stop_Pa - strength) / impedance);
+  }
+  return strength;
 }
 
 }  // namespace slipfront::interface::test

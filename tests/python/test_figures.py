@@ -12,16 +12,18 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from slipfront.figures import criteria, events, plate, space_time, studies
+from slipfront.figures import balance, criteria, events, plate, space_time, studies
 from slipfront.figures.__main__ import draw_all, main
 from slipfront.figures.results import drawn_fronts, main_fronts, read_results
 from slipfront.figures.style import RC
 from synthetic import (
     CONTACT_FROM_M,
     CONTACT_TO_M,
+    ENERGY_HEADER,
     FRONTS_HEADER,
     MU_S,
     WAVE_SPEEDS,
+    energy_rows,
     write_csv,
     write_fields,
     write_output,
@@ -39,6 +41,7 @@ FIGURES = [
     "space_time_spontaneous",
     "space_time_right",
     "space_time_spontaneous_mu_k_1.0",
+    "energy_balance",
     "studies",
     "studies_criteria",
 ]
@@ -456,6 +459,60 @@ def test_report_tells_how_far_the_scorecard_moves(output):
     assert "runs with plate.element_size_m = 0.001, one at a time" in html
 
 
+# Energy balance
+
+
+def test_balance_shows_the_terms_as_changes(results):
+    figure = balance.balance(results).figure
+    rows = np.array(energy_rows())
+    n = len(results.runs)
+    column = {"strain": 1, "kinetic": 2, "friction_work": 6, "damping_work": 8}
+    for panel, name in enumerate(results.runs):
+        assert {g for g in gids(figure, panel) if ":" in g} == {f"{name}:{term}" for term in column} - {
+            f"{name}:kinetic"  # 2 of 101 J/m
+        }
+        for term in column.keys() - {"kinetic"}:
+            line = artist(figure, f"{name}:{term}", panel)
+            np.testing.assert_allclose(line.get_xdata(), 1e6 * rows[:, 0])
+            np.testing.assert_allclose(line.get_ydata(), rows[:, column[term]] - rows[0, column[term]])
+        # The small ones over the largest, 101 J/m; terms that do not occur are left out.
+        small = {"kinetic": 2.0, "top_work": 0.8, "contact_work": 1e-4, "coupling_work": 0.2}
+        small["imbalance"] = 5e-10
+        assert {g for g in gids(figure, n + panel) if ":" in g} == {f"{name}:{term}" for term in small}
+        for term, last in small.items():
+            share = artist(figure, f"{name}:{term}", n + panel).get_ydata()
+            assert np.isnan(share[0]) and share[-1] == pytest.approx(last / 101, rel=1e-4)
+        assert figure.axes[n + panel].get_yscale() == "log"
+
+
+def test_caption_of_the_balance_has_the_closing_figure(results):
+    caption = balance.balance(results).caption
+    assert "left-triggered: largest change 101 J/m, imbalance at most 5.0e-10 J/m or 5.0e-12 of it" in caption
+    assert "coupling at the end 0.2 J/m" in caption
+    assert "spontaneous, μ<sub>k</sub> = 1.0: largest" in caption
+
+
+def test_imbalance_is_that_of_the_worst_row(output):
+    file = output / "left" / "energy.csv"
+    rows = energy_rows()
+    rows[2][-1] = -0.0101
+    write_csv(file, ENERGY_HEADER, rows)
+    caption = balance.balance(read_results(output)).caption
+    assert "left-triggered: largest change 101 J/m, imbalance at most 1.0e-02 J/m or 1.0e-04 of it" in caption
+
+
+def test_single_run_has_its_balance(output, capsys):
+    run = output / "left"
+    assert main([str(run)]) == 0
+    assert {file.name for file in (run / "figures").iterdir()} == {"energy_balance.png", "energy_balance.pdf"}
+    assert str(run / "figures" / "energy_balance.png") in capsys.readouterr().out
+
+
+def test_run_in_which_nothing_happens_has_a_balance(output):
+    write_csv(output / "left" / "energy.csv", ENERGY_HEADER, [[0] * 12, [1e-6] + [0] * 11])
+    assert main([str(output / "left")]) == 0
+
+
 # Studies
 
 
@@ -487,6 +544,20 @@ def test_studies_of_words_have_no_lines(results):
     labels = [label.get_text() for label in figure.axes[lower].get_xticklabels()]
     assert labels == ["relief", "fillet 2mm"]
     assert figure.axes[lower].get_xlabel() == "plate.corner"
+
+
+def test_numbers_above_the_axis_stand_side_by_side(results):
+    ax = Figure().subplots()
+    for gid in ("first", "second"):
+        values = [9.0, 1.0, 8.0]
+        studies.draw_values(ax, results.studies[0], values, 0.0, 4.0, gid, linestyle="-", color="black")
+    offsets = [(text.get_gid(), text.xy[0], text.xyann[0]) for text in ax.texts]
+    assert offsets == [
+        ("first:above", 0, 0),
+        ("first:above", 2, 0),
+        ("second:above", 0, 6),
+        ("second:above", 2, 6),
+    ]
 
 
 def test_studies_mark_the_papers_value(results):
@@ -581,6 +652,13 @@ def drop_dataset(path, name):
         (remove("right"), "right", "no such folder"),
         (remove("left/fronts.csv"), "left/fronts.csv", "No such file"),
         (remove("left/interface.h5"), "left/interface.h5", "No such file"),
+        (remove("left/energy.csv"), "left/energy.csv", "No such file"),
+        (
+            replace("left/energy.csv", "coupling_work", "other_work"),
+            "left/energy.csv",
+            "no column 'coupling_work_J_per_m'",
+        ),
+        (replace("left/energy.csv", "380.0,", ","), "left/energy.csv", "in column 'strain_J_per_m'"),
         (remove("scorecard.json"), "scorecard.json", "No such file"),
         (remove("analysis.json"), "analysis.json", "No such file"),
         (replace("left/fronts.csv", "t_d_Pa", "t_x_Pa"), "left/fronts.csv", "no column 't_d_Pa'"),

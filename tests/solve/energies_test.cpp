@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solve/energies.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,6 +42,11 @@ class Books : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {
     Energies last;
     std::size_t n_onsets = 0;
   };
+
+  void print(const char* what, const Balance& b) const {
+    fmt::print("{}, {} sub-steps: imbalance {:.1e} of the largest term, coupling {:.1e} of it at the end\n",
+               what, substeps(), b.worst_J / b.largest_J, b.last.coupling_work / b.largest_J);
+  }
 
   Balance run(const solid::Material& material, double shear_ratio, double top_speed, bool triggered,
               int steps, const interface::ContactModel& law) const {
@@ -94,13 +100,15 @@ TEST_P(Books, CloseWithEverythingOn) {
   }
 }
 
-// Run by `make verify`.
+// Run by `make verify`, which shows the figures.
 TEST_P(Books, DISABLED_CloseOverAMillionSteps) {
   if (corner() != Corner::relief || rows() != 4) return;
   const auto b = run({}, 0.9, 0.02, true, 1'000'000, support::gentle_law);
+  print("everything on", b);
   EXPECT_GT(b.last.kinetic, 0);
   EXPECT_LE(b.worst_J, 1e-10 * b.largest_J);
   const auto free = run({.stiffness_damping_s = 0}, 0.3, 0, false, 1'000'000, {interface::Coulomb{0}});
+  print("no damping, no friction", free);
   EXPECT_LE(free.worst_J, 1e-12 * free.largest_J);
   // No drift by the coupling: nothing feeds the plate, so its energy only falls, by landings.
   EXPECT_LT(std::abs(free.last.coupling_work), 0.05 * free.largest_J);

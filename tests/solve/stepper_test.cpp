@@ -331,11 +331,14 @@ class PlainScheme {
       const double x = v(2 * n) + dt * trigger_factor(trigger, now) * trigger_force[i] / m, y = v(2 * n + 1);
       const double gap = mesh_.y_m[n] + u(2 * n + 1);
       const double p = std::max(0.0, -(y + gap / dt) * m / (dt * B));
-      double t = x * m / (dt * B);
-      const double strength = mu(std::abs(slip_rate[i]), 0) * p;
-      const bool sticks = std::abs(t) <= strength;
-      if (!sticks) t = std::copysign(strength, t);
-      v(2 * n) = sticks ? 0 : x - dt * B * t / m;
+      const double stop = x * m / (dt * B);
+      double mean = slip_rate[i];
+      for (int evaluation = 0; evaluation < 3; ++evaluation) {
+        const double strength = mu(std::abs(mean), 0) * p;
+        const bool sticks = std::abs(stop) <= strength;
+        v(2 * n) = sticks ? 0 : x - dt * B * std::copysign(strength, stop) / m;
+        mean = 0.5 * (slip_rate[i] + v(2 * n));
+      }
       v(2 * n + 1) = y + dt * B * p / m;
       slip_rate[i] = v(2 * n);
       u.segment<2>(2 * n) += dt * v.segment<2>(2 * n);

@@ -52,7 +52,6 @@ TEST(WellPosedness, VelocityWeakeningAgainstRadiation) {
 }
 
 TEST(WellPosedness, LimitsAgreeWithGrowthFollowedToShortWaves) {
-  const Regularisation none;
   for (const auto relaxed : {Relaxed::none, Relaxed::strength, Relaxed::pressure})
     for (const double beta : {0.0, 1e-7})
       for (const double mu : {0.6, 1.3})

@@ -9,12 +9,16 @@ from pathlib import Path
 
 import matplotlib
 
-from slipfront.figures import convergence, criteria, events, plate, space_time, studies
+from slipfront.figures import balance, convergence, criteria, events, plate, space_time, studies
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.report import write_report
 from slipfront.figures.results import Results, read_results
 from slipfront.figures.style import RC
 from slipfront.read import DataError
+
+
+# Folders with a figure of their own, told by a file.
+SINGLE = {"convergence.json": convergence.convergence, "energy.csv": balance.balance_of_run}
 
 
 def draw_all(results: Results) -> list[Drawing]:
@@ -27,6 +31,7 @@ def draw_all(results: Results) -> list[Drawing]:
         criteria.dynamic_criterion(results),
         criteria.energy(results),
         *(space_time.space_time(results, name) for name in results.runs),
+        balance.balance(results),
         *([studies.speeds(results), studies.criteria(results)] if results.studies else []),
     ]
 
@@ -34,14 +39,14 @@ def draw_all(results: Results) -> list[Drawing]:
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.figures",
-        description="Draws the figures (PNG, PDF) and the report (HTML) of a reproduction, or the figure of a "
-        "convergence study, into DIR/figures.",
+        description="Draws the figures (PNG, PDF) and the report (HTML) of a reproduction, the figure of a "
+        "convergence study, or the energy balance of a single run, into DIR/figures.",
     )
     parser.add_argument(
         "dir",
         metavar="DIR",
         type=Path,
-        help="output folder of `slipfront reproduce` or `slipfront study convergence`",
+        help="output folder of `slipfront reproduce`, `slipfront study convergence` or `slipfront run`",
     )
     parser.add_argument(
         "--experiment",
@@ -52,12 +57,14 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     folder = options.dir / "figures"
     try:
-        if (options.dir / "convergence.json").is_file():
+        for file, draw in SINGLE.items():
+            if not (options.dir / file).is_file():
+                continue
             with matplotlib.rc_context(RC):
-                drawing = convergence.convergence(options.dir)
+                drawing = draw(options.dir)
                 folder.mkdir(exist_ok=True)
                 drawing.save(folder)
-            print(f"figure: {folder / 'convergence.png'} (and PDF)")
+            print(f"figure: {folder / drawing.name}.png (and PDF)")
             return 0
         results = read_results(options.dir, options.experiment)
         with matplotlib.rc_context(RC):

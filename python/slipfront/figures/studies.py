@@ -65,11 +65,13 @@ def draw_values(
     inside = np.where(y > top, np.nan, y)
     ax.plot(x, inside, linestyle=line if study.numeric else "none", gid=gid, **look)
     for xi, yi in zip(x[y > top], y[y > top], strict=True):
+        # Beside those that other fronts have at the same value.
+        beside = sum(str(t.get_gid()).endswith(":above") and abs(t.xy[0] - xi) < 0.5 for t in ax.texts)
         ax.annotate(
             f"{yi:.3g}↑",
             (xi, 1),
             xycoords=blended_transform_factory(ax.transData, ax.transAxes),
-            xytext=(0, -1),
+            xytext=(6 * beside, -1),
             textcoords="offset points",
             ha="center",
             va="top",

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "study/interface_step.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/version.hpp"
+#include "fronts/fit.hpp"
+#include "io/results.hpp"
+#include "io/schema.hpp"
+#include "study/sequence.hpp"
+
+namespace slipfront::study {
+
+namespace {
+
+constexpr std::array reference_divisors = {16, 32, 64};
+constexpr std::array plain_divisors = {1, 2, 4, 8};
+
+void set_errors(Stepping& s, const std::vector<double>& limit_m_per_s) {
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < limit_m_per_s.size(); ++k) {
+    const double error = std::abs(s.v_tip_m_per_s[k] / limit_m_per_s[k] - 1);
+    if (std::isfinite(error)) errors.push_back(error);
+  }
+  s.n_stations = static_cast<int>(errors.size());
+  s.median_error = fronts::median(errors);
+  std::ranges::sort(errors);
+  // At least nine tenths of the stations are within it.
+  s.p90_error = errors.empty() ? undefined : errors[(9 * errors.size() + 9) / 10 - 1];
+}
+
+const char* name(Stepping::Kind kind) {
+  switch (kind) {
+    case Stepping::Kind::plain:
+      return "plain";
+    case Stepping::Kind::layer:
+      return "layer";
+    case Stepping::Kind::extrapolated:
+      return "extrapolated";
+  }
+  SLIPFRONT_ASSERT(false, "unknown kind of stepping");
+  return "";
+}
+
+}  // namespace
+
+InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOptions& options,
+                                   const StudyMonitor& monitor) {
+  InterfaceStep result;
+  result.options = options;
+  const io::Case base = for_study(config);
+  const double factor = base.time.step_factor;
+
+  std::vector<io::Case> cases;
+  const auto add = [&](double step_factor, int rows, int substeps) {
+    auto& c = cases.emplace_back(base);
+    c.time.step_factor = step_factor;
+    c.time.interface_rows = rows;
+    c.time.interface_substeps = substeps;
+  };
+  for (auto it = reference_divisors.rbegin(); it != reference_divisors.rend(); ++it) add(factor / *it, 1, 1);
+  const std::size_t first_compared = cases.size();
+  for (const int divisor : plain_divisors) {
+    add(factor / divisor, 1, 1);
+    result.all.push_back({.kind = Stepping::Kind::plain, .step_factor = factor / divisor});
+  }
+  const double height_rows = base.plate.height_m / base.plate.element_size_m;
+  for (const int rows : options.rows)
+    for (const int substeps : options.substeps) {
+      if (rows >= height_rows) continue;
+      add(factor, rows, substeps);
+      result.all.push_back(
+          {.kind = Stepping::Kind::layer, .step_factor = factor, .rows = rows, .substeps = substeps});
+    }
+  result.n_runs = cases.size();
+  const auto runs = run_cases(cases, options.threads, monitor);
+
+  std::array<double, 3> q{}, f{};
+  std::vector<double> orders;
+  for (const auto& place : stations(runs[0].main, options.station_spacing_m)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      q[k] = 1.0 / reference_divisors[k];
+      f[k] = speed_at(runs[2 - k].main, place);
+    }
+    const Limit limit = extrapolate(q, f);
+    if (!std::isfinite(limit.value)) continue;
+    result.stations.push_back(place);
+    result.v_tip_m_per_s.push_back(limit.value);
+    if (std::isfinite(limit.order)) orders.push_back(limit.order);
+  }
+  result.median_order = fronts::median(orders);
+  if (result.stations.size() < static_cast<std::size_t>(fewest_stations))
+    result.warnings.push_back(
+        fmt::format("only {} stations have a speed with a limit at small steps", result.stations.size()));
+
+  // Runs end at different times: cost per simulated time.
+  const double plain_updates = runs[first_compared].node_updates_per_s;
+  const std::size_t n_run = result.all.size();
+  for (std::size_t k = 0; k < n_run; ++k) {
+    auto& s = result.all[k];
+    const std::size_t r = first_compared + k;
+    s.cost = runs[r].node_updates_per_s / plain_updates;
+    s.time_s = runs[r].stepping_wall_s;
+    for (const auto& place : result.stations) s.v_tip_m_per_s.push_back(speed_at(runs[r].main, place));
+    set_errors(s, result.v_tip_m_per_s);
+  }
+  for (std::size_t a = 0; a < n_run; ++a)
+    for (std::size_t b = 0; b < n_run; ++b) {
+      const auto &coarse = result.all[a], &fine = result.all[b];
+      if (coarse.kind != Stepping::Kind::layer || fine.rows != coarse.rows ||
+          fine.substeps != 2 * coarse.substeps)
+        continue;
+      Stepping s{.kind = Stepping::Kind::extrapolated,
+                 .step_factor = factor,
+                 .rows = coarse.rows,
+                 .substeps = fine.substeps,
+                 .cost = coarse.cost + fine.cost,
+                 .time_s = coarse.time_s + fine.time_s};
+      for (std::size_t k = 0; k < result.stations.size(); ++k)
+        s.v_tip_m_per_s.push_back(2 * fine.v_tip_m_per_s[k] - coarse.v_tip_m_per_s[k]);
+      set_errors(s, result.v_tip_m_per_s);
+      result.all.push_back(std::move(s));
+    }
+  const auto within = [&](const Stepping& s) {
+    return s.kind != Stepping::Kind::extrapolated && s.p90_error <= options.tolerance &&
+           10 * static_cast<std::size_t>(s.n_stations) >= 9 * result.stations.size();
+  };
+  for (std::size_t k = 0; k < result.all.size(); ++k)
+    if (within(result.all[k]) && (result.chosen < 0 || result.all[k].cost < result.all[result.chosen].cost))
+      result.chosen = static_cast<int>(k);
+  for (std::size_t k = 0; k < cases.size(); ++k)
+    if (!runs[k].blow_up.empty())
+      result.warnings.push_back(fmt::format("step_factor {:.3g}, {} rows, {} sub-steps: {}",
+                                            cases[k].time.step_factor, cases[k].time.interface_rows,
+                                            cases[k].time.interface_substeps, runs[k].blow_up));
+  return result;
+}
+
+void write_interface_step(const std::filesystem::path& dir, const io::Case& config,
+                          const InterfaceStep& result) {
+  using nlohmann::ordered_json;
+  const auto number = [](double value) {
+    return std::isfinite(value) ? ordered_json(value) : ordered_json();
+  };
+  std::string csv =
+      "kind,step_factor,interface_rows,interface_substeps,cost_over_plain,time_s,median_error,p90_error,"
+      "n_stations\n";
+  for (const auto& s : result.all)
+    fmt::format_to(std::back_inserter(csv), "{},{:.10g},{},{},{:.6g},{:.4g},{:.6g},{:.6g},{}\n", name(s.kind),
+                   s.step_factor, s.rows, s.substeps, s.cost, s.time_s, s.median_error, s.p90_error,
+                   s.n_stations);
+  io::write_text(dir / "interface_step.csv", csv);
+  ordered_json summary = {{"version", version_line()},
+                          {"title", config.title},
+                          {"tolerance", result.options.tolerance},
+                          {"station_spacing_m", result.options.station_spacing_m},
+                          {"n_stations", result.stations.size()},
+                          {"median_order_of_reference", number(result.median_order)},
+                          {"n_runs", result.n_runs},
+                          {"warnings", result.warnings},
+                          {"chosen", nullptr}};
+  std::filesystem::remove(dir / "chosen.toml");  // of an earlier study
+  if (result.chosen >= 0) {
+    const auto& s = result.all[result.chosen];
+    summary["chosen"] = {{"step_factor", s.step_factor},
+                         {"interface_rows", s.rows},
+                         {"interface_substeps", s.substeps},
+                         {"cost_over_plain", s.cost},
+                         {"p90_error", s.p90_error}};
+    io::Case chosen = config;
+    chosen.time.step_factor = s.step_factor;
+    chosen.time.interface_substeps = s.substeps;
+    if (s.kind == Stepping::Kind::layer) chosen.time.interface_rows = s.rows;
+    io::write_text(dir / "chosen.toml", io::to_toml(chosen));
+  }
+  io::write_text(dir / "interface_step.json", summary.dump(2) + "\n");
+}
+
+}  // namespace slipfront::study

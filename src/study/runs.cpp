@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "study/runs.hpp"
+
+#include <atomic>
+
+#include "run/batch.hpp"
+
+namespace slipfront::study {
+
+io::Case for_study(io::Case config) {
+  config.output.history_interval_s = 1e-5;
+  config.output.snapshot_times_s.clear();
+  return config;
+}
+
+std::vector<Run> run_cases(std::span<const io::Case> cases, int threads, const StudyMonitor& monitor) {
+  for (const auto& c : cases) run::check(c);
+  std::vector<Run> runs(cases.size());
+  std::atomic<std::size_t> done = 0;
+  run::Batch batch(
+      threads, [&] { return monitor(done, cases.size()); }, "interrupted; nothing was written");
+  batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial) {
+    auto& run = runs[k];
+    run.main.options = run::front_options(cases[k], initial);
+    if (r.event.end == solve::EventEnd::blow_up)
+      run.blow_up = r.event.blow_up;
+    else
+      run.main.fronts = main_fronts(r.fronts);
+    run.node_updates_per_s = r.node_updates_per_step / r.step_s;
+    run.stepping_wall_s = r.stepping_wall_s;
+    ++done;
+  });
+  return runs;
+}
+
+}  // namespace slipfront::study

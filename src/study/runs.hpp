@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/case.hpp"
+#include "study/speeds.hpp"
+
+namespace slipfront::study {
+
+/// Told often how many runs are done; returns false to interrupt.
+using StudyMonitor = std::function<bool(std::size_t done, std::size_t total)>;
+
+/// What a study keeps of a run. One that blew up counts as one without fronts.
+struct Run {
+  MainFronts main;
+  double node_updates_per_s = 0;  ///< per simulated time
+  double stepping_wall_s = 0;
+  std::string blow_up;  ///< empty, or what happened
+};
+
+/// The case without the records that studies do not read.
+io::Case for_study(io::Case config);
+
+/// Runs all cases; the results do not depend on the number of threads.
+/// @throws UserError, Interrupted
+std::vector<Run> run_cases(std::span<const io::Case> cases, int threads, const StudyMonitor& monitor);
+
+}  // namespace slipfront::study

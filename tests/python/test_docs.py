@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The pages of the documentation lead where they say, and agree on what is counted."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PROBLEMS = sorted(page.stem for page in (ROOT / "docs/verification").glob("*.md") if page.stem != "README")
+
+
+def anchors(page: Path) -> set[str]:
+    """Of a page's headings, as GitHub forms them."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    plain = (re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).lower() for heading in headings)
+    return {re.sub(r"[^\w\- ]", "", heading.strip()).replace(" ", "-") for heading in plain}
+
+
+def broken_links(page: Path) -> list[str]:
+    broken = []
+    for link in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+        file, _, anchor = link.partition("#")
+        if file.startswith(("http:", "https:")):
+            continue
+        target = page.parent / file if file else page
+        if not target.exists() or (anchor and anchor not in anchors(target)):
+            broken.append(link)
+    return broken
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_somewhere(page):
+    assert broken_links(page) == []
+
+
+def test_a_broken_link_is_found(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("# One `two`\n[a](#one-two) [b](#three) [c](other.md) [d](page.md#one-two)\n")
+    assert broken_links(page) == ["#three", "other.md"]
+
+
+def test_every_problem_has_its_page_its_picture_and_its_row():
+    problems = (ROOT / "src/verify/verification.cpp").read_text(encoding="utf-8")
+    assert sorted(re.findall(r'Verification\{"(\w+)"', problems)) == PROBLEMS
+    trust = (ROOT / "docs/trust.md").read_text(encoding="utf-8")
+    index = (ROOT / "docs/verification/README.md").read_text(encoding="utf-8")
+    for name in PROBLEMS:
+        assert f"]({name}.md) |" in index
+        assert f"](verification/{name}.md) |" in trust
+        page = (ROOT / f"docs/verification/{name}.md").read_text(encoding="utf-8")
+        assert f"figures/verify_{name}.png" in page
+
+
+def test_the_numbers_of_checks_agree():
+    index = (ROOT / "docs/verification/README.md").read_text(encoding="utf-8")
+    counts = [(int(a), int(b)) for a, b in re.findall(r"\| (\d+) of (\d+) \|", index)]
+    assert len(counts) == len(PROBLEMS) and all(a == b for a, b in counts)
+    claim = re.search(
+        r"all (\d+) checks of (\d+) problems hold", (ROOT / "docs/trust.md").read_text(encoding="utf-8")
+    )
+    assert claim and (int(claim[1]), int(claim[2])) == (sum(b for _, b in counts), len(PROBLEMS))
