@@ -85,6 +85,17 @@ void for_each_bilinear(const Transfer& t, int i, int j, F&& f) {
     }
 }
 
+void place_neighbours(GridLevel& level) {
+  const auto& rows = level.block;
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+      const int j = rows.neighbour[k] / level.stride();
+      level.neighbour_row.push_back(j);
+      level.neighbour_column.push_back(rows.neighbour[k] % level.stride());
+      level.reach = std::max(level.reach, std::abs(j - rows.node[r] / level.stride()));
+    }
+}
+
 int coarse_stride(const Transfer& t) {
   return static_cast<int>(t.x.place.size());
 }
@@ -145,6 +156,7 @@ GridLevel make_level(const mesh::Mesh& mesh, const solid::Material& material) {
         j, [&](int i) { return squares[level.node(i, j)] == (is_used | 4); },
         [&](int i) { return squares[level.node(i, j)] != 0; });
   level.block = solid::assemble_rows(mesh, material, places.block_nodes);
+  place_neighbours(level);
   return level;
 }
 
@@ -281,6 +293,7 @@ GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
     }
     rows.first.push_back(static_cast<std::int32_t>(rows.neighbour.size()));
   }
+  place_neighbours(coarse);
   return coarse;
 }
 

@@ -23,7 +23,11 @@ struct GridLevel {
   std::vector<std::int32_t> first_span;   ///< [rows + 2] of each row of nodes
   solid::BlockRows block;                 ///< the other nodes of the plate, ascending
   std::vector<std::int32_t> first_block;  ///< [rows + 2] of each row of nodes
-  std::vector<mesh::Node> unused;         ///< grid numbers without a node of the plate
+  /// Grid row and column of each neighbour in the block rows.
+  std::vector<std::int32_t> neighbour_row, neighbour_column;
+  /// Rows of nodes that K reaches up and down: 1, more around folded corners.
+  int reach = 1;
+  std::vector<mesh::Node> unused;  ///< grid numbers without a node of the plate
   /// Unused grid numbers on a face of a folded corner, with the node that took their place.
   std::map<mesh::Node, mesh::Node> glued;
 

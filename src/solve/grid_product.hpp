@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solve/grid_level.hpp"
+#include "solve/team.hpp"
 
 // K times a vector on a grid level, row by row, in single or double precision.
 namespace slipfront::solve {
@@ -16,6 +17,75 @@ struct GridField {
   std::vector<T> x, y;
   GridField() = default;
   explicit GridField(std::size_t n) : x(n, T(0)), y(n, T(0)) {}
+  std::size_t size() const { return x.size(); }
+};
+
+/// Rows of a vector field on a grid level: all of them, or as a ring the last few of a sweep.
+template <class T>
+struct Rows {
+  T* x_begin;
+  T* y_begin;
+  std::ptrdiff_t stride;
+  int mask = -1;  ///< of a row's number: -1 for all rows, their number less 1 for a ring of 2^n rows
+  T* x(int j) const { return x_begin + (j & mask) * stride; }
+  T* y(int j) const { return y_begin + (j & mask) * stride; }
+  Rows<const T> as_const() const { return {x_begin, y_begin, stride, mask}; }
+};
+
+template <class F>
+auto all_rows(F& field, const GridLevel& level) {
+  return Rows<std::remove_reference_t<decltype(field.x[0])>>{field.x.data(), field.y.data(), level.stride()};
+}
+
+/// A ring of rows.
+template <class T>
+class RowRing {
+ public:
+  RowRing() = default;
+  RowRing(int least_rows, int longest_row) {
+    while (rows_ < least_rows) rows_ *= 2;
+    field_ = GridField<T>(static_cast<std::size_t>(rows_) * longest_row);
+  }
+  Rows<T> on(const GridLevel& level) { return {field_.x.data(), field_.y.data(), level.stride(), rows_ - 1}; }
+
+ private:
+  int rows_ = 1;
+  GridField<T> field_;
+};
+
+/// Copies of the rows next to a part of a field's rows, where the neighbouring part is changed meanwhile.
+template <class T>
+class RowsBeside {
+ public:
+  RowsBeside() = default;
+  RowsBeside(int most_rows, int longest_row) : field_(2UL * most_rows * longest_row) {}
+  /// Copies up to n rows before and after the part.
+  void copy(const GridLevel& level, const Rows<const T>& from, PartOf part, int n) {
+    part_ = part;
+    n_ = n;
+    stride_ = level.stride();
+    for (int j = std::max(0, part.begin - n); j < std::min(level.rows + 1, part.end + n); ++j) {
+      if (j >= part.begin && j < part.end) continue;
+      std::copy_n(from.x(j), stride_, field_.x.data() + place(j));
+      std::copy_n(from.y(j), stride_, field_.y.data() + place(j));
+    }
+  }
+  /// The row of the field itself within the part, the copy beside it.
+  const T* x(const Rows<const T>& field, int j) const {
+    return j >= part_.begin && j < part_.end ? field.x(j) : field_.x.data() + place(j);
+  }
+  const T* y(const Rows<const T>& field, int j) const {
+    return j >= part_.begin && j < part_.end ? field.y(j) : field_.y.data() + place(j);
+  }
+
+ private:
+  std::ptrdiff_t place(int j) const {
+    return (j < part_.begin ? j - part_.begin + n_ : n_ + j - part_.end) * stride_;
+  }
+  PartOf part_{0, 0, 1};
+  int n_ = 0;
+  std::ptrdiff_t stride_ = 0;
+  GridField<T> field_;
 };
 
 /// Blocks of a level's block rows in the precision of the product.
@@ -27,23 +97,6 @@ std::vector<std::array<T, 4>> blocks_as(const solid::BlockRows& rows) {
     blocks.push_back(
         {static_cast<T>(b[0]), static_cast<T>(b[1]), static_cast<T>(b[2]), static_cast<T>(b[3])});
   return blocks;
-}
-
-/// Products of the block rows with (x, y), into out[2 r] and out[2 r + 1].
-template <class T, class In>
-void multiply_blocks(const solid::BlockRows& rows, const std::vector<std::array<T, 4>>& blocks, const In* x,
-                     const In* y, std::vector<T>& out) {
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    T ax = 0, ay = 0;
-    for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
-      const auto& b = blocks[k];
-      const T wx = static_cast<T>(x[rows.neighbour[k]]), wy = static_cast<T>(y[rows.neighbour[k]]);
-      ax += b[0] * wx + b[1] * wy;
-      ay += b[2] * wx + b[3] * wy;
-    }
-    out[2 * r] = ax;
-    out[2 * r + 1] = ay;
-  }
 }
 
 /// Product of the stencil over columns [begin, end) of a row; all pointers to column 0 of their rows.
@@ -71,36 +124,53 @@ void multiply_stencil_row(const solid::InteriorStencil& stencil, solid::Span spa
   }
 }
 
-/// Buffers of one row and of the block rows' products.
+/// One row of K times a field. [columns + 1]
 template <class T>
-struct ProductBuffer {
-  std::vector<T> x, y;    ///< [columns + 1]
-  std::vector<T> blocks;  ///< [2 block rows]
-  explicit ProductBuffer(const GridLevel& level)
-      : x(level.stride(), T(0)), y(level.stride(), T(0)), blocks(2 * level.block.size(), T(0)) {}
+struct ProductRow {
+  std::vector<T> x, y;
+  explicit ProductRow(int longest_row = 0) : x(longest_row, T(0)), y(longest_row, T(0)) {}
 };
 
-/// Row j of K times (x, y) into the buffer; 0 at unused grid numbers. The block rows' products must be in the
-/// buffer.
+/// Row j of K times `field` into `out`; 0 at unused grid numbers.
 template <class T, class In>
-void product_row(const GridLevel& level, int j, const In* x, const In* y, ProductBuffer<T>& buffer) {
-  const std::ptrdiff_t stride = level.stride(), at = j * stride;
+void multiply_row(const GridLevel& level, const std::vector<std::array<T, 4>>& blocks, int j,
+                  const Rows<const In>& field, ProductRow<T>& out) {
   int filled = 0;
   const auto clear = [&](int to) {
-    std::fill(buffer.x.begin() + filled, buffer.x.begin() + to, T(0));
-    std::fill(buffer.y.begin() + filled, buffer.y.begin() + to, T(0));
+    std::fill(out.x.begin() + filled, out.x.begin() + to, T(0));
+    std::fill(out.y.begin() + filled, out.y.begin() + to, T(0));
   };
   for (auto k = level.first_span[j]; k < level.first_span[j + 1]; ++k) {
     const auto span = level.span[k];
     clear(span.begin);
-    multiply_stencil_row(level.stencil, span, x + at - stride, y + at - stride, x + at, y + at,
-                         x + at + stride, y + at + stride, buffer.x.data(), buffer.y.data());
+    multiply_stencil_row(level.stencil, span, field.x(j - 1), field.y(j - 1), field.x(j), field.y(j),
+                         field.x(j + 1), field.y(j + 1), out.x.data(), out.y.data());
     filled = span.end;
   }
   clear(level.stride());
+  const auto& rows = level.block;
   for (auto r = level.first_block[j]; r < level.first_block[j + 1]; ++r) {
-    buffer.x[level.block.node[r] - at] = buffer.blocks[2 * r];
-    buffer.y[level.block.node[r] - at] = buffer.blocks[2 * r + 1];
+    T sum_x = 0, sum_y = 0;
+    for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+      const auto& b = blocks[k];
+      const auto row = level.neighbour_row[k], column = level.neighbour_column[k];
+      const T w_x = static_cast<T>(field.x(row)[column]), w_y = static_cast<T>(field.y(row)[column]);
+      sum_x += b[0] * w_x + b[1] * w_y;
+      sum_y += b[2] * w_x + b[3] * w_y;
+    }
+    const auto i = rows.node[r] - j * level.stride();
+    out.x[i] = sum_x;
+    out.y[i] = sum_y;
+  }
+}
+
+/// Adds friction to row j of a product: f_x + slip f_y at the block rows, whose slip is not 0 where a node
+/// slips.
+template <class T>
+void add_friction(const GridLevel& level, const std::vector<T>& slip, int j, ProductRow<T>& out) {
+  for (auto r = level.first_block[j]; r < level.first_block[j + 1]; ++r) {
+    const auto i = level.block.node[r] - j * level.stride();
+    out.x[i] += slip[r] * out.y[i];
   }
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "base/error.hpp"
 
@@ -15,92 +16,6 @@ namespace {
 constexpr int most_cycles = 400;
 /// Columns of the coarsest level that finds contact states.
 constexpr int least_interface_cells = 64;
-
-/// Calls f(k, sums) for k < n and returns the sums; summed in pieces, so that rounding does not grow with the
-/// number of nodes.
-template <std::size_t n_sums, class F>
-std::array<double, n_sums> for_each_summing(std::size_t n, F&& f) {
-  constexpr std::size_t piece = 4096;
-  std::array<double, n_sums> total{};
-  for (std::size_t begin = 0; begin < n; begin += piece) {
-    const std::size_t end = std::min(n, begin + piece);
-    double sum0 = 0, sum1 = 0;
-#pragma omp simd reduction(+ : sum0, sum1)
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::array<double, 2> terms = f(k);
-      sum0 += terms[0];
-      sum1 += terms[1];
-    }
-    total[0] += sum0;
-    if constexpr (n_sums > 1) total[1] += sum1;
-  }
-  return total;
-}
-
-template <class A, class B>
-double dot(const std::vector<A>& a, const std::vector<B>& b) {
-  const A* __restrict x = a.data();
-  const B* __restrict y = b.data();
-  return for_each_summing<1>(a.size(), [=](std::size_t k) {
-    return std::array<double, 2>{static_cast<double>(x[k]) * static_cast<double>(y[k]), 0};
-  })[0];
-}
-
-template <class A, class B>
-double dot_fields(const A& a, const B& b) {
-  return dot(a.x, b.x) + dot(a.y, b.y);
-}
-
-/// a = factor a + gain b
-template <class B>
-void scale_add(double factor, std::vector<double>& a, double gain, const std::vector<B>& b) {
-  double* __restrict to = a.data();
-  const B* __restrict from = b.data();
-  for (std::size_t k = 0; k < a.size(); ++k) to[k] = factor * to[k] + gain * static_cast<double>(from[k]);
-}
-template <class B>
-void scale_add(double factor, solid::Field& a, double gain, const B& b) {
-  scale_add(factor, a.x, gain, b.x);
-  scale_add(factor, a.y, gain, b.y);
-}
-/// p = r + beta (p - omega v)
-void next_direction(double beta, double omega, const std::vector<double>& r, const std::vector<double>& v,
-                    std::vector<double>& p) {
-  double* __restrict to = p.data();
-  const double* __restrict from_r = r.data();
-  const double* __restrict from_v = v.data();
-  for (std::size_t k = 0; k < p.size(); ++k) to[k] = from_r[k] + beta * (to[k] - omega * from_v[k]);
-}
-
-/// u += step z, r -= step q; returns the new r . with.
-template <class Z>
-double take_step(double step, const std::vector<Z>& z, const std::vector<double>& q, std::vector<double>& u,
-                 std::vector<double>& r, const std::vector<double>& with) {
-  const Z* __restrict from_z = z.data();
-  const double* __restrict from_q = q.data();
-  const double* __restrict other = with.data();
-  double* __restrict to_u = u.data();
-  double* __restrict to_r = r.data();
-  return for_each_summing<1>(u.size(), [=](std::size_t k) {
-    to_u[k] += step * static_cast<double>(from_z[k]);
-    to_r[k] -= step * from_q[k];
-    return std::array<double, 2>{to_r[k] * other[k], 0};
-  })[0];
-}
-
-/// t . r and t . t
-std::array<double, 2> two_dots(const std::vector<double>& t, const std::vector<double>& r) {
-  const double* __restrict a = t.data();
-  const double* __restrict b = r.data();
-  return for_each_summing<2>(t.size(), [=](std::size_t k) {
-    return std::array<double, 2>{a[k] * b[k], a[k] * a[k]};
-  });
-}
-
-template <class B>
-void add(solid::Field& a, double gain, const B& b) {
-  scale_add(1, a, gain, b);
-}
 
 /// Node of the finest level at the place of a level's node.
 mesh::Node finest_node(const Multigrid& multigrid, int level, mesh::Node n) {
@@ -157,10 +72,11 @@ void interpolate(const GridLevel& fine, const GridLevel& coarse, const Transfer&
 
 class IterativeLoadCase : public LoadCase {
  public:
-  IterativeLoadCase(const mesh::Mesh& mesh, Multigrid& multigrid, int level, TopConstraint constraint,
-                    const TopDisplacement& top, bool sheared, const solid::Field* start)
+  IterativeLoadCase(const mesh::Mesh& mesh, Multigrid& multigrid, Team& team, int level,
+                    TopConstraint constraint, const TopDisplacement& top, bool sheared,
+                    const solid::Field* start)
       : mesh_(mesh),
-        equations_(mesh, multigrid, level),
+        equations_(mesh, multigrid, team, level),
         constraint_(constraint),
         top_(top),
         sheared_(sheared) {
@@ -218,7 +134,11 @@ class IterativeLoadCase : public LoadCase {
 
   solid::Field displacement(double shear) const override {
     solid::Field u = u0_;
-    if (sheared_) add(u, shear, u1_);
+    if (!sheared_) return u;
+    for (std::size_t n = 0; n < u.size(); ++n) {
+      u.x[n] += shear * u1_.x[n];
+      u.y[n] += shear * u1_.y[n];
+    }
     return u;
   }
   solid::Field displacement_per_shear() const override { return sheared_ ? u1_ : solid::Field(u0_.size()); }
@@ -269,7 +189,10 @@ double iterative_bytes(double n_unknowns) {
 }
 
 IterativeSolver::IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material)
-    : mesh_(mesh), multigrid_(mesh, material) {
+    : IterativeSolver(mesh, material, Team::processors()) {}
+
+IterativeSolver::IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material, int threads)
+    : mesh_(mesh), team_(threads), multigrid_(mesh, material, team_) {
   const auto& grid = multigrid_.grid(0);
   n_unknowns_ = 2 * static_cast<std::int64_t>(grid.n_nodes() - grid.unused.size() - mesh.top.size());
   while (n_levels_ < multigrid_.n_levels() && multigrid_.grid(n_levels_).columns >= least_interface_cells)
@@ -278,22 +201,30 @@ IterativeSolver::IterativeSolver(const mesh::Mesh& mesh, const solid::Material& 
 
 std::unique_ptr<LoadCase> IterativeSolver::load_case(TopConstraint constraint, const TopDisplacement& top,
                                                      bool sheared, const solid::Field* start, int level) {
-  return std::make_unique<IterativeLoadCase>(mesh_, multigrid_, level, constraint, top, sheared, start);
+  return std::make_unique<IterativeLoadCase>(mesh_, multigrid_, team_, level, constraint, top, sheared,
+                                             start);
 }
 
 std::vector<std::size_t> IterativeSolver::interface_of(int level) const {
   return lower_nodes(mesh_, multigrid_, level).in_mesh_lower;
 }
 
-LevelEquations::LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, int level)
+LevelEquations::LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, Team& team, int level)
     : multigrid_(multigrid),
+      team_(team),
       level_(level),
       grid_(multigrid.grid(level)),
-      buffer_(grid_),
+      parts_(multigrid.parts(level)),
+      blocks_f_(blocks_as<float>(grid_.block)),
       fixed_(grid_.block.size(), 0),
+      slip_(grid_.block.size(), 0),
+      slip_f_(grid_.block.size(), 0),
+      workspace_(parts_, {ProductRow<double>(grid_.stride()), ProductRow<float>(grid_.stride()),
+                          RowRing<float>(2 * grid_.reach + 1, grid_.stride()),
+                          RowsBeside<float>(grid_.reach, grid_.stride())}),
+      row_sum_(grid_.rows + 1),
       residual_(grid_.n_nodes()),
-      direction_(grid_.n_nodes()),
-      product_(grid_.n_nodes()) {
+      direction_(grid_.n_nodes()) {
   auto lower = lower_nodes(mesh, multigrid, level);
   lower_ = std::move(lower.node);
   in_mesh_lower_ = std::move(lower.in_mesh_lower);
@@ -306,133 +237,263 @@ mesh::Node LevelEquations::finest(mesh::Node n) const {
 
 void LevelEquations::fix(TopConstraint constraint, const Support& support) {
   SLIPFRONT_ASSERT(support.contact.size() == lower_.size(), "size of the interface");
-  FixedNodes fixed;
-  fixed.y = top_;
-  if (constraint == TopConstraint::both) fixed.x = top_;
-  slip_.clear();
+  BoundaryNodes boundary;
+  boundary.fixed_y = top_;
+  if (constraint == TopConstraint::both) boundary.fixed_x = top_;
   for (std::size_t k = 0; k < lower_.size(); ++k) {
     const auto n = lower_[k];
-    if (support.contact[k] == Contact::stick) fixed.x.push_back(n);
-    if (support.contact[k] != Contact::open) fixed.y.push_back(n);
+    if (support.contact[k] == Contact::stick) boundary.fixed_x.push_back(n);
+    if (support.contact[k] != Contact::open) boundary.fixed_y.push_back(n);
     if (support.contact[k] == Contact::slip)
-      slip_.push_back({grid_.block_row(n), support.slip_sign[k] * support.mu_s});
+      boundary.slip.push_back({n, support.slip_sign[k] * support.mu_s});
   }
-  multigrid_.fix(fixed, level_);
+  multigrid_.prescribe(boundary, level_);
   std::ranges::fill(fixed_, std::uint8_t{0});
-  for (const auto n : fixed.x) fixed_[grid_.block_row(n)] |= 1;
-  for (const auto n : fixed.y) fixed_[grid_.block_row(n)] |= 2;
+  std::ranges::fill(slip_, 0.0);
+  for (const auto n : boundary.fixed_x) fixed_[grid_.block_row(n)] |= 1;
+  for (const auto n : boundary.fixed_y) fixed_[grid_.block_row(n)] |= 2;
+  for (const auto& slip : boundary.slip) slip_[grid_.block_row(slip.node)] = slip.factor;
+  std::ranges::copy(slip_, slip_f_.begin());
+  slips_ = !boundary.slip.empty();
 }
 
-template <class P>
-double LevelEquations::multiply(const P& p, solid::Field& q, bool with_fixed) {
-  const auto& level = grid_;
-  const int stride = level.stride();
-  multiply_blocks(level.block, level.block.block, p.x.data(), p.y.data(), buffer_.blocks);
-  double energy = 0;
-  if (with_fixed)
-    for (std::size_t r = 0; r < fixed_.size(); ++r) {
-      const auto n = level.block.node[r];
-      if ((fixed_[r] & 1) != 0) energy += p.x[n] * buffer_.blocks[2 * r];
-      if ((fixed_[r] & 2) != 0) energy += p.y[n] * buffer_.blocks[2 * r + 1];
-    }
-  for (const auto& slip : slip_)
-    buffer_.blocks[2 * slip.block_row] += slip.factor * buffer_.blocks[2 * slip.block_row + 1];
-  for (std::size_t r = 0; r < fixed_.size(); ++r) {
-    if ((fixed_[r] & 1) != 0) buffer_.blocks[2 * r] = 0;
-    if ((fixed_[r] & 2) != 0) buffer_.blocks[2 * r + 1] = 0;
+template <class T, class P>
+void LevelEquations::multiply(int j, const Rows<const P>& p, ProductRow<T>& out) const {
+  if constexpr (std::is_same_v<T, double>) {
+    multiply_row(grid_, grid_.block.block, j, p, out);
+    add_friction(grid_, slip_, j, out);
+  } else {
+    multiply_row(grid_, blocks_f_, j, p, out);
+    add_friction(grid_, slip_f_, j, out);
   }
-  for (int j = 0; j <= level.rows; ++j) {
-    product_row(level, j, p.x.data(), p.y.data(), buffer_);
-    const std::size_t begin = static_cast<std::size_t>(j) * stride;
-    const double* __restrict a_x = buffer_.x.data();
-    const double* __restrict a_y = buffer_.y.data();
-    const auto* __restrict p_x = p.x.data() + begin;
-    const auto* __restrict p_y = p.y.data() + begin;
-    double* __restrict q_x = q.x.data() + begin;
-    double* __restrict q_y = q.y.data() + begin;
+  for (auto r = grid_.first_block[j]; r < grid_.first_block[j + 1]; ++r) {
+    const auto i = grid_.block.node[r] - j * grid_.stride();
+    if ((fixed_[r] & 1) != 0) out.x[i] = 0;
+    if ((fixed_[r] & 2) != 0) out.y[i] = 0;
+  }
+}
+
+template <class F>
+std::array<double, 2> LevelEquations::sum_rows(F&& f) {
+  team_.run(parts_, [&](int part) {
+    const PartOf own(grid_.rows + 1, part, parts_);
+    for (int j = own.begin; j < own.end; ++j) row_sum_[j] = f(j, workspace_[part]);
+  });
+  std::array<double, 2> sum{};
+  for (const auto& terms : row_sum_) {
+    sum[0] += terms[0];
+    sum[1] += terms[1];
+  }
+  return sum;
+}
+
+double LevelEquations::start_residual(const solid::Field& u) {
+  const auto u_rows = all_rows(u, grid_);
+  const auto r_rows = all_rows(residual_, grid_);
+  return sum_rows([&](int j, Workspace& work) {
+    auto& product = work.product;
+    multiply_row(grid_, grid_.block.block, j, u_rows, product);
+    const double *u_x = u_rows.x(j), *u_y = u_rows.y(j);
     double sum = 0;
 #pragma omp simd reduction(+ : sum)
-    for (int i = 0; i < stride; ++i) {
-      q_x[i] = a_x[i];
-      q_y[i] = a_y[i];
-      sum += p_x[i] * a_x[i] + p_y[i] * a_y[i];
+    for (int i = 0; i < grid_.stride(); ++i) sum += u_x[i] * product.x[i] + u_y[i] * product.y[i];
+    multiply(j, u_rows, product);
+    double *r_x = r_rows.x(j), *r_y = r_rows.y(j);
+    for (int i = 0; i < grid_.stride(); ++i) {
+      r_x[i] = -product.x[i];
+      r_y[i] = -product.y[i];
     }
-    energy += sum;
+    return std::array<double, 2>{sum, 0};
+  })[0];
+}
+
+double LevelEquations::next_direction(double beta) {
+  const auto z = all_rows(multigrid_.z(), grid_);
+  const auto p = all_rows(direction_, grid_);
+  const auto factor = static_cast<float>(beta);
+  const int reach = grid_.reach, stride = grid_.stride();
+  team_.run(parts_, [&](int part) {
+    auto& work = workspace_[part];
+    const auto next = work.direction.on(grid_);
+    const PartOf own(grid_.rows + 1, part, parts_);
+    work.beside.copy(grid_, p.as_const(), own, reach);
+    team_.meet(parts_);
+    for (int j = std::max(0, own.begin - reach); j < own.end + reach; ++j) {
+      if (j <= grid_.rows) {
+        const float *z_x = z.x(j), *z_y = z.y(j);
+        const float *p_x = work.beside.x(p.as_const(), j), *p_y = work.beside.y(p.as_const(), j);
+        float *n_x = next.x(j), *n_y = next.y(j);
+#pragma GCC ivdep
+        for (int i = 0; i < stride; ++i) {
+          n_x[i] = z_x[i] + factor * p_x[i];
+          n_y[i] = z_y[i] + factor * p_y[i];
+        }
+        if (j >= own.begin && j < own.end) {
+          std::copy_n(n_x, stride, p.x(j));
+          std::copy_n(n_y, stride, p.y(j));
+        }
+      }
+      const int k = j - reach;
+      if (k < own.begin || k >= own.end) continue;
+      multiply(k, next.as_const(), work.product_f);
+      const float *n_x = next.x(k), *n_y = next.y(k);
+      const float *q_x = work.product_f.x.data(), *q_y = work.product_f.y.data();
+      double sum = 0;
+#pragma omp simd reduction(+ : sum)
+      for (int i = 0; i < stride; ++i)
+        sum += static_cast<double>(n_x[i]) * static_cast<double>(q_x[i]) +
+               static_cast<double>(n_y[i]) * static_cast<double>(q_y[i]);
+      row_sum_[k] = {sum, 0};
+    }
+  });
+  double sum = 0;
+  for (const auto& terms : row_sum_) sum += terms[0];
+  return sum;
+}
+
+double LevelEquations::take_step(double step, const GridField<float>& z, solid::Field& u) {
+  const auto z_rows = all_rows(z, grid_);
+  const auto u_rows = all_rows(u, grid_);
+  const auto r_rows = all_rows(residual_, grid_);
+  const bool with_shadow = slips_;
+  return sum_rows([&](int j, Workspace& work) {
+    multiply(j, z_rows, work.product);
+    const float *z_x = z_rows.x(j), *z_y = z_rows.y(j);
+    const double *q_x = work.product.x.data(), *q_y = work.product.y.data();
+    double *u_x = u_rows.x(j), *u_y = u_rows.y(j), *r_x = r_rows.x(j), *r_y = r_rows.y(j);
+#pragma GCC ivdep
+    for (int i = 0; i < grid_.stride(); ++i) {
+      u_x[i] += step * static_cast<double>(z_x[i]);
+      u_y[i] += step * static_cast<double>(z_y[i]);
+      r_x[i] -= step * q_x[i];
+      r_y[i] -= step * q_y[i];
+    }
+    double sum = 0;
+    if (with_shadow) {
+      const float* s_x = shadow_.x.data() + grid_.node(0, j);
+      const float* s_y = shadow_.y.data() + grid_.node(0, j);
+#pragma omp simd reduction(+ : sum)
+      for (int i = 0; i < grid_.stride(); ++i)
+        sum += r_x[i] * static_cast<double>(s_x[i]) + r_y[i] * static_cast<double>(s_y[i]);
+    }
+    return std::array<double, 2>{sum, 0};
+  })[0];
+}
+
+void LevelEquations::add_z(solid::Field& u) {
+  const auto& z = multigrid_.z();
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    u.x[n] += static_cast<double>(z.x[n]);
+    u.y[n] += static_cast<double>(z.y[n]);
   }
-  return energy;
 }
 
 void LevelEquations::solve(double accuracy, solid::Field& u) {
-  if (slip_.empty())
-    conjugate_gradients(accuracy, u);
-  else
+  if (slips_)
     bicgstab(accuracy, u);
+  else
+    conjugate_gradients(accuracy, u);
 }
 
 // With z = B r and B near the inverse, r . z is the square of the error in the energy norm; z itself then
 // takes most of the last error away.
 void LevelEquations::conjugate_gradients(double accuracy, solid::Field& u) {
-  auto& r = residual_;
-  auto& p = direction_;
-  auto& q = product_;
-  const double scale = std::sqrt(std::abs(multiply(u, r, true)));
-  scale_add(-1, r, 0, u);
-  const auto is_small = [&](double error2) { return std::sqrt(std::abs(error2)) <= accuracy * scale; };
+  const double scale = std::sqrt(std::abs(start_residual(u)));
+  const auto r = all_rows(std::as_const(residual_), grid_);
   double error2_before = 0;
   for (int cycle = 1; cycle <= most_cycles; ++cycle) {
-    multigrid_.apply(r);
-    const double error2 = dot_fields(r, multigrid_.z());
-    if (is_small(error2)) {
-      add(u, 1, multigrid_.z());
+    const double error2 = multigrid_.apply(r);
+    if (std::sqrt(std::abs(error2)) <= accuracy * scale) {
+      add_z(u);
       return;
     }
-    scale_add(cycle == 1 ? 0 : error2 / error2_before, p, 1, multigrid_.z());
+    const double curvature = next_direction(cycle == 1 ? 0 : error2 / error2_before);
     error2_before = error2;
-    const double step = error2 / multiply(p, q, false);
-    add(u, step, p);
-    add(r, -step, q);
+    take_step(error2 / curvature, direction_, u);
   }
   throw UserError("the iterative static solution does not converge; set loading.solver = direct");
 }
 
 void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
-  if (shadow_.size() == 0) shadow_ = second_ = solid::Field(u.size());
-  auto& r = residual_;
-  auto& p = direction_;
-  auto& v = product_;
-  auto& t = second_;
-  const double scale = std::sqrt(std::abs(multiply(u, r, true)));
-  scale_add(-1, r, 0, u);
-  shadow_ = r;
-  double rho = dot_fields(shadow_, r), beta = 0, omega = 0;
-  const auto& z = multigrid_.z();
+  if (shadow_.size() == 0) shadow_ = product_ = GridField<float>(u.size());
+  const double scale = std::sqrt(std::abs(start_residual(u)));
   const auto is_small = [&](double error2) { return std::sqrt(std::abs(error2)) <= accuracy * scale; };
-  p = r;
+  const auto r = all_rows(std::as_const(residual_), grid_);
+  const auto p = all_rows(direction_, grid_), s = all_rows(shadow_, grid_), v = all_rows(product_, grid_);
+  const auto& z = multigrid_.z();
+  const auto z_rows = all_rows(z, grid_);
+  const int stride = grid_.stride();
+  double rho = 0, beta = 0, omega = 0;
   for (int cycle = 1; cycle <= most_cycles; cycle += 2) {
-    if (cycle > 1) {
-      next_direction(beta, omega, r.x, v.x, p.x);
-      next_direction(beta, omega, r.y, v.y, p.y);
+    // p = r + beta (p - omega v)
+    const double first_rho = sum_rows([&](int j, Workspace&) {
+      const double *r_x = r.x(j), *r_y = r.y(j);
+      float *p_x = p.x(j), *p_y = p.y(j), *s_x = s.x(j), *s_y = s.y(j);
+      const float *v_x = v.x(j), *v_y = v.y(j);
+      double sum = 0;
+      if (cycle == 1) {
+#pragma omp simd reduction(+ : sum)
+        for (int i = 0; i < stride; ++i) {
+          s_x[i] = p_x[i] = static_cast<float>(r_x[i]);
+          s_y[i] = p_y[i] = static_cast<float>(r_y[i]);
+          sum += r_x[i] * static_cast<double>(s_x[i]) + r_y[i] * static_cast<double>(s_y[i]);
+        }
+      } else {
+        const auto b = static_cast<float>(beta), b_omega = static_cast<float>(beta * omega);
+#pragma GCC ivdep
+        for (int i = 0; i < stride; ++i) {
+          p_x[i] = static_cast<float>(r_x[i]) + (b * p_x[i] - b_omega * v_x[i]);
+          p_y[i] = static_cast<float>(r_y[i]) + (b * p_y[i] - b_omega * v_y[i]);
+        }
+      }
+      return std::array<double, 2>{sum, 0};
+    })[0];
+    const double p_z = multigrid_.apply(p.as_const());
+    if (cycle == 1) {
+      rho = first_rho;
+      if (is_small(p_z)) {
+        add_z(u);
+        return;
+      }
     }
-    multigrid_.apply(p);
-    if (cycle == 1 && is_small(dot_fields(r, z))) {
-      add(u, 1, z);
+    // v = A z
+    const double shadow_v = sum_rows([&](int j, Workspace& work) {
+      multiply(j, z_rows, work.product_f);
+      const float *q_x = work.product_f.x.data(), *q_y = work.product_f.y.data();
+      const float *s_x = s.x(j), *s_y = s.y(j);
+      float *v_x = v.x(j), *v_y = v.y(j);
+      double sum = 0;
+#pragma omp simd reduction(+ : sum)
+      for (int i = 0; i < stride; ++i) {
+        v_x[i] = q_x[i];
+        v_y[i] = q_y[i];
+        sum += static_cast<double>(s_x[i]) * static_cast<double>(q_x[i]) +
+               static_cast<double>(s_y[i]) * static_cast<double>(q_y[i]);
+      }
+      return std::array<double, 2>{sum, 0};
+    })[0];
+    const double alpha = rho / shadow_v;
+    take_step(alpha, z, u);
+    if (is_small(multigrid_.apply(r))) {
+      add_z(u);
       return;
     }
-    multiply(z, v, false);
-    const double alpha = rho / dot_fields(shadow_, v);
-    take_step(alpha, z.x, v.x, u.x, r.x, shadow_.x);
-    take_step(alpha, z.y, v.y, u.y, r.y, shadow_.y);
-    multigrid_.apply(r);
-    if (is_small(dot_fields(r, z))) {
-      add(u, 1, z);
-      return;
-    }
-    multiply(z, t, false);
-    const auto [t_r_x, t_t_x] = two_dots(t.x, r.x);
-    const auto [t_r_y, t_t_y] = two_dots(t.y, r.y);
-    omega = (t_r_x + t_r_y) / (t_t_x + t_t_y);
-    const double rho_next =
-        take_step(omega, z.x, t.x, u.x, r.x, shadow_.x) + take_step(omega, z.y, t.y, u.y, r.y, shadow_.y);
+    // t = A z
+    const auto [t_r, t_t] = sum_rows([&](int j, Workspace& work) {
+      multiply(j, z_rows, work.product_f);
+      const float *t_x = work.product_f.x.data(), *t_y = work.product_f.y.data();
+      const double *r_x = r.x(j), *r_y = r.y(j);
+      double sum_r = 0, sum_t = 0;
+#pragma omp simd reduction(+ : sum_r, sum_t)
+      for (int i = 0; i < stride; ++i) {
+        const auto x = static_cast<double>(t_x[i]), y = static_cast<double>(t_y[i]);
+        sum_r += x * r_x[i] + y * r_y[i];
+        sum_t += x * x + y * y;
+      }
+      return std::array<double, 2>{sum_r, sum_t};
+    });
+    omega = t_r / t_t;
+    const double rho_next = take_step(omega, z, u);
     beta = rho_next / rho * alpha / omega;
     rho = rho_next;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,7 +18,7 @@ double iterative_bytes(double n_unknowns);
 /// BiCGStab (van der Vorst, SIAM J. Sci. Stat. Comput. 13, 631-644, 1992) with the same preconditioner.
 class LevelEquations {
  public:
-  LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, int level);
+  LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, Team& team, int level);
 
   /// Fixes displacements: the loaded edge's, and those that the support does not leave free.
   void fix(TopConstraint constraint, const Support& support);
@@ -35,31 +36,55 @@ class LevelEquations {
   const std::vector<std::size_t>& in_mesh_lower() const { return in_mesh_lower_; }
 
  private:
-  struct SlipRow {
-    std::int32_t block_row;
-    double factor;  ///< f_x + factor f_y = 0
-  };
-  /// q = A p for the free displacements, 0 at fixed ones; returns p . q, or with the forces at fixed ones.
-  template <class P>
-  double multiply(const P& p, solid::Field& q, bool with_fixed);
+  /// Row j of A p in the precision T: friction added, 0 at fixed displacements.
+  template <class T, class P>
+  void multiply(int j, const Rows<const P>& p, ProductRow<T>& out) const;
+  /// r = -A u; returns u . K u.
+  double start_residual(const solid::Field& u);
+  /// direction = z + beta direction; returns direction . A direction.
+  double next_direction(double beta);
+  /// u += step z, r -= step A z; returns the new r . shadow, where there is one.
+  double take_step(double step, const GridField<float>& z, solid::Field& u);
+  void add_z(solid::Field& u);
   void conjugate_gradients(double accuracy, solid::Field& u);
   void bicgstab(double accuracy, solid::Field& u);
+  /// Calls f(row, work) -> two terms for all rows and returns the sums of the terms.
+  template <class F>
+  std::array<double, 2> sum_rows(F&& f);
+
+  /// What a thread needs for its sweeps.
+  struct Workspace {
+    ProductRow<double> product;
+    ProductRow<float> product_f;
+    RowRing<float> direction;
+    RowsBeside<float> beside;
+  };
 
   Multigrid& multigrid_;
+  Team& team_;
   int level_;
   const GridLevel& grid_;
+  int parts_;
   std::vector<mesh::Node> lower_, top_;     ///< the level's nodes
   std::vector<std::size_t> in_mesh_lower_;  ///< [lower] places in mesh.lower
-  ProductBuffer<double> buffer_;
+  std::vector<std::array<float, 4>> blocks_f_;
   std::vector<std::uint8_t> fixed_;  ///< [block rows] bit 0: x, bit 1: y
-  std::vector<SlipRow> slip_;
-  solid::Field residual_, direction_, product_, shadow_, second_;
+  std::vector<double> slip_;         ///< [block rows] factor of f_y, 0 where the node does not slip
+  std::vector<float> slip_f_;
+  bool slips_ = false;
+  std::vector<Workspace> workspace_;            ///< [threads]
+  std::vector<std::array<double, 2>> row_sum_;  ///< [rows]
+  /// The residual is that of u up to rounding in double precision, since both change by the same step of the
+  /// same direction, however the direction was rounded.
+  solid::Field residual_;
+  GridField<float> direction_, shadow_, product_;
 };
 
 /// Equilibria by LevelEquations. Coarser levels with enough interface nodes give first guesses.
 class IterativeSolver : public PlateSolver {
  public:
   IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material);
+  IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material, int threads);
 
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
                                       const solid::Field* start, int level) override;
@@ -71,9 +96,11 @@ class IterativeSolver : public PlateSolver {
   std::vector<std::size_t> interface_of(int level) const override;
 
   Multigrid& multigrid() { return multigrid_; }
+  Team& team() { return team_; }
 
  private:
   const mesh::Mesh& mesh_;
+  Team team_;
   Multigrid multigrid_;
   std::int64_t n_unknowns_ = 0;
   int n_levels_ = 1;

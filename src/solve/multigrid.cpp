@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <numeric>
 
 #include "base/error.hpp"
 
@@ -17,6 +17,7 @@ constexpr int least_cells = 4;  ///< a level is made coarser only where it has a
 /// takes the rest.
 constexpr double smoothed_fraction = 0.1;
 constexpr double eigenvalue_margin = 1.05;
+constexpr std::size_t least_nodes_for_threads = 40000;  ///< of a level
 
 /// Reproducible numbers between -1/2 and 1/2.
 class RandomNumbers {
@@ -34,24 +35,28 @@ class RandomNumbers {
 
 struct Multigrid::Level {
   GridLevel grid;
-  Transfer transfer;  ///< from the next coarser level
+  Transfer transfer;                  ///< from the next coarser level
+  std::vector<mesh::Node> special;    ///< nodes with an interpolation of their own, ascending
+  GridField<float> special_residual;  ///< of these nodes
   std::vector<std::array<float, 4>> blocks;
   std::vector<std::uint8_t> fixed;      ///< [block rows] bit 0: x, bit 1: y
+  std::vector<float> slip;              ///< [block rows] factor, 0 where the node does not slip
   std::vector<float> inverse_diagonal;  ///< [2 block rows], 0 where fixed
   double largest = 0;                   ///< eigenvalue of D^-1 K
   double damping = 1;                   ///< factor of D at the block rows
-  GridField<float> u, change, b;
-  ProductBuffer<float> buffer;
+  GridField<float> u, b;                ///< the finest level's b is not kept
 
-  explicit Level(GridLevel g)
+  Level(GridLevel g, bool is_finest)
       : grid(std::move(g)),
         blocks(blocks_as<float>(grid.block)),
         fixed(grid.block.size(), 0),
+        slip(grid.block.size(), 0.0F),
         inverse_diagonal(2 * grid.block.size(), 0.0F),
         u(grid.n_nodes()),
-        change(grid.n_nodes()),
-        b(grid.n_nodes()),
-        buffer(grid) {}
+        b(is_finest ? 0 : grid.n_nodes()) {}
+
+  Rows<float> u_rows() { return all_rows(u, grid); }
+  Rows<float> b_rows() { return all_rows(b, grid); }
 
   void set_diagonal() {
     for (std::size_t r = 0; r < grid.block.size(); ++r)
@@ -63,24 +68,100 @@ struct Multigrid::Level {
               (fixed[r] >> c & 1) != 0 || d[3 * c] <= 0 ? 0 : static_cast<float>(1 / (damping * d[3 * c]));
       }
   }
+
+  /// Row j of the product with friction.
+  void multiply(int j, const Rows<const float>& field, ProductRow<float>& out) const {
+    multiply_row(grid, blocks, j, field, out);
+    add_friction(grid, slip, j, out);
+  }
+
+  /// Calls nodes(begin, end) for the spans of row j with the stencil and node(i, D^-1_x, D^-1_y) for the
+  /// others.
+  template <class Nodes, class Node>
+  void for_row(int j, Nodes&& nodes, Node&& node) const {
+    for (auto k = grid.first_span[j]; k < grid.first_span[j + 1]; ++k)
+      nodes(grid.span[k].begin, grid.span[k].end);
+    for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r)
+      node(grid.block.node[r] - j * grid.stride(), inverse_diagonal[2 * r], inverse_diagonal[2 * r + 1]);
+  }
+
+  /// Fields are 0 at fixed displacements and unused grid numbers.
+  void clear_fixed(int j, float* x, float* y) const {
+    for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) {
+      const auto i = grid.block.node[r] - j * grid.stride();
+      if (inverse_diagonal[2 * r] == 0) x[i] = 0;
+      if (inverse_diagonal[2 * r + 1] == 0) y[i] = 0;
+    }
+    if (grid.unused.empty() || grid.node(0, j) > grid.unused.back()) return;
+    for (auto n = std::ranges::lower_bound(grid.unused, grid.node(0, j));
+         n != grid.unused.end() && *n < grid.node(0, j + 1); ++n)
+      x[*n - grid.node(0, j)] = y[*n - grid.node(0, j)] = 0;
+  }
+
+  /// Calls f(k, column) for the special nodes of row j.
+  template <class F>
+  void for_special(int j, F&& f) const {
+    if (special.empty() || grid.node(0, j) > special.back()) return;
+    for (auto n = std::ranges::lower_bound(special, grid.node(0, j));
+         n != special.end() && *n < grid.node(0, j + 1); ++n)
+      f(static_cast<std::size_t>(n - special.begin()), *n - grid.node(0, j));
+  }
+
+  /// Gains of two Chebyshev steps: c1 = first D^-1 (b - K u), u1 = u + c1,
+  /// c2 = keep c1 + second D^-1 (b - K u1), u2 = u1 + c2.
+  struct Gains {
+    float first, second, keep, inverse_centre;
+  };
+  Gains gains() const {
+    const double high = eigenvalue_margin * largest, low = smoothed_fraction * high;
+    const double theta = 0.5 * (high + low), delta = 0.5 * (high - low), sigma = theta / delta;
+    const double rho = sigma / (2 * sigma * sigma - 1);
+    return {static_cast<float>(1 / theta), static_cast<float>(2 * rho / delta),
+            static_cast<float>(rho / sigma), static_cast<float>(1 / grid.stencil.centre)};
+  }
+};
+
+/// What a thread needs for its sweeps.
+struct Multigrid::Workspace {
+  RowRing<float> start, change, smoothed;
+  RowsBeside<float> beside;
+  ProductRow<float> product;
+  std::vector<float> coarse_row;
+  Workspace(int reach, int longest_row)
+      : start(2 * reach + 1, longest_row),
+        change(2 * reach + 1, longest_row),
+        smoothed(2 * reach + 1, longest_row),
+        beside(2 * reach, longest_row),
+        product(longest_row),
+        coarse_row(longest_row) {}
 };
 
 Multigrid::~Multigrid() = default;
 
-Multigrid::Multigrid(const mesh::Mesh& mesh, const solid::Material& material) {
-  levels_.push_back(std::make_unique<Level>(make_level(mesh, material)));
+Multigrid::Multigrid(const mesh::Mesh& mesh, const solid::Material& material, Team& team) : team_(team) {
+  levels_.push_back(std::make_unique<Level>(make_level(mesh, material), true));
   const auto is_coarse = [](const GridLevel& g) {
     return g.n_nodes() <= most_coarsest_nodes || std::min(g.columns, g.rows) < least_cells;
   };
   while (!is_coarse(levels_.back()->grid)) {
     auto& fine = *levels_.back();
     fine.transfer = make_transfer(fine.grid);
-    levels_.push_back(std::make_unique<Level>(make_coarse_level(fine.grid, fine.transfer)));
+    for (const auto& [n, row] : fine.transfer.special) fine.special.push_back(n);
+    fine.special_residual = GridField<float>(fine.special.size());
+    levels_.push_back(std::make_unique<Level>(make_coarse_level(fine.grid, fine.transfer), false));
   }
+  int reach = 1;
   for (const auto& level : levels_) {
     damp_block_rows(*level);
     estimate_largest_eigenvalue(*level);
+    reach = std::max(reach, level->grid.reach);
   }
+  workspace_.assign(team.size(), Workspace(reach, mesh.grid.stride()));
+  row_sum_.resize(mesh.grid.rows + 1);
+}
+
+int Multigrid::parts(int level) const {
+  return levels_[level]->grid.n_nodes() >= least_nodes_for_threads ? team_.size() : 1;
 }
 
 const GridLevel& Multigrid::grid(int level) const {
@@ -95,30 +176,32 @@ const GridField<float>& Multigrid::z() const {
   return levels_[top_level_]->u;
 }
 
-void Multigrid::fix(const FixedNodes& fixed, int first) {
+void Multigrid::prescribe(const BoundaryNodes& boundary, int first) {
   top_level_ = first;
   for (std::size_t l = first; l < levels_.size(); ++l) {
     auto& level = *levels_[l];
-    auto& own = level.fixed;
-    std::ranges::fill(own, std::uint8_t{0});
+    std::ranges::fill(level.fixed, std::uint8_t{0});
+    std::ranges::fill(level.slip, 0.0F);
     if (l == static_cast<std::size_t>(first)) {
-      const auto set = [&](const std::vector<mesh::Node>& nodes, std::uint8_t bit) {
-        for (const auto n : nodes) {
-          const auto r = level.grid.block_row(n);
-          SLIPFRONT_ASSERT(r >= 0, "a prescribed node is not on the boundary");
-          own[r] |= bit;
-        }
+      const auto block_row = [&](mesh::Node n) {
+        const auto r = level.grid.block_row(n);
+        SLIPFRONT_ASSERT(r >= 0, "a node with a condition is not on the boundary");
+        return r;
       };
-      set(fixed.x, 1);
-      set(fixed.y, 2);
+      for (const auto n : boundary.fixed_x) level.fixed[block_row(n)] |= 1;
+      for (const auto n : boundary.fixed_y) level.fixed[block_row(n)] |= 2;
+      for (const auto& slip : boundary.slip)
+        level.slip[block_row(slip.node)] = static_cast<float>(slip.factor);
     } else {
       const auto& finer = *levels_[l - 1];
       const auto& t = finer.transfer;
-      for (std::size_t r = 0; r < own.size(); ++r) {
+      for (std::size_t r = 0; r < level.fixed.size(); ++r) {
         const auto n = level.grid.block.node[r];
         const auto finer_row = finer.grid.block_row(
             finer.grid.node(t.x.place[n % level.grid.stride()], t.y.place[n / level.grid.stride()]));
-        if (finer_row >= 0) own[r] = finer.fixed[finer_row];
+        if (finer_row < 0) continue;
+        level.fixed[r] = finer.fixed[finer_row];
+        level.slip[r] = finer.slip[finer_row];
       }
     }
     level.set_diagonal();
@@ -126,204 +209,290 @@ void Multigrid::fix(const FixedNodes& fixed, int first) {
   factorise_coarsest();
 }
 
-void Multigrid::apply(const solid::Field& r) {
-  auto& b = levels_[top_level_]->b;
-  n_cycles_ += top_level_ == 0 ? 1 : 0;
-  for (std::size_t n = 0; n < r.size(); ++n) {
-    b.x[n] = static_cast<float>(r.x[n]);
-    b.y[n] = static_cast<float>(r.y[n]);
-  }
-  cycle(top_level_);
+double Multigrid::apply(const Rows<const double>& r) {
+  return cycle(top_level_, r);
+}
+double Multigrid::apply(const Rows<const float>& r) {
+  return cycle(top_level_, r);
 }
 
-void Multigrid::cycle(std::size_t l) {
-  if (l + 1 == levels_.size()) {
-    solve_coarsest();
-    return;
+template <class B>
+double Multigrid::cycle(std::size_t l, const Rows<const B>& b) {
+  n_cycles_ += l == 0 ? 1 : 0;
+  if (l + 1 == levels_.size()) return solve_coarsest(b);
+  smooth_and_restrict(l, b);
+  cycle(l + 1, levels_[l + 1]->b_rows().as_const());
+  return prolong_and_smooth(l, b);
+}
+
+namespace {
+
+/// Restricts row r of a residual to the coarse columns.
+void restrict_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict r,
+                  float* __restrict c) {
+  // Cells that consist of two finer ones; the last may have three.
+  const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
+  c[0] = r[0] + (n_pairs > 0 ? 0.5F * r[1] : 0.0F);
+  for (int I = 1; I < n_pairs; ++I) c[I] = r[2 * I] + 0.5F * (r[2 * I - 1] + r[2 * I + 1]);
+  if (n_pairs > 0) c[n_pairs] = r[2 * n_pairs] + 0.5F * r[2 * n_pairs - 1];
+  if (n_pairs == coarse_columns) return;
+  const int i = 2 * n_pairs;
+  const float w1 = t.weight[i + 1], w2 = t.weight[i + 2];
+  c[n_pairs] += (1 - w1) * r[i + 1] + (1 - w2) * r[i + 2];
+  c[n_pairs + 1] = w1 * r[i + 1] + w2 * r[i + 2] + r[i + 3];
+}
+
+/// u = start + interpolation of the values c at the coarse columns.
+void interpolate_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict c,
+                     const float* __restrict start, float* __restrict u) {
+  const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
+  for (int I = 0; I < n_pairs; ++I) {
+    u[2 * I] = start[2 * I] + c[I];
+    u[2 * I + 1] = start[2 * I + 1] + 0.5F * (c[I] + c[I + 1]);
   }
+  for (int i = 2 * n_pairs; i <= columns; ++i) {
+    const int I = t.left[i];
+    u[i] = start[i] + (1 - t.weight[i]) * c[I] + t.weight[i] * c[I + 1];
+  }
+}
+
+}  // namespace
+
+template <class B>
+void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
   auto& fine = *levels_[l];
   auto& coarse = *levels_[l + 1];
-  smooth(fine, true);
-  restrict_residual(fine, coarse);
-  cycle(l + 1);
-  prolong(coarse, fine);
-  smooth(fine, false);
-}
-
-void Multigrid::smooth(Level& level, bool from_zero) {
-  // Two steps: c1 = g1 D^-1 (b - K u), u1 = u + c1, c2 = k c1 + g2 D^-1 (b - K u1), u2 = u1 + c2.
-  const auto& grid = level.grid;
-  const int stride = grid.stride();
-  const double high = eigenvalue_margin * level.largest, low = smoothed_fraction * high;
-  const double theta = 0.5 * (high + low), delta = 0.5 * (high - low), sigma = theta / delta;
-  const double rho = sigma / (2 * sigma * sigma - 1);
-  const auto gain1 = static_cast<float>(1 / theta), gain2 = static_cast<float>(2 * rho / delta),
-             keep = static_cast<float>(rho / sigma);
-  const auto inverse_centre = static_cast<float>(1 / grid.stencil.centre);
-  auto& change = level.change;
-  auto& u = level.u;
-  auto& out = level.buffer;
-  struct Row {
-    float *u, *change;
-    const float *b, *product;
-  };
-  const auto row = [&](int j, int component) {
-    const std::size_t begin = static_cast<std::size_t>(j) * stride;
-    return component == 0
-               ? Row{u.x.data() + begin, change.x.data() + begin, level.b.x.data() + begin, out.x.data()}
-               : Row{u.y.data() + begin, change.y.data() + begin, level.b.y.data() + begin, out.y.data()};
-  };
-  /// Calls f(row, i, D^-1) for all nodes of the plate in grid row j.
-  const auto for_row = [&](int j, auto&& f) {
-    for (int component = 0; component < 2; ++component) {
-      const Row at = row(j, component);
-      for (auto k = grid.first_span[j]; k < grid.first_span[j + 1]; ++k)
-#pragma omp simd
-        for (int i = grid.span[k].begin; i < grid.span[k].end; ++i) f(at, i, inverse_centre);
-      for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r)
-        f(at, grid.block.node[r] - j * stride, level.inverse_diagonal[2 * r + component]);
-    }
-  };
-
-  if (from_zero) {
-    for (int j = 0; j <= grid.rows; ++j)
-      for_row(j, [gain1](const Row& at, int i, float inverse) { at.change[i] = gain1 * inverse * at.b[i]; });
-    multiply_blocks(grid.block, level.blocks, change.x.data(), change.y.data(), out.blocks);
-    for (int j = 0; j <= grid.rows; ++j) {
-      product_row(grid, j, change.x.data(), change.y.data(), out);
-      for_row(j, [keep, gain2](const Row& at, int i, float inverse) {
-        at.u[i] = (1 + keep) * at.change[i] + gain2 * inverse * (at.b[i] - at.product[i]);
-      });
-    }
-    for (const auto n : grid.unused) u.x[n] = u.y[n] = 0;
-    return;
-  }
-  // A row of u changes only when its neighbours do not need it any more.
-  const auto add_change = [&](int j) {
-    for (int component = 0; component < 2; ++component) {
-      const Row at = row(j, component);
-#pragma omp simd
-      for (int i = 0; i < stride; ++i) at.u[i] += at.change[i];
-    }
-  };
-  for (int step = 1; step <= 2; ++step) {
-    multiply_blocks(grid.block, level.blocks, u.x.data(), u.y.data(), out.blocks);
-    for (int j = 0; j <= grid.rows; ++j) {
-      product_row(grid, j, u.x.data(), u.y.data(), out);
-      if (step == 1)
-        for_row(j, [gain1](const Row& at, int i, float inverse) {
-          at.change[i] = gain1 * inverse * (at.b[i] - at.product[i]);
-        });
-      else
-        for_row(j, [keep, gain2](const Row& at, int i, float inverse) {
-          at.change[i] = keep * at.change[i] + gain2 * inverse * (at.b[i] - at.product[i]);
-        });
-      if (j > 0) add_change(j - 1);
-    }
-    add_change(grid.rows);
-  }
-}
-
-void Multigrid::restrict_residual(Level& fine, Level& coarse) {
   const auto& grid = fine.grid;
   const auto& t = fine.transfer;
-  const int stride = grid.stride(), coarse_stride = coarse.grid.stride();
-  std::ranges::fill(coarse.b.x, 0.0F);
-  std::ranges::fill(coarse.b.y, 0.0F);
-  auto& out = fine.buffer;
-  multiply_blocks(grid.block, fine.blocks, fine.u.x.data(), fine.u.y.data(), out.blocks);
-  std::vector<float> row(coarse_stride);
-  // Cells that consist of two finer ones; the last may have three.
-  const int n_pairs = grid.columns % 2 == 0 ? coarse.grid.columns : coarse.grid.columns - 1;
-  auto special = t.special.begin();
-  for (int j = 0; j <= grid.rows; ++j) {
-    product_row(grid, j, fine.u.x.data(), fine.u.y.data(), out);
-    const std::size_t begin = static_cast<std::size_t>(j) * stride;
-    for (int component = 0; component < 2; ++component) {
-      auto& residual = component == 0 ? out.x : out.y;
-      const float* __restrict b = (component == 0 ? fine.b.x : fine.b.y).data() + begin;
-      float* __restrict r = residual.data();
-      for (auto k = grid.first_span[j]; k < grid.first_span[j + 1]; ++k)
-        for (int i = grid.span[k].begin; i < grid.span[k].end; ++i) r[i] = b[i] - r[i];
-      for (auto k = grid.first_block[j]; k < grid.first_block[j + 1]; ++k) {
-        const int i = static_cast<int>(grid.block.node[k] - begin);
-        r[i] = fine.inverse_diagonal[2 * k + component] > 0 ? b[i] - r[i] : 0;
-      }
-    }
-    for (; special != t.special.end() && special->first < static_cast<std::int64_t>(begin) + stride;
-         ++special) {
-      const int i = static_cast<int>(special->first - begin);
-      for (const auto& e : special->second) {
-        coarse.b.x[e.coarse] += e.weight * out.x[i];
-        coarse.b.y[e.coarse] += e.weight * out.y[i];
-      }
-      out.x[i] = out.y[i] = 0;
-    }
-    const float w = t.y.weight[j];
-    const std::size_t below = static_cast<std::size_t>(t.y.left[j]) * coarse_stride;
-    for (int component = 0; component < 2; ++component) {
-      const float* __restrict r = (component == 0 ? out.x : out.y).data();
-      float* __restrict c = row.data();
-      c[0] = r[0] + 0.5F * r[1];
-      for (int I = 1; I < n_pairs; ++I) c[I] = r[2 * I] + 0.5F * (r[2 * I - 1] + r[2 * I + 1]);
-      if (n_pairs > 0) c[n_pairs] = r[2 * n_pairs] + 0.5F * r[2 * n_pairs - 1];
-      if (n_pairs < coarse.grid.columns) {
-        if (n_pairs == 0) c[0] = r[0];
-        const int i = 2 * n_pairs;
-        const float w1 = t.x.weight[i + 1], w2 = t.x.weight[i + 2];
-        c[n_pairs] += (1 - w1) * r[i + 1] + (1 - w2) * r[i + 2];
-        c[n_pairs + 1] = w1 * r[i + 1] + w2 * r[i + 2] + r[i + 3];
-      }
-      float* __restrict b = (component == 0 ? coarse.b.x : coarse.b.y).data() + below;
-      if (w < 1)
-        for (int I = 0; I < coarse_stride; ++I) b[I] += (1 - w) * c[I];
-      if (w > 0)
-        for (int I = 0; I < coarse_stride; ++I) b[I + coarse_stride] += w * c[I];
-    }
-  }
-}
+  const int reach = grid.reach, coarse_stride = coarse.grid.stride(), n_parts = parts(static_cast<int>(l));
+  const auto [first, second, keep, inverse_centre] = fine.gains();
+  const auto u = fine.u_rows(), coarse_b = coarse.b_rows();
 
-void Multigrid::prolong(const Level& coarse, Level& fine) {
-  const auto& grid = fine.grid;
-  const auto& t = fine.transfer;
-  const int stride = grid.stride(), coarse_stride = coarse.grid.stride();
-  std::vector<std::pair<float, float>> kept;
-  for (const auto& [n, entries] : t.special) {
-    float x = fine.u.x[n], y = fine.u.y[n];
-    for (const auto& e : entries) {
-      x += e.weight * coarse.u.x[e.coarse];
-      y += e.weight * coarse.u.y[e.coarse];
-    }
-    kept.emplace_back(x, y);
-  }
-  std::vector<float> row(coarse_stride);
-  const int n_pairs = grid.columns % 2 == 0 ? coarse.grid.columns : coarse.grid.columns - 1;
-  for (int j = 0; j <= grid.rows; ++j) {
-    const float w = t.y.weight[j];
-    const std::size_t below = static_cast<std::size_t>(t.y.left[j]) * coarse_stride;
-    for (int component = 0; component < 2; ++component) {
-      const float* __restrict e = (component == 0 ? coarse.u.x : coarse.u.y).data() + below;
-      float* __restrict c = row.data();
-      for (int I = 0; I < coarse_stride; ++I) c[I] = (1 - w) * e[I] + w * e[I + coarse_stride];
-      float* __restrict u =
-          (component == 0 ? fine.u.x : fine.u.y).data() + static_cast<std::size_t>(j) * stride;
-      for (int I = 0; I < n_pairs; ++I) {
-        u[2 * I] += c[I];
-        u[2 * I + 1] += 0.5F * (c[I] + c[I + 1]);
-      }
-      for (int i = 2 * n_pairs; i <= grid.columns; ++i) {
-        const int I = t.x.left[i];
-        u[i] += (1 - t.x.weight[i]) * c[I] + t.x.weight[i] * c[I + 1];
-      }
-    }
-  }
+  team_.run(n_parts,
+            [&, first = first, second = second, keep = keep, inverse_centre = inverse_centre](int part) {
+              auto& work = workspace_[part];
+              auto& product = work.product;
+              const auto change = work.change.on(grid), smoothed = work.smoothed.on(grid);
+              // Own coarse rows, the finer rows that lie on or above them, and those whose residual they
+              // take.
+              const PartOf own(coarse.grid.rows + 1, part, n_parts);
+              const auto above = [&](int J) {
+                return static_cast<int>(std::ranges::lower_bound(t.y.left, J) - t.y.left.begin());
+              };
+              const int u_begin = above(own.begin), u_end = above(own.end);
+              const int begin = above(own.begin - 1), end = u_end;
+              for (int J = own.begin; J < own.end; ++J) {
+                std::fill_n(coarse_b.x(J), coarse_stride, 0.0F);
+                std::fill_n(coarse_b.y(J), coarse_stride, 0.0F);
+              }
+
+              const auto first_step = [&](int j) {
+                const B *b_x = b.x(j), *b_y = b.y(j);
+                float* __restrict c_x = change.x(j), * __restrict c_y = change.y(j);
+                fine.for_row(
+                    j,
+                    [&](int from, int to) {
+                      const float gain = first * inverse_centre;
+#pragma GCC ivdep
+                      for (int i = from; i < to; ++i) {
+                        c_x[i] = gain * static_cast<float>(b_x[i]);
+                        c_y[i] = gain * static_cast<float>(b_y[i]);
+                      }
+                    },
+                    [&](int i, float inverse_x, float inverse_y) {
+                      c_x[i] = first * inverse_x * static_cast<float>(b_x[i]);
+                      c_y[i] = first * inverse_y * static_cast<float>(b_y[i]);
+                    });
+              };
+              const auto second_step = [&](int j) {
+                fine.multiply(j, change.as_const(), product);
+                const B *b_x = b.x(j), *b_y = b.y(j);
+                const float *c_x = change.x(j), *c_y = change.y(j);
+                const float *a_x = product.x.data(), *a_y = product.y.data();
+                float* __restrict u_x = smoothed.x(j), * __restrict u_y = smoothed.y(j);
+                const auto stepped = [&](float c, float a, B load, float inverse) {
+                  return (1 + keep) * c + second * inverse * (static_cast<float>(load) - a);
+                };
+                fine.for_row(
+                    j,
+                    [&](int from, int to) {
+#pragma GCC ivdep
+                      for (int i = from; i < to; ++i) {
+                        u_x[i] = stepped(c_x[i], a_x[i], b_x[i], inverse_centre);
+                        u_y[i] = stepped(c_y[i], a_y[i], b_y[i], inverse_centre);
+                      }
+                    },
+                    [&](int i, float inverse_x, float inverse_y) {
+                      u_x[i] = stepped(c_x[i], a_x[i], b_x[i], inverse_x);
+                      u_y[i] = stepped(c_y[i], a_y[i], b_y[i], inverse_y);
+                    });
+                fine.clear_fixed(j, u_x, u_y);
+                if (j < u_begin || j >= u_end) return;
+                std::copy_n(u_x, grid.stride(), u.x(j));
+                std::copy_n(u_y, grid.stride(), u.y(j));
+              };
+              const auto restrict_residual = [&](int j) {
+                fine.multiply(j, smoothed.as_const(), product);
+                const B *b_x = b.x(j), *b_y = b.y(j);
+                float* __restrict r_x = product.x.data(), * __restrict r_y = product.y.data();
+                fine.for_row(
+                    j,
+                    [&](int from, int to) {
+#pragma GCC ivdep
+                      for (int i = from; i < to; ++i) {
+                        r_x[i] = static_cast<float>(b_x[i]) - r_x[i];
+                        r_y[i] = static_cast<float>(b_y[i]) - r_y[i];
+                      }
+                    },
+                    [&](int i, float inverse_x, float inverse_y) {
+                      r_x[i] = inverse_x > 0 ? static_cast<float>(b_x[i]) - r_x[i] : 0;
+                      r_y[i] = inverse_y > 0 ? static_cast<float>(b_y[i]) - r_y[i] : 0;
+                    });
+                fine.for_special(j, [&](std::size_t k, int i) {
+                  if (j >= u_begin && j < u_end) {
+                    fine.special_residual.x[k] = r_x[i];
+                    fine.special_residual.y[k] = r_y[i];
+                  }
+                  r_x[i] = r_y[i] = 0;
+                });
+                const float w = t.y.weight[j];
+                const int below = t.y.left[j];
+                for (int component = 0; component < 2; ++component) {
+                  float* __restrict c = work.coarse_row.data();
+                  restrict_row(t.x, grid.columns, coarse.grid.columns, component == 0 ? r_x : r_y, c);
+                  const auto add = [&](int J, float weight) {
+                    if (weight == 0 || J < own.begin || J >= own.end) return;
+                    float* __restrict to = component == 0 ? coarse_b.x(J) : coarse_b.y(J);
+                    for (int I = 0; I < coarse_stride; ++I) to[I] += weight * c[I];
+                  };
+                  add(below, 1 - w);
+                  add(below + 1, w);
+                }
+              };
+              const auto within = [&](int j, int from, int to) {
+                return j >= std::max(0, from) && j < std::min(to, grid.rows + 1);
+              };
+              for (int j = begin - 2 * reach; j < end + 2 * reach; ++j) {
+                if (within(j, begin - 2 * reach, end + 2 * reach)) first_step(j);
+                if (within(j - reach, begin - reach, end + reach)) second_step(j - reach);
+                if (within(j - 2 * reach, begin, end)) restrict_residual(j - 2 * reach);
+              }
+            });
+
   std::size_t k = 0;
-  for (const auto& [n, entries] : t.special) std::tie(fine.u.x[n], fine.u.y[n]) = kept[k++];
-  for (std::size_t r = 0; r < grid.block.size(); ++r) {
-    if (fine.inverse_diagonal[2 * r] == 0) fine.u.x[grid.block.node[r]] = 0;
-    if (fine.inverse_diagonal[2 * r + 1] == 0) fine.u.y[grid.block.node[r]] = 0;
+  for (const auto& [n, entries] : t.special) {
+    for (const auto& e : entries) {
+      coarse.b.x[e.coarse] += e.weight * fine.special_residual.x[k];
+      coarse.b.y[e.coarse] += e.weight * fine.special_residual.y[k];
+    }
+    ++k;
   }
-  for (const auto n : grid.unused) fine.u.x[n] = fine.u.y[n] = 0;
+}
+
+template <class B>
+double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
+  auto& fine = *levels_[l];
+  auto& coarse = *levels_[l + 1];
+  const auto& grid = fine.grid;
+  const auto& t = fine.transfer;
+  const int reach = grid.reach, stride = grid.stride(), coarse_stride = coarse.grid.stride(),
+            n_parts = parts(static_cast<int>(l));
+  const auto [first, second, keep, inverse_centre] = fine.gains();
+  const auto u = fine.u_rows(), coarse_u = coarse.u_rows();
+  const bool is_top = l == static_cast<std::size_t>(top_level_);
+
+  team_.run(n_parts, [&, first = first, second = second, keep = keep,
+                      inverse_centre = inverse_centre](int part) {
+    auto& work = workspace_[part];
+    auto& product = work.product;
+    const auto start = work.start.on(grid), change = work.change.on(grid), smoothed = work.smoothed.on(grid);
+    const PartOf own(grid.rows + 1, part, n_parts);
+    work.beside.copy(grid, u.as_const(), own, 2 * reach);
+    team_.meet(n_parts);
+
+    const auto prolong = [&](int j) {
+      const float w = t.y.weight[j];
+      const int below = t.y.left[j];
+      for (int component = 0; component < 2; ++component) {
+        const float* __restrict e0 = component == 0 ? coarse_u.x(below) : coarse_u.y(below);
+        const float* __restrict e1 = component == 0 ? coarse_u.x(below + 1) : coarse_u.y(below + 1);
+        float* __restrict c = work.coarse_row.data();
+        if (w == 0)
+          std::copy_n(e0, coarse_stride, c);
+        else
+          for (int I = 0; I < coarse_stride; ++I) c[I] = (1 - w) * e0[I] + w * e1[I];
+        interpolate_row(t.x, grid.columns, coarse.grid.columns, c,
+                        component == 0 ? work.beside.x(u.as_const(), j) : work.beside.y(u.as_const(), j),
+                        component == 0 ? start.x(j) : start.y(j));
+      }
+      fine.for_special(j, [&](std::size_t k, int i) {
+        float x = work.beside.x(u.as_const(), j)[i], y = work.beside.y(u.as_const(), j)[i];
+        for (const auto& e : t.special.at(fine.special[k])) {
+          x += e.weight * coarse.u.x[e.coarse];
+          y += e.weight * coarse.u.y[e.coarse];
+        }
+        start.x(j)[i] = x;
+        start.y(j)[i] = y;
+      });
+      fine.clear_fixed(j, start.x(j), start.y(j));
+    };
+    const auto first_step = [&](int j) {
+      fine.multiply(j, start.as_const(), product);
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      const float *a_x = product.x.data(), *a_y = product.y.data();
+      const float *u_x = start.x(j), *u_y = start.y(j);
+      float* __restrict c_x = change.x(j), * __restrict c_y = change.y(j);
+      float* __restrict v_x = smoothed.x(j), * __restrict v_y = smoothed.y(j);
+      const auto step = [&](float gain_x, float gain_y, int i) {
+        c_x[i] = gain_x * (static_cast<float>(b_x[i]) - a_x[i]);
+        c_y[i] = gain_y * (static_cast<float>(b_y[i]) - a_y[i]);
+        v_x[i] = u_x[i] + c_x[i];
+        v_y[i] = u_y[i] + c_y[i];
+      };
+      fine.for_row(
+          j,
+          [&](int from, int to) {
+#pragma GCC ivdep
+            for (int i = from; i < to; ++i) step(first * inverse_centre, first * inverse_centre, i);
+          },
+          [&](int i, float inverse_x, float inverse_y) { step(first * inverse_x, first * inverse_y, i); });
+    };
+    const auto second_step = [&](int j) {
+      fine.multiply(j, smoothed.as_const(), product);
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      const float *a_x = product.x.data(), *a_y = product.y.data();
+      const float *c_x = change.x(j), *c_y = change.y(j), *v_x = smoothed.x(j), *v_y = smoothed.y(j);
+      float* __restrict u_x = u.x(j), * __restrict u_y = u.y(j);
+      const auto step = [&](float inverse_x, float inverse_y, int i) {
+        u_x[i] = v_x[i] + keep * c_x[i] + second * inverse_x * (static_cast<float>(b_x[i]) - a_x[i]);
+        u_y[i] = v_y[i] + keep * c_y[i] + second * inverse_y * (static_cast<float>(b_y[i]) - a_y[i]);
+      };
+      fine.for_row(
+          j,
+          [&](int from, int to) {
+#pragma GCC ivdep
+            for (int i = from; i < to; ++i) step(inverse_centre, inverse_centre, i);
+          },
+          [&](int i, float inverse_x, float inverse_y) { step(inverse_x, inverse_y, i); });
+      fine.clear_fixed(j, u_x, u_y);
+      if (!is_top) return;
+      double sum = 0;
+#pragma omp simd reduction(+ : sum)
+      for (int i = 0; i < stride; ++i)
+        sum += static_cast<double>(b_x[i]) * static_cast<double>(u_x[i]) +
+               static_cast<double>(b_y[i]) * static_cast<double>(u_y[i]);
+      row_sum_[j] = sum;
+    };
+    const auto within = [&](int j, int from, int to) {
+      return j >= std::max(0, from) && j < std::min(to, grid.rows + 1);
+    };
+    for (int j = own.begin - 2 * reach; j < own.end + 2 * reach; ++j) {
+      if (within(j, own.begin - 2 * reach, own.end + 2 * reach)) prolong(j);
+      if (within(j - reach, own.begin - reach, own.end + reach)) first_step(j - reach);
+      if (within(j - 2 * reach, own.begin, own.end)) second_step(j - 2 * reach);
+    }
+  });
+  return is_top ? std::accumulate(row_sum_.begin(), row_sum_.begin() + grid.rows + 1, 0.0) : 0;
 }
 
 void Multigrid::damp_block_rows(Level& level) {
@@ -362,55 +531,56 @@ void Multigrid::damp_block_rows(Level& level) {
 
 void Multigrid::estimate_largest_eigenvalue(Level& level) {
   const auto& grid = level.grid;
-  const int stride = grid.stride();
   const auto inverse_centre = static_cast<float>(1 / grid.stencil.centre);
   RandomNumbers random;
-  auto& u = level.u;
+  GridField<float> next(grid.n_nodes());
+  ProductRow<float> product(grid.stride());
   for (int j = 0; j <= grid.rows; ++j) {
     const auto fill = [&](int i) {
-      u.x[grid.node(i, j)] = static_cast<float>(random());
-      u.y[grid.node(i, j)] = static_cast<float>(random());
+      level.u.x[grid.node(i, j)] = static_cast<float>(random());
+      level.u.y[grid.node(i, j)] = static_cast<float>(random());
     };
-    for (auto k = grid.first_span[j]; k < grid.first_span[j + 1]; ++k)
-      for (int i = grid.span[k].begin; i < grid.span[k].end; ++i) fill(i);
-    for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) fill(grid.block.node[r] % stride);
+    level.for_row(
+        j,
+        [&](int from, int to) {
+          for (int i = from; i < to; ++i) fill(i);
+        },
+        [&](int i, float, float) { fill(i); });
   }
-  auto& out = level.buffer;
   double norm_before = 0;
   constexpr int iterations = 8;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    multiply_blocks(grid.block, level.blocks, u.x.data(), u.y.data(), out.blocks);
     double norm = 0;
+    const auto from_rows = level.u_rows(), to_rows = all_rows(next, grid);
     for (int j = 0; j <= grid.rows; ++j) {
-      product_row(grid, j, u.x.data(), u.y.data(), out);
-      const std::size_t begin = static_cast<std::size_t>(j) * stride;
+      multiply_row(grid, level.blocks, j, from_rows.as_const(), product);
+      float* __restrict to_x = to_rows.x(j), * __restrict to_y = to_rows.y(j);
+      const float *a_x = product.x.data(), *a_y = product.y.data();
       float sum = 0;
-      for (auto k = grid.first_span[j]; k < grid.first_span[j + 1]; ++k)
+      level.for_row(
+          j,
+          [&](int from, int to) {
 #pragma omp simd reduction(+ : sum)
-        for (int i = grid.span[k].begin; i < grid.span[k].end; ++i) {
-          level.change.x[begin + i] = inverse_centre * out.x[i];
-          level.change.y[begin + i] = inverse_centre * out.y[i];
-          sum += out.x[i] * out.x[i] + out.y[i] * out.y[i];
-        }
-      norm += static_cast<double>(sum) * inverse_centre * inverse_centre;
-      for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) {
-        const auto n = grid.block.node[r];
-        const float x = level.inverse_diagonal[2 * r] * out.blocks[2 * r];
-        const float y = level.inverse_diagonal[2 * r + 1] * out.blocks[2 * r + 1];
-        level.change.x[n] = x;
-        level.change.y[n] = y;
-        norm += x * x + y * y;
-      }
+            for (int i = from; i < to; ++i) {
+              to_x[i] = inverse_centre * a_x[i];
+              to_y[i] = inverse_centre * a_y[i];
+              sum += to_x[i] * to_x[i] + to_y[i] * to_y[i];
+            }
+          },
+          [&](int i, float inverse_x, float inverse_y) {
+            to_x[i] = inverse_x * a_x[i];
+            to_y[i] = inverse_y * a_y[i];
+            sum += to_x[i] * to_x[i] + to_y[i] * to_y[i];
+          });
+      norm += static_cast<double>(sum);
     }
-    std::swap(level.u, level.change);
+    std::swap(level.u, next);
     if (iteration + 1 == iterations) level.largest = std::sqrt(norm / norm_before);
     norm_before = norm;
   }
   level.largest = std::max(level.largest, largest_smoothed_eigenvalue(grid.stencil));
-  for (auto* field : {&level.u, &level.change}) {
-    std::ranges::fill(field->x, 0.0F);
-    std::ranges::fill(field->y, 0.0F);
-  }
+  std::ranges::fill(level.u.x, 0.0F);
+  std::ranges::fill(level.u.y, 0.0F);
 }
 
 void Multigrid::factorise_coarsest() {
@@ -443,18 +613,21 @@ void Multigrid::factorise_coarsest() {
   coarsest_b_.resize(n_unknowns);
 }
 
-void Multigrid::solve_coarsest() {
+template <class B>
+double Multigrid::solve_coarsest(const Rows<const B>& b) {
   auto& level = *levels_.back();
-  for (std::size_t n = 0; n < level.grid.n_nodes(); ++n) {
-    if (coarsest_unknown_[2 * n] >= 0) coarsest_b_(coarsest_unknown_[2 * n]) = level.b.x[n];
-    if (coarsest_unknown_[2 * n + 1] >= 0) coarsest_b_(coarsest_unknown_[2 * n + 1]) = level.b.y[n];
+  const std::size_t n_nodes = level.grid.n_nodes();
+  for (std::size_t n = 0; n < n_nodes; ++n) {
+    if (coarsest_unknown_[2 * n] >= 0) coarsest_b_(coarsest_unknown_[2 * n]) = b.x(0)[n];
+    if (coarsest_unknown_[2 * n + 1] >= 0) coarsest_b_(coarsest_unknown_[2 * n + 1]) = b.y(0)[n];
   }
   const Eigen::VectorXd u = coarsest_.solve(coarsest_b_);
-  for (std::size_t n = 0; n < level.grid.n_nodes(); ++n) {
+  for (std::size_t n = 0; n < n_nodes; ++n) {
     const auto x = coarsest_unknown_[2 * n], y = coarsest_unknown_[2 * n + 1];
     level.u.x[n] = x < 0 ? 0 : static_cast<float>(u(x));
     level.u.y[n] = y < 0 ? 0 : static_cast<float>(u(y));
   }
+  return coarsest_b_.dot(u);
 }
 
 }  // namespace slipfront::solve
