@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "solve/grid_level.hpp"
@@ -99,55 +101,165 @@ std::vector<std::array<T, 4>> blocks_as(const solid::BlockRows& rows) {
   return blocks;
 }
 
-/// Product of the stencil over columns [begin, end) of a row; all pointers to column 0 of their rows.
-template <class T, class In>
-void multiply_stencil_row(const solid::InteriorStencil& stencil, solid::Span span,
-                          const In* __restrict south_x, const In* __restrict south_y,
-                          const In* __restrict middle_x, const In* __restrict middle_y,
-                          const In* __restrict north_x, const In* __restrict north_y, T* __restrict out_x,
-                          T* __restrict out_y) {
-  const T centre = static_cast<T>(stencil.centre), along = static_cast<T>(stencil.along),
-          across = static_cast<T>(stencil.across), corner = static_cast<T>(stencil.corner),
-          twist = static_cast<T>(stencil.twist);
-  const auto at = [](const In* w, int i) { return static_cast<T>(w[i]); };
-  for (int i = span.begin; i < span.end; ++i) {
-    const T west_x = at(south_x, i - 1) + at(north_x, i - 1),
-            east_x = at(south_x, i + 1) + at(north_x, i + 1);
-    const T west_y = at(south_y, i - 1) + at(north_y, i - 1),
-            east_y = at(south_y, i + 1) + at(north_y, i + 1);
-    const T twist_x = (at(north_x, i + 1) - at(south_x, i + 1)) - (at(north_x, i - 1) - at(south_x, i - 1));
-    const T twist_y = (at(north_y, i + 1) - at(south_y, i + 1)) - (at(north_y, i - 1) - at(south_y, i - 1));
-    out_x[i] = centre * at(middle_x, i) + along * (at(middle_x, i - 1) + at(middle_x, i + 1)) +
-               across * (at(south_x, i) + at(north_x, i)) + corner * (west_x + east_x) + twist * twist_y;
-    out_y[i] = centre * at(middle_y, i) + across * (at(middle_y, i - 1) + at(middle_y, i + 1)) +
-               along * (at(south_y, i) + at(north_y, i)) + corner * (west_y + east_y) + twist * twist_x;
+#ifdef __AVX512F__
+inline constexpr int vector_bytes = 64;
+#else
+inline constexpr int vector_bytes = 32;
+#endif
+
+/// n consecutive numbers of a row.
+template <class T, int n>
+struct VectorOf {
+  typedef T Type __attribute__((vector_size(n * sizeof(T))));
+  /// The same anywhere in memory: packed, so that no alignment is promised.
+  struct __attribute__((packed, may_alias)) InMemory {
+    Type values;
+  };
+};
+/// So many as are computed at a time in the precision T.
+template <class T>
+inline constexpr int lanes = vector_bytes / sizeof(T);
+template <class T>
+using Lanes = typename VectorOf<T, lanes<T>>::Type;
+template <class V>
+inline constexpr int length = sizeof(V) / sizeof(std::declval<V>()[0]);
+
+/// Numbers from `from` on in the type V: a vector, or one number.
+template <class V, class In>
+inline V load(const In* from) {
+  if constexpr (std::is_arithmetic_v<V>) {
+    return static_cast<V>(*from);
+  } else {
+    return __builtin_convertvector(
+        reinterpret_cast<const typename VectorOf<In, length<V>>::InMemory*>(from)->values, V);
+  }
+}
+template <class V, class Out>
+inline void store(Out* to, const V& value) {
+  if constexpr (std::is_arithmetic_v<V>) {
+    *to = static_cast<Out>(value);
+  } else {
+    using To = VectorOf<Out, length<V>>;
+    reinterpret_cast<typename To::InMemory*>(to)->values = __builtin_convertvector(value, typename To::Type);
   }
 }
 
-/// One row of K times a field. [columns + 1]
+/// A sum in double precision of products computed in the precision T, in an order that only depends on the
+/// columns.
 template <class T>
-struct ProductRow {
-  std::vector<T> x, y;
-  explicit ProductRow(int longest_row = 0) : x(longest_row, T(0)), y(longest_row, T(0)) {}
+class RowSum {
+ public:
+  /// Adds a b.
+  template <class V>
+  void add(const V& a, const V& b) {
+    if constexpr (std::is_arithmetic_v<V>) {
+      one_ += static_cast<double>(a) * static_cast<double>(b);
+    } else {
+      several_ += __builtin_convertvector(a, Doubles) * __builtin_convertvector(b, Doubles);
+    }
+  }
+  double value() const {
+    double sum = one_;
+    for (int k = 0; k < lanes<T>; ++k) sum += several_[k];
+    return sum;
+  }
+
+ private:
+  using Doubles = typename VectorOf<double, lanes<T>>::Type;
+  double one_ = 0;
+  Doubles several_{};
 };
 
-/// Row j of K times `field` into `out`; 0 at unused grid numbers.
-template <class T, class In>
-void multiply_row(const GridLevel& level, const std::vector<std::array<T, 4>>& blocks, int j,
-                  const Rows<const In>& field, ProductRow<T>& out) {
-  int filled = 0;
-  const auto clear = [&](int to) {
-    std::fill(out.x.begin() + filled, out.x.begin() + to, T(0));
-    std::fill(out.y.begin() + filled, out.y.begin() + to, T(0));
-  };
-  for (auto k = level.first_span[j]; k < level.first_span[j + 1]; ++k) {
-    const auto span = level.span[k];
-    clear(span.begin);
-    multiply_stencil_row(level.stencil, span, field.x(j - 1), field.y(j - 1), field.x(j), field.y(j),
-                         field.x(j + 1), field.y(j + 1), out.x.data(), out.y.data());
-    filled = span.end;
+/// What a column gives to the stencil's products at itself and at its neighbours, so that two vectors per
+/// component have to be shifted instead of loading all neighbours.
+template <class V>
+struct ColumnTerms {
+  V own_x, own_y, to_right_x, to_right_y, to_left_x, to_left_y;
+};
+
+/// A stencil in the precision T.
+template <class T>
+struct StencilAs {
+  T centre, along, across, corner, twist;
+  explicit StencilAs(const solid::InteriorStencil& s)
+      : centre(static_cast<T>(s.centre)),
+        along(static_cast<T>(s.along)),
+        across(static_cast<T>(s.across)),
+        corner(static_cast<T>(s.corner)),
+        twist(static_cast<T>(s.twist)) {}
+
+  template <class V, class In>
+  ColumnTerms<V> terms(const Rows<const In>& f, int j, int i) const {
+    const V south_x = load<V>(f.x(j - 1) + i), south_y = load<V>(f.y(j - 1) + i);
+    const V north_x = load<V>(f.x(j + 1) + i), north_y = load<V>(f.y(j + 1) + i);
+    const V w_x = load<V>(f.x(j) + i), w_y = load<V>(f.y(j) + i);
+    const V sum_x = south_x + north_x, twist_x = twist * (north_x - south_x);
+    const V sum_y = south_y + north_y, twist_y = twist * (north_y - south_y);
+    const V beside_x = along * w_x + corner * sum_x, beside_y = across * w_y + corner * sum_y;
+    return {centre * w_x + across * sum_x,
+            centre * w_y + along * sum_y,
+            beside_x - twist_y,
+            beside_y - twist_x,
+            beside_x + twist_y,
+            beside_y + twist_x};
   }
-  clear(level.stride());
+};
+
+/// The vector one column to the left of `here`, where `left` stands before it, and one to the right.
+template <int by, class V, int... k>
+inline V shifted(const V& first, const V& second, std::integer_sequence<int, k...>) {
+  return __builtin_shufflevector(first, second, (by + k)...);
+}
+template <class V>
+inline V from_left(const V& left, const V& here) {
+  return shifted<length<V> - 1>(left, here, std::make_integer_sequence<int, length<V>>{});
+}
+template <class V>
+inline V from_right(const V& here, const V& right) {
+  return shifted<1>(here, right, std::make_integer_sequence<int, length<V>>{});
+}
+
+/// Calls f(i, a_x, a_y) with the stencil's products in columns [begin, end) of row j, of type Lanes<T> for
+/// the columns from i on, or T.
+template <class T, class In, class F>
+void for_stencil_products(const solid::InteriorStencil& stencil, solid::Span span, int j,
+                          const Rows<const In>& field, F&& f) {
+  const StencilAs<T> s(stencil);
+  using V = Lanes<T>;
+  int i = span.begin;
+  if (i + 2 * lanes<T> <= span.end + 1) {
+    const auto before = s.template terms<T>(field, j, i - 1);
+    V left_x{}, left_y{};
+    left_x[lanes<T> - 1] = before.to_right_x;
+    left_y[lanes<T> - 1] = before.to_right_y;
+    auto here = s.template terms<V>(field, j, i);
+    for (; i + 2 * lanes<T> <= span.end + 1; i += lanes<T>) {
+      const auto right = s.template terms<V>(field, j, i + lanes<T>);
+      f(i, V(here.own_x + (from_left(left_x, here.to_right_x) + from_right(here.to_left_x, right.to_left_x))),
+        V(here.own_y + (from_left(left_y, here.to_right_y) + from_right(here.to_left_y, right.to_left_y))));
+      left_x = here.to_right_x;
+      left_y = here.to_right_y;
+      here = right;
+    }
+  }
+  if (i == span.end) return;
+  auto left = s.template terms<T>(field, j, i - 1), here = s.template terms<T>(field, j, i);
+  for (; i < span.end; ++i) {
+    const auto right = s.template terms<T>(field, j, i + 1);
+    f(i, here.own_x + (left.to_right_x + right.to_left_x), here.own_y + (left.to_right_y + right.to_left_y));
+    left = here;
+    here = right;
+  }
+}
+
+/// Row j of K times `field`, friction included: calls inside(i, a_x, a_y) as for_stencil_products does, and
+/// other(i, r, a_x, a_y) for the block rows r; nothing for unused grid numbers. `slip`: factors of the block
+/// rows by which f_y is added to f_x, or null.
+template <class T, class In, class Inside, class Other>
+void for_row_products(const GridLevel& level, const std::vector<std::array<T, 4>>& blocks, const T* slip,
+                      int j, const Rows<const In>& field, Inside&& inside, Other&& other) {
+  for (auto k = level.first_span[j]; k < level.first_span[j + 1]; ++k)
+    for_stencil_products<T>(level.stencil, level.span[k], j, field, inside);
   const auto& rows = level.block;
   for (auto r = level.first_block[j]; r < level.first_block[j + 1]; ++r) {
     T sum_x = 0, sum_y = 0;
@@ -158,20 +270,18 @@ void multiply_row(const GridLevel& level, const std::vector<std::array<T, 4>>& b
       sum_x += b[0] * w_x + b[1] * w_y;
       sum_y += b[2] * w_x + b[3] * w_y;
     }
-    const auto i = rows.node[r] - j * level.stride();
-    out.x[i] = sum_x;
-    out.y[i] = sum_y;
+    if (slip != nullptr) sum_x += slip[r] * sum_y;
+    other(rows.node[r] - j * level.stride(), r, sum_x, sum_y);
   }
 }
 
-/// Adds friction to row j of a product: f_x + slip f_y at the block rows, whose slip is not 0 where a node
-/// slips.
+/// Sets the numbers of row j without a node of the plate to 0.
 template <class T>
-void add_friction(const GridLevel& level, const std::vector<T>& slip, int j, ProductRow<T>& out) {
-  for (auto r = level.first_block[j]; r < level.first_block[j + 1]; ++r) {
-    const auto i = level.block.node[r] - j * level.stride();
-    out.x[i] += slip[r] * out.y[i];
-  }
+void clear_unused(const GridLevel& level, int j, T* x, T* y) {
+  if (level.unused.empty() || level.node(0, j) > level.unused.back()) return;
+  for (auto n = std::ranges::lower_bound(level.unused, level.node(0, j));
+       n != level.unused.end() && *n < level.node(0, j + 1); ++n)
+    x[*n - level.node(0, j)] = y[*n - level.node(0, j)] = 0;
 }
 
 }  // namespace slipfront::solve

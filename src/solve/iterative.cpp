@@ -219,8 +219,7 @@ LevelEquations::LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, Tea
       fixed_(grid_.block.size(), 0),
       slip_(grid_.block.size(), 0),
       slip_f_(grid_.block.size(), 0),
-      workspace_(parts_, {ProductRow<double>(grid_.stride()), ProductRow<float>(grid_.stride()),
-                          RowRing<float>(2 * grid_.reach + 1, grid_.stride()),
+      workspace_(parts_, {RowRing<float>(2 * grid_.reach + 1, grid_.stride()),
                           RowsBeside<float>(grid_.reach, grid_.stride())}),
       row_sum_(grid_.rows + 1),
       residual_(grid_.n_nodes()),
@@ -257,27 +256,22 @@ void LevelEquations::fix(TopConstraint constraint, const Support& support) {
   slips_ = !boundary.slip.empty();
 }
 
-template <class T, class P>
-void LevelEquations::multiply(int j, const Rows<const P>& p, ProductRow<T>& out) const {
-  if constexpr (std::is_same_v<T, double>) {
-    multiply_row(grid_, grid_.block.block, j, p, out);
-    add_friction(grid_, slip_, j, out);
-  } else {
-    multiply_row(grid_, blocks_f_, j, p, out);
-    add_friction(grid_, slip_f_, j, out);
-  }
-  for (auto r = grid_.first_block[j]; r < grid_.first_block[j + 1]; ++r) {
-    const auto i = grid_.block.node[r] - j * grid_.stride();
-    if ((fixed_[r] & 1) != 0) out.x[i] = 0;
-    if ((fixed_[r] & 2) != 0) out.y[i] = 0;
-  }
+template <class T, class P, class F>
+void LevelEquations::for_products(int j, const Rows<const P>& p, F&& f) const {
+  const auto at_block_row = [&](int i, std::int32_t r, T a_x, T a_y) {
+    f(i, (fixed_[r] & 1) != 0 ? T(0) : a_x, (fixed_[r] & 2) != 0 ? T(0) : a_y);
+  };
+  if constexpr (std::is_same_v<T, double>)
+    for_row_products<T>(grid_, grid_.block.block, slip_.data(), j, p, f, at_block_row);
+  else
+    for_row_products<T>(grid_, blocks_f_, slip_f_.data(), j, p, f, at_block_row);
 }
 
 template <class F>
 std::array<double, 2> LevelEquations::sum_rows(F&& f) {
   team_.run(parts_, [&](int part) {
     const PartOf own(grid_.rows + 1, part, parts_);
-    for (int j = own.begin; j < own.end; ++j) row_sum_[j] = f(j, workspace_[part]);
+    for (int j = own.begin; j < own.end; ++j) row_sum_[j] = f(j);
   });
   std::array<double, 2> sum{};
   for (const auto& terms : row_sum_) {
@@ -290,20 +284,21 @@ std::array<double, 2> LevelEquations::sum_rows(F&& f) {
 double LevelEquations::start_residual(const solid::Field& u) {
   const auto u_rows = all_rows(u, grid_);
   const auto r_rows = all_rows(residual_, grid_);
-  return sum_rows([&](int j, Workspace& work) {
-    auto& product = work.product;
-    multiply_row(grid_, grid_.block.block, j, u_rows, product);
+  return sum_rows([&](int j) {
     const double *u_x = u_rows.x(j), *u_y = u_rows.y(j);
-    double sum = 0;
-#pragma omp simd reduction(+ : sum)
-    for (int i = 0; i < grid_.stride(); ++i) sum += u_x[i] * product.x[i] + u_y[i] * product.y[i];
-    multiply(j, u_rows, product);
     double *r_x = r_rows.x(j), *r_y = r_rows.y(j);
-    for (int i = 0; i < grid_.stride(); ++i) {
-      r_x[i] = -product.x[i];
-      r_y[i] = -product.y[i];
-    }
-    return std::array<double, 2>{sum, 0};
+    RowSum<double> sum;
+    const auto add = [&]<class V>(int i, const V& a_x, const V& a_y) {
+      sum.add(load<V>(u_x + i), a_x);
+      sum.add(load<V>(u_y + i), a_y);
+    };
+    for_row_products<double>(grid_, grid_.block.block, nullptr, j, u_rows, add,
+                             [&](int i, std::int32_t, double a_x, double a_y) { add(i, a_x, a_y); });
+    for_products<double>(j, u_rows, [&]<class V>(int i, const V& a_x, const V& a_y) {
+      store(r_x + i, V(-a_x));
+      store(r_y + i, V(-a_y));
+    });
+    return std::array<double, 2>{sum.value(), 0};
   })[0];
 }
 
@@ -335,15 +330,13 @@ double LevelEquations::next_direction(double beta) {
       }
       const int k = j - reach;
       if (k < own.begin || k >= own.end) continue;
-      multiply(k, next.as_const(), work.product_f);
       const float *n_x = next.x(k), *n_y = next.y(k);
-      const float *q_x = work.product_f.x.data(), *q_y = work.product_f.y.data();
-      double sum = 0;
-#pragma omp simd reduction(+ : sum)
-      for (int i = 0; i < stride; ++i)
-        sum += static_cast<double>(n_x[i]) * static_cast<double>(q_x[i]) +
-               static_cast<double>(n_y[i]) * static_cast<double>(q_y[i]);
-      row_sum_[k] = {sum, 0};
+      RowSum<float> sum;
+      for_products<float>(k, next.as_const(), [&]<class V>(int i, const V& a_x, const V& a_y) {
+        sum.add(load<V>(n_x + i), a_x);
+        sum.add(load<V>(n_y + i), a_y);
+      });
+      row_sum_[k] = {sum.value(), 0};
     }
   });
   double sum = 0;
@@ -355,28 +348,34 @@ double LevelEquations::take_step(double step, const GridField<float>& z, solid::
   const auto z_rows = all_rows(z, grid_);
   const auto u_rows = all_rows(u, grid_);
   const auto r_rows = all_rows(residual_, grid_);
-  const bool with_shadow = slips_;
-  return sum_rows([&](int j, Workspace& work) {
-    multiply(j, z_rows, work.product);
+  const auto take = [&](int j, auto&& and_sum) {
     const float *z_x = z_rows.x(j), *z_y = z_rows.y(j);
-    const double *q_x = work.product.x.data(), *q_y = work.product.y.data();
     double *u_x = u_rows.x(j), *u_y = u_rows.y(j), *r_x = r_rows.x(j), *r_y = r_rows.y(j);
-#pragma GCC ivdep
-    for (int i = 0; i < grid_.stride(); ++i) {
-      u_x[i] += step * static_cast<double>(z_x[i]);
-      u_y[i] += step * static_cast<double>(z_y[i]);
-      r_x[i] -= step * q_x[i];
-      r_y[i] -= step * q_y[i];
-    }
-    double sum = 0;
-    if (with_shadow) {
-      const float* s_x = shadow_.x.data() + grid_.node(0, j);
-      const float* s_y = shadow_.y.data() + grid_.node(0, j);
-#pragma omp simd reduction(+ : sum)
-      for (int i = 0; i < grid_.stride(); ++i)
-        sum += r_x[i] * static_cast<double>(s_x[i]) + r_y[i] * static_cast<double>(s_y[i]);
-    }
-    return std::array<double, 2>{sum, 0};
+    for_products<double>(j, z_rows, [&]<class V>(int i, const V& a_x, const V& a_y) {
+      store(u_x + i, V(load<V>(u_x + i) + step * load<V>(z_x + i)));
+      store(u_y + i, V(load<V>(u_y + i) + step * load<V>(z_y + i)));
+      const V x = load<V>(r_x + i) - step * a_x, y = load<V>(r_y + i) - step * a_y;
+      store(r_x + i, x);
+      store(r_y + i, y);
+      and_sum(i, x, y);
+    });
+  };
+  if (!slips_) {
+    sum_rows([&](int j) {
+      take(j, [](int, const auto&, const auto&) {});
+      return std::array<double, 2>{};
+    });
+    return 0;
+  }
+  return sum_rows([&](int j) {
+    const float* s_x = shadow_.x.data() + grid_.node(0, j);
+    const float* s_y = shadow_.y.data() + grid_.node(0, j);
+    RowSum<double> sum;
+    take(j, [&]<class V>(int i, const V& x, const V& y) {
+      sum.add(x, load<V>(s_x + i));
+      sum.add(y, load<V>(s_y + i));
+    });
+    return std::array<double, 2>{sum.value(), 0};
   })[0];
 }
 
@@ -426,7 +425,7 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
   double rho = 0, beta = 0, omega = 0;
   for (int cycle = 1; cycle <= most_cycles; cycle += 2) {
     // p = r + beta (p - omega v)
-    const double first_rho = sum_rows([&](int j, Workspace&) {
+    const double first_rho = sum_rows([&](int j) {
       const double *r_x = r.x(j), *r_y = r.y(j);
       float *p_x = p.x(j), *p_y = p.y(j), *s_x = s.x(j), *s_y = s.y(j);
       const float *v_x = v.x(j), *v_y = v.y(j);
@@ -457,20 +456,17 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
       }
     }
     // v = A z
-    const double shadow_v = sum_rows([&](int j, Workspace& work) {
-      multiply(j, z_rows, work.product_f);
-      const float *q_x = work.product_f.x.data(), *q_y = work.product_f.y.data();
+    const double shadow_v = sum_rows([&](int j) {
       const float *s_x = s.x(j), *s_y = s.y(j);
       float *v_x = v.x(j), *v_y = v.y(j);
-      double sum = 0;
-#pragma omp simd reduction(+ : sum)
-      for (int i = 0; i < stride; ++i) {
-        v_x[i] = q_x[i];
-        v_y[i] = q_y[i];
-        sum += static_cast<double>(s_x[i]) * static_cast<double>(q_x[i]) +
-               static_cast<double>(s_y[i]) * static_cast<double>(q_y[i]);
-      }
-      return std::array<double, 2>{sum, 0};
+      RowSum<float> sum;
+      for_products<float>(j, z_rows, [&]<class V>(int i, const V& a_x, const V& a_y) {
+        store(v_x + i, a_x);
+        store(v_y + i, a_y);
+        sum.add(load<V>(s_x + i), a_x);
+        sum.add(load<V>(s_y + i), a_y);
+      });
+      return std::array<double, 2>{sum.value(), 0};
     })[0];
     const double alpha = rho / shadow_v;
     take_step(alpha, z, u);
@@ -479,18 +475,16 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
       return;
     }
     // t = A z
-    const auto [t_r, t_t] = sum_rows([&](int j, Workspace& work) {
-      multiply(j, z_rows, work.product_f);
-      const float *t_x = work.product_f.x.data(), *t_y = work.product_f.y.data();
+    const auto [t_r, t_t] = sum_rows([&](int j) {
       const double *r_x = r.x(j), *r_y = r.y(j);
-      double sum_r = 0, sum_t = 0;
-#pragma omp simd reduction(+ : sum_r, sum_t)
-      for (int i = 0; i < stride; ++i) {
-        const auto x = static_cast<double>(t_x[i]), y = static_cast<double>(t_y[i]);
-        sum_r += x * r_x[i] + y * r_y[i];
-        sum_t += x * x + y * y;
-      }
-      return std::array<double, 2>{sum_r, sum_t};
+      RowSum<float> sum_r, sum_t;
+      for_products<float>(j, z_rows, [&]<class V>(int i, const V& t_x, const V& t_y) {
+        sum_r.add(t_x, load<V>(r_x + i));
+        sum_r.add(t_y, load<V>(r_y + i));
+        sum_t.add(t_x, t_x);
+        sum_t.add(t_y, t_y);
+      });
+      return std::array<double, 2>{sum_r.value(), sum_t.value()};
     });
     omega = t_r / t_t;
     const double rho_next = take_step(omega, z, u);

@@ -36,9 +36,10 @@ class LevelEquations {
   const std::vector<std::size_t>& in_mesh_lower() const { return in_mesh_lower_; }
 
  private:
-  /// Row j of A p in the precision T: friction added, 0 at fixed displacements.
-  template <class T, class P>
-  void multiply(int j, const Rows<const P>& p, ProductRow<T>& out) const;
+  /// Calls f(i, a_x, a_y) with row j of A p in the precision T: friction added, 0 at fixed displacements. i
+  /// stands for several columns where a_x is a vector.
+  template <class T, class P, class F>
+  void for_products(int j, const Rows<const P>& p, F&& f) const;
   /// r = -A u; returns u . K u.
   double start_residual(const solid::Field& u);
   /// direction = z + beta direction; returns direction . A direction.
@@ -48,14 +49,12 @@ class LevelEquations {
   void add_z(solid::Field& u);
   void conjugate_gradients(double accuracy, solid::Field& u);
   void bicgstab(double accuracy, solid::Field& u);
-  /// Calls f(row, work) -> two terms for all rows and returns the sums of the terms.
+  /// Calls f(row) -> two terms for all rows and returns the sums of the terms.
   template <class F>
   std::array<double, 2> sum_rows(F&& f);
 
   /// What a thread needs for its sweeps.
   struct Workspace {
-    ProductRow<double> product;
-    ProductRow<float> product_f;
     RowRing<float> direction;
     RowsBeside<float> beside;
   };

@@ -69,20 +69,17 @@ struct Multigrid::Level {
       }
   }
 
-  /// Row j of the product with friction.
-  void multiply(int j, const Rows<const float>& field, ProductRow<float>& out) const {
-    multiply_row(grid, blocks, j, field, out);
-    add_friction(grid, slip, j, out);
-  }
-
-  /// Calls nodes(begin, end) for the spans of row j with the stencil and node(i, D^-1_x, D^-1_y) for the
-  /// others.
-  template <class Nodes, class Node>
-  void for_row(int j, Nodes&& nodes, Node&& node) const {
-    for (auto k = grid.first_span[j]; k < grid.first_span[j + 1]; ++k)
-      nodes(grid.span[k].begin, grid.span[k].end);
-    for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r)
-      node(grid.block.node[r] - j * grid.stride(), inverse_diagonal[2 * r], inverse_diagonal[2 * r + 1]);
+  /// Calls step(i, a_x, a_y, D^-1_x, D^-1_y) with the products A = K with friction of row j; the D^-1 are
+  /// times `gain`. i stands for several columns where a_x is a vector.
+  template <class Step>
+  void for_products(int j, const Rows<const float>& field, float gain, Step&& step) const {
+    const float inverse = gain / static_cast<float>(grid.stencil.centre);
+    for_row_products<float>(
+        grid, blocks, slip.data(), j, field,
+        [&](int i, const auto& a_x, const auto& a_y) { step(i, a_x, a_y, inverse, inverse); },
+        [&](int i, std::int32_t r, float a_x, float a_y) {
+          step(i, a_x, a_y, gain * inverse_diagonal[2 * r], gain * inverse_diagonal[2 * r + 1]);
+        });
   }
 
   /// Fields are 0 at fixed displacements and unused grid numbers.
@@ -92,10 +89,7 @@ struct Multigrid::Level {
       if (inverse_diagonal[2 * r] == 0) x[i] = 0;
       if (inverse_diagonal[2 * r + 1] == 0) y[i] = 0;
     }
-    if (grid.unused.empty() || grid.node(0, j) > grid.unused.back()) return;
-    for (auto n = std::ranges::lower_bound(grid.unused, grid.node(0, j));
-         n != grid.unused.end() && *n < grid.node(0, j + 1); ++n)
-      x[*n - grid.node(0, j)] = y[*n - grid.node(0, j)] = 0;
+    clear_unused(grid, j, x, y);
   }
 
   /// Calls f(k, column) for the special nodes of row j.
@@ -110,14 +104,14 @@ struct Multigrid::Level {
   /// Gains of two Chebyshev steps: c1 = first D^-1 (b - K u), u1 = u + c1,
   /// c2 = keep c1 + second D^-1 (b - K u1), u2 = u1 + c2.
   struct Gains {
-    float first, second, keep, inverse_centre;
+    float first, second, keep;
   };
   Gains gains() const {
     const double high = eigenvalue_margin * largest, low = smoothed_fraction * high;
     const double theta = 0.5 * (high + low), delta = 0.5 * (high - low), sigma = theta / delta;
     const double rho = sigma / (2 * sigma * sigma - 1);
     return {static_cast<float>(1 / theta), static_cast<float>(2 * rho / delta),
-            static_cast<float>(rho / sigma), static_cast<float>(1 / grid.stencil.centre)};
+            static_cast<float>(rho / sigma)};
   }
 };
 
@@ -125,14 +119,14 @@ struct Multigrid::Level {
 struct Multigrid::Workspace {
   RowRing<float> start, change, smoothed;
   RowsBeside<float> beside;
-  ProductRow<float> product;
-  std::vector<float> coarse_row;
+  std::vector<float> residual_x, residual_y, coarse_row;
   Workspace(int reach, int longest_row)
       : start(2 * reach + 1, longest_row),
         change(2 * reach + 1, longest_row),
         smoothed(2 * reach + 1, longest_row),
         beside(2 * reach, longest_row),
-        product(longest_row),
+        residual_x(longest_row),
+        residual_y(longest_row),
         coarse_row(longest_row) {}
 };
 
@@ -256,6 +250,21 @@ void interpolate_row(const Transfer1D& t, int columns, int coarse_columns, const
   }
 }
 
+/// Takes rows [begin, end) through three steps. A step of a row needs the step before of the rows within
+/// K's reach, so it follows by that much, and the earlier steps begin and end so much further out.
+template <class First, class Second, class Third>
+void sweep(const GridLevel& grid, int begin, int end, First&& first, Second&& second, Third&& third) {
+  const int reach = grid.reach;
+  const auto is_within = [&](int j, int margin) {
+    return j >= std::max(0, begin - margin) && j < std::min(grid.rows + 1, end + margin);
+  };
+  for (int j = begin - 2 * reach; j < end + 2 * reach; ++j) {
+    if (is_within(j, 2 * reach)) first(j);
+    if (is_within(j - reach, reach)) second(j - reach);
+    if (is_within(j - 2 * reach, 0)) third(j - 2 * reach);
+  }
+}
+
 }  // namespace
 
 template <class B>
@@ -264,120 +273,91 @@ void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
   auto& coarse = *levels_[l + 1];
   const auto& grid = fine.grid;
   const auto& t = fine.transfer;
-  const int reach = grid.reach, coarse_stride = coarse.grid.stride(), n_parts = parts(static_cast<int>(l));
-  const auto [first, second, keep, inverse_centre] = fine.gains();
+  const int coarse_stride = coarse.grid.stride(), n_parts = parts(static_cast<int>(l));
+  const auto gains = fine.gains();
   const auto u = fine.u_rows(), coarse_b = coarse.b_rows();
 
-  team_.run(n_parts,
-            [&, first = first, second = second, keep = keep, inverse_centre = inverse_centre](int part) {
-              auto& work = workspace_[part];
-              auto& product = work.product;
-              const auto change = work.change.on(grid), smoothed = work.smoothed.on(grid);
-              // Own coarse rows, the finer rows that lie on or above them, and those whose residual they
-              // take.
-              const PartOf own(coarse.grid.rows + 1, part, n_parts);
-              const auto above = [&](int J) {
-                return static_cast<int>(std::ranges::lower_bound(t.y.left, J) - t.y.left.begin());
-              };
-              const int u_begin = above(own.begin), u_end = above(own.end);
-              const int begin = above(own.begin - 1), end = u_end;
-              for (int J = own.begin; J < own.end; ++J) {
-                std::fill_n(coarse_b.x(J), coarse_stride, 0.0F);
-                std::fill_n(coarse_b.y(J), coarse_stride, 0.0F);
-              }
+  team_.run(n_parts, [&](int part) {
+    auto& work = workspace_[part];
+    const auto change = work.change.on(grid), smoothed = work.smoothed.on(grid);
+    // Own coarse rows, the finer rows that lie on or above them, and those whose residual they take.
+    const PartOf own(coarse.grid.rows + 1, part, n_parts);
+    const auto first_above = [&](int J) {
+      return static_cast<int>(std::ranges::lower_bound(t.y.left, J) - t.y.left.begin());
+    };
+    const int begin = first_above(own.begin - 1), u_begin = first_above(own.begin),
+              end = first_above(own.end);
+    for (int J = own.begin; J < own.end; ++J) {
+      std::fill_n(coarse_b.x(J), coarse_stride, 0.0F);
+      std::fill_n(coarse_b.y(J), coarse_stride, 0.0F);
+    }
 
-              const auto first_step = [&](int j) {
-                const B *b_x = b.x(j), *b_y = b.y(j);
-                float* __restrict c_x = change.x(j), * __restrict c_y = change.y(j);
-                fine.for_row(
-                    j,
-                    [&](int from, int to) {
-                      const float gain = first * inverse_centre;
-#pragma GCC ivdep
-                      for (int i = from; i < to; ++i) {
-                        c_x[i] = gain * static_cast<float>(b_x[i]);
-                        c_y[i] = gain * static_cast<float>(b_y[i]);
-                      }
-                    },
-                    [&](int i, float inverse_x, float inverse_y) {
-                      c_x[i] = first * inverse_x * static_cast<float>(b_x[i]);
-                      c_y[i] = first * inverse_y * static_cast<float>(b_y[i]);
-                    });
-              };
-              const auto second_step = [&](int j) {
-                fine.multiply(j, change.as_const(), product);
-                const B *b_x = b.x(j), *b_y = b.y(j);
-                const float *c_x = change.x(j), *c_y = change.y(j);
-                const float *a_x = product.x.data(), *a_y = product.y.data();
-                float* __restrict u_x = smoothed.x(j), * __restrict u_y = smoothed.y(j);
-                const auto stepped = [&](float c, float a, B load, float inverse) {
-                  return (1 + keep) * c + second * inverse * (static_cast<float>(load) - a);
-                };
-                fine.for_row(
-                    j,
-                    [&](int from, int to) {
-#pragma GCC ivdep
-                      for (int i = from; i < to; ++i) {
-                        u_x[i] = stepped(c_x[i], a_x[i], b_x[i], inverse_centre);
-                        u_y[i] = stepped(c_y[i], a_y[i], b_y[i], inverse_centre);
-                      }
-                    },
-                    [&](int i, float inverse_x, float inverse_y) {
-                      u_x[i] = stepped(c_x[i], a_x[i], b_x[i], inverse_x);
-                      u_y[i] = stepped(c_y[i], a_y[i], b_y[i], inverse_y);
-                    });
-                fine.clear_fixed(j, u_x, u_y);
-                if (j < u_begin || j >= u_end) return;
-                std::copy_n(u_x, grid.stride(), u.x(j));
-                std::copy_n(u_y, grid.stride(), u.y(j));
-              };
-              const auto restrict_residual = [&](int j) {
-                fine.multiply(j, smoothed.as_const(), product);
-                const B *b_x = b.x(j), *b_y = b.y(j);
-                float* __restrict r_x = product.x.data(), * __restrict r_y = product.y.data();
-                fine.for_row(
-                    j,
-                    [&](int from, int to) {
-#pragma GCC ivdep
-                      for (int i = from; i < to; ++i) {
-                        r_x[i] = static_cast<float>(b_x[i]) - r_x[i];
-                        r_y[i] = static_cast<float>(b_y[i]) - r_y[i];
-                      }
-                    },
-                    [&](int i, float inverse_x, float inverse_y) {
-                      r_x[i] = inverse_x > 0 ? static_cast<float>(b_x[i]) - r_x[i] : 0;
-                      r_y[i] = inverse_y > 0 ? static_cast<float>(b_y[i]) - r_y[i] : 0;
-                    });
-                fine.for_special(j, [&](std::size_t k, int i) {
-                  if (j >= u_begin && j < u_end) {
-                    fine.special_residual.x[k] = r_x[i];
-                    fine.special_residual.y[k] = r_y[i];
-                  }
-                  r_x[i] = r_y[i] = 0;
-                });
-                const float w = t.y.weight[j];
-                const int below = t.y.left[j];
-                for (int component = 0; component < 2; ++component) {
-                  float* __restrict c = work.coarse_row.data();
-                  restrict_row(t.x, grid.columns, coarse.grid.columns, component == 0 ? r_x : r_y, c);
-                  const auto add = [&](int J, float weight) {
-                    if (weight == 0 || J < own.begin || J >= own.end) return;
-                    float* __restrict to = component == 0 ? coarse_b.x(J) : coarse_b.y(J);
-                    for (int I = 0; I < coarse_stride; ++I) to[I] += weight * c[I];
-                  };
-                  add(below, 1 - w);
-                  add(below + 1, w);
-                }
-              };
-              const auto within = [&](int j, int from, int to) {
-                return j >= std::max(0, from) && j < std::min(to, grid.rows + 1);
-              };
-              for (int j = begin - 2 * reach; j < end + 2 * reach; ++j) {
-                if (within(j, begin - 2 * reach, end + 2 * reach)) first_step(j);
-                if (within(j - reach, begin - reach, end + reach)) second_step(j - reach);
-                if (within(j - 2 * reach, begin, end)) restrict_residual(j - 2 * reach);
-              }
-            });
+    const auto first_step = [&](int j) {
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      float *__restrict c_x = change.x(j), *__restrict c_y = change.y(j);
+      const float gain = gains.first / static_cast<float>(grid.stencil.centre);
+      for (int i = 0; i < grid.stride(); ++i) {
+        c_x[i] = gain * static_cast<float>(b_x[i]);
+        c_y[i] = gain * static_cast<float>(b_y[i]);
+      }
+      for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) {
+        const auto i = grid.block.node[r] - j * grid.stride();
+        c_x[i] = gains.first * fine.inverse_diagonal[2 * r] * static_cast<float>(b_x[i]);
+        c_y[i] = gains.first * fine.inverse_diagonal[2 * r + 1] * static_cast<float>(b_y[i]);
+      }
+    };
+    const auto second_step = [&](int j) {
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      const float *c_x = change.x(j), *c_y = change.y(j);
+      float *v_x = smoothed.x(j), *v_y = smoothed.y(j);
+      fine.for_products(j, change.as_const(), gains.second,
+                        [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                          const float kept = 1 + gains.keep;
+                          store(v_x + i, V(kept * load<V>(c_x + i) + inverse_x * (load<V>(b_x + i) - a_x)));
+                          store(v_y + i, V(kept * load<V>(c_y + i) + inverse_y * (load<V>(b_y + i) - a_y)));
+                        });
+      fine.clear_fixed(j, v_x, v_y);
+      if (j < u_begin || j >= end) return;
+      std::copy_n(v_x, grid.stride(), u.x(j));
+      std::copy_n(v_y, grid.stride(), u.y(j));
+    };
+    const auto restrict_residual = [&](int j) {
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      float *r_x = work.residual_x.data(), *r_y = work.residual_y.data();
+      for_row_products<float>(
+          grid, fine.blocks, fine.slip.data(), j, smoothed.as_const(),
+          [&]<class V>(int i, const V& a_x, const V& a_y) {
+            store(r_x + i, V(load<V>(b_x + i) - a_x));
+            store(r_y + i, V(load<V>(b_y + i) - a_y));
+          },
+          [&](int i, std::int32_t, float a_x, float a_y) {
+            r_x[i] = static_cast<float>(b_x[i]) - a_x;
+            r_y[i] = static_cast<float>(b_y[i]) - a_y;
+          });
+      fine.clear_fixed(j, r_x, r_y);
+      fine.for_special(j, [&](std::size_t k, int i) {
+        if (j >= u_begin && j < end) {
+          fine.special_residual.x[k] = r_x[i];
+          fine.special_residual.y[k] = r_y[i];
+        }
+        r_x[i] = r_y[i] = 0;
+      });
+      const float w = t.y.weight[j];
+      const int below = t.y.left[j];
+      for (int component = 0; component < 2; ++component) {
+        float* __restrict c = work.coarse_row.data();
+        restrict_row(t.x, grid.columns, coarse.grid.columns, component == 0 ? r_x : r_y, c);
+        const auto add = [&](int J, float weight) {
+          if (weight == 0 || J < own.begin || J >= own.end) return;
+          float* __restrict to = component == 0 ? coarse_b.x(J) : coarse_b.y(J);
+          for (int I = 0; I < coarse_stride; ++I) to[I] += weight * c[I];
+        };
+        add(below, 1 - w);
+        add(below + 1, w);
+      }
+    };
+    sweep(grid, begin, end, first_step, second_step, restrict_residual);
+  });
 
   std::size_t k = 0;
   for (const auto& [n, entries] : t.special) {
@@ -395,22 +375,19 @@ double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
   auto& coarse = *levels_[l + 1];
   const auto& grid = fine.grid;
   const auto& t = fine.transfer;
-  const int reach = grid.reach, stride = grid.stride(), coarse_stride = coarse.grid.stride(),
-            n_parts = parts(static_cast<int>(l));
-  const auto [first, second, keep, inverse_centre] = fine.gains();
+  const int reach = grid.reach, coarse_stride = coarse.grid.stride(), n_parts = parts(static_cast<int>(l));
+  const auto gains = fine.gains();
   const auto u = fine.u_rows(), coarse_u = coarse.u_rows();
-  const bool is_top = l == static_cast<std::size_t>(top_level_);
 
-  team_.run(n_parts, [&, first = first, second = second, keep = keep,
-                      inverse_centre = inverse_centre](int part) {
+  team_.run(n_parts, [&](int part) {
     auto& work = workspace_[part];
-    auto& product = work.product;
     const auto start = work.start.on(grid), change = work.change.on(grid), smoothed = work.smoothed.on(grid);
     const PartOf own(grid.rows + 1, part, n_parts);
     work.beside.copy(grid, u.as_const(), own, 2 * reach);
     team_.meet(n_parts);
 
     const auto prolong = [&](int j) {
+      const float *u_x = work.beside.x(u.as_const(), j), *u_y = work.beside.y(u.as_const(), j);
       const float w = t.y.weight[j];
       const int below = t.y.left[j];
       for (int component = 0; component < 2; ++component) {
@@ -421,12 +398,11 @@ double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
           std::copy_n(e0, coarse_stride, c);
         else
           for (int I = 0; I < coarse_stride; ++I) c[I] = (1 - w) * e0[I] + w * e1[I];
-        interpolate_row(t.x, grid.columns, coarse.grid.columns, c,
-                        component == 0 ? work.beside.x(u.as_const(), j) : work.beside.y(u.as_const(), j),
+        interpolate_row(t.x, grid.columns, coarse.grid.columns, c, component == 0 ? u_x : u_y,
                         component == 0 ? start.x(j) : start.y(j));
       }
       fine.for_special(j, [&](std::size_t k, int i) {
-        float x = work.beside.x(u.as_const(), j)[i], y = work.beside.y(u.as_const(), j)[i];
+        float x = u_x[i], y = u_y[i];
         for (const auto& e : t.special.at(fine.special[k])) {
           x += e.weight * coarse.u.x[e.coarse];
           y += e.weight * coarse.u.y[e.coarse];
@@ -437,62 +413,41 @@ double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
       fine.clear_fixed(j, start.x(j), start.y(j));
     };
     const auto first_step = [&](int j) {
-      fine.multiply(j, start.as_const(), product);
       const B *b_x = b.x(j), *b_y = b.y(j);
-      const float *a_x = product.x.data(), *a_y = product.y.data();
       const float *u_x = start.x(j), *u_y = start.y(j);
-      float* __restrict c_x = change.x(j), * __restrict c_y = change.y(j);
-      float* __restrict v_x = smoothed.x(j), * __restrict v_y = smoothed.y(j);
-      const auto step = [&](float gain_x, float gain_y, int i) {
-        c_x[i] = gain_x * (static_cast<float>(b_x[i]) - a_x[i]);
-        c_y[i] = gain_y * (static_cast<float>(b_y[i]) - a_y[i]);
-        v_x[i] = u_x[i] + c_x[i];
-        v_y[i] = u_y[i] + c_y[i];
-      };
-      fine.for_row(
-          j,
-          [&](int from, int to) {
-#pragma GCC ivdep
-            for (int i = from; i < to; ++i) step(first * inverse_centre, first * inverse_centre, i);
-          },
-          [&](int i, float inverse_x, float inverse_y) { step(first * inverse_x, first * inverse_y, i); });
+      float *c_x = change.x(j), *c_y = change.y(j), *v_x = smoothed.x(j), *v_y = smoothed.y(j);
+      fine.for_products(j, start.as_const(), gains.first,
+                        [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                          const V x = inverse_x * (load<V>(b_x + i) - a_x),
+                                  y = inverse_y * (load<V>(b_y + i) - a_y);
+                          store(c_x + i, x);
+                          store(c_y + i, y);
+                          store(v_x + i, V(load<V>(u_x + i) + x));
+                          store(v_y + i, V(load<V>(u_y + i) + y));
+                        });
     };
     const auto second_step = [&](int j) {
-      fine.multiply(j, smoothed.as_const(), product);
       const B *b_x = b.x(j), *b_y = b.y(j);
-      const float *a_x = product.x.data(), *a_y = product.y.data();
       const float *c_x = change.x(j), *c_y = change.y(j), *v_x = smoothed.x(j), *v_y = smoothed.y(j);
-      float* __restrict u_x = u.x(j), * __restrict u_y = u.y(j);
-      const auto step = [&](float inverse_x, float inverse_y, int i) {
-        u_x[i] = v_x[i] + keep * c_x[i] + second * inverse_x * (static_cast<float>(b_x[i]) - a_x[i]);
-        u_y[i] = v_y[i] + keep * c_y[i] + second * inverse_y * (static_cast<float>(b_y[i]) - a_y[i]);
-      };
-      fine.for_row(
-          j,
-          [&](int from, int to) {
-#pragma GCC ivdep
-            for (int i = from; i < to; ++i) step(inverse_centre, inverse_centre, i);
-          },
-          [&](int i, float inverse_x, float inverse_y) { step(inverse_x, inverse_y, i); });
-      fine.clear_fixed(j, u_x, u_y);
-      if (!is_top) return;
-      double sum = 0;
-#pragma omp simd reduction(+ : sum)
-      for (int i = 0; i < stride; ++i)
-        sum += static_cast<double>(b_x[i]) * static_cast<double>(u_x[i]) +
-               static_cast<double>(b_y[i]) * static_cast<double>(u_y[i]);
-      row_sum_[j] = sum;
+      float *u_x = u.x(j), *u_y = u.y(j);
+      RowSum<float> sum;
+      fine.for_products(
+          j, smoothed.as_const(), gains.second,
+          [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+            const V r_x = load<V>(b_x + i), r_y = load<V>(b_y + i);
+            const V x = load<V>(v_x + i) + gains.keep * load<V>(c_x + i) + inverse_x * (r_x - a_x);
+            const V y = load<V>(v_y + i) + gains.keep * load<V>(c_y + i) + inverse_y * (r_y - a_y);
+            store(u_x + i, x);
+            store(u_y + i, y);
+            sum.add(r_x, x);  // of fixed displacements both are 0
+            sum.add(r_y, y);
+          });
+      clear_unused(grid, j, u_x, u_y);
+      row_sum_[j] = sum.value();
     };
-    const auto within = [&](int j, int from, int to) {
-      return j >= std::max(0, from) && j < std::min(to, grid.rows + 1);
-    };
-    for (int j = own.begin - 2 * reach; j < own.end + 2 * reach; ++j) {
-      if (within(j, own.begin - 2 * reach, own.end + 2 * reach)) prolong(j);
-      if (within(j - reach, own.begin - reach, own.end + reach)) first_step(j - reach);
-      if (within(j - 2 * reach, own.begin, own.end)) second_step(j - 2 * reach);
-    }
+    sweep(grid, own.begin, own.end, prolong, first_step, second_step);
   });
-  return is_top ? std::accumulate(row_sum_.begin(), row_sum_.begin() + grid.rows + 1, 0.0) : 0;
+  return std::accumulate(row_sum_.begin(), row_sum_.begin() + grid.rows + 1, 0.0);
 }
 
 void Multigrid::damp_block_rows(Level& level) {
@@ -531,48 +486,31 @@ void Multigrid::damp_block_rows(Level& level) {
 
 void Multigrid::estimate_largest_eigenvalue(Level& level) {
   const auto& grid = level.grid;
-  const auto inverse_centre = static_cast<float>(1 / grid.stencil.centre);
   RandomNumbers random;
   GridField<float> next(grid.n_nodes());
-  ProductRow<float> product(grid.stride());
-  for (int j = 0; j <= grid.rows; ++j) {
-    const auto fill = [&](int i) {
-      level.u.x[grid.node(i, j)] = static_cast<float>(random());
-      level.u.y[grid.node(i, j)] = static_cast<float>(random());
-    };
-    level.for_row(
-        j,
-        [&](int from, int to) {
-          for (int i = from; i < to; ++i) fill(i);
-        },
-        [&](int i, float, float) { fill(i); });
+  for (std::size_t n = 0; n < grid.n_nodes(); ++n) {
+    level.u.x[n] = static_cast<float>(random());
+    level.u.y[n] = static_cast<float>(random());
   }
+  for (const auto n : grid.unused) level.u.x[n] = level.u.y[n] = 0;
   double norm_before = 0;
   constexpr int iterations = 8;
   for (int iteration = 0; iteration < iterations; ++iteration) {
+    const auto from = level.u_rows().as_const();
+    const auto to = all_rows(next, grid);
     double norm = 0;
-    const auto from_rows = level.u_rows(), to_rows = all_rows(next, grid);
     for (int j = 0; j <= grid.rows; ++j) {
-      multiply_row(grid, level.blocks, j, from_rows.as_const(), product);
-      float* __restrict to_x = to_rows.x(j), * __restrict to_y = to_rows.y(j);
-      const float *a_x = product.x.data(), *a_y = product.y.data();
-      float sum = 0;
-      level.for_row(
-          j,
-          [&](int from, int to) {
-#pragma omp simd reduction(+ : sum)
-            for (int i = from; i < to; ++i) {
-              to_x[i] = inverse_centre * a_x[i];
-              to_y[i] = inverse_centre * a_y[i];
-              sum += to_x[i] * to_x[i] + to_y[i] * to_y[i];
-            }
-          },
-          [&](int i, float inverse_x, float inverse_y) {
-            to_x[i] = inverse_x * a_x[i];
-            to_y[i] = inverse_y * a_y[i];
-            sum += to_x[i] * to_x[i] + to_y[i] * to_y[i];
-          });
-      norm += static_cast<double>(sum);
+      float *to_x = to.x(j), *to_y = to.y(j);
+      RowSum<float> sum;
+      level.for_products(j, from, 1,
+                         [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                           const V x = inverse_x * a_x, y = inverse_y * a_y;
+                           store(to_x + i, x);
+                           store(to_y + i, y);
+                           sum.add(x, x);
+                           sum.add(y, y);
+                         });
+      norm += sum.value();
     }
     std::swap(level.u, next);
     if (iteration + 1 == iterations) level.largest = std::sqrt(norm / norm_before);
