@@ -219,6 +219,17 @@ inline V from_right(const V& here, const V& right) {
   return shifted<1>(here, right, std::make_integer_sequence<int, length<V>>{});
 }
 
+/// even[0], odd[0], even[1], odd[1] ... in two vectors.
+template <int from, class V, int... k>
+inline V interleaved_from(const V& even, const V& odd, std::integer_sequence<int, k...>) {
+  return __builtin_shufflevector(even, odd, ((from + k) / 2 + (k % 2) * length<V>)...);
+}
+template <class V>
+inline std::pair<V, V> interleaved(const V& even, const V& odd) {
+  constexpr auto all = std::make_integer_sequence<int, length<V>>{};
+  return {interleaved_from<0>(even, odd, all), interleaved_from<length<V>>(even, odd, all)};
+}
+
 /// Calls f(i, a_x, a_y) with the stencil's products in columns [begin, end) of row j, of type Lanes<T> for
 /// the columns from i on, or T.
 template <class T, class In, class F>

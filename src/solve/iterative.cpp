@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -106,9 +107,13 @@ class IterativeLoadCase : public LoadCase {
     interpolate(equations_.grid(), from.equations_.grid(), transfer, from.u0_, u0_);
     if (sheared_) interpolate(equations_.grid(), from.equations_.grid(), transfer, from.u1_, u1_);
     set_fixed();
+    solved_.reset();
   }
 
   void solve(const Support& support, double accuracy) override {
+    if (solved_ == support && accuracy >= solved_accuracy_) return;
+    solved_ = support;
+    solved_accuracy_ = accuracy;
     const auto& lower = equations_.lower();
     for (std::size_t k = 0; k < lower.size(); ++k) {
       const auto n = lower[k];
@@ -177,6 +182,8 @@ class IterativeLoadCase : public LoadCase {
   TopDisplacement top_;
   bool sheared_;
   solid::Field u0_, u1_;
+  std::optional<Support> solved_;  ///< last one
+  double solved_accuracy_ = 0;
 };
 
 }  // namespace
@@ -288,16 +295,18 @@ double LevelEquations::start_residual(const solid::Field& u) {
     const double *u_x = u_rows.x(j), *u_y = u_rows.y(j);
     double *r_x = r_rows.x(j), *r_y = r_rows.y(j);
     RowSum<double> sum;
-    const auto add = [&]<class V>(int i, const V& a_x, const V& a_y) {
+    const auto inside = [&]<class V>(int i, const V& a_x, const V& a_y) {
       sum.add(load<V>(u_x + i), a_x);
       sum.add(load<V>(u_y + i), a_y);
-    };
-    for_row_products<double>(grid_, grid_.block.block, nullptr, j, u_rows, add,
-                             [&](int i, std::int32_t, double a_x, double a_y) { add(i, a_x, a_y); });
-    for_products<double>(j, u_rows, [&]<class V>(int i, const V& a_x, const V& a_y) {
       store(r_x + i, V(-a_x));
       store(r_y + i, V(-a_y));
-    });
+    };
+    for_row_products<double>(grid_, grid_.block.block, nullptr, j, u_rows, inside,
+                             [&](int i, std::int32_t r, double a_x, double a_y) {
+                               inside(i, a_x, a_y);
+                               r_x[i] = (fixed_[r] & 1) != 0 ? 0 : -(a_x + slip_[r] * a_y);
+                               r_y[i] = (fixed_[r] & 2) != 0 ? 0 : -a_y;
+                             });
     return std::array<double, 2>{sum.value(), 0};
   })[0];
 }
@@ -318,14 +327,12 @@ double LevelEquations::next_direction(double beta) {
         const float *z_x = z.x(j), *z_y = z.y(j);
         const float *p_x = work.beside.x(p.as_const(), j), *p_y = work.beside.y(p.as_const(), j);
         float *n_x = next.x(j), *n_y = next.y(j);
+        const bool is_own = j >= own.begin && j < own.end;
+        float *o_x = is_own ? p.x(j) : n_x, *o_y = is_own ? p.y(j) : n_y;
 #pragma GCC ivdep
         for (int i = 0; i < stride; ++i) {
-          n_x[i] = z_x[i] + factor * p_x[i];
-          n_y[i] = z_y[i] + factor * p_y[i];
-        }
-        if (j >= own.begin && j < own.end) {
-          std::copy_n(n_x, stride, p.x(j));
-          std::copy_n(n_y, stride, p.y(j));
+          o_x[i] = n_x[i] = z_x[i] + factor * p_x[i];
+          o_y[i] = n_y[i] = z_y[i] + factor * p_y[i];
         }
       }
       const int k = j - reach;

@@ -240,13 +240,21 @@ void restrict_row(const Transfer1D& t, int columns, int coarse_columns, const fl
 void interpolate_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict c,
                      const float* __restrict start, float* __restrict u) {
   const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
-  for (int I = 0; I < n_pairs; ++I) {
+  using V = Lanes<float>;
+  int I = 0;
+  for (; I + length<V> <= n_pairs; I += length<V>) {
+    const V here = load<V>(c + I), between = 0.5F * (here + load<V>(c + I + 1));
+    const auto [first, second] = interleaved(here, between);
+    store(u + 2 * I, V(load<V>(start + 2 * I) + first));
+    store(u + 2 * I + length<V>, V(load<V>(start + 2 * I + length<V>) + second));
+  }
+  for (; I < n_pairs; ++I) {
     u[2 * I] = start[2 * I] + c[I];
     u[2 * I + 1] = start[2 * I + 1] + 0.5F * (c[I] + c[I + 1]);
   }
   for (int i = 2 * n_pairs; i <= columns; ++i) {
-    const int I = t.left[i];
-    u[i] = start[i] + (1 - t.weight[i]) * c[I] + t.weight[i] * c[I + 1];
+    const int left = t.left[i];
+    u[i] = start[i] + (1 - t.weight[i]) * c[left] + t.weight[i] * c[left + 1];
   }
 }
 
@@ -294,7 +302,7 @@ void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
 
     const auto first_step = [&](int j) {
       const B *b_x = b.x(j), *b_y = b.y(j);
-      float *__restrict c_x = change.x(j), *__restrict c_y = change.y(j);
+      float* __restrict c_x = change.x(j), * __restrict c_y = change.y(j);
       const float gain = gains.first / static_cast<float>(grid.stencil.centre);
       for (int i = 0; i < grid.stride(); ++i) {
         c_x[i] = gain * static_cast<float>(b_x[i]);
@@ -394,11 +402,9 @@ double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
         const float* __restrict e0 = component == 0 ? coarse_u.x(below) : coarse_u.y(below);
         const float* __restrict e1 = component == 0 ? coarse_u.x(below + 1) : coarse_u.y(below + 1);
         float* __restrict c = work.coarse_row.data();
-        if (w == 0)
-          std::copy_n(e0, coarse_stride, c);
-        else
+        if (w != 0)
           for (int I = 0; I < coarse_stride; ++I) c[I] = (1 - w) * e0[I] + w * e1[I];
-        interpolate_row(t.x, grid.columns, coarse.grid.columns, c, component == 0 ? u_x : u_y,
+        interpolate_row(t.x, grid.columns, coarse.grid.columns, w == 0 ? e0 : c, component == 0 ? u_x : u_y,
                         component == 0 ? start.x(j) : start.y(j));
       }
       fine.for_special(j, [&](std::size_t k, int i) {

@@ -33,6 +33,7 @@ struct Support {
   std::vector<double> slip_sign;   ///< of t where the node slips
   std::vector<double> anchor_x_m;  ///< u_x where the node sticks, or began to slip
   double mu_s = 0;
+  bool operator==(const Support&) const = default;
 };
 
 /// The plate under its loaded edge, held by the plane: displacements of the interface and forces of the plane
