@@ -312,7 +312,7 @@ Info info(const io::Case& config) {
   // The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
   if (info.solver == solve::StaticSolver::direct)
     statics_s = 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
-  if (info.solver == solve::StaticSolver::iterative) statics_s = 3.5e-6 * n_unknowns;
+  if (info.solver == solve::StaticSolver::iterative) statics_s = 2e-6 * n_unknowns;
   info.expected_s = info.node_updates / info.node_updates_per_s + statics_s;
 
   const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);

@@ -189,10 +189,11 @@ class IterativeLoadCase : public LoadCase {
 }  // namespace
 
 double iterative_bytes(double n_unknowns) {
-  // Of each unknown: three vectors of the cycle in single precision, on all levels together 4/3 of them; five
-  // of the linear solution; two of the load case; six of the equilibria at hand; half the coordinates and
-  // numbers of a node.
-  return n_unknowns * (3 * 4 * 4 / 3.0 + 8 * (5 + 2 + 6) + 16);
+  // Of each unknown: the cycle's z, on coarser levels with a right-hand side; residual; direction, and two
+  // more where nodes slip; two displacements of the load case; six of the equilibria at hand; half the
+  // coordinates and numbers of a node.
+  constexpr double single = 4, twice = 8;
+  return n_unknowns * (single + 2 * single / 3 + twice + 3 * single + 2 * twice + 6 * twice + 16);
 }
 
 IterativeSolver::IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material)

@@ -10,7 +10,7 @@
 
 namespace slipfront::solve {
 
-/// Bytes of the iterative statics at their peak, the mesh and the equilibria included: 136 an unknown.
+/// Bytes of the iterative statics at their peak, the mesh and the equilibria included: 107 an unknown.
 double iterative_bytes(double n_unknowns);
 
 /// Equations of the plate on one level of the multigrid, without any matrix: conjugate gradients with one

@@ -238,6 +238,7 @@ TEST_P(Corners, LoadedPlateIsThatOfTheFactorisation) {
 
 TEST(StaticSolver, IsChosenByTheNumberOfUnknowns) {
   EXPECT_EQ(choose_solver(StaticSolver::automatic, 9e4), StaticSolver::direct);
+  EXPECT_EQ(choose_solver(StaticSolver::automatic, 361'802), StaticSolver::direct);  // 600 x 300
   EXPECT_EQ(choose_solver(StaticSolver::automatic, 9e6), StaticSolver::iterative);
   EXPECT_EQ(choose_solver(StaticSolver::direct, 9e6), StaticSolver::direct);
   EXPECT_EQ(choose_solver(StaticSolver::iterative, 10), StaticSolver::iterative);
