@@ -2,10 +2,12 @@
 #include "bench/bench.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <fstream>
 #include <thread>
 
@@ -15,6 +17,7 @@
 #include "mesh/plate.hpp"
 #include "run/run.hpp"
 #include "solid/kernels.hpp"
+#include "solve/statics.hpp"
 #include "solve/stepper.hpp"
 
 namespace slipfront::bench {
@@ -193,6 +196,33 @@ PaperRun paper_run(int columns, int threads) {
 }
 
 }  // namespace
+
+StaticsRun measure_statics(int columns, solve::StaticSolver solver) {
+  const auto plate = plate_of(columns);
+  const double n_unknowns = 2 * (columns + 1.0) * (columns / 2 + 1.0);
+  solve::require_statics_memory(solver, n_unknowns);
+  const auto mesh = mesh::make_plate(plate);
+  const auto start = Clock::now();
+  const auto processor_start = std::clock();
+  solve::Loading loading;
+  loading.solver = solver;
+  const double mu_s = interface::VelocityWeakening {
+  }.mu_s;
+  const solve::Statics statics(mesh, {}, loading, mu_s);
+  StaticsRun result{columns, mesh.grid.rows, solve::name_of(solve::choose_solver(solver, n_unknowns)),
+                    n_unknowns};
+  result.critical_shear_m = statics.shear_to(mu_s).shear_m;
+  const auto common = statics.shear_to((1 - loading.critical_margin) * mu_s);
+  const auto spontaneous = statics.shear_to((1 + loading.critical_margin) * mu_s);
+  result.wall_s = seconds_since(start);
+  result.processor_s = static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  result.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+  result.expected_bytes = solve::statics_bytes(solve::choose_solver(solver, n_unknowns), n_unknowns);
+  result.cycles = statics.solver().n_cycles();
+  return result;
+}
 
 Results measure(const Options& options, const std::function<void(const std::string&)>& progress) {
   Results results;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "solve/settings.hpp"
 
 namespace slipfront::bench {
 
@@ -36,6 +39,20 @@ struct PaperRun {
   double statics_s = 0, event_s = 0;
   double node_updates_per_s = 0;  ///< of the event
 };
+
+/// The paper's plate, tilted and sheared to the critical, the common and the spontaneous state.
+struct StaticsRun {
+  int columns = 0, rows = 0;
+  std::string solver;
+  double unknowns = 0;
+  double wall_s = 0, processor_s = 0;
+  std::int64_t cycles = 0;  ///< of the iterative solver
+  double peak_bytes = 0;    ///< of the process
+  double expected_bytes = 0;
+  double critical_shear_m = 0;
+};
+/// @throws UserError where the memory does not suffice.
+StaticsRun measure_statics(int columns, solve::StaticSolver solver);
 
 struct Results {
   double bandwidth_bytes_per_s = 0;  ///< of one thread, over arrays far larger than the caches

@@ -12,6 +12,7 @@
 
 #include "base/version.hpp"
 #include "cli/commands.hpp"
+#include "solve/plate_solver.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -80,6 +81,14 @@ void print_table(const bench::Results& results) {
         r.node_updates_per_s * 1e-6);
 }
 
+void print_statics(const bench::StaticsRun& r) {
+  fmt::print(
+      "{} x {}, {}, {:.3g} unknowns: {:.2f} s ({:.2f} s of processor), {} cycles, peak memory {:.2f} GB, "
+      "expected {:.2f} GB, critical shear {:.12g} m\n",
+      r.columns, r.rows, r.solver, r.unknowns, r.wall_s, r.processor_s, r.cycles, r.peak_bytes * 1e-9,
+      r.expected_bytes * 1e-9, r.critical_shear_m);
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app) {
@@ -92,7 +101,19 @@ void add_bench(CLI::App& app) {
   command->add_option("--threads", options->threads, "The most threads to measure with")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--large", options->large, "Also 10,000 x 5,000 cells, some 7 GB");
-  command->callback([options, json] {
+  auto columns = std::make_shared<int>(0);
+  auto solver = std::make_shared<std::string>("iterative");
+  command->add_option("--statics", *columns, "Measure the statics of a plate of so many columns instead")
+      ->check(CLI::Range(2, 100'000));
+  command->add_option("--solver", *solver, "... by this solver: auto, direct or iterative")
+      ->check(CLI::IsMember({"auto", "direct", "iterative"}));
+  command->callback([options, json, columns, solver] {
+    if (*columns > 0) {
+      for (const auto s :
+           {solve::StaticSolver::automatic, solve::StaticSolver::direct, solve::StaticSolver::iterative})
+        if (solve::name_of(s) == *solver) print_statics(bench::measure_statics(*columns, s));
+      return;
+    }
     const auto results = bench::measure(
         *options, [](const std::string& next) { fmt::print(stderr, "\r{:<70}", next), std::fflush(stderr); });
     fmt::print(stderr, "\r{:<70}\r", "");

@@ -37,8 +37,9 @@ void print_info(const CaseArguments& arguments) {
   line("step", fmt::format("{:.4g} s ({:.4g} s at the interface, {} rows)", info.step_s, info.substep_s,
                            config.time.interface_rows));
   line("steps to the end", fmt::format("{}", info.n_steps));
-  line("memory", fmt::format("{:.3g} GB, of it {:.3g} GB for the static factorisation",
-                             info.memory_bytes * 1e-9, info.factor_bytes * 1e-9));
+  const auto statics = info.solver_bytes > 0 ? fmt::format(" ({})", solve::name_of(info.solver)) : "";
+  line("memory", fmt::format("{:.3g} GB, of it {:.3g} GB for the statics{}", info.memory_bytes * 1e-9,
+                             info.solver_bytes * 1e-9, statics));
   line("node updates",
        fmt::format("{:.4g} at {:.3g} million/s here", info.node_updates, info.node_updates_per_s * 1e-6));
   line("expected time", fmt::format("{:.2g} s", info.expected_s));

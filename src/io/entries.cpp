@@ -186,6 +186,7 @@ std::vector<Entry> make_common_entries() {
   using solid::Plane;
   using solve::Loading;
   using solve::LoadingMethod;
+  using solve::StaticSolver;
   using solve::TimeStepping;
   using solve::TopEdge;
 
@@ -258,6 +259,14 @@ std::vector<Entry> make_common_entries() {
                           "state before the event: tilt and shear to the critical one by static equilibria, "
                           "the same by explicit dynamics with the top moving, or given tractions of the "
                           "interface with the plate undeformed at rest"),
+      only_with(tilted,
+                word<StaticSolver>(
+                    "loading.solver", at(&Case::loading, &Loading::solver),
+                    {{"auto", StaticSolver::automatic},
+                     {"direct", StaticSolver::direct},
+                     {"iterative", StaticSolver::iterative}},
+                    "static equilibria by a sparse factorisation, by conjugate gradients with a multigrid "
+                    "preconditioner, or by the one that suits the number of elements")),
       number("loading.shear_speed_over_c_L", at(&Case::loading, &Loading::shear_speed_over_c_L),
              {0, 1, false, true},
              "speed of the top edge to +x over the longitudinal wave speed; 0, held still, only with "

@@ -19,7 +19,7 @@
 #include "io/prestress.hpp"
 #include "io/schema.hpp"
 #include "mesh/plate.hpp"
-#include "solve/factorisation.hpp"
+#include "solve/plate_solver.hpp"
 #include "solve/prestress.hpp"
 #include "solve/stepper.hpp"
 
@@ -133,7 +133,7 @@ mesh::Mesh check(const io::Case& config) {
       throw UserError(
           "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
           config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
-    solve::require_statics_memory(n_unknowns, solve::estimated_factor_bytes(n_unknowns));
+    solve::require_statics_memory(config.loading.solver, n_unknowns);
   }
   auto mesh = mesh::make_plate(config.plate);
   solve::require_rows_fit(mesh, config.time);
@@ -161,8 +161,9 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
   }
   const solve::Statics statics(initial.mesh, config.material, config.loading, mu_s,
                                interface::static_coefficient_key(config.friction));
-  initial.n_unknowns = statics.n_unknowns();
-  initial.factor_bytes = statics.factor_bytes();
+  initial.n_unknowns = statics.solver().n_unknowns();
+  initial.solver = solve::choose_solver(config.loading.solver, 2.0 * initial.mesh.n_nodes());
+  initial.solver_bytes = statics.solver().bytes();
   initial.critical_shear_m = statics.shear_to(mu_s).shear_m;
   if (config.loading.method == solve::LoadingMethod::direct) {
     initial.common = statics.shear_to((1 - margin) * mu_s);
@@ -354,8 +355,9 @@ Info info(const io::Case& config) {
   info.memory_bytes = solve::event_bytes(static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
                                          !config.output.snapshot_times_s.empty());
   if (!is_prestressed(config)) {
-    info.factor_bytes = solve::estimated_factor_bytes(n_unknowns);
-    info.memory_bytes = std::max(info.memory_bytes, solve::statics_bytes(n_unknowns, info.factor_bytes));
+    info.solver = solve::choose_solver(config.loading.solver, n_unknowns);
+    info.solver_bytes = solve::statics_bytes(info.solver, n_unknowns);
+    info.memory_bytes = std::max(info.memory_bytes, info.solver_bytes);
   }
 
   // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
@@ -375,9 +377,11 @@ Info info(const io::Case& config) {
     fastest_s = std::min(fastest_s, seconds_since(step_start));
   } while (seconds_since(start) < 2e-3);
   info.node_updates_per_s = stepper.node_updates_per_step() / fastest_s;
+  double statics_s = 0;
   // The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
-  const double statics_s =
-      is_prestressed(config) ? 0 : 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
+  if (info.solver == solve::StaticSolver::direct)
+    statics_s = 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
+  if (info.solver == solve::StaticSolver::iterative) statics_s = 2e-6 * n_unknowns;
   info.expected_s = info.node_updates / info.node_updates_per_s + statics_s;
 
   return info;

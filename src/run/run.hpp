@@ -28,7 +28,8 @@ struct InitialState {
   bool prescribed = false;          ///< loading.method is prestress: no statics, no critical shear
   double critical_shear_m = 0;      ///< shear at t/p = mu_s inside, found directly
   std::int64_t n_unknowns = 0;
-  double factor_bytes = 0;
+  solve::StaticSolver solver = solve::StaticSolver::automatic;  ///< of the statics, auto without any
+  double solver_bytes = 0;                                      ///< held by it
   double wall_s = 0;
   std::optional<solve::Ramp> ramp;  ///< where loading.method is ramp
 };
@@ -92,10 +93,11 @@ struct Info {
   WaveSpeeds speeds;
   std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0, n_irregular = 0;
   double stable_step_s = 0, step_s = 0, substep_s = 0;
-  std::int64_t n_steps = 0;                 ///< to time.end_s
-  double node_updates = 0;                  ///< of the event
-  double memory_bytes = 0;                  ///< the largest of statics and event
-  double factor_bytes = 0;                  ///< of the static factorisation, estimated
+  std::int64_t n_steps = 0;                                     ///< to time.end_s
+  double node_updates = 0;                                      ///< of the event
+  double memory_bytes = 0;                                      ///< the largest of statics and event
+  solve::StaticSolver solver = solve::StaticSolver::automatic;  ///< of the statics, auto without any
+  double solver_bytes = 0;                                      ///< of the statics, estimated
   double expected_s = 0;                    ///< at the kernel rate measured on the spot, statics estimated
   double node_updates_per_s = 0;            ///< measured on the spot
   stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure

@@ -65,7 +65,8 @@ Json statics_json(const InitialState& initial) {
                {"inside_from_m", initial.common.inside_from_m},
                {"inside_to_m", initial.common.inside_to_m},
                {"unknowns", initial.n_unknowns},
-               {"factor_bytes", initial.factor_bytes},
+               {"solver", solve::name_of(initial.solver)},
+               {"solver_bytes", initial.solver_bytes},
                {"wall_s", initial.wall_s}};
   if (initial.ramp) {
     const auto& ramp = *initial.ramp;

@@ -32,7 +32,7 @@ double statics_bytes(double n_unknowns, double factor_bytes) {
 void require_statics_memory(double n_unknowns, double factor_bytes) {
   require_memory(statics_bytes(n_unknowns, factor_bytes),
                  fmt::format("the factorisation of {:.4g} static unknowns", n_unknowns),
-                 "choose a larger plate.element_size_m");
+                 "set loading.solver = iterative or choose a larger plate.element_size_m");
 }
 
 struct Factorisation::Cholmod {

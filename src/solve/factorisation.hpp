@@ -10,11 +10,9 @@
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
+#include "solve/plate_solver.hpp"
 
 namespace slipfront::solve {
-
-/// Which displacements of the loaded edge are prescribed.
-enum class TopConstraint { both, vertical };
 
 /// Bytes a factorisation of this plate needs, estimated from the number of unknowns alone (nested dissection
 /// of a plane grid).
@@ -44,11 +42,7 @@ class Factorisation {
   Factorisation(const Factorisation&) = delete;
   Factorisation& operator=(const Factorisation&) = delete;
 
-  /// Prescribed displacements of the loaded edge, in the order of mesh.top (u_x is ignored where only the
-  /// vertical is prescribed).
-  struct Top {
-    std::vector<double> u_x_m, u_y_m;
-  };
+  using Top = TopDisplacement;
 
   /// S, N/m.
   const Eigen::MatrixXd& condensed_stiffness() const { return condensed_; }

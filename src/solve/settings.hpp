@@ -14,12 +14,20 @@ enum class LoadingMethod {
 /// Whether the top edge's nodes may move along x while it is tilted.
 enum class TopEdge { held, free };
 
+/// How static equilibria are solved.
+enum class StaticSolver {
+  automatic,  ///< by a factorisation up to a number of unknowns, iteratively beyond
+  direct,     ///< sparse factorisation, the interface condensed
+  iterative,  ///< conjugate gradients with a multigrid preconditioner
+};
+
 /// Displacements of the top edge: pushed down along a line, then moved to +x.
 struct Loading {
   double tilt_left_m = 0.37e-3;    ///< downward displacement at the left end
   double tilt_right_m = 0.037e-3;  ///< ... at the right end, linear between
   TopEdge top_during_tilt = TopEdge::held;
   LoadingMethod method = LoadingMethod::direct;
+  StaticSolver solver = StaticSolver::automatic;
   double shear_speed_over_c_L = 1e-6;  ///< v_x / c_L of the top edge
   double edge_margin_m = 10e-3;  ///< "inside" the interface leaves out this much at each end of the contact
   double critical_margin =

@@ -11,91 +11,90 @@ namespace slipfront::solve {
 
 namespace {
 
+/// The interface of one level of the solver. [nodes]
+struct InterfaceNodes {
+  std::vector<double> x_m, gap_m, tributary_m;
+};
+
+InterfaceNodes interface_nodes(const mesh::Mesh& mesh, const std::vector<std::size_t>& places) {
+  const auto tributary_m = mesh::tributary_lengths_m(mesh);
+  InterfaceNodes nodes;
+  for (const auto place : places) {
+    nodes.x_m.push_back(mesh.x_m[mesh.lower[place]]);
+    nodes.gap_m.push_back(mesh.y_m[mesh.lower[place]]);
+    nodes.tributary_m.push_back(tributary_m[place]);
+  }
+  return nodes;
+}
+
+/// The states at some of the nodes.
+ContactStates at_places(const ContactStates& all, const std::vector<std::size_t>& places) {
+  ContactStates some;
+  some.support.mu_s = all.support.mu_s;
+  for (const auto place : places) {
+    some.support.contact.push_back(all.support.contact[place]);
+    some.support.slip_sign.push_back(all.support.slip_sign[place]);
+    some.support.anchor_x_m.push_back(all.support.anchor_x_m[place]);
+    some.has_touched.push_back(all.has_touched[place]);
+  }
+  return some;
+}
+
+/// Gives each node the contact state of the coarse node nearest to it along the interface.
+void take_nearest(const ContactStates& coarse, const std::vector<std::size_t>& coarse_places,
+                  const std::vector<std::size_t>& places, ContactStates& states) {
+  std::size_t c = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    while (c + 1 < coarse_places.size() && 2 * places[k] > coarse_places[c] + coarse_places[c + 1]) ++c;
+    states.support.contact[k] = coarse.support.contact[c];
+    states.support.slip_sign[k] = coarse.support.slip_sign[c];
+    states.has_touched[k] |= coarse.support.contact[c] != Contact::open;
+  }
+}
+
 /// The interface on the rigid plane: contact states, and the linear equilibrium they make on the condensed
 /// stiffness.
 class ContactProblem {
  public:
-  ContactProblem(const mesh::Mesh& mesh, const std::vector<double>& tributary_m,
-                 const Eigen::MatrixXd& stiffness, Eigen::VectorXd load, Eigen::VectorXd load_per_shear,
-                 double mu_s)
-      : mesh_(mesh),
-        tributary_m_(tributary_m),
-        S_(stiffness),
-        g0_(std::move(load)),
-        g1_(std::move(load_per_shear)),
-        mu_s_(mu_s),
-        n_(mesh.lower.size()),
-        contact(n_, Contact::stick),
-        has_touched(n_, 0),
-        slip_sign(n_, 0.0),
-        anchor_x_m(n_, 0.0) {}
+  ContactProblem(InterfaceNodes interface_nodes, LoadCase& plate, ContactStates start)
+      : nodes(std::move(interface_nodes)),
+        states(std::move(start)),
+        contact(states.support.contact),
+        plate_(plate),
+        n_(nodes.x_m.size()) {}
 
-  /// Displacements and forces of the interface, affine in the shear: u0 + shear u1, f0 + shear f1.
-  void solve() {
-    std::vector<Eigen::Index> unknown;  // degrees of freedom that are not held
-    u0 = Eigen::VectorXd::Zero(S_.rows());
-    u1 = Eigen::VectorXd::Zero(S_.rows());
-    for (std::size_t k = 0; k < n_; ++k) {
-      const auto x = static_cast<Eigen::Index>(2 * k);
-      if (contact[k] == Contact::stick) u0(x) = anchor_x_m[k];
-      if (contact[k] != Contact::stick) unknown.push_back(x);
-      if (contact[k] != Contact::open) u0(x + 1) = -gap_m(k);
-      if (contact[k] == Contact::open) unknown.push_back(x + 1);
-    }
-    if (!unknown.empty()) {
-      const auto size = static_cast<Eigen::Index>(unknown.size());
-      Eigen::MatrixXd A(size, size);
-      Eigen::MatrixXd rhs(size, 2);
-      for (Eigen::Index r = 0; r < size; ++r) {
-        // An open node carries no force; a slipping one obeys f_x = -sign mu_s f_y.
-        const auto d = unknown[r];
-        const double mu = d % 2 == 0 ? slip_sign[d / 2] * mu_s_ : 0.0;
-        Eigen::RowVectorXd row = S_.row(d);
-        double g0 = g0_(d), g1 = g1_(d);
-        if (contact[d / 2] == Contact::slip) {
-          row += mu * S_.row(d + 1);
-          g0 += mu * g0_(d + 1);
-          g1 += mu * g1_(d + 1);
-        }
-        for (Eigen::Index c = 0; c < size; ++c) A(r, c) = row(unknown[c]);
-        rhs(r, 0) = g0 - row.dot(u0);
-        rhs(r, 1) = g1;
-      }
-      const Eigen::MatrixXd solution = A.partialPivLu().solve(rhs);
-      for (Eigen::Index r = 0; r < size; ++r) {
-        u0(unknown[r]) = solution(r, 0);
-        u1(unknown[r]) = solution(r, 1);
-      }
-    }
-    f0 = S_ * u0 - g0_;
-    f1 = S_ * u1 - g1_;
+  void solve(double accuracy) { plate_.solve(states.support, accuracy); }
+
+  double gap_m(std::size_t k) const { return nodes.gap_m[k]; }
+  double u_x_m(std::size_t k, double shear) const { return plate_.u0(2 * k) + shear * plate_.u1(2 * k); }
+  double u_y_m(std::size_t k, double shear) const {
+    return plate_.u0(2 * k + 1) + shear * plate_.u1(2 * k + 1);
   }
-
-  double gap_m(std::size_t k) const { return mesh_.y_m[mesh_.lower[k]]; }
-  double u_x_m(std::size_t k, double shear) const { return u0(2 * k) + shear * u1(2 * k); }
-  double u_y_m(std::size_t k, double shear) const { return u0(2 * k + 1) + shear * u1(2 * k + 1); }
   double t_Pa(std::size_t k, double shear) const {
-    return -(f0(2 * k) + shear * f1(2 * k)) / tributary_m_[k];
+    return -(plate_.f0(2 * k) + shear * plate_.f1(2 * k)) / nodes.tributary_m[k];
   }
   double p_Pa(std::size_t k, double shear) const {
-    return (f0(2 * k + 1) + shear * f1(2 * k + 1)) / tributary_m_[k];
+    return (plate_.f0(2 * k + 1) + shear * plate_.f1(2 * k + 1)) / nodes.tributary_m[k];
   }
 
   /// Corrects the states that the solution at `shear` contradicts; `may_slip(k)`: whether node k may pass
   /// mu_s. With `one_only` just the worst contradiction is corrected, against cycles. Returns whether
   /// anything changed.
   template <class MaySlip>
-  bool correct(double shear, bool one_only, MaySlip&& may_slip) {
+  bool correct(double shear, bool one_only, double tolerance, MaySlip&& may_slip) {
+    auto& slip_sign = states.support.slip_sign;
+    const auto& anchor_x_m = states.support.anchor_x_m;
+    const double mu_s = states.support.mu_s;
+    auto& has_touched = states.has_touched;
     double p_max = 0;
     for (std::size_t k = 0; k < n_; ++k) p_max = std::max(p_max, std::abs(p_Pa(k, shear)));
-    const double tolerance = 1e-9;
     struct Change {
       std::size_t node;
       Contact to;
       double sign, severity;
     };
     std::vector<Change> changes;
-    const double u_scale = std::max(u0.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+    const double u_scale = std::max(plate_.u0.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
     for (std::size_t k = 0; k < n_; ++k) {
       const double t = t_Pa(k, shear), p = p_Pa(k, shear);
       if (contact[k] == Contact::open) {
@@ -109,7 +108,7 @@ class ContactProblem {
       } else if (p < -tolerance * p_max) {
         changes.push_back({k, Contact::open, 0, -p / p_max});
       } else if (contact[k] == Contact::stick) {
-        const double excess = std::abs(t) - mu_s_ * p;
+        const double excess = std::abs(t) - mu_s * p;
         if (excess > tolerance * p_max && may_slip(k))
           changes.push_back({k, Contact::slip, t > 0 ? 1.0 : -1.0, excess / p_max});
       } else {
@@ -127,29 +126,52 @@ class ContactProblem {
     return !changes.empty();
   }
 
- private:
-  const mesh::Mesh& mesh_;
-  const std::vector<double>& tributary_m_;
-  const Eigen::MatrixXd& S_;
-  Eigen::VectorXd g0_, g1_;
-  double mu_s_;
-  std::size_t n_;
+  const InterfaceNodes nodes;
+  ContactStates states;
+  std::vector<Contact>& contact;
 
- public:
-  std::vector<Contact> contact;
-  std::vector<std::uint8_t> has_touched;  ///< whether the node has been in contact
-  std::vector<double> slip_sign;          ///< of t where the node slips
-  std::vector<double> anchor_x_m;         ///< u_x where the node sticks, or began to slip
-  Eigen::VectorXd u0, u1, f0, f1;
+ private:
+  LoadCase& plate_;
+  std::size_t n_;
 };
 
 constexpr int max_iterations = 400;
 constexpr int iterations_at_once = 40;  ///< then one contradiction at a time
 
+/// Error in the energy norm of the first iterative solution, its decrease from one change of contact to the
+/// next, and the error with which the final contact states are confirmed.
+constexpr double first_accuracy = 1e-3, accuracy_decrease = 0.5, final_accuracy = 1e-10;
+/// The same with which coarse levels end and the finest then begins.
+constexpr double guess_accuracy = 2e-4;
+/// Contradictions of a contact state that count, over the largest pressure or displacement.
+constexpr double state_tolerance = 1e-9;
+
 [[noreturn]] void contact_does_not_settle() {
   throw UserError(
       "the static contact states do not settle; change loading.tilt_left_m, loading.tilt_right_m or "
       "plate.corner");
+}
+
+/// Solves and corrects the contact states until nothing changes; `find_shear()` is called after each
+/// solution. An iterative solution is only made as accurate as the states at that point deserve.
+/// @return the shear.
+template <class FindShear, class MaySlip>
+double settle(ContactProblem& problem, double accuracy, double final, FindShear&& find_shear,
+              MaySlip&& may_slip) {
+  for (int iteration = 1; iteration <= max_iterations; ++iteration) {
+    problem.solve(accuracy);
+    const double shear = find_shear();
+    const bool is_final = accuracy <= final;
+    const bool changed = problem.correct(shear, iteration > iterations_at_once,
+                                         accuracy > final_accuracy ? accuracy : state_tolerance, may_slip);
+    if (!changed && is_final) return shear;
+    if (!changed) {
+      accuracy = final;
+    } else {
+      accuracy = is_final ? std::max(guess_accuracy, final) : std::max(accuracy_decrease * accuracy, final);
+    }
+  }
+  contact_does_not_settle();
 }
 
 /// First and last coordinate of the contact, less the margin at each end.
@@ -158,27 +180,26 @@ struct Inside {
   bool contains(double x) const { return x >= from_m && x <= to_m; }
 };
 
-Inside inside_contact(const mesh::Mesh& mesh, const std::vector<Contact>& contact, double margin_m) {
+Inside inside_contact(const ContactProblem& problem, double margin_m) {
   double first = std::numeric_limits<double>::infinity(), last = -first;
-  for (std::size_t k = 0; k < contact.size(); ++k) {
-    if (contact[k] == Contact::open) continue;
-    first = std::min(first, mesh.x_m[mesh.lower[k]]);
-    last = std::max(last, mesh.x_m[mesh.lower[k]]);
+  for (std::size_t k = 0; k < problem.contact.size(); ++k) {
+    if (problem.contact[k] == Contact::open) continue;
+    first = std::min(first, problem.nodes.x_m[k]);
+    last = std::max(last, problem.nodes.x_m[k]);
   }
   return {first + margin_m, last - margin_m};
 }
 
-Equilibrium make_equilibrium(const mesh::Mesh& mesh, const ContactProblem& problem, double shear,
-                             double margin_m) {
+Equilibrium make_equilibrium(const ContactProblem& problem, double shear, double margin_m) {
   Equilibrium e;
   e.shear_m = shear;
   e.contact = problem.contact;
-  const Inside inside = inside_contact(mesh, problem.contact, margin_m);
+  const Inside inside = inside_contact(problem, margin_m);
   e.inside_from_m = inside.from_m;
   e.inside_to_m = inside.to_m;
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+  for (std::size_t k = 0; k < problem.nodes.x_m.size(); ++k) {
     const bool open = problem.contact[k] == Contact::open;
-    const double x = mesh.x_m[mesh.lower[k]];
+    const double x = problem.nodes.x_m[k];
     const double t = open ? 0 : problem.t_Pa(k, shear), p = open ? 0 : problem.p_Pa(k, shear);
     e.tractions.x_m.push_back(x);
     e.tractions.t_s_Pa.push_back(t);
@@ -191,83 +212,138 @@ Equilibrium make_equilibrium(const mesh::Mesh& mesh, const ContactProblem& probl
   return e;
 }
 
+/// Finds contact states on the coarser levels of the solver, each from the next coarser one, and gives the
+/// finest the last ones and their displacement to begin from. `make_case(level)` makes the load case of a
+/// level, settle_coarse(problem) settles its states.
+/// @return whether there are any.
+template <class MakeCase, class SettleCoarse>
+bool begin_on_coarse_levels(const mesh::Mesh& mesh, const PlateSolver& solver, const ContactStates& start,
+                            MakeCase&& make_case, SettleCoarse&& settle_coarse, LoadCase& finest,
+                            ContactStates& states) {
+  std::unique_ptr<LoadCase> coarser;
+  ContactStates coarser_states;
+  std::vector<std::size_t> coarser_places;
+  for (int level = solver.n_levels() - 1; level > 0; --level) {
+    const auto places = solver.interface_of(level);
+    auto plate = make_case(level);
+    auto here = at_places(start, places);
+    if (coarser) {
+      plate->begin_from(*coarser);
+      take_nearest(coarser_states, coarser_places, places, here);
+    }
+    ContactProblem problem(interface_nodes(mesh, places), *plate, std::move(here));
+    try {
+      settle_coarse(problem);
+    } catch (const UserError&) {  // what is impossible on a coarse level need not be so on the next
+      coarser.reset();
+      continue;
+    }
+    coarser = std::move(plate);
+    coarser_states = problem.states;
+    coarser_places = places;
+  }
+  if (!coarser) return false;
+  finest.begin_from(*coarser);
+  take_nearest(coarser_states, coarser_places, solver.interface_of(0), states);
+  return true;
+}
+
 }  // namespace
 
 Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
                  std::string mu_s_key)
-    : mesh_(mesh),
-      loading_(loading),
-      mu_s_(mu_s),
-      mu_s_key_(std::move(mu_s_key)),
-      tributary_m_(mesh::tributary_lengths_m(mesh)) {
-  held_ = std::make_unique<Factorisation>(mesh, material, TopConstraint::both);
+    : mesh_(mesh), loading_(loading), mu_s_(mu_s), mu_s_key_(std::move(mu_s_key)) {
+  solver_ = make_plate_solver(mesh, material, loading.solver);
 
-  Factorisation::Top tilt{std::vector<double>(mesh.top.size(), 0.0), {}};
+  TopDisplacement tilt{std::vector<double>(mesh.top.size(), 0.0), {}};
   const double x0 = mesh.x_m[mesh.top.front()], width = mesh.x_m[mesh.top.back()] - x0;
   for (const auto n : mesh.top) {
     const double s = (mesh.x_m[n] - x0) / width;
     tilt.u_y_m.push_back(-((1 - s) * loading.tilt_left_m + s * loading.tilt_right_m));
   }
-  std::unique_ptr<Factorisation> vertical;
-  if (loading.top_during_tilt == TopEdge::free)
-    vertical = std::make_unique<Factorisation>(mesh, material, TopConstraint::vertical);
-  const Factorisation& during_tilt = vertical ? *vertical : *held_;
-  const auto load = during_tilt.load(tilt);
+  const bool is_free = loading.top_during_tilt == TopEdge::free;
+  const auto make_case = [&](int level) {
+    return solver_->load_case(is_free ? TopConstraint::vertical : TopConstraint::both, tilt, false, nullptr,
+                              level);
+  };
+  auto plate = make_case(0);
 
-  ContactProblem problem(mesh, tributary_m_, during_tilt.condensed_stiffness(), load.g_N,
-                         Eigen::VectorXd::Zero(load.g_N.size()), mu_s);
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
-    problem.contact[k] = problem.gap_m(k) > 0 ? Contact::open : Contact::stick;
-    problem.has_touched[k] = problem.contact[k] == Contact::stick;
+  const std::size_t n = mesh.lower.size();
+  ContactStates start{{std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 0.0),
+                       std::vector<double>(n, 0.0), mu_s},
+                      std::vector<std::uint8_t>(n, 0)};
+  for (std::size_t k = 0; k < n; ++k) {
+    start.support.contact[k] = mesh.y_m[mesh.lower[k]] > 0 ? Contact::open : Contact::stick;
+    start.has_touched[k] = start.support.contact[k] == Contact::stick;
   }
-  int iteration = 0;
-  do {
-    if (++iteration > max_iterations) contact_does_not_settle();
-    problem.solve();
-  } while (problem.correct(0, iteration > iterations_at_once, [](std::size_t) { return true; }));
-  tilted_ = make_equilibrium(mesh, problem, 0, loading.edge_margin_m);
+  const auto no_shear = [] { return 0.0; };
+  const auto may_slip = [](std::size_t) { return true; };
+  double accuracy = solver_->iterates() ? first_accuracy : final_accuracy;
+  auto states = start;
+  const auto settle_coarse = [&](ContactProblem& coarse) {
+    settle(coarse, first_accuracy, guess_accuracy, no_shear, may_slip);
+  };
+  if (begin_on_coarse_levels(mesh, *solver_, start, make_case, settle_coarse, *plate, states))
+    accuracy = guess_accuracy;
+  ContactProblem problem(interface_nodes(mesh, solver_->interface_of(0)), *plate, std::move(states));
+  settle(problem, accuracy, final_accuracy, no_shear, may_slip);
+  tilted_ = make_equilibrium(problem, 0, loading.edge_margin_m);
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
     throw UserError(
         "the tilt leaves the plate without contact; increase loading.tilt_left_m or loading.tilt_right_m");
-  tilted_.u_m = during_tilt.displacement(load, problem.u0);
+  tilted_.u_m = plate->displacement(0);
   tilted_.u_per_shear = solid::Field(mesh.n_nodes());
+  plate.reset();
 
-  if (vertical) {
+  if (is_free)
     for (std::size_t k = 0; k < mesh.top.size(); ++k) tilt.u_x_m[k] = tilted_.u_m.x[mesh.top[k]];
-    tilt_ = held_->load(tilt);
-  } else {
-    tilt_ = load;
-  }
-  unit_shear_ =
-      held_->load({std::vector<double>(mesh.top.size(), 1.0), std::vector<double>(mesh.top.size(), 0.0)});
+  tilted_top_ = tilt;
+  sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_.u_m, 0);
 }
 
 template <class FindShear>
 Equilibrium Statics::shear(FindShear&& find_shear) const {
-  ContactProblem problem(mesh_, tributary_m_, held_->condensed_stiffness(), tilt_.g_N, unit_shear_.g_N,
-                         mu_s_);
-  for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
-    problem.contact[k] = tilted_.contact[k] == Contact::open ? Contact::open : Contact::stick;
-    problem.has_touched[k] = problem.contact[k] == Contact::stick;
-    problem.anchor_x_m[k] = tilted_.u_m.x[mesh_.lower[k]];
-  }
-  double shear = 0;
-  int iteration = 0;
   Inside inside{};
-  do {
-    if (++iteration > max_iterations) contact_does_not_settle();
-    problem.solve();
-    inside = inside_contact(mesh_, problem.contact, loading_.edge_margin_m);
-    shear = find_shear(problem, inside);
-  } while (problem.correct(shear, iteration > iterations_at_once,
-                           [&](std::size_t k) { return !inside.contains(mesh_.x_m[mesh_.lower[k]]); }));
+  const auto settle_problem = [&](ContactProblem& problem, double accuracy, double final) {
+    return settle(
+        problem, accuracy, final,
+        [&] {
+          inside = inside_contact(problem, loading_.edge_margin_m);
+          return find_shear(problem, inside);
+        },
+        [&](std::size_t k) { return !inside.contains(problem.nodes.x_m[k]); });
+  };
+  ContactStates states;
+  double accuracy = final_accuracy;
+  if (last_) {
+    states = *last_;
+  } else {
+    const std::size_t n = mesh_.lower.size();
+    states = {{tilted_.contact, std::vector<double>(n, 0.0), std::vector<double>(n, 0.0), mu_s_},
+              std::vector<std::uint8_t>(n, 0)};
+    for (std::size_t k = 0; k < n; ++k) {
+      if (tilted_.contact[k] != Contact::open) states.support.contact[k] = Contact::stick;
+      states.has_touched[k] = tilted_.contact[k] != Contact::open;
+      states.support.anchor_x_m[k] = tilted_.u_m.x[mesh_.lower[k]];
+    }
+    if (solver_->iterates()) accuracy = first_accuracy;
+    const auto start = states;
+    const auto make_case = [&](int level) {
+      return solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_.u_m, level);
+    };
+    const auto settle_coarse = [&](ContactProblem& coarse) {
+      settle_problem(coarse, first_accuracy, guess_accuracy);
+    };
+    if (begin_on_coarse_levels(mesh_, *solver_, start, make_case, settle_coarse, *sheared_, states))
+      accuracy = guess_accuracy;
+  }
+  ContactProblem problem(interface_nodes(mesh_, solver_->interface_of(0)), *sheared_, std::move(states));
+  const double shear = settle_problem(problem, accuracy, final_accuracy);
+  if (solver_->iterates()) last_ = problem.states;
 
-  Equilibrium e = make_equilibrium(mesh_, problem, shear, loading_.edge_margin_m);
-  auto load = tilt_;
-  for (double& u : load.top.u_x_m) u += shear;
-  load.g_N += shear * unit_shear_.g_N;
-  e.u_m = held_->displacement(load, problem.u0 + shear * problem.u1);
-  e.u_per_shear = held_->displacement(unit_shear_, problem.u1);
+  Equilibrium e = make_equilibrium(problem, shear, loading_.edge_margin_m);
+  e.u_m = sheared_->displacement(shear);
+  e.u_per_shear = sheared_->displacement_per_shear();
   return e;
 }
 
@@ -286,8 +362,8 @@ Equilibrium Statics::shear_to(double ratio) const {
     // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a state
     // that does not last until then is corrected, and the shear found again.
     double shear = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
-      if (problem.contact[k] != Contact::stick || !inside.contains(mesh_.x_m[mesh_.lower[k]])) continue;
+    for (std::size_t k = 0; k < problem.contact.size(); ++k) {
+      if (problem.contact[k] != Contact::stick || !inside.contains(problem.nodes.x_m[k])) continue;
       const double excess = problem.t_Pa(k, 0) - ratio * problem.p_Pa(k, 0);
       const double growth = problem.t_Pa(k, 1) - ratio * problem.p_Pa(k, 1) - excess;
       if (growth > 0 && excess <= 0 && problem.p_Pa(k, -excess / growth) > 0)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,13 +10,16 @@
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
-#include "solve/factorisation.hpp"
+#include "solve/plate_solver.hpp"
 #include "solve/settings.hpp"
 
 namespace slipfront::solve {
 
-/// Contact state of an interface node at rest.
-enum class Contact : std::uint8_t { stick, slip, open };
+/// Contact of the interface nodes and where they have been. [lower]
+struct ContactStates {
+  Support support;
+  std::vector<std::uint8_t> has_touched;  ///< whether the node has been in contact
+};
 
 /// Equilibrium of the plate with its interface, and how it changes with the shear.
 struct Equilibrium {
@@ -32,8 +36,7 @@ struct Equilibrium {
 /// Loading of the plate at rest: tilt, then shear until t/p inside the interface reaches a given value.
 ///
 /// Nodes stick where they touch; a node whose pressure would be tensile is released; a node beyond mu_s slips
-/// at mu_s p, but inside only sticking is possible since the shear ends where mu_s is reached there. Every
-/// change of contact is solved on the condensed interface.
+/// at mu_s p, but inside only sticking is possible since the shear ends where mu_s is reached there.
 class Statics {
  public:
   /// @param mu_s_key  key of mu_s in the case file, for messages
@@ -51,8 +54,7 @@ class Statics {
   /// Equilibrium at a given shear since the tilt.
   Equilibrium shear_by(double shear_m) const;
 
-  std::int64_t n_unknowns() const { return held_->n_unknowns(); }
-  double factor_bytes() const { return held_->factor_bytes(); }
+  const PlateSolver& solver() const { return *solver_; }
 
  private:
   template <class FindShear>
@@ -62,11 +64,12 @@ class Statics {
   Loading loading_;
   double mu_s_;
   std::string mu_s_key_;
-  std::vector<double> tributary_m_;
-  std::unique_ptr<Factorisation> held_;  ///< both displacements of the loaded edge prescribed
-  Factorisation::Load tilt_;             ///< the loaded edge where it stands after the tilt
-  Factorisation::Load unit_shear_;       ///< the loaded edge moved by 1 m along x
+  std::unique_ptr<PlateSolver> solver_;
+  TopDisplacement tilted_top_;         ///< the loaded edge after the tilt
+  std::unique_ptr<LoadCase> sheared_;  ///< the loaded edge where it stands after the tilt, then moved along x
   Equilibrium tilted_;
+  /// Contact states of the last shear, where beginning with them pays.
+  mutable std::optional<ContactStates> last_;
 };
 
 }  // namespace slipfront::solve

@@ -40,8 +40,8 @@ auto members(const solid::Material& m) {
   return std::tuple(a, b, c, d, e);
 }
 auto members(const solve::Loading& l) {
-  const auto& [a, b, c, d, e, f, g] = l;
-  return std::tuple(a, b, c, d, e, f, g);
+  const auto& [a, b, c, d, e, f, g, h] = l;
+  return std::tuple(a, b, c, d, e, f, g, h);
 }
 auto members(const interface::Regularisation& r) {
   const auto& [a, b, c, d] = r;
@@ -110,7 +110,9 @@ Case changed_case() {
   c.plate = {0.1 + 0.2, 1.0 / 3, 1e-3 / 7, mesh::Corner::fillet,   4e-3,
              0.3e-3,    8e-3,    3e-3,     mesh::Sides::absorbing, mesh::Top::absorbing};
   c.material = {1.0e9 / 3, -0.25, 1.1e3, solid::Plane::strain, 0};
-  c.loading = {1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, 1e-5, 0, 1e-4};
+  c.loading = {
+      1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, solve::StaticSolver::iterative, 1e-5,
+      0,    1e-4};
   c.friction = interface::VelocityWeakening { 1.25, 0.75, 1.0 / 3 };
   c.regularisation = {interface::Relaxed::strength, 1e-5 / 3, 0.25, 2e-6};
   c.contact = interface::ContactAlgorithm::predictor_corrector;
@@ -276,6 +278,7 @@ tilt_left_m = 1e-4
 tilt_right_m = 2e-4
 top_during_tilt = "free"
 method = "ramp"
+solver = "direct"
 shear_speed_over_c_L = 1e-5
 edge_margin_m = 0.02
 critical_margin = 0.01
@@ -320,7 +323,9 @@ snapshot_times_s = [1e-5, 2e-5]
   expected.title = "run";
   expected.plate = {1, 0.5, 0.01, mesh::Corner::none, 2e-3, 3e-4, 4e-3, 6e-3};
   expected.material = {1e9, 0.25, 1000, solid::Plane::strain, 2e-7};
-  expected.loading = {1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, 1e-5, 0.02, 0.01};
+  expected.loading = {
+      1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, solve::StaticSolver::direct, 1e-5,
+      0.02, 0.01};
   expected.friction = interface::VelocityWeakening { 0.9, 0.5, 0.2 };
   expected.regularisation = {interface::Relaxed::pressure, 2e-5, 0.5,
                              std::numeric_limits<double>::infinity()};

@@ -337,7 +337,7 @@ TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
 
 TEST(Prestress, InfoTakesItsPressure) {
   const auto a = info(problem_a(2e-3));
-  EXPECT_EQ(a.factor_bytes, 0);
+  EXPECT_EQ(a.solver_bytes, 0);
   EXPECT_DOUBLE_EQ(a.well_posedness.sliding.pressure_Pa, 5e6);
 }
 

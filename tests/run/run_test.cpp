@@ -362,7 +362,7 @@ TEST(Info, AgreesWithTheRun) {
     EXPECT_DOUBLE_EQ(info.node_updates,
                      static_cast<double>(result.event.steps) * result.node_updates_per_step);
     EXPECT_EQ(info.speeds.c_L, result.speeds.c_L);
-    EXPECT_GE(info.memory_bytes, info.factor_bytes);
+    EXPECT_GE(info.memory_bytes, info.solver_bytes);
     EXPECT_GT(info.expected_s, 0);
   }
 }
