@@ -209,8 +209,8 @@ StaticsRun measure_statics(int columns, solve::StaticSolver solver) {
   const double mu_s = interface::VelocityWeakening {
   }.mu_s;
   const solve::Statics statics(mesh, {}, loading, mu_s);
-  StaticsRun result{columns, mesh.grid.rows, solve::name_of(solve::choose_solver(solver, n_unknowns)),
-                    n_unknowns};
+  StaticsRun result{columns, mesh.grid.rows,
+                    std::string(solve::name_of(solve::choose_solver(solver, n_unknowns))), n_unknowns};
   result.critical_shear_m = statics.shear_to(mu_s).shear_m;
   const auto common = statics.shear_to((1 - loading.critical_margin) * mu_s);
   const auto spontaneous = statics.shear_to((1 + loading.critical_margin) * mu_s);
