@@ -60,6 +60,20 @@ inline void store(double* to, Lanes values) {
   reinterpret_cast<LanesInMemory*>(to)->values = values;
 }
 
+/// The same in single precision, twice as many of them.
+using FloatLanes = float __attribute__((vector_size(lanes * sizeof(double))));
+struct __attribute__((packed, may_alias)) FloatLanesInMemory {
+  FloatLanes values;
+};
+inline FloatLanes load(const float* from) {
+  return reinterpret_cast<const FloatLanesInMemory*>(from)->values;
+}
+inline void store(float* to, FloatLanes values) {
+  reinterpret_cast<FloatLanesInMemory*>(to)->values = values;
+}
+template <class Real>
+inline constexpr int lanes_of = lanes* static_cast<int>(sizeof(double) / sizeof(Real));
+
 /// The first `count` values, 1 <= count < lanes, and their last one in the other lanes.
 inline Lanes load_part(const double* from, int count) {
 #ifdef __AVX512F__

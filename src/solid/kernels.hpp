@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "base/host_device.hpp"
@@ -33,11 +34,19 @@ inline EdgeStencil mirrored(EdgeStencil s) {
 }
 
 /// w = u + factor v over columns [0, n).
-inline void combine_row(int n, double factor, const double* __restrict u_x, const double* __restrict u_y,
-                        const double* __restrict v_x, const double* __restrict v_y, double* __restrict w_x,
-                        double* __restrict w_y) {
-  for (int i = 0; i < n; ++i) w_x[i] = u_x[i] + factor * v_x[i];
-  for (int i = 0; i < n; ++i) w_y[i] = u_y[i] + factor * v_y[i];
+template <class Real>
+void combine_row(int n, double factor, const Real* __restrict u_x, const Real* __restrict u_y,
+                 const Real* __restrict v_x, const Real* __restrict v_y, Real* __restrict w_x,
+                 Real* __restrict w_y) {
+  const auto f = static_cast<Real>(factor);
+  for (int i = 0; i < n; ++i) w_x[i] = u_x[i] + f * v_x[i];
+  for (int i = 0; i < n; ++i) w_y[i] = u_y[i] + f * v_y[i];
+}
+
+/// Between single and double precision, over columns [0, n).
+template <class From, class To>
+void convert_row(int n, const From* __restrict from, To* __restrict to) {
+  for (int i = 0; i < n; ++i) to[i] = static_cast<To>(from[i]);
 }
 
 /// Kick of a node amid four squares.
@@ -78,32 +87,59 @@ inline Lanes from_right(Lanes here, Lanes right) {
   return __builtin_shufflevector(here, right, 1, 2, 3, 4);
 #endif
 }
+inline FloatLanes from_left(FloatLanes left, FloatLanes here) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(left, here, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30);
+#else
+  return __builtin_shufflevector(left, here, 7, 8, 9, 10, 11, 12, 13, 14);
+#endif
+}
+inline FloatLanes from_right(FloatLanes here, FloatLanes right) {
+#ifdef __AVX512F__
+  return __builtin_shufflevector(here, right, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16);
+#else
+  return __builtin_shufflevector(here, right, 1, 2, 3, 4, 5, 6, 7, 8);
+#endif
+}
 
 /// The interior stencil's terms by the column they come from, so that two vectors per component have to be
 /// shifted: unaligned loads of all neighbours cost more than the arithmetic.
+template <class V>
 struct StencilTerms {
-  Lanes w_x, w_y;
-  Lanes own_x, own_y;            ///< for the columns themselves
-  Lanes to_right_x, to_right_y;  ///< for the columns to the right of them
-  Lanes to_left_x, to_left_y;
+  V w_x, w_y;
+  V own_x, own_y;            ///< for the columns themselves
+  V to_right_x, to_right_y;  ///< for the columns to the right of them
+  V to_left_x, to_left_y;
 };
-inline StencilTerms stencil_terms(const InteriorStencil& s, int i, ConstRow south, ConstRow middle,
-                                  ConstRow north) {
-  const Lanes south_x = load(south.x + i), south_y = load(south.y + i);
-  const Lanes north_x = load(north.x + i), north_y = load(north.y + i);
-  const Lanes sum_x = south_x + north_x, twist_x = s.twist * (north_x - south_x);
-  const Lanes sum_y = south_y + north_y, twist_y = s.twist * (north_y - south_y);
-  const Lanes w_x = load(middle.x + i), w_y = load(middle.y + i);
-  const Lanes beside_x = s.along * w_x + s.corner * sum_x;
-  const Lanes beside_y = s.across * w_y + s.corner * sum_y;
-  return {w_x,
-          w_y,
-          s.centre * w_x + s.across * sum_x,
-          s.centre * w_y + s.along * sum_y,
-          beside_x - twist_y,
-          beside_y - twist_x,
-          beside_x + twist_y,
-          beside_y + twist_x};
+/// The stencil in the precision of the rows.
+template <class Real>
+struct StencilOf {
+  Real centre, along, across, corner, twist;
+  explicit StencilOf(const InteriorStencil& s)
+      : centre(static_cast<Real>(s.centre)),
+        along(static_cast<Real>(s.along)),
+        across(static_cast<Real>(s.across)),
+        corner(static_cast<Real>(s.corner)),
+        twist(static_cast<Real>(s.twist)) {}
+};
+template <class Real>
+auto stencil_terms(const StencilOf<Real>& s, int i, ConstRowOf<Real> south, ConstRowOf<Real> middle,
+                   ConstRowOf<Real> north) {
+  const auto south_x = load(south.x + i), south_y = load(south.y + i);
+  const auto north_x = load(north.x + i), north_y = load(north.y + i);
+  const auto sum_x = south_x + north_x, twist_x = s.twist * (north_x - south_x);
+  const auto sum_y = south_y + north_y, twist_y = s.twist * (north_y - south_y);
+  const auto w_x = load(middle.x + i), w_y = load(middle.y + i);
+  const auto beside_x = s.along * w_x + s.corner * sum_x;
+  const auto beside_y = s.across * w_y + s.corner * sum_y;
+  return StencilTerms<std::remove_const_t<decltype(w_x)>>{w_x,
+                                                          w_y,
+                                                          s.centre * w_x + s.across * sum_x,
+                                                          s.centre * w_y + s.along * sum_y,
+                                                          beside_x - twist_y,
+                                                          beside_y - twist_x,
+                                                          beside_x + twist_y,
+                                                          beside_y + twist_x};
 }
 
 /// Sums over nodes of products with a kick d of the velocity: w d, v d with v before the kick, d d.
@@ -111,26 +147,29 @@ struct KickSums {
   double w_d = 0, v_d = 0, d_d = 0;
 };
 
-/// The same as add_interior_row, and u += dt v. Rows of w are read up to `lanes` columns beyond both ends of
-/// the span; what stands there does not matter.
-template <bool with_sums>
-void push_interior_row(const InteriorStencil& stencil, Span span, double dt, ConstRow south, ConstRow middle,
-                       ConstRow north, double* __restrict v_x, double* __restrict v_y, double* __restrict u_x,
-                       double* __restrict u_y, KickSums& sums) {
-  const InteriorStencil s = stencil;
-  Lanes w_d{}, v_d{}, d_d{};
+/// The same as add_interior_row, and u += dt v. Rows of w are read up to lanes_of<Real> columns beyond both
+/// ends of the span; what stands there does not matter.
+template <bool with_sums, class Real>
+void push_interior_row(const InteriorStencil& stencil, Span span, double time_step_s, ConstRowOf<Real> south,
+                       ConstRowOf<Real> middle, ConstRowOf<Real> north, Real* __restrict v_x,
+                       Real* __restrict v_y, Real* __restrict u_x, Real* __restrict u_y, KickSums& sums) {
+  constexpr int n_lanes = lanes_of<Real>;
+  const StencilOf<Real> s(stencil);
+  const auto dt = static_cast<Real>(time_step_s);
+  using V = decltype(load(u_x));
+  V w_d{}, v_d{}, d_d{};
   int i = span.begin;
-  const auto before = stencil_terms(s, i - lanes, south, middle, north);
-  Lanes left_x = before.to_right_x, left_y = before.to_right_y;
+  const auto before = stencil_terms(s, i - n_lanes, south, middle, north);
+  V left_x = before.to_right_x, left_y = before.to_right_y;
   auto here = stencil_terms(s, i, south, middle, north);
-  for (; i + lanes <= span.end; i += lanes) {
-    const auto right = stencil_terms(s, i + lanes, south, middle, north);
-    const Lanes d_x =
+  for (; i + n_lanes <= span.end; i += n_lanes) {
+    const auto right = stencil_terms(s, i + n_lanes, south, middle, north);
+    const V d_x =
         here.own_x + (from_left(left_x, here.to_right_x) + from_right(here.to_left_x, right.to_left_x));
-    const Lanes d_y =
+    const V d_y =
         here.own_y + (from_left(left_y, here.to_right_y) + from_right(here.to_left_y, right.to_left_y));
-    const Lanes before_x = load(v_x + i), before_y = load(v_y + i);
-    const Lanes after_x = before_x + d_x, after_y = before_y + d_y;
+    const V before_x = load(v_x + i), before_y = load(v_y + i);
+    const V after_x = before_x + d_x, after_y = before_y + d_y;
     store(v_x + i, after_x);
     store(v_y + i, after_y);
     store(u_x + i, load(u_x + i) + dt * after_x);
@@ -145,8 +184,8 @@ void push_interior_row(const InteriorStencil& stencil, Span span, double dt, Con
     here = right;
   }
   if (i < span.end) {
-    const auto right = stencil_terms(s, i + lanes, south, middle, north);
-    double d_x[lanes], d_y[lanes];
+    const auto right = stencil_terms(s, i + n_lanes, south, middle, north);
+    Real d_x[n_lanes], d_y[n_lanes];
     store(d_x,
           here.own_x + (from_left(left_x, here.to_right_x) + from_right(here.to_left_x, right.to_left_x)));
     store(d_y,
@@ -164,31 +203,36 @@ void push_interior_row(const InteriorStencil& stencil, Span span, double dt, Con
     }
   }
   if constexpr (with_sums)
-    for (int k = 0; k < lanes; ++k) {
+    for (int k = 0; k < n_lanes; ++k) {
       sums.w_d += w_d[k];
       sums.v_d += v_d[k];
       sums.d_d += d_d[k];
     }
 }
 
-/// Three rows of w that roll with the sweep, padded by `lanes` at both ends, column 1 on a cache line.
-class RollingRows {
+/// Three rows of w that roll with the sweep, padded by more than a vector at both ends, column 1 on a cache
+/// line.
+template <class Real>
+class RollingRowsOf {
  public:
-  explicit RollingRows(int columns)
-      : pitch_((columns + 2 * lanes + 7) / 8 * 8), values_(6 * static_cast<std::size_t>(pitch_) + 16, 0.0) {}
+  explicit RollingRowsOf(int columns)
+      : pitch_((columns + 2 * n_lanes + per_line - 1) / per_line * per_line),
+        values_(6 * static_cast<std::size_t>(pitch_) + 2 * per_line, Real(0)) {}
 
-  double* x(int row) {
-    constexpr std::size_t line = 64;
-    const auto address = reinterpret_cast<std::uintptr_t>(values_.data()) + 8 * (lanes + 1);
-    const auto offset = (line - address % line) % line / sizeof(double);
-    return values_.data() + offset + lanes + static_cast<std::ptrdiff_t>(row % 3) * 2 * pitch_;
+  Real* x(int row) {
+    const auto address = reinterpret_cast<std::uintptr_t>(values_.data()) + sizeof(Real) * (n_lanes + 1);
+    const auto offset = (line - address % line) % line / sizeof(Real);
+    return values_.data() + offset + n_lanes + static_cast<std::ptrdiff_t>(row % 3) * 2 * pitch_;
   }
-  double* y(int row) { return x(row) + pitch_; }
+  Real* y(int row) { return x(row) + pitch_; }
 
  private:
+  static constexpr std::size_t line = 64;
+  static constexpr int n_lanes = lanes_of<Real>, per_line = line / sizeof(Real);
   int pitch_;
-  std::vector<double> values_;
+  std::vector<Real> values_;
 };
+using RollingRows = RollingRowsOf<double>;
 
 /// Kick of a node on an edge; `north` is the row on the side of the squares.
 SLIPFRONT_HOST_DEVICE inline Pair edge_kick(const EdgeStencil& s, int i, ConstRow middle, ConstRow north) {
@@ -226,8 +270,9 @@ inline Pair kick_edge_row(const EdgeStencil& s, Span span, ConstRow middle, Cons
 }
 
 /// Kick of a node with squares to the right (inner = 1) or to the left (inner = -1, mirrored stencil) of it.
-SLIPFRONT_HOST_DEVICE inline Pair side_kick(const EdgeStencil& s, int i, int inner, ConstRow south,
-                                            ConstRow middle, ConstRow north) {
+template <class Real>
+SLIPFRONT_HOST_DEVICE Pair side_kick(const EdgeStencil& s, int i, int inner, ConstRowOf<Real> south,
+                                     ConstRowOf<Real> middle, ConstRowOf<Real> north) {
   const int k = i + inner;
   return {s.centre_y * middle.x[i] + s.side_y * (south.x[i] + north.x[i]) + s.up_y * middle.x[k] +
               s.corner_y * (south.x[k] + north.x[k]) - s.shear * (north.y[i] - south.y[i]) +
@@ -238,17 +283,18 @@ SLIPFRONT_HOST_DEVICE inline Pair side_kick(const EdgeStencil& s, int i, int inn
 }
 
 /// v += kick, u += dt v of such a node, which has half the mass of those in the sums.
-inline void push_side_node(const EdgeStencil& s, int i, int inner, double dt, ConstRow south, ConstRow middle,
-                           ConstRow north, double* __restrict v_x, double* __restrict v_y,
-                           double* __restrict u_x, double* __restrict u_y, KickSums& sums) {
+template <class Real>
+void push_side_node(const EdgeStencil& s, int i, int inner, double dt, ConstRowOf<Real> south,
+                    ConstRowOf<Real> middle, ConstRowOf<Real> north, Real* __restrict v_x,
+                    Real* __restrict v_y, Real* __restrict u_x, Real* __restrict u_y, KickSums& sums) {
   const Pair d = side_kick(s, i, inner, south, middle, north);
   sums.w_d += 0.5 * (middle.x[i] * d.x + middle.y[i] * d.y);
   sums.v_d += 0.5 * (v_x[i] * d.x + v_y[i] * d.y);
   sums.d_d += 0.5 * (d.x * d.x + d.y * d.y);
-  v_x[i] += d.x;
-  v_y[i] += d.y;
-  u_x[i] += dt * v_x[i];
-  u_y[i] += dt * v_y[i];
+  v_x[i] += static_cast<Real>(d.x);
+  v_y[i] += static_cast<Real>(d.y);
+  u_x[i] += static_cast<Real>(dt * v_x[i]);
+  u_y[i] += static_cast<Real>(dt * v_y[i]);
 }
 
 /// v += kick over the span.

@@ -130,10 +130,12 @@ BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::s
                         std::span<const double> mass_kg = {}, const std::vector<bool>& in_part = {});
 
 /// A row of a vector field, or of a part of it.
-struct ConstRow {
-  const double* __restrict x;
-  const double* __restrict y;
+template <class Real>
+struct ConstRowOf {
+  const Real* __restrict x;
+  const Real* __restrict y;
 };
+using ConstRow = ConstRowOf<double>;
 
 /// Adds a stencil row's M^-1 K w to a row of a; `south` or `north` is not read where there are no squares.
 void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, ConstRow middle,

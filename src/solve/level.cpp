@@ -83,7 +83,8 @@ void sweep(Level& level, const Band& band, Plate& plate, Filler& filler, solid::
   const double dt = level.step_s;
   const bool with_products = plate.damping_s > 0;
   const auto interior = solid::scaled(plate.op.interior, -dt);
-  const auto push_interior = with_products ? solid::push_interior_row<true> : solid::push_interior_row<false>;
+  const auto push_interior =
+      with_products ? solid::push_interior_row<true, double> : solid::push_interior_row<false, double>;
   const auto right = solid::scaled(plate.op.edge, -dt);
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
@@ -278,6 +279,115 @@ void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows&
   if (!is_first) compute_irregular(level, band, plate, RowsAround(w, band.first_row, stride), works);
   if (plate.damping_s > 0) add_irregular_products(level, band, plate, products);
   move_irregular(level, band, plate, works);
+}
+
+SingleRows make_single_rows(const Level& coarsest, const mesh::Grid& grid) {
+  SingleRows single;
+  const auto& bands = coarsest.bands;
+  const auto has_block_rows = [](const Band& band) {
+    return band.irregular.begin < band.irregular.end || band.edges.begin < band.edges.end || band.has_top;
+  };
+  for (int begin = 1; begin < std::ssize(bands); ++begin) {
+    int end = begin;
+    while (end < std::ssize(bands) && !has_block_rows(bands[end])) ++end;
+    if (end - begin > single.bands.end - single.bands.begin) single.bands = {begin, end};
+    begin = end;
+  }
+  if (single.bands.begin == single.bands.end) return single;
+  single.first_row = bands[single.bands.begin].first_row;
+  single.last_row = bands[single.bands.end - 1].last_row;
+  const auto n = static_cast<std::size_t>(single.last_row - single.first_row + 1) * grid.stride();
+  for (auto* values : {&single.u_x_m, &single.u_y_m, &single.v_x_m_per_s, &single.v_y_m_per_s})
+    values->resize(n);
+  return single;
+}
+
+void to_single(const Plate& plate, SingleRows& single) {
+  const auto o = row_start(plate, single.first_row);
+  const auto n = static_cast<int>(single.u_x_m.size());
+  solid::convert_row(n, plate.u_m.x.data() + o, single.u_x_m.data());
+  solid::convert_row(n, plate.u_m.y.data() + o, single.u_y_m.data());
+  solid::convert_row(n, plate.v_m_per_s.x.data() + o, single.v_x_m_per_s.data());
+  solid::convert_row(n, plate.v_m_per_s.y.data() + o, single.v_y_m_per_s.data());
+}
+
+namespace {
+
+/// The first n of these nodes' motion.
+void to_double(const SingleRows& single, int n, Plate& plate) {
+  const auto o = row_start(plate, single.first_row);
+  solid::convert_row(n, single.u_x_m.data(), plate.u_m.x.data() + o);
+  solid::convert_row(n, single.u_y_m.data(), plate.u_m.y.data() + o);
+  solid::convert_row(n, single.v_x_m_per_s.data(), plate.v_m_per_s.x.data() + o);
+  solid::convert_row(n, single.v_y_m_per_s.data(), plate.v_m_per_s.y.data() + o);
+}
+
+}  // namespace
+
+void to_double(const SingleRows& single, Plate& plate) {
+  to_double(single, static_cast<int>(single.u_x_m.size()), plate);
+}
+
+void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& single, solid::RollingRows& w,
+               solid::RollingRowsOf<float>& w_single, PushProducts& products) {
+  const int stride = plate.op.grid.stride();
+  const double dt = level.step_s;
+  const bool is_first = band.first_row == single.first_row, is_last = band.last_row == single.last_row;
+  const auto row = [&](int j) { return solid::ConstRowOf<float>{w_single.x(j), w_single.y(j)}; };
+  const auto start_of = [&](int j) { return static_cast<std::ptrdiff_t>(j - single.first_row) * stride; };
+  const auto fill = [&](int j) {
+    const auto o = start_of(j);
+    solid::combine_row(stride, plate.damping_s, &single.u_x_m[o], &single.u_y_m[o], &single.v_x_m_per_s[o],
+                       &single.v_y_m_per_s[o], w_single.x(j), w_single.y(j));
+  };
+  if (is_first) {
+    // The row below is the first band's, and comes in double precision.
+    solid::convert_row(stride, w.x(band.first_row + 2), w_single.x(band.first_row + 2));
+    solid::convert_row(stride, w.y(band.first_row + 2), w_single.y(band.first_row + 2));
+    fill(band.first_row);
+  }
+  const auto interior = solid::scaled(plate.op.interior, -dt);
+  const auto right = solid::scaled(plate.op.edge, -dt);
+  const auto push_interior =
+      plate.damping_s > 0 ? solid::push_interior_row<true, float> : solid::push_interior_row<false, float>;
+  int filled = band.first_row;
+  for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
+    const auto& [j, squares, scale, spans] = level.part.stencil[k];
+    const auto o = start_of(j);
+    float* u_x = &single.u_x_m[o];
+    float* u_y = &single.u_y_m[o];
+    float* v_x = &single.v_x_m_per_s[o];
+    float* v_y = &single.v_y_m_per_s[o];
+    if (filled == j) {
+      ++filled;
+      if (j < single.last_row) {
+        fill(j + 1);
+      } else {
+        const auto above = row_start(plate, j + 1);
+        solid::combine_row(stride, plate.damping_s, &plate.u_m.x[above], &plate.u_m.y[above],
+                           &plate.v_m_per_s.x[above], &plate.v_m_per_s.y[above], w.x(j + 1), w.y(j + 1));
+        solid::convert_row(stride, w.x(j + 1), w_single.x(j + 1));
+        solid::convert_row(stride, w.y(j + 1), w_single.y(j + 1));
+      }
+    }
+    for (const auto span : spans) {
+      if (squares == solid::Squares::all) {
+        push_interior(interior, span, dt, row(j + 2), row(j), row(j + 1), v_x, v_y, u_x, u_y, products.kicks);
+      } else {
+        const bool to_right = squares == solid::Squares::right;
+        const auto side = solid::scaled(to_right ? right : solid::mirrored(right), scale);
+        solid::push_side_node(side, span.begin, to_right ? 1 : -1, dt, row(j + 2), row(j), row(j + 1), v_x,
+                              v_y, u_x, u_y, products.kicks);
+      }
+    }
+  }
+  if (is_last) {
+    // The bands above go on in double precision, with this row's w as it was.
+    solid::convert_row(stride, w_single.x(band.last_row), w.x(band.last_row));
+    solid::convert_row(stride, w_single.y(band.last_row), w.y(band.last_row));
+  }
+  // The next step's first band needs the first row's new place.
+  if (is_first) to_double(single, stride, plate);
 }
 
 void end_push(Level& level, Plate& plate) {

@@ -63,6 +63,14 @@ struct Band {
   bool has_top = false;
 };
 
+/// Motion of rows of the coarsest level in single precision. While steps are taken it is what counts; Plate
+/// has it again after them.
+struct SingleRows {
+  solid::Span bands;  ///< without block rows, above the first one
+  int first_row = 0, last_row = -1;
+  std::vector<float> u_x_m, u_y_m, v_x_m_per_s, v_y_m_per_s;  ///< [nodes of these rows]
+};
+
 /// Cells with one step; each level's step is a whole multiple of the next one's. The last level holds the
 /// interface.
 struct Level {
@@ -115,6 +123,15 @@ void begin_push(Level& level, Plate& plate, Energies& works);
 /// nodes that no finer level has. Bands go from the first to the last, with the same `w`.
 void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows& w, PushProducts& products,
                Energies& works);
+/// Longest run of bands that can be pushed in single precision; none where all have block rows.
+SingleRows make_single_rows(const Level& coarsest, const mesh::Grid& grid);
+void to_single(const Plate& plate, SingleRows& single);
+void to_double(const SingleRows& single, Plate& plate);
+/// The same as push_band for one of these bands.
+/// @param w  holds the row below at the first of these bands, and the two that follow after the last one
+void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& single, solid::RollingRows& w,
+               solid::RollingRowsOf<float>& w_single, PushProducts& products);
+
 /// Collects what a level does to its shared nodes: its force without the steady part. After the first band.
 void end_push(Level& level, Plate& plate);
 

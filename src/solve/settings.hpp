@@ -34,10 +34,14 @@ struct Loading {
       1e-3;  ///< common state at t/p = (1 - margin) mu_s inside, spontaneous event at (1 + margin)
 };
 
+/// Numbers in which the plate's motion away from the interface is computed.
+enum class Precision { double_precision, single_precision };
+
 /// Explicit time stepping: Newmark with beta = 0, gamma = 1/2, the interface layer sub-cycled.
 struct TimeStepping {
   double step_factor = 0.9;     ///< step over the largest stable one
   bool allow_unstable = false;  ///< accept a step_factor above 1
+  Precision precision = Precision::double_precision;
   int interface_rows = 4;       ///< rows of cells next to the interface that are sub-cycled
   int interface_substeps = 18;  ///< sub-steps per step there; 1 is the plain scheme
   double end_s = 250e-6;        ///< end of the event

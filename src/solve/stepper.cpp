@@ -46,11 +46,17 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
       solid::stable_step_s(solid::largest_frequency_rad_per_s(plate_.op), material.stiffness_damping_s);
   step_s_ = time.step_factor * stable_step_s_;
   levels_ = make_levels(mesh, material, plate_, time, step_s_);
+  if (time.precision == Precision::single_precision)
+    single_ = make_single_rows(levels_.level.front(), mesh.grid);
   const int depth =
       execution.steps_per_sweep > 0 ? execution.steps_per_sweep : suitable_steps_per_sweep(mesh.grid);
   wavefront_ = std::make_unique<Wavefront>(execution.threads, depth);
   for (int k = 0; k < wavefront_->most_steps(); ++k)
-    under_way_.push_back({solid::RollingRows(mesh.grid.stride()), {}, {}});
+    under_way_.push_back(
+        {solid::RollingRows(mesh.grid.stride()),
+         solid::RollingRowsOf<float>(single_.bands.begin < single_.bands.end ? mesh.grid.stride() : 0),
+         {},
+         {}});
   for (std::size_t k = 0; k < lower_.size(); ++k) {
     interface_.initial_gap_m[k] = mesh.y_m[lower_[k]];
     interface_.mass_per_length_kg_m2[k] = plate_.op.mass_kg[lower_[k]] / tributary_m_[k];
@@ -123,6 +129,7 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
   set_trigger({}, std::vector<double>(lower_.size(), 0.0));
   prestress_t_Pa_.clear();
   prestress_p_Pa_.clear();
+  to_single(plate_, single_);
   works_ = {};
   step_ = 0;
   if (plate_.damping_s > 0) begin_damping_work();
@@ -199,7 +206,11 @@ void Stepper::advance_interface(StepUnderWay& step, int n_substeps, Recorder& re
 
 void Stepper::advance_band(StepUnderWay& step, std::size_t band) {
   auto& coarsest = levels_.level.front();
-  if (band > 0) push_band(coarsest, coarsest.bands[band], plate_, step.w, step.products, step.works);
+  const auto& rows = coarsest.bands[band];
+  if (static_cast<int>(band) >= single_.bands.begin && static_cast<int>(band) < single_.bands.end)
+    push_band(coarsest, rows, plate_, single_, step.w, step.w_single, step.products);
+  else if (band > 0)
+    push_band(coarsest, rows, plate_, step.w, step.products, step.works);
   if (band + 1 < coarsest.bands.size()) return;
   if (plate_.damping_s > 0) step.works.damping_work += coarsest.damping_work.add(step.products);
   add_works(works_, step.works);
@@ -215,7 +226,9 @@ std::int64_t Stepper::advance(Recorder& recorder, std::int64_t most_steps, const
     ++step_;
     return between.go_on();
   };
-  return wavefront_->run(step_, most_steps, n_bands, unit);
+  const auto taken = wavefront_->run(step_, most_steps, n_bands, unit);
+  to_double(single_, plate_);
+  return taken;
 }
 
 void Stepper::advance(Recorder& recorder, fronts::History* sample) {
@@ -249,6 +262,7 @@ void Stepper::reverse(Recorder& recorder) {
   auto& step = under_way(step_);
   advance_interface(step, 1, recorder, nullptr);
   for (std::size_t band = 0; band < levels_.level.front().bands.size(); ++band) advance_band(step, band);
+  to_double(single_, plate_);
   plate_.u_m = u;
   const auto negate = [](std::vector<double>& values) {
     for (double& value : values) value = -value;
@@ -260,6 +274,7 @@ void Stepper::reverse(Recorder& recorder) {
     set_motion_before(level, plate_);
     level.shared.a_m_per_s2 = solid::Field(level.shared.node.size());
   }
+  to_single(plate_, single_);
   works_ = {};
   works_.time_s = time_s();
   if (plate_.damping_s > 0) begin_damping_work();

@@ -110,7 +110,8 @@ class Stepper {
  private:
   /// What a step under way has of its own.
   struct StepUnderWay {
-    solid::RollingRows w;  ///< of u + beta_R v, of the coarsest level's sweep
+    solid::RollingRows w;                  ///< of u + beta_R v, of the coarsest level's sweep
+    solid::RollingRowsOf<float> w_single;  ///< the same in single precision, if it is asked for
     PushProducts products;
     Energies works;
   };
@@ -142,6 +143,7 @@ class Stepper {
   double stable_step_s_ = 0, step_s_ = 0;
   int substeps_;
   Levels levels_;
+  SingleRows single_;           ///< none unless time.precision is single
   solid::RollingRows finer_w_;  ///< of u + beta_R v, of the other levels' sweeps
   std::unique_ptr<Wavefront> wavefront_;
   std::vector<StepUnderWay> under_way_;

@@ -599,16 +599,18 @@ TEST(Stepper, TriggerWorkIsForceTimesPath) {
 }
 
 /// Rows of bands that threads and steps of one sweep share; relief and fillet make the first band irregular.
-class Execute : public ::testing::TestWithParam<std::tuple<Corner, int, interface::ContactAlgorithm>> {};
+class Execute
+    : public ::testing::TestWithParam<std::tuple<Corner, int, interface::ContactAlgorithm, Precision>> {};
 INSTANTIATE_TEST_SUITE_P(
     Cases, Execute,
     ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
                        ::testing::Values(1, 4),
                        ::testing::Values(interface::ContactAlgorithm::direct,
-                                         interface::ContactAlgorithm::predictor_corrector)));
+                                         interface::ContactAlgorithm::predictor_corrector),
+                       ::testing::Values(Precision::double_precision, Precision::single_precision)));
 
 TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
-  const auto& [corner, substeps, algorithm] = GetParam();
+  const auto& [corner, substeps, algorithm, precision] = GetParam();
   const auto mesh = support::make_plate(0.2, 0.01, 0.5e-3, corner);
   const auto law = support::with_algorithm(gentle_law, algorithm);
   const auto e = random_flight(mesh, 1e-6, 1, 0);
@@ -619,7 +621,7 @@ TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
     std::size_t onsets = 0;
   };
   const auto run = [&](const Execution& execution, int block) {
-    Stepper stepper(mesh, {}, law, {.interface_substeps = substeps}, execution);
+    Stepper stepper(mesh, {}, law, {.precision = precision, .interface_substeps = substeps}, execution);
     stepper.start(e, 0);
     stepper.set_trigger({.ramp_s = 1e-6}, std::vector<double>(mesh.lower.size(), 1.0));
     Recorder recorder(e, mu_s, 1);
@@ -648,6 +650,43 @@ TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
     EXPECT_EQ(other.energies.work(), plain.energies.work());
     EXPECT_EQ(other.onsets, plain.onsets);
   }
+}
+
+class SinglePrecision : public ::testing::TestWithParam<std::tuple<Corner, int>> {};
+INSTANTIATE_TEST_SUITE_P(Cases, SinglePrecision,
+                         ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                                            ::testing::Values(1, 4)));
+
+TEST_P(SinglePrecision, MovesAsDoublePrecisionDoesButForRounding) {
+  const auto& [corner, substeps] = GetParam();
+  const auto mesh = support::make_plate(0.1, 0.02, 0.5e-3, corner);
+  const double size_m = 1e-6, speed_m_per_s = 1;
+  const auto e = random_flight(mesh, size_m, speed_m_per_s, 10e-6);
+  constexpr int n_steps = 40;
+  Energies energies[2], start[2];
+  solid::Field u[2], v[2];
+  for (const int k : {0, 1}) {
+    const auto precision = k == 0 ? Precision::double_precision : Precision::single_precision;
+    Stepper stepper(mesh, {}, gentle_law, {.precision = precision, .interface_substeps = substeps});
+    stepper.start(e, 1);
+    start[k] = stepper.energies();
+    Recorder recorder(e, mu_s, 0);
+    EXPECT_EQ(stepper.advance(recorder, n_steps, {}), n_steps);
+    energies[k] = stepper.energies();
+    u[k] = stepper.u_m();
+    v[k] = stepper.v_m_per_s();
+  }
+  // Each step rounds u and v to 6e-8 of themselves, u at some 10 um, v at some 1 m/s; what is rounded adds up
+  // over the steps, and forces turn errors of u into errors of v by 1/dt.
+  const double eps = 6e-8, dt = 1e-7;
+  const double limit_v = n_steps * eps * (speed_m_per_s + 20e-6 / dt);
+  EXPECT_LE(max_abs(flat(v[1]) - flat(v[0])), limit_v);
+  EXPECT_LE(max_abs(flat(u[1]) - flat(u[0])), n_steps * dt * limit_v + n_steps * eps * 20e-6);
+  // And it is another computation.
+  EXPECT_GT(max_abs(flat(v[1]) - flat(v[0])), 1e-9 * speed_m_per_s);
+  const double stored = start[0].stored();
+  EXPECT_LE(std::abs(imbalance_J_per_m(energies[0], start[0])), 1e-12 * stored);
+  EXPECT_LE(std::abs(imbalance_J_per_m(energies[1], start[1])), n_steps * 10 * eps * stored);
 }
 
 TEST(Stepper, SamplesBelongToTheBeginningOfTheStep) {
