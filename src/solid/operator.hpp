@@ -159,6 +159,16 @@ double top_force_x_N_per_m(const Operator& op, const Field& w);
 /// the residual tolerance of 1e-3.
 double largest_frequency_rad_per_s(const Operator& op);
 
+/// A bound of the largest natural frequency (rad/s) from above without iterations over the whole mesh: of a
+/// free block of the smallest squares, and of the cells that are no squares with those around them, free as
+/// well. A plate divided into such parts, each with its own share of the mass, has no higher frequency than
+/// the highest of them.
+double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material);
+
+/// The one or the other by the number of nodes: many squares have a frequency so near that of one that
+/// nothing is lost.
+double largest_frequency_rad_per_s(const mesh::Mesh& mesh, const Material& material, const Operator& op);
+
 /// Largest stable step of the explicit scheme whose damping force acts on the last half-step velocity:
 /// (2 / omega) (sqrt(1 + xi^2) - xi), xi = beta_R omega / 2.
 double stable_step_s(double largest_frequency_rad_per_s, double stiffness_damping_s);

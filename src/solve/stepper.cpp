@@ -42,8 +42,8 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
       interface_(mesh.lower.size()),
       trigger_force_N_(mesh.lower.size(), 0.0),
       start_u_(mesh.lower.size()) {
-  stable_step_s_ =
-      solid::stable_step_s(solid::largest_frequency_rad_per_s(plate_.op), material.stiffness_damping_s);
+  stable_step_s_ = solid::stable_step_s(solid::largest_frequency_rad_per_s(mesh, material, plate_.op),
+                                        material.stiffness_damping_s);
   step_s_ = time.step_factor * stable_step_s_;
   levels_ = make_levels(mesh, material, plate_, time, step_s_);
   if (time.precision == Precision::single_precision)

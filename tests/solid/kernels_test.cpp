@@ -56,7 +56,7 @@ TEST_P(PushRow, IsTheStencilThenTheMoveWithItsSums) {
   for (const bool with_sums : {false, true}) {
     auto a = v_x_, b = v_y_, c = u_x_, d = u_y_;
     KickSums sums;
-    const auto push = with_sums ? push_interior_row<true> : push_interior_row<false>;
+    const auto push = with_sums ? push_interior_row<true, double> : push_interior_row<false, double>;
     push(stencil, span, dt, w(0), w(1), w(2), a.data(), b.data(), c.data(), d.data(), sums);
     // The terms are of order 1 and added in another order.
     constexpr double rounding = 1e-14;
@@ -71,6 +71,38 @@ TEST_P(PushRow, IsTheStencilThenTheMoveWithItsSums) {
     EXPECT_NEAR(sums.v_d, expected.v_d, columns * rounding);
     EXPECT_NEAR(sums.d_d, expected.d_d, columns * rounding);
   }
+}
+
+TEST_P(PushRow, InSinglePrecisionIsTheSameButForRounding) {
+  const Span span = GetParam();
+  constexpr double dt = 0.1;
+  auto v_x = v_x_, v_y = v_y_, u_x = u_x_, u_y = u_y_;
+  KickSums expected, sums;
+  push_interior_row<true>(stencil, span, dt, w(0), w(1), w(2), v_x.data(), v_y.data(), u_x.data(), u_y.data(),
+                          expected);
+  RollingRowsOf<float> single(columns);
+  for (int row = 0; row < 3; ++row) {
+    convert_row(columns, w_.x(row), single.x(row));
+    convert_row(columns, w_.y(row), single.y(row));
+  }
+  const auto row = [&](int j) { return ConstRowOf<float>{single.x(j), single.y(j)}; };
+  const auto rounded = [](const std::vector<double>& values) {
+    return std::vector<float>(values.begin(), values.end());
+  };
+  auto a = rounded(v_x_), b = rounded(v_y_), c = rounded(u_x_), d = rounded(u_y_);
+  push_interior_row<true>(stencil, span, dt, row(0), row(1), row(2), a.data(), b.data(), c.data(), d.data(),
+                          sums);
+  // Some ten terms of order 1 to 3, each rounded to 6e-8.
+  constexpr double rounding = 2e-6;
+  for (int i = 0; i < columns; ++i) {
+    EXPECT_NEAR(a[i], v_x[i], rounding);
+    EXPECT_NEAR(b[i], v_y[i], rounding);
+    EXPECT_NEAR(c[i], u_x[i], rounding);
+    EXPECT_NEAR(d[i], u_y[i], rounding);
+  }
+  EXPECT_NEAR(sums.w_d, expected.w_d, columns * 5 * rounding);
+  EXPECT_NEAR(sums.v_d, expected.v_d, columns * 5 * rounding);
+  EXPECT_NEAR(sums.d_d, expected.d_d, columns * 5 * rounding);
 }
 
 TEST_P(PushRow, DoesNotLookAtWhatStandsBeyondTheNeighbours) {
