@@ -33,12 +33,26 @@ CellsOfNodes cells_of_nodes(const mesh::Mesh& mesh) {
   return c;
 }
 
-/// Whether the cell is a square of the grid's spacing between grid neighbours, lowest left node first.
-bool is_regular(const mesh::Mesh& mesh, const mesh::Cell& cell) {
-  const int stride = mesh.grid.stride();
+/// The grids of the mesh's blocks, none where it knows no grid.
+std::vector<mesh::Grid> grids_of(const mesh::Mesh& mesh) {
+  return mesh.grid.columns > 0 ? mesh::blocks(mesh) : std::vector<mesh::Grid>{};
+}
+
+/// The block of each node, -1 for the inner nodes of transitions.
+std::vector<int> block_of_nodes(const mesh::Mesh& mesh, std::span<const mesh::Grid> grids) {
+  std::vector<int> block(mesh.n_nodes(), -1);
+  for (std::size_t k = 0; k < grids.size(); ++k)
+    std::fill_n(block.begin() + grids[k].first, grids[k].n_nodes(), static_cast<int>(k));
+  return block;
+}
+
+/// Whether a cell of the block is a square of the grid's spacing between grid neighbours, lowest left node
+/// first.
+bool is_regular(const mesh::Mesh& mesh, const mesh::Grid& grid, const mesh::Cell& cell) {
+  const int stride = grid.stride();
   const mesh::Node corner = cell[0];
   if (cell[1] != corner + 1 || cell[2] != corner + stride + 1 || cell[3] != corner + stride) return false;
-  const double h = mesh.grid.spacing_m;
+  const double h = grid.spacing_m;
   const double tolerance = 1e-9 * h;
   const auto c = cell_coordinates(mesh, cell);
   const std::array<double, 8> square = {0, 0, h, 0, h, h, 0, h};
@@ -123,10 +137,11 @@ BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::s
 Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   Operator op;
   op.grid = mesh.grid;
+  op.blocks = grids_of(mesh);
   op.mass_kg = lumped_mass(mesh, material);
   op.is_top.assign(mesh.n_nodes(), false);
   for (const auto n : mesh.top) op.is_top[n] = true;
-  set_stencils(op, material);
+  if (!op.blocks.empty()) set_stencils(op, material);
   op.whole = make_part(mesh, material, op, std::vector<bool>(mesh.cells.size(), true), 0);
   op.top = assemble_rows(mesh, material, mesh.top);
   return op;
@@ -134,13 +149,21 @@ Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
 
 Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator& plate,
                const std::vector<bool>& in_part, int edge_row) {
-  const auto& grid = plate.grid;
-  std::vector<bool> regular_cell(mesh.cells.size());
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k) regular_cell[k] = is_regular(mesh, mesh.cells[k]);
+  const auto block_of = block_of_nodes(mesh, plate.blocks);
+  std::vector<bool> regular_cell(mesh.cells.size()), general_node(mesh.n_nodes(), false);
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    const auto& cell = mesh.cells[c];
+    const int block = block_of[cell[0]];
+    if (block >= 0 && std::ranges::all_of(cell, [&](mesh::Node n) { return block_of[n] == block; })) {
+      regular_cell[c] = is_regular(mesh, plate.blocks[block], cell);
+    } else {
+      for (const auto n : cell) general_node[n] = true;
+    }
+  }
   const CellsOfNodes around = cells_of_nodes(mesh);
 
   // The squares of the part around a node with a stencil; nothing for a node that needs a block row.
-  const auto squares_around = [&](mesh::Node n, int j) -> std::optional<Squares> {
+  const auto squares_around = [&](mesh::Node n, int block, int j) -> std::optional<Squares> {
     int above = 0, below = 0;
     for (auto k = around.first[n]; k < around.first[n + 1]; ++k) {
       const auto c = around.cell[k];
@@ -149,7 +172,7 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
       (mesh.cells[c][0] == n || mesh.cells[c][1] == n ? above : below) += 1;
     }
     if (above == 2 && below == 2) return Squares::all;
-    if (j != 0 && j != edge_row) return std::nullopt;
+    if (block != 0 || (j != 0 && j != edge_row)) return std::nullopt;
     if (above == 2 && below == 0) return Squares::above;
     if (above == 0 && below == 2) return Squares::below;
     return std::nullopt;
@@ -161,52 +184,61 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
   };
 
   Part part;
-  std::vector<mesh::Node> irregular;
-  for (int j = 0; j <= grid.rows; ++j) {
-    std::array<StencilRow, 3> of_row;
-    for (int i = 0; i <= grid.columns; ++i) {
-      const mesh::Node n = grid.node(i, j);
-      if (plate.is_top[n] || !touches_part(n)) continue;
-      const auto squares = squares_around(n, j);
-      if (!squares) {
-        irregular.push_back(n);
-        continue;
+  std::vector<mesh::Node> irregular, general;
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
+    if (general_node[n] && !plate.is_top[n] && touches_part(n)) general.push_back(n);
+  for (std::size_t k = 0; k < plate.blocks.size(); ++k) {
+    const auto& grid = plate.blocks[k];
+    for (int j = 0; j <= grid.rows; ++j) {
+      std::array<StencilRow, 3> of_row;
+      for (int i = 0; i <= grid.columns; ++i) {
+        const mesh::Node n = grid.node(i, j);
+        if (plate.is_top[n] || general_node[n] || !touches_part(n)) continue;
+        const auto squares = squares_around(n, static_cast<int>(k), j);
+        if (!squares) {
+          irregular.push_back(n);
+          continue;
+        }
+        auto& spans = of_row[static_cast<int>(*squares)].spans;
+        if (!spans.empty() && spans.back().end == i) {
+          ++spans.back().end;
+        } else {
+          spans.push_back({i, i + 1});
+        }
       }
-      auto& spans = of_row[static_cast<int>(*squares)].spans;
-      if (!spans.empty() && spans.back().end == i) {
-        ++spans.back().end;
-      } else {
-        spans.push_back({i, i + 1});
+      for (const auto squares : {Squares::all, Squares::above, Squares::below}) {
+        auto& row = of_row[static_cast<int>(squares)];
+        if (row.spans.empty()) continue;
+        row.row = j;
+        row.block = static_cast<int>(k);
+        row.squares = squares;
+        const mesh::Node first = grid.node(row.spans.front().begin, j);
+        const bool full_mass = around.first[first + 1] - around.first[first] == 4;
+        const double ratio = plate.grid.spacing_m / grid.spacing_m;
+        row.scale = squares == Squares::all ? ratio * ratio : full_mass ? 0.5 : 1;
+        part.stencil.push_back(std::move(row));
       }
-    }
-    for (const auto squares : {Squares::all, Squares::above, Squares::below}) {
-      auto& row = of_row[static_cast<int>(squares)];
-      if (row.spans.empty()) continue;
-      row.row = j;
-      row.squares = squares;
-      const mesh::Node first = grid.node(row.spans.front().begin, j);
-      const bool full_mass = around.first[first + 1] - around.first[first] == 4;
-      row.scale = squares == Squares::all || !full_mass ? 1 : 0.5;
-      part.stencil.push_back(std::move(row));
     }
   }
   part.irregular = assemble_rows(mesh, material, irregular, plate.mass_kg, in_part);
+  part.general = GeneralRows(mesh, material, std::move(general), plate.mass_kg, in_part);
   return part;
 }
 
 void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
-  const int stride = op.grid.stride();
-  const auto row = [&](int j) {
-    return ConstRow{w.x.data() + static_cast<std::ptrdiff_t>(j) * stride,
-                    w.y.data() + static_cast<std::ptrdiff_t>(j) * stride};
-  };
-  for (const auto& [j, squares, scale, spans] : part.stencil) {
-    double* a_x = a.x.data() + static_cast<std::ptrdiff_t>(j) * stride;
-    double* a_y = a.y.data() + static_cast<std::ptrdiff_t>(j) * stride;
+  for (const auto& [j, squares, scale, spans, block] : part.stencil) {
+    const auto& grid = op.blocks[block];
+    const auto row = [&](int at) {
+      const auto first = grid.node(0, at);
+      return ConstRow{w.x.data() + first, w.y.data() + first};
+    };
+    double* a_x = a.x.data() + grid.node(0, j);
+    double* a_y = a.y.data() + grid.node(0, j);
+    const auto interior = scaled(op.interior, scale);
     const auto edge = scaled(op.edge, scale);
     for (const Span span : spans) {
       if (squares == Squares::all) {
-        add_interior_row(op.interior, span, row(j - 1), row(j), row(j + 1), a_x, a_y);
+        add_interior_row(interior, span, row(j - 1), row(j), row(j + 1), a_x, a_y);
       } else if (squares == Squares::above) {
         add_edge_row(edge, span, row(j), row(j + 1), a_x, a_y);
       } else {
@@ -218,6 +250,14 @@ void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
     a.x[part.irregular.node[r]] += x;
     a.y[part.irregular.node[r]] += y;
   });
+  if (part.general.size() == 0) return;
+  auto space = part.general.workspace();
+  Field product(part.general.size());
+  part.general.multiply(w, 0, w, space, product.x.data(), product.y.data());
+  for (std::size_t r = 0; r < part.general.size(); ++r) {
+    a.x[part.general.node()[r]] += product.x[r];
+    a.y[part.general.node()[r]] += product.y[r];
+  }
 }
 
 void apply(const Operator& op, const Field& w, Field& a) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "solid/general.hpp"
 #include "solid/material.hpp"
 
 namespace slipfront::solid {
@@ -88,32 +89,38 @@ enum class Squares { all, above, below };
 struct StencilRow {
   int row = 0;
   Squares squares = Squares::all;
-  double scale = 1;  ///< of the edge stencil: half a square's mass on either side over the node's mass
+  /// Of the stencil. At edges: half a square's mass on either side over the node's mass; else the mass of the
+  /// smallest squares' node over that of the block's.
+  double scale = 1;
   std::vector<Span> spans;
+  int block = 0;  ///< whose row it is
 };
 
 /// What some cells of the plate contribute to M^-1 K of the nodes that may move: stencils where the cells are
-/// equal squares, block rows elsewhere.
+/// equal squares, block rows at a block's sides and corners; products cell by cell at the transitions between
+/// blocks, both ends included, and on meshes that know no grid.
 struct Part {
-  std::vector<StencilRow> stencil;  ///< rows ascending
+  std::vector<StencilRow> stencil;  ///< blocks upwards, rows ascending
   BlockRows irregular;
+  GeneralRows general;
 };
 
 /// The plate's stiffness over its lumped mass, as the explicit scheme needs it.
 struct Operator {
-  mesh::Grid grid;
-  std::vector<double> mass_kg;  ///< [nodes], per unit thickness; 0 for orphans
-  InteriorStencil interior{};
-  EdgeStencil edge{};        ///< over the mass of a node on a straight edge
-  Part whole;                ///< all cells
-  BlockRows top;             ///< K (no mass) of the loaded edge's nodes, N/m
-  std::vector<bool> is_top;  ///< [nodes]
+  mesh::Grid grid;                 ///< of the lowest block
+  std::vector<mesh::Grid> blocks;  ///< upwards, the lowest one first; none where the mesh knows no grid
+  std::vector<double> mass_kg;     ///< [nodes], per unit thickness; 0 for orphans
+  InteriorStencil interior{};      ///< of the lowest block
+  EdgeStencil edge{};              ///< over the mass of a node on a straight edge
+  Part whole;                      ///< all cells
+  BlockRows top;                   ///< K (no mass) of the loaded edge's nodes, N/m
+  std::vector<bool> is_top;        ///< [nodes]
 };
 
 Operator make_operator(const mesh::Mesh& mesh, const Material& material);
 
 /// Part of the operator that the cells marked contribute. Stencils for nodes that have squares of the part on
-/// one side only are used in row 0 and in `edge_row`.
+/// one side only are used in row 0 and in `edge_row` of the lowest block.
 Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator& plate,
                const std::vector<bool>& in_part, int edge_row);
 
