@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -207,10 +208,19 @@ void write_snapshots(const std::filesystem::path& path, const mesh::Mesh& mesh,
   const auto n_points = static_cast<std::int64_t>(mesh.x_m.size());
   const auto n_cells = static_cast<std::int64_t>(mesh.cells.size());
   std::vector<std::int64_t> connectivity, offsets = {0};
+  // The last column of a periodic plate is drawn with nodes of its own.
+  std::vector<std::pair<mesh::Node, mesh::Node>> seam;  // nodes of the left edge and of the right one
+  for (const auto& grid : mesh::blocks(mesh))
+    for (int j = 0; mesh.period_m > 0 && j <= grid.rows; ++j)
+      seam.emplace_back(grid.node(0, j), grid.node(grid.columns, j));
+  const auto right_of = [&](mesh::Node n) {
+    return std::ranges::lower_bound(seam, n, {}, &std::pair<mesh::Node, mesh::Node>::first)->second;
+  };
   for (mesh::Cell cell : mesh.cells) {
-    // The last column of a periodic plate is drawn with nodes of its own.
+    double right_most_m = 0;
+    for (const mesh::Node n : cell) right_most_m = std::max(right_most_m, mesh.x_m[n]);
     for (mesh::Node& n : cell)
-      if (mesh.x_m[cell[0]] - mesh.x_m[n] > 0.5 * mesh.period_m && mesh.period_m > 0) n += mesh.grid.columns;
+      if (mesh.period_m > 0 && right_most_m - mesh.x_m[n] > 0.5 * mesh.period_m) n = right_of(n);
     connectivity.insert(connectivity.end(), cell.begin(), cell.end());
     offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
   }
@@ -259,9 +269,8 @@ void write_snapshots(const std::filesystem::path& path, const mesh::Mesh& mesh,
     for (std::size_t k = 0; k < n_steps; ++k) {
       std::vector<double> values = components(snapshots[k]);
       SLIPFRONT_ASSERT(values.size() == 3 * mesh.x_m.size(), "a snapshot does not fit its mesh");
-      for (int j = 0; mesh.period_m > 0 && j <= mesh.grid.rows; ++j)
-        std::copy_n(values.begin() + 3 * mesh.grid.node(0, j), 3,
-                    values.begin() + 3 * mesh.grid.node(mesh.grid.columns, j));
+      for (const auto& [left, right] : seam)
+        std::copy_n(values.begin() + 3 * left, 3, values.begin() + 3 * right);
       hdf5::write_rows(file, dataset, k * mesh.x_m.size(), values);
     }
   };

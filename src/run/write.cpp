@@ -135,7 +135,7 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
                        {"c_R_m_per_s", result.speeds.c_R}}},
                      {"stable_dt_s", result.stable_step_s},
                      {"dt_s", result.step_s},
-                     {"interface_dt_s", result.step_s / result.config.time.interface_substeps},
+                     {"interface_dt_s", result.substep_s},
                      {"steps", event.steps},
                      {"time_s", event.time_s},
                      {"wall_s", result.stepping_wall_s},

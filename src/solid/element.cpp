@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solid/element.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -80,6 +82,40 @@ std::array<double, 4> cell_mass(const CellCoordinates& coordinates, const Materi
     for (int a = 0; a < 4; ++a) m[a] += material.density_kg_per_m3 * s.value[a] * s.jacobian;
   }
   return m;
+}
+
+double cell_frequency_rad_per_s(const CellCoordinates& coordinates, const Material& material) {
+  const auto K = cell_stiffness(coordinates, material);
+  const auto m = cell_mass(coordinates, material);
+  Eigen::MatrixXd A(8, 8);
+  for (int r = 0; r < 8; ++r)
+    for (int c = 0; c < 8; ++c) A(r, c) = K[8 * r + c] / std::sqrt(m[r / 2] * m[c / 2]);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A, Eigen::EigenvaluesOnly);
+  return std::sqrt(solver.eigenvalues()(7));
+}
+
+double largest_cell_frequency_rad_per_s(const mesh::Mesh& mesh, const Material& material,
+                                        const std::vector<bool>& in_part) {
+  // Most cells are congruent with one of the few before them.
+  std::array<CellCoordinates, 8> known{};
+  std::size_t n_known = 0;
+  double largest = 0;
+  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
+    if (!in_part[k]) continue;
+    auto c = cell_coordinates(mesh, mesh.cells[k]);
+    for (int i = 7; i >= 0; --i) c[i] -= c[i % 2];
+    const double tolerance = 1e-9 * (std::abs(c[4]) + std::abs(c[5]));
+    const auto is_congruent = [&](const CellCoordinates& other) {
+      for (int i = 2; i < 8; ++i)
+        if (std::abs(c[i] - other[i]) > tolerance) return false;
+      return true;
+    };
+    const auto end = known.begin() + static_cast<std::ptrdiff_t>(std::min(n_known, known.size()));
+    if (std::find_if(known.begin(), end, is_congruent) != end) continue;
+    known[n_known++ % known.size()] = c;
+    largest = std::max(largest, cell_frequency_rad_per_s(c, material));
+  }
+  return largest;
 }
 
 std::vector<double> lumped_mass(const mesh::Mesh& mesh, const Material& material) {

@@ -22,6 +22,12 @@ CellStiffness cell_stiffness(const CellCoordinates& coordinates, const Material&
 /// Row-sum lumped mass of the element's nodes, kg per unit thickness.
 std::array<double, 4> cell_mass(const CellCoordinates& coordinates, const Material& material);
 
+/// Largest natural frequency (rad/s) of the free element; no mesh of such elements has a higher one.
+double cell_frequency_rad_per_s(const CellCoordinates& coordinates, const Material& material);
+/// The largest one of the cells marked.
+double largest_cell_frequency_rad_per_s(const mesh::Mesh& mesh, const Material& material,
+                                        const std::vector<bool>& in_part);
+
 /// Lumped mass of every node, kg per unit thickness; 0 for orphans. [nodes]
 std::vector<double> lumped_mass(const mesh::Mesh& mesh, const Material& material);
 

@@ -295,11 +295,13 @@ std::size_t GeneralRows::n_shared_stiffnesses() const {
 }
 
 GeneralRows::Workspace GeneralRows::workspace() const {
+  if (!cells_) return {};
   return {std::vector<double>(2 * cells_->n_places), std::vector<double>(2 * cells_->n_places)};
 }
 
 void GeneralRows::multiply(const Field& u, double factor, const Field& v, Workspace& space, double* a_x,
                            double* a_y) const {
+  if (!cells_) return;
   double* __restrict w = space.w.data();
   double* __restrict force = space.force.data();
   for (const auto& run : cells_->runs) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "solid/element.hpp"
 #include "solid/kernels.hpp"
 
 namespace slipfront::solve {
@@ -29,13 +30,35 @@ std::vector<bool> cells_next_to_interface(const mesh::Mesh& mesh, int rows) {
   return near;
 }
 
+/// Least damping beta_R with which blocks take steps of their own, in steps of the lowest one. What their
+/// coupling feeds into a resonant mode in a step is below a hundredth of what this takes out.
+constexpr double least_damping_in_steps = 0.01;
+
+/// The block to which each cell belongs; the transition between two blocks belongs to the lower one. All
+/// cells of a mesh that knows no grid are in one block.
+std::vector<int> block_of_cells(const mesh::Mesh& mesh) {
+  const auto grids = mesh::blocks(mesh);
+  std::vector<int> block;
+  for (const auto& cell : mesh.cells) {
+    const auto lowest = *std::ranges::min_element(cell);
+    const auto above = std::ranges::upper_bound(grids, lowest, {}, &mesh::Grid::first);
+    block.push_back(static_cast<int>(above - grids.begin()) - 1);
+  }
+  return block;
+}
+
 }  // namespace
 
 void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time) {
-  if (time.interface_rows >= mesh.grid.rows)
+  if (mesh.grid.columns == 0 || time.interface_rows < mesh.grid.rows) return;
+  if (!mesh.coarser.empty())
     throw UserError(
-        "time.interface_rows = {} does not fit below the loaded edge of a mesh of {} rows; choose fewer",
+        "time.interface_rows = {} does not fit below the larger elements above {} rows; choose fewer, or a "
+        "larger plate.fine_height_m",
         time.interface_rows, mesh.grid.rows);
+  throw UserError(
+      "time.interface_rows = {} does not fit below the loaded edge of a mesh of {} rows; choose fewer",
+      time.interface_rows, mesh.grid.rows);
 }
 
 Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
@@ -57,7 +80,10 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
       w_(mesh.grid.stride()) {
   require_rows_fit(mesh, time);
   stable_step_s_ = solid::stable_step_s(solid::largest_frequency_rad_per_s(plate_), damping_s_);
-  step_s_ = time.step_factor * stable_step_s_;
+  const auto multiples = choose_multiples(mesh, material, time);
+  multiple_ = multiples.back();
+  substeps_ *= multiple_;
+  step_s_ = time.step_factor * stable_step_s_ * multiple_;
   for (std::size_t k = 0; k < lower_.size(); ++k) {
     interface_.initial_gap_m[k] = mesh.y_m[lower_[k]];
     interface_.mass_per_length_kg_m2[k] = plate_.mass_kg[lower_[k]] / tributary_m_[k];
@@ -69,16 +95,53 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
     lower_rows_ = solid::assemble_rows(mesh, material, lower_);
     landing_shift_m_.assign(mesh.n_nodes(), 0.0);
   }
-  divide_cells(mesh, material, time);
+  divide_cells(mesh, material, time, multiples);
 }
 
-void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& material,
-                           const TimeStepping& time) {
-  std::vector<int> level_of_cell(mesh.cells.size(), 0);
-  levels_.resize(substeps_ > 1 ? 2 : 1);
-  if (levels_.size() > 1) {
+std::vector<int> Stepper::choose_multiples(const mesh::Mesh& mesh, const solid::Material& material,
+                                           const TimeStepping& time) const {
+  std::vector<int> multiples(1 + mesh.coarser.size(), 1);
+  // Without damping, modes whose period is a multiple of a larger step would grow slowly.
+  const bool damped = damping_s_ >= least_damping_in_steps * time.step_factor * stable_step_s_;
+  if (!time.local_steps || mesh.coarser.empty() || !damped) return multiples;
+  // The largest frequency of its free cells bounds a block's from above. Squares do so the more closely the
+  // more of them there are: what the lowest block's squares show is no more than what larger ones would.
+  const double h = mesh.grid.spacing_m;
+  const double of_square = solid::cell_frequency_rad_per_s({0, 0, h, 0, h, h, 0, h}, material);
+  const double overestimate = std::max(1.0, stable_step_s_ / solid::stable_step_s(of_square, damping_s_));
+  const auto block_of_cell = block_of_cells(mesh);
+  for (std::size_t b = 1; b < multiples.size(); ++b) {
+    std::vector<bool> in_block;
+    for (const int of_cell : block_of_cell) in_block.push_back(of_cell == static_cast<int>(b));
+    const double omega = solid::largest_cell_frequency_rad_per_s(mesh, material, in_block);
+    const double ratio = overestimate * solid::stable_step_s(omega, damping_s_) / stable_step_s_;
+    for (multiples[b] = 1 << b; multiples[b] > ratio * (1 + 1e-9) && multiples[b] > 1;) multiples[b] /= 2;
+  }
+  for (std::size_t b = multiples.size() - 1; b > 0; --b)
+    multiples[b - 1] = std::min(multiples[b - 1], multiples[b]);
+  return multiples;
+}
+
+void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time,
+                           std::span<const int> multiples) {
+  // Levels by their steps, those of the blocks and that of the interface rows.
+  const bool layered = time.interface_substeps > 1;
+  std::vector<int> periods;
+  for (const int multiple : multiples)
+    if (const int period = multiple * time.interface_substeps; periods.empty() || periods.back() != period)
+      periods.push_back(period);
+  if (layered) periods.insert(periods.begin(), 1);
+  std::ranges::reverse(periods);
+  levels_.resize(periods.size());
+  std::vector<int> level_of_cell = block_of_cells(mesh);
+  for (int& of_cell : level_of_cell) {
+    const int period = multiples[of_cell] * time.interface_substeps;
+    of_cell = static_cast<int>(std::ranges::find(periods, period) - periods.begin());
+  }
+  if (layered) {
     const auto near = cells_next_to_interface(mesh, time.interface_rows);
-    for (std::size_t c = 0; c < near.size(); ++c) level_of_cell[c] = near[c] ? 1 : 0;
+    for (std::size_t c = 0; c < near.size(); ++c)
+      if (near[c]) level_of_cell[c] = static_cast<int>(levels_.size()) - 1;
   }
   // A node moves with the finest of its cells.
   std::vector<int> level_of_node(mesh.n_nodes(), -1);
@@ -89,19 +152,22 @@ void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& materi
 
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     auto& level = levels_[l];
-    level.period = l + 1 == levels_.size() ? 1 : substeps_;
+    level.period = periods[l];
     level.step_s = step_s_ * level.period / substeps_;
     std::vector<bool> in_level(mesh.cells.size());
     for (std::size_t c = 0; c < in_level.size(); ++c) in_level[c] = level_of_cell[c] == static_cast<int>(l);
-    const int edge_row = levels_.size() > 1 ? time.interface_rows : 0;
+    const int edge_row = layered ? time.interface_rows : 0;
     level.part =
         levels_.size() > 1 ? solid::make_part(mesh, material, plate_, in_level, edge_row) : plate_.whole;
     for (const auto n : mesh.top)
       if (level_of_node[n] == static_cast<int>(l)) level.top.push_back(n);
-    const auto& irregular = level.part.irregular;
+    auto& irregular = level.irregular;
+    irregular = level.part.irregular.node;
+    irregular.insert(irregular.end(), level.part.general.node().begin(), level.part.general.node().end());
+    level.general_space = level.part.general.workspace();
     std::vector<std::int32_t> irregular_row(mesh.n_nodes(), -1);
     for (std::size_t r = 0; r < irregular.size(); ++r)
-      irregular_row[irregular.node[r]] = static_cast<std::int32_t>(r);
+      irregular_row[irregular[r]] = static_cast<std::int32_t>(r);
     std::vector<bool> shared(mesh.n_nodes(), false), in_cells(mesh.n_nodes(), false);
     for (std::size_t c = 0; c < in_level.size(); ++c)
       if (in_level[c])
@@ -121,7 +187,7 @@ void Stepper::divide_cells(const mesh::Mesh& mesh, const solid::Material& materi
     for (const auto& row : level.part.stencil)
       if (row.squares != solid::Squares::all)
         level.edge_kick_m_per_s.emplace_back(2 * static_cast<std::size_t>(mesh.grid.stride()));
-    for (const auto n : irregular.node) {
+    for (const auto n : irregular) {
       level.takes_push.push_back(!shared[n]);
       level.moves.push_back(!in_contact[n] && !is_shared[n]);
     }
@@ -169,7 +235,7 @@ void Stepper::set_dashpots(const mesh::Mesh& mesh, const solid::Material& materi
       levels_[l - 1].shared.dashpots.push_back(dashpot);
       continue;
     }
-    const auto row = place(level.part.irregular.node, n);
+    const auto row = place(level.irregular, n);
     SLIPFRONT_ASSERT(row, "an absorbing node without a block row");
     dashpot.at = *row;
     level.takes_push[*row] = false;
@@ -273,6 +339,9 @@ void Stepper::compute_irregular(Level& level) {
     level.a_x[r] = x;
     level.a_y[r] = y;
   });
+  const std::size_t n_block_rows = level.part.irregular.size();
+  level.part.general.multiply(u_, damping_s_, v_, level.general_space, level.a_x.data() + n_block_rows,
+                              level.a_y.data() + n_block_rows);
   solid::for_each_row_product(level.top_rows, w, [&](std::size_t r, double x, double y) {
     level.top_force_N[r] = {x, y};
     works_.top_work += level.step_s * x * v_.x[level.top_rows.node[r]];
@@ -300,7 +369,7 @@ void Stepper::apply_irregular(const Level& level) {
     u_.x[n] += level.step_s * v_x;
     u_.y[n] += level.step_s * v_y;
   }
-  const auto& node = level.part.irregular.node;
+  const auto& node = level.irregular;
   for (std::size_t r = 0; r < node.size(); ++r) {
     if (!level.takes_push[r]) continue;
     const auto n = node[r];
@@ -315,24 +384,41 @@ void Stepper::apply_irregular(const Level& level) {
 Stepper::ForceProducts Stepper::sweep(Level& level) {
   const int stride = plate_.grid.stride();
   const double dt = level.step_s;
-  const auto interior = solid::scaled(plate_.interior, -dt);
   const auto w_row = [&](int j) { return solid::ConstRow{w_.x(j), w_.y(j)}; };
   // Rows of w = u + beta_R v are filled just before the first row that reads them moves.
   int next = 0;
-  const auto fill_to = [&](int first, int last) {
+  const auto fill_to = [&](const mesh::Grid& grid, int first, int last) {
     for (next = std::max(next, first); next <= last; ++next) {
-      const std::ptrdiff_t o = static_cast<std::ptrdiff_t>(next) * stride;
-      solid::combine_row(stride, damping_s_, &u_.x[o], &u_.y[o], &v_.x[o], &v_.y[o], w_.x(next), w_.y(next));
+      const std::ptrdiff_t o = grid.node(0, next);
+      solid::combine_row(grid.stride(), damping_s_, &u_.x[o], &u_.y[o], &v_.x[o], &v_.y[o], w_.x(next),
+                         w_.y(next));
     }
   };
   solid::KickSums sums;
   ForceProducts products;
+  const auto take_sums = [&](double scale) {
+    const double m_over_dt = interior_mass_kg_ / (dt * scale);
+    products.u_K_w -= m_over_dt * (sums.w_d - damping_s_ * sums.v_d);
+    products.v_K_w -= m_over_dt * sums.v_d;
+    products.after_K_w -= m_over_dt * (sums.v_d + sums.d_d);
+    sums = {};
+  };
   auto edge_kick = level.edge_kick_m_per_s.begin();
-  for (const auto& [j, squares, scale, spans] : level.part.stencil) {
-    const std::ptrdiff_t o = static_cast<std::ptrdiff_t>(j) * stride;
+  int block_before = -1;
+  double scale_before = 1;
+  for (const auto& [j, squares, scale, spans, block] : level.part.stencil) {
+    const auto& grid = plate_.blocks[block];
+    if (block != block_before) {
+      if (block_before >= 0) take_sums(scale_before);
+      block_before = block;
+      next = 0;
+    }
+    if (squares == solid::Squares::all) scale_before = scale;
+    const auto interior = solid::scaled(plate_.interior, -dt * scale);
+    const std::ptrdiff_t o = grid.node(0, j);
     double* v_x = &v_.x[o];
     double* v_y = &v_.y[o];
-    fill_to(squares == solid::Squares::above ? j : j - 1, squares == solid::Squares::below ? j : j + 1);
+    fill_to(grid, squares == solid::Squares::above ? j : j - 1, squares == solid::Squares::below ? j : j + 1);
     if (squares == solid::Squares::all) {
       const auto push_row = damping_s_ > 0 ? solid::push_interior_row<true> : solid::push_interior_row<false>;
       for (const auto span : spans)
@@ -360,10 +446,7 @@ Stepper::ForceProducts Stepper::sweep(Level& level) {
     if (squares == solid::Squares::above && j > 0) continue;
     for (const auto span : spans) solid::move_row(span, 1, kick_x, kick_y, v_x, v_y);
   }
-  const double m_over_dt = interior_mass_kg_ / dt;
-  products.u_K_w -= m_over_dt * (sums.w_d - damping_s_ * sums.v_d);
-  products.v_K_w -= m_over_dt * sums.v_d;
-  products.after_K_w -= m_over_dt * (sums.v_d + sums.d_d);
+  take_sums(scale_before);
   return products;
 }
 
@@ -482,7 +565,7 @@ void Stepper::stiffness_product(const Level& level, const solid::Field& w, solid
 double Stepper::late_product(const Level& level) const {
   if (damping_s_ == 0) return 0;
   double sum = 0;
-  const auto& irregular = level.part.irregular.node;
+  const auto& irregular = level.irregular;
   for (std::size_t r = 0; r < irregular.size(); ++r)
     sum += plate_.mass_kg[irregular[r]] *
            (v_.x[irregular[r]] * level.a_x[r] + v_.y[irregular[r]] * level.a_y[r]);
@@ -506,7 +589,7 @@ double Stepper::late_product(const Level& level) const {
 }
 
 void Stepper::add_damping_work(Level& level, double after_K_w, ForceProducts sums) {
-  const auto& irregular = level.part.irregular.node;
+  const auto& irregular = level.irregular;
   for (std::size_t r = 0; r < irregular.size(); ++r) {
     const auto n = irregular[r];
     sums.u_K_w += plate_.mass_kg[n] * (u_.x[n] * level.a_x[r] + u_.y[n] * level.a_y[r]);

@@ -28,7 +28,9 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time);
 /// integrator of Lew et al. (2003). The nodes between the two kinds of cells feel the coarse cells' force at
 /// the start of the event as a constant load in every sub-step, and its change since then in pushes; without
 /// this, a stressed plate at rest would not stay at rest. Reversible and symplectic where nothing dissipates.
-/// With one sub-step it is the plain scheme.
+/// With one sub-step it is the plain scheme. The blocks of a graded plate are such levels, too: each one's
+/// step is that of the lowest block times the largest power of two that its cells allow, twice, four times
+/// ... as long for squares. A step of the plate is that of its coarsest block.
 class Stepper {
  public:
   /// @throws UserError where the interface rows do not fit into the mesh.
@@ -37,6 +39,8 @@ class Stepper {
 
   double stable_step_s() const { return stable_step_s_; }
   double step_s() const { return step_s_; }
+  /// The step of the lowest block, time.step_factor of the stable one.
+  double lowest_step_s() const { return step_s_ / multiple_; }
   double substep_s() const { return step_s_ / substeps_; }
   /// The (sub-)step with which a node moves; its velocity belongs to half of it before the displacement.
   double step_s(mesh::Node n) const { return node_step_s_[n]; }
@@ -124,6 +128,8 @@ class Stepper {
     double step_s = 0;
     int period = 1;  ///< in steps of the last level
     solid::Part part;
+    std::vector<mesh::Node> irregular;  ///< nodes of the block rows, then of the general rows
+    solid::GeneralRows::Workspace general_space;
     std::vector<Dashpot> dashpots;
     std::vector<bool> takes_push;  ///< [irregular rows] not shared with a finer level, no dashpot
     std::vector<bool> moves;       ///< [irregular rows] moved with the level's own push
@@ -138,7 +144,11 @@ class Stepper {
     Products products;
   };
 
-  void divide_cells(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time);
+  /// For each block, its step over that of the lowest one.
+  std::vector<int> choose_multiples(const mesh::Mesh& mesh, const solid::Material& material,
+                                    const TimeStepping& time) const;
+  void divide_cells(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time,
+                    std::span<const int> multiples);
   void set_dashpots(const mesh::Mesh& mesh, const solid::Material& material,
                     std::span<const int> level_of_node);
   /// Lets the dashpot act during a kick that alone would lead from `before` to `trial`, and counts its work.
@@ -183,7 +193,8 @@ class Stepper {
   double interior_mass_kg_ = 0;  ///< of a node amid four squares
   interface::ContactModel contact_;
   double stable_step_s_ = 0, step_s_ = 0;
-  int substeps_;
+  int multiple_ = 1;  ///< steps of the lowest block in a step of the coarsest one
+  int substeps_;      ///< of the last level in a step
   double node_updates_per_step_ = 0;
   std::vector<double> node_step_s_;  ///< [nodes]; 0 for orphans
 
