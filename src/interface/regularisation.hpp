@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/exponential.hpp"
+
 namespace slipfront::interface {
 
 /// Which quantity follows its instantaneous value with a delay.
@@ -30,83 +32,109 @@ inline double relaxation_rate_per_s(const Regularisation& r, double speed_m_per_
 
 /// How a relaxed quantity q follows its target over a time dt in which the target goes linearly from T0 to
 /// T1: q1 = T1 - lag (T1 - T0) + left (q0 - T0), exact; left = exp(-x), lag = (1 - exp(-x))/x, x = rate dt.
+template <class V>
 struct Following {
-  double left = 1, lag = 1;  ///< those of no time at all
-  explicit Following(double x) : left(std::exp(-x)), lag(x > 0 ? -std::expm1(-x) / x : 1) {}
-  double operator()(double from_Pa, double target_before_Pa, double target_Pa) const {
+  V left, lag;
+  SLIPFRONT_HOST_DEVICE explicit Following(V x) {
+    const auto parts = decay(x);
+    const auto takes_time = x > 0;
+    left = parts.left;
+    lag = select(takes_time, parts.lost, V{} + 1) / select(takes_time, x, V{} + 1);
+  }
+  template <class Pressure>
+  SLIPFRONT_HOST_DEVICE Pressure operator()(Pressure from_Pa, Pressure target_before_Pa,
+                                            Pressure target_Pa) const {
     return target_Pa - lag * (target_Pa - target_before_Pa) + left * (from_Pa - target_before_Pa);
   }
 };
 
 struct ConstantRate {
-  Following following;
+  Following<double> following;
   ConstantRate(const Regularisation& r, double dt_s) : following(dt_s * relaxation_rate_per_s(r, 0)) {}
-  Following operator()(double /*speed_m_per_s*/) const { return following; }
+  template <class V>
+  SLIPFRONT_HOST_DEVICE Following<double> operator()(V /*speed_m_per_s*/) const {
+    return following;
+  }
 };
 
 struct SlipRateDependent {
   double at_rest, dt_per_length_s_per_m;
   SlipRateDependent(const Regularisation& r, double dt_s)
       : at_rest(dt_s * relaxation_rate_per_s(r, 0)), dt_per_length_s_per_m(dt_s / r.length_m) {}
-  Following operator()(double speed_m_per_s) const {
-    return Following(at_rest + speed_m_per_s * dt_per_length_s_per_m);
+  template <class V>
+  SLIPFRONT_HOST_DEVICE Following<V> operator()(V speed_m_per_s) const {
+    return Following<V>(at_rest + speed_m_per_s * dt_per_length_s_per_m);
   }
 };
 
 /// The relaxed quantity of a node at a contact update, and its target there.
+template <class V>
 struct Memory {
-  double relaxed_Pa = 0, target_Pa = 0;
+  V relaxed_Pa{}, target_Pa{};
 };
 
-// How the strength of a node follows. `Step` holds what the time since the last update decides, at the slip
+// How the strength of a node follows. `step` gives what the time since the last update decides, at the slip
 // rate of that time; `now` is the memory with the coefficient of this update. The relaxed quantity follows
 // one equation whether the node sticks, slips or is open; an open node (p = 0) forgets at the same rate, and
 // has no strength whatever is left of its memory.
 
 /// The strength follows at once.
 struct Immediate {
-  struct Step {
-    Memory now(double /*mu*/, double /*p_Pa*/) const { return {}; }
-  };
-  Step step(double /*speed_m_per_s*/, const Memory& /*before*/) const { return {}; }
-  static double strength(double mu, double p_Pa, const Memory& /*now*/) { return mu * p_Pa; }
-  static Memory initial(double /*mu*/, double /*p_Pa*/) { return {}; }
+  static constexpr bool remembers = false;
+  struct Step {};
+  template <class V>
+  SLIPFRONT_HOST_DEVICE Step step(V /*speed_m_per_s*/) const {
+    return {};
+  }
+  template <class V>
+  SLIPFRONT_HOST_DEVICE static Memory<V> now(Step, const Memory<V>& /*before*/, V /*mu*/, V /*p_Pa*/) {
+    return {};
+  }
+  template <class V>
+  SLIPFRONT_HOST_DEVICE static V strength(V mu, V p_Pa, const Memory<V>& /*now*/) {
+    return mu * p_Pa;
+  }
+  static Memory<double> initial(double /*mu*/, double /*p_Pa*/) { return {}; }
 };
 
 /// A stuck node keeps the strength with which it stuck and regains the static one at the rate for |v| = 0.
 template <class Rate>
 struct RelaxedStrength {
+  static constexpr bool remembers = true;
   Rate rate;
-  struct Step {
-    Following following;
-    Memory before;
-    Memory now(double mu, double p_Pa) const {
-      return {following(before.relaxed_Pa, before.target_Pa, mu * p_Pa), mu * p_Pa};
-    }
-  };
-  Step step(double speed_m_per_s, const Memory& before) const { return {rate(speed_m_per_s), before}; }
-  static double strength(double /*mu*/, double p_Pa, const Memory& now) {
-    return p_Pa > 0 ? now.relaxed_Pa : 0;
+  template <class V>
+  SLIPFRONT_HOST_DEVICE auto step(V speed_m_per_s) const {
+    return rate(speed_m_per_s);
   }
-  static Memory initial(double mu, double p_Pa) { return {mu * p_Pa, mu * p_Pa}; }
+  template <class V, class F>
+  SLIPFRONT_HOST_DEVICE static Memory<V> now(const F& following, const Memory<V>& before, V mu, V p_Pa) {
+    return {following(before.relaxed_Pa, before.target_Pa, mu * p_Pa), mu * p_Pa};
+  }
+  template <class V>
+  SLIPFRONT_HOST_DEVICE static V strength(V /*mu*/, V p_Pa, const Memory<V>& now) {
+    return select(p_Pa > 0, now.relaxed_Pa, V{});
+  }
+  static Memory<double> initial(double mu, double p_Pa) { return {mu * p_Pa, mu * p_Pa}; }
 };
 
 /// The coefficient acts at once, so that a stuck node has the static coefficient times the relaxed pressure.
 template <class Rate>
 struct RelaxedPressure {
+  static constexpr bool remembers = true;
   Rate rate;
-  struct Step {
-    Following following;
-    Memory before;
-    Memory now(double /*mu*/, double p_Pa) const {
-      return {following(before.relaxed_Pa, before.target_Pa, p_Pa), p_Pa};
-    }
-  };
-  Step step(double speed_m_per_s, const Memory& before) const { return {rate(speed_m_per_s), before}; }
-  static double strength(double mu, double p_Pa, const Memory& now) {
-    return p_Pa > 0 ? mu * now.relaxed_Pa : 0;
+  template <class V>
+  SLIPFRONT_HOST_DEVICE auto step(V speed_m_per_s) const {
+    return rate(speed_m_per_s);
   }
-  static Memory initial(double /*mu*/, double p_Pa) { return {p_Pa, p_Pa}; }
+  template <class V, class F>
+  SLIPFRONT_HOST_DEVICE static Memory<V> now(const F& following, const Memory<V>& before, V /*mu*/, V p_Pa) {
+    return {following(before.relaxed_Pa, before.target_Pa, p_Pa), p_Pa};
+  }
+  template <class V>
+  SLIPFRONT_HOST_DEVICE static V strength(V mu, V p_Pa, const Memory<V>& now) {
+    return select(p_Pa > 0, mu * now.relaxed_Pa, V{});
+  }
+  static Memory<double> initial(double /*mu*/, double p_Pa) { return {p_Pa, p_Pa}; }
 };
 
 /// Calls f with the form that the settings name. The choice is made once per contact update.

@@ -4,17 +4,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/lanes.hpp"
 #include "solid/operator.hpp"
 
 // The loops of the explicit step over plain arrays, one grid row at a time. Every pointer points to column 0
 // of its row; rows of w never alias the rows that are written.
 namespace slipfront::solid {
-
-/// A row of a vector field.
-struct ConstRow {
-  const double* __restrict x;
-  const double* __restrict y;
-};
 
 inline InteriorStencil scaled(InteriorStencil s, double factor) {
   for (double* c : {&s.centre, &s.along, &s.across, &s.corner, &s.twist}) *c *= factor;
@@ -28,7 +23,7 @@ inline EdgeStencil scaled(EdgeStencil s, double factor) {
   return s;
 }
 
-/// For squares below the node instead of above.
+/// For squares below the node instead of above, or to the left instead of to the right.
 inline EdgeStencil mirrored(EdgeStencil s) {
   s.shear = -s.shear;
   s.twist = -s.twist;
@@ -58,24 +53,6 @@ inline void add_interior_row(const InteriorStencil& s, Span span, ConstRow south
   }
 }
 
-#ifdef __AVX512F__
-inline constexpr int lanes = 8;
-#else
-inline constexpr int lanes = 4;
-#endif
-
-/// Consecutive columns of a row.
-using Lanes = double __attribute__((vector_size(lanes * sizeof(double))));
-/// The same anywhere in memory: packed, so that no alignment is promised.
-struct __attribute__((packed, may_alias)) LanesInMemory {
-  Lanes values;
-};
-inline Lanes load(const double* from) {
-  return reinterpret_cast<const LanesInMemory*>(from)->values;
-}
-inline void store(double* to, Lanes values) {
-  reinterpret_cast<LanesInMemory*>(to)->values = values;
-}
 /// The values one column to the left of `here`, and one to the right.
 inline Lanes from_left(Lanes left, Lanes here) {
 #ifdef __AVX512F__
@@ -203,24 +180,72 @@ class RollingRows {
   std::vector<double> values_;
 };
 
+/// Kick of a node on an edge; `north` is the row on the side of the squares.
+inline Pair edge_kick(const EdgeStencil& s, int i, ConstRow middle, ConstRow north) {
+  return {s.centre_x * middle.x[i] + s.side_x * (middle.x[i - 1] + middle.x[i + 1]) + s.up_x * north.x[i] +
+              s.corner_x * (north.x[i - 1] + north.x[i + 1]) + s.shear * (middle.y[i + 1] - middle.y[i - 1]) +
+              s.twist * (north.y[i + 1] - north.y[i - 1]),
+          s.centre_y * middle.y[i] + s.side_y * (middle.y[i - 1] + middle.y[i + 1]) + s.up_y * north.y[i] +
+              s.corner_y * (north.y[i - 1] + north.y[i + 1]) - s.shear * (middle.x[i + 1] - middle.x[i - 1]) +
+              s.twist * (north.x[i + 1] - north.x[i - 1])};
+}
+
 /// v += stencil(w) over the span of an edge; `north` is the row on the side of the squares.
 inline void add_edge_row(const EdgeStencil& s, Span span, ConstRow middle, ConstRow north,
                          double* __restrict v_x, double* __restrict v_y) {
   for (int i = span.begin; i < span.end; ++i) {
-    v_x[i] += s.centre_x * middle.x[i] + s.side_x * (middle.x[i - 1] + middle.x[i + 1]) +
-              s.up_x * north.x[i] + s.corner_x * (north.x[i - 1] + north.x[i + 1]) +
-              s.shear * (middle.y[i + 1] - middle.y[i - 1]) + s.twist * (north.y[i + 1] - north.y[i - 1]);
-    v_y[i] += s.centre_y * middle.y[i] + s.side_y * (middle.y[i - 1] + middle.y[i + 1]) +
-              s.up_y * north.y[i] + s.corner_y * (north.y[i - 1] + north.y[i + 1]) -
-              s.shear * (middle.x[i + 1] - middle.x[i - 1]) + s.twist * (north.x[i + 1] - north.x[i - 1]);
+    const Pair d = edge_kick(s, i, middle, north);
+    v_x[i] += d.x;
+    v_y[i] += d.y;
   }
 }
 
-/// u += dt v over the span.
-inline void move_row(Span span, double dt, const double* __restrict v_x, const double* __restrict v_y,
-                     double* __restrict u_x, double* __restrict u_y) {
-  for (int i = span.begin; i < span.end; ++i) u_x[i] += dt * v_x[i];
-  for (int i = span.begin; i < span.end; ++i) u_y[i] += dt * v_y[i];
+/// The kicks d of an edge's nodes, and the sums of u d and v d over them.
+inline Pair kick_edge_row(const EdgeStencil& s, Span span, ConstRow middle, ConstRow north, ConstRow u,
+                          ConstRow v, double* __restrict kick_x, double* __restrict kick_y) {
+  double u_d = 0, v_d = 0;
+#pragma omp simd reduction(+ : u_d, v_d)
+  for (int i = span.begin; i < span.end; ++i) {
+    const Pair d = edge_kick(s, i, middle, north);
+    kick_x[i] = d.x;
+    kick_y[i] = d.y;
+    u_d += u.x[i] * d.x + u.y[i] * d.y;
+    v_d += v.x[i] * d.x + v.y[i] * d.y;
+  }
+  return {u_d, v_d};
+}
+
+/// Kick of a node with squares to the right (inner = 1) or to the left (inner = -1, mirrored stencil) of it.
+inline Pair side_kick(const EdgeStencil& s, int i, int inner, ConstRow south, ConstRow middle,
+                      ConstRow north) {
+  const int k = i + inner;
+  return {s.centre_y * middle.x[i] + s.side_y * (south.x[i] + north.x[i]) + s.up_y * middle.x[k] +
+              s.corner_y * (south.x[k] + north.x[k]) - s.shear * (north.y[i] - south.y[i]) +
+              s.twist * (north.y[k] - south.y[k]),
+          s.centre_x * middle.y[i] + s.side_x * (south.y[i] + north.y[i]) + s.up_x * middle.y[k] +
+              s.corner_x * (south.y[k] + north.y[k]) + s.shear * (north.x[i] - south.x[i]) +
+              s.twist * (north.x[k] - south.x[k])};
+}
+
+/// v += kick, u += dt v of such a node, which has half the mass of those in the sums.
+inline void push_side_node(const EdgeStencil& s, int i, int inner, double dt, ConstRow south, ConstRow middle,
+                           ConstRow north, double* __restrict v_x, double* __restrict v_y,
+                           double* __restrict u_x, double* __restrict u_y, KickSums& sums) {
+  const Pair d = side_kick(s, i, inner, south, middle, north);
+  sums.w_d += 0.5 * (middle.x[i] * d.x + middle.y[i] * d.y);
+  sums.v_d += 0.5 * (v_x[i] * d.x + v_y[i] * d.y);
+  sums.d_d += 0.5 * (d.x * d.x + d.y * d.y);
+  v_x[i] += d.x;
+  v_y[i] += d.y;
+  u_x[i] += dt * v_x[i];
+  u_y[i] += dt * v_y[i];
+}
+
+/// v += kick over the span.
+inline void kick_row(Span span, const double* __restrict kick_x, const double* __restrict kick_y,
+                     double* __restrict v_x, double* __restrict v_y) {
+  for (int i = span.begin; i < span.end; ++i) v_x[i] += kick_x[i];
+  for (int i = span.begin; i < span.end; ++i) v_y[i] += kick_y[i];
 }
 
 /// Sum of m (a . b) over the span.

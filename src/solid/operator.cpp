@@ -38,6 +38,18 @@ std::vector<mesh::Grid> grids_of(const mesh::Mesh& mesh) {
   return mesh.grid.columns > 0 ? mesh::blocks(mesh) : std::vector<mesh::Grid>{};
 }
 
+std::vector<NodeRow> rows_of(const mesh::Mesh& mesh, std::span<const mesh::Grid> grids) {
+  if (grids.empty()) return {{0, mesh.n_nodes()}};
+  std::vector<NodeRow> rows;
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    const auto& grid = grids[k];
+    for (int j = 0; j <= grid.rows; ++j) rows.push_back({grid.node(0, j), grid.stride()});
+    const auto end = grid.first + grid.n_nodes();
+    if (k + 1 < grids.size()) rows.push_back({end, grids[k + 1].first - end});
+  }
+  return rows;
+}
+
 /// The block of each node, -1 for the inner nodes of transitions.
 std::vector<int> block_of_nodes(const mesh::Mesh& mesh, std::span<const mesh::Grid> grids) {
   std::vector<int> block(mesh.n_nodes(), -1);
@@ -134,10 +146,20 @@ BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::s
   return result;
 }
 
+int Operator::row_of(mesh::Node n) const {
+  const auto above = std::ranges::upper_bound(rows, n, {}, &NodeRow::first);
+  return static_cast<int>(above - rows.begin()) - 1;
+}
+
+int Operator::widest_row() const {
+  return std::ranges::max(rows, {}, &NodeRow::count).count;
+}
+
 Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   Operator op;
   op.grid = mesh.grid;
   op.blocks = grids_of(mesh);
+  op.rows = rows_of(mesh, op.blocks);
   op.mass_kg = lumped_mass(mesh, material);
   op.is_top.assign(mesh.n_nodes(), false);
   for (const auto n : mesh.top) op.is_top[n] = true;
@@ -161,17 +183,25 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
     }
   }
   const CellsOfNodes around = cells_of_nodes(mesh);
+  std::vector<bool> is_boundary(mesh.n_nodes(), false);
+  for (const auto n : mesh.lower) is_boundary[n] = true;
+  for (const auto& absorbing : mesh.absorbing) is_boundary[absorbing.node] = true;
 
   // The squares of the part around a node with a stencil; nothing for a node that needs a block row.
   const auto squares_around = [&](mesh::Node n, int block, int j) -> std::optional<Squares> {
-    int above = 0, below = 0;
+    int above = 0, below = 0, right = 0, left = 0;
     for (auto k = around.first[n]; k < around.first[n + 1]; ++k) {
       const auto c = around.cell[k];
       if (!regular_cell[c]) return std::nullopt;
       if (!in_part[c]) continue;
       (mesh.cells[c][0] == n || mesh.cells[c][1] == n ? above : below) += 1;
+      (mesh.cells[c][0] == n || mesh.cells[c][3] == n ? right : left) += 1;
     }
     if (above == 2 && below == 2) return Squares::all;
+    if (around.first[n + 1] - around.first[n] == 2 && !is_boundary[n]) {
+      if (right == 2) return Squares::right;
+      if (left == 2) return Squares::left;
+    }
     if (block != 0 || (j != 0 && j != edge_row)) return std::nullopt;
     if (above == 2 && below == 0) return Squares::above;
     if (above == 0 && below == 2) return Squares::below;
@@ -190,7 +220,7 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
   for (std::size_t k = 0; k < plate.blocks.size(); ++k) {
     const auto& grid = plate.blocks[k];
     for (int j = 0; j <= grid.rows; ++j) {
-      std::array<StencilRow, 3> of_row;
+      std::array<StencilRow, 5> of_row;
       for (int i = 0; i <= grid.columns; ++i) {
         const mesh::Node n = grid.node(i, j);
         if (plate.is_top[n] || general_node[n] || !touches_part(n)) continue;
@@ -206,16 +236,16 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
           spans.push_back({i, i + 1});
         }
       }
-      for (const auto squares : {Squares::all, Squares::above, Squares::below}) {
+      for (const auto squares :
+           {Squares::all, Squares::above, Squares::below, Squares::right, Squares::left}) {
         auto& row = of_row[static_cast<int>(squares)];
         if (row.spans.empty()) continue;
-        row.row = j;
-        row.block = static_cast<int>(k);
+        row.row = plate.row_of(grid.node(0, j));
         row.squares = squares;
         const mesh::Node first = grid.node(row.spans.front().begin, j);
         const bool full_mass = around.first[first + 1] - around.first[first] == 4;
         const double ratio = plate.grid.spacing_m / grid.spacing_m;
-        row.scale = squares == Squares::all ? ratio * ratio : full_mass ? 0.5 : 1;
+        row.scale = is_horizontal_edge(row) ? (full_mass ? 0.5 : 1) : ratio * ratio;
         part.stencil.push_back(std::move(row));
       }
     }
@@ -225,26 +255,36 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
   return part;
 }
 
-void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
-  for (const auto& [j, squares, scale, spans, block] : part.stencil) {
-    const auto& grid = op.blocks[block];
-    const auto row = [&](int at) {
-      const auto first = grid.node(0, at);
-      return ConstRow{w.x.data() + first, w.y.data() + first};
-    };
-    double* a_x = a.x.data() + grid.node(0, j);
-    double* a_y = a.y.data() + grid.node(0, j);
-    const auto interior = scaled(op.interior, scale);
-    const auto edge = scaled(op.edge, scale);
-    for (const Span span : spans) {
-      if (squares == Squares::all) {
-        add_interior_row(interior, span, row(j - 1), row(j), row(j + 1), a_x, a_y);
-      } else if (squares == Squares::above) {
-        add_edge_row(edge, span, row(j), row(j + 1), a_x, a_y);
-      } else {
-        add_edge_row(mirrored(edge), span, row(j), row(j - 1), a_x, a_y);
-      }
+void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, ConstRow middle,
+                     ConstRow north, double* a_x, double* a_y) {
+  const auto interior = scaled(op.interior, row.scale);
+  const auto edge = scaled(op.edge, row.scale);
+  for (const Span span : row.spans) {
+    if (row.squares == Squares::all) {
+      add_interior_row(interior, span, south, middle, north, a_x, a_y);
+    } else if (row.squares == Squares::above) {
+      add_edge_row(edge, span, middle, north, a_x, a_y);
+    } else if (row.squares == Squares::below) {
+      add_edge_row(mirrored(edge), span, middle, south, a_x, a_y);
+    } else {
+      const bool right = row.squares == Squares::right;
+      const Pair a =
+          side_kick(right ? edge : mirrored(edge), span.begin, right ? 1 : -1, south, middle, north);
+      a_x[span.begin] += a.x;
+      a_y[span.begin] += a.y;
     }
+  }
+}
+
+void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
+  const auto row = [&](int j) {
+    const auto first = op.rows[std::clamp(j, 0, op.n_rows() - 1)].first;
+    return ConstRow{w.x.data() + first, w.y.data() + first};
+  };
+  for (const auto& stencil : part.stencil) {
+    const int j = stencil.row;
+    add_stencil_row(op, stencil, row(j - 1), row(j), row(j + 1), a.x.data() + op.rows[j].first,
+                    a.y.data() + op.rows[j].first);
   }
   for_each_row_product(part.irregular, w, [&](std::size_t r, double x, double y) {
     a.x[part.irregular.node[r]] += x;

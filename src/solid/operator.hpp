@@ -29,7 +29,8 @@ struct InteriorStencil {
 };
 
 /// The same for a node with two equal squares above it and none below; with the squares below it, north is
-/// south and `shear` and `twist` change sign.
+/// south and `shear` and `twist` change sign. With the squares to its right, x and y are exchanged, with them
+/// north and east, west and south.
 /// a_x = centre_x w_x + side_x (E + W) + up_x N + corner_x (NE + NW) + shear (E - W of w_y) + twist (NE - NW
 /// of w_y) a_y = centre_y w_y + side_y (E + W) + up_y N + corner_y (NE + NW) - shear (E - W of w_x) + twist
 /// (NE - NW of w_x)
@@ -37,6 +38,11 @@ struct EdgeStencil {
   double centre_x, side_x, up_x, corner_x;
   double centre_y, side_y, up_y, corner_y;
   double shear, twist;
+};
+
+/// Numbers [begin, end): columns of one grid row, or rows of a matrix.
+struct Span {
+  int begin = 0, end = 0;
 };
 
 /// Rows of a block-sparse matrix for a list of nodes: any mesh.
@@ -53,10 +59,10 @@ struct Pair {
   double x = 0, y = 0;
 };
 
-/// Calls f(row, x, y) with the components of the row's product with w(node), for each row.
+/// Calls f(row, x, y) with the components of the row's product with w(node), for each of the rows listed.
 template <std::invocable<mesh::Node> W, class F>
-void for_each_row_product(const BlockRows& rows, W&& w, F&& f) {
-  for (std::size_t r = 0; r < rows.size(); ++r) {
+void for_each_row_product(const BlockRows& rows, Span span, W&& w, F&& f) {
+  for (int r = span.begin; r < span.end; ++r) {
     double x = 0, y = 0;
     for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
       const auto& b = rows.block[k];
@@ -64,43 +70,48 @@ void for_each_row_product(const BlockRows& rows, W&& w, F&& f) {
       x += b[0] * at.x + b[1] * at.y;
       y += b[2] * at.x + b[3] * at.y;
     }
-    f(r, x, y);
+    f(static_cast<std::size_t>(r), x, y);
   }
 }
 template <class F>
 void for_each_row_product(const BlockRows& rows, const Field& w, F&& f) {
   for_each_row_product(
-      rows,
+      rows, {0, static_cast<int>(rows.size())},
       [&](mesh::Node n) {
         return Pair{w.x[n], w.y[n]};
       },
       f);
 }
 
-/// Nodes [begin, end) of one grid row, by column.
-struct Span {
-  int begin = 0, end = 0;
-};
-
 /// Which of the four squares around a node belong to a part of the plate.
-enum class Squares { all, above, below };
+enum class Squares { all, above, below, right, left };
+
+/// Nodes with consecutive numbers: a grid row of a block, or the inner nodes of a transition.
+struct NodeRow {
+  mesh::Node first = 0;
+  int count = 0;
+};
 
 /// Nodes of one grid row that share a stencil.
 struct StencilRow {
-  int row = 0;
+  int row = 0;  ///< of Operator::rows
   Squares squares = Squares::all;
-  /// Of the stencil. At edges: half a square's mass on either side over the node's mass; else the mass of the
-  /// smallest squares' node over that of the block's.
+  /// Of the stencil: the mass of a node amid the smallest squares over that of one amid the block's; at
+  /// horizontal edges half a square's mass on either side over the node's mass.
   double scale = 1;
   std::vector<Span> spans;
-  int block = 0;  ///< whose row it is
 };
+
+/// Whether the row's nodes have squares above or below them only.
+inline bool is_horizontal_edge(const StencilRow& row) {
+  return row.squares == Squares::above || row.squares == Squares::below;
+}
 
 /// What some cells of the plate contribute to M^-1 K of the nodes that may move: stencils where the cells are
 /// equal squares, block rows at a block's sides and corners; products cell by cell at the transitions between
 /// blocks, both ends included, and on meshes that know no grid.
 struct Part {
-  std::vector<StencilRow> stencil;  ///< blocks upwards, rows ascending
+  std::vector<StencilRow> stencil;  ///< rows ascending
   BlockRows irregular;
   GeneralRows general;
 };
@@ -109,18 +120,24 @@ struct Part {
 struct Operator {
   mesh::Grid grid;                 ///< of the lowest block
   std::vector<mesh::Grid> blocks;  ///< upwards, the lowest one first; none where the mesh knows no grid
-  std::vector<double> mass_kg;     ///< [nodes], per unit thickness; 0 for orphans
-  InteriorStencil interior{};      ///< of the lowest block
-  EdgeStencil edge{};              ///< over the mass of a node on a straight edge
-  Part whole;                      ///< all cells
-  BlockRows top;                   ///< K (no mass) of the loaded edge's nodes, N/m
-  std::vector<bool> is_top;        ///< [nodes]
+  std::vector<NodeRow> rows;       ///< all nodes, upwards; a single one where the mesh knows no grid
+  int n_rows() const { return static_cast<int>(rows.size()); }
+  int row_of(mesh::Node n) const;
+  int widest_row() const;
+  std::vector<double> mass_kg;  ///< [nodes], per unit thickness; 0 for orphans
+  InteriorStencil interior{};   ///< of the lowest block
+  EdgeStencil edge{};           ///< over the mass of a node on a straight edge
+  Part whole;                   ///< all cells
+  BlockRows top;                ///< K (no mass) of the loaded edge's nodes, N/m
+  std::vector<bool> is_top;     ///< [nodes]
 };
 
 Operator make_operator(const mesh::Mesh& mesh, const Material& material);
 
-/// Part of the operator that the cells marked contribute. Stencils for nodes that have squares of the part on
-/// one side only are used in row 0 and in `edge_row` of the lowest block.
+/// Part of the operator that the cells marked contribute. Stencils for nodes that have squares of the part
+/// above or below only are used in row 0 and in `edge_row`, rows of the lowest block; for nodes that have
+/// them to the right or left only, where no other cell and neither contact nor an absorbing boundary touches
+/// them.
 Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator& plate,
                const std::vector<bool>& in_part, int edge_row);
 
@@ -128,6 +145,16 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
 /// marked.
 BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::span<const mesh::Node> nodes,
                         std::span<const double> mass_kg = {}, const std::vector<bool>& in_part = {});
+
+/// A row of a vector field, or of a part of it.
+struct ConstRow {
+  const double* __restrict x;
+  const double* __restrict y;
+};
+
+/// Adds a stencil row's M^-1 K w to a row of a; `south` or `north` is not read where there are no squares.
+void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, ConstRow middle,
+                     ConstRow north, double* a_x, double* a_y);
 
 /// Adds a part's M^-1 K w to a.
 void add_part(const Operator& op, const Part& part, const Field& w, Field& a);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <initializer_list>
+
 namespace slipfront::solve {
 
 /// Energies of the plate, and the work done on it since the start; J per unit thickness.
@@ -31,6 +33,14 @@ struct Energies {
            boundary_work + coupling_work;
   }
 };
+
+/// Adds the works of `step` to those of `sum`.
+inline void add_works(Energies& sum, const Energies& step) {
+  for (const auto work :
+       {&Energies::top_work, &Energies::trigger_work, &Energies::prestress_work, &Energies::friction_work,
+        &Energies::contact_work, &Energies::damping_work, &Energies::boundary_work, &Energies::coupling_work})
+    sum.*work += step.*work;
+}
 
 /// What the terms leave open: the change of stored energy since the start less the work done.
 inline double imbalance_J_per_m(const Energies& now, const Energies& start) {

@@ -26,16 +26,30 @@ class Watch {
 
   const Energies& start() const { return start_; }
 
+  /// Looks at the interface after a step. @return whether its motion is physical
+  bool look() {
+    double fastest = 0;
+    bool finite = true;
+    for (const double v : stepper_.interface_state().slip_rate_m_per_s) {
+      finite &= std::isfinite(v);
+      fastest = std::max(fastest, std::abs(v));
+    }
+    if (!finite) {
+      trouble_ = "the slip rate is not a number";
+    } else if (fastest > c_L_) {
+      trouble_ = fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", fastest);
+    }
+    return trouble_.empty();
+  }
+
+  /// Steps to the next look at the energy.
+  std::int64_t steps_to_check() const { return checked_step_ + energy_check_interval - stepper_.step(); }
+
   /// Empty, or what is wrong with the motion.
   /// @param known  energies that were taken after this step for another purpose; null for none
   std::string trouble(const Energies* known) {
-    double fastest = 0;
-    for (const double v : stepper_.interface_state().slip_rate_m_per_s) {
-      if (!std::isfinite(v)) return "the slip rate is not a number";
-      fastest = std::max(fastest, std::abs(v));
-    }
-    if (fastest > c_L_) return fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", fastest);
-    if (known == nullptr && stepper_.step() - checked_step_ < energy_check_interval) return {};
+    if (!trouble_.empty()) return trouble_;
+    if (known == nullptr && steps_to_check() > 0) return {};
     checked_step_ = stepper_.step();
     const Energies e = known != nullptr ? *known : stepper_.energies();
     const double total = e.stored();
@@ -52,11 +66,19 @@ class Watch {
   double c_L_;
   Energies start_;
   std::int64_t checked_step_ = 0;
+  std::string trouble_;  ///< found at the interface
 };
 
 std::string blow_up_message(const Stepper& stepper, const std::string& trouble) {
   return fmt::format("the run blew up at step {} (t = {:.6g} s): {}; reduce time.step_factor", stepper.step(),
                      stepper.time_s(), trouble);
+}
+
+/// Steps until the stepper's time is at least time_s.
+std::int64_t steps_until(const Stepper& stepper, double time_s) {
+  auto step = static_cast<std::int64_t>(time_s / stepper.step_s()) - 1;
+  while (static_cast<double>(step) * stepper.step_s() < time_s) ++step;
+  return step - stepper.step();
 }
 
 }  // namespace
@@ -97,11 +119,11 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   event.history.x_m = state.tractions.x_m;
 
   const double quiet_from = std::isfinite(trigger.ramp_s) ? trigger.ramp_s : 0;
-  const double steps = std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12));
-  if (steps > 1e12)
+  const double all_steps = std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12));
+  if (all_steps > 1e12)
     throw UserError("time.end_s = {:g} takes {:g} steps of {:.4g} s; choose an earlier end", time.end_s,
-                    steps, stepper.step_s());
-  const auto n_steps = static_cast<std::int64_t>(steps);
+                    all_steps, stepper.step_s());
+  const auto n_steps = static_cast<std::int64_t>(all_steps);
   const double sample_interval = std::max(sampling.history_interval_s, stepper.step_s());
   const double energy_interval = std::max(sampling.energy_interval_s, stepper.step_s());
   event.energies.push_back(watch.start());
@@ -114,12 +136,26 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
       ++next_snapshot;
     }
   };
+  const auto is_quiet = [&] {
+    return stepper.time_s() - std::max(recorder.last_motion_s(), quiet_from) > time.quiet_s;
+  };
+  Between between;
+  between.sample = [&]() -> fronts::History* {
+    if (stepper.time_s() < static_cast<double>(n_samples) * sample_interval) return nullptr;
+    n_samples = static_cast<std::int64_t>(stepper.time_s() / sample_interval) + 1;
+    return &event.history;
+  };
+  between.go_on = [&] { return watch.look() && !is_quiet(); };
   while (stepper.step() < n_steps) {
     take_snapshots();
-    const bool sample = stepper.time_s() >= static_cast<double>(n_samples) * sample_interval;
-    if (sample) n_samples = static_cast<std::int64_t>(stepper.time_s() / sample_interval) + 1;
-    stepper.advance(recorder, sample ? &event.history : nullptr);
-    const bool energies = stepper.time_s() >= static_cast<double>(n_energies) * energy_interval;
+    const double energy_time_s = static_cast<double>(n_energies) * energy_interval;
+    std::int64_t steps =
+        std::min({n_steps - stepper.step(), monitor_interval - stepper.step() % monitor_interval,
+                  watch.steps_to_check(), steps_until(stepper, energy_time_s)});
+    if (next_snapshot < sampling.snapshot_times_s.size())
+      steps = std::min(steps, steps_until(stepper, sampling.snapshot_times_s[next_snapshot]));
+    stepper.advance(recorder, steps, between);
+    const bool energies = stepper.time_s() >= energy_time_s;
     if (energies) {
       n_energies = static_cast<std::int64_t>(stepper.time_s() / energy_interval) + 1;
       event.energies.push_back(stepper.energies());
@@ -129,7 +165,7 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
       event.blow_up = blow_up_message(stepper, trouble);
       break;
     }
-    if (stepper.time_s() - std::max(recorder.last_motion_s(), quiet_from) > time.quiet_s) {
+    if (is_quiet()) {
       event.end = EventEnd::quiet;
       break;
     }
@@ -198,10 +234,19 @@ Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loadin
     return peak;
   };
 
+  constexpr std::int64_t renewal_interval = 1000;
   bool have_common = false;
+  double peak = 0;
+  Between between;
+  between.go_on = [&] {
+    peak = peak_now();
+    return watch.look() && peak < mu_s * (1 - (have_common ? ramp_handover : loading.critical_margin));
+  };
   for (;;) {
-    stepper.advance(recorder);
-    const double peak = peak_now();
+    stepper.advance(recorder,
+                    std::min({renewal_interval - stepper.step() % renewal_interval, watch.steps_to_check(),
+                              most + 1 - stepper.step()}),
+                    between);
     if (auto trouble = watch.trouble(nullptr); !trouble.empty())
       throw BlowUp(blow_up_message(stepper, trouble));
     if (!have_common && peak >= mu_s * (1 - loading.critical_margin)) {
@@ -212,7 +257,7 @@ Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loadin
       ramp.spontaneous = state_now();
       break;
     }
-    if (stepper.step() % 1000 == 0) {
+    if (stepper.step() % renewal_interval == 0) {
       const Equilibrium e = state_now();
       from = e.inside_from_m;
       to = e.inside_to_m;

@@ -4,7 +4,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/lanes.hpp"
+
 namespace slipfront::solve {
+
+namespace {
+
+bool any_slips_faster(double speed_m_per_s, const interface::Interface& s) {
+  const auto in_lanes = [&](LanesMask slipping, Lanes slip_rate_m_per_s) {
+    return any(slipping && absolute(slip_rate_m_per_s) > speed_m_per_s);
+  };
+  std::size_t i = 0;
+  for (; i + lanes <= s.size(); i += lanes)
+    if (in_lanes(load(&s.slipping[i]), load(&s.slip_rate_m_per_s[i]))) return true;
+  const int rest = static_cast<int>(s.size() - i);
+  return rest > 0 && in_lanes(load_part(&s.slipping[i], rest), load_part(&s.slip_rate_m_per_s[i], rest));
+}
+
+}  // namespace
 
 Recorder::Recorder(const Equilibrium& before, double mu_s, int halo, double creep_m_per_s)
     : creep_m_per_s_(creep_m_per_s),
@@ -33,12 +50,7 @@ void Recorder::observe(double time_s, const interface::Interface& state, bool ch
       previous_slipping_[i] = state.slipping[i];
     }
   }
-  if (n_slipping_ > 0) {
-    double fastest = 0;
-    for (std::size_t i = 0; i < state.size(); ++i)
-      fastest = std::max(fastest, state.slipping[i] * std::abs(state.slip_rate_m_per_s[i]));
-    if (fastest > creep_m_per_s_) last_motion_s_ = time_s;
-  }
+  if (n_slipping_ > 0 && any_slips_faster(creep_m_per_s_, state)) last_motion_s_ = time_s;
   std::ranges::copy(state.t_Pa, previous_t_Pa_.begin());
   std::ranges::copy(state.p_Pa, previous_p_Pa_.begin());
   std::ranges::copy(state.strength_Pa, previous_strength_Pa_.begin());

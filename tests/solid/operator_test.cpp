@@ -78,14 +78,14 @@ TEST_P(OnPlate, EachMovingNodeHasAStencilOrBlockRows) {
   int n_stencils = 0;
   for (const auto& row : op_.whole.stencil)
     for (const auto& span : row.spans)
-      for (int i = span.begin; i < span.end; ++i)
-        ++times[op_.blocks[row.block].node(i, row.row)], ++n_stencils;
+      for (int i = span.begin; i < span.end; ++i) ++times[op_.rows[row.row].first + i], ++n_stencils;
   for (const auto n : op_.whole.irregular.node) ++times[n];
   for (const auto n : op_.whole.general.node()) ++times[n];
   for (std::size_t n = 0; n < n_; ++n)
     EXPECT_EQ(times[n], op_.is_top[n] || op_.mass_kg[n] == 0 ? 0 : 1) << "node " << n;
-  // 39 inner columns; 20 rows below the loaded edge. The graded plate's lowest block has 6 rows.
-  EXPECT_EQ(n_stencils == 39 * 20, GetParam() == Form::none);
+  // 39 inner columns and the sides above the plane; 20 rows below the loaded edge. The graded plate's lowest
+  // block has 6 rows.
+  EXPECT_EQ(n_stencils == 39 * 20 + 2 * 19, GetParam() == Form::none);
   if (GetParam() >= Form::shuffled) {
     EXPECT_EQ(n_stencils, 0);
   } else {
@@ -99,9 +99,13 @@ TEST_P(OnPlate, EachMovingNodeHasAStencilOrBlockRows) {
 
 TEST_P(OnPlainPlate, StencilsEqualTheAssembledBlockRows) {
   std::vector<mesh::Node> with_stencil;
+  std::vector<Squares> squares;
   for (const auto& row : op_.whole.stencil)
     for (const auto& span : row.spans)
-      for (int i = span.begin; i < span.end; ++i) with_stencil.push_back(op_.grid.node(i, row.row));
+      for (int i = span.begin; i < span.end; ++i) {
+        with_stencil.push_back(op_.grid.node(i, row.row));
+        squares.push_back(row.squares);
+      }
   const BlockRows rows = assemble_rows(mesh_, material_, with_stencil, op_.mass_kg);
   const int stride = op_.grid.stride();
   const auto& s = op_.interior;
@@ -113,7 +117,8 @@ TEST_P(OnPlainPlate, StencilsEqualTheAssembledBlockRows) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const auto n = rows.node[r];
     const bool lower = n < stride;
-    ASSERT_EQ(rows.first[r + 1] - rows.first[r], lower ? 6 : 9);
+    const bool side = squares[r] == Squares::right || squares[r] == Squares::left;
+    ASSERT_EQ(rows.first[r + 1] - rows.first[r], lower || side ? 6 : 9);
     for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
       const int di = rows.neighbour[k] % stride - n % stride, dj = rows.neighbour[k] / stride - n / stride;
       const auto& block = rows.block[k];
@@ -122,6 +127,14 @@ TEST_P(OnPlainPlate, StencilsEqualTheAssembledBlockRows) {
         if (di == 0 && dj == 1) expect_block(block, {e.up_x, 0, 0, e.up_y});
         if (di != 0 && dj == 0) expect_block(block, {e.side_x, di * e.shear, -di * e.shear, e.side_y});
         if (di != 0 && dj == 1) expect_block(block, {e.corner_x, di * e.twist, di * e.twist, e.corner_y});
+      } else if (side) {
+        EXPECT_NE(di, squares[r] == Squares::right ? -1 : 1);
+        if (di == 0 && dj == 0) expect_block(block, {e.centre_y, 0, 0, e.centre_x});
+        if (di != 0 && dj == 0) expect_block(block, {e.up_y, 0, 0, e.up_x});
+        const int in = squares[r] == Squares::right ? 1 : -1;
+        const double shear = in * dj * e.shear, twist = in * dj * e.twist;
+        if (di == 0 && dj != 0) expect_block(block, {e.side_y, -shear, shear, e.side_x});
+        if (di != 0 && dj != 0) expect_block(block, {e.corner_y, twist, twist, e.corner_x});
       } else {
         if (di == 0 && dj == 0) expect_block(block, {s.centre, 0, 0, s.centre});
         if (di != 0 && dj == 0) expect_block(block, {s.along, 0, 0, s.across});
@@ -149,8 +162,7 @@ TEST_P(OnPlate, PartsAddUpToTheWhole) {
     int n_edges = 0;
     for (const auto& in_part : {first, second}) {
       const Part part = make_part(mesh_, material_, op_, in_part, edge_row);
-      for (const auto& row : part.stencil)
-        n_edges += row.block == 0 && row.row == edge_row && row.squares != Squares::all;
+      for (const auto& row : part.stencil) n_edges += row.row == edge_row && row.squares != Squares::all;
       Field one(n_);
       add_part(op_, part, w, one);
       add_part(op_, part, w, sum);

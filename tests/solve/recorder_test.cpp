@@ -169,6 +169,30 @@ TEST(Recorder, CreepIsNoMotion) {
   EXPECT_EQ(recorder.last_motion_s(), 3);
 }
 
+TEST(Recorder, SeesTheMotionOfAnyNode) {
+  // More nodes than the vectors of the search hold, and a rest.
+  constexpr std::size_t n = 19;
+  for (std::size_t node = 0; node < n; ++node) {
+    Equilibrium e;
+    e.tractions.x_m.assign(n, 0.0);
+    e.tractions.t_s_Pa.assign(n, 1.0);
+    e.tractions.p_s_Pa.assign(n, 4.0);
+    e.contact.assign(n, Contact::slip);
+    Recorder recorder(e, mu_s, 0, 0.01);
+    interface::Interface s(n);
+    s.slipping.assign(n, 1);
+    s.slip_rate_m_per_s.assign(n, -0.009);
+    s.slipping[node] = 0;
+    s.slip_rate_m_per_s[node] = 1;  // in the air
+    recorder.observe(1, s, true);
+    EXPECT_EQ(recorder.last_motion_s(), 0) << node;
+    s.slipping[node] = 1;
+    s.slip_rate_m_per_s[node] = -0.011;
+    recorder.observe(2, s, true);
+    EXPECT_EQ(recorder.last_motion_s(), 2) << node;
+  }
+}
+
 TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
   // A strength that is not mu_s p: relaxed, or of a weakened node. It falls from 2 Pa to 1.6 Pa while the
   // demand rises from 1.6 Pa to 1.92 Pa: the ratio from 0.8 to 1.2, through 1 after half of the step.

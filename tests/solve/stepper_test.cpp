@@ -598,6 +598,58 @@ TEST(Stepper, TriggerWorkIsForceTimesPath) {
   EXPECT_EQ(stepper.energies().trigger_work, 0);
 }
 
+/// Rows of bands that threads and steps of one sweep share; relief and fillet make the first band irregular.
+class Execute : public ::testing::TestWithParam<std::tuple<Corner, int, interface::ContactAlgorithm>> {};
+INSTANTIATE_TEST_SUITE_P(
+    Cases, Execute,
+    ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                       ::testing::Values(1, 4),
+                       ::testing::Values(interface::ContactAlgorithm::direct,
+                                         interface::ContactAlgorithm::predictor_corrector)));
+
+TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
+  const auto& [corner, substeps, algorithm] = GetParam();
+  const auto mesh = support::make_plate(0.2, 0.01, 0.5e-3, corner);
+  const auto law = support::with_algorithm(gentle_law, algorithm);
+  const auto e = random_flight(mesh, 1e-6, 1, 0);
+  constexpr int n_steps = 50;
+  struct Result {
+    solid::Field u, v;
+    Energies energies;
+    std::size_t onsets = 0;
+  };
+  const auto run = [&](const Execution& execution, int block) {
+    Stepper stepper(mesh, {}, law, {.interface_substeps = substeps}, execution);
+    stepper.start(e, 0);
+    stepper.set_trigger({.ramp_s = 1e-6}, std::vector<double>(mesh.lower.size(), 1.0));
+    Recorder recorder(e, mu_s, 1);
+    fronts::History history;
+    while (stepper.step() < n_steps) {
+      const auto before = stepper.step();
+      const auto most = std::min<std::int64_t>(block, n_steps - before);
+      EXPECT_EQ(stepper.advance(recorder, most, {.sample = [&] { return &history; }}), most);
+      EXPECT_EQ(stepper.step(), before + most);
+    }
+    EXPECT_GT(std::ranges::max(history.p_Pa), 0);
+    EXPECT_EQ(history.time_s.size(), n_steps);
+    return Result{stepper.u_m(), stepper.v_m_per_s(), stepper.energies(), recorder.record().onsets.size()};
+  };
+  const Result plain = run({1, 1}, 1);
+  EXPECT_GT(plain.onsets, 0);
+  for (const auto& [threads, depth, block] :
+       {std::tuple{1, 4, 50}, {1, 16, 7}, {2, 1, 50}, {2, 3, 50}, {3, 2, 20}}) {
+    const Result other = run({threads, depth}, block);
+    EXPECT_EQ(other.u.x, plain.u.x);
+    EXPECT_EQ(other.u.y, plain.u.y);
+    EXPECT_EQ(other.v.x, plain.v.x);
+    EXPECT_EQ(other.v.y, plain.v.y);
+    EXPECT_EQ(other.energies.damping_work, plain.energies.damping_work);
+    EXPECT_EQ(other.energies.strain, plain.energies.strain);
+    EXPECT_EQ(other.energies.work(), plain.energies.work());
+    EXPECT_EQ(other.onsets, plain.onsets);
+  }
+}
+
 TEST(Stepper, SamplesBelongToTheBeginningOfTheStep) {
   const auto mesh = tiny_plate(Corner::none);
   const solid::Material material;

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "base/host_device.hpp"
 #include "interface/friction/parameter.hpp"
 
 namespace slipfront::interface {
@@ -24,13 +25,17 @@ struct Coulomb {
   double static_coefficient() const { return mu; }
   double kinetic_coefficient() const { return mu; }
 
+  template <class V>
   struct Evaluator {
     double mu;
-    double operator()(double /*speed_m_per_s*/, double /*slip_m*/) const { return mu; }
+    SLIPFRONT_HOST_DEVICE V operator()(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{} + mu; }
     /// d mu / d|v|
-    double slope_s_per_m(double /*speed_m_per_s*/, double /*slip_m*/) const { return 0; }
+    SLIPFRONT_HOST_DEVICE V slope_s_per_m(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{}; }
   };
-  Evaluator evaluator() const { return {mu}; }
+  template <class V = double>
+  Evaluator<V> evaluator() const {
+    return {mu};
+  }
 };
 
 }  // namespace slipfront::interface

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
 
+#include "base/lanes.hpp"
 #include "interface/friction/parameter.hpp"
 
 namespace slipfront::interface {
@@ -35,14 +35,18 @@ struct LinearSlipWeakening {
   double static_coefficient() const { return mu_s; }
   double kinetic_coefficient() const { return mu_k; }
 
+  template <class V>
   struct Evaluator {
     double kinetic, drop, per_slip_per_m;
-    double operator()(double /*speed_m_per_s*/, double slip_m) const {
-      return kinetic + drop * std::max(0.0, 1 - slip_m * per_slip_per_m);
+    SLIPFRONT_HOST_DEVICE V operator()(V /*speed_m_per_s*/, V slip_m) const {
+      return kinetic + drop * positive_part(1 - slip_m * per_slip_per_m);
     }
-    double slope_s_per_m(double /*speed_m_per_s*/, double /*slip_m*/) const { return 0; }
+    SLIPFRONT_HOST_DEVICE V slope_s_per_m(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{}; }
   };
-  Evaluator evaluator() const { return {mu_k, mu_s - mu_k, 1 / d_c_m}; }
+  template <class V = double>
+  Evaluator<V> evaluator() const {
+    return {mu_k, mu_s - mu_k, 1 / d_c_m};
+  }
 };
 
 using SlipWeakening = LinearSlipWeakening<SlipMemory::lasting>;

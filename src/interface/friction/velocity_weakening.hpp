@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/exponential.hpp"
 #include "interface/friction/parameter.hpp"
 
 namespace slipfront::interface {
@@ -33,17 +34,21 @@ struct VelocityWeakening {
   double kinetic_coefficient() const { return mu_k; }
 
   /// The law with its constants folded, for the loop over nodes.
+  template <class V>
   struct Evaluator {
     double kinetic, drop, rate_s_per_m;
-    double operator()(double speed_m_per_s, double /*slip_m*/) const {
-      return kinetic + drop * std::exp(-speed_m_per_s * rate_s_per_m);
+    SLIPFRONT_HOST_DEVICE V operator()(V speed_m_per_s, V /*slip_m*/) const {
+      return kinetic + drop * exp_minus(speed_m_per_s * rate_s_per_m);
     }
     /// d mu / d|v|
-    double slope_s_per_m(double speed_m_per_s, double /*slip_m*/) const {
-      return -drop * rate_s_per_m * std::exp(-speed_m_per_s * rate_s_per_m);
+    SLIPFRONT_HOST_DEVICE V slope_s_per_m(V speed_m_per_s, V /*slip_m*/) const {
+      return -drop * rate_s_per_m * exp_minus(speed_m_per_s * rate_s_per_m);
     }
   };
-  Evaluator evaluator() const { return {mu_k, mu_s - mu_k, std::sqrt((mu_s - mu_k) / alpha_m2_per_s2)}; }
+  template <class V = double>
+  Evaluator<V> evaluator() const {
+    return {mu_k, mu_s - mu_k, std::sqrt((mu_s - mu_k) / alpha_m2_per_s2)};
+  }
 };
 
 }  // namespace slipfront::interface

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/lanes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace slipfront {
+namespace {
+
+const std::vector<double> special = {0.0,
+                                     -0.0,
+                                     1.5,
+                                     -2.5,
+                                     1e300,
+                                     -1e-310,
+                                     std::nan(""),
+                                     -std::nan(""),
+                                     std::numeric_limits<double>::infinity(),
+                                     -std::numeric_limits<double>::infinity()};
+
+/// Calls f(a, b, lanes of a, lanes of b, k) for all pairs of special values, in each lane k.
+template <class F>
+void for_each_pair(F&& f) {
+  for (const double a : special)
+    for (const double b : special)
+      for (int k = 0; k < lanes; ++k) {
+        Lanes many_a = Lanes{} + 7, many_b = Lanes{} - 3;
+        many_a[k] = a;
+        many_b[k] = b;
+        f(a, b, many_a, many_b, k);
+      }
+}
+
+TEST(Lanes, FunctionsAreThoseOfDoublesBitByBit) {
+  for_each_pair([](double a, double b, Lanes many_a, Lanes many_b, int k) {
+    EXPECT_EQ(bits_of(absolute(many_a)[k]), bits_of(absolute(a)));
+    EXPECT_EQ(bits_of(copy_sign(many_a, many_b)[k]), bits_of(copy_sign(a, b)));
+    EXPECT_EQ(bits_of(positive_part(many_a)[k]), bits_of(positive_part(a)));
+    EXPECT_EQ(bits_of(select(many_a < many_b, many_a, many_b)[k]), bits_of(select(a < b, a, b)));
+    EXPECT_EQ(bits_of(select(!(many_a <= many_b), many_a, many_b)[k]), bits_of(select(!(a <= b), a, b)));
+    EXPECT_EQ((many_a < many_b && many_b > 0)[k] != 0, a < b && b > 0);
+    EXPECT_EQ((many_a != many_b || many_b > 0)[k] != 0, a != b || b > 0);
+  });
+}
+
+TEST(Lanes, PositivePartOfWhatIsNotANumberIsNone) {
+  EXPECT_EQ(positive_part(std::nan("")), 0);
+  EXPECT_EQ(positive_part(-1.0), 0);
+  EXPECT_EQ(positive_part(2.0), 2);
+}
+
+TEST(Lanes, AnySeesEachLane) {
+  EXPECT_FALSE(any(LanesMask{}));
+  for (int k = 0; k < lanes; ++k) {
+    Lanes one{};
+    one[k] = 1;
+    EXPECT_TRUE(any(one > 0)) << k;
+  }
+  EXPECT_TRUE(any(true));
+  EXPECT_FALSE(any(false));
+}
+
+TEST(Lanes, AreLoadedAndStoredAnywhere) {
+  std::vector<double> from(3 * lanes);
+  for (std::size_t i = 0; i < from.size(); ++i) from[i] = static_cast<double>(i) + 1;
+  for (int begin = 0; begin <= lanes; ++begin) {
+    std::vector<double> to(3 * lanes);
+    store(&to[begin], load(&from[begin]));
+    for (int i = 0; i < 3 * lanes; ++i) EXPECT_EQ(to[i], i >= begin && i < begin + lanes ? i + 1 : 0);
+  }
+}
+
+TEST(Lanes, PartsRepeatTheirLastValueAndLeaveTheRestAlone) {
+  for (int count = 1; count < lanes; ++count) {
+    // Just as long as needed, so that a read or write beyond the end shows under the sanitizers.
+    std::vector<double> from(count), to(count, -1.0);
+    std::vector<std::uint8_t> flags(count), flags_to(count, 9);
+    for (int k = 0; k < count; ++k) {
+      from[k] = k + 1;
+      flags[k] = static_cast<std::uint8_t>((count - k) % 2);
+    }
+    const Lanes values = load_part(from.data(), count);
+    const LanesMask mask = load_part(flags.data(), count);
+    for (int k = 0; k < lanes; ++k) {
+      EXPECT_EQ(values[k], std::min(k + 1, count));
+      EXPECT_EQ(mask[k], flags[std::min(k, count - 1)] != 0 ? -1 : 0);
+    }
+    store_part(to.data(), values, count);
+    store_part(flags_to.data(), mask, count);
+    EXPECT_EQ(to, from);
+    EXPECT_EQ(flags_to, flags);
+    std::vector<double> longer(lanes, -1.0);
+    store_part(longer.data(), values, count);
+    for (int k = 0; k < lanes; ++k) EXPECT_EQ(longer[k], k < count ? k + 1 : -1);
+  }
+}
+
+TEST(Lanes, FlagsBecomeMasksAndBack) {
+  for (int set = 0; set < lanes; ++set) {
+    std::vector<std::uint8_t> flags(lanes), back(lanes, 9);
+    flags[set] = 1;
+    const LanesMask mask = load(flags.data());
+    for (int k = 0; k < lanes; ++k) EXPECT_EQ(mask[k], k == set ? -1 : 0);
+    store(back.data(), mask);
+    EXPECT_EQ(back, flags);
+  }
+}
+
+}  // namespace
+}  // namespace slipfront
