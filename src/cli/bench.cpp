@@ -1,88 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "bench/bench.hpp"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <fstream>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
+#include <thread>
 
 #include "base/version.hpp"
 #include "cli/commands.hpp"
-#include "fronts/fit.hpp"
-#include "mesh/plate.hpp"
-#include "solve/stepper.hpp"
 
 namespace slipfront::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Arrays that a step reads and writes for every node: u_x, u_y, v_x, v_y, each once in and once out.
-constexpr double bytes_per_node_update = 8 * sizeof(double);
-
-/// Median over repetitions of units of work per second; each repetition runs for at least 0.1 s.
-double rate(double units_per_call, const std::function<void()>& call) {
-  std::vector<double> rates;
-  call();
-  for (int repetition = 0; repetition < 5; ++repetition) {
-    const auto start = Clock::now();
-    double seconds = 0;
-    std::int64_t calls = 0;
-    do {
-      call();
-      ++calls;
-      seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    } while (seconds < 0.1);
-    rates.push_back(static_cast<double>(calls) * units_per_call / seconds);
-  }
-  return fronts::median(rates);
-}
-
-/// Bytes/s of a loop that streams through the same arrays as a step, without its arithmetic.
-double streaming_bandwidth(std::size_t n) {
-  std::vector<double> u_x(n, 1.0), u_y(n, 1.0), v_x(n, 1.0), v_y(n, 1.0);
-  return rate(bytes_per_node_update * static_cast<double>(n), [&] {
-    double* __restrict a = u_x.data();
-    double* __restrict b = u_y.data();
-    double* __restrict c = v_x.data();
-    double* __restrict d = v_y.data();
-    for (std::size_t i = 0; i < n; ++i) {
-      c[i] *= 0.999999;
-      d[i] *= 0.999999;
-      a[i] += 1e-9 * c[i];
-      b[i] += 1e-9 * d[i];
-    }
-  });
-}
-
-struct Row {
-  std::string path;
-  int columns, rows;
-  double updates_per_s, bound_per_s;
-};
-
-/// A plate above the plane, in free vibration: the contact update is done but nothing touches.
-Row measure(const std::string& path, int columns, const solve::TimeStepping& time) {
-  mesh::Plate plate;
-  plate.element_size_m = plate.width_m / columns;
-  const auto mesh = mesh::make_plate(plate);
-  solve::Stepper stepper(mesh, {}, {interface::VelocityWeakening{}}, time);
-  solve::Equilibrium state;
-  state.u_m = state.u_per_shear = solid::Field(static_cast<std::size_t>(mesh.n_nodes()));
-  state.contact.assign(mesh.lower.size(), solve::Contact::stick);
-  for (const auto n : mesh.lower) state.tractions.x_m.push_back(mesh.x_m[n]);
-  state.tractions.t_s_Pa.assign(mesh.lower.size(), 0.0);
-  state.tractions.p_s_Pa = state.tractions.t_s_Pa;
-  stepper.start(state, 1e-3);
-  solve::Recorder recorder(state, 1, 1);
-  const double updates = rate(stepper.node_updates_per_step(), [&] { stepper.advance(recorder); });
-  const double bandwidth = streaming_bandwidth(static_cast<std::size_t>(mesh.n_nodes()));
-  return {path, columns, columns / 2, updates, bandwidth / bytes_per_node_update};
-}
 
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
@@ -91,50 +23,81 @@ std::string processor() {
   return "unknown processor";
 }
 
-void bench(bool json) {
-  const solve::TimeStepping plain{.interface_substeps = 1};
-  const std::vector<Row> rows = {
-      measure("plain scheme", 300, plain), measure("interface sub-cycled", 300, {}),
-      measure("plain scheme", 3000, plain), measure("interface sub-cycled", 3000, {})};
-  if (json) {
-    nlohmann::ordered_json list;
-    for (const auto& r : rows)
-      list.push_back({{"path", r.path},
-                      {"columns", r.columns},
-                      {"rows", r.rows},
-                      {"node_updates_per_s", r.updates_per_s},
-                      {"streaming_bound_per_s", r.bound_per_s},
-                      {"fraction_of_bound", r.updates_per_s / r.bound_per_s}});
-    const nlohmann::ordered_json all = {{"version", version()},
-                                        {"commit", commit()},
-                                        {"processor", processor()},
-                                        {"compiler", std::string("g++ ") + __VERSION__},
-                                        {"threads", 1},
-                                        {"rows", list}};
-    fmt::print("{}\n", all.dump(2));
-    return;
-  }
-  fmt::print("{}, {}, g++ {}, 1 thread\n\n", version_line(), processor(), __VERSION__);
-  fmt::print("{:<24}{:>12}{:>22}{:>22}{:>10}\n", "path", "mesh", "node updates (M/s)",
-             "streaming bound (M/s)", "fraction");
-  for (const auto& r : rows)
-    fmt::print("{:<24}{:>12}{:>22.0f}{:>22.0f}{:>10.2f}\n", r.path, fmt::format("{} x {}", r.columns, r.rows),
-               r.updates_per_s * 1e-6, r.bound_per_s * 1e-6, r.updates_per_s / r.bound_per_s);
+void print_json(const bench::Results& results) {
+  nlohmann::ordered_json rates, paper_runs;
+  for (const auto& r : results.rates)
+    rates.push_back({{"path", r.path},
+                     {"columns", r.columns},
+                     {"rows", r.rows},
+                     {"threads", r.threads},
+                     {"steps_per_sweep", r.steps_per_sweep},
+                     {"node_updates_per_s", r.node_updates_per_s},
+                     {"bound_per_s", r.bound_per_s},
+                     {"fraction_of_bound", r.node_updates_per_s / r.bound_per_s},
+                     {"bytes_per_node", r.bytes_per_node}});
+  for (const auto& r : results.paper_runs)
+    paper_runs.push_back({{"columns", r.columns},
+                          {"rows", r.rows},
+                          {"threads", r.threads},
+                          {"statics_s", r.statics_s},
+                          {"event_s", r.event_s},
+                          {"node_updates_per_s", r.node_updates_per_s}});
+  const nlohmann::ordered_json all = {
+      {"version", version()},
+      {"commit", commit()},
+      {"processor", processor()},
+      {"compiler", std::string("g++ ") + __VERSION__},
+      {"bandwidth_bytes_per_s", results.bandwidth_bytes_per_s},
+      {"bandwidth_all_threads_bytes_per_s", results.bandwidth_all_threads_bytes_per_s},
+      {"stencil_alone_per_s", results.stencil_alone_per_s},
+      {"rates", rates},
+      {"paper_runs", paper_runs}};
+  fmt::print("{}\n", all.dump(2));
+}
+
+void print_table(const bench::Results& results) {
+  fmt::print("{}, {}, g++ {}\n\n", version_line(), processor(), __VERSION__);
+  fmt::print("bandwidth of u, v in and out: {:.1f} GB/s by one thread, {:.1f} GB/s by all\n",
+             results.bandwidth_bytes_per_s * 1e-9, results.bandwidth_all_threads_bytes_per_s * 1e-9);
+  fmt::print("the stencil alone, in the nearest cache: {:.0f} million node updates/s\n\n",
+             results.stencil_alone_per_s * 1e-6);
+  fmt::print("{:<32}{:>15}{:>9}{:>13}{:>12}{:>9}{:>10}{:>12}\n", "path", "mesh", "threads", "steps/sweep",
+             "M updates/s", "bound", "fraction", "bytes/node");
+  for (const auto& r : results.rates)
+    fmt::print("{:<32}{:>15}{:>9}{:>13}{:>12.0f}{:>9.0f}{:>10.2f}{:>12}\n", r.path,
+               fmt::format("{} x {}", r.columns, r.rows), r.threads, r.steps_per_sweep,
+               r.node_updates_per_s * 1e-6, r.bound_per_s * 1e-6, r.node_updates_per_s / r.bound_per_s,
+               r.bytes_per_node > 0 ? fmt::format("{:.0f}", r.bytes_per_node) : "");
   fmt::print(
-      "\nBound: one sweep of the arrays u, v in and out ({:.0f} bytes a node), at the bandwidth that a loop "
-      "without the step's\n"
-      "arithmetic reaches on arrays of the same size in this run. Medians of 5.\n",
-      bytes_per_node_update);
+      "\nBound: bandwidth over {:.0f} bytes a node for one step per sweep through memory, else the "
+      "stencil alone. Medians of 5.\n\n",
+      bench::bytes_per_node_update);
+  for (const auto& r : results.paper_runs)
+    fmt::print(
+        "the paper's left event, {} x {}, {} thread{}: statics {:.2f} s, event {:.2f} s ({:.0f} "
+        "million node updates/s)\n",
+        r.columns, r.rows, r.threads, r.threads > 1 ? "s" : "", r.statics_s, r.event_s,
+        r.node_updates_per_s * 1e-6);
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("bench", "Measure node updates per second against the machine's bandwidth");
+      app.add_subcommand("bench", "Measure node updates per second against the machine's bounds");
+  auto options = std::make_shared<bench::Options>();
+  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON, for comparison between versions");
-  command->callback([json] { bench(*json); });
+  command->add_option("--threads", options->threads, "The most threads to measure with")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--large", options->large, "Also 10,000 x 5,000 cells, some 7 GB");
+  command->callback([options, json] {
+    const auto results = bench::measure(
+        *options, [](const std::string& next) { fmt::print(stderr, "\r{:<70}", next), std::fflush(stderr); });
+    fmt::print(stderr, "\r{:<70}\r", "");
+    *json ? print_json(results) : print_table(results);
+  });
 }
 
 }  // namespace slipfront::cli

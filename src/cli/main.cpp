@@ -12,7 +12,17 @@
 #include "base/version.hpp"
 #include "cli/commands.hpp"
 
+extern "C" void openblas_set_num_threads(int n_threads);
+extern "C" [[gnu::weak]] int blas_thread_shutdown_();
+
 namespace {
+
+/// OpenBLAS starts threads when the program is loaded, and they spin before they sleep; the program uses none
+/// of them (solve/factorisation.cpp).
+void end_blas_threads() {
+  openblas_set_num_threads(1);
+  if (blas_thread_shutdown_ != nullptr) blas_thread_shutdown_();
+}
 
 enum ExitCode {
   done = 0,
@@ -58,7 +68,10 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) try { return run(argc, argv); } catch (const slipfront::UserError& error) {
+int main(int argc, char** argv) try {
+  end_blas_threads();
+  return run(argc, argv);
+} catch (const slipfront::UserError& error) {
   return report(user_error, error.what());
 } catch (const slipfront::BlowUp& error) {
   return report(blow_up, fmt::format("slipfront: {}", error.what()));
@@ -67,9 +80,7 @@ int main(int argc, char** argv) try { return run(argc, argv); } catch (const sli
 } catch (const slipfront::Interrupted& error) {
   return report(interrupted, fmt::format("slipfront: {}", error.what()));
 } catch (const std::bad_alloc&) {
-  return report(
-      internal_error,
-      "slipfront: not enough memory; use larger elements, fewer snapshots or a longer history interval");
+  return report(internal_error, "slipfront: not enough memory; use larger elements");
 } catch (const std::exception& error) {
   return report(internal_error, fmt::format("slipfront: internal error: {}", error.what()));
 } catch (...) {

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
@@ -12,6 +14,7 @@
 #include "fronts/fit.hpp"
 #include "io/log.hpp"
 #include "io/results.hpp"
+#include "io/stream.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -20,6 +23,7 @@ struct RunArguments {
   std::string dir;
   bool overwrite = false;
   bool quiet = false;
+  int threads = 1;
 };
 
 /// The folder for the results; if nothing was written to it, the folders made for it go again.
@@ -69,6 +73,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
   const io::Case config = arguments.read();
   const OutputFolder folder{options.dir, io::claim_output_folder(options.dir, options.overwrite)};
   catch_interrupts();
+  const solve::Execution execution{.threads = options.threads};
   const auto with_progress = [&](const char* label) {
     // The total is known only when the first step is done.
     return [label, quiet = options.quiet, progress = std::shared_ptr<io::Progress>()](
@@ -79,10 +84,13 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
     };
   };
   try {
-    const auto initial = run::make_initial_state(config, with_progress("ramp"));
-    const auto result = run::run_event(config, initial, with_progress("event"));
-    io::remove_results(options.dir);
-    run::write(options.dir, result, initial);
+    auto initial = run::make_initial_state(config, with_progress("ramp"), execution);
+    io::ResultStream stream(options.dir, initial.common.tractions.x_m, initial.mesh,
+                            !config.output.snapshot_times_s.empty());
+    const auto stepper = run::start_event(config, initial, execution);
+    const auto result = run::run_event(config, initial, *stepper, with_progress("event"), &stream);
+    stream.publish();
+    run::write_beside_stream(options.dir, result, initial);
     if (result.event.end == solve::EventEnd::blow_up)
       throw BlowUp(result.event.blow_up + "; what there is was kept in " + options.dir);
     if (result.event.end == solve::EventEnd::interrupted)
@@ -102,6 +110,13 @@ void add_run(CLI::App& app) {
   auto options = std::make_shared<RunArguments>();
   command->add_option("-o,--output", options->dir, "Folder for the results")->required()->type_name("DIR");
   command->add_flag("--overwrite", options->overwrite, "Replace the results that the folder already holds");
+  // More pay on large meshes only.
+  constexpr unsigned most_threads_by_default = 4;
+  options->threads =
+      static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, most_threads_by_default));
+  command->add_option("--threads", options->threads, "Threads of the run; the results do not depend on them")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
   command->callback([arguments, options] { run_case(*arguments, *options); });
 }

@@ -10,14 +10,6 @@
 namespace slipfront::io::hdf5 {
 namespace {
 
-/// Failures are reported by the exceptions alone (a setting of the calling thread). Nor may HDF5 clean up at
-/// the program's end: every file is closed by its handle, and after a failed close, as on a full disk, it
-/// would crash.
-void prepare_library() {
-  [[maybe_unused]] static const herr_t once = H5dont_atexit();
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
-
 std::size_t count(const Shape& shape) {
   return static_cast<std::size_t>(
       std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()));
@@ -34,16 +26,58 @@ Handle open_object(const File& file, const std::string& name) {
   return object;
 }
 
-Handle new_dataset(const File& file, const std::string& name, hid_t type, const Shape& shape) {
-  const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  // No time of writing, so that equal data make equal files.
-  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+/// Properties of a new data set: no time of writing, so that equal data make equal files.
+Handle dataset_properties(const File& file, const std::string& name) {
+  Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   if (!properties.valid() || H5Pset_obj_track_times(properties.get(), false) < 0) throw_write(file, name);
+  return properties;
+}
+
+Handle new_dataset(const File& file, const std::string& name, hid_t type, const Handle& space,
+                   const Handle& properties) {
   Handle dataset(H5Dcreate2(file.handle.get(), name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(),
                             H5P_DEFAULT),
                  H5Dclose);
   if (!dataset.valid()) throw_write(file, name);
   return dataset;
+}
+
+Handle new_dataset(const File& file, const std::string& name, hid_t type, const Shape& shape) {
+  const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  return new_dataset(file, name, type, space, dataset_properties(file, name));
+}
+
+/// A data set that was made before, and its shape.
+struct Dataset {
+  Handle handle, space;
+  Shape shape;
+};
+
+Dataset open_dataset(const File& file, const std::string& name) {
+  Handle handle(H5Dopen2(file.handle.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+  Handle space(H5Dget_space(handle.get()), H5Sclose);
+  SLIPFRONT_ASSERT(space.valid(), "rows of a data set that was not created");
+  Shape shape(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
+  H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+  return {std::move(handle), std::move(space), std::move(shape)};
+}
+
+template <class T>
+void write_rows_of(const File& file, const std::string& name, hid_t type, hsize_t first_row,
+                   std::span<const T> values) {
+  if (values.empty()) return;
+  auto [dataset, space, shape] = open_dataset(file, name);
+  Shape start(shape.size(), 0);
+  start[0] = first_row;
+  const hsize_t rows = shape[0];
+  shape[0] = 1;
+  SLIPFRONT_ASSERT(values.size() % count(shape) == 0, "rows of a data set are not whole");
+  shape[0] = values.size() / count(shape);
+  SLIPFRONT_ASSERT(first_row + shape[0] <= rows, "rows beyond the end of their data set");
+  const Handle block(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr) < 0 ||
+      H5Dwrite(dataset.get(), type, block.get(), space.get(), H5P_DEFAULT, values.data()) < 0)
+    throw_write(file, name);
 }
 
 template <class T>
@@ -66,16 +100,24 @@ void write_attribute(const File& file, const std::string& object, const std::str
 
 }  // namespace
 
-File create_file(const std::filesystem::path& path) {
-  prepare_library();
+void silence() {
+  // Nor may HDF5 clean up at the program's end: every file is closed by its handle, and after a failed close,
+  // as on a full disk, it would crash.
+  [[maybe_unused]] static const herr_t once = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+File create_file(const std::filesystem::path& path, const std::filesystem::path& shown) {
+  silence();
+  const auto& name = shown.empty() ? path : shown;
   Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   if (!handle.valid())
-    throw UserError("{}: cannot be created; check that its folder exists and can be written", path.string());
-  return {path, std::move(handle)};
+    throw UserError("{}: cannot be created; check that its folder exists and can be written", name.string());
+  return {name, std::move(handle)};
 }
 
 File open_file(const std::filesystem::path& path) {
-  prepare_library();
+  silence();
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     throw UserError("{}: does not exist; check the path", path.string());
@@ -85,8 +127,12 @@ File open_file(const std::filesystem::path& path) {
   return {path, std::move(handle)};
 }
 
-void close(File file) {
+void flush(const File& file) {
   if (H5Fflush(file.handle.get(), H5F_SCOPE_GLOBAL) < 0) throw_write(file, "its data");
+}
+
+void close(File file) {
+  flush(file);
 }
 
 void create_group(const File& file, const std::string& name) {
@@ -109,29 +155,39 @@ void write(const File& file, const std::string& name, std::span<const std::uint8
   write_values(file, name, H5T_NATIVE_UINT8, values, shape);
 }
 
-void create(const File& file, const std::string& name, const Shape& shape) {
-  new_dataset(file, name, H5T_NATIVE_DOUBLE, shape);
+void create(const File& file, const std::string& name, Type type, const Shape& shape) {
+  new_dataset(file, name, type == Type::int64 ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, shape);
+}
+
+void create_growing(const File& file, const std::string& name, const Shape& row, hsize_t chunk_rows,
+                    bool whole_chunks) {
+  Shape now = row, most = row, chunk = row;
+  now.insert(now.begin(), 0);
+  most.insert(most.begin(), H5S_UNLIMITED);
+  chunk.insert(chunk.begin(), chunk_rows);
+  const auto rank = static_cast<int>(now.size());
+  const Handle space(H5Screate_simple(rank, now.data(), most.data()), H5Sclose);
+  const Handle properties = dataset_properties(file, name);
+  if (H5Pset_chunk(properties.get(), rank, chunk.data()) < 0 ||
+      (whole_chunks && H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER) < 0))
+    throw_write(file, name);
+  new_dataset(file, name, H5T_NATIVE_DOUBLE, space, properties);
+}
+
+void add_rows(const File& file, const std::string& name, hsize_t rows) {
+  auto [dataset, space, shape] = open_dataset(file, name);
+  shape[0] += rows;
+  if (H5Dset_extent(dataset.get(), shape.data()) < 0) throw_write(file, name);
 }
 
 void write_rows(const File& file, const std::string& name, hsize_t first_row,
                 std::span<const double> values) {
-  if (values.empty()) return;
-  const Handle dataset(H5Dopen2(file.handle.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
-  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  SLIPFRONT_ASSERT(space.valid(), "rows of a data set that was not created");
-  Shape shape(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
-  H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
-  Shape start(shape.size(), 0);
-  start[0] = first_row;
-  const hsize_t rows = shape[0];
-  shape[0] = 1;
-  SLIPFRONT_ASSERT(values.size() % count(shape) == 0, "rows of a data set are not whole");
-  shape[0] = values.size() / count(shape);
-  SLIPFRONT_ASSERT(first_row + shape[0] <= rows, "rows beyond the end of their data set");
-  const Handle block(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr) < 0 ||
-      H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, block.get(), space.get(), H5P_DEFAULT, values.data()) < 0)
-    throw_write(file, name);
+  write_rows_of(file, name, H5T_NATIVE_DOUBLE, first_row, values);
+}
+
+void write_rows(const File& file, const std::string& name, hsize_t first_row,
+                std::span<const std::int64_t> values) {
+  write_rows_of(file, name, H5T_NATIVE_INT64, first_row, values);
 }
 
 void set_attribute(const File& file, const std::string& object, const std::string& name,

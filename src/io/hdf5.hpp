@@ -49,12 +49,19 @@ struct File {
   Handle handle;
 };
 
+/// Silences HDF5 in the calling thread; creating and opening files does it as well.
+void silence();
+
 /// Creates a file, replacing one that is there.
-File create_file(const std::filesystem::path& path);
+/// @param shown  the name for messages, where it is to be another
+File create_file(const std::filesystem::path& path, const std::filesystem::path& shown = {});
 File open_file(const std::filesystem::path& path);
 
 /// Writes out what HDF5 still holds back and closes; without it a full disk would go unnoticed.
 void close(File file);
+
+/// Hands all that was written so far to the system. @throws UserError where the disk is full.
+void flush(const File& file);
 
 void create_group(const File& file, const std::string& name);
 
@@ -67,10 +74,21 @@ void write(const File& file, const std::string& name, std::span<const std::int64
 void write(const File& file, const std::string& name, std::span<const std::uint8_t> values,
            const Shape& shape);
 
-/// Makes a data set of doubles that write_rows fills.
-void create(const File& file, const std::string& name, const Shape& shape);
+/// Makes a data set that write_rows fills.
+enum class Type { float64, int64 };
+void create(const File& file, const std::string& name, Type type, const Shape& shape);
+/// Makes a data set of doubles without rows that append_rows lengthens, stored in chunks of `chunk_rows`
+/// rows.
+/// @param row  the lengths after the first
+/// @param whole_chunks  nothing shorter than a chunk will be left over: saves filling chunks in advance
+void create_growing(const File& file, const std::string& name, const Shape& row, hsize_t chunk_rows,
+                    bool whole_chunks = false);
 /// Writes values.size() / (product of the other lengths) rows from `first_row` on.
 void write_rows(const File& file, const std::string& name, hsize_t first_row, std::span<const double> values);
+void write_rows(const File& file, const std::string& name, hsize_t first_row,
+                std::span<const std::int64_t> values);
+/// Lengthens a data set by `rows` rows, for write_rows.
+void add_rows(const File& file, const std::string& name, hsize_t rows);
 
 /// Sets an attribute of a group or data set: text, fixed-length ASCII text (VTKHDF asks for it), integers.
 void set_attribute(const File& file, const std::string& object, const std::string& name,

@@ -70,7 +70,7 @@ Grid make_grid(const Plate& plate) {
 }
 
 /// Mesh, operator and motion of a plate, and what building them takes for a while.
-constexpr double bytes_per_node = 250;
+constexpr double bytes_per_node = 180;
 
 /// Column i of the transition's inner nodes stands i times the smaller spacing from the left; every fourth
 /// column has none.

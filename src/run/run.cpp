@@ -4,9 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <numeric>
 #include <utility>
+
+#ifdef __GLIBC__  // known from the headers above
+#include <malloc.h>
+#endif
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
@@ -49,11 +54,6 @@ bool is_prestressed(const io::Case& config) {
   return config.loading.method == solve::LoadingMethod::prestress;
 }
 
-/// Bytes of the fields of a plate in motion.
-double fields_bytes(double n_nodes, double n_cells) {
-  return n_nodes * (2 + 4 + 1 + 4) * 8 + n_cells * 16;
-}
-
 fronts::StaticState prescribed_tractions(const io::Prestress& prestress, const mesh::Mesh& mesh) {
   fronts::StaticState state;
   for (const auto n : mesh.lower) state.x_m.push_back(mesh.x_m[n]);
@@ -70,6 +70,10 @@ std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::M
   for (const auto n : mesh.lower)
     B.push_back(interface::nucleation_profile(nucleation, mesh.x_m[n], mesh.period_m));
   return B;
+}
+
+const solve::Equilibrium& event_state(const io::Case& config, const InitialState& initial) {
+  return config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
 }
 
 /// Prescribed tractions beyond the static strength, said in one line; empty where there are none.
@@ -125,11 +129,10 @@ std::string initial_state_key(const io::Case& config) {
 
 mesh::Mesh check(const io::Case& config) {
   const double n_unknowns = approximate_unknowns(config.plate);
-  if (is_prestressed(config)) {
-    require_memory(fields_bytes(0.5 * n_unknowns, 0.5 * n_unknowns),
-                   fmt::format("a plate of {:.4g} nodes", 0.5 * n_unknowns),
-                   "choose a larger plate.element_size_m");
-  } else {
+  const double n_nodes = 0.5 * n_unknowns;
+  require_memory(solve::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty()),
+                 fmt::format("a plate of {:.4g} nodes", n_nodes), "choose a larger plate.element_size_m");
+  if (!is_prestressed(config)) {
     if (config.plate.sides == mesh::Sides::periodic)
       throw UserError(
           "plate.sides = periodic has no equilibrium under a tilted top edge; choose free or absorbing, or "
@@ -146,12 +149,15 @@ mesh::Mesh check(const io::Case& config) {
   return mesh;
 }
 
-InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor) {
+InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor,
+                                const solve::Execution& execution) {
   const auto start = Clock::now();
   const double mu_s = interface::static_coefficient(config.friction);
   const double margin = config.loading.critical_margin;
   InitialState initial;
   initial.mesh = check(config);
+  initial.n_nodes = initial.mesh.n_nodes();
+  initial.n_cells = std::ssize(initial.mesh.cells);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
   if (is_prestressed(config)) {
     initial.prescribed = true;
@@ -172,7 +178,7 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
   } else {
     auto plain = config.time;
     plain.interface_substeps = 1;
-    solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), plain);
+    solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), plain, execution);
     initial.ramp = solve::run_ramp(
         stepper, statics.shear_by(0), config.loading, mu_s, top_speed_m_per_s(config),
         solid::longitudinal_speed_m_per_s(config.material), initial.critical_shear_m, monitor);
@@ -213,30 +219,73 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
   return o;
 }
 
-Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor) {
-  Result result;
-  result.config = config;
-  result.speeds = wave_speeds(config.material);
-  const double mu_s = interface::static_coefficient(config.friction);
-  const auto& state =
-      config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
+namespace {
 
-  solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), config.time);
-  stepper.start(state, top_speed_m_per_s(config));
-  if (initial.prescribed) stepper.set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
-  auto forces = solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger, mu_s);
+std::unique_ptr<solve::Stepper> make_stepper(const io::Case& config, const InitialState& initial,
+                                             const solve::Execution& execution) {
+  const auto& state = event_state(config, initial);
+  auto stepper = std::make_unique<solve::Stepper>(initial.mesh, config.material, io::contact_model(config),
+                                                  config.time, execution);
+  stepper->start(state, top_speed_m_per_s(config));
+  if (initial.prescribed) stepper->set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
+  auto forces = solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger,
+                                      interface::static_coefficient(config.friction));
   if (config.event == interface::EventKind::nucleation) {
     auto B = patch(config.nucleation, initial.mesh);
     if (config.nucleation.form == interface::NucleationForm::weakened) {
       for (double& b : B) b = 1 - b;
-      stepper.set_intact(std::move(B));
+      stepper->set_intact(std::move(B));
     } else {
       for (std::size_t k = 0; k < B.size(); ++k)
         if (state.contact[k] != solve::Contact::open)
           forces[k] = config.nucleation.overstress_Pa * B[k] * initial.tributary_m[k];
     }
   }
-  stepper.set_trigger(config.trigger, std::move(forces));
+  stepper->set_trigger(config.trigger, std::move(forces));
+  return stepper;
+}
+
+void release_displacements(solve::Equilibrium& state) {
+  state.u_m = {};
+  state.u_per_shear = {};
+}
+
+}  // namespace
+
+std::unique_ptr<solve::Stepper> start_event(const io::Case& config, InitialState& initial,
+                                            const solve::Execution& execution) {
+  const auto* from = &event_state(config, initial);
+  if (from != &initial.common) release_displacements(initial.common);
+  if (from != &initial.spontaneous) release_displacements(initial.spontaneous);
+  if (initial.ramp) {
+    release_displacements(initial.ramp->common);
+    release_displacements(initial.ramp->spontaneous);
+  }
+  auto stepper = make_stepper(config, initial, execution);
+  release_displacements(initial.common);
+  release_displacements(initial.spontaneous);
+  initial.mesh.x_m = std::vector<double>();
+  initial.mesh.y_m = std::vector<double>();
+  initial.mesh.cells = std::vector<mesh::Cell>();
+#ifdef __GLIBC__
+  malloc_trim(0);  // what was freed may lie between what was not
+#endif
+  return stepper;
+}
+
+Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor,
+                 const solve::Execution& execution) {
+  const auto stepper = make_stepper(config, initial, execution);
+  return run_event(config, initial, *stepper, monitor);
+}
+
+Result run_event(const io::Case& config, const InitialState& initial, solve::Stepper& stepper,
+                 const solve::Monitor& monitor, solve::Sink* sink) {
+  Result result;
+  result.config = config;
+  result.speeds = wave_speeds(config.material);
+  const double mu_s = interface::static_coefficient(config.friction);
+  const auto& state = event_state(config, initial);
   result.stable_step_s = stepper.stable_step_s();
   result.step_s = stepper.step_s();
   result.substep_s = stepper.substep_s();
@@ -251,7 +300,7 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
       stepper, state, mu_s, result.speeds.c_L, triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
       config.time,
       {config.output.history_interval_s, config.output.energy_interval_s, config.output.snapshot_times_s},
-      solve::halo_for(initial.mesh, config.fronts.l_star_m), monitor);
+      solve::halo_for(initial.mesh, config.fronts.l_star_m), monitor, sink);
   result.stepping_wall_s = seconds_since(start);
 
   result.fronts =
@@ -275,6 +324,21 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
   return result;
 }
 
+namespace {
+
+stability::WellPosedness well_posedness(const io::Case& config, const mesh::Mesh& mesh) {
+  const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
+  double pressure_Pa = stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m);
+  if (is_prestressed(config)) {
+    const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
+    pressure_Pa = std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
+  }
+  return stability::well_posedness(config.material, config.friction, pressure_Pa, config.plate.element_size_m,
+                                   config.plate.width_m, config.regularisation);
+}
+
+}  // namespace
+
 Info info(const io::Case& config) {
   Info info;
   info.speeds = wave_speeds(config.material);
@@ -283,7 +347,11 @@ Info info(const io::Case& config) {
   info.n_cells = static_cast<std::int64_t>(mesh.cells.size());
   info.n_interface = static_cast<std::int64_t>(mesh.lower.size());
 
+  // About as long as making the stepper.
+  auto sliding =
+      std::async(std::launch::async | std::launch::deferred, [&] { return well_posedness(config, mesh); });
   solve::Stepper stepper(mesh, config.material, io::contact_model(config), config.time);
+  info.well_posedness = sliding.get();
   info.n_irregular = static_cast<std::int64_t>(stepper.plate().whole.irregular.size() +
                                                stepper.plate().whole.general.size());
   info.stable_step_s = stepper.stable_step_s();
@@ -293,10 +361,11 @@ Info info(const io::Case& config) {
   info.node_updates = static_cast<double>(info.n_steps) * stepper.node_updates_per_step();
 
   const double n_unknowns = 2.0 * static_cast<double>(info.n_nodes);
-  info.memory_bytes = fields_bytes(static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells));
+  info.memory_bytes = solve::event_bytes(static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
+                                         !config.output.snapshot_times_s.empty());
   if (!is_prestressed(config)) {
     info.factor_bytes = solve::estimated_factor_bytes(n_unknowns);
-    info.memory_bytes += solve::statics_bytes(n_unknowns, info.factor_bytes);
+    info.memory_bytes = std::max(info.memory_bytes, solve::statics_bytes(n_unknowns, info.factor_bytes));
   }
 
   // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
@@ -314,22 +383,13 @@ Info info(const io::Case& config) {
     const auto step_start = Clock::now();
     stepper.advance(recorder);
     fastest_s = std::min(fastest_s, seconds_since(step_start));
-  } while (seconds_since(start) < 5e-3);
+  } while (seconds_since(start) < 2e-3);
   info.node_updates_per_s = stepper.node_updates_per_step() / fastest_s;
   // The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
   const double statics_s =
       is_prestressed(config) ? 0 : 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
   info.expected_s = info.node_updates / info.node_updates_per_s + statics_s;
 
-  const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
-  double pressure_Pa = stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m);
-  if (is_prestressed(config)) {
-    const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
-    pressure_Pa = std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
-  }
-  info.well_posedness =
-      stability::well_posedness(config.material, config.friction, pressure_Pa, config.plate.element_size_m,
-                                config.plate.width_m, config.regularisation);
   return info;
 }
 

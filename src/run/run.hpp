@@ -21,6 +21,7 @@ namespace slipfront::run {
 /// state.
 struct InitialState {
   mesh::Mesh mesh;
+  std::int64_t n_nodes = 0, n_cells = 0;
   std::vector<double> tributary_m;  ///< [lower]
   solve::Equilibrium common;        ///< at t/p = (1 - critical_margin) mu_s inside
   solve::Equilibrium spontaneous;   ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
@@ -38,7 +39,8 @@ struct InitialState {
 mesh::Mesh check(const io::Case& config);
 
 /// @throws UserError, BlowUp, Interrupted as its parts do.
-InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor);
+InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor,
+                                const solve::Execution& execution = {});
 
 /// A text that is the same for two cases if and only if they share their initial state.
 std::string initial_state_key(const io::Case& config);
@@ -61,9 +63,20 @@ struct Result {
   std::vector<std::string> warnings;
 };
 
+/// The plate in a case's initial state, about to move. Takes what only this needs out of the initial state:
+/// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
+std::unique_ptr<solve::Stepper> start_event(const io::Case& config, InitialState& initial,
+                                            const solve::Execution& execution = {});
+
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
 /// ends the event early and is told by event.end.
-Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor);
+/// @param started  by start_event
+/// @param sink     takes samples and snapshots; without one the event keeps them
+Result run_event(const io::Case& config, const InitialState& initial, solve::Stepper& started,
+                 const solve::Monitor& monitor, solve::Sink* sink = nullptr);
+/// Starts the event as well, and leaves the initial state as it is.
+Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor,
+                 const solve::Execution& execution = {});
 
 /// How a case's fronts are measured.
 fronts::FrontOptions front_options(const io::Case& config, const InitialState& initial);
@@ -71,6 +84,8 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
 /// Writes the run's folder: case.resolved.toml, run.json, interface.h5, fronts.csv, static.csv, and
 /// fields.vtkhdf where there are snapshots. The folder must have been prepared (io::prepare_output_folder).
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
+/// The same but for interface.h5 and fields.vtkhdf, which were written while the run went (io::ResultStream).
+void write_beside_stream(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
 
 /// Derived quantities of a case, found without solving anything.
 struct Info {

@@ -8,8 +8,10 @@
 
 #include "base/error.hpp"
 #include "base/version.hpp"
+#include "io/history.hpp"
 #include "io/results.hpp"
 #include "io/schema.hpp"
+#include "io/snapshots.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::run {
@@ -104,17 +106,18 @@ Json fronts_json(const std::vector<fronts::Front>& fronts) {
 
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial) {
   const auto& event = result.event;
+  io::write_history(dir / "interface.h5", event.history);
+  if (!event.snapshots.empty()) io::write_snapshots(dir / "fields.vtkhdf", initial.mesh, event.snapshots);
+  write_beside_stream(dir, result, initial);
+}
+
+void write_beside_stream(const std::filesystem::path& dir, const Result& result,
+                         const InitialState& initial) {
+  const auto& event = result.event;
   io::write_text(dir / "case.resolved.toml", io::to_toml(result.config));
   io::write_static(dir / "static.csv", initial.common.tractions);
-  io::write_history(dir / "interface.h5", event.history);
   io::write_fronts(dir / "fronts.csv", result.fronts);
   io::write_energies(dir / "energy.csv", event.energies);
-  if (!event.snapshots.empty()) {
-    std::vector<io::Snapshot> snapshots;
-    for (const auto& s : event.snapshots)
-      snapshots.push_back({s.time_s, s.u_m.x, s.u_m.y, s.v_m_per_s.x, s.v_m_per_s.y});
-    io::write_snapshots(dir / "fields.vtkhdf", initial.mesh, snapshots);
-  }
 
   auto warnings = result.warnings;
   if (!event.blow_up.empty()) warnings.push_back(event.blow_up);
@@ -127,8 +130,8 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
                      {"mesh",
                       {{"columns", initial.mesh.grid.columns},
                        {"rows", initial.mesh.grid.rows},
-                       {"nodes", initial.mesh.n_nodes()},
-                       {"cells", initial.mesh.cells.size()}}},
+                       {"nodes", initial.n_nodes},
+                       {"cells", initial.n_cells}}},
                      {"wave_speeds",
                       {{"c_L_m_per_s", result.speeds.c_L},
                        {"c_S_m_per_s", result.speeds.c_S},

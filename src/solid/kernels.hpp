@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/host_device.hpp"
 #include "base/lanes.hpp"
 #include "solid/operator.hpp"
 
-// The loops of the explicit step over plain arrays, one grid row at a time. Every pointer points to column 0
-// of its row; rows of w never alias the rows that are written.
+// The explicit step over plain arrays: the kick of one node by functions for any processor, and loops over
+// them, one grid row at a time. Every pointer points to column 0 of its row; rows of w never alias the rows
+// that are written.
 namespace slipfront::solid {
 
 inline InteriorStencil scaled(InteriorStencil s, double factor) {
@@ -38,18 +40,26 @@ inline void combine_row(int n, double factor, const double* __restrict u_x, cons
   for (int i = 0; i < n; ++i) w_y[i] = u_y[i] + factor * v_y[i];
 }
 
+/// Kick of a node amid four squares.
+SLIPFRONT_HOST_DEVICE inline Pair interior_kick(const InteriorStencil& s, int i, ConstRow south,
+                                                ConstRow middle, ConstRow north) {
+  const double corners_x = (south.x[i - 1] + south.x[i + 1]) + (north.x[i - 1] + north.x[i + 1]);
+  const double corners_y = (south.y[i - 1] + south.y[i + 1]) + (north.y[i - 1] + north.y[i + 1]);
+  const double twist_x = (north.x[i + 1] - north.x[i - 1]) - (south.x[i + 1] - south.x[i - 1]);
+  const double twist_y = (north.y[i + 1] - north.y[i - 1]) - (south.y[i + 1] - south.y[i - 1]);
+  return {s.centre * middle.x[i] + s.along * (middle.x[i - 1] + middle.x[i + 1]) +
+              s.across * (south.x[i] + north.x[i]) + s.corner * corners_x + s.twist * twist_y,
+          s.centre * middle.y[i] + s.across * (middle.y[i - 1] + middle.y[i + 1]) +
+              s.along * (south.y[i] + north.y[i]) + s.corner * corners_y + s.twist * twist_x};
+}
+
 /// v += stencil(w) over the span.
 inline void add_interior_row(const InteriorStencil& s, Span span, ConstRow south, ConstRow middle,
                              ConstRow north, double* __restrict v_x, double* __restrict v_y) {
   for (int i = span.begin; i < span.end; ++i) {
-    const double corners_x = (south.x[i - 1] + south.x[i + 1]) + (north.x[i - 1] + north.x[i + 1]);
-    const double corners_y = (south.y[i - 1] + south.y[i + 1]) + (north.y[i - 1] + north.y[i + 1]);
-    const double twist_x = (north.x[i + 1] - north.x[i - 1]) - (south.x[i + 1] - south.x[i - 1]);
-    const double twist_y = (north.y[i + 1] - north.y[i - 1]) - (south.y[i + 1] - south.y[i - 1]);
-    v_x[i] += s.centre * middle.x[i] + s.along * (middle.x[i - 1] + middle.x[i + 1]) +
-              s.across * (south.x[i] + north.x[i]) + s.corner * corners_x + s.twist * twist_y;
-    v_y[i] += s.centre * middle.y[i] + s.across * (middle.y[i - 1] + middle.y[i + 1]) +
-              s.along * (south.y[i] + north.y[i]) + s.corner * corners_y + s.twist * twist_x;
+    const Pair d = interior_kick(s, i, south, middle, north);
+    v_x[i] += d.x;
+    v_y[i] += d.y;
   }
 }
 
@@ -181,7 +191,7 @@ class RollingRows {
 };
 
 /// Kick of a node on an edge; `north` is the row on the side of the squares.
-inline Pair edge_kick(const EdgeStencil& s, int i, ConstRow middle, ConstRow north) {
+SLIPFRONT_HOST_DEVICE inline Pair edge_kick(const EdgeStencil& s, int i, ConstRow middle, ConstRow north) {
   return {s.centre_x * middle.x[i] + s.side_x * (middle.x[i - 1] + middle.x[i + 1]) + s.up_x * north.x[i] +
               s.corner_x * (north.x[i - 1] + north.x[i + 1]) + s.shear * (middle.y[i + 1] - middle.y[i - 1]) +
               s.twist * (north.y[i + 1] - north.y[i - 1]),
@@ -216,8 +226,8 @@ inline Pair kick_edge_row(const EdgeStencil& s, Span span, ConstRow middle, Cons
 }
 
 /// Kick of a node with squares to the right (inner = 1) or to the left (inner = -1, mirrored stencil) of it.
-inline Pair side_kick(const EdgeStencil& s, int i, int inner, ConstRow south, ConstRow middle,
-                      ConstRow north) {
+SLIPFRONT_HOST_DEVICE inline Pair side_kick(const EdgeStencil& s, int i, int inner, ConstRow south,
+                                            ConstRow middle, ConstRow north) {
   const int k = i + inner;
   return {s.centre_y * middle.x[i] + s.side_y * (south.x[i] + north.x[i]) + s.up_y * middle.x[k] +
               s.corner_y * (south.x[k] + north.x[k]) - s.shear * (north.y[i] - south.y[i]) +

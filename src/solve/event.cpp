@@ -19,6 +19,13 @@ constexpr std::int64_t energy_check_interval = 100;
 /// speed does not keep an event going.
 constexpr double creep_over_top_speed = 10;
 
+/// Empties a history but for its places; the memory stays for the next rows.
+void clear_rows(fronts::History& history) {
+  for (auto* column :
+       {&history.time_s, &history.slip_m, &history.slip_rate_m_per_s, &history.t_Pa, &history.p_Pa})
+    column->clear();
+}
+
 /// Watches that the motion stays physical.
 class Watch {
  public:
@@ -108,9 +115,24 @@ int halo_for(const mesh::Mesh& mesh, double l_star_m) {
   return static_cast<int>(std::ceil(l_star_m / mesh.grid.spacing_m - 0.01)) + 1;
 }
 
+double event_bytes(double n_nodes, double n_cells, bool with_snapshots) {
+  constexpr double number = sizeof(double), field = 2 * number;
+  const double mesh = field * n_nodes + sizeof(mesh::Cell) * n_cells;
+  const double state = 2 * field * n_nodes;                 // u_m, u_per_shear
+  const double motion = (number + 2 * field) * n_nodes;     // mass, u, v
+  const double frequency = (number + 4 * field) * n_nodes;  // solid::largest_frequency_rad_per_s
+  const double stepping = 2 * n_nodes;                      // of the stepper besides: levels, orphans
+  const double snapshot = with_snapshots ? 2 * field * n_nodes : 0;
+  return motion + std::max(mesh + state + frequency, stepping + snapshot);
+}
+
+Snapshot take_snapshot(const Stepper& stepper) {
+  return {stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()};
+}
+
 Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L,
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
-                int halo, const Monitor& monitor) {
+                int halo, const Monitor& monitor, Sink* sink) {
   Event event;
   const auto& top = stepper.plate().top.node;
   const double top_speed = top.empty() ? 0 : stepper.v_m_per_s().x[top.front()];
@@ -128,24 +150,38 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   const double energy_interval = std::max(sampling.energy_interval_s, stepper.step_s());
   event.energies.push_back(watch.start());
   std::int64_t n_samples = 0, n_energies = 1;
+  fronts::History row;
+  auto& history = sink != nullptr ? row : event.history;
   std::size_t next_snapshot = 0;
   const auto take_snapshots = [&] {
     while (next_snapshot < sampling.snapshot_times_s.size() &&
            stepper.time_s() >= sampling.snapshot_times_s[next_snapshot]) {
-      event.snapshots.push_back({stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()});
+      if (sink != nullptr)
+        sink->snapshot(stepper);
+      else
+        event.snapshots.push_back(take_snapshot(stepper));
       ++next_snapshot;
     }
   };
   const auto is_quiet = [&] {
     return stepper.time_s() - std::max(recorder.last_motion_s(), quiet_from) > time.quiet_s;
   };
+  bool sampled = false;
   Between between;
   between.sample = [&]() -> fronts::History* {
     if (stepper.time_s() < static_cast<double>(n_samples) * sample_interval) return nullptr;
     n_samples = static_cast<std::int64_t>(stepper.time_s() / sample_interval) + 1;
-    return &event.history;
+    sampled = true;
+    return &history;
   };
-  between.go_on = [&] { return watch.look() && !is_quiet(); };
+  between.go_on = [&] {
+    if (sampled && sink != nullptr) {
+      sink->sample(row);
+      clear_rows(row);
+    }
+    sampled = false;
+    return watch.look() && !is_quiet();
+  };
   while (stepper.step() < n_steps) {
     take_snapshots();
     const double energy_time_s = static_cast<double>(n_energies) * energy_interval;

@@ -29,6 +29,23 @@ struct Snapshot {
   solid::Field u_m, v_m_per_s;
 };
 
+Snapshot take_snapshot(const Stepper& stepper);
+
+/// Takes what an event is to keep of its motion, while it goes.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// One row of the history; x_m is empty.
+  virtual void sample(const fronts::History& row) = 0;
+  /// It is time for a snapshot.
+  virtual void snapshot(const Stepper& stepper) = 0;
+};
+
+/// Bytes of a plate in motion: the larger of what its stepper takes while it is built, the mesh and the state
+/// before the event beside it, and of the event itself with the snapshot that waits to be written. Exact but
+/// for the interface, the irregular nodes and the program itself.
+double event_bytes(double n_nodes, double n_cells, bool with_snapshots);
+
 /// Why an event ended.
 enum class EventEnd { end_time, quiet, interrupted, blow_up };
 
@@ -39,9 +56,9 @@ struct Event {
   std::int64_t steps = 0;
   double time_s = 0;
   fronts::SlipRecord record;
-  fronts::History history;
-  std::vector<Snapshot> snapshots;
-  std::vector<Energies> energies;  ///< at the start, at the given interval, and at the end
+  fronts::History history;          ///< without a sink
+  std::vector<Snapshot> snapshots;  ///< without a sink
+  std::vector<Energies> energies;   ///< at the start, at the given interval, and at the end
 };
 
 /// Trigger forces on the interface nodes: amount (mu_s p_s - t_s) over the zone next to an edge of contact, N
@@ -56,9 +73,11 @@ int halo_for(const mesh::Mesh& mesh, double l_star_m);
 /// trigger's ramp. The motion is checked: in every step numbers finite and slip rates below c_L, with each of
 /// the energies and at least every 100 steps energy not above what there was at the start plus what the
 /// loaded edge and the trigger have added, by more than 1 %.
+/// @param state  tractions and contact before the event; its displacements are not needed
+/// @param sink   takes samples and snapshots; without one the event keeps them all
 Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L_m_per_s,
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
-                int halo, const Monitor& monitor);
+                int halo, const Monitor& monitor, Sink* sink = nullptr);
 
 /// States that the explicit ramp reaches, and what happened on the way.
 struct Ramp {

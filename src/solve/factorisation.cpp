@@ -5,6 +5,7 @@
 #include <omp.h>
 
 extern "C" void openblas_set_num_threads(int n_threads);
+extern "C" int openblas_get_num_threads();
 
 #include <cmath>
 
@@ -39,7 +40,7 @@ struct Factorisation::Cholmod {
   cholmod_factor* factor = nullptr;
   Cholmod() {
     // Cases run side by side, and the result must not depend on the number of threads.
-    openblas_set_num_threads(1);
+    if (openblas_get_num_threads() != 1) openblas_set_num_threads(1);  // setting it starts threads anew
     omp_set_max_active_levels(0);  // CHOLMOD's own loops are too short for a team of threads
     cholmod_l_start(&common);
     common.supernodal = CHOLMOD_SUPERNODAL;

@@ -2,6 +2,7 @@
 #include "solve/level.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace slipfront::solve {
 
@@ -61,12 +62,9 @@ class RowsAround {
   solid::ConstRow rows_[3];  ///< row - 1, which rolls where row + 2 does, row, row + 1
 };
 
-/// Calls f(r) for the block rows of a band, and for the general rows, which are the first band's.
-template <class F>
-void for_each_irregular(const Level& level, const Band& band, F&& f) {
-  for (int r = band.irregular.begin; r < band.irregular.end; ++r) f(r);
-  if (&band != &level.bands.front()) return;
-  for (int r = level.general.begin; r < level.general.end; ++r) f(r);
+/// The block rows of a band, and the general rows, which are the first band's.
+std::array<solid::Span, 2> irregular_rows(const Level& level, const Band& band) {
+  return {band.irregular, &band == &level.bands.front() ? level.general : solid::Span{}};
 }
 
 template <class W>
@@ -159,11 +157,12 @@ void add_irregular_products(const Level& level, const Band& band, const Plate& p
                             PushProducts& products) {
   const auto& u = plate.u_m;
   const auto& v = plate.v_m_per_s;
-  for_each_irregular(level, band, [&](int r) {
-    const auto n = level.irregular[r];
-    products.u_K_w += plate.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
-    products.v_K_w += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
-  });
+  for (const auto rows : irregular_rows(level, band))
+    for (int r = rows.begin; r < rows.end; ++r) {
+      const auto n = level.irregular[r];
+      products.u_K_w += plate.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
+      products.v_K_w += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
+    }
   if (!band.has_top) return;
   for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
     const auto n = level.top_rows.node[r];
@@ -186,15 +185,16 @@ void move_irregular(const Level& level, const Band& band, Plate& plate, Energies
     u.x[n] += dt * after.x;
     u.y[n] += dt * after.y;
   }
-  for_each_irregular(level, band, [&](int r) {
-    if (!level.takes_push[r]) return;
-    const auto n = level.irregular[r];
-    v.x[n] -= dt * level.a_x[r];
-    v.y[n] -= dt * level.a_y[r];
-    if (!level.moves[r]) return;
-    u.x[n] += dt * v.x[n];
-    u.y[n] += dt * v.y[n];
-  });
+  for (const auto rows : irregular_rows(level, band))
+    for (int r = rows.begin; r < rows.end; ++r) {
+      if (!level.takes_push[r]) continue;
+      const auto n = level.irregular[r];
+      v.x[n] -= dt * level.a_x[r];
+      v.y[n] -= dt * level.a_y[r];
+      if (!level.moves[r]) continue;
+      u.x[n] += dt * v.x[n];
+      u.y[n] += dt * v.y[n];
+    }
   if (band.has_top)
     for (const auto n : level.top) u.x[n] += dt * v.x[n];
 }
@@ -410,10 +410,11 @@ double coupling_work(const Level& level, const Plate& plate) {
 double late_product(const Level& level, const Band& band, const Plate& plate) {
   const auto& v = plate.v_m_per_s;
   double sum = 0;
-  for_each_irregular(level, band, [&](int r) {
-    const auto n = level.irregular[r];
-    sum += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
-  });
+  for (const auto rows : irregular_rows(level, band))
+    for (int r = rows.begin; r < rows.end; ++r) {
+      const auto n = level.irregular[r];
+      sum += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
+    }
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
     const auto& row = level.part.stencil[k];

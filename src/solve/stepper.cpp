@@ -11,16 +11,16 @@ namespace slipfront::solve {
 
 namespace {
 
-/// Bytes of a processor's share of the last cache that the rows under way may take.
-constexpr double cache_for_rows_bytes = 4e6;
+/// Bytes of the last cache that one thread may fill.
+constexpr double cache_bytes = 8e6;
 constexpr int most_steps_per_sweep = 16;
 
 /// A mesh that fits into the cache itself gains nothing from several steps in one sweep.
-int steps_per_sweep(const mesh::Grid& grid) {
+int suitable_steps_per_sweep(const mesh::Grid& grid) {
   const double motion = 4 * sizeof(double), rolling_rows = 6 * sizeof(double);
   const double rows = grid.rows + 1, columns = grid.stride();
-  if (motion * rows * columns < cache_for_rows_bytes) return 1;
-  return std::clamp(static_cast<int>(cache_for_rows_bytes / ((2 * motion + rolling_rows) * columns)), 1,
+  if (motion * rows * columns < cache_bytes) return 1;
+  return std::clamp(static_cast<int>(cache_bytes / ((2 * motion + rolling_rows) * columns)), 1,
                     most_steps_per_sweep);
 }
 
@@ -49,8 +49,8 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
   substeps_ *= multiple_;
   step_s_ = time.step_factor * stable_step_s_ * multiple_;
   levels_ = make_levels(mesh, material, plate_, time, step_s_, multiples);
-  const int depth =
-      execution.steps_per_sweep > 0 ? execution.steps_per_sweep : steps_per_sweep(mesh::blocks(mesh).back());
+  const int depth = execution.steps_per_sweep > 0 ? execution.steps_per_sweep
+                                                  : suitable_steps_per_sweep(mesh::blocks(mesh).back());
   wavefront_ = std::make_unique<Wavefront>(execution.threads, depth);
   for (int k = 0; k < wavefront_->most_steps(); ++k)
     under_way_.push_back({solid::RollingRows(plate_.op.widest_row()), {}, {}});

@@ -64,6 +64,9 @@ class Stepper {
   /// Nodes moved in one step, sub-steps counted, and nodes of the plate that move at all.
   double node_updates_per_step() const { return levels_.node_updates_per_step; }
 
+  /// Steps that a thread takes in one sweep through memory.
+  int steps_per_sweep() const { return wavefront_->depth(); }
+
   /// Puts the plate into an equilibrium, moving with the shear at top_speed_m_per_s, at time 0.
   void start(const Equilibrium& equilibrium, double top_speed_m_per_s);
 

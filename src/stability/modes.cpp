@@ -25,6 +25,11 @@ struct Scaled {
   Complex strength_of_slip;  ///< response of strength to u_x at constant pressure, over G k
 };
 
+/// The plain quotient: moduli here are far from where squares overflow, for which the operator looks out.
+Complex quotient(Complex a, Complex b) {
+  return a * std::conj(b) / std::norm(b);
+}
+
 Scaled scaled(const solid::Material& material, const Sliding& sliding, double k, Complex p) {
   const double G = solid::shear_modulus_Pa(material);
   const double c_S = solid::shear_speed_m_per_s(material);
@@ -32,7 +37,7 @@ Scaled scaled(const solid::Material& material, const Sliding& sliding, double k,
   Scaled r;
   r.eta2 = solid::longitudinal_modulus_Pa(material) / G;
   r.damped = 1.0 + material.stiffness_damping_s * s;
-  r.P2 = p * p / r.damped;
+  r.P2 = quotient(p * p, r.damped);
   r.a_d = std::sqrt(1.0 + r.P2 / r.eta2);
   r.a_s = std::sqrt(1.0 + r.P2);
   const Complex delay = sliding.relaxed == interface::Relaxed::none
@@ -91,7 +96,7 @@ Complex half_space_relation(const solid::Material& material, const Sliding& slid
                             Complex p) {
   const Scaled r = scaled(material, sliding, wavenumber_per_m, p);
   // (1 - a_d a_s)/P^2, written so that nothing cancels at small P.
-  const Complex d = -(1 + 1 / r.eta2 + r.P2 / r.eta2) / (1.0 + r.a_d * r.a_s);
+  const Complex d = -quotient(1 + 1 / r.eta2 + r.P2 / r.eta2, 1.0 + r.a_d * r.a_s);
   return r.damped * (r.a_d - i_unit * sliding.mu * r.delayed_p * (1.0 + 2.0 * d)) - r.strength_of_slip * d;
 }
 
@@ -126,11 +131,13 @@ Complex layer_relation(const solid::Material& material, const Sliding& sliding, 
 }
 
 std::vector<Mode> growing_modes(const solid::Material& material, const Sliding& sliding,
-                                double wavenumber_per_m) {
+                                double wavenumber_per_m, std::span<const Mode> expected) {
   SLIPFRONT_ASSERT(wavenumber_per_m > 0, "modes are described by k > 0");
+  const double rate_per_s = wavenumber_per_m * solid::shear_speed_m_per_s(material);
   const auto f = [&](Complex p) { return half_space_relation(material, sliding, wavenumber_per_m, p); };
-  return modes_of(zeros_by_argument_principle(f, {}),
-                  wavenumber_per_m * solid::shear_speed_m_per_s(material));
+  std::vector<Complex> starts;
+  for (const Mode& mode : expected) starts.push_back(mode.s_per_s / rate_per_s);
+  return modes_of(zeros_by_argument_principle(f, {}, starts), rate_per_s);
 }
 
 std::optional<Mode> fastest_growing_mode(const solid::Material& material, const Sliding& sliding,

@@ -3,6 +3,7 @@
 
 #include <complex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "interface/friction/registry.hpp"
@@ -38,8 +39,9 @@ struct Mode {
 
 /// Growing modes of a half-space, fastest first. Growth below 1e-6 |s| counts as neutral; |s| is sought
 /// between 1e-8 and 1e9 times k c_S.
+/// @param expected  modes of a nearby problem, such as another wavenumber: make the search shorter
 std::vector<Mode> growing_modes(const solid::Material& material, const Sliding& sliding,
-                                double wavenumber_per_m);
+                                double wavenumber_per_m, std::span<const Mode> expected = {});
 
 /// The first of them; empty where uniform sliding is stable at this wavenumber.
 std::optional<Mode> fastest_growing_mode(const solid::Material& material, const Sliding& sliding,

@@ -122,8 +122,9 @@ class Finder {
   std::optional<double> refined(Complex a, Complex f_a, Complex b, Complex f_b, int depth) const {
     const Complex middle = 0.5 * (a + b);
     const Complex f_middle = at(middle);
-    const double first = std::arg(f_middle / f_a);
-    const double second = std::arg(f_b / f_middle);
+    // The arguments of the quotients, without dividing.
+    const double first = std::arg(f_middle * std::conj(f_a));
+    const double second = std::arg(f_b * std::conj(f_middle));
     // Neither half may turn far, and both must agree: a contour that passes close to a zero fails this.
     if (std::abs(first) < 0.7 && std::abs(second) < 0.7 && std::abs(first - second) < 0.35)
       return first + second;
@@ -143,9 +144,15 @@ void sort_by_growth(std::vector<Complex>& zeros) {
   std::ranges::sort(zeros, [](Complex a, Complex b) { return a.real() > b.real(); });
 }
 
+void add_if_new(Complex p, std::vector<Complex>& zeros) {
+  if (std::ranges::none_of(zeros, [&](Complex q) { return std::abs(p - q) < 1e-7 * std::abs(p); }))
+    zeros.push_back(p);
+}
+
 }  // namespace
 
-std::vector<Complex> zeros_by_argument_principle(const Function& f, const Sector& sector) {
+std::vector<Complex> zeros_by_argument_principle(const Function& f, const Sector& sector,
+                                                 std::span<const Complex> expected) {
   const Finder finder(f, sector);
   // A neutral zero can lie on the border itself; a slightly narrower sector leaves it out.
   Sector tried = sector;
@@ -155,8 +162,14 @@ std::vector<Complex> zeros_by_argument_principle(const Function& f, const Sector
     if (n) break;
   }
   SLIPFRONT_ASSERT(n.has_value(), "the function vanishes on every border tried");
+  const Cell cell = whole(tried);
   std::vector<Complex> zeros;
-  finder.find(whole(tried), *n, zeros);
+  for (const Complex p : expected)
+    if (const auto z = finder.newton(std::log(p)); z && cell.holds(*z)) add_if_new(std::exp(*z), zeros);
+  if (zeros.size() != static_cast<std::size_t>(*n)) {
+    zeros.clear();
+    finder.find(cell, *n, zeros);
+  }
   sort_by_growth(zeros);
   return zeros;
 }
@@ -170,9 +183,7 @@ std::vector<Complex> zeros_by_starts(const Function& f, const Sector& sector, in
       const auto z = finder.newton({cell.low_re + (cell.high_re - cell.low_re) * (i + 0.5) / n_modulus,
                                     cell.low_im + (cell.high_im - cell.low_im) * (j + 0.5) / n_angle});
       if (!z || !cell.holds(*z)) continue;
-      const Complex p = std::exp(*z);
-      if (std::ranges::none_of(zeros, [&](Complex q) { return std::abs(p - q) < 1e-7 * std::abs(p); }))
-        zeros.push_back(p);
+      add_if_new(std::exp(*z), zeros);
     }
   sort_by_growth(zeros);
   return zeros;

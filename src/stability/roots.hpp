@@ -3,6 +3,7 @@
 
 #include <complex>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace slipfront::stability {
@@ -22,8 +23,10 @@ struct Sector {
 
 /// All zeros of an analytic function in a sector, by the argument principle: the sector is cut in log p until
 /// each part holds one zero, which Newton's method then finds. Multiple zeros appear once each time.
+/// @param expected  places of zeros; where Newton's method finds them all from there, nothing is cut
 std::vector<Complex> zeros_by_argument_principle(const std::function<Complex(Complex)>& f,
-                                                 const Sector& sector);
+                                                 const Sector& sector,
+                                                 std::span<const Complex> expected = {});
 
 /// The zeros that Newton's method reaches from a grid of n_modulus x n_angle starts, even in log p: a second
 /// way, which may miss some.

@@ -29,9 +29,14 @@ Peak fastest_between(const solid::Material& material, const Sliding& sliding, do
   const double ratio = std::pow(high / low, 1.0 / n);
   Peak best;
   int best_at = 0;
+  std::vector<Mode> modes;
+  const auto growth_here = [&](double k) {
+    modes = growing_modes(material, sliding, k, modes);
+    return modes.empty() ? 0 : modes.front().growth_per_s();
+  };
   for (int i = 0; i <= n; ++i) {
     const double k = low * std::pow(ratio, i);
-    const double growth = growth_at(material, sliding, k);
+    const double growth = growth_here(k);
     if (growth > best.growth_per_s) {
       best = {growth, k, i == n};
       best_at = i;
@@ -41,13 +46,13 @@ Peak fastest_between(const solid::Material& material, const Sliding& sliding, do
   double from = std::log(best.wavenumber_per_m / ratio), to = std::log(best.wavenumber_per_m * ratio);
   while (to - from > 1e-3) {
     const double a = from + 0.382 * (to - from), b = from + 0.618 * (to - from);
-    if (growth_at(material, sliding, std::exp(a)) > growth_at(material, sliding, std::exp(b)))
+    if (growth_here(std::exp(a)) > growth_here(std::exp(b)))
       to = b;
     else
       from = a;
   }
   best.wavenumber_per_m = std::exp(0.5 * (from + to));
-  best.growth_per_s = growth_at(material, sliding, best.wavenumber_per_m);
+  best.growth_per_s = growth_here(best.wavenumber_per_m);
   return best;
 }
 

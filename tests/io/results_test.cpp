@@ -3,20 +3,22 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
-#include <csignal>
 #include <limits>
 
 #include "io/hdf5.hpp"
+#include "io/history.hpp"
+#include "io/snapshots.hpp"
+#include "mesh/plate.hpp"
 #include "support.hpp"
 
 namespace slipfront::io {
 namespace {
 
 using test::error_of;
+using test::FileSizeLimit;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
@@ -39,28 +41,6 @@ void write_axes(const hdf5::File& file) {
   hdf5::write(file, "time_s", std::vector<double>{0, 1}, {2});
   hdf5::write(file, "x_m", std::vector<double>{0, 1, 2}, {3});
 }
-
-/// While it lives, a file of this process cannot grow beyond `bytes`: writing fails as on a full disk.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) {
-    handler_ = std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &old_);
-    rlimit limit = old_;
-    limit.rlim_cur = bytes;
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &old_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  void (*handler_)(int);
-  rlimit old_{};
-};
 
 TEST(OutputFolder, IsMadeWithItsParents) {
   const test::TemporaryFolder folder;
@@ -150,6 +130,62 @@ TEST(HistoryFile, DataSetsHaveShapeUnitAndDescription) {
   EXPECT_THAT(hdf5::read(file, "x_m").shape, ElementsAre(3));
   EXPECT_THAT(hdf5::read(file, "t_Pa").shape, ElementsAre(2, 3));
   EXPECT_EQ(hdf5::read(file, "t_Pa").values[3], -4e6);  // row 1, column 0
+}
+
+/// Any numbers, all different. [rows, nodes]
+fronts::History counting_history(std::size_t n_rows, std::size_t n_nodes, std::size_t first_row = 0) {
+  fronts::History h;
+  for (std::size_t i = 0; i < n_nodes; ++i) h.x_m.push_back(0.1 * static_cast<double>(i));
+  for (std::size_t k = first_row; k < first_row + n_rows; ++k) {
+    h.time_s.push_back(1e-6 * static_cast<double>(k));
+    for (std::size_t i = 0; i < n_nodes; ++i) {
+      const auto value = static_cast<double>(k * n_nodes + i);
+      h.slip_m.push_back(value);
+      h.slip_rate_m_per_s.push_back(value + 0.2);
+      h.t_Pa.push_back(value + 0.4);
+      h.p_Pa.push_back(value + 0.6);
+    }
+  }
+  return h;
+}
+
+TEST(HistoryFile, GrowsToTheSameAsWrittenAtOnce) {
+  const test::TemporaryFolder folder;
+  constexpr std::size_t n_nodes = 100;
+  const std::size_t block = history_block_rows(n_nodes);
+  ASSERT_GT(block, 1U);
+  // Blocks shorter and longer than a chunk, more than one chunk of times, and an end within a chunk.
+  HistoryFile file(folder / "grown.h5", counting_history(0, n_nodes).x_m);
+  std::size_t rows = 0;
+  for (const std::size_t n : {std::size_t{1}, block, 2 * block + 3, std::size_t{1500}, std::size_t{0}}) {
+    file.append(counting_history(n, n_nodes, rows));
+    rows += n;
+  }
+  file.close();
+  const auto whole = counting_history(rows, n_nodes);
+  const auto read = read_history(folder / "grown.h5");
+  EXPECT_EQ(read.time_s, whole.time_s);
+  EXPECT_EQ(read.x_m, whole.x_m);
+  EXPECT_EQ(read.slip_m, whole.slip_m);
+  EXPECT_EQ(read.slip_rate_m_per_s, whole.slip_rate_m_per_s);
+  EXPECT_EQ(read.t_Pa, whole.t_Pa);
+  EXPECT_EQ(read.p_Pa, whole.p_Pa);
+}
+
+TEST(HistoryFile, EqualHistoriesMakeEqualFiles) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.h5", "b.h5"}) write_history(folder / name, counting_history(70, 50));
+  EXPECT_EQ(test::read_file(folder / "a.h5"), test::read_file(folder / "b.h5"));
+}
+
+TEST(HistoryFile, WhatWasAppendedOutlivesAKilledProgram) {
+  const test::TemporaryFolder folder;
+  const auto whole = counting_history(200, 50);
+  HistoryFile file(folder / "interface.h5", whole.x_m);
+  file.append(whole);
+  // The file as it lies on the disk, before it is closed.
+  std::filesystem::copy_file(folder / "interface.h5", folder / "left_over.h5");
+  EXPECT_EQ(read_history(folder / "left_over.h5").t_Pa, whole.t_Pa);
 }
 
 TEST(HistoryFile, AnEmptyHistoryReadsBack) {
@@ -300,14 +336,14 @@ mesh::Mesh two_cells() {
   return mesh;
 }
 
-Snapshot snapshot(double time_s, double offset) {
-  Snapshot result;
+solve::Snapshot snapshot(double time_s, double offset) {
+  solve::Snapshot result;
   result.time_s = time_s;
   for (int i = 0; i < 7; ++i) {
-    result.u_x_m.push_back(offset + i);
-    result.u_y_m.push_back(offset - i);
-    result.v_x_m_per_s.push_back(10 * offset + i);
-    result.v_y_m_per_s.push_back(10 * offset - i);
+    result.u_m.x.push_back(offset + i);
+    result.u_m.y.push_back(offset - i);
+    result.v_m_per_s.x.push_back(10 * offset + i);
+    result.v_m_per_s.y.push_back(10 * offset - i);
   }
   return result;
 }
@@ -343,6 +379,52 @@ TEST(SnapshotFile, WritesTheMeshOnceAndAStepPerSnapshot) {
   EXPECT_EQ(u[3 * 2 + 2], 0.0);      // z
   EXPECT_EQ(u[3 * (7 + 2)], 202.0);  // second step
   EXPECT_EQ(values("PointData/velocity_m_per_s")[3 * (7 + 6) + 1], 1994.0);
+}
+
+TEST(SnapshotFile, LargeFieldsArePutTogetherFromPieces) {
+  const test::TemporaryFolder folder;
+  mesh::Plate plate;
+  plate.element_size_m = plate.width_m / 400;
+  plate.corner = mesh::Corner::none;
+  plate.sides = mesh::Sides::periodic;
+  const auto mesh = mesh::make_plate(plate);
+  const auto n = static_cast<std::size_t>(mesh.n_nodes());
+  ASSERT_GT(n, 65536U);  // twice the piece
+  solve::Snapshot snapshot;
+  snapshot.u_m = snapshot.v_m_per_s = solid::Field(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    snapshot.u_m.x[k] = static_cast<double>(k);
+    snapshot.v_m_per_s.y[k] = -static_cast<double>(k);
+  }
+  write_snapshots(folder / "fields.vtkhdf", mesh, std::vector{snapshot, snapshot});
+  const hdf5::File file = hdf5::open_file(folder / "fields.vtkhdf");
+  const auto points = hdf5::read(file, "/VTKHDF/Points").values;
+  const auto connectivity = hdf5::read(file, "/VTKHDF/Connectivity").values;
+  const auto offsets = hdf5::read(file, "/VTKHDF/Offsets").values;
+  const auto u = hdf5::read(file, "/VTKHDF/PointData/displacement_m").values;
+  const auto v = hdf5::read(file, "/VTKHDF/PointData/velocity_m_per_s").values;
+  ASSERT_EQ(points.size(), 3 * n);
+  ASSERT_EQ(connectivity.size(), 4 * mesh.cells.size());
+  ASSERT_EQ(offsets.size(), mesh.cells.size() + 1);
+  ASSERT_EQ(u.size(), 6 * n);
+  for (std::size_t k = 0; k < n; ++k) {
+    ASSERT_EQ(points[3 * k], mesh.x_m[k]);
+    ASSERT_EQ(points[3 * k + 1], mesh.y_m[k]);
+    // The right edge moves as the left one.
+    const std::size_t same = k % 401 == 400 ? k - 400 : k;
+    for (const std::size_t step : {std::size_t{0}, n}) {
+      ASSERT_EQ(u[3 * (step + k)], static_cast<double>(same));
+      ASSERT_EQ(v[3 * (step + k) + 1], -static_cast<double>(same));
+    }
+  }
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    ASSERT_EQ(offsets[c + 1], 4.0 * static_cast<double>(c + 1));
+    const double first = connectivity[4 * c];
+    ASSERT_EQ(first, mesh.cells[c][0]);
+    ASSERT_EQ(connectivity[4 * c + 1], first + 1);  // across the seam too
+    ASSERT_EQ(connectivity[4 * c + 2], first + 402);
+    ASSERT_EQ(connectivity[4 * c + 3], first + 401);
+  }
 }
 
 TEST(SnapshotFile, WithoutSnapshotsHoldsTheMesh) {

@@ -10,6 +10,10 @@
 #include <limits>
 #include <vector>
 
+#ifdef __GLIBC__  // known from the headers above
+#include <malloc.h>
+#endif
+
 #include "base/error.hpp"
 #include "cases.hpp"
 #include "fronts/measures.hpp"
@@ -362,6 +366,40 @@ TEST(Info, AgreesWithTheRun) {
     EXPECT_GT(info.expected_s, 0);
   }
 }
+
+#ifdef __GLIBC__
+/// Bytes that are allocated now; 0 where another allocator stands in, as with a sanitizer.
+double allocated_bytes() {
+  const auto info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+TEST(Memory, AnEventHoldsWhatIsSaid) {
+  auto config = coarse_case(EventKind::nucleation, 0.5e-3);
+  config.plate.corner = mesh::Corner::none;
+  config.loading.method = solve::LoadingMethod::prestress;
+  config.prestress = {4e6, 5e6, ""};
+  config.nucleation.x_m = 0.1;
+  const double before = allocated_bytes();
+  if (before == 0) GTEST_SKIP() << "the allocator does not tell";
+  auto initial = make_initial_state(config, go_on);
+  const auto n = static_cast<double>(initial.n_nodes);
+  const auto stepper = start_event(config, initial);
+  const double held = allocated_bytes() - before;
+  // Mass, u, v: 40 bytes a node, and less than four for the levels. Besides, block rows of the
+  // sides and of the loaded edge, once of the plate and once of a level: 9 blocks of 36 bytes each, in
+  // vectors that may have room for twice as many; and some 60 numbers for each interface node.
+  const auto& plate = stepper->plate();
+  const auto rows = static_cast<double>(plate.whole.irregular.size() + plate.top.size());
+  EXPECT_GT(held, 40 * n);
+  EXPECT_LT(held, 44 * n + 2 * (2 * 9 * 36 * rows + 60 * 8 * static_cast<double>(initial.mesh.lower.size())));
+  // What is asked for in advance covers it, with the snapshot's 32 bytes, and no more than what is needed
+  // while it is made: mesh, states, a number and four fields to find the largest frequency, 136 bytes a node.
+  const double asked = solve::event_bytes(n, n, true);
+  EXPECT_GT(asked, held + 32 * n);
+  EXPECT_LT(asked, held + 136 * n);
+}
+#endif
 
 TEST(WaveSpeeds, OfThePaper) {
   // Kammer et al. (2012), Table 1: 1584 and 890 m/s, printed to whole metres and to ten of them.

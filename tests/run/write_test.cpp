@@ -10,8 +10,10 @@
 #include "base/version.hpp"
 #include "cases.hpp"
 #include "io/hdf5.hpp"
+#include "io/history.hpp"
 #include "io/results.hpp"
 #include "io/schema.hpp"
+#include "io/stream.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::run {
@@ -250,6 +252,88 @@ TEST_F(WrittenRun, FieldsHoldEverySnapshot) {
     EXPECT_EQ(u.values[3 * n], s.initial.spontaneous.u_m.x[n]);
     EXPECT_EQ(u.values[3 * n + 1], s.initial.spontaneous.u_m.y[n]);
   }
+}
+
+/// A run's folder written while the run goes.
+void run_streamed(const io::Case& config, const std::filesystem::path& dir, const solve::Monitor& monitor) {
+  auto initial = make_initial_state(config, go_on);
+  io::ResultStream stream(dir, initial.common.tractions.x_m, initial.mesh, true);
+  const auto stepper = start_event(config, initial);
+  const auto result = run_event(config, initial, *stepper, monitor, &stream);
+  EXPECT_TRUE(result.event.history.time_s.empty());
+  EXPECT_TRUE(result.event.snapshots.empty());
+  stream.publish();
+  write_beside_stream(dir, result, initial);
+}
+
+void run_in_memory(const io::Case& config, const std::filesystem::path& dir, const solve::Monitor& monitor) {
+  const auto initial = make_initial_state(config, go_on);
+  write(dir, run_event(config, initial, monitor), initial);
+}
+
+/// All of a run.json but the times it took.
+json summary_of(const std::filesystem::path& dir) {
+  auto run = json::parse(test::read_file(dir / "run.json"));
+  run.erase("wall_s");
+  run.erase("node_updates_per_s");
+  if (run["statics"].contains("wall_s")) run["statics"].erase("wall_s");
+  return run;
+}
+
+io::Case prestressed_case() {
+  auto config = coarse_case(interface::EventKind::nucleation, 2e-3);
+  config.plate.corner = mesh::Corner::none;
+  config.plate.sides = mesh::Sides::periodic;
+  config.loading.method = solve::LoadingMethod::prestress;
+  config.prestress = {4e6, 5e6, ""};
+  config.nucleation.x_m = 0.1;
+  return config;
+}
+
+TEST(StreamedRun, EqualsTheOneKeptInMemory) {
+  auto ramp = coarse_case(interface::EventKind::spontaneous, 5e-3);
+  ramp.loading.method = solve::LoadingMethod::ramp;
+  auto blow_up = coarse_case();
+  blow_up.time.step_factor = 1.4;
+  blow_up.time.allow_unstable = true;
+  const solve::Monitor stop = [](std::int64_t step, std::int64_t) { return step < 100; };
+  struct Run {
+    const char* name;
+    io::Case config;
+    solve::Monitor monitor;
+  };
+  const std::vector<Run> runs = {{"spontaneous", coarse_case(), go_on},
+                                 {"left", coarse_case(interface::EventKind::left), go_on},
+                                 {"prestress", prestressed_case(), go_on},
+                                 {"ramp", ramp, go_on},
+                                 {"blow_up", blow_up, go_on},
+                                 {"interrupted", coarse_case(), stop}};
+  for (auto [name, config, monitor] : runs) {
+    SCOPED_TRACE(name);
+    config.output.snapshot_times_s = {0, 5e-6, 15e-6, 1};  // the last one is not reached
+    const test::TemporaryFolder streamed, kept;
+    run_streamed(config, streamed.path(), monitor);
+    run_in_memory(config, kept.path(), monitor);
+    ASSERT_EQ(names_in(streamed.path()), names_in(kept.path()));
+    for (const char* file : {"case.resolved.toml", "fronts.csv", "static.csv", "energy.csv", "fields.vtkhdf"})
+      EXPECT_EQ(test::read_file(streamed / file), test::read_file(kept / file)) << file;
+    EXPECT_EQ(summary_of(streamed.path()), summary_of(kept.path()));
+    // The files may differ in where their chunks lie.
+    const auto a = io::read_history(streamed / "interface.h5"), b = io::read_history(kept / "interface.h5");
+    EXPECT_GT(a.time_s.size(), 10U);
+    EXPECT_EQ(a.time_s, b.time_s);
+    EXPECT_EQ(a.x_m, b.x_m);
+    EXPECT_EQ(a.slip_m, b.slip_m);
+    EXPECT_EQ(a.slip_rate_m_per_s, b.slip_rate_m_per_s);
+    EXPECT_EQ(a.t_Pa, b.t_Pa);
+    EXPECT_EQ(a.p_Pa, b.p_Pa);
+  }
+}
+
+TEST(StreamedRun, TwoOfThemMakeEqualFiles) {
+  const test::TemporaryFolder a, b;
+  for (const auto* folder : {&a, &b}) run_streamed(coarse_case(), folder->path(), go_on);
+  EXPECT_EQ(test::read_file(a / "interface.h5"), test::read_file(b / "interface.h5"));
 }
 
 TEST(Write, OfARampTellsBothWays) {

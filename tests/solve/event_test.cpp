@@ -34,10 +34,11 @@ class EventRun : public ::testing::Test {
   interface::Trigger none_;
 
   Event run(
-      const Equilibrium& state, const Monitor& monitor = [](auto, auto) { return true; }) {
+      const Equilibrium& state, const Monitor& monitor = [](auto, auto) { return true; },
+      Sink* sink = nullptr) {
     Stepper stepper(mesh_, material_, support::paper_law, time_);
     stepper.start(state, 1e-6 * c_L_);
-    return run_event(stepper, state, mu_s, c_L_, none_, time_, sampling_, 2, monitor);
+    return run_event(stepper, state, mu_s, c_L_, none_, time_, sampling_, 2, monitor, sink);
   }
   double step_s() { return Stepper(mesh_, material_, support::paper_law, time_).step_s(); }
 };
@@ -154,6 +155,60 @@ TEST_F(EventRun, SnapshotsAreTakenAtTheTimesAsked) {
     EXPECT_LT(event.snapshots[k].time_s, sampling_.snapshot_times_s[k] + step);
     EXPECT_EQ(event.snapshots[k].u_m.size(), static_cast<std::size_t>(mesh_.n_nodes()));
   }
+}
+
+/// Keeps what it is given, and may fail.
+class KeepingSink : public Sink {
+ public:
+  void sample(const fronts::History& row) override {
+    if (history_.time_s.size() == fails_after_) throw std::runtime_error("no room");
+    EXPECT_EQ(row.time_s.size(), 1U);
+    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(history_.time_s, row.time_s);
+    append(history_.slip_m, row.slip_m);
+    append(history_.slip_rate_m_per_s, row.slip_rate_m_per_s);
+    append(history_.t_Pa, row.t_Pa);
+    append(history_.p_Pa, row.p_Pa);
+  }
+  void snapshot(const Stepper& stepper) override { snapshots_.push_back(take_snapshot(stepper)); }
+
+  fronts::History history_;
+  std::vector<Snapshot> snapshots_;
+  std::size_t fails_after_ = std::numeric_limits<std::size_t>::max();
+};
+
+TEST_F(EventRun, ASinkIsGivenWhatTheEventWouldKeep) {
+  sampling_.snapshot_times_s = {0, 10e-6, 10.001e-6, 33e-6, 1};
+  const Event kept = run(calm_);
+  KeepingSink sink;
+  const Event event = run(
+      calm_, [](auto, auto) { return true; }, &sink);
+  EXPECT_TRUE(event.history.time_s.empty());
+  EXPECT_TRUE(event.snapshots.empty());
+  EXPECT_EQ(event.steps, kept.steps);
+  ASSERT_GT(kept.history.time_s.size(), 10U);
+  EXPECT_EQ(sink.history_.time_s, kept.history.time_s);
+  EXPECT_EQ(sink.history_.slip_m, kept.history.slip_m);
+  EXPECT_EQ(sink.history_.slip_rate_m_per_s, kept.history.slip_rate_m_per_s);
+  EXPECT_EQ(sink.history_.t_Pa, kept.history.t_Pa);
+  EXPECT_EQ(sink.history_.p_Pa, kept.history.p_Pa);
+  ASSERT_EQ(sink.snapshots_.size(), kept.snapshots.size());
+  for (std::size_t k = 0; k < kept.snapshots.size(); ++k) {
+    EXPECT_EQ(sink.snapshots_[k].time_s, kept.snapshots[k].time_s);
+    EXPECT_EQ(sink.snapshots_[k].u_m.x, kept.snapshots[k].u_m.x);
+    EXPECT_EQ(sink.snapshots_[k].v_m_per_s.y, kept.snapshots[k].v_m_per_s.y);
+  }
+}
+
+TEST_F(EventRun, AFailingSinkEndsTheEvent) {
+  KeepingSink sink;
+  sink.fails_after_ = 5;
+  EXPECT_THROW(run(
+                   calm_, [](auto, auto) { return true; }, &sink),
+               std::runtime_error);
+  EXPECT_EQ(sink.history_.time_s.size(), 5U);
 }
 
 TEST_F(EventRun, SlipReleasesEnergyAndTheBooksShowIt) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 
 #include "base/error.hpp"
 #include "mesh/reorder.hpp"
@@ -141,6 +142,27 @@ TEST_P(GradedPlate, FlightDoesNotGrow) {
     EXPECT_LT(largest, last);
     last = largest;
   }
+}
+
+TEST_P(GradedPlate, ThreadsAndStepsPerSweepDoNotMatter) {
+  const Loading loading{.tilt_left_m = 0.12e-3, .tilt_right_m = 0.05e-3, .edge_margin_m = 2e-3};
+  auto plate = graded_plate(std::get<0>(GetParam()), 1);  // several rows of the largest elements
+  const auto mesh = mesh::make_plate(plate);
+  const auto e = Statics(mesh, {}, loading, mu_s).shear_by(0.02e-3);
+  const auto run = [&](const Execution& execution) {
+    Stepper stepper(mesh, {}, support::gentle_law, time_, execution);
+    stepper.start(e, 0.2);
+    const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
+    stepper.set_trigger(trigger, trigger_forces(e, mesh::tributary_lengths_m(mesh),
+                                                interface::EventKind::left, trigger, mu_s));
+    Recorder recorder(e, mu_s, 0);
+    EXPECT_EQ(stepper.advance(recorder, 60, {}), 60);
+    return std::tuple(stepper.u_m().x, stepper.u_m().y, stepper.energies().stored(),
+                      stepper.energies().work());
+  };
+  const auto alone = run({.threads = 1, .steps_per_sweep = 1});
+  EXPECT_EQ(run({.threads = 1, .steps_per_sweep = 5}), alone);
+  EXPECT_EQ(run({.threads = 3, .steps_per_sweep = 2}), alone);
 }
 
 TEST(Graded, RefusesAnInterfaceLayerAboveTheSmallestElements) {

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench/bench.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "base/memory.hpp"
+#include "fronts/fit.hpp"
+#include "io/case.hpp"
+#include "mesh/plate.hpp"
+#include "run/run.hpp"
+#include "solid/kernels.hpp"
+#include "solve/stepper.hpp"
+
+namespace slipfront::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Median over repetitions of units of work per second; each repetition runs for at least 0.1 s.
+double rate(double units_per_call, const std::function<void()>& call) {
+  std::vector<double> rates;
+  call();
+  for (int repetition = 0; repetition < 5; ++repetition) {
+    const auto start = Clock::now();
+    double seconds = 0;
+    int calls = 0;
+    do {
+      call();
+      ++calls;
+      seconds = seconds_since(start);
+    } while (seconds < 0.1);
+    rates.push_back(calls * units_per_call / seconds);
+  }
+  return fronts::median(rates);
+}
+
+/// Calls work(thread) in so many threads.
+template <class Work>
+void in_threads(int threads, Work work) {
+  std::vector<std::jthread> others;
+  for (int thread = 1; thread < threads; ++thread) others.emplace_back(work, thread);
+  work(0);
+}
+
+/// Bytes/s of a loop that streams through the same arrays as a step, without its arithmetic.
+double streaming_bandwidth(int threads) {
+  constexpr std::size_t n = 4'000'000;  // per thread and array: 128 MB together
+  struct Arrays {
+    std::vector<double> u_x, u_y, v_x, v_y;
+  };
+  std::vector<Arrays> arrays(static_cast<std::size_t>(threads));
+  const auto fill = [&](int thread) {
+    const std::vector<double> ones(n, 1.0);
+    arrays[static_cast<std::size_t>(thread)] = {ones, ones, ones, ones};
+  };
+  in_threads(threads, fill);
+  const auto stream = [&](int thread) {
+    auto& a = arrays[static_cast<std::size_t>(thread)];
+    double* __restrict u_x = a.u_x.data();
+    double* __restrict u_y = a.u_y.data();
+    double* __restrict v_x = a.v_x.data();
+    double* __restrict v_y = a.v_y.data();
+    for (std::size_t i = 0; i < n; ++i) {
+      v_x[i] *= 0.999999;
+      v_y[i] *= 0.999999;
+      u_x[i] += 1e-9 * v_x[i];
+      u_y[i] += 1e-9 * v_y[i];
+    }
+  };
+  return rate(threads * bytes_per_node_update * static_cast<double>(n), [&] { in_threads(threads, stream); });
+}
+
+/// Node updates/s of the interior stencil with the ledger's sums, w = u + beta_R v included, over a few rows
+/// in the nearest cache.
+double stencil_alone() {
+  constexpr int stride = 96, rows = 4;
+  const solid::InteriorStencil stencil{-1e-3, 1e-4, 2e-4, 3e-4, 1e-4};
+  solid::Field u(stride * rows), v(stride * rows);
+  for (std::size_t n = 0; n < u.size(); ++n) u.x[n] = 1e-6 * static_cast<double>(n % 7), v.y[n] = 1e-3;
+  solid::RollingRows w(stride);
+  solid::KickSums sums;
+  const double updates = (stride - 2) * (rows - 2);
+  constexpr int sweeps_per_call = 1000;
+  return rate(sweeps_per_call * updates, [&] {
+    for (int sweep = 0; sweep < sweeps_per_call; ++sweep) {
+      const auto fill = [&](int j) {
+        const int o = j * stride;
+        solid::combine_row(stride, 1e-7, &u.x[o], &u.y[o], &v.x[o], &v.y[o], w.x(j), w.y(j));
+      };
+      fill(0);
+      fill(1);
+      for (int j = 1; j + 1 < rows; ++j) {
+        fill(j + 1);
+        const int o = j * stride;
+        solid::push_interior_row<true>(stencil, {1, stride - 1}, 1e-9, {w.x(j + 2), w.y(j + 2)},
+                                       {w.x(j), w.y(j)}, {w.x(j + 1), w.y(j + 1)}, &v.x[o], &v.y[o], &u.x[o],
+                                       &u.y[o], sums);
+      }
+    }
+  });
+}
+
+/// Bytes that the process occupies.
+double resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0, resident = 0;
+  file >> pages >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+mesh::Plate plate_of(int columns) {
+  mesh::Plate plate;
+  plate.element_size_m = plate.width_m / columns;
+  return plate;
+}
+
+/// A plate of the paper's material pressed on the plane, that begins to slip on its left half.
+class SlippingPlate {
+ public:
+  SlippingPlate(int columns, int substeps, const solve::Execution& execution)
+      : SlippingPlate(mesh::make_plate(plate_of(columns)), substeps, execution) {}
+
+  solve::Stepper& stepper() { return stepper_; }
+  solve::Recorder& recorder() { return recorder_; }
+
+ private:
+  SlippingPlate(const mesh::Mesh& mesh, int substeps, const solve::Execution& execution)
+      : stepper_(mesh, {}, {interface::VelocityWeakening{}}, {.interface_substeps = substeps}, execution),
+        recorder_(start(mesh)) {}
+
+  solve::Recorder start(const mesh::Mesh& mesh) {
+    solve::Equilibrium state;
+    state.u_m = state.u_per_shear = solid::Field(static_cast<std::size_t>(mesh.n_nodes()));
+    state.contact.assign(mesh.lower.size(), solve::Contact::stick);
+    for (const auto n : mesh.lower) state.tractions.x_m.push_back(mesh.x_m[n]);
+    const std::vector<double> p_Pa(mesh.lower.size(), 1e6);
+    std::vector<double> t_Pa(mesh.lower.size(), 0.7e6);
+    std::fill_n(t_Pa.begin(), t_Pa.size() / 2, 1.4e6);
+    state.tractions.t_s_Pa = t_Pa;
+    state.tractions.p_s_Pa = p_Pa;
+    stepper_.start(state, 0);
+    stepper_.set_prestress(t_Pa, p_Pa);
+    return {state, interface::VelocityWeakening{}.mu_s, 1};
+  }
+
+  solve::Stepper stepper_;
+  solve::Recorder recorder_;
+};
+
+Rate measure_path(const std::string& path, int columns, int substeps, const solve::Execution& execution) {
+  const double nodes = (columns + 1.0) * (columns / 2 + 1.0);
+  require_memory(solve::event_bytes(nodes, nodes, false), fmt::format("a plate of {:.4g} nodes", nodes),
+                 "free some memory");
+  const double before = resident_bytes();
+  SlippingPlate plate(columns, substeps, execution);
+  auto& stepper = plate.stepper();
+  const auto steps =
+      std::max<std::int64_t>(64, static_cast<std::int64_t>(2e7 / stepper.node_updates_per_step()));
+  const double updates = static_cast<double>(steps) * stepper.node_updates_per_step();
+  Rate result{path, columns, columns / 2, execution.threads, stepper.steps_per_sweep()};
+  result.node_updates_per_s = rate(updates, [&] { stepper.advance(plate.recorder(), steps, {}); });
+  constexpr double enough_nodes = 1e6;
+  if (nodes > enough_nodes) result.bytes_per_node = (resident_bytes() - before) / nodes;
+  return result;
+}
+
+PaperRun paper_run(int columns, int threads) {
+  io::Case config;
+  config.plate = plate_of(columns);
+  config.event = interface::EventKind::left;
+  PaperRun result{columns, columns / 2, threads};
+  const auto monitor = [](std::int64_t, std::int64_t) { return true; };
+  auto start = Clock::now();
+  const auto initial = run::make_initial_state(config, monitor);
+  result.statics_s = seconds_since(start);
+  start = Clock::now();
+  const auto event = run::run_event(config, initial, monitor, {.threads = threads});
+  result.event_s = seconds_since(start);
+  result.node_updates_per_s =
+      static_cast<double>(event.event.steps) * event.node_updates_per_step / event.stepping_wall_s;
+  return result;
+}
+
+}  // namespace
+
+Results measure(const Options& options, const std::function<void(const std::string&)>& progress) {
+  Results results;
+  progress("bandwidth");
+  results.bandwidth_bytes_per_s = streaming_bandwidth(1);
+  results.bandwidth_all_threads_bytes_per_s = streaming_bandwidth(options.threads);
+  progress("stencil alone");
+  results.stencil_alone_per_s = stencil_alone();
+  std::vector<int> threads{1};
+  if (options.threads > 1) threads.push_back(options.threads);
+  std::vector<int> columns{300, 3000};
+  if (options.large) columns.push_back(10'000);
+  const int substeps = solve::TimeStepping{}.interface_substeps;
+  for (const int n : columns)
+    for (const int t : threads) {
+      const double bandwidth =
+          t == 1 ? results.bandwidth_bytes_per_s : results.bandwidth_all_threads_bytes_per_s;
+      const auto add = [&](const std::string& path, int n_substeps, const solve::Execution& execution) {
+        progress(fmt::format("{}, {} x {}, {} threads", path, n, n / 2, t));
+        auto row = measure_path(path, n, n_substeps, execution);
+        const bool streams = n > 1000 && row.steps_per_sweep == 1;
+        row.bound_per_s = streams ? bandwidth / bytes_per_node_update : t * results.stencil_alone_per_s;
+        results.rates.push_back(row);
+      };
+      if (n > 1000) add("plain scheme, one step a sweep", 1, {t, 1});
+      add("plain scheme", 1, {t, 0});
+      add("interface sub-cycled", substeps, {t, 0});
+    }
+  for (const int t : threads) {
+    progress(fmt::format("the paper's left event, {} threads", t));
+    results.paper_runs.push_back(paper_run(300, t));
+  }
+  return results;
+}
+
+}  // namespace slipfront::bench

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/hdf5.hpp"
+#include "mesh/mesh.hpp"
+#include "solve/event.hpp"
+
+namespace slipfront::io {
+
+/// A fields.vtkhdf that grows: VTKHDF (version 2.0) unstructured grid, mesh written once, a step per
+/// snapshot, point data `displacement_m` and `velocity_m_per_s`; ParaView 5.12 and h5py read it once it is
+/// closed. Without snapshots: the mesh alone. Every function throws UserError where the file cannot be
+/// written.
+class SnapshotFile {
+ public:
+  /// Writes the mesh, which is not needed later.
+  /// @param shown  the file's name in messages, where it is to be another
+  SnapshotFile(const std::filesystem::path& path, const mesh::Mesh& mesh,
+               const std::filesystem::path& shown = {});
+  void append(const solve::Snapshot& snapshot);
+  /// Writes the table of steps, and what HDF5 holds back. The last call.
+  void close();
+
+  std::size_t n_snapshots() const { return time_s_.size(); }
+
+ private:
+  void append_field(const std::string& name, const solid::Field& field);
+
+  hdf5::File file_;
+  std::size_t n_points_;
+  /// Of a periodic plate: for each point the one whose values it has; those of the right edge have those of
+  /// the left one. Empty otherwise.
+  std::vector<std::size_t> source_;
+  std::vector<double> time_s_;
+};
+
+/// Writes a whole file. @throws UserError where it cannot be written.
+void write_snapshots(const std::filesystem::path& file, const mesh::Mesh& mesh,
+                     std::span<const solve::Snapshot> snapshots);
+
+}  // namespace slipfront::io
