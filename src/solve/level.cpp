@@ -2,7 +2,6 @@
 #include "solve/level.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace slipfront::solve {
 
@@ -62,9 +61,41 @@ class RowsAround {
   solid::ConstRow rows_[3];  ///< row - 1, which rolls where row + 2 does, row, row + 1
 };
 
-/// The block rows of a band, and the general rows, which are the first band's.
-std::array<solid::Span, 2> irregular_rows(const Level& level, const Band& band) {
-  return {band.irregular, &band == &level.bands.front() ? level.general : solid::Span{}};
+/// Sum of m (x . a) over the general rows.
+double general_product(const Level& level, const Plate& plate, const solid::Field& x) {
+  double sum = 0;
+  for (const auto& [at, first, count] : level.general_runs) {
+    const double* mass = &plate.op.mass_kg[first];
+    const double* x_x = &x.x[first];
+    const double* x_y = &x.y[first];
+    const double* a_x = &level.a_x[at];
+    const double* a_y = &level.a_y[at];
+#pragma omp simd reduction(+ : sum)
+    for (std::size_t k = 0; k < count; ++k) sum += mass[k] * (x_x[k] * a_x[k] + x_y[k] * a_y[k]);
+  }
+  return sum;
+}
+
+/// Kicks and moves the nodes of the general rows.
+void move_general(const Level& level, Plate& plate) {
+  const double dt = level.step_s;
+  for (const auto& [at, first, count] : level.general_runs) {
+    const double* a_x = &level.a_x[at];
+    const double* a_y = &level.a_y[at];
+    double* __restrict u_x = &plate.u_m.x[first];
+    double* __restrict u_y = &plate.u_m.y[first];
+    double* __restrict v_x = &plate.v_m_per_s.x[first];
+    double* __restrict v_y = &plate.v_m_per_s.y[first];
+    // Runs end where these change.
+    if (!level.takes_push[at]) continue;
+    const double moving_s = level.moves[at] ? dt : 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      v_x[k] -= dt * a_x[k];
+      v_y[k] -= dt * a_y[k];
+      u_x[k] += moving_s * v_x[k];
+      u_y[k] += moving_s * v_y[k];
+    }
+  }
 }
 
 template <class W>
@@ -157,12 +188,15 @@ void add_irregular_products(const Level& level, const Band& band, const Plate& p
                             PushProducts& products) {
   const auto& u = plate.u_m;
   const auto& v = plate.v_m_per_s;
-  for (const auto rows : irregular_rows(level, band))
-    for (int r = rows.begin; r < rows.end; ++r) {
-      const auto n = level.irregular[r];
-      products.u_K_w += plate.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
-      products.v_K_w += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
-    }
+  for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
+    const auto n = level.irregular[r];
+    products.u_K_w += plate.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
+    products.v_K_w += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
+  }
+  if (&band == &level.bands.front()) {
+    products.u_K_w += general_product(level, plate, u);
+    products.v_K_w += general_product(level, plate, v);
+  }
   if (!band.has_top) return;
   for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
     const auto n = level.top_rows.node[r];
@@ -185,16 +219,16 @@ void move_irregular(const Level& level, const Band& band, Plate& plate, Energies
     u.x[n] += dt * after.x;
     u.y[n] += dt * after.y;
   }
-  for (const auto rows : irregular_rows(level, band))
-    for (int r = rows.begin; r < rows.end; ++r) {
-      if (!level.takes_push[r]) continue;
-      const auto n = level.irregular[r];
-      v.x[n] -= dt * level.a_x[r];
-      v.y[n] -= dt * level.a_y[r];
-      if (!level.moves[r]) continue;
-      u.x[n] += dt * v.x[n];
-      u.y[n] += dt * v.y[n];
-    }
+  for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
+    if (!level.takes_push[r]) continue;
+    const auto n = level.irregular[r];
+    v.x[n] -= dt * level.a_x[r];
+    v.y[n] -= dt * level.a_y[r];
+    if (!level.moves[r]) continue;
+    u.x[n] += dt * v.x[n];
+    u.y[n] += dt * v.y[n];
+  }
+  if (&band == &level.bands.front()) move_general(level, plate);
   if (band.has_top)
     for (const auto n : level.top) u.x[n] += dt * v.x[n];
 }
@@ -410,11 +444,11 @@ double coupling_work(const Level& level, const Plate& plate) {
 double late_product(const Level& level, const Band& band, const Plate& plate) {
   const auto& v = plate.v_m_per_s;
   double sum = 0;
-  for (const auto rows : irregular_rows(level, band))
-    for (int r = rows.begin; r < rows.end; ++r) {
-      const auto n = level.irregular[r];
-      sum += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
-    }
+  for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
+    const auto n = level.irregular[r];
+    sum += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
+  }
+  if (&band == &level.bands.front()) sum += general_product(level, plate, v);
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
     const auto& row = level.part.stencil[k];

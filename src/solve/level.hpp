@@ -72,12 +72,13 @@ struct Level {
   std::vector<mesh::Node> irregular;  ///< nodes of the block rows, then of the general rows
   solid::Span general;                ///< the latter, all of them in the first band
   solid::GeneralRows::Workspace general_space;
-  std::vector<Band> bands;        ///< rows ascending
-  std::vector<Dashpot> dashpots;  ///< rows ascending
-  std::vector<bool> takes_push;   ///< [irregular rows] not shared with a finer level, no dashpot
-  std::vector<bool> moves;        ///< [irregular rows] moved with the level's own push
-  std::vector<double> a_x, a_y;   ///< [irregular rows]
-  std::vector<mesh::Node> top;    ///< nodes of the loaded edge that move with this level
+  std::vector<NodeRun> general_runs;  ///< of the general rows; takes_push and moves do not change within one
+  std::vector<Band> bands;            ///< rows ascending
+  std::vector<Dashpot> dashpots;      ///< rows ascending
+  std::vector<bool> takes_push;       ///< [irregular rows] not shared with a finer level, no dashpot
+  std::vector<bool> moves;            ///< [irregular rows] moved with the level's own push
+  std::vector<double> a_x, a_y;       ///< [irregular rows]
+  std::vector<mesh::Node> top;        ///< nodes of the loaded edge that move with this level
   Shared shared;
   solid::BlockRows top_rows;  ///< K of the level's cells, N/m
   /// Kicks of the stencil's edge rows, x then y, in their order. [2 columns]

@@ -272,6 +272,17 @@ Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, cons
     level.a_y.resize(irregular.size());
   }
   set_dashpots(levels, mesh, material, plate);
+  for (auto& level : levels.level)
+    for (int r = level.general.begin; r < level.general.end; ++r) {
+      const bool goes_on = r > level.general.begin && level.irregular[r] == level.irregular[r - 1] + 1 &&
+                           level.takes_push[r] == level.takes_push[r - 1] &&
+                           level.moves[r] == level.moves[r - 1];
+      if (goes_on) {
+        ++level.general_runs.back().count;
+      } else {
+        level.general_runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1});
+      }
+    }
 
   for (std::size_t l = 0; l < n_levels; ++l) {
     auto& level = levels.level[l];
