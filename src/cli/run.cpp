@@ -52,7 +52,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
   fmt::print(
       "{} steps of {:.4g} s ({} sub-steps at the interface), {:.3g} s of wall time, {:.0f} million node "
       "updates/s\n",
-      event.steps, result.step_s, result.config.time.interface_substeps, result.stepping_wall_s,
+      event.steps, result.step_s, std::lround(result.step_s / result.substep_s), result.stepping_wall_s,
       1e-6 * static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s);
   for (const auto& front : result.fronts) {
     // The median: nodes of a trigger zone slip at once, at speeds without meaning.

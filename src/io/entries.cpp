@@ -198,6 +198,7 @@ std::vector<Entry> make_common_entries() {
   const Condition uniform = {
       "loading.method = prestress and no prestress.file",
       [](const Case& c) { return c.loading.method == LoadingMethod::prestress && c.prestress.file.empty(); }};
+  const Condition graded = {"plate.coarsenings > 0", [](const Case& c) { return c.plate.coarsenings > 0; }};
   const Condition nucleated = {"event.kind = nucleation",
                                [](const Case& c) { return c.event == EventKind::nucleation; }};
   const Condition overstressed = {
@@ -212,6 +213,10 @@ std::vector<Entry> make_common_entries() {
       number("plate.height_m", at(&Case::plate, &Plate::height_m), above(0), "away from the interface"),
       number("plate.element_size_m", at(&Case::plate, &Plate::element_size_m), above(0),
              "side of the square elements; width and height are whole multiples of it"),
+      integer("plate.coarsenings", at(&Case::plate, &Plate::coarsenings), between(0, 20),
+              "how often the element size doubles on the way up from the interface, see graded.md"),
+      only_with(graded, number("plate.fine_height_m", at(&Case::plate, &Plate::fine_height_m), above(0),
+                               "least height of the elements of element_size_m, next to the interface")),
       word<Corner>("plate.corner", at(&Case::plate, &Plate::corner),
                    {{"none", Corner::none}, {"relief", Corner::relief}, {"fillet", Corner::fillet}},
                    "lower corners: right angles, a shallow arc tangent to the base, or a quarter circle"),
@@ -353,6 +358,8 @@ std::vector<Entry> make_common_entries() {
               "rows of cells next to the interface that are sub-cycled"),
       integer("time.interface_substeps", at(&Case::time, &TimeStepping::interface_substeps), between(1, 1e6),
               "sub-steps per time step there; 1 for none"),
+      only_with(graded, flag("time.local_steps", at(&Case::time, &TimeStepping::local_steps),
+                             "larger elements take larger time steps")),
       number("time.end_s", at(&Case::time, &TimeStepping::end_s), above(0), "end of the event"),
       number("time.quiet_s", at(&Case::time, &TimeStepping::quiet_s), above_or_infinite(0),
              "the event ends earlier when no node has slipped for this long"),

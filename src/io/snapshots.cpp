@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 #include "base/error.hpp"
@@ -30,6 +31,15 @@ void write_in_pieces(const hdf5::File& file, const std::string& name, std::size_
   }
 }
 
+/// Nodes of the left edge of a periodic plate and of the right one, which have the same motion.
+std::vector<std::pair<mesh::Node, mesh::Node>> seam(const mesh::Mesh& mesh) {
+  std::vector<std::pair<mesh::Node, mesh::Node>> pairs;
+  if (mesh.period_m == 0) return pairs;
+  for (const auto& grid : mesh::blocks(mesh))
+    for (int j = 0; j <= grid.rows; ++j) pairs.emplace_back(grid.node(0, j), grid.node(grid.columns, j));
+  return pairs;
+}
+
 void write_mesh(const hdf5::File& file, const mesh::Mesh& mesh) {
   constexpr std::uint8_t vtk_quad = 9;
   const std::size_t n_points = mesh.x_m.size(), n_cells = mesh.cells.size();
@@ -47,16 +57,22 @@ void write_mesh(const hdf5::File& file, const mesh::Mesh& mesh) {
     point[2] = 0;
   });
   hdf5::create(file, "/VTKHDF/Connectivity", hdf5::Type::int64, {4 * n_cells});
+  // The last column of a periodic plate is drawn with nodes of its own.
+  const auto joined = seam(mesh);
+  const auto right_of = [&](mesh::Node n) {
+    return std::ranges::lower_bound(joined, std::pair(n, mesh::Node{0}))->second;
+  };
   // Whole cells to a piece: rows of one number here.
   std::vector<std::int64_t> nodes;
   for (std::size_t from = 0; from < n_cells; from += piece_rows) {
     nodes.clear();
     for (std::size_t c = from; c < std::min(from + piece_rows, n_cells); ++c) {
       const mesh::Cell& cell = mesh.cells[c];
+      double right_most_m = 0;
+      for (const mesh::Node n : cell) right_most_m = std::max(right_most_m, mesh.x_m[n]);
       for (const mesh::Node n : cell) {
-        // The last column of a periodic plate is drawn with nodes of its own.
-        const bool round = mesh.period_m > 0 && mesh.x_m[cell[0]] - mesh.x_m[n] > 0.5 * mesh.period_m;
-        nodes.push_back(round ? n + mesh.grid.columns : n);
+        const bool round = mesh.period_m > 0 && right_most_m - mesh.x_m[n] > 0.5 * mesh.period_m;
+        nodes.push_back(round ? right_of(n) : n);
       }
     }
     hdf5::write_rows(file, "/VTKHDF/Connectivity", 4 * from, nodes);
@@ -72,9 +88,12 @@ void write_mesh(const hdf5::File& file, const mesh::Mesh& mesh) {
 
 SnapshotFile::SnapshotFile(const std::filesystem::path& path, const mesh::Mesh& mesh,
                            const std::filesystem::path& shown)
-    : file_(hdf5::create_file(path, shown)),
-      n_points_(mesh.x_m.size()),
-      columns_(mesh.period_m > 0 ? static_cast<std::size_t>(mesh.grid.columns) : 0) {
+    : file_(hdf5::create_file(path, shown)), n_points_(mesh.x_m.size()) {
+  if (mesh.period_m > 0) {
+    source_.resize(n_points_);
+    std::iota(source_.begin(), source_.end(), std::size_t{0});
+    for (const auto& [left, right] : seam(mesh)) source_[right] = left;
+  }
   hdf5::create_group(file_, "/VTKHDF");
   hdf5::set_attribute(file_, "/VTKHDF", "Version", std::array<std::int64_t, 2>{2, 0});
   hdf5::set_ascii_attribute(file_, "/VTKHDF", "Type", "UnstructuredGrid");
@@ -91,7 +110,7 @@ void SnapshotFile::append_field(const std::string& name, const solid::Field& fie
   hdf5::add_rows(file_, dataset, n_points_);
   write_in_pieces<double, 3>(file_, dataset, time_s_.size() * n_points_, n_points_,
                              [&](std::size_t n, double* vector) {
-                               if (columns_ > 0 && n % (columns_ + 1) == columns_) n -= columns_;
+                               if (!source_.empty()) n = source_[n];
                                vector[0] = field.x[n];
                                vector[1] = field.y[n];
                                vector[2] = 0;

@@ -33,9 +33,9 @@ class SnapshotFile {
 
   hdf5::File file_;
   std::size_t n_points_;
-  /// Of a periodic plate: the last column is drawn with the values of the first, which is so many nodes
-  /// before; 0 otherwise.
-  std::size_t columns_ = 0;
+  /// Of a periodic plate: for each point the one whose values it has; those of the right edge have those of
+  /// the left one. Empty otherwise.
+  std::vector<std::size_t> source_;
   std::vector<double> time_s_;
 };
 

@@ -49,7 +49,8 @@ struct Patch {
   std::vector<std::vector<CellCorner>> around;
 };
 
-Fold choose_fold(const Grid& grid, double radius_m) {
+Fold choose_fold(const Mesh& mesh, double radius_m) {
+  const Grid& grid = mesh.grid;
   const double h = grid.spacing_m;
   const double smallest = min_radius_in_cells * h;
   const int room = std::min(grid.columns / 2, grid.rows);
@@ -62,8 +63,9 @@ Fold choose_fold(const Grid& grid, double radius_m) {
     throw UserError("plate.fillet_radius_m = {:g} is too small for these elements; make it at least {:.8g}",
                     radius_m, smallest);
   if (radius_m > (1 + 1e-6) * largest)
-    throw UserError("plate.fillet_radius_m = {:g} does not fit into the plate; make it at most {:.8g}",
-                    radius_m, largest);
+    throw UserError("plate.fillet_radius_m = {:g} does not fit into the plate{}; make it at most {:.8g}",
+                    radius_m, mesh.coarser.empty() ? "" : "'s smallest elements (plate.fine_height_m)",
+                    largest);
   Fold fold;
   fold.radius_m = radius_m;
   fold.spacing_m = h;
@@ -242,7 +244,7 @@ std::vector<Node> lower_side(const Grid& grid, const Fold& fold) {
 }  // namespace
 
 void round_corners(Mesh& mesh, double radius_m) {
-  const Fold fold = choose_fold(mesh.grid, radius_m);
+  const Fold fold = choose_fold(mesh, radius_m);
   Patch patch = make_patch(fold);
   spread(patch, fold);
   optimise(patch, fold);

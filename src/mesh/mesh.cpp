@@ -10,6 +10,12 @@
 
 namespace slipfront::mesh {
 
+std::vector<Grid> blocks(const Mesh& mesh) {
+  std::vector<Grid> all = {mesh.grid};
+  all.insert(all.end(), mesh.coarser.begin(), mesh.coarser.end());
+  return all;
+}
+
 std::vector<bool> orphans(const Mesh& mesh) {
   std::vector<bool> orphan(mesh.x_m.size(), true);
   for (const Cell& cell : mesh.cells)

@@ -12,17 +12,20 @@ using Node = std::int32_t;
 /// Four-node cells with their node numbers counterclockwise.
 using Cell = std::array<Node, 4>;
 
-/// The logical grid under the node numbers: node (column i, row j) is j * (columns + 1) + i.
+/// The logical grid under the node numbers of a block of squares: node (column i, row j) is
+/// first + j * (columns + 1) + i.
 ///
-/// A plate's nodes are always numbered by such a grid, whatever is done to its corners; cells may be moved,
+/// A plate's nodes are numbered by such a grid, whatever is done to its corners; cells may be moved,
 /// folded or taken away, and a grid number without a cell is an orphan (see orphans). The two lower corners
-/// of a fillet are such, so take the plate's width from `top`.
+/// of a fillet are such, so take the plate's width from `top`. A graded plate has one grid per block.
 struct Grid {
   int columns = 0;       ///< cells along x
   int rows = 0;          ///< cells along y
   double spacing_m = 0;  ///< side of the regular square cell
+  Node first = 0;        ///< number of the lowest left node
   int stride() const { return columns + 1; }
-  Node node(int i, int j) const { return j * stride() + i; }
+  Node node(int i, int j) const { return first + j * stride() + i; }
+  int n_nodes() const { return stride() * (rows + 1); }
 };
 
 /// A boundary node that lets waves out: length of its boundary with the normal along x, and along y.
@@ -32,10 +35,15 @@ struct AbsorbingNode {
 };
 
 /// Nodes, four-node cells and the named node sets of a plate standing on the rigid plane y = 0.
+///
+/// A graded plate has blocks of squares above each other, each with squares twice as large as those of the
+/// block below, joined by transition rows; see plate.hpp. Nodes are numbered upwards: a block, the inner
+/// nodes of the transition, the next block. A mesh that knows no grid at all has a grid without columns.
 struct Mesh {
-  Grid grid;
-  std::vector<double> x_m;  ///< [nodes] along the interface, from the left edge
-  std::vector<double> y_m;  ///< [nodes] up from the rigid plane; the gap of a lower node
+  Grid grid;                  ///< of the lowest block, which holds the interface; of the whole plain plate
+  std::vector<Grid> coarser;  ///< of the blocks above, upwards; none unless the plate is graded
+  std::vector<double> x_m;    ///< [nodes] along the interface, from the left edge
+  std::vector<double> y_m;    ///< [nodes] up from the rigid plane; the gap of a lower node
   std::vector<Cell> cells;
   std::vector<Node> lower;  ///< candidates for contact, x ascending, rounded corners included
   std::vector<Node> top;  ///< nodes of the loaded edge, left to right; none where the top is free or absorbs
@@ -46,6 +54,9 @@ struct Mesh {
 
   Node n_nodes() const { return static_cast<Node>(x_m.size()); }
 };
+
+/// The grids of all blocks, upwards.
+std::vector<Grid> blocks(const Mesh& mesh);
 
 /// For each node, whether no cell uses it. Orphans carry no mass and take no part in anything.
 std::vector<bool> orphans(const Mesh& mesh);

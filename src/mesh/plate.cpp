@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 
@@ -71,35 +72,131 @@ Grid make_grid(const Plate& plate) {
 /// Mesh, operator and motion of a plate, and what building them takes for a while.
 constexpr double bytes_per_node = 180;
 
+/// Column i of the transition's inner nodes stands i times the smaller spacing from the left; every fourth
+/// column has none.
+bool has_inner(int i) {
+  return i % 4 != 0;
+}
+int n_inner(const Grid& below) {
+  return below.columns - below.columns / 4;
+}
+Node inner_node(const Grid& below, int i) {
+  return below.first + below.n_nodes() + i - 1 - i / 4;
+}
+
+/// Grids of the blocks of a plate whose rectangle has the grid `whole`, upwards.
+std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole) {
+  if (plate.coarsenings == 0) return {whole};
+  if (plate.coarsenings < 0)
+    throw UserError("plate.coarsenings = {} must not be negative", plate.coarsenings);
+  require_positive(plate.fine_height_m, "fine_height_m");
+  const bool periodic = plate.sides == Sides::periodic;
+  const int divisor = periodic ? 4 : 2;
+  std::vector<Grid> grids;
+  Grid block = whole;
+  int rows_left = whole.rows;  // of the block's squares, up to the loaded edge
+  double below_m = 0;
+  for (int k = 0; k <= plate.coarsenings; ++k) {
+    if (k == plate.coarsenings) {
+      block.rows = rows_left;
+    } else {
+      if (block.columns % divisor != 0)
+        throw UserError(
+            "plate.coarsenings = {} needs a number of columns of elements that can be halved so often{}; {} "
+            "columns can {} times: choose fewer, or another plate.element_size_m",
+            plate.coarsenings, periodic ? " and stay even, the sides being periodic" : "", whole.columns, k);
+      const double least_m = k == 0 ? plate.fine_height_m : below_m;
+      const double least = std::max(1.0, std::ceil(least_m / block.spacing_m - whole_tolerance));
+      if (least + 4 > rows_left)
+        throw UserError(
+            "plate.coarsenings = {} leaves no room for the largest elements; choose fewer, or a "
+            "plate.fine_height_m below {:g}",
+            plate.coarsenings, plate.fine_height_m);
+      block.rows = static_cast<int>(least);
+      block.rows += (rows_left - block.rows) % 2;
+    }
+    grids.push_back(block);
+    below_m += (block.rows + 2) * block.spacing_m;
+    rows_left = (rows_left - block.rows) / 2 - 1;
+    block.first += block.n_nodes() + n_inner(block);
+    block.columns /= 2;
+    block.spacing_m *= 2;
+  }
+  return grids;
+}
+
+/// Length of the transition's edges next to the blocks, at the left or the right side of the plate.
+double transition_edge_m(const Grid& below, bool right) {
+  return below.spacing_m * (right && has_inner(below.columns) ? 1 : 2);
+}
+
+void add_squares(Mesh& mesh, const Grid& grid) {
+  for (int j = 0; j < grid.rows; ++j)
+    for (int i = 0; i < grid.columns; ++i)
+      mesh.cells.push_back(
+          {grid.node(i, j), grid.node(i + 1, j), grid.node(i + 1, j + 1), grid.node(i, j + 1)});
+}
+
+void add_transition(Mesh& mesh, const Grid& below, const Grid& above) {
+  const auto b = [&](int i) { return below.node(i, below.rows); };
+  const auto m = [&](int i) { return inner_node(below, i); };
+  for (int column = 0; column < above.columns; ++column) {
+    const int i = 2 * column;
+    const Node left = above.node(column, 0), right = above.node(column + 1, 0);
+    if (column % 2 == 0) {
+      mesh.cells.push_back({b(i), b(i + 1), m(i + 1), left});
+      mesh.cells.push_back({b(i + 1), b(i + 2), m(i + 2), m(i + 1)});
+      mesh.cells.push_back({left, m(i + 1), m(i + 2), right});
+    } else {
+      mesh.cells.push_back({b(i), b(i + 1), m(i + 1), m(i)});
+      mesh.cells.push_back({b(i + 1), b(i + 2), right, m(i + 1)});
+      mesh.cells.push_back({left, m(i), m(i + 1), right});
+    }
+  }
+}
+
 Mesh make_rectangle(const Plate& plate) {
-  Mesh mesh;
-  mesh.grid = make_grid(plate);
-  const Grid& grid = mesh.grid;
-  const auto n_nodes = static_cast<std::size_t>(grid.stride()) * (static_cast<std::size_t>(grid.rows) + 1);
+  const Grid whole = make_grid(plate);
+  const auto grids = make_blocks(plate, whole);
+  std::size_t n_nodes = 0;
+  for (const Grid& grid : grids)
+    n_nodes += static_cast<std::size_t>(grid.stride()) * (static_cast<std::size_t>(grid.rows) + 2);
   if (n_nodes > static_cast<std::size_t>(std::numeric_limits<Node>::max()))
     throw UserError(
         "plate.element_size_m = {:g} makes {} nodes, more than can be numbered; choose a larger one",
         plate.element_size_m, n_nodes);
   require_memory(bytes_per_node * static_cast<double>(n_nodes), fmt::format("a plate of {} nodes", n_nodes),
                  "choose a larger plate.element_size_m");
+  Mesh mesh;
+  mesh.grid = grids.front();
+  mesh.coarser.assign(grids.begin() + 1, grids.end());
   mesh.x_m.reserve(n_nodes);
   mesh.y_m.reserve(n_nodes);
-  for (int j = 0; j <= grid.rows; ++j) {
-    const double y = j * plate.height_m / grid.rows;
+  mesh.cells.reserve(n_nodes);
+  int level = 0;  // of the row, in rows of the smallest squares
+  const auto y_of = [&](int at) { return at * plate.height_m / whole.rows; };
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    const Grid& grid = grids[k];
+    const int size = 1 << k;  // of the block's squares, in smallest ones
+    for (int j = 0; j <= grid.rows; ++j)
+      for (int i = 0; i <= grid.columns; ++i) {
+        mesh.x_m.push_back(i * plate.width_m / grid.columns);
+        mesh.y_m.push_back(y_of(level + j * size));
+      }
+    add_squares(mesh, grid);
+    if (k + 1 == grids.size()) break;
+    level += (grid.rows + 1) * size;
     for (int i = 0; i <= grid.columns; ++i) {
+      if (!has_inner(i)) continue;
       mesh.x_m.push_back(i * plate.width_m / grid.columns);
-      mesh.y_m.push_back(y);
+      mesh.y_m.push_back(y_of(level));
     }
+    add_transition(mesh, grid, grids[k + 1]);
+    level += size;
   }
-  mesh.cells.reserve(static_cast<std::size_t>(grid.columns) * grid.rows);
-  for (int j = 0; j < grid.rows; ++j)
-    for (int i = 0; i < grid.columns; ++i)
-      mesh.cells.push_back(
-          {grid.node(i, j), grid.node(i + 1, j), grid.node(i + 1, j + 1), grid.node(i, j + 1)});
-  for (int i = 0; i <= grid.columns; ++i) {
-    mesh.lower.push_back(grid.node(i, 0));
-    mesh.top.push_back(grid.node(i, grid.rows));
-  }
+  const Grid& highest = grids.back();
+  for (int i = 0; i <= mesh.grid.columns; ++i) mesh.lower.push_back(mesh.grid.node(i, 0));
+  for (int i = 0; i <= highest.columns; ++i) mesh.top.push_back(highest.node(i, highest.rows));
   return mesh;
 }
 
@@ -131,54 +228,77 @@ void check_relief(const Plate& plate, const Grid& grid) {
 
 /// Moves the nodes above the two arcs up, and by the same amount at both ends.
 void lift_corners(Mesh& mesh, const Plate& plate) {
-  const Grid& grid = mesh.grid;
   const double length = plate.relief_length_m;
   const double height = plate.relief_height_m;
   const double radius = (length * length + height * height) / (2 * height);
-  for (int i = 0; 2 * i < grid.columns; ++i) {
-    const double into = length - mesh.x_m[grid.node(i, 0)];
-    if (into <= 0) break;
+  const auto lifted = [&](double x, double y) {
+    const double into = length - x;
+    if (into <= 0 || y >= plate.relief_depth_m) return y;
     // radius - sqrt(radius^2 - into^2), without the cancellation
     const double rise = into * into / (radius + std::sqrt(radius * radius - into * into));
-    for (int j = 0; j <= grid.rows; ++j) {
-      const double y = mesh.y_m[grid.node(i, j)];
-      if (y >= plate.relief_depth_m) break;
-      const double moved = y + rise * (1 - y / plate.relief_depth_m);
-      mesh.y_m[grid.node(i, j)] = moved;
-      mesh.y_m[grid.node(grid.columns - i, j)] = moved;
+    return y + rise * (1 - y / plate.relief_depth_m);
+  };
+  for (const Grid& grid : blocks(mesh))
+    for (int j = 0; j <= grid.rows; ++j)
+      for (int i = 0; 2 * i < grid.columns; ++i) {
+        const double y = mesh.y_m[grid.node(i, j)];
+        const double moved = lifted(mesh.x_m[grid.node(i, j)], y);
+        if (moved == y) break;
+        mesh.y_m[grid.node(i, j)] = moved;
+        mesh.y_m[grid.node(grid.columns - i, j)] = moved;
+      }
+  const auto grids = blocks(mesh);
+  for (std::size_t k = 0; k + 1 < grids.size(); ++k)
+    for (int i = 1; i <= grids[k].columns; ++i) {
+      if (!has_inner(i)) continue;
+      const Node n = inner_node(grids[k], i);
+      const double x = mesh.x_m[n];
+      mesh.y_m[n] = lifted(std::min(x, plate.width_m - x), mesh.y_m[n]);
     }
-  }
 }
 
 void join_sides(Mesh& mesh, const Plate& plate) {
-  const Grid& grid = mesh.grid;
-  if (grid.columns < 3)
-    throw UserError("plate.sides = periodic needs three columns of elements or more, not {}", grid.columns);
+  if (mesh.grid.columns < 3)
+    throw UserError("plate.sides = periodic needs three columns of elements or more, not {}",
+                    mesh.grid.columns);
   mesh.period_m = plate.width_m;
-  for (int j = 0; j < grid.rows; ++j) {
-    Cell& cell = mesh.cells[static_cast<std::size_t>(j) * grid.columns + grid.columns - 1];
-    cell[1] = grid.node(0, j);
-    cell[2] = grid.node(0, j + 1);
-  }
+  std::vector<Node> joined(mesh.x_m.size());
+  std::iota(joined.begin(), joined.end(), 0);
+  for (const Grid& grid : blocks(mesh))
+    for (int j = 0; j <= grid.rows; ++j) joined[grid.node(grid.columns, j)] = grid.node(0, j);
+  for (Cell& cell : mesh.cells)
+    for (Node& n : cell) n = joined[n];
   mesh.lower.pop_back();
   mesh.top.pop_back();
 }
 
 /// Every edge between two nodes gives half of its length to each.
 void absorb(Mesh& mesh, const Plate& plate) {
-  const Grid& grid = mesh.grid;
   const bool sides = plate.sides == Sides::absorbing, top = plate.top == Top::absorbing;
   const bool loaded = plate.top == Top::loaded;
   const bool periodic = mesh.period_m > 0;
-  for (int j = 0; j <= grid.rows; ++j)
-    for (int i = 0; i <= grid.columns - (periodic ? 1 : 0); ++i) {
-      AbsorbingNode a{grid.node(i, j)};
-      if (sides && (i == 0 || i == grid.columns) && (!loaded || j < grid.rows))
-        a.side_m = grid.spacing_m * (j == 0 || j == grid.rows ? 0.5 : 1);
-      if (top && j == grid.rows)
-        a.top_m = grid.spacing_m * (!periodic && (i == 0 || i == grid.columns) ? 0.5 : 1);
-      if (a.side_m > 0 || a.top_m > 0) mesh.absorbing.push_back(a);
-    }
+  const auto grids = blocks(mesh);
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    const Grid& grid = grids[k];
+    const bool first = k == 0, last = k + 1 == grids.size();
+    for (int j = 0; j <= grid.rows; ++j)
+      for (int i = 0; i <= grid.columns - (periodic ? 1 : 0); ++i) {
+        AbsorbingNode a{grid.node(i, j)};
+        const bool at_top = last && j == grid.rows;
+        if (sides && (i == 0 || i == grid.columns) && (!loaded || !at_top)) {
+          const bool at_end = (first && j == 0) || at_top;
+          a.side_m = grid.spacing_m * (at_end ? 0.5 : 1);
+          // The transition's edges: 2 h, or h and h where an inner node stands on the edge.
+          const Grid* below = j == 0 && !first ? &grids[k - 1] : nullptr;
+          if (below != nullptr) a.side_m = 0.5 * (grid.spacing_m + transition_edge_m(*below, i > 0));
+          if (j == grid.rows && !last) a.side_m = 0.5 * (grid.spacing_m + transition_edge_m(grid, i > 0));
+        }
+        if (at_top && top) a.top_m = grid.spacing_m * (!periodic && (i == 0 || i == grid.columns) ? 0.5 : 1);
+        if (a.side_m > 0 || a.top_m > 0) mesh.absorbing.push_back(a);
+      }
+    if (sides && !last && has_inner(grid.columns))
+      mesh.absorbing.push_back({inner_node(grid, grid.columns), grid.spacing_m, 0});
+  }
   if (!loaded) mesh.top.clear();
 }
 

@@ -31,6 +31,8 @@ struct Plate {
   double width_m = 0.2;
   double height_m = 0.1;
   double element_size_m = 2e-3 / 3;  ///< width and height must be whole multiples of it, to 1e-6
+  int coarsenings = 0;               ///< how often the element size doubles on the way up
+  double fine_height_m = 10e-3;      ///< least height of the elements of element_size_m, if coarsened
   Corner corner = Corner::relief;
   double relief_length_m = 5e-3;
   double relief_height_m = 0.5e-3;
@@ -51,6 +53,20 @@ struct Plate {
 /// - fillet: a few rows of cells are wrapped around each corner, see fillet.hpp.
 ///
 /// Periodic sides need three columns or more.
+///
+/// With `coarsenings`, blocks of squares of element_size_m, twice, four times it ... lie above each other.
+/// The lowest block has the fewest rows that reach fine_height_m, each one above it the fewest that make it
+/// at least as high as everything below it, one row more where the rest of the plate would not divide; the
+/// last one takes the rest. A transition row of quadrilaterals, as high as two of the smaller squares (side
+/// h) and conforming, joins two blocks; a unit of it is 4 h wide:
+///
+///      t0-------t1-------t2
+///      | \      |      / |
+///      |  m1----m2---m3  |     inner nodes h above b1, b2, b3; angles of 45 to 135 degrees; no cell has a
+///      |  |     |    |   |     higher frequency than the square of side h
+///      b0-b1----b2---b3--b4
+///
+/// A block whose columns are not a multiple of 4 ends with the left half of a unit.
 ///
 /// @throws UserError for an impossible geometry, naming the quantity to change.
 Mesh make_plate(const Plate& plate);

@@ -39,7 +39,15 @@ double top_speed_m_per_s(const io::Case& config) {
 
 /// Displacements of all nodes, from the plate's measures alone: for refusals before anything is built.
 double approximate_unknowns(const mesh::Plate& plate) {
-  return 2 * (plate.width_m / plate.element_size_m + 1) * (plate.height_m / plate.element_size_m + 1);
+  double unknowns = 0, h = plate.element_size_m, height_m = plate.fine_height_m, rest_m = plate.height_m;
+  for (int k = 0; k <= std::max(0, plate.coarsenings) && rest_m > 0; ++k) {
+    const double of_block_m = k == plate.coarsenings ? rest_m : std::min(height_m, rest_m);
+    unknowns += 2 * (plate.width_m / h + 1) * (of_block_m / h + 1);
+    rest_m -= of_block_m;
+    height_m = plate.height_m - rest_m;  // a block is as high as everything below it
+    h *= 2;
+  }
+  return unknowns;
 }
 
 bool is_prestressed(const io::Case& config) {
@@ -281,6 +289,7 @@ Result run_event(const io::Case& config, const InitialState& initial, solve::Ste
   const auto& state = event_state(config, initial);
   result.stable_step_s = stepper.stable_step_s();
   result.step_s = stepper.step_s();
+  result.substep_s = stepper.substep_s();
   result.node_updates_per_step = stepper.node_updates_per_step();
 
   const auto start = Clock::now();
@@ -344,7 +353,8 @@ Info info(const io::Case& config) {
       std::async(std::launch::async | std::launch::deferred, [&] { return well_posedness(config, mesh); });
   solve::Stepper stepper(mesh, config.material, io::contact_model(config), config.time);
   info.well_posedness = sliding.get();
-  info.n_irregular = static_cast<std::int64_t>(stepper.plate().whole.irregular.size());
+  info.n_irregular = static_cast<std::int64_t>(stepper.plate().whole.irregular.size() +
+                                               stepper.plate().whole.general.size());
   info.stable_step_s = stepper.stable_step_s();
   info.step_s = stepper.step_s();
   info.substep_s = stepper.substep_s();

@@ -56,7 +56,7 @@ WaveSpeeds wave_speeds(const solid::Material& material);
 struct Result {
   io::Case config;
   WaveSpeeds speeds;
-  double stable_step_s = 0, step_s = 0;
+  double stable_step_s = 0, step_s = 0, substep_s = 0;
   double node_updates_per_step = 0;
   double stepping_wall_s = 0;
   solve::Event event;

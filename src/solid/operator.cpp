@@ -33,12 +33,38 @@ CellsOfNodes cells_of_nodes(const mesh::Mesh& mesh) {
   return c;
 }
 
-/// Whether the cell is a square of the grid's spacing between grid neighbours, lowest left node first.
-bool is_regular(const mesh::Mesh& mesh, const mesh::Cell& cell) {
-  const int stride = mesh.grid.stride();
+/// The grids of the mesh's blocks, none where it knows no grid.
+std::vector<mesh::Grid> grids_of(const mesh::Mesh& mesh) {
+  return mesh.grid.columns > 0 ? mesh::blocks(mesh) : std::vector<mesh::Grid>{};
+}
+
+std::vector<NodeRow> rows_of(const mesh::Mesh& mesh, std::span<const mesh::Grid> grids) {
+  if (grids.empty()) return {{0, mesh.n_nodes()}};
+  std::vector<NodeRow> rows;
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    const auto& grid = grids[k];
+    for (int j = 0; j <= grid.rows; ++j) rows.push_back({grid.node(0, j), grid.stride()});
+    const auto end = grid.first + grid.n_nodes();
+    if (k + 1 < grids.size()) rows.push_back({end, grids[k + 1].first - end});
+  }
+  return rows;
+}
+
+/// The block of each node, -1 for the inner nodes of transitions.
+std::vector<int> block_of_nodes(const mesh::Mesh& mesh, std::span<const mesh::Grid> grids) {
+  std::vector<int> block(mesh.n_nodes(), -1);
+  for (std::size_t k = 0; k < grids.size(); ++k)
+    std::fill_n(block.begin() + grids[k].first, grids[k].n_nodes(), static_cast<int>(k));
+  return block;
+}
+
+/// Whether a cell of the block is a square of the grid's spacing between grid neighbours, lowest left node
+/// first.
+bool is_regular(const mesh::Mesh& mesh, const mesh::Grid& grid, const mesh::Cell& cell) {
+  const int stride = grid.stride();
   const mesh::Node corner = cell[0];
   if (cell[1] != corner + 1 || cell[2] != corner + stride + 1 || cell[3] != corner + stride) return false;
-  const double h = mesh.grid.spacing_m;
+  const double h = grid.spacing_m;
   const double tolerance = 1e-9 * h;
   const auto c = cell_coordinates(mesh, cell);
   const std::array<double, 8> square = {0, 0, h, 0, h, h, 0, h};
@@ -120,13 +146,24 @@ BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::s
   return result;
 }
 
+int Operator::row_of(mesh::Node n) const {
+  const auto above = std::ranges::upper_bound(rows, n, {}, &NodeRow::first);
+  return static_cast<int>(above - rows.begin()) - 1;
+}
+
+int Operator::widest_row() const {
+  return std::ranges::max(rows, {}, &NodeRow::count).count;
+}
+
 Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   Operator op;
   op.grid = mesh.grid;
+  op.blocks = grids_of(mesh);
+  op.rows = rows_of(mesh, op.blocks);
   op.mass_kg = lumped_mass(mesh, material);
   op.is_top.assign(mesh.n_nodes(), false);
   for (const auto n : mesh.top) op.is_top[n] = true;
-  set_stencils(op, material);
+  if (!op.blocks.empty()) set_stencils(op, material);
   op.whole = make_part(mesh, material, op, std::vector<bool>(mesh.cells.size(), true), 0);
   op.top = assemble_rows(mesh, material, mesh.top);
   return op;
@@ -134,16 +171,24 @@ Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
 
 Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator& plate,
                const std::vector<bool>& in_part, int edge_row) {
-  const auto& grid = plate.grid;
-  std::vector<bool> regular_cell(mesh.cells.size());
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k) regular_cell[k] = is_regular(mesh, mesh.cells[k]);
+  const auto block_of = block_of_nodes(mesh, plate.blocks);
+  std::vector<bool> regular_cell(mesh.cells.size()), general_node(mesh.n_nodes(), false);
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    const auto& cell = mesh.cells[c];
+    const int block = block_of[cell[0]];
+    if (block >= 0 && std::ranges::all_of(cell, [&](mesh::Node n) { return block_of[n] == block; })) {
+      regular_cell[c] = is_regular(mesh, plate.blocks[block], cell);
+    } else {
+      for (const auto n : cell) general_node[n] = true;
+    }
+  }
   const CellsOfNodes around = cells_of_nodes(mesh);
   std::vector<bool> is_boundary(mesh.n_nodes(), false);
   for (const auto n : mesh.lower) is_boundary[n] = true;
   for (const auto& absorbing : mesh.absorbing) is_boundary[absorbing.node] = true;
 
   // The squares of the part around a node with a stencil; nothing for a node that needs a block row.
-  const auto squares_around = [&](mesh::Node n, int j) -> std::optional<Squares> {
+  const auto squares_around = [&](mesh::Node n, int block, int j) -> std::optional<Squares> {
     int above = 0, below = 0, right = 0, left = 0;
     for (auto k = around.first[n]; k < around.first[n + 1]; ++k) {
       const auto c = around.cell[k];
@@ -157,7 +202,7 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
       if (right == 2) return Squares::right;
       if (left == 2) return Squares::left;
     }
-    if (j != 0 && j != edge_row) return std::nullopt;
+    if (block != 0 || (j != 0 && j != edge_row)) return std::nullopt;
     if (above == 2 && below == 0) return Squares::above;
     if (above == 0 && below == 2) return Squares::below;
     return std::nullopt;
@@ -169,45 +214,54 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
   };
 
   Part part;
-  std::vector<mesh::Node> irregular;
-  for (int j = 0; j <= grid.rows; ++j) {
-    std::array<StencilRow, 5> of_row;
-    for (int i = 0; i <= grid.columns; ++i) {
-      const mesh::Node n = grid.node(i, j);
-      if (plate.is_top[n] || !touches_part(n)) continue;
-      const auto squares = squares_around(n, j);
-      if (!squares) {
-        irregular.push_back(n);
-        continue;
+  std::vector<mesh::Node> irregular, general;
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
+    if (general_node[n] && !plate.is_top[n] && touches_part(n)) general.push_back(n);
+  for (std::size_t k = 0; k < plate.blocks.size(); ++k) {
+    const auto& grid = plate.blocks[k];
+    for (int j = 0; j <= grid.rows; ++j) {
+      std::array<StencilRow, 5> of_row;
+      for (int i = 0; i <= grid.columns; ++i) {
+        const mesh::Node n = grid.node(i, j);
+        if (plate.is_top[n] || general_node[n] || !touches_part(n)) continue;
+        const auto squares = squares_around(n, static_cast<int>(k), j);
+        if (!squares) {
+          irregular.push_back(n);
+          continue;
+        }
+        auto& spans = of_row[static_cast<int>(*squares)].spans;
+        if (!spans.empty() && spans.back().end == i) {
+          ++spans.back().end;
+        } else {
+          spans.push_back({i, i + 1});
+        }
       }
-      auto& spans = of_row[static_cast<int>(*squares)].spans;
-      if (!spans.empty() && spans.back().end == i) {
-        ++spans.back().end;
-      } else {
-        spans.push_back({i, i + 1});
+      for (const auto squares :
+           {Squares::all, Squares::above, Squares::below, Squares::right, Squares::left}) {
+        auto& row = of_row[static_cast<int>(squares)];
+        if (row.spans.empty()) continue;
+        row.row = plate.row_of(grid.node(0, j));
+        row.squares = squares;
+        const mesh::Node first = grid.node(row.spans.front().begin, j);
+        const bool full_mass = around.first[first + 1] - around.first[first] == 4;
+        const double ratio = plate.grid.spacing_m / grid.spacing_m;
+        row.scale = is_horizontal_edge(row) ? (full_mass ? 0.5 : 1) : ratio * ratio;
+        part.stencil.push_back(std::move(row));
       }
-    }
-    for (const auto squares : {Squares::all, Squares::above, Squares::below, Squares::right, Squares::left}) {
-      auto& row = of_row[static_cast<int>(squares)];
-      if (row.spans.empty()) continue;
-      row.row = j;
-      row.squares = squares;
-      const mesh::Node first = grid.node(row.spans.front().begin, j);
-      const bool full_mass = around.first[first + 1] - around.first[first] == 4;
-      row.scale = is_horizontal_edge(row) && full_mass ? 0.5 : 1;
-      part.stencil.push_back(std::move(row));
     }
   }
   part.irregular = assemble_rows(mesh, material, irregular, plate.mass_kg, in_part);
+  part.general = GeneralRows(mesh, material, std::move(general), plate.mass_kg, in_part);
   return part;
 }
 
 void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, ConstRow middle,
                      ConstRow north, double* a_x, double* a_y) {
+  const auto interior = scaled(op.interior, row.scale);
   const auto edge = scaled(op.edge, row.scale);
   for (const Span span : row.spans) {
     if (row.squares == Squares::all) {
-      add_interior_row(op.interior, span, south, middle, north, a_x, a_y);
+      add_interior_row(interior, span, south, middle, north, a_x, a_y);
     } else if (row.squares == Squares::above) {
       add_edge_row(edge, span, middle, north, a_x, a_y);
     } else if (row.squares == Squares::below) {
@@ -223,21 +277,27 @@ void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, 
 }
 
 void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
-  const int stride = op.grid.stride();
   const auto row = [&](int j) {
-    return ConstRow{w.x.data() + static_cast<std::ptrdiff_t>(j) * stride,
-                    w.y.data() + static_cast<std::ptrdiff_t>(j) * stride};
+    const auto first = op.rows[std::clamp(j, 0, op.n_rows() - 1)].first;
+    return ConstRow{w.x.data() + first, w.y.data() + first};
   };
   for (const auto& stencil : part.stencil) {
     const int j = stencil.row;
-    add_stencil_row(op, stencil, row(std::max(j - 1, 0)), row(j), row(std::min(j + 1, op.grid.rows)),
-                    a.x.data() + static_cast<std::ptrdiff_t>(j) * stride,
-                    a.y.data() + static_cast<std::ptrdiff_t>(j) * stride);
+    add_stencil_row(op, stencil, row(j - 1), row(j), row(j + 1), a.x.data() + op.rows[j].first,
+                    a.y.data() + op.rows[j].first);
   }
   for_each_row_product(part.irregular, w, [&](std::size_t r, double x, double y) {
     a.x[part.irregular.node[r]] += x;
     a.y[part.irregular.node[r]] += y;
   });
+  if (part.general.size() == 0) return;
+  auto space = part.general.workspace();
+  Field product(part.general.size());
+  part.general.multiply(w, 0, w, space, product.x.data(), product.y.data());
+  for (std::size_t r = 0; r < part.general.size(); ++r) {
+    a.x[part.general.node()[r]] += product.x[r];
+    a.y[part.general.node()[r]] += product.y[r];
+  }
 }
 
 void apply(const Operator& op, const Field& w, Field& a) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "solid/general.hpp"
 #include "solid/material.hpp"
 
 namespace slipfront::solid {
@@ -85,11 +86,19 @@ void for_each_row_product(const BlockRows& rows, const Field& w, F&& f) {
 /// Which of the four squares around a node belong to a part of the plate.
 enum class Squares { all, above, below, right, left };
 
+/// Nodes with consecutive numbers: a grid row of a block, or the inner nodes of a transition.
+struct NodeRow {
+  mesh::Node first = 0;
+  int count = 0;
+};
+
 /// Nodes of one grid row that share a stencil.
 struct StencilRow {
-  int row = 0;
+  int row = 0;  ///< of Operator::rows
   Squares squares = Squares::all;
-  double scale = 1;  ///< of the edge stencil: half a square's mass on either side over the node's mass
+  /// Of the stencil: the mass of a node amid the smallest squares over that of one amid the block's; at
+  /// horizontal edges half a square's mass on either side over the node's mass.
+  double scale = 1;
   std::vector<Span> spans;
 };
 
@@ -99,28 +108,36 @@ inline bool is_horizontal_edge(const StencilRow& row) {
 }
 
 /// What some cells of the plate contribute to M^-1 K of the nodes that may move: stencils where the cells are
-/// equal squares, block rows elsewhere.
+/// equal squares, block rows at a block's sides and corners; products cell by cell at the transitions between
+/// blocks, both ends included, and on meshes that know no grid.
 struct Part {
   std::vector<StencilRow> stencil;  ///< rows ascending
   BlockRows irregular;
+  GeneralRows general;
 };
 
 /// The plate's stiffness over its lumped mass, as the explicit scheme needs it.
 struct Operator {
-  mesh::Grid grid;
+  mesh::Grid grid;                 ///< of the lowest block
+  std::vector<mesh::Grid> blocks;  ///< upwards, the lowest one first; none where the mesh knows no grid
+  std::vector<NodeRow> rows;       ///< all nodes, upwards; a single one where the mesh knows no grid
+  int n_rows() const { return static_cast<int>(rows.size()); }
+  int row_of(mesh::Node n) const;
+  int widest_row() const;
   std::vector<double> mass_kg;  ///< [nodes], per unit thickness; 0 for orphans
-  InteriorStencil interior{};
-  EdgeStencil edge{};        ///< over the mass of a node on a straight edge
-  Part whole;                ///< all cells
-  BlockRows top;             ///< K (no mass) of the loaded edge's nodes, N/m
-  std::vector<bool> is_top;  ///< [nodes]
+  InteriorStencil interior{};   ///< of the lowest block
+  EdgeStencil edge{};           ///< over the mass of a node on a straight edge
+  Part whole;                   ///< all cells
+  BlockRows top;                ///< K (no mass) of the loaded edge's nodes, N/m
+  std::vector<bool> is_top;     ///< [nodes]
 };
 
 Operator make_operator(const mesh::Mesh& mesh, const Material& material);
 
 /// Part of the operator that the cells marked contribute. Stencils for nodes that have squares of the part
-/// above or below only are used in row 0 and in `edge_row`; for nodes that have them to the right or left
-/// only, where no other cell and neither contact nor an absorbing boundary touches them.
+/// above or below only are used in row 0 and in `edge_row`, rows of the lowest block; for nodes that have
+/// them to the right or left only, where no other cell and neither contact nor an absorbing boundary touches
+/// them.
 Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator& plate,
                const std::vector<bool>& in_part, int edge_row);
 

@@ -8,7 +8,7 @@ namespace slipfront::solve {
 namespace {
 
 std::ptrdiff_t row_start(const Plate& plate, int row) {
-  return static_cast<std::ptrdiff_t>(row) * plate.op.grid.stride();
+  return plate.op.rows[row].first;
 }
 
 /// Rows that the stencil of `row` reads.
@@ -27,11 +27,10 @@ class Filler {
   Filler(const Plate& plate, solid::RollingRows& w, int first) : plate_(plate), w_(w), next_(first) {}
 
   void fill(solid::Span rows) {
-    const int stride = plate_.op.grid.stride();
     for (next_ = std::max(next_, rows.begin); next_ < rows.end; ++next_) {
       const auto o = row_start(plate_, next_);
-      solid::combine_row(stride, plate_.damping_s, &plate_.u_m.x[o], &plate_.u_m.y[o], &plate_.v_m_per_s.x[o],
-                         &plate_.v_m_per_s.y[o], w_.x(next_), w_.y(next_));
+      solid::combine_row(plate_.op.rows[next_].count, plate_.damping_s, &plate_.u_m.x[o], &plate_.u_m.y[o],
+                         &plate_.v_m_per_s.x[o], &plate_.v_m_per_s.y[o], w_.x(next_), w_.y(next_));
     }
   }
 
@@ -44,9 +43,9 @@ class Filler {
 /// w of a node in the three rows around `row`.
 class RowsAround {
  public:
-  RowsAround(solid::RollingRows& w, int row, int stride)
-      : first_node_((row - 1) * stride),
-        stride_(stride),
+  RowsAround(solid::RollingRows& w, const solid::Operator& op, int row)
+      : first_node_(op.rows[row - 1].first),
+        stride_(op.rows[row].count),
         rows_{row_of(w, row + 2), row_of(w, row), row_of(w, row + 1)} {}
 
   solid::Pair operator()(mesh::Node n) const {
@@ -61,6 +60,43 @@ class RowsAround {
   int stride_;
   solid::ConstRow rows_[3];  ///< row - 1, which rolls where row + 2 does, row, row + 1
 };
+
+/// Sum of m (x . a) over the general rows.
+double general_product(const Level& level, const Plate& plate, const solid::Field& x) {
+  double sum = 0;
+  for (const auto& [at, first, count] : level.general_runs) {
+    const double* mass = &plate.op.mass_kg[first];
+    const double* x_x = &x.x[first];
+    const double* x_y = &x.y[first];
+    const double* a_x = &level.a_x[at];
+    const double* a_y = &level.a_y[at];
+#pragma omp simd reduction(+ : sum)
+    for (std::size_t k = 0; k < count; ++k) sum += mass[k] * (x_x[k] * a_x[k] + x_y[k] * a_y[k]);
+  }
+  return sum;
+}
+
+/// Kicks and moves the nodes of the general rows.
+void move_general(const Level& level, Plate& plate) {
+  const double dt = level.step_s;
+  for (const auto& [at, first, count] : level.general_runs) {
+    const double* a_x = &level.a_x[at];
+    const double* a_y = &level.a_y[at];
+    double* __restrict u_x = &plate.u_m.x[first];
+    double* __restrict u_y = &plate.u_m.y[first];
+    double* __restrict v_x = &plate.v_m_per_s.x[first];
+    double* __restrict v_y = &plate.v_m_per_s.y[first];
+    // Runs end where these change.
+    if (!level.takes_push[at]) continue;
+    const double moving_s = level.moves[at] ? dt : 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      v_x[k] -= dt * a_x[k];
+      v_y[k] -= dt * a_y[k];
+      u_x[k] += moving_s * v_x[k];
+      u_y[k] += moving_s * v_y[k];
+    }
+  }
+}
 
 template <class W>
 void compute_irregular(Level& level, const Band& band, const Plate& plate, W&& w, Energies& works) {
@@ -77,15 +113,24 @@ void compute_irregular(Level& level, const Band& band, const Plate& plate, W&& w
   });
 }
 
+void add_kicks(solid::KickSums& to, const solid::KickSums& kicks, double mass) {
+  to.w_d += mass * kicks.w_d;
+  to.v_d += mass * kicks.v_d;
+  to.d_d += mass * kicks.d_d;
+}
+
 void sweep(Level& level, const Band& band, Plate& plate, Filler& filler, solid::RollingRows& w,
            PushProducts& products) {
   const int stride = plate.op.grid.stride();
   const double dt = level.step_s;
   const bool with_products = plate.damping_s > 0;
-  const auto interior = solid::scaled(plate.op.interior, -dt);
   const auto push_interior =
       with_products ? solid::push_interior_row<true, double> : solid::push_interior_row<false, double>;
   const auto right = solid::scaled(plate.op.edge, -dt);
+  // Sums over kicks of nodes with one mass, which is 1/kick_scale of that amid the smallest squares.
+  solid::KickSums kicks = products.kicks;
+  products.kicks = {};
+  double kick_scale = 1;
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
     const auto& row = level.part.stencil[k];
@@ -96,19 +141,25 @@ void sweep(Level& level, const Band& band, Plate& plate, Filler& filler, solid::
     double* v_x = &plate.v_m_per_s.x[o];
     double* v_y = &plate.v_m_per_s.y[o];
     filler.fill(rows_read(row));
+    if (scale != kick_scale && !solid::is_horizontal_edge(row)) {
+      add_kicks(products.kicks, kicks, 1 / kick_scale);
+      kicks = {};
+      kick_scale = scale;
+    }
     if (squares == solid::Squares::right || squares == solid::Squares::left) {
       const auto side =
           solid::scaled(squares == solid::Squares::right ? right : solid::mirrored(right), scale);
       const int inner = squares == solid::Squares::right ? 1 : -1;
       for (const auto span : spans)
         solid::push_side_node(side, span.begin, inner, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1),
-                              v_x, v_y, u_x, u_y, products.kicks);
+                              v_x, v_y, u_x, u_y, kicks);
       continue;
     }
     if (squares == solid::Squares::all) {
+      const auto interior = solid::scaled(plate.op.interior, -dt * scale);
       for (const auto span : spans)
         push_interior(interior, span, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1), v_x, v_y, u_x,
-                      u_y, products.kicks);
+                      u_y, kicks);
       continue;
     }
     const auto above = solid::scaled(plate.op.edge, -dt * scale);
@@ -130,6 +181,7 @@ void sweep(Level& level, const Band& band, Plate& plate, Filler& filler, solid::
     if (squares == solid::Squares::above && j > 0) continue;
     for (const auto span : spans) solid::kick_row(span, kick_x, kick_y, v_x, v_y);
   }
+  add_kicks(products.kicks, kicks, 1 / kick_scale);
 }
 
 /// Products over a band's block rows and loaded edge.
@@ -138,9 +190,13 @@ void add_irregular_products(const Level& level, const Band& band, const Plate& p
   const auto& u = plate.u_m;
   const auto& v = plate.v_m_per_s;
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
-    const auto n = level.part.irregular.node[r];
+    const auto n = level.irregular[r];
     products.u_K_w += plate.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
     products.v_K_w += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
+  }
+  if (&band == &level.bands.front()) {
+    products.u_K_w += general_product(level, plate, u);
+    products.v_K_w += general_product(level, plate, v);
   }
   if (!band.has_top) return;
   for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
@@ -166,13 +222,14 @@ void move_irregular(const Level& level, const Band& band, Plate& plate, Energies
   }
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
     if (!level.takes_push[r]) continue;
-    const auto n = level.part.irregular.node[r];
+    const auto n = level.irregular[r];
     v.x[n] -= dt * level.a_x[r];
     v.y[n] -= dt * level.a_y[r];
     if (!level.moves[r]) continue;
     u.x[n] += dt * v.x[n];
     u.y[n] += dt * v.y[n];
   }
+  if (&band == &level.bands.front()) move_general(level, plate);
   if (band.has_top)
     for (const auto n : level.top) u.x[n] += dt * v.x[n];
 }
@@ -180,11 +237,11 @@ void move_irregular(const Level& level, const Band& band, Plate& plate, Energies
 /// Sums of m (K w/m) . w and m (K w/m) . v over a level's nodes, w given for each node.
 template <class W>
 StiffnessProducts products_with(const Level& level, const Plate& plate, const W& w_of) {
-  const int stride = plate.op.grid.stride();
   const auto& v = plate.v_m_per_s;
   const auto& mass = plate.op.mass_kg;
-  solid::RollingRows w(stride);
-  std::vector<double> a_x(stride), a_y(stride);
+  const int widest = plate.op.widest_row();
+  solid::RollingRows w(widest);
+  std::vector<double> a_x(widest), a_y(widest);
   StiffnessProducts sums;
   int next = 0;
   for (const auto& row : level.part.stencil) {
@@ -194,7 +251,7 @@ StiffnessProducts products_with(const Level& level, const Plate& plate, const W&
       double* w_x = w.x(next);
       double* w_y = w.y(next);
       const auto first = static_cast<mesh::Node>(row_start(plate, next));
-      for (int i = 0; i < stride; ++i) {
+      for (int i = 0; i < plate.op.rows[next].count; ++i) {
         const solid::Pair at = w_of(first + i);
         w_x[i] = at.x;
         w_y[i] = at.y;
@@ -220,6 +277,18 @@ StiffnessProducts products_with(const Level& level, const Plate& plate, const W&
   solid::for_each_row_product(irregular, all(irregular), w_of, [&](std::size_t r, double x, double y) {
     add(irregular.node[r], mass[irregular.node[r]], x, y);
   });
+  if (const auto& general = level.part.general; general.size() > 0) {
+    solid::Field w_field(mass.size()), a(general.size());
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+      const solid::Pair at = w_of(static_cast<mesh::Node>(n));
+      w_field.x[n] = at.x;
+      w_field.y[n] = at.y;
+    }
+    auto space = general.workspace();
+    general.multiply(w_field, 0, w_field, space, a.x.data(), a.y.data());
+    for (std::size_t r = 0; r < general.size(); ++r)
+      add(general.node()[r], mass[general.node()[r]], a.x[r], a.y[r]);
+  }
   const auto& top = level.top_rows;
   solid::for_each_row_product(top, all(top), w_of,
                               [&](std::size_t r, double x, double y) { add(top.node[r], 1, x, y); });
@@ -262,7 +331,6 @@ void begin_push(Level& level, Plate& plate, Energies& works) {
 
 void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows& w, PushProducts& products,
                Energies& works) {
-  const int stride = plate.op.grid.stride();
   const bool is_first = &band == &level.bands.front(), is_last = &band == &level.bands.back();
   if (plate.damping_s > 0) products.late_K_w += late_product(level, band, plate);
   if (is_first) {
@@ -271,17 +339,20 @@ void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows&
                          plate.u_m.y[n] + plate.damping_s * plate.v_m_per_s.y[n]};
     };
     compute_irregular(level, band, plate, w_now, works);
+    level.part.general.multiply(plate.u_m, plate.damping_s, plate.v_m_per_s, level.general_space,
+                                level.a_x.data() + level.general.begin,
+                                level.a_y.data() + level.general.begin);
   }
   // The rows below a later band have moved already, and of its own row w is filled.
   Filler filler(plate, w, is_first ? band.first_row : band.first_row + 1);
   sweep(level, band, plate, filler, w, products);
   if (!is_last) filler.fill({band.last_row, band.last_row + 2});
-  if (!is_first) compute_irregular(level, band, plate, RowsAround(w, band.first_row, stride), works);
+  if (!is_first) compute_irregular(level, band, plate, RowsAround(w, plate.op, band.first_row), works);
   if (plate.damping_s > 0) add_irregular_products(level, band, plate, products);
   move_irregular(level, band, plate, works);
 }
 
-SingleRows make_single_rows(const Level& coarsest, const mesh::Grid& grid) {
+SingleRows make_single_rows(const Level& coarsest, const solid::Operator& op) {
   SingleRows single;
   const auto& bands = coarsest.bands;
   const auto has_block_rows = [](const Band& band) {
@@ -296,7 +367,8 @@ SingleRows make_single_rows(const Level& coarsest, const mesh::Grid& grid) {
   if (single.bands.begin == single.bands.end) return single;
   single.first_row = bands[single.bands.begin].first_row;
   single.last_row = bands[single.bands.end - 1].last_row;
-  const auto n = static_cast<std::size_t>(single.last_row - single.first_row + 1) * grid.stride();
+  const auto& last = op.rows[single.last_row];
+  const auto n = static_cast<std::size_t>(last.first + last.count - op.rows[single.first_row].first);
   for (auto* values : {&single.u_x_m, &single.u_y_m, &single.v_x_m_per_s, &single.v_y_m_per_s})
     values->resize(n);
   return single;
@@ -330,29 +402,37 @@ void to_double(const SingleRows& single, Plate& plate) {
 
 void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& single, solid::RollingRows& w,
                solid::RollingRowsOf<float>& w_single, PushProducts& products) {
-  const int stride = plate.op.grid.stride();
+  const auto& rows = plate.op.rows;
+  const int count = rows[band.first_row].count;
   const double dt = level.step_s;
   const bool is_first = band.first_row == single.first_row, is_last = band.last_row == single.last_row;
   const auto row = [&](int j) { return solid::ConstRowOf<float>{w_single.x(j), w_single.y(j)}; };
-  const auto start_of = [&](int j) { return static_cast<std::ptrdiff_t>(j - single.first_row) * stride; };
+  const auto start_of = [&](int j) {
+    return static_cast<std::ptrdiff_t>(rows[j].first - rows[single.first_row].first);
+  };
   const auto fill = [&](int j) {
     const auto o = start_of(j);
-    solid::combine_row(stride, plate.damping_s, &single.u_x_m[o], &single.u_y_m[o], &single.v_x_m_per_s[o],
+    solid::combine_row(count, plate.damping_s, &single.u_x_m[o], &single.u_y_m[o], &single.v_x_m_per_s[o],
                        &single.v_y_m_per_s[o], w_single.x(j), w_single.y(j));
   };
   if (is_first) {
     // The row below is the first band's, and comes in double precision.
-    solid::convert_row(stride, w.x(band.first_row + 2), w_single.x(band.first_row + 2));
-    solid::convert_row(stride, w.y(band.first_row + 2), w_single.y(band.first_row + 2));
+    solid::convert_row(count, w.x(band.first_row + 2), w_single.x(band.first_row + 2));
+    solid::convert_row(count, w.y(band.first_row + 2), w_single.y(band.first_row + 2));
     fill(band.first_row);
   }
-  const auto interior = solid::scaled(plate.op.interior, -dt);
-  const auto right = solid::scaled(plate.op.edge, -dt);
+  // All these rows lie in one block of squares.
+  const double scale = level.part.stencil[band.stencil.begin].scale;
+  const auto interior = solid::scaled(plate.op.interior, -dt * scale);
+  const auto right = solid::scaled(plate.op.edge, -dt * scale);
   const auto push_interior =
       plate.damping_s > 0 ? solid::push_interior_row<true, float> : solid::push_interior_row<false, float>;
+  solid::KickSums kicks;
   int filled = band.first_row;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
-    const auto& [j, squares, scale, spans] = level.part.stencil[k];
+    const auto& row_of_stencil = level.part.stencil[k];
+    const int j = row_of_stencil.row;
+    const auto squares = row_of_stencil.squares;
     const auto o = start_of(j);
     float* u_x = &single.u_x_m[o];
     float* u_y = &single.u_y_m[o];
@@ -364,30 +444,31 @@ void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& s
         fill(j + 1);
       } else {
         const auto above = row_start(plate, j + 1);
-        solid::combine_row(stride, plate.damping_s, &plate.u_m.x[above], &plate.u_m.y[above],
+        solid::combine_row(count, plate.damping_s, &plate.u_m.x[above], &plate.u_m.y[above],
                            &plate.v_m_per_s.x[above], &plate.v_m_per_s.y[above], w.x(j + 1), w.y(j + 1));
-        solid::convert_row(stride, w.x(j + 1), w_single.x(j + 1));
-        solid::convert_row(stride, w.y(j + 1), w_single.y(j + 1));
+        solid::convert_row(count, w.x(j + 1), w_single.x(j + 1));
+        solid::convert_row(count, w.y(j + 1), w_single.y(j + 1));
       }
     }
-    for (const auto span : spans) {
+    for (const auto span : row_of_stencil.spans) {
       if (squares == solid::Squares::all) {
-        push_interior(interior, span, dt, row(j + 2), row(j), row(j + 1), v_x, v_y, u_x, u_y, products.kicks);
+        push_interior(interior, span, dt, row(j + 2), row(j), row(j + 1), v_x, v_y, u_x, u_y, kicks);
       } else {
         const bool to_right = squares == solid::Squares::right;
-        const auto side = solid::scaled(to_right ? right : solid::mirrored(right), scale);
+        const auto side = to_right ? right : solid::mirrored(right);
         solid::push_side_node(side, span.begin, to_right ? 1 : -1, dt, row(j + 2), row(j), row(j + 1), v_x,
-                              v_y, u_x, u_y, products.kicks);
+                              v_y, u_x, u_y, kicks);
       }
     }
   }
+  add_kicks(products.kicks, kicks, 1 / scale);
   if (is_last) {
     // The bands above go on in double precision, with this row's w as it was.
-    solid::convert_row(stride, w_single.x(band.last_row), w.x(band.last_row));
-    solid::convert_row(stride, w_single.y(band.last_row), w.y(band.last_row));
+    solid::convert_row(count, w_single.x(band.last_row), w.x(band.last_row));
+    solid::convert_row(count, w_single.y(band.last_row), w.y(band.last_row));
   }
   // The next step's first band needs the first row's new place.
-  if (is_first) to_double(single, stride, plate);
+  if (is_first) to_double(single, count, plate);
 }
 
 void end_push(Level& level, Plate& plate) {
@@ -484,9 +565,10 @@ double late_product(const Level& level, const Band& band, const Plate& plate) {
   const auto& v = plate.v_m_per_s;
   double sum = 0;
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
-    const auto n = level.part.irregular.node[r];
+    const auto n = level.irregular[r];
     sum += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
   }
+  if (&band == &level.bands.front()) sum += general_product(level, plate, v);
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
     const auto& row = level.part.stencil[k];

@@ -53,7 +53,7 @@ struct Shared {
   solid::Field v_last_m_per_s, a_m_per_s2, v_mean_before_m_per_s;
 };
 
-/// Grid rows of a level that are pushed together. The first band of a level holds all that concerns other
+/// Rows of nodes of a level that are pushed together. The first band of a level holds all that concerns other
 /// levels, the interface, and nodes whose neighbours are farther away than the next rows. The bands above it
 /// need, of other bands, the places of the next rows only; one with block rows is a single row.
 struct Band {
@@ -77,12 +77,16 @@ struct Level {
   double step_s = 0;
   int period = 1;  ///< in steps of the last level
   solid::Part part;
-  std::vector<Band> bands;        ///< rows ascending
-  std::vector<Dashpot> dashpots;  ///< rows ascending
-  std::vector<bool> takes_push;   ///< [irregular rows] not shared with a finer level, no dashpot
-  std::vector<bool> moves;        ///< [irregular rows] moved with the level's own push
-  std::vector<double> a_x, a_y;   ///< [irregular rows]
-  std::vector<mesh::Node> top;    ///< nodes of the loaded edge that move with this level
+  std::vector<mesh::Node> irregular;  ///< nodes of the block rows, then of the general rows
+  solid::Span general;                ///< the latter, all of them in the first band
+  solid::GeneralRows::Workspace general_space;
+  std::vector<NodeRun> general_runs;  ///< of the general rows; takes_push and moves do not change within one
+  std::vector<Band> bands;            ///< rows ascending
+  std::vector<Dashpot> dashpots;      ///< rows ascending
+  std::vector<bool> takes_push;       ///< [irregular rows] not shared with a finer level, no dashpot
+  std::vector<bool> moves;            ///< [irregular rows] moved with the level's own push
+  std::vector<double> a_x, a_y;       ///< [irregular rows]
+  std::vector<mesh::Node> top;        ///< nodes of the loaded edge that move with this level
   Shared shared;
   solid::BlockRows top_rows;  ///< K of the level's cells, N/m
   /// Kicks of the stencil's edge rows, x then y, in their order. [2 columns]
@@ -104,9 +108,16 @@ struct Levels {
 /// @throws UserError where the interface rows do not fit into the mesh.
 void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time);
 
+/// For each block of the mesh, its step over that of the lowest one: the largest power of two that its cells
+/// allow, twice, four times ... as long for squares.
+/// @param stable_step_s  of the whole plate
+std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
+                                const TimeStepping& time, double stable_step_s);
+
 /// @param step_s  of the coarsest level
+/// @param multiples  of step_multiples
 Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const Plate& plate,
-                   const TimeStepping& time, double step_s);
+                   const TimeStepping& time, double step_s, std::span<const int> multiples);
 
 /// Velocity of a dashpot's node after a kick that alone would lead from `before` to `trial`; its work is
 /// added to `works`.
@@ -124,7 +135,7 @@ void begin_push(Level& level, Plate& plate, Energies& works);
 void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows& w, PushProducts& products,
                Energies& works);
 /// Longest run of bands that can be pushed in single precision; none where all have block rows.
-SingleRows make_single_rows(const Level& coarsest, const mesh::Grid& grid);
+SingleRows make_single_rows(const Level& coarsest, const solid::Operator& op);
 void to_single(const Plate& plate, SingleRows& single);
 void to_double(const SingleRows& single, Plate& plate);
 /// The same as push_band for one of these bands.

@@ -44,6 +44,7 @@ struct TimeStepping {
   Precision precision = Precision::double_precision;
   int interface_rows = 4;       ///< rows of cells next to the interface that are sub-cycled
   int interface_substeps = 18;  ///< sub-steps per step there; 1 is the plain scheme
+  bool local_steps = true;      ///< a graded plate's larger elements take larger steps
   double end_s = 250e-6;        ///< end of the event
   double quiet_s = 30e-6;       ///< end it earlier when no node has slipped for this long
 };

@@ -32,7 +32,7 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
              solid::Field(mesh.n_nodes())},
       contact_(contact),
       substeps_(time.interface_substeps),
-      finer_w_(mesh.grid.stride()),
+      finer_w_(plate_.op.widest_row()),
       lower_(mesh.lower),
       lower_runs_(runs_of(mesh.lower)),
       tributary_m_(mesh::tributary_lengths_m(mesh)),
@@ -44,19 +44,21 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
       start_u_(mesh.lower.size()) {
   stable_step_s_ = solid::stable_step_s(solid::largest_frequency_rad_per_s(mesh, material, plate_.op),
                                         material.stiffness_damping_s);
-  step_s_ = time.step_factor * stable_step_s_;
-  levels_ = make_levels(mesh, material, plate_, time, step_s_);
+  const auto multiples = step_multiples(mesh, material, time, stable_step_s_);
+  multiple_ = multiples.back();
+  substeps_ *= multiple_;
+  step_s_ = time.step_factor * stable_step_s_ * multiple_;
+  levels_ = make_levels(mesh, material, plate_, time, step_s_, multiples);
   if (time.precision == Precision::single_precision)
-    single_ = make_single_rows(levels_.level.front(), mesh.grid);
-  const int depth =
-      execution.steps_per_sweep > 0 ? execution.steps_per_sweep : suitable_steps_per_sweep(mesh.grid);
+    single_ = make_single_rows(levels_.level.front(), plate_.op);
+  const int depth = execution.steps_per_sweep > 0 ? execution.steps_per_sweep
+                                                  : suitable_steps_per_sweep(mesh::blocks(mesh).back());
   wavefront_ = std::make_unique<Wavefront>(execution.threads, depth);
+  const int columns = plate_.op.widest_row();
+  const bool has_single = single_.bands.begin < single_.bands.end;
   for (int k = 0; k < wavefront_->most_steps(); ++k)
     under_way_.push_back(
-        {solid::RollingRows(mesh.grid.stride()),
-         solid::RollingRowsOf<float>(single_.bands.begin < single_.bands.end ? mesh.grid.stride() : 0),
-         {},
-         {}});
+        {solid::RollingRows(columns), solid::RollingRowsOf<float>(has_single ? columns : 0), {}, {}});
   for (std::size_t k = 0; k < lower_.size(); ++k) {
     interface_.initial_gap_m[k] = mesh.y_m[lower_[k]];
     interface_.mass_per_length_kg_m2[k] = plate_.op.mass_kg[lower_[k]] / tributary_m_[k];
@@ -98,7 +100,8 @@ void Stepper::start(const Equilibrium& equilibrium, double top_speed_m_per_s) {
     auto& shared = level.shared;
     if (shared.node.empty()) continue;
     const auto& band = level.bands.front();
-    const std::size_t n = plate_.op.grid.node(0, band.last_row + 1);
+    const auto& last = plate_.op.rows[band.last_row];
+    const std::size_t n = last.first + last.count;
     const auto first_nodes = [&](const std::vector<double>& field) {
       return std::vector<double>(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(n));
     };

@@ -42,7 +42,8 @@ struct Between {
 /// integrator of Lew et al. (2003). The nodes between the two kinds of cells feel the coarse cells' force at
 /// the start of the event as a constant load in every sub-step, and its change since then in pushes; without
 /// this, a stressed plate at rest would not stay at rest. Reversible and symplectic where nothing dissipates.
-/// With one sub-step it is the plain scheme.
+/// With one sub-step it is the plain scheme. The blocks of a graded plate are such levels, too, each with the
+/// step that its cells allow (step_multiples); a step of the plate is that of its coarsest block.
 class Stepper {
  public:
   /// @throws UserError where the interface rows do not fit into the mesh.
@@ -51,6 +52,8 @@ class Stepper {
 
   double stable_step_s() const { return stable_step_s_; }
   double step_s() const { return step_s_; }
+  /// The step of the lowest block, time.step_factor of the stable one.
+  double lowest_step_s() const { return step_s_ / multiple_; }
   double substep_s() const { return step_s_ / substeps_; }
   /// The (sub-)step with which a node moves; its velocity belongs to half of it before the displacement.
   double step_s(mesh::Node n) const {
@@ -141,7 +144,8 @@ class Stepper {
   Plate plate_;
   interface::ContactModel contact_;
   double stable_step_s_ = 0, step_s_ = 0;
-  int substeps_;
+  int multiple_ = 1;  ///< steps of the lowest block in a step of the coarsest one
+  int substeps_;      ///< of the last level in a step
   Levels levels_;
   SingleRows single_;           ///< none unless time.precision is single
   solid::RollingRows finer_w_;  ///< of u + beta_R v, of the other levels' sweeps

@@ -32,8 +32,8 @@ std::string parse_error(const std::string& text, const std::vector<Override>& ov
 // Structured bindings name every member: one more member of a struct does not compile here until it is
 // listed, which reminds of its entry in the schema.
 auto members(const mesh::Plate& p) {
-  const auto& [a, b, c, d, e, f, g, h, i, j] = p;
-  return std::tuple(a, b, c, d, e, f, g, h, i, j);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l] = p;
+  return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l);
 }
 auto members(const solid::Material& m) {
   const auto& [a, b, c, d, e] = m;
@@ -60,8 +60,8 @@ auto members(const interface::Nucleation& n) {
   return std::tuple(a, b, c, d, e);
 }
 auto members(const solve::TimeStepping& t) {
-  const auto& [a, b, c, d, e, f] = t;
-  return std::tuple(a, b, c, d, e, f);
+  const auto& [a, b, c, d, e, f, g] = t;
+  return std::tuple(a, b, c, d, e, f, g);
 }
 auto members(const FrontSettings& s) {
   const auto& [a, b, c, d, e, f] = s;
@@ -107,8 +107,18 @@ void expect_equal(const Case& a, const Case& b) {
 Case changed_case() {
   Case c;
   c.title = "a \"title\" with \\ and\ttab, \xc2\xb5";
-  c.plate = {0.1 + 0.2, 1.0 / 3, 1e-3 / 7, mesh::Corner::fillet,   4e-3,
-             0.3e-3,    8e-3,    3e-3,     mesh::Sides::absorbing, mesh::Top::absorbing};
+  c.plate = {0.1 + 0.2,
+             1.0 / 3,
+             1e-3 / 7,
+             2,
+             4e-3 / 3,
+             mesh::Corner::fillet,
+             4e-3,
+             0.3e-3,
+             8e-3,
+             3e-3,
+             mesh::Sides::absorbing,
+             mesh::Top::absorbing};
   c.material = {1.0e9 / 3, -0.25, 1.1e3, solid::Plane::strain, 0};
   c.loading = {
       1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, solve::StaticSolver::iterative, 1e-5,
@@ -118,7 +128,7 @@ Case changed_case() {
   c.contact = interface::ContactAlgorithm::predictor_corrector;
   c.event = interface::EventKind::right;
   c.trigger = {7e-3, 2.5, 0, 3e-5};
-  c.time = {1.5, true, 7, 11, 1e-4, std::numeric_limits<double>::infinity()};
+  c.time = {1.5, true, 7, 11, false, 1e-4, std::numeric_limits<double>::infinity()};
   c.fronts = {1e-3, 1e-5, 3e-3, 0.625, 0.25, 5e-3};
   c.output = {1e-7, {0, 1e-5, 1.0 / 3 * 1e-4}, 3e-5};
   return c;
@@ -262,6 +272,8 @@ title = "run"
 width_m = 1
 height_m = 0.5
 element_size_m = 0.01
+coarsenings = 1
+fine_height_m = 0.03
 corner = "none"
 relief_length_m = 2e-3
 relief_height_m = 3e-4
@@ -304,6 +316,7 @@ step_factor = 0.5
 allow_unstable = true
 interface_rows = 3
 interface_substeps = 9
+local_steps = false
 end_s = 1e-4
 quiet_s = 2e-5
 [fronts]
@@ -321,7 +334,7 @@ snapshot_times_s = [1e-5, 2e-5]
                             "c.toml");
   Case expected;
   expected.title = "run";
-  expected.plate = {1, 0.5, 0.01, mesh::Corner::none, 2e-3, 3e-4, 4e-3, 6e-3};
+  expected.plate = {1, 0.5, 0.01, 1, 0.03, mesh::Corner::none, 2e-3, 3e-4, 4e-3, 6e-3};
   expected.material = {1e9, 0.25, 1000, solid::Plane::strain, 2e-7};
   expected.loading = {
       1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, solve::StaticSolver::direct, 1e-5,
@@ -332,7 +345,7 @@ snapshot_times_s = [1e-5, 2e-5]
   expected.contact = interface::ContactAlgorithm::predictor_corrector;
   expected.event = interface::EventKind::left;
   expected.trigger = {0.03, 4, 6e-6, std::numeric_limits<double>::infinity()};
-  expected.time = {0.5, true, 3, 9, 1e-4, 2e-5};
+  expected.time = {0.5, true, 3, 9, false, 1e-4, 2e-5};
   expected.fronts = {2e-3, 3e-5, 4e-3, 0.6, 0.1, 5e-3};
   expected.output = {1e-6, {1e-5, 2e-5}, 1e-5};
   expect_equal(c, expected);

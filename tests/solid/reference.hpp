@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "mesh/plate.hpp"
+#include "mesh/reorder.hpp"
 #include "solid/element.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
@@ -128,6 +129,10 @@ inline mesh::Mesh small_plate(mesh::Corner corner) {
   return mesh::make_plate(plate);
 }
 
+/// The plates on which the operator is tested: plain ones by their corners, a graded one, one numbered at
+/// random, one that also has its inner nodes moved at random, so that no two cells are similar.
+enum class Form { none, relief, fillet, graded, shuffled, distorted };
+
 /// Reproducible numbers in [-1, 1).
 class Random {
  public:
@@ -150,6 +155,56 @@ inline Field random_field(std::size_t n, std::uint64_t seed) {
 
 inline std::string name_of(mesh::Corner corner) {
   return corner == mesh::Corner::none ? "none" : corner == mesh::Corner::relief ? "relief" : "fillet";
+}
+
+inline std::string name_of(Form form) {
+  constexpr std::array<const char*, 6> names = {"none",   "relief",   "fillet",
+                                                "graded", "shuffled", "distorted"};
+  return names[static_cast<std::size_t>(form)];
+}
+
+/// Numbers the nodes at random and turns the cells round to begin with any of their nodes.
+inline void shuffle(mesh::Mesh& mesh, std::uint64_t seed) {
+  Random random(seed);
+  const auto below = [&](std::size_t n) {
+    return static_cast<std::size_t>(0.5 * (random() + 1) * static_cast<double>(n));
+  };
+  std::vector<mesh::Node> number(mesh.x_m.size());
+  for (std::size_t k = 0; k < number.size(); ++k) number[k] = static_cast<mesh::Node>(k);
+  for (std::size_t k = number.size(); k > 1; --k) std::swap(number[k - 1], number[below(k)]);
+  mesh::renumber(mesh, number);
+  for (std::size_t k = mesh.cells.size(); k > 1; --k) std::swap(mesh.cells[k - 1], mesh.cells[below(k)]);
+  for (auto& cell : mesh.cells)
+    std::ranges::rotate(cell, cell.begin() + static_cast<std::ptrdiff_t>(below(4)));
+}
+
+/// Moves the inner nodes of a plain plate by up to `share` of an element along x and y.
+inline void distort(mesh::Mesh& mesh, double share, std::uint64_t seed) {
+  Random random(seed);
+  for (int j = 1; j < mesh.grid.rows; ++j)
+    for (int i = 1; i < mesh.grid.columns; ++i) {
+      mesh.x_m[mesh.grid.node(i, j)] += share * mesh.grid.spacing_m * random();
+      mesh.y_m[mesh.grid.node(i, j)] += share * mesh.grid.spacing_m * random();
+    }
+}
+
+inline mesh::Mesh small_plate(Form form) {
+  if (form <= Form::fillet) return small_plate(static_cast<mesh::Corner>(form));
+  if (form == Form::graded) {
+    mesh::Plate plate;
+    plate.width_m = 0.04;
+    plate.height_m = 0.032;
+    plate.element_size_m = 1e-3;
+    plate.coarsenings = 2;
+    plate.fine_height_m = 5e-3;
+    plate.relief_depth_m = 8e-3;  // bends the lower transition
+    return mesh::make_plate(plate);
+  }
+  auto mesh = small_plate(mesh::Corner::none);
+  if (form == Form::distorted) distort(mesh, 0.2, 7);
+  shuffle(mesh, 8);
+  mesh::renumber(mesh, mesh::near_numbers(mesh));
+  return mesh;
 }
 
 }  // namespace slipfront::solid::reference

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solid/general.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+
+#include "base/error.hpp"
+#include "solid/element.hpp"
+#include "solid/kernels.hpp"
+
+namespace slipfront::solid {
+
+namespace {
+
+using Two = double __attribute__((vector_size(2 * sizeof(double))));
+struct __attribute__((packed, may_alias)) TwoInMemory {
+  Two values;
+};
+inline Two load_two(const double* from) {
+  return reinterpret_cast<const TwoInMemory*>(from)->values;
+}
+inline void add_two(double* to, Two values) {
+  auto* at = reinterpret_cast<TwoInMemory*>(to);
+  at->values = at->values + values;
+}
+
+/// x and y of one corner of each cell of a batch.
+struct LanePairs {
+  Lanes x, y;
+};
+
+using Four = double __attribute__((vector_size(4 * sizeof(double))));
+inline Four join(Two a, Two b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3);
+}
+inline Two first_two(Four a) {
+  return __builtin_shufflevector(a, a, 0, 1);
+}
+inline Two last_two(Four a) {
+  return __builtin_shufflevector(a, a, 2, 3);
+}
+
+#ifdef __AVX512F__
+inline LanePairs gather(const double* w, const std::array<std::int32_t, lanes>& at) {
+  const auto four = [&](int lane) { return join(load_two(w + at[lane]), load_two(w + at[lane + 2])); };
+  const auto all = [&](int lane) {
+    return __builtin_shufflevector(four(lane), four(lane + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+  };
+  const Lanes even = all(0), odd = all(1);
+  return {__builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14),
+          __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15)};
+}
+inline void scatter_add(double* force, const std::array<std::int32_t, lanes>& at, Lanes x, Lanes y) {
+  const Lanes even = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Lanes odd = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Four even_low = __builtin_shufflevector(even, even, 0, 1, 2, 3);
+  const Four odd_low = __builtin_shufflevector(odd, odd, 0, 1, 2, 3);
+  const Four even_high = __builtin_shufflevector(even, even, 4, 5, 6, 7);
+  const Four odd_high = __builtin_shufflevector(odd, odd, 4, 5, 6, 7);
+  add_two(force + at[0], first_two(even_low));
+  add_two(force + at[1], first_two(odd_low));
+  add_two(force + at[2], last_two(even_low));
+  add_two(force + at[3], last_two(odd_low));
+  add_two(force + at[4], first_two(even_high));
+  add_two(force + at[5], first_two(odd_high));
+  add_two(force + at[6], last_two(even_high));
+  add_two(force + at[7], last_two(odd_high));
+}
+#else
+inline LanePairs gather(const double* w, const std::array<std::int32_t, lanes>& at) {
+  const Lanes even = join(load_two(w + at[0]), load_two(w + at[2]));
+  const Lanes odd = join(load_two(w + at[1]), load_two(w + at[3]));
+  return {__builtin_shufflevector(even, odd, 0, 4, 2, 6), __builtin_shufflevector(even, odd, 1, 5, 3, 7)};
+}
+inline void scatter_add(double* force, const std::array<std::int32_t, lanes>& at, Lanes x, Lanes y) {
+  const Lanes even = __builtin_shufflevector(x, y, 0, 4, 2, 6);
+  const Lanes odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+  add_two(force + at[0], first_two(even));
+  add_two(force + at[1], first_two(odd));
+  add_two(force + at[2], last_two(even));
+  add_two(force + at[3], last_two(odd));
+}
+#endif
+
+/// The cell's nodes, beginning with the lower left one, so that cells equal in shape are so in order.
+mesh::Cell in_order(const mesh::Mesh& mesh, const mesh::Cell& cell) {
+  const auto c = cell_coordinates(mesh, cell);
+  const double size = std::max(std::abs(c[4] - c[0]) + std::abs(c[5] - c[1]), 1e-300);
+  int best = 0;
+  for (int a = 1; a < 4; ++a) {
+    const double sum = (c[2 * a] + c[2 * a + 1]) - (c[2 * best] + c[2 * best + 1]);
+    const bool equal = std::abs(sum) < 1e-6 * size;
+    if ((!equal && sum < 0) || (equal && c[2 * a + 1] < c[2 * best + 1])) best = a;
+  }
+  mesh::Cell ordered = cell;
+  std::ranges::rotate(ordered, ordered.begin() + best);
+  return ordered;
+}
+
+/// Places of the nodes 1, 2, 3 relative to node 0, in units of the cell's size.
+using Shape = std::array<double, 6>;
+Shape shape_of(const CellCoordinates& c) {
+  const double area = 0.5 * ((c[4] - c[0]) * (c[7] - c[3]) - (c[6] - c[2]) * (c[5] - c[1]));
+  SLIPFRONT_ASSERT(area > 0, "cell is not convex and counterclockwise");
+  Shape shape;
+  for (int k = 0; k < 6; ++k) shape[k] = (c[k + 2] - c[k % 2]) / std::sqrt(area);
+  return shape;
+}
+
+/// Numbers of the classes of similar cells. The tolerance is that of rounding in the nodes' coordinates.
+class Shapes {
+ public:
+  std::size_t class_of(const Shape& shape) {
+    auto& candidates = classes_[key(shape)];
+    for (const auto k : candidates)
+      if (is_same(shapes_[k], shape)) return k;
+    candidates.push_back(shapes_.size());
+    shapes_.push_back(shape);
+    return shapes_.size() - 1;
+  }
+  std::size_t size() const { return shapes_.size(); }
+
+ private:
+  /// Of coordinates rounded far more coarsely than the tolerance. Equal shapes on two sides of a rounding
+  /// limit become two classes, which does no harm.
+  static std::uint64_t key(const Shape& shape) {
+    std::uint64_t hash = 0;
+    for (const double x : shape)
+      hash = (hash ^ static_cast<std::uint64_t>(std::llround(1e6 * x + 0.25))) * 0x9e3779b97f4a7c15ULL;
+    return hash;
+  }
+  static bool is_same(const Shape& a, const Shape& b) {
+    for (std::size_t k = 0; k < a.size(); ++k)
+      if (std::abs(a[k] - b[k]) > 1e-11) return false;
+    return true;
+  }
+  std::vector<Shape> shapes_;
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> classes_;
+};
+
+/// Upper triangle, row by row, of the stiffness of nodes 1, 2, 3, both components of each in turn.
+constexpr int n_entries = 21;
+using Triangle = std::array<double, n_entries>;
+Triangle triangle(const CellStiffness& K) {
+  Triangle upper{};
+  int k = 0;
+  for (int r = 2; r < 8; ++r)
+    for (int c = r; c < 8; ++c) upper[k++] = K[8 * r + c];
+  return upper;
+}
+struct alignas(64) LaneTriangles {
+  std::array<std::array<double, lanes>, n_entries> entry;
+};
+
+/// Twice the places of the cells' nodes 0, 1, 2, 3, by corner and lane.
+using Corners = std::array<std::array<std::int32_t, lanes>, 4>;
+
+/// Batches [begin, end) of similar cells.
+struct SharedStiffness {
+  Triangle stiffness{};
+  std::size_t begin = 0, end = 0;
+};
+
+/// Nodes with consecutive numbers and places.
+struct Run {
+  mesh::Node node = 0;
+  std::int32_t place = 0, count = 0;
+};
+
+/// Adds the forces of a batch of cells; `stiffness(k)` is the k-th entry of the triangle.
+template <class Stiffness>
+void add_batch(const Corners& corners, Stiffness&& stiffness, const double* w, double* force) {
+  const LanePairs origin = gather(w, corners[0]);
+  std::array<Lanes, 6> d;
+  for (int a = 1; a < 4; ++a) {
+    const LanePairs at = gather(w, corners[a]);
+    d[2 * a - 2] = at.x - origin.x;
+    d[2 * a - 1] = at.y - origin.y;
+  }
+  std::array<Lanes, 6> f{};
+  int k = 0;
+  for (int r = 0; r < 6; ++r)
+    for (int c = r; c < 6; ++c, ++k) {
+      const auto entry = stiffness(k);
+      f[r] += entry * d[c];
+      if (c > r) f[c] += entry * d[r];
+    }
+  scatter_add(force, corners[0], -(f[0] + f[2] + f[4]), -(f[1] + f[3] + f[5]));
+  for (int a = 1; a < 4; ++a) scatter_add(force, corners[a], f[2 * a - 2], f[2 * a - 1]);
+}
+
+}  // namespace
+
+/// Nodes have places here: those of the rows first, then the others at the cells.
+struct GeneralRows::Cells {
+  std::size_t n_places = 0, n_cells = 0;
+  std::vector<Run> runs;
+  std::vector<double> per_mass;  ///< [rows] 1/kg
+  std::vector<SharedStiffness> shared;
+  std::vector<Corners> shared_corners, own_corners;  ///< [batches]
+  std::vector<LaneTriangles> own;                    ///< [batches]
+};
+
+GeneralRows::GeneralRows(const mesh::Mesh& mesh, const Material& material, std::vector<mesh::Node> nodes,
+                         std::span<const double> mass_kg, const std::vector<bool>& in_part)
+    : node_(std::move(nodes)) {
+  if (node_.empty()) return;
+  auto result = std::make_shared<Cells>();
+  std::vector<std::int32_t> place(mesh.n_nodes(), -1);
+  const auto append = [&](mesh::Node n) {
+    place[n] = static_cast<std::int32_t>(result->n_places++);
+    if (!result->runs.empty() && result->runs.back().node + result->runs.back().count == n) {
+      ++result->runs.back().count;
+    } else {
+      result->runs.push_back({n, place[n], 1});
+    }
+  };
+  for (const auto n : node_) {
+    append(n);
+    result->per_mass.push_back(1 / mass_kg[n]);
+  }
+  std::vector<mesh::Cell> cells;
+  std::vector<mesh::Node> others;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    if (!in_part[c] || std::ranges::none_of(mesh.cells[c], [&](mesh::Node n) {
+          return place[n] >= 0 && place[n] < static_cast<std::int32_t>(node_.size());
+        }))
+      continue;
+    cells.push_back(in_order(mesh, mesh.cells[c]));
+    for (const auto n : mesh.cells[c])
+      if (place[n] < 0) others.push_back(n);
+  }
+  result->n_cells = cells.size();
+  std::ranges::sort(others);
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+  for (const auto n : others) append(n);
+
+  // In the order of their nodes, so that successive cells find them in cache.
+  std::ranges::sort(cells, {}, [&](const mesh::Cell& cell) {
+    std::array<std::int32_t, 4> at;
+    for (int a = 0; a < 4; ++a) at[a] = place[cell[a]];
+    std::ranges::sort(at);
+    return at;
+  });
+  Shapes shapes;
+  std::vector<std::size_t> shape(cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    shape[c] = shapes.class_of(shape_of(cell_coordinates(mesh, cells[c])));
+  std::vector<std::vector<std::size_t>> of_shape(shapes.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) of_shape[shape[c]].push_back(c);
+
+  const auto corners_of = [&](std::span<const std::size_t> batch) {
+    Corners corners{};
+    for (std::size_t lane = 0; lane < batch.size(); ++lane)
+      for (int a = 0; a < 4; ++a) corners[a][lane] = 2 * place[cells[batch[lane]][a]];
+    return corners;
+  };
+  const auto stiffness_of = [&](std::size_t c) {
+    return triangle(cell_stiffness(cell_coordinates(mesh, cells[c]), material));
+  };
+  std::vector<std::size_t> single;
+  for (const auto& list : of_shape) {
+    const std::size_t n_batches = list.size() / lanes;
+    if (n_batches > 0) {
+      const std::size_t begin = result->shared_corners.size();
+      for (std::size_t b = 0; b < n_batches; ++b)
+        result->shared_corners.push_back(corners_of(std::span(list).subspan(b * lanes, lanes)));
+      result->shared.push_back({stiffness_of(list.front()), begin, result->shared_corners.size()});
+    }
+    single.insert(single.end(), list.begin() + static_cast<std::ptrdiff_t>(n_batches * lanes), list.end());
+  }
+  std::ranges::sort(single);
+  for (std::size_t first = 0; first < single.size(); first += lanes) {
+    // Lanes without a cell have no stiffness.
+    const auto batch = std::span(single).subspan(first, std::min<std::size_t>(lanes, single.size() - first));
+    result->own_corners.push_back(corners_of(batch));
+    LaneTriangles own{};
+    for (std::size_t lane = 0; lane < batch.size(); ++lane) {
+      const auto K = stiffness_of(batch[lane]);
+      for (int k = 0; k < n_entries; ++k) own.entry[k][lane] = K[k];
+    }
+    result->own.push_back(own);
+  }
+  cells_ = std::move(result);
+}
+
+std::size_t GeneralRows::n_cells() const {
+  return cells_ ? cells_->n_cells : 0;
+}
+
+std::size_t GeneralRows::n_shared_stiffnesses() const {
+  return cells_ ? cells_->shared.size() : 0;
+}
+
+GeneralRows::Workspace GeneralRows::workspace() const {
+  if (!cells_) return {};
+  return {std::vector<double>(2 * cells_->n_places), std::vector<double>(2 * cells_->n_places)};
+}
+
+void GeneralRows::multiply(const Field& u, double factor, const Field& v, Workspace& space, double* a_x,
+                           double* a_y) const {
+  if (!cells_) return;
+  double* __restrict w = space.w.data();
+  double* __restrict force = space.force.data();
+  for (const auto& run : cells_->runs) {
+    const double* u_x = &u.x[run.node];
+    const double* u_y = &u.y[run.node];
+    const double* v_x = &v.x[run.node];
+    const double* v_y = &v.y[run.node];
+    double* to = w + 2 * static_cast<std::ptrdiff_t>(run.place);
+    for (int i = 0; i < run.count; ++i) {
+      to[2 * i] = u_x[i] + factor * v_x[i];
+      to[2 * i + 1] = u_y[i] + factor * v_y[i];
+    }
+  }
+  std::fill_n(force, 2 * cells_->n_places, 0.0);
+  for (const auto& shared : cells_->shared) {
+    const auto stiffness = shared.stiffness;
+    for (std::size_t b = shared.begin; b < shared.end; ++b)
+      add_batch(
+          cells_->shared_corners[b], [&](int k) { return stiffness[k]; }, w, force);
+  }
+  for (std::size_t b = 0; b < cells_->own.size(); ++b)
+    add_batch(
+        cells_->own_corners[b], [&](int k) { return load(cells_->own[b].entry[k].data()); }, w, force);
+  for (std::size_t r = 0; r < node_.size(); ++r) {
+    a_x[r] = cells_->per_mass[r] * force[2 * r];
+    a_y[r] = cells_->per_mass[r] * force[2 * r + 1];
+  }
+}
+
+}  // namespace slipfront::solid
