@@ -9,12 +9,15 @@
 #include <chrono>
 #include <ctime>
 #include <fstream>
+#include <numeric>
+#include <random>
 #include <thread>
 
 #include "base/memory.hpp"
 #include "fronts/fit.hpp"
 #include "io/case.hpp"
 #include "mesh/plate.hpp"
+#include "mesh/reorder.hpp"
 #include "run/run.hpp"
 #include "solid/kernels.hpp"
 #include "solve/statics.hpp"
@@ -131,17 +134,14 @@ mesh::Plate plate_of(int columns) {
 /// A plate of the paper's material pressed on the plane, that begins to slip on its left half.
 class SlippingPlate {
  public:
-  SlippingPlate(int columns, int substeps, const solve::Execution& execution)
-      : SlippingPlate(mesh::make_plate(plate_of(columns)), substeps, execution) {}
+  SlippingPlate(const mesh::Mesh& mesh, int substeps, const solve::Execution& execution)
+      : stepper_(mesh, {}, {interface::VelocityWeakening{}}, {.interface_substeps = substeps}, execution),
+        recorder_(start(mesh)) {}
 
   solve::Stepper& stepper() { return stepper_; }
   solve::Recorder& recorder() { return recorder_; }
 
  private:
-  SlippingPlate(const mesh::Mesh& mesh, int substeps, const solve::Execution& execution)
-      : stepper_(mesh, {}, {interface::VelocityWeakening{}}, {.interface_substeps = substeps}, execution),
-        recorder_(start(mesh)) {}
-
   solve::Recorder start(const mesh::Mesh& mesh) {
     solve::Equilibrium state;
     state.u_m = state.u_per_shear = solid::Field(static_cast<std::size_t>(mesh.n_nodes()));
@@ -161,21 +161,46 @@ class SlippingPlate {
   solve::Recorder recorder_;
 };
 
-Rate measure_path(const std::string& path, int columns, int substeps, const solve::Execution& execution) {
+/// @param make_mesh  called when there is memory for so many columns of squares
+Rate measure_path(const std::string& path, int columns, int substeps, const solve::Execution& execution,
+                  const std::function<mesh::Mesh()>& make_mesh) {
   const double nodes = (columns + 1.0) * (columns / 2 + 1.0);
   require_memory(solve::event_bytes(nodes, nodes, false), fmt::format("a plate of {:.4g} nodes", nodes),
                  "free some memory");
   const double before = resident_bytes();
-  SlippingPlate plate(columns, substeps, execution);
+  SlippingPlate plate(make_mesh(), substeps, execution);
   auto& stepper = plate.stepper();
+  constexpr double updates_per_call = 2e7;
+  const auto least_steps = std::int64_t{2} * execution.threads * stepper.steps_per_sweep();
   const auto steps =
-      std::max<std::int64_t>(64, static_cast<std::int64_t>(2e7 / stepper.node_updates_per_step()));
+      std::max(least_steps, static_cast<std::int64_t>(updates_per_call / stepper.node_updates_per_step()));
   const double updates = static_cast<double>(steps) * stepper.node_updates_per_step();
   Rate result{path, columns, columns / 2, execution.threads, stepper.steps_per_sweep()};
   result.node_updates_per_s = rate(updates, [&] { stepper.advance(plate.recorder(), steps, {}); });
   constexpr double enough_nodes = 1e6;
   if (nodes > enough_nodes) result.bytes_per_node = (resident_bytes() - before) / nodes;
   return result;
+}
+
+/// The plate's nodes numbered at random, and then as the program numbers a mesh that knows no grid; inner
+/// nodes moved at random by up to `moved` sides of a cell, so that no two cells are alike.
+mesh::Mesh general_mesh(int columns, double moved) {
+  auto plate = plate_of(columns);
+  plate.corner = mesh::Corner::none;
+  auto mesh = mesh::make_plate(plate);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> shift(-moved * plate.element_size_m, moved * plate.element_size_m);
+  for (int j = 1; j < mesh.grid.rows; ++j)
+    for (int i = 1; i < mesh.grid.columns; ++i) {
+      mesh.x_m[mesh.grid.node(i, j)] += shift(random);
+      mesh.y_m[mesh.grid.node(i, j)] += shift(random);
+    }
+  std::vector<mesh::Node> number(mesh.x_m.size());
+  std::iota(number.begin(), number.end(), 0);
+  std::ranges::shuffle(number, random);
+  mesh::renumber(mesh, number);
+  mesh::renumber(mesh, mesh::near_numbers(mesh));
+  return mesh;
 }
 
 PaperRun paper_run(int columns, int threads) {
@@ -241,8 +266,9 @@ Results measure(const Options& options, const std::function<void(const std::stri
       const double bandwidth =
           t == 1 ? results.bandwidth_bytes_per_s : results.bandwidth_all_threads_bytes_per_s;
       const auto add = [&](const std::string& path, int n_substeps, const solve::Execution& execution) {
-        progress(fmt::format("{}, {} x {}, {} threads", path, n, n / 2, t));
-        auto row = measure_path(path, n, n_substeps, execution);
+        progress(fmt::format("{}, {} x {}, threads: {}", path, n, n / 2, t));
+        auto row =
+            measure_path(path, n, n_substeps, execution, [n] { return mesh::make_plate(plate_of(n)); });
         const bool streams = n > 1000 && row.steps_per_sweep == 1;
         row.bound_per_s = streams ? bandwidth / bytes_per_node_update : t * results.stencil_alone_per_s;
         results.rates.push_back(row);
@@ -251,8 +277,16 @@ Results measure(const Options& options, const std::function<void(const std::stri
       add("plain scheme", 1, {t, 0});
       add("interface sub-cycled", substeps, {t, 0});
     }
+  const auto add_mesh = [&](const std::string& path, const std::function<mesh::Mesh()>& make_mesh) {
+    progress(path);
+    auto row = measure_path(path, 300, 1, {.threads = 1}, make_mesh);
+    row.bound_per_s = results.stencil_alone_per_s;
+    results.rates.push_back(row);
+  };
+  add_mesh("squares without a grid", [] { return general_mesh(300, 0); });
+  add_mesh("all cells different", [] { return general_mesh(300, 0.2); });
   for (const int t : threads) {
-    progress(fmt::format("the paper's left event, {} threads", t));
+    progress(fmt::format("the paper's left event, threads: {}", t));
     results.paper_runs.push_back(paper_run(300, t));
   }
   return results;

@@ -406,6 +406,10 @@ void check_relations(const Case& config, const Document& document, const std::st
           fmt::format("event.trigger_zone_m is {} m; it must be at most plate.width_m, {} m",
                       config.trigger.zone_m, plate.width_m));
   require(
+      plate.coarsenings == 0 || loading.solver != solve::StaticSolver::iterative,
+      {"loading.solver", "plate.coarsenings"},
+      "loading.solver = iterative knows no graded plates; choose auto or direct, or plate.coarsenings = 0");
+  require(
       config.time.step_factor <= 1 || config.time.allow_unstable, {"time.step_factor", "time.allow_unstable"},
       fmt::format(
           "time.step_factor is {}, beyond the stable step; use at most 1, or set time.allow_unstable = true",

@@ -50,6 +50,11 @@ double approximate_unknowns(const mesh::Plate& plate) {
   return unknowns;
 }
 
+/// The iterative solution knows no graded plates.
+solve::StaticSolver wanted_solver(const io::Case& config) {
+  return config.plate.coarsenings > 0 ? solve::StaticSolver::direct : config.loading.solver;
+}
+
 bool is_prestressed(const io::Case& config) {
   return config.loading.method == solve::LoadingMethod::prestress;
 }
@@ -141,7 +146,7 @@ mesh::Mesh check(const io::Case& config) {
       throw UserError(
           "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
           config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
-    solve::require_statics_memory(config.loading.solver, n_unknowns);
+    solve::require_statics_memory(wanted_solver(config), n_unknowns);
   }
   auto mesh = mesh::make_plate(config.plate);
   solve::require_rows_fit(mesh, config.time);
@@ -170,7 +175,7 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
   const solve::Statics statics(initial.mesh, config.material, config.loading, mu_s,
                                interface::static_coefficient_key(config.friction));
   initial.n_unknowns = statics.solver().n_unknowns();
-  initial.solver = solve::choose_solver(config.loading.solver, 2.0 * initial.mesh.n_nodes());
+  initial.solver = solve::choose_solver(wanted_solver(config), 2.0 * initial.mesh.n_nodes());
   initial.solver_bytes = statics.solver().bytes();
   initial.critical_shear_m = statics.shear_to(mu_s).shear_m;
   if (config.loading.method == solve::LoadingMethod::direct) {
@@ -365,7 +370,7 @@ Info info(const io::Case& config) {
   info.memory_bytes = solve::event_bytes(static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
                                          !config.output.snapshot_times_s.empty());
   if (!is_prestressed(config)) {
-    info.solver = solve::choose_solver(config.loading.solver, n_unknowns);
+    info.solver = solve::choose_solver(wanted_solver(config), n_unknowns);
     info.solver_bytes = solve::statics_bytes(info.solver, n_unknowns);
     info.memory_bytes = std::max(info.memory_bytes, info.solver_bytes);
   }

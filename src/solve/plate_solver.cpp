@@ -146,6 +146,7 @@ void require_statics_memory(StaticSolver solver, double n_unknowns) {
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver) {
+  if (!mesh.coarser.empty()) solver = StaticSolver::direct;
   require_statics_memory(solver, 2.0 * mesh.n_nodes());
   if (choose_solver(solver, 2.0 * mesh.n_nodes()) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material);

@@ -91,6 +91,7 @@ double statics_bytes(StaticSolver solver, double n_unknowns);
 /// @throws UserError with the figures.
 void require_statics_memory(StaticSolver solver, double n_unknowns);
 
+/// The iterative solution knows plain plates only: graded ones have the direct one, whatever is wanted.
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver);
 

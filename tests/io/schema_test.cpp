@@ -60,8 +60,8 @@ auto members(const interface::Nucleation& n) {
   return std::tuple(a, b, c, d, e);
 }
 auto members(const solve::TimeStepping& t) {
-  const auto& [a, b, c, d, e, f, g] = t;
-  return std::tuple(a, b, c, d, e, f, g);
+  const auto& [a, b, c, d, e, f, g, h] = t;
+  return std::tuple(a, b, c, d, e, f, g, h);
 }
 auto members(const FrontSettings& s) {
   const auto& [a, b, c, d, e, f] = s;
@@ -121,14 +121,15 @@ Case changed_case() {
              mesh::Top::absorbing};
   c.material = {1.0e9 / 3, -0.25, 1.1e3, solid::Plane::strain, 0};
   c.loading = {
-      1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, solve::StaticSolver::iterative, 1e-5,
+      1e-4, 2e-4, solve::TopEdge::free, solve::LoadingMethod::ramp, solve::StaticSolver::direct, 1e-5,
       0,    1e-4};
   c.friction = interface::VelocityWeakening { 1.25, 0.75, 1.0 / 3 };
   c.regularisation = {interface::Relaxed::strength, 1e-5 / 3, 0.25, 2e-6};
   c.contact = interface::ContactAlgorithm::predictor_corrector;
   c.event = interface::EventKind::right;
   c.trigger = {7e-3, 2.5, 0, 3e-5};
-  c.time = {1.5, true, 7, 11, false, 1e-4, std::numeric_limits<double>::infinity()};
+  c.time = {1.5,   true, solve::Precision::single_precision,     7, 11,
+            false, 1e-4, std::numeric_limits<double>::infinity()};
   c.fronts = {1e-3, 1e-5, 3e-3, 0.625, 0.25, 5e-3};
   c.output = {1e-7, {0, 1e-5, 1.0 / 3 * 1e-4}, 3e-5};
   return c;
@@ -265,6 +266,12 @@ TEST(Schema, WhatPrescribedTractionsAskOfOtherKeys) {
               AllOf(StartsWith("c.toml:2: "), HasSubstr("prestress")));
 }
 
+TEST(Schema, IterativeStaticsKnowNoGradedPlates) {
+  EXPECT_THAT(
+      parse_error("[plate]\ncoarsenings = 1\nfine_height_m = 0.02\n[loading]\nsolver = \"iterative\"\n"),
+      HasSubstr("knows no graded plates"));
+}
+
 TEST(Schema, TheKeysStandForTheirMembers) {
   const Case c = parse_case(R"(
 title = "run"
@@ -314,6 +321,7 @@ trigger_duration_s = inf
 [time]
 step_factor = 0.5
 allow_unstable = true
+precision = "single"
 interface_rows = 3
 interface_substeps = 9
 local_steps = false
@@ -345,7 +353,7 @@ snapshot_times_s = [1e-5, 2e-5]
   expected.contact = interface::ContactAlgorithm::predictor_corrector;
   expected.event = interface::EventKind::left;
   expected.trigger = {0.03, 4, 6e-6, std::numeric_limits<double>::infinity()};
-  expected.time = {0.5, true, 3, 9, false, 1e-4, 2e-5};
+  expected.time = {0.5, true, solve::Precision::single_precision, 3, 9, false, 1e-4, 2e-5};
   expected.fronts = {2e-3, 3e-5, 4e-3, 0.6, 0.1, 5e-3};
   expected.output = {1e-6, {1e-5, 2e-5}, 1e-5};
   expect_equal(c, expected);

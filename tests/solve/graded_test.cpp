@@ -165,6 +165,36 @@ TEST_P(GradedPlate, ThreadsAndStepsPerSweepDoNotMatter) {
   EXPECT_EQ(run({.threads = 3, .steps_per_sweep = 2}), alone);
 }
 
+TEST(Graded, SinglePrecisionOfTheCoarsestBlockDiffersByRounding) {
+  // 0.1 m x 0.1 m: 100 and 50 columns, above them a block of rows that can be in single precision.
+  auto plate = graded_plate(Corner::none, 1);
+  plate.width_m = plate.height_m = 0.1;
+  const auto mesh = mesh::make_plate(plate);
+  support::Random random(5);
+  Equilibrium e = support::in_flight(mesh, solid::Field(mesh.n_nodes()), solid::Field(mesh.n_nodes()));
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+    e.u_m.y[n] = 20e-6;
+    e.u_per_shear.x[n] = random();
+    e.u_per_shear.y[n] = random();
+  }
+  for (const auto n : mesh.top) e.u_m.y[n] = e.u_per_shear.x[n] = e.u_per_shear.y[n] = 0;
+  solid::Field v[2];
+  constexpr int n_steps = 40;
+  for (const int k : {0, 1}) {
+    auto time = stepping(4, true);
+    time.precision = k == 0 ? Precision::double_precision : Precision::single_precision;
+    Stepper stepper(mesh, {}, support::paper_law, time);
+    stepper.start(e, 1);
+    Recorder recorder(e, mu_s, 0);
+    EXPECT_EQ(stepper.advance(recorder, n_steps, {}), n_steps);
+    v[k] = stepper.v_m_per_s();
+  }
+  // Rounding of u (20 um, turned into velocities by 1/dt) and v (1 m/s), 6e-8 of each in every step.
+  const double dt = 8e-7, difference = max_abs(flat(v[1]) - flat(v[0]));
+  EXPECT_LE(difference, n_steps * 6e-8 * (1 + 20e-6 / dt));
+  EXPECT_GT(difference, 1e-10);
+}
+
 TEST(Graded, RefusesAnInterfaceLayerAboveTheSmallestElements) {
   auto time = stepping(5, true);
   time.interface_rows = 4;
