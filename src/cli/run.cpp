@@ -114,7 +114,10 @@ void add_run(CLI::App& app) {
   constexpr unsigned most_threads_by_default = 4;
   options->threads =
       static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, most_threads_by_default));
-  command->add_option("--threads", options->threads, "Threads of the run; the results do not depend on them")
+  command
+      ->add_option("--threads", options->threads,
+                   "Threads of the run; the results do not depend on them. They wait for each other: give no "
+                   "more than are idle")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");

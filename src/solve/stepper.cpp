@@ -11,15 +11,15 @@ namespace slipfront::solve {
 
 namespace {
 
-/// Bytes of the last cache that one thread may fill.
-constexpr double cache_bytes = 8e6;
+/// Bytes of the last cache that may be counted on.
+constexpr double cache_bytes = 16e6;
 constexpr int most_steps_per_sweep = 16;
 
 /// A mesh that fits into the cache itself gains nothing from several steps in one sweep.
 int suitable_steps_per_sweep(const mesh::Grid& grid) {
   const double motion = 4 * sizeof(double), rolling_rows = 6 * sizeof(double);
   const double rows = grid.rows + 1, columns = grid.stride();
-  if (motion * rows * columns < cache_bytes) return 1;
+  if (motion * rows * columns < 0.5 * cache_bytes) return 1;
   return std::clamp(static_cast<int>(cache_bytes / ((2 * motion + rolling_rows) * columns)), 1,
                     most_steps_per_sweep);
 }
