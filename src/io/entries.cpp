@@ -351,9 +351,10 @@ std::vector<Entry> make_common_entries() {
              "time step over the largest stable one; above 1 only with time.allow_unstable"),
       flag("time.allow_unstable", at(&Case::time, &TimeStepping::allow_unstable),
            "accept a step_factor above 1"),
-      word<Precision>("time.precision", at(&Case::time, &TimeStepping::precision),
-                      {{"double", Precision::double_precision}, {"single", Precision::single_precision}},
-                      "numbers for rows of the plate beyond those next to the interface"),
+      word<Precision>(
+          "time.precision", at(&Case::time, &TimeStepping::precision),
+          {{"double", Precision::double_precision}, {"single", Precision::single_precision}},
+          "numbers for rows of the plate beyond those next to the interface; single with plate.sides = free"),
       integer("time.interface_rows", at(&Case::time, &TimeStepping::interface_rows), between(1, 1e6),
               "rows of cells next to the interface that are sub-cycled"),
       integer("time.interface_substeps", at(&Case::time, &TimeStepping::interface_substeps), between(1, 1e6),

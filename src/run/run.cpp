@@ -135,8 +135,9 @@ std::string initial_state_key(const io::Case& config) {
 mesh::Mesh check(const io::Case& config) {
   const double n_unknowns = approximate_unknowns(config.plate);
   const double n_nodes = 0.5 * n_unknowns;
-  require_memory(solve::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty()),
-                 fmt::format("a plate of {:.4g} nodes", n_nodes), "choose a larger plate.element_size_m");
+  require_memory(
+      solve::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
+      fmt::format("a plate of {:.4g} nodes", n_nodes), "choose a larger plate.element_size_m");
   if (!is_prestressed(config)) {
     if (config.plate.sides == mesh::Sides::periodic)
       throw UserError(
@@ -148,6 +149,9 @@ mesh::Mesh check(const io::Case& config) {
           config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
     solve::require_statics_memory(wanted_solver(config), n_unknowns);
   }
+  if (config.time.precision == solve::Precision::single_precision && config.plate.sides != mesh::Sides::free)
+    throw UserError(
+        "time.precision = single needs rows between free sides; choose plate.sides = free or double");
   auto mesh = mesh::make_plate(config.plate);
   solve::require_rows_fit(mesh, config.time);
   if (is_prestressed(config)) prescribed_tractions(config.prestress, mesh);
@@ -368,7 +372,7 @@ Info info(const io::Case& config) {
 
   const double n_unknowns = 2.0 * static_cast<double>(info.n_nodes);
   info.memory_bytes = solve::event_bytes(static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
-                                         !config.output.snapshot_times_s.empty());
+                                         !config.output.snapshot_times_s.empty(), config.time.precision);
   if (!is_prestressed(config)) {
     info.solver = solve::choose_solver(wanted_solver(config), n_unknowns);
     info.solver_bytes = solve::statics_bytes(info.solver, n_unknowns);

@@ -10,8 +10,6 @@ namespace slipfront::solid {
 
 namespace {
 
-/// Nodes from which on Lanczos iterations over the whole mesh would take longer than many steps.
-constexpr mesh::Node many_nodes = 500'000;
 /// Cells on the side of a block of squares that stands for all of them. One square alone has a frequency some
 /// 17 % higher, by a mode in which its neighbours hinder it.
 constexpr int block_side = 32;
@@ -27,7 +25,7 @@ bool is_square(const mesh::Mesh& mesh, const mesh::Cell& cell) {
   return true;
 }
 
-/// The cells marked and their nodes, as a mesh without a grid. Nothing of it is held.
+/// The cells marked and their nodes, all of which get block rows. Nothing of it is held.
 mesh::Mesh part_of(const mesh::Mesh& mesh, const std::vector<bool>& in_part) {
   mesh::Mesh part;
   std::vector<mesh::Node> number(mesh.n_nodes(), -1);
@@ -76,7 +74,7 @@ double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& materia
       for (const auto n : mesh.cells[k]) of_near[n] = true;
     } else {
       const auto c = cell_coordinates(mesh, mesh.cells[k]);
-      smallest_side_m = std::min(smallest_side_m, c[2] - c[0]);
+      smallest_side_m = std::min(smallest_side_m, std::abs(c[2] - c[0]));
     }
   }
   double largest = 0;
@@ -95,8 +93,12 @@ double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& materia
 }
 
 double largest_frequency_rad_per_s(const mesh::Mesh& mesh, const Material& material, const Operator& op) {
-  return mesh.n_nodes() < many_nodes ? largest_frequency_rad_per_s(op)
-                                     : frequency_bound_rad_per_s(mesh, material);
+  const auto blocks = mesh::blocks(mesh);
+  const bool large = mesh.n_nodes() >= many_nodes && !blocks.empty() &&
+                     std::ranges::all_of(blocks, [](const mesh::Grid& grid) {
+                       return std::min(grid.rows, grid.columns) >= block_side;
+                     });
+  return large ? frequency_bound_rad_per_s(mesh, material) : largest_frequency_rad_per_s(op);
 }
 
 }  // namespace slipfront::solid

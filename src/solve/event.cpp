@@ -81,11 +81,18 @@ std::string blow_up_message(const Stepper& stepper, const std::string& trouble) 
                      stepper.time_s(), trouble);
 }
 
-/// Steps until the stepper's time is at least time_s.
+/// Steps, at least one, until the stepper's time is at least time_s; a far time is beyond any run.
 std::int64_t steps_until(const Stepper& stepper, double time_s) {
+  constexpr double far_steps = 1e13;
+  if (!(time_s < far_steps * stepper.step_s())) return static_cast<std::int64_t>(far_steps);
   auto step = static_cast<std::int64_t>(time_s / stepper.step_s()) - 1;
   while (static_cast<double>(step) * stepper.step_s() < time_s) ++step;
-  return step - stepper.step();
+  return std::max<std::int64_t>(step - stepper.step(), 1);
+}
+
+/// The number of the next row, at least the one after n, of rows at multiples of an interval.
+std::int64_t next_row(std::int64_t n, double time_s, double interval_s) {
+  return std::max(n, static_cast<std::int64_t>(time_s / interval_s)) + 1;
 }
 
 }  // namespace
@@ -115,15 +122,17 @@ int halo_for(const mesh::Mesh& mesh, double l_star_m) {
   return static_cast<int>(std::ceil(l_star_m / mesh.grid.spacing_m - 0.01)) + 1;
 }
 
-double event_bytes(double n_nodes, double n_cells, bool with_snapshots) {
+double event_bytes(double n_nodes, double n_cells, bool with_snapshots, Precision precision) {
   constexpr double number = sizeof(double), field = 2 * number;
   const double mesh = field * n_nodes + sizeof(mesh::Cell) * n_cells;
-  const double state = 2 * field * n_nodes;                 // u_m, u_per_shear
-  const double motion = (number + 2 * field) * n_nodes;     // mass, u, v
-  const double frequency = (number + 4 * field) * n_nodes;  // solid::largest_frequency_rad_per_s
-  const double stepping = 2 * n_nodes;                      // of the stepper besides: levels, orphans
+  const double state = 2 * field * n_nodes;  // u_m, u_per_shear
+  const double single = precision == Precision::single_precision ? field * n_nodes : 0;
+  const double motion = (number + 2 * field) * n_nodes + single;  // mass, u, v
+  // The largest frequency by iterations, or the cells around each node.
+  const double building = (n_nodes < solid::many_nodes ? number + 4 * field : 28) * n_nodes;
+  const double stepping = 2 * n_nodes;  // of the stepper besides: levels, orphans
   const double snapshot = with_snapshots ? 2 * field * n_nodes : 0;
-  return motion + std::max(mesh + state + frequency, stepping + snapshot);
+  return motion + std::max(mesh + state + building, stepping + snapshot);
 }
 
 Snapshot take_snapshot(const Stepper& stepper) {
@@ -170,7 +179,7 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   Between between;
   between.sample = [&]() -> fronts::History* {
     if (stepper.time_s() < static_cast<double>(n_samples) * sample_interval) return nullptr;
-    n_samples = static_cast<std::int64_t>(stepper.time_s() / sample_interval) + 1;
+    n_samples = next_row(n_samples, stepper.time_s(), sample_interval);
     sampled = true;
     return &history;
   };
@@ -193,7 +202,7 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
     stepper.advance(recorder, steps, between);
     const bool energies = stepper.time_s() >= energy_time_s;
     if (energies) {
-      n_energies = static_cast<std::int64_t>(stepper.time_s() / energy_interval) + 1;
+      n_energies = next_row(n_energies, stepper.time_s(), energy_interval);
       event.energies.push_back(stepper.energies());
     }
     if (auto trouble = watch.trouble(energies ? &event.energies.back() : nullptr); !trouble.empty()) {

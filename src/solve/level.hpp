@@ -139,7 +139,8 @@ SingleRows make_single_rows(const Level& coarsest, const solid::Operator& op);
 void to_single(const Plate& plate, SingleRows& single);
 void to_double(const SingleRows& single, Plate& plate);
 /// The same as push_band for one of these bands.
-/// @param w  holds the row below at the first of these bands, and the two that follow after the last one
+/// @param w  holds the row below at the first of these bands, and after the last one its last row and the
+/// next
 void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& single, solid::RollingRows& w,
                solid::RollingRowsOf<float>& w_single, PushProducts& products);
 

@@ -16,12 +16,22 @@ constexpr double cache_bytes = 16e6;
 constexpr int most_steps_per_sweep = 16;
 
 /// A mesh that fits into the cache itself gains nothing from several steps in one sweep.
-int suitable_steps_per_sweep(const mesh::Grid& grid) {
+int suitable_steps_per_sweep(const mesh::Grid& grid, int threads) {
   const double motion = 4 * sizeof(double), rolling_rows = 6 * sizeof(double);
   const double rows = grid.rows + 1, columns = grid.stride();
   if (motion * rows * columns < 0.5 * cache_bytes) return 1;
-  return std::clamp(static_cast<int>(cache_bytes / ((2 * motion + rolling_rows) * columns)), 1,
+  return std::clamp(static_cast<int>(cache_bytes / ((2 * motion + rolling_rows) * columns * threads)), 1,
                     most_steps_per_sweep);
+}
+
+/// Threads that can be at work at a time: each has a group of steps that are a band apart.
+int useful_threads(int wanted, std::size_t n_bands, int steps_per_sweep) {
+  return std::clamp(static_cast<int>(n_bands) / (steps_per_sweep + 1), 1, wanted);
+}
+
+/// Columns of the rows in which w rolls; a mesh without a grid has none.
+int rolling_columns(const solid::Operator& op) {
+  return op.blocks.empty() ? 0 : op.widest_row();
 }
 
 }  // namespace
@@ -32,7 +42,7 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
              solid::Field(mesh.n_nodes())},
       contact_(contact),
       substeps_(time.interface_substeps),
-      finer_w_(plate_.op.widest_row()),
+      finer_w_(rolling_columns(plate_.op)),
       lower_(mesh.lower),
       lower_runs_(runs_of(mesh.lower)),
       tributary_m_(mesh::tributary_lengths_m(mesh)),
@@ -51,10 +61,12 @@ Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
   levels_ = make_levels(mesh, material, plate_, time, step_s_, multiples);
   if (time.precision == Precision::single_precision)
     single_ = make_single_rows(levels_.level.front(), plate_.op);
-  const int depth = execution.steps_per_sweep > 0 ? execution.steps_per_sweep
-                                                  : suitable_steps_per_sweep(mesh::blocks(mesh).back());
-  wavefront_ = std::make_unique<Wavefront>(execution.threads, depth);
-  const int columns = plate_.op.widest_row();
+  const int depth = execution.steps_per_sweep > 0
+                        ? execution.steps_per_sweep
+                        : suitable_steps_per_sweep(mesh::blocks(mesh).back(), execution.threads);
+  wavefront_ = std::make_unique<Wavefront>(
+      useful_threads(execution.threads, levels_.level.front().bands.size(), depth), depth);
+  const int columns = rolling_columns(plate_.op);
   const bool has_single = single_.bands.begin < single_.bands.end;
   for (int k = 0; k < wavefront_->most_steps(); ++k)
     under_way_.push_back(

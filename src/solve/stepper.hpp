@@ -20,8 +20,8 @@ namespace slipfront::solve {
 
 /// How the steps of one run are computed; the results do not depend on it.
 struct Execution {
-  int threads = 1;
-  /// Steps that a thread takes in one sweep through memory; 0 chooses by the size of the mesh.
+  int threads = 1;  ///< at most; fewer where the plate has not rows enough to keep them at work
+  /// Steps that a thread takes in one sweep through memory; 0 chooses by the size of the topmost block.
   int steps_per_sweep = 0;
 };
 
@@ -84,6 +84,7 @@ class Stepper {
   /// Takes at most `most_steps` steps, several of them in one sweep through memory. Every contact update is
   /// shown to the recorder.
   /// @return the number of steps taken
+  /// @throws what recorder and `between` throw; after that only start may follow.
   std::int64_t advance(Recorder& recorder, std::int64_t most_steps, const Between& between);
   /// One step; the state at its beginning is appended to `sample` where it is given.
   void advance(Recorder& recorder, fronts::History* sample = nullptr);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "base/error.hpp"
@@ -22,9 +23,14 @@ void pause() {
 
 }  // namespace
 
-Wavefront::Wavefront(int threads, int depth) : depth_(depth), ended_(static_cast<std::size_t>(threads)) {
+Wavefront::Wavefront(int threads, int depth) : depth_(depth) {
   SLIPFRONT_ASSERT(threads >= 1 && depth >= 1, "a wavefront needs a thread and a step");
-  for (int thread = 1; thread < threads; ++thread) workers_.emplace_back([this, thread] { work(thread); });
+  ended_ = std::make_unique<Progress[]>(static_cast<std::size_t>(threads));
+  try {
+    for (int thread = 1; thread < threads; ++thread) workers_.emplace_back([this, thread] { work(thread); });
+  } catch (const std::system_error&) {
+    // No more threads to be had: those that are there do the work.
+  }
 }
 
 Wavefront::~Wavefront() {
@@ -47,7 +53,7 @@ std::int64_t Wavefront::run(std::int64_t first, std::int64_t n, int units, const
   task_ = {first, n, units, &unit};
   end_ = first + n;
   failed_ = false;
-  for (auto& ended : ended_) ended.value = 0;
+  for (int thread = 0; thread < threads(); ++thread) ended_[static_cast<std::size_t>(thread)].value = 0;
   // One group alone needs no other thread.
   const bool alone = n <= depth_ || workers_.empty();
   if (!alone) {

@@ -28,7 +28,8 @@ class Wavefront {
   Wavefront(const Wavefront&) = delete;
   Wavefront& operator=(const Wavefront&) = delete;
 
-  int threads() const { return static_cast<int>(ended_.size()); }
+  /// As many as were asked for, or as there are to be had.
+  int threads() const { return static_cast<int>(workers_.size()) + 1; }
   int depth() const { return depth_; }
   /// Steps that may be under way at a time: steps that differ by this much never are.
   int most_steps() const { return threads() * depth_; }
@@ -54,7 +55,7 @@ class Wavefront {
   bool wait_for(int thread, std::int64_t value) const;
 
   int depth_;
-  std::vector<Progress> ended_;  ///< [threads]
+  std::unique_ptr<Progress[]> ended_;  ///< [threads]
   Task task_;
   std::atomic<std::int64_t> end_ = 0;  ///< step before which the run ends
   std::atomic<bool> failed_ = false;

@@ -505,6 +505,16 @@ TEST(InitialState, RefusesMarginsThatLeaveNoInside) {
   EXPECT_THROW(make_initial_state(config, go_on), UserError);
 }
 
+TEST(Check, SinglePrecisionNeedsFreeSides) {
+  auto config = coarse_case(EventKind::nucleation);
+  config.plate.corner = mesh::Corner::none;
+  config.plate.sides = mesh::Sides::absorbing;
+  config.loading.method = solve::LoadingMethod::prestress;
+  EXPECT_NO_THROW(check(config));
+  config.time.precision = solve::Precision::single_precision;
+  EXPECT_THROW(check(config), UserError);
+}
+
 TEST(InitialState, RefusesATiltWithoutContact) {
   auto config = coarse_case();
   config.loading.tilt_left_m = config.loading.tilt_right_m = 0;

@@ -55,6 +55,28 @@ TEST_F(EventRun, EndsAtItsEnd) {
   EXPECT_TRUE(event.record.onsets.empty());
 }
 
+TEST_F(EventRun, EnergiesMayBeAskedForAtEveryStep) {
+  // Multiples of the step that are rounded: a row for each step all the same.
+  time_.end_s = 2e-3;
+  for (const double interval_s : {1e-12, step_s()}) {
+    sampling_.energy_interval_s = interval_s;
+    sampling_.history_interval_s = interval_s;
+    const Event event = run(calm_);
+    ASSERT_GT(event.steps, 500);
+    EXPECT_EQ(std::ssize(event.energies), event.steps + 1);
+    EXPECT_EQ(std::ssize(event.history.time_s), event.steps);
+  }
+}
+
+TEST_F(EventRun, FarTimesAreNever) {
+  sampling_.energy_interval_s = 1e300;
+  sampling_.snapshot_times_s = {1e300};
+  const Event event = run(calm_);
+  EXPECT_EQ(event.end, EventEnd::end_time);
+  EXPECT_EQ(event.energies.size(), 2);
+  EXPECT_TRUE(event.snapshots.empty());
+}
+
 TEST_F(EventRun, EndsWhenNothingMoves) {
   time_.quiet_s = 20e-6;
   none_.ramp_s = 7e-6;
