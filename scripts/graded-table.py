@@ -22,6 +22,7 @@ WIDTH_M = 0.2  # of the default plate
 SIZES_M = (2e-3 / 3, 1e-3 / 3)
 GRADINGS = (
     ("uniform", {}),
+    ("uniform, single precision", {"time.precision": "single"}),
     ("1 doubling above 10 mm", {"plate.coarsenings": "1"}),
     ("2 doublings above 10 mm", {"plate.coarsenings": "2"}),
     ("3 doublings above 10 mm", {"plate.coarsenings": "3"}),
@@ -32,7 +33,7 @@ GRADINGS = (
 
 def run(program, case, settings, folder, repetitions):
     """V_tip by place, run.json, and the least processor times."""
-    command = [program, "run", case, "-q", "--overwrite", "-o", folder]
+    command = [program, "run", case, "-q", "--overwrite", "--threads", "1", "-o", folder]
     for key, value in settings.items():
         command += ["--set", f"{key}={value}"]
     total_s, event_s = [], []

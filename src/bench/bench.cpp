@@ -134,9 +134,8 @@ mesh::Plate plate_of(int columns) {
 /// A plate of the paper's material pressed on the plane, that begins to slip on its left half.
 class SlippingPlate {
  public:
-  SlippingPlate(const mesh::Mesh& mesh, int substeps, const solve::Execution& execution)
-      : stepper_(mesh, {}, {interface::VelocityWeakening{}}, {.interface_substeps = substeps}, execution),
-        recorder_(start(mesh)) {}
+  SlippingPlate(const mesh::Mesh& mesh, const solve::TimeStepping& time, const solve::Execution& execution)
+      : stepper_(mesh, {}, {interface::VelocityWeakening{}}, time, execution), recorder_(start(mesh)) {}
 
   solve::Stepper& stepper() { return stepper_; }
   solve::Recorder& recorder() { return recorder_; }
@@ -162,13 +161,13 @@ class SlippingPlate {
 };
 
 /// @param make_mesh  called when there is memory for so many columns of squares
-Rate measure_path(const std::string& path, int columns, int substeps, const solve::Execution& execution,
-                  const std::function<mesh::Mesh()>& make_mesh) {
+Rate measure_path(const std::string& path, int columns, const solve::TimeStepping& time,
+                  const solve::Execution& execution, const std::function<mesh::Mesh()>& make_mesh) {
   const double nodes = (columns + 1.0) * (columns / 2 + 1.0);
-  require_memory(solve::event_bytes(nodes, nodes, false), fmt::format("a plate of {:.4g} nodes", nodes),
-                 "free some memory");
+  require_memory(solve::event_bytes(nodes, nodes, false, time.precision),
+                 fmt::format("a plate of {:.4g} nodes", nodes), "free some memory");
   const double before = resident_bytes();
-  SlippingPlate plate(make_mesh(), substeps, execution);
+  SlippingPlate plate(make_mesh(), time, execution);
   auto& stepper = plate.stepper();
   constexpr double updates_per_call = 2e7;
   const auto least_steps = std::int64_t{2} * execution.threads * stepper.steps_per_sweep();
@@ -260,26 +259,28 @@ Results measure(const Options& options, const std::function<void(const std::stri
   if (options.threads > 1) threads.push_back(options.threads);
   std::vector<int> columns{300, 3000};
   if (options.large) columns.push_back(10'000);
-  const int substeps = solve::TimeStepping{}.interface_substeps;
+  const solve::TimeStepping plain{.interface_substeps = 1}, sub_cycled;
+  const solve::TimeStepping single{.precision = solve::Precision::single_precision, .interface_substeps = 1};
   for (const int n : columns)
     for (const int t : threads) {
       const double bandwidth =
           t == 1 ? results.bandwidth_bytes_per_s : results.bandwidth_all_threads_bytes_per_s;
-      const auto add = [&](const std::string& path, int n_substeps, const solve::Execution& execution) {
+      const auto add = [&](const std::string& path, const solve::TimeStepping& time,
+                           const solve::Execution& execution) {
         progress(fmt::format("{}, {} x {}, threads: {}", path, n, n / 2, t));
-        auto row =
-            measure_path(path, n, n_substeps, execution, [n] { return mesh::make_plate(plate_of(n)); });
+        auto row = measure_path(path, n, time, execution, [n] { return mesh::make_plate(plate_of(n)); });
         const bool streams = n > 1000 && row.steps_per_sweep == 1;
         row.bound_per_s = streams ? bandwidth / bytes_per_node_update : t * results.stencil_alone_per_s;
         results.rates.push_back(row);
       };
-      if (n > 1000) add("plain scheme, one step a sweep", 1, {t, 1});
-      add("plain scheme", 1, {t, 0});
-      add("interface sub-cycled", substeps, {t, 0});
+      if (n > 1000) add("plain scheme, one step a sweep", plain, {t, 1});
+      add("plain scheme", plain, {t, 0});
+      add("plain scheme, single precision", single, {t, 0});
+      add("interface sub-cycled", sub_cycled, {t, 0});
     }
   const auto add_mesh = [&](const std::string& path, const std::function<mesh::Mesh()>& make_mesh) {
     progress(path);
-    auto row = measure_path(path, 300, 1, {.threads = 1}, make_mesh);
+    auto row = measure_path(path, 300, plain, {.threads = 1}, make_mesh);
     row.bound_per_s = results.stencil_alone_per_s;
     results.rates.push_back(row);
   };
