@@ -20,6 +20,7 @@
 #include "mesh/reorder.hpp"
 #include "run/run.hpp"
 #include "solid/kernels.hpp"
+#include "solve/prestress.hpp"
 #include "solve/statics.hpp"
 #include "solve/stepper.hpp"
 
@@ -142,17 +143,14 @@ class SlippingPlate {
 
  private:
   solve::Recorder start(const mesh::Mesh& mesh) {
-    solve::Equilibrium state;
-    state.u_m = state.u_per_shear = solid::Field(static_cast<std::size_t>(mesh.n_nodes()));
-    state.contact.assign(mesh.lower.size(), solve::Contact::stick);
-    for (const auto n : mesh.lower) state.tractions.x_m.push_back(mesh.x_m[n]);
-    const std::vector<double> p_Pa(mesh.lower.size(), 1e6);
-    std::vector<double> t_Pa(mesh.lower.size(), 0.7e6);
-    std::fill_n(t_Pa.begin(), t_Pa.size() / 2, 1.4e6);
-    state.tractions.t_s_Pa = t_Pa;
-    state.tractions.p_s_Pa = p_Pa;
+    fronts::StaticState tractions;
+    for (const auto n : mesh.lower) tractions.x_m.push_back(mesh.x_m[n]);
+    tractions.p_s_Pa.assign(mesh.lower.size(), 1e6);
+    tractions.t_s_Pa.assign(mesh.lower.size(), 0.7e6);
+    std::fill_n(tractions.t_s_Pa.begin(), mesh.lower.size() / 2, 1.4e6);
+    const auto state = solve::prestressed(mesh, tractions);
     stepper_.start(state, 0);
-    stepper_.set_prestress(t_Pa, p_Pa);
+    stepper_.set_prestress(tractions.t_s_Pa, tractions.p_s_Pa);
     return {state, interface::VelocityWeakening{}.mu_s, 1};
   }
 

@@ -380,12 +380,10 @@ Info info(const io::Case& config) {
   }
 
   // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
-  solve::Equilibrium rest;
-  rest.u_m = rest.u_per_shear = solid::Field(static_cast<std::size_t>(info.n_nodes));
-  rest.contact.assign(mesh.lower.size(), solve::Contact::open);
-  for (const auto n : mesh.lower) rest.tractions.x_m.push_back(mesh.x_m[n]);
-  rest.tractions.t_s_Pa.assign(mesh.lower.size(), 0.0);
-  rest.tractions.p_s_Pa = rest.tractions.t_s_Pa;
+  fronts::StaticState no_tractions;
+  for (const auto n : mesh.lower) no_tractions.x_m.push_back(mesh.x_m[n]);
+  no_tractions.t_s_Pa = no_tractions.p_s_Pa = std::vector<double>(mesh.lower.size(), 0.0);
+  const auto rest = solve::prestressed(mesh, no_tractions);
   stepper.start(rest, 0);
   solve::Recorder recorder(rest, 1, 0);
   const auto start = Clock::now();
