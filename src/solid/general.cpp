@@ -95,7 +95,7 @@ mesh::Cell in_order(const mesh::Mesh& mesh, const mesh::Cell& cell) {
     if ((!equal && sum < 0) || (equal && c[2 * a + 1] < c[2 * best + 1])) best = a;
   }
   mesh::Cell ordered = cell;
-  std::ranges::rotate(ordered, ordered.begin() + best);
+  std::rotate(ordered.begin(), ordered.begin() + best, ordered.end());
   return ordered;
 }
 
