@@ -194,7 +194,7 @@ mesh::Mesh general_mesh(int columns, double moved) {
     }
   std::vector<mesh::Node> number(mesh.x_m.size());
   std::iota(number.begin(), number.end(), 0);
-  std::ranges::shuffle(number, random);
+  std::shuffle(number.begin(), number.end(), random);
   mesh::renumber(mesh, number);
   mesh::renumber(mesh, mesh::near_numbers(mesh));
   return mesh;

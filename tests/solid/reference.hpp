@@ -175,7 +175,7 @@ inline void shuffle(mesh::Mesh& mesh, std::uint64_t seed) {
   mesh::renumber(mesh, number);
   for (std::size_t k = mesh.cells.size(); k > 1; --k) std::swap(mesh.cells[k - 1], mesh.cells[below(k)]);
   for (auto& cell : mesh.cells)
-    std::ranges::rotate(cell, cell.begin() + static_cast<std::ptrdiff_t>(below(4)));
+    std::rotate(cell.begin(), cell.begin() + static_cast<std::ptrdiff_t>(below(4)), cell.end());
 }
 
 /// Moves the inner nodes of a plain plate by up to `share` of an element along x and y.
