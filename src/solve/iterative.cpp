@@ -330,7 +330,7 @@ double LevelEquations::next_direction(double beta) {
         float *n_x = next.x(j), *n_y = next.y(j);
         const bool is_own = j >= own.begin && j < own.end;
         float *o_x = is_own ? p.x(j) : n_x, *o_y = is_own ? p.y(j) : n_y;
-#pragma GCC ivdep
+#pragma omp simd
         for (int i = 0; i < stride; ++i) {
           o_x[i] = n_x[i] = z_x[i] + factor * p_x[i];
           o_y[i] = n_y[i] = z_y[i] + factor * p_y[i];
@@ -447,7 +447,7 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
         }
       } else {
         const auto b = static_cast<float>(beta), b_omega = static_cast<float>(beta * omega);
-#pragma GCC ivdep
+#pragma omp simd
         for (int i = 0; i < stride; ++i) {
           p_x[i] = static_cast<float>(r_x[i]) + (b * p_x[i] - b_omega * v_x[i]);
           p_y[i] = static_cast<float>(r_y[i]) + (b * p_y[i] - b_omega * v_y[i]);

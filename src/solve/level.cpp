@@ -64,7 +64,9 @@ class RowsAround {
 /// Sum of m (x . a) over the general rows.
 double general_product(const Level& level, const Plate& plate, const solid::Field& x) {
   double sum = 0;
-  for (const auto& [at, first, count] : level.general_runs) {
+  for (const auto& run : level.general_runs) {
+    const auto at = run.at, count = run.count;
+    const auto first = run.first;
     const double* mass = &plate.op.mass_kg[first];
     const double* x_x = &x.x[first];
     const double* x_y = &x.y[first];
@@ -501,7 +503,9 @@ void move_shared(Level& coarser, Plate& plate, double dt, Energies& works) {
     v.x[n] = after.x - kick_x;
     v.y[n] = after.y - kick_y;
   }
-  for (const auto& [at, first, count] : s.runs) {
+  for (const auto& run : s.runs) {
+    const auto at = run.at, count = run.count;
+    const auto first = run.first;
     double* __restrict u_x = &u.x[first];
     double* __restrict u_y = &u.y[first];
     double* __restrict v_x = &v.x[first];

@@ -331,7 +331,9 @@ void Stepper::move_interface(Energies& works) {
     }
   }
   double contact_work = 0, friction_work = 0;
-  for (const auto& [at, first, count] : lower_runs_) {
+  for (const auto& run : lower_runs_) {
+    const auto at = run.at, count = run.count;
+    const auto first = run.first;
     const double* v_x_now = &interface_.v_x_m_per_s[at];
     const double* v_y_now = &interface_.v_y_m_per_s[at];
     const double* u_y_now = &interface_.u_y_m[at];
