@@ -610,7 +610,10 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Values(Precision::double_precision, Precision::single_precision)));
 
 TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
-  const auto& [corner, substeps, algorithm, precision] = GetParam();
+  const auto corner = std::get<0>(GetParam());
+  const int substeps = std::get<1>(GetParam());
+  const auto algorithm = std::get<2>(GetParam());
+  const auto precision = std::get<3>(GetParam());
   const auto mesh = support::make_plate(0.2, 0.01, 0.5e-3, corner);
   const auto law = support::with_algorithm(gentle_law, algorithm);
   const auto e = random_flight(mesh, 1e-6, 1, 0);
@@ -658,7 +661,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, SinglePrecision,
                                             ::testing::Values(1, 4)));
 
 TEST_P(SinglePrecision, MovesAsDoublePrecisionDoesButForRounding) {
-  const auto& [corner, substeps] = GetParam();
+  const auto corner = std::get<0>(GetParam());
+  const int substeps = std::get<1>(GetParam());
   const auto mesh = support::make_plate(0.1, 0.02, 0.5e-3, corner);
   const double size_m = 1e-6, speed_m_per_s = 1;
   const auto e = random_flight(mesh, size_m, speed_m_per_s, 10e-6);
