@@ -387,6 +387,13 @@ void to_single(const Plate& plate, SingleRows& single) {
 
 namespace {
 
+/// A row of w in the other precision.
+template <class From, class To>
+void convert_w(int count, int row, From& from, To& to) {
+  solid::convert_row(count, from.x(row), to.x(row));
+  solid::convert_row(count, from.y(row), to.y(row));
+}
+
 /// The first n of these nodes' motion.
 void to_double(const SingleRows& single, int n, Plate& plate) {
   const auto o = row_start(plate, single.first_row);
@@ -419,8 +426,7 @@ void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& s
   };
   if (is_first) {
     // The row below is the first band's, and comes in double precision.
-    solid::convert_row(count, w.x(band.first_row + 2), w_single.x(band.first_row + 2));
-    solid::convert_row(count, w.y(band.first_row + 2), w_single.y(band.first_row + 2));
+    convert_w(count, band.first_row - 1, w, w_single);
     fill(band.first_row);
   }
   // All these rows lie in one block of squares.
@@ -445,11 +451,8 @@ void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& s
       if (j < single.last_row) {
         fill(j + 1);
       } else {
-        const auto above = row_start(plate, j + 1);
-        solid::combine_row(count, plate.damping_s, &plate.u_m.x[above], &plate.u_m.y[above],
-                           &plate.v_m_per_s.x[above], &plate.v_m_per_s.y[above], w.x(j + 1), w.y(j + 1));
-        solid::convert_row(count, w.x(j + 1), w_single.x(j + 1));
-        solid::convert_row(count, w.y(j + 1), w_single.y(j + 1));
+        Filler(plate, w, j + 1).fill({j + 1, j + 2});
+        convert_w(count, j + 1, w, w_single);
       }
     }
     for (const auto span : row_of_stencil.spans) {
@@ -466,8 +469,7 @@ void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& s
   add_kicks(products.kicks, kicks, 1 / scale);
   if (is_last) {
     // The bands above go on in double precision, with this row's w as it was.
-    solid::convert_row(count, w_single.x(band.last_row), w.x(band.last_row));
-    solid::convert_row(count, w_single.y(band.last_row), w.y(band.last_row));
+    convert_w(count, band.last_row, w_single, w);
   }
   // The next step's first band needs the first row's new place.
   if (is_first) to_double(single, count, plate);
