@@ -207,6 +207,7 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
   o.mu_s = interface::static_coefficient(config.friction);
   o.elasticity = {config.material.youngs_modulus_Pa, config.material.poissons_ratio,
                   config.material.plane == solid::Plane::strain};
+  o.exclude_margin_m = config.fronts.trigger_margin_m;
   const double margin = config.trigger.zone_m + config.fronts.trigger_margin_m;
   const double edge = initial.prescribed ? 0 : config.loading.edge_margin_m;
   const double contact_from = initial.common.inside_from_m - edge;

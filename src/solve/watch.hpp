@@ -8,7 +8,8 @@
 
 namespace slipfront::solve {
 
-/// Watches that the motion stays physical.
+/// Watches that the motion stays physical: slip rates below c_L, and no more energy than was there at the
+/// start and has been supplied since.
 class Watch {
  public:
   Watch(Stepper& stepper, double c_L_m_per_s);
@@ -25,11 +26,16 @@ class Watch {
   /// Steps to the next look at the energy.
   std::int64_t steps_to_check() const;
 
-  /// Empty, or what is wrong with the motion.
+  /// Empty, or what is wrong with the motion and what to change.
   /// @param known  energies that were taken after this step for another purpose; null for none
   std::string trouble(const Energies* known);
 
  private:
+  std::string energy_trouble(const Energies& now) const;
+  /// Whether neither the start nor the loads account for an energy.
+  bool is_from_nowhere(double energy_J_per_m, const Energies& now) const;
+  std::string remedy(const Energies& now) const;
+
   Stepper& stepper_;
   double c_L_m_per_s_;
   Energies start_;
