@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/folder.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <set>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace slipfront::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* lock_name = ".slipfront.lock";
+constexpr const char* state_name = "state";
+/// Names the kind of work, and tells a folder of this program from a foreign one of the same name.
+constexpr const char* kind_name = "kind";
+
+/// Results of a run by versions that wrote no list of checksums.
+constexpr std::array<const char*, 7> unlisted_results = {"case.resolved.toml", "run.json",   "interface.h5",
+                                                         "fronts.csv",         "static.csv", "energy.csv",
+                                                         "fields.vtkhdf"};
+
+[[noreturn]] void throw_unusable(const fs::path& dir, const char* what, int error) {
+  throw UserError("output folder {}: cannot be {} ({}); choose another place", dir.string(), what,
+                  std::strerror(error));
+}
+
+std::string read_line(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+std::string host_and_process() {
+  std::array<char, 256> host{};
+  if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '?';
+  return fmt::format("process {} on {}", getpid(), host.data());
+}
+
+/// Names in a folder, sorted.
+std::vector<std::string> names_in(const fs::path& dir) {
+  std::error_code error;
+  std::set<std::string> names;
+  for (fs::directory_iterator k(dir, error), end; !error && k != end; k.increment(error))
+    names.insert(k->path().filename().string());
+  if (error) throw_unusable(dir, "read", error.value());
+  return {names.begin(), names.end()};
+}
+
+/// Calls file(name) for the files below a folder, by their names relative to it, and after that folder(name)
+/// for each folder that was left. The state is passed over.
+void walk(const fs::path& dir, const std::string& prefix, const std::function<void(const std::string&)>& file,
+          const std::function<void(const std::string&)>& folder) {
+  for (const auto& name : names_in(dir / prefix)) {
+    const std::string relative = prefix + name;
+    if (prefix.empty() && name == state_name) continue;
+    if (!is_folder(dir / relative)) {
+      file(relative);
+      continue;
+    }
+    walk(dir, relative + "/", file, folder);
+    folder(relative);
+  }
+}
+
+/// Names in the folder's list of checksums, in the lists that it names, and these lists.
+std::set<std::string> set_of(const fs::path& dir, const std::string& prefix = "") {
+  std::set<std::string> names;
+  for (const auto& [name, sum] : read_checksums(dir / prefix)) {
+    const fs::path path(name);
+    if (path.filename() == checksum_list)
+      names.merge(set_of(dir, prefix + path.parent_path().string() + "/"));
+    else
+      names.insert(prefix + name);
+  }
+  if (!names.empty()) names.insert(prefix + checksum_list);
+  return names;
+}
+
+/// The files of an earlier set; of a damaged list nothing is believed.
+std::set<std::string> earlier_set(const fs::path& dir) {
+  std::set<std::string> names;
+  try {
+    names = set_of(dir);
+  } catch (const UserError&) {
+  }
+  for (const char* name : unlisted_results) names.insert(name);
+  return names;
+}
+
+void remove_empty_folders(const fs::path& dir, const std::set<std::string>& files) {
+  std::error_code ignored;
+  for (const auto& name : files)
+    for (auto parent = fs::path(name).parent_path(); !parent.empty(); parent = parent.parent_path())
+      fs::remove(dir / parent, ignored);
+}
+
+/// Removes a folder of this program's own with all that is in it; links are not followed.
+void remove_tree(const fs::path& dir) {
+  std::error_code error;
+  fs::remove_all(dir, error);
+  if (error) throw WriteError("{}: cannot be removed ({}); remove it by hand", dir.string(), error.message());
+}
+
+bool is_own_work(const fs::path& unfinished) {
+  return is_folder(unfinished) &&
+         (is_there(unfinished / state_name / kind_name) || names_in(unfinished).empty() ||
+          names_in(unfinished) == std::vector<std::string>{state_name});
+}
+
+void require_own_work(const fs::path& unfinished) {
+  if (is_there(unfinished) && !is_own_work(unfinished))
+    throw UserError("{}: is not a folder of slipfront, which needs the name; move it away",
+                    unfinished.string());
+}
+
+}  // namespace
+
+ResultFolder::ResultFolder(const fs::path& dir, std::string work) : dir_(dir), work_(std::move(work)) {
+  make();
+  lock();
+  require_own_work(unfinished());
+  finish_publication();
+}
+
+ResultFolder::~ResultFolder() {
+  if (!lock_.valid()) return;
+  std::error_code ignored;
+  fs::remove(dir_ / lock_name, ignored);  // before the lock goes: nobody else can hold it
+  lock_.close();
+  for (auto p = dir_; !outermost_made_.empty(); p = p.parent_path())
+    if (!fs::remove(p, ignored) || ignored || p == outermost_made_) return;
+}
+
+void ResultFolder::make() {
+  std::error_code error;
+  const auto status = fs::status(dir_, error);
+  if (!fs::exists(status) && error && error != std::errc::no_such_file_or_directory)
+    throw_unusable(dir_, "used", error.value());
+  if (fs::exists(status) && !fs::is_directory(status))
+    throw UserError("output folder {}: is a file; choose another name", dir_.string());
+  for (fs::path p = dir_; !p.empty() && !fs::exists(p, error); p = p.parent_path()) outermost_made_ = p;
+  error.clear();
+  fs::create_directories(dir_, error);
+  if (error) throw_unusable(dir_, "made", error.value());
+  if (::access(dir_.c_str(), R_OK | W_OK | X_OK) != 0) throw_unusable(dir_, "written", errno);
+  for (const char* name : unlisted_results)
+    if (is_folder(dir_ / name))
+      throw UserError("{}: is a folder where a result file is to go; move it away", (dir_ / name).string());
+}
+
+void ResultFolder::lock() {
+  const auto file = dir_ / lock_name;
+  for (;;) {
+    lock_ = Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
+    if (!lock_.valid()) throw_unusable(dir_, "locked", errno);
+    // Held by the open file, so that it ends with the process, however that ends.
+    struct flock whole {};
+    whole.l_type = F_WRLCK;
+    whole.l_whence = SEEK_SET;
+    if (::fcntl(lock_.get(), F_OFD_SETLK, &whole) != 0) {
+      const int error = errno;
+      const std::string holder = read_line(file);
+      lock_.close();
+      if (error != EAGAIN && error != EACCES) throw_unusable(dir_, "locked", error);
+      throw UserError("output folder {}: is in use by {}; wait for it or choose another folder",
+                      dir_.string(), holder.empty() ? "another process" : holder);
+    }
+    struct stat held {
+    }, named{};
+    if (::fstat(lock_.get(), &held) == 0 && ::stat(file.c_str(), &named) == 0 && held.st_ino == named.st_ino)
+      break;  // else its holder removed it while we opened it
+  }
+  const std::string text = host_and_process() + "\n";
+  if (::ftruncate(lock_.get(), 0) != 0 ||
+      ::pwrite(lock_.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
+    const int error = errno;
+    fs::remove(file);
+    throw_unusable(dir_, "written", error);
+  }
+}
+
+bool ResultFolder::has_results() const {
+  for (const auto& name : names_in(dir_))
+    if (name != lock_name && name != unfinished().filename()) return true;
+  return false;
+}
+
+bool ResultFolder::has_unfinished() const {
+  return is_own_work(unfinished()) && read_line(state() / kind_name) == work_;
+}
+
+void ResultFolder::require_empty(bool overwrite, bool resumes) const {
+  if (overwrite) return;
+  if (has_results())
+    throw UserError(
+        "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
+        dir_.string());
+  if (is_there(unfinished()) && !names_in(unfinished()).empty() && !(resumes && has_unfinished()))
+    throw UserError(
+        "output folder {}: holds unfinished work; go on with it (slipfront run --restart) or pass "
+        "--overwrite to begin anew",
+        dir_.string());
+}
+
+void ResultFolder::begin() {
+  if (is_there(unfinished())) remove_tree(unfinished());
+  make_folder(unfinished());
+  make_folder(state());
+  write_text(state() / kind_name, work_ + "\n");
+}
+
+void ResultFolder::begin_or_resume() {
+  if (!has_unfinished()) begin();
+}
+
+void ResultFolder::abandon() {
+  if (is_there(unfinished())) remove_tree(unfinished());
+}
+
+void ResultFolder::publish(bool adds) {
+  seal(unfinished(), adds ? read_checksums(dir_) : Checksums{});
+  walk(
+      unfinished(), "", [&](const std::string& name) { sync_file(unfinished() / name); },
+      [&](const std::string& name) { sync_file(unfinished() / name); });
+  sync_file(unfinished());
+  move_file(unfinished(), publishing());
+  sync_file(dir_);
+  finish_publication();
+}
+
+void ResultFolder::finish_publication() {
+  if (!is_there(publishing())) return;
+  if (!is_folder(publishing()) || !(is_there(publishing() / state_name) ||
+                                    is_there(publishing() / checksum_list) || names_in(publishing()).empty()))
+    throw UserError("{}: is not a folder of slipfront, which needs the name; move it away",
+                    publishing().string());
+  if (is_there(publishing() / checksum_list)) {
+    const auto fresh = set_of(publishing());
+    auto stale = earlier_set(dir_);
+    for (const auto& name : fresh) stale.erase(name);
+    // Lists last: as long as they are there, what they name can be found.
+    const auto is_list = [](const std::string& name) { return fs::path(name).filename() == checksum_list; };
+    for (const auto& name : stale)
+      if (!is_list(name)) remove_file(dir_ / name);
+    for (const auto& name : stale)
+      if (is_list(name)) remove_file(dir_ / name);
+    remove_empty_folders(dir_, stale);
+    walk(
+        publishing(), "",
+        [&](const std::string& name) {
+          if (name == checksum_list) return;
+          std::error_code error;
+          fs::create_directories((dir_ / name).parent_path(), error);
+          if (error) throw_unusable((dir_ / name).parent_path(), "made", error.value());
+          move_file(publishing() / name, dir_ / name);
+        },
+        [&](const std::string& name) { remove_file(publishing() / name); });
+    if (is_there(publishing() / state_name)) remove_tree(publishing() / state_name);
+    move_file(publishing() / checksum_list, dir_ / checksum_list);
+  }
+  remove_file(publishing());
+  sync_file(dir_);
+}
+
+void seal(const fs::path& dir, const Checksums& others) {
+  Checksums checksums = others;
+  std::set<std::string> sealed;  // folders with a list of their own
+  const auto is_below_sealed = [&](fs::path name) {
+    while (!(name = name.parent_path()).empty())
+      if (sealed.contains(name.string())) return true;
+    return false;
+  };
+  walk(
+      dir, "",
+      [&](const std::string& name) {
+        const fs::path path(name);
+        if (path.filename() == checksum_list && path.has_parent_path())
+          sealed.insert(path.parent_path().string());
+      },
+      [](const std::string&) {});
+  walk(
+      dir, "",
+      [&](const std::string& name) {
+        const bool is_list = fs::path(name).filename() == checksum_list;
+        if (name == checksum_list || (is_below_sealed(name) && !is_list)) return;
+        checksums[name] = sha256_of_file(dir / name);
+      },
+      [](const std::string&) {});
+  write_checksums(dir, checksums);
+}
+
+fs::path published(const fs::path& dir, const std::string& name) {
+  const auto on_its_way = dir / "publishing" / name;
+  return is_there(on_its_way) ? on_its_way : dir / name;
+}
+
+}  // namespace slipfront::io
