@@ -81,6 +81,10 @@ struct StaticState {
   std::vector<double> x_m;
   std::vector<double> t_s_Pa;
   std::vector<double> p_s_Pa;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x_m, t_s_Pa, p_s_Pa);
+  }
 };
 
 /// Rebuilds the record from a history: a node slips while |slip rate| > threshold_m_per_s; the onset lies

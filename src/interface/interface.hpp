@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/state.hpp"
 #include "interface/friction/registry.hpp"
 #include "interface/regularisation.hpp"
 
@@ -63,6 +64,18 @@ struct Interface {
 
   explicit Interface(std::size_t n);
   std::size_t size() const { return t_Pa.size(); }
+
+  /// All that changes.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    for (auto* values :
+         {&intact, &v_x_m_per_s, &v_y_m_per_s, &u_y_m, &slip_rate_m_per_s, &t_Pa, &p_Pa, &demand_Pa,
+          &strength_Pa, &slip_m, &relaxed_Pa, &target_Pa, &acceleration_m_per_s2})
+      archive_vector(archive, *values);
+    archive_vector(archive, slipping);
+    archive_vector(archive, locked);
+    archive(begun);
+  }
 };
 
 /// Begins the memory of friction in a state of given p: no slip yet, strength mu(0) p, relaxed strength or

@@ -21,6 +21,11 @@ struct Trigger {
   double amount = 5;      ///< added traction over what is missing to mu_s p_s
   double ramp_s = 5e-6;   ///< rises linearly from zero over this time
   double duration_s = std::numeric_limits<double>::infinity();  ///< taken away this long after its start
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(zone_m, amount, ramp_s, duration_s);
+  }
 };
 
 /// Time factor of the trigger, 0 to 1.

@@ -19,6 +19,10 @@ struct Field {
   Field() = default;
   explicit Field(std::size_t n) : x(n, 0.0), y(n, 0.0) {}
   std::size_t size() const { return x.size(); }
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x, y);
+  }
 };
 
 /// Acceleration M^-1 K of a node amid four equal squares, written with the square's symmetries (1/s2):
@@ -57,6 +61,10 @@ struct BlockRows {
 /// A vector of the plane.
 struct Pair {
   double x = 0, y = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x, y);
+  }
 };
 
 /// Calls f(row, x, y) with the components of the row's product with w(node), for each of the rows listed.

@@ -40,6 +40,11 @@ class DampingWork {
   /// @param u_K_u, v_K_u  of the present place and velocity
   double of_last_push(const PushProducts& since_last, double u_K_u, double v_K_u) const;
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(begun_, last_.u_K_u, last_.v_K_v, last_.after_K_w);
+  }
+
  private:
   /// @param after_K_u  the velocity after the last push times K u at it
   double work(double after_K_w, double after_K_u) const;

@@ -27,6 +27,12 @@ struct Energies {
   /// nothing dissipates.
   double coupling_work = 0;
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(time_s, kinetic, strain, top_work, trigger_work, prestress_work, friction_work, contact_work,
+            damping_work, boundary_work, coupling_work);
+  }
+
   double stored() const { return kinetic + strain; }
   double work() const {
     return top_work + trigger_work + prestress_work + friction_work + contact_work + damping_work +

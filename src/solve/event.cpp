@@ -39,6 +39,12 @@ std::int64_t next_row(std::int64_t n, double time_s, double interval_s) {
   return std::max(n, static_cast<std::int64_t>(time_s / interval_s)) + 1;
 }
 
+/// Of the loaded edge, which keeps it; 0 without one.
+double top_speed_m_per_s(const Stepper& stepper) {
+  const auto& top = stepper.plate().top.node;
+  return top.empty() ? 0 : stepper.v_m_per_s().x[top.front()];
+}
+
 }  // namespace
 
 std::vector<double> trigger_forces(const Equilibrium& state, std::span<const double> tributary_m,
@@ -83,185 +89,215 @@ Snapshot take_snapshot(const Stepper& stepper) {
   return {stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()};
 }
 
-Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L,
-                const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
-                int halo, const Monitor& monitor, Sink* sink) {
-  Event event;
-  const auto& top = stepper.plate().top.node;
-  const double top_speed = top.empty() ? 0 : stepper.v_m_per_s().x[top.front()];
-  Recorder recorder(state, mu_s, halo, creep_over_top_speed * top_speed);
-  Watch watch(stepper, c_L);
-  event.history.x_m = state.tractions.x_m;
-
-  const double quiet_from = std::isfinite(trigger.ramp_s) ? trigger.ramp_s : 0;
+EventRun::EventRun(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L_m_per_s,
+                   const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
+                   int halo)
+    : stepper_(stepper),
+      c_L_m_per_s_(c_L_m_per_s),
+      time_(time),
+      snapshot_times_s_(sampling.snapshot_times_s),
+      sample_interval_s_(std::max(sampling.history_interval_s, stepper.step_s())),
+      energy_interval_s_(std::max(sampling.energy_interval_s, stepper.step_s())),
+      quiet_from_s_(std::isfinite(trigger.ramp_s) ? trigger.ramp_s : 0),
+      recorder_(state, mu_s, halo, creep_over_top_speed * top_speed_m_per_s(stepper)),
+      watch_(std::in_place, stepper, c_L_m_per_s) {
   const double all_steps = std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12));
   if (all_steps > 1e12)
     throw UserError("time.end_s = {:g} takes {:g} steps of {:.4g} s; choose an earlier end", time.end_s,
                     all_steps, stepper.step_s());
-  const auto n_steps = static_cast<std::int64_t>(all_steps);
-  const double sample_interval = std::max(sampling.history_interval_s, stepper.step_s());
-  const double energy_interval = std::max(sampling.energy_interval_s, stepper.step_s());
-  event.energies.push_back(watch.start());
-  std::int64_t n_samples = 0, n_energies = 1;
-  fronts::History row;
-  auto& history = sink != nullptr ? row : event.history;
-  std::size_t next_snapshot = 0;
-  const auto take_snapshots = [&] {
-    while (next_snapshot < sampling.snapshot_times_s.size() &&
-           stepper.time_s() >= sampling.snapshot_times_s[next_snapshot]) {
-      if (sink != nullptr)
-        sink->snapshot(stepper);
-      else
-        event.snapshots.push_back(take_snapshot(stepper));
-      ++next_snapshot;
-    }
-  };
-  const auto is_quiet = [&] {
-    return stepper.time_s() - std::max(recorder.last_motion_s(), quiet_from) > time.quiet_s;
-  };
-  bool sampled = false;
+  n_steps_ = static_cast<std::int64_t>(all_steps);
+  event_.history.x_m = state.tractions.x_m;
+  event_.energies.push_back(watch_->start());
+}
+
+void EventRun::take_snapshots(Sink* sink) {
+  while (next_snapshot_ < snapshot_times_s_.size() &&
+         stepper_.time_s() >= snapshot_times_s_[next_snapshot_]) {
+    if (sink != nullptr)
+      sink->snapshot(stepper_);
+    else
+      event_.snapshots.push_back(take_snapshot(stepper_));
+    ++next_snapshot_;
+  }
+}
+
+bool EventRun::is_quiet() const {
+  return stepper_.time_s() - std::max(recorder_.last_motion_s(), quiet_from_s_) > time_.quiet_s;
+}
+
+double EventRun::energy_time_s() const {
+  return static_cast<double>(n_energies_) * energy_interval_s_;
+}
+
+Between EventRun::between(Sink* sink, fronts::History& row) {
   Between between;
-  between.sample = [&]() -> fronts::History* {
-    if (stepper.time_s() < static_cast<double>(n_samples) * sample_interval) return nullptr;
-    n_samples = next_row(n_samples, stepper.time_s(), sample_interval);
-    sampled = true;
-    return &history;
+  between.sample = [this, sink, &row]() -> fronts::History* {
+    if (stepper_.time_s() < static_cast<double>(n_samples_) * sample_interval_s_) return nullptr;
+    n_samples_ = next_row(n_samples_, stepper_.time_s(), sample_interval_s_);
+    return sink != nullptr ? &row : &event_.history;
   };
-  between.go_on = [&] {
-    if (sampled && sink != nullptr) {
+  between.go_on = [this, sink, &row] {
+    if (!row.time_s.empty()) {
       sink->sample(row);
       clear_rows(row);
     }
-    sampled = false;
-    return watch.look() && !is_quiet();
+    return watch_->look() && !is_quiet();
   };
-  while (stepper.step() < n_steps) {
-    take_snapshots();
-    const double energy_time_s = static_cast<double>(n_energies) * energy_interval;
-    std::int64_t steps =
-        std::min({n_steps - stepper.step(), monitor_interval - stepper.step() % monitor_interval,
-                  watch.steps_to_check(), steps_until(stepper, energy_time_s)});
-    if (next_snapshot < sampling.snapshot_times_s.size())
-      steps = std::min(steps, steps_until(stepper, sampling.snapshot_times_s[next_snapshot]));
-    stepper.advance(recorder, steps, between);
-    const bool energies = stepper.time_s() >= energy_time_s;
-    if (energies) {
-      n_energies = next_row(n_energies, stepper.time_s(), energy_interval);
-      event.energies.push_back(stepper.energies());
-    }
-    if (auto trouble = watch.trouble(energies ? &event.energies.back() : nullptr); !trouble.empty()) {
-      event.end = EventEnd::blow_up;
-      event.blow_up = blow_up_message(stepper, trouble);
-      break;
-    }
-    if (is_quiet()) {
-      event.end = EventEnd::quiet;
-      break;
-    }
-    if (stepper.step() % monitor_interval == 0 && !monitor(stepper.step(), n_steps)) {
-      event.end = EventEnd::interrupted;
+  return between;
+}
+
+std::int64_t EventRun::steps_to_next_look() const {
+  const std::int64_t steps =
+      std::min({n_steps_ - stepper_.step(), monitor_interval - stepper_.step() % monitor_interval,
+                watch_->steps_to_check(), steps_until(stepper_, energy_time_s())});
+  if (next_snapshot_ == snapshot_times_s_.size()) return steps;
+  return std::min(steps, steps_until(stepper_, snapshot_times_s_[next_snapshot_]));
+}
+
+bool EventRun::look() {
+  const bool energies = stepper_.time_s() >= energy_time_s();
+  if (energies) {
+    n_energies_ = next_row(n_energies_, stepper_.time_s(), energy_interval_s_);
+    event_.energies.push_back(stepper_.energies());
+  }
+  if (auto trouble = watch_->trouble(energies ? &event_.energies.back() : nullptr); !trouble.empty()) {
+    event_.end = EventEnd::blow_up;
+    event_.blow_up = blow_up_message(stepper_, trouble);
+    return false;
+  }
+  if (is_quiet()) event_.end = EventEnd::quiet;
+  return !is_quiet();
+}
+
+Event EventRun::run(const Monitor& monitor, Sink* sink) {
+  fronts::History row;
+  const auto samples = between(sink, row);
+  while (stepper_.step() < n_steps_) {
+    take_snapshots(sink);
+    stepper_.advance(recorder_, steps_to_next_look(), samples);
+    if (!look()) break;
+    if (stepper_.step() % monitor_interval == 0 && !monitor(stepper_.step(), n_steps_)) {
+      event_.end = EventEnd::interrupted;
       break;
     }
   }
-  take_snapshots();
-  event.steps = stepper.step();
-  event.time_s = stepper.time_s();
-  if (event.energies.back().time_s < event.time_s) event.energies.push_back(stepper.energies());
-  event.record = recorder.take(event.time_s);
-  return event;
+  take_snapshots(sink);
+  event_.steps = stepper_.step();
+  event_.time_s = stepper_.time_s();
+  if (event_.energies.back().time_s < event_.time_s) event_.energies.push_back(stepper_.energies());
+  event_.record = recorder_.take(event_.time_s);
+  return std::move(event_);
 }
 
-Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
-              double top_speed, double c_L, double expected_shear_m, const Monitor& monitor) {
-  Ramp ramp;
-  stepper.start(tilted, top_speed);
-  Recorder recorder(tilted, mu_s, 0);
-  Watch watch(stepper, c_L);
-  const auto most = static_cast<std::int64_t>(2 * expected_shear_m / (top_speed * stepper.step_s()));
+Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L_m_per_s,
+                const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
+                int halo, const Monitor& monitor, Sink* sink) {
+  return EventRun(stepper, state, mu_s, c_L_m_per_s, trigger, time, sampling, halo).run(monitor, sink);
+}
 
-  // The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.
-  const auto state_now = [&] {
-    Equilibrium e = tilted;
-    const auto& s = stepper.interface_state();
-    e.u_m = stepper.u_m();
-    for (std::size_t n = 0; n < e.u_per_shear.size(); ++n) {
-      e.u_per_shear.x[n] = stepper.v_m_per_s().x[n] / top_speed;
-      e.u_per_shear.y[n] = stepper.v_m_per_s().y[n] / top_speed;
-    }
-    e.shear_m = top_speed * stepper.time_s();
-    e.tractions.t_s_Pa = s.t_Pa;
-    e.tractions.p_s_Pa = s.p_Pa;
-    double first = std::numeric_limits<double>::infinity(), last = -first;
-    for (std::size_t k = 0; k < s.size(); ++k) {
-      e.contact[k] = s.p_Pa[k] > 0 ? (s.slipping[k] != 0 ? Contact::slip : Contact::stick) : Contact::open;
-      if (e.contact[k] == Contact::open) continue;
-      first = std::min(first, e.tractions.x_m[k]);
-      last = std::max(last, e.tractions.x_m[k]);
-    }
-    e.inside_from_m = first + loading.edge_margin_m;
-    e.inside_to_m = last - loading.edge_margin_m;
-    e.peak_ratio = 0;
-    for (std::size_t k = 0; k < s.size(); ++k) {
-      const double x = e.tractions.x_m[k];
-      if (x < e.inside_from_m || x > e.inside_to_m || s.p_Pa[k] <= 0 || s.t_Pa[k] / s.p_Pa[k] <= e.peak_ratio)
-        continue;
-      e.peak_ratio = s.t_Pa[k] / s.p_Pa[k];
-      e.peak_x_m = x;
-    }
-    return e;
-  };
-  // The contact's extent changes slowly; the peak is looked for between bounds that are renewed at the
-  // checks.
-  double from = tilted.inside_from_m, to = tilted.inside_to_m;
-  const auto peak_now = [&] {
-    const auto& s = stepper.interface_state();
-    double peak = 0;
-    for (std::size_t k = 0; k < s.size(); ++k) {
-      const double x = tilted.tractions.x_m[k];
-      if (x >= from && x <= to && s.p_Pa[k] > 0) peak = std::max(peak, s.t_Pa[k] / s.p_Pa[k]);
-    }
-    return peak;
-  };
+RampRun::RampRun(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
+                 double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m)
+    : stepper_(stepper),
+      tilted_(tilted),
+      loading_(loading),
+      mu_s_(mu_s),
+      top_speed_m_per_s_(top_speed_m_per_s),
+      c_L_m_per_s_(c_L_m_per_s),
+      expected_shear_m_(expected_shear_m),
+      most_steps_(static_cast<std::int64_t>(2 * expected_shear_m / (top_speed_m_per_s * stepper.step_s()))),
+      recorder_(tilted, mu_s, 0),
+      watch_(std::in_place, stepper, c_L_m_per_s),
+      from_m_(tilted.inside_from_m),
+      to_m_(tilted.inside_to_m) {}
 
+/// The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.
+Equilibrium RampRun::state_now() const {
+  Equilibrium e = tilted_;
+  const auto& s = stepper_.interface_state();
+  e.u_m = stepper_.u_m();
+  for (std::size_t n = 0; n < e.u_per_shear.size(); ++n) {
+    e.u_per_shear.x[n] = stepper_.v_m_per_s().x[n] / top_speed_m_per_s_;
+    e.u_per_shear.y[n] = stepper_.v_m_per_s().y[n] / top_speed_m_per_s_;
+  }
+  e.shear_m = top_speed_m_per_s_ * stepper_.time_s();
+  e.tractions.t_s_Pa = s.t_Pa;
+  e.tractions.p_s_Pa = s.p_Pa;
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    e.contact[k] = s.p_Pa[k] > 0 ? (s.slipping[k] != 0 ? Contact::slip : Contact::stick) : Contact::open;
+    if (e.contact[k] == Contact::open) continue;
+    first = std::min(first, e.tractions.x_m[k]);
+    last = std::max(last, e.tractions.x_m[k]);
+  }
+  e.inside_from_m = first + loading_.edge_margin_m;
+  e.inside_to_m = last - loading_.edge_margin_m;
+  e.peak_ratio = 0;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const double x = e.tractions.x_m[k];
+    if (x < e.inside_from_m || x > e.inside_to_m || s.p_Pa[k] <= 0 || s.t_Pa[k] / s.p_Pa[k] <= e.peak_ratio)
+      continue;
+    e.peak_ratio = s.t_Pa[k] / s.p_Pa[k];
+    e.peak_x_m = x;
+  }
+  return e;
+}
+
+double RampRun::peak_now() const {
+  const auto& s = stepper_.interface_state();
+  double peak = 0;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const double x = tilted_.tractions.x_m[k];
+    if (x >= from_m_ && x <= to_m_ && s.p_Pa[k] > 0) peak = std::max(peak, s.t_Pa[k] / s.p_Pa[k]);
+  }
+  return peak;
+}
+
+Ramp RampRun::run(const Monitor& monitor) {
   constexpr std::int64_t renewal_interval = 1000;
-  bool have_common = false;
   double peak = 0;
   Between between;
   between.go_on = [&] {
     peak = peak_now();
-    return watch.look() && peak < mu_s * (1 - (have_common ? ramp_handover : loading.critical_margin));
+    return watch_->look() && peak < mu_s_ * (1 - (have_common_ ? ramp_handover : loading_.critical_margin));
   };
   for (;;) {
-    stepper.advance(recorder,
-                    std::min({renewal_interval - stepper.step() % renewal_interval, watch.steps_to_check(),
-                              most + 1 - stepper.step()}),
-                    between);
-    if (auto trouble = watch.trouble(nullptr); !trouble.empty())
-      throw BlowUp(blow_up_message(stepper, trouble));
-    if (!have_common && peak >= mu_s * (1 - loading.critical_margin)) {
-      ramp.common = state_now();
-      have_common = true;
+    if (stepper_.step() > most_steps_)
+      throw UserError("the ramp does not bring t/p inside the interface to mu_s within a shear of {:.4g} m",
+                      2 * expected_shear_m_);
+    stepper_.advance(recorder_,
+                     std::min({renewal_interval - stepper_.step() % renewal_interval,
+                               watch_->steps_to_check(), most_steps_ + 1 - stepper_.step()}),
+                     between);
+    if (auto trouble = watch_->trouble(nullptr); !trouble.empty())
+      throw BlowUp(blow_up_message(stepper_, trouble));
+    if (!have_common_ && peak >= mu_s_ * (1 - loading_.critical_margin)) {
+      ramp_.common = state_now();
+      have_common_ = true;
     }
-    if (peak >= mu_s * (1 - ramp_handover)) {
-      ramp.spontaneous = state_now();
+    if (peak >= mu_s_ * (1 - ramp_handover)) {
+      ramp_.spontaneous = state_now();
       break;
     }
-    if (stepper.step() % renewal_interval == 0) {
+    if (stepper_.step() % renewal_interval == 0) {
       const Equilibrium e = state_now();
-      from = e.inside_from_m;
-      to = e.inside_to_m;
-      if (!monitor(stepper.step(), most / 2)) {
-        ramp.interrupted = true;
+      from_m_ = e.inside_from_m;
+      to_m_ = e.inside_to_m;
+      if (!monitor(stepper_.step(), expected_steps())) {
+        ramp_.interrupted = true;
         break;
       }
     }
-    if (stepper.step() > most)
-      throw UserError("the ramp does not bring t/p inside the interface to mu_s within a shear of {:.4g} m",
-                      2 * expected_shear_m);
   }
-  ramp.steps = stepper.step();
-  ramp.record = recorder.take(stepper.time_s());
-  return ramp;
+  ramp_.steps = stepper_.step();
+  ramp_.record = recorder_.take(stepper_.time_s());
+  return std::move(ramp_);
+}
+
+Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
+              double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m, const Monitor& monitor) {
+  stepper.start(tilted, top_speed_m_per_s);
+  return RampRun(stepper, tilted, loading, mu_s, top_speed_m_per_s, c_L_m_per_s, expected_shear_m)
+      .run(monitor);
 }
 
 }  // namespace slipfront::solve

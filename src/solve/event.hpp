@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "fronts/record.hpp"
 #include "interface/trigger.hpp"
 #include "mesh/mesh.hpp"
+#include "solve/recorder.hpp"
 #include "solve/statics.hpp"
 #include "solve/stepper.hpp"
+#include "solve/watch.hpp"
 
 namespace slipfront::solve {
 
@@ -60,6 +65,12 @@ struct Event {
   fronts::History history;          ///< without a sink
   std::vector<Snapshot> snapshots;  ///< without a sink
   std::vector<Energies> energies;   ///< at the start, at the given interval, and at the end
+
+  /// Without what a sink would take.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(end, blow_up, steps, time_s, record, energies);
+  }
 };
 
 /// Trigger forces on the interface nodes: amount (mu_s p_s - t_s) over the zone next to an edge of contact, N
@@ -70,12 +81,55 @@ std::vector<double> trigger_forces(const Equilibrium& state, std::span<const dou
 /// Halo of the slip record that t_d, p_d at a distance l_star_m ahead of the tip need.
 int halo_for(const mesh::Mesh& mesh, double l_star_m);
 
-/// Steps a started stepper until the end time, or until no node has slipped for time.quiet_s after the
-/// trigger's ramp. The motion is checked: in every step numbers finite and slip rates below c_L, with each of
-/// the energies and at least every 100 steps energy not above what there was at the start plus what the
-/// loaded edge and the trigger have added, by more than 1 %.
-/// @param state  tractions and contact before the event; its displacements are not needed
-/// @param sink   takes samples and snapshots; without one the event keeps them all
+/// An event under way: steps a started stepper until the end time, or until no node has slipped for
+/// time.quiet_s after the trigger's ramp. The motion is checked: in every step numbers finite and slip rates
+/// below c_L, with each of the energies and at least every 100 steps energy not above what there was at the
+/// start plus what the loaded edge and the trigger have added, by more than 1 %.
+class EventRun {
+ public:
+  /// @param state  tractions and contact before the event; its displacements are not needed
+  EventRun(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L_m_per_s,
+           const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling, int halo);
+
+  /// To the end, or until the monitor interrupts it, which it may do for good.
+  /// @param sink  takes samples and snapshots; without one the event keeps them all
+  Event run(const Monitor& monitor, Sink* sink = nullptr);
+
+  std::int64_t n_steps() const { return n_steps_; }  ///< to the end time
+  const std::vector<Energies>& energies() const { return event_.energies; }
+  /// Of what has happened so far.
+  fronts::SlipRecord record() { return recorder_.take(stepper_.time_s()); }
+
+  /// All that changes while the monitor is asked, but for the stepper and what a sink would take.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    auto start = watch_->start();
+    auto checked_step = watch_->checked_step();
+    archive(recorder_, start, checked_step, event_.energies, n_samples_, n_energies_, next_snapshot_);
+    if constexpr (Archive::is_loading::value) watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+  }
+
+ private:
+  void take_snapshots(Sink* sink);
+  bool is_quiet() const;
+  Between between(Sink* sink, fronts::History& row);
+  std::int64_t steps_to_next_look() const;
+  double energy_time_s() const;
+  /// Looks at the motion. @return whether the event goes on
+  bool look();
+
+  Stepper& stepper_;
+  double c_L_m_per_s_;
+  TimeStepping time_;
+  std::vector<double> snapshot_times_s_;
+  double sample_interval_s_, energy_interval_s_, quiet_from_s_;
+  std::int64_t n_steps_ = 0;
+  Recorder recorder_;
+  std::optional<Watch> watch_;  ///< always there
+  Event event_;
+  std::int64_t n_samples_ = 0, n_energies_ = 1;
+  std::size_t next_snapshot_ = 0;
+};
 Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double c_L_m_per_s,
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
                 int halo, const Monitor& monitor, Sink* sink = nullptr);
@@ -87,14 +141,54 @@ struct Ramp {
   fronts::SlipRecord record;  ///< of all slip during the ramp
   std::int64_t steps = 0;
   bool interrupted = false;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(common, spontaneous, record, steps, interrupted);
+  }
 };
 
 /// Relative distance to mu_s at which the ramp hands over to the spontaneous event.
 inline constexpr double ramp_handover = 1e-5;
 
-/// Moves the loaded edge of the tilted plate at top_speed_m_per_s by explicit steps until t/p inside the
-/// interface reaches mu_s.
-/// @throws BlowUp, and UserError where mu_s is not reached within twice the shear `expected_shear_m`.
+/// A ramp under way: moves the loaded edge of the tilted plate at top_speed_m_per_s by explicit steps until
+/// t/p inside the interface reaches mu_s.
+class RampRun {
+ public:
+  /// @param stepper  started from `tilted` at the top's speed
+  RampRun(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
+          double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m);
+
+  /// @throws BlowUp, and UserError where mu_s is not reached within twice the shear `expected_shear_m`.
+  Ramp run(const Monitor& monitor);
+
+  std::int64_t expected_steps() const { return most_steps_ / 2; }
+
+  /// All that changes while the monitor is asked, but for the stepper.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    auto start = watch_->start();
+    auto checked_step = watch_->checked_step();
+    archive(recorder_, start, checked_step, ramp_, have_common_, from_m_, to_m_);
+    if constexpr (Archive::is_loading::value) watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+  }
+
+ private:
+  Equilibrium state_now() const;
+  double peak_now() const;
+
+  Stepper& stepper_;
+  const Equilibrium& tilted_;
+  const Loading& loading_;
+  double mu_s_, top_speed_m_per_s_, c_L_m_per_s_, expected_shear_m_;
+  std::int64_t most_steps_;
+  Recorder recorder_;
+  std::optional<Watch> watch_;  ///< always there
+  Ramp ramp_;
+  bool have_common_ = false;
+  /// The contact's extent changes slowly; the peak is looked for between bounds that are renewed at times.
+  double from_m_, to_m_;
+};
 Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
               double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m, const Monitor& monitor);
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/state.hpp"
 #include "mesh/mesh.hpp"
 #include "solid/kernels.hpp"
 #include "solid/material.hpp"
@@ -51,6 +52,14 @@ struct Shared {
   // For the energies: velocity after the last sub-step; acceleration at the last push and the mean velocity
   // before it.
   solid::Field v_last_m_per_s, a_m_per_s2, v_mean_before_m_per_s;
+
+  /// All that changes.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    for (auto* field : {&u_before_m, &push_m_per_s, &steady_m_per_s2, &v_last_m_per_s, &a_m_per_s2,
+                        &v_mean_before_m_per_s})
+      archive_field(archive, *field, node.size());
+  }
 };
 
 /// Rows of nodes of a level that are pushed together. The first band of a level holds all that concerns other
@@ -93,6 +102,16 @@ struct Level {
   std::vector<std::vector<double>> edge_kick_m_per_s;
   std::vector<solid::Pair> top_force_N;  ///< K w of top_rows at the last push
   DampingWork damping_work;
+
+  /// All that changes.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive_vector(archive, a_x);
+    archive_vector(archive, a_y);
+    for (auto& kick : edge_kick_m_per_s) archive_vector(archive, kick);
+    archive_vector(archive, top_force_N);
+    archive(shared, damping_work);
+  }
 };
 
 /// The plate's cells, divided into levels.

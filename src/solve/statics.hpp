@@ -31,6 +31,11 @@ struct Equilibrium {
   double peak_ratio = 0;          ///< largest t/p inside
   double peak_x_m = 0;            ///< where it is
   double inside_from_m = 0, inside_to_m = 0;  ///< the part of the contact that counts as inside
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(u_m, u_per_shear, shear_m, contact, tractions, peak_ratio, peak_x_m, inside_from_m, inside_to_m);
+  }
 };
 
 /// Loading of the plate at rest: tilt, then shear until t/p inside the interface reaches a given value.

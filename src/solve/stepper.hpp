@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 #include <vector>
 
+#include "base/state.hpp"
 #include "interface/interface.hpp"
 #include "interface/trigger.hpp"
 #include "mesh/mesh.hpp"
@@ -111,6 +113,11 @@ class Stepper {
   /// Energies and works up to the last half (sub-)step.
   Energies energies();
 
+  /// All that changes, between two calls of advance. A stepper of the same mesh, material and stepping that
+  /// has read it goes on as this one would, to the last bit; start need not have been called.
+  template <class Archive>
+  void serialize(Archive& archive);
+
  private:
   /// What a step under way has of its own.
   struct StepUnderWay {
@@ -175,5 +182,24 @@ class Stepper {
   double top_speed_ = 0;
   std::int64_t step_ = 0;
 };
+
+template <class Archive>
+void Stepper::serialize(Archive& archive) {
+  archive_field(archive, plate_.u_m, plate_.u_m.size());
+  archive_field(archive, plate_.v_m_per_s, plate_.v_m_per_s.size());
+  for (auto& level : levels_.level) archive(level);
+  archive(interface_);
+  for (auto* values : {&v_x_before_, &v_y_before_, &v_y_trial_, &trigger_force_N_})
+    archive_vector(archive, *values);
+  archive_field(archive, start_u_, lower_.size());
+  archive(prestress_t_Pa_, prestress_p_Pa_, trigger_, landing_K_v_, landing_K_u_, works_, top_speed_, step_);
+  if constexpr (Archive::is_loading::value) {
+    if (prestress_t_Pa_.size() != prestress_p_Pa_.size() ||
+        (!prestress_t_Pa_.empty() && prestress_t_Pa_.size() != lower_.size()))
+      throw UserError("the state that was kept has tractions of another interface");
+    set_trigger(trigger_, std::vector<double>(trigger_force_N_));
+    to_single(plate_, single_);
+  }
+}
 
 }  // namespace slipfront::solve
