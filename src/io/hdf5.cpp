@@ -2,6 +2,7 @@
 #include "io/hdf5.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <numeric>
 
@@ -16,7 +17,12 @@ std::size_t count(const Shape& shape) {
 }
 
 [[noreturn]] void throw_write(const File& file, const std::string& name) {
-  throw UserError("{}: cannot write {}; check that the disk is not full", file.path.string(), name);
+  throw WriteError("{}: cannot write {}; check that the disk is not full", file.path.string(), name);
+}
+
+/// Closes what was written to.
+void finish(Handle object, const File& file, const std::string& name) {
+  if (!object.close()) throw_write(file, name);
 }
 
 Handle open_object(const File& file, const std::string& name) {
@@ -78,24 +84,27 @@ void write_rows_of(const File& file, const std::string& name, hid_t type, hsize_
   if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr) < 0 ||
       H5Dwrite(dataset.get(), type, block.get(), space.get(), H5P_DEFAULT, values.data()) < 0)
     throw_write(file, name);
+  finish(std::move(dataset), file, name);
 }
 
 template <class T>
 void write_values(const File& file, const std::string& name, hid_t type, std::span<const T> values,
                   const Shape& shape) {
   SLIPFRONT_ASSERT(values.size() == count(shape), "values do not fill the shape of their data set");
-  const Handle dataset = new_dataset(file, name, type, shape);
-  if (values.empty()) return;
-  if (H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+  Handle dataset = new_dataset(file, name, type, shape);
+  if (!values.empty() && H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     throw_write(file, name);
+  finish(std::move(dataset), file, name);
 }
 
 void write_attribute(const File& file, const std::string& object, const std::string& name, hid_t type,
                      const Handle& space, const void* data) {
-  const Handle owner = open_object(file, object);
-  const Handle attribute(H5Acreate2(owner.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
-                         H5Aclose);
+  Handle owner = open_object(file, object);
+  Handle attribute(H5Acreate2(owner.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                   H5Aclose);
   if (!attribute.valid() || H5Awrite(attribute.get(), type, data) < 0) throw_write(file, object + "." + name);
+  finish(std::move(attribute), file, object + "." + name);
+  finish(std::move(owner), file, object);
 }
 
 }  // namespace
@@ -107,13 +116,12 @@ void silence() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-File create_file(const std::filesystem::path& path, const std::filesystem::path& shown) {
+File create_file(const std::filesystem::path& path) {
   silence();
-  const auto& name = shown.empty() ? path : shown;
   Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   if (!handle.valid())
-    throw UserError("{}: cannot be created; check that its folder exists and can be written", name.string());
-  return {name, std::move(handle)};
+    throw WriteError("{}: cannot be created; check that its folder exists and can be written", path.string());
+  return {path, std::move(handle)};
 }
 
 File open_file(const std::filesystem::path& path) {
@@ -127,18 +135,15 @@ File open_file(const std::filesystem::path& path) {
   return {path, std::move(handle)};
 }
 
-void flush(const File& file) {
-  if (H5Fflush(file.handle.get(), H5F_SCOPE_GLOBAL) < 0) throw_write(file, "its data");
-}
-
 void close(File file) {
-  flush(file);
+  const bool flushed = H5Fflush(file.handle.get(), H5F_SCOPE_GLOBAL) >= 0;
+  if (!file.handle.close() || !flushed) throw_write(file, "its data");
 }
 
 void create_group(const File& file, const std::string& name) {
-  const Handle group(H5Gcreate2(file.handle.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Gclose);
+  Handle group(H5Gcreate2(file.handle.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   if (!group.valid()) throw_write(file, name);
+  finish(std::move(group), file, name);
 }
 
 void write(const File& file, const std::string& name, std::span<const double> values, const Shape& shape) {
@@ -156,7 +161,8 @@ void write(const File& file, const std::string& name, std::span<const std::uint8
 }
 
 void create(const File& file, const std::string& name, Type type, const Shape& shape) {
-  new_dataset(file, name, type == Type::int64 ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, shape);
+  finish(new_dataset(file, name, type == Type::int64 ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, shape), file,
+         name);
 }
 
 void create_growing(const File& file, const std::string& name, const Shape& row, hsize_t chunk_rows,
@@ -171,13 +177,14 @@ void create_growing(const File& file, const std::string& name, const Shape& row,
   if (H5Pset_chunk(properties.get(), rank, chunk.data()) < 0 ||
       (whole_chunks && H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER) < 0))
     throw_write(file, name);
-  new_dataset(file, name, H5T_NATIVE_DOUBLE, space, properties);
+  finish(new_dataset(file, name, H5T_NATIVE_DOUBLE, space, properties), file, name);
 }
 
 void add_rows(const File& file, const std::string& name, hsize_t rows) {
   auto [dataset, space, shape] = open_dataset(file, name);
   shape[0] += rows;
   if (H5Dset_extent(dataset.get(), shape.data()) < 0) throw_write(file, name);
+  finish(std::move(dataset), file, name);
 }
 
 void write_rows(const File& file, const std::string& name, hsize_t first_row,
@@ -229,24 +236,86 @@ std::string text_attribute(const File& file, const std::string& object, const st
   return text;
 }
 
-Array read(const File& file, const std::string& name) {
-  const Handle dataset(H5Dopen2(file.handle.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+namespace {
+
+/// A data set of numbers to be read.
+Dataset numbers(const File& file, const std::string& name) {
+  Handle dataset(H5Dopen2(file.handle.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid())
     throw UserError("{}: has no data set {}; check that it is the right file", file.path.string(), name);
   const Handle type(H5Dget_type(dataset.get()), H5Tclose);
   const H5T_class_t kind = H5Tget_class(type.get());
   if (kind != H5T_FLOAT && kind != H5T_INTEGER)
     throw UserError("{}: data set {} does not hold numbers", file.path.string(), name);
-  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  const int rank = H5Sget_simple_extent_ndims(space.get());
-  Array array;
-  array.shape.resize(static_cast<std::size_t>(std::max(rank, 0)));
-  H5Sget_simple_extent_dims(space.get(), array.shape.data(), nullptr);
-  array.values.resize(H5Sget_simple_extent_type(space.get()) == H5S_NULL ? 0 : count(array.shape));
+  Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  Shape shape(static_cast<std::size_t>(std::max(H5Sget_simple_extent_ndims(space.get()), 0)));
+  H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+  if (H5Sget_simple_extent_type(space.get()) == H5S_NULL) shape = {0};
+  return {std::move(dataset), std::move(space), std::move(shape)};
+}
+
+[[noreturn]] void throw_read(const File& file, const std::string& name) {
+  throw UserError("{}: data set {} cannot be read; the file may be incomplete", file.path.string(), name);
+}
+
+}  // namespace
+
+Shape shape_of(const File& file, const std::string& name) {
+  return numbers(file, name).shape;
+}
+
+Array read(const File& file, const std::string& name) {
+  const auto [dataset, space, shape] = numbers(file, name);
+  Array array{shape, std::vector<double>(count(shape))};
   if (!array.values.empty() &&
       H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0)
-    throw UserError("{}: data set {} cannot be read; the file may be incomplete", file.path.string(), name);
+    throw_read(file, name);
   return array;
+}
+
+Array read_rows(const File& file, const std::string& name, hsize_t first_row, hsize_t n_rows) {
+  auto [dataset, space, shape] = numbers(file, name);
+  if (shape.empty() || first_row + n_rows > shape[0]) throw_read(file, name);
+  Shape start(shape.size(), 0);
+  start[0] = first_row;
+  shape[0] = n_rows;
+  Array array{shape, std::vector<double>(count(shape))};
+  if (array.values.empty()) return array;
+  const Handle block(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr) < 0 ||
+      H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, block.get(), space.get(), H5P_DEFAULT, array.values.data()) <
+          0)
+    throw_read(file, name);
+  return array;
+}
+
+File open_written_file(const std::filesystem::path& path) {
+  try {
+    return open_file(path);
+  } catch (const UserError&) {
+    throw WriteError("{}: cannot be read after it was written; check that the disk is not full",
+                     path.string());
+  }
+}
+
+void require_written(const File& file, const std::string& name, bool condition) {
+  if (!condition) throw_write(file, name);
+}
+
+void require_rows(const File& file, const std::string& name, hsize_t first_row,
+                  std::span<const double> values) {
+  if (values.empty()) return;
+  try {
+    hsize_t per_row = 1;
+    for (const auto shape = shape_of(file, name); const auto length : std::span(shape).subspan(1))
+      per_row *= length;
+    const auto written = read_rows(file, name, first_row, values.size() / std::max<hsize_t>(per_row, 1));
+    require_written(file, name,
+                    written.values.size() == values.size() &&
+                        std::memcmp(written.values.data(), values.data(), values.size_bytes()) == 0);
+  } catch (const UserError&) {
+    throw_write(file, name);
+  }
 }
 
 }  // namespace slipfront::io::hdf5

@@ -10,8 +10,9 @@
 #include <utility>
 #include <vector>
 
-/// The little of HDF5 that the results need. Every function throws UserError, naming the file, where HDF5
-/// fails; HDF5's own error print is silenced. Objects are named by their path in the file, e.g.
+/// The little of HDF5 that the results need. Every function that writes throws WriteError, every one that
+/// reads UserError, naming the file, where HDF5 fails; HDF5's own error print is silenced. Objects are named
+/// by their path in the file, e.g.
 /// "/VTKHDF/Points".
 namespace slipfront::io::hdf5 {
 
@@ -20,12 +21,12 @@ class Handle {
  public:
   using Close = herr_t (*)(hid_t);
 
-  Handle(hid_t id, Close close) : id_(id), close_(close) {}
-  ~Handle() { reset(); }
+  Handle(hid_t id, Close by) : id_(id), close_(by) {}
+  ~Handle() { close(); }
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle& operator=(Handle&& other) noexcept {
     if (this != &other) {
-      reset();
+      close();
       id_ = std::exchange(other.id_, -1);
       close_ = other.close_;
     }
@@ -34,12 +35,10 @@ class Handle {
 
   hid_t get() const { return id_; }
   bool valid() const { return id_ >= 0; }
+  /// @return whether HDF5 could: it may write only now what was given to it before.
+  bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
 
  private:
-  void reset() {
-    if (id_ >= 0) close_(id_);
-    id_ = -1;
-  }
   hid_t id_;
   Close close_;
 };
@@ -53,15 +52,11 @@ struct File {
 void silence();
 
 /// Creates a file, replacing one that is there.
-/// @param shown  the name for messages, where it is to be another
-File create_file(const std::filesystem::path& path, const std::filesystem::path& shown = {});
+File create_file(const std::filesystem::path& path);
 File open_file(const std::filesystem::path& path);
 
 /// Writes out what HDF5 still holds back and closes; without it a full disk would go unnoticed.
 void close(File file);
-
-/// Hands all that was written so far to the system. @throws UserError where the disk is full.
-void flush(const File& file);
 
 void create_group(const File& file, const std::string& name);
 
@@ -107,5 +102,15 @@ struct Array {
 };
 /// Reads a data set of any numeric type.
 Array read(const File& file, const std::string& name);
+/// Reads rows [first_row, first_row + n_rows) of one, and tells the shape of all of it.
+Array read_rows(const File& file, const std::string& name, hsize_t first_row, hsize_t n_rows);
+Shape shape_of(const File& file, const std::string& name);
+
+// For files that were written just now. @throws WriteError where the condition does not hold, or the rows
+// from first_row on are others, to the last bit.
+File open_written_file(const std::filesystem::path& path);
+void require_written(const File& file, const std::string& name, bool condition);
+void require_rows(const File& file, const std::string& name, hsize_t first_row,
+                  std::span<const double> values);
 
 }  // namespace slipfront::io::hdf5

@@ -72,9 +72,8 @@ std::size_t history_block_rows(std::size_t n_nodes) {
   return std::max<std::size_t>(chunk_bytes / (sizeof(double) * std::max<std::size_t>(n_nodes, 1)), 1);
 }
 
-HistoryFile::HistoryFile(const std::filesystem::path& path, std::span<const double> x_m,
-                         const std::filesystem::path& shown)
-    : file_(hdf5::create_file(path, shown)), n_nodes_(x_m.size()) {
+HistoryFile::HistoryFile(const std::filesystem::path& path, std::span<const double> x_m)
+    : file_(hdf5::create_file(path)), n_nodes_(x_m.size()) {
   const auto& [time, place] = axes;
   hdf5::create_growing(file_, time.name, {}, time_chunk_rows);
   describe(file_, time);
@@ -101,7 +100,6 @@ void HistoryFile::append(const History& rows) {
   append_column(axes[0], 1);
   for (const Column& matrix : matrices) append_column(matrix, n_nodes_);
   n_rows_ += n;
-  hdf5::flush(file_);
 }
 
 void HistoryFile::close() {
@@ -112,6 +110,33 @@ void write_history(const std::filesystem::path& path, const History& history) {
   HistoryFile file(path, history.x_m);
   file.append(history);
   file.close();
+  const WrittenHistory written(path);
+  written.require(0, history);
+  written.require_rows(history.time_s.size());
+}
+
+WrittenHistory::WrittenHistory(const std::filesystem::path& path) : file_(hdf5::open_written_file(path)) {
+  for (const auto* columns : {&axes[0], &axes[1], &matrices[0], &matrices[1], &matrices[2], &matrices[3]})
+    hdf5::require_written(
+        file_, columns->name,
+        hdf5::text_attribute(file_, columns->name, "unit") == columns->unit &&
+            hdf5::text_attribute(file_, columns->name, "description") == columns->description);
+}
+
+void WrittenHistory::require(std::size_t row, const History& rows) const {
+  const auto& [time, place] = axes;
+  hdf5::require_rows(file_, time.name, row, rows.time_s);
+  hdf5::require_rows(file_, place.name, 0, rows.x_m);
+  if (rows.x_m.empty()) return;
+  for (const Column& matrix : matrices) hdf5::require_rows(file_, matrix.name, row, rows.*matrix.values);
+}
+
+void WrittenHistory::require_rows(std::size_t n) const {
+  hdf5::require_written(file_, axes[0].name, hdf5::shape_of(file_, axes[0].name)[0] == n);
+  for (const Column& matrix : matrices)
+    hdf5::require_written(
+        file_, matrix.name,
+        hdf5::shape_of(file_, matrix.name)[0] == n || hdf5::shape_of(file_, axes[1].name)[0] == 0);
 }
 
 History read_history(const std::filesystem::path& path) {

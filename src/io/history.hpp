@@ -14,13 +14,11 @@ namespace slipfront::io {
 std::size_t history_block_rows(std::size_t n_nodes);
 
 /// An interface.h5 that grows: time_s [nt], x_m [nx], slip_m, slip_rate_m_per_s, t_Pa, p_Pa [nt, nx], each
-/// with the attributes `unit` and `description`. What was appended can be read even if the program is killed
-/// later. Every function throws UserError where the file cannot be written.
+/// with the attributes `unit` and `description`. It can be read once it is closed. Every function throws
+/// WriteError where the file cannot be written.
 class HistoryFile {
  public:
-  /// @param shown  the file's name in messages, where it is to be another
-  HistoryFile(const std::filesystem::path& path, std::span<const double> x_m,
-              const std::filesystem::path& shown = {});
+  HistoryFile(const std::filesystem::path& path, std::span<const double> x_m);
   /// Appends rows; their x_m is not looked at.
   void append(const fronts::History& rows);
   /// Without it a full disk would go unnoticed. The last call.
@@ -31,7 +29,21 @@ class HistoryFile {
   std::size_t n_nodes_, n_rows_ = 0;
 };
 
-/// Writes a whole history. @throws UserError where the file cannot be written.
+/// An interface.h5 that was written just now, to be compared with what it should hold: HDF5 may lose what a
+/// full disk has refused without a word. Every function throws WriteError where it holds something else.
+class WrittenHistory {
+ public:
+  explicit WrittenHistory(const std::filesystem::path& path);
+  /// Compares rows from `row` on, and the places.
+  void require(std::size_t row, const fronts::History& rows) const;
+  /// Compares the number of rows.
+  void require_rows(std::size_t n) const;
+
+ private:
+  hdf5::File file_;
+};
+
+/// Writes a whole history and compares it. @throws WriteError
 void write_history(const std::filesystem::path& file, const fronts::History& history);
 
 /// Reads a file that was written so, or by another program with the same names and units.

@@ -17,6 +17,12 @@ double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::
 }
 
 constexpr std::chrono::milliseconds least_interval{100};
+/// Nobody need be there to see it.
+void show(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 constexpr const char* clear_line = "\r\033[K";
 
 }  // namespace
@@ -61,18 +67,16 @@ void Progress::update(std::int64_t step) {
   if (now - drawn_ < least_interval) return;
   drawn_ = now;
   tenth_ = tenth;
-  fmt::print(stderr, "{}{}{}", terminal_ ? clear_line : "", state(now), terminal_ ? "" : "\n");
+  show(fmt::format("{}{}{}", terminal_ ? clear_line : "", state(now), terminal_ ? "" : "\n"));
   line_open_ = terminal_;
-  std::fflush(stderr);
 }
 
 void Progress::finish() {
   if (quiet_ || finished_) return;
   finished_ = true;
-  fmt::print(stderr, "{}{}: {} steps in {}\n", terminal_ ? clear_line : "", label_, step_,
-             duration_text(seconds_between(start_, Clock::now())));
+  show(fmt::format("{}{}: {} steps in {}\n", terminal_ ? clear_line : "", label_, step_,
+                   duration_text(seconds_between(start_, Clock::now()))));
   line_open_ = false;
-  std::fflush(stderr);
 }
 
 }  // namespace slipfront::io

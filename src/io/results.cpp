@@ -2,25 +2,14 @@
 #include "io/results.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <string_view>
-#include <system_error>
 
 #include "base/error.hpp"
+#include "io/files.hpp"
 
 namespace slipfront::io {
 namespace {
-
-/// What a run writes.
-constexpr std::array<const char*, 7> result_files = {"case.resolved.toml", "run.json",   "interface.h5",
-                                                     "fronts.csv",         "static.csv", "energy.csv",
-                                                     "fields.vtkhdf"};
 
 /// A field of a CSV file; empty where the value is undefined.
 std::string field(double value) {
@@ -28,59 +17,6 @@ std::string field(double value) {
 }
 
 }  // namespace
-
-void write_text(const std::filesystem::path& file, std::string_view text) {
-  errno = 0;
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << text << std::flush;
-  if (!stream)
-    throw UserError("{}: cannot be written ({}); check that its folder exists and can be written",
-                    file.string(), std::strerror(errno));
-}
-
-void prepare_output_folder(const std::filesystem::path& dir, bool overwrite) {
-  claim_output_folder(dir, overwrite);
-  remove_results(dir);
-}
-
-std::filesystem::path claim_output_folder(const std::filesystem::path& dir, bool overwrite) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::file_status status = fs::status(dir, error);
-  if (fs::exists(status) && !fs::is_directory(status))
-    throw UserError("output folder {}: is a file; choose another name", dir.string());
-  fs::path made;
-  for (fs::path p = dir; !p.empty() && !fs::exists(p, error); p = p.parent_path()) made = p;
-  fs::create_directories(dir, error);
-  if (error)
-    throw UserError("output folder {}: cannot be made ({}); choose another place", dir.string(),
-                    error.message());
-  if (::access(dir.c_str(), W_OK | X_OK) != 0)
-    throw UserError("output folder {}: cannot be written ({}); choose another place", dir.string(),
-                    std::strerror(errno));
-  const bool empty = fs::is_empty(dir, error);
-  if (error)
-    throw UserError("output folder {}: cannot be read ({}); choose another place", dir.string(),
-                    error.message());
-  if (!empty && !overwrite)
-    throw UserError(
-        "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
-        dir.string());
-  for (const char* name : result_files)
-    if (fs::is_directory(fs::symlink_status(dir / name, error)))
-      throw UserError("{}: is a folder where a result file is to go; move it away", (dir / name).string());
-  return made;
-}
-
-void remove_results(const std::filesystem::path& dir) {
-  std::error_code error;
-  for (const char* name : result_files) {
-    const auto file = dir / name;
-    std::filesystem::remove(file, error);
-    if (error)
-      throw UserError("{}: cannot be removed ({}); remove it by hand", file.string(), error.message());
-  }
-}
 
 void write_static(const std::filesystem::path& file, const fronts::StaticState& state) {
   SLIPFRONT_ASSERT(state.t_s_Pa.size() == state.x_m.size() && state.p_s_Pa.size() == state.x_m.size(),

@@ -3,28 +3,13 @@
 
 #include <filesystem>
 #include <span>
-#include <string_view>
+#include <string>
 
 #include "fronts/front.hpp"
 #include "fronts/record.hpp"
 #include "solve/energies.hpp"
 
 namespace slipfront::io {
-
-/// Makes `dir` ready for a run's results. An existing folder that holds anything is refused unless
-/// `overwrite` is given; then the files of an earlier run (and no others) are removed.
-/// @throws UserError where that is refused or the folder cannot be written.
-void prepare_output_folder(const std::filesystem::path& dir, bool overwrite);
-
-/// The first half of it: makes sure that `dir` can take a run's results and makes it where it is missing, but
-/// removes nothing.
-/// @return the outermost folder that was made; empty where none was.
-std::filesystem::path claim_output_folder(const std::filesystem::path& dir, bool overwrite);
-/// The second half: removes the files of an earlier run.
-void remove_results(const std::filesystem::path& dir);
-
-/// Writes a text file, replacing what it held. @throws UserError where it cannot be written.
-void write_text(const std::filesystem::path& file, std::string_view text);
 
 /// static.csv: x_m, t_s_Pa, p_s_Pa.
 void write_static(const std::filesystem::path& file, const fronts::StaticState& state);

@@ -14,14 +14,12 @@ namespace slipfront::io {
 
 /// A fields.vtkhdf that grows: VTKHDF (version 2.0) unstructured grid, mesh written once, a step per
 /// snapshot, point data `displacement_m` and `velocity_m_per_s`; ParaView 5.12 and h5py read it once it is
-/// closed. Without snapshots: the mesh alone. Every function throws UserError where the file cannot be
+/// closed. Without snapshots: the mesh alone. Every function throws WriteError where the file cannot be
 /// written.
 class SnapshotFile {
  public:
   /// Writes the mesh, which is not needed later.
-  /// @param shown  the file's name in messages, where it is to be another
-  SnapshotFile(const std::filesystem::path& path, const mesh::Mesh& mesh,
-               const std::filesystem::path& shown = {});
+  SnapshotFile(const std::filesystem::path& path, const mesh::Mesh& mesh);
   void append(const solve::Snapshot& snapshot);
   /// Writes the table of steps, and what HDF5 holds back. The last call.
   void close();
@@ -39,7 +37,20 @@ class SnapshotFile {
   std::vector<double> time_s_;
 };
 
-/// Writes a whole file. @throws UserError where it cannot be written.
+/// A fields.vtkhdf that was written just now, to be compared with what it should hold; see WrittenHistory.
+class WrittenSnapshots {
+ public:
+  WrittenSnapshots(const std::filesystem::path& path, const mesh::Mesh& mesh);
+  void require(std::size_t step, const solve::Snapshot& snapshot) const;
+  void require_steps(std::size_t n) const;
+
+ private:
+  hdf5::File file_;
+  std::size_t n_points_;
+  std::vector<std::size_t> source_;  ///< as in SnapshotFile
+};
+
+/// Writes a whole file and compares it. @throws WriteError
 void write_snapshots(const std::filesystem::path& file, const mesh::Mesh& mesh,
                      std::span<const solve::Snapshot> snapshots);
 

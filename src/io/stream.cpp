@@ -1,94 +1,170 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/stream.hpp"
 
+#include <algorithm>
+#include <fstream>
 #include <memory>
 #include <system_error>
 #include <utility>
 
 #include "base/error.hpp"
-#include "io/results.hpp"
+#include "io/history.hpp"
+#include "io/snapshots.hpp"
 
 namespace slipfront::io {
 namespace {
 
 /// That may wait to be written; a snapshot of a large plate is more, and waits alone.
 constexpr std::size_t most_bytes_waiting = 16U << 20U;
+/// Rows are handed to the writer in blocks of this size.
+constexpr std::size_t block_values = 32 * 1024;
 
 void append(std::vector<double>& to, const std::vector<double>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
+/// Records of one length that a stream has written.
+class Records {
+ public:
+  Records(const std::filesystem::path& file, std::size_t values)
+      : path_(file), stream_(file, std::ios::binary), values_(values) {
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(file, error);
+    if (!stream_ || error) throw UserError("{}: cannot be read; begin the run again", path_.string());
+    count_ = bytes / (sizeof(double) * values);
+  }
+  std::size_t count() const { return count_; }
+
+  /// The next `n` records, value by value.
+  std::vector<double> read(std::size_t n) {
+    std::vector<double> values(n * values_);
+    if (!stream_.read(reinterpret_cast<char*>(values.data()),
+                      static_cast<std::streamsize>(sizeof(double) * values.size())))
+      throw UserError("{}: cannot be read; begin the run again", path_.string());
+    return values;
+  }
+  void rewind() { stream_.seekg(0); }
+
+ private:
+  std::filesystem::path path_;
+  std::ifstream stream_;
+  std::size_t values_, count_ = 0;
+};
+
+/// The next rows of a history; none at the end.
+fronts::History read_rows(Records& records, std::size_t n, std::span<const double> x_m) {
+  const std::size_t nx = x_m.size();
+  const auto values = records.read(n);
+  fronts::History rows;
+  rows.x_m.assign(x_m.begin(), x_m.end());
+  for (std::size_t k = 0; k < n; ++k) {
+    auto from = values.begin() + static_cast<std::ptrdiff_t>(k * (1 + 4 * nx));
+    rows.time_s.push_back(*from++);
+    for (auto* column : {&rows.slip_m, &rows.slip_rate_m_per_s, &rows.t_Pa, &rows.p_Pa}) {
+      column->insert(column->end(), from, from + static_cast<std::ptrdiff_t>(nx));
+      from += static_cast<std::ptrdiff_t>(nx);
+    }
+  }
+  return rows;
+}
+
+solve::Snapshot read_snapshot(Records& records, std::size_t n_nodes) {
+  const auto values = records.read(1);
+  solve::Snapshot snapshot{values[0], solid::Field(n_nodes), solid::Field(n_nodes)};
+  auto from = values.begin() + 1;
+  for (auto* column : {&snapshot.u_m.x, &snapshot.u_m.y, &snapshot.v_m_per_s.x, &snapshot.v_m_per_s.y}) {
+    std::copy_n(from, n_nodes, column->begin());
+    from += static_cast<std::ptrdiff_t>(n_nodes);
+  }
+  return snapshot;
+}
+
 }  // namespace
 
-ResultStream::Part::Part(const std::filesystem::path& final_name)
-    : file(final_name), temporary(final_name.string() + ".part") {}
-
-ResultStream::Part::~Part() {
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
+std::filesystem::path ResultStream::history_file(const std::filesystem::path& dir) {
+  return dir / "history.raw";
 }
 
-void ResultStream::Part::publish() const {
-  std::error_code error;
-  std::filesystem::rename(temporary, file, error);
-  if (error)
-    throw UserError("{}: cannot be put in its place ({}); check that its folder can be written",
-                    file.string(), error.message());
+std::filesystem::path ResultStream::snapshot_file(const std::filesystem::path& dir) {
+  return dir / "snapshots.raw";
 }
 
-ResultStream::ResultStream(std::filesystem::path dir, std::span<const double> x_m, const mesh::Mesh& mesh,
-                           bool with_snapshots)
-    : dir_(std::move(dir)),
-      history_part_(dir_ / "interface.h5"),
-      snapshot_part_(dir_ / "fields.vtkhdf"),
-      block_rows_(history_block_rows(x_m.size())),
-      writer_(most_bytes_waiting) {
-  hdf5::silence();  // the files may be closed by this thread
-  writer_.put(0, [&] {
-    history_.emplace(history_part_.temporary, x_m, history_part_.file);
-    if (with_snapshots) snapshots_.emplace(snapshot_part_.temporary, mesh, snapshot_part_.file);
-  });
-  writer_.finish();
-}
+ResultStream::ResultStream(OutputFile history, OutputFile snapshots)
+    : history_(std::move(history)), snapshots_(std::move(snapshots)), writer_(most_bytes_waiting) {}
+
+ResultStream::ResultStream(const std::filesystem::path& dir)
+    : ResultStream(OutputFile::create(history_file(dir)), OutputFile::create(snapshot_file(dir))) {}
+
+ResultStream::ResultStream(const std::filesystem::path& dir, const Lengths& lengths)
+    : ResultStream(OutputFile::go_on(history_file(dir), lengths.history),
+                   OutputFile::go_on(snapshot_file(dir), lengths.snapshots)) {}
 
 void ResultStream::sample(const fronts::History& row) {
-  append(block_.time_s, row.time_s);
-  append(block_.slip_m, row.slip_m);
-  append(block_.slip_rate_m_per_s, row.slip_rate_m_per_s);
-  append(block_.t_Pa, row.t_Pa);
-  append(block_.p_Pa, row.p_Pa);
-  if (block_.time_s.size() >= block_rows_) hand_over();
+  for (const auto* column : {&row.time_s, &row.slip_m, &row.slip_rate_m_per_s, &row.t_Pa, &row.p_Pa})
+    append(block_, *column);
+  if (block_.size() >= block_values) hand_over();
 }
 
 void ResultStream::hand_over() {
-  if (block_.time_s.empty()) return;
-  const auto block = std::make_shared<const fronts::History>(std::exchange(block_, {}));
-  const std::size_t bytes = sizeof(double) * (block->time_s.size() + 4 * block->slip_m.size());
-  writer_.put(bytes, [this, block] { history_->append(*block); });
+  if (block_.empty()) return;
+  const auto block = std::make_shared<const std::vector<double>>(std::exchange(block_, {}));
+  writer_.put(sizeof(double) * block->size(),
+              [this, block] { history_.write(std::as_bytes(std::span(*block))); });
 }
 
 void ResultStream::snapshot(const solve::Stepper& stepper) {
-  SLIPFRONT_ASSERT(snapshots_, "a snapshot where none was announced");
   const std::size_t bytes = 4 * sizeof(double) * stepper.u_m().size();
   writer_.wait_for_room(bytes);
   const auto taken = std::make_shared<const solve::Snapshot>(solve::take_snapshot(stepper));
-  writer_.put(bytes, [this, taken] { snapshots_->append(*taken); });
+  writer_.put(bytes, [this, taken] {
+    snapshots_.write(std::as_bytes(std::span(&taken->time_s, 1)));
+    for (const auto* column : {&taken->u_m.x, &taken->u_m.y, &taken->v_m_per_s.x, &taken->v_m_per_s.y})
+      snapshots_.write(std::as_bytes(std::span(*column)));
+  });
 }
 
-void ResultStream::publish() {
+ResultStream::Lengths ResultStream::keep() {
   hand_over();
-  bool any_snapshot = false;
+  Lengths lengths;
   writer_.put(0, [&] {
-    history_->close();
-    any_snapshot = snapshots_ && snapshots_->n_snapshots() > 0;
-    if (snapshots_) snapshots_->close();
-    history_.reset();
-    snapshots_.reset();
+    history_.sync();
+    snapshots_.sync();
+    lengths = {history_.length(), snapshots_.length()};
   });
   writer_.finish();
-  remove_results(dir_);
-  history_part_.publish();
-  if (any_snapshot) snapshot_part_.publish();
+  return lengths;
+}
+
+void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,
+                   std::span<const double> x_m) {
+  Records records(raw, 1 + 4 * x_m.size());
+  const std::size_t block = history_block_rows(x_m.size());
+  const auto for_each_block = [&](auto&& f) {
+    records.rewind();
+    for (std::size_t row = 0; row < records.count(); row += block)
+      f(row, read_rows(records, std::min(block, records.count() - row), x_m));
+  };
+  HistoryFile output(file, x_m);
+  for_each_block([&](std::size_t, const fronts::History& rows) { output.append(rows); });
+  output.close();
+  const WrittenHistory written(file);
+  for_each_block([&](std::size_t row, const fronts::History& rows) { written.require(row, rows); });
+  written.require_rows(records.count());
+}
+
+std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
+                            const mesh::Mesh& mesh) {
+  const std::size_t n_nodes = mesh.x_m.size();
+  Records records(raw, 1 + 4 * n_nodes);
+  if (records.count() == 0) return 0;
+  SnapshotFile output(file, mesh);
+  for (std::size_t k = 0; k < records.count(); ++k) output.append(read_snapshot(records, n_nodes));
+  output.close();
+  records.rewind();
+  const WrittenSnapshots written(file, mesh);
+  for (std::size_t k = 0; k < records.count(); ++k) written.require(k, read_snapshot(records, n_nodes));
+  written.require_steps(records.count());
+  return records.count();
 }
 
 }  // namespace slipfront::io

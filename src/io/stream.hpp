@@ -1,53 +1,68 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <vector>
 
-#include "io/history.hpp"
-#include "io/snapshots.hpp"
+#include "io/files.hpp"
 #include "io/writer.hpp"
 #include "solve/event.hpp"
 
 namespace slipfront::io {
 
-/// Writes history and snapshots of a run to its folder while it goes, behind the computation, in memory that
-/// does not grow with the run. Results of an earlier run stay until `publish`: so long the files are called
-/// interface.h5.part and fields.vtkhdf.part. Every function throws UserError where a file cannot be written.
+/// Keeps history and snapshots of a run in files while it goes, behind the computation, in memory that does
+/// not grow with the run. The files hold nothing but numbers, one record after the other, so that they can be
+/// read whenever the run ends, and cut to where a run that goes on begins; the results are made from them.
+///
+/// history.raw: per row time_s, slip_m [nodes], slip_rate_m_per_s [nodes], t_Pa [nodes], p_Pa [nodes];
+/// snapshots.raw: per snapshot time_s and u_x, u_y, v_x, v_y [nodes of the plate]; doubles as in memory.
 class ResultStream : public solve::Sink {
  public:
-  /// @param x_m            nodes of the interface
-  /// @param with_snapshots whether there may be any; then the mesh is written now, and is not needed later
-  ResultStream(std::filesystem::path dir, std::span<const double> x_m, const mesh::Mesh& mesh,
-               bool with_snapshots);
+  /// Lengths of the files, bytes.
+  struct Lengths {
+    std::uint64_t history = 0, snapshots = 0;
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(history, snapshots);
+    }
+  };
+
+  /// Makes the files.
+  explicit ResultStream(const std::filesystem::path& dir);
+  /// Goes on in files of these lengths.
+  ResultStream(const std::filesystem::path& dir, const Lengths& lengths);
+
+  // Each throws WriteError where a file could not be written, perhaps long before.
   void sample(const fronts::History& row) override;
   /// Copies the motion once there is room for it.
   void snapshot(const solve::Stepper& stepper) override;
+  /// Hands what waits to the writer, for those who look into the files.
+  void hand_over();
+  /// Waits until all that was given is on the device.
+  Lengths keep();
 
-  /// Waits until all is written, removes the results of an earlier run, and gives the files their names.
-  void publish();
+  static std::filesystem::path history_file(const std::filesystem::path& dir);
+  static std::filesystem::path snapshot_file(const std::filesystem::path& dir);
 
  private:
-  /// A file under its name while the run goes; removed at the end unless it was renamed.
-  struct Part {
-    std::filesystem::path file, temporary;
-    explicit Part(const std::filesystem::path& final_name);
-    ~Part();
-    Part(const Part&) = delete;
-    Part& operator=(const Part&) = delete;
-    void publish() const;
-  };
-  void hand_over();
+  ResultStream(OutputFile history, OutputFile snapshots);
 
-  // In this order: the writer ends before the files are closed, and they are closed before they are removed.
-  std::filesystem::path dir_;
-  Part history_part_, snapshot_part_;
-  std::optional<HistoryFile> history_;     ///< the writer's
-  std::optional<SnapshotFile> snapshots_;  ///< the writer's
-  std::size_t block_rows_ = 0;
-  fronts::History block_;  ///< rows to be handed to the writer
+  OutputFile history_, snapshots_;  ///< the writer's
+  std::vector<double> block_;       ///< rows to be handed to the writer
   Writer writer_;
 };
+
+/// Makes interface.h5 of a stream's file. A record that was cut off at its end is left out.
+/// @throws WriteError, UserError where the file is missing
+void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,
+                   std::span<const double> x_m);
+
+/// Makes fields.vtkhdf of a stream's file.
+/// @return the number of snapshots; without any no file is made
+std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
+                            const mesh::Mesh& mesh);
 
 }  // namespace slipfront::io
