@@ -3,11 +3,18 @@
 
 namespace slipfront::cli {
 
-/// From now on the first SIGINT or SIGTERM only sets a flag, so that what there is can be kept; the second
-/// ends the program.
+/// From now on the signals that would end the program (HUP, INT, QUIT, TERM, XCPU; PIPE and XFSZ where
+/// somebody sends them) only set a flag, so that what there is can be kept; a second one ends it. USR1 asks
+/// for a checkpoint. A reader who has gone or a file that grows beyond its limit make writing fail, and no
+/// more.
 void catch_interrupts();
 
-/// Whether one has come.
+/// Whether an end was asked for.
 bool interrupt_wanted();
+/// The signal that did; 0 for none.
+int interrupting_signal();
+
+/// Whether a checkpoint was asked for since the last call.
+bool checkpoint_wanted();
 
 }  // namespace slipfront::cli

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -11,6 +15,7 @@
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
 
 extern "C" void openblas_set_num_threads(int n_threads);
 extern "C" [[gnu::weak]] int blas_thread_shutdown_();
@@ -26,17 +31,29 @@ void end_blas_threads() {
 
 enum ExitCode {
   done = 0,
-  internal_error = 1,
+  internal_error = 1,  ///< or what was to be written could not be
   user_error = 2,
   blow_up = 3,
-  verification_failed = 4,
-  interrupted = 130
+  verification_failed = 4
 };
+
+/// A program that a signal has made end tells so by this code, as a shell would.
+int code_of(int signal) {
+  constexpr int first = 128;
+  return first + (signal != 0 ? signal : SIGINT);
+}
+
+/// Files that are opened take the lowest free number: one of a closed standard stream would get what is
+/// printed. Writing to these stand-ins fails, as to a closed stream.
+void hold_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != stream) std::_Exit(internal_error);
+}
 
 /// A user's error starts with its place, FILE:LINE, so that editors find it; the rest with the program's
 /// name.
-int report(ExitCode code, const std::string& message) {
-  fmt::print(stderr, "{}\n", message);
+int report(int code, const std::string& message) {
+  std::fputs((message + "\n").c_str(), stderr);
   return code;
 }
 
@@ -69,6 +86,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  hold_standard_streams();
   end_blas_threads();
   return run(argc, argv);
 } catch (const slipfront::UserError& error) {
@@ -78,7 +96,9 @@ int main(int argc, char** argv) try {
 } catch (const slipfront::VerificationFailed& error) {
   return report(verification_failed, fmt::format("slipfront: {}", error.what()));
 } catch (const slipfront::Interrupted& error) {
-  return report(interrupted, fmt::format("slipfront: {}", error.what()));
+  return report(code_of(slipfront::cli::interrupting_signal()), fmt::format("slipfront: {}", error.what()));
+} catch (const slipfront::WriteError& error) {
+  return report(internal_error, fmt::format("slipfront: {}", error.what()));
 } catch (const std::bad_alloc&) {
   return report(internal_error, "slipfront: not enough memory; use larger elements");
 } catch (const std::exception& error) {

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/print.hpp"
 #include "io/log.hpp"
 
 namespace slipfront::cli {
@@ -17,20 +18,20 @@ namespace {
 
 void print_report(const paper::ReproduceReport& report, const std::string& dir) {
   int n_hold = 0, n_not = 0, n_open = 0;
-  fmt::print("\nScorecard of Kammer, Yastrebov, Spijker, Molinari (2012)\n\n");
+  print("\nScorecard of Kammer, Yastrebov, Spijker, Molinari (2012)\n\n");
   for (const auto& c : report.claims) {
     const char* verdict = !c.holds ? "not tested" : *c.holds ? "holds" : "does not hold";
     (!c.holds ? n_open : *c.holds ? n_hold : n_not) += 1;
-    fmt::print("{:<6}{:<15}{} [{}]\n{:21}{}\n", c.id, verdict, c.claim, c.paper, "", c.measured);
+    print("{:<6}{:<15}{} [{}]\n{:21}{}\n", c.id, verdict, c.claim, c.paper, "", c.measured);
     for (const auto& v : c.variations) {
       const std::string moves = describe(c, v);
-      if (!moves.empty()) fmt::print("{:21}at {} = {:g} it moves by: {}\n", "", v.key, v.value, moves);
+      if (!moves.empty()) print("{:21}at {} = {:g} it moves by: {}\n", "", v.key, v.value, moves);
     }
   }
-  fmt::print("\n{} claims hold, {} do not hold, {} not tested\n\n", n_hold, n_not, n_open);
-  for (const auto& t : report.timings) fmt::print("{:8.2f} s  {}\n", t.wall_s, t.part);
-  for (const auto& warning : report.warnings) fmt::print("warning: {}\n", warning);
-  fmt::print("results: {}\n", dir);
+  print("\n{} claims hold, {} do not hold, {} not tested\n\n", n_hold, n_not, n_open);
+  for (const auto& t : report.timings) print("{:8.2f} s  {}\n", t.wall_s, t.part);
+  for (const auto& warning : report.warnings) print("warning: {}\n", warning);
+  print("results: {}\n", dir);
 }
 
 }  // namespace

@@ -1,55 +1,48 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/run.hpp"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <thread>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/print.hpp"
 #include "fronts/fit.hpp"
+#include "io/folder.hpp"
 #include "io/log.hpp"
-#include "io/results.hpp"
-#include "io/stream.hpp"
+#include "run/session.hpp"
 
 namespace slipfront::cli {
 namespace {
 
 struct RunArguments {
-  std::string dir;
+  std::string dir;      ///< of a new run
+  std::string restart;  ///< of one to go on with
   bool overwrite = false;
   bool quiet = false;
-  int threads = 1;
-};
+  run::SessionOptions session;
 
-/// The folder for the results; if nothing was written to it, the folders made for it go again.
-struct OutputFolder {
-  std::filesystem::path dir, outermost_made;
-  ~OutputFolder() {
-    std::error_code error;
-    for (auto p = dir; !outermost_made.empty(); p = p.parent_path())
-      if (!std::filesystem::remove(p, error) || error || p == outermost_made) return;
-  }
+  const std::string& folder() const { return restart.empty() ? dir : restart; }
 };
 
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
   if (initial.prescribed)
-    fmt::print("prescribed tractions, t/p up to {:.4g} at x = {:.4g} m\n", initial.common.peak_ratio,
-               initial.common.peak_x_m);
+    print("prescribed tractions, t/p up to {:.4g} at x = {:.4g} m\n", initial.common.peak_ratio,
+          initial.common.peak_x_m);
   else
-    fmt::print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
-               initial.critical_shear_m);
+    print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
+          initial.critical_shear_m);
   if (initial.ramp)
-    fmt::print("by the ramp at {:.5g} m ({:+.3f} %), after {} beginnings of slip at the edges\n",
-               initial.ramp->spontaneous.shear_m,
-               100 * (initial.ramp->spontaneous.shear_m / initial.critical_shear_m - 1),
-               initial.ramp->record.n_onsets());
-  fmt::print(
+    print("by the ramp at {:.5g} m ({:+.3f} %), after {} beginnings of slip at the edges\n",
+          initial.ramp->spontaneous.shear_m,
+          100 * (initial.ramp->spontaneous.shear_m / initial.critical_shear_m - 1),
+          initial.ramp->record.n_onsets());
+  print(
       "{} steps of {:.4g} s ({} sub-steps at the interface), {:.3g} s of wall time, {:.0f} million node "
       "updates/s\n",
       event.steps, result.step_s, std::lround(result.step_s / result.substep_s), result.stepping_wall_s,
@@ -58,46 +51,82 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
     std::vector<double> speeds;
     for (const auto& point : front.points) speeds.push_back(point.v_tip_m_per_s / result.speeds.c_L);
     const double speed = fronts::median(speeds);
-    fmt::print("front {}: x = {:.4f} to {:.4f} m, {:.1f} to {:.1f} us, {}, {}, ends: {}\n", front.id,
-               front.points.front().x_m, front.points.back().x_m, 1e6 * front.points.front().onset_s,
-               1e6 * front.points.back().onset_s,
-               std::isfinite(speed) ? fmt::format("median speed {:.2f} c_L", speed) : "speed undefined",
-               fronts::name(front.mode), fronts::name(front.end));
+    print("front {}: x = {:.4f} to {:.4f} m, {:.1f} to {:.1f} us, {}, {}, ends: {}\n", front.id,
+          front.points.front().x_m, front.points.back().x_m, 1e6 * front.points.front().onset_s,
+          1e6 * front.points.back().onset_s,
+          std::isfinite(speed) ? fmt::format("median speed {:.2f} c_L", speed) : "speed undefined",
+          fronts::name(front.mode), fronts::name(front.end));
   }
-  for (const auto& warning : result.warnings) fmt::print("note: {}\n", warning);
-  fmt::print("results: {}\n", dir);
+  for (const auto& warning : result.warnings) print("note: {}\n", warning);
+  print("results: {}\n", dir);
+}
+
+/// Shows progress, and asks the signals what is wanted.
+run::SessionHooks hooks(bool quiet) {
+  run::SessionHooks hooks;
+  // The total is known only when the first step is done.
+  hooks.progress = [quiet, shown = std::string(), progress = std::shared_ptr<io::Progress>()](
+                       const char* part, std::int64_t step, std::int64_t total) mutable {
+    if (shown != part) progress = std::make_shared<io::Progress>(part, total, quiet);
+    shown = part;
+    progress->update(step);
+  };
+  hooks.request = [] {
+    if (interrupt_wanted()) return run::Request::stop;
+    return checkpoint_wanted() ? run::Request::keep : run::Request::none;
+  };
+  hooks.note = [](const std::string& note) { std::fputs(("note: " + note + "\n").c_str(), stderr); };
+  return hooks;
+}
+
+/// What to say of a run that has not come to its end.
+std::string what_was_kept(const io::ResultFolder& folder) {
+  return fmt::format("what there is was kept in {}", folder.unfinished().string());
+}
+
+std::string how_to_go_on(const io::ResultFolder& folder) {
+  return fmt::format("{}; slipfront run --restart {} goes on with it", what_was_kept(folder),
+                     folder.dir().string());
+}
+
+run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& options,
+                           io::ResultFolder& folder, const std::optional<io::Case>& config) {
+  const auto hooks = cli::hooks(options.quiet);
+  if (!options.restart.empty())
+    return run::go_on(folder, config ? &*config : nullptr, options.session, hooks);
+  try {
+    return run::run_into(folder, *config, options.session, hooks);
+  } catch (const UserError& error) {
+    folder.abandon();
+    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+  }
 }
 
 void run_case(const CaseArguments& arguments, const RunArguments& options) {
-  const io::Case config = arguments.read();
-  const OutputFolder folder{options.dir, io::claim_output_folder(options.dir, options.overwrite)};
+  std::optional<io::Case> config;
+  if (!arguments.file.empty()) config = arguments.read();
+  const bool restarts = !options.restart.empty();
+  if (restarts ? !options.dir.empty() || options.overwrite : !config || options.dir.empty())
+    throw UserError(
+        "slipfront: run takes CASE and -o DIR, or --restart DIR, perhaps with CASE to compare; see slipfront "
+        "run --help");
+  io::ResultFolder folder(options.folder(), run::run_work);
+  if (restarts && !folder.has_unfinished() && run::is_complete(folder.dir())) {
+    if (!options.quiet) print("{}: is complete\n", folder.dir().string());
+    return;
+  }
+  if (!restarts) folder.require_empty(options.overwrite);
   catch_interrupts();
-  const solve::Execution execution{.threads = options.threads};
-  const auto with_progress = [&](const char* label) {
-    // The total is known only when the first step is done.
-    return [label, quiet = options.quiet, progress = std::shared_ptr<io::Progress>()](
-               std::int64_t step, std::int64_t total) mutable {
-      if (!progress) progress = std::make_shared<io::Progress>(label, total, quiet);
-      progress->update(step);
-      return !interrupt_wanted();
-    };
-  };
   try {
-    auto initial = run::make_initial_state(config, with_progress("ramp"), execution);
-    io::ResultStream stream(options.dir, initial.common.tractions.x_m, initial.mesh,
-                            !config.output.snapshot_times_s.empty());
-    const auto stepper = run::start_event(config, initial, execution);
-    const auto result = run::run_event(config, initial, *stepper, with_progress("event"), &stream);
-    stream.publish();
-    run::write_beside_stream(options.dir, result, initial);
+    const auto [result, initial] = run_or_go_on(arguments, options, folder, config);
     if (result.event.end == solve::EventEnd::blow_up)
-      throw BlowUp(result.event.blow_up + "; what there is was kept in " + options.dir);
+      throw BlowUp(result.event.blow_up + "; " + what_was_kept(folder));
     if (result.event.end == solve::EventEnd::interrupted)
-      throw Interrupted(fmt::format("interrupted at t = {:.4g} s; what there is was kept in {}",
-                                    result.event.time_s, options.dir));
-    if (!options.quiet) print_summary(result, initial, options.dir);
-  } catch (const UserError& error) {
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+      throw Interrupted(
+          fmt::format("interrupted at t = {:.4g} s; {}", result.event.time_s, how_to_go_on(folder)));
+    if (!options.quiet) print_summary(result, initial, folder.dir().string());
+  } catch (const WriteError& error) {
+    throw WriteError("{}; {}", error.what(), how_to_go_on(folder));
   }
 }
 
@@ -107,18 +136,35 @@ void add_run(CLI::App& app) {
   CLI::App* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
   const auto arguments = add_case_arguments(*command);
   auto options = std::make_shared<RunArguments>();
-  command->add_option("-o,--output", options->dir, "Folder for the results")->required()->type_name("DIR");
+  command->get_option("CASE")->required(false);
+  command->add_option("-o,--output", options->dir, "Folder for the results")->type_name("DIR");
+  command
+      ->add_option("--restart", options->restart,
+                   "Go on with the run that was left unfinished in this folder, as if it had never stopped")
+      ->type_name("DIR");
   command->add_flag("--overwrite", options->overwrite, "Replace the results that the folder already holds");
   // More pay on large meshes only.
   constexpr unsigned most_threads_by_default = 4;
-  options->threads =
+  auto& session = options->session;
+  session.execution.threads =
       static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, most_threads_by_default));
   command
-      ->add_option("--threads", options->threads,
+      ->add_option("--threads", session.execution.threads,
                    "Threads of the run; the results do not depend on them. They wait for each other: give no "
                    "more than are idle")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  command
+      ->add_option("--checkpoint-every", session.keep_every_wall_s,
+                   "Wall time between checkpoints, s; the signal USR1 asks for one at once")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("S")
+      ->capture_default_str();
+  command
+      ->add_option("--checkpoint-every-simulated", session.keep_every_s,
+                   "Simulated time between checkpoints, s; by default only wall time counts")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
   command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
   command->callback([arguments, options] { run_case(*arguments, *options); });
 }

@@ -9,8 +9,10 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/print.hpp"
+#include "io/folder.hpp"
 #include "io/log.hpp"
-#include "io/results.hpp"
+#include "run/checkpoint.hpp"
 #include "study/convergence.hpp"
 #include "study/interface_step.hpp"
 
@@ -39,19 +41,26 @@ void add_target(CLI::App& command, Target& target) {
   command.add_flag("-q,--quiet", target.quiet, "Print nothing but errors");
 }
 
-/// Runs a study with its progress shown; a user's mistake gets its place in the case file.
+/// Runs a study with its progress shown and publishes its results; a user's mistake gets its place in the
+/// case file.
+/// @param study  given the monitor, the folder to write to and that of the runs that are done
 template <class Study>
-void with_progress(const CaseArguments& arguments, const Target& target, Study&& study) {
-  io::claim_output_folder(target.dir, target.overwrite);
+void run_study(const char* name, const CaseArguments& arguments, const Target& target, Study&& study) {
+  io::ResultFolder folder(target.dir, fmt::format("study {} with {}", name, run::program_identity()));
+  folder.require_empty(target.overwrite, true);
+  folder.begin_or_resume();
   catch_interrupts();
   std::optional<io::Progress> progress;
+  const study::StudyMonitor monitor = [&](std::size_t done, std::size_t n) {
+    if (!progress) progress.emplace("runs", static_cast<std::int64_t>(n), target.quiet);
+    progress->update(static_cast<std::int64_t>(done));
+    return !interrupt_wanted();
+  };
   try {
-    study([&](std::size_t done, std::size_t n) {
-      if (!progress) progress.emplace("runs", static_cast<std::int64_t>(n), target.quiet);
-      progress->update(static_cast<std::int64_t>(done));
-      return !interrupt_wanted();
-    });
+    study(monitor, folder.unfinished(), folder.state() / "runs");
+    folder.publish();
   } catch (const UserError& error) {
+    folder.abandon();
     throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
   }
 }
@@ -61,46 +70,49 @@ std::string number(double value, const char* unit = "", double factor = 1) {
 }
 
 void print_row(const std::string& parameter, const char* fronts, const study::Summary& s) {
-  fmt::print("{:<30}{:<7}{:>9}  {:>7}  {:>7}  {:>8}  {}\n", parameter, fronts,
-             number(s.median_relative_error, " %", 100), number(s.median_order), number(s.growth),
-             fmt::format("{}/{}", s.n_stations, s.n_wanted), study::name(s.verdict));
+  print("{:<30}{:<7}{:>9}  {:>7}  {:>7}  {:>8}  {}\n", parameter, fronts,
+        number(s.median_relative_error, " %", 100), number(s.median_order), number(s.growth),
+        fmt::format("{}/{}", s.n_stations, s.n_wanted), study::name(s.verdict));
 }
 
 void print_table(const study::Convergence& result, const std::string& dir) {
-  fmt::print("V_tip over {:.4g} m at stations every {:.4g} m; tolerance {:g} %; {} runs\n\n", result.l_star_m,
-             result.options.station_spacing_m, 100 * result.options.tolerance, result.n_runs);
-  fmt::print("{:<30}{:<7}{:>9}  {:>7}  {:>7}  {:>8}  {}\n", "parameter", "fronts", "error", "order", "growth",
-             "stations", "verdict");
+  print("V_tip over {:.4g} m at stations every {:.4g} m; tolerance {:g} %; {} runs\n\n", result.l_star_m,
+        result.options.station_spacing_m, 100 * result.options.tolerance, result.n_runs);
+  print("{:<30}{:<7}{:>9}  {:>7}  {:>7}  {:>8}  {}\n", "parameter", "fronts", "error", "order", "growth",
+        "stations", "verdict");
   for (const auto& s : result.sequences) {
     print_row(s.plan.parameter, "both", s.both);
     print_row("", "to -x", s.left);
     print_row("", "to +x", s.right);
     std::string values;
     for (const auto& member : s.plan.members) values += fmt::format(" {:.4g}", member.value);
-    fmt::print("  values{}; the case's {:.4g}", values, s.plan.case_value);
+    print("  values{}; the case's {:.4g}", values, s.plan.case_value);
     if (std::isfinite(s.relative_difference_at_limit))
-      fmt::print("; computed at 0: {:.3g} % from the extrapolated", 100 * s.relative_difference_at_limit);
-    fmt::print("\n");
+      print("; computed at 0: {:.3g} % from the extrapolated", 100 * s.relative_difference_at_limit);
+    print("\n");
   }
-  for (const auto& warning : result.warnings) fmt::print("note: {}\n", warning);
-  fmt::print("results: {}\n", dir);
+  for (const auto& warning : result.warnings) print("note: {}\n", warning);
+  print("results: {}\n", dir);
 }
 
 void study_convergence(const CaseArguments& arguments, const StudyArguments& study) {
   const io::Case config = arguments.read();
   study::plan_convergence(config, study.options);  // mistakes in the options, before a folder is made
   study::Convergence result;
-  with_progress(arguments, study.target, [&](const study::StudyMonitor& monitor) {
-    result = study::study_convergence(config, study.options, monitor);
-  });
-  study::write_convergence(study.target.dir, config, result);
+  run_study("convergence", arguments, study.target,
+            [&](const study::StudyMonitor& monitor, const auto& dir, const auto& kept) {
+              auto options = study.options;
+              options.kept = kept;
+              result = study::study_convergence(config, options, monitor);
+              study::write_convergence(dir, config, result);
+            });
   if (!study.target.quiet) print_table(result, study.target.dir);
 }
 
 void print_table(const study::InterfaceStep& result, const std::string& dir) {
-  fmt::print("V_tip at {} stations against the limit of small steps (observed order {}); {} runs\n\n",
-             result.stations.size(), number(result.median_order), result.n_runs);
-  fmt::print("{:<34}{:>8}{:>10}{:>12}{:>12}\n", "stepping", "cost", "time", "median", "90 % within");
+  print("V_tip at {} stations against the limit of small steps (observed order {}); {} runs\n\n",
+        result.stations.size(), number(result.median_order), result.n_runs);
+  print("{:<34}{:>8}{:>10}{:>12}{:>12}\n", "stepping", "cost", "time", "median", "90 % within");
   for (const auto& s : result.all) {
     using Kind = study::Stepping::Kind;
     const std::string what =
@@ -108,30 +120,33 @@ void print_table(const study::InterfaceStep& result, const std::string& dir) {
         : s.kind == Kind::layer
             ? fmt::format("{} rows, {} sub-steps", s.rows, s.substeps)
             : fmt::format("{} rows, {} and {}, extrapolated", s.rows, s.substeps / 2, s.substeps);
-    fmt::print("{:<34}{:>8.2f}{:>10}{:>12}{:>12}\n", what, s.cost, number(s.time_s, " s"),
-               number(s.median_error, " %", 100), number(s.p90_error, " %", 100));
+    print("{:<34}{:>8.2f}{:>10}{:>12}{:>12}\n", what, s.cost, number(s.time_s, " s"),
+          number(s.median_error, " %", 100), number(s.p90_error, " %", 100));
   }
-  fmt::print("\ncost: node updates over those of the plain scheme at the case's step_factor\n");
+  print("\ncost: node updates over those of the plain scheme at the case's step_factor\n");
   if (result.chosen >= 0) {
     const auto& s = result.all[result.chosen];
-    fmt::print(
+    print(
         "cheapest within {:g} %: time.step_factor = {:.4g}, time.interface_rows = {}, "
         "time.interface_substeps = {}; the case with it: {}/chosen.toml\n",
         100 * result.options.tolerance, s.step_factor, s.rows, s.substeps, dir);
   } else {
-    fmt::print("none is within {:g} %\n", 100 * result.options.tolerance);
+    print("none is within {:g} %\n", 100 * result.options.tolerance);
   }
-  for (const auto& warning : result.warnings) fmt::print("note: {}\n", warning);
-  fmt::print("results: {}\n", dir);
+  for (const auto& warning : result.warnings) print("note: {}\n", warning);
+  print("results: {}\n", dir);
 }
 
 void study_interface_step(const CaseArguments& arguments, const InterfaceStepArguments& study) {
   const io::Case config = arguments.read();
   study::InterfaceStep result;
-  with_progress(arguments, study.target, [&](const study::StudyMonitor& monitor) {
-    result = study::study_interface_step(config, study.options, monitor);
-  });
-  study::write_interface_step(study.target.dir, config, result);
+  run_study("interface-step", arguments, study.target,
+            [&](const study::StudyMonitor& monitor, const auto& dir, const auto& kept) {
+              auto options = study.options;
+              options.kept = kept;
+              result = study::study_interface_step(config, options, monitor);
+              study::write_interface_step(dir, config, result);
+            });
   if (!study.target.quiet) print_table(result, study.target.dir);
 }
 

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "io/results.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/print.hpp"
+#include "io/archive.hpp"
+#include "io/folder.hpp"
+#include "run/checkpoint.hpp"
 #include "verify/verification.hpp"
 
 namespace slipfront::cli {
@@ -31,30 +37,60 @@ std::vector<verify::Verification> chosen(const std::vector<std::string>& names) 
   return some;
 }
 
+/// The outcome of a problem, or what an interrupted verification has found of it.
+/// @param folder  where outcomes are kept, or null
+verify::Outcome outcome_of(const verify::Verification& problem, verify::Effort effort,
+                           const io::ResultFolder* folder) {
+  if (folder == nullptr) return problem.run(effort);
+  const auto file = folder->state() / (problem.name + ".bin");
+  verify::Outcome outcome;
+  if (io::is_there(file)) {
+    io::InputArchive archive(file);
+    archive(outcome);
+    archive.close();
+    return outcome;
+  }
+  outcome = problem.run(effort);
+  verify::write_outcome(folder->unfinished(), problem, effort, outcome);
+  io::OutputArchive archive(file);
+  archive(outcome);
+  archive.close();
+  return outcome;
+}
+
 void run_verifications(const VerifyArguments& arguments) {
   const auto some = chosen(arguments.names);
   if (arguments.list) {
-    for (const auto& v : some) fmt::print("{:<22}{}\n", v.name, v.title);
+    for (const auto& v : some) print("{:<22}{}\n", v.name, v.title);
     return;
   }
-  if (!arguments.dir.empty()) std::filesystem::create_directories(arguments.dir);
+  std::optional<io::ResultFolder> folder;
+  if (!arguments.dir.empty()) {
+    folder.emplace(arguments.dir, fmt::format("verify{} {} with {}", arguments.quick ? " --quick" : "",
+                                              fmt::join(arguments.names, " "), run::program_identity()));
+    folder->begin_or_resume();
+    catch_interrupts();
+  }
   const auto effort = arguments.quick ? verify::Effort::quick : verify::Effort::full;
   std::size_t n_checks = 0, n_failed = 0;
   for (const auto& v : some) {
-    fmt::print("{}: {}\n", v.name, v.title);
-    const auto outcome = v.run(effort);
+    print("{}: {}\n", v.name, v.title);
+    const auto outcome = outcome_of(v, effort, folder ? &*folder : nullptr);
     for (const auto& c : outcome.checks) {
-      fmt::print("  {} {}\n           {:.8g}{}{}, expected {:.8g} +- {:.2g}\n",
-                 c.holds() ? "  ok  " : "FAILED", c.quantity, c.measured, c.unit.empty() ? "" : " ", c.unit,
-                 c.expected, c.tolerance);
+      print("  {} {}\n           {:.8g}{}{}, expected {:.8g} +- {:.2g}\n", c.holds() ? "  ok  " : "FAILED",
+            c.quantity, c.measured, c.unit.empty() ? "" : " ", c.unit, c.expected, c.tolerance);
       ++n_checks;
       n_failed += c.holds() ? 0 : 1;
     }
     std::fflush(stdout);
-    if (!arguments.dir.empty()) verify::write_outcome(arguments.dir, v, effort, outcome);
+    if (interrupt_wanted())
+      throw Interrupted(
+          fmt::format("interrupted; what was solved is in {}: give the same command again to go on",
+                      folder->unfinished().string()));
   }
+  if (folder) folder->publish(true);
   if (n_failed > 0) throw VerificationFailed(fmt::format("{} of {} checks do not hold", n_failed, n_checks));
-  fmt::print("all {} checks hold\n", n_checks);
+  print("all {} checks hold\n", n_checks);
 }
 
 }  // namespace

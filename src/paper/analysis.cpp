@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fronts/measures.hpp"
-#include "io/results.hpp"
+#include "io/files.hpp"
 
 namespace slipfront::paper {
 

@@ -6,11 +6,15 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <system_error>
 
 #include "base/error.hpp"
-#include "io/results.hpp"
+#include "io/checksum.hpp"
+#include "io/files.hpp"
+#include "io/folder.hpp"
 #include "paper/analysis.hpp"
 #include "run/batch.hpp"
+#include "run/checkpoint.hpp"
 
 namespace slipfront::paper {
 
@@ -21,31 +25,37 @@ using Clock = std::chrono::steady_clock;
 /// Runs cases and writes each to its folder.
 class Runner {
  public:
-  Runner(const ReproduceOptions& options, const RunMonitor& monitor, std::size_t total)
-      : options_(options),
+  Runner(const ReproduceOptions& options, const io::ResultFolder& folder, const RunMonitor& monitor,
+         std::size_t total)
+      : dir_(folder.unfinished()),
         monitor_(monitor),
         total_(total),
         batch_(
             options.threads, [this] { return wanted({}); },
-            fmt::format("interrupted; the runs that were done are in {}", options.dir.string())) {}
+            fmt::format(
+                "interrupted; the runs that were done are in {}: give the same command again to go on",
+                folder.unfinished().string()),
+            folder.state() / "runs") {}
 
   /// The outcomes, in the order of the cases.
   std::vector<Outcome> run(const std::vector<NamedCase>& cases) {
     std::vector<io::Case> configs;
     for (const auto& c : cases) configs.push_back(c.config);
     std::vector<Outcome> outcomes(cases.size());
-    batch_.run(configs, [&](std::size_t k, const run::Result& result, const run::InitialState& initial) {
-      const auto& name = cases[k].name;
-      io::prepare_output_folder(options_.dir / name, options_.overwrite);
-      {
-        const std::lock_guard lock(files_);  // HDF5 need not be built for several threads
-        run::write(options_.dir / name, result, initial);
-        if (result.event.end == solve::EventEnd::blow_up)
-          blow_ups.push_back(name + ": " + result.event.blow_up);
-      }
-      outcomes[k] = make_outcome(config_name(name), result, initial);
-      wanted(name);
-    });
+    batch_.run(
+        configs,
+        [&](std::size_t k, const run::Result& result, const run::InitialState& initial, bool was_kept) {
+          const auto& name = cases[k].name;
+          {
+            const std::lock_guard lock(files_);  // HDF5 need not be built for several threads
+            if (!was_kept) write(dir_ / name, result, initial);
+            if (result.event.end == solve::EventEnd::blow_up)
+              blow_ups.push_back(name + ": " + result.event.blow_up);
+          }
+          outcomes[k] = make_outcome(config_name(name), result, initial);
+          wanted(name);
+        },
+        [&](std::size_t k) { return is_written(dir_ / cases[k].name); });
     return outcomes;
   }
 
@@ -60,12 +70,31 @@ class Runner {
     return !interrupted_;
   }
 
+  /// Whether a run's folder is complete and as it was written.
+  static bool is_written(const std::filesystem::path& dir) {
+    try {
+      io::require_intact(dir);
+      return io::is_there(dir / io::checksum_list);
+    } catch (const UserError&) {
+      return false;
+    }
+  }
+
+  static void write(const std::filesystem::path& dir, const run::Result& result,
+                    const run::InitialState& initial) {
+    std::error_code error;
+    std::filesystem::remove_all(dir, error);  // what an interruption has left
+    if (!error) std::filesystem::create_directories(dir, error);
+    if (error) throw WriteError("{}: cannot be made ({})", dir.string(), error.message());
+    run::write(dir, result, initial);
+  }
+
   /// The last part of a study's path names its event.
   static std::string config_name(const std::string& name) {
     return std::filesystem::path(name).filename().string();
   }
 
-  const ReproduceOptions& options_;
+  std::filesystem::path dir_;
   const RunMonitor& monitor_;
   std::size_t total_, done_ = 0;
   bool interrupted_ = false;
@@ -109,6 +138,14 @@ std::vector<NamedCase> list_cases(const Variation& variation) {
   return list;
 }
 
+/// What is done, for io::ResultFolder: a reproduction goes on behind one of the same runs by the same
+/// program.
+std::string work(const ReproduceOptions& options) {
+  return fmt::format("reproduce{}{}{} with {}", options.quick ? " --quick" : "",
+                     options.regularised ? " --regularised" : "", options.sensitivity ? " --sensitivity" : "",
+                     run::program_identity());
+}
+
 }  // namespace
 
 ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& monitor) {
@@ -116,10 +153,9 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   std::optional<io::Experiment> experiment;
   if (!options.experiment.empty())
     experiment = io::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
-  io::prepare_output_folder(options.dir, options.overwrite);
-  // An interrupted reproduction must not leave the verdicts of an earlier one beside its runs.
-  for (const char* name : {"scorecard.json", "analysis.json", "timings.json"})
-    std::filesystem::remove(options.dir / name);
+  io::ResultFolder folder(options.dir, work(options));
+  folder.require_empty(options.overwrite, true);
+  folder.begin_or_resume();
   const auto events = paper_cases(options.quick);
   const auto study_list = options.regularised ? regularised_studies() : studies(options.quick);
 
@@ -135,7 +171,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
     report.timings.push_back({part, std::chrono::duration<double>(now - last).count()});
     last = now;
   };
-  Runner runner(options, monitor, n_runs);
+  Runner runner(options, folder, monitor, n_runs);
   auto four = runner.run(events);
   Reproduction runs{four[0], four[1], four[2], four[3], {}, experiment};
   lap("statics, four events and their files");
@@ -154,13 +190,14 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
                   scorecard({all[0], all[1], all[2], all[3], varied_studies, experiment}));
   }
   if (!variation_list.empty()) lap("variations of mesh and step");
-  write_scorecard(options.dir / "scorecard.json", report.claims);
-  write_analysis(options.dir / "analysis.json", runs);
+  write_scorecard(folder.unfinished() / "scorecard.json", report.claims);
+  write_analysis(folder.unfinished() / "analysis.json", runs);
   lap("analysis and scorecard");
 
   nlohmann::ordered_json timings;
   for (const auto& t : report.timings) timings.push_back({{"part", t.part}, {"wall_s", t.wall_s}});
-  io::write_text(options.dir / "timings.json", timings.dump(2) + "\n");
+  io::write_text(folder.unfinished() / "timings.json", timings.dump(2) + "\n");
+  folder.publish();
   report.warnings = runner.blow_ups;
   if (!event_blow_ups.empty()) throw BlowUp(event_blow_ups.front());
   return report;

@@ -46,25 +46,47 @@ void in_parallel(int threads, std::size_t n, const std::function<void(std::size_
 
 }  // namespace
 
-Batch::Batch(int threads, std::function<bool()> go_on, std::string interruption)
-    : threads_(threads), go_on_(std::move(go_on)), interruption_(std::move(interruption)) {}
+Batch::Batch(int threads, std::function<bool()> go_on, std::string interruption,
+             const std::filesystem::path& kept)
+    : threads_(threads), go_on_(std::move(go_on)), interruption_(std::move(interruption)) {
+  if (!kept.empty()) kept_.emplace(kept);
+}
 
-void Batch::run(std::span<const io::Case> cases, const Done& done) {
-  compute_initial_states(cases);
-  in_parallel(threads_, cases.size(), [&](std::size_t k) {
+void Batch::run(std::span<const io::Case> cases, const Done& done, const Usable& usable) {
+  std::vector<std::size_t> missing;
+  std::vector<const io::Case*> missing_cases;
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    Result result;
+    InitialState initial;
+    if (kept_ && kept_->has(cases[k]) && (!usable || usable(k)) && kept_->take(cases[k], result, initial)) {
+      done(k, result, initial, true);
+      continue;
+    }
+    missing.push_back(k);
+    missing_cases.push_back(&cases[k]);
+  }
+  compute_initial_states(missing_cases);
+  in_parallel(threads_, missing.size(), [&](std::size_t m) {
+    const std::size_t k = missing[m];
     const auto& initial = states_.at(initial_state_key(cases[k]));
-    done(k, run_event(cases[k], initial, monitor()), initial);
+    const auto result = run_event(cases[k], initial, monitor());
+    if (result.event.end == solve::EventEnd::interrupted) throw Interrupted(interruption_);
+    done(k, result, initial, false);
+    if (kept_) {
+      const std::lock_guard lock(mutex_);
+      kept_->keep(result, initial);
+    }
     if (!wanted()) throw Interrupted(interruption_);
   });
 }
 
-void Batch::compute_initial_states(std::span<const io::Case> cases) {
+void Batch::compute_initial_states(std::span<const io::Case* const> cases) {
   std::vector<std::pair<std::string, const io::Case*>> missing;
-  for (const auto& config : cases) {
-    auto key = initial_state_key(config);
+  for (const auto* config : cases) {
+    auto key = initial_state_key(*config);
     if (states_.contains(key)) continue;
     states_[key] = {};
-    missing.emplace_back(std::move(key), &config);
+    missing.emplace_back(std::move(key), config);
   }
   in_parallel(threads_, missing.size(), [&](std::size_t k) {
     if (!wanted()) throw Interrupted(interruption_);  // the statics do not ask by themselves

@@ -5,9 +5,11 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 
+#include "run/finished.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::run {
@@ -18,18 +20,24 @@ class Batch {
  public:
   /// @param go_on         asked often, by one thread at a time; false interrupts all runs
   /// @param interruption  the message then
-  Batch(int threads, std::function<bool()> go_on, std::string interruption);
+  /// @param kept          folder of the runs that are done; empty for none
+  Batch(int threads, std::function<bool()> go_on, std::string interruption,
+        const std::filesystem::path& kept = {});
 
-  /// Called by the thread that ran case k, also where the event was interrupted or blew up.
-  using Done = std::function<void(std::size_t k, const Result& result, const InitialState& initial)>;
+  /// Called by the thread that ran case k, also where the event blew up; a run that was kept has no history
+  /// and no snapshots.
+  using Done =
+      std::function<void(std::size_t k, const Result& result, const InitialState& initial, bool was_kept)>;
+  /// Whether what was kept of a case will do.
+  using Usable = std::function<bool(std::size_t k)>;
 
-  /// Runs all cases, in their order where there are more than threads. Initial states are kept for later
-  /// calls.
+  /// Runs all cases, in their order where there are more than threads, but for those that were kept. Initial
+  /// states are kept for later calls.
   /// @throws Interrupted, and what a run or `done` throws first.
-  void run(std::span<const io::Case> cases, const Done& done);
+  void run(std::span<const io::Case> cases, const Done& done, const Usable& usable = {});
 
  private:
-  void compute_initial_states(std::span<const io::Case> cases);
+  void compute_initial_states(std::span<const io::Case* const> cases);
   bool wanted();
   solve::Monitor monitor();
 
@@ -39,6 +47,7 @@ class Batch {
   bool interrupted_ = false;
   std::mutex mutex_;
   std::map<std::string, InitialState> states_;
+  std::optional<FinishedRuns> kept_;
 };
 
 }  // namespace slipfront::run

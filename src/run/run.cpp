@@ -156,7 +156,7 @@ mesh::Mesh check(const io::Case& config) {
 }
 
 InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor,
-                                const solve::Execution& execution) {
+                                const solve::Execution& execution, const RampBegins& ramp_begins) {
   const auto start = Clock::now();
   const double mu_s = interface::static_coefficient(config.friction);
   const double margin = config.loading.critical_margin;
@@ -186,9 +186,12 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
     auto plain = config.time;
     plain.interface_substeps = 1;
     solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), plain, execution);
-    initial.ramp = solve::run_ramp(
-        stepper, statics.shear_by(0), config.loading, mu_s, top_speed_m_per_s(config),
-        solid::longitudinal_speed_m_per_s(config.material), initial.critical_shear_m, monitor);
+    const auto tilted = statics.shear_by(0);
+    stepper.start(tilted, top_speed_m_per_s(config));
+    solve::RampRun ramp(stepper, tilted, config.loading, mu_s, top_speed_m_per_s(config),
+                        solid::longitudinal_speed_m_per_s(config.material), initial.critical_shear_m);
+    if (ramp_begins) ramp_begins(stepper, ramp);
+    initial.ramp = ramp.run(monitor);
     if (initial.ramp->interrupted) throw Interrupted("interrupted during the ramp, before the event");
     initial.common = initial.ramp->common;
     initial.spontaneous = initial.ramp->spontaneous;
@@ -229,11 +232,16 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
 
 namespace {
 
-std::unique_ptr<solve::Stepper> make_stepper(const io::Case& config, const InitialState& initial,
-                                             const solve::Execution& execution) {
+std::unique_ptr<solve::Stepper> new_stepper(const io::Case& config, const mesh::Mesh& mesh,
+                                            const solve::Execution& execution) {
+  return std::make_unique<solve::Stepper>(mesh, config.material, io::contact_model(config), config.time,
+                                          execution);
+}
+
+std::unique_ptr<solve::Stepper> started_stepper(const io::Case& config, const InitialState& initial,
+                                                const solve::Execution& execution) {
   const auto& state = event_state(config, initial);
-  auto stepper = std::make_unique<solve::Stepper>(initial.mesh, config.material, io::contact_model(config),
-                                                  config.time, execution);
+  auto stepper = new_stepper(config, initial.mesh, execution);
   stepper->start(state, top_speed_m_per_s(config));
   if (initial.prescribed) stepper->set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
   auto forces = solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger,
@@ -258,6 +266,16 @@ void release_displacements(solve::Equilibrium& state) {
   state.u_per_shear = {};
 }
 
+/// What only the stepper needed.
+void release_nodes(mesh::Mesh& mesh) {
+  mesh.x_m = std::vector<double>();
+  mesh.y_m = std::vector<double>();
+  mesh.cells = std::vector<mesh::Cell>();
+#ifdef __GLIBC__
+  malloc_trim(0);  // what was freed may lie between what was not
+#endif
+}
+
 }  // namespace
 
 std::unique_ptr<solve::Stepper> start_event(const io::Case& config, InitialState& initial,
@@ -269,48 +287,66 @@ std::unique_ptr<solve::Stepper> start_event(const io::Case& config, InitialState
     release_displacements(initial.ramp->common);
     release_displacements(initial.ramp->spontaneous);
   }
-  auto stepper = make_stepper(config, initial, execution);
+  auto stepper = started_stepper(config, initial, execution);
   release_displacements(initial.common);
   release_displacements(initial.spontaneous);
-  initial.mesh.x_m = std::vector<double>();
-  initial.mesh.y_m = std::vector<double>();
-  initial.mesh.cells = std::vector<mesh::Cell>();
-#ifdef __GLIBC__
-  malloc_trim(0);  // what was freed may lie between what was not
-#endif
+  release_nodes(initial.mesh);
   return stepper;
+}
+
+std::unique_ptr<solve::Stepper> make_stepper(const io::Case& config, InitialState& initial,
+                                             const solve::Execution& execution) {
+  auto stepper = new_stepper(config, initial.mesh, execution);
+  release_nodes(initial.mesh);
+  return stepper;
+}
+
+solve::EventRun begin_event(const io::Case& config, const InitialState& initial, solve::Stepper& stepper) {
+  const bool triggered = config.event == interface::EventKind::left ||
+                         config.event == interface::EventKind::right ||
+                         (config.event == interface::EventKind::nucleation &&
+                          config.nucleation.form == interface::NucleationForm::overstress);
+  return {stepper,
+          event_state(config, initial),
+          interface::static_coefficient(config.friction),
+          wave_speeds(config.material).c_L,
+          triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
+          config.time,
+          {config.output.history_interval_s, config.output.energy_interval_s, config.output.snapshot_times_s},
+          solve::halo_for(initial.mesh, config.fronts.l_star_m)};
 }
 
 Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor,
                  const solve::Execution& execution) {
-  const auto stepper = make_stepper(config, initial, execution);
+  const auto stepper = started_stepper(config, initial, execution);
   return run_event(config, initial, *stepper, monitor);
 }
 
 Result run_event(const io::Case& config, const InitialState& initial, solve::Stepper& stepper,
                  const solve::Monitor& monitor, solve::Sink* sink) {
+  const auto start = Clock::now();
+  auto result = unmeasured(config, stepper, begin_event(config, initial, stepper).run(monitor, sink));
+  result.stepping_wall_s = seconds_since(start);
+  measure(result, initial);
+  return result;
+}
+
+Result unmeasured(const io::Case& config, const solve::Stepper& stepper, solve::Event event) {
   Result result;
   result.config = config;
   result.speeds = wave_speeds(config.material);
-  const double mu_s = interface::static_coefficient(config.friction);
-  const auto& state = event_state(config, initial);
   result.stable_step_s = stepper.stable_step_s();
   result.step_s = stepper.step_s();
   result.substep_s = stepper.substep_s();
   result.node_updates_per_step = stepper.node_updates_per_step();
+  result.event = std::move(event);
+  return result;
+}
 
-  const auto start = Clock::now();
-  const bool triggered = config.event == interface::EventKind::left ||
-                         config.event == interface::EventKind::right ||
-                         (config.event == interface::EventKind::nucleation &&
-                          config.nucleation.form == interface::NucleationForm::overstress);
-  result.event = solve::run_event(
-      stepper, state, mu_s, result.speeds.c_L, triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
-      config.time,
-      {config.output.history_interval_s, config.output.energy_interval_s, config.output.snapshot_times_s},
-      solve::halo_for(initial.mesh, config.fronts.l_star_m), monitor, sink);
-  result.stepping_wall_s = seconds_since(start);
-
+void measure(Result& result, const InitialState& initial) {
+  const auto& config = result.config;
+  const auto& state = event_state(config, initial);
+  const double mu_s = interface::static_coefficient(config.friction);
   result.fronts =
       fronts::find_fronts(result.event.record, initial.common.tractions, front_options(config, initial));
   if (auto warning = contact_warning(initial.common); !warning.empty()) result.warnings.push_back(warning);
@@ -329,7 +365,6 @@ Result run_event(const io::Case& config, const InitialState& initial, solve::Ste
   if (config.time.step_factor > 1)
     result.warnings.push_back("the step is above the largest stable one (time.allow_unstable)");
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
-  return result;
 }
 
 }  // namespace slipfront::run

@@ -32,6 +32,13 @@ struct InitialState {
   double solver_bytes = 0;                                      ///< held by it
   double wall_s = 0;
   std::optional<solve::Ramp> ramp;  ///< where loading.method is ramp
+
+  /// All but the mesh.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, critical_shear_m, n_unknowns,
+            solver, solver_bytes, wall_s, ramp);
+  }
 };
 
 /// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer.
@@ -39,9 +46,12 @@ struct InitialState {
 /// @throws UserError
 mesh::Mesh check(const io::Case& config);
 
+/// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.
+using RampBegins = std::function<void(solve::Stepper& stepper, solve::RampRun& ramp)>;
+
 /// @throws UserError, BlowUp, Interrupted as its parts do.
 InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor,
-                                const solve::Execution& execution = {});
+                                const solve::Execution& execution = {}, const RampBegins& ramp_begins = {});
 
 /// A text that is the same for two cases if and only if they share their initial state.
 std::string initial_state_key(const io::Case& config);
@@ -62,12 +72,30 @@ struct Result {
   solve::Event event;
   std::vector<fronts::Front> fronts;
   std::vector<std::string> warnings;
+
+  /// What cannot be made again from the case and the initial state, see measure.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(stable_step_s, step_s, substep_s, node_updates_per_step, stepping_wall_s, event);
+  }
 };
 
 /// The plate in a case's initial state, about to move. Takes what only this needs out of the initial state:
 /// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
 std::unique_ptr<solve::Stepper> start_event(const io::Case& config, InitialState& initial,
                                             const solve::Execution& execution = {});
+
+/// The same plate without its motion, which is to be read from where it was kept.
+std::unique_ptr<solve::Stepper> make_stepper(const io::Case& config, InitialState& initial,
+                                             const solve::Execution& execution = {});
+
+/// The event of a case, about to begin with a started stepper.
+solve::EventRun begin_event(const io::Case& config, const InitialState& initial, solve::Stepper& stepper);
+
+/// The case, the steps and an event, without fronts yet.
+Result unmeasured(const io::Case& config, const solve::Stepper& stepper, solve::Event event);
+/// Finds the fronts of a result's event, and what its reader should know.
+void measure(Result& result, const InitialState& initial);
 
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
 /// ends the event early and is told by event.end.
@@ -82,11 +110,26 @@ Result run_event(const io::Case& config, const InitialState& initial, const solv
 /// How a case's fronts are measured.
 fronts::FrontOptions front_options(const io::Case& config, const InitialState& initial);
 
-/// Writes the run's folder: case.resolved.toml, run.json, interface.h5, fronts.csv, static.csv, and
-/// fields.vtkhdf where there are snapshots. The folder must have been prepared (io::prepare_output_folder).
+/// How a run stands, as run.json tells it.
+struct Status {
+  std::string name = "complete";  ///< running, interrupted, blew_up, failed, complete
+  std::string reason = {};
+  int sessions = 1;  ///< times that the run was begun or gone on with
+};
+/// Of a run that has ended.
+Status status_of(const Result& result);
+
+/// The case as case.resolved.toml has it.
+std::string resolved_text(const io::Case& config);
+
+/// Writes the run's folder, which is there: case.resolved.toml, run.json, interface.h5, fronts.csv,
+/// static.csv, energy.csv, fields.vtkhdf where there are snapshots, and their checksums.
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
-/// The same but for interface.h5 and fields.vtkhdf, which were written while the run went (io::ResultStream).
-void write_beside_stream(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
+/// run.json, fronts.csv and energy.csv of a result that may go on.
+void write_so_far(const std::filesystem::path& dir, const Result& result, const InitialState& initial,
+                  const Status& status);
+/// run.json of a run without an event yet, or that has come to none.
+void write_status(const std::filesystem::path& dir, const io::Case& config, const Status& status);
 
 /// Derived quantities of a case, found without solving anything.
 struct Info {

@@ -3,11 +3,12 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
+#include "io/files.hpp"
+#include "io/folder.hpp"
 #include "io/history.hpp"
 #include "io/results.hpp"
 #include "io/schema.hpp"
@@ -24,6 +25,12 @@ std::string host_name() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
+
+#ifdef __clang__
+constexpr const char* compiler = "clang ";
+#else
+constexpr const char* compiler = "g++ ";
+#endif
 
 const char* name(solve::EventEnd end) {
   switch (end) {
@@ -103,55 +110,83 @@ Json fronts_json(const std::vector<fronts::Front>& fronts) {
   return list;
 }
 
+/// What every run.json begins with.
+Json about(const io::Case& config, const Status& status) {
+  return {
+      {"version", version()},  {"commit", commit()},      {"compiler", std::string(compiler) + __VERSION__},
+      {"host", host_name()},   {"process", getpid()},     {"title", config.title},
+      {"status", status.name}, {"reason", status.reason}, {"sessions", status.sessions}};
+}
+
+Json run_json(const Result& result, const InitialState& initial, const Status& status) {
+  const auto& event = result.event;
+  auto warnings = result.warnings;
+  if (!event.blow_up.empty()) warnings.push_back(event.blow_up);
+  Json json = about(result.config, status);
+  json["end"] = status.name == "running" ? Json() : Json(name(event.end));
+  json.update({{"mesh",
+                {{"columns", initial.mesh.grid.columns},
+                 {"rows", initial.mesh.grid.rows},
+                 {"nodes", initial.n_nodes},
+                 {"cells", initial.n_cells}}},
+               {"wave_speeds",
+                {{"c_L_m_per_s", result.speeds.c_L},
+                 {"c_S_m_per_s", result.speeds.c_S},
+                 {"c_R_m_per_s", result.speeds.c_R}}},
+               {"stable_dt_s", result.stable_step_s},
+               {"dt_s", result.step_s},
+               {"interface_dt_s", result.substep_s},
+               {"steps", event.steps},
+               {"time_s", event.time_s},
+               {"wall_s", result.stepping_wall_s},
+               {"node_updates_per_s",
+                static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s},
+               {"statics", statics_json(initial)},
+               {"energy_at_start", energy_json(event.energies.front())},
+               {"energy_at_end", energy_json(event.energies.back())},
+               {"onsets", event.record.n_onsets()},
+               {"fronts", fronts_json(result.fronts)},
+               {"warnings", warnings}});
+  return json;
+}
+
+void write_json(const std::filesystem::path& dir, const Json& json) {
+  io::write_text(dir / "run.json", json.dump(2) + "\n");
+}
+
 }  // namespace
+
+Status status_of(const Result& result) {
+  const auto& event = result.event;
+  if (event.end == solve::EventEnd::blow_up) return {"blew_up", event.blow_up};
+  if (event.end == solve::EventEnd::interrupted)
+    return {"interrupted", fmt::format("interrupted at t = {:.4g} s", event.time_s)};
+  return {};
+}
+
+std::string resolved_text(const io::Case& config) {
+  return io::to_toml(config);
+}
+
+void write_status(const std::filesystem::path& dir, const io::Case& config, const Status& status) {
+  write_json(dir, about(config, status));
+}
+
+void write_so_far(const std::filesystem::path& dir, const Result& result, const InitialState& initial,
+                  const Status& status) {
+  io::write_fronts(dir / "fronts.csv", result.fronts);
+  io::write_energies(dir / "energy.csv", result.event.energies);
+  write_json(dir, run_json(result, initial, status));
+}
 
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial) {
   const auto& event = result.event;
+  io::write_text(dir / "case.resolved.toml", resolved_text(result.config));
+  io::write_static(dir / "static.csv", initial.common.tractions);
   io::write_history(dir / "interface.h5", event.history);
   if (!event.snapshots.empty()) io::write_snapshots(dir / "fields.vtkhdf", initial.mesh, event.snapshots);
-  write_beside_stream(dir, result, initial);
-}
-
-void write_beside_stream(const std::filesystem::path& dir, const Result& result,
-                         const InitialState& initial) {
-  const auto& event = result.event;
-  io::write_text(dir / "case.resolved.toml", io::to_toml(result.config));
-  io::write_static(dir / "static.csv", initial.common.tractions);
-  io::write_fronts(dir / "fronts.csv", result.fronts);
-  io::write_energies(dir / "energy.csv", event.energies);
-
-  auto warnings = result.warnings;
-  if (!event.blow_up.empty()) warnings.push_back(event.blow_up);
-  const Json json = {{"version", version()},
-                     {"commit", commit()},
-                     {"compiler", std::string("g++ ") + __VERSION__},
-                     {"host", host_name()},
-                     {"title", result.config.title},
-                     {"end", name(event.end)},
-                     {"mesh",
-                      {{"columns", initial.mesh.grid.columns},
-                       {"rows", initial.mesh.grid.rows},
-                       {"nodes", initial.n_nodes},
-                       {"cells", initial.n_cells}}},
-                     {"wave_speeds",
-                      {{"c_L_m_per_s", result.speeds.c_L},
-                       {"c_S_m_per_s", result.speeds.c_S},
-                       {"c_R_m_per_s", result.speeds.c_R}}},
-                     {"stable_dt_s", result.stable_step_s},
-                     {"dt_s", result.step_s},
-                     {"interface_dt_s", result.substep_s},
-                     {"steps", event.steps},
-                     {"time_s", event.time_s},
-                     {"wall_s", result.stepping_wall_s},
-                     {"node_updates_per_s", static_cast<double>(event.steps) * result.node_updates_per_step /
-                                                result.stepping_wall_s},
-                     {"statics", statics_json(initial)},
-                     {"energy_at_start", energy_json(event.energies.front())},
-                     {"energy_at_end", energy_json(event.energies.back())},
-                     {"onsets", event.record.n_onsets()},
-                     {"fronts", fronts_json(result.fronts)},
-                     {"warnings", warnings}};
-  io::write_text(dir / "run.json", json.dump(2) + "\n");
+  write_so_far(dir, result, initial, status_of(result));
+  io::seal(dir);
 }
 
 }  // namespace slipfront::run

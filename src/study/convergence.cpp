@@ -158,7 +158,7 @@ Convergence study_convergence(const io::Case& config, const ConvergenceOptions& 
   result.options = options;
   result.l_star_m = cases.front().fronts.l_star_m;
   result.n_runs = cases.size();
-  const auto runs = run_cases(cases, options.threads, monitor);
+  const auto runs = run_cases(cases, options.threads, monitor, options.kept);
   for (const auto& plan : plans) {
     for (const auto& member : plan.members)
       if (const auto& what = runs[member.run].blow_up; !what.empty())

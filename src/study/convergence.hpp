@@ -16,8 +16,9 @@ namespace slipfront::study {
 struct ConvergenceOptions {
   std::vector<double> element_sizes_m;  ///< empty: twice, once and half the case's
   double station_spacing_m = 2e-3;
-  double tolerance = 0.02;  ///< relative error that counts as converged
-  int threads = 1;          ///< runs side by side; each result is the same for any number
+  double tolerance = 0.02;          ///< relative error that counts as converged
+  int threads = 1;                  ///< runs side by side; each result is the same for any number
+  std::filesystem::path kept = {};  ///< folder of the runs that are done, see run_cases
 };
 
 /// A run of a sequence.

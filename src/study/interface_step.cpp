@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "fronts/fit.hpp"
-#include "io/results.hpp"
+#include "io/files.hpp"
 #include "io/schema.hpp"
 #include "study/sequence.hpp"
 
@@ -80,7 +80,7 @@ InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOp
           {.kind = Stepping::Kind::layer, .step_factor = factor, .rows = rows, .substeps = substeps});
     }
   result.n_runs = cases.size();
-  const auto runs = run_cases(cases, options.threads, monitor);
+  const auto runs = run_cases(cases, options.threads, monitor, options.kept);
 
   std::array<double, 3> q{}, f{};
   std::vector<double> orders;
@@ -166,7 +166,6 @@ void write_interface_step(const std::filesystem::path& dir, const io::Case& conf
                           {"n_runs", result.n_runs},
                           {"warnings", result.warnings},
                           {"chosen", nullptr}};
-  std::filesystem::remove(dir / "chosen.toml");  // of an earlier study
   if (result.chosen >= 0) {
     const auto& s = result.all[result.chosen];
     summary["chosen"] = {{"step_factor", s.step_factor},

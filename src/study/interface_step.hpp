@@ -14,8 +14,9 @@ struct InterfaceStepOptions {
   std::vector<int> rows = {1, 2, 4, 8};
   std::vector<int> substeps = {2, 4, 9, 18, 36};
   double station_spacing_m = 2e-3;
-  double tolerance = 0.01;  ///< of the 90th percentile of the relative errors
-  int threads = 1;          ///< runs side by side; more than one falsifies the times, nothing else
+  double tolerance = 0.01;          ///< of the 90th percentile of the relative errors
+  int threads = 1;                  ///< runs side by side; more than one falsifies the times, nothing else
+  std::filesystem::path kept = {};  ///< folder of the runs that are done, see run_cases
 };
 
 /// A way of stepping, its cost, and how far its speeds are from the limit of small steps.

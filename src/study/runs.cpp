@@ -13,13 +13,15 @@ io::Case for_study(io::Case config) {
   return config;
 }
 
-std::vector<Run> run_cases(std::span<const io::Case> cases, int threads, const StudyMonitor& monitor) {
+std::vector<Run> run_cases(std::span<const io::Case> cases, int threads, const StudyMonitor& monitor,
+                           const std::filesystem::path& kept) {
   for (const auto& c : cases) run::check(c);
   std::vector<Run> runs(cases.size());
   std::atomic<std::size_t> done = 0;
   run::Batch batch(
-      threads, [&] { return monitor(done, cases.size()); }, "interrupted; nothing was written");
-  batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial) {
+      threads, [&] { return monitor(done, cases.size()); },
+      "interrupted; the runs that were done are kept: give the same command again to go on", kept);
+  batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
     auto& run = runs[k];
     run.main.options = run::front_options(cases[k], initial);
     if (r.event.end == solve::EventEnd::blow_up)

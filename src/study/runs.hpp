@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -26,7 +27,9 @@ struct Run {
 io::Case for_study(io::Case config);
 
 /// Runs all cases; the results do not depend on the number of threads.
+/// @param kept  folder of the runs that are done, see run::FinishedRuns; empty for none
 /// @throws UserError, Interrupted
-std::vector<Run> run_cases(std::span<const io::Case> cases, int threads, const StudyMonitor& monitor);
+std::vector<Run> run_cases(std::span<const io::Case> cases, int threads, const StudyMonitor& monitor,
+                           const std::filesystem::path& kept = {});
 
 }  // namespace slipfront::study

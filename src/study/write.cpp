@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.hpp"
-#include "io/results.hpp"
+#include "io/files.hpp"
 #include "run/run.hpp"
 #include "study/convergence.hpp"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.hpp"
-#include "io/results.hpp"
+#include "io/files.hpp"
 #include "verify/problems.hpp"
 
 namespace slipfront::verify {

@@ -21,6 +21,11 @@ struct Check {
   std::string reason = {};  ///< where the tolerance comes from
 
   bool holds() const;  ///< false for what is not a number
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(quantity, unit, measured, expected, tolerance, reason);
+  }
 };
 
 struct Curve {
@@ -28,6 +33,11 @@ struct Curve {
   std::string label;
   Kind kind = Kind::program;  ///< drawn as a line, or as points
   std::vector<double> x, y;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(label, kind, x, y);
+  }
 };
 
 /// A picture: curves over a common abscissa.
@@ -35,6 +45,11 @@ struct Chart {
   std::string x_label, y_label;  ///< with their units
   bool log_x = false, log_y = false;
   std::vector<Curve> curves = {};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x_label, y_label, log_x, log_y, curves);
+  }
 };
 
 struct Outcome {
@@ -42,6 +57,11 @@ struct Outcome {
   std::vector<Chart> charts;
 
   bool holds() const;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(checks, charts);
+  }
 };
 
 /// A problem with a known answer that the program itself is made to solve. Theory:
@@ -56,7 +76,7 @@ struct Verification {
 std::span<const Verification> verifications();
 
 /// dir/<name>.json: the checks and the charts' curves.
-/// @throws UserError where the file cannot be written.
+/// @throws WriteError
 void write_outcome(const std::filesystem::path& dir, const Verification& verification, Effort effort,
                    const Outcome& outcome);
 

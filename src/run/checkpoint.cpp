@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/checkpoint.hpp"
+
+#include <charconv>
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/version.hpp"
+
+namespace slipfront::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Begins every checkpoint. The number goes up when what follows changes.
+const std::string magic = "slipfront checkpoint 1";
+
+constexpr std::size_t n_kept = 2;
+constexpr std::string_view prefix = "checkpoint-", suffix = ".bin";
+
+/// Checkpoints by their numbers.
+std::map<std::int64_t, fs::path> numbered(const fs::path& dir) {
+  std::map<std::int64_t, fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator k(dir, error), end; !error && k != end; k.increment(error)) {
+    const std::string name = k->path().filename().string();
+    if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
+    std::int64_t number = 0;
+    const char* last = name.data() + name.size() - suffix.size();
+    if (std::from_chars(name.data() + prefix.size(), last, number).ptr == last) files[number] = k->path();
+  }
+  return files;
+}
+
+}  // namespace
+
+const std::string& program_identity() {
+  static const std::string identity =
+      fmt::format("{}, build {}", version_line(), io::sha256_of_file("/proc/self/exe").substr(0, 16));
+  return identity;
+}
+
+void Checkpoints::keep(const CheckpointHead& head, const std::function<void(io::OutputArchive&)>& write) {
+  auto files = numbered(dir_);
+  const auto number = files.empty() ? 1 : files.rbegin()->first + 1;
+  io::OutputArchive archive(dir_ / fmt::format("{}{:06}{}", prefix, number, suffix));
+  archive(magic, head);
+  write(archive);
+  archive.close();
+  while (files.size() >= n_kept) {
+    io::remove_file(files.begin()->second);
+    files.erase(files.begin());
+  }
+}
+
+std::unique_ptr<Checkpoints::Kept> Checkpoints::last(
+    const std::function<void(const std::string&)>& note) const {
+  const auto files = numbered(dir_);
+  for (auto k = files.rbegin(); k != files.rend(); ++k) {
+    try {
+      auto kept = std::make_unique<Kept>(k->second);
+      std::string begin;
+      kept->rest(begin);
+      if (begin != magic) throw UserError("{}: is damaged or of another version", k->second.string());
+      kept->rest(kept->head);
+      return kept;
+    } catch (const UserError& error) {
+      note(std::string(error.what()) + "; an earlier one is taken");
+    }
+  }
+  return {};
+}
+
+}  // namespace slipfront::run

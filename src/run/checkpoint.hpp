@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "io/archive.hpp"
+
+namespace slipfront::run {
+
+/// Tells this very program from every other one: version, commit, and a checksum of what is executed.
+const std::string& program_identity();
+
+/// What a checkpoint says of itself before all else.
+struct CheckpointHead {
+  std::string program = program_identity();
+  std::string case_text;  ///< case.resolved.toml
+  std::string table;      ///< of prescribed tractions, as it was read; empty without
+  bool in_event = false;  ///< else in the ramp
+  int sessions = 1;       ///< see Status
+  double wall_s = 0;      ///< spent in the event so far
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(program, case_text, table, in_event, sessions, wall_s);
+  }
+};
+
+/// The checkpoints in a folder: the last two are kept, numbered as they come.
+class Checkpoints {
+ public:
+  explicit Checkpoints(std::filesystem::path dir) : dir_(std::move(dir)) {}
+
+  /// Writes a checkpoint by `write`, and when that is on the device removes the last but two.
+  /// @throws WriteError, the earlier ones being left.
+  void keep(const CheckpointHead& head, const std::function<void(io::OutputArchive&)>& write);
+
+  struct Kept {
+    explicit Kept(const std::filesystem::path& file) : rest(file) {}
+    CheckpointHead head;
+    io::InputArchive rest;
+  };
+  /// The last one that is intact, null where there is none; of others behind it `note` is told.
+  std::unique_ptr<Kept> last(const std::function<void(const std::string&)>& note) const;
+
+ private:
+  std::filesystem::path dir_;
+};
+
+}  // namespace slipfront::run

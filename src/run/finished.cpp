@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/finished.hpp"
+
+#include "base/error.hpp"
+#include "io/archive.hpp"
+#include "run/checkpoint.hpp"
+
+namespace slipfront::run {
+namespace {
+
+solve::Equilibrium at_interface(const solve::Equilibrium& state) {
+  return {{},
+          {},
+          state.shear_m,
+          state.contact,
+          state.tractions,
+          state.peak_ratio,
+          state.peak_x_m,
+          state.inside_from_m,
+          state.inside_to_m};
+}
+
+/// The state without the plate's displacements, and without its mesh.
+InitialState at_interface(const InitialState& state) {
+  InitialState light;
+  light.n_nodes = state.n_nodes;
+  light.n_cells = state.n_cells;
+  light.tributary_m = state.tributary_m;
+  light.common = at_interface(state.common);
+  light.spontaneous = at_interface(state.spontaneous);
+  light.prescribed = state.prescribed;
+  light.critical_shear_m = state.critical_shear_m;
+  light.n_unknowns = state.n_unknowns;
+  light.solver = state.solver;
+  light.solver_bytes = state.solver_bytes;
+  light.wall_s = state.wall_s;
+  if (state.ramp)
+    light.ramp = solve::Ramp{at_interface(state.ramp->common), at_interface(state.ramp->spontaneous),
+                             state.ramp->record, state.ramp->steps, state.ramp->interrupted};
+  return light;
+}
+
+}  // namespace
+
+std::filesystem::path FinishedRuns::file_of(const io::Case& config) const {
+  return dir_ / (io::sha256(program_identity() + "\n" + resolved_text(config)).substr(0, 32) + ".bin");
+}
+
+bool FinishedRuns::has(const io::Case& config) const {
+  return io::is_there(file_of(config));
+}
+
+bool FinishedRuns::take(const io::Case& config, Result& result, InitialState& initial) const {
+  if (!has(config)) return false;
+  try {
+    io::InputArchive archive(file_of(config));
+    archive(result, initial);
+    archive.close();
+  } catch (const UserError&) {
+    return false;
+  }
+  result.config = config;
+  result.speeds = wave_speeds(config.material);
+  initial.mesh = check(config);
+  measure(result, initial);
+  return true;
+}
+
+void FinishedRuns::keep(const Result& result, const InitialState& initial) const {
+  if (!io::is_there(dir_)) io::make_folder(dir_);
+  auto light = at_interface(initial);
+  io::OutputArchive archive(file_of(result.config));
+  archive(result, light);
+  archive.close();
+}
+
+}  // namespace slipfront::run

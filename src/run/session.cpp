@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/session.hpp"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "base/error.hpp"
+#include "io/results.hpp"
+#include "io/schema.hpp"
+#include "io/stream.hpp"
+#include "run/checkpoint.hpp"
+
+namespace slipfront::run {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr const char* case_file = "case.resolved.toml";
+
+/// Wall time between two looks of the outside at a run; longer where writing them takes long.
+constexpr double least_tell_interval_s = 2;
+constexpr double tell_share = 0.02;
+
+class Session {
+ public:
+  Session(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
+          const SessionHooks& hooks)
+      : folder_(folder),
+        dir_(folder.unfinished()),
+        config_(config),
+        options_(options),
+        hooks_(hooks),
+        checkpoints_(folder.state()) {
+    head_.case_text = resolved_text(config);
+  }
+
+  /// From a checkpoint, or from the beginning.
+  Finished run(std::unique_ptr<Checkpoints::Kept> kept);
+
+ private:
+  void begin_ramp(Checkpoints::Kept* kept, solve::Stepper& stepper, solve::RampRun& ramp);
+  void begin_event(Checkpoints::Kept* kept);
+  /// Between steps. @return whether the run goes on
+  bool look(const char* part, std::int64_t step, std::int64_t total, double time_s);
+  void keep();
+  void tell();
+  double wall_s() const { return head_.wall_s + seconds_since(event_began_); }
+  /// The run's event is over: makes its results.
+  Finished finish(solve::Event event);
+  void write_results(const Finished& run);
+  void fail(const char* status, const std::string& reason) noexcept;
+
+  io::ResultFolder& folder_;
+  std::filesystem::path dir_;
+  const io::Case& config_;
+  const SessionOptions& options_;
+  const SessionHooks& hooks_;
+  Checkpoints checkpoints_;
+  CheckpointHead head_;
+  Clock::time_point event_began_ = Clock::now(), kept_ = Clock::now(), told_ = Clock::now();
+  double kept_time_s_ = 0, tell_interval_s_ = least_tell_interval_s;
+
+  InitialState initial_;
+  solve::Stepper* stepper_ = nullptr;  ///< of the ramp or of the event
+  solve::RampRun* ramp_ = nullptr;     ///< while it goes
+  std::unique_ptr<solve::Stepper> event_stepper_;
+  std::optional<solve::EventRun> event_;
+  std::optional<io::ResultStream> stream_;
+};
+
+Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
+  try {
+    if (kept) {
+      head_.sessions = kept->head.sessions + 1;
+      head_.wall_s = kept->head.wall_s;
+    }
+    write_status(dir_, config_, {"running", "before the event", head_.sessions});
+    if (kept && kept->head.in_event) {
+      begin_event(kept.get());
+    } else {
+      initial_ = make_initial_state(
+          config_,
+          [&](std::int64_t step, std::int64_t total) {
+            return look("ramp", step, total, stepper_->time_s());
+          },
+          options_.execution,
+          [&](solve::Stepper& stepper, solve::RampRun& ramp) { begin_ramp(kept.get(), stepper, ramp); });
+      ramp_ = nullptr;
+      stepper_ = nullptr;
+      if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
+      begin_event(nullptr);
+    }
+    kept.reset();
+    return finish(event_->run(
+        [&](std::int64_t step, std::int64_t total) { return look("event", step, total, stepper_->time_s()); },
+        &*stream_));
+  } catch (const Interrupted& error) {
+    fail("interrupted", error.what());
+    throw;
+  } catch (const BlowUp& error) {
+    fail("blew_up", error.what());
+    throw;
+  } catch (const std::exception& error) {
+    fail("failed", error.what());
+    throw;
+  }
+}
+
+void Session::fail(const char* status, const std::string& reason) noexcept {
+  try {
+    if (stream_) stream_->hand_over();
+    write_status(dir_, config_, {status, reason, head_.sessions});
+  } catch (...) {
+    // What made the run fail may also keep its reason from being written.
+  }
+}
+
+void Session::begin_ramp(Checkpoints::Kept* kept, solve::Stepper& stepper, solve::RampRun& ramp) {
+  if (kept != nullptr) {
+    kept->rest(stepper, ramp);
+    kept->rest.close();
+  }
+  stepper_ = &stepper;
+  ramp_ = &ramp;
+  kept_time_s_ = stepper.time_s();
+}
+
+void Session::begin_event(Checkpoints::Kept* kept) {
+  if (kept != nullptr) {
+    initial_.mesh = check(config_);
+    kept->rest(initial_);
+    event_stepper_ = make_stepper(config_, initial_, options_.execution);
+    kept->rest(*event_stepper_);
+    event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
+    io::ResultStream::Lengths lengths;
+    kept->rest(*event_, lengths);
+    kept->rest.close();
+    stream_.emplace(folder_.state(), lengths);
+  } else {
+    io::write_static(dir_ / "static.csv", initial_.common.tractions);
+    io::remove_file(io::ResultStream::history_file(folder_.state()));
+    io::remove_file(io::ResultStream::snapshot_file(folder_.state()));
+    stream_.emplace(folder_.state());
+    event_stepper_ = start_event(config_, initial_, options_.execution);
+    event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
+  }
+  stepper_ = event_stepper_.get();
+  kept_time_s_ = stepper_->time_s();
+  event_began_ = kept_ = Clock::now();
+  tell();
+}
+
+bool Session::look(const char* part, std::int64_t step, std::int64_t total, double time_s) {
+  hooks_.progress(part, step, total);
+  const Request request = hooks_.request();
+  if (request != Request::none || seconds_since(kept_) >= options_.keep_every_wall_s ||
+      time_s - kept_time_s_ >= options_.keep_every_s)
+    keep();
+  if (event_ && seconds_since(told_) >= tell_interval_s_) tell();
+  return request != Request::stop;
+}
+
+void Session::keep() {
+  auto head = head_;
+  head.in_event = event_.has_value();
+  if (head.in_event) head.wall_s = wall_s();
+  // The streams first: a checkpoint must not count on rows that are not there yet.
+  auto lengths = stream_ ? stream_->keep() : io::ResultStream::Lengths{};
+  checkpoints_.keep(head, [&](io::OutputArchive& archive) {
+    if (head.in_event)
+      archive(initial_, *stepper_, *event_, lengths);
+    else
+      archive(*stepper_, *ramp_);
+  });
+  kept_ = Clock::now();
+  kept_time_s_ = stepper_->time_s();
+}
+
+void Session::tell() {
+  const auto start = Clock::now();
+  stream_->hand_over();
+  solve::Event so_far;
+  so_far.steps = stepper_->step();
+  so_far.time_s = stepper_->time_s();
+  so_far.energies = event_->energies();
+  so_far.record = event_->record();
+  auto result = unmeasured(config_, *stepper_, std::move(so_far));
+  result.stepping_wall_s = wall_s();
+  measure(result, initial_);
+  write_so_far(dir_, result, initial_, {"running", "", head_.sessions});
+  told_ = Clock::now();
+  tell_interval_s_ = std::max(least_tell_interval_s, seconds_since(start) / tell_share);
+}
+
+Finished Session::finish(solve::Event event) {
+  Finished run{unmeasured(config_, *stepper_, std::move(event)), {}};
+  run.result.stepping_wall_s = wall_s();
+  stream_->keep();
+  stream_.reset();
+  event_.reset();
+  event_stepper_.reset();
+  run.initial = std::move(initial_);
+  measure(run.result, run.initial);
+  write_results(run);
+  return run;
+}
+
+void Session::write_results(const Finished& run) {
+  auto status = status_of(run.result);
+  status.sessions = head_.sessions;
+  // What takes no time first: the program may be given none after an interruption.
+  write_so_far(dir_, run.result, run.initial, status);
+  io::write_history(dir_ / "interface.h5", io::ResultStream::history_file(folder_.state()),
+                    run.initial.common.tractions.x_m);
+  if (!config_.output.snapshot_times_s.empty())
+    io::write_snapshots(dir_ / "fields.vtkhdf", io::ResultStream::snapshot_file(folder_.state()),
+                        check(config_));
+  if (status.name == "complete") folder_.publish();
+}
+
+/// The first line in which two texts differ, for a message; of `text`.
+std::string first_difference(const std::string& text, const std::string& other) {
+  std::size_t k = 0;
+  while (k < text.size() && k < other.size() && text[k] == other[k]) ++k;
+  const auto begin = text.rfind('\n', k == 0 ? 0 : k - 1) + 1;
+  std::string line = text.substr(begin, text.find('\n', k) - begin);
+  return line.substr(0, line.find("  #"));
+}
+
+void require_same(const std::string& wanted, const std::string& kept, const std::string& name) {
+  if (wanted != kept)
+    throw UserError("{}: is another case than the one that was begun, which has \"{}\"; begin anew", name,
+                    first_difference(kept, wanted));
+}
+
+}  // namespace
+
+Finished run_into(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
+                  const SessionHooks& hooks) {
+  folder.begin();
+  io::write_text(folder.unfinished() / case_file, resolved_text(config));
+  return Session(folder, config, options, hooks).run({});
+}
+
+Finished go_on(io::ResultFolder& folder, const io::Case* expected, const SessionOptions& options,
+               const SessionHooks& hooks) {
+  const auto file = folder.unfinished() / case_file;
+  if (!folder.has_unfinished() || !io::is_there(file))
+    throw UserError("{}: holds no unfinished run to go on with", folder.dir().string());
+  const io::Case config = io::read_case(file);
+  const std::string text = resolved_text(config);
+  if (expected != nullptr) require_same(resolved_text(*expected), text, "the case");
+  auto kept = Checkpoints(folder.state()).last(hooks.note);
+  if (kept) {
+    if (kept->head.program != program_identity())
+      throw UserError("{}: was begun by {}, and this is {}; go on with that one, or begin anew",
+                      folder.unfinished().string(), kept->head.program, program_identity());
+    require_same(text, kept->head.case_text, file.string());
+  }
+  for (const char* name : {"interface.h5", "fields.vtkhdf"}) io::remove_file(folder.unfinished() / name);
+  return Session(folder, config, options, hooks).run(std::move(kept));
+}
+
+bool is_complete(const std::filesystem::path& dir) {
+  return io::is_there(dir / io::checksum_list) && io::is_there(dir / "run.json") &&
+         io::is_there(dir / "interface.h5");
+}
+
+}  // namespace slipfront::run

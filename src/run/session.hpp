@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "io/folder.hpp"
+#include "run/run.hpp"
+
+namespace slipfront::run {
+
+/// What a run under way is asked for from outside.
+enum class Request {
+  none,
+  keep,  ///< a checkpoint, now
+  stop,  ///< a checkpoint, and an end
+};
+
+struct SessionOptions {
+  solve::Execution execution;
+  double keep_every_wall_s = 300;                                 ///< wall time between checkpoints
+  double keep_every_s = std::numeric_limits<double>::infinity();  ///< simulated time between them
+};
+
+/// All three are called by the thread that steps.
+struct SessionHooks {
+  /// Of "ramp" or "event".
+  std::function<void(const char* part, std::int64_t step, std::int64_t total)> progress;
+  std::function<Request()> request;
+  std::function<void(const std::string& note)> note;
+};
+
+/// A run that has come to its end.
+struct Finished {
+  Result result;
+  InitialState initial;
+};
+
+/// The kind of work that a run is, see io::ResultFolder.
+inline constexpr const char* run_work = "run";
+
+/// Runs a case into its folder. While it goes, DIR/unfinished has the case, run.json with its status, and
+/// what there is of the results; every now and then a checkpoint is kept there, from which go_on goes on. A
+/// run that is complete is published to DIR; one that was interrupted or blew up stays where it is.
+/// @throws UserError and BlowUp, nothing being kept but the reason where there was no event yet;
+/// Interrupted in ramp or statics; WriteError, what there is being kept.
+Finished run_into(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
+                  const SessionHooks& hooks);
+
+/// Goes on with a run that was left unfinished, as if it had never stopped: from its last checkpoint that is
+/// intact, or from its beginning where there is none. Ramps solve their statics again.
+/// @param expected  a case that it must be, or null
+/// @throws UserError where there is none, or it is one of another program or case
+Finished go_on(io::ResultFolder& folder, const io::Case* expected, const SessionOptions& options,
+               const SessionHooks& hooks);
+
+/// Whether a folder has the results of a run that is complete.
+bool is_complete(const std::filesystem::path& dir);
+
+}  // namespace slipfront::run
