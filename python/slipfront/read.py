@@ -61,10 +61,10 @@ BLEW_UP = "blew_up"  # its last numbers may be no numbers
 # What a run.json tells of the run's end, by "status" or, in older folders, by "end"; None: all is well.
 STATUSES = {
     "complete": None,
-    "interrupted": "interrupted",
-    BLEW_UP: "blew up",
-    "failed": "failed",
-    "running": "still running or killed",
+    "interrupted": "interrupted at",
+    BLEW_UP: "blew up at",
+    "failed": "failed at",
+    "running": "still running or killed, results up to",
 }
 OLD_ENDS = {"interrupted": "interrupted", "blow_up": BLEW_UP}
 WITHOUT_END = ("running", "failed")  # these leave history.raw; what else there is may be half written
@@ -168,7 +168,7 @@ class Place:
     def mark(self, last_s: float) -> str:
         """How a run ended that did not come to its end, for titles; empty for a complete one."""
         ending = STATUSES[self.status]
-        return "" if ending is None else f"{ending} at t = {1e6 * last_s:.4g} µs"
+        return "" if ending is None else f"{ending} t = {1e6 * last_s:.4g} µs"
 
     def remarks(self, last_s: float) -> list[str]:
         """Lines to print beside the figures."""

@@ -23,6 +23,7 @@ from synthetic_study import (
     write_study,
 )
 
+
 @pytest.fixture(autouse=True)
 def coarse_pictures(monkeypatch):
     monkeypatch.setitem(RC, "savefig.dpi", 60)

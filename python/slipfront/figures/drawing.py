@@ -30,9 +30,9 @@ class Drawing:
         """The same with a title above all else, outside the figure's own frame."""
         if not mark:
             return self
-        self.figure.text(
-            0.5, 1.01, plain(mark), ha="center", va="bottom", color=MARK_COLOUR, fontweight="bold", gid="mark"
-        )
+        lines = "\n".join(map(plain, mark.split("\n")))
+        look = {"ha": "center", "va": "bottom", "color": MARK_COLOUR, "fontweight": "bold"}
+        self.figure.text(0.5, 1.01, lines, gid="mark", **look)
         return replace(self, mark=mark)
 
     def rendered(self, kind: str, **metadata) -> bytes:

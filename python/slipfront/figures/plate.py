@@ -13,7 +13,7 @@ from slipfront.figures.results import HIGH_MU_K, Results, start
 from slipfront.files import DataError
 from slipfront.read import Fields, Run
 
-NO_FIELDS = "no snapshots: fields.vtkhdf was not written"
+NO_FIELDS = "no snapshots (fields.vtkhdf)"
 GRID_LINES = 40  # about as many mesh lines across the plate stay readable
 
 

@@ -56,8 +56,8 @@ class Results:
 
     @property
     def mark(self) -> str:
-        """For titles: the runs that did not come to their end; empty where all did."""
-        return "; ".join(f"{name}: {run.mark}" for name, run in self.runs.items() if run.mark)
+        """For titles: the runs that did not come to their end, a line each; empty where all did."""
+        return "\n".join(f"{name}: {run.mark}" for name, run in self.runs.items() if run.mark)
 
     @property
     def remarks(self) -> list[str]:
