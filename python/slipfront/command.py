@@ -17,7 +17,7 @@ DONE, REFUSED, INTERRUPTED = 0, 2, 130
 
 
 def write_line(stream, text: str) -> None:
-    """A line on standard output or error, which may be closed (None), full, or of an encoding without some signs."""
+    """A line on standard output or error, which may be closed (None), full or without some signs."""
     if stream is None:
         return
     encoding = getattr(stream, "encoding", None) or "utf-8"
@@ -61,7 +61,8 @@ def run(name: str, work: Callable[[], list[str]]) -> int:
 
 @contextmanager
 def publishing_into(folder: Path) -> Iterator[Path]:
-    """A folder to write into, inside `folder`. At the end its files are moved there; after an error none is."""
+    """A folder to write into, inside `folder`. At the end its files go there; after an error none does."""
+    is_new = not os.path.lexists(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with TemporaryDirectory(dir=folder, prefix=".unfinished-") as made:
@@ -71,5 +72,6 @@ def publishing_into(folder: Path) -> Iterator[Path]:
     except OSError as error:
         raise DataError(f"{folder}: cannot be written: {error.strerror or error}") from None
     finally:
-        with suppress(OSError):
-            folder.rmdir()  # only an empty one goes
+        if is_new:
+            with suppress(OSError):
+                folder.rmdir()  # only an empty one goes

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Single files as values. Whatever a file holds, it is read or refused with a DataError, one line that names it."""
+"""Single files as values. Whatever a file holds, it is read or refused with a DataError."""
 
 from __future__ import annotations
 
@@ -83,7 +83,9 @@ def read_text(file: Path) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise DataError(f"{file}:{line}: byte 0x{data[error.start]:02x} is not UTF-8: save the file as UTF-8") from None
+        raise DataError(
+            f"{file}:{line}: byte 0x{data[error.start]:02x} is not UTF-8: save the file as UTF-8"
+        ) from None
 
 
 def read_toml(file: Path) -> dict:
@@ -157,7 +159,9 @@ class Table:
     def numbers(self, column: str, finite: bool = True) -> np.ndarray:
         """An empty cell is NaN; nan and inf are refused unless `finite` is false. [rows]"""
         i = self.index(column)
-        return np.array([self.number(line, column, cells[i], finite) for line, cells in self.rows], dtype=float)
+        return np.array(
+            [self.number(line, column, cells[i], finite) for line, cells in self.rows], dtype=float
+        )
 
     def number(self, line: int, column: str, text: str, finite: bool) -> float:
         if not text:
@@ -223,7 +227,9 @@ def open_hdf5(file: Path) -> Iterator[h5py.File]:
         raise
     except MemoryError:
         raise DataError(f"{file}: does not fit into memory") from None
-    except Exception as error:  # h5py raises what it happens to: OSError, RuntimeError, KeyError, ValueError, ...
+    except (
+        Exception
+    ) as error:  # h5py raises what it happens to: OSError, RuntimeError, KeyError, ValueError, ...
         kind = "damaged, or not an HDF5 file"
         raise DataError(f"{file}: {kind}: {one_line(str(error))}") from None
 
@@ -237,8 +243,12 @@ def dataset(group: h5py.Group, name: str, dimensions: int) -> h5py.Dataset:
     if found.dtype.kind not in "fiu" or found.ndim != dimensions:
         raise DataError(f"{file}: '{name}' is not an array of numbers with {dimensions} dimensions")
     stored = found.id.get_storage_size()
-    if math.prod(found.shape) * found.dtype.itemsize > stored * (1 if packing(found) == 0 else LARGEST_PACKING):
-        raise DataError(f"{file}: '{name}' is {found.shape}, more than the file holds of it: cut off or damaged")
+    if math.prod(found.shape) * found.dtype.itemsize > stored * (
+        1 if packing(found) == 0 else LARGEST_PACKING
+    ):
+        raise DataError(
+            f"{file}: '{name}' is {found.shape}, more than the file holds of it: cut off or damaged"
+        )
     return found
 
 

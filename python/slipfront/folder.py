@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A folder of results: where its files are, and whether they are those that the program wrote.
 
-checksums.sha256 lists every file of a finished set with its SHA-256, as sha256sum does. publishing/ holds the files of
-such a set that have not been moved to their place. unfinished/ holds a run that has not come to its end.
+checksums.sha256 lists every file of a finished set with its SHA-256, as sha256sum does. publishing/ holds the
+files of such a set that have not been moved to their place, unfinished/ a run that has not come to its end.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 
 from slipfront.files import DataError, exists, is_folder, open_file, read_text
@@ -27,7 +27,7 @@ def located(path: Path) -> Path:
 
 
 def read_list(folder: Path) -> dict[str, str] | None:
-    """SHA-256 of each file of the set, by its name; None in a folder without a list, as older versions wrote it."""
+    """SHA-256 of each file of the set, by its name; None in a folder without a list, an older one."""
     file = located(folder / LIST)
     if not exists(file):
         return None
@@ -49,7 +49,7 @@ def sha256(file: Path) -> str:
     return sha256_of(file, status.st_ino, status.st_size, status.st_mtime_ns)
 
 
-@lru_cache(maxsize=None)
+@cache
 def sha256_of(file: Path, inode: int, size: int, modified_ns: int) -> str:
     """Computed once for each state of a file."""
     with open_file(file) as stream:
@@ -95,7 +95,7 @@ def lists_under(folder: Path) -> list[Path]:
 
 
 def verify_checksums(folder: Path) -> list[str]:
-    """What does not match the lists of a folder and of the folders in it, one line each; empty where all does."""
+    """What does not match the lists of a folder and of those in it, a line each; empty where all does."""
     if not is_folder(folder):
         return [f"{folder}: no such folder"]
     folders = lists_under(folder)

@@ -176,7 +176,10 @@ class Place:
         if not mark:
             return list(self.notes)
         because = f" ({self.reason})" if self.reason else ""
-        return [f"{self.folder}: {mark}{because}: the figures show what there is".replace("µs", "us"), *self.notes]
+        return [
+            f"{self.folder}: {mark}{because}: the figures show what there is".replace("µs", "us"),
+            *self.notes,
+        ]
 
 
 @dataclass(frozen=True)
@@ -293,7 +296,9 @@ def read_fronts(file: Path, growing: bool = False) -> list[Front]:
         require(~np.isnan(columns[name]), file, f"empty cell in column '{name}'")
     ids = columns["front_id"]
     require(np.abs(columns["direction"]) == 1, file, "a value other than 1 and -1 in column 'direction'")
-    require((ids == np.round(ids)) & (np.abs(ids) < 2**31), file, "a value of column 'front_id' is not an integer")
+    require(
+        (ids == np.round(ids)) & (np.abs(ids) < 2**31), file, "a value of column 'front_id' is not an integer"
+    )
     fronts = []
     for front_id in dict.fromkeys(ids):  # in the order of the file
         c = {name: values[ids == front_id] for name, values in columns.items()}
@@ -342,7 +347,7 @@ def read_history(file: Path, blew_up: bool = False) -> History:
 
 
 def read_raw_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
-    """history.raw: rows of time_s and slip, slip rate, t, p at the nodes; what follows the last whole row is left."""
+    """history.raw: rows of time_s and slip, slip rate, t, p at the nodes; a cut row at the end is left."""
     data = read_bytes(result_file(file))
     width, n = 1 + 4 * len(x_m), len(x_m)
     n_rows = len(data) // (8 * width)
@@ -366,7 +371,11 @@ def read_fields(file: Path) -> Fields:
         time_s = dataset(group, "Steps/Values", 1)[()]
         starts = dataset(group, "Steps/PointDataOffsets/velocity_m_per_s", 1)[()]
         velocity = dataset(group, "PointData/velocity_m_per_s", 2).shape
-    require(n_points > 0 and points.shape == (n_points, 2), file, "the points are not as many as NumberOfPoints says")
+    require(
+        n_points > 0 and points.shape == (n_points, 2),
+        file,
+        "the points are not as many as NumberOfPoints says",
+    )
     require(np.isfinite(points), file, "a coordinate is not finite")
     quads = (types == VTK_QUAD).all() and np.array_equal(offsets, 4 * np.arange(n_cells + 1))
     require(
@@ -377,7 +386,9 @@ def read_fields(file: Path) -> Fields:
     require((connectivity >= 0) & (connectivity < n_points), file, "a cell has a node that does not exist")
     require_ascending(file, "the time of the snapshots", time_s)
     inside = (starts >= 0) & (starts <= velocity[0] - n_points)
-    require(len(starts) == len(time_s) and inside.all(), file, "a snapshot's velocity_m_per_s is not in the file")
+    require(
+        len(starts) == len(time_s) and inside.all(), file, "a snapshot's velocity_m_per_s is not in the file"
+    )
     return Fields(file, points, connectivity.reshape(-1, 4).astype(np.int64), time_s)
 
 
@@ -404,19 +415,23 @@ def read_place(folder: Path) -> Place:
     place, notes = folder, []
     if is_folder(folder / UNFINISHED):
         if belongs(folder / "run.json"):
-            notes = [f"{folder / UNFINISHED}: another run, not finished: the figures show the complete one beside it"]
+            notes = [f"{folder / UNFINISHED}: another run, not finished: the figures show the complete one"]
         else:
             place = folder / UNFINISHED
     file = place / "run.json"
     info = read_json_table(result_file(file))
     status = info.get("status", OLD_ENDS.get(str(info.get("end")), "complete"))
     reason = info.get("reason", "")
-    require(isinstance(status, str) and status in STATUSES, file, "'status' is not one of " + ", ".join(STATUSES))
+    require(
+        isinstance(status, str) and status in STATUSES, file, "'status' is not one of " + ", ".join(STATUSES)
+    )
     require(isinstance(reason, str), file, "'reason' is not a text")
     if place != folder and status == "complete":
         notes = [f"{place}: a finished run that was not moved to its place"]
     fronts = info.get("fronts", [])
-    require(isinstance(fronts, list) and all(isinstance(f, dict) for f in fronts), file, "'fronts' is not a list")
+    require(
+        isinstance(fronts, list) and all(isinstance(f, dict) for f in fronts), file, "'fronts' is not a list"
+    )
     return Place(folder.name or folder.resolve().name, place, info, status, reason, tuple(notes))
 
 
@@ -441,7 +456,9 @@ def read_run(folder: Path) -> Run:
         case=read_toml(result_file(folder / "case.resolved.toml")),
         static_x_m=static["x_m"],
         static_ratio=ratio(static["t_s_Pa"], static["p_s_Pa"]),
-        fronts=read_fronts(folder / "fronts.csv", growing) if not growing or belongs(folder / "fronts.csv") else [],
+        fronts=read_fronts(folder / "fronts.csv", growing)
+        if not growing or belongs(folder / "fronts.csv")
+        else [],
         history=history,
         fields=read_fields(folder / "fields.vtkhdf") if has_fields else None,
         balance=read_balance(folder / "energy.csv", growing, blew_up),
@@ -461,7 +478,7 @@ def read_experiment(file: Path, c_L_m_per_s: float) -> tuple[np.ndarray, np.ndar
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.read",
-        description=f"Tells whether the files of a result folder match its {LIST}: exit code 0 where all do, else 1.",
+        description=f"Tells whether the files of a folder match its {LIST}: exit code 0 if so, else 1.",
     )
     parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of slipfront")
     folder = parser.parse_args(arguments).dir

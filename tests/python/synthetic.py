@@ -403,7 +403,9 @@ def write_output(
 
 def write_checksums(folder: Path, leave_out: tuple[str, ...] = ()) -> Path:
     """checksums.sha256 over the files of a folder, as sha256sum writes it."""
-    names = sorted(f.name for f in folder.iterdir() if f.is_file() and f.name not in ("checksums.sha256", *leave_out))
+    names = sorted(
+        f.name for f in folder.iterdir() if f.is_file() and f.name not in ("checksums.sha256", *leave_out)
+    )
     sums = [(hashlib.sha256((folder / name).read_bytes()).hexdigest(), name) for name in names]
     file = folder / "checksums.sha256"
     file.write_text("".join(f"{digest}  {name}\n" for digest, name in sums))

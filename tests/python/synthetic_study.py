@@ -12,7 +12,16 @@ from synthetic import write_csv
 C_L = 1500.0
 X_LEFT_M, X_RIGHT_M = 2e-3 * np.arange(10, 60), 2e-3 * np.arange(75, 95)
 SIZES, OWN = [2e-3, 1e-3, 0.5e-3], 1
-HEADER = "x_m direction parameter value v_tip_m_per_s extrapolated_m_per_s error_m_per_s order".split()
+HEADER = [
+    "x_m",
+    "direction",
+    "parameter",
+    "value",
+    "v_tip_m_per_s",
+    "extrapolated_m_per_s",
+    "error_m_per_s",
+    "order",
+]
 WITHOUT = {
     "verdict": "too few stations",
     "median_relative_error": None,
@@ -138,7 +147,14 @@ def write_verification(folder: Path) -> Path:
         {"label": "program", "kind": "program", "x": [1.0, 2.0, 4.0], "y": [1.1, 0.51, 0.26]},
     ]
     chart = {"x_label": "$n$", "y_label": "error", "log_x": True, "log_y": True, "curves": curves}
-    results = {"version": "0", "name": "column", "title": "Column", "holds": True, "checks": [], "charts": [chart]}
+    results = {
+        "version": "0",
+        "name": "column",
+        "title": "Column",
+        "holds": True,
+        "checks": [],
+        "charts": [chart],
+    }
     (folder / "column.json").write_text(json.dumps(results))
     return folder
 
@@ -147,7 +163,11 @@ def write_interface_step(folder: Path, title: str = "made up") -> Path:
     """A study of the step at the interface."""
     folder.mkdir()
     header = ["kind", "interface_rows", "interface_substeps", "cost_over_plain", "median_error", "p90_error"]
-    rows = [["plain", 0, 1, 1, 0.07, 0.27], ["plain", 0, 1, 2, 0.02, 0.05], ["layer", 4, 9, 2.6, 0.001, 0.005]]
+    rows = [
+        ["plain", 0, 1, 1, 0.07, 0.27],
+        ["plain", 0, 1, 2, 0.02, 0.05],
+        ["layer", 4, 9, 2.6, 0.001, 0.005],
+    ]
     write_csv(folder / "interface_step.csv", header, rows)
     (folder / "interface_step.json").write_text(json.dumps({"title": title, "tolerance": 0.01}))
     return folder

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whatever the files of a result folder hold, they are read or refused in one line: no other exception, no waiting.
+"""Whatever the files of a result folder hold, they are read or refused in one line, without waiting.
 
-Bytes are changed at random, from a fixed seed, for some seconds; SLIPFRONT_FUZZ_S and SLIPFRONT_FUZZ_SEED change both.
+Bytes are changed at random for some seconds, SLIPFRONT_FUZZ_S, from a seed, SLIPFRONT_FUZZ_SEED.
 """
 
 from __future__ import annotations
@@ -27,7 +27,22 @@ from synthetic_study import write_interface_step, write_study, write_verificatio
 FUZZ_S = float(os.environ.get("SLIPFRONT_FUZZ_S", "4"))
 SEED = int(os.environ.get("SLIPFRONT_FUZZ_SEED", "20120401"))
 LONGEST_S = 60
-TEXTS = (b"\xff", b"\0", b"nan", b"inf", b"-1", b"0", b"1e308", b"1e999", b"null", b"[]", b"{}", b'"', b"\n", b"#")
+TEXTS = (
+    b"\xff",
+    b"\0",
+    b"nan",
+    b"inf",
+    b"-1",
+    b"0",
+    b"1e308",
+    b"1e999",
+    b"null",
+    b"[]",
+    b"{}",
+    b'"',
+    b"\n",
+    b"#",
+)
 
 
 @pytest.fixture(autouse=True)
@@ -62,7 +77,9 @@ def mutated(data: bytes, rng: random.Random) -> bytes:
     changed = bytearray(data)
     for _ in range(rng.choice((1, 1, 4, 16))):
         at = rng.randrange(max(1, min(len(data), rng.choice((len(data), 4096)))))
-        changed[at : at + 1] = bytes([rng.choice((0, 255, rng.randrange(256), changed[at] ^ 1 << rng.randrange(8)))])
+        changed[at : at + 1] = bytes(
+            [rng.choice((0, 255, rng.randrange(256), changed[at] ^ 1 << rng.randrange(8)))]
+        )
     return bytes(changed)
 
 
@@ -145,15 +162,15 @@ def test_a_damaged_study_is_drawn_or_refused(tmp_path):
 
 
 def test_damaged_results_of_verify_are_drawn_or_refused(tmp_path):
-    folder, figures = write_verification(tmp_path / "verify"), str(tmp_path / "figures")
-    assert verification.main([str(folder), figures]) == 0
-    fuzz(folder, done_or_refused(lambda: verification.main([str(folder), figures])), FUZZ_S / 4)
+    folder, figures = write_verification(tmp_path / "verify"), tmp_path / "figures"
+    assert verification.main(folder, figures) == 0
+    fuzz(folder, done_or_refused(lambda: verification.main(folder, figures)), FUZZ_S / 4)
 
 
 def test_a_damaged_study_of_the_interface_step_is_drawn_or_refused(tmp_path):
-    folder, picture = write_interface_step(tmp_path / "step"), str(tmp_path / "picture.png")
-    assert interface_step.main([picture, str(folder)]) == 0
-    fuzz(folder, done_or_refused(lambda: interface_step.main([picture, str(folder)])), FUZZ_S / 4)
+    folder, picture = write_interface_step(tmp_path / "step"), tmp_path / "picture.png"
+    assert interface_step.main(picture, [folder]) == 0
+    fuzz(folder, done_or_refused(lambda: interface_step.main(picture, [folder])), FUZZ_S / 4)
 
 
 def test_no_change_to_a_file_with_a_checksum_is_accepted(output):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Folders with checksums, with sets that are being moved into place, and with runs that did not come to their end."""
+"""Folders with checksums, with half-moved sets, and with runs that did not come to their end."""
 
 from __future__ import annotations
 
@@ -30,7 +30,9 @@ from synthetic import (
 
 @pytest.fixture(scope="module")
 def pristine(tmp_path_factory):
-    return write_output(tmp_path_factory.mktemp("reproduction") / "out", columns=20, rows=10, n_times=11, snapshots=5)
+    return write_output(
+        tmp_path_factory.mktemp("reproduction") / "out", columns=20, rows=10, n_times=11, snapshots=5
+    )
 
 
 @pytest.fixture(autouse=True)
@@ -91,7 +93,9 @@ def test_a_sealed_reproduction_is_read(output, capsys):
         ),
     ],
 )
-@pytest.mark.parametrize("damage, says", [(flip, "does not match checksums"), (lambda f: f.unlink(), "missing")])
+@pytest.mark.parametrize(
+    "damage, says", [(flip, "does not match checksums"), (lambda f: f.unlink(), "missing")]
+)
 def test_a_file_that_is_not_as_listed_is_refused(output, capsys, name, damage, says):
     seal(output)
     damage(output / name)
@@ -121,7 +125,9 @@ def test_a_list_without_a_file_that_every_set_has_is_refused(run, name):
         read_run(run)
 
 
-@pytest.mark.parametrize("change", [lambda t: t[:70], lambda t: t.replace("  ", " ", 1), lambda t: "", lambda t: "x"])
+@pytest.mark.parametrize(
+    "change", [lambda t: t[:70], lambda t: t.replace("  ", " ", 1), lambda t: "", lambda t: "x"]
+)
 def test_a_damaged_list_is_refused(run, change):
     file = write_checksums(run)
     file.write_text(change(file.read_text()))
@@ -131,7 +137,10 @@ def test_a_damaged_list_is_refused(run, change):
 
 def test_the_lists_are_those_of_sha256sum(output):
     seal(output)
-    assert subprocess.run(["sha256sum", "--quiet", "-c", "checksums.sha256"], cwd=output / "left").returncode == 0
+    assert (
+        subprocess.run(["sha256sum", "--quiet", "-c", "checksums.sha256"], cwd=output / "left").returncode
+        == 0
+    )
 
 
 def test_checksums_of_all_folders_are_compared(output, capsys):
@@ -142,7 +151,10 @@ def test_checksums_of_all_folders_are_compared(output, capsys):
     flip(output / "left/fields.vtkhdf")
     (output / "right/energy.csv").unlink()
     problems = verify_checksums(output)
-    assert [p.split(":")[0] for p in problems] == [str(output / "left/fields.vtkhdf"), str(output / "right/energy.csv")]
+    assert [p.split(":")[0] for p in problems] == [
+        str(output / "left/fields.vtkhdf"),
+        str(output / "right/energy.csv"),
+    ]
     assert read.main([str(output)]) == 1
     assert capsys.readouterr().out.splitlines() == problems
 
@@ -219,7 +231,9 @@ def test_unfinished_runs_are_marked_in_every_figure_of_a_reproduction(output, ca
     interrupt(output / "left", "blew_up", "why")
     interrupt(output / "right", "running")
     assert main([str(output)]) == 0
-    assert [line.split(": ")[1] for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")] == [
+    assert [
+        line.split(": ")[1] for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")
+    ] == [
         str(output / "left/unfinished"),
         str(output / "right/unfinished"),
     ]
@@ -235,7 +249,9 @@ def test_complete_runs_have_no_mark(pristine):
     assert not any(drawing.mark for drawing in draw_all(read_results(pristine)))
 
 
-@pytest.mark.parametrize("end, status", [("interrupted", "interrupted"), ("blow_up", "blew_up"), ("quiet", "complete")])
+@pytest.mark.parametrize(
+    "end, status", [("interrupted", "interrupted"), ("blow_up", "blew_up"), ("quiet", "complete")]
+)
 def test_an_older_folder_tells_its_end(run, end, status):
     info = json.loads((run / "run.json").read_text())
     (run / "run.json").write_text(json.dumps(info | {"end": end}))
@@ -254,7 +270,10 @@ def test_complete_results_win_over_an_unfinished_run(output, capsys):
     assert read_run(output / "left").mark == ""
     assert main([str(output / "left")]) == 0
     out = capsys.readouterr().out
-    assert f"note: {output / 'left/unfinished'}: another run, not finished: the figures show the complete one" in out
+    assert (
+        f"note: {output / 'left/unfinished'}: another run, not finished: the figures show the complete one"
+        in out
+    )
 
 
 def test_a_list_without_its_files_does_not_hide_behind_an_unfinished_run(output):

@@ -152,10 +152,11 @@ def draw_plate(ax: Axes, run: Run) -> int | None:
         )
     )
     ax.plot([-0.04 * width, 1.04 * width], [0, 0], color="black", linewidth=0.7)
+    every = None
     if run.fields is not None:
         every = draw_mesh(ax, run.fields, int(run.fact("mesh.columns")), int(run.fact("mesh.rows")))
     else:
-        every = draw_outline(ax, width, height)
+        draw_outline(ax, width, height)
     draw_loading(ax, run, width, height)
     gap = 0.085 * height
     dimension(ax, (0, -2 * gap), (width, -2 * gap), f"$w = {width:g}$ mm")
@@ -257,8 +258,8 @@ def setup(results: Results) -> Drawing:
     return Drawing(
         "fig1_setup",
         figure,
-        f"(a) The plate on the rigid plane with its mesh of {columns} × {rows} cells ({drawn}), the displacement u<sub>y</sub> and the velocity "
-        "v<sub>x</sub> imposed on the top edge (arrows not to scale) and the point where slip nucleates "
-        "spontaneously (circle). (b) Static stress ratio along the interface and its maximum inside "
+        f"(a) The plate on the rigid plane with its mesh of {columns} × {rows} cells ({drawn}), the "
+        "displacement u<sub>y</sub> and the velocity v<sub>x</sub> imposed on the top edge (arrows not to "
+        "scale) and the point where slip nucleates spontaneously (circle). (b) Static stress ratio along the interface and its maximum inside "
         "(circle). (c) Friction coefficient against slip rate for the two values of μ<sub>k</sub>.",
     )

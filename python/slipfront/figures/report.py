@@ -247,7 +247,9 @@ def figure_html(drawing: Drawing, folder: Path) -> str:
     title = escape(drawing.name)
     number = re.match(r"fig(\d+)_", drawing.name)
     label = f"<b>Figure {number[1]} of the paper.</b> " if number else ""
-    mark = f'<span class="mark">{escape(drawing.mark.replace(chr(10), "; "))}.</span> ' if drawing.mark else ""
+    mark = (
+        f'<span class="mark">{escape(drawing.mark.replace(chr(10), "; "))}.</span> ' if drawing.mark else ""
+    )
     return (
         f'<figure id="{title}" class="{kind}"><img alt="{title}" src="data:image/png;base64,{image}">\n'
         f'<figcaption>{mark}{label}{drawing.caption} <a href="{title}.pdf">PDF</a></figcaption></figure>'

@@ -96,7 +96,9 @@ def read_point(point: dict) -> StudyPoint:
         number=optional(point["number"]),
         fronts=fronts,
         change={
-            str(e["event"]): optional(e["speed_change"]["median"]) for e in point["events"] if "speed_change" in e
+            str(e["event"]): optional(e["speed_change"]["median"])
+            for e in point["events"]
+            if "speed_change" in e
         },
         rms_over_c_L=optional(point["fit"]["rms_over_c_L"]) if point["fit"] is not None else None,
         share_in_paper_band=optional(point["share_in_paper_band"]),

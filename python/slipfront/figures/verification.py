@@ -31,13 +31,27 @@ def draw_chart(ax, chart: dict) -> None:
     n_program = n_theory = 0
     for curve in chart["curves"]:
         if curve["kind"] == "theory":
-            ax.plot(curve["x"], curve["y"], color="0.3", linestyle=("-", "--", ":", "-.")[n_theory % 4],
-                    linewidth=0.8, label=curve["label"], zorder=1.5)
+            ax.plot(
+                curve["x"],
+                curve["y"],
+                color="0.3",
+                linestyle=("-", "--", ":", "-.")[n_theory % 4],
+                linewidth=0.8,
+                label=curve["label"],
+                zorder=1.5,
+            )
             n_theory += 1
         else:
             many = len(curve["x"]) > MANY_POINTS
-            ax.plot(curve["x"], curve["y"], color=COLOURS[n_program % 7], linestyle="-" if many else "none",
-                    marker=None if many else MARKERS[n_program % 7], markerfacecolor="none", label=curve["label"])
+            ax.plot(
+                curve["x"],
+                curve["y"],
+                color=COLOURS[n_program % 7],
+                linestyle="-" if many else "none",
+                marker=None if many else MARKERS[n_program % 7],
+                markerfacecolor="none",
+                label=curve["label"],
+            )
             n_program += 1
     ax.set(xlabel=chart["x_label"], ylabel=chart["y_label"])
     for axis, log in ((ax.xaxis, chart["log_x"]), (ax.yaxis, chart["log_y"])):
@@ -92,16 +106,20 @@ def draw_all(results: Path, figures: Path) -> list[str]:
     return [f"figures: {figures} ({len(files)})"]
 
 
-def main(arguments: list[str] | None = None) -> int:
+def main(results: Path, figures: Path) -> int:
+    return command.run("slipfront.figures", lambda: draw_all(results, figures))
+
+
+def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.figures.verification",
         description="Draws the charts of `slipfront verify -o DIR` as FIGURES/verify_NAME.png.",
     )
     parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront verify`")
     parser.add_argument("figures", metavar="FIGURES", type=Path, help="folder for the pictures")
-    options = parser.parse_args(arguments)
-    return command.run("slipfront.figures", lambda: draw_all(options.dir, options.figures))
+    return parser.parse_args()
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    options = parsed()
+    sys.exit(main(options.dir, options.figures))
