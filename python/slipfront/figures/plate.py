@@ -260,6 +260,7 @@ def setup(results: Results) -> Drawing:
         figure,
         f"(a) The plate on the rigid plane with its mesh of {columns} × {rows} cells ({drawn}), the "
         "displacement u<sub>y</sub> and the velocity v<sub>x</sub> imposed on the top edge (arrows not to "
-        "scale) and the point where slip nucleates spontaneously (circle). (b) Static stress ratio along the interface and its maximum inside "
-        "(circle). (c) Friction coefficient against slip rate for the two values of μ<sub>k</sub>.",
+        "scale) and the point where slip nucleates spontaneously (circle). (b) Static stress ratio along the "
+        "interface and its maximum inside (circle). (c) Friction coefficient against slip rate for the two "
+        "values of μ<sub>k</sub>.",
     )
