@@ -16,7 +16,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from slipfront.figures.style import PAGE_MM, RC
-from slipfront.read import Front, read_fronts, read_json
+from slipfront.files import read_json
+from slipfront.read import Front, read_fronts
 
 EVENTS = ("left", "spontaneous", "right", "spontaneous_mu_k_1.0")
 LAWS = {

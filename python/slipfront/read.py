@@ -1,16 +1,30 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads the files of an output folder into arrays. SI units; undefined values are NaN."""
+"""Reads the files of an output folder into arrays. SI units; undefined values are NaN.
+
+`python -m slipfront.read DIR` tells whether the files are those that the program wrote."""
 
 from __future__ import annotations
 
-import csv
-import json
-import tomllib
+import argparse
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-import h5py
 import numpy as np
+
+from slipfront import command
+from slipfront.files import (
+    DataError,
+    dataset,
+    is_folder,
+    number,
+    open_hdf5,
+    read_bytes,
+    read_json_table,
+    read_table,
+    read_toml,
+)
+from slipfront.folder import LIST, UNFINISHED, belongs, result_file, verify_checksums
 
 STATIC_COLUMNS = ("x_m", "t_s_Pa", "p_s_Pa")
 FRONT_COLUMNS = (
@@ -43,9 +57,17 @@ ENERGY_TERMS = (
 )
 VTK_QUAD = 9
 
-
-class DataError(Exception):
-    """A file is missing or not as expected; the message is one line that names it."""
+BLEW_UP = "blew_up"  # its last numbers may be no numbers
+# What a run.json tells of the run's end, by "status" or, in older folders, by "end"; None: all is well.
+STATUSES = {
+    "complete": None,
+    "interrupted": "interrupted at",
+    BLEW_UP: "blew up at",
+    "failed": "failed at",
+    "running": "still running or killed, results up to",
+}
+OLD_ENDS = {"interrupted": "interrupted", "blow_up": BLEW_UP}
+WITHOUT_END = ("running", "failed")  # these leave history.raw; what else there is may be half written
 
 
 def ratio(numerator: np.ndarray, denominator: np.ndarray) -> np.ndarray:
@@ -90,19 +112,22 @@ class Fields:
 
     def speed_m_per_s(self, step: int) -> np.ndarray:
         """Magnitude of the velocity at the nodes. [nodes]"""
+        n = len(self.points_m)
         with open_hdf5(self.file) as file:
             group = file["VTKHDF"]
-            n = len(self.points_m)
-            first = int(dataset(group, "Steps/PointDataOffsets/velocity_m_per_s")[step])
-            velocity = dataset(group, "PointData/velocity_m_per_s")[first : first + n]
-        if len(velocity) != n:
-            raise DataError(f"{self.file}: step {step} of velocity_m_per_s has {len(velocity)} rows, not {n}")
-        return np.linalg.norm(velocity, axis=1)
+            first = int(dataset(group, "Steps/PointDataOffsets/velocity_m_per_s", 1)[step])
+            velocity = dataset(group, "PointData/velocity_m_per_s", 2)
+            if not 0 <= first <= len(velocity) - n:
+                raise DataError(f"{self.file}: step {step} of velocity_m_per_s has not {n} rows")
+            speed = np.linalg.norm(velocity[first : first + n], axis=1)
+        if not np.isfinite(speed).all():
+            raise DataError(f"{self.file}: a number of step {step} of velocity_m_per_s is not finite")
+        return speed
 
 
 @dataclass(frozen=True)
 class History:
-    """Slip rate and pressure along the interface over time, from interface.h5."""
+    """Slip rate and pressure along the interface over time, from interface.h5 or history.raw."""
 
     time_s: np.ndarray  # [times]
     x_m: np.ndarray  # [nodes]
@@ -125,27 +150,87 @@ class Balance:
 
 
 @dataclass(frozen=True)
-class Run:
-    """One run's folder. `case` and `info` are case.resolved.toml and run.json as dictionaries."""
+class Place:
+    """Where a run's results are and how it ended. `info` is run.json as a dictionary."""
 
     name: str
-    folder: Path
-    case: dict
+    folder: Path  # the run's own, or its unfinished/
     info: dict
+    status: str  # one of STATUSES
+    reason: str  # may be empty
+    notes: tuple[str, ...]  # what a reader of the figures should know besides, a line each
+
+    @property
+    def growing(self) -> bool:
+        """Whether files may end within a row."""
+        return self.status in WITHOUT_END
+
+    def mark(self, last_s: float) -> str:
+        """How a run ended that did not come to its end, for titles; empty for a complete one."""
+        ending = STATUSES[self.status]
+        return "" if ending is None else f"{ending} t = {1e6 * last_s:.4g} µs"
+
+    def remarks(self, last_s: float) -> list[str]:
+        """Lines to print beside the figures."""
+        mark = self.mark(last_s)
+        if not mark:
+            return list(self.notes)
+        because = f" ({self.reason})" if self.reason else ""
+        return [
+            f"{self.folder}: {mark}{because}: the figures show what there is".replace("µs", "us"),
+            *self.notes,
+        ]
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run's results. `case` is case.resolved.toml as a dictionary."""
+
+    place: Place
+    case: dict
     static_x_m: np.ndarray  # [nodes]
     static_ratio: np.ndarray  # [nodes], t_s / p_s
     fronts: list[Front]
     history: History
-    fields: Fields
+    fields: Fields | None  # of a run without snapshots
     balance: Balance
+
+    @property
+    def name(self) -> str:
+        return self.place.name
+
+    @property
+    def info(self) -> dict:
+        """run.json as a dictionary."""
+        return self.place.info
+
+    @property
+    def status(self) -> str:
+        """How the run ended, one of STATUSES."""
+        return self.place.status
+
+    @property
+    def reason(self) -> str:
+        """Why it ended so; may be empty."""
+        return self.place.reason
+
+    @property
+    def mark(self) -> str:
+        """For titles: how a run ended that did not come to its end; empty for a complete one."""
+        return self.place.mark(self.history.time_s[-1])
+
+    @property
+    def remarks(self) -> list[str]:
+        """Lines to print beside the figures."""
+        return self.place.remarks(self.history.time_s[-1])
 
     def parameter(self, key: str) -> float:
         """Number of a dotted key of the case file."""
-        return number(self.folder / "case.resolved.toml", self.case, key)
+        return number(self.place.folder / "case.resolved.toml", self.case, key)
 
     def fact(self, key: str) -> float:
         """Number of a dotted key of run.json."""
-        return number(self.folder / "run.json", self.info, key)
+        return number(self.place.folder / "run.json", self.info, key)
 
     @property
     def c_L_m_per_s(self) -> float:
@@ -154,12 +239,12 @@ class Run:
     @property
     def kind(self) -> str:
         """What starts the event: left, right, spontaneous, ..."""
-        return str(self.case.get("event", {}).get("kind"))
+        return str(entry(self.case, "event", "kind"))
 
     @property
     def prescribed(self) -> bool:
         """Whether the tractions before the event were given, not found by tilting and shearing the plate."""
-        return self.case.get("loading", {}).get("method") == "prestress"
+        return entry(self.case, "loading", "method") == "prestress"
 
     def end_of(self, front: Front) -> str | None:
         """How a front ends, from run.json; None where it is not told."""
@@ -167,95 +252,59 @@ class Run:
         return next(ends, None)
 
 
-def number(file: Path, table: dict, key: str) -> float:
-    value = table
-    for part in key.split("."):
-        if not isinstance(value, dict) or part not in value:
-            raise DataError(f"{file}: no entry '{key}'")
-        value = value[part]
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise DataError(f"{file}: '{key}' is not a number")
-    return float(value)
+def entry(table: dict, part: str, key: str):
+    """A key of a part of a file; None where there is none."""
+    inner = table.get(part)
+    return inner.get(key) if isinstance(inner, dict) else None
 
 
-def open_text(file: Path):
-    try:
-        return open(file, encoding="utf-8", newline="")
-    except OSError as error:
-        raise DataError(f"{file}: {error.strerror}") from None
+def read_columns(
+    file: Path, columns: tuple[str, ...], growing: bool = False, finite: bool = True
+) -> dict[str, np.ndarray]:
+    """The named columns of a result's table as numbers; other columns are passed over."""
+    table = read_table(result_file(file), growing=growing)
+    return {name: table.numbers(name, finite) for name in columns}
 
 
-def read_toml(file: Path) -> dict:
-    with open_text(file) as stream:
-        try:
-            return tomllib.loads(stream.read())
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise DataError(f"{file}: not TOML: {error}") from None
+def n_finite(*arrays: np.ndarray) -> int:
+    """Number of rows before the first that holds a number that is not finite."""
+    finite = np.all([np.isfinite(a).reshape(len(a), -1).all(axis=1) for a in arrays], axis=0)
+    return len(finite) if finite.all() else int(np.argmin(finite))
 
 
-def read_json(file: Path):
-    with open_text(file) as stream:
-        try:
-            return json.load(stream)
-        except ValueError as error:
-            raise DataError(f"{file}: not JSON: {error}") from None
+def require(holds, file: Path, what: str) -> None:
+    """Refuses a file unless all of `holds` is true."""
+    if not np.all(holds):
+        raise DataError(f"{file}: {what}")
 
 
-def read_csv(file: Path, columns: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """The named columns as numbers, an empty cell as NaN; other columns are passed over."""
-    with open_text(file) as stream:
-        reader = csv.reader(stream)
-        header = [name.strip() for name in next(reader, [])]
-        for name in columns:
-            if name not in header:
-                raise DataError(f"{file}: no column '{name}'")
-        rows = []
-        for cells in reader:
-            if not any(cell.strip() for cell in cells):
-                continue
-            if len(cells) != len(header):
-                raise DataError(f"{file}:{reader.line_num}: {len(cells)} cells, the header has {len(header)}")
-            row = []
-            for name in columns:
-                text = cells[header.index(name)].strip()
-                try:
-                    row.append(float(text) if text else np.nan)
-                except ValueError:
-                    raise DataError(
-                        f"{file}:{reader.line_num}: '{text}' in column '{name}' is not a number"
-                    ) from None
-            rows.append(row)
-    table = np.array(rows, dtype=float).reshape(-1, len(columns))
-    return {name: table[:, i] for i, name in enumerate(columns)}
+def require_ascending(file: Path, name: str, values: np.ndarray) -> None:
+    require(np.isfinite(values), file, f"a value of {name} is missing or not finite")
+    require(np.diff(values) > 0, file, f"{name} does not ascend")
 
 
-def open_hdf5(file: Path) -> h5py.File:
-    if not file.exists():
-        raise DataError(f"{file}: No such file or directory")
-    try:
-        return h5py.File(file, "r")
-    except OSError:
-        raise DataError(f"{file}: not an HDF5 file") from None
+def read_static(file: Path) -> dict[str, np.ndarray]:
+    columns = read_columns(file, STATIC_COLUMNS)
+    require(len(columns["x_m"]) >= 2, file, "fewer than two rows")
+    require_ascending(file, "x_m", columns["x_m"])
+    return columns
 
 
-def dataset(group: h5py.Group, name: str) -> h5py.Dataset:
-    found = group.get(name)
-    if not isinstance(found, h5py.Dataset):
-        raise DataError(f"{group.file.filename}: no data set '{name}' in '{group.name}'")
-    return found
-
-
-def read_fronts(file: Path) -> list[Front]:
-    columns = read_csv(file, FRONT_COLUMNS)
+def read_fronts(file: Path, growing: bool = False) -> list[Front]:
+    columns = read_columns(file, FRONT_COLUMNS, growing)
     for name in ("front_id", "x_m", "onset_s", "direction"):
-        if np.isnan(columns[name]).any():
-            raise DataError(f"{file}: empty cell in column '{name}'")
-    if (np.abs(columns["direction"]) != 1).any():
-        raise DataError(f"{file}: a value other than 1 and -1 in column 'direction'")
-    fronts = []
+        require(~np.isnan(columns[name]), file, f"empty cell in column '{name}'")
     ids = columns["front_id"]
+    require(np.abs(columns["direction"]) == 1, file, "a value other than 1 and -1 in column 'direction'")
+    require(
+        (ids == np.round(ids)) & (np.abs(ids) < 2**31), file, "a value of column 'front_id' is not an integer"
+    )
+    fronts = []
     for front_id in dict.fromkeys(ids):  # in the order of the file
         c = {name: values[ids == front_id] for name, values in columns.items()}
+        ahead = np.diff(c["x_m"]) * c["direction"][0] > 0
+        require(ahead, file, f"front {int(front_id)} does not go on in its direction")
+        require(c["direction"] == c["direction"][0], file, f"front {int(front_id)} has two directions")
         fronts.append(
             Front(
                 id=int(front_id),
@@ -271,75 +320,176 @@ def read_fronts(file: Path) -> list[Front]:
     return fronts
 
 
-def read_history(file: Path) -> History:
+def checked_history(file: Path, history: History, blew_up: bool) -> History:
+    """The history, of a run that blew up as far as it is finite."""
+    arrays = history.time_s, history.slip_rate_m_per_s, history.p_Pa
+    if blew_up and len({len(a) for a in arrays}) == 1:
+        n = n_finite(*arrays)
+        time_s, rate, p = (a[:n] for a in arrays)
+        history = History(time_s, history.x_m, rate, p)
+    require(min(len(history.time_s), len(history.x_m)) >= 2, file, "fewer than two times or nodes")
+    require_ascending(file, "time_s", history.time_s)
+    require_ascending(file, "x_m", history.x_m)
+    for name in ("slip_rate_m_per_s", "p_Pa"):
+        data = getattr(history, name)
+        shape = (len(history.time_s), len(history.x_m))
+        require(data.shape == shape, file, f"{name} is {data.shape}, not {shape}")
+        require(np.isfinite(data), file, f"a value of {name} is not finite")
+    return history
+
+
+def read_history(file: Path, blew_up: bool = False) -> History:
+    file = result_file(file)
     with open_hdf5(file) as hdf5:
-        time_s, x_m = (dataset(hdf5, name)[()] for name in ("time_s", "x_m"))
-        rate, p = (dataset(hdf5, name)[()] for name in ("slip_rate_m_per_s", "p_Pa"))
-    for name, data in (("slip_rate_m_per_s", rate), ("p_Pa", p)):
-        if data.shape != (len(time_s), len(x_m)):
-            raise DataError(f"{file}: {name} is {data.shape}, not {(len(time_s), len(x_m))}")
-    if len(time_s) < 2 or len(x_m) < 2:
-        raise DataError(f"{file}: fewer than two times or nodes")
-    return History(time_s, x_m, rate, p)
+        time_s, x_m = (dataset(hdf5, name, 1)[()] for name in ("time_s", "x_m"))
+        rate, p = (dataset(hdf5, name, 2)[()] for name in ("slip_rate_m_per_s", "p_Pa"))
+    return checked_history(file, History(time_s, x_m, rate, p), blew_up)
+
+
+def read_raw_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
+    """history.raw: rows of time_s and slip, slip rate, t, p at the nodes; a cut row at the end is left."""
+    data = read_bytes(result_file(file))
+    width, n = 1 + 4 * len(x_m), len(x_m)
+    n_rows = len(data) // (8 * width)
+    rows = np.frombuffer(data, dtype="<f8", count=n_rows * width).reshape(n_rows, width)
+    rate, p = (rows[:, 1 + k * n : 1 + (k + 1) * n] for k in (1, 3))
+    return checked_history(file, History(rows[:, 0], x_m, rate, p), blew_up)
 
 
 def read_fields(file: Path) -> Fields:
+    file = result_file(file)
     with open_hdf5(file) as hdf5:
         if "VTKHDF" not in hdf5:
             raise DataError(f"{file}: no group 'VTKHDF'")
         group = hdf5["VTKHDF"]
-        n_points = int(dataset(group, "NumberOfPoints")[0])
-        n_cells = int(dataset(group, "NumberOfCells")[0])
-        points = dataset(group, "Points")[:n_points, :2]
-        types = dataset(group, "Types")[:n_cells]
-        offsets = dataset(group, "Offsets")[: n_cells + 1]
-        connectivity = dataset(group, "Connectivity")[: 4 * n_cells]
-        time_s = dataset(group, "Steps/Values")[()]
-        dataset(group, "PointData/velocity_m_per_s")
-    if (types != VTK_QUAD).any() or (np.diff(offsets) != 4).any() or len(connectivity) != 4 * n_cells:
-        raise DataError(f"{file}: cells other than four-node quadrilaterals")
-    return Fields(file, points, connectivity.reshape(-1, 4), time_s)
+        n_points = int(dataset(group, "NumberOfPoints", 1)[0])
+        n_cells = int(dataset(group, "NumberOfCells", 1)[0])
+        points = dataset(group, "Points", 2)[:n_points, :2]
+        types = dataset(group, "Types", 1)[:n_cells]
+        offsets = dataset(group, "Offsets", 1)[: n_cells + 1]
+        connectivity = dataset(group, "Connectivity", 1)[: 4 * n_cells]
+        time_s = dataset(group, "Steps/Values", 1)[()]
+        starts = dataset(group, "Steps/PointDataOffsets/velocity_m_per_s", 1)[()]
+        velocity = dataset(group, "PointData/velocity_m_per_s", 2).shape
+    require(
+        n_points > 0 and points.shape == (n_points, 2),
+        file,
+        "the points are not as many as NumberOfPoints says",
+    )
+    require(np.isfinite(points), file, "a coordinate is not finite")
+    quads = (types == VTK_QUAD).all() and np.array_equal(offsets, 4 * np.arange(n_cells + 1))
+    require(
+        quads and len(types) == n_cells > 0 and len(connectivity) == 4 * n_cells,
+        file,
+        "cells other than four-node quadrilaterals",
+    )
+    require((connectivity >= 0) & (connectivity < n_points), file, "a cell has a node that does not exist")
+    require_ascending(file, "the time of the snapshots", time_s)
+    inside = (starts >= 0) & (starts <= velocity[0] - n_points)
+    require(
+        len(starts) == len(time_s) and inside.all(), file, "a snapshot's velocity_m_per_s is not in the file"
+    )
+    return Fields(file, points, connectivity.reshape(-1, 4).astype(np.int64), time_s)
 
 
-def read_balance(file: Path) -> Balance:
-    columns = read_csv(file, ("time_s", *(f"{term}_J_per_m" for term in ENERGY_TERMS), "imbalance_J_per_m"))
-    if len(columns["time_s"]) < 2:
-        raise DataError(f"{file}: fewer than two rows")
+def read_balance(file: Path, growing: bool = False, blew_up: bool = False) -> Balance:
+    names = ("time_s", *(f"{term}_J_per_m" for term in ENERGY_TERMS), "imbalance_J_per_m")
+    columns = read_columns(file, names, growing, finite=not blew_up)
+    if blew_up:
+        n = n_finite(*columns.values())
+        columns = {name: values[:n] for name, values in columns.items()}
+    require(len(columns["time_s"]) >= 2, file, "fewer than two rows")
     for name, values in columns.items():
-        if np.isnan(values).any():
-            raise DataError(f"{file}: empty cell in column '{name}'")
+        require(~np.isnan(values), file, f"empty cell in column '{name}'")
+    require_ascending(file, "time_s", columns["time_s"])
     terms = {term: columns[f"{term}_J_per_m"] for term in ENERGY_TERMS}
     return Balance(
         columns["time_s"], {term: v - v[0] for term, v in terms.items()}, columns["imbalance_J_per_m"]
     )
 
 
-def read_run(folder: Path) -> Run:
-    if not folder.is_dir():
+def read_place(folder: Path) -> Place:
+    """The complete results in a run's folder or, where there are none, those in its unfinished/."""
+    if not is_folder(folder):
         raise DataError(f"{folder}: no such folder; DIR is the output folder of `slipfront reproduce`")
-    static = read_csv(folder / "static.csv", STATIC_COLUMNS)
+    place, notes = folder, []
+    if is_folder(folder / UNFINISHED):
+        if belongs(folder / "run.json"):
+            notes = [f"{folder / UNFINISHED}: another run, not finished: the figures show the complete one"]
+        else:
+            place = folder / UNFINISHED
+    file = place / "run.json"
+    info = read_json_table(result_file(file))
+    status = info.get("status", OLD_ENDS.get(str(info.get("end")), "complete"))
+    reason = info.get("reason", "")
+    require(
+        isinstance(status, str) and status in STATUSES, file, "'status' is not one of " + ", ".join(STATUSES)
+    )
+    require(isinstance(reason, str), file, "'reason' is not a text")
+    if place != folder and status == "complete":
+        notes = [f"{place}: a finished run that was not moved to its place"]
+    fronts = info.get("fronts", [])
+    require(
+        isinstance(fronts, list) and all(isinstance(f, dict) for f in fronts), file, "'fronts' is not a list"
+    )
+    return Place(folder.name or folder.resolve().name, place, info, status, reason, tuple(notes))
+
+
+def read_run(folder: Path) -> Run:
+    place = read_place(folder)
+    folder, growing = place.folder, place.growing
+    static = read_static(folder / "static.csv")
+    blew_up = place.status == BLEW_UP
+    has_raw = belongs(folder / "history.raw")
+    if has_raw and (growing or not belongs(folder / "interface.h5")):
+        history = read_raw_history(folder / "history.raw", static["x_m"], blew_up)
+    else:
+        history = read_history(folder / "interface.h5", blew_up)
+    require(
+        len(history.x_m) == len(static["x_m"]) and np.allclose(history.x_m, static["x_m"]),
+        folder / "interface.h5",
+        "its nodes are not those of static.csv: the files are of two runs",
+    )
+    has_fields = not growing and belongs(folder / "fields.vtkhdf")
     return Run(
-        name=folder.name,
-        folder=folder,
-        case=read_toml(folder / "case.resolved.toml"),
-        info=read_json(folder / "run.json"),
+        place=place,
+        case=read_toml(result_file(folder / "case.resolved.toml")),
         static_x_m=static["x_m"],
         static_ratio=ratio(static["t_s_Pa"], static["p_s_Pa"]),
-        fronts=read_fronts(folder / "fronts.csv"),
-        history=read_history(folder / "interface.h5"),
-        fields=read_fields(folder / "fields.vtkhdf"),
-        balance=read_balance(folder / "energy.csv"),
+        fronts=read_fronts(folder / "fronts.csv", growing)
+        if not growing or belongs(folder / "fronts.csv")
+        else [],
+        history=history,
+        fields=read_fields(folder / "fields.vtkhdf") if has_fields else None,
+        balance=read_balance(folder / "energy.csv", growing, blew_up),
     )
 
 
 def read_experiment(file: Path, c_L_m_per_s: float) -> tuple[np.ndarray, np.ndarray]:
     """Measured points (t_s / p_s, V_tip / c_L) from the columns static_ratio and v_over_c_L or v_m_per_s."""
-    with open_text(file) as stream:
-        header = [name.strip() for name in next(csv.reader(stream), [])]
-    if "v_over_c_L" in header:
-        columns = read_csv(file, ("static_ratio", "v_over_c_L"))
-        return columns["static_ratio"], columns["v_over_c_L"]
-    if "v_m_per_s" in header:
-        columns = read_csv(file, ("static_ratio", "v_m_per_s"))
-        return columns["static_ratio"], columns["v_m_per_s"] / c_L_m_per_s
+    table = read_table(file, by_hand=True)
+    if "v_over_c_L" in table.header:
+        return table.numbers("static_ratio"), table.numbers("v_over_c_L")
+    if "v_m_per_s" in table.header:
+        return table.numbers("static_ratio"), table.numbers("v_m_per_s") / c_L_m_per_s
     raise DataError(f"{file}: no column 'v_over_c_L' or 'v_m_per_s'")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(
+        prog="python -m slipfront.read",
+        description=f"Tells whether the files of a folder match its {LIST}: exit code 0 if so, else 1.",
+    )
+    parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of slipfront")
+    folder = parser.parse_args(arguments).dir
+    problems: list[str] = []
+
+    def compare() -> list[str]:
+        problems.extend(verify_checksums(folder))
+        return problems or [f"{folder}: all files match {LIST}"]
+
+    return command.run("slipfront.read", compare) or int(bool(problems))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 from pathlib import Path
 
@@ -395,3 +396,54 @@ def write_output(
     timings = [{"part": "events", "wall_s": 1.25}, {"part": "studies", "wall_s": 20.5}]
     (folder / "timings.json").write_text(json.dumps(timings))
     return folder
+
+
+# The layout with checksums and unfinished runs
+
+
+def write_checksums(folder: Path, leave_out: tuple[str, ...] = ()) -> Path:
+    """checksums.sha256 over the files of a folder, as sha256sum writes it."""
+    names = sorted(
+        f.name for f in folder.iterdir() if f.is_file() and f.name not in ("checksums.sha256", *leave_out)
+    )
+    sums = [(hashlib.sha256((folder / name).read_bytes()).hexdigest(), name) for name in names]
+    file = folder / "checksums.sha256"
+    file.write_text("".join(f"{digest}  {name}\n" for digest, name in sums))
+    return file
+
+
+def seal(output: Path) -> Path:
+    """A reproduction's folder as the program finishes it: a list beside every set of files."""
+    for run in output.iterdir():
+        if (run / "run.json").is_file():
+            set_status(run, "complete", "")
+            write_checksums(run)
+    write_checksums(output)
+    return output
+
+
+def set_status(folder: Path, status: str, reason: str) -> None:
+    info = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps(info | {"status": status, "reason": reason}))
+
+
+def write_raw_history(folder: Path) -> None:
+    """history.raw with the rows of interface.h5."""
+    with h5py.File(folder / "interface.h5") as hdf5:
+        columns = [hdf5[name][()] for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")]
+        rows = np.concatenate([hdf5["time_s"][()][:, None], *columns], axis=1)
+    (folder / "history.raw").write_bytes(rows.astype("<f8").tobytes())
+
+
+def interrupt(run: Path, status: str, reason: str = "") -> Path:
+    """Moves a run's results into its unfinished/, as a run leaves them that did not come to its end."""
+    unfinished = run / "unfinished"
+    unfinished.mkdir()
+    for file in [f for f in run.iterdir() if f.is_file()]:
+        file.rename(unfinished / file.name)
+    set_status(unfinished, status, reason)
+    if status in ("running", "failed"):
+        write_raw_history(unfinished)
+        for name in ("interface.h5", "fields.vtkhdf"):
+            (unfinished / name).unlink()
+    return unfinished

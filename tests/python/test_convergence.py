@@ -11,84 +11,17 @@ from slipfront.figures import convergence
 from slipfront.figures.__main__ import main
 from slipfront.figures.style import RC
 from synthetic import write_csv
-
-C_L = 1500.0
-X_LEFT_M, X_RIGHT_M = 2e-3 * np.arange(10, 60), 2e-3 * np.arange(75, 95)
-SIZES, OWN = [2e-3, 1e-3, 0.5e-3], 1
-HEADER = "x_m direction parameter value v_tip_m_per_s extrapolated_m_per_s error_m_per_s order".split()
-WITHOUT = {
-    "verdict": "too few stations",
-    "median_relative_error": None,
-    "median_order": None,
-    "growth": None,
-    "n_stations": 0,
-    "n_stations_of_case": 0,
-}
-
-
-def limit_left(x_m: float) -> float:
-    return 1000 + 4000 * x_m
-
-
-def rows_of_sizes() -> list[list]:
-    """To -x, V = V_0 + 1e5 h: first order. To +x, V rises by 200 with each halving: no limit."""
-    rows = []
-    for x in X_LEFT_M:
-        for h in SIZES:
-            v_0 = limit_left(x)
-            rows.append([x, -1, "plate.element_size_m", h, v_0 + 1e5 * h, v_0, 1e5 * h, 1])
-    for x in X_RIGHT_M:
-        for h, v, error in zip(SIZES, (1000, 1200, 1400), (400, 200, 400), strict=True):
-            rows.append([x, 1, "plate.element_size_m", h, v, "", error, ""])
-    return rows
-
-
-def rows_of_substeps() -> list[list]:
-    """Both directions: V = V_0 (1 + 0.1/n); nothing known at the first station."""
-    rows = []
-    for direction, stations in ((-1, X_LEFT_M), (1, X_RIGHT_M)):
-        for x in stations:
-            for n in (9, 18, 36, 72):
-                if x == stations[0]:
-                    v = 1000 if n == 18 else ""
-                    rows.append([x, direction, "time.interface_substeps", n, v, "", "", ""])
-                else:
-                    rows.append(
-                        [x, direction, "time.interface_substeps", n, 1000 * (1 + 0.1 / n), 1000, 100 / n, 1]
-                    )
-    return rows
-
-
-def rows_of_damping() -> list[list]:
-    rows = []
-    for x in X_LEFT_M:
-        for beta in (2e-7, 1e-7, 5e-8, 0):
-            v = 1000 + 1e15 * beta**2
-            rows.append([x, -1, "material.stiffness_damping_s", beta, v, 1000, v - 1000, 2])
-    return rows
-
-
-def summary(verdict: str, error: float, order: float | None, n: int) -> dict:
-    return {
-        "verdict": verdict,
-        "median_relative_error": error,
-        "median_order": order,
-        "growth": 0.5,
-        "n_stations": n,
-        "n_stations_of_case": n,
-    }
-
-
-def sequence(parameter: str, values: list, case_value: float, left: dict, right: dict) -> dict:
-    return {
-        "parameter": parameter,
-        "values": values,
-        "case_value": case_value,
-        "extrapolated_from": values[:3],
-        **left,
-        "direction_-1": left,
-        "direction_+1": right,
-    }
+from synthetic_study import (
+    C_L,
+    HEADER,
+    OWN,
+    SIZES,
+    WITHOUT,
+    X_LEFT_M,
+    X_RIGHT_M,
+    limit_left,
+    write_study,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -98,43 +31,7 @@ def coarse_pictures(monkeypatch):
 
 @pytest.fixture
 def study(tmp_path):
-    rows = rows_of_sizes() + rows_of_substeps() + rows_of_damping()
-    write_csv(tmp_path / "convergence.csv", HEADER, rows)
-    result = {
-        "version": "0",
-        "title": "made up",
-        "tolerance": 0.02,
-        "station_spacing_m": 2e-3,
-        "l_star_m": 2e-3,
-        "c_L_m_per_s": C_L,
-        "n_runs": 9,
-        "sequences": [
-            sequence(
-                "plate.element_size_m",
-                SIZES,
-                1e-3,
-                summary("not converged", 0.08, 1, 50),
-                summary("no limit", 0.1667, None, 20),
-            ),
-            sequence(
-                "time.interface_substeps",
-                [9, 18, 36, 72],
-                18,
-                summary("converged", 0.0055, 1, 49),
-                summary("converged", 0.0055, 1, 19),
-            ),
-            sequence(
-                "material.stiffness_damping_s",
-                [2e-7, 1e-7, 5e-8, 0],
-                1e-7,
-                summary("converged", 0.0099, 2, 50),
-                WITHOUT,
-            ),
-        ],
-        "warnings": [],
-    }
-    (tmp_path / "convergence.json").write_text(json.dumps(result))
-    return tmp_path
+    return write_study(tmp_path)
 
 
 def artist(ax, gid):

@@ -5,25 +5,23 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
 
+from slipfront import command
 from slipfront.figures import balance, convergence, criteria, events, plate, space_time, studies
-from slipfront.figures.drawing import Drawing
+from slipfront.figures.drawing import Drawing, guarded
 from slipfront.figures.report import write_report
 from slipfront.figures.results import Results, read_results
 from slipfront.figures.style import RC
-from slipfront.read import DataError
-
-
-# Folders with a figure of their own, told by a file.
-SINGLE = {"convergence.json": convergence.convergence, "energy.csv": balance.balance_of_run}
+from slipfront.folder import UNFINISHED, belongs
 
 
 def draw_all(results: Results) -> list[Drawing]:
     """Every figure, in the order of the report."""
-    return [
+    drawings = [
         plate.setup(results),
         criteria.static_ratio_mu_k(results),
         events.three_events(results),
@@ -34,6 +32,45 @@ def draw_all(results: Results) -> list[Drawing]:
         balance.balance(results),
         *([studies.speeds(results), studies.criteria(results)] if results.studies else []),
     ]
+    return [drawing.marked(results.mark) for drawing in drawings]
+
+
+def is_single_run(folder: Path) -> bool:
+    return belongs(folder / "energy.csv") or belongs(folder / UNFINISHED / "run.json")
+
+
+def write_single(folder: Path, draw: Callable[[], tuple[Drawing, list[str]]]) -> list[str]:
+    """The one figure of a run or a convergence study; returns what to print."""
+    drawing, remarks = guarded(folder, draw)
+    with command.publishing_into(folder / "figures") as made:
+        drawing.save(made)
+    lines = [f"figure: {folder / 'figures' / drawing.name}.png (and PDF)"]
+    return lines + [f"note: {remark}" for remark in remarks]
+
+
+def write_reproduction(folder: Path, experiment: Path | None) -> list[str]:
+    """All figures of a reproduction and the report; returns what to print."""
+    results = read_results(folder, experiment)
+    drawings = guarded(folder, lambda: draw_all(results))
+    with command.publishing_into(folder / "figures") as made:
+        for drawing in drawings:
+            drawing.save(made)
+        guarded(folder, lambda: write_report(results, drawings, made))
+    return [
+        f"figures: {folder / 'figures'} ({len(drawings)}, each as PNG and PDF)",
+        f"report:  {folder / 'figures' / 'index.html'}",
+        *(f"note: {remark}" for remark in results.remarks),
+    ]
+
+
+def write_figures(folder: Path, experiment: Path | None) -> list[str]:
+    """What a folder's files allow, told by a file of its own; returns what to print."""
+    with matplotlib.rc_context(RC):
+        if belongs(folder / "convergence.json"):
+            return write_single(folder, lambda: (convergence.convergence(folder), []))
+        if is_single_run(folder):
+            return write_single(folder, lambda: balance.balance_of_run(folder))
+        return write_reproduction(folder, experiment)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -55,33 +92,7 @@ def main(arguments: list[str] | None = None) -> int:
         help="measured points to draw into figure 2: columns static_ratio and v_over_c_L or v_m_per_s",
     )
     options = parser.parse_args(arguments)
-    folder = options.dir / "figures"
-    try:
-        for file, draw in SINGLE.items():
-            if not (options.dir / file).is_file():
-                continue
-            with matplotlib.rc_context(RC):
-                drawing = draw(options.dir)
-                folder.mkdir(exist_ok=True)
-                drawing.save(folder)
-            print(f"figure: {folder / drawing.name}.png (and PDF)")
-            return 0
-        results = read_results(options.dir, options.experiment)
-        with matplotlib.rc_context(RC):
-            drawings = draw_all(results)
-            folder.mkdir(exist_ok=True)
-            for drawing in drawings:
-                drawing.save(folder)
-        report = write_report(results, drawings, folder)
-    except DataError as error:
-        print(f"slipfront.figures: error: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"slipfront.figures: error: {error.filename}: {error.strerror}", file=sys.stderr)
-        return 2
-    print(f"figures: {folder} ({len(drawings)}, each as PNG and PDF)")
-    print(f"report:  {report}")
-    return 0
+    return command.run("slipfront.figures", lambda: write_figures(options.dir, options.experiment))
 
 
 if __name__ == "__main__":

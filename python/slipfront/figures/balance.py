@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from slipfront.figures import style
-from slipfront.figures.drawing import Drawing
+from slipfront.figures.drawing import Drawing, plain
 from slipfront.figures.results import Results
-from slipfront.read import ENERGY_TERMS, Balance, DataError, read_balance
+from slipfront.read import BLEW_UP, ENERGY_TERMS, Balance, read_balance, read_place
 
 SMALL = 0.02  # a term that never exceeds this share of the largest is drawn below, where it can be seen
 TERMS = {
@@ -124,7 +124,11 @@ def balance(results: Results) -> Drawing:
     )
 
 
-def balance_of_run(folder: Path) -> Drawing:
-    """One run, of any case."""
+def balance_of_run(folder: Path) -> tuple[Drawing, list[str]]:
+    """One run, of any case, and what to print beside it."""
+    place = read_place(folder)
+    books = read_balance(place.folder / "energy.csv", place.growing, place.status == BLEW_UP)
+    last_s = books.time_s[-1]
     name = folder.resolve().name
-    return draw_balances([Books(name, name.replace("$", r"\$"), read_balance(folder / "energy.csv"))])
+    drawing = draw_balances([Books(name, plain(name), books)])
+    return drawing.marked(place.mark(last_s)), place.remarks(last_s)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,9 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from slipfront.figures.drawing import Drawing
+from slipfront.figures.drawing import Drawing, plain
 from slipfront.figures.style import PAGE_MM, V_LABEL
-from slipfront.read import DataError, number, open_text, read_json
+from slipfront.files import DataError, is_number, number, read_json_table, read_table
+from slipfront.folder import result_file
 
 NUMBERS = (
     "x_m",
@@ -100,12 +100,17 @@ class Study:
 
 
 def read_rows(file: Path) -> list[dict]:
-    with open_text(file) as stream:
-        rows = list(csv.DictReader(stream))
+    table = read_table(result_file(file))
     try:
-        return [{"parameter": r["parameter"], **{k: float(r[k] or "nan") for k in NUMBERS}} for r in rows]
-    except (KeyError, ValueError, TypeError) as error:
-        raise DataError(f"{file}: not a table of `slipfront study convergence`: {error}") from None
+        numbers = {key: table.numbers(key) for key in NUMBERS}
+        parameters = table.texts("parameter")
+        for key in ("x_m", "direction", "value"):
+            if np.isnan(numbers[key]).any():
+                raise DataError(f"{file}: empty cell in column '{key}'")
+    except DataError as error:
+        raise DataError(f"{error}; not a table of `slipfront study convergence`") from None
+    columns = {"parameter": parameters, **numbers}
+    return [{key: values[i] for key, values in columns.items()} for i in range(len(parameters))]
 
 
 def read_stations(rows: list[dict], values: np.ndarray, c_L: float) -> Stations:
@@ -124,26 +129,30 @@ def read_stations(rows: list[dict], values: np.ndarray, c_L: float) -> Stations:
 
 def read_sequence(entry: dict, rows: list[dict], c_L: float) -> Sequence:
     values = np.array(entry["values"], dtype=float)
+    if values.ndim != 1 or values.size == 0 or not np.isfinite(values).all():
+        raise ValueError("'values' is not a list of numbers")
     own = int(np.argmin(np.abs(values - entry["case_value"])))
     summaries, stations = {}, {}
     for direction in WAYS:
         s = entry[f"direction_{direction:+d}"]
-        summaries[direction] = Summary(
-            s["verdict"], s["median_relative_error"], s["median_order"], s["n_stations"]
-        )
+        error, order = s["median_relative_error"], s["median_order"]
+        if not all(value is None or is_number(value) for value in (error, order)):
+            raise TypeError("an error or an order is not a number")
+        summaries[direction] = Summary(str(s["verdict"]), error, order, s["n_stations"])
         near = [r for r in rows if r["parameter"] == entry["parameter"] and r["direction"] == direction]
         stations[direction] = read_stations(near, values, c_L)
     return Sequence(entry["parameter"], values, own, summaries, stations)
 
 
 def read_study(folder: Path) -> Study:
-    file = folder / "convergence.json"
-    summary, rows = read_json(file), read_rows(folder / "convergence.csv")
+    file = result_file(folder / "convergence.json")
+    summary, rows = read_json_table(file), read_rows(folder / "convergence.csv")
     try:
         c_L = number(file, summary, "c_L_m_per_s")
         sequences = [read_sequence(entry, rows, c_L) for entry in summary["sequences"]]
-        study = Study(summary["title"], float(summary["tolerance"]), float(summary["l_star_m"]), sequences)
-    except (KeyError, TypeError, ValueError) as error:
+        tolerance, l_star_m = (number(file, summary, key) for key in ("tolerance", "l_star_m"))
+        study = Study(str(summary["title"]), tolerance, l_star_m, sequences)
+    except (AttributeError, KeyError, OverflowError, TypeError, ValueError) as error:
         raise DataError(f"{file}: not a result of `slipfront study convergence`: {error}") from None
     if not study.directions():
         raise DataError(f"{file}: no front has a station")
@@ -262,7 +271,7 @@ def convergence(folder: Path) -> Drawing:
     for ax in axes[-1][:-1]:
         ax.set_xlabel("$x$ (mm)")
     figure.suptitle(
-        f"{study.title}; $V_\\mathrm{{tip}}$ over {1e3 * study.l_star_m:.3g} mm, "
+        f"{plain(study.title)}; $V_\\mathrm{{tip}}$ over {1e3 * study.l_star_m:.3g} mm, "
         f"tolerance {percent(study.tolerance)}",
         fontsize=7.5,
     )

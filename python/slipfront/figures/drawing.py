@@ -1,10 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
+"""Finished figures and how they become files."""
+
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from io import BytesIO
 from pathlib import Path
+from typing import TypeVar
 
 from matplotlib.figure import Figure
+
+from slipfront.files import DataError, one_line
+
+MARK_COLOUR = "#b2182b"
+Drawn = TypeVar("Drawn")
 
 
 @dataclass(frozen=True)
@@ -14,9 +24,43 @@ class Drawing:
     name: str
     figure: Figure
     caption: str
+    mark: str = ""  # what the whole figure is not to be taken without, such as an interrupted run
+
+    def marked(self, mark: str) -> Drawing:
+        """The same with a title above all else, outside the figure's own frame."""
+        if not mark:
+            return self
+        lines = "\n".join(map(plain, mark.split("\n")))
+        look = {"ha": "center", "va": "bottom", "color": MARK_COLOUR, "fontweight": "bold"}
+        self.figure.text(0.5, 1.01, lines, gid="mark", **look)
+        return replace(self, mark=mark)
+
+    def rendered(self, kind: str, **metadata) -> bytes:
+        stream = BytesIO()
+        tight = "tight" if self.mark else None  # the mark is outside the frame
+        self.figure.savefig(stream, format=kind, metadata=metadata, bbox_inches=tight)
+        return stream.getvalue()
 
     def save(self, folder: Path) -> None:
         # Without the date, the same results give the same files.
-        self.figure.savefig(folder / f"{self.name}.png", metadata={"Software": None})
+        png = guarded(folder / f"{self.name}.png", lambda: self.rendered("png", Software=None))
         self.figure.set_layout_engine("none")  # the layout is found; once is enough
-        self.figure.savefig(folder / f"{self.name}.pdf", metadata={"CreationDate": None})
+        pdf = guarded(folder / f"{self.name}.pdf", lambda: self.rendered("pdf", CreationDate=None))
+        (folder / f"{self.name}.png").write_bytes(png)
+        (folder / f"{self.name}.pdf").write_bytes(pdf)
+
+
+def plain(text: str) -> str:
+    """Text of a case or a folder's name: no formula, one line."""
+    return one_line(text).replace("$", r"\$")
+
+
+def guarded(source: Path, draw: Callable[[], Drawn]) -> Drawn:
+    """What `draw` returns; Matplotlib and NumPy refuse absurd numbers with exceptions of many kinds."""
+    try:
+        return draw()
+    except (DataError, OSError):
+        raise
+    except Exception as error:
+        text = one_line(str(error)) or type(error).__name__
+        raise DataError(f"{source}: cannot be drawn from these numbers: {text}") from None

@@ -19,9 +19,10 @@ from slipfront.figures.criteria import (
     speed_over_static_ratio,
 )
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.plate import draw_edges, edges
+from slipfront.figures.plate import NO_FIELDS, draw_edges, edges
 from slipfront.figures.results import Results, drawn_fronts, start
-from slipfront.read import DataError, Front, Run
+from slipfront.files import DataError
+from slipfront.read import Front, Run
 
 COLOURS = "Blues_r"
 SPEED_RANGE_M_PER_S = (0.0, 2.0)
@@ -64,8 +65,20 @@ def choose_step(run: Run) -> int:
     return min(range(len(times)), key=poorness)
 
 
-def draw_snapshot(ax: Axes, run: Run, step: int) -> None:
+def draw_missing(ax: Axes, run: Run) -> None:
+    """In place of the snapshot of a run without any."""
+    label = f"{style.EVENT_STYLES[run.name].label}:\n{NO_FIELDS}"
+    ax.text(0.5, 0.5, label, transform=ax.transAxes, ha="center", va="center", color="0.45", gid="no_fields")
+    ax.set(xticks=[], yticks=[])
+
+
+def draw_snapshot(ax: Axes, run: Run) -> None:
+    """The snapshot that shows the event best."""
     fields = run.fields
+    if fields is None:
+        draw_missing(ax, run)
+        return
+    step = choose_step(run)
     points = style.mm(fields.points_m)
     width, height = 1e3 * run.parameter("plate.width_m"), 1e3 * run.parameter("plate.height_m")
     triangles = fields.cells[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
@@ -154,7 +167,7 @@ def three_events(results: Results) -> Drawing:
 
     panels = [axes(4, 73, 80, 42), axes(90, 73, 80, 42), axes(4, 18, 80, 42)]
     for ax, letter, run in zip(panels, "abc", results.events, strict=True):
-        draw_snapshot(ax, run, choose_step(run))
+        draw_snapshot(ax, run)
         ax.text(0, 1.05, f"({letter})", transform=ax.transAxes, fontweight="bold", va="bottom")
     bar = figure.colorbar(
         ScalarMappable(Normalize(*SPEED_RANGE_M_PER_S), COLOURS),

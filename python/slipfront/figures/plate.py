@@ -10,8 +10,10 @@ from matplotlib.patches import Circle, Rectangle
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.results import HIGH_MU_K, Results, start
+from slipfront.files import DataError
 from slipfront.read import Fields, Run
 
+NO_FIELDS = "no snapshots (fields.vtkhdf)"
 GRID_LINES = 40  # about as many mesh lines across the plate stay readable
 
 
@@ -56,6 +58,8 @@ def draw_edges(ax: Axes, segments: np.ndarray, **look) -> None:
 
 def draw_mesh(ax: Axes, fields: Fields, columns: int, rows: int) -> int:
     """Outline, every k-th grid line, and a magnified lower left corner with every cell; returns k."""
+    if not (0 < columns <= len(fields.cells) and 0 < rows <= len(fields.cells)):
+        raise DataError(f"{fields.file}: not the mesh of {columns} x {rows} cells that run.json tells")
     points = style.mm(fields.points_m)
     ends, boundary = edges(fields.cells)
     every = coarsening(columns, rows)
@@ -127,7 +131,14 @@ def dimension(ax: Axes, a: tuple[float, float], b: tuple[float, float], label: s
     )
 
 
-def draw_plate(ax: Axes, run: Run) -> int:
+def draw_outline(ax: Axes, width: float, height: float) -> None:
+    """In place of the mesh of a run without fields."""
+    ax.add_patch(Rectangle((0, 0), width, height, fill=False, linewidth=0.7, gid="outline"))
+    ax.text(width / 2, height / 2, NO_FIELDS, ha="center", va="center", color="0.45", gid="no_fields")
+
+
+def draw_plate(ax: Axes, run: Run) -> int | None:
+    """Plate, mesh and loading; returns which grid lines are drawn, every k-th, None without a mesh."""
     width, height = 1e3 * run.parameter("plate.width_m"), 1e3 * run.parameter("plate.height_m")
     ax.add_patch(
         Rectangle(
@@ -141,7 +152,11 @@ def draw_plate(ax: Axes, run: Run) -> int:
         )
     )
     ax.plot([-0.04 * width, 1.04 * width], [0, 0], color="black", linewidth=0.7)
-    every = draw_mesh(ax, run.fields, int(run.fact("mesh.columns")), int(run.fact("mesh.rows")))
+    every = None
+    if run.fields is not None:
+        every = draw_mesh(ax, run.fields, int(run.fact("mesh.columns")), int(run.fact("mesh.rows")))
+    else:
+        draw_outline(ax, width, height)
     draw_loading(ax, run, width, height)
     gap = 0.085 * height
     dimension(ax, (0, -2 * gap), (width, -2 * gap), f"$w = {width:g}$ mm")
@@ -239,12 +254,13 @@ def setup(results: Results) -> Drawing:
         style.panel_letter(ax, letter)
     columns, rows = int(run.fact("mesh.columns")), int(run.fact("mesh.rows"))
     lines = "every grid line" if every == 1 else f"one grid line in {every}"
+    drawn = f"{lines} drawn; inset: every cell at the lower left corner" if every is not None else NO_FIELDS
     return Drawing(
         "fig1_setup",
         figure,
-        f"(a) The plate on the rigid plane with its mesh of {columns} × {rows} cells ({lines} drawn; inset: "
-        "every cell at the lower left corner), the displacement u<sub>y</sub> and the velocity "
-        "v<sub>x</sub> imposed on the top edge (arrows not to scale) and the point where slip nucleates "
-        "spontaneously (circle). (b) Static stress ratio along the interface and its maximum inside "
-        "(circle). (c) Friction coefficient against slip rate for the two values of μ<sub>k</sub>.",
+        f"(a) The plate on the rigid plane with its mesh of {columns} × {rows} cells ({drawn}), the "
+        "displacement u<sub>y</sub> and the velocity v<sub>x</sub> imposed on the top edge (arrows not to "
+        "scale) and the point where slip nucleates spontaneously (circle). (b) Static stress ratio along the "
+        "interface and its maximum inside (circle). (c) Friction coefficient against slip rate for the two "
+        "values of μ<sub>k</sub>.",
     )

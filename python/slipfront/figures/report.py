@@ -9,9 +9,10 @@ from html import escape
 from pathlib import Path
 
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.results import Results
+from slipfront.figures.results import VARIATIONS, Results
 from slipfront.figures.studies import is_another, paper_value
 from slipfront.figures.study import SPREADS
+from slipfront.files import is_number
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #111; background: #fff; }
@@ -28,7 +29,7 @@ td.verdict { text-align: center; font-weight: bold; }
 .scroll { overflow-x: auto; }
 .dense { font-size: 0.78em; } .dense th, .dense td { padding: 0.15em 0.35em; white-space: nowrap; }
 .dense td[rowspan] { white-space: normal; min-width: 8em; border-right: 1px solid #ddd; }
-.note { color: #555; }
+.note { color: #555; } .mark { color: #b2182b; font-weight: bold; }
 nav a { margin-right: 1.2em; }
 """
 VERDICTS = {
@@ -47,7 +48,7 @@ def text(value) -> str:
 
 def formatted(value, form: str, factor: float = 1.0) -> str:
     """A number of a JSON file in a given form; null or none as a dash."""
-    return f"{factor * value:{form}}" if isinstance(value, int | float) else "–"
+    return f"{factor * value:{form}}" if is_number(value) else "–"
 
 
 def table(
@@ -62,10 +63,6 @@ def table(
     head = (f"<tr>{above}</tr>" if above else "") + f"<tr>{head}</tr>"
     opening = f'<table class="{kind}">' if kind else "<table>"
     return f'<div class="scroll">{opening}\n<thead>{head}</thead>\n<tbody>\n{body}\n</tbody></table></div>'
-
-
-# Columns of `slipfront reproduce --sensitivity`.
-VARIATIONS = {"mesh_variation": "With the mesh, moves by", "step_variation": "With the step, moves by"}
 
 
 def scorecard_table(scorecard: list[dict]) -> str:
@@ -119,10 +116,11 @@ def scorecard_summary(scorecard: list[dict]) -> str:
 
 
 def fit_table(results: Results) -> str:
-    fit = results.analysis["fit"] or {}
+    fit = results.analysis["fit"] or {}  # its numbers were read already
     rows = []
     for name in ("a", "b", "c"):
-        own = fit.get(name) or {}
+        own = fit.get(name)
+        own = own if isinstance(own, dict) else {"value": own}
         interval = f"{formatted(own.get('low'), '.3f')} to {formatted(own.get('high'), '.3f')}"
         paper = f"{getattr(results.paper_fit, name):.2f}"
         if name == "a":
@@ -249,9 +247,12 @@ def figure_html(drawing: Drawing, folder: Path) -> str:
     title = escape(drawing.name)
     number = re.match(r"fig(\d+)_", drawing.name)
     label = f"<b>Figure {number[1]} of the paper.</b> " if number else ""
+    mark = (
+        f'<span class="mark">{escape(drawing.mark.replace(chr(10), "; "))}.</span> ' if drawing.mark else ""
+    )
     return (
         f'<figure id="{title}" class="{kind}"><img alt="{title}" src="data:image/png;base64,{image}">\n'
-        f'<figcaption>{label}{drawing.caption} <a href="{title}.pdf">PDF</a></figcaption></figure>'
+        f'<figcaption>{mark}{label}{drawing.caption} <a href="{title}.pdf">PDF</a></figcaption></figure>'
     )
 
 
@@ -292,6 +293,7 @@ def write_report(results: Results, drawings: list[Drawing], folder: Path) -> Pat
         "<h1>Slip fronts at a frictional interface</h1>",
         "<p>Reproduction of Kammer, Yastrebov, Spijker, Molinari, <i>On the propagation of slip fronts at "
         f"frictional interfaces</i>, Tribology Letters 48, 27–32 (2012). Runs by {origin(results)}.</p>",
+        *(f'<p class="mark">{escape(line)}</p>' for line in results.remarks),
         navigation(results),
         '<h2 id="scorecard">Scorecard</h2>',
         f"<p>{scorecard_summary(results.scorecard)}</p>",

@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from slipfront.figures.study import Study, read_studies
-from slipfront.read import DataError, Front, Run, number, read_experiment, read_json, read_run
+from slipfront.files import DataError, is_folder, is_number, number, read_json, read_json_table
+from slipfront.folder import belongs, located, result_file
+from slipfront.read import Front, Run, read_experiment, read_run
 
 EVENTS = ("left", "spontaneous", "right")  # the three events of one initial state
 HIGH_MU_K = "spontaneous_mu_k_1.0"
@@ -19,6 +21,8 @@ MAIN_LENGTH_M = 25e-3
 NUCLEATION_M = 5e-3  # the speed diverges where a front nucleates
 TAIL_M = 20e-3  # the last stretch before a front stops, where the paper sees it leave the energy criterion
 STOPS = ("arrest", "contact_end")
+# Columns of `slipfront reproduce --sensitivity`.
+VARIATIONS = {"mesh_variation": "With the mesh, moves by", "step_variation": "With the step, moves by"}
 
 
 @dataclass(frozen=True)
@@ -49,6 +53,16 @@ class Results:
     @property
     def events(self) -> list[Run]:
         return [self.runs[name] for name in EVENTS]
+
+    @property
+    def mark(self) -> str:
+        """For titles: the runs that did not come to their end, a line each; empty where all did."""
+        return "\n".join(f"{name}: {run.mark}" for name, run in self.runs.items() if run.mark)
+
+    @property
+    def remarks(self) -> list[str]:
+        """Lines to print beside the figures."""
+        return [line for run in self.runs.values() for line in run.remarks]
 
 
 def drawn_fronts(run: Run) -> list[Front]:
@@ -103,39 +117,49 @@ def start(run: Run) -> tuple[float, float] | None:
 
 def read_fit(file: Path, table: dict, part: str) -> Fit:
     def value(key: str) -> float:
-        entry = table.get(part, {}).get(key)
+        group = table.get(part)
+        entry = group.get(key) if isinstance(group, dict) else None
         return number(file, table, f"{part}.{key}.value" if isinstance(entry, dict) else f"{part}.{key}")
 
     return Fit(value("a"), value("b"), value("c"))
 
 
 def read_scorecard(file: Path) -> list[dict]:
-    rows = read_json(file)
+    rows = read_json(result_file(file))
     if not isinstance(rows, list):
         raise DataError(f"{file}: not a list")
     for i, row in enumerate(rows):
         for key in ("id", "claim", "paper", "measured", "holds", "how"):
             if not isinstance(row, dict) or key not in row:
                 raise DataError(f"{file}: entry {i + 1} has no '{key}'")
+        if not isinstance(row["id"], str) or row["holds"] not in (True, False, None):
+            raise DataError(f"{file}: entry {i + 1}: 'id' is not a text, or 'holds' not true, false or null")
+        for key in VARIATIONS:
+            if key in row and not is_variation(row[key]):
+                raise DataError(f"{file}: entry {i + 1}: '{key}' is not as expected")
     return rows
 
 
+def is_variation(entry) -> bool:
+    return isinstance(entry, dict) and "parameter" in entry and is_number(entry.get("value"))
+
+
 def read_timings(file: Path) -> list[tuple[str, float]]:
-    if not file.exists():  # written last: a folder may lack it
+    if not belongs(file):  # written last: a folder may lack it
         return []
-    rows = read_json(file)
+    rows = read_json(result_file(file))
     if not isinstance(rows, list) or not all(isinstance(row, dict) and "part" in row for row in rows):
         raise DataError(f"{file}: not a list of parts")
     return [(str(row["part"]), number(file, row, "wall_s")) for row in rows]
 
 
 def read_results(folder: Path, experiment: Path | None = None) -> Results:
-    if not folder.is_dir():
+    if not is_folder(folder):
         raise DataError(f"{folder}: no such folder; DIR is the output folder of `slipfront reproduce`")
-    runs = {name: read_run(folder / name) for name in (*EVENTS, HIGH_MU_K)}
+    runs = {name: read_run(located(folder / name)) for name in (*EVENTS, HIGH_MU_K)}
     file = folder / "analysis.json"
-    analysis = read_json(file)
-    if not isinstance(analysis, dict) or "fit" not in analysis:
+    analysis = read_json_table(result_file(file))
+    if not isinstance(analysis.get("fit", 0), dict | None):
         raise DataError(f"{file}: no entry 'fit'")
     points = read_experiment(experiment, runs[HIGH_MU_K].c_L_m_per_s) if experiment else None
     return Results(

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from slipfront.read import DataError
+from slipfront.files import DataError, is_number
 
 SPREADS = ("t_s_over_p_s", "t_d_over_p_d", "energy")
 
@@ -66,36 +66,56 @@ class Study:
         return point.value.replace("_", " ")
 
 
+def optional(value) -> float | None:
+    """A number or nothing."""
+    if value is not None and not is_number(value):
+        raise TypeError(f"{value} is not a number")
+    return value
+
+
+def needed(value) -> float:
+    if not is_number(value):
+        raise TypeError(f"{value} is not a number")
+    return value
+
+
 def read_point(point: dict) -> StudyPoint:
     fronts: dict[tuple[str, int], MainFront] = {}
     for event in point["events"]:
-        for f in sorted(event["fronts"], key=lambda f: abs(f["end_x_m"] - f["start_x_m"])):
-            fronts[event["event"], f["direction"]] = MainFront(  # the longest comes last
+        for f in sorted(event["fronts"], key=lambda f: abs(needed(f["end_x_m"]) - needed(f["start_x_m"]))):
+            fronts[str(event["event"]), f["direction"]] = MainFront(  # the longest comes last
                 f["start_x_m"],
                 f["end_x_m"],
-                f["end"],
-                f["mode"],
-                f["mean_v_over_c_L"],
-                f["max_v_over_c_L"],
+                str(f["end"]),
+                str(f["mode"]),
+                optional(f["mean_v_over_c_L"]),
+                optional(f["max_v_over_c_L"]),
             )
     return StudyPoint(
         value=str(point["value"]),
-        number=point["number"],
+        number=optional(point["number"]),
         fronts=fronts,
-        change={e["event"]: e["speed_change"]["median"] for e in point["events"] if "speed_change" in e},
-        rms_over_c_L=point["fit"]["rms_over_c_L"] if point["fit"] is not None else None,
-        share_in_paper_band=point["share_in_paper_band"],
-        spread={name: point["spread"][name] for name in SPREADS},
+        change={
+            str(e["event"]): optional(e["speed_change"]["median"])
+            for e in point["events"]
+            if "speed_change" in e
+        },
+        rms_over_c_L=optional(point["fit"]["rms_over_c_L"]) if point["fit"] is not None else None,
+        share_in_paper_band=optional(point["share_in_paper_band"]),
+        spread={name: optional(point["spread"][name]) for name in SPREADS},
     )
 
 
 def read_studies(file: Path, analysis: dict) -> list[Study]:
     """The studies of analysis.json; none where it has no such list."""
+    listed = analysis.get("studies", [])
+    if not isinstance(listed, list):
+        raise DataError(f"{file}: 'studies' is not a list")
     studies = []
-    for i, study in enumerate(analysis.get("studies", [])):
+    for i, study in enumerate(listed):
         try:
             points = [read_point(point) for point in study["points"]]
-            studies.append(Study(study["name"], study["parameter"], study["why"], points))
+            studies.append(Study(str(study["name"]), str(study["parameter"]), str(study["why"]), points))
         except KeyError as error:
             raise DataError(f"{file}: study {i + 1} has no {error}") from None
         except (TypeError, AttributeError):

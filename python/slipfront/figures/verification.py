@@ -5,6 +5,7 @@ usage: python -m slipfront.figures.verification DIR FIGURES"""
 
 from __future__ import annotations
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -12,9 +13,11 @@ import matplotlib
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from slipfront.figures.drawing import Drawing
+from slipfront import command
+from slipfront.figures.drawing import Drawing, guarded
 from slipfront.figures.style import COLUMN_MM, RC, new_figure
-from slipfront.read import DataError, read_json
+from slipfront.files import DataError, read_json_table
+from slipfront.folder import read_list, result_file
 
 COLOURS = ("#0072b2", "#d55e00", "#117733", "#882255", "#000000", "#88ccee", "#999933")
 MARKERS = ("o", "s", "^", "v", "D", "x", "+")
@@ -28,13 +31,27 @@ def draw_chart(ax, chart: dict) -> None:
     n_program = n_theory = 0
     for curve in chart["curves"]:
         if curve["kind"] == "theory":
-            ax.plot(curve["x"], curve["y"], color="0.3", linestyle=("-", "--", ":", "-.")[n_theory % 4],
-                    linewidth=0.8, label=curve["label"], zorder=1.5)
+            ax.plot(
+                curve["x"],
+                curve["y"],
+                color="0.3",
+                linestyle=("-", "--", ":", "-.")[n_theory % 4],
+                linewidth=0.8,
+                label=curve["label"],
+                zorder=1.5,
+            )
             n_theory += 1
         else:
             many = len(curve["x"]) > MANY_POINTS
-            ax.plot(curve["x"], curve["y"], color=COLOURS[n_program % 7], linestyle="-" if many else "none",
-                    marker=None if many else MARKERS[n_program % 7], markerfacecolor="none", label=curve["label"])
+            ax.plot(
+                curve["x"],
+                curve["y"],
+                color=COLOURS[n_program % 7],
+                linestyle="-" if many else "none",
+                marker=None if many else MARKERS[n_program % 7],
+                markerfacecolor="none",
+                label=curve["label"],
+            )
             n_program += 1
     ax.set(xlabel=chart["x_label"], ylabel=chart["y_label"])
     for axis, log in ((ax.xaxis, chart["log_x"]), (ax.yaxis, chart["log_y"])):
@@ -58,7 +75,7 @@ def n_labels(chart: dict) -> int:
 
 def draw(file: Path) -> Drawing:
     """One figure, a panel per chart."""
-    results = read_json(file)
+    results = read_json_table(result_file(file))
     try:
         charts = results["charts"]
         most = max((n_labels(chart) for chart in charts), default=0)
@@ -66,28 +83,43 @@ def draw(file: Path) -> Drawing:
         figure: Figure = new_figure(COLUMN_MM * max(1, len(charts)), 62 + below_mm)
         for k, chart in enumerate(charts):
             draw_chart(figure.add_subplot(1, len(charts), k + 1), chart)
-        return Drawing(f"verify_{results['name']}", figure, results["title"])
-    except (KeyError, TypeError) as error:
+        name, title = results["name"], results["title"]
+    except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
         raise DataError(f"{file}: not a file of `slipfront verify`: {error}") from None
+    if name != file.stem:
+        raise DataError(f"{file}: not a file of `slipfront verify`: its name is '{name}'")
+    return Drawing(f"verify_{name}", figure, str(title))
+
+
+def draw_all(results: Path, figures: Path) -> list[str]:
+    """Writes a picture per file; returns what to print."""
+    sums = read_list(results)
+    names = [path.name for path in results.glob("*.json")] if sums is None else list(sums)
+    files = sorted(results / name for name in names if name.endswith(".json"))
+    if not files:
+        raise DataError(f"{results}: no results of `slipfront verify`")
+    with command.publishing_into(figures) as folder, matplotlib.rc_context(RC):
+        for file in files:
+            drawing = draw(file)
+            png = guarded(file, lambda drawing=drawing: drawing.rendered("png", Software=None))
+            (folder / f"{drawing.name}.png").write_bytes(png)
+    return [f"figures: {figures} ({len(files)})"]
 
 
 def main(results: Path, figures: Path) -> int:
-    files = sorted(results.glob("*.json"))
-    if not files:
-        print(f"slipfront.figures: error: {results}: no results of `slipfront verify`", file=sys.stderr)
-        return 2
-    figures.mkdir(parents=True, exist_ok=True)
-    try:
-        with matplotlib.rc_context(RC):
-            for file in files:
-                drawing = draw(file)
-                drawing.figure.savefig(figures / f"{drawing.name}.png", metadata={"Software": None})
-    except DataError as error:
-        print(f"slipfront.figures: error: {error}", file=sys.stderr)
-        return 2
-    print(f"figures: {figures} ({len(files)})")
-    return 0
+    return command.run("slipfront.figures", lambda: draw_all(results, figures))
+
+
+def parsed() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="python -m slipfront.figures.verification",
+        description="Draws the charts of `slipfront verify -o DIR` as FIGURES/verify_NAME.png.",
+    )
+    parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront verify`")
+    parser.add_argument("figures", metavar="FIGURES", type=Path, help="folder for the pictures")
+    return parser.parse_args()
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2])))
+    options = parsed()
+    sys.exit(main(options.dir, options.figures))

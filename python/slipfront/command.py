@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What all commands of the package share: errors as one line, exit codes."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from slipfront.files import DataError, one_line
+
+DONE, REFUSED, INTERRUPTED = 0, 2, 130
+
+
+def write_line(stream, text: str) -> None:
+    """A line on standard output or error, which may be closed (None), full or without some signs."""
+    if stream is None:
+        return
+    encoding = getattr(stream, "encoding", None) or "utf-8"
+    print(one_line(text).encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
+
+
+def abandon(stream) -> None:
+    """Keeps the interpreter from writing, at its end, what could not be written before."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def report_error(name: str, text: str) -> None:
+    try:
+        write_line(sys.stderr, f"{name}: error: {text}")
+    except OSError:
+        abandon(sys.stderr)
+
+
+def run(name: str, work: Callable[[], list[str]]) -> int:
+    """Exit code of a command. Prints the lines that `work` returns, or its error as one line."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of Matplotlib on odd numbers: errors are told below
+            lines = work()
+    except DataError as error:
+        report_error(name, str(error))
+        return REFUSED
+    except KeyboardInterrupt:
+        report_error(name, "interrupted")
+        return INTERRUPTED
+    try:
+        for line in lines:
+            write_line(sys.stdout, line)
+    except OSError as error:
+        abandon(sys.stdout)
+        report_error(name, f"standard output: {error.strerror}")
+        return REFUSED
+    return DONE
+
+
+@contextmanager
+def publishing_into(folder: Path) -> Iterator[Path]:
+    """A folder to write into, inside `folder`. At the end its files go there; after an error none does."""
+    is_new = not os.path.lexists(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(dir=folder, prefix=".unfinished-") as made:
+            yield Path(made)
+            for file in sorted(Path(made).iterdir()):
+                os.replace(file, folder / file.name)
+    except OSError as error:
+        raise DataError(f"{folder}: cannot be written: {error.strerror or error}") from None
+    finally:
+        if is_new:
+            with suppress(OSError):
+                folder.rmdir()  # only an empty one goes

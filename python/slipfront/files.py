@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Single files as values. Whatever a file holds, it is read or refused with a DataError."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import re
+import stat
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+LARGEST_TEXT_BYTES = 2**30
+LARGEST_PACKING = 1032  # of deflate: no data set unpacks to more than so many times its bytes in the file
+
+
+class DataError(Exception):
+    """A file is missing or not as expected; the message is one line that names it."""
+
+
+def one_line(text: str) -> str:
+    """The text without line breaks, control characters and bytes that no encoding prints."""
+    return "".join(c if c.isprintable() else "?" for c in text)
+
+
+def is_folder(path: Path) -> bool:
+    try:
+        return stat.S_ISDIR(os.stat(path).st_mode)
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    except OSError as error:
+        raise DataError(f"{path}: {error.strerror}") from None
+
+
+def exists(path: Path) -> bool:
+    try:
+        os.stat(path)
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    except OSError as error:
+        raise DataError(f"{path}: {error.strerror}") from None
+    return True
+
+
+@contextmanager
+def open_file(file: Path) -> Iterator:
+    """A regular file's bytes. Pipes and devices, which would be waited for, are refused."""
+    try:
+        with open(os.open(file, os.O_RDONLY | os.O_NONBLOCK), "rb") as stream:
+            mode = os.fstat(stream.fileno()).st_mode
+            if stat.S_ISDIR(mode):
+                raise DataError(f"{file}: Is a directory")
+            if not stat.S_ISREG(mode):
+                raise DataError(f"{file}: not a regular file")
+            yield stream
+    except OSError as error:
+        raise DataError(f"{file}: {error.strerror}") from None
+
+
+def read_bytes(file: Path) -> bytes:
+    with open_file(file) as stream:
+        if os.fstat(stream.fileno()).st_size > LARGEST_TEXT_BYTES:
+            raise DataError(f"{file}: more than {LARGEST_TEXT_BYTES} bytes")
+        try:
+            return stream.read()
+        except MemoryError:
+            raise DataError(f"{file}: does not fit into memory") from None
+
+
+def read_text(file: Path) -> str:
+    data = read_bytes(file)
+    if b"\0" in data:
+        raise DataError(f"{file}: holds a byte 0: not a text file, or damaged")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise DataError(
+            f"{file}:{line}: byte 0x{data[error.start]:02x} is not UTF-8: save the file as UTF-8"
+        ) from None
+
+
+def read_toml(file: Path) -> dict:
+    try:
+        return tomllib.loads(read_text(file).replace("\r\n", "\n"))
+    except RecursionError:
+        raise DataError(f"{file}: not TOML: nested too deeply") from None
+    except ValueError as error:
+        raise DataError(f"{file}: not TOML: {error}") from None
+
+
+def refuse_constant(name: str) -> None:
+    raise ValueError(f"{name} is not a value of JSON")
+
+
+def read_json(file: Path):
+    try:
+        return json.loads(read_text(file), parse_constant=refuse_constant)
+    except RecursionError:
+        raise DataError(f"{file}: not JSON: nested too deeply") from None
+    except ValueError as error:
+        raise DataError(f"{file}: not JSON: {error}") from None
+
+
+def read_json_table(file: Path) -> dict:
+    table = read_json(file)
+    if not isinstance(table, dict):
+        raise DataError(f"{file}: not a JSON object")
+    return table
+
+
+def is_number(value) -> bool:
+    """Whether a value of JSON or TOML is a finite number."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond the largest double
+        return False
+
+
+def number(file: Path, table: dict, key: str) -> float:
+    """Number of a dotted key of a file's table."""
+    value = table
+    for part in key.split("."):
+        if not isinstance(value, dict) or part not in value:
+            raise DataError(f"{file}: no entry '{key}'")
+        value = value[part]
+    if not is_number(value):
+        raise DataError(f"{file}: '{key}' is not a number")
+    return float(value)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A CSV file. Empty lines and those that start with # are passed over."""
+
+    file: Path
+    header: list[str]
+    rows: list[tuple[int, list[str]]]  # the line's number and its cells
+
+    def index(self, column: str) -> int:
+        if column not in self.header:
+            raise DataError(f"{self.file}: no column '{column}'")
+        return self.header.index(column)
+
+    def texts(self, column: str) -> list[str]:
+        i = self.index(column)
+        return [cells[i] for _, cells in self.rows]
+
+    def numbers(self, column: str, finite: bool = True) -> np.ndarray:
+        """An empty cell is NaN; nan and inf are refused unless `finite` is false. [rows]"""
+        i = self.index(column)
+        return np.array(
+            [self.number(line, column, cells[i], finite) for line, cells in self.rows], dtype=float
+        )
+
+    def number(self, line: int, column: str, text: str, finite: bool) -> float:
+        if not text:
+            return np.nan
+        try:
+            value = float(text) if text.isascii() and "_" not in text else None
+        except ValueError:
+            value = None
+        if value is None or (finite and not np.isfinite(value)):
+            raise DataError(f"{self.file}:{line}: '{one_line(text)}' in column '{column}' is not a number")
+        return value
+
+
+def split_line(file: Path, line: int, text: str) -> list[str]:
+    """Cells of one line: no quotation goes on into the next."""
+    try:
+        return [cell.strip() for cell in next(csv.reader([text], strict=True), [])]
+    except csv.Error as error:
+        raise DataError(f"{file}:{line}: not a line of CSV: {error}") from None
+
+
+def read_table(file: Path, by_hand: bool = False, growing: bool = False) -> Table:
+    """A table of the program ends with a whole line, or it was cut off; one made by hand need not.
+
+    Of a growing one, which a run still appends to or was killed over, a cut line at the end is passed over.
+    """
+    text = read_text(file)
+    if growing:
+        text = text[: text.rfind("\n") + 1]
+    elif text and not by_hand and not text.endswith("\n"):
+        raise DataError(f"{file}: the last line is cut off")
+    header: list[str] | None = None
+    rows = []
+    for line, content in enumerate(re.split(r"\r\n|\r|\n", text), start=1):
+        if not content.strip() or content.lstrip().startswith("#"):
+            continue
+        cells = split_line(file, line, content)
+        if header is None:
+            header = cells
+            continue
+        if not any(cells):
+            continue
+        if len(cells) != len(header):
+            raise DataError(f"{file}:{line}: {len(cells)} cells, the header has {len(header)}")
+        rows.append((line, cells))
+    if header is None:
+        raise DataError(f"{file}: empty")
+    for name in header:
+        if name and header.count(name) > 1:
+            raise DataError(f"{file}: two columns '{one_line(name)}'")
+    return Table(file, header, rows)
+
+
+@contextmanager
+def open_hdf5(file: Path) -> Iterator[h5py.File]:
+    """An HDF5 file; what the library says of a damaged one, in whatever exception, becomes a DataError."""
+    with open_file(file):
+        pass
+    try:
+        with h5py.File(file, "r") as hdf5:
+            yield hdf5
+    except DataError:
+        raise
+    except MemoryError:
+        raise DataError(f"{file}: does not fit into memory") from None
+    except (
+        Exception
+    ) as error:  # h5py raises what it happens to: OSError, RuntimeError, KeyError, ValueError, ...
+        kind = "damaged, or not an HDF5 file"
+        raise DataError(f"{file}: {kind}: {one_line(str(error))}") from None
+
+
+def dataset(group: h5py.Group, name: str, dimensions: int) -> h5py.Dataset:
+    """A data set of numbers, all of which lie in the file."""
+    file = group.file.filename
+    found = group.get(name)
+    if not isinstance(found, h5py.Dataset):
+        raise DataError(f"{file}: no data set '{name}' in '{group.name}'")
+    if found.dtype.kind not in "fiu" or found.ndim != dimensions:
+        raise DataError(f"{file}: '{name}' is not an array of numbers with {dimensions} dimensions")
+    stored = found.id.get_storage_size()
+    if math.prod(found.shape) * found.dtype.itemsize > stored * (
+        1 if packing(found) == 0 else LARGEST_PACKING
+    ):
+        raise DataError(
+            f"{file}: '{name}' is {found.shape}, more than the file holds of it: cut off or damaged"
+        )
+    return found
+
+
+def packing(found: h5py.Dataset) -> int:
+    """Number of filters, such as a compression, that a data set's bytes go through."""
+    return found.id.get_create_plist().get_nfilters()

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes made-up output folders of the studies and of `slipfront verify`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+from synthetic import write_csv
+
+C_L = 1500.0
+X_LEFT_M, X_RIGHT_M = 2e-3 * np.arange(10, 60), 2e-3 * np.arange(75, 95)
+SIZES, OWN = [2e-3, 1e-3, 0.5e-3], 1
+HEADER = [
+    "x_m",
+    "direction",
+    "parameter",
+    "value",
+    "v_tip_m_per_s",
+    "extrapolated_m_per_s",
+    "error_m_per_s",
+    "order",
+]
+WITHOUT = {
+    "verdict": "too few stations",
+    "median_relative_error": None,
+    "median_order": None,
+    "growth": None,
+    "n_stations": 0,
+    "n_stations_of_case": 0,
+}
+
+
+def limit_left(x_m: float) -> float:
+    return 1000 + 4000 * x_m
+
+
+def rows_of_sizes() -> list[list]:
+    """To -x, V = V_0 + 1e5 h: first order. To +x, V rises by 200 with each halving: no limit."""
+    rows = []
+    for x in X_LEFT_M:
+        for h in SIZES:
+            v_0 = limit_left(x)
+            rows.append([x, -1, "plate.element_size_m", h, v_0 + 1e5 * h, v_0, 1e5 * h, 1])
+    for x in X_RIGHT_M:
+        for h, v, error in zip(SIZES, (1000, 1200, 1400), (400, 200, 400), strict=True):
+            rows.append([x, 1, "plate.element_size_m", h, v, "", error, ""])
+    return rows
+
+
+def rows_of_substeps() -> list[list]:
+    """Both directions: V = V_0 (1 + 0.1/n); nothing known at the first station."""
+    rows = []
+    for direction, stations in ((-1, X_LEFT_M), (1, X_RIGHT_M)):
+        for x in stations:
+            for n in (9, 18, 36, 72):
+                if x == stations[0]:
+                    v = 1000 if n == 18 else ""
+                    rows.append([x, direction, "time.interface_substeps", n, v, "", "", ""])
+                else:
+                    rows.append(
+                        [x, direction, "time.interface_substeps", n, 1000 * (1 + 0.1 / n), 1000, 100 / n, 1]
+                    )
+    return rows
+
+
+def rows_of_damping() -> list[list]:
+    rows = []
+    for x in X_LEFT_M:
+        for beta in (2e-7, 1e-7, 5e-8, 0):
+            v = 1000 + 1e15 * beta**2
+            rows.append([x, -1, "material.stiffness_damping_s", beta, v, 1000, v - 1000, 2])
+    return rows
+
+
+def summary(verdict: str, error: float, order: float | None, n: int) -> dict:
+    return {
+        "verdict": verdict,
+        "median_relative_error": error,
+        "median_order": order,
+        "growth": 0.5,
+        "n_stations": n,
+        "n_stations_of_case": n,
+    }
+
+
+def sequence(parameter: str, values: list, case_value: float, left: dict, right: dict) -> dict:
+    return {
+        "parameter": parameter,
+        "values": values,
+        "case_value": case_value,
+        "extrapolated_from": values[:3],
+        **left,
+        "direction_-1": left,
+        "direction_+1": right,
+    }
+
+
+def write_study(folder: Path) -> Path:
+    """A convergence study whose speeds have known limits, and in one direction none."""
+    folder.mkdir(exist_ok=True)
+    rows = rows_of_sizes() + rows_of_substeps() + rows_of_damping()
+    write_csv(folder / "convergence.csv", HEADER, rows)
+    result = {
+        "version": "0",
+        "title": "made up",
+        "tolerance": 0.02,
+        "station_spacing_m": 2e-3,
+        "l_star_m": 2e-3,
+        "c_L_m_per_s": C_L,
+        "n_runs": 9,
+        "sequences": [
+            sequence(
+                "plate.element_size_m",
+                SIZES,
+                1e-3,
+                summary("not converged", 0.08, 1, 50),
+                summary("no limit", 0.1667, None, 20),
+            ),
+            sequence(
+                "time.interface_substeps",
+                [9, 18, 36, 72],
+                18,
+                summary("converged", 0.0055, 1, 49),
+                summary("converged", 0.0055, 1, 19),
+            ),
+            sequence(
+                "material.stiffness_damping_s",
+                [2e-7, 1e-7, 5e-8, 0],
+                1e-7,
+                summary("converged", 0.0099, 2, 50),
+                WITHOUT,
+            ),
+        ],
+        "warnings": [],
+    }
+    (folder / "convergence.json").write_text(json.dumps(result))
+    return folder
+
+
+def write_verification(folder: Path) -> Path:
+    """A problem of `slipfront verify` with a chart of two curves."""
+    folder.mkdir()
+    curves = [
+        {"label": "closed form", "kind": "theory", "x": [1.0, 2.0, 4.0], "y": [1.0, 0.5, 0.25]},
+        {"label": "program", "kind": "program", "x": [1.0, 2.0, 4.0], "y": [1.1, 0.51, 0.26]},
+    ]
+    chart = {"x_label": "$n$", "y_label": "error", "log_x": True, "log_y": True, "curves": curves}
+    results = {
+        "version": "0",
+        "name": "column",
+        "title": "Column",
+        "holds": True,
+        "checks": [],
+        "charts": [chart],
+    }
+    (folder / "column.json").write_text(json.dumps(results))
+    return folder
+
+
+def write_interface_step(folder: Path, title: str = "made up") -> Path:
+    """A study of the step at the interface."""
+    folder.mkdir()
+    header = ["kind", "interface_rows", "interface_substeps", "cost_over_plain", "median_error", "p90_error"]
+    rows = [
+        ["plain", 0, 1, 1, 0.07, 0.27],
+        ["plain", 0, 1, 2, 0.02, 0.05],
+        ["layer", 4, 9, 2.6, 0.001, 0.005],
+    ]
+    write_csv(folder / "interface_step.csv", header, rows)
+    (folder / "interface_step.json").write_text(json.dumps({"title": title, "tolerance": 0.01}))
+    return folder

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whatever the files of a result folder hold, they are read or refused in one line, without waiting.
+
+Bytes are changed at random for some seconds, SLIPFRONT_FUZZ_S, from a seed, SLIPFRONT_FUZZ_SEED.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import random
+import shutil
+import signal
+import time
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from pathlib import Path
+
+import pytest
+from slipfront.figures import interface_step, verification
+from slipfront.figures.__main__ import main
+from slipfront.figures.results import read_results
+from slipfront.figures.style import RC
+from slipfront.files import DataError
+from synthetic import interrupt, seal, write_output
+from synthetic_study import write_interface_step, write_study, write_verification
+
+FUZZ_S = float(os.environ.get("SLIPFRONT_FUZZ_S", "4"))
+SEED = int(os.environ.get("SLIPFRONT_FUZZ_SEED", "20120401"))
+LONGEST_S = 60
+TEXTS = (
+    b"\xff",
+    b"\0",
+    b"nan",
+    b"inf",
+    b"-1",
+    b"0",
+    b"1e308",
+    b"1e999",
+    b"null",
+    b"[]",
+    b"{}",
+    b'"',
+    b"\n",
+    b"#",
+)
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    monkeypatch.setitem(RC, "savefig.dpi", 20)
+
+
+@contextmanager
+def time_limit(what: str):
+    def expire(*_):
+        raise TimeoutError(f"{what}: no end after {LONGEST_S} s")
+
+    before = signal.signal(signal.SIGALRM, expire)
+    signal.alarm(LONGEST_S)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def mutated(data: bytes, rng: random.Random) -> bytes:
+    """Cut off, some bytes changed, a piece replaced by another text, or a piece repeated."""
+    kind = rng.randrange(5)
+    at = rng.randrange(max(1, min(len(data), rng.choice((len(data), 4096)))))
+    if kind == 0:
+        return data[:at]
+    if kind == 1:
+        return data[:at] + rng.choice(TEXTS) + data[at + rng.randrange(8) :]
+    if kind == 2:
+        return data[:at] + data[at // 2 : at // 2 + 64] + data[at:]
+    changed = bytearray(data)
+    for _ in range(rng.choice((1, 1, 4, 16))):
+        at = rng.randrange(max(1, min(len(data), rng.choice((len(data), 4096)))))
+        changed[at : at + 1] = bytes(
+            [rng.choice((0, 255, rng.randrange(256), changed[at] ^ 1 << rng.randrange(8)))]
+        )
+    return bytes(changed)
+
+
+def fuzz(folder: Path, attempt, seconds: float) -> int:
+    """Number of attempts, each with one file of the folder changed; it is restored afterwards."""
+    rng = random.Random(SEED)
+    files = sorted(f for f in folder.rglob("*") if f.is_file() and "figures" not in f.parts)
+    end, n = time.monotonic() + seconds, 0
+    while time.monotonic() < end or n < len(files):
+        file = files[n % len(files)]
+        data = file.read_bytes()
+        changed = mutated(data, rng)
+        file.write_bytes(changed)
+        try:
+            with time_limit(str(file)):
+                attempt()
+        except BaseException:
+            kept = Path("/tmp") / f"slipfront-fuzz-{file.name}"
+            kept.write_bytes(changed)
+            print(f"attempt {n} of seed {SEED} on {file}; the changed file is {kept}")
+            raise
+        finally:
+            file.write_bytes(data)
+        n += 1
+    return n
+
+
+def read_or_refused(read):
+    def attempt():
+        try:
+            read()
+        except DataError as error:
+            assert "\n" not in str(error) and "/" in str(error)
+
+    return attempt
+
+
+def done_or_refused(command):
+    def attempt():
+        out, err = io.StringIO(), io.StringIO()
+        with redirect_stdout(out), redirect_stderr(err):
+            code = command()
+        assert code in (0, 2)
+        assert err.getvalue().count("\n") == (0 if code == 0 else 1), err.getvalue()
+
+    return attempt
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """A reproduction of few numbers: most bytes matter."""
+    return write_output(tmp_path_factory.mktemp("small") / "out", columns=10, rows=5, n_times=6, snapshots=3)
+
+
+@pytest.fixture
+def output(small, tmp_path):
+    return shutil.copytree(small, tmp_path / "out")
+
+
+def test_a_damaged_reproduction_is_read_or_refused(output):
+    assert fuzz(output, read_or_refused(lambda: read_results(output)), FUZZ_S) > 0
+
+
+def test_a_damaged_reproduction_is_drawn_or_refused(output):
+    assert fuzz(output, done_or_refused(lambda: main([str(output)])), FUZZ_S) > 0
+
+
+@pytest.mark.parametrize("status", ["running", "interrupted", "blew_up"])
+def test_a_damaged_unfinished_run_is_drawn_or_refused(output, status):
+    run = output / "left"
+    interrupt(run, status)
+    fuzz(run, read_or_refused(lambda: read_results(output)), FUZZ_S / 4)
+    fuzz(run, done_or_refused(lambda: main([str(run)])), FUZZ_S / 4)
+
+
+def test_a_damaged_study_is_drawn_or_refused(tmp_path):
+    folder = write_study(tmp_path / "study")
+    assert main([str(folder)]) == 0
+    fuzz(folder, done_or_refused(lambda: main([str(folder)])), FUZZ_S / 2)
+
+
+def test_damaged_results_of_verify_are_drawn_or_refused(tmp_path):
+    folder, figures = write_verification(tmp_path / "verify"), tmp_path / "figures"
+    assert verification.main(folder, figures) == 0
+    fuzz(folder, done_or_refused(lambda: verification.main(folder, figures)), FUZZ_S / 4)
+
+
+def test_a_damaged_study_of_the_interface_step_is_drawn_or_refused(tmp_path):
+    folder, picture = write_interface_step(tmp_path / "step"), tmp_path / "picture.png"
+    assert interface_step.main(picture, [folder]) == 0
+    fuzz(folder, done_or_refused(lambda: interface_step.main(picture, [folder])), FUZZ_S / 4)
+
+
+def test_no_change_to_a_file_with_a_checksum_is_accepted(output):
+    seal(output)
+    read_results(output)
+    rng = random.Random(SEED)
+    for file in sorted(output.rglob("checksums.sha256")):
+        data = file.read_bytes()
+        for _ in range(20):
+            file.write_bytes(mutated(data, rng))
+            read_or_refused(lambda: read_results(output))()
+        file.write_bytes(data)
+    for file in sorted(f for f in output.rglob("*") if f.is_file() and f.name != "checksums.sha256"):
+        data = file.read_bytes()
+        for _ in range(3):
+            changed = mutated(data, rng)
+            if changed == data:
+                continue
+            file.write_bytes(changed)
+            with pytest.raises(DataError, match="does not match checksums.sha256") as refused:
+                read_results(output)
+            assert str(file) in str(refused.value)
+        file.write_bytes(data)
+    read_results(output)

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files that cannot be read or written as usual: one line, exit code 2, no half-written picture."""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from slipfront.figures import interface_step, verification
+from slipfront.figures.__main__ import main
+from slipfront.figures.style import RC
+from slipfront.files import DataError, read_json, read_table, read_toml
+from slipfront.read import read_experiment, read_fronts, read_history
+from synthetic import ENERGY_HEADER, energy_rows, write_csv, write_run
+from synthetic_study import write_interface_step, write_study, write_verification
+
+PACKAGE = Path(__file__).parents[2] / "python"
+NOBODY = 65534
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    monkeypatch.setitem(RC, "savefig.dpi", 30)
+
+
+@pytest.fixture
+def run(tmp_path):
+    write_run(tmp_path / "run", "left", 0.6, 10, 5, 6, 2)
+    return tmp_path / "run"
+
+
+def command(*arguments, module="slipfront.figures", **options) -> subprocess.CompletedProcess:
+    environment = {**os.environ, "PYTHONPATH": str(PACKAGE), "MPLCONFIGDIR": options.pop("config", "/tmp")}
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "timeout": 120} | options
+    return subprocess.run(
+        [sys.executable, "-m", module, *map(str, arguments)], text=True, env=environment, **options
+    )
+
+
+def refused(done: subprocess.CompletedProcess, *says: str) -> None:
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("\n") == 1 and done.stderr.startswith("slipfront.figures: error: "), done.stderr
+    for part in says:
+        assert part in done.stderr
+
+
+# Where there is no file
+
+
+def make_folder(file):
+    file.unlink()
+    file.mkdir()
+
+
+def make_pipe(file):
+    file.unlink()
+    os.mkfifo(file)
+
+
+def make_loop(file):
+    file.unlink()
+    file.symlink_to(file)
+
+
+@pytest.mark.parametrize("name", ["run.json", "energy.csv"])
+@pytest.mark.parametrize(
+    "make, says",
+    [(make_folder, "Is a directory"), (make_pipe, "not a regular file"), (make_loop, "Too many levels")],
+)
+def test_what_is_no_file_is_refused_at_once(run, capsys, name, make, says):
+    make(run / name)
+    assert main([str(run)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and f"{run / name}: {says}" in error
+
+
+@pytest.mark.parametrize("make", [make_folder, make_pipe])
+def test_what_is_no_hdf5_file_is_refused_at_once(run, make):
+    make(run / "interface.h5")
+    with pytest.raises(DataError, match="interface.h5"):
+        read_history(run / "interface.h5")
+
+
+@pytest.mark.parametrize("closed", ["", "energy.csv"])
+def test_what_may_not_be_read_is_refused(run, capsys, closed):
+    """As another user where the tests run as root, whom no mode keeps out."""
+    assert (
+        main([str(run)]) == 0
+    )  # all that is imported is: the other user may not read the interpreter's files
+    root = os.geteuid() == 0
+    parents = [p for p in run.parents if not p.stat().st_mode & 0o010] if root else []
+    for parent in parents:
+        parent.chmod(parent.stat().st_mode | 0o011)
+    (run / closed).chmod(0)
+    try:
+        if root:
+            os.seteuid(NOBODY)
+        assert main([str(run)]) == 2
+    finally:
+        if root:
+            os.seteuid(0)
+        (run / closed).chmod(0o755)
+        for parent in parents:
+            parent.chmod(parent.stat().st_mode & ~0o011)
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and str(run / closed) in error and "Permission denied" in error
+
+
+# Text
+
+
+def test_comments_bom_and_spaces_are_read(tmp_path):
+    file = tmp_path / "measured.csv"
+    file.write_bytes(
+        b"\xef\xbb\xbf# measured by hand\r\nstatic_ratio, v_over_c_L\r\n# first\r\n0.7, 0.5\r\n\r\n0.8,"
+    )
+    ratio, v = read_experiment(file, 1000.0)
+    np.testing.assert_array_equal(ratio, [0.7, 0.8])
+    np.testing.assert_array_equal(v, [0.5, np.nan])
+
+
+@pytest.mark.parametrize(
+    "data, says",
+    [
+        (b"a,b\n1,\xe9\n", ":2: byte 0xe9 is not UTF-8"),
+        (b"a,b\n1,\0\n", "holds a byte 0"),
+        (b"a,b\n1,2", "the last line is cut off"),
+        (b'a,b\n1,"2\n3,4"\n', ":2: not a line of CSV"),
+        (b"a,a\n1,2\n", "two columns 'a'"),
+        (b"", "empty"),
+        (b"# nothing\n", "empty"),
+    ],
+)
+def test_a_table_that_is_none_is_refused(tmp_path, data, says):
+    file = tmp_path / "table.csv"
+    file.write_bytes(data)
+    with pytest.raises(DataError) as refused:
+        read_table(file)
+    assert str(refused.value).startswith(str(file)) and says in str(refused.value)
+
+
+@pytest.mark.parametrize("cell", ["nan", "inf", "-inf", "1_0", "１", "0x1", "1e", "1,5"])
+def test_a_cell_that_is_no_number_is_refused(tmp_path, cell):
+    file = tmp_path / "table.csv"
+    file.write_text(f'a\n"{cell}"\n')
+    with pytest.raises(DataError, match=":2: .* in column 'a' is not a number"):
+        read_table(file).numbers("a")
+
+
+@pytest.mark.parametrize("text", ["[" * 100_000, '{"a": NaN}', '{"a": Infinity}', "1" * 10_000, "{", ""])
+def test_what_is_no_json_is_refused(tmp_path, text):
+    file = tmp_path / "file.json"
+    file.write_text(text)
+    with pytest.raises(DataError, match="file.json: not JSON"):
+        read_json(file)
+
+
+@pytest.mark.parametrize("text", ["a = " + "[" * 100_000, "a = 2020-13-45", "a = 1\na = 2", "a"])
+def test_what_is_no_toml_is_refused(tmp_path, text):
+    file = tmp_path / "file.toml"
+    file.write_text(text)
+    with pytest.raises(DataError, match="file.toml: not TOML"):
+        read_toml(file)
+
+
+def test_a_front_that_turns_back_is_refused(run):
+    file = run / "fronts.csv"
+    lines = file.read_text().splitlines()
+    lines[2], lines[3] = lines[3], lines[2]
+    file.write_text("\n".join(lines) + "\n")
+    with pytest.raises(DataError, match="does not go on in its direction"):
+        read_fronts(file)
+
+
+@pytest.mark.parametrize("title", ["costs $5", r"$\frac$", "two\nlines", "日本 \u202e"])
+def test_any_title_is_drawn(tmp_path, title):
+    step = write_interface_step(tmp_path / "step", title)
+    assert interface_step.main(tmp_path / "made" / "picture.png", [step]) == 0
+    study = write_study(tmp_path / "study")
+    file = study / "convergence.json"
+    file.write_text(file.read_text().replace("made up", title.encode("unicode_escape").decode()))
+    assert main([str(study)]) == 0
+
+
+def test_a_folder_of_any_name_is_drawn(run):
+    odd = os.fsdecode(os.fsencode(run.parent) + b"/a $\\frac b\n\xff")
+    run.rename(odd)
+    done = command(odd, encoding="utf-8", errors="replace")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.count("\n") == 1
+
+
+# Output
+
+
+def test_pictures_of_verify_are_written(tmp_path, capsys):
+    folder = write_verification(tmp_path / "verify")
+    assert verification.main(folder, tmp_path / "a/b") == 0
+    assert [f.name for f in (tmp_path / "a/b").iterdir()] == ["verify_column.png"]
+    assert "(1)" in capsys.readouterr().out
+
+
+def test_verify_without_results_is_refused(tmp_path, capsys):
+    assert verification.main(tmp_path, tmp_path / "figures") == 2
+    assert capsys.readouterr().err.count("\n") == 1 and not (tmp_path / "figures").exists()
+
+
+def test_figures_that_is_a_file_is_refused(run, capsys):
+    (run / "figures").write_text("mine")
+    assert main([str(run)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and f"{run / 'figures'}: cannot be written: File exists" in error
+    assert (run / "figures").read_text() == "mine"
+
+
+def limit_files():
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+
+def test_a_full_disk_leaves_the_pictures_of_before(run):
+    assert main([str(run)]) == 0
+    before = {f.name: f.read_bytes() for f in (run / "figures").iterdir()}
+    write_csv(run / "energy.csv", ENERGY_HEADER, energy_rows(12))
+    refused(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large")
+    assert {f.name: f.read_bytes() for f in (run / "figures").iterdir()} == before
+
+
+def test_a_full_disk_leaves_no_folder(run):
+    refused(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large")
+    assert not (run / "figures").exists()
+
+
+def test_a_full_standard_output_is_told(run):
+    with open("/dev/full", "w") as full:
+        refused(command(run, stdout=full), "standard output", "No space left")
+    assert (run / "figures/energy_balance.png").is_file()
+
+
+def test_a_closed_pipe_is_told(run):
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    try:
+        refused(command(run, stdout=write_end), "standard output", "Broken pipe")
+    finally:
+        os.close(write_end)
+
+
+def test_closed_streams_do_not_matter(run):
+    def close():
+        os.close(1)
+        os.close(2)
+
+    assert command(run, stdout=None, stderr=None, preexec_fn=close).returncode == 0
+
+
+def test_without_arguments_the_usage_is_told():
+    for module in ("slipfront.figures", "slipfront.figures.verification", "slipfront.figures.interface_step"):
+        done = command(module=module)
+        assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
