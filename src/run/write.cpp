@@ -112,10 +112,16 @@ Json fronts_json(const std::vector<fronts::Front>& fronts) {
 
 /// What every run.json begins with.
 Json about(const io::Case& config, const Status& status) {
-  return {
-      {"version", version()},  {"commit", commit()},      {"compiler", std::string(compiler) + __VERSION__},
-      {"host", host_name()},   {"process", getpid()},     {"title", config.title},
-      {"status", status.name}, {"reason", status.reason}, {"sessions", status.sessions}};
+  Json json = {{"version", version()},
+               {"commit", commit()},
+               {"compiler", std::string(compiler) + __VERSION__},
+               {"host", host_name()},
+               {"title", config.title},
+               {"status", status.name},
+               {"reason", status.reason},
+               {"sessions", status.sessions}};
+  if (status.name == "running") json["process"] = getpid();
+  return json;
 }
 
 Json run_json(const Result& result, const InitialState& initial, const Status& status) {
