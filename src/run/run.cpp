@@ -17,6 +17,7 @@
 #include "io/schema.hpp"
 #include "mesh/plate.hpp"
 #include "run/choices.hpp"
+#include "run/needs.hpp"
 #include "solve/plate_solver.hpp"
 #include "solve/prestress.hpp"
 #include "solve/stepper.hpp"
@@ -29,19 +30,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Displacements of all nodes, from the plate's measures alone: for refusals before anything is built.
-double approximate_unknowns(const mesh::Plate& plate) {
-  double unknowns = 0, h = plate.element_size_m, height_m = plate.fine_height_m, rest_m = plate.height_m;
-  for (int k = 0; k <= std::max(0, plate.coarsenings) && rest_m > 0; ++k) {
-    const double of_block_m = k == plate.coarsenings ? rest_m : std::min(height_m, rest_m);
-    unknowns += 2 * (plate.width_m / h + 1) * (of_block_m / h + 1);
-    rest_m -= of_block_m;
-    height_m = plate.height_m - rest_m;  // a block is as high as everything below it
-    h *= 2;
-  }
-  return unknowns;
 }
 
 /// B at the nodes of the interface. [lower]
@@ -77,6 +65,18 @@ std::string contact_warning(const solve::Equilibrium& state) {
 }
 
 }  // namespace
+
+double approximate_unknowns(const mesh::Plate& plate) {
+  double unknowns = 0, h = plate.element_size_m, height_m = plate.fine_height_m, rest_m = plate.height_m;
+  for (int k = 0; k <= std::max(0, plate.coarsenings) && rest_m > 0; ++k) {
+    const double of_block_m = k == plate.coarsenings ? rest_m : std::min(height_m, rest_m);
+    unknowns += 2 * (plate.width_m / h + 1) * (of_block_m / h + 1);
+    rest_m -= of_block_m;
+    height_m = plate.height_m - rest_m;  // a block is as high as everything below it
+    h *= 2;
+  }
+  return unknowns;
+}
 
 double top_speed_m_per_s(const io::Case& config) {
   return config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
@@ -304,10 +304,10 @@ Result run_event(const io::Case& config, const InitialState& initial, solve::Ste
                          config.event == interface::EventKind::right ||
                          (config.event == interface::EventKind::nucleation &&
                           config.nucleation.form == interface::NucleationForm::overstress);
+  const auto snapshots = snapshot_plan(config, stepper.step_s());
   result.event = solve::run_event(
       stepper, state, mu_s, result.speeds.c_L, triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
-      config.time,
-      {config.output.history_interval_s, config.output.energy_interval_s, config.output.snapshot_times_s},
+      config.time, {config.output.history_interval_s, config.output.energy_interval_s, snapshots.times_s},
       solve::halo_for(initial.mesh, config.fronts.l_star_m), monitor, sink);
   result.stepping_wall_s = seconds_since(start);
 
@@ -326,6 +326,7 @@ Result run_event(const io::Case& config, const InitialState& initial, solve::Ste
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before: what "
                     "happens behind the front is its doing",
                     after.trigger_work, 100 * after.trigger_work / before.strain));
+  result.warnings.insert(result.warnings.end(), snapshots.notes.begin(), snapshots.notes.end());
   if (config.time.step_factor > 1)
     result.warnings.push_back("the step is above the largest stable one (time.allow_unstable)");
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");

@@ -177,7 +177,13 @@ Ramp run_ramp(Stepper& stepper, const Equilibrium& tilted, const Loading& loadin
   stepper.start(tilted, top_speed);
   Recorder recorder(tilted, mu_s, 0);
   Watch watch(stepper, c_L);
-  const auto most = static_cast<std::int64_t>(2 * expected_shear_m / (top_speed * stepper.step_s()));
+  const double all_steps = 2 * expected_shear_m / (top_speed * stepper.step_s());
+  if (!(all_steps <= 2e12))
+    throw UserError(
+        "the ramp with loading.shear_speed_over_c_L = {:g} takes {:g} steps; choose a higher speed, or "
+        "loading.method = direct",
+        top_speed / c_L, 0.5 * all_steps);
+  const auto most = static_cast<std::int64_t>(all_steps);
 
   // The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.
   const auto state_now = [&] {
