@@ -42,12 +42,12 @@ void print_info(const CaseArguments& arguments) {
   const auto statics = info.solver_bytes > 0 ? fmt::format(" ({})", solve::name_of(info.solver)) : "";
   line("memory", fmt::format("{:.3g} GB, of it {:.3g} GB for the statics{}", info.memory_bytes * 1e-9,
                              info.solver_bytes * 1e-9, statics));
+  const auto& n = info.needs;
   line("disk",
-       fmt::format("{:.3g} GB while it runs: history of {} rows {:.3g}, {} snapshots {:.3g}, checkpoints "
-                   "{:.3g}, energies {:.3g}",
-                   info.needs.disk_bytes() * 1e-9, info.needs.history_rows, info.needs.history_bytes * 1e-9,
-                   info.needs.snapshots, info.needs.snapshot_bytes * 1e-9, info.needs.checkpoint_bytes * 1e-9,
-                   info.needs.energy_bytes * 1e-9));
+       fmt::format(
+           "{:.3g} GB while it runs: {} rows of history {:.3g}, {} snapshots {:.3g}, checkpoints {:.3g}",
+           n.disk_bytes() * 1e-9, n.history_rows, n.history_bytes * 1e-9, n.snapshots,
+           n.snapshot_bytes * 1e-9, n.checkpoint_bytes * 1e-9));
   line("node updates",
        fmt::format("{:.4g} at {:.3g} million/s here", info.node_updates, info.node_updates_per_s * 1e-6));
   line("expected time", fmt::format("{:.2g} s", info.expected_s));

@@ -83,6 +83,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
     };
   };
   try {
+    run::require_fit(config, options.dir);
     auto initial = run::make_initial_state(config, with_progress("ramp"), execution);
     io::ResultStream stream(options.dir, initial.common.tractions.x_m, initial.mesh,
                             !config.output.snapshot_times_s.empty());

@@ -11,8 +11,6 @@
 #include "interface/friction/registry.hpp"
 #include "mesh/plate.hpp"
 #include "run/choices.hpp"
-#include "run/run.hpp"
-#include "solid/element.hpp"
 #include "solid/operator.hpp"
 #include "solve/event.hpp"
 #include "solve/plate_solver.hpp"
@@ -70,9 +68,21 @@ double interface_bytes(const io::Case& config, const Size& size) {
   const double halo = std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
   const double around = 2 * number * (2 * halo + 1);
   const double state = 30 * number + 2 * number + around;
-  // A node's first onset and the stop after it; one more of each, seen by another node's first onset.
-  const double record = 2 * (2 * number + around + 2 * number);
+  // A node's onsets and stops: the first ones, and those that other nodes' first onsets fell between.
+  constexpr double changes = 6;
+  const double record = changes * (2 * number + around + 2 * number);
   return size.n_interface * (state + 2 * record);
+}
+
+/// Largest frequency of many squares of side h; corners and coarser blocks change it little, or lower it.
+double frequency_of_squares_rad_per_s(double h, const solid::Material& material) {
+  constexpr int side = 32;
+  mesh::Plate squares;
+  squares.width_m = squares.height_m = side * h;
+  squares.element_size_m = h;
+  squares.corner = mesh::Corner::none;
+  squares.top = mesh::Top::free;
+  return solid::frequency_bound_rad_per_s(mesh::make_plate(squares), material);
 }
 
 double rows_of(double end_s, double interval_s, double step_s) {
@@ -145,9 +155,9 @@ Size estimated_size(const io::Case& config) {
   size.n_nodes = size.n_cells = 0.5 * approximate_unknowns(config.plate);
   const double h = config.plate.element_size_m;
   size.n_interface = config.plate.width_m / h + 1;
-  size.step_s = config.time.step_factor * solid::stable_step_s(solid::cell_frequency_rad_per_s(
-                                                                   {0, 0, h, 0, h, h, 0, h}, config.material),
-                                                               config.material.stiffness_damping_s);
+  size.step_s =
+      config.time.step_factor * solid::stable_step_s(frequency_of_squares_rad_per_s(h, config.material),
+                                                     config.material.stiffness_damping_s);
   return size;
 }
 
@@ -185,6 +195,9 @@ Needs needs(const io::Case& config, const Size& size) {
 }
 
 void require_fit(const io::Case& config, const std::filesystem::path& folder) {
+  require_plate_fits(config);
+  if (!is_prestressed(config))
+    solve::require_statics_memory(wanted_solver(config), approximate_unknowns(config.plate));
   const Size size = estimated_size(config);
   const Needs n = needs(config, size);
   const bool energies = n.energy_rows * sizeof(solve::Energies) > 0.5 * n.memory_bytes();

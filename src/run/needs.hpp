@@ -25,7 +25,8 @@ struct Size {
   double step_s = 0;
 };
 
-/// The same from the case alone, before there is a mesh: nodes to a few per cent, the step from below.
+/// The same from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,
+/// which is shorter, and of a graded plate, which may be longer.
 Size estimated_size(const io::Case& config);
 
 /// Work, memory and space on disk that a run takes. Bytes on disk are the most that lies there at one time:

@@ -78,6 +78,13 @@ double approximate_unknowns(const mesh::Plate& plate) {
   return unknowns;
 }
 
+void require_plate_fits(const io::Case& config) {
+  const double n_nodes = 0.5 * approximate_unknowns(config.plate);
+  require_memory(
+      solve::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
+      fmt::format("a plate of {:.4g} nodes", n_nodes), "choose a larger plate.element_size_m");
+}
+
 double top_speed_m_per_s(const io::Case& config) {
   return config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
 }
@@ -130,11 +137,7 @@ std::string initial_state_key(const io::Case& config) {
 }
 
 mesh::Mesh check(const io::Case& config) {
-  const double n_unknowns = approximate_unknowns(config.plate);
-  const double n_nodes = 0.5 * n_unknowns;
-  require_memory(
-      solve::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
-      fmt::format("a plate of {:.4g} nodes", n_nodes), "choose a larger plate.element_size_m");
+  require_plate_fits(config);
   if (!is_prestressed(config)) {
     if (config.plate.sides == mesh::Sides::periodic)
       throw UserError(
@@ -144,7 +147,7 @@ mesh::Mesh check(const io::Case& config) {
       throw UserError(
           "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
           config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
-    solve::require_statics_memory(wanted_solver(config), n_unknowns);
+    solve::require_statics_memory(wanted_solver(config), approximate_unknowns(config.plate));
   }
   if (config.time.precision == solve::Precision::single_precision && config.plate.sides != mesh::Sides::free)
     throw UserError(

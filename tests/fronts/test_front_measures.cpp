@@ -106,6 +106,61 @@ TEST(TipSpeed, WhereTheTipJumps) {
   EXPECT_TRUE(std::isnan(find(make_record(x, tau), options).at(0).points[101].v_tip_m_per_s));
 }
 
+TEST(TipSpeed, IsUndefinedWhereTheTimeIsNotResolved) {
+  const auto x = nodes(301, h);
+  auto tau = bilateral(x, 0.0, V);
+  tau[101] = tau[100] + 1e-12;
+  tau[102] = tau[101] + 1e-12;
+  for (int k = 103; k < 301; ++k) tau[k] = tau[102] + (x[k] - x[102]) / V;
+  FrontOptions options = make_options();
+  options.l_star_m = h;
+  auto record = make_record(x, tau);
+  const auto speeds = [&] { return find(record, options).at(0).points; };
+  EXPECT_NEAR(speeds()[101].v_tip_m_per_s, h / 1e-12, 1e-3 * h / 1e-12);
+  for (const double resolution_s : {1e-11, 0.9 * h / V}) {
+    record.resolution_s = resolution_s;
+    for (int k = 1; k < 300; ++k) EXPECT_EQ(std::isnan(speeds()[k].v_tip_m_per_s), k == 101) << k;
+  }
+  // Over several elements: the nodes around the length are what counts, also where they end it.
+  options.l_star_m = 2 * h;
+  for (int k = 2; k < 299; ++k) EXPECT_EQ(std::isnan(speeds()[k].v_tip_m_per_s), k == 101) << k;
+  record.resolution_s = 1.9 * h / V;
+  EXPECT_FALSE(std::isnan(speeds()[50].v_tip_m_per_s));
+  record.resolution_s = 2.1 * h / V;
+  EXPECT_TRUE(std::isnan(speeds()[50].v_tip_m_per_s));
+}
+
+TEST(TipSpeed, IsUndefinedWhereTheTriggerDrives) {
+  const auto x = nodes(301, h);
+  const auto record = make_record(x, bilateral(x, 0.0, V));
+  FrontOptions options = make_options();
+  const auto defined_from_to = [&] {
+    int first = -1, last = -1;
+    for (const auto& point : find(record, options).at(0).points) {
+      if (std::isnan(point.v_tip_m_per_s)) continue;
+      if (first < 0) first = point.node;
+      last = point.node;
+    }
+    return std::pair(first, last);
+  };
+  const int first = defined_from_to().first, last = defined_from_to().second;
+  options.exclude_margin_m = 10e-3;
+  options.exclude_left_m = x[30] + 10e-3;  // the zone ends at node 30, which belongs to it
+  EXPECT_EQ(defined_from_to(), std::pair(31, last));
+  options = make_options();
+  options.exclude_margin_m = 10e-3;
+  options.exclude_right_m = x[270] - 10e-3;
+  EXPECT_EQ(defined_from_to(), std::pair(first, 269));
+  options = make_options();
+  options.exclude_margin_m = 10e-3;
+  options.exclude_from_m = x[100] - 10e-3;
+  options.exclude_to_m = x[110] + 10e-3;
+  for (const auto& point : find(record, options).at(0).points)
+    if (point.node >= first && point.node <= last) {
+      EXPECT_EQ(std::isnan(point.v_tip_m_per_s), point.node >= 100 && point.node <= 110) << point.node;
+    }
+}
+
 /// Tractions linear in the distance of a front that runs to +x from x = 0: t_d and p_d are exact.
 Traction ahead_of_tip(double x_m, double time_s) {
   const double distance_m = x_m - V * time_s;
