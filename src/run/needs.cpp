@@ -22,8 +22,8 @@ namespace {
 
 constexpr double number = sizeof(double);
 
-/// Columns of a mesh whose statics take a few hundredths of a second.
-constexpr int coarse_columns = 100;
+/// Columns of a mesh whose statics take a few hundredths of a second, and show the state of the interface.
+constexpr double most_columns = 100, least_columns = 30;
 
 /// A machine takes some 1e5 steps of the smallest plate in a second: these are four months.
 constexpr double most_steps = 1e12;
@@ -33,14 +33,16 @@ std::int64_t countable(double steps, const std::string& what, const char* remedy
   return static_cast<std::int64_t>(steps);
 }
 
-/// The plate in larger squares of the same rows and columns' ratio, without coarsenings; a fillet, which they
-/// may not fit, becomes a right angle.
+/// The plate in the smallest squares that make few columns, without coarsenings. A fillet, which may not fit,
+/// becomes a right angle.
+/// @throws UserError where the plate's sides are no multiples of such squares.
 mesh::Plate coarse_plate(mesh::Plate plate) {
   const double columns = std::round(plate.width_m / plate.element_size_m);
   const double rows = std::round(plate.height_m / plate.element_size_m);
-  double factor = 1;
-  while (columns / factor > coarse_columns || std::fmod(columns, factor) != 0 || std::fmod(rows, factor) != 0)
-    if (++factor > rows) break;
+  double factor = std::max(1.0, std::ceil(columns / most_columns));
+  const auto fits = [&] { return std::fmod(columns, factor) == 0 && std::fmod(rows, factor) == 0; };
+  while (!fits() && columns / factor >= least_columns) ++factor;
+  if (!fits()) throw UserError("no coarse mesh fits");
   plate.element_size_m *= factor;
   plate.coarsenings = 0;
   if (plate.corner == mesh::Corner::fillet) plate.corner = mesh::Corner::none;
@@ -62,8 +64,7 @@ double estimated_critical_shear_m(const io::Case& config) {
   }
 }
 
-/// Rows of the recorder and the interface's state for each of its nodes, and the slip record with its copy in
-/// the order of time.
+/// The interface's state, and the recorder with the copy of its record in the order of time.
 double interface_bytes(const io::Case& config, const Size& size) {
   const double halo = std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
   const double around = 2 * number * (2 * halo + 1);

@@ -210,20 +210,28 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
   o.mu_s = interface::static_coefficient(config.friction);
   o.elasticity = {config.material.youngs_modulus_Pa, config.material.poissons_ratio,
                   config.material.plane == solid::Plane::strain};
-  o.exclude_margin_m = config.fronts.trigger_margin_m;
   const double margin = config.trigger.zone_m + config.fronts.trigger_margin_m;
   const double edge = initial.prescribed ? 0 : config.loading.edge_margin_m;
   const double contact_from = initial.common.inside_from_m - edge;
   const double contact_to = initial.common.inside_to_m + edge;
-  if (config.event == interface::EventKind::left) o.exclude_left_m = contact_from + margin;
-  if (config.event == interface::EventKind::right) o.exclude_right_m = contact_to - margin;
+  if (config.event == interface::EventKind::left) {
+    o.exclude_left_m = contact_from + margin;
+    o.driven = {{contact_from, contact_from + config.trigger.zone_m}};
+  }
+  if (config.event == interface::EventKind::right) {
+    o.exclude_right_m = contact_to - margin;
+    o.driven = {{contact_to - config.trigger.zone_m, contact_to}};
+  }
   if (config.event == interface::EventKind::nucleation) {
     const auto& n = config.nucleation;
-    const double reach = n.half_length_m + n.taper_m + config.fronts.trigger_margin_m;
+    const double patch_reach = n.half_length_m + n.taper_m;
+    const double reach = patch_reach + config.fronts.trigger_margin_m;
     o.exclude_from_m = n.x_m - reach;
     o.exclude_to_m = n.x_m + reach;
     // A patch that passes an edge of a periodic plate goes on at the other one.
     const double period = initial.mesh.period_m;
+    for (const double shift : {0.0, -period, period})
+      o.driven.push_back({n.x_m - patch_reach + shift, n.x_m + patch_reach + shift});
     if (period > 0 && o.exclude_from_m < 0) o.exclude_right_m = o.exclude_from_m + period;
     if (period > 0 && o.exclude_to_m > period) o.exclude_left_m = o.exclude_to_m - period;
   }
