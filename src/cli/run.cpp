@@ -102,6 +102,15 @@ run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& o
   }
 }
 
+/// Refuses what the machine cannot hold before anything is written.
+void require_fit(const CaseArguments& arguments, const io::Case& config, const std::string& dir) {
+  try {
+    run::require_fit(config, dir);
+  } catch (const UserError& error) {
+    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+  }
+}
+
 void run_case(const CaseArguments& arguments, const RunArguments& options) {
   std::optional<io::Case> config;
   if (!arguments.file.empty()) config = arguments.read();
@@ -110,6 +119,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
     throw UserError(
         "slipfront: run takes CASE and -o DIR, or --restart DIR, perhaps with CASE to compare; see slipfront "
         "run --help");
+  if (!restarts) require_fit(arguments, *config, options.dir);
   io::ResultFolder folder(options.folder(), run::run_work);
   if (restarts && !folder.has_unfinished() && run::is_complete(folder.dir())) {
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());

@@ -10,6 +10,7 @@
 #include "fronts/front.hpp"
 #include "io/case.hpp"
 #include "mesh/mesh.hpp"
+#include "run/needs.hpp"
 #include "solve/event.hpp"
 #include "solve/statics.hpp"
 #include "stability/verdict.hpp"
@@ -136,8 +137,9 @@ struct Info {
   WaveSpeeds speeds;
   std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0, n_irregular = 0;
   double stable_step_s = 0, step_s = 0, substep_s = 0;
-  std::int64_t n_steps = 0;                                     ///< to time.end_s
-  double node_updates = 0;                                      ///< of the event
+  Needs needs;
+  std::int64_t n_steps = 0;                                     ///< of the event, to time.end_s
+  double node_updates = 0;                                      ///< of the event and of the ramp
   double memory_bytes = 0;                                      ///< the largest of statics and event
   solve::StaticSolver solver = solve::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                      ///< of the statics, estimated

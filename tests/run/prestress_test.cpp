@@ -276,6 +276,8 @@ TEST(Nucleation, ExcludedZoneOfAPatchAtThePeriodicEdge) {
   const auto options = front_options(c, make_initial_state(c, go_on));
   for (const double x : {0.0, 0.029, 0.091, 0.099}) EXPECT_TRUE(fronts::is_excluded(options, x)) << x;
   for (const double x : {0.031, 0.05, 0.089}) EXPECT_FALSE(fronts::is_excluded(options, x)) << x;
+  for (const double x : {0.0, 0.02, 0.1}) EXPECT_TRUE(fronts::is_driven(options, x)) << x;
+  for (const double x : {0.021, 0.05, 0.099}) EXPECT_FALSE(fronts::is_driven(options, x)) << x;
 }
 
 std::string error_of(const io::Case& config) {

@@ -136,7 +136,7 @@ TEST_F(WrittenRun, SummaryTellsTheRun) {
   EXPECT_EQ(run["dt_s"], s.result.step_s);
   EXPECT_EQ(run["steps"], s.result.event.steps);
   EXPECT_EQ(run["time_s"], s.result.event.time_s);
-  EXPECT_EQ(run["onsets"], s.result.event.record.onsets.size());
+  EXPECT_EQ(run["onsets"], s.result.event.record.n_onsets());
   EXPECT_EQ(run["statics"]["critical_shear_m"], s.initial.critical_shear_m);
   EXPECT_EQ(run["statics"]["common_peak_t_over_p"], s.initial.common.peak_ratio);
   EXPECT_FALSE(run["statics"].contains("ramp"));
@@ -347,7 +347,7 @@ TEST(Write, OfARampTellsBothWays) {
   EXPECT_DOUBLE_EQ(ramp["relative_to_direct"],
                    initial.ramp->spontaneous.shear_m / initial.critical_shear_m - 1);
   EXPECT_EQ(ramp["steps"], initial.ramp->steps);
-  EXPECT_EQ(ramp["onsets_before_critical"], initial.ramp->record.onsets.size());
+  EXPECT_EQ(ramp["onsets_before_critical"], initial.ramp->record.n_onsets());
 }
 
 }  // namespace
