@@ -98,7 +98,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
                                     result.event.time_s, options.dir));
     if (!options.quiet) print_summary(result, initial, options.dir);
   } catch (const UserError& error) {
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+    throw UserError(arguments.with_place(error.what()));
   }
 }
 

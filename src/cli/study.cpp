@@ -52,7 +52,7 @@ void with_progress(const CaseArguments& arguments, const Target& target, Study&&
       return !interrupt_wanted();
     });
   } catch (const UserError& error) {
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+    throw UserError(arguments.with_place(error.what()));
   }
 }
 

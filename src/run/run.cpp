@@ -62,8 +62,7 @@ bool is_prestressed(const io::Case& config) {
 fronts::StaticState prescribed_tractions(const io::Prestress& prestress, const mesh::Mesh& mesh) {
   fronts::StaticState state;
   for (const auto n : mesh.lower) state.x_m.push_back(mesh.x_m[n]);
-  if (!prestress.file.empty())
-    return io::prestress_at(io::read_prestress(prestress.file), state.x_m, prestress.file);
+  if (!prestress.file.empty()) return io::prestress_at(prestress, state.x_m);
   state.t_s_Pa.assign(state.x_m.size(), prestress.t_Pa);
   state.p_s_Pa.assign(state.x_m.size(), prestress.p_Pa);
   return state;
