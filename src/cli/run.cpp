@@ -48,14 +48,13 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
     fmt::print("by the ramp at {:.5g} m ({:+.3f} %), after {} beginnings of slip at the edges\n",
                initial.ramp->spontaneous.shear_m,
                100 * (initial.ramp->spontaneous.shear_m / initial.critical_shear_m - 1),
-               initial.ramp->record.onsets.size());
+               initial.ramp->record.n_onsets());
   fmt::print(
       "{} steps of {:.4g} s ({} sub-steps at the interface), {:.3g} s of wall time, {:.0f} million node "
       "updates/s\n",
       event.steps, result.step_s, std::lround(result.step_s / result.substep_s), result.stepping_wall_s,
       1e-6 * static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s);
   for (const auto& front : result.fronts) {
-    // The median: nodes of a trigger zone slip at once, at speeds without meaning.
     std::vector<double> speeds;
     for (const auto& point : front.points) speeds.push_back(point.v_tip_m_per_s / result.speeds.c_L);
     const double speed = fronts::median(speeds);

@@ -38,13 +38,21 @@ struct FrontOptions {
   double exclude_right_m = std::numeric_limits<double>::infinity();  ///< ... nor above it
   double exclude_from_m = std::numeric_limits<double>::infinity();   ///< ... nor from here (nucleation patch)
   double exclude_to_m = -std::numeric_limits<double>::infinity();    ///< ... to here
-  double mode_fraction = 0.8;  ///< of a front's points with a slipping share that must agree on its mode
+  double exclude_margin_m = 0;  ///< what of these zones lies beside the trigger zone or the patch itself
+  double mode_fraction = 0.8;   ///< of a front's points with a slipping share that must agree on its mode
 };
 
 /// Whether x lies in a zone that is left out.
 inline bool is_excluded(const FrontOptions& o, double x_m) {
   return x_m < o.exclude_left_m || x_m > o.exclude_right_m ||
          (x_m >= o.exclude_from_m && x_m <= o.exclude_to_m);
+}
+
+/// Whether x lies in the trigger zone or the nucleation patch itself, both ends included.
+inline bool is_driven(const FrontOptions& o, double x_m) {
+  const double margin_m = o.exclude_margin_m * (1 - 1e-9);
+  return x_m < o.exclude_left_m - margin_m || x_m > o.exclude_right_m + margin_m ||
+         (x_m >= o.exclude_from_m + margin_m && x_m <= o.exclude_to_m - margin_m);
 }
 
 /// Why a front ends.
@@ -96,8 +104,9 @@ struct Front {
 ///
 /// Measures. The tip passes x when the first node at or beyond x on the path slips; between nodes the time
 /// is linear in x. l* at a node is the longest of l_star_m and the elements beside the node.
-/// - v_tip: l* over the time from x - l*/2 to x + l*/2. Undefined where that leaves the path or takes no
-///   time.
+/// - v_tip: l* over the time from x - l*/2 to x + l*/2. Undefined where that leaves the path; in the trigger
+///   zone and the nucleation patch, whose nodes slip when the trigger makes them; and where the time is not
+///   resolved: where the nodes on either side of that length begin to slip less than resolution_s apart.
 /// - t_d, p_d: linear in tip position between the two nodes that bracket the tip (a tip within 2 % of their
 ///   distance from a node is at that node). Undefined, with U_s and U_r, within l* of the start, in the
 ///   zones of exclude_*, where the tip jumps over x - l* and x at once, and where the halo is too small:

@@ -11,21 +11,33 @@ namespace slipfront::fronts {
 struct Traction {
   double t_Pa = 0;
   double p_Pa = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(t_Pa, p_Pa);
+  }
 };
 
 /// A node begins to slip.
 struct Onset {
   std::int32_t node = 0;  ///< index along the interface, left to right
   double time_s = 0;      ///< located inside the step, where |t|/p passes the static friction coefficient
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(node, time_s);
+  }
 };
 
 /// A slipping node sticks again.
 struct Stop {
   std::int32_t node = 0;
   double time_s = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(node, time_s);
+  }
 };
 
-/// What a run records of its interface at full time resolution: every beginning and end of slip, and the
+/// What a run records of its interface at full time resolution: beginnings and ends of slip, and the
 /// tractions around each beginning. All that front analysis needs, whatever the decimation of the history.
 struct SlipRecord {
   std::vector<double> x_m;       ///< [nodes] positions along the interface, ascending
@@ -35,11 +47,22 @@ struct SlipRecord {
                                  ///< at the onset's time; nodes beyond the interface's ends are NaN
   std::vector<Stop> stops;       ///< in the order of time
   double end_time_s = 0;         ///< the record covers [0, end_time_s]
+  std::uint64_t n_onsets_left_out = 0;  ///< of nodes that had slipped before; find_fronts does not need them
+  /// Longest time between two looks at the interface. Nodes that begin to slip within it know nothing of each
+  /// other: the time between them is no travel time. 0 where that is unknown.
+  double resolution_s = 0;
+
+  /// All beginnings of slip.
+  std::uint64_t n_onsets() const { return onsets.size() + n_onsets_left_out; }
 
   /// Tractions of nodes node - halo ... node + halo at onset k.
   std::span<const Traction> around_onset(std::size_t k) const {
     const std::size_t n = 2 * static_cast<std::size_t>(halo) + 1;
     return {around.data() + k * n, n};
+  }
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x_m, halo, onsets, around, stops, end_time_s, n_onsets_left_out, resolution_s);
   }
 };
 

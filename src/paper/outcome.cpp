@@ -23,7 +23,7 @@ Outcome make_outcome(const std::string& name, const run::Result& result, const r
   o.peak_x_m = initial.common.peak_x_m;
   o.critical_shear_m = initial.critical_shear_m;
   o.ramp_critical_shear_m = initial.ramp ? initial.ramp->spontaneous.shear_m : fronts::undefined;
-  o.ramp_onsets = initial.ramp ? initial.ramp->record.onsets.size() : 0;
+  o.ramp_onsets = initial.ramp ? initial.ramp->record.n_onsets() : 0;
 
   o.first_onset_x_m = fronts::undefined;
   double first_s = std::numeric_limits<double>::infinity();

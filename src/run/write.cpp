@@ -82,7 +82,7 @@ Json statics_json(const InitialState& initial) {
     json["ramp"] = {{"critical_shear_m", ramp.spontaneous.shear_m},
                     {"relative_to_direct", ramp.spontaneous.shear_m / initial.critical_shear_m - 1},
                     {"steps", ramp.steps},
-                    {"onsets_before_critical", ramp.record.onsets.size()},
+                    {"onsets_before_critical", ramp.record.n_onsets()},
                     {"slip_before_critical", slip}};
   }
   return json;
@@ -148,7 +148,7 @@ void write_beside_stream(const std::filesystem::path& dir, const Result& result,
                      {"statics", statics_json(initial)},
                      {"energy_at_start", energy_json(event.energies.front())},
                      {"energy_at_end", energy_json(event.energies.back())},
-                     {"onsets", event.record.onsets.size()},
+                     {"onsets", event.record.n_onsets()},
                      {"fronts", fronts_json(result.fronts)},
                      {"warnings", warnings}};
   io::write_text(dir / "run.json", json.dump(2) + "\n");

@@ -6,14 +6,13 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "solve/watch.hpp"
 
 namespace slipfront::solve {
 
 namespace {
 
 constexpr std::int64_t monitor_interval = 50;
-/// Most steps between two looks at the energy.
-constexpr std::int64_t energy_check_interval = 100;
 
 /// Nodes at the edges creep along with the loading; slip that is no faster than this multiple of the top's
 /// speed does not keep an event going.
@@ -24,61 +23,6 @@ void clear_rows(fronts::History& history) {
   for (auto* column :
        {&history.time_s, &history.slip_m, &history.slip_rate_m_per_s, &history.t_Pa, &history.p_Pa})
     column->clear();
-}
-
-/// Watches that the motion stays physical.
-class Watch {
- public:
-  Watch(Stepper& stepper, double c_L) : stepper_(stepper), c_L_(c_L), start_(stepper.energies()) {}
-
-  const Energies& start() const { return start_; }
-
-  /// Looks at the interface after a step. @return whether its motion is physical
-  bool look() {
-    double fastest = 0;
-    bool finite = true;
-    for (const double v : stepper_.interface_state().slip_rate_m_per_s) {
-      finite &= std::isfinite(v);
-      fastest = std::max(fastest, std::abs(v));
-    }
-    if (!finite) {
-      trouble_ = "the slip rate is not a number";
-    } else if (fastest > c_L_) {
-      trouble_ = fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", fastest);
-    }
-    return trouble_.empty();
-  }
-
-  /// Steps to the next look at the energy.
-  std::int64_t steps_to_check() const { return checked_step_ + energy_check_interval - stepper_.step(); }
-
-  /// Empty, or what is wrong with the motion.
-  /// @param known  energies that were taken after this step for another purpose; null for none
-  std::string trouble(const Energies* known) {
-    if (!trouble_.empty()) return trouble_;
-    if (known == nullptr && steps_to_check() > 0) return {};
-    checked_step_ = stepper_.step();
-    const Energies e = known != nullptr ? *known : stepper_.energies();
-    const double total = e.stored();
-    if (!std::isfinite(total)) return "the energy is not a number";
-    const double supplied =
-        start_.stored() + std::abs(e.top_work) + std::abs(e.trigger_work) + std::abs(e.prestress_work);
-    if (total > 1.01 * supplied)
-      return fmt::format("the energy has grown to {:.4g} J/m with {:.4g} J/m supplied", total, supplied);
-    return {};
-  }
-
- private:
-  Stepper& stepper_;
-  double c_L_;
-  Energies start_;
-  std::int64_t checked_step_ = 0;
-  std::string trouble_;  ///< found at the interface
-};
-
-std::string blow_up_message(const Stepper& stepper, const std::string& trouble) {
-  return fmt::format("the run blew up at step {} (t = {:.6g} s): {}; reduce time.step_factor", stepper.step(),
-                     stepper.time_s(), trouble);
 }
 
 /// Steps, at least one, until the stepper's time is at least time_s; a far time is beyond any run.

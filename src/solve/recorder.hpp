@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "fronts/record.hpp"
@@ -10,6 +12,11 @@
 namespace slipfront::solve {
 
 /// Records beginnings and ends of slip while the run goes, located inside the (sub-)step.
+///
+/// Fronts are found from the first onset of each node, and from whether other nodes slip at these times. A
+/// node's end of slip and its next onset, or a later onset and the end after it, are left out where no node
+/// began to slip for the first time between the two: so the record stays bounded however often nodes slip
+/// again.
 class Recorder {
  public:
   /// @param before  the state at time 0, before the first (sub-)step; nodes that slip in it have no onset
@@ -25,11 +32,39 @@ class Recorder {
   /// Last time at which a node slipped faster than creep; 0 before that.
   double last_motion_s() const { return last_motion_s_; }
 
+  /// Without the last change of each node, which may yet be left out.
   const fronts::SlipRecord& record() const { return record_; }
-  fronts::SlipRecord take(double end_time_s);
+  /// The whole record up to now.
+  fronts::SlipRecord take(double end_time_s) const;
+
+  /// All that changes while a run goes.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(last_motion_s_, record_, previous_time_s_, previous_t_Pa_, previous_p_Pa_, previous_strength_Pa_,
+            previous_slipping_, n_slipping_, last_first_onset_s_, has_slipped_, waiting_, around_waiting_);
+  }
 
  private:
-  void add_onset(std::size_t node, double time_s, const interface::Interface& state);
+  /// Last change of a node, not in the record yet.
+  struct Waiting {
+    double time_s = 0;
+    std::uint8_t change = 0;  ///< a Change
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(time_s, change);
+    }
+  };
+  enum Change : std::uint8_t { none, onset, stop };
+
+  void take_changes(double time_s, const interface::Interface& state);
+  /// A node's change but for its first onset: it waits, or goes together with the change that waited.
+  void take_change(std::size_t node, const Waiting& change, std::span<const fronts::Traction> around);
+  /// Adds the change of a node that waits, if there is one, to a record.
+  void add_waiting(std::size_t node, fronts::SlipRecord& record) const;
+  /// Finds the time of an onset and the tractions around it.
+  double locate_onset(std::size_t node, double time_s, const interface::Interface& state,
+                      std::span<fronts::Traction> around) const;
+  std::size_t n_around() const { return 2 * static_cast<std::size_t>(record_.halo) + 1; }
 
   double creep_m_per_s_;
   double last_motion_s_ = 0;
@@ -38,6 +73,10 @@ class Recorder {
   std::vector<double> previous_t_Pa_, previous_p_Pa_, previous_strength_Pa_;
   std::vector<std::uint8_t> previous_slipping_;
   std::size_t n_slipping_ = 0;
+  double last_first_onset_s_ = -1;                ///< the latest first onset of any node
+  std::vector<std::uint8_t> has_slipped_;         ///< since the start. [nodes]
+  std::vector<Waiting> waiting_;                  ///< [nodes]
+  std::vector<fronts::Traction> around_waiting_;  ///< [nodes x (2 halo + 1)]
 };
 
 }  // namespace slipfront::solve

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "fronts/record.hpp"
+#include "io/case.hpp"
+#include "mesh/mesh.hpp"
+#include "solve/settings.hpp"
+
+namespace slipfront::run {
+
+/// Of the top edge where the plate is loaded by a ramp, and during the event.
+double top_speed_m_per_s(const io::Case& config);
+
+/// The iterative solution knows no graded plates.
+solve::StaticSolver wanted_solver(const io::Case& config);
+
+/// Whether the tractions of the interface are given: no statics, no ramp.
+bool is_prestressed(const io::Case& config);
+
+/// Given tractions at the nodes of the interface, from their file if there is one.
+/// @throws UserError
+fronts::StaticState prescribed_tractions(const io::Prestress& prestress, const mesh::Mesh& mesh);
+
+}  // namespace slipfront::run

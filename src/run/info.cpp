@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <limits>
+#include <numeric>
+
+#include "run/choices.hpp"
+#include "run/run.hpp"
+#include "solve/plate_solver.hpp"
+#include "solve/prestress.hpp"
+#include "solve/stepper.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+stability::WellPosedness well_posedness(const io::Case& config, const mesh::Mesh& mesh) {
+  const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
+  double pressure_Pa = stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m);
+  if (is_prestressed(config)) {
+    const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
+    pressure_Pa = std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
+  }
+  return stability::well_posedness(config.material, config.friction, pressure_Pa, config.plate.element_size_m,
+                                   config.plate.width_m, config.regularisation);
+}
+
+}  // namespace
+
+Info info(const io::Case& config) {
+  Info info;
+  info.speeds = wave_speeds(config.material);
+  const auto mesh = check(config);
+  info.n_nodes = mesh.n_nodes();
+  info.n_cells = static_cast<std::int64_t>(mesh.cells.size());
+  info.n_interface = static_cast<std::int64_t>(mesh.lower.size());
+
+  // About as long as making the stepper.
+  auto sliding =
+      std::async(std::launch::async | std::launch::deferred, [&] { return well_posedness(config, mesh); });
+  solve::Stepper stepper(mesh, config.material, io::contact_model(config), config.time);
+  info.well_posedness = sliding.get();
+  info.n_irregular = static_cast<std::int64_t>(stepper.plate().whole.irregular.size() +
+                                               stepper.plate().whole.general.size());
+  info.stable_step_s = stepper.stable_step_s();
+  info.step_s = stepper.step_s();
+  info.substep_s = stepper.substep_s();
+  info.n_steps = static_cast<std::int64_t>(std::ceil(config.time.end_s / info.step_s));
+  info.node_updates = static_cast<double>(info.n_steps) * stepper.node_updates_per_step();
+
+  const double n_unknowns = 2.0 * static_cast<double>(info.n_nodes);
+  info.memory_bytes = solve::event_bytes(static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
+                                         !config.output.snapshot_times_s.empty(), config.time.precision);
+  if (!is_prestressed(config)) {
+    info.solver = solve::choose_solver(wanted_solver(config), n_unknowns);
+    info.solver_bytes = solve::statics_bytes(info.solver, n_unknowns);
+    info.memory_bytes = std::max(info.memory_bytes, info.solver_bytes);
+  }
+
+  // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
+  fronts::StaticState no_tractions;
+  for (const auto n : mesh.lower) no_tractions.x_m.push_back(mesh.x_m[n]);
+  no_tractions.t_s_Pa = no_tractions.p_s_Pa = std::vector<double>(mesh.lower.size(), 0.0);
+  const auto rest = solve::prestressed(mesh, no_tractions);
+  stepper.start(rest, 0);
+  solve::Recorder recorder(rest, 1, 0);
+  const auto start = Clock::now();
+  double fastest_s = std::numeric_limits<double>::infinity();
+  do {
+    const auto step_start = Clock::now();
+    stepper.advance(recorder);
+    fastest_s = std::min(fastest_s, seconds_since(step_start));
+  } while (seconds_since(start) < 2e-3);
+  info.node_updates_per_s = stepper.node_updates_per_step() / fastest_s;
+  double statics_s = 0;
+  // The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
+  if (info.solver == solve::StaticSolver::direct)
+    statics_s = 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
+  if (info.solver == solve::StaticSolver::iterative) statics_s = 2e-6 * n_unknowns;
+  info.expected_s = info.node_updates / info.node_updates_per_s + statics_s;
+
+  return info;
+}
+
+}  // namespace slipfront::run
