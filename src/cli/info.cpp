@@ -23,7 +23,7 @@ void print_info(const CaseArguments& arguments) {
   try {
     info = run::info(config);
   } catch (const UserError& error) {
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+    throw UserError(arguments.with_place(error.what()));
   }
   const auto line = [](const char* what, const std::string& value) { fmt::print("{:<32}{}\n", what, value); };
   if (!config.title.empty()) line("title", config.title);

@@ -14,6 +14,7 @@
 #include "fronts/fit.hpp"
 #include "io/folder.hpp"
 #include "io/log.hpp"
+#include "run/needs.hpp"
 #include "run/session.hpp"
 
 namespace slipfront::cli {
@@ -98,7 +99,7 @@ run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& o
     return run::run_into(folder, *config, options.session, hooks);
   } catch (const UserError& error) {
     folder.abandon();
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+    throw UserError(arguments.with_place(error.what()));
   }
 }
 
@@ -107,7 +108,7 @@ void require_fit(const CaseArguments& arguments, const io::Case& config, const s
   try {
     run::require_fit(config, dir);
   } catch (const UserError& error) {
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+    throw UserError(arguments.with_place(error.what()));
   }
 }
 

@@ -100,8 +100,7 @@ bool is_prestressed(const io::Case& config) {
 fronts::StaticState prescribed_tractions(const io::Prestress& prestress, const mesh::Mesh& mesh) {
   fronts::StaticState state;
   for (const auto n : mesh.lower) state.x_m.push_back(mesh.x_m[n]);
-  if (!prestress.file.empty())
-    return io::prestress_at(io::read_prestress(prestress.file), state.x_m, prestress.file);
+  if (!prestress.file.empty()) return io::prestress_at(prestress, state.x_m);
   state.t_s_Pa.assign(state.x_m.size(), prestress.t_Pa);
   state.p_s_Pa.assign(state.x_m.size(), prestress.p_Pa);
   return state;
@@ -118,7 +117,7 @@ std::string initial_state_key(const io::Case& config) {
   if (is_prestressed(config)) {
     relevant.loading.method = config.loading.method;
     relevant.prestress = config.prestress;
-    return io::to_toml(relevant);
+    return io::to_toml(relevant) + config.prestress.table.text;
   }
   relevant.material = config.material;
   relevant.loading = config.loading;
@@ -374,7 +373,7 @@ void measure(Result& result, const InitialState& initial) {
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before: what "
                     "happens behind the front is its doing",
                     after.trigger_work, 100 * after.trigger_work / before.strain));
-  result.warnings.insert(result.warnings.end(), snapshots.notes.begin(), snapshots.notes.end());
+  for (auto& note : snapshot_plan(config, result.step_s).notes) result.warnings.push_back(std::move(note));
   if (config.time.step_factor > 1)
     result.warnings.push_back("the step is above the largest stable one (time.allow_unstable)");
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");

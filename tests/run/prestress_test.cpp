@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/prestress.hpp"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -318,9 +320,10 @@ TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
       std::filesystem::temp_directory_path() / fmt::format("slipfront_prestress_{}.csv", getpid());
   std::ofstream(file) << "x_m,t_Pa,p_Pa\n0,1e5,1e6\n4e-3,3e5,2e6\n";
   c.prestress.file = file.string();
+  c.prestress.table = io::read_prestress(file);
+  std::filesystem::remove(file);
   const auto key = initial_state_key(c);
   const auto state = make_initial_state(c, go_on);
-  std::filesystem::remove(file);
   EXPECT_TRUE(state.prescribed);
   EXPECT_DOUBLE_EQ(state.common.tractions.t_s_Pa[1], 1.5e5);
   EXPECT_DOUBLE_EQ(state.common.tractions.p_s_Pa[3], 1.75e6);
