@@ -373,7 +373,8 @@ void measure(Result& result, const InitialState& initial) {
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before: what "
                     "happens behind the front is its doing",
                     after.trigger_work, 100 * after.trigger_work / before.strain));
-  for (auto& note : snapshot_plan(config, result.step_s).notes) result.warnings.push_back(std::move(note));
+  const auto snapshots = snapshot_plan(config, result.step_s);
+  for (const auto& note : snapshots.notes) result.warnings.push_back(note);
   if (config.time.step_factor > 1)
     result.warnings.push_back("the step is above the largest stable one (time.allow_unstable)");
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
