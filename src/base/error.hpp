@@ -17,6 +17,15 @@ struct UserError : std::runtime_error {
       : std::runtime_error(fmt::format(format, std::forward<Args>(args)...)) {}
 };
 
+/// The system refuses to write or keep a file: a full disk, a quota, a broken device. The message is one line
+/// that names the file; exit code 1.
+struct WriteError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+  template <typename... Args>
+  explicit WriteError(fmt::format_string<Args...> format, Args&&... args)
+      : std::runtime_error(fmt::format(format, std::forward<Args>(args)...)) {}
+};
+
 /// The computed motion is no longer physical (not a number, energy from nowhere); exit code 3.
 struct BlowUp : std::runtime_error {
   using std::runtime_error::runtime_error;

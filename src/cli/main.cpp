@@ -11,18 +11,9 @@
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "cli/commands.hpp"
-
-extern "C" void openblas_set_num_threads(int n_threads);
-extern "C" [[gnu::weak]] int blas_thread_shutdown_();
+#include "cli/output.hpp"
 
 namespace {
-
-/// OpenBLAS starts threads when the program is loaded, and they spin before they sleep; the program uses none
-/// of them (solve/factorisation.cpp).
-void end_blas_threads() {
-  openblas_set_num_threads(1);
-  if (blas_thread_shutdown_ != nullptr) blas_thread_shutdown_();
-}
 
 enum ExitCode {
   done = 0,
@@ -56,7 +47,9 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
     return done;
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    const int code = app.exit(help);
+    slipfront::cli::finish_output();
+    return code;
   } catch (const CLI::ParseError& error) {
     const std::vector<std::string> unused = app.remaining();
     if (!unused.empty() && app.get_subcommands().empty())
@@ -68,10 +61,7 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) try {
-  end_blas_threads();
-  return run(argc, argv);
-} catch (const slipfront::UserError& error) {
+int main(int argc, char** argv) try { return run(argc, argv); } catch (const slipfront::UserError& error) {
   return report(user_error, error.what());
 } catch (const slipfront::BlowUp& error) {
   return report(blow_up, fmt::format("slipfront: {}", error.what()));
@@ -79,6 +69,8 @@ int main(int argc, char** argv) try {
   return report(verification_failed, fmt::format("slipfront: {}", error.what()));
 } catch (const slipfront::Interrupted& error) {
   return report(interrupted, fmt::format("slipfront: {}", error.what()));
+} catch (const slipfront::WriteError& error) {
+  return report(internal_error, fmt::format("slipfront: {}", error.what()));
 } catch (const std::bad_alloc&) {
   return report(internal_error, "slipfront: not enough memory; use larger elements");
 } catch (const std::exception& error) {
