@@ -6,7 +6,7 @@ SHELL := bash
 
 APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv \
   libfmt-dev libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev \
-  libhdf5-dev libcereal-dev libssl-dev libsuitesparse-dev libopenblas-dev libgtest-dev libgmock-dev
+  libhdf5-dev libcereal-dev libssl-dev libsuitesparse-dev libopenblas-serial-dev libgtest-dev libgmock-dev
 LINT_PACKAGES := clang-format-14 clang-tidy-14
 SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev libomp-14-dev
 COVERAGE_PACKAGES := gcovr

@@ -5,7 +5,10 @@
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "io/text.hpp"
 #include "run/run.hpp"
+#include "run/warnings.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -18,15 +21,18 @@ std::string fastest_wavelength(const stability::WellPosedness& w) {
 }
 
 void print_info(const CaseArguments& arguments) {
-  const io::Case config = arguments.read();
+  const io::Case& config = arguments.read();
   run::Info info;
   try {
     info = run::info(config);
   } catch (const UserError& error) {
     throw UserError(arguments.with_place(error.what()));
   }
-  const auto line = [](const char* what, const std::string& value) { fmt::print("{:<32}{}\n", what, value); };
-  if (!config.title.empty()) line("title", config.title);
+  std::string text;
+  const auto line = [&](const char* what, const std::string& value) {
+    text += fmt::format("{:<32}{}\n", what, value);
+  };
+  if (!config.title.empty()) line("title", io::one_line(config.title));
   line("longitudinal wave speed c_L", fmt::format("{:.1f} m/s", info.speeds.c_L));
   line("shear wave speed c_S", fmt::format("{:.1f} m/s", info.speeds.c_S));
   line("Rayleigh wave speed c_R", fmt::format("{:.1f} m/s", info.speeds.c_R));
@@ -61,6 +67,8 @@ void print_info(const CaseArguments& arguments) {
   line("damping length beta_R c_L",
        fmt::format("{:.3g} m, {:.3g} elements", w.damping_length_m, w.damping_length_over_h));
   line("uniform sliding", w.statement);
+  for (const auto& warning : run::warnings_of_case(config)) text += fmt::format("note: {}\n", warning);
+  print_output(text);
 }
 
 }  // namespace

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 
 namespace slipfront::cli {
 
 void add_keys(CLI::App& app) {
   CLI::App* command = app.add_subcommand("keys", "Print the reference of all keys of a case file (Markdown)");
-  command->callback([] { fmt::print("{}", io::schema_reference()); });
+  command->callback([] { print_output(io::schema_reference()); });
 }
 
 }  // namespace slipfront::cli

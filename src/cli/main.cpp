@@ -16,18 +16,9 @@
 #include "base/version.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
-
-extern "C" void openblas_set_num_threads(int n_threads);
-extern "C" [[gnu::weak]] int blas_thread_shutdown_();
+#include "cli/output.hpp"
 
 namespace {
-
-/// OpenBLAS starts threads when the program is loaded, and they spin before they sleep; the program uses none
-/// of them (solve/factorisation.cpp).
-void end_blas_threads() {
-  openblas_set_num_threads(1);
-  if (blas_thread_shutdown_ != nullptr) blas_thread_shutdown_();
-}
 
 enum ExitCode {
   done = 0,
@@ -73,7 +64,9 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
     return done;
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    const int code = app.exit(help);
+    slipfront::cli::finish_output();
+    return code;
   } catch (const CLI::ParseError& error) {
     const std::vector<std::string> unused = app.remaining();
     if (!unused.empty() && app.get_subcommands().empty())
@@ -87,7 +80,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) try {
   hold_standard_streams();
-  end_blas_threads();
   return run(argc, argv);
 } catch (const slipfront::UserError& error) {
   return report(user_error, error.what());

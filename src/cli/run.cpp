@@ -21,13 +21,13 @@ namespace slipfront::cli {
 namespace {
 
 struct RunArguments {
-  std::string dir;      ///< of a new run
-  std::string restart;  ///< of one to go on with
+  std::optional<std::string> dir;      ///< of a new run
+  std::optional<std::string> restart;  ///< of one to go on with
   bool overwrite = false;
   bool quiet = false;
   run::SessionOptions session;
 
-  const std::string& folder() const { return restart.empty() ? dir : restart; }
+  const std::string& folder() const { return restart ? *restart : *dir; }
 };
 
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
@@ -93,18 +93,17 @@ std::string how_to_go_on(const io::ResultFolder& folder) {
 run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& options,
                            io::ResultFolder& folder, const std::optional<io::Case>& config) {
   const auto hooks = cli::hooks(options.quiet);
-  if (!options.restart.empty())
+  if (options.restart)
     return run::go_on(folder, config ? &*config : nullptr, options.session, hooks);
   try {
     return run::run_into(folder, *config, options.session, hooks);
   } catch (const UserError& error) {
-    folder.abandon();
     throw UserError(arguments.with_place(error.what()));
   }
 }
 
 /// Refuses what the machine cannot hold before anything is written.
-void require_fit(const CaseArguments& arguments, const io::Case& config, const std::string& dir) {
+void require_fit(const CaseArguments& arguments, const io::Case& config, const std::filesystem::path& dir) {
   try {
     run::require_fit(config, dir);
   } catch (const UserError& error) {
@@ -115,18 +114,19 @@ void require_fit(const CaseArguments& arguments, const io::Case& config, const s
 void run_case(const CaseArguments& arguments, const RunArguments& options) {
   std::optional<io::Case> config;
   if (!arguments.file.empty()) config = arguments.read();
-  const bool restarts = !options.restart.empty();
-  if (restarts ? !options.dir.empty() || options.overwrite : !config || options.dir.empty())
+  if (options.restart ? options.dir || options.overwrite : !config || !options.dir)
     throw UserError(
-        "slipfront: run takes CASE and -o DIR, or --restart DIR, perhaps with CASE to compare; see slipfront "
-        "run --help");
-  if (!restarts) require_fit(arguments, *config, options.dir);
+        "slipfront: run takes CASE and --output DIR, or --restart DIR, perhaps with CASE to compare; see "
+        "slipfront run --help");
   io::ResultFolder folder(options.folder(), run::run_work);
-  if (restarts && !folder.has_unfinished() && run::is_complete(folder.dir())) {
+  if (options.restart && !folder.has_unfinished() && run::is_complete(folder.dir())) {
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());
     return;
   }
-  if (!restarts) folder.require_empty(options.overwrite);
+  if (!options.restart) {
+    folder.require_empty(options.overwrite);
+    require_fit(arguments, *config, folder.dir());
+  }
   catch_interrupts();
   try {
     const auto [result, initial] = run_or_go_on(arguments, options, folder, config);
@@ -137,6 +137,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
           fmt::format("interrupted at t = {:.4g} s; {}", result.event.time_s, how_to_go_on(folder)));
     if (!options.quiet) print_summary(result, initial, folder.dir().string());
   } catch (const WriteError& error) {
+    if (!folder.has_unfinished()) throw;
     throw WriteError("{}; {}", error.what(), how_to_go_on(folder));
   }
 }

@@ -5,19 +5,23 @@
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
 #include "run/run.hpp"
+#include "run/warnings.hpp"
 
 namespace slipfront::cli {
 namespace {
 
 void validate(const CaseArguments& arguments) {
-  const io::Case config = arguments.read();
+  const io::Case& config = arguments.read();
   try {
     run::check(config);
   } catch (const UserError& error) {
     throw UserError(arguments.with_place(error.what()));
   }
-  fmt::print("{}: valid\n", arguments.file);
+  std::string text = fmt::format("{}: valid\n", arguments.file);
+  for (const auto& warning : run::warnings_of_case(config)) text += fmt::format("note: {}\n", warning);
+  print_output(text);
 }
 
 }  // namespace

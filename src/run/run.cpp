@@ -18,6 +18,7 @@
 #include "mesh/plate.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
+#include "run/warnings.hpp"
 #include "solve/plate_solver.hpp"
 #include "solve/prestress.hpp"
 #include "solve/stepper.hpp"
@@ -360,12 +361,10 @@ void measure(Result& result, const InitialState& initial) {
   const double mu_s = interface::static_coefficient(config.friction);
   result.fronts =
       fronts::find_fronts(result.event.record, initial.common.tractions, front_options(config, initial));
+  result.warnings = warnings_of_case(config);
   if (auto warning = contact_warning(initial.common); !warning.empty()) result.warnings.push_back(warning);
   if (auto warning = initial.prescribed ? prestress_warning(state, mu_s) : ""; !warning.empty())
     result.warnings.push_back(warning);
-  if (config.fronts.l_star_m < 0.99 * initial.mesh.grid.spacing_m)
-    result.warnings.push_back(fmt::format(
-        "fronts.l_star_m = {:.4g} m is below the element size: one element is used", config.fronts.l_star_m));
   const auto& before = result.event.energies.front();
   const auto& after = result.event.energies.back();
   if (!initial.prescribed && after.trigger_work > 0.1 * before.strain)
@@ -375,8 +374,6 @@ void measure(Result& result, const InitialState& initial) {
                     after.trigger_work, 100 * after.trigger_work / before.strain));
   const auto snapshots = snapshot_plan(config, result.step_s);
   for (const auto& note : snapshots.notes) result.warnings.push_back(note);
-  if (config.time.step_factor > 1)
-    result.warnings.push_back("the step is above the largest stable one (time.allow_unstable)");
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
 }
 

@@ -28,13 +28,14 @@ constexpr double tell_share = 0.02;
 class Session {
  public:
   Session(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
-          const SessionHooks& hooks)
+          const SessionHooks& hooks, bool resumed)
       : folder_(folder),
         dir_(folder.unfinished()),
         config_(config),
         options_(options),
         hooks_(hooks),
-        checkpoints_(folder.state()) {
+        checkpoints_(folder.state()),
+        resumed_(resumed) {
     head_.case_text = resolved_text(config);
     head_.table = config.prestress.table.text;
   }
@@ -63,6 +64,8 @@ class Session {
   Checkpoints checkpoints_;
   CheckpointHead head_;
   Clock::time_point event_began_ = Clock::now(), kept_ = Clock::now(), told_ = Clock::now();
+  bool resumed_;             ///< there is earlier work in the folder
+  bool began_ramp_ = false;  ///< before that a new run has nothing to keep
   double kept_time_s_ = 0, tell_interval_s_ = least_tell_interval_s;
 
   InitialState initial_;
@@ -106,7 +109,10 @@ Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
     fail("blew_up", error.what());
     throw;
   } catch (const std::exception& error) {
-    fail("failed", error.what());
+    if (event_ || began_ramp_ || resumed_)
+      fail("failed", error.what());
+    else
+      folder_.abandon();
     throw;
   }
 }
@@ -125,6 +131,7 @@ void Session::begin_ramp(Checkpoints::Kept* kept, solve::Stepper& stepper, solve
     kept->rest(stepper, ramp);
     kept->rest.close();
   }
+  began_ramp_ = true;
   stepper_ = &stepper;
   ramp_ = &ramp;
   kept_time_s_ = stepper.time_s();
@@ -242,9 +249,14 @@ void require_same(const std::string& wanted, const std::string& kept, const std:
 
 Finished run_into(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
                   const SessionHooks& hooks) {
-  folder.begin();
-  write_case(folder.unfinished(), config);
-  return Session(folder, config, options, hooks).run({});
+  try {
+    folder.begin();
+    write_case(folder.unfinished(), config);
+  } catch (const WriteError&) {
+    folder.abandon();
+    throw;
+  }
+  return Session(folder, config, options, hooks, false).run({});
 }
 
 Finished go_on(io::ResultFolder& folder, const io::Case* expected, const SessionOptions& options,
@@ -267,7 +279,7 @@ Finished go_on(io::ResultFolder& folder, const io::Case* expected, const Session
     require_same(config.prestress.table.text, kept->head.table, (folder.unfinished() / table_file).string());
   }
   for (const char* name : {"interface.h5", "fields.vtkhdf"}) io::remove_file(folder.unfinished() / name);
-  return Session(folder, config, options, hooks).run(std::move(kept));
+  return Session(folder, config, options, hooks, true).run(std::move(kept));
 }
 
 bool is_complete(const std::filesystem::path& dir) {

@@ -3,6 +3,7 @@
 
 #include <cholmod.h>
 #include <omp.h>
+#include <sys/mman.h>
 
 extern "C" void openblas_set_num_threads(int n_threads);
 extern "C" int openblas_get_num_threads();
@@ -35,6 +36,27 @@ void require_statics_memory(double n_unknowns, double factor_bytes) {
                  "set loading.solver = iterative or choose a larger plate.element_size_m");
 }
 
+namespace {
+
+[[noreturn]] void throw_out_of_memory(const char* what) {
+  throw UserError("out of memory in the static solution ({}); choose a larger plate.element_size_m", what);
+}
+
+/// OpenBLAS takes a buffer of 128 MB when it is first called, and where it gets none it tries for ever: the
+/// memory of the numeric factorisation has to be there with it.
+void require_memory_with_blas(const cholmod_factor& factor, const cholmod_sparse& matrix) {
+  const std::size_t buffer = std::size_t{132} << 20U;
+  const std::size_t factor_bytes = sizeof(double) * (factor.xsize + factor.maxcsize);
+  const std::size_t matrix_bytes = (sizeof(double) + sizeof(std::int64_t)) * matrix.nzmax;  // permuted
+  const std::size_t indices = 8 * sizeof(std::int64_t) * factor.n;
+  const std::size_t bytes = buffer + factor_bytes + matrix_bytes + indices;
+  void* memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) throw_out_of_memory("factorisation");
+  ::munmap(memory, bytes);
+}
+
+}  // namespace
+
 struct Factorisation::Cholmod {
   mutable cholmod_common common{};
   cholmod_factor* factor = nullptr;
@@ -57,9 +79,7 @@ struct Factorisation::Cholmod {
   Cholmod& operator=(const Cholmod&) = delete;
 
   void check(const char* what) const {
-    if (common.status == CHOLMOD_OUT_OF_MEMORY)
-      throw UserError("out of memory in the static solution ({}); choose a larger plate.element_size_m",
-                      what);
+    if (common.status == CHOLMOD_OUT_OF_MEMORY) throw_out_of_memory(what);
     SLIPFRONT_ASSERT(common.status >= CHOLMOD_OK, what);
   }
 };
@@ -128,6 +148,7 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
   factor_bytes_ = 8.0 * static_cast<double>(cholmod_->factor->xsize);
   try {
     require_statics_memory(static_cast<double>(n_unknowns_), factor_bytes_);
+    require_memory_with_blas(*cholmod_->factor, *matrix);
   } catch (...) {
     cholmod_l_free_sparse(&matrix, common);
     throw;

@@ -45,9 +45,9 @@ def test_the_ramp_counts_among_the_steps(program, coarse, tmp_path):
 
 @pytest.mark.parametrize("command", [["info"], ["run", "-o", "out"]], ids=["info", "run"])
 def test_a_ramp_without_end_is_refused(program, coarse, command):
-    sets = settings({"loading.method": "ramp", "loading.shear_speed_over_c_L": 1e-20})
+    sets = settings({"loading.method": "ramp", "loading.shear_speed_over_c_L": 1e-18})
     message = one_line(program(command[0], coarse, *command[1:], *sets), 2)
-    assert "loading.shear_speed_over_c_L = 1e-20 takes" in message
+    assert "loading.shear_speed_over_c_L = 1e-18 takes" in message
 
 
 PRESSED = {"plate.corner": "none", "loading.method": "prestress", "event.kind": "none"}
@@ -57,7 +57,7 @@ PRESSED = {"plate.corner": "none", "loading.method": "prestress", "event.kind": 
     "values, key",
     [
         ({"event.kind": "right", "event.trigger_amount": 1e6}, "event.trigger_amount"),
-        ({"event.kind": "left", "event.trigger_amount": 1e300}, "event.trigger_amount"),
+        ({"event.kind": "left", "event.trigger_amount": 1e9}, "event.trigger_amount"),
         ({**PRESSED, "prestress.t_Pa": 1e11, "prestress.p_Pa": 1e6}, "prestress.t_Pa"),
         (
             {**PRESSED, "prestress.t_Pa": 0, "prestress.p_Pa": 1e6, "event.kind": "nucleation", "nucleation.form": "overstress"}
@@ -65,7 +65,7 @@ PRESSED = {"plate.corner": "none", "loading.method": "prestress", "event.kind": 
             "nucleation.overstress_Pa",
         ),
     ],
-    ids=["trigger", "overflow", "prestress", "patch"],
+    ids=["trigger", "extreme", "prestress", "patch"],
 )
 def test_overload_is_not_blamed_on_the_step(program, coarse, values, key):
     message = one_line(program("run", coarse, "-o", "out", "-q", *settings(values)), 3)
@@ -96,12 +96,12 @@ def random_case(seed):
     pressed = case["loading.method"] == "prestress"
     sides = "free"
     if pressed:
-        p = power(*r.choice([(-300, -100), (-30, 0), (0, 6)]))
+        p = power(*r.choice([(-6, -3), (-3, 0), (0, 6)]))
         case["prestress.p_Pa"] = p
         case["prestress.t_Pa"] = r.choice([0, r.uniform(-1, 1) * p, r.uniform(0, 0.6) * p])
         case["plate.sides"] = sides = r.choice(["free", "periodic", "absorbing"])
         case["plate.top"] = r.choice(["loaded", "free", "absorbing"])
-        case["loading.shear_speed_over_c_L"] = r.choice([0, power(-300, -20), power(-12, -4)])
+        case["loading.shear_speed_over_c_L"] = r.choice([0, power(-18, -12), power(-12, -4)])
     else:
         tilt = power(*r.choice([(-12, -4), (-5, -4)]))
         case |= {"loading.tilt_left_m": tilt, "loading.tilt_right_m": tilt * r.uniform(0.3, 1)}
@@ -147,7 +147,7 @@ def random_case(seed):
 
 
 def test_random_legal_cases_do_not_blow_up(program, write_case):
-    case = write_case("")
+    case = write_case('title = "random"\n')
     n_run = 0
     for seed in range(60):
         sets = settings(random_case(seed))

@@ -21,7 +21,8 @@ from slipfront.figures import interface_step
 from slipfront.figures.__main__ import main as figures
 from slipfront.figures.convergence import read_study
 
-FILES = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
+SO_FAR = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
+FILES = SO_FAR | {"checksums.sha256"}
 
 
 def with_end(end_s):
@@ -201,10 +202,11 @@ def test_blow_up_keeps_what_there_is(program, coarse, tmp_path):
     assert len(lines) == 1
     step = int(re.search(r"\bstep (\d+)\b", lines[0])[1])
     assert "time.step_factor" in lines[0]
-    assert "kept in out" in lines[0]
-    assert files_in(tmp_path / "out") == FILES
-    run = summary(tmp_path / "out")
+    assert "kept in out/unfinished" in lines[0]
+    assert files_in(tmp_path / "out/unfinished") == SO_FAR | {"state"}
+    run = summary(tmp_path / "out/unfinished")
     assert run["end"] == "blow_up"
+    assert run["status"] == "blew_up"
     assert run["steps"] == step
     assert any("blew up" in warning for warning in run["warnings"])
 
@@ -222,18 +224,20 @@ def test_interruption_keeps_what_there_is(program, coarse, tmp_path, sent):
     finally:
         process.kill()
         process.wait()
-    assert process.returncode == 130
+    assert process.returncode == 128 + sent
     assert output == ""
     last = errors.splitlines()[-1]
     assert "interrupted at t = " in last
-    assert "kept in out" in last
-    assert files_in(tmp_path / "out") == FILES
-    run = summary(tmp_path / "out")
-    assert run["end"] == "interrupted"
+    assert "kept in out/unfinished" in last
+    assert "slipfront run --restart out" in last
+    assert files_in(tmp_path / "out/unfinished") == SO_FAR | {"state"}
+    run = summary(tmp_path / "out/unfinished")
+    assert run["end"] == run["status"] == "interrupted"
     assert 0 < run["time_s"] < 10
-    with h5py.File(tmp_path / "out/interface.h5") as file:
+    with h5py.File(tmp_path / "out/unfinished/interface.h5") as file:
         assert file["time_s"][-1] <= run["time_s"]
-    # What was kept is complete: it can be replaced, and run again.
+    # It is not lost by accident.
+    assert "holds unfinished work" in program("run", coarse, "-o", "out", "-q").stderr
     assert program("run", coarse, "-o", "out", "-q", "--overwrite").returncode == 0
     assert summary(tmp_path / "out")["end"] != "interrupted"
 
@@ -345,13 +349,14 @@ def test_reproduce_with_measured_points(program, tmp_path):
 
 
 def test_reproduce_can_be_interrupted(program, tmp_path):
-    events = [tmp_path / "out" / name for name in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0")]
+    names = ("spontaneous", "left", "right", "spontaneous_mu_k_1.0")
+    events = [tmp_path / "out/unfinished" / name for name in names]
     process = program.start(
         "reproduce", "-o", "out", stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     try:
-        # run.json is a run's last file.
-        wait_until(lambda: all((folder / "run.json").exists() for folder in events), timeout_s=60)
+        # Its list of checksums is a run's last file.
+        wait_until(lambda: all((folder / "checksums.sha256").exists() for folder in events), timeout_s=60)
         process.send_signal(signal.SIGINT)
         start = time.monotonic()
         output, errors = process.communicate(timeout=60)
