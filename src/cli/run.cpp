@@ -126,7 +126,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
           fmt::format("interrupted at t = {:.4g} s; {}", result.event.time_s, how_to_go_on(folder)));
     if (!options.quiet) print_summary(result, initial, folder.dir().string());
   } catch (const WriteError& error) {
-    throw WriteError("{}; {}", error.what(), how_to_go_on(folder));
+    throw folder.has_unfinished() ? WriteError("{}; {}", error.what(), how_to_go_on(folder)) : error;
   }
 }
 

@@ -99,7 +99,7 @@ class Setting:
             require("holds no unfinished run" in line, line)
         else:
             require(process.returncode == 0, f"--restart: exit {process.returncode}: {process.stderr_text}")
-        if process.returncode == 2 or (self.overwrites and not difference(alone(folder), self.old)):
+        if process.returncode == 2 or (self.overwrites and not difference(visible(folder), self.old)):
             process = self.bench.run(*self.command(folder))
             require(process.returncode == 0, f"run again: exit {process.returncode}: {process.stderr_text}")
         require_same(alone(folder), self.new, "other results after all")
