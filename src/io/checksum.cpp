@@ -49,14 +49,17 @@ Sha256::~Sha256() = default;
 
 void Sha256::add(std::span<const std::byte> bytes) {
   SLIPFRONT_ASSERT(EVP_DigestUpdate(state_->context.get(), bytes.data(), bytes.size()) == 1,
-                   "a digest goes on until it is taken");
+                   "a digest takes all bytes");
 }
 
-std::string Sha256::digest() {
+std::string Sha256::digest() const {
   std::array<unsigned char, EVP_MAX_MD_SIZE> value{};
   unsigned length = 0;
-  SLIPFRONT_ASSERT(EVP_DigestFinal_ex(state_->context.get(), value.data(), &length) == 1,
-                   "a digest is taken once");
+  State end;
+  if (!end.context || EVP_MD_CTX_copy_ex(end.context.get(), state_->context.get()) != 1)
+    throw std::bad_alloc();
+  SLIPFRONT_ASSERT(EVP_DigestFinal_ex(end.context.get(), value.data(), &length) == 1,
+                   "a copied digest can be ended");
   std::string text;
   for (unsigned k = 0; k < length; ++k) text += fmt::format("{:02x}", value[k]);
   return text;

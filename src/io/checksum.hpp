@@ -20,8 +20,8 @@ class Sha256 {
   Sha256& operator=(const Sha256&) = delete;
 
   void add(std::span<const std::byte> bytes);
-  /// 64 hexadecimal digits, of all that was added. The last call.
-  std::string digest();
+  /// 64 hexadecimal digits, of all that was added so far.
+  std::string digest() const;
 
  private:
   struct State;

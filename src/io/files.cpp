@@ -59,9 +59,10 @@ OutputFile OutputFile::create(const std::filesystem::path& path) {
 OutputFile OutputFile::go_on(const std::filesystem::path& path, std::uint64_t length) {
   Descriptor file = open(path, O_WRONLY);
   struct stat now {};
+  if (!file.valid() && errno == ENOENT) throw UserError("{}: is missing; begin the run again", path.string());
   if (!file.valid() || ::fstat(file.get(), &now) != 0) throw_write(path, "continued");
   if (!S_ISREG(now.st_mode) || static_cast<std::uint64_t>(now.st_size) < length)
-    throw WriteError("{}: is shorter than when the run was kept; begin the run again", path.string());
+    throw UserError("{}: is shorter than when the run was kept; begin the run again", path.string());
   if (::ftruncate(file.get(), static_cast<off_t>(length)) != 0 ||
       ::lseek(file.get(), static_cast<off_t>(length), SEEK_SET) < 0)
     throw_write(path, "continued");

@@ -36,6 +36,7 @@ class OutputFile {
   /// Makes a new file; one of this name must not be there, not even as a link.
   static OutputFile create(const std::filesystem::path& path);
   /// Goes on at `length` in a file of this program's own; what it holds beyond is cut off.
+  /// @throws UserError where it is missing or shorter
   static OutputFile go_on(const std::filesystem::path& path, std::uint64_t length);
 
   void write(std::span<const std::byte> bytes);

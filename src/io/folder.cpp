@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include <functional>
 #include <iterator>
 #include <set>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -51,6 +53,17 @@ std::string host_and_process() {
   return fmt::format("process {} on {}", getpid(), host.data());
 }
 
+/// Whether a lock's file is one: it holds the line above, the beginning of one, or nothing yet.
+bool is_lock(const fs::path& file) {
+  constexpr std::string_view begin = "process ";
+  std::error_code error;
+  const auto status = fs::symlink_status(file, error);
+  if (!fs::exists(status)) return true;
+  if (!fs::is_regular_file(status)) return false;
+  const std::string text = read_line(file);
+  return text.starts_with(begin) || (begin.starts_with(text) && fs::file_size(file, error) == text.size());
+}
+
 /// Names in a folder, sorted.
 std::vector<std::string> names_in(const fs::path& dir) {
   std::error_code error;
@@ -59,6 +72,11 @@ std::vector<std::string> names_in(const fs::path& dir) {
     names.insert(k->path().filename().string());
   if (error) throw_unusable(dir, "read", error.value());
   return {names.begin(), names.end()};
+}
+
+/// Left by a file that was cut off while it was written, see write_text.
+bool is_cut_off(const std::string& name) {
+  return name.ends_with(".new");
 }
 
 /// Calls file(name) for the files below a folder, by their names relative to it, and after that folder(name)
@@ -102,6 +120,16 @@ std::set<std::string> earlier_set(const fs::path& dir) {
   return names;
 }
 
+/// Removes what writing that was cut off has left.
+void remove_cut_off(const fs::path& dir) {
+  walk(
+      dir, "",
+      [&](const std::string& name) {
+        if (is_cut_off(name)) remove_file(dir / name);
+      },
+      [](const std::string&) {});
+}
+
 void remove_empty_folders(const fs::path& dir, const std::set<std::string>& files) {
   std::error_code ignored;
   for (const auto& name : files)
@@ -109,38 +137,84 @@ void remove_empty_folders(const fs::path& dir, const std::set<std::string>& file
       fs::remove(dir / parent, ignored);
 }
 
-/// Removes a folder of this program's own with all that is in it; links are not followed.
+/// Removes a folder or file of this program's own with all that is in it; links are not followed.
 void remove_tree(const fs::path& dir) {
   std::error_code error;
   fs::remove_all(dir, error);
   if (error) throw WriteError("{}: cannot be removed ({}); remove it by hand", dir.string(), error.message());
 }
 
-bool is_own_work(const fs::path& unfinished) {
-  return is_folder(unfinished) &&
-         (is_there(unfinished / state_name / kind_name) || names_in(unfinished).empty() ||
-          names_in(unfinished) == std::vector<std::string>{state_name});
+/// Removes what a folder holds but for one name.
+void remove_others(const fs::path& dir, const char* name) {
+  if (!is_folder(dir)) return;
+  for (const auto& other : names_in(dir))
+    if (other != name) remove_tree(dir / other);
 }
 
-void require_own_work(const fs::path& unfinished) {
-  if (is_there(unfinished) && !is_own_work(unfinished))
-    throw UserError("{}: is not a folder of slipfront, which needs the name; move it away",
-                    unfinished.string());
+/// Removes a folder's state; the kind last, so that what is left of it is known for what it is.
+void remove_state(const fs::path& dir) {
+  remove_others(dir / state_name, kind_name);
+  remove_tree(dir / state_name);
+}
+
+void remove_work(const fs::path& unfinished) {
+  remove_others(unfinished, state_name);
+  remove_state(unfinished);
+  remove_file(unfinished);
+}
+
+/// Whether a folder holds any file that was written to its end, but for one name.
+bool holds_others(const fs::path& dir, const char* name) {
+  return std::ranges::any_of(names_in(dir),
+                             [&](const auto& other) { return other != name && !is_cut_off(other); });
+}
+
+/// Whether there is a folder's state, or the beginning or the rest of one.
+bool has_own_state(const fs::path& dir) {
+  const auto state = dir / state_name;
+  return is_folder(state) && (is_there(state / kind_name) || !holds_others(state, ""));
+}
+
+bool is_own_work(const fs::path& unfinished) {
+  return is_folder(unfinished) && (has_own_state(unfinished) || names_in(unfinished).empty());
+}
+
+/// Whether there is more of it than its beginning.
+bool is_under_way(const fs::path& unfinished) {
+  return is_own_work(unfinished) && has_own_state(unfinished) &&
+         (holds_others(unfinished, state_name) || holds_others(unfinished / state_name, kind_name));
+}
+
+/// Whether it is on its way, or what is left when it has arrived: the list at most.
+bool is_own_publication(const fs::path& publishing) {
+  return is_folder(publishing) && (has_own_state(publishing) || !holds_others(publishing, checksum_list));
+}
+
+[[noreturn]] void throw_foreign(const fs::path& path, const char* kind) {
+  throw UserError("{}: is not a {} of slipfront, which needs the name; move it away", path.string(), kind);
 }
 
 }  // namespace
 
 ResultFolder::ResultFolder(const fs::path& dir, std::string work) : dir_(dir), work_(std::move(work)) {
-  make();
-  lock();
-  require_own_work(unfinished());
-  finish_publication();
+  try {
+    make();
+    lock();
+    if (is_there(unfinished()) && !is_own_work(unfinished())) throw_foreign(unfinished(), "folder");
+    finish_publication();
+  } catch (...) {
+    give_back();
+    throw;
+  }
 }
 
 ResultFolder::~ResultFolder() {
-  if (!lock_.valid()) return;
+  give_back();
+}
+
+void ResultFolder::give_back() {
   std::error_code ignored;
-  fs::remove(dir_ / lock_name, ignored);  // before the lock goes: nobody else can hold it
+  if (lock_.valid()) fs::remove(dir_ / lock_name, ignored);  // before the lock goes: nobody else can hold it
   lock_.close();
   for (auto p = dir_; !outermost_made_.empty(); p = p.parent_path())
     if (!fs::remove(p, ignored) || ignored || p == outermost_made_) return;
@@ -158,7 +232,9 @@ void ResultFolder::make() {
   fs::create_directories(dir_, error);
   if (error) throw_unusable(dir_, "made", error.value());
   if (::access(dir_.c_str(), R_OK | W_OK | X_OK) != 0) throw_unusable(dir_, "written", errno);
-  for (const char* name : unlisted_results)
+  auto names = std::vector<const char*>(unlisted_results.begin(), unlisted_results.end());
+  names.push_back(checksum_list);
+  for (const char* name : names)
     if (is_folder(dir_ / name))
       throw UserError("{}: is a folder where a result file is to go; move it away", (dir_ / name).string());
 }
@@ -166,6 +242,7 @@ void ResultFolder::make() {
 void ResultFolder::lock() {
   const auto file = dir_ / lock_name;
   for (;;) {
+    if (!is_lock(file)) throw_foreign(file, "file");
     lock_ = Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
     if (!lock_.valid()) throw_unusable(dir_, "locked", errno);
     // Held by the open file, so that it ends with the process, however that ends.
@@ -188,9 +265,7 @@ void ResultFolder::lock() {
   const std::string text = host_and_process() + "\n";
   if (::ftruncate(lock_.get(), 0) != 0 ||
       ::pwrite(lock_.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
-    const int error = errno;
-    fs::remove(file);
-    throw_unusable(dir_, "written", error);
+    throw_unusable(dir_, "written", errno);
   }
 }
 
@@ -201,7 +276,7 @@ bool ResultFolder::has_results() const {
 }
 
 bool ResultFolder::has_unfinished() const {
-  return is_own_work(unfinished()) && read_line(state() / kind_name) == work_;
+  return is_under_way(unfinished()) && read_line(state() / kind_name) == work_;
 }
 
 void ResultFolder::require_empty(bool overwrite, bool resumes) const {
@@ -210,7 +285,7 @@ void ResultFolder::require_empty(bool overwrite, bool resumes) const {
     throw UserError(
         "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
         dir_.string());
-  if (is_there(unfinished()) && !names_in(unfinished()).empty() && !(resumes && has_unfinished()))
+  if (is_under_way(unfinished()) && !(resumes && has_unfinished()))
     throw UserError(
         "output folder {}: holds unfinished work; go on with it (slipfront run --restart) or pass "
         "--overwrite to begin anew",
@@ -218,7 +293,7 @@ void ResultFolder::require_empty(bool overwrite, bool resumes) const {
 }
 
 void ResultFolder::begin() {
-  if (is_there(unfinished())) remove_tree(unfinished());
+  if (is_there(unfinished())) remove_work(unfinished());
   make_folder(unfinished());
   make_folder(state());
   write_text(state() / kind_name, work_ + "\n");
@@ -229,7 +304,7 @@ void ResultFolder::begin_or_resume() {
 }
 
 void ResultFolder::abandon() {
-  if (is_there(unfinished())) remove_tree(unfinished());
+  if (is_there(unfinished())) remove_work(unfinished());
 }
 
 void ResultFolder::publish(bool adds) {
@@ -245,10 +320,7 @@ void ResultFolder::publish(bool adds) {
 
 void ResultFolder::finish_publication() {
   if (!is_there(publishing())) return;
-  if (!is_folder(publishing()) || !(is_there(publishing() / state_name) ||
-                                    is_there(publishing() / checksum_list) || names_in(publishing()).empty()))
-    throw UserError("{}: is not a folder of slipfront, which needs the name; move it away",
-                    publishing().string());
+  if (!is_own_publication(publishing())) throw_foreign(publishing(), "folder");
   if (is_there(publishing() / checksum_list)) {
     const auto fresh = set_of(publishing());
     auto stale = earlier_set(dir_);
@@ -270,7 +342,7 @@ void ResultFolder::finish_publication() {
           move_file(publishing() / name, dir_ / name);
         },
         [&](const std::string& name) { remove_file(publishing() / name); });
-    if (is_there(publishing() / state_name)) remove_tree(publishing() / state_name);
+    if (is_there(publishing() / state_name)) remove_state(publishing());
     move_file(publishing() / checksum_list, dir_ / checksum_list);
   }
   remove_file(publishing());
@@ -278,6 +350,7 @@ void ResultFolder::finish_publication() {
 }
 
 void seal(const fs::path& dir, const Checksums& others) {
+  remove_cut_off(dir);
   Checksums checksums = others;
   std::set<std::string> sealed;  // folders with a list of their own
   const auto is_below_sealed = [&](fs::path name) {

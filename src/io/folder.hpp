@@ -57,6 +57,7 @@ class ResultFolder {
   std::filesystem::path publishing() const { return dir_ / "publishing"; }
   void make();
   void lock();
+  void give_back();
   void finish_publication();
 
   std::filesystem::path dir_, outermost_made_;

@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t most_bytes_waiting = 16U << 20U;
 /// Rows are handed to the writer in blocks of this size.
 constexpr std::size_t block_values = 32 * 1024;
+constexpr std::size_t piece_bytes = std::size_t{1} << 18U;
 
 void append(std::vector<double>& to, const std::vector<double>& from) {
   to.insert(to.end(), from.begin(), from.end());
@@ -89,15 +90,37 @@ std::filesystem::path ResultStream::snapshot_file(const std::filesystem::path& d
   return dir / "snapshots.raw";
 }
 
-ResultStream::ResultStream(OutputFile history, OutputFile snapshots)
-    : history_(std::move(history)), snapshots_(std::move(snapshots)), writer_(most_bytes_waiting) {}
+ResultStream::Summed::Summed(const std::filesystem::path& path, const Extent& extent)
+    : file(OutputFile::go_on(path, extent.bytes)) {
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<char> piece(piece_bytes);
+  for (auto rest = extent.bytes; rest > 0;) {
+    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(rest, piece.size()));
+    if (!stream.read(piece.data(), static_cast<std::streamsize>(n))) break;
+    sum.add(std::as_bytes(std::span(piece).first(n)));
+    rest -= n;
+  }
+  if (sum.digest() != extent.checksum)
+    throw UserError("{}: was changed or damaged since the run was kept; begin the run again", path.string());
+}
+
+void ResultStream::Summed::write(std::span<const double> values) {
+  file.write(std::as_bytes(values));
+  sum.add(std::as_bytes(values));
+}
+
+ResultStream::Extent ResultStream::Summed::sync() {
+  file.sync();
+  return {file.length(), sum.digest()};
+}
 
 ResultStream::ResultStream(const std::filesystem::path& dir)
-    : ResultStream(OutputFile::create(history_file(dir)), OutputFile::create(snapshot_file(dir))) {}
+    : history_(history_file(dir)), snapshots_(snapshot_file(dir)), writer_(most_bytes_waiting) {}
 
-ResultStream::ResultStream(const std::filesystem::path& dir, const Lengths& lengths)
-    : ResultStream(OutputFile::go_on(history_file(dir), lengths.history),
-                   OutputFile::go_on(snapshot_file(dir), lengths.snapshots)) {}
+ResultStream::ResultStream(const std::filesystem::path& dir, const Extents& extents)
+    : history_(history_file(dir), extents.history),
+      snapshots_(snapshot_file(dir), extents.snapshots),
+      writer_(most_bytes_waiting) {}
 
 void ResultStream::sample(const fronts::History& row) {
   for (const auto* column : {&row.time_s, &row.slip_m, &row.slip_rate_m_per_s, &row.t_Pa, &row.p_Pa})
@@ -108,8 +131,7 @@ void ResultStream::sample(const fronts::History& row) {
 void ResultStream::hand_over() {
   if (block_.empty()) return;
   const auto block = std::make_shared<const std::vector<double>>(std::exchange(block_, {}));
-  writer_.put(sizeof(double) * block->size(),
-              [this, block] { history_.write(std::as_bytes(std::span(*block))); });
+  writer_.put(sizeof(double) * block->size(), [this, block] { history_.write(*block); });
 }
 
 void ResultStream::snapshot(const solve::Stepper& stepper) {
@@ -117,22 +139,18 @@ void ResultStream::snapshot(const solve::Stepper& stepper) {
   writer_.wait_for_room(bytes);
   const auto taken = std::make_shared<const solve::Snapshot>(solve::take_snapshot(stepper));
   writer_.put(bytes, [this, taken] {
-    snapshots_.write(std::as_bytes(std::span(&taken->time_s, 1)));
+    snapshots_.write(std::span(&taken->time_s, 1));
     for (const auto* column : {&taken->u_m.x, &taken->u_m.y, &taken->v_m_per_s.x, &taken->v_m_per_s.y})
-      snapshots_.write(std::as_bytes(std::span(*column)));
+      snapshots_.write(*column);
   });
 }
 
-ResultStream::Lengths ResultStream::keep() {
+ResultStream::Extents ResultStream::keep() {
   hand_over();
-  Lengths lengths;
-  writer_.put(0, [&] {
-    history_.sync();
-    snapshots_.sync();
-    lengths = {history_.length(), snapshots_.length()};
-  });
+  Extents extents;
+  writer_.put(0, [&] { extents = {history_.sync(), snapshots_.sync()}; });
   writer_.finish();
-  return lengths;
+  return extents;
 }
 
 void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,

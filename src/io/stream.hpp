@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "io/checksum.hpp"
 #include "io/files.hpp"
 #include "io/writer.hpp"
 #include "solve/event.hpp"
@@ -21,9 +23,17 @@ namespace slipfront::io {
 /// snapshots.raw: per snapshot time_s and u_x, u_y, v_x, v_y [nodes of the plate]; doubles as in memory.
 class ResultStream : public solve::Sink {
  public:
-  /// Lengths of the files, bytes.
-  struct Lengths {
-    std::uint64_t history = 0, snapshots = 0;
+  /// What a file of the stream holds so far.
+  struct Extent {
+    std::uint64_t bytes = 0;
+    std::string checksum;
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(bytes, checksum);
+    }
+  };
+  struct Extents {
+    Extent history, snapshots;
     template <class Archive>
     void serialize(Archive& archive) {
       archive(history, snapshots);
@@ -32,8 +42,9 @@ class ResultStream : public solve::Sink {
 
   /// Makes the files.
   explicit ResultStream(const std::filesystem::path& dir);
-  /// Goes on in files of these lengths.
-  ResultStream(const std::filesystem::path& dir, const Lengths& lengths);
+  /// Goes on in files that hold at least so much; what they hold beyond is cut off.
+  /// @throws UserError where one is missing, shorter, or another
+  ResultStream(const std::filesystem::path& dir, const Extents& extents);
 
   // Each throws WriteError where a file could not be written, perhaps long before.
   void sample(const fronts::History& row) override;
@@ -42,16 +53,27 @@ class ResultStream : public solve::Sink {
   /// Hands what waits to the writer, for those who look into the files.
   void hand_over();
   /// Waits until all that was given is on the device.
-  Lengths keep();
+  Extents keep();
 
   static std::filesystem::path history_file(const std::filesystem::path& dir);
   static std::filesystem::path snapshot_file(const std::filesystem::path& dir);
 
  private:
-  ResultStream(OutputFile history, OutputFile snapshots);
+  /// A file and the checksum of what was written to it.
+  struct Summed {
+    OutputFile file;
+    Sha256 sum;
 
-  OutputFile history_, snapshots_;  ///< the writer's
-  std::vector<double> block_;       ///< rows to be handed to the writer
+    /// Of a new file.
+    explicit Summed(const std::filesystem::path& path) : file(OutputFile::create(path)) {}
+    /// Of one that goes on.
+    Summed(const std::filesystem::path& path, const Extent& extent);
+    void write(std::span<const double> values);
+    Extent sync();
+  };
+
+  Summed history_, snapshots_;  ///< the writer's
+  std::vector<double> block_;   ///< rows to be handed to the writer
   Writer writer_;
 };
 

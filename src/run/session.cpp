@@ -144,18 +144,18 @@ void Session::begin_event(Checkpoints::Kept* kept) {
     event_stepper_ = make_stepper(config_, initial_, options_.execution);
     kept->rest(*event_stepper_);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
-    io::ResultStream::Lengths lengths;
-    kept->rest(*event_, lengths);
+    io::ResultStream::Extents extents;
+    kept->rest(*event_, extents);
     kept->rest.close();
-    stream_.emplace(folder_.state(), lengths);
+    stream_.emplace(folder_.state(), extents);
   } else {
-    io::write_static(dir_ / "static.csv", initial_.common.tractions);
     io::remove_file(io::ResultStream::history_file(folder_.state()));
     io::remove_file(io::ResultStream::snapshot_file(folder_.state()));
     stream_.emplace(folder_.state());
     event_stepper_ = start_event(config_, initial_, options_.execution);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
   }
+  io::write_static(dir_ / "static.csv", initial_.common.tractions);
   stepper_ = event_stepper_.get();
   kept_time_s_ = stepper_->time_s();
   event_began_ = kept_ = Clock::now();
@@ -177,10 +177,10 @@ void Session::keep() {
   head.in_event = event_.has_value();
   if (head.in_event) head.wall_s = wall_s();
   // The streams first: a checkpoint must not count on rows that are not there yet.
-  auto lengths = stream_ ? stream_->keep() : io::ResultStream::Lengths{};
+  auto extents = stream_ ? stream_->keep() : io::ResultStream::Extents{};
   checkpoints_.keep(head, [&](io::OutputArchive& archive) {
     if (head.in_event)
-      archive(initial_, *stepper_, *event_, lengths);
+      archive(initial_, *stepper_, *event_, extents);
     else
       archive(*stepper_, *ramp_);
   });
@@ -278,6 +278,7 @@ Finished go_on(io::ResultFolder& folder, const io::Case* expected, const Session
     require_same(text, kept->head.case_text, file.string());
     require_same(config.prestress.table.text, kept->head.table, (folder.unfinished() / table_file).string());
   }
+  io::write_text(file, text);  // as it was, however it was written meanwhile
   for (const char* name : {"interface.h5", "fields.vtkhdf"}) io::remove_file(folder.unfinished() / name);
   return Session(folder, config, options, hooks, true).run(std::move(kept));
 }

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Unfinished runs that somebody damages, and then goes on with: refused in one line, or the same results."""
+
+import hashlib
+import os
+import random
+import shutil
+import signal
+import time
+
+from cases import long
+from trials import Trial, alone, remove, require, require_same
+
+SUM_DIGITS = 64  # at the end of a checkpoint
+FEW = ("--checkpoint-every", "1e9", "--checkpoint-every-simulated")
+
+
+def sealed(contents):
+    """A checkpoint of these bytes with a checksum that fits."""
+    return contents + hashlib.sha256(contents).hexdigest().encode()
+
+
+def change(path, edit):
+    path.write_bytes(edit(path.read_bytes()))
+
+
+def flip(dice):
+    def edit(data):
+        place = dice.randrange(len(data))
+        return data[:place] + bytes([data[place] ^ 1 << dice.randrange(8)]) + data[place + 1 :]
+
+    return edit
+
+
+def cut(dice):
+    return lambda data: data[: dice.randrange(len(data))]
+
+
+class Setting:
+    """A run that was interrupted with two checkpoints, and what it comes to undisturbed."""
+
+    def __init__(self, bench, kind):
+        self.bench = bench
+        self.case = bench.case(long(kind))
+        whole = bench.result(self.case)
+        self.expected = alone(whole)
+        remove(whole.parent)
+        self.folder = self.interrupted(self.case)
+        self.other = self.interrupted(bench.case(long(kind) | {"friction.mu_k": 0.55}))
+
+    def interrupted(self, case):
+        folder = self.bench.folder()
+        process = self.bench.start("run", case, "-o", folder, "-q", *FEW, "2e-5")
+        while process.poll() is None and not (folder / "unfinished/state/checkpoint-000002.bin").exists():
+            time.sleep(0.01)
+        process.send_signal(signal.SIGTERM)
+        _, errors = process.communicate()
+        require(process.returncode == 128 + signal.SIGTERM, f"exit {process.returncode}: {errors}")
+        return folder
+
+    def trial(self, damage, may_be):
+        """@param may_be  exit codes that are right"""
+        folder = self.bench.folder()
+        shutil.copytree(self.folder, folder)
+        state = folder / "unfinished/state"
+        damage(folder / "unfinished", state, sorted(state.glob("checkpoint-*.bin")))
+        process = self.bench.run("run", "--restart", folder, "-q")
+        lines = process.stderr_text.splitlines()
+        errors = [line for line in lines if not line.startswith("note: ")]
+        require(process.returncode in may_be, f"exit {process.returncode}: {process.stderr_text}")
+        require(len(errors) == (1 if process.returncode else 0), process.stderr_text)
+        if process.returncode == 0:
+            require_same(alone(folder), self.expected, "done, and other results")
+        else:
+            require(str(folder) in errors[0], f"names no file: {errors[0]}")
+            require(not (folder / "run.json").exists(), "results after a refusal")
+        remove(folder.parent)
+
+
+def damages(dice, other):
+    """Name, what is done to (unfinished, state, checkpoints), and the exit codes that are right."""
+    raw = ("history.raw", "snapshots.raw")
+
+    def both(edit):
+        return lambda u, s, c: [change(path, edit) for path in c]
+
+    def state_file(name, edit):
+        return lambda u, s, c: change(s / name, edit)
+
+    def result_file(name, edit):
+        return lambda u, s, c: change(u / name, edit)
+
+    def from_other(u, s, c):
+        shutil.copy(sorted((other / "unfinished/state").glob("checkpoint-*.bin"))[-1], c[-1])
+
+    def all_from_other(u, s, c):
+        shutil.rmtree(s)
+        shutil.copytree(other / "unfinished/state", s)
+
+    def relabelled(old, new):
+        return both(lambda data: sealed(data[:-SUM_DIGITS].replace(old, new, 1)))
+
+    for k in range(12):
+        yield f"byte of the last checkpoint {k}", lambda u, s, c: change(c[-1], flip(dice)), {0}
+        yield f"cut last checkpoint {k}", lambda u, s, c: change(c[-1], cut(dice)), {0}
+    for name in raw:
+        # Behind what a checkpoint counts on, anything may be there; before, all must be as it was.
+        for k in range(6):
+            yield f"byte of {name} {k}", state_file(name, flip(dice)), {0, 2}
+            yield f"cut {name} {k}", state_file(name, cut(dice)), {0, 2}
+        yield f"first byte of {name}", state_file(name, lambda data: b"x" + data[1:]), {2}
+        yield f"empty {name}", state_file(name, lambda data: b""), {2}
+        yield f"no {name}", lambda u, s, c, name=name: (s / name).unlink(), {2}
+        yield f"longer {name}", state_file(name, lambda data: data + b"more"), {0}
+    yield "bytes of both checkpoints", both(flip(dice)), {0}
+    yield "empty checkpoints", both(lambda data: b""), {0}
+    yield "bytes behind a checkpoint", lambda u, s, c: change(c[-1], lambda data: data + b"x"), {0}
+    yield "sealed bytes behind the checkpoints", both(lambda d: sealed(d[:-SUM_DIGITS] + b"x")), {2}
+    yield "sealed halves of checkpoints", both(lambda d: sealed(d[: len(d) // 2])), {2}
+    yield "another program's checkpoints", relabelled(b", build ", b", built "), {2}
+    yield "another form of checkpoints", relabelled(b"checkpoint 1", b"checkpoint 9"), {0}
+    yield "no checkpoint", lambda u, s, c: [path.unlink() for path in c], {0}
+    yield "a checkpoint of another case", from_other, {2}
+    yield "the state of another case", all_from_other, {2}
+    yield "a folder as checkpoint", lambda u, s, c: (s / "checkpoint-000009.bin").mkdir(), {0}
+    yield "a case with another value", result_file("case.resolved.toml", lambda d: d.replace(b"mu_k = ", b"mu_k = 0.1#")), {2}
+    yield "a case with another comment", result_file("case.resolved.toml", lambda d: b"# mine\n" + d), {0}
+    yield "half a case", result_file("case.resolved.toml", lambda d: d[: len(d) // 2]), {2}
+    yield "no case", lambda u, s, c: (u / "case.resolved.toml").unlink(), {2}
+    yield "no kind", lambda u, s, c: (s / "kind").unlink(), {2}
+    yield "another kind", state_file("kind", lambda d: b"study\n"), {2}
+    yield "no state", lambda u, s, c: shutil.rmtree(s), {2}
+    yield "static.csv", result_file("static.csv", flip(dice)), {0}
+    yield "no static.csv", lambda u, s, c: (u / "static.csv").unlink(), {0}
+    yield "run.json", result_file("run.json", flip(dice)), {0}
+    yield "fronts.csv and energy.csv", lambda u, s, c: [os.truncate(u / n, 9) for n in ("fronts.csv", "energy.csv")], {0}
+    yield "files cut off", lambda u, s, c: [(u / n).write_text("x") for n in ("run.json.new", "interface.h5.new")], {0}
+
+
+def trials(bench, seed=1, kind="triggered", every=1):
+    setting = Setting(bench, kind)
+    dice = random.Random(seed)
+    for k, (name, damage, may_be) in enumerate(damages(dice, setting.other)):
+        if k % every == 0 or k >= 40:
+            yield Trial(name, lambda damage=damage, may_be=may_be: setting.trial(damage, may_be))
