@@ -440,9 +440,9 @@ def read_run(folder: Path) -> Run:
     folder, growing = place.folder, place.growing
     static = read_static(folder / "static.csv")
     blew_up = place.status == BLEW_UP
-    has_raw = belongs(folder / "history.raw")
+    has_raw = belongs(folder / "state/history.raw")
     if has_raw and (growing or not belongs(folder / "interface.h5")):
-        history = read_raw_history(folder / "history.raw", static["x_m"], blew_up)
+        history = read_raw_history(folder / "state/history.raw", static["x_m"], blew_up)
     else:
         history = read_history(folder / "interface.h5", blew_up)
     require(

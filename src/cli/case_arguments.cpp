@@ -5,10 +5,13 @@
 
 namespace slipfront::cli {
 
-std::vector<io::Override> CaseArguments::overrides() const {
-  std::vector<io::Override> overrides;
-  for (const std::string& text : set) overrides.push_back(io::parse_override(text));
-  return overrides;
+const io::CaseFile& CaseArguments::case_file() const {
+  if (!case_file_) {
+    std::vector<io::Override> overrides;
+    for (const std::string& text : set) overrides.push_back(io::parse_override(text));
+    case_file_.emplace(file, overrides);
+  }
+  return *case_file_;
 }
 
 std::shared_ptr<CaseArguments> add_case_arguments(CLI::App& command) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,18 @@ void add_validate(CLI::App& app);
 void add_keys(CLI::App& app);
 
 /// The arguments of every subcommand that works on a case: CASE.toml [--set key=value]...
-struct CaseArguments {
+class CaseArguments {
+ public:
   std::string file;
   std::vector<std::string> set;
 
-  std::vector<io::Override> overrides() const;
-  io::Case read() const { return io::read_case(file, overrides()); }
+  const io::Case& read() const { return case_file().config(); }
+  /// See io::CaseFile.
+  std::string with_place(const std::string& message) const { return case_file().with_place(message); }
+
+ private:
+  const io::CaseFile& case_file() const;
+  mutable std::optional<io::CaseFile> case_file_;  ///< once read
 };
 
 /// Adds them to a subcommand; filled when the command line is parsed. The subcommand's callback must keep the

@@ -23,7 +23,7 @@ void print_info(const CaseArguments& arguments) {
   try {
     info = run::info(config);
   } catch (const UserError& error) {
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+    throw UserError(arguments.with_place(error.what()));
   }
   const auto line = [](const char* what, const std::string& value) { fmt::print("{:<32}{}\n", what, value); };
   if (!config.title.empty()) line("title", config.title);
@@ -37,9 +37,17 @@ void print_info(const CaseArguments& arguments) {
   line("step", fmt::format("{:.4g} s ({:.4g} s at the interface, {} rows)", info.step_s, info.substep_s,
                            config.time.interface_rows));
   line("steps to the end", fmt::format("{}", info.n_steps));
+  if (info.needs.ramp_steps > 0)
+    line("steps of the ramp before", fmt::format("about {:.3g}", static_cast<double>(info.needs.ramp_steps)));
   const auto statics = info.solver_bytes > 0 ? fmt::format(" ({})", solve::name_of(info.solver)) : "";
   line("memory", fmt::format("{:.3g} GB, of it {:.3g} GB for the statics{}", info.memory_bytes * 1e-9,
                              info.solver_bytes * 1e-9, statics));
+  const auto& n = info.needs;
+  line("disk",
+       fmt::format(
+           "{:.3g} GB while it runs: {} rows of history {:.3g}, {} snapshots {:.3g}, checkpoints {:.3g}",
+           n.disk_bytes() * 1e-9, n.history_rows, n.history_bytes * 1e-9, n.snapshots,
+           n.snapshot_bytes * 1e-9, n.checkpoint_bytes * 1e-9));
   line("node updates",
        fmt::format("{:.4g} at {:.3g} million/s here", info.node_updates, info.node_updates_per_s * 1e-6));
   line("expected time", fmt::format("{:.2g} s", info.expected_s));

@@ -14,6 +14,7 @@
 #include "fronts/fit.hpp"
 #include "io/folder.hpp"
 #include "io/log.hpp"
+#include "run/needs.hpp"
 #include "run/session.hpp"
 
 namespace slipfront::cli {
@@ -98,7 +99,16 @@ run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& o
     return run::run_into(folder, *config, options.session, hooks);
   } catch (const UserError& error) {
     folder.abandon();
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+    throw UserError(arguments.with_place(error.what()));
+  }
+}
+
+/// Refuses what the machine cannot hold before anything is written.
+void require_fit(const CaseArguments& arguments, const io::Case& config, const std::string& dir) {
+  try {
+    run::require_fit(config, dir);
+  } catch (const UserError& error) {
+    throw UserError(arguments.with_place(error.what()));
   }
 }
 
@@ -110,6 +120,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
     throw UserError(
         "slipfront: run takes CASE and -o DIR, or --restart DIR, perhaps with CASE to compare; see slipfront "
         "run --help");
+  if (!restarts) require_fit(arguments, *config, options.dir);
   io::ResultFolder folder(options.folder(), run::run_work);
   if (restarts && !folder.has_unfinished() && run::is_complete(folder.dir())) {
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());

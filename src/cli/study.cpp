@@ -61,7 +61,7 @@ void run_study(const char* name, const CaseArguments& arguments, const Target& t
     folder.publish();
   } catch (const UserError& error) {
     folder.abandon();
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+    throw UserError(arguments.with_place(error.what()));
   }
 }
 

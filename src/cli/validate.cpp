@@ -15,7 +15,7 @@ void validate(const CaseArguments& arguments) {
   try {
     run::check(config);
   } catch (const UserError& error) {
-    throw UserError(io::with_place(arguments.file, error.what(), arguments.overrides()));
+    throw UserError(arguments.with_place(error.what()));
   }
   fmt::print("{}: valid\n", arguments.file);
 }

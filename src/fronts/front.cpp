@@ -248,6 +248,13 @@ double energy_density_J_per_m3(const Traction& traction, const Elasticity& elast
          (2.0 * elasticity.youngs_modulus_Pa);
 }
 
+bool is_driven(const FrontOptions& options, double x_m) {
+  return std::ranges::any_of(options.driven, [&](const Zone& zone) {
+    const double rounding_m = 1e-9 * (zone.to_m - zone.from_m);
+    return x_m >= zone.from_m - rounding_m && x_m <= zone.to_m + rounding_m;
+  });
+}
+
 std::string_view name(End end) {
   switch (end) {
     case End::arrest:

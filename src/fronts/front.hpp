@@ -23,6 +23,11 @@ struct Elasticity {
 /// 2012, Eq. 2): (2 (1 + nu) t^2 + p^2) / (2E) in plane stress; p^2 becomes (1 - nu^2) p^2 in plane strain.
 double energy_density_J_per_m3(const Traction& traction, const Elasticity& elasticity);
 
+/// A part of the interface.
+struct Zone {
+  double from_m = 0, to_m = 0;
+};
+
 /// How fronts are found and measured. Lengths in m, times in s.
 struct FrontOptions {
   double l_star_m = 0.67e-3;     ///< length over which the speed is taken; one element where that is longer
@@ -38,8 +43,9 @@ struct FrontOptions {
   double exclude_right_m = std::numeric_limits<double>::infinity();  ///< ... nor above it
   double exclude_from_m = std::numeric_limits<double>::infinity();   ///< ... nor from here (nucleation patch)
   double exclude_to_m = -std::numeric_limits<double>::infinity();    ///< ... to here
-  double exclude_margin_m = 0;  ///< what of these zones lies beside the trigger zone or the patch itself
-  double mode_fraction = 0.8;   ///< of a front's points with a slipping share that must agree on its mode
+  /// The trigger zone, or the nucleation patch itself: no v_tip there, both ends included.
+  std::vector<Zone> driven;
+  double mode_fraction = 0.8;  ///< of a front's points with a slipping share that must agree on its mode
 };
 
 /// Whether x lies in a zone that is left out.
@@ -48,12 +54,8 @@ inline bool is_excluded(const FrontOptions& o, double x_m) {
          (x_m >= o.exclude_from_m && x_m <= o.exclude_to_m);
 }
 
-/// Whether x lies in the trigger zone or the nucleation patch itself, both ends included.
-inline bool is_driven(const FrontOptions& o, double x_m) {
-  const double margin_m = o.exclude_margin_m * (1 - 1e-9);
-  return x_m < o.exclude_left_m - margin_m || x_m > o.exclude_right_m + margin_m ||
-         (x_m >= o.exclude_from_m + margin_m && x_m <= o.exclude_to_m - margin_m);
-}
+/// Whether x lies in a zone where the nodes slip when the trigger makes them.
+bool is_driven(const FrontOptions& options, double x_m);
 
 /// Why a front ends.
 enum class End {

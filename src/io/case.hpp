@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "fronts/record.hpp"
 #include "interface/interface.hpp"
 #include "interface/nucleation.hpp"
 #include "interface/trigger.hpp"
@@ -25,11 +26,18 @@ struct FrontSettings {
       10e-3;  ///< t_d, p_d are left out within trigger zone or nucleation patch plus this
 };
 
+/// A table of tractions along the interface as it was read, see io/prestress.hpp.
+struct PrestressTable {
+  std::string text;          ///< of the file
+  fronts::StaticState rows;  ///< [rows]
+};
+
 /// Tractions of the interface before the event under loading.method = prestress: uniform, or from a table.
 struct Prestress {
-  double t_Pa = 0;    ///< drives the plate to +x
-  double p_Pa = 1e6;  ///< positive in compression
-  std::string file;   ///< CSV table, see io/prestress.hpp; empty for uniform tractions
+  double t_Pa = 0;            ///< drives the plate to +x
+  double p_Pa = 1e6;          ///< positive in compression
+  std::string file;           ///< CSV table; empty for uniform tractions
+  PrestressTable table = {};  ///< read from it by io::read_case
 };
 
 /// What a run writes besides its fronts.

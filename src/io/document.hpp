@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -39,14 +38,12 @@ struct Document {
   std::vector<TableHeader> tables;
 };
 
-/// Reads TOML; `name` stands for the file in places and messages. @throws UserError for a syntax error.
+/// Reads TOML; `name` stands for the file in places and messages. @throws UserError for a syntax error, bytes
+/// that are no UTF-8, and tables or lists nested far beyond what any key asks for.
 Document parse_document(const std::string& text, const std::string& name);
 
 /// Reads what stands behind the "=" of an override; text that is no TOML value counts as a string.
 Value parse_value(const std::string& text);
-
-/// The text with its line breaks made spaces, for messages.
-std::string one_line(std::string_view text);
 
 /// "a number", "a string", ...
 std::string type_name(const Value& value);

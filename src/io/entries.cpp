@@ -407,6 +407,19 @@ std::string describe(const Range& range, const std::string& unit) {
   return lower + (lower.empty() || upper.empty() ? "" : " and ") + upper;
 }
 
+const std::vector<Magnitudes>& all_magnitudes() {
+  static const std::vector<Magnitudes> all = {
+      {"m", 1e-12, 1e6},   {"s", 1e-15, 1e6},      {"Pa", 1e-6, 1e15}, {"kg/m3", 1e-6, 1e6},
+      {"m/s", 1e-12, 1e6}, {"m2/s2", 1e-12, 1e12}, {"", 1e-18, 1e9}};
+  return all;
+}
+
+const Magnitudes& magnitudes_of(std::string_view unit) {
+  const auto& all = all_magnitudes();
+  const auto found = std::ranges::find(all, unit, &Magnitudes::unit);
+  return found == all.end() ? all.back() : *found;
+}
+
 std::string unit_of(std::string_view key) {
   static constexpr std::array<std::string_view, 9> units = {"m", "m2", "m3", "s", "s2", "Pa", "kg", "N", "J"};
   std::string leaf = leaf_of(std::string(key));

@@ -28,6 +28,16 @@ bool contains(const Range& range, double value);
 /// "greater than 0 m", "at least 0 and at most 1", ...; empty where every finite number is allowed.
 std::string describe(const Range& range, const std::string& unit);
 
+/// Magnitudes of numbers other than 0, by their unit. They are far beyond any use, and such that no product
+/// or quotient of the program leaves the range of doubles.
+struct Magnitudes {
+  std::string unit;
+  double least = 0, most = 0;
+};
+const std::vector<Magnitudes>& all_magnitudes();
+/// Those of a unit, e.g. "m"; of plain numbers, the last ones, where it has none of its own.
+const Magnitudes& magnitudes_of(std::string_view unit);
+
 /// A setting on which a key depends, e.g. "event.kind = nucleation".
 struct Condition {
   std::string text;

@@ -2,63 +2,70 @@
 #include "io/experiment.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
 #include <string>
 
 #include "base/error.hpp"
 #include "io/fields.hpp"
+#include "io/text.hpp"
 
 namespace slipfront::io {
+namespace {
+
+using Fields = std::vector<std::string_view>;
+
+/// Where the two columns are, and what a speed is divided by.
+struct Columns {
+  std::vector<std::string> header;
+  std::size_t ratio = 0, speed = 0;
+  double speed_unit = 1;
+};
+
+Columns find_columns(const Fields& fields, const std::string& at, double c_L_m_per_s) {
+  Columns columns{{fields.begin(), fields.end()}};
+  const auto column = [&](std::string_view name) {
+    if (std::ranges::count(fields, name) > 1)
+      throw UserError("{}: has the column {} more than once; keep one of them", at, name);
+    return static_cast<std::size_t>(std::ranges::find(fields, name) - fields.begin());
+  };
+  columns.ratio = column("static_ratio");
+  columns.speed = column("v_over_c_L");
+  if (columns.speed == fields.size()) {
+    columns.speed = column("v_m_per_s");
+    columns.speed_unit = c_L_m_per_s;
+  }
+  if (columns.ratio == fields.size() || columns.speed == fields.size())
+    throw UserError(
+        "{}: needs the columns static_ratio and v_over_c_L (or v_m_per_s); add a header line with them", at);
+  return columns;
+}
+
+double value_in(const Fields& fields, std::size_t column, const Columns& columns, const std::string& at) {
+  const auto value = column < fields.size() ? number_of(fields[column]) : std::nullopt;
+  if (!value) throw UserError("{}: column {} must be a number", at, columns.header[column]);
+  return *value;
+}
+
+}  // namespace
 
 Experiment read_experiment(const std::filesystem::path& file, double c_L_m_per_s) {
-  std::ifstream stream(file);
-  if (!stream) throw UserError("{}: cannot be read; check the path", file.string());
+  constexpr std::size_t most_bytes = std::size_t{1} << 26U;
+  const std::string name = one_line(file.native());
   Experiment experiment;
-  std::vector<std::string> header;
-  std::size_t ratio_column = 0, speed_column = 0;
-  double speed_unit = 1;
-  int number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++number;
-    const auto fields = fields_of(line);
-    if (fields.size() == 1 && fields[0].empty()) continue;
-    if (fields[0].starts_with('#')) continue;
-    if (header.empty()) {
-      header = fields;
-      const auto column = [&](const char* name) {
-        return static_cast<std::size_t>(std::ranges::find(header, name) - header.begin());
-      };
-      ratio_column = column("static_ratio");
-      speed_column = column("v_over_c_L");
-      if (speed_column == header.size()) {
-        speed_column = column("v_m_per_s");
-        speed_unit = c_L_m_per_s;
-      }
-      if (ratio_column == header.size() || speed_column == header.size())
-        throw UserError(
-            "{}:{}: needs the columns static_ratio and v_over_c_L (or v_m_per_s); add a header line with "
-            "them",
-            file.string(), number);
-      continue;
+  Columns columns;
+  const std::string text = read_text(file, name, "table", most_bytes);
+  for_each_row(text, [&](int line, const Fields& fields) {
+    const std::string at = fmt::format("{}:{}", name, line);
+    if (columns.header.empty()) {
+      columns = find_columns(fields, at, c_L_m_per_s);
+      return;
     }
-    const auto value = [&](std::size_t column) {
-      double result = std::nan("");
-      std::size_t used = 0;
-      try {
-        if (column < fields.size()) result = std::stod(fields[column], &used);
-      } catch (const std::exception&) {
-        used = 0;
-      }
-      if (used == 0 || used != fields[column].size() || !std::isfinite(result))
-        throw UserError("{}:{}: column {} must be a number", file.string(), number, header[column]);
-      return result;
-    };
-    experiment.static_ratio.push_back(value(ratio_column));
-    experiment.v_over_c_L.push_back(value(speed_column) / speed_unit);
-  }
-  if (experiment.static_ratio.empty())
-    throw UserError("{}: holds no points; add a line per point", file.string());
+    if (fields.size() > columns.header.size())
+      throw UserError("{}: has {} columns, the header {}; write numbers with a decimal point", at,
+                      fields.size(), columns.header.size());
+    experiment.static_ratio.push_back(value_in(fields, columns.ratio, columns, at));
+    experiment.v_over_c_L.push_back(value_in(fields, columns.speed, columns, at) / columns.speed_unit);
+  });
+  if (experiment.static_ratio.empty()) throw UserError("{}: holds no points; add a line per point", name);
   return experiment;
 }
 

@@ -4,21 +4,17 @@
 #include <filesystem>
 #include <vector>
 
-#include "fronts/record.hpp"
+#include "io/case.hpp"
 
 namespace slipfront::io {
 
-/// Tractions along an interface before the event, as given in a table. [rows]
-using PrestressTable = fronts::StaticState;
-
 /// Reads a CSV file with the header x_m,t_Pa,p_Pa and a row per position, x ascending, p > 0. Lines that are
-/// empty or begin with # are passed over.
+/// empty or begin with # are passed over. The file is read once: it may be a pipe.
 /// @throws UserError with file, line and what to do.
 PrestressTable read_prestress(const std::filesystem::path& file);
 
-/// Tractions at the positions x_m, linear between the rows of the table.
+/// Tractions of the table at the positions x_m, linear between its rows.
 /// @throws UserError where the table does not reach from the first to the last of them.
-fronts::StaticState prestress_at(const PrestressTable& table, const std::vector<double>& x_m,
-                                 const std::filesystem::path& file);
+fronts::StaticState prestress_at(const Prestress& prestress, const std::vector<double>& x_m);
 
 }  // namespace slipfront::io

@@ -6,12 +6,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <functional>
-#include <iterator>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -19,6 +16,9 @@
 #include "base/error.hpp"
 #include "io/document.hpp"
 #include "io/entries.hpp"
+#include "io/prestress.hpp"
+#include "io/text.hpp"
+#include "solid/operator.hpp"
 
 namespace slipfront::io {
 namespace {
@@ -28,17 +28,6 @@ std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string::npos) return "";
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file))
-    throw UserError("{}: is a folder; name the case file in it", file.string());
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad())
-    throw UserError("{}: cannot be read ({}); check the path", file.string(), std::strerror(errno));
-  return text;
 }
 
 /// Levenshtein's distance: the fewest letters to insert, remove or replace.
@@ -59,6 +48,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 /// The candidate nearest to `text`, if it is near enough to be meant.
 std::optional<std::string> nearest(const std::string& text, const std::vector<std::string>& candidates) {
+  constexpr std::size_t longest_name = 100;
+  if (text.size() > longest_name) return std::nullopt;
   std::optional<std::string> best;
   std::size_t least = std::max<std::size_t>(2, text.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
@@ -123,7 +114,7 @@ std::string_view kind_name(Kind kind) {
 // ---------------------------------------------------------------------------------------------------
 
 std::string place_of(const Override& override) {
-  return one_line(fmt::format("--set {}={}", override.first, override.second));
+  return shortened(fmt::format("--set {}={}", override.first, override.second));
 }
 
 bool takes_bare_text(const std::string& key) {
@@ -133,6 +124,8 @@ bool takes_bare_text(const std::string& key) {
 
 Setting to_setting(const Override& override) {
   const auto& [key, text] = override;
+  if (line_outside_utf8(key + text) > 0)
+    throw UserError("{}: holds bytes that are no utf-8; write it in that encoding", place_of(override));
   const bool in_quotes = !text.empty() && (text.front() == '"' || text.front() == '\'');
   Value value = takes_bare_text(key) && !in_quotes ? Value(text) : parse_value(text);
   return {one_line(key), std::move(value), place_of(override), 0};
@@ -199,7 +192,8 @@ void drop_parameters_of_other_laws(const Case& config, Document& document) {
 [[noreturn]] void throw_unknown_table(const TableHeader& table, const std::vector<std::string>& tables) {
   const auto guess = nearest(table.key, tables);
   if (guess) throw UserError("{}: unknown table [{}]; did you mean [{}]?", table.place, table.key, *guess);
-  throw UserError("{}: unknown table [{}]; tables are {}", table.place, table.key, fmt::join(tables, ", "));
+  throw UserError("{}: unknown table [{}]; tables are {}", table.place, shortened(table.key),
+                  fmt::join(tables, ", "));
 }
 
 [[noreturn]] void throw_unknown_key(const Setting& setting, const std::vector<Entry>& entries,
@@ -216,12 +210,12 @@ void drop_parameters_of_other_laws(const Case& config, Document& document) {
   for (const Entry& entry : entries) {
     // The right name in the wrong table is the likelier slip than any misspelling.
     if (leaf_of(entry.key) == leaf_of(key))
-      throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, entry.key);
+      throw UserError("{}: unknown key {}; did you mean {}?", setting.place, shortened(key), entry.key);
     keys.push_back(entry.key);
   }
   if (const auto guess = nearest(key, keys))
     throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, *guess);
-  throw UserError("{}: unknown key {}; `slipfront keys` lists all keys", setting.place, key);
+  throw UserError("{}: unknown key {}; `slipfront keys` lists all keys", setting.place, shortened(key));
 }
 
 [[noreturn]] void throw_wrong_type(const Entry& entry, const Setting& setting, const Value& default_value) {
@@ -269,8 +263,9 @@ Value checked(const Entry& entry, const Setting& setting, const Value& default_v
       if (!word) break;
       if (contains_word(entry.words, *word)) return value;
       const auto guess = nearest(*word, entry.words);
-      throw UserError("{}: {} is {}; it must be one of {}{}", setting.place, entry.key, toml_text(value),
-                      fmt::join(entry.words, ", "), guess ? fmt::format(" (did you mean {}?)", *guess) : "");
+      throw UserError("{}: {} is {}; it must be one of {}{}", setting.place, entry.key,
+                      shortened(toml_text(value)), fmt::join(entry.words, ", "),
+                      guess ? fmt::format(" (did you mean {}?)", *guess) : "");
     }
     case Kind::numbers: {
       const auto* list = std::get_if<std::vector<double>>(&value);
@@ -384,6 +379,12 @@ void check_relations(const Case& config, const Document& document, const std::st
   };
   const auto& plate = config.plate;
   const auto& loading = config.loading;
+  constexpr double most_nodes = std::numeric_limits<mesh::Node>::max();
+  require(
+      (plate.width_m / plate.element_size_m + 1) * (plate.height_m / plate.element_size_m + 1) <= most_nodes,
+      {"plate.element_size_m", "plate.width_m", "plate.height_m"},
+      fmt::format("plate.element_size_m is {} m; that makes more than {:.3g} nodes, choose a larger one",
+                  plate.element_size_m, most_nodes));
   const bool at_edge =
       config.event == interface::EventKind::left || config.event == interface::EventKind::right;
   const double shorter_m = std::min(plate.width_m, plate.height_m);
@@ -440,6 +441,42 @@ void check_relations(const Case& config, const Document& document, const std::st
                         *fall, *std::next(fall)));
 }
 
+/// The values of a number or a list of them.
+std::vector<double> numbers_of(const Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return {*number};
+  if (const auto* list = std::get_if<std::vector<double>>(&value)) return *list;
+  return {};
+}
+
+/// Refuses numbers of which products or quotients could leave the range of doubles.
+void check_magnitudes(const Case& config, const Document& document, const std::string& name) {
+  for (const Entry& entry : entries_of(config))
+    for (const double number : numbers_of(entry.get(config))) {
+      const std::string unit = unit_of(entry.key);
+      const Magnitudes& magnitudes = magnitudes_of(unit);
+      const double size = std::abs(number);
+      if (size == 0 || std::isinf(size) || (size >= magnitudes.least && size <= magnitudes.most)) continue;
+      throw UserError("{}: {} is {}; its magnitude must be at least {:g} and at most {}",
+                      place_of(document, {entry.key}, name), entry.key,
+                      with_unit(fmt::format("{}", number), unit), magnitudes.least,
+                      with_unit(fmt::format("{:g}", magnitudes.most), unit));
+    }
+}
+
+/// Refuses more steps than can be taken or counted. The step is estimated from the time in which a wave
+/// crosses an element.
+void check_duration(const Case& config, const Document& document, const std::string& name) {
+  constexpr double most_steps = 1e12;
+  const double crossing_s = config.plate.element_size_m / solid::longitudinal_speed_m_per_s(config.material);
+  const double step_s =
+      config.time.step_factor * solid::stable_step_s(2 / crossing_s, config.material.stiffness_damping_s);
+  const double steps = config.time.end_s / step_s;
+  if (steps > most_steps)
+    throw UserError(
+        "{}: time.end_s = {:g} s takes about {:.3g} steps of {:.3g} s, more than {:g}; choose an earlier end",
+        place_of(document, {"time.end_s"}, name), config.time.end_s, steps, step_s, most_steps);
+}
+
 // --- Reference
 // ---------------------------------------------------------------------------------------------------
 
@@ -454,6 +491,7 @@ std::string reference_row(const Entry& entry, const Case& defaults) {
     if (type.rfind(article, 0) == 0) type.erase(0, article.size());
   std::string help;
   for (const char c : entry.help) help += c == '|' ? std::string("\\|") : std::string(1, c);
+  if (entry.only_with) help += "; only with " + entry.only_with->text;
   return fmt::format("| `{}` | {} | {} | `{}` | {} | {} |\n", leaf_of(entry.key), type, unit_of(entry.key),
                      toml_text(entry.get(defaults)), allowed, help);
 }
@@ -468,13 +506,13 @@ Override parse_override(const std::string& text) {
   const std::string key = trimmed(text.substr(0, equals));
   if (equals == std::string::npos || key.empty())
     throw UserError("--set {}: is not of the form key=value; write for example --set friction.mu_k=1.0",
-                    one_line(text));
+                    shortened(text));
   return {key, trimmed(text.substr(equals + 1))};
 }
 
-Case parse_case(const std::string& text, const std::string& name, const std::vector<Override>& overrides) {
-  Document document = parse_document(text, name);
-  apply(overrides, document);
+namespace {
+
+Case case_of(Document document, const std::string& name) {
   check_tables(document, common_entries());
 
   Case config;
@@ -496,15 +534,52 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
   }
   check_friction(config, document, name);
   check_relations(config, document, name);
+  check_magnitudes(config, document, name);
+  check_duration(config, document, name);
   return config;
 }
 
+/// Reads the table of tractions that a case names; its path counts from the folder of the case file.
+void read_table(const std::filesystem::path& folder, Prestress& prestress) {
+  if (prestress.file.empty()) return;
+  std::error_code error;
+  const auto path = std::filesystem::absolute(folder / prestress.file, error).lexically_normal();
+  if (error)
+    throw UserError("prestress.file: {}: the working folder cannot be found ({}); change to another one",
+                    one_line(prestress.file), error.message());
+  if (line_outside_utf8(path.native()) > 0)  // the path goes into files that are UTF-8
+    throw UserError(
+        "prestress.file: {}: its path holds bytes that are no utf-8; rename the folder or the file",
+        one_line(path.native()));
+  prestress.file = path.string();
+  prestress.table = read_prestress(path);
+}
+
+}  // namespace
+
+Case parse_case(const std::string& text, const std::string& name, const std::vector<Override>& overrides) {
+  Document document = parse_document(text, name);
+  apply(overrides, document);
+  return case_of(std::move(document), name);
+}
+
+CaseFile::CaseFile(const std::filesystem::path& file, const std::vector<Override>& overrides)
+    : name_(one_line(file.native())) {
+  constexpr std::size_t most_bytes = std::size_t{64} << 20U;
+  document_ = parse_document(read_text(file, name_, "case file", most_bytes), name_);
+  if (document_.settings.empty())
+    throw UserError("{}: sets no key; write at least one, `slipfront keys` lists them", name_);
+  apply(overrides, document_);
+  config_ = case_of(document_, name_);
+  try {
+    read_table(file.parent_path(), config_.prestress);
+  } catch (const UserError& error) {
+    throw UserError(with_place(error.what()));
+  }
+}
+
 Case read_case(const std::filesystem::path& file, const std::vector<Override>& overrides) {
-  Case config = parse_case(read_text(file), file.string(), overrides);
-  auto& table = config.prestress.file;
-  if (!table.empty())
-    table = std::filesystem::absolute(file.parent_path() / table).lexically_normal().string();
-  return config;
+  return CaseFile(file, overrides).config();
 }
 
 std::string to_toml(const Case& config) {
@@ -524,7 +599,14 @@ std::string schema_reference() {
       "# Keys of the case file\n\n"
       "A key that is not set keeps its default. On the command line, `--set table.key=value` wins over the "
       "file.\n"
-      "All quantities are in SI units, named by the ending of the key.\n\n";
+      "All quantities are in SI units, named by the ending of the key. A file sets at least one key. Numbers "
+      "other "
+      "than 0\nmust be within these magnitudes, beyond which products of them would leave the range of "
+      "doubles:\n\n"
+      "| unit | at least | at most |\n|---|---|---|\n";
+  for (const auto& [unit, least, most] : all_magnitudes())
+    text += fmt::format("| {} | {:g} | {:g} |\n", unit.empty() ? "others" : unit, least, most);
+  text += "\n";
   text += reference_head;
   const Case defaults;
   std::string open_table;
@@ -549,21 +631,11 @@ std::string schema_reference() {
   return text;
 }
 
-std::string locate_key(const std::filesystem::path& file, const std::string& key,
-                       const std::vector<Override>& overrides) {
-  const auto override = std::find_if(overrides.rbegin(), overrides.rend(),
-                                     [&](const Override& candidate) { return candidate.first == key; });
-  if (override != overrides.rend()) return place_of(*override);
-  try {
-    const Document document = parse_document(read_text(file), file.string());
-    return place_of(document, {key}, file.string());
-  } catch (const UserError&) {
-    return file.string();
-  }
+std::string CaseFile::place_of_key(const std::string& key) const {
+  return place_of(document_, {key}, name_);
 }
 
-std::string with_place(const std::filesystem::path& file, const std::string& message,
-                       const std::vector<Override>& overrides) {
+std::string CaseFile::with_place(const std::string& message) const {
   std::string first_key;
   std::size_t first = std::string::npos;
   const auto consider = [&](const std::vector<Entry>& entries) {
@@ -580,7 +652,7 @@ std::string with_place(const std::filesystem::path& file, const std::string& mes
   };
   consider(common_entries());
   for (const LawEntries& law : friction_laws()) consider(law.entries);
-  const std::string place = first_key.empty() ? file.string() : locate_key(file, first_key, overrides);
+  const std::string place = first_key.empty() ? name_ : place_of_key(first_key);
   return fmt::format("{}: {}", place, message);
 }
 

@@ -3,10 +3,16 @@
 
 #include "fronts/record.hpp"
 #include "io/case.hpp"
-#include "mesh/mesh.hpp"
+#include "mesh/plate.hpp"
 #include "solve/settings.hpp"
 
 namespace slipfront::run {
+
+/// Displacements of all nodes, from the plate's measures alone: for refusals before anything is built.
+double approximate_unknowns(const mesh::Plate& plate);
+
+/// Refuses a plate in motion that would not fit into the memory, before anything is built.
+void require_plate_fits(const io::Case& config);
 
 /// Of the top edge where the plate is loaded by a ramp, and during the event.
 double top_speed_m_per_s(const io::Case& config);

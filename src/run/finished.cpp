@@ -43,7 +43,9 @@ InitialState at_interface(const InitialState& state) {
 }  // namespace
 
 std::filesystem::path FinishedRuns::file_of(const io::Case& config) const {
-  return dir_ / (io::sha256(program_identity() + "\n" + resolved_text(config)).substr(0, 32) + ".bin");
+  return dir_ / (io::sha256(program_identity() + "\n" + resolved_text(config) + config.prestress.table.text)
+                     .substr(0, 32) +
+                 ".bin");
 }
 
 bool FinishedRuns::has(const io::Case& config) const {

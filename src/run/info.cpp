@@ -53,17 +53,15 @@ Info info(const io::Case& config) {
   info.stable_step_s = stepper.stable_step_s();
   info.step_s = stepper.step_s();
   info.substep_s = stepper.substep_s();
-  info.n_steps = static_cast<std::int64_t>(std::ceil(config.time.end_s / info.step_s));
-  info.node_updates = static_cast<double>(info.n_steps) * stepper.node_updates_per_step();
-
+  info.needs = needs(config, {static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
+                              static_cast<double>(info.n_interface), info.step_s});
+  info.n_steps = info.needs.steps;
+  info.node_updates = static_cast<double>(info.n_steps) * stepper.node_updates_per_step() +
+                      static_cast<double>(info.needs.ramp_steps) * static_cast<double>(info.n_nodes);
+  info.memory_bytes = info.needs.memory_bytes();
+  info.solver_bytes = info.needs.statics_bytes;
   const double n_unknowns = 2.0 * static_cast<double>(info.n_nodes);
-  info.memory_bytes = solve::event_bytes(static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
-                                         !config.output.snapshot_times_s.empty(), config.time.precision);
-  if (!is_prestressed(config)) {
-    info.solver = solve::choose_solver(wanted_solver(config), n_unknowns);
-    info.solver_bytes = solve::statics_bytes(info.solver, n_unknowns);
-    info.memory_bytes = std::max(info.memory_bytes, info.solver_bytes);
-  }
+  if (!is_prestressed(config)) info.solver = solve::choose_solver(wanted_solver(config), n_unknowns);
 
   // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
   fronts::StaticState no_tractions;

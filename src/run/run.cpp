@@ -17,6 +17,7 @@
 #include "io/schema.hpp"
 #include "mesh/plate.hpp"
 #include "run/choices.hpp"
+#include "run/needs.hpp"
 #include "solve/plate_solver.hpp"
 #include "solve/prestress.hpp"
 #include "solve/stepper.hpp"
@@ -29,19 +30,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Displacements of all nodes, from the plate's measures alone: for refusals before anything is built.
-double approximate_unknowns(const mesh::Plate& plate) {
-  double unknowns = 0, h = plate.element_size_m, height_m = plate.fine_height_m, rest_m = plate.height_m;
-  for (int k = 0; k <= std::max(0, plate.coarsenings) && rest_m > 0; ++k) {
-    const double of_block_m = k == plate.coarsenings ? rest_m : std::min(height_m, rest_m);
-    unknowns += 2 * (plate.width_m / h + 1) * (of_block_m / h + 1);
-    rest_m -= of_block_m;
-    height_m = plate.height_m - rest_m;  // a block is as high as everything below it
-    h *= 2;
-  }
-  return unknowns;
 }
 
 /// B at the nodes of the interface. [lower]
@@ -78,6 +66,25 @@ std::string contact_warning(const solve::Equilibrium& state) {
 
 }  // namespace
 
+double approximate_unknowns(const mesh::Plate& plate) {
+  double unknowns = 0, h = plate.element_size_m, height_m = plate.fine_height_m, rest_m = plate.height_m;
+  for (int k = 0; k <= std::max(0, plate.coarsenings) && rest_m > 0; ++k) {
+    const double of_block_m = k == plate.coarsenings ? rest_m : std::min(height_m, rest_m);
+    unknowns += 2 * (plate.width_m / h + 1) * (of_block_m / h + 1);
+    rest_m -= of_block_m;
+    height_m = plate.height_m - rest_m;  // a block is as high as everything below it
+    h *= 2;
+  }
+  return unknowns;
+}
+
+void require_plate_fits(const io::Case& config) {
+  const double n_nodes = 0.5 * approximate_unknowns(config.plate);
+  require_memory(
+      solve::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
+      fmt::format("a plate of {:.4g} nodes", n_nodes), "choose a larger plate.element_size_m");
+}
+
 double top_speed_m_per_s(const io::Case& config) {
   return config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
 }
@@ -93,8 +100,7 @@ bool is_prestressed(const io::Case& config) {
 fronts::StaticState prescribed_tractions(const io::Prestress& prestress, const mesh::Mesh& mesh) {
   fronts::StaticState state;
   for (const auto n : mesh.lower) state.x_m.push_back(mesh.x_m[n]);
-  if (!prestress.file.empty())
-    return io::prestress_at(io::read_prestress(prestress.file), state.x_m, prestress.file);
+  if (!prestress.file.empty()) return io::prestress_at(prestress, state.x_m);
   state.t_s_Pa.assign(state.x_m.size(), prestress.t_Pa);
   state.p_s_Pa.assign(state.x_m.size(), prestress.p_Pa);
   return state;
@@ -111,7 +117,7 @@ std::string initial_state_key(const io::Case& config) {
   if (is_prestressed(config)) {
     relevant.loading.method = config.loading.method;
     relevant.prestress = config.prestress;
-    return io::to_toml(relevant);
+    return io::to_toml(relevant) + config.prestress.table.text;
   }
   relevant.material = config.material;
   relevant.loading = config.loading;
@@ -130,11 +136,7 @@ std::string initial_state_key(const io::Case& config) {
 }
 
 mesh::Mesh check(const io::Case& config) {
-  const double n_unknowns = approximate_unknowns(config.plate);
-  const double n_nodes = 0.5 * n_unknowns;
-  require_memory(
-      solve::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
-      fmt::format("a plate of {:.4g} nodes", n_nodes), "choose a larger plate.element_size_m");
+  require_plate_fits(config);
   if (!is_prestressed(config)) {
     if (config.plate.sides == mesh::Sides::periodic)
       throw UserError(
@@ -144,7 +146,7 @@ mesh::Mesh check(const io::Case& config) {
       throw UserError(
           "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
           config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
-    solve::require_statics_memory(wanted_solver(config), n_unknowns);
+    solve::require_statics_memory(wanted_solver(config), approximate_unknowns(config.plate));
   }
   if (config.time.precision == solve::Precision::single_precision && config.plate.sides != mesh::Sides::free)
     throw UserError(
@@ -210,20 +212,28 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
   o.mu_s = interface::static_coefficient(config.friction);
   o.elasticity = {config.material.youngs_modulus_Pa, config.material.poissons_ratio,
                   config.material.plane == solid::Plane::strain};
-  o.exclude_margin_m = config.fronts.trigger_margin_m;
   const double margin = config.trigger.zone_m + config.fronts.trigger_margin_m;
   const double edge = initial.prescribed ? 0 : config.loading.edge_margin_m;
   const double contact_from = initial.common.inside_from_m - edge;
   const double contact_to = initial.common.inside_to_m + edge;
-  if (config.event == interface::EventKind::left) o.exclude_left_m = contact_from + margin;
-  if (config.event == interface::EventKind::right) o.exclude_right_m = contact_to - margin;
+  if (config.event == interface::EventKind::left) {
+    o.exclude_left_m = contact_from + margin;
+    o.driven = {{contact_from, contact_from + config.trigger.zone_m}};
+  }
+  if (config.event == interface::EventKind::right) {
+    o.exclude_right_m = contact_to - margin;
+    o.driven = {{contact_to - config.trigger.zone_m, contact_to}};
+  }
   if (config.event == interface::EventKind::nucleation) {
     const auto& n = config.nucleation;
-    const double reach = n.half_length_m + n.taper_m + config.fronts.trigger_margin_m;
+    const double patch_reach = n.half_length_m + n.taper_m;
+    const double reach = patch_reach + config.fronts.trigger_margin_m;
     o.exclude_from_m = n.x_m - reach;
     o.exclude_to_m = n.x_m + reach;
     // A patch that passes an edge of a periodic plate goes on at the other one.
     const double period = initial.mesh.period_m;
+    for (const double shift : {0.0, -period, period})
+      o.driven.push_back({n.x_m - patch_reach + shift, n.x_m + patch_reach + shift});
     if (period > 0 && o.exclude_from_m < 0) o.exclude_right_m = o.exclude_from_m + period;
     if (period > 0 && o.exclude_to_m > period) o.exclude_left_m = o.exclude_to_m - period;
   }
@@ -312,7 +322,8 @@ solve::EventRun begin_event(const io::Case& config, const InitialState& initial,
           wave_speeds(config.material).c_L,
           triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
           config.time,
-          {config.output.history_interval_s, config.output.energy_interval_s, config.output.snapshot_times_s},
+          {config.output.history_interval_s, config.output.energy_interval_s,
+           snapshot_plan(config, stepper.step_s()).times_s},
           solve::halo_for(initial.mesh, config.fronts.l_star_m)};
 }
 
@@ -362,6 +373,8 @@ void measure(Result& result, const InitialState& initial) {
         fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before: what "
                     "happens behind the front is its doing",
                     after.trigger_work, 100 * after.trigger_work / before.strain));
+  const auto snapshots = snapshot_plan(config, result.step_s);
+  for (const auto& note : snapshots.notes) result.warnings.push_back(note);
   if (config.time.step_factor > 1)
     result.warnings.push_back("the step is above the largest stable one (time.allow_unstable)");
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");

@@ -10,6 +10,7 @@
 #include "fronts/front.hpp"
 #include "io/case.hpp"
 #include "mesh/mesh.hpp"
+#include "run/needs.hpp"
 #include "solve/event.hpp"
 #include "solve/statics.hpp"
 #include "stability/verdict.hpp"
@@ -119,11 +120,17 @@ struct Status {
 /// Of a run that has ended.
 Status status_of(const Result& result);
 
-/// The case as case.resolved.toml has it.
-std::string resolved_text(const io::Case& config);
+inline constexpr const char* case_file = "case.resolved.toml";
+/// The table of prescribed tractions as it was read, where there is one.
+inline constexpr const char* table_file = "prestress.csv";
 
-/// Writes the run's folder, which is there: case.resolved.toml, run.json, interface.h5, fronts.csv,
-/// static.csv, energy.csv, fields.vtkhdf where there are snapshots, and their checksums.
+/// The case as case.resolved.toml has it: its table of tractions lies beside it.
+std::string resolved_text(const io::Case& config);
+/// Writes both.
+void write_case(const std::filesystem::path& dir, const io::Case& config);
+
+/// Writes the run's folder, which is there: case.resolved.toml with its table, run.json, interface.h5,
+/// fronts.csv, static.csv, energy.csv, fields.vtkhdf where there are snapshots, and their checksums.
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
 /// run.json, fronts.csv and energy.csv of a result that may go on.
 void write_so_far(const std::filesystem::path& dir, const Result& result, const InitialState& initial,
@@ -136,8 +143,9 @@ struct Info {
   WaveSpeeds speeds;
   std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0, n_irregular = 0;
   double stable_step_s = 0, step_s = 0, substep_s = 0;
-  std::int64_t n_steps = 0;                                     ///< to time.end_s
-  double node_updates = 0;                                      ///< of the event
+  Needs needs;
+  std::int64_t n_steps = 0;                                     ///< of the event, to time.end_s
+  double node_updates = 0;                                      ///< of the event and of the ramp
   double memory_bytes = 0;                                      ///< the largest of statics and event
   solve::StaticSolver solver = solve::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                      ///< of the statics, estimated

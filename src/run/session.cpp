@@ -21,8 +21,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-constexpr const char* case_file = "case.resolved.toml";
-
 /// Wall time between two looks of the outside at a run; longer where writing them takes long.
 constexpr double least_tell_interval_s = 2;
 constexpr double tell_share = 0.02;
@@ -38,6 +36,7 @@ class Session {
         hooks_(hooks),
         checkpoints_(folder.state()) {
     head_.case_text = resolved_text(config);
+    head_.table = config.prestress.table.text;
   }
 
   /// From a checkpoint, or from the beginning.
@@ -244,7 +243,7 @@ void require_same(const std::string& wanted, const std::string& kept, const std:
 Finished run_into(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
                   const SessionHooks& hooks) {
   folder.begin();
-  io::write_text(folder.unfinished() / case_file, resolved_text(config));
+  write_case(folder.unfinished(), config);
   return Session(folder, config, options, hooks).run({});
 }
 
@@ -255,13 +254,17 @@ Finished go_on(io::ResultFolder& folder, const io::Case* expected, const Session
     throw UserError("{}: holds no unfinished run to go on with", folder.dir().string());
   const io::Case config = io::read_case(file);
   const std::string text = resolved_text(config);
-  if (expected != nullptr) require_same(resolved_text(*expected), text, "the case");
+  if (expected != nullptr) {
+    require_same(resolved_text(*expected), text, "the case");
+    require_same(expected->prestress.table.text, config.prestress.table.text, "the table of its tractions");
+  }
   auto kept = Checkpoints(folder.state()).last(hooks.note);
   if (kept) {
     if (kept->head.program != program_identity())
       throw UserError("{}: was begun by {}, and this is {}; go on with that one, or begin anew",
                       folder.unfinished().string(), kept->head.program, program_identity());
     require_same(text, kept->head.case_text, file.string());
+    require_same(config.prestress.table.text, kept->head.table, (folder.unfinished() / table_file).string());
   }
   for (const char* name : {"interface.h5", "fields.vtkhdf"}) io::remove_file(folder.unfinished() / name);
   return Session(folder, config, options, hooks).run(std::move(kept));

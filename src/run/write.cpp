@@ -112,10 +112,16 @@ Json fronts_json(const std::vector<fronts::Front>& fronts) {
 
 /// What every run.json begins with.
 Json about(const io::Case& config, const Status& status) {
-  return {
-      {"version", version()},  {"commit", commit()},      {"compiler", std::string(compiler) + __VERSION__},
-      {"host", host_name()},   {"process", getpid()},     {"title", config.title},
-      {"status", status.name}, {"reason", status.reason}, {"sessions", status.sessions}};
+  Json json = {{"version", version()},
+               {"commit", commit()},
+               {"compiler", std::string(compiler) + __VERSION__},
+               {"host", host_name()},
+               {"title", config.title},
+               {"status", status.name},
+               {"reason", status.reason},
+               {"sessions", status.sessions}};
+  if (status.name == "running") json["process"] = getpid();
+  return json;
 }
 
 Json run_json(const Result& result, const InitialState& initial, const Status& status) {
@@ -165,7 +171,14 @@ Status status_of(const Result& result) {
 }
 
 std::string resolved_text(const io::Case& config) {
-  return io::to_toml(config);
+  auto resolved = config;
+  if (!resolved.prestress.file.empty()) resolved.prestress.file = table_file;
+  return io::to_toml(resolved);
+}
+
+void write_case(const std::filesystem::path& dir, const io::Case& config) {
+  io::write_text(dir / case_file, resolved_text(config));
+  if (!config.prestress.file.empty()) io::write_text(dir / table_file, config.prestress.table.text);
 }
 
 void write_status(const std::filesystem::path& dir, const io::Case& config, const Status& status) {
@@ -181,7 +194,7 @@ void write_so_far(const std::filesystem::path& dir, const Result& result, const 
 
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial) {
   const auto& event = result.event;
-  io::write_text(dir / "case.resolved.toml", resolved_text(result.config));
+  write_case(dir, result.config);
   io::write_static(dir / "static.csv", initial.common.tractions);
   io::write_history(dir / "interface.h5", event.history);
   if (!event.snapshots.empty()) io::write_snapshots(dir / "fields.vtkhdf", initial.mesh, event.snapshots);

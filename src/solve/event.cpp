@@ -195,6 +195,22 @@ Event run_event(Stepper& stepper, const Equilibrium& state, double mu_s, double 
   return EventRun(stepper, state, mu_s, c_L_m_per_s, trigger, time, sampling, halo).run(monitor, sink);
 }
 
+namespace {
+
+/// Of a ramp that is expected to end at a shear: twice as many as to that.
+std::int64_t most_steps(const Stepper& stepper, double shear_m, double top_speed_m_per_s,
+                        double c_L_m_per_s) {
+  const double steps = 2 * shear_m / (top_speed_m_per_s * stepper.step_s());
+  if (!(steps <= 2e12))
+    throw UserError(
+        "the ramp with loading.shear_speed_over_c_L = {:g} takes {:g} steps; choose a higher speed, or "
+        "loading.method = direct",
+        top_speed_m_per_s / c_L_m_per_s, 0.5 * steps);
+  return static_cast<std::int64_t>(steps);
+}
+
+}  // namespace
+
 RampRun::RampRun(Stepper& stepper, const Equilibrium& tilted, const Loading& loading, double mu_s,
                  double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m)
     : stepper_(stepper),
@@ -204,7 +220,7 @@ RampRun::RampRun(Stepper& stepper, const Equilibrium& tilted, const Loading& loa
       top_speed_m_per_s_(top_speed_m_per_s),
       c_L_m_per_s_(c_L_m_per_s),
       expected_shear_m_(expected_shear_m),
-      most_steps_(static_cast<std::int64_t>(2 * expected_shear_m / (top_speed_m_per_s * stepper.step_s()))),
+      most_steps_(most_steps(stepper, expected_shear_m, top_speed_m_per_s, c_L_m_per_s)),
       recorder_(tilted, mu_s, 0),
       watch_(std::in_place, stepper, c_L_m_per_s),
       from_m_(tilted.inside_from_m),

@@ -104,8 +104,12 @@ def test_papers_cases_are_valid(program, case):
     assert str(case) in result.stdout
 
 
-def test_empty_case_is_valid(program, write_case):
-    assert program("validate", write_case("")).returncode == 0
+@pytest.mark.parametrize("text", ["", "\n", "# nothing yet\n", "[plate]\n"])
+def test_case_without_a_key_is_refused(program, write_case, text):
+    case = write_case(text)
+    for arguments in ([], ["--set", "plate.element_size_m=5e-3"]):
+        line = one_line(program("validate", case, *arguments))
+        assert line.startswith(f"{case}: sets no key; write at least one")
 
 
 def test_case_with_other_line_ends_is_valid(program, write_case):

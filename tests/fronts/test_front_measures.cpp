@@ -106,6 +106,45 @@ TEST(TipSpeed, WhereTheTipJumps) {
   EXPECT_TRUE(std::isnan(find(make_record(x, tau), options).at(0).points[101].v_tip_m_per_s));
 }
 
+TEST(TipSpeed, IsUndefinedWhereTheTimeIsNotResolved) {
+  const auto x = nodes(301, h);
+  auto tau = bilateral(x, 0.0, V);
+  tau[101] = tau[100] + 1e-12;
+  tau[102] = tau[101] + 1e-12;
+  for (int k = 103; k < 301; ++k) tau[k] = tau[102] + (x[k] - x[102]) / V;
+  FrontOptions options = make_options();
+  options.l_star_m = h;
+  auto record = make_record(x, tau);
+  const auto speeds = [&] { return find(record, options).at(0).points; };
+  EXPECT_NEAR(speeds()[101].v_tip_m_per_s, h / 1e-12, 1e-3 * h / 1e-12);
+  for (const double resolution_s : {1e-11, 0.9 * h / V}) {
+    record.resolution_s = resolution_s;
+    for (int k = 1; k < 300; ++k) EXPECT_EQ(std::isnan(speeds()[k].v_tip_m_per_s), k == 101) << k;
+  }
+  // Over several elements: the nodes around the length are what counts, also where they end it.
+  options.l_star_m = 2 * h;
+  for (int k = 2; k < 299; ++k) EXPECT_EQ(std::isnan(speeds()[k].v_tip_m_per_s), k == 101) << k;
+  record.resolution_s = 1.9 * h / V;
+  EXPECT_FALSE(std::isnan(speeds()[50].v_tip_m_per_s));
+  record.resolution_s = 2.1 * h / V;
+  EXPECT_TRUE(std::isnan(speeds()[50].v_tip_m_per_s));
+}
+
+TEST(TipSpeed, IsUndefinedWhereTheTriggerDrives) {
+  const auto x = nodes(301, h);
+  const auto record = make_record(x, bilateral(x, 0.0, V));
+  FrontOptions options = make_options();
+  const auto before = find(record, options).at(0);
+  // Zones whose ends are nodes, which belong to them.
+  options.driven = {{x[10], x[30]}, {x[100], x[110]}};
+  const auto after = find(record, options).at(0);
+  for (int k = 0; k < 301; ++k) {
+    const bool inside = (k >= 10 && k <= 30) || (k >= 100 && k <= 110);
+    const double v = after.points[k].v_tip_m_per_s, v_before = before.points[k].v_tip_m_per_s;
+    EXPECT_TRUE(inside || std::isnan(v_before) ? std::isnan(v) : v == v_before) << k;
+  }
+}
+
 /// Tractions linear in the distance of a front that runs to +x from x = 0: t_d and p_d are exact.
 Traction ahead_of_tip(double x_m, double time_s) {
   const double distance_m = x_m - V * time_s;

@@ -42,66 +42,6 @@ void write_axes(const hdf5::File& file) {
   hdf5::write(file, "x_m", std::vector<double>{0, 1, 2}, {3});
 }
 
-TEST(OutputFolder, IsMadeWithItsParents) {
-  const test::TemporaryFolder folder;
-  prepare_output_folder(folder / "a" / "b", false);
-  EXPECT_TRUE(std::filesystem::is_directory(folder / "a" / "b"));
-  prepare_output_folder(folder / "a" / "b", false);  // there, but empty
-}
-
-TEST(OutputFolder, IsRefusedWhereItHoldsAnything) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "notes.txt", "mine");
-  EXPECT_EQ(error_of([&] { prepare_output_folder(folder.path(), false); }),
-            "output folder " + folder.path().string() +
-                ": is not empty; choose another or pass --overwrite to replace a run's results");
-  EXPECT_TRUE(std::filesystem::exists(folder / "notes.txt"));
-}
-
-TEST(OutputFolder, OverwriteRemovesTheResultsAndNothingElse) {
-  const test::TemporaryFolder folder;
-  for (const char* name : {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv",
-                           "energy.csv", "energy.csv", "fields.vtkhdf", "notes.txt", "old.interface.h5"})
-    test::write_file(folder / name, "x");
-  std::filesystem::create_directory(folder / "figures");
-  test::write_file(folder / "figures" / "fronts.csv", "x");
-  prepare_output_folder(folder.path(), true);
-  std::vector<std::string> left;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
-    left.push_back(std::filesystem::relative(entry.path(), folder.path()).string());
-  EXPECT_THAT(left, ::testing::UnorderedElementsAre("notes.txt", "old.interface.h5", "figures",
-                                                    "figures/fronts.csv"));
-}
-
-TEST(OutputFolder, OverwriteLeavesTheTargetOfALinkAlone) {
-  const test::TemporaryFolder folder, elsewhere;
-  test::write_file(elsewhere / "run.json", "precious");
-  std::filesystem::create_symlink(elsewhere / "run.json", folder / "run.json");
-  prepare_output_folder(folder.path(), true);
-  EXPECT_FALSE(std::filesystem::exists(std::filesystem::symlink_status(folder / "run.json")));
-  EXPECT_EQ(test::read_file(elsewhere / "run.json"), "precious");
-}
-
-TEST(OutputFolder, AFolderInPlaceOfAResultIsNotRemoved) {
-  const test::TemporaryFolder folder;
-  std::filesystem::create_directory(folder / "run.json");
-  EXPECT_THAT(error_of([&] { prepare_output_folder(folder.path(), true); }),
-              HasSubstr("is a folder where a result"));
-  EXPECT_TRUE(std::filesystem::is_directory(folder / "run.json"));
-}
-
-TEST(OutputFolder, WhatCannotBeAFolderIsRefused) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "file", "x");
-  EXPECT_THAT(error_of([&] { prepare_output_folder(folder / "file", true); }),
-              EndsWith(": is a file; choose another name"));
-  EXPECT_THAT(error_of([&] { prepare_output_folder(folder / "file" / "inner", false); }),
-              HasSubstr(": cannot be made ("));
-  // Nobody, root included, makes folders in /proc.
-  EXPECT_THAT(error_of([] { prepare_output_folder("/proc/slipfront", false); }),
-              StartsWith("output folder /proc/slipfront: cannot be made ("));
-}
-
 TEST(HistoryFile, ReadsBackBitwise) {
   const test::TemporaryFolder folder;
   const fronts::History history = small_history();
@@ -176,16 +116,6 @@ TEST(HistoryFile, EqualHistoriesMakeEqualFiles) {
   const test::TemporaryFolder folder;
   for (const char* name : {"a.h5", "b.h5"}) write_history(folder / name, counting_history(70, 50));
   EXPECT_EQ(test::read_file(folder / "a.h5"), test::read_file(folder / "b.h5"));
-}
-
-TEST(HistoryFile, WhatWasAppendedOutlivesAKilledProgram) {
-  const test::TemporaryFolder folder;
-  const auto whole = counting_history(200, 50);
-  HistoryFile file(folder / "interface.h5", whole.x_m);
-  file.append(whole);
-  // The file as it lies on the disk, before it is closed.
-  std::filesystem::copy_file(folder / "interface.h5", folder / "left_over.h5");
-  EXPECT_EQ(read_history(folder / "left_over.h5").t_Pa, whole.t_Pa);
 }
 
 TEST(HistoryFile, AnEmptyHistoryReadsBack) {
@@ -266,11 +196,10 @@ TEST(Writing, IntoAMissingFolderIsRefused) {
   EXPECT_EQ(error_of([&] { write_history(none / "interface.h5", small_history()); }),
             (none / "interface.h5").string() +
                 ": cannot be created; check that its folder exists and can be written");
-  EXPECT_EQ(
+  EXPECT_THAT(
       error_of([&] { write_static(none / "static.csv", {}); }),
-      (none / "static.csv").string() +
-          ": cannot be written (No such file or directory); check that its folder exists and can be written");
-  EXPECT_THAT(error_of([&] { write_fronts(none / "fronts.csv", {}); }), HasSubstr("cannot be written"));
+      HasSubstr(": cannot be made (No such file or directory); check that its folder can be written"));
+  EXPECT_THAT(error_of([&] { write_fronts(none / "fronts.csv", {}); }), HasSubstr("cannot be made"));
   EXPECT_THAT(error_of([&] { write_snapshots(none / "fields.vtkhdf", {}, {}); }),
               HasSubstr("cannot be created"));
 }
@@ -291,7 +220,8 @@ TEST(Writing, AFullDiskIsNoticed) {
     static_error = error_of([&] { write_static(folder / "static.csv", state); });
   }
   EXPECT_THAT(history_error, HasSubstr("check that the disk is not full"));
-  EXPECT_THAT(static_error, HasSubstr("static.csv: cannot be written (File too large)"));
+  EXPECT_THAT(static_error,
+              HasSubstr("static.csv.new: cannot be written (File too large); free space there"));
 }
 
 TEST(StaticFile, HasARowPerNodeAtFullPrecision) {

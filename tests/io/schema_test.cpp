@@ -52,8 +52,8 @@ auto members(const interface::Trigger& t) {
   return std::tuple(a, b, c, d);
 }
 auto members(const Prestress& p) {
-  const auto& [a, b, c] = p;
-  return std::tuple(a, b, c);
+  const auto& [a, b, c, table] = p;
+  return std::tuple(a, b, c, table.text, table.rows.x_m, table.rows.t_s_Pa, table.rows.p_s_Pa);
 }
 auto members(const interface::Nucleation& n) {
   const auto& [a, b, c, d, e] = n;
@@ -708,17 +708,16 @@ TEST(CaseFile, PlacesOfLaterErrors) {
   const test::TemporaryFolder folder;
   const auto file = folder / "c.toml";
   test::write_file(file, "title = \"x\"\n[plate]\n\nelement_size_m = 1e-3\n");
-  EXPECT_EQ(locate_key(file, "plate.element_size_m"), file.string() + ":4");
-  EXPECT_EQ(locate_key(file, "plate.width_m"), file.string());
-  EXPECT_EQ(locate_key(folder / "none.toml", "plate.width_m"), (folder / "none.toml").string());
-  const std::vector<Override> overrides = {{"plate.width_m", "3"}};
-  EXPECT_EQ(locate_key(file, "plate.width_m", overrides), "--set plate.width_m=3");
-
-  EXPECT_EQ(with_place(file, "plate.element_size_m does not divide plate.width_m", overrides),
+  const CaseFile plain(file);
+  EXPECT_EQ(plain.place_of_key("plate.element_size_m"), file.string() + ":4");
+  EXPECT_EQ(plain.place_of_key("plate.width_m"), file.string());
+  EXPECT_EQ(plain.with_place("no key in here"), file.string() + ": no key in here");
+  const CaseFile overridden(file, {{"plate.width_m", "3"}});
+  std::filesystem::remove(file);  // what has been read is not read again
+  EXPECT_EQ(overridden.place_of_key("plate.width_m"), "--set plate.width_m=3");
+  EXPECT_EQ(overridden.with_place("plate.element_size_m does not divide plate.width_m"),
             file.string() + ":4: plate.element_size_m does not divide plate.width_m");
-  EXPECT_EQ(with_place(file, "plate.width_m is odd", overrides),
-            "--set plate.width_m=3: plate.width_m is odd");
-  EXPECT_EQ(with_place(file, "no key in here"), file.string() + ": no key in here");
+  EXPECT_EQ(overridden.with_place("plate.width_m is odd"), "--set plate.width_m=3: plate.width_m is odd");
 }
 
 TEST(CaseFile, ThePapersRuns) {

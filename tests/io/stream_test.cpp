@@ -6,7 +6,9 @@
 
 #include <set>
 
-#include "io/results.hpp"
+#include "io/hdf5.hpp"
+#include "io/history.hpp"
+#include "io/snapshots.hpp"
 #include "mesh/plate.hpp"
 #include "support.hpp"
 
@@ -16,7 +18,6 @@ namespace {
 using test::error_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
 std::set<std::string> names_in(const std::filesystem::path& dir) {
@@ -55,19 +56,19 @@ class Stream : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(Stream, PublishesAllItWasGiven) {
+TEST_F(Stream, KeepsAllItWasGiven) {
   const auto n_rows = static_cast<int>(3 * history_block_rows(x_m_.size()) + 1);  // the last block is short
   {
-    ResultStream stream(folder_.path(), x_m_, mesh_, true);
-    EXPECT_THAT(names_in(folder_.path()), ElementsAre("fields.vtkhdf.part", "interface.h5.part"));
+    ResultStream stream(folder_.path());
+    EXPECT_THAT(names_in(folder_.path()), ElementsAre("history.raw", "snapshots.raw"));
     for (int k = 0; k < n_rows; ++k) {
       stream.sample(row(k));
       if (k % 1000 == 0) stream.snapshot(*stepper_);
     }
-    stream.publish();
-    EXPECT_THAT(names_in(folder_.path()), ElementsAre("fields.vtkhdf", "interface.h5"));
+    const auto lengths = stream.keep();
+    EXPECT_EQ(lengths.history, n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
   }
-  EXPECT_THAT(names_in(folder_.path()), ElementsAre("fields.vtkhdf", "interface.h5"));
+  write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
   const auto history = read_history(folder_ / "interface.h5");
   EXPECT_EQ(history.x_m, x_m_);
   ASSERT_EQ(history.time_s.size(), static_cast<std::size_t>(n_rows));
@@ -78,60 +79,110 @@ TEST_F(Stream, PublishesAllItWasGiven) {
       ASSERT_EQ(history.p_Pa[k * x_m_.size() + i], k + 0.4);
     }
   }
+  const auto n_snapshots = static_cast<std::size_t>((n_rows + 999) / 1000);
+  EXPECT_EQ(write_snapshots(folder_ / "fields.vtkhdf", ResultStream::snapshot_file(folder_.path()), mesh_),
+            n_snapshots);
   const auto file = hdf5::open_file(folder_ / "fields.vtkhdf");
-  EXPECT_EQ(hdf5::read(file, "/VTKHDF/Steps/Values").values.size(),
-            static_cast<std::size_t>((n_rows + 999) / 1000));
+  EXPECT_EQ(hdf5::read(file, "/VTKHDF/Steps/Values").values.size(), n_snapshots);
 }
 
-TEST_F(Stream, LeavesEarlierResultsUntilItPublishes) {
-  for (const char* name : {"interface.h5", "fields.vtkhdf", "run.json", "notes.txt"})
-    write_text(folder_ / name, "earlier");
+TEST_F(Stream, MakesTheFilesOfTheSameDataInMemory) {
+  fronts::History whole = row(0);
+  whole.x_m = x_m_;
   {
-    ResultStream stream(folder_.path(), x_m_, mesh_, true);
+    ResultStream stream(folder_.path());
     stream.sample(row(0));
+    stream.snapshot(*stepper_);
+    stream.keep();
   }
-  EXPECT_THAT(names_in(folder_.path()),
-              ElementsAre("fields.vtkhdf", "interface.h5", "notes.txt", "run.json"));
-  EXPECT_EQ(test::read_file(folder_ / "interface.h5"), "earlier");
-  {
-    ResultStream stream(folder_.path(), x_m_, mesh_, true);
-    stream.sample(row(0));
-    stream.publish();
-  }
-  // No snapshot was taken: there are no fields.
-  EXPECT_THAT(names_in(folder_.path()), ElementsAre("interface.h5", "notes.txt"));
-  EXPECT_EQ(read_history(folder_ / "interface.h5").time_s.size(), 1U);
+  write_history(folder_ / "a.h5", ResultStream::history_file(folder_.path()), x_m_);
+  write_history(folder_ / "b.h5", whole);
+  EXPECT_EQ(test::read_file(folder_ / "a.h5"), test::read_file(folder_ / "b.h5"));
+  write_snapshots(folder_ / "a.vtkhdf", ResultStream::snapshot_file(folder_.path()), mesh_);
+  write_snapshots(folder_ / "b.vtkhdf", mesh_, std::vector{solve::take_snapshot(*stepper_)});
+  EXPECT_EQ(test::read_file(folder_ / "a.vtkhdf"), test::read_file(folder_ / "b.vtkhdf"));
 }
 
-TEST_F(Stream, AFullDiskIsToldOnceByTheFilesName) {
+TEST_F(Stream, GoesOnWhereItWasKept) {
+  ResultStream::Lengths lengths;
+  {
+    ResultStream stream(folder_.path());
+    for (int k = 0; k < 3; ++k) stream.sample(row(k));
+    stream.snapshot(*stepper_);
+    lengths = stream.keep();
+    for (int k = 3; k < 7; ++k) stream.sample(row(100 + k));  // of steps that are done again
+    stream.snapshot(*stepper_);
+    stream.keep();
+  }
+  {
+    ResultStream stream(folder_.path(), lengths);
+    for (int k = 3; k < 5; ++k) stream.sample(row(k));
+    stream.keep();
+  }
+  write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
+  const auto history = read_history(folder_ / "interface.h5");
+  ASSERT_EQ(history.time_s.size(), 5U);
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(history.time_s[k], 1e-6 * k);
+  EXPECT_EQ(write_snapshots(folder_ / "fields.vtkhdf", ResultStream::snapshot_file(folder_.path()), mesh_),
+            1U);
+}
+
+TEST_F(Stream, GoesOnInNoFileThatIsTooShort) {
+  { ResultStream(folder_.path()).keep(); }
+  EXPECT_THAT(error_of([&] { ResultStream(folder_.path(), {8, 0}); }), HasSubstr("is shorter than when"));
+  std::filesystem::remove(ResultStream::history_file(folder_.path()));
+  EXPECT_THAT(error_of([&] { ResultStream(folder_.path(), {0, 0}); }), HasSubstr("cannot be continued"));
+}
+
+TEST_F(Stream, LeavesOutARecordThatWasCutOff) {
+  {
+    ResultStream stream(folder_.path());
+    for (int k = 0; k < 3; ++k) stream.sample(row(k));
+    stream.keep();
+  }
+  const auto raw = ResultStream::history_file(folder_.path());
+  std::filesystem::resize_file(raw, std::filesystem::file_size(raw) - 1);
+  write_history(folder_ / "interface.h5", raw, x_m_);
+  EXPECT_EQ(read_history(folder_ / "interface.h5").time_s.size(), 2U);
+}
+
+TEST_F(Stream, WithoutSnapshotsThereIsNoFileOfThem) {
+  { ResultStream(folder_.path()).keep(); }
+  EXPECT_EQ(write_snapshots(folder_ / "fields.vtkhdf", ResultStream::snapshot_file(folder_.path()), mesh_),
+            0U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "fields.vtkhdf"));
+}
+
+TEST_F(Stream, AFullDiskIsToldByTheFilesName) {
   std::string error;
   testing::internal::CaptureStderr();
   {
     const test::FileSizeLimit limit(256 * 1024);
-    ResultStream stream(folder_.path(), x_m_, mesh_, false);
+    ResultStream stream(folder_.path());
     error = error_of([&] {
       for (int k = 0;; ++k) stream.sample(row(k));
     });
   }
-  EXPECT_THAT(error, StartsWith((folder_ / "interface.h5").string() + ": cannot write "));
-  EXPECT_THAT(error, HasSubstr("check that the disk is not full"));
-  EXPECT_THAT(names_in(folder_.path()), IsEmpty());
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // HDF5 prints nothing itself
+  EXPECT_EQ(error, ResultStream::history_file(folder_.path()).string() +
+                       ": cannot be written (File too large); free space there");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(Stream, AFullDiskIsToldForSnapshots) {
   const test::FileSizeLimit limit(256 * 1024);
-  ResultStream stream(folder_.path(), x_m_, mesh_, true);
+  ResultStream stream(folder_.path());
   EXPECT_THAT(error_of([&] {
                 for (;;) stream.snapshot(*stepper_);
               }),
-              StartsWith((folder_ / "fields.vtkhdf").string() + ": cannot write "));
+              StartsWith(ResultStream::snapshot_file(folder_.path()).string() + ": cannot be written"));
 }
 
-TEST_F(Stream, AFolderThatIsNotThereIsToldAtOnce) {
-  EXPECT_EQ(error_of([&] { ResultStream(folder_ / "none", x_m_, mesh_, false); }),
-            (folder_ / "none/interface.h5").string() +
-                ": cannot be created; check that its folder exists and can be written");
+TEST_F(Stream, AFileThatIsThereOrALinkIsNotReplaced) {
+  const test::TemporaryFolder elsewhere;
+  std::filesystem::create_symlink(elsewhere / "target", ResultStream::history_file(folder_.path()));
+  EXPECT_THAT(error_of([&] { ResultStream stream(folder_.path()); }),
+              HasSubstr("cannot be made (File exists)"));
+  EXPECT_FALSE(std::filesystem::exists(elsewhere / "target"));
 }
 
 }  // namespace

@@ -68,12 +68,14 @@ class FileSizeLimit {
   rlimit old_{};
 };
 
-/// The message of the UserError that `call` throws; "(nothing thrown)" otherwise.
+/// The message of the UserError or WriteError that `call` throws; "(nothing thrown)" otherwise.
 template <class Call>
 std::string error_of(Call&& call) {
   try {
     call();
   } catch (const UserError& error) {
+    return error.what();
+  } catch (const WriteError& error) {
     return error.what();
   }
   return "(nothing thrown)";

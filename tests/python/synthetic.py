@@ -432,7 +432,8 @@ def write_raw_history(folder: Path) -> None:
     with h5py.File(folder / "interface.h5") as hdf5:
         columns = [hdf5[name][()] for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")]
         rows = np.concatenate([hdf5["time_s"][()][:, None], *columns], axis=1)
-    (folder / "history.raw").write_bytes(rows.astype("<f8").tobytes())
+    (folder / "state").mkdir(exist_ok=True)
+    (folder / "state/history.raw").write_bytes(rows.astype("<f8").tobytes())
 
 
 def interrupt(run: Path, status: str, reason: str = "") -> Path:

@@ -289,7 +289,7 @@ def test_last_rows_that_are_cut_off_are_passed_over(pristine, run):
     unfinished = interrupt(run, "running")
     with open(unfinished / "energy.csv", "a") as stream:
         stream.write("2.6e-4,380.0,1.")
-    raw = unfinished / "history.raw"
+    raw = unfinished / "state/history.raw"
     raw.write_bytes(raw.read_bytes()[:-8])
     now = read_run(run)
     np.testing.assert_array_equal(now.balance.time_s, read_run(pristine / "left").balance.time_s)
@@ -305,7 +305,7 @@ def test_a_cut_row_of_a_complete_run_is_refused(run):
 
 def test_a_run_that_has_only_begun_is_refused(run):
     unfinished = interrupt(run, "running")
-    (unfinished / "history.raw").write_bytes(b"")
+    (unfinished / "state/history.raw").write_bytes(b"")
     with pytest.raises(DataError, match="history.raw: fewer than two times"):
         read_run(run)
 
@@ -317,7 +317,8 @@ def test_a_killed_run_without_fronts_yet_is_read(run):
 
 def test_an_interrupted_run_prefers_its_finished_history(run):
     unfinished = interrupt(run, "interrupted")
-    (unfinished / "history.raw").write_bytes(b"left over")
+    (unfinished / "state").mkdir(exist_ok=True)
+    (unfinished / "state/history.raw").write_bytes(b"left over")
     assert len(read_run(run).history.time_s) == 11
 
 

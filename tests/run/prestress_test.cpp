@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "io/prestress.hpp"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -276,6 +278,8 @@ TEST(Nucleation, ExcludedZoneOfAPatchAtThePeriodicEdge) {
   const auto options = front_options(c, make_initial_state(c, go_on));
   for (const double x : {0.0, 0.029, 0.091, 0.099}) EXPECT_TRUE(fronts::is_excluded(options, x)) << x;
   for (const double x : {0.031, 0.05, 0.089}) EXPECT_FALSE(fronts::is_excluded(options, x)) << x;
+  for (const double x : {0.0, 0.02, 0.1}) EXPECT_TRUE(fronts::is_driven(options, x)) << x;
+  for (const double x : {0.021, 0.05, 0.099}) EXPECT_FALSE(fronts::is_driven(options, x)) << x;
 }
 
 std::string error_of(const io::Case& config) {
@@ -316,9 +320,10 @@ TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
       std::filesystem::temp_directory_path() / fmt::format("slipfront_prestress_{}.csv", getpid());
   std::ofstream(file) << "x_m,t_Pa,p_Pa\n0,1e5,1e6\n4e-3,3e5,2e6\n";
   c.prestress.file = file.string();
+  c.prestress.table = io::read_prestress(file);
+  std::filesystem::remove(file);
   const auto key = initial_state_key(c);
   const auto state = make_initial_state(c, go_on);
-  std::filesystem::remove(file);
   EXPECT_TRUE(state.prescribed);
   EXPECT_DOUBLE_EQ(state.common.tractions.t_s_Pa[1], 1.5e5);
   EXPECT_DOUBLE_EQ(state.common.tractions.p_s_Pa[3], 1.75e6);

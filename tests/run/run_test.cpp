@@ -342,6 +342,26 @@ TEST(Event, BlowUpIsToldWithItsStep) {
   EXPECT_NE(result.event.blow_up.find("time.step_factor"), std::string::npos);
 }
 
+TEST(FrontOptions, KnowTheTriggerZone) {
+  const auto driven = [](interface::EventKind kind) {
+    const auto config = coarse_case(kind);
+    const auto initial = make_initial_state(config, go_on);
+    const auto zones = front_options(config, initial).driven;
+    // What the trigger pushes.
+    const auto forces = solve::trigger_forces(initial.common, initial.tributary_m, kind, config.trigger, 1.3);
+    const auto options = front_options(config, initial);
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+      EXPECT_EQ(fronts::is_driven(options, initial.common.tractions.x_m[k]), forces[k] != 0) << k;
+      n += forces[k] != 0;
+    }
+    return std::pair(zones.size(), n);
+  };
+  EXPECT_EQ(driven(EventKind::spontaneous), std::pair(std::size_t{0}, std::size_t{0}));
+  EXPECT_EQ(driven(EventKind::left), std::pair(std::size_t{1}, std::size_t{3}));
+  EXPECT_EQ(driven(EventKind::right), std::pair(std::size_t{1}, std::size_t{3}));
+}
+
 TEST(Info, AgreesWithTheRun) {
   for (const auto corner : {mesh::Corner::none, mesh::Corner::relief, mesh::Corner::fillet}) {
     auto config = coarse_case();

@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "fronts/front.hpp"
+#include "support.hpp"
 
 namespace slipfront::solve {
 namespace {
@@ -236,6 +240,235 @@ TEST(Recorder, TimesAscend) {
   EXPECT_EQ(record.stops[0].node, 0);
   EXPECT_EQ(record.stops[1].node, 1);
   EXPECT_EQ(recorder.n_slipping(), 3);
+}
+
+/// Keeps every beginning and end of slip, in the order in which they are seen.
+class EveryChange {
+ public:
+  EveryChange(const Equilibrium& before, int halo) : before_(before), halo_(halo) {
+    record_.x_m = before.tractions.x_m;
+    record_.halo = halo;
+    for (const auto contact : before.contact) slipping_.push_back(contact == Contact::slip);
+  }
+
+  void observe(double time_s, const interface::Interface& state) {
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      if (state.slipping[i] == slipping_[i]) continue;
+      slipping_[i] = state.slipping[i];
+      if (state.slipping[i] != 0)
+        add_onset(i, time_s, state);
+      else
+        record_.stops.push_back({static_cast<std::int32_t>(i), time_s});
+    }
+    record_.resolution_s = std::max(record_.resolution_s, time_s - time_s_);
+    before_.tractions.t_s_Pa = state.t_Pa;
+    before_.tractions.p_s_Pa = state.p_Pa;
+    strength_Pa_ = state.strength_Pa;
+    time_s_ = time_s;
+  }
+
+  fronts::SlipRecord take(double end_time_s) {
+    record_.end_time_s = end_time_s;
+    return record_;
+  }
+
+ private:
+  /// A recorder that knows the last state and sees one node begin.
+  void add_onset(std::size_t i, double time_s, interface::Interface state) {
+    auto before = before_;
+    before.contact.assign(state.size(), Contact::stick);
+    Recorder recorder(before, 0, halo_);
+    interface::Interface last(state.size());
+    last.t_Pa = before.tractions.t_s_Pa;
+    last.p_Pa = before.tractions.p_s_Pa;
+    last.strength_Pa = strength_Pa_;
+    recorder.observe(time_s_, last, false);
+    state.slipping.assign(state.size(), 0);
+    state.slipping[i] = 1;
+    recorder.observe(time_s, state, true);
+    const auto one = recorder.take(time_s);
+    record_.onsets.push_back(one.onsets.at(0));
+    record_.around.insert(record_.around.end(), one.around.begin(), one.around.end());
+  }
+
+  Equilibrium before_;
+  int halo_;
+  fronts::SlipRecord record_;
+  std::vector<std::uint8_t> slipping_;
+  std::vector<double> strength_Pa_ = std::vector<double>(before_.tractions.x_m.size(), 0.0);
+  double time_s_ = 0;
+};
+
+void expect_same(double a, double b) {
+  EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << a << " and " << b;
+}
+
+void expect_same_fronts(const fronts::SlipRecord& a, const fronts::SlipRecord& b,
+                        const fronts::StaticState& state, const fronts::FrontOptions& options) {
+  const auto one = fronts::find_fronts(a, state, options), other = fronts::find_fronts(b, state, options);
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t f = 0; f < one.size(); ++f) {
+    EXPECT_EQ(one[f].end, other[f].end);
+    EXPECT_EQ(one[f].mode, other[f].mode);
+    ASSERT_EQ(one[f].points.size(), other[f].points.size());
+    for (std::size_t k = 0; k < one[f].points.size(); ++k) {
+      const auto &p = one[f].points[k], &q = other[f].points[k];
+      EXPECT_EQ(p.node, q.node);
+      EXPECT_EQ(p.accelerating, q.accelerating);
+      for (const auto value :
+           {&fronts::FrontPoint::onset_s, &fronts::FrontPoint::v_tip_m_per_s, &fronts::FrontPoint::t_d_Pa,
+            &fronts::FrontPoint::p_d_Pa, &fronts::FrontPoint::t_r_Pa, &fronts::FrontPoint::p_r_Pa,
+            &fronts::FrontPoint::U_s_J_per_m3, &fronts::FrontPoint::slipping_share})
+        expect_same(p.*value, q.*value);
+    }
+  }
+}
+
+/// Nodes of a line that slip at random once a front has reached them, some of them before.
+struct RandomSlip {
+  explicit RandomSlip(std::uint64_t seed) : random(seed), state(n), before(make_before()) {
+    state.t_Pa.assign(n, 1);
+    state.p_Pa.assign(n, 4);
+  }
+  Equilibrium make_before() {
+    Equilibrium e;
+    for (std::size_t k = 0; k < n; ++k) e.tractions.x_m.push_back(1e-3 * static_cast<double>(k));
+    e.tractions.t_s_Pa.assign(n, 1.0);
+    e.tractions.p_s_Pa.assign(n, 4.0);
+    for (std::size_t k = 0; k < n; ++k) e.contact.push_back(random() > 0.9 ? Contact::slip : Contact::stick);
+    for (std::size_t k = 0; k < n; ++k) state.slipping[k] = e.contact[k] == Contact::slip;
+    return e;
+  }
+  /// Onsets at the step's beginning, its end and in between.
+  void advance(int step) {
+    for (std::size_t k = 0; k < n; ++k) {
+      state.strength_Pa[k] = 2;
+      const bool reached = 3 * static_cast<int>(k) < step || random() > 0.999;
+      if (reached) state.slipping[k] = random() > (step / 40 % 2 == 0 ? 0.2 : -0.6);
+      const double ratio = random();
+      state.t_Pa[k] = state.slipping[k] != 0 ? 2 : ratio > 0.5 ? 2 : 1 + ratio;
+      state.demand_Pa[k] = state.slipping[k] == 0 ? state.t_Pa[k] : ratio < -0.5 ? 2 : 3 + ratio;
+    }
+  }
+
+  static constexpr std::size_t n = 60;
+  support::Random random;
+  interface::Interface state;
+  Equilibrium before;
+};
+
+TEST(Recorder, LeavesOutWhatNoFrontNeeds) {
+  fronts::FrontOptions options;
+  options.mu_s = mu_s;
+  options.elasticity = {1e9, 0.3, false};
+  options.l_star_m = 1e-3;
+  options.arrest_time_s = 20;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    RandomSlip slip(seed);
+    Recorder recorder(slip.before, mu_s, 2);
+    EveryChange every(slip.before, 2);
+    for (int step = 0; step < 2000; ++step) {
+      slip.advance(step);
+      recorder.observe(step, slip.state, true);
+      every.observe(step, slip.state);
+    }
+    const auto record = recorder.take(2000), all = every.take(2000);
+    EXPECT_EQ(record.n_onsets(), all.onsets.size());
+    EXPECT_LT(10 * record.onsets.size(), all.onsets.size());
+    EXPECT_LT(10 * record.stops.size(), all.stops.size());
+    EXPECT_TRUE(std::ranges::is_sorted(record.onsets, {}, &fronts::Onset::time_s));
+    EXPECT_TRUE(std::ranges::is_sorted(record.stops, {}, &fronts::Stop::time_s));
+    expect_same_fronts(record, all, slip.before.tractions, options);
+  }
+}
+
+TEST(Recorder, StaysBoundedInLongUndampedRuns) {
+  for (const auto& [element_m, load] :
+       {std::pair(4e-3, 1.001), std::pair(5e-3, 1.001), std::pair(5e-3, 1.02)}) {
+    const auto mesh = support::make_plate(0.2, 0.1, element_m, mesh::Corner::none);
+    solid::Material material;
+    material.stiffness_damping_s = 0;
+    const Statics statics(mesh, material, {}, 1.3);
+    const auto state = statics.shear_to(1.3 * load);
+    Stepper stepper(mesh, material, support::paper_law, support::one_substep());
+    stepper.start(state, 1e-6 * solid::longitudinal_speed_m_per_s(material));
+    Recorder recorder(state, 1.3, 2);
+    EveryChange every(state, 2);
+    Between between;
+    between.go_on = [&] {
+      // The contact of a step is that at its beginning.
+      every.observe(static_cast<double>(stepper.step() - 1) * stepper.step_s(), stepper.interface_state());
+      return true;
+    };
+    stepper.advance(recorder, 20000, between);
+    const auto record = recorder.take(stepper.time_s()), all = every.take(stepper.time_s());
+    ASSERT_GT(all.onsets.size(), 20 * mesh.lower.size());
+    EXPECT_EQ(record.n_onsets(), all.onsets.size());
+    EXPECT_LT(record.onsets.size(), 6 * mesh.lower.size());
+    EXPECT_LT(record.stops.size(), 6 * mesh.lower.size());
+    fronts::FrontOptions options;
+    options.mu_s = 1.3;
+    options.elasticity = {2.6e9, 0.37, false};
+    expect_same_fronts(record, all, state.tractions, options);
+  }
+}
+
+/// Writes numbers, vectors and what serializes itself to a list, or reads them from it.
+template <bool reads>
+class NumberList {
+ public:
+  explicit NumberList(std::vector<double>& numbers) : numbers_(numbers) {}
+  template <class... T>
+  void operator()(T&... values) {
+    (take(values), ...);
+  }
+
+ private:
+  template <class T>
+  void take(T& value) {
+    if constexpr (requires { value.serialize(*this); }) {
+      value.serialize(*this);
+    } else if constexpr (requires { value.resize(1); }) {
+      auto size = static_cast<double>(value.size());
+      take(size);
+      value.resize(static_cast<std::size_t>(size));
+      for (auto& element : value) take(element);
+    } else if constexpr (reads) {
+      value = static_cast<T>(numbers_.at(next_++));
+    } else {
+      numbers_.push_back(static_cast<double>(value));
+    }
+  }
+  std::vector<double>& numbers_;
+  std::size_t next_ = 0;
+};
+
+TEST(Recorder, GoesOnFromWhatItHasWritten) {
+  for (const int stop : {0, 1, 30, 100, 500}) {
+    RandomSlip slip(7);
+    Recorder whole(slip.before, mu_s, 2), second(slip.before, mu_s, 2);
+    for (int step = 0; step < 600; ++step) {
+      if (step == stop) {
+        std::vector<double> numbers;
+        NumberList<false> writer(numbers);
+        whole.serialize(writer);
+        NumberList<true> reader(numbers);
+        second.serialize(reader);
+      }
+      slip.advance(step);
+      whole.observe(step, slip.state, true);
+      if (step >= stop) second.observe(step, slip.state, true);
+    }
+    auto a = whole.take(600), b = second.take(600);
+    std::vector<double> of_a, of_b;
+    NumberList<false> write_a(of_a), write_b(of_b);
+    a.serialize(write_a);
+    b.serialize(write_b);
+    ASSERT_EQ(of_a.size(), of_b.size());
+    for (std::size_t k = 0; k < of_a.size(); ++k) expect_same(of_a[k], of_b[k]);
+    EXPECT_EQ(whole.n_slipping(), second.n_slipping());
+    EXPECT_EQ(whole.last_motion_s(), second.last_motion_s());
+  }
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/case.hpp"
+
+namespace slipfront::run {
+
+/// Snapshots that a run takes.
+struct SnapshotPlan {
+  std::vector<double> times_s;
+  std::vector<std::string> notes;  ///< which times are left out, and why
+};
+
+/// Leaves out the times that a run does not reach, and those that fall into the step of an earlier one.
+SnapshotPlan snapshot_plan(const io::Case& config, double step_s);
+
+/// Sizes on which the needs of a run depend.
+struct Size {
+  double n_nodes = 0, n_cells = 0, n_interface = 0;
+  double step_s = 0;
+};
+
+/// The same from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,
+/// which is shorter, and of a graded plate, which may be longer.
+Size estimated_size(const io::Case& config);
+
+/// Work, memory and space on disk that a run takes. Bytes on disk are the most that lies there at one time:
+/// while they become the results, raw history and snapshots lie beside them.
+struct Needs {
+  std::int64_t steps = 0;       ///< to time.end_s
+  std::int64_t ramp_steps = 0;  ///< where loading.method is ramp, from the critical shear of a coarse mesh
+  double history_rows = 0, energy_rows = 0, snapshots = 0;
+  double statics_bytes = 0, event_bytes = 0;
+  double history_bytes = 0, snapshot_bytes = 0, checkpoint_bytes = 0, energy_bytes = 0;
+
+  double memory_bytes() const { return statics_bytes > event_bytes ? statics_bytes : event_bytes; }
+  double disk_bytes() const { return history_bytes + snapshot_bytes + checkpoint_bytes + energy_bytes; }
+};
+
+/// @throws UserError where more steps are asked for than any machine takes.
+Needs needs(const io::Case& config, const Size& size);
+
+/// Refuses a case whose run would not fit into the memory or onto the disk of `folder`, which need not exist
+/// yet.
+/// @throws UserError naming what to change.
+void require_fit(const io::Case& config, const std::filesystem::path& folder);
+
+}  // namespace slipfront::run

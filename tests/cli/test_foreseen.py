@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a case asks for is foretold, and refused where it cannot be; legal cases do not blow up."""
+
+import json
+import random
+import re
+
+import pytest
+
+
+def settings(values):
+    text = {key: f'"{value}"' if isinstance(value, str) else repr(value) for key, value in values.items()}
+    return [part for key, value in text.items() for part in ("--set", f"{key}={value}")]
+
+
+def one_line(result, code):
+    assert (result.returncode, len(result.stderr.splitlines())) == (code, 1), result.stderr
+    return result.stderr
+
+
+def test_a_history_too_large_for_the_disk_is_refused(program, coarse, tmp_path):
+    sets = settings({"time.end_s": 1e5, "output.energy_interval_s": 1e4})
+    message = one_line(program("run", coarse, "-o", "out", "-q", *sets), 2)
+    assert "GB on disk" in message
+    assert "output.history_interval_s" in message
+    assert not (tmp_path / "out").exists()
+
+
+def test_snapshots_that_cannot_be_taken_are_told(program, coarse, tmp_path):
+    sets = settings({"output.snapshot_times_s": [0, 1e-5, 1.0001e-5, 1]})
+    result = program("run", coarse, "-o", "out", *sets)
+    assert result.returncode == 0
+    notes = [line for line in result.stdout.splitlines() if "snapshot_times_s are left out" in line]
+    assert len(notes) == 2
+    assert len([w for w in json.loads((tmp_path / "out/run.json").read_text())["warnings"] if "left out" in w]) == 2
+
+
+def test_the_ramp_counts_among_the_steps(program, coarse, tmp_path):
+    sets = settings({"loading.method": "ramp", "loading.shear_speed_over_c_L": 3e-6})
+    told = re.search(r"steps of the ramp before +about (\S+)$", program("info", coarse, *sets).stdout, re.MULTILINE)
+    assert program("run", coarse, "-o", "out", "-q", *sets).returncode == 0
+    ramp = json.loads((tmp_path / "out/run.json").read_text())["statics"]["ramp"]
+    assert float(told[1]) == pytest.approx(ramp["steps"], rel=0.05)
+
+
+@pytest.mark.parametrize("command", [["info"], ["run", "-o", "out"]], ids=["info", "run"])
+def test_a_ramp_without_end_is_refused(program, coarse, command):
+    sets = settings({"loading.method": "ramp", "loading.shear_speed_over_c_L": 1e-20})
+    message = one_line(program(command[0], coarse, *command[1:], *sets), 2)
+    assert "loading.shear_speed_over_c_L = 1e-20 takes" in message
+
+
+PRESSED = {"plate.corner": "none", "loading.method": "prestress", "event.kind": "none"}
+
+
+@pytest.mark.parametrize(
+    "values, key",
+    [
+        ({"event.kind": "right", "event.trigger_amount": 1e6}, "event.trigger_amount"),
+        ({"event.kind": "left", "event.trigger_amount": 1e300}, "event.trigger_amount"),
+        ({**PRESSED, "prestress.t_Pa": 1e11, "prestress.p_Pa": 1e6}, "prestress.t_Pa"),
+        (
+            {**PRESSED, "prestress.t_Pa": 0, "prestress.p_Pa": 1e6, "event.kind": "nucleation", "nucleation.form": "overstress"}
+            | {"nucleation.x_m": 0.1, "nucleation.overstress_Pa": 1e12},
+            "nucleation.overstress_Pa",
+        ),
+    ],
+    ids=["trigger", "overflow", "prestress", "patch"],
+)
+def test_overload_is_not_blamed_on_the_step(program, coarse, values, key):
+    message = one_line(program("run", coarse, "-o", "out", "-q", *settings(values)), 3)
+    assert "the work of the loads accounts for the energy" in message
+    assert key in message
+    assert "step_factor" not in message
+
+
+def test_speeds_in_the_trigger_zone_are_undefined(program, coarse, tmp_path):
+    result = program("run", coarse, "-o", "out", "--set", "event.kind=right")
+    assert result.returncode == 0
+    assert all(float(v) < 10 for v in re.findall(r"median speed (\S+) c_L", result.stdout))
+    header, *rows = [line.split(",") for line in (tmp_path / "out/fronts.csv").read_text().splitlines()]
+    x, v = header.index("x_m"), header.index("v_tip_m_per_s")
+    assert {row[v] for row in rows if 0.184 < float(row[x]) < 0.196} == {""}
+    assert any(row[v] for row in rows)
+
+
+def random_case(seed):
+    """A legal case of a small plate: tractions from nothing to much, all laws, edges and triggers."""
+    r = random.Random(seed)
+
+    def power(low, high):
+        return 10 ** r.uniform(low, high)
+
+    case = {"plate.width_m": 0.04, "plate.height_m": 0.02, "plate.element_size_m": 2e-3, "plate.corner": "none"}
+    case["loading.method"] = r.choice(["prestress"] * 6 + ["direct"])
+    pressed = case["loading.method"] == "prestress"
+    sides = "free"
+    if pressed:
+        p = power(*r.choice([(-300, -100), (-30, 0), (0, 6)]))
+        case["prestress.p_Pa"] = p
+        case["prestress.t_Pa"] = r.choice([0, r.uniform(-1, 1) * p, r.uniform(0, 0.6) * p])
+        case["plate.sides"] = sides = r.choice(["free", "periodic", "absorbing"])
+        case["plate.top"] = r.choice(["loaded", "free", "absorbing"])
+        case["loading.shear_speed_over_c_L"] = r.choice([0, power(-300, -20), power(-12, -4)])
+    else:
+        tilt = power(*r.choice([(-12, -4), (-5, -4)]))
+        case |= {"loading.tilt_left_m": tilt, "loading.tilt_right_m": tilt * r.uniform(0.3, 1)}
+        case |= {"loading.shear_speed_over_c_L": power(-12, -6), "loading.edge_margin_m": 4e-3}
+    case["material.plane"] = r.choice(["stress", "strain"])
+    case["material.poissons_ratio"] = r.uniform(-0.2, 0.45)
+    h_over_c_s = 2e-3 / 1500
+    case["material.stiffness_damping_s"] = r.choice([0, 0, 0.3, 1]) * h_over_c_s
+    law = r.choice(["velocity_weakening", "coulomb", "slip_weakening", "slip_weakening_healing"])
+    case["friction.law"] = law
+    mu_s = r.uniform(0.1, 0.6)
+    if law == "coulomb":
+        case["friction.mu"] = mu_s
+    else:
+        case |= {"friction.mu_s": mu_s, "friction.mu_k": mu_s * r.uniform(0, 1)}
+        case["friction.d_c_m" if "slip" in law else "friction.alpha_m2_per_s2"] = power(-8, -4)
+    case["contact.algorithm"] = r.choice(["direct", "predictor_corrector"])
+    if r.random() < 0.4:
+        case["friction.regularisation"] = r.choice(["strength", "pressure"])
+        case["friction.relaxation_time_s"] = power(-1, 2) * h_over_c_s
+    kinds = ["none", "nucleation"]
+    if sides != "periodic":
+        kinds += ["left", "right"]
+    if not pressed:
+        kinds.append("spontaneous")
+    case["event.kind"] = kind = r.choice(kinds)
+    if kind in ("left", "right"):
+        case |= {"event.trigger_zone_m": r.choice([2e-3, 8e-3]), "event.trigger_amount": r.uniform(0, 5)}
+        case["event.trigger_ramp_s"] = r.choice([0, 5, 50]) * h_over_c_s
+    if kind == "nucleation":
+        case["nucleation.form"] = r.choice(["weakened", "overstress"])
+        case |= {"nucleation.x_m": 0.02, "nucleation.half_length_m": r.choice([2e-3, 6e-3])}
+        if case["nucleation.form"] == "overstress":
+            case["nucleation.overstress_Pa"] = case.get("prestress.p_Pa", 1e5) * r.uniform(0, 2)
+    case["time.interface_substeps"] = r.choice([1, 4, 18])
+    if sides == "free":
+        case["time.precision"] = r.choice(["double", "single"])
+    case["time.step_factor"] = r.choice([0.9, r.uniform(0.1, 1)])
+    end_s = r.choice([100, 1000]) * h_over_c_s
+    case |= {"time.end_s": end_s, "time.quiet_s": end_s, "output.history_interval_s": end_s / 10}
+    case["output.energy_interval_s"] = end_s / r.choice([7, 50])
+    return case
+
+
+def test_random_legal_cases_do_not_blow_up(program, write_case):
+    case = write_case("")
+    n_run = 0
+    for seed in range(60):
+        sets = settings(random_case(seed))
+        result = program("run", case, *sets, "-o", "out", "-q", "--overwrite", "--threads", "1")
+        # Some statics have no critical shear.
+        assert result.returncode in (0, 2), f"{result.stderr}{' '.join(sets)}"
+        n_run += result.returncode == 0
+    assert n_run > 45

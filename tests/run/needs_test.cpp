@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/needs.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../io/support.hpp"
+#include "base/error.hpp"
+#include "cases.hpp"
+
+namespace slipfront::run {
+namespace {
+
+using test::coarse_case;
+using test::go_on;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+template <class F>
+std::string refusal(F&& f) {
+  try {
+    f();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+Needs needs_of(const io::Case& config) {
+  return needs(config, estimated_size(config));
+}
+
+TEST(SnapshotPlan, LeavesOutWhatTheRunCannotTake) {
+  auto config = coarse_case();
+  config.time.end_s = 100e-6;
+  config.output.snapshot_times_s = {0, 10e-6, 10.5e-6, 11e-6, 100e-6, 101e-6, 1};
+  // Steps of 1 us: at 10, 11 and 11 us.
+  const auto plan = snapshot_plan(config, 1e-6);
+  EXPECT_THAT(plan.times_s, ElementsAre(0, 10e-6, 10.5e-6, 100e-6));
+  EXPECT_THAT(plan.notes, ElementsAre(AllOf(HasSubstr("2 of 7"), HasSubstr("time.end_s = 0.0001")),
+                                      AllOf(HasSubstr("1 of 7"), HasSubstr("into the step"))));
+  config.output.snapshot_times_s = {0, 10e-6};
+  EXPECT_THAT(snapshot_plan(config, 1e-6).notes, IsEmpty());
+}
+
+TEST(SnapshotPlan, IsWhatARunTakesAndTells) {
+  auto config = coarse_case();
+  config.time.quiet_s = 1;
+  config.output.snapshot_times_s = {0, 10e-6, 10.001e-6, 30e-6, 1};
+  const auto result = run_event(config, make_initial_state(config, go_on), go_on);
+  const auto plan = snapshot_plan(config, result.step_s);
+  EXPECT_THAT(plan.notes, testing::SizeIs(2));
+  EXPECT_EQ(result.event.snapshots.size(), 3U);
+  for (const auto& note : plan.notes) EXPECT_THAT(result.warnings, testing::Contains(note));
+}
+
+TEST(Needs, DiskIsWhatTheFilesTake) {
+  // Of 2 mm: files whose heads are small.
+  auto config = coarse_case(interface::EventKind::spontaneous, 2e-3);
+  config.time.quiet_s = 1;
+  config.time.end_s = 1e-3;
+  config.output.history_interval_s = 2e-6;
+  config.output.snapshot_times_s = {0, 10e-6, 20e-6, 30e-6, 40e-6};
+  const test::TemporaryFolder folder;
+  const auto initial = make_initial_state(config, go_on);
+  const auto result = run_event(config, initial, go_on);
+  write(folder.path(), result, initial);
+  const auto size_of = [&](const char* name) {
+    return static_cast<double>(std::filesystem::file_size(folder / name));
+  };
+  const Needs n = needs_of(config);
+  EXPECT_NEAR(n.history_rows, static_cast<double>(result.event.history.time_s.size()), 1);
+  EXPECT_NEAR(0.5 * n.history_bytes / size_of("interface.h5"), 1, 0.2);  // chunks are filled up
+  // Besides the file, raw displacements and velocities.
+  const double raw = 5 * 4 * 8.0 * static_cast<double>(initial.n_nodes);
+  EXPECT_NEAR((n.snapshot_bytes - raw) / size_of("fields.vtkhdf"), 1, 0.1);
+  EXPECT_GT(n.energy_bytes, size_of("energy.csv"));
+  EXPECT_LT(n.energy_bytes, 3 * size_of("energy.csv"));
+  EXPECT_GT(n.checkpoint_bytes, 2 * 4 * 8.0 * static_cast<double>(initial.n_nodes));
+}
+
+TEST(Needs, EstimatesAgreeWithTheMesh) {
+  for (const int coarsenings : {0, 2})
+    for (const auto corner : {mesh::Corner::none, mesh::Corner::relief}) {
+      auto config = coarse_case(interface::EventKind::spontaneous, 1e-3);
+      config.plate.coarsenings = coarsenings;
+      config.plate.corner = corner;
+      config.plate.relief_height_m = 0.3e-3;
+      const auto exact = info(config).needs, estimated = needs_of(config);
+      EXPECT_NEAR(estimated.memory_bytes() / exact.memory_bytes(), 1, 0.1);
+      const double steps = static_cast<double>(estimated.steps) / static_cast<double>(exact.steps);
+      const double history = estimated.history_bytes / exact.history_bytes;
+      for (const double ratio : {steps, history}) {
+        EXPECT_GT(ratio, 0.95);
+        EXPECT_LT(ratio, coarsenings > 0 ? 4.1 : 1.05);
+      }
+    }
+}
+
+TEST(Needs, CountTheStepsOfTheRamp) {
+  for (const double element_m : {4e-3, 5e-3}) {
+    auto config = coarse_case(interface::EventKind::left, element_m);
+    EXPECT_EQ(needs_of(config).ramp_steps, 0);
+    config.loading.method = solve::LoadingMethod::ramp;
+    config.loading.shear_speed_over_c_L = 3e-6;
+    const auto foretold = info(config);
+    const auto initial = make_initial_state(config, go_on);
+    EXPECT_NEAR(static_cast<double>(foretold.needs.ramp_steps) / static_cast<double>(initial.ramp->steps), 1,
+                0.05);
+    EXPECT_GT(foretold.node_updates,
+              static_cast<double>(initial.ramp->steps) * static_cast<double>(initial.n_nodes));
+  }
+}
+
+TEST(Needs, TheRampIsEstimatedOnACoarseMesh) {
+  auto config = coarse_case(interface::EventKind::left, 0.5e-3);
+  config.loading.method = solve::LoadingMethod::ramp;
+  const double fine = static_cast<double>(needs(config, {.step_s = 1e-7}).ramp_steps);
+  config.plate.element_size_m = 2e-3;
+  EXPECT_NEAR(static_cast<double>(needs(config, {.step_s = 1e-7}).ramp_steps) / fine, 1, 1e-6);
+  // 331 columns, a prime number: by uniform stresses.
+  config.plate.element_size_m = 0.2 / 331;
+  config.plate.height_m = 166 * config.plate.element_size_m;
+  EXPECT_NEAR(static_cast<double>(needs(config, {.step_s = 1e-7}).ramp_steps) / fine, 1, 0.7);
+}
+
+TEST(Needs, RefuseStepsBeyondCounting) {
+  auto config = coarse_case(interface::EventKind::left);
+  config.time.end_s = 1e9;
+  EXPECT_THAT(refusal([&] { needs_of(config); }), HasSubstr("time.end_s = 1e+09 takes"));
+  config.time.end_s = 1e-4;
+  config.loading.method = solve::LoadingMethod::ramp;
+  for (const double speed : {1e-20, 1e-300}) {
+    config.loading.shear_speed_over_c_L = speed;
+    for (const auto& message :
+         {refusal([&] { info(config); }), refusal([&] { make_initial_state(config, go_on); })})
+      EXPECT_THAT(message,
+                  AllOf(HasSubstr("loading.shear_speed_over_c_L = 1e-"), HasSubstr("choose a higher speed")));
+  }
+}
+
+TEST(RequireFit, NamesWhatToChange) {
+  const test::TemporaryFolder folder;
+  const auto message = [&](const io::Case& config) {
+    return refusal([&] { require_fit(config, folder / "to be/made"); });
+  };
+  auto config = coarse_case();
+  EXPECT_EQ(message(config), "");
+  config.time.end_s = 1e5;
+  config.output.energy_interval_s = 1e5;
+  EXPECT_THAT(message(config), AllOf(HasSubstr("GB on disk"), HasSubstr("output.history_interval_s")));
+  config.output.history_interval_s = 1e5;
+  EXPECT_EQ(message(config), "");
+  config.output.energy_interval_s = 1e-6;
+  EXPECT_THAT(message(config), AllOf(HasSubstr("of memory"), HasSubstr("output.energy_interval_s")));
+  config.output.energy_interval_s = 1e5;
+  for (int k = 0; k < 2'000'000; ++k) config.output.snapshot_times_s.push_back(1e-3 * k);
+  config.plate.element_size_m = 0.5e-3;
+  EXPECT_THAT(message(config), AllOf(HasSubstr("GB on disk"), HasSubstr("fewer output.snapshot_times_s")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "to be"));
+  config.plate.element_size_m = 1e-6;
+  config.time.end_s = 1e-4;
+  EXPECT_THAT(message(config), AllOf(HasSubstr("of memory"), HasSubstr("plate.element_size_m")));
+}
+
+}  // namespace
+}  // namespace slipfront::run

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/session.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "../io/support.hpp"
+#include "cases.hpp"
+#include "io/checksum.hpp"
+#include "io/schema.hpp"
+#include "run/checkpoint.hpp"
+
+namespace slipfront::run {
+namespace {
+
+namespace fs = std::filesystem;
+using test::coarse_case;
+using test::error_of;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// All files of a folder but its checksums; of run.json all but what measures or counts sessions.
+std::map<std::string, std::string> results_in(const fs::path& dir) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(dir))
+    if (entry.is_regular_file())
+      files[fs::relative(entry.path(), dir).string()] = test::read_file(entry.path());
+  files.erase(io::checksum_list);
+  files.erase(".slipfront.lock");
+  auto run = nlohmann::json::parse(files.at("run.json"));
+  for (const char* key : {"wall_s", "node_updates_per_s", "sessions"}) run.erase(key);
+  run["statics"].erase("wall_s");
+  files["run.json"] = run.dump();
+  return files;
+}
+
+void expect_same(const std::map<std::string, std::string>& files,
+                 const std::map<std::string, std::string>& expected) {
+  EXPECT_EQ(files.size(), expected.size());
+  for (const auto& [name, bytes] : expected)
+    EXPECT_TRUE(files.contains(name) && files.at(name) == bytes) << name;
+}
+
+/// Stops at the given step of a part; never where that is negative.
+SessionHooks stopping_at(const std::string& part, std::int64_t stop_at) {
+  auto stop = std::make_shared<bool>(false);
+  return {[=](const char* now, std::int64_t step, std::int64_t) {
+            *stop = stop_at >= 0 && now == part && step >= stop_at;
+          },
+          [=] { return *stop ? Request::stop : Request::none; }, [](const std::string&) {}};
+}
+
+SessionOptions with_threads(int threads) {
+  SessionOptions options;
+  options.execution.threads = threads;
+  return options;
+}
+
+/// A whole run, undisturbed.
+std::map<std::string, std::string> undisturbed(const io::Case& config) {
+  const test::TemporaryFolder folder;
+  io::ResultFolder held(folder.path(), run_work);
+  run_into(held, config, with_threads(1), stopping_at("", -1));
+  return results_in(folder.path());
+}
+
+io::Case prestressed_case() {
+  auto config = coarse_case(interface::EventKind::nucleation, 2e-3);
+  config.plate.corner = mesh::Corner::none;
+  config.plate.sides = mesh::Sides::periodic;
+  config.loading.method = solve::LoadingMethod::prestress;
+  config.prestress.t_Pa = 4e6;
+  config.prestress.p_Pa = 5e6;
+  config.nucleation.x_m = 0.1;
+  return config;
+}
+
+/// One case of each kind of state that has to be kept.
+std::vector<std::pair<const char*, io::Case>> kinds() {
+  std::vector<std::pair<const char*, io::Case>> list;
+  const auto add = [&](const char* name, io::Case config, auto&& change) {
+    change(config);
+    config.output.snapshot_times_s = {0, 20e-6, 90e-6};
+    config.output.energy_interval_s = 7e-6;
+    list.emplace_back(name, config);
+  };
+  using interface::EventKind;
+  const auto as_it_is = [](io::Case&) {};
+  add("spontaneous", coarse_case(), as_it_is);
+  add("left", coarse_case(EventKind::left), [](io::Case& c) { c.trigger.duration_s = 30e-6; });
+  add("right, relief", coarse_case(EventKind::right),
+      [](io::Case& c) { c.plate.corner = mesh::Corner::relief; });
+  add("fillet", coarse_case(), [](io::Case& c) { c.plate.corner = mesh::Corner::fillet; });
+  add("plain step", coarse_case(), [](io::Case& c) { c.time.interface_substeps = 1; });
+  add("undamped", coarse_case(), [](io::Case& c) { c.material.stiffness_damping_s = 0; });
+  add("predictor-corrector", coarse_case(), [](io::Case& c) {
+    c.contact = interface::ContactAlgorithm::predictor_corrector;
+    c.friction = interface::VelocityWeakening { .mu_k = 1.0 };
+  });
+  add("delayed strength", coarse_case(), [](io::Case& c) {
+    c.regularisation.relaxed = interface::Relaxed::strength;
+    c.regularisation.time_s = 1e-6;
+  });
+  add("delayed pressure", coarse_case(), [](io::Case& c) {
+    c.regularisation.relaxed = interface::Relaxed::pressure;
+    c.regularisation.length_m = 1e-6;
+    c.regularisation.slip_rate_m_per_s = 0.1;
+  });
+  add("slip weakening", prestressed_case(), [](io::Case& c) {
+    c.friction = interface::SlipWeakening {};
+  });
+  add("patch weakened", prestressed_case(),
+      [](io::Case& c) { c.nucleation.form = interface::NucleationForm::weakened; });
+  add("absorbing", prestressed_case(), [](io::Case& c) {
+    c.plate.sides = mesh::Sides::absorbing;
+    c.plate.top = mesh::Top::absorbing;
+  });
+  add("graded", coarse_case(), [](io::Case& c) {
+    c.plate.coarsenings = 1;
+    c.plate.fine_height_m = 0.04;
+  });
+  add("single precision", coarse_case(),
+      [](io::Case& c) { c.time.precision = solve::Precision::single_precision; });
+  return list;
+}
+
+TEST(Session, GoesOnAsIfItHadNeverStopped) {
+  for (const auto& [name, config] : kinds()) {
+    SCOPED_TRACE(name);
+    const auto expected = undisturbed(config);
+    const test::TemporaryFolder folder;
+    {
+      io::ResultFolder held(folder.path(), run_work);
+      const auto run = run_into(held, config, with_threads(1), stopping_at("event", 50));
+      EXPECT_EQ(run.result.event.end, solve::EventEnd::interrupted);
+    }
+    {
+      io::ResultFolder held(folder.path(), run_work);
+      const auto run = go_on(held, nullptr, with_threads(2), stopping_at("event", 100));
+      EXPECT_EQ(run.result.event.end, solve::EventEnd::interrupted);
+      EXPECT_EQ(run.result.event.steps, 100);
+    }
+    io::ResultFolder held(folder.path(), run_work);
+    go_on(held, &config, with_threads(1), stopping_at("", -1));
+    expect_same(results_in(folder.path()), expected);
+    EXPECT_EQ(nlohmann::json::parse(test::read_file(folder / "run.json"))["sessions"], 3);
+    io::require_intact(folder.path());
+  }
+}
+
+TEST(Session, GoesOnWithARamp) {
+  auto config = coarse_case(interface::EventKind::spontaneous, 5e-3);
+  config.loading.method = solve::LoadingMethod::ramp;
+  const auto expected = undisturbed(config);
+  const test::TemporaryFolder folder;
+  std::int64_t total = 0;
+  {
+    io::ResultFolder held(folder.path(), run_work);
+    auto hooks = stopping_at("ramp", 2000);
+    hooks.progress = [&, inner = hooks.progress](const char* part, std::int64_t step, std::int64_t n) {
+      total = n;
+      inner(part, step, n);
+    };
+    EXPECT_THROW(run_into(held, config, with_threads(1), hooks), Interrupted);
+  }
+  // Behind the common state, which then has to be kept as well.
+  for (const std::int64_t at : {total / 2, total - 1000}) {
+    io::ResultFolder held(folder.path(), run_work);
+    EXPECT_THROW(go_on(held, nullptr, with_threads(1), stopping_at("ramp", at)), Interrupted);
+  }
+  io::ResultFolder held(folder.path(), run_work);
+  go_on(held, nullptr, with_threads(1), stopping_at("", -1));
+  expect_same(results_in(folder.path()), expected);
+}
+
+TEST(Session, KeepsTheLastTwoCheckpoints) {
+  auto options = with_threads(1);
+  options.keep_every_s = 20e-6;
+  const test::TemporaryFolder folder;
+  io::ResultFolder held(folder.path(), run_work);
+  run_into(held, coarse_case(), options, stopping_at("event", 100));
+  int n = 0;
+  for (const auto& entry : fs::directory_iterator(held.state()))
+    n += entry.path().filename().string().starts_with("checkpoint-") ? 1 : 0;
+  EXPECT_EQ(n, 2);
+}
+
+/// An interrupted run with two checkpoints.
+class InterruptedRun : public testing::Test {
+ protected:
+  InterruptedRun() {
+    io::ResultFolder held(folder_.path(), run_work);
+    auto options = with_threads(1);
+    options.keep_every_s = 20e-6;
+    run_into(held, config_, options, stopping_at("event", 100));
+  }
+  fs::path last_checkpoint() const {
+    std::map<std::string, fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder_ / "unfinished/state"))
+      if (entry.path().extension() == ".bin") files[entry.path().filename().string()] = entry.path();
+    return files.rbegin()->second;
+  }
+  std::string go_on_error(const io::Case* expected = nullptr) {
+    return error_of([&] {
+      io::ResultFolder held(folder_.path(), run_work);
+      auto hooks = stopping_at("", -1);
+      hooks.note = [&](const std::string& note) { notes_ += note; };
+      go_on(held, expected, with_threads(1), hooks);
+    });
+  }
+  static void flip_byte(const fs::path& file, std::size_t at) {
+    auto bytes = test::read_file(file);
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
+    test::write_file(file, bytes);
+  }
+
+  io::Case config_ = coarse_case();
+  test::TemporaryFolder folder_;
+  std::string notes_;
+};
+
+TEST_F(InterruptedRun, TakesTheCheckpointBeforeADamagedOne) {
+  flip_byte(last_checkpoint(), fs::file_size(last_checkpoint()) / 2);
+  EXPECT_EQ(go_on_error(), "(nothing thrown)");
+  EXPECT_THAT(notes_, HasSubstr("is damaged"));
+  expect_same(results_in(folder_.path()), undisturbed(config_));
+}
+
+TEST_F(InterruptedRun, BeginsAnewWithoutAnyCheckpoint) {
+  for (int k = 0; k < 2; ++k) fs::remove(last_checkpoint());
+  EXPECT_EQ(go_on_error(), "(nothing thrown)");
+  expect_same(results_in(folder_.path()), undisturbed(config_));
+}
+
+TEST_F(InterruptedRun, RefusesAnotherCase) {
+  auto other = config_;
+  other.friction = interface::VelocityWeakening { .mu_k = 0.8 };
+  EXPECT_THAT(go_on_error(&other),
+              HasSubstr("is another case than the one that was begun, which has \"mu_k = "));
+  const auto file = folder_ / "unfinished/case.resolved.toml";
+  test::write_file(file, io::to_toml(other));
+  EXPECT_THAT(go_on_error(), StartsWith(file.string() + ": is another case"));
+}
+
+TEST_F(InterruptedRun, RefusesAnotherProgram) {
+  Checkpoints checkpoints(folder_ / "unfinished/state");
+  CheckpointHead head;
+  head.program = "slipfront 0.0.1";
+  checkpoints.keep(head, [](io::OutputArchive&) {});
+  EXPECT_THAT(go_on_error(), HasSubstr("was begun by slipfront 0.0.1, and this is slipfront "));
+}
+
+TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
+  // Another plate's state under this case's name.
+  auto other = config_;
+  other.plate.element_size_m = 4e-3;
+  const test::TemporaryFolder elsewhere;
+  {
+    io::ResultFolder held(elsewhere.path(), run_work);
+    run_into(held, other, with_threads(1), stopping_at("event", 50));
+  }
+  auto foreign = Checkpoints(elsewhere / "unfinished/state").last([](const std::string&) {});
+  ASSERT_TRUE(foreign);
+  CheckpointHead head = foreign->head;
+  head.case_text = resolved_text(config_);
+  InitialState initial;
+  foreign->rest(initial);
+  Checkpoints(folder_ / "unfinished/state").keep(head, [&](io::OutputArchive& archive) {
+    archive(initial, std::vector<double>(7));
+  });
+  EXPECT_NE(go_on_error(), "(nothing thrown)");
+}
+
+TEST_F(InterruptedRun, RefusesAHistoryThatIsShorterThanItWas) {
+  fs::resize_file(folder_ / "unfinished/state/history.raw", 80);
+  EXPECT_THAT(go_on_error(), HasSubstr("is shorter than when the run was kept"));
+}
+
+TEST(Session, ThereMustBeARunToGoOnWith) {
+  const test::TemporaryFolder folder;
+  io::ResultFolder held(folder.path(), run_work);
+  EXPECT_THAT(error_of([&] { go_on(held, nullptr, with_threads(1), stopping_at("", -1)); }),
+              HasSubstr("holds no unfinished run"));
+}
+
+TEST(Session, TellsHowItStands) {
+  const test::TemporaryFolder folder;
+  io::ResultFolder held(folder.path(), run_work);
+  auto hooks = stopping_at("event", 50);
+  std::string status;
+  hooks.request = [&, inner = hooks.request] {
+    const auto file = held.unfinished() / "run.json";
+    if (fs::exists(file)) status = nlohmann::json::parse(test::read_file(file))["status"];
+    return inner();
+  };
+  run_into(held, coarse_case(), with_threads(1), hooks);
+  EXPECT_EQ(status, "running");
+  const auto run = nlohmann::json::parse(test::read_file(held.unfinished() / "run.json"));
+  EXPECT_EQ(run["status"], "interrupted");
+  EXPECT_THAT(run["reason"].get<std::string>(), StartsWith("interrupted at t = "));
+}
+
+}  // namespace
+}  // namespace slipfront::run
