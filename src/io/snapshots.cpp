@@ -207,11 +207,13 @@ WrittenSnapshots::WrittenSnapshots(const std::filesystem::path& path, const mesh
 
 void WrittenSnapshots::require(std::size_t step, const solve::Snapshot& snapshot) const {
   hdf5::require_rows(file_, "/VTKHDF/Steps/Values", step, std::span(&snapshot.time_s, 1));
-  for (const auto& [name, field] :
-       {std::pair("displacement_m", &snapshot.u_m), std::pair("velocity_m_per_s", &snapshot.v_m_per_s)})
-    for_field_pieces(*field, source_, [&](std::size_t row, std::span<const double> values) {
-      hdf5::require_rows(file_, std::string("/VTKHDF/PointData/") + name, step * n_points_ + row, values);
+  const auto require_field = [&](const char* name, const solid::Field& field) {
+    for_field_pieces(field, source_, [&](std::size_t row, std::span<const double> values) {
+      hdf5::require_rows(file_, name, step * n_points_ + row, values);
     });
+  };
+  require_field("/VTKHDF/PointData/displacement_m", snapshot.u_m);
+  require_field("/VTKHDF/PointData/velocity_m_per_s", snapshot.v_m_per_s);
 }
 
 void WrittenSnapshots::require_steps(std::size_t n) const {
