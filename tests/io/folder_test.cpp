@@ -82,12 +82,16 @@ TEST(ResultFolder, UnfinishedWorkIsNotLostByAccident) {
 
 TEST(ResultFolder, WorkOfAnotherKindIsNotResumed) {
   const test::TemporaryFolder folder;
-  { ResultFolder(folder.path(), "one").begin(); }
+  {
+    ResultFolder one(folder.path(), "one");
+    one.begin();
+    write_text(one.unfinished() / "run.json", "so far");
+  }
   ResultFolder other(folder.path(), "another");
   EXPECT_FALSE(other.has_unfinished());
   EXPECT_THAT(error_of([&] { other.require_empty(false, true); }), HasSubstr("holds unfinished work"));
   other.begin_or_resume();
-  EXPECT_TRUE(other.has_unfinished());
+  EXPECT_FALSE(fs::exists(other.unfinished() / "run.json"));
 }
 
 TEST(ResultFolder, EarlierResultsStayUntilTheNewOnesAreComplete) {

@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "io/checksum.hpp"
 #include "io/hdf5.hpp"
 #include "io/history.hpp"
 #include "io/snapshots.hpp"
@@ -66,7 +67,7 @@ TEST_F(Stream, KeepsAllItWasGiven) {
       if (k % 1000 == 0) stream.snapshot(*stepper_);
     }
     const auto lengths = stream.keep();
-    EXPECT_EQ(lengths.history, n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
+    EXPECT_EQ(lengths.history.bytes, n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
   }
   write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
   const auto history = read_history(folder_ / "interface.h5");
@@ -104,7 +105,7 @@ TEST_F(Stream, MakesTheFilesOfTheSameDataInMemory) {
 }
 
 TEST_F(Stream, GoesOnWhereItWasKept) {
-  ResultStream::Lengths lengths;
+  ResultStream::Extents lengths;
   {
     ResultStream stream(folder_.path());
     for (int k = 0; k < 3; ++k) stream.sample(row(k));
@@ -129,9 +130,15 @@ TEST_F(Stream, GoesOnWhereItWasKept) {
 
 TEST_F(Stream, GoesOnInNoFileThatIsTooShort) {
   { ResultStream(folder_.path()).keep(); }
-  EXPECT_THAT(error_of([&] { ResultStream(folder_.path(), {8, 0}); }), HasSubstr("is shorter than when"));
+  EXPECT_THAT(error_of([&] {
+                ResultStream(folder_.path(), {{8, ""}, {0, ""}});
+              }),
+              HasSubstr("is shorter than when"));
   std::filesystem::remove(ResultStream::history_file(folder_.path()));
-  EXPECT_THAT(error_of([&] { ResultStream(folder_.path(), {0, 0}); }), HasSubstr("cannot be continued"));
+  EXPECT_THAT(error_of([&] {
+                ResultStream(folder_.path(), {{0, sha256("")}, {0, sha256("")}});
+              }),
+              HasSubstr("is missing"));
 }
 
 TEST_F(Stream, LeavesOutARecordThatWasCutOff) {
