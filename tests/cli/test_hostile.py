@@ -32,7 +32,12 @@ def test_failing_calls(bench, over_results):
 @pytest.mark.parametrize("over_results", [False, True])
 def test_deaths_while_results_are_made_and_published(bench, over_results):
     setting = faults.run_setting(bench, over_results)
-    all_hold(faults.trials(setting, faults.DEATHS, every=5, last=60))
+    all_hold(faults.trials(setting, faults.DEATHS, every=5, among=slice(-60, None)))
+
+
+def test_deaths_while_earlier_work_is_removed(bench):
+    setting = faults.run_over_work_setting(bench)
+    all_hold(faults.trials(setting, faults.DEATHS[:1] + faults.FAILURES[:1], among=slice(24)))
 
 
 def test_deaths_of_a_verification(bench):

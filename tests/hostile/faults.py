@@ -4,10 +4,11 @@
 import errno
 import shutil
 import signal
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .cases import COARSE, EARLIER
+from .cases import COARSE, EARLIER, long
 from .trials import LOCK, Bench, Trial, alone, difference, one_line, remove, require, require_same, visible
 
 CHECKPOINTS = ("--checkpoint-every-simulated", "1e-4")
@@ -40,7 +41,7 @@ class Setting:
         process = self.bench.run(*self.command, "-o", folder)
         require(process.returncode == 0, process.stderr_text)
         self.new = alone(folder)
-        self.old = alone(self.old_folder) if self.old_folder else None
+        self.old = visible(self.old_folder) if self.old_folder else None
 
     def prepared_folder(self):
         folder = self.bench.folder()
@@ -130,6 +131,19 @@ def run_setting(bench, overwrites):
     return Setting(bench, "run over results", [*command, "--overwrite"], old_folder, restarts=True)
 
 
+def run_over_work_setting(bench):
+    """Results, and an unfinished run, all to be replaced."""
+    old_folder = bench.result(bench.case(EARLIER))
+    process = bench.start("run", bench.case(long("triggered")), "-o", old_folder, "-q", "--overwrite")
+    while process.poll() is None and not (old_folder / "unfinished/state/history.raw").exists():
+        time.sleep(0.005)
+    process.terminate()
+    process.communicate()
+    require((old_folder / "unfinished/state/checkpoint-000001.bin").exists(), "it has come to its end")
+    command = ["run", bench.case(COARSE), "-q", "--overwrite"]
+    return Setting(bench, "run over unfinished work", command, old_folder)
+
+
 def verify_setting(bench):
     """Adds to a set."""
     old_folder = bench.folder()
@@ -143,15 +157,11 @@ def reproduce_setting(bench):
     return Setting(bench, "reproduce", ["reproduce", "--quick", "--overwrite"], old_folder)
 
 
-def trials(setting, kinds, every=1, last=None):
-    """For each kind every so many of the calls, a different one for each kind.
-
-    @param last  of how many calls at the end; of all where None
-    """
+def trials(setting, kinds, every=1, among=slice(None)):
+    """For each kind every so many of the calls, or of some of them; different ones for each kind."""
     calls = setting.calls()
-    first = 1 if last is None else max(1, calls - last)
     for k, (mode, error) in enumerate(kinds):
-        for n in range(first + k % every, calls + 1, every):
+        for n in range(1, calls + 1)[among][k % every :: every]:
             yield Trial(
                 f"{setting.name}, call {n} of {calls}, {mode} {errno.errorcode.get(error, '')}",
                 lambda n=n, mode=mode, error=error: setting.trial(n, mode, error),

@@ -188,7 +188,7 @@ def hold(title, trials, jobs=None):
         return None
 
     trials = list(trials)
-    with ThreadPoolExecutor(jobs or os.cpu_count()) as pool:
+    with ThreadPoolExecutor(jobs or 2 * os.cpu_count()) as pool:  # they wait for the disk, too
         failures = [failure for failure in pool.map(attempt, trials) if failure]
     print(f"{title}: {len(trials)} trials, {len(failures)} failed", flush=True)
     for failure in failures[:20]:
