@@ -16,7 +16,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce sensitivity quick regularised convergence interface-step reference contact-algorithms bench docs format format-check verify verification-pages tidy sanitize coverage clean
+.PHONY: help setup build test reproduce sensitivity quick regularised convergence interface-step reference contact-algorithms bench docs format format-check verify verification-pages tidy hostile sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -125,6 +125,9 @@ format-check: lint-packages  ## fail where a C++ source is not formatted
 tidy: build lint-packages  ## clang-tidy over src, warnings are errors
 	run-clang-tidy-14 -quiet -extra-arg=-Wno-unknown-warning-option -p build/release '^$(CURDIR)/src/.*' > build/tidy.log 2>&1 || { grep -E 'error|warning' build/tidy.log | sort -u; exit 1; }
 	@echo "clang-tidy: no findings"
+
+hostile: build $(VENV)/.installed  ## runs that are killed, damaged, signalled, or fail at any call: results are right or refused
+	PYTHONPATH=tests $(PYTHON) -m hostile $(PROGRAM)
 
 sanitize: packages  ## the C++ tests and coarse runs under the address, undefined-behaviour and thread sanitizers
 	@scripts/install-packages $(SANITIZER_PACKAGES)

@@ -30,9 +30,15 @@ _TRIGGERED = {"event.kind": "left", "output.snapshot_times_s": [1e-5, 5e-5, 1e-4
 KINDS = {
     "triggered": _TRIGGERED | {"plate.element_size_m": 4e-3},
     "spontaneous": {"event.kind": "spontaneous", "plate.element_size_m": 4e-3, "friction.mu_k": 1.0},
-    "fillet": _TRIGGERED | {"plate.element_size_m": 2.5e-3, "plate.corner": "fillet", "plate.fillet_radius_m": 0.01},
+    "fillet": _TRIGGERED
+    | {"plate.element_size_m": 2.5e-3, "plate.corner": "fillet", "plate.fillet_radius_m": 0.01},
     "graded": _TRIGGERED
-    | {"plate.element_size_m": 2.5e-3, "plate.coarsenings": 2, "plate.fine_height_m": 0.02, "plate.corner": "none"},
+    | {
+        "plate.element_size_m": 2.5e-3,
+        "plate.coarsenings": 2,
+        "plate.fine_height_m": 0.02,
+        "plate.corner": "none",
+    },
     "graded_one_step": _TRIGGERED
     | {
         "plate.element_size_m": 2.5e-3,
@@ -41,7 +47,8 @@ KINDS = {
         "plate.corner": "none",
         "time.local_steps": False,
     },
-    "predictor_corrector": _TRIGGERED | {"plate.element_size_m": 4e-3, "contact.algorithm": "predictor_corrector"},
+    "predictor_corrector": _TRIGGERED
+    | {"plate.element_size_m": 4e-3, "contact.algorithm": "predictor_corrector"},
     "single_precision": _TRIGGERED | {"plate.element_size_m": 4e-3, "time.precision": "single"},
     "ramp": {"plate.element_size_m": 5e-3, "loading.method": "ramp"},
     "coulomb": _TRIGGERED | {"plate.element_size_m": 4e-3, "friction.law": "coulomb", "friction.mu": 1.0},

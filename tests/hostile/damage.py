@@ -8,8 +8,8 @@ import shutil
 import signal
 import time
 
-from cases import long
-from trials import Trial, alone, remove, require, require_same
+from .cases import long
+from .trials import Trial, alone, remove, require, require_same
 
 SUM_DIGITS = 64  # at the end of a checkpoint
 FEW = ("--checkpoint-every", "1e9", "--checkpoint-every-simulated")
@@ -123,7 +123,11 @@ def damages(dice, other):
     yield "a checkpoint of another case", from_other, {2}
     yield "the state of another case", all_from_other, {2}
     yield "a folder as checkpoint", lambda u, s, c: (s / "checkpoint-000009.bin").mkdir(), {0}
-    yield "a case with another value", result_file("case.resolved.toml", lambda d: d.replace(b"mu_k = ", b"mu_k = 0.1#")), {2}
+    yield (
+        "a case with another value",
+        result_file("case.resolved.toml", lambda d: d.replace(b"mu_k = ", b"mu_k = 0.1#")),
+        {2},
+    )
     yield "a case with another comment", result_file("case.resolved.toml", lambda d: b"# mine\n" + d), {0}
     yield "half a case", result_file("case.resolved.toml", lambda d: d[: len(d) // 2]), {2}
     yield "no case", lambda u, s, c: (u / "case.resolved.toml").unlink(), {2}
@@ -133,8 +137,16 @@ def damages(dice, other):
     yield "static.csv", result_file("static.csv", flip(dice)), {0}
     yield "no static.csv", lambda u, s, c: (u / "static.csv").unlink(), {0}
     yield "run.json", result_file("run.json", flip(dice)), {0}
-    yield "fronts.csv and energy.csv", lambda u, s, c: [os.truncate(u / n, 9) for n in ("fronts.csv", "energy.csv")], {0}
-    yield "files cut off", lambda u, s, c: [(u / n).write_text("x") for n in ("run.json.new", "interface.h5.new")], {0}
+    yield (
+        "fronts.csv and energy.csv",
+        lambda u, s, c: [os.truncate(u / n, 9) for n in ("fronts.csv", "energy.csv")],
+        {0},
+    )
+    yield (
+        "files cut off",
+        lambda u, s, c: [(u / n).write_text("x") for n in ("run.json.new", "interface.h5.new")],
+        {0},
+    )
 
 
 def trials(bench, seed=1, kind="triggered", every=1):

@@ -3,9 +3,13 @@
 
 import errno
 import shutil
+import signal
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
 
-from cases import COARSE, EARLIER
-from trials import LOCK, Trial, alone, difference, one_line, remove, require, require_same, visible
+from .cases import COARSE, EARLIER, long
+from .trials import LOCK, Bench, Trial, alone, difference, one_line, remove, require, require_same, visible
 
 CHECKPOINTS = ("--checkpoint-every-simulated", "1e-4")
 #: Mode and errno: what the n-th call does.
@@ -20,33 +24,40 @@ FAILURES = [
 DEATHS = [("kill", 0), ("tear", 0)]
 
 
+@dataclass
 class Setting:
-    """A run into a folder that is empty or holds earlier results, and what comes of it undisturbed."""
+    """A command whose work goes into a folder that is empty or holds earlier results."""
 
-    def __init__(self, bench, overwrites):
-        self.bench = bench
-        self.overwrites = overwrites
-        self.case = bench.case(COARSE)
-        self.new = alone(bench.result(self.case))
-        self.old_folder = bench.result(bench.case(EARLIER)) if overwrites else None
-        self.old = alone(self.old_folder) if overwrites else None
+    bench: Bench
+    name: str
+    command: list  # but for the folder
+    old_folder: Path | None = None
+    restarts: bool = False  # with --restart; others go on when they are given again
+    new: dict = field(init=False)
+    old: dict | None = field(init=False)
+
+    def __post_init__(self):
+        folder = self.prepared_folder()
+        process = self.bench.run(*self.command, "-o", folder)
+        require(process.returncode == 0, process.stderr_text)
+        self.new = alone(folder)
+        self.old = visible(self.old_folder) if self.old_folder else None
 
     def prepared_folder(self):
         folder = self.bench.folder()
         folder.parent.mkdir(parents=True)
-        if self.overwrites:
+        if self.old_folder:
             shutil.copytree(self.old_folder, folder)
         return folder
-
-    def command(self, folder):
-        return ("run", self.case, "-o", folder, "-q", *CHECKPOINTS, *(["--overwrite"] if self.overwrites else []))
 
     def disturbed(self, folder, n, mode, error):
         """@return the process, and how many calls it made"""
         count = folder.parent / "count"
         count.write_bytes(bytes(8))
         process = self.bench.run(
-            *self.command(folder),
+            *self.command,
+            "-o",
+            folder,
             disturbance={
                 "FAULT_BELOW": str(folder),
                 "FAULT_COUNT": str(count),
@@ -62,7 +73,7 @@ class Setting:
         folder = self.prepared_folder()
         process, n = self.disturbed(folder, 0, "none", 0)
         require(process.returncode == 0, process.stderr_text)
-        require(n > 50, f"only {n} calls were seen: is the library loaded?")
+        require(n > 20, f"only {n} calls were seen: is the library loaded?")
         return n
 
     def trial(self, n, mode, error):
@@ -71,7 +82,11 @@ class Setting:
         if process.returncode == 0:
             (folder / LOCK).unlink(missing_ok=True)  # its removal may be what failed
             require_same(alone(folder), self.new, "done, and other results")
-        elif mode not in ("kill", "tear"):
+        elif mode in ("kill", "tear"):
+            require(
+                process.returncode == -signal.SIGKILL, f"exit {process.returncode}: {process.stderr_text}"
+            )
+        else:
             self.require_refusal(process, folder)
         if folder.exists():
             seen = visible(folder)
@@ -93,26 +108,61 @@ class Setting:
 
     def finish(self, folder):
         """As a user would: with --restart, or anew where there is nothing to go on with."""
-        process = self.bench.run("run", "--restart", folder, "-q")
-        if process.returncode == 2:
-            line = one_line(process)
-            require("holds no unfinished run" in line, line)
-        else:
-            require(process.returncode == 0, f"--restart: exit {process.returncode}: {process.stderr_text}")
-        if process.returncode == 2 or (self.overwrites and not difference(visible(folder), self.old)):
-            process = self.bench.run(*self.command(folder))
+        done = False
+        if self.restarts:
+            process = self.bench.run("run", "--restart", folder, "-q")
+            done = process.returncode == 0 and difference(visible(folder), self.old)
+            if process.returncode != 0:
+                require(
+                    process.returncode == 2, f"--restart: exit {process.returncode}: {process.stderr_text}"
+                )
+                require("holds no unfinished run" in one_line(process), process.stderr_text)
+        if not done:
+            process = self.bench.run(*self.command, "-o", folder)
             require(process.returncode == 0, f"run again: exit {process.returncode}: {process.stderr_text}")
         require_same(alone(folder), self.new, "other results after all")
 
 
-def trials(bench, overwrites, kinds, every=1):
-    """For each kind every so many of the calls, a different one for each kind."""
-    setting = Setting(bench, overwrites)
+def run_setting(bench, overwrites):
+    command = ["run", bench.case(COARSE), "-q", *CHECKPOINTS]
+    if not overwrites:
+        return Setting(bench, "run", command, restarts=True)
+    old_folder = bench.result(bench.case(EARLIER))
+    return Setting(bench, "run over results", [*command, "--overwrite"], old_folder, restarts=True)
+
+
+def run_over_work_setting(bench):
+    """Results, and an unfinished run, all to be replaced."""
+    old_folder = bench.result(bench.case(EARLIER))
+    process = bench.start("run", bench.case(long("triggered")), "-o", old_folder, "-q", "--overwrite")
+    while process.poll() is None and not (old_folder / "unfinished/state/history.raw").exists():
+        time.sleep(0.005)
+    process.terminate()
+    process.communicate()
+    require((old_folder / "unfinished/state/checkpoint-000001.bin").exists(), "it has come to its end")
+    command = ["run", bench.case(COARSE), "-q", "--overwrite"]
+    return Setting(bench, "run over unfinished work", command, old_folder)
+
+
+def verify_setting(bench):
+    """Adds to a set."""
+    old_folder = bench.folder()
+    bench.run("verify", "--quick", "column", "-o", old_folder)
+    return Setting(bench, "verify", ["verify", "--quick", "symmetry"], old_folder)
+
+
+def reproduce_setting(bench):
+    """Many folders, over a run's results."""
+    old_folder = bench.result(bench.case(EARLIER))
+    return Setting(bench, "reproduce", ["reproduce", "--quick", "--overwrite"], old_folder)
+
+
+def trials(setting, kinds, every=1, among=slice(None)):
+    """For each kind every so many of the calls, or of some of them; different ones for each kind."""
     calls = setting.calls()
     for k, (mode, error) in enumerate(kinds):
-        for n in range(1 + k % every, calls + 1, every):
+        for n in range(1, calls + 1)[among][k % every :: every]:
             yield Trial(
-                f"{'over results' if overwrites else 'empty folder'}, call {n} of {calls}, {mode} "
-                f"{errno.errorcode.get(error, '')}",
+                f"{setting.name}, call {n} of {calls}, {mode} {errno.errorcode.get(error, '')}",
                 lambda n=n, mode=mode, error=error: setting.trial(n, mode, error),
             )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a user's machine does to a run: two processes in one folder, foreign files, signals, closed streams."""
+"""What a machine does to a run: two processes in one folder, foreign files, signals, closed streams."""
 
 import os
 import re
@@ -8,8 +8,8 @@ import signal
 import subprocess
 import time
 
-from cases import COARSE, EARLIER, long
-from trials import LOCK, Trial, alone, difference, one_line, remove, require, require_same
+from .cases import COARSE, EARLIER, long
+from .trials import LOCK, Trial, alone, one_line, remove, require, require_same
 
 RESERVED = ("unfinished", "publishing", LOCK)
 
@@ -116,7 +116,16 @@ def _pipe(path, elsewhere):
     os.mkfifo(path)
 
 
-FOREIGN = (_folder, _state_folder, _listed_folder, _link_to_folder, _link_to_file, _link_to_nothing, _file, _pipe)
+FOREIGN = (
+    _folder,
+    _state_folder,
+    _listed_folder,
+    _link_to_folder,
+    _link_to_file,
+    _link_to_nothing,
+    _file,
+    _pipe,
+)
 
 
 def entries(folder):
@@ -147,7 +156,11 @@ def foreign(setting, name, make, options, over_results):
         folder.mkdir()
     make(folder / name, elsewhere)
     before = entries(folder.parent)
-    command = ("run", "--restart", folder) if "--restart" in options else ("run", setting.case, "-o", folder, *options)
+    command = (
+        ("run", "--restart", folder)
+        if "--restart" in options
+        else ("run", setting.case, "-o", folder, *options)
+    )
     process = setting.bench.run(*command, "-q")
     require(process.returncode == 2, f"exit {process.returncode}: {process.stderr_text}")
     line = one_line(process)

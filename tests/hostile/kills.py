@@ -5,8 +5,8 @@ import random
 import signal
 import time
 
-from cases import KINDS, long
-from trials import Trial, alone, remove, require, require_same
+from .cases import KINDS, long
+from .trials import Trial, alone, remove, require, require_same
 
 OFTEN = ("--checkpoint-every", "0.05")
 

@@ -51,7 +51,11 @@ class Bench:
         environment = dict(os.environ, OPENBLAS_NUM_THREADS="1")
         if disturbance:
             environment |= disturbance | {"LD_PRELOAD": str(self.shim)}
-        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "stdin": subprocess.DEVNULL} | options
+        options = {
+            "stdout": subprocess.PIPE,
+            "stderr": subprocess.PIPE,
+            "stdin": subprocess.DEVNULL,
+        } | options
         return subprocess.Popen(
             [self.program, *map(str, arguments)], env=environment, cwd=self.scratch, text=True, **options
         )
@@ -84,7 +88,9 @@ def toml(value):
 def one_line(process):
     """All that a process says on its standard error, which must be a single line."""
     lines = process.stderr_text.splitlines()
-    require(len(lines) == 1, f"exit {process.returncode} with {len(lines)} lines: {process.stderr_text[-600:]}")
+    require(
+        len(lines) == 1, f"exit {process.returncode} with {len(lines)} lines: {process.stderr_text[-600:]}"
+    )
     return lines[0]
 
 
@@ -100,6 +106,8 @@ def unmeasured(value):
 
 def comparable(path):
     """A file's contents; equal where the results are."""
+    if path.name == "timings.json":
+        return None  # nothing but what is measured
     data = path.read_bytes()
     return unmeasured(json.loads(data)) if path.suffix == ".json" else data
 
@@ -112,7 +120,9 @@ def listed(folder, find, prefix=""):
         path = find(prefix + name)
         require(path.is_file() and not path.is_symlink(), f"{prefix + name} is in the list, and missing")
         data = path.read_bytes()
-        require(hashlib.sha256(data).hexdigest() == checksum, f"{prefix + name} is not what its checksum says")
+        require(
+            hashlib.sha256(data).hexdigest() == checksum, f"{prefix + name} is not what its checksum says"
+        )
         if path.name == CHECKSUMS:
             contents |= listed(folder, find, prefix + name.removesuffix(CHECKSUMS))
         else:
@@ -142,9 +152,7 @@ def difference(contents, expected):
     """Empty where two sets are the same; else in which files they differ."""
     if contents is None or expected is None:
         return "" if contents == expected else "there is no set of results"
-    return ", ".join(
-        sorted(name for name in contents | expected if contents.get(name) != expected.get(name))
-    )
+    return ", ".join(sorted(name for name in contents | expected if contents.get(name) != expected.get(name)))
 
 
 def require_same(contents, expected, what):
@@ -180,7 +188,7 @@ def hold(title, trials, jobs=None):
         return None
 
     trials = list(trials)
-    with ThreadPoolExecutor(jobs or os.cpu_count()) as pool:
+    with ThreadPoolExecutor(jobs or 2 * os.cpu_count()) as pool:  # they wait for the disk, too
         failures = [failure for failure in pool.map(attempt, trials) if failure]
     print(f"{title}: {len(trials)} trials, {len(failures)} failed", flush=True)
     for failure in failures[:20]:

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reproductions, studies and verifications that are cut off, and given again until they are done."""
+
+import random
+import signal
+import time
+
+from .cases import COARSE
+from .trials import Trial, alone, remove, require, require_same
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
+KINDS = ("reproduce", "study", "verify")
+
+
+class Setting:
+    def __init__(self, bench, kind):
+        self.bench = bench
+        self.command = {
+            "reproduce": ["reproduce", "--quick"],
+            "study": [
+                "study",
+                "convergence",
+                bench.case(COARSE),
+                "-q",
+                "--element-sizes",
+                "5e-3,2.5e-3,2e-3",
+            ],
+            "verify": ["verify", "--quick", "rayleigh_wave", "symmetry", "growing_modes", "column", "impact"],
+        }[kind]
+        folder = bench.folder()
+        start = time.monotonic()
+        process = bench.run(*self.command, "-o", folder)
+        self.duration_s = time.monotonic() - start
+        require(process.returncode == 0, process.stderr_text)
+        self.expected = alone(folder)
+
+    def interrupted(self, folder, dice):
+        """@return whether it was done before"""
+        process = self.bench.start(*self.command, "-o", folder)
+        time.sleep(dice.uniform(0, self.duration_s))
+        sent = dice.choice(SIGNALS)
+        process.send_signal(sent)
+        _, errors = process.communicate(timeout=120)
+        # By the signal itself before the program has taken it into its own hands.
+        require(
+            process.returncode in (0, 128 + sent, -sent), f"exit {process.returncode} after {sent}: {errors}"
+        )
+        return process.returncode == 0
+
+    def trial(self, seed):
+        dice = random.Random(seed)
+        folder = self.bench.folder()
+        done = False
+        for _ in range(dice.randint(1, 4)):
+            done = done or self.interrupted(folder, dice)
+        if not done:
+            process = self.bench.run(*self.command, "-o", folder)
+            require(process.returncode == 0, f"exit {process.returncode}: {process.stderr_text}")
+        require_same(alone(folder), self.expected, "other results")
+        remove(folder.parent)
+
+
+def trials(bench, n, seed=1, kinds=KINDS):
+    """As many of each kind."""
+    for kind in kinds:
+        setting = Setting(bench, kind)
+        for k in range(seed, seed + n):
+            yield Trial(f"{kind}, seed {k}", lambda setting=setting, k=k: setting.trial(k))
