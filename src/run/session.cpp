@@ -2,6 +2,8 @@
 #include "run/session.hpp"
 
 #include <chrono>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -27,6 +29,13 @@ constexpr const char* case_file = "case.resolved.toml";
 constexpr double least_tell_interval_s = 2;
 constexpr double tell_share = 0.02;
 
+/// What is in the table of prescribed tractions; empty where a case has none.
+std::string table_text(const io::Case& config) {
+  if (config.prestress.file.empty()) return {};
+  std::ifstream stream(config.prestress.file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 class Session {
  public:
   Session(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
@@ -38,6 +47,7 @@ class Session {
         hooks_(hooks),
         checkpoints_(folder.state()) {
     head_.case_text = resolved_text(config);
+    head_.table = table_text(config);
   }
 
   /// From a checkpoint, or from the beginning.
@@ -262,6 +272,9 @@ Finished go_on(io::ResultFolder& folder, const io::Case* expected, const Session
       throw UserError("{}: was begun by {}, and this is {}; go on with that one, or begin anew",
                       folder.unfinished().string(), kept->head.program, program_identity());
     require_same(text, kept->head.case_text, file.string());
+    if (kept->head.table != table_text(config))
+      throw UserError("{}: was changed since the run was begun; put it back, or begin anew",
+                      config.prestress.file);
   }
   io::write_text(file, text);  // as it was, however it was written meanwhile
   for (const char* name : {"interface.h5", "fields.vtkhdf"}) io::remove_file(folder.unfinished() / name);
