@@ -9,7 +9,7 @@ import signal
 import time
 
 from .cases import long
-from .trials import Trial, alone, remove, require, require_same
+from .trials import Trial, alone, one_line, remove, require, require_same
 
 SUM_DIGITS = 64  # at the end of a checkpoint
 FEW = ("--checkpoint-every", "1e9", "--checkpoint-every-simulated")
@@ -36,6 +36,18 @@ def cut(dice):
     return lambda data: data[: dice.randrange(len(data))]
 
 
+def interrupted(bench, case):
+    """The folder of a run that has two checkpoints."""
+    folder = bench.folder()
+    process = bench.start("run", case, "-o", folder, "-q", *FEW, "2e-5")
+    while process.poll() is None and not (folder / "unfinished/state/checkpoint-000002.bin").exists():
+        time.sleep(0.01)
+    process.send_signal(signal.SIGTERM)
+    _, errors = process.communicate()
+    require(process.returncode == 128 + signal.SIGTERM, f"exit {process.returncode}: {errors}")
+    return folder
+
+
 class Setting:
     """A run that was interrupted with two checkpoints, and what it comes to undisturbed."""
 
@@ -45,18 +57,8 @@ class Setting:
         whole = bench.result(self.case)
         self.expected = alone(whole)
         remove(whole.parent)
-        self.folder = self.interrupted(self.case)
-        self.other = self.interrupted(bench.case(long(kind) | {"friction.mu_k": 0.55}))
-
-    def interrupted(self, case):
-        folder = self.bench.folder()
-        process = self.bench.start("run", case, "-o", folder, "-q", *FEW, "2e-5")
-        while process.poll() is None and not (folder / "unfinished/state/checkpoint-000002.bin").exists():
-            time.sleep(0.01)
-        process.send_signal(signal.SIGTERM)
-        _, errors = process.communicate()
-        require(process.returncode == 128 + signal.SIGTERM, f"exit {process.returncode}: {errors}")
-        return folder
+        self.folder = interrupted(bench, self.case)
+        self.other = interrupted(bench, bench.case(long(kind) | {"friction.mu_k": 0.55}))
 
     def trial(self, damage, may_be):
         """@param may_be  exit codes that are right"""
@@ -149,9 +151,33 @@ def damages(dice, other):
     )
 
 
+_UNIFORM = ("prestress.t_Pa", "prestress.p_Pa")
+
+
+def changed_table(bench):
+    """A table of tractions that is changed between a run's beginning and its end."""
+    table = bench.folder().with_suffix(".csv")
+    table.parent.mkdir(parents=True)
+    text = "x_m,t_Pa,p_Pa\n0,2.2e6,5e6\n0.1,2.2e6,5e6\n"
+    table.write_text(text)
+    settings = long("prestressed_absorbing") | {"prestress.file": str(table)}
+    case = bench.case({key: value for key, value in settings.items() if key not in _UNIFORM})
+    expected = alone(bench.result(case))
+    folder = interrupted(bench, case)
+    table.write_text(text.replace("0,2.2e6", "0,2.1e6"))
+    process = bench.run("run", "--restart", folder, "-q")
+    require(process.returncode == 2, f"exit {process.returncode}: {process.stderr_text}")
+    require(str(table) in one_line(process), process.stderr_text)
+    table.write_text(text)
+    process = bench.run("run", "--restart", folder, "-q")
+    require(process.returncode == 0, f"exit {process.returncode}: {process.stderr_text}")
+    require_same(alone(folder), expected, "other results")
+
+
 def trials(bench, seed=1, kind="triggered", every=1):
     setting = Setting(bench, kind)
     dice = random.Random(seed)
     for k, (name, damage, may_be) in enumerate(damages(dice, setting.other)):
         if k % every == 0 or k >= 40:
             yield Trial(name, lambda damage=damage, may_be=may_be: setting.trial(damage, may_be))
+    yield Trial("a changed table", lambda: changed_table(bench))
