@@ -103,7 +103,7 @@ def test_energies_balance(program, coarse, tmp_path):
 def test_history_is_hdf5_with_units(program, coarse, tmp_path):
     assert program("run", coarse, "-o", "out", "-q").returncode == 0
     with h5py.File(tmp_path / "out/interface.h5") as file:
-        assert {name: file[name].attrs["unit"] for name in file} == {
+        assert {name: file[name].attrs["unit"].decode() for name in file} == {
             "time_s": "s", "x_m": "m", "slip_m": "m", "slip_rate_m_per_s": "m/s", "t_Pa": "Pa", "p_Pa": "Pa",
         }  # fmt: skip
         time_s, x_m = file["time_s"][:], file["x_m"][:]
