@@ -9,6 +9,8 @@ APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv \
   libhdf5-dev libcereal-dev libssl-dev libsuitesparse-dev libopenblas-serial-dev libgtest-dev libgmock-dev
 LINT_PACKAGES := clang-format-14 clang-tidy-14
 SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev libomp-14-dev
+FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
+FUZZ_SECONDS ?= 60
 COVERAGE_PACKAGES := gcovr
 RESULTS ?= results
 EXPERIMENT ?=
@@ -16,7 +18,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce sensitivity quick regularised convergence interface-step reference contact-algorithms bench docs format format-check verify verification-pages tidy hostile sanitize coverage clean
+.PHONY: help setup build test reproduce sensitivity quick regularised convergence interface-step reference contact-algorithms bench docs format format-check verify verification-pages tidy hostile fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -136,6 +138,12 @@ sanitize: packages  ## the C++ tests and coarse runs under the address, undefine
 	cmake --preset tsan
 	cmake --build --preset tsan
 	@scripts/run-sanitizers build/asan build/tsan
+
+fuzz: packages  ## files that are made up, for every reader of files, FUZZ_SECONDS each
+	@scripts/install-packages $(FUZZ_PACKAGES)
+	cmake --preset fuzz
+	cmake --build --preset fuzz
+	@scripts/run-fuzzers build/fuzz $(FUZZ_SECONDS)
 
 coverage: packages  ## lines of the numerical core that the C++ tests run: table, and page build/coverage/index.html
 	@scripts/install-packages $(COVERAGE_PACKAGES)

@@ -45,6 +45,15 @@ Traction traction_at(const History& history, const Found& found, std::size_t nod
 
 }  // namespace
 
+bool is_consistent(const SlipRecord& record) {
+  const auto is_node = [&](const auto& change) {
+    return change.node >= 0 && static_cast<std::size_t>(change.node) < record.x_m.size();
+  };
+  return record.halo >= 0 &&
+         record.around.size() == record.onsets.size() * (2 * static_cast<std::size_t>(record.halo) + 1) &&
+         std::ranges::all_of(record.onsets, is_node) && std::ranges::all_of(record.stops, is_node);
+}
+
 SlipRecord record_from_history(const History& history, double threshold_m_per_s, int halo) {
   check(history, threshold_m_per_s, halo);
   SlipRecord record;

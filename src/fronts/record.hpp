@@ -66,6 +66,9 @@ struct SlipRecord {
   }
 };
 
+/// Whether a record's parts fit each other: lengths, and nodes that there are.
+bool is_consistent(const SlipRecord& record);
+
 /// Time history of an interface, from a run or from elsewhere. Matrices are row-major [times x nodes].
 struct History {
   std::vector<double> time_s;             ///< [times], ascending

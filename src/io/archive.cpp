@@ -86,6 +86,13 @@ void InputArchive::load(void* data, std::size_t bytes) {
   left_ -= bytes;
 }
 
+void InputArchive::load(bool& flag) {
+  std::uint8_t byte = 0;
+  load(&byte, sizeof(byte));
+  if (byte > 1) throw_damaged();
+  flag = byte == 1;
+}
+
 void InputArchive::require(std::uint64_t count) const {
   if (count > left_) throw_damaged();
 }

@@ -47,6 +47,7 @@ class InputArchive : public cereal::InputArchive<InputArchive, cereal::AllowEmpt
   /// less than is asked for
   explicit InputArchive(const std::filesystem::path& file);
   void load(void* data, std::size_t bytes);
+  void load(bool& flag);
   /// Refuses a length that what is left of the file cannot hold.
   void require(std::uint64_t count) const;
   /// @throws UserError where something is left.
@@ -67,7 +68,10 @@ void CEREAL_SAVE_FUNCTION_NAME(OutputArchive& archive, const T& value) {
 template <class T>
 requires std::is_arithmetic_v<T>
 void CEREAL_LOAD_FUNCTION_NAME(InputArchive& archive, T& value) {
-  archive.load(&value, sizeof(value));
+  if constexpr (std::same_as<T, bool>)
+    archive.load(value);
+  else
+    archive.load(&value, sizeof(value));
 }
 template <class T>
 void CEREAL_SAVE_FUNCTION_NAME(OutputArchive& archive, const cereal::BinaryData<T>& data) {

@@ -7,6 +7,7 @@
 #include <openssl/evp.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -26,9 +27,16 @@ constexpr std::size_t piece_bytes = std::size_t{1} << 18U;
   throw UserError("{}: {}; run the case again", file.string(), what);
 }
 
-/// A name within the folder, or within one of its folders.
+void require_sum(const std::filesystem::path& file, const std::string& sum) {
+  if (!is_there(file)) throw_changed(file, "is missing");
+  if (sha256_of_file(file) != sum)
+    throw_changed(file, "does not match checksums.sha256: it was changed or damaged");
+}
+
+/// A name within the folder, or within one of its folders, that can be shown in a message.
 bool is_inside(const std::filesystem::path& name) {
-  if (name.empty() || name.is_absolute()) return false;
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  if (name.empty() || name.is_absolute() || std::ranges::any_of(name.native(), is_control)) return false;
   for (const auto& part : name)
     if (part == ".." || part == "." || part.empty()) return false;
   return true;
@@ -111,12 +119,16 @@ Checksums read_checksums(const std::filesystem::path& dir) {
 }
 
 void require_intact(const std::filesystem::path& dir) {
-  for (const auto& [name, sum] : read_checksums(dir)) {
-    const auto file = dir / name;
-    if (!is_there(file)) throw_changed(file, "is missing");
-    if (sha256_of_file(file) != sum)
-      throw_changed(file, "does not match checksums.sha256: it was changed or damaged");
-  }
+  for (const auto& [name, sum] : read_checksums(dir)) require_sum(dir / name, sum);
+}
+
+void require_listed(const std::filesystem::path& file) {
+  const auto sums = read_checksums(file.parent_path());
+  if (sums.empty()) return;
+  const auto listed = sums.find(file.filename().string());
+  if (listed == sums.end())
+    throw_changed(file, "is not in checksums.sha256: it belongs to no set of results");
+  require_sum(file, listed->second);
 }
 
 }  // namespace slipfront::io

@@ -45,5 +45,8 @@ Checksums read_checksums(const std::filesystem::path& dir);
 /// Compares every file of the list. Nothing is compared where there is none.
 /// @throws UserError naming the first that is missing or another.
 void require_intact(const std::filesystem::path& dir);
+/// Compares one file with its folder's list, if there is one.
+/// @throws UserError where it is not in the list, or another.
+void require_listed(const std::filesystem::path& file);
 
 }  // namespace slipfront::io

@@ -2,9 +2,13 @@
 #include "io/hdf5.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <fstream>
 #include <functional>
+#include <limits>
 #include <numeric>
+#include <string_view>
 
 #include "base/error.hpp"
 
@@ -16,8 +20,27 @@ std::size_t count(const Shape& shape) {
       std::accumulate(shape.begin(), shape.end(), hsize_t{1}, std::multiplies<>()));
 }
 
+[[noreturn]] void throw_read(const File& file, const std::string& name) {
+  throw UserError("{}: data set {} cannot be read; the file may be incomplete", file.path.string(), name);
+}
+
+/// The number of values of a data set that was read of; refused beyond what any memory holds.
+std::size_t count_read(const File& file, const std::string& name, const Shape& shape) {
+  constexpr hsize_t most = std::numeric_limits<std::size_t>::max() / sizeof(double);
+  hsize_t n = 1;
+  for (const hsize_t length : shape) {
+    if (length > 0 && n > most / length) throw_read(file, name);
+    n *= length;
+  }
+  return n;
+}
+
+[[noreturn]] void throw_write(const std::filesystem::path& path, const std::string& name) {
+  throw WriteError("{}: cannot write {}; check that the disk is not full", path.string(), name);
+}
+
 [[noreturn]] void throw_write(const File& file, const std::string& name) {
-  throw WriteError("{}: cannot write {}; check that the disk is not full", file.path.string(), name);
+  throw_write(file.path, name);
 }
 
 /// Closes what was written to.
@@ -32,11 +55,15 @@ Handle open_object(const File& file, const std::string& name) {
   return object;
 }
 
-/// Properties of a new data set: no time of writing, so that equal data make equal files.
-Handle dataset_properties(const File& file, const std::string& name) {
-  Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  if (!properties.valid() || H5Pset_obj_track_times(properties.get(), false) < 0) throw_write(file, name);
+/// Properties of something new: no time of writing, so that equal data make equal files.
+Handle new_properties(hid_t kind, const std::filesystem::path& path, const std::string& name) {
+  Handle properties(H5Pcreate(kind), H5Pclose);
+  if (!properties.valid() || H5Pset_obj_track_times(properties.get(), false) < 0) throw_write(path, name);
   return properties;
+}
+
+Handle dataset_properties(const File& file, const std::string& name) {
+  return new_properties(H5P_DATASET_CREATE, file.path, name);
 }
 
 Handle new_dataset(const File& file, const std::string& name, hid_t type, const Handle& space,
@@ -107,6 +134,21 @@ void write_attribute(const File& file, const std::string& object, const std::str
   finish(std::move(owner), file, object);
 }
 
+/// The format of HDF5 1.10: whatever says where the numbers are and what they mean carries a checksum. In
+/// those before, HDF5 follows damage wherever it leads, beyond its own memory too.
+constexpr int first_checked_version = 3;
+
+/// The version that the head of a file tells; negative where it is no HDF5 file.
+int format_version(const std::filesystem::path& path) {
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  std::array<char, signature.size() + 1> head{};
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream.read(head.data(), head.size()) ||
+      !std::string_view(head.data(), head.size()).starts_with(signature))
+    return -1;
+  return static_cast<unsigned char>(head.back());
+}
+
 }  // namespace
 
 void silence() {
@@ -118,7 +160,11 @@ void silence() {
 
 File create_file(const std::filesystem::path& path) {
   silence();
-  Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  if (!access.valid() || H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
+    throw_write(path, "its head");
+  const Handle properties = new_properties(H5P_FILE_CREATE, path, "its head");
+  Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, properties.get(), access.get()), H5Fclose);
   if (!handle.valid())
     throw WriteError("{}: cannot be created; check that its folder exists and can be written", path.string());
   return {path, std::move(handle)};
@@ -129,7 +175,11 @@ File open_file(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     throw UserError("{}: does not exist; check the path", path.string());
-  Handle handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const int version = format_version(path);
+  if (version >= 0 && version < first_checked_version)
+    throw UserError("{}: is in a format of HDF5 before 1.10, in which damage goes unnoticed; convert it",
+                    path.string());
+  Handle handle(version < 0 ? -1 : H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle.valid())
     throw UserError("{}: cannot be read; check that it is a complete HDF5 file", path.string());
   return {path, std::move(handle)};
@@ -141,7 +191,9 @@ void close(File file) {
 }
 
 void create_group(const File& file, const std::string& name) {
-  Handle group(H5Gcreate2(file.handle.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  const Handle properties = new_properties(H5P_GROUP_CREATE, file.path, name);
+  Handle group(H5Gcreate2(file.handle.get(), name.c_str(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+               H5Gclose);
   if (!group.valid()) throw_write(file, name);
   finish(std::move(group), file, name);
 }
@@ -166,7 +218,7 @@ void create(const File& file, const std::string& name, Type type, const Shape& s
 }
 
 void create_growing(const File& file, const std::string& name, const Shape& row, hsize_t chunk_rows,
-                    bool whole_chunks) {
+                    Chunks chunks) {
   Shape now = row, most = row, chunk = row;
   now.insert(now.begin(), 0);
   most.insert(most.begin(), H5S_UNLIMITED);
@@ -175,7 +227,8 @@ void create_growing(const File& file, const std::string& name, const Shape& row,
   const Handle space(H5Screate_simple(rank, now.data(), most.data()), H5Sclose);
   const Handle properties = dataset_properties(file, name);
   if (H5Pset_chunk(properties.get(), rank, chunk.data()) < 0 ||
-      (whole_chunks && H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER) < 0))
+      (chunks == Chunks::whole && H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER) < 0) ||
+      (chunks == Chunks::checked && H5Pset_fletcher32(properties.get()) < 0))
     throw_write(file, name);
   finish(new_dataset(file, name, H5T_NATIVE_DOUBLE, space, properties), file, name);
 }
@@ -226,10 +279,12 @@ std::string text_attribute(const File& file, const std::string& object, const st
   const Handle owner = open_object(file, object);
   const Handle attribute(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
   const Handle type(attribute.valid() ? H5Aget_type(attribute.get()) : -1, H5Tclose);
-  if (!type.valid() || H5Tis_variable_str(type.get()) <= 0)
-    throw UserError("{}: {} has no text attribute {}", file.path.string(), object, name);
+  const Handle space(attribute.valid() ? H5Aget_space(attribute.get()) : -1, H5Sclose);
+  const bool is_text =
+      type.valid() && H5Tis_variable_str(type.get()) > 0 && H5Sget_simple_extent_npoints(space.get()) == 1;
+  if (!is_text) throw UserError("{}: {} has no text attribute {}", file.path.string(), object, name);
   char* data = nullptr;
-  if (H5Aread(attribute.get(), type.get(), &data) < 0 || !data)
+  if (H5Aread(attribute.get(), type.get(), &data) < 0 || data == nullptr)
     throw UserError("{}: cannot read the attribute {} of {}", file.path.string(), name, object);
   const std::string text = data;
   H5free_memory(data);
@@ -254,8 +309,14 @@ Dataset numbers(const File& file, const std::string& name) {
   return {std::move(dataset), std::move(space), std::move(shape)};
 }
 
-[[noreturn]] void throw_read(const File& file, const std::string& name) {
-  throw UserError("{}: data set {} cannot be read; the file may be incomplete", file.path.string(), name);
+/// Refuses a data set that claims more values than its file holds: before memory is taken for them.
+void require_held(const File& file, const std::string& name, const Handle& dataset, std::size_t n) {
+  constexpr hsize_t most_compression = 1100;  // of deflate, HDF5's own filter: 1032
+  const Handle type(H5Dget_type(dataset.get()), H5Tclose);
+  const Handle properties(H5Dget_create_plist(dataset.get()), H5Pclose);
+  const hsize_t stored = H5Dget_storage_size(dataset.get()) / std::max<hsize_t>(H5Tget_size(type.get()), 1);
+  const bool filtered = H5Pget_nfilters(properties.get()) > 0;
+  if (n > stored && (!filtered || n / most_compression > stored)) throw_read(file, name);
 }
 
 }  // namespace
@@ -266,7 +327,9 @@ Shape shape_of(const File& file, const std::string& name) {
 
 Array read(const File& file, const std::string& name) {
   const auto [dataset, space, shape] = numbers(file, name);
-  Array array{shape, std::vector<double>(count(shape))};
+  const std::size_t n = count_read(file, name, shape);
+  require_held(file, name, dataset, n);
+  Array array{shape, std::vector<double>(n)};
   if (!array.values.empty() &&
       H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0)
     throw_read(file, name);
@@ -275,11 +338,11 @@ Array read(const File& file, const std::string& name) {
 
 Array read_rows(const File& file, const std::string& name, hsize_t first_row, hsize_t n_rows) {
   auto [dataset, space, shape] = numbers(file, name);
-  if (shape.empty() || first_row + n_rows > shape[0]) throw_read(file, name);
+  if (shape.empty() || n_rows > shape[0] || first_row > shape[0] - n_rows) throw_read(file, name);
   Shape start(shape.size(), 0);
   start[0] = first_row;
   shape[0] = n_rows;
-  Array array{shape, std::vector<double>(count(shape))};
+  Array array{shape, std::vector<double>(count_read(file, name, shape))};
   if (array.values.empty()) return array;
   const Handle block(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
   if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, shape.data(), nullptr) < 0 ||
@@ -298,21 +361,36 @@ File open_written_file(const std::filesystem::path& path) {
   }
 }
 
-void require_written(const File& file, const std::string& name, bool condition) {
-  if (!condition) throw_write(file, name);
+void require_length(const File& file, const std::string& name, hsize_t n_rows) {
+  try {
+    const auto shape = shape_of(file, name);
+    if (!shape.empty() && shape[0] == n_rows) return;
+  } catch (const UserError&) {
+  }
+  throw_write(file, name);
+}
+
+void require_text(const File& file, const std::string& object, const std::string& name,
+                  const std::string& text) {
+  try {
+    if (text_attribute(file, object, name) == text) return;
+  } catch (const UserError&) {
+  }
+  throw_write(file, object + "." + name);
 }
 
 void require_rows(const File& file, const std::string& name, hsize_t first_row,
                   std::span<const double> values) {
   if (values.empty()) return;
   try {
-    hsize_t per_row = 1;
-    for (const auto shape = shape_of(file, name); const auto length : std::span(shape).subspan(1))
-      per_row *= length;
-    const auto written = read_rows(file, name, first_row, values.size() / std::max<hsize_t>(per_row, 1));
-    require_written(file, name,
-                    written.values.size() == values.size() &&
-                        std::memcmp(written.values.data(), values.data(), values.size_bytes()) == 0);
+    auto shape = shape_of(file, name);
+    if (shape.empty()) throw_write(file, name);
+    shape[0] = 1;
+    const auto per_row = std::max<std::size_t>(count_read(file, name, shape), 1);
+    const auto written = read_rows(file, name, first_row, values.size() / per_row);
+    if (written.values.size() != values.size() ||
+        std::memcmp(written.values.data(), values.data(), values.size_bytes()) != 0)
+      throw_write(file, name);
   } catch (const UserError&) {
     throw_write(file, name);
   }

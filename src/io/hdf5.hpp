@@ -51,8 +51,9 @@ struct File {
 /// Silences HDF5 in the calling thread; creating and opening files does it as well.
 void silence();
 
-/// Creates a file, replacing one that is there.
+/// Creates a file, replacing one that is there. HDF5 1.10 and later read it.
 File create_file(const std::filesystem::path& path);
+/// Files in formats before that of create_file are refused.
 File open_file(const std::filesystem::path& path);
 
 /// Writes out what HDF5 still holds back and closes; without it a full disk would go unnoticed.
@@ -75,9 +76,13 @@ void create(const File& file, const std::string& name, Type type, const Shape& s
 /// Makes a data set of doubles without rows that append_rows lengthens, stored in chunks of `chunk_rows`
 /// rows.
 /// @param row  the lengths after the first
-/// @param whole_chunks  nothing shorter than a chunk will be left over: saves filling chunks in advance
+enum class Chunks {
+  any,
+  whole,    ///< nothing shorter than a chunk will be left over: saves filling chunks in advance
+  checked,  ///< each with a checksum of its numbers, compared when it is read; for those written at once
+};
 void create_growing(const File& file, const std::string& name, const Shape& row, hsize_t chunk_rows,
-                    bool whole_chunks = false);
+                    Chunks chunks = Chunks::any);
 /// Writes values.size() / (product of the other lengths) rows from `first_row` on.
 void write_rows(const File& file, const std::string& name, hsize_t first_row, std::span<const double> values);
 void write_rows(const File& file, const std::string& name, hsize_t first_row,
@@ -93,7 +98,8 @@ void set_ascii_attribute(const File& file, const std::string& object, const std:
 void set_attribute(const File& file, const std::string& object, const std::string& name,
                    std::span<const std::int64_t> values);
 
-/// Text attribute of variable length.
+/// Text attribute of variable length, of a file that was written just now: HDF5 keeps these texts in a heap
+/// without checksums, and does not come back from some damage of it.
 std::string text_attribute(const File& file, const std::string& object, const std::string& name);
 
 struct Array {
@@ -106,10 +112,12 @@ Array read(const File& file, const std::string& name);
 Array read_rows(const File& file, const std::string& name, hsize_t first_row, hsize_t n_rows);
 Shape shape_of(const File& file, const std::string& name);
 
-// For files that were written just now. @throws WriteError where the condition does not hold, or the rows
-// from first_row on are others, to the last bit.
+// For files that were written just now. @throws WriteError where the first length, an attribute or the rows
+// from first_row on, to the last bit, are others.
 File open_written_file(const std::filesystem::path& path);
-void require_written(const File& file, const std::string& name, bool condition);
+void require_length(const File& file, const std::string& name, hsize_t n_rows);
+void require_text(const File& file, const std::string& object, const std::string& name,
+                  const std::string& text);
 void require_rows(const File& file, const std::string& name, hsize_t first_row,
                   std::span<const double> values);
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "io/checksum.hpp"
 
 namespace slipfront::io {
 namespace {
@@ -42,6 +43,11 @@ void describe(const hdf5::File& file, const Column& column) {
   hdf5::set_attribute(file, column.name, "description", std::string(column.description));
 }
 
+void require_described(const hdf5::File& file, const Column& column) {
+  hdf5::require_text(file, column.name, "unit", column.unit);
+  hdf5::require_text(file, column.name, "description", column.description);
+}
+
 std::vector<double> read_axis(const hdf5::File& file, const Column& column) {
   hdf5::Array array = hdf5::read(file, column.name);
   const std::string path = file.path.string();
@@ -75,13 +81,16 @@ std::size_t history_block_rows(std::size_t n_nodes) {
 HistoryFile::HistoryFile(const std::filesystem::path& path, std::span<const double> x_m)
     : file_(hdf5::create_file(path)), n_nodes_(x_m.size()) {
   const auto& [time, place] = axes;
-  hdf5::create_growing(file_, time.name, {}, time_chunk_rows);
+  hdf5::create_growing(file_, time.name, {}, time_chunk_rows, hdf5::Chunks::checked);
   describe(file_, time);
-  hdf5::write(file_, place.name, x_m, {n_nodes_});
+  hdf5::create_growing(file_, place.name, {}, std::max<std::size_t>(n_nodes_, 1), hdf5::Chunks::checked);
+  hdf5::add_rows(file_, place.name, n_nodes_);
+  hdf5::write_rows(file_, place.name, 0, x_m);
   describe(file_, place);
   for (const Column& matrix : matrices) {
     if (n_nodes_ > 0)
-      hdf5::create_growing(file_, matrix.name, {n_nodes_}, history_block_rows(n_nodes_));
+      hdf5::create_growing(file_, matrix.name, {n_nodes_}, history_block_rows(n_nodes_),
+                           hdf5::Chunks::checked);
     else
       hdf5::create(file_, matrix.name, hdf5::Type::float64, {0, 0});
     describe(file_, matrix);
@@ -112,15 +121,12 @@ void write_history(const std::filesystem::path& path, const History& history) {
   file.close();
   const WrittenHistory written(path);
   written.require(0, history);
-  written.require_rows(history.time_s.size());
+  written.require_lengths(history.time_s.size(), history.x_m.size());
 }
 
 WrittenHistory::WrittenHistory(const std::filesystem::path& path) : file_(hdf5::open_written_file(path)) {
   for (const auto* columns : {&axes[0], &axes[1], &matrices[0], &matrices[1], &matrices[2], &matrices[3]})
-    hdf5::require_written(
-        file_, columns->name,
-        hdf5::text_attribute(file_, columns->name, "unit") == columns->unit &&
-            hdf5::text_attribute(file_, columns->name, "description") == columns->description);
+    require_described(file_, *columns);
 }
 
 void WrittenHistory::require(std::size_t row, const History& rows) const {
@@ -131,15 +137,16 @@ void WrittenHistory::require(std::size_t row, const History& rows) const {
   for (const Column& matrix : matrices) hdf5::require_rows(file_, matrix.name, row, rows.*matrix.values);
 }
 
-void WrittenHistory::require_rows(std::size_t n) const {
-  hdf5::require_written(file_, axes[0].name, hdf5::shape_of(file_, axes[0].name)[0] == n);
-  for (const Column& matrix : matrices)
-    hdf5::require_written(
-        file_, matrix.name,
-        hdf5::shape_of(file_, matrix.name)[0] == n || hdf5::shape_of(file_, axes[1].name)[0] == 0);
+void WrittenHistory::require_lengths(std::size_t n_rows, std::size_t n_nodes) const {
+  const auto& [time, place] = axes;
+  hdf5::require_length(file_, time.name, n_rows);
+  hdf5::require_length(file_, place.name, n_nodes);
+  if (n_nodes == 0) return;
+  for (const Column& matrix : matrices) hdf5::require_length(file_, matrix.name, n_rows);
 }
 
 History read_history(const std::filesystem::path& path) {
+  require_listed(path);
   const hdf5::File file = hdf5::open_file(path);
   History history;
   for (const Column& axis : axes) history.*axis.values = read_axis(file, axis);

@@ -14,8 +14,8 @@ namespace slipfront::io {
 std::size_t history_block_rows(std::size_t n_nodes);
 
 /// An interface.h5 that grows: time_s [nt], x_m [nx], slip_m, slip_rate_m_per_s, t_Pa, p_Pa [nt, nx], each
-/// with the attributes `unit` and `description`. It can be read once it is closed. Every function throws
-/// WriteError where the file cannot be written.
+/// with the attributes `unit` and `description`, all with checksums of HDF5's own. It can be read once it is
+/// closed. Every function throws WriteError where the file cannot be written.
 class HistoryFile {
  public:
   HistoryFile(const std::filesystem::path& path, std::span<const double> x_m);
@@ -36,8 +36,8 @@ class WrittenHistory {
   explicit WrittenHistory(const std::filesystem::path& path);
   /// Compares rows from `row` on, and the places.
   void require(std::size_t row, const fronts::History& rows) const;
-  /// Compares the number of rows.
-  void require_rows(std::size_t n) const;
+  /// Compares the numbers of rows and of places.
+  void require_lengths(std::size_t n_rows, std::size_t n_nodes) const;
 
  private:
   hdf5::File file_;
@@ -46,8 +46,10 @@ class WrittenHistory {
 /// Writes a whole history and compares it. @throws WriteError
 void write_history(const std::filesystem::path& file, const fronts::History& history);
 
-/// Reads a file that was written so, or by another program with the same names and units.
-/// @throws UserError naming the file and the missing or misshaped data set.
+/// Reads a file that was written so, or by another program with the same names and units in the format of
+/// HDF5 1.10. Where its folder has a list of checksums the file must be as it says before HDF5 sees it;
+/// without one HDF5's own checksums tell damage.
+/// @throws UserError naming the file, and the data set that is missing, misshaped or not held by it.
 fronts::History read_history(const std::filesystem::path& file);
 
 }  // namespace slipfront::io

@@ -142,7 +142,7 @@ void SnapshotFile::append_field(const std::string& name, const solid::Field& fie
   const std::string dataset = "/VTKHDF/PointData/" + name;
   if (time_s_.empty())
     hdf5::create_growing(file_, dataset, {3}, std::clamp<std::size_t>(n_points_, 1, most_chunk_rows),
-                         n_points_ <= most_chunk_rows);
+                         n_points_ <= most_chunk_rows ? hdf5::Chunks::whole : hdf5::Chunks::any);
   hdf5::add_rows(file_, dataset, n_points_);
   for_field_pieces(field, source_, [&](std::size_t row, std::span<const double> values) {
     hdf5::write_rows(file_, dataset, time_s_.size() * n_points_ + row, values);
@@ -218,7 +218,7 @@ void WrittenSnapshots::require(std::size_t step, const solve::Snapshot& snapshot
 
 void WrittenSnapshots::require_steps(std::size_t n) const {
   for (const char* name : {"/VTKHDF/PointData/displacement_m", "/VTKHDF/PointData/velocity_m_per_s"})
-    hdf5::require_written(file_, name, hdf5::shape_of(file_, name)[0] == n * n_points_);
+    hdf5::require_length(file_, name, n * n_points_);
 }
 
 }  // namespace slipfront::io

@@ -167,7 +167,7 @@ void write_history(const std::filesystem::path& file, const std::filesystem::pat
   output.close();
   const WrittenHistory written(file);
   for_each_block([&](std::size_t row, const fronts::History& rows) { written.require(row, rows); });
-  written.require_rows(records.count());
+  written.require_lengths(records.count(), x_m.size());
 }
 
 std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,

@@ -42,6 +42,20 @@ const std::string& program_identity() {
   return identity;
 }
 
+InitialState read_initial_state(io::InputArchive& archive, const io::Case& config) {
+  InitialState initial;
+  initial.mesh = check(config);
+  archive(initial);
+  const std::size_t n = initial.mesh.lower.size();
+  const auto fits = [&](const auto& states) {
+    return solve::has_nodes(states.common, n) && solve::has_nodes(states.spontaneous, n);
+  };
+  if (initial.tributary_m.size() != n || !fits(initial) ||
+      (initial.ramp && (!fits(*initial.ramp) || !fronts::is_consistent(initial.ramp->record))))
+    throw UserError("the state before the event that was kept is of another plate");
+  return initial;
+}
+
 void Checkpoints::keep(const CheckpointHead& head, const std::function<void(io::OutputArchive&)>& write) {
   auto files = numbered(dir_);
   const auto number = files.empty() ? 1 : files.rbegin()->first + 1;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "io/archive.hpp"
+#include "run/run.hpp"
 
 namespace slipfront::run {
 
@@ -28,6 +29,10 @@ struct CheckpointHead {
     archive(program, case_text, table, in_event, sessions, wall_s);
   }
 };
+
+/// Reads what was kept of a case's initial state, and makes its mesh.
+/// @throws UserError where it is of another plate
+InitialState read_initial_state(io::InputArchive& archive, const io::Case& config);
 
 /// The checkpoints in a folder: the last two are kept, numbered as they come.
 class Checkpoints {

@@ -56,14 +56,15 @@ bool FinishedRuns::take(const io::Case& config, Result& result, InitialState& in
   if (!has(config)) return false;
   try {
     io::InputArchive archive(file_of(config));
-    archive(result, initial);
+    archive(result);
+    initial = read_initial_state(archive, config);
     archive.close();
+    if (result.event.energies.empty() || !fronts::is_consistent(result.event.record)) return false;
   } catch (const UserError&) {
     return false;
   }
   result.config = config;
   result.speeds = wave_speeds(config.material);
-  initial.mesh = check(config);
   measure(result, initial);
   return true;
 }

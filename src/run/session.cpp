@@ -139,8 +139,7 @@ void Session::begin_ramp(Checkpoints::Kept* kept, solve::Stepper& stepper, solve
 
 void Session::begin_event(Checkpoints::Kept* kept) {
   if (kept != nullptr) {
-    initial_.mesh = check(config_);
-    kept->rest(initial_);
+    initial_ = read_initial_state(kept->rest, config_);
     event_stepper_ = make_stepper(config_, initial_, options_.execution);
     kept->rest(*event_stepper_);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));

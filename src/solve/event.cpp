@@ -110,6 +110,14 @@ EventRun::EventRun(Stepper& stepper, const Equilibrium& state, double mu_s, doub
   event_.energies.push_back(watch_->start());
 }
 
+void EventRun::require_possible(std::int64_t checked_step) const {
+  const auto step = stepper_.step();
+  const auto is_count = [step](std::int64_t rows) { return rows >= 0 && rows <= step + 2; };
+  if (step < 0 || step > n_steps_ || checked_step < 0 || checked_step > step || !is_count(n_samples_) ||
+      !is_count(n_energies_) || next_snapshot_ > snapshot_times_s_.size() || event_.energies.empty())
+    throw UserError("the state that was kept is of another event");
+}
+
 void EventRun::take_snapshots(Sink* sink) {
   while (next_snapshot_ < snapshot_times_s_.size() &&
          stepper_.time_s() >= snapshot_times_s_[next_snapshot_]) {
@@ -225,6 +233,15 @@ RampRun::RampRun(Stepper& stepper, const Equilibrium& tilted, const Loading& loa
       watch_(std::in_place, stepper, c_L_m_per_s),
       from_m_(tilted.inside_from_m),
       to_m_(tilted.inside_to_m) {}
+
+void RampRun::require_possible(std::int64_t checked_step) const {
+  const auto step = stepper_.step();
+  const auto& u_m = ramp_.common.u_m;
+  if (step < 0 || step > most_steps_ + 1 || checked_step < 0 || checked_step > step ||
+      (have_common_ && (!has_nodes(ramp_.common, tilted_.contact.size()) ||
+                        u_m.size() != tilted_.u_m.size() || u_m.y.size() != u_m.x.size())))
+    throw UserError("the state that was kept is of another ramp");
+}
 
 /// The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.
 Equilibrium RampRun::state_now() const {

@@ -106,10 +106,15 @@ class EventRun {
     auto start = watch_->start();
     auto checked_step = watch_->checked_step();
     archive(recorder_, start, checked_step, event_.energies, n_samples_, n_energies_, next_snapshot_);
-    if constexpr (Archive::is_loading::value) watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+    if constexpr (Archive::is_loading::value) {
+      require_possible(checked_step);
+      watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+    }
   }
 
  private:
+  /// Refuses counts that no event of this length comes to.
+  void require_possible(std::int64_t checked_step) const;
   void take_snapshots(Sink* sink);
   bool is_quiet() const;
   Between between(Sink* sink, fronts::History& row);
@@ -170,10 +175,15 @@ class RampRun {
     auto start = watch_->start();
     auto checked_step = watch_->checked_step();
     archive(recorder_, start, checked_step, ramp_, have_common_, from_m_, to_m_);
-    if constexpr (Archive::is_loading::value) watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+    if constexpr (Archive::is_loading::value) {
+      require_possible(checked_step);
+      watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+    }
   }
 
  private:
+  /// Refuses counts that no ramp comes to, and a state of another plate.
+  void require_possible(std::int64_t checked_step) const;
   Equilibrium state_now() const;
   double peak_now() const;
 

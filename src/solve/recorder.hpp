@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/state.hpp"
 #include "fronts/record.hpp"
 #include "interface/interface.hpp"
 #include "solve/statics.hpp"
@@ -38,10 +39,21 @@ class Recorder {
   fronts::SlipRecord take(double end_time_s) const;
 
   /// All that changes while a run goes.
+  /// @throws UserError where what is read is of another interface
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(last_motion_s_, record_, previous_time_s_, previous_t_Pa_, previous_p_Pa_, previous_strength_Pa_,
-            previous_slipping_, n_slipping_, last_first_onset_s_, has_slipped_, waiting_, around_waiting_);
+    const std::size_t n_nodes = record_.x_m.size();
+    const int halo = record_.halo;
+    archive(last_motion_s_, record_, previous_time_s_, n_slipping_, last_first_onset_s_);
+    if (Archive::is_loading::value &&
+        (record_.x_m.size() != n_nodes || record_.halo != halo || !fronts::is_consistent(record_)))
+      throw UserError("the state that was kept has a record of another interface");
+    for (auto* values : {&previous_t_Pa_, &previous_p_Pa_, &previous_strength_Pa_})
+      archive_vector(archive, *values);
+    archive_vector(archive, previous_slipping_);
+    archive_vector(archive, has_slipped_);
+    archive_vector(archive, waiting_);
+    archive_vector(archive, around_waiting_);
   }
 
  private:

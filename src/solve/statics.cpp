@@ -9,6 +9,12 @@
 
 namespace slipfront::solve {
 
+bool has_nodes(const Equilibrium& state, std::size_t n_lower) {
+  const auto& [x_m, t_s_Pa, p_s_Pa] = state.tractions;
+  return state.contact.size() == n_lower && x_m.size() == n_lower && t_s_Pa.size() == n_lower &&
+         p_s_Pa.size() == n_lower;
+}
+
 namespace {
 
 /// The interface of one level of the solver. [nodes]

@@ -38,6 +38,9 @@ struct Equilibrium {
   }
 };
 
+/// Whether an equilibrium has a contact and tractions at each of so many interface nodes.
+bool has_nodes(const Equilibrium& state, std::size_t n_lower);
+
 /// Loading of the plate at rest: tilt, then shear until t/p inside the interface reaches a given value.
 ///
 /// Nodes stick where they touch; a node whose pressure would be tensile is released; a node beyond mu_s slips

@@ -274,6 +274,29 @@ TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
   EXPECT_NE(go_on_error(), "(nothing thrown)");
 }
 
+TEST_F(InterruptedRun, RefusesAStateBeforeTheEventWithoutAllOfItsNodes) {
+  auto kept = Checkpoints(folder_ / "unfinished/state").last([](const std::string&) {});
+  ASSERT_TRUE(kept);
+  const InitialState whole = read_initial_state(kept->rest, config_);
+  const auto refused = [&](auto change) {
+    InitialState initial = whole;
+    change(initial);
+    Checkpoints(folder_ / "unfinished/state").keep(kept->head, [&](io::OutputArchive& archive) {
+      archive(initial);
+    });
+    return go_on_error();
+  };
+  const auto message = "the state before the event that was kept is of another plate";
+  EXPECT_EQ(refused([](InitialState& s) { s.tributary_m.pop_back(); }), message);
+  EXPECT_EQ(refused([](InitialState& s) { s.common.contact.pop_back(); }), message);
+  EXPECT_EQ(refused([](InitialState& s) { s.spontaneous.tractions.p_s_Pa.pop_back(); }), message);
+  EXPECT_EQ(refused([](InitialState& s) {
+              s.ramp.emplace(solve::Ramp{s.common, s.spontaneous, {}, 0, false});
+              s.ramp->record.onsets.push_back({7, 0});
+            }),
+            message);
+}
+
 TEST_F(InterruptedRun, RefusesAHistoryThatIsShorterThanItWas) {
   fs::resize_file(folder_ / "unfinished/state/history.raw", 80);
   EXPECT_THAT(go_on_error(), HasSubstr("is shorter than when the run was kept"));

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checkpoints of tiny plates, damaged, with a checksum that fits the damage: what tells them from whole ones
+// is only what they hold. They are refused, or the run goes on with them some steps without a fault.
+//
+// The first byte chooses the plate. Behind it come changes of the whole checkpoint: place (2 bytes, from the
+// end of the file if its highest bit is set), kind and length (1 byte: 2 and 6 bits), and, where bytes are
+// written, these. So what is made up does not depend on the layout of the state.
+#include "run/checkpoint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "fuzz.hpp"
+#include "io/checksum.hpp"
+#include "io/stream.hpp"
+#include "run/run.hpp"
+
+using namespace slipfront;
+
+namespace {
+
+constexpr std::size_t sum_digits = 64;
+constexpr const char* file_name = "checkpoint-000001.bin";
+
+/// 4 x 2 cells.
+io::Case tiny_case() {
+  io::Case config;
+  config.plate.width_m = 0.04;
+  config.plate.height_m = 0.02;
+  config.plate.element_size_m = 0.01;
+  config.plate.corner = mesh::Corner::none;
+  config.time.interface_rows = 1;
+  config.time.interface_substeps = 2;
+  config.time.end_s = 1;
+  config.time.quiet_s = 1;
+  return config;
+}
+
+io::Case prestressed_case() {
+  auto config = tiny_case();
+  config.loading.method = solve::LoadingMethod::prestress;
+  config.prestress = {.t_Pa = 0.65e6, .p_Pa = 1e6, .file = {}};
+  config.event = interface::EventKind::nucleation;
+  config.nucleation.x_m = 0.02;
+  config.nucleation.half_length_m = 0.01;
+  return config;
+}
+
+std::array<io::Case, 3> cases() {
+  std::array cases = {prestressed_case(), tiny_case(), tiny_case()};
+  cases[1].time.precision = solve::Precision::single_precision;
+  cases[1].contact = interface::ContactAlgorithm::predictor_corrector;
+  cases[2].loading.method = solve::LoadingMethod::ramp;
+  cases[2].loading.edge_margin_m = 0;
+  return cases;
+}
+
+bool stop(std::int64_t, std::int64_t) {
+  return false;
+}
+
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// A whole checkpoint of a run's first steps, without its checksum.
+std::string checkpoint_of(const io::Case& config) {
+  const fuzz::Scratch scratch;
+  run::Checkpoints checkpoints(scratch.dir());
+  run::CheckpointHead head;
+  if (config.loading.method == solve::LoadingMethod::ramp) {
+    solve::Stepper* stepper = nullptr;
+    solve::RampRun* ramp = nullptr;
+    const auto keep = [&](std::int64_t, std::int64_t) {
+      checkpoints.keep(head, [&](io::OutputArchive& archive) { archive(*stepper, *ramp); });
+      return false;
+    };
+    const auto begins = [&](solve::Stepper& its_stepper, solve::RampRun& run) {
+      stepper = &its_stepper;
+      ramp = &run;
+    };
+    try {
+      run::make_initial_state(config, keep, {}, begins);
+    } catch (const Interrupted&) {
+    }
+  } else {
+    auto initial = run::make_initial_state(config, stop);
+    const auto stepper = run::start_event(config, initial);
+    auto event = run::begin_event(config, initial, *stepper);
+    head.in_event = true;
+    event.run([&](std::int64_t, std::int64_t) {
+      checkpoints.keep(head, [&](io::OutputArchive& archive) {
+        archive(initial, *stepper, event, io::ResultStream::Lengths{});
+      });
+      return false;
+    });
+  }
+  auto content = content_of(scratch.dir() / file_name);
+  fuzz::require(content.size() > sum_digits, "the run is over before its first checkpoint");
+  content.resize(content.size() - sum_digits);
+  return content;
+}
+
+/// Goes on as run::go_on does, for some steps.
+void go_on(const io::Case& config, run::Checkpoints::Kept& kept) {
+  if (kept.head.in_event) {
+    auto initial = run::read_initial_state(kept.rest, config);
+    const auto stepper = run::make_stepper(config, initial);
+    kept.rest(*stepper);
+    auto event = run::begin_event(config, initial, *stepper);
+    io::ResultStream::Lengths lengths;
+    kept.rest(event, lengths);
+    kept.rest.close();
+    event.run(stop);
+  } else {
+    run::make_initial_state(config, stop, {}, [&](solve::Stepper& stepper, solve::RampRun& ramp) {
+      kept.rest(stepper, ramp);
+      kept.rest.close();
+    });
+  }
+}
+
+/// The changes that a fuzzer's bytes ask for.
+std::string damaged(std::string content, std::string_view changes) {
+  enum Kind { overwrite, insert, erase, cut };
+  while (changes.size() >= 3 && !content.empty()) {
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(changes[k]); };
+    const std::size_t place = byte(0) + 256U * (byte(1) & 0x7fU);
+    const std::size_t from_begin = place % content.size();
+    const std::size_t at = (byte(1) & 0x80U) != 0 ? content.size() - 1 - from_begin : from_begin;
+    const auto kind = static_cast<Kind>(byte(2) >> 6U);
+    const std::size_t length = std::min<std::size_t>(byte(2) & 0x3fU, content.size() - at);
+    changes.remove_prefix(3);
+    const auto bytes = changes.substr(0, length);
+    switch (kind) {
+      case overwrite:
+        content.replace(at, bytes.size(), bytes);
+        break;
+      case insert:
+        content.insert(at, bytes);
+        break;
+      case erase:
+        content.erase(at, length);
+        break;
+      case cut:
+        content.resize(at);
+        break;
+    }
+    if (kind == overwrite || kind == insert) changes.remove_prefix(bytes.size());
+  }
+  return content;
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const fuzz::Scratch scratch;
+  static const auto configs = cases();
+  static const std::array contents = {checkpoint_of(configs[0]), checkpoint_of(configs[1]),
+                                      checkpoint_of(configs[2])};
+  if (size == 0) return 0;
+  const std::size_t k = data[0] % configs.size();
+  auto content = damaged(contents[k], fuzz::text_of(data + 1, size - 1));
+  content += io::sha256(content);
+  scratch.write(file_name, content);
+  bool refused = false;
+  const auto kept = run::Checkpoints(scratch.dir()).last([&](const std::string&) { refused = true; });
+  fuzz::require(refused != bool(kept), "a checkpoint is passed over without a word");
+  if (!kept) return 0;
+  const bool taken = fuzz::takes([&] {
+    try {
+      go_on(configs[k], *kept);
+    } catch (const BlowUp&) {  // what was kept moves as no plate does
+    } catch (const Interrupted&) {
+    }
+  });
+  fuzz::require(taken || size > 1, "a whole checkpoint is refused");
+  return 0;
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tables of tractions and of measured speeds: what is taken must hold what their readers promise.
+#include <cmath>
+
+#include "fuzz.hpp"
+#include "io/experiment.hpp"
+#include "io/prestress.hpp"
+
+using namespace slipfront;
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const fuzz::Scratch scratch;
+  const auto file = scratch.write("table.csv", fuzz::text_of(data, size));
+  fuzz::takes([&] {
+    const auto table = io::read_prestress(file).rows;
+    const std::size_t n = table.x_m.size();
+    fuzz::require(n > 0 && table.t_s_Pa.size() == n && table.p_s_Pa.size() == n, "columns differ in length");
+    for (std::size_t k = 0; k < n; ++k)
+      fuzz::require(std::isfinite(table.x_m[k]) && std::isfinite(table.t_s_Pa[k]) &&
+                        std::isfinite(table.p_s_Pa[k]) && table.p_s_Pa[k] > 0 &&
+                        (k == 0 || table.x_m[k] > table.x_m[k - 1]),
+                    "a row that should be refused");
+  });
+  fuzz::takes([&] {
+    constexpr double c_L_m_per_s = 2400;
+    const auto points = io::read_experiment(file, c_L_m_per_s);
+    fuzz::require(!points.static_ratio.empty() && points.static_ratio.size() == points.v_over_c_L.size(),
+                  "columns differ in length");
+    for (std::size_t k = 0; k < points.static_ratio.size(); ++k)
+      fuzz::require(std::isfinite(points.static_ratio[k]) && std::isfinite(points.v_over_c_L[k]),
+                    "a point that should be refused");
+  });
+  return 0;
+}
