@@ -417,6 +417,7 @@ TEST(Recorder, StaysBoundedInLongUndampedRuns) {
 template <bool reads>
 class NumberList {
  public:
+  using is_loading = std::bool_constant<reads>;
   explicit NumberList(std::vector<double>& numbers) : numbers_(numbers) {}
   template <class... T>
   void operator()(T&... values) {
