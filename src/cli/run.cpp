@@ -93,8 +93,7 @@ std::string how_to_go_on(const io::ResultFolder& folder) {
 run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& options,
                            io::ResultFolder& folder, const std::optional<io::Case>& config) {
   const auto hooks = cli::hooks(options.quiet);
-  if (options.restart)
-    return run::go_on(folder, config ? &*config : nullptr, options.session, hooks);
+  if (options.restart) return run::go_on(folder, config ? &*config : nullptr, options.session, hooks);
   try {
     return run::run_into(folder, *config, options.session, hooks);
   } catch (const UserError& error) {
@@ -114,7 +113,8 @@ void require_fit(const CaseArguments& arguments, const io::Case& config, const s
 void run_case(const CaseArguments& arguments, const RunArguments& options) {
   std::optional<io::Case> config;
   if (!arguments.file.empty()) config = arguments.read();
-  if (options.restart ? options.dir || options.overwrite : !config || !options.dir)
+  const bool compares_nothing = !config && !arguments.set.empty();
+  if (options.restart ? options.dir || options.overwrite || compares_nothing : !config || !options.dir)
     throw UserError(
         "slipfront: run takes CASE and --output DIR, or --restart DIR, perhaps with CASE to compare; see "
         "slipfront run --help");

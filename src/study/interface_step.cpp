@@ -166,6 +166,7 @@ void write_interface_step(const std::filesystem::path& dir, const io::Case& conf
                           {"n_runs", result.n_runs},
                           {"warnings", result.warnings},
                           {"chosen", nullptr}};
+  io::remove_file(dir / "chosen.toml");  // of an earlier study
   if (result.chosen >= 0) {
     const auto& s = result.all[result.chosen];
     summary["chosen"] = {{"step_factor", s.step_factor},

@@ -364,3 +364,30 @@ def test_missing_experiment_file(program, tmp_path):
     told = one_line(program("reproduce", "--quick", "-o", "out", "--experiment", "missing.csv"))
     assert told.startswith("missing.csv: ")
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--restart", "out", "-o", "other"],
+        ["--restart", "out", "--overwrite"],
+        ["--restart", "out", "--set", "friction.mu_k=0.2"],  # nothing to set it in
+        ["-o", "out"],
+    ],
+)
+def test_restart_takes_no_other_folder_and_no_changes(program, tmp_path, arguments):
+    assert "--restart" in one_line(program("run", *arguments))
+    assert not (tmp_path / "out").exists()
+
+
+def test_restart_where_there_is_nothing(program, tmp_path):
+    assert "holds no unfinished run" in one_line(program("run", "--restart", "out"))
+    assert not (tmp_path / "out").exists()
+
+
+def test_restart_of_a_complete_run_is_told(program, coarse, tmp_path):
+    assert program("run", coarse, "-o", "out", "-q").returncode == 0
+    before = tree(tmp_path)
+    again = program("run", "--restart", "out")
+    assert (again.returncode, again.stdout) == (0, "out: is complete\n")
+    assert tree(tmp_path) == before

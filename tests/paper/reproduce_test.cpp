@@ -8,8 +8,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "../io/support.hpp"
+#include "io/checksum.hpp"
 #include "paper/cases.hpp"
 
 namespace slipfront::paper {
@@ -52,14 +54,25 @@ std::string without_times(const std::string& text) {
   return run.dump();
 }
 
+/// A list of checksums without those of files with measured times, and of lists that name such files.
+std::string without_sums_of_times(const std::string& text) {
+  std::istringstream lines(text);
+  std::string rest;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.ends_with("run.json") && !line.ends_with("timings.json") && !line.ends_with("checksums.sha256"))
+      rest += line + "\n";
+  return rest;
+}
+
 /// Every file of a reproduction by its path, as it is to be in any other one with the same options.
 std::map<std::string, std::string> reproducible_files(const fs::path& dir) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(dir)) {
     if (!entry.is_regular_file() || entry.path().filename() == "timings.json") continue;
     auto text = test::read_file(entry.path());
-    files[fs::relative(entry.path(), dir).string()] =
-        entry.path().filename() == "run.json" ? without_times(text) : std::move(text);
+    if (entry.path().filename() == "run.json") text = without_times(text);
+    if (entry.path().filename() == "checksums.sha256") text = without_sums_of_times(text);
+    files[fs::relative(entry.path(), dir).string()] = std::move(text);
   }
   return files;
 }
@@ -219,25 +232,41 @@ TEST(Reproduce, InterruptionKeepsTheRunsThatWereDone) {
                            }),
                  Interrupted);
     ASSERT_EQ(done.size(), 3U);
+    const auto unfinished = folder / "unfinished";
     for (const auto& name : done) {
-      EXPECT_NE(json::parse(test::read_file(folder.path() / name / "run.json"))["end"], "interrupted")
-          << name;
-      EXPECT_TRUE(fs::is_regular_file(folder.path() / name / "fronts.csv"));
+      EXPECT_EQ(json::parse(test::read_file(unfinished / name / "run.json"))["status"], "complete") << name;
+      EXPECT_TRUE(fs::is_regular_file(unfinished / name / "fronts.csv"));
     }
-    EXPECT_FALSE(fs::exists(folder / "scorecard.json"));
-    EXPECT_FALSE(fs::exists(folder / "studies"));
+    EXPECT_FALSE(fs::exists(unfinished / "scorecard.json"));
+    EXPECT_FALSE(fs::exists(unfinished / "studies"));
   }
 }
 
-TEST(Reproduce, InterruptionLeavesNoEarlierVerdicts) {
+TEST_F(QuickReproduction, GoesOnBehindTheRunsThatWereDone) {
   const TemporaryFolder folder;
-  for (const char* name : {"scorecard.json", "analysis.json", "timings.json"})
-    test::write_file(folder / name, "of an earlier reproduction");
+  for (const std::size_t stop_at : {3U, 9U})
+    EXPECT_THROW(reproduce(quick(folder.path(), 1),
+                           [&](std::size_t n, std::size_t, const std::string&) { return n < stop_at; }),
+                 Interrupted);
+  // One of them damaged meanwhile: it is computed again.
+  test::write_file(folder / "unfinished/left/fronts.csv", "damaged");
+  reproduce(quick(folder.path(), 2), go_on);
+  const auto expected = reproducible_files(s.folder.path()), files = reproducible_files(folder.path());
+  EXPECT_EQ(files.size(), expected.size());
+  for (const auto& [name, text] : expected)
+    EXPECT_TRUE(files.contains(name) && files.at(name) == text) << name;
+  io::require_intact(folder.path());
+}
+
+TEST(Reproduce, InterruptionLeavesEarlierResultsAsTheyWere) {
+  const TemporaryFolder folder;
+  const auto names = {"scorecard.json", "analysis.json", "timings.json"};
+  for (const char* name : names) test::write_file(folder / name, "of an earlier reproduction");
   EXPECT_THROW(reproduce(quick(folder.path(), 1, true),
                          [](std::size_t, std::size_t, const std::string&) { return false; }),
                Interrupted);
-  for (const char* name : {"scorecard.json", "analysis.json", "timings.json"})
-    EXPECT_FALSE(fs::exists(folder / name)) << name;
+  for (const char* name : names)
+    EXPECT_EQ(test::read_file(folder / name), "of an earlier reproduction") << name;
 }
 
 TEST(Reproduce, CanBeInterruptedAtOnce) {
