@@ -98,7 +98,7 @@ void set_ascii_attribute(const File& file, const std::string& object, const std:
 void set_attribute(const File& file, const std::string& object, const std::string& name,
                    std::span<const std::int64_t> values);
 
-/// Text attribute of variable length, of a file that was written just now: HDF5 keeps these texts in a heap
+/// Text attribute of variable length, of a file that is known to be whole: HDF5 keeps these texts in a heap
 /// without checksums, and does not come back from some damage of it.
 std::string text_attribute(const File& file, const std::string& object, const std::string& name);
 
@@ -116,6 +116,7 @@ Shape shape_of(const File& file, const std::string& name);
 // from first_row on, to the last bit, are others.
 File open_written_file(const std::filesystem::path& path);
 void require_length(const File& file, const std::string& name, hsize_t n_rows);
+/// The text is looked for in the file's bytes, see text_attribute.
 void require_text(const File& file, const std::string& object, const std::string& name,
                   const std::string& text);
 void require_rows(const File& file, const std::string& name, hsize_t first_row,

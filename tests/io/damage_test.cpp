@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "io/archive.hpp"
 #include "io/checksum.hpp"
 #include "io/hdf5.hpp"
@@ -83,6 +85,24 @@ TEST_F(DamagedHistory, DoesNotPassForOneThatWasWritten) {
   EXPECT_THROW(WrittenHistory(file_).require_lengths(100, 39), WriteError);
   EXPECT_THROW(WrittenHistory(file_).require_lengths(99, 40), WriteError);
   EXPECT_THROW(WrittenHistory(file_).require(1, history_), WriteError);
+}
+
+TEST_F(DamagedHistory, WithTheEndOfItsTextsLostDoesNotPass) {
+  // HDF5 itself would not come back from this heap.
+  const auto bytes = test::read_file(file_);
+  const auto heap = bytes.find("GCOL");
+  ASSERT_NE(heap, std::string::npos);
+  const auto last_text = bytes.find("contact pressure", heap);
+  ASSERT_NE(last_text, std::string::npos);
+  constexpr std::size_t heap_bytes = 4096;
+  for (std::size_t from = 0; heap + from < last_text; from += 40) {
+    auto damaged = bytes;
+    std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(heap + from), heap_bytes - from, '\0');
+    test::write_file(file_, damaged);
+    EXPECT_THROW(WrittenHistory{file_}, WriteError) << from;
+  }
+  test::write_file(file_, bytes);
+  EXPECT_NO_THROW(WrittenHistory{file_});
 }
 
 TEST_F(DamagedHistory, InAnEarlierFormatIsRefused) {
