@@ -8,8 +8,11 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from hostile.trials import as_from_a_terminal
 
 ROOT = Path(__file__).resolve().parents[2]
+
+as_from_a_terminal()
 
 # Elements of 5 mm: a run takes a few hundredths of a second.
 COARSE = """\

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from . import damage, disk, energy, faults, folders, kills, repeats
-from .trials import Bench, hold, remove, scratch_folder
+from .trials import Bench, as_from_a_terminal, hold, remove, scratch_folder
 
 #: At every call; the other ways at every fifth.
 AT_EVERY_CALL = [faults.FAILURES[0], faults.FAILURES[3], faults.DEATHS[0]]
@@ -46,6 +46,7 @@ def parts(bench):
 
 
 def main(program):
+    as_from_a_terminal()
     bench = Bench(
         Path(program).resolve(), Path(program).resolve().with_name("slipfront_fault.so"), scratch_folder()
     )

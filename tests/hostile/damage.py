@@ -155,7 +155,7 @@ _UNIFORM = ("prestress.t_Pa", "prestress.p_Pa")
 
 
 def changed_table(bench):
-    """A table of tractions that is changed between a run's beginning and its end."""
+    """A table of tractions that is changed between a run's beginning and its end: the run has its own."""
     table = bench.folder().with_suffix(".csv")
     table.parent.mkdir(parents=True)
     text = "x_m,t_Pa,p_Pa\n0,2.2e6,5e6\n0.1,2.2e6,5e6\n"
@@ -164,11 +164,15 @@ def changed_table(bench):
     case = bench.case({key: value for key, value in settings.items() if key not in _UNIFORM})
     expected = alone(bench.result(case))
     folder = interrupted(bench, case)
-    table.write_text(text.replace("0,2.2e6", "0,2.1e6"))
+    changed = text.replace("0,2.2e6", "0,2.1e6")
+    table.write_text(changed)
+    own = folder / "unfinished/prestress.csv"
+    require(own.read_text() == text, "the table is not kept")
+    own.write_text(changed)
     process = bench.run("run", "--restart", folder, "-q")
     require(process.returncode == 2, f"exit {process.returncode}: {process.stderr_text}")
-    require(str(table) in one_line(process), process.stderr_text)
-    table.write_text(text)
+    require(str(own) in one_line(process), process.stderr_text)
+    own.write_text(text)
     process = bench.run("run", "--restart", folder, "-q")
     require(process.returncode == 0, f"exit {process.returncode}: {process.stderr_text}")
     require_same(alone(folder), expected, "other results")

@@ -218,9 +218,10 @@ def stopped(run, until, name):
 def asked_to_keep(run, until):
     """USR1 makes a checkpoint, and the run goes on."""
     process, folder = run.start(until)
-    process.send_signal(signal.SIGUSR1)
     seen = False
     while process.poll() is None:
+        if not seen:
+            process.send_signal(signal.SIGUSR1)
         seen = seen or (folder / "unfinished/state/checkpoint-000001.bin").exists()
         time.sleep(0.005)
     _, errors = process.communicate()

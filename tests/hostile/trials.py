@@ -6,6 +6,7 @@ import itertools
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -28,6 +29,13 @@ def require(condition, what):
 
 
 @dataclass
+def as_from_a_terminal():
+    """In the background of a shell some signals are ignored, and the program leaves them so."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    for each in (signal.SIGQUIT, signal.SIGHUP, signal.SIGTERM):
+        signal.signal(each, signal.SIG_DFL)
+
+
 class Bench:
     """The program, the library that disturbs it, and a place for folders."""
 
