@@ -41,7 +41,9 @@ double energy_of_tractions_J_per_m(const Stepper& stepper) {
 }
 
 double supplied_J_per_m(const Energies& now, const Energies& start) {
-  return start.stored() + std::abs(now.top_work) + std::abs(now.trigger_work) + std::abs(now.prestress_work);
+  // Of a plate at rest rounding may leave less than nothing.
+  return std::max(0.0, start.stored()) + std::abs(now.top_work) + std::abs(now.trigger_work) +
+         std::abs(now.prestress_work);
 }
 
 /// What of the case gives the plate most of its energy.

@@ -58,6 +58,16 @@ TEST_F(Watched, RoundingIsNoEnergyFromNowhere) {
   EXPECT_THAT(trouble_at(1e-4), HasSubstr("reduce time.step_factor"));
 }
 
+TEST_F(Watched, AStartBelowNothingTakesNothingFromWhatIsSupplied) {
+  Stepper stepper = pressed();
+  Energies start, now;
+  start.strain = -1;
+  now.trigger_work = 0.5;
+  now.coupling_work = 0.1;
+  now.kinetic = 0.5;
+  EXPECT_THAT(Watch(stepper, c_L_, start, 0).trouble(&now), IsEmpty());
+}
+
 TEST_F(Watched, TheCouplingMayGiveATenthOfWhatIsSupplied) {
   Stepper stepper = pressed();
   Watch watch(stepper, c_L_);
