@@ -120,6 +120,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
         "slipfront run --help");
   io::ResultFolder folder(options.folder(), run::run_work);
   if (options.restart && !folder.has_unfinished() && run::is_complete(folder.dir())) {
+    if (config) run::require_same_case(*config, folder.dir());
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());
     return;
   }

@@ -281,14 +281,14 @@ bool ResultFolder::has_unfinished() const {
 
 void ResultFolder::require_empty(bool overwrite, bool resumes) const {
   if (overwrite) return;
-  if (has_results())
-    throw UserError(
-        "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
-        dir_.string());
   if (is_under_way(unfinished()) && !(resumes && has_unfinished()))
     throw UserError(
         "output folder {}: holds unfinished work; go on with it (slipfront run --restart) or pass "
         "--overwrite to begin anew",
+        dir_.string());
+  if (has_results())
+    throw UserError(
+        "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
         dir_.string());
 }
 

@@ -265,10 +265,7 @@ Finished go_on(io::ResultFolder& folder, const io::Case* expected, const Session
     throw UserError("{}: holds no unfinished run to go on with", folder.dir().string());
   const io::Case config = io::read_case(file);
   const std::string text = resolved_text(config);
-  if (expected != nullptr) {
-    require_same(resolved_text(*expected), text, "the case");
-    require_same(expected->prestress.table.text, config.prestress.table.text, "the table of its tractions");
-  }
+  if (expected != nullptr) require_same_case(*expected, folder.unfinished());
   auto kept = Checkpoints(folder.state()).last(hooks.note);
   if (kept) {
     if (kept->head.program != program_identity())
@@ -282,6 +279,12 @@ Finished go_on(io::ResultFolder& folder, const io::Case* expected, const Session
   io::write_text(file, text);  // as it was, however it was written meanwhile
   for (const char* name : {"interface.h5", "fields.vtkhdf"}) io::remove_file(folder.unfinished() / name);
   return Session(folder, config, options, hooks, true).run(std::move(kept));
+}
+
+void require_same_case(const io::Case& wanted, const std::filesystem::path& dir) {
+  const io::Case config = io::read_case(dir / case_file);
+  require_same(resolved_text(wanted), resolved_text(config), "the case");
+  require_same(wanted.prestress.table.text, config.prestress.table.text, "the table of its tractions");
 }
 
 bool is_complete(const std::filesystem::path& dir) {

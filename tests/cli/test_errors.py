@@ -388,6 +388,16 @@ def test_restart_where_there_is_nothing(program, tmp_path):
 def test_restart_of_a_complete_run_is_told(program, coarse, tmp_path):
     assert program("run", coarse, "-o", "out", "-q").returncode == 0
     before = tree(tmp_path)
-    again = program("run", "--restart", "out")
-    assert (again.returncode, again.stdout) == (0, "out: is complete\n")
+    for arguments in (["--restart", "out"], [coarse, "--restart", "out"]):
+        again = program("run", *arguments)
+        assert (again.returncode, again.stdout) == (0, "out: is complete\n")
+    other = program("run", coarse, "--restart", "out", "--set", "friction.mu_k=0.7")
+    assert "is another case" in one_line(other) and "mu_k = 0.6" in other.stderr
     assert tree(tmp_path) == before
+
+
+def test_unfinished_work_is_told_before_other_files(program, coarse, tmp_path):
+    settings = ("--set", "output.history_interval_s=1e-5", "--set", "plate.element_size_m=2e-3")
+    write_error(program("run", coarse, "-o", "out", "-q", *settings, file_bytes=1 << 16))
+    (tmp_path / "out/figures").mkdir()
+    assert "holds unfinished work" in one_line(program("run", coarse, "-o", "out"))
