@@ -92,7 +92,7 @@ std::string checkpoint_of(const io::Case& config) {
     head.in_event = true;
     event.run([&](std::int64_t, std::int64_t) {
       checkpoints.keep(head, [&](io::OutputArchive& archive) {
-        archive(initial, *stepper, event, io::ResultStream::Lengths{});
+        archive(initial, *stepper, event, io::ResultStream::Extents{});
       });
       return false;
     });
@@ -110,8 +110,8 @@ void go_on(const io::Case& config, run::Checkpoints::Kept& kept) {
     const auto stepper = run::make_stepper(config, initial);
     kept.rest(*stepper);
     auto event = run::begin_event(config, initial, *stepper);
-    io::ResultStream::Lengths lengths;
-    kept.rest(event, lengths);
+    io::ResultStream::Extents extents;
+    kept.rest(event, extents);
     kept.rest.close();
     event.run(stop);
   } else {
