@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Case files and tables of every kind that a shell can give, numbers of every size, little memory, closed outputs."""
+"""Case files and tables of every kind, numbers of every size, little memory, outputs that take no more."""
 
 import json
 import os
@@ -87,7 +87,9 @@ def test_special_files_as_a_case(program):
     assert "cannot be read" in one_line(program("validate", "/proc/self/mem"))
 
 
-@pytest.mark.parametrize("text", ["a." * 25000 + "a = 1", "[" + "a." * 25000 + "a]", "a = " + "[" * 25000, "a = " + "{a=" * 25000])
+@pytest.mark.parametrize(
+    "text", ["a." * 25000 + "a = 1", "[" + "a." * 25000 + "a]", "a = " + "[" * 25000, "a = " + "{a=" * 25000]
+)
 def test_deep_nesting(program, write_case, text):
     case = write_case("[plate]\nelement_size_m = 5e-3\n" + text)
     assert one_line(program("validate", case)).startswith(f"{case}:3: is nested more than")
@@ -96,9 +98,8 @@ def test_deep_nesting(program, write_case, text):
 def test_title_that_is_no_utf8(program, write_case, coarse):
     case = write_case(b'[plate]\nelement_size_m = 5e-3\n[event]\ntitle = "\xe9"\n')
     assert one_line(program("run", case, "-o", "out")).startswith(f"{case}:4: holds bytes that are no utf-8")
-    result = subprocess.run(
-        [program.path, "run", coarse, "-o", "out", "--set", b"title=\xff"], cwd=program.folder, capture_output=True
-    )
+    command = [program.path, "run", coarse, "-o", "out", "--set", b"title=\xff"]
+    result = subprocess.run(command, cwd=program.folder, capture_output=True)
     assert (result.returncode, result.stdout) == (2, b"")
     assert result.stderr.decode().startswith("--set title=?: holds bytes that are no utf-8")
 
@@ -125,9 +126,8 @@ def numeric_keys(program):
 def test_numbers_of_every_size(program, write_case, tmp_path, base):
     (tmp_path / "table.csv").write_text(TABLE)
     coarse = "[plate]\nelement_size_m = 5e-3\n"
-    case = write_case(
-        {"tilted": coarse, "prestressed": PRESTRESSED, "graded": coarse + "coarsenings = 1\nfine_height_m = 0.02\n"}[base]
-    )
+    graded = coarse + "coarsenings = 1\nfine_height_m = 0.02\n"
+    case = write_case({"tilted": coarse, "prestressed": PRESTRESSED, "graded": graded}[base])
     for key, kind, law in numeric_keys(program):
         for value in INTEGERS if kind == "integer" else WELL_BEYOND:
             value = f"[{value}]" if kind == "list of numbers" else value
@@ -153,10 +153,11 @@ def test_the_reference_names_the_condition_of_a_key(program):
 
 def test_table_in_another_unit(program, write_case, tmp_path):
     case = write_case(PRESTRESSED)
-    (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n" + "".join(f"{x},2.1e6,5e6\n" for x in range(0, 201, 10)))
+    rows = "".join(f"{x},2.1e6,5e6\n" for x in range(0, 201, 10))
+    (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n" + rows)
     note = (
-        "the table of prestress.file reaches from x = 0 to 200 m, the plate from 0 to 0.2 m: 20 of its 21 rows lie "
-        "beyond it; are its positions in m?"
+        "the table of prestress.file reaches from x = 0 to 200 m, the plate from 0 to 0.2 m: 20 of its 21 "
+        "rows lie beyond it; are its positions in m?"
     )
     for command in (["validate", case], ["info", case], ["run", case, "-o", "out"]):
         assert f"note: {note}\n" in program(*command).stdout
@@ -167,7 +168,8 @@ def test_table_in_another_unit(program, write_case, tmp_path):
 
 # --- Output
 
-TELLING = [["keys"], ["--version"], ["--help"], ["run", "--help"], ["info", "coarse.toml"], ["validate", "coarse.toml"]]
+TELLING = [["keys"], ["--version"], ["--help"], ["run", "--help"]]
+TELLING += [["info", "coarse.toml"], ["validate", "coarse.toml"]]
 
 
 @pytest.mark.parametrize("arguments", TELLING, ids=lambda arguments: arguments[0])
@@ -183,7 +185,8 @@ class TestStandardOutput:
     def test_whose_reader_has_gone(self, program, coarse, arguments, ignored):
         reading, writing = os.pipe()
         os.close(reading)
-        result = program.start(*arguments, stdout=writing, stderr=subprocess.PIPE, text=True, restore_signals=not ignored)
+        streams = {"stdout": writing, "stderr": subprocess.PIPE, "text": True}
+        result = program.start(*arguments, restore_signals=not ignored, **streams)
         os.close(writing)
         assert result.communicate(timeout=20)[1] == ""
 
@@ -193,7 +196,7 @@ class TestStandardOutput:
 
 @pytest.mark.parametrize("megabytes", [60, 100, 150, 200, 300])
 def test_little_memory(program, write_case, megabytes):
-    """Each ends within seconds: by its work, or with one line. Below some 70 MB the libraries cannot be loaded."""
+    """Each ends within seconds: by its work, or with one line. Below some 70 MB no library is loaded."""
     case = write_case("[plate]\ncorner = \"none\"\n[time]\nend_s = 2e-6\n")
     for command in (["info", case], ["run", case, "-o", f"out{megabytes}", "-q"]):
         result = program(*command, timeout_s=20, memory_bytes=megabytes * 10**6)
@@ -207,16 +210,18 @@ def test_little_memory(program, write_case, megabytes):
 
 
 def test_long_interface_is_solved_iteratively(program, write_case, tmp_path):
-    plate = '[plate]\nwidth_m = 1\nheight_m = 2.5e-3\nelement_size_m = 5e-4\ncorner = "none"\n[friction]\nmu_s = 0.6\nmu_k = 0.3\n'
-    rest = "[loading]\ntilt_left_m = 1e-6\ntilt_right_m = 1e-6\n[time]\nend_s = 1e-7\n[fronts]\nl_star_m = 1e-3\n"
-    case = write_case(plate + rest)
+    plate = '[plate]\nwidth_m = 1\nheight_m = 2.5e-3\nelement_size_m = 5e-4\ncorner = "none"\n'
+    loading = "[loading]\ntilt_left_m = 1e-6\ntilt_right_m = 1e-6\n[friction]\nmu_s = 0.6\nmu_k = 0.3\n"
+    rest = "[time]\nend_s = 1e-7\n[fronts]\nl_star_m = 1e-3\n"
+    case = write_case(plate + loading + rest)
     run = program("run", case, "-o", "out", "-q", timeout_s=30)
     assert run.returncode == 0, run.stderr
     assert json.loads((tmp_path / "out/run.json").read_text())["statics"]["solver"] == "iterative"
 
 
 def test_multigrid_of_a_slender_plate_is_refused(program, write_case):
-    case = write_case("[plate]\nwidth_m = 0.02\nheight_m = 2\nelement_size_m = 1e-3\n[loading]\nsolver = \"iterative\"\n"
-                      "edge_margin_m = 1e-3\n[event]\ntrigger_zone_m = 1e-3\n")
+    plate = "[plate]\nwidth_m = 0.02\nheight_m = 2\nelement_size_m = 1e-3\n"
+    loading = '[loading]\nsolver = "iterative"\nedge_margin_m = 1e-3\n[event]\ntrigger_zone_m = 1e-3\n'
+    case = write_case(plate + loading)
     line = one_line(program("validate", case))
     assert line.startswith(f"{case}:6: loading.solver = iterative does not converge")
