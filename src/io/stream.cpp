@@ -123,8 +123,8 @@ ResultStream::ResultStream(const std::filesystem::path& dir, const Extents& exte
       writer_(most_bytes_waiting) {}
 
 void ResultStream::require_unchanged(const std::filesystem::path& dir, const Extents& extents) {
-  for (const auto& [file, extent] : {std::pair(history_file(dir), &extents.history),
-                                     std::pair(snapshot_file(dir), &extents.snapshots)})
+  for (const auto& [file, extent] :
+       {std::pair(history_file(dir), &extents.history), std::pair(snapshot_file(dir), &extents.snapshots)})
     if (sha256_of_file(file) != extent->checksum)
       throw WriteError("{}: is not what was written: it was changed or damaged meanwhile", file.string());
 }

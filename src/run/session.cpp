@@ -64,7 +64,7 @@ class Session {
   Checkpoints checkpoints_;
   CheckpointHead head_;
   Clock::time_point event_began_ = Clock::now(), kept_ = Clock::now(), told_ = Clock::now();
-  bool resumed_;             ///< there is earlier work in the folder
+  bool resumed_;        ///< there is earlier work in the folder
   bool began_ = false;  ///< before that a new run has nothing to keep
   double kept_time_s_ = 0, tell_interval_s_ = least_tell_interval_s;
 
