@@ -118,8 +118,11 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
     throw UserError(
         "slipfront: run takes CASE and --output DIR, or --restart DIR, perhaps with CASE to compare; see "
         "slipfront run --help");
+  if (std::isnan(options.session.keep_every_wall_s) || std::isnan(options.session.keep_every_s))
+    throw UserError("slipfront: --checkpoint-every must be a number of seconds, is nan");
   io::ResultFolder folder(options.folder(), run::run_work);
   if (options.restart && !folder.has_unfinished() && run::is_complete(folder.dir())) {
+    if (config) run::require_same_case(*config, folder.dir());
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());
     return;
   }

@@ -68,9 +68,8 @@ struct Interface {
   /// All that changes.
   template <class Archive>
   void serialize(Archive& archive) {
-    for (auto* values :
-         {&intact, &v_x_m_per_s, &v_y_m_per_s, &u_y_m, &slip_rate_m_per_s, &t_Pa, &p_Pa, &demand_Pa,
-          &strength_Pa, &slip_m, &relaxed_Pa, &target_Pa, &acceleration_m_per_s2})
+    for (auto* values : {&intact, &v_x_m_per_s, &v_y_m_per_s, &u_y_m, &slip_rate_m_per_s, &t_Pa, &p_Pa,
+                         &demand_Pa, &strength_Pa, &slip_m, &relaxed_Pa, &target_Pa, &acceleration_m_per_s2})
       archive_vector(archive, *values);
     archive_vector(archive, slipping);
     archive_vector(archive, locked);

@@ -106,7 +106,7 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
 }
 
 void sync_file(const std::filesystem::path& file) {
-  Descriptor opened = open(file, O_RDONLY);
+  Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (!opened.valid() || ::fsync(opened.get()) != 0 || !opened.close()) throw_write(file, "written");
 }
 

@@ -227,10 +227,12 @@ void ResultFolder::make() {
     throw_unusable(dir_, "used", error.value());
   if (fs::exists(status) && !fs::is_directory(status))
     throw UserError("output folder {}: is a file; choose another name", dir_.string());
-  for (fs::path p = dir_; !p.empty() && !fs::exists(p, error); p = p.parent_path()) outermost_made_ = p;
+  fs::path outermost;  // a link to nowhere is not ours
+  for (fs::path p = dir_; !p.empty() && !is_there(p); p = p.parent_path()) outermost = p;
   error.clear();
   fs::create_directories(dir_, error);
   if (error) throw_unusable(dir_, "made", error.value());
+  outermost_made_ = outermost;
   if (::access(dir_.c_str(), R_OK | W_OK | X_OK) != 0) throw_unusable(dir_, "written", errno);
   auto names = std::vector<const char*>(unlisted_results.begin(), unlisted_results.end());
   names.push_back(checksum_list);
@@ -281,14 +283,14 @@ bool ResultFolder::has_unfinished() const {
 
 void ResultFolder::require_empty(bool overwrite, bool resumes) const {
   if (overwrite) return;
-  if (has_results())
-    throw UserError(
-        "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
-        dir_.string());
   if (is_under_way(unfinished()) && !(resumes && has_unfinished()))
     throw UserError(
         "output folder {}: holds unfinished work; go on with it (slipfront run --restart) or pass "
         "--overwrite to begin anew",
+        dir_.string());
+  if (has_results())
+    throw UserError(
+        "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
         dir_.string());
 }
 

@@ -19,6 +19,7 @@
 #include "io/prestress.hpp"
 #include "io/text.hpp"
 #include "solid/operator.hpp"
+#include "solve/plate_solver.hpp"
 
 namespace slipfront::io {
 namespace {
@@ -410,6 +411,11 @@ void check_relations(const Case& config, const Document& document, const std::st
       plate.coarsenings == 0 || loading.solver != solve::StaticSolver::iterative,
       {"loading.solver", "plate.coarsenings"},
       "loading.solver = iterative knows no graded plates; choose auto or direct, or plate.coarsenings = 0");
+  require(!tilted || loading.solver != solve::StaticSolver::iterative ||
+              plate.height_m <= 2 * solve::most_iterative_slenderness * plate.width_m,
+          {"loading.solver", "plate.height_m", "plate.width_m"},
+          "loading.solver = iterative does not converge on a plate so much higher than wide; choose auto or "
+          "direct");
   require(
       config.time.step_factor <= 1 || config.time.allow_unstable, {"time.step_factor", "time.allow_unstable"},
       fmt::format(
@@ -564,7 +570,7 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
 }
 
 CaseFile::CaseFile(const std::filesystem::path& file, const std::vector<Override>& overrides)
-    : name_(one_line(file.native())) {
+    : name_(file.empty() ? "CASE" : one_line(file.native())) {
   constexpr std::size_t most_bytes = std::size_t{64} << 20U;
   document_ = parse_document(read_text(file, name_, "case file", most_bytes), name_);
   if (document_.settings.empty())

@@ -122,6 +122,13 @@ ResultStream::ResultStream(const std::filesystem::path& dir, const Extents& exte
       snapshots_(snapshot_file(dir), extents.snapshots),
       writer_(most_bytes_waiting) {}
 
+void ResultStream::require_unchanged(const std::filesystem::path& dir, const Extents& extents) {
+  for (const auto& [file, extent] :
+       {std::pair(history_file(dir), &extents.history), std::pair(snapshot_file(dir), &extents.snapshots)})
+    if (sha256_of_file(file) != extent->checksum)
+      throw WriteError("{}: is not what was written: it was changed or damaged meanwhile", file.string());
+}
+
 void ResultStream::sample(const fronts::History& row) {
   for (const auto* column : {&row.time_s, &row.slip_m, &row.slip_rate_m_per_s, &row.t_Pa, &row.p_Pa})
     append(block_, *column);

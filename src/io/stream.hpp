@@ -55,6 +55,9 @@ class ResultStream : public solve::Sink {
   /// Waits until all that was given is on the device.
   Extents keep();
 
+  /// Compares files that are complete. @throws WriteError where one is not what was written.
+  static void require_unchanged(const std::filesystem::path& dir, const Extents& extents);
+
   static std::filesystem::path history_file(const std::filesystem::path& dir);
   static std::filesystem::path snapshot_file(const std::filesystem::path& dir);
 

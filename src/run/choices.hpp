@@ -17,7 +17,7 @@ void require_plate_fits(const io::Case& config);
 /// Of the top edge where the plate is loaded by a ramp, and during the event.
 double top_speed_m_per_s(const io::Case& config);
 
-/// The iterative solution knows no graded plates.
+/// What the plate's shape leaves of loading.solver.
 solve::StaticSolver wanted_solver(const io::Case& config);
 
 /// Whether the tractions of the interface are given: no statics, no ramp.

@@ -91,7 +91,10 @@ double top_speed_m_per_s(const io::Case& config) {
 }
 
 solve::StaticSolver wanted_solver(const io::Case& config) {
-  return config.plate.coarsenings > 0 ? solve::StaticSolver::direct : config.loading.solver;
+  const auto& plate = config.plate;
+  return solve::solver_for_shape(config.loading.solver, plate.coarsenings > 0,
+                                 std::round(plate.width_m / plate.element_size_m),
+                                 std::round(plate.height_m / plate.element_size_m));
 }
 
 bool is_prestressed(const io::Case& config) {

@@ -64,8 +64,8 @@ class Session {
   Checkpoints checkpoints_;
   CheckpointHead head_;
   Clock::time_point event_began_ = Clock::now(), kept_ = Clock::now(), told_ = Clock::now();
-  bool resumed_;             ///< there is earlier work in the folder
-  bool began_ramp_ = false;  ///< before that a new run has nothing to keep
+  bool resumed_;        ///< there is earlier work in the folder
+  bool began_ = false;  ///< before that a new run has nothing to keep
   double kept_time_s_ = 0, tell_interval_s_ = least_tell_interval_s;
 
   InitialState initial_;
@@ -109,7 +109,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
     fail("blew_up", error.what());
     throw;
   } catch (const std::exception& error) {
-    if (event_ || began_ramp_ || resumed_)
+    if (began_ || resumed_)
       fail("failed", error.what());
     else
       folder_.abandon();
@@ -131,7 +131,7 @@ void Session::begin_ramp(Checkpoints::Kept* kept, solve::Stepper& stepper, solve
     kept->rest(stepper, ramp);
     kept->rest.close();
   }
-  began_ramp_ = true;
+  began_ = true;
   stepper_ = &stepper;
   ramp_ = &ramp;
   kept_time_s_ = stepper.time_s();
@@ -155,6 +155,7 @@ void Session::begin_event(Checkpoints::Kept* kept) {
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
   }
   io::write_static(dir_ / "static.csv", initial_.common.tractions);
+  began_ = true;
   stepper_ = event_stepper_.get();
   kept_time_s_ = stepper_->time_s();
   event_began_ = kept_ = Clock::now();
@@ -206,8 +207,9 @@ void Session::tell() {
 Finished Session::finish(solve::Event event) {
   Finished run{unmeasured(config_, *stepper_, std::move(event)), {}};
   run.result.stepping_wall_s = wall_s();
-  stream_->keep();
+  const auto extents = stream_->keep();
   stream_.reset();
+  io::ResultStream::require_unchanged(folder_.state(), extents);
   event_.reset();
   event_stepper_.reset();
   run.initial = std::move(initial_);
@@ -219,6 +221,9 @@ Finished Session::finish(solve::Event event) {
 void Session::write_results(const Finished& run) {
   auto status = status_of(run.result);
   status.sessions = head_.sessions;
+  // As they are, whatever has happened to the files meanwhile.
+  write_case(dir_, config_);
+  io::write_static(dir_ / "static.csv", run.initial.common.tractions);
   // What takes no time first: the program may be given none after an interruption.
   write_so_far(dir_, run.result, run.initial, status);
   io::write_history(dir_ / "interface.h5", io::ResultStream::history_file(folder_.state()),
@@ -265,10 +270,7 @@ Finished go_on(io::ResultFolder& folder, const io::Case* expected, const Session
     throw UserError("{}: holds no unfinished run to go on with", folder.dir().string());
   const io::Case config = io::read_case(file);
   const std::string text = resolved_text(config);
-  if (expected != nullptr) {
-    require_same(resolved_text(*expected), text, "the case");
-    require_same(expected->prestress.table.text, config.prestress.table.text, "the table of its tractions");
-  }
+  if (expected != nullptr) require_same_case(*expected, folder.unfinished());
   auto kept = Checkpoints(folder.state()).last(hooks.note);
   if (kept) {
     if (kept->head.program != program_identity())
@@ -282,6 +284,12 @@ Finished go_on(io::ResultFolder& folder, const io::Case* expected, const Session
   io::write_text(file, text);  // as it was, however it was written meanwhile
   for (const char* name : {"interface.h5", "fields.vtkhdf"}) io::remove_file(folder.unfinished() / name);
   return Session(folder, config, options, hooks, true).run(std::move(kept));
+}
+
+void require_same_case(const io::Case& wanted, const std::filesystem::path& dir) {
+  const io::Case config = io::read_case(dir / case_file);
+  require_same(resolved_text(wanted), resolved_text(config), "the case");
+  require_same(wanted.prestress.table.text, config.prestress.table.text, "the table of its tractions");
 }
 
 bool is_complete(const std::filesystem::path& dir) {

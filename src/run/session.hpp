@@ -56,6 +56,9 @@ Finished run_into(io::ResultFolder& folder, const io::Case& config, const Sessio
 Finished go_on(io::ResultFolder& folder, const io::Case* expected, const SessionOptions& options,
                const SessionHooks& hooks);
 
+/// @throws UserError where a folder has the results or the unfinished work of another case.
+void require_same_case(const io::Case& wanted, const std::filesystem::path& dir);
+
 /// Whether a folder has the results of a run that is complete.
 bool is_complete(const std::filesystem::path& dir);
 

@@ -42,6 +42,13 @@ namespace {
   throw UserError("out of memory in the static solution ({}); choose a larger plate.element_size_m", what);
 }
 
+/// The condensed stiffness, its factor, and the equations of slipping nodes with theirs.
+void require_memory_of_interface(double n_nodes) {
+  const double dense = sizeof(double) * 4 * n_nodes * n_nodes;
+  require_memory(4 * dense, fmt::format("the condensed stiffness of {:.4g} interface nodes", n_nodes),
+                 "set loading.solver = iterative or choose a larger plate.element_size_m");
+}
+
 /// OpenBLAS takes a buffer of 128 MB when it is first called, and where it gets none it tries for ever: the
 /// memory of the numeric factorisation has to be there with it.
 void require_memory_with_blas(const cholmod_factor& factor, const cholmod_sparse& matrix) {
@@ -88,6 +95,7 @@ Factorisation::~Factorisation() = default;
 
 Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& material, TopConstraint top)
     : cholmod_(std::make_unique<Cholmod>()), mesh_(mesh), top_(top) {
+  require_memory_of_interface(static_cast<double>(mesh.lower.size()));
   if (top == TopConstraint::vertical) spring_ = material.youngs_modulus_Pa;
 
   // Numbering: dissection order, interface last, prescribed displacements left out.

@@ -56,8 +56,8 @@ struct Shared {
   /// All that changes.
   template <class Archive>
   void serialize(Archive& archive) {
-    for (auto* field : {&u_before_m, &push_m_per_s, &steady_m_per_s2, &v_last_m_per_s, &a_m_per_s2,
-                        &v_mean_before_m_per_s})
+    for (auto* field :
+         {&u_before_m, &push_m_per_s, &steady_m_per_s2, &v_last_m_per_s, &a_m_per_s2, &v_mean_before_m_per_s})
       archive_field(archive, *field, node.size());
   }
 };

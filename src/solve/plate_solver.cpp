@@ -123,6 +123,13 @@ StaticSolver choose_solver(StaticSolver wanted, double n_unknowns) {
   return n_unknowns <= most_direct_unknowns ? StaticSolver::direct : StaticSolver::iterative;
 }
 
+StaticSolver solver_for_shape(StaticSolver wanted, bool is_graded, double columns, double rows) {
+  if (is_graded) return StaticSolver::direct;
+  if (wanted != StaticSolver::automatic) return wanted;
+  if (rows > most_iterative_slenderness * columns) return StaticSolver::direct;
+  return columns > most_direct_columns ? StaticSolver::iterative : wanted;
+}
+
 std::string_view name_of(StaticSolver solver) {
   if (solver == StaticSolver::automatic) return "auto";
   return solver == StaticSolver::direct ? "direct" : "iterative";
@@ -146,7 +153,7 @@ void require_statics_memory(StaticSolver solver, double n_unknowns) {
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver) {
-  if (!mesh.coarser.empty()) solver = StaticSolver::direct;
+  solver = solver_for_shape(solver, !mesh.coarser.empty(), mesh.grid.columns, mesh.grid.rows);
   require_statics_memory(solver, 2.0 * mesh.n_nodes());
   if (choose_solver(solver, 2.0 * mesh.n_nodes()) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material);

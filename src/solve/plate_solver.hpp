@@ -82,6 +82,15 @@ inline constexpr double most_direct_unknowns = 400e3;
 /// `wanted`, or what suits the number of unknowns.
 StaticSolver choose_solver(StaticSolver wanted, double n_unknowns);
 
+/// What a plate of so many columns and rows of elements leaves of `wanted`. Graded plates are solved
+/// directly. Multigrid cannot follow a plate far higher than wide; there a factorisation is cheap. On a long
+/// interface its dense part is not.
+StaticSolver solver_for_shape(StaticSolver wanted, bool is_graded, double columns, double rows);
+
+/// Rows over columns up to which multigrid converges, and columns up to which automatic takes a
+/// factorisation.
+inline constexpr double most_iterative_slenderness = 10, most_direct_columns = 1500;
+
 std::string_view name_of(StaticSolver solver);
 
 /// Bytes the statics need at their peak, the mesh and the equilibria found included.
@@ -91,7 +100,7 @@ double statics_bytes(StaticSolver solver, double n_unknowns);
 /// @throws UserError with the figures.
 void require_statics_memory(StaticSolver solver, double n_unknowns);
 
-/// The iterative solution knows plain plates only: graded ones have the direct one, whatever is wanted.
+/// By the solver that the plate's shape leaves of `solver`.
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver);
 

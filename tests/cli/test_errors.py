@@ -388,6 +388,42 @@ def test_restart_where_there_is_nothing(program, tmp_path):
 def test_restart_of_a_complete_run_is_told(program, coarse, tmp_path):
     assert program("run", coarse, "-o", "out", "-q").returncode == 0
     before = tree(tmp_path)
-    again = program("run", "--restart", "out")
-    assert (again.returncode, again.stdout) == (0, "out: is complete\n")
+    for arguments in (["--restart", "out"], [coarse, "--restart", "out"]):
+        again = program("run", *arguments)
+        assert (again.returncode, again.stdout) == (0, "out: is complete\n")
+    other = program("run", coarse, "--restart", "out", "--set", "friction.mu_k=0.7")
+    assert "is another case" in one_line(other) and "mu_k = 0.6" in other.stderr
     assert tree(tmp_path) == before
+
+
+def test_unfinished_work_is_told_before_other_files(program, coarse, tmp_path):
+    settings = ("--set", "output.history_interval_s=1e-5", "--set", "plate.element_size_m=2e-3")
+    write_error(program("run", coarse, "-o", "out", "-q", *settings, file_bytes=1 << 16))
+    (tmp_path / "out/figures").mkdir()
+    assert "holds unfinished work" in one_line(program("run", coarse, "-o", "out"))
+
+
+def test_work_is_kept_where_a_result_cannot_be_made(program, coarse, tmp_path):
+    """history.raw just fits, interface.h5 does not."""
+    settings = ("--set", "output.history_interval_s=1e-5")
+    assert program("run", coarse, "-o", "whole", "-q", *settings).returncode == 0
+    most = (tmp_path / "whole/interface.h5").stat().st_size - 1
+    assert "interface.h5" in write_error(program("run", coarse, "-o", "out", "-q", *settings, file_bytes=most))
+    assert program("run", "--restart", "out", "-q").returncode == 0
+    for name in ("interface.h5", "fronts.csv", "energy.csv"):
+        assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_output_folder_that_is_a_link(program, coarse, tmp_path):
+    (tmp_path / "target").mkdir()
+    (tmp_path / "link").symlink_to("target")
+    assert program("run", coarse, "-o", "link", "-q").returncode == 0
+    assert (tmp_path / "target/checksums.sha256").is_file()
+    (tmp_path / "lost").symlink_to("nowhere")
+    assert "choose another place" in one_line(program("run", coarse, "-o", "lost"))
+    assert (tmp_path / "lost").is_symlink()
+
+
+def test_checkpoint_interval_that_is_no_number(program, coarse, tmp_path):
+    assert "nan" in one_line(program("run", coarse, "-o", "out", "--checkpoint-every", "nan"))
+    assert not (tmp_path / "out").exists()

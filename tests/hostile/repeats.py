@@ -35,17 +35,22 @@ class Setting:
         self.expected = alone(folder)
 
     def interrupted(self, folder, dice):
-        """@return whether it was done before"""
+        """@return whether it is done"""
         process = self.bench.start(*self.command, "-o", folder)
         time.sleep(dice.uniform(0, self.duration_s))
         sent = dice.choice(SIGNALS)
         process.send_signal(sent)
-        _, errors = process.communicate(timeout=120)
+        _, process.stderr_text = process.communicate(timeout=120)
         # By the signal itself before the program has taken it into its own hands.
-        require(
-            process.returncode in (0, 128 + sent, -sent), f"exit {process.returncode} after {sent}: {errors}"
-        )
-        return process.returncode == 0
+        if process.returncode in (128 + sent, -sent):
+            return False
+        self.require_done(process)
+        return True
+
+    def require_done(self, process):
+        """Now, or by one that was killed when its results were complete: these are refused to be replaced."""
+        refused = process.returncode == 2 and "is not empty" in process.stderr_text
+        require(process.returncode == 0 or refused, f"exit {process.returncode}: {process.stderr_text}")
 
     def trial(self, seed):
         dice = random.Random(seed)
@@ -54,8 +59,7 @@ class Setting:
         for _ in range(dice.randint(1, 4)):
             done = done or self.interrupted(folder, dice)
         if not done:
-            process = self.bench.run(*self.command, "-o", folder)
-            require(process.returncode == 0, f"exit {process.returncode}: {process.stderr_text}")
+            self.require_done(self.bench.run(*self.command, "-o", folder))
         require_same(alone(folder), self.expected, "other results")
         remove(folder.parent)
 

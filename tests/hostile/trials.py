@@ -28,7 +28,6 @@ def require(condition, what):
         raise Wrong(what)
 
 
-@dataclass
 def as_from_a_terminal():
     """In the background of a shell some signals are ignored, and the program leaves them so."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -36,6 +35,7 @@ def as_from_a_terminal():
         signal.signal(each, signal.SIG_DFL)
 
 
+@dataclass
 class Bench:
     """The program, the library that disturbs it, and a place for folders."""
 

@@ -132,8 +132,9 @@ TEST(DataSets, RowsBeyondTheEndAreRefused) {
   const auto file = hdf5::open_file(path);
   EXPECT_EQ(hdf5::read_rows(file, "values", 1, 1).values, (std::vector<double>{3, 4}));
   constexpr hsize_t far = ~hsize_t{0};
-  for (const auto& [first, n] : {std::pair{hsize_t{1}, hsize_t{2}}, {far, hsize_t{2}}, {hsize_t{1}, far}})
-    EXPECT_THAT(error_of([&] { hdf5::read_rows(file, "values", first, n); }), HasSubstr("cannot be read"));
+  for (const auto& rows : {std::pair{hsize_t{1}, hsize_t{2}}, {far, hsize_t{2}}, {hsize_t{1}, far}})
+    EXPECT_THAT(error_of([&] { hdf5::read_rows(file, "values", rows.first, rows.second); }),
+                HasSubstr("cannot be read"));
 }
 
 TEST(TextAttributes, OfAnotherKindAreRefused) {

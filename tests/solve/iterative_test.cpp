@@ -236,6 +236,17 @@ TEST_P(Corners, LoadedPlateIsThatOfTheFactorisation) {
   }
 }
 
+TEST(ChooseSolver, SuitsTheShapeOfThePlate) {
+  const auto automatic = StaticSolver::automatic, direct = StaticSolver::direct,
+             iterative = StaticSolver::iterative;
+  EXPECT_EQ(solver_for_shape(automatic, false, 300, 150), automatic);
+  EXPECT_EQ(solver_for_shape(automatic, false, 5000, 10), iterative);
+  EXPECT_EQ(solver_for_shape(automatic, false, 10, 5000), direct);
+  EXPECT_EQ(solver_for_shape(automatic, true, 5000, 10), direct);
+  EXPECT_EQ(solver_for_shape(direct, false, 5000, 10), direct);
+  EXPECT_EQ(solver_for_shape(iterative, false, 10, 5000), iterative);
+}
+
 TEST(StaticSolver, IsChosenByTheNumberOfUnknowns) {
   EXPECT_EQ(choose_solver(StaticSolver::automatic, 9e4), StaticSolver::direct);
   EXPECT_EQ(choose_solver(StaticSolver::automatic, 361'802), StaticSolver::direct);  // 600 x 300

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Case files and tables of every kind, numbers of every size, little memory, outputs that take no more."""
+
+import json
+import os
+import re
+import subprocess
+import threading
+
+import pytest
+from test_commands import one_line
+
+PRESTRESSED = """\
+[plate]
+element_size_m = 5e-3
+corner = "none"
+[loading]
+method = "prestress"
+[prestress]
+file = "table.csv"
+[event]
+kind = "nucleation"
+[nucleation]
+x_m = 0.1
+[time]
+end_s = 2e-5
+"""
+TABLE = "x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.2,2.3e6,5e6\n"
+
+
+@pytest.fixture
+def pipe(tmp_path):
+    """Makes a pipe in the file system that gives a text to the first who reads it."""
+    writers = []
+
+    def make(name, text):
+        path = tmp_path / name
+        os.mkfifo(path)
+        writers.append(threading.Thread(target=lambda: path.write_text(text), daemon=True))
+        writers[-1].start()
+        return path
+
+    yield make
+    for writer in writers:
+        writer.join(timeout=10)
+        assert not writer.is_alive(), "nobody read the pipe"
+
+
+def test_case_and_table_from_pipes(program, pipe, tmp_path):
+    case, table = pipe("case.toml", PRESTRESSED), pipe("piped.csv", TABLE)
+    run = program("run", case, "-o", "out", "-q", "--set", f"prestress.file={table}", timeout_s=20)
+    assert run.returncode == 0, run.stderr
+    (tmp_path / "file.toml").write_text(PRESTRESSED)
+    (tmp_path / "table.csv").write_text(TABLE)
+    assert program("run", "file.toml", "-o", "again", "-q").returncode == 0
+    for name in ("interface.h5", "fronts.csv", "static.csv"):
+        assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "again" / name).read_bytes()
+
+
+def test_late_error_of_a_case_from_a_pipe_has_its_line(program, pipe):
+    case = pipe("case.toml", "[plate]\nelement_size_m = 5e-3\n[friction]\nmu_s = 100\n")
+    line = one_line(program("run", case, "-o", "out", timeout_s=20))
+    assert line.startswith(f"{case}:4: ")
+
+
+@pytest.mark.parametrize("command", ["run", "validate", "info"])
+@pytest.mark.parametrize("name", ["loop", "n" * 300, "d/" * 3000 + "x", "file/x", "folder", "none"])
+@pytest.mark.parametrize("table", [False, True])
+def test_names_that_cannot_be_read(program, tmp_path, command, name, table):
+    (tmp_path / "loop").symlink_to("loop")
+    (tmp_path / "file").write_text("")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "c.toml").write_text(PRESTRESSED)
+    case = ["c.toml", "--set", f"prestress.file={name}"] if table else [name]
+    line = one_line(program(command, *case, *(["-o", "out"] if command == "run" else [])))
+    assert "check the path" in line or "name the" in line
+    assert not (tmp_path / "out").exists()
+
+
+def test_case_without_a_name(program):
+    assert one_line(program("validate", "")).startswith("CASE: cannot be read")
+
+
+def test_special_files_as_a_case(program):
+    assert "sets no key" in one_line(program("validate", "/dev/null"))
+    assert "is larger than" in one_line(program("validate", "/dev/zero"))
+    assert "cannot be read" in one_line(program("validate", "/proc/self/mem"))
+
+
+@pytest.mark.parametrize(
+    "text", ["a." * 25000 + "a = 1", "[" + "a." * 25000 + "a]", "a = " + "[" * 25000, "a = " + "{a=" * 25000]
+)
+def test_deep_nesting(program, write_case, text):
+    case = write_case("[plate]\nelement_size_m = 5e-3\n" + text)
+    assert one_line(program("validate", case)).startswith(f"{case}:3: is nested more than")
+
+
+def test_title_that_is_no_utf8(program, write_case, coarse):
+    case = write_case(b'[plate]\nelement_size_m = 5e-3\n[event]\ntitle = "\xe9"\n')
+    assert one_line(program("run", case, "-o", "out")).startswith(f"{case}:4: holds bytes that are no utf-8")
+    command = [program.path, "run", coarse, "-o", "out", "--set", b"title=\xff"]
+    result = subprocess.run(command, cwd=program.folder, capture_output=True)
+    assert (result.returncode, result.stdout) == (2, b"")
+    assert result.stderr.decode().startswith("--set title=?: holds bytes that are no utf-8")
+
+
+# --- Numbers
+
+WELL_BEYOND = ["1e150", "5e-324"]
+INTEGERS = ["1000000", "9223372036854775807", "-9223372036854775808"]
+
+
+def numeric_keys(program):
+    """Keys of the reference with the law that they belong to."""
+    table, law = "", ""
+    for line in program("keys").stdout.splitlines():
+        if found := re.match(r"## \[(\w+)\]", line):
+            table, law = found[1] + ".", ""
+        if found := re.match(r'With `law = "(\w+)"`', line):
+            law = found[1]
+        if found := re.match(r"\| `(\w+)` \| (number|integer|list of numbers) \|", line):
+            yield table + found[1], found[2], law
+
+
+@pytest.mark.parametrize("base", ["tilted", "prestressed", "graded"])
+def test_numbers_of_every_size(program, write_case, tmp_path, base):
+    (tmp_path / "table.csv").write_text(TABLE)
+    coarse = "[plate]\nelement_size_m = 5e-3\n"
+    graded = coarse + "coarsenings = 1\nfine_height_m = 0.02\n"
+    case = write_case({"tilted": coarse, "prestressed": PRESTRESSED, "graded": graded}[base])
+    for key, kind, law in numeric_keys(program):
+        for value in INTEGERS if kind == "integer" else WELL_BEYOND:
+            value = f"[{value}]" if kind == "list of numbers" else value
+            overrides = ["--set", f"{key}={value}"] + (["--set", f"friction.law={law}"] if law else [])
+            for command in ("validate", "info"):
+                result = program(command, case, *overrides, timeout_s=20, memory_bytes=4 << 30)
+                assert result.returncode in (0, 2), (overrides, result)
+                assert not re.search(r"\b(nan|inf)\b", result.stdout), (overrides, result.stdout)
+                if result.returncode == 2:
+                    one_line(result)
+            if kind != "integer":
+                assert result.returncode == 2, overrides
+
+
+def test_the_reference_names_the_condition_of_a_key(program):
+    rows = program("keys").stdout.splitlines()
+    (row,) = [row for row in rows if row.startswith("| `overstress_Pa`")]
+    assert row.endswith("; only with event.kind = nucleation and nucleation.form = overstress |")
+
+
+# --- Notes
+
+
+def test_table_in_another_unit(program, write_case, tmp_path):
+    case = write_case(PRESTRESSED)
+    rows = "".join(f"{x},2.1e6,5e6\n" for x in range(0, 201, 10))
+    (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n" + rows)
+    note = (
+        "the table of prestress.file reaches from x = 0 to 200 m, the plate from 0 to 0.2 m: 20 of its 21 "
+        "rows lie beyond it; are its positions in m?"
+    )
+    for command in (["validate", case], ["info", case], ["run", case, "-o", "out"]):
+        assert f"note: {note}\n" in program(*command).stdout
+    assert note in json.loads((tmp_path / "out/run.json").read_text())["warnings"]
+    (tmp_path / "table.csv").write_text(TABLE)
+    assert "prestress.file" not in program("validate", case).stdout
+
+
+# --- Output
+
+TELLING = [["keys"], ["--version"], ["--help"], ["run", "--help"]]
+TELLING += [["info", "coarse.toml"], ["validate", "coarse.toml"]]
+
+
+@pytest.mark.parametrize("arguments", TELLING, ids=lambda arguments: arguments[0])
+class TestStandardOutput:
+    def test_that_is_full(self, program, coarse, arguments):
+        with open("/dev/full", "w") as full:
+            result = program.start(*arguments, stdout=full, stderr=subprocess.PIPE, text=True)
+            told = result.communicate(timeout=20)[1]
+        assert result.returncode == 1
+        assert told == "slipfront: standard output cannot be written (No space left on device)\n"
+
+    @pytest.mark.parametrize("ignored", [False, True])
+    def test_whose_reader_has_gone(self, program, coarse, arguments, ignored):
+        reading, writing = os.pipe()
+        os.close(reading)
+        streams = {"stdout": writing, "stderr": subprocess.PIPE, "text": True}
+        result = program.start(*arguments, restore_signals=not ignored, **streams)
+        os.close(writing)
+        assert result.communicate(timeout=20)[1] == ""
+
+
+# --- Memory
+
+
+@pytest.mark.parametrize("megabytes", [60, 100, 150, 200, 300])
+def test_little_memory(program, write_case, megabytes):
+    """Each ends within seconds: by its work, or with one line. Below some 70 MB no library is loaded."""
+    case = write_case("[plate]\ncorner = \"none\"\n[time]\nend_s = 2e-6\n")
+    for command in (["info", case], ["run", case, "-o", f"out{megabytes}", "-q"]):
+        result = program(*command, timeout_s=20, memory_bytes=megabytes * 10**6)
+        loaded = "while loading shared libraries" not in result.stderr
+        assert loaded or megabytes == 60
+        assert result.returncode in ((0, 1, 2) if loaded else (127,)), result
+        assert len(result.stderr.splitlines()) == (0 if result.returncode == 0 else 1)
+
+
+# --- Slender plates
+
+
+def test_long_interface_is_solved_iteratively(program, write_case, tmp_path):
+    plate = '[plate]\nwidth_m = 1\nheight_m = 2.5e-3\nelement_size_m = 5e-4\ncorner = "none"\n'
+    loading = "[loading]\ntilt_left_m = 1e-6\ntilt_right_m = 1e-6\n[friction]\nmu_s = 0.6\nmu_k = 0.3\n"
+    rest = "[time]\nend_s = 1e-7\n[fronts]\nl_star_m = 1e-3\n"
+    case = write_case(plate + loading + rest)
+    run = program("run", case, "-o", "out", "-q", timeout_s=30)
+    assert run.returncode == 0, run.stderr
+    assert json.loads((tmp_path / "out/run.json").read_text())["statics"]["solver"] == "iterative"
+
+
+def test_multigrid_of_a_slender_plate_is_refused(program, write_case):
+    plate = "[plate]\nwidth_m = 0.02\nheight_m = 2\nelement_size_m = 1e-3\n"
+    loading = '[loading]\nsolver = "iterative"\nedge_margin_m = 1e-3\n[event]\ntrigger_zone_m = 1e-3\n'
+    case = write_case(plate + loading)
+    line = one_line(program("validate", case))
+    assert line.startswith(f"{case}:6: loading.solver = iterative does not converge")
