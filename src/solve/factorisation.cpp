@@ -9,6 +9,7 @@ extern "C" void openblas_set_num_threads(int n_threads);
 extern "C" int openblas_get_num_threads();
 
 #include <cmath>
+#include <mutex>
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
@@ -41,6 +42,10 @@ namespace {
 [[noreturn]] void throw_out_of_memory(const char* what) {
   throw UserError("out of memory in the static solution ({}); choose a larger plate.element_size_m", what);
 }
+
+/// OpenBLAS built without threads hands out its buffers without a lock: two threads inside it at once would
+/// compute in the same one. Whoever calls CHOLMOD's numeric parts holds this.
+std::mutex blas_in_use;
 
 /// The condensed stiffness, its factor, and the equations of slipping nodes with theirs.
 void require_memory_of_interface(double n_nodes) {
@@ -161,7 +166,10 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
     cholmod_l_free_sparse(&matrix, common);
     throw;
   }
-  cholmod_l_factorize(matrix, cholmod_->factor, common);
+  {
+    const std::lock_guard alone(blas_in_use);
+    cholmod_l_factorize(matrix, cholmod_->factor, common);
+  }
   cholmod_l_free_sparse(&matrix, common);
   cholmod_->check("factorisation");
   SLIPFRONT_ASSERT(cholmod_->factor->minor == cholmod_->factor->n, "stiffness is not positive definite");
@@ -251,7 +259,11 @@ solid::Field Factorisation::solve(const Top& top, const Eigen::VectorXd& interfa
     f[unknown_[2 * mesh_.lower[k]]] += interface_force(2 * k);
     f[unknown_[2 * mesh_.lower[k] + 1]] += interface_force(2 * k + 1);
   }
-  cholmod_dense* solution = cholmod_l_solve(CHOLMOD_A, cholmod_->factor, rhs, common);
+  cholmod_dense* solution = nullptr;
+  {
+    const std::lock_guard alone(blas_in_use);
+    solution = cholmod_l_solve(CHOLMOD_A, cholmod_->factor, rhs, common);
+  }
   cholmod_l_free_dense(&rhs, common);
   cholmod_->check("solution");
   const auto* z = static_cast<const double*>(solution->x);

@@ -5,7 +5,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <atomic>
 #include <set>
+#include <thread>
 
 #include "solve/dissection.hpp"
 #include "support.hpp"
@@ -158,6 +160,26 @@ TEST(FactorBytes, AreForeseenWithinAFactorOfTwo) {
     EXPECT_GT(ratio, 0.5) << element_m;
     EXPECT_LT(ratio, 2) << element_m;
   }
+}
+
+TEST(Factorisation, OfSeveralThreadsAtOnceIsThatOfOne) {
+  const auto mesh = support::make_plate(0.2, 0.1, 2e-3, Corner::relief);
+  const auto solved = [&] {
+    const Factorisation f(mesh, {}, TopConstraint::both);
+    const std::vector<double> sheared(mesh.top.size(), 1e-4);
+    const Eigen::VectorXd force = f.load({sheared, sheared}).g_N;
+    return std::pair<Eigen::MatrixXd, Eigen::VectorXd>(f.condensed_stiffness(), force);
+  };
+  const auto alone = solved();
+  std::atomic<int> differing = 0;
+  std::vector<std::jthread> threads;
+  for (int thread = 0; thread < 4; ++thread)
+    threads.emplace_back([&] {
+      for (int k = 0; k < 8; ++k)
+        if (solved() != alone) ++differing;
+    });
+  threads.clear();  // waits for them
+  EXPECT_EQ(differing, 0);
 }
 
 }  // namespace
