@@ -64,19 +64,26 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
 
 /// Shows progress, and asks the signals what is wanted.
 run::SessionHooks hooks(bool quiet) {
+  struct Shown {
+    std::string part;
+    std::unique_ptr<io::Progress> progress;
+  };
+  auto shown = std::make_shared<Shown>();
   run::SessionHooks hooks;
   // The total is known only when the first step is done.
-  hooks.progress = [quiet, shown = std::string(), progress = std::shared_ptr<io::Progress>()](
-                       const char* part, std::int64_t step, std::int64_t total) mutable {
-    if (shown != part) progress = std::make_shared<io::Progress>(part, total, quiet);
-    shown = part;
-    progress->update(step);
+  hooks.progress = [quiet, shown](const char* part, std::int64_t step, std::int64_t total) {
+    if (shown->part != part) shown->progress = std::make_unique<io::Progress>(part, total, quiet);
+    shown->part = part;
+    shown->progress->update(step);
   };
   hooks.request = [] {
     if (interrupt_wanted()) return run::Request::stop;
     return checkpoint_wanted() ? run::Request::keep : run::Request::none;
   };
-  hooks.note = [](const std::string& note) { std::fputs(("note: " + note + "\n").c_str(), stderr); };
+  hooks.note = [quiet, shown](const std::string& note) {
+    if (!shown->progress) shown->progress = std::make_unique<io::Progress>("", 1, quiet);
+    shown->progress->note("note: " + note);
+  };
   return hooks;
 }
 

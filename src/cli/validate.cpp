@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <utility>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "run/needs.hpp"
 #include "run/run.hpp"
 #include "run/warnings.hpp"
 
@@ -20,7 +22,10 @@ void validate(const CaseArguments& arguments) {
     throw UserError(arguments.with_place(error.what()));
   }
   std::string text = fmt::format("{}: valid\n", arguments.file);
-  for (const auto& warning : run::warnings_of_case(config)) text += fmt::format("note: {}\n", warning);
+  auto notes = run::warnings_of_case(config);
+  for (auto& note : run::snapshot_plan(config, run::estimated_size(config).step_s).notes)
+    notes.push_back(std::move(note));
+  for (const auto& note : notes) text += fmt::format("note: {}\n", note);
   print_output(text);
 }
 

@@ -222,6 +222,14 @@ void ResultFolder::give_back() {
 
 void ResultFolder::make() {
   std::error_code error;
+  // Its own end would take what another process keeps in it.
+  for (fs::path p = fs::absolute(dir_, error); p.has_relative_path(); p = p.parent_path()) {
+    const auto name = p.filename();
+    if ((name == unfinished().filename() || name == publishing().filename()) && has_own_state(p))
+      throw UserError(
+          "output folder {}: is inside {}, where another run keeps its work; choose another place",
+          dir_.string(), p.string());
+  }
   const auto status = fs::status(dir_, error);
   if (!fs::exists(status) && error && error != std::errc::no_such_file_or_directory)
     throw_unusable(dir_, "used", error.value());

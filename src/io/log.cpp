@@ -71,6 +71,12 @@ void Progress::update(std::int64_t step) {
   line_open_ = terminal_;
 }
 
+void Progress::note(const std::string& line) {
+  if (quiet_) return;
+  show(fmt::format("{}{}\n", line_open_ ? clear_line : "", line));
+  line_open_ = false;
+}
+
 void Progress::finish() {
   if (quiet_ || finished_) return;
   finished_ = true;

@@ -89,8 +89,11 @@ void Batch::compute_initial_states(std::span<const io::Case* const> cases) {
     missing.emplace_back(std::move(key), config);
   }
   in_parallel(threads_, missing.size(), [&](std::size_t k) {
-    if (!wanted()) throw Interrupted(interruption_);  // the statics do not ask by themselves
-    states_.at(missing[k].first) = make_initial_state(*missing[k].second, monitor());
+    try {
+      states_.at(missing[k].first) = make_initial_state(*missing[k].second, monitor());
+    } catch (const Interrupted&) {
+      throw Interrupted(interruption_);
+    }
   });
 }
 

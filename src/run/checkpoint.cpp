@@ -81,7 +81,8 @@ std::unique_ptr<Checkpoints::Kept> Checkpoints::last(
       kept->rest(kept->head);
       return kept;
     } catch (const UserError& error) {
-      note(std::string(error.what()) + "; an earlier one is taken");
+      const bool is_last = std::next(k) == files.rend();
+      note(fmt::format("{}; {}", error.what(), is_last ? "the run begins anew" : "the one before is taken"));
     }
   }
   return {};

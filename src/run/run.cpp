@@ -180,7 +180,8 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
     return initial;
   }
   const solve::Statics statics(initial.mesh, config.material, config.loading, mu_s,
-                               interface::static_coefficient_key(config.friction));
+                               interface::static_coefficient_key(config.friction),
+                               [&] { return monitor(0, 0); });
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = solve::choose_solver(wanted_solver(config), 2.0 * initial.mesh.n_nodes());
   initial.solver_bytes = statics.solver().bytes();
@@ -377,6 +378,13 @@ void measure(Result& result, const InitialState& initial) {
                     after.trigger_work, 100 * after.trigger_work / before.strain));
   const auto snapshots = snapshot_plan(config, result.step_s);
   for (const auto& note : snapshots.notes) result.warnings.push_back(note);
+  const auto n_after =
+      std::ranges::count_if(snapshots.times_s, [&](double time_s) { return time_s > result.event.time_s; });
+  if (result.event.end == solve::EventEnd::quiet && n_after > 0)
+    result.warnings.push_back(fmt::format(
+        "{} of {} output.snapshot_times_s are after the end of the event at t = {:.4g} s, where no node had "
+        "slipped for time.quiet_s = {:g}",
+        n_after, config.output.snapshot_times_s.size(), result.event.time_s, config.time.quiet_s));
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
 }
 

@@ -46,6 +46,8 @@ class Session {
  private:
   void begin_ramp(Checkpoints::Kept* kept, solve::Stepper& stepper, solve::RampRun& ramp);
   void begin_event(Checkpoints::Kept* kept);
+  /// Between linear solutions. @return whether the run goes on
+  bool look_at_statics();
   /// Between steps. @return whether the run goes on
   bool look(const char* part, std::int64_t step, std::int64_t total, double time_s);
   void keep();
@@ -89,7 +91,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
       initial_ = make_initial_state(
           config_,
           [&](std::int64_t step, std::int64_t total) {
-            return look("ramp", step, total, stepper_->time_s());
+            return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
           },
           options_.execution,
           [&](solve::Stepper& stepper, solve::RampRun& ramp) { begin_ramp(kept.get(), stepper, ramp); });
@@ -162,12 +164,20 @@ void Session::begin_event(Checkpoints::Kept* kept) {
   tell();
 }
 
+bool Session::look_at_statics() {
+  const Request request = hooks_.request();
+  if (request == Request::keep) hooks_.note("no checkpoint: there is nothing to keep before the first step");
+  return request != Request::stop;
+}
+
 bool Session::look(const char* part, std::int64_t step, std::int64_t total, double time_s) {
   hooks_.progress(part, step, total);
   const Request request = hooks_.request();
   if (request != Request::none || seconds_since(kept_) >= options_.keep_every_wall_s ||
       time_s - kept_time_s_ >= options_.keep_every_s)
     keep();
+  if (request == Request::keep)
+    hooks_.note(fmt::format("checkpoint at t = {:.6g} s of the {}", time_s, part));
   if (event_ && seconds_since(told_) >= tell_interval_s_) tell();
   return request != Request::stop;
 }

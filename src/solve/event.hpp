@@ -17,7 +17,8 @@
 
 namespace slipfront::solve {
 
-/// Asked once in a while during long work with the steps done and their total; returns false to interrupt it.
+/// Asked once in a while during long work with the steps done and their total, which are 0 before the first
+/// step; returns false to interrupt it.
 using Monitor = std::function<bool(std::int64_t step, std::int64_t total)>;
 
 /// What to keep of an event besides its onsets.

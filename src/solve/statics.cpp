@@ -163,8 +163,9 @@ constexpr double state_tolerance = 1e-9;
 /// @return the shear.
 template <class FindShear, class MaySlip>
 double settle(ContactProblem& problem, double accuracy, double final, FindShear&& find_shear,
-              MaySlip&& may_slip) {
+              MaySlip&& may_slip, const Statics::GoOn& go_on) {
   for (int iteration = 1; iteration <= max_iterations; ++iteration) {
+    if (!go_on()) throw Interrupted("interrupted in the statics");
     problem.solve(accuracy);
     const double shear = find_shear();
     const bool is_final = accuracy <= final;
@@ -257,8 +258,8 @@ bool begin_on_coarse_levels(const mesh::Mesh& mesh, const PlateSolver& solver, c
 }  // namespace
 
 Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
-                 std::string mu_s_key)
-    : mesh_(mesh), loading_(loading), mu_s_(mu_s), mu_s_key_(std::move(mu_s_key)) {
+                 std::string mu_s_key, GoOn go_on)
+    : mesh_(mesh), loading_(loading), mu_s_(mu_s), mu_s_key_(std::move(mu_s_key)), go_on_(std::move(go_on)) {
   solver_ = make_plate_solver(mesh, material, loading.solver);
 
   TopDisplacement tilt{std::vector<double>(mesh.top.size(), 0.0), {}};
@@ -287,12 +288,12 @@ Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const 
   double accuracy = solver_->iterates() ? first_accuracy : final_accuracy;
   auto states = start;
   const auto settle_coarse = [&](ContactProblem& coarse) {
-    settle(coarse, first_accuracy, guess_accuracy, no_shear, may_slip);
+    settle(coarse, first_accuracy, guess_accuracy, no_shear, may_slip, go_on_);
   };
   if (begin_on_coarse_levels(mesh, *solver_, start, make_case, settle_coarse, *plate, states))
     accuracy = guess_accuracy;
   ContactProblem problem(interface_nodes(mesh, solver_->interface_of(0)), *plate, std::move(states));
-  settle(problem, accuracy, final_accuracy, no_shear, may_slip);
+  settle(problem, accuracy, final_accuracy, no_shear, may_slip, go_on_);
   tilted_ = make_equilibrium(problem, 0, loading.edge_margin_m);
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
     throw UserError(
@@ -317,7 +318,7 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
           inside = inside_contact(problem, loading_.edge_margin_m);
           return find_shear(problem, inside);
         },
-        [&](std::size_t k) { return !inside.contains(problem.nodes.x_m[k]); });
+        [&](std::size_t k) { return !inside.contains(problem.nodes.x_m[k]); }, go_on_);
   };
   ContactStates states;
   double accuracy = final_accuracy;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,10 +48,15 @@ bool has_nodes(const Equilibrium& state, std::size_t n_lower);
 /// at mu_s p, but inside only sticking is possible since the shear ends where mu_s is reached there.
 class Statics {
  public:
+  /// Asked before each linear solution; where it says no, Interrupted is thrown.
+  using GoOn = std::function<bool()>;
+
   /// @param mu_s_key  key of mu_s in the case file, for messages
-  /// @throws UserError where the tilt presses no node against the plane.
-  Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
-          std::string mu_s_key = "friction.mu_s");
+  /// @param go_on     of all solutions, those of later calls included
+  /// @throws UserError where the tilt presses no node against the plane; Interrupted.
+  Statics(
+      const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
+      std::string mu_s_key = "friction.mu_s", GoOn go_on = [] { return true; });
 
   /// The tilted plate before any shear.
   const Equilibrium& tilted() const { return tilted_; }
@@ -72,6 +78,7 @@ class Statics {
   Loading loading_;
   double mu_s_;
   std::string mu_s_key_;
+  GoOn go_on_;
   std::unique_ptr<PlateSolver> solver_;
   TopDisplacement tilted_top_;         ///< the loaded edge after the tilt
   std::unique_ptr<LoadCase> sheared_;  ///< the loaded edge where it stands after the tilt, then moved along x

@@ -262,9 +262,45 @@ def test_interruption_of_a_ramp(program, coarse, tmp_path):
     assert "interrupted" in errors
 
 
+def test_interruption_of_the_statics(program, coarse, tmp_path):
+    process = program.start(
+        "run", coarse, "-o", "out", "--set", "plate.element_size_m=2.5e-4", "--set", "loading.solver=iterative",
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        wait_until(lambda: catches_interrupts(process.pid))
+        process.send_signal(signal.SIGUSR1)
+        process.send_signal(signal.SIGTERM)
+        output, errors = process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 128 + signal.SIGTERM
+    assert output == ""
+    assert "interrupted in the statics" in errors.splitlines()[-1]
+    assert summary(tmp_path / "out/unfinished")["status"] == "interrupted"
+
+
+def test_a_checkpoint_on_demand_is_told(program, coarse, tmp_path):
+    process = program.start("run", coarse, "-o", "out", *LONG, stderr=subprocess.PIPE, text=True)
+    try:
+        wait_until(lambda: (tmp_path / "out/unfinished/energy.csv").exists())  # the event has begun
+        process.send_signal(signal.SIGUSR1)
+        wait_until(lambda: any((tmp_path / "out/unfinished/state").glob("checkpoint-*.bin")))
+        process.send_signal(signal.SIGTERM)
+        _, errors = process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.wait()
+    assert len(re.findall(r"^note: checkpoint at t = \S+ s of the event$", errors, re.MULTILINE)) == 1
+
+
 def test_second_interrupt_ends_the_program(program, coarse):
-    # The static solution of this mesh takes about a second, during which the first one is only noted.
-    process = program.start("run", coarse, "-o", "out", "-q", "--set", "plate.element_size_m=5e-4", *LONG)
+    # The factorisation of this mesh takes about a second, during which the first one is only noted.
+    process = program.start(
+        "run", coarse, "-o", "out", "-q", "--set", "plate.element_size_m=5e-4",
+        "--set", "loading.solver=direct", *LONG
+    )  # fmt: skip
     try:
         wait_until(lambda: catches_interrupts(process.pid))
         process.send_signal(signal.SIGINT)

@@ -201,6 +201,16 @@ TEST(ResultFolder, ForeignFoldersAndLinksOfItsNamesAreLeftAlone) {
   }
 }
 
+TEST(ResultFolder, IsNotMadeInsideAnothersWork) {
+  const test::TemporaryFolder folder;
+  ResultFolder other(folder / "a", "test");
+  other.begin();
+  EXPECT_THAT(error_of([&] { ResultFolder(folder / "a" / "unfinished" / "b" / "c", "test"); }),
+              HasSubstr("is inside " + (folder / "a" / "unfinished").string()));
+  fs::create_directories(folder / "unfinished");  // somebody's, who likes the name
+  EXPECT_NO_THROW(ResultFolder(folder / "unfinished" / "d", "test"));
+}
+
 TEST(ResultFolder, LeavesTheTargetOfALinkAlone) {
   const test::TemporaryFolder folder, elsewhere;
   test::write_file(elsewhere / "run.json", "precious");

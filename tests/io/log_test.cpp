@@ -33,6 +33,15 @@ TEST(Progress, WritesPlainLinesWhereThereIsNoTerminal) {
                                   "left: 1000 steps in 0\\.[0-9] s\n$"));
 }
 
+TEST(Progress, NotesAreLinesOfTheirOwn) {
+  testing::internal::CaptureStderr();
+  Progress progress("left", 1000);
+  progress.update(5);
+  progress.note("note: kept");
+  Progress("left", 1000, true).note("nobody sees it");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "note: kept\n");
+}
+
 TEST(Progress, DrawsAtMostTenTimesASecond) {
   testing::internal::CaptureStderr();
   {

@@ -57,6 +57,17 @@ TEST(SnapshotPlan, IsWhatARunTakesAndTells) {
   for (const auto& note : plan.notes) EXPECT_THAT(result.warnings, testing::Contains(note));
 }
 
+TEST(SnapshotPlan, TellsWhatAQuietEndLeavesOut) {
+  auto config = coarse_case();
+  config.time.end_s = 1;
+  config.output.snapshot_times_s = {0, 10e-6, 0.5, 1};
+  const auto result = run_event(config, make_initial_state(config, go_on), go_on);
+  ASSERT_EQ(result.event.end, solve::EventEnd::quiet);
+  EXPECT_EQ(result.event.snapshots.size(), 2U);
+  EXPECT_THAT(result.warnings,
+              testing::Contains(HasSubstr("2 of 4 output.snapshot_times_s are after the end")));
+}
+
 TEST(Needs, DiskIsWhatTheFilesTake) {
   // Of 2 mm: files whose heads are small.
   auto config = coarse_case(interface::EventKind::spontaneous, 2e-3);

@@ -291,6 +291,26 @@ TEST(Statics, FreeLoadedEdgeCarriesNoHorizontalForceDuringTheTilt) {
   expect_complementarity(mesh, e, put_down, 0.999 * mu_s);
 }
 
+TEST(Statics, CanBeInterruptedBetweenSolutions) {
+  const auto mesh = paper_plate(4e-3);
+  int asked = 0;
+  {
+    const Statics statics(mesh, {}, {}, mu_s, "friction.mu_s", [&] { return ++asked > 0; });
+    statics.shear_to(mu_s);
+  }
+  const int all = asked;
+  EXPECT_GT(all, 2);
+  for (int last = 0; last < all; ++last) {
+    asked = 0;
+    const auto solve_statics = [&] {
+      const Statics statics(mesh, {}, {}, mu_s, "friction.mu_s", [&] { return asked++ < last; });
+      statics.shear_to(mu_s);
+    };
+    EXPECT_THROW(solve_statics(), Interrupted) << last;
+    EXPECT_EQ(asked, last + 1);
+  }
+}
+
 TEST(Statics, TellsTheUserWhatCannotBe) {
   const auto mesh = paper_plate(0.01, Corner::none);
   EXPECT_THAT(error_of([&] { Statics(mesh, {}, {.tilt_left_m = -1e-4, .tilt_right_m = -1e-4}, mu_s); }),
