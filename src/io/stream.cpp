@@ -125,8 +125,9 @@ ResultStream::ResultStream(const std::filesystem::path& dir, const Extents& exte
 void ResultStream::require_unchanged(const std::filesystem::path& dir, const Extents& extents) {
   for (const auto& [file, extent] :
        {std::pair(history_file(dir), &extents.history), std::pair(snapshot_file(dir), &extents.snapshots)})
-    if (sha256_of_file(file) != extent->checksum)
-      throw WriteError("{}: is not what was written: it was changed or damaged meanwhile", file.string());
+    if (!is_there(file) || sha256_of_file(file) != extent->checksum)
+      throw WriteError("{}: is not what was written: it was changed, damaged or removed meanwhile",
+                       file.string());
 }
 
 void ResultStream::sample(const fronts::History& row) {

@@ -182,10 +182,59 @@ def changed_table(bench):
     require_same(alone(folder), expected, "other results")
 
 
+def meddlings():
+    """Name, what is done to (unfinished, state) of a run that goes on, and the exit code that is right: what is
+    on its way to the results is compared, what is small is written anew."""
+    for name in ("history.raw", "snapshots.raw"):
+
+        def change_first(u, s, name=name):
+            with open(s / name, "r+b") as file:
+                file.seek(8)
+                file.write(b"12345678")
+
+        yield f"changed {name}", change_first, 1
+        yield f"cut {name}", lambda u, s, name=name: os.truncate(s / name, 4), 1
+        yield f"removed {name}", lambda u, s, name=name: (s / name).unlink(), 1
+    for name in ("case.resolved.toml", "static.csv", "energy.csv", "fronts.csv", "run.json"):
+        yield f"changed {name}", lambda u, s, name=name: (u / name).write_text("mine\n"), 0
+        yield f"removed {name}", lambda u, s, name=name: (u / name).unlink(), 0
+    yield "a file of its own", lambda u, s: (u / "interface.h5").write_text("mine\n"), 0
+
+
+def meddle(setting, how, may_be):
+    """The same while the run goes on."""
+    folder = setting.bench.folder()
+    process = setting.bench.start("run", setting.case, "-o", folder, "-q")
+    state = folder / "unfinished/state"
+
+    def is_under_way():
+        return (folder / "unfinished/fronts.csv").exists() and all(
+            (state / name).exists() and (state / name).stat().st_size >= 16
+            for name in ("history.raw", "snapshots.raw")
+        )
+
+    while process.poll() is None and not is_under_way():
+        time.sleep(0.001)
+    require(process.poll() is None, "over too soon")
+    process.send_signal(signal.SIGSTOP)
+    how(folder / "unfinished", state)
+    process.send_signal(signal.SIGCONT)
+    _, errors = process.communicate()
+    require(process.returncode == may_be, f"exit {process.returncode}: {errors}")
+    if process.returncode == 0:
+        require_same(alone(folder), setting.expected, "done, and other results")
+    else:
+        require(len(errors.splitlines()) == 1 and str(folder) in errors, errors)
+        require(not (folder / "run.json").exists(), "results after a refusal")
+    remove(folder.parent)
+
+
 def trials(bench, seed=1, kind="triggered", every=1):
     setting = Setting(bench, kind)
     dice = random.Random(seed)
     for k, (name, damage, may_be) in enumerate(damages(dice, setting.other)):
         if k % every == 0 or k >= 40:
             yield Trial(name, lambda damage=damage, may_be=may_be: setting.trial(damage, may_be))
+    for name, how, may_be in meddlings():
+        yield Trial(f"while it goes: {name}", lambda how=how, may_be=may_be: meddle(setting, how, may_be))
     yield Trial("a changed table", lambda: changed_table(bench))
