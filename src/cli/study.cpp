@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <thread>
@@ -12,6 +13,7 @@
 #include "cli/print.hpp"
 #include "io/folder.hpp"
 #include "io/log.hpp"
+#include "paper/open_choices.hpp"
 #include "run/checkpoint.hpp"
 #include "study/convergence.hpp"
 #include "study/interface_step.hpp"
@@ -43,9 +45,10 @@ void add_target(CLI::App& command, Target& target) {
 
 /// Runs a study with its progress shown and publishes its results; a user's mistake gets its place in the
 /// case file.
+/// @param arguments  of the case; null where it has none
 /// @param study  given the monitor, the folder to write to and that of the runs that are done
 template <class Study>
-void run_study(const char* name, const CaseArguments& arguments, const Target& target, Study&& study) {
+void run_study(const std::string& name, const CaseArguments* arguments, const Target& target, Study&& study) {
   io::ResultFolder folder(target.dir, fmt::format("study {} with {}", name, run::program_identity()));
   folder.require_empty(target.overwrite, true);
   folder.begin_or_resume();
@@ -61,7 +64,8 @@ void run_study(const char* name, const CaseArguments& arguments, const Target& t
     folder.publish();
   } catch (const UserError& error) {
     folder.abandon();
-    throw UserError(arguments.with_place(error.what()));
+    if (arguments == nullptr) throw;
+    throw UserError(arguments->with_place(error.what()));
   }
 }
 
@@ -99,7 +103,7 @@ void study_convergence(const CaseArguments& arguments, const StudyArguments& stu
   const io::Case config = arguments.read();
   study::plan_convergence(config, study.options);  // mistakes in the options, before a folder is made
   study::Convergence result;
-  run_study("convergence", arguments, study.target,
+  run_study("convergence", &arguments, study.target,
             [&](const study::StudyMonitor& monitor, const auto& dir, const auto& kept) {
               auto options = study.options;
               options.kept = kept;
@@ -140,7 +144,7 @@ void print_table(const study::InterfaceStep& result, const std::string& dir) {
 void study_interface_step(const CaseArguments& arguments, const InterfaceStepArguments& study) {
   const io::Case config = arguments.read();
   study::InterfaceStep result;
-  run_study("interface-step", arguments, study.target,
+  run_study("interface-step", &arguments, study.target,
             [&](const study::StudyMonitor& monitor, const auto& dir, const auto& kept) {
               auto options = study.options;
               options.kept = kept;
@@ -148,6 +152,69 @@ void study_interface_step(const CaseArguments& arguments, const InterfaceStepArg
               study::write_interface_step(dir, config, result);
             });
   if (!study.target.quiet) print_table(result, study.target.dir);
+}
+
+void print_outcome(const paper::OpenChoicesResult& result, const paper::SampleOutcome& o) {
+  for (std::size_t k = 0; k < result.choices.size(); ++k) {
+    const auto& choice = result.choices[k];
+    if (o.sample.values[k] != choice.standard)
+      print("  {:<20} {} instead of {}\n", choice.name, choice.text(o.sample.values[k]),
+            choice.text(choice.standard));
+  }
+  if (o.fit)
+    print(
+        "  a = {:.2f} [{:.2f}, {:.2f}], b = {:.2f} [{:.2f}, {:.2f}], c = {:.2f} [{:.2f}, {:.2f}]; {} in the "
+        "band\n",
+        o.fit->a.value, o.fit->a.low, o.fit->a.high, o.fit->b.value, o.fit->b.low, o.fit->b.high,
+        o.fit->c.value, o.fit->c.low, o.fit->c.high, number(o.share_in_band, " %", 100));
+}
+
+void print_table(const paper::OpenChoicesResult& result, const std::string& dir) {
+  const auto& standard = result.outcomes.front();
+  const auto n_constrained =
+      std::ranges::count_if(result.outcomes, [](const auto& o) { return o.is_constrained; });
+  print("{} samples of {} choices, {} runs\n", result.outcomes.size(), result.choices.size(), result.n_runs);
+  print("standard choices\n");
+  print_outcome(result, standard);
+  print("C1 to C11 hold for {} of {} triggers\n", result.n_triggers_slow_left, result.n_triggers);
+  print("all constraints hold for {} samples; a, b, c and the band are met, too, for {}\n", n_constrained,
+        result.region.size());
+  if (result.chosen >= 0) {
+    print("least extreme of them:\n");
+    print_outcome(result, result.outcomes[result.chosen]);
+  }
+  print("results: {}\n", dir);
+}
+
+struct OpenChoicesArguments {
+  Target target;
+  paper::OpenChoicesOptions options;
+};
+
+void study_open_choices(const OpenChoicesArguments& study) {
+  paper::OpenChoicesResult result;
+  run_study(study.options.quick ? "open-choices --quick" : "open-choices", nullptr, study.target,
+            [&](const study::StudyMonitor& monitor, const auto& dir, const auto& kept) {
+              auto options = study.options;
+              options.kept = kept;
+              result = paper::study_open_choices(options, monitor);
+              paper::write_open_choices(dir, result);
+            });
+  if (!study.target.quiet) print_table(result, study.target.dir);
+}
+
+void add_open_choices(CLI::App& group) {
+  CLI::App* command = group.add_subcommand(
+      "open-choices", "What Kammer et al. (2012) leave open, varied: which of their statements depend on it");
+  auto study = std::make_shared<OpenChoicesArguments>();
+  auto& options = study->options;
+  options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  add_target(*command, study->target);
+  command->add_flag("--quick", options.quick, "A few samples on a coarse mesh, to try the command");
+  command->add_option("--threads", options.threads, "Runs side by side")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->callback([study] { study_open_choices(*study); });
 }
 
 void add_convergence(CLI::App& group) {
@@ -211,6 +278,7 @@ void add_study(CLI::App& app) {
   group->require_subcommand(1);
   add_convergence(*group);
   add_interface_step(*group);
+  add_open_choices(*group);
 }
 
 }  // namespace slipfront::cli

@@ -128,9 +128,11 @@ double time_at(const Passage& tip, const Bracket& at) {
   return interpolate(tip.time_s[at.behind], tip.time_s[at.ahead], at.fraction);
 }
 
-double tip_speed_m_per_s(const Passage& tip, double run_m, double l_star_m, double resolution_s) {
-  const double from_m = run_m - 0.5 * l_star_m;
-  const double to_m = run_m + 0.5 * l_star_m;
+double tip_speed_m_per_s(const Passage& tip, double run_m, double l_star_m, SpeedInterval interval,
+                         double resolution_s) {
+  const bool is_centred = interval == SpeedInterval::centred;
+  const double from_m = run_m - (is_centred ? 0.5 : 1.0) * l_star_m;
+  const double to_m = is_centred ? run_m + 0.5 * l_star_m : run_m;
   if (from_m < 0.0 || to_m > tip.run_m.back()) return undefined;
   const Bracket from = bracket(tip, from_m), to = bracket(tip, to_m);
   // The nodes that the length lies between; a tip near to a node is at the node.
@@ -208,7 +210,7 @@ Front measure(const SlipRecord& record, const StaticState& state, const FirstOns
     point.x_m = record.x_m[node];
     point.onset_s = first.time_s[node];
     if (!is_driven(options, point.x_m))
-      point.v_tip_m_per_s = tip_speed_m_per_s(tip, run_m, l_star_m, record.resolution_s);
+      point.v_tip_m_per_s = tip_speed_m_per_s(tip, run_m, l_star_m, options.speed_interval, record.resolution_s);
     point.t_s_Pa = state.t_s_Pa[node];
     point.p_s_Pa = state.p_s_Pa[node];
     const Traction at_onset = traction_at(record, first.index[node], node);

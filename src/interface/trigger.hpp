@@ -14,17 +14,30 @@ enum class EventKind {
   nucleation,   ///< a patch of given place, see Nucleation
 };
 
-/// An external force on the plate next to an edge of contact, along +x, not part of the reported t:
-/// amount * (mu_s p_s - t_s) * tributary length, times a ramp in time.
+/// Whether the event starts with a trigger next to an edge of contact.
+inline bool is_at_edge(EventKind kind) {
+  return kind == EventKind::left || kind == EventKind::right;
+}
+
+/// How a trigger next to an edge of contact starts the event.
+enum class TriggerForm {
+  added,     ///< an external traction amount * (mu_s p_s - t_s) along +x
+  raised,    ///< one that raises t_s to amount * mu_s p_s
+  weakened,  ///< its friction is mu_k from the start: Interface::intact = 0
+};
+
+/// A zone next to an edge of contact. The traction of `added` and `raised` is an external force on the plate,
+/// not part of the reported t, times a ramp in time.
 struct Trigger {
+  TriggerForm form = TriggerForm::added;
   double zone_m = 10e-3;  ///< measured inward from the outermost node in contact
-  double amount = 5;      ///< added traction over what is missing to mu_s p_s
+  double amount = 5;      ///< see TriggerForm
   double ramp_s = 5e-6;   ///< rises linearly from zero over this time
   double duration_s = std::numeric_limits<double>::infinity();  ///< taken away this long after its start
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(zone_m, amount, ramp_s, duration_s);
+    archive(form, zone_m, amount, ramp_s, duration_s);
   }
 };
 

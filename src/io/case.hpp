@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fronts/record.hpp"
+#include "fronts/speed_interval.hpp"
 #include "interface/interface.hpp"
 #include "interface/nucleation.hpp"
 #include "interface/trigger.hpp"
@@ -18,6 +19,7 @@ namespace slipfront::io {
 /// How fronts are found and measured; see fronts::FrontOptions.
 struct FrontSettings {
   double l_star_m = 0.67e-3;
+  fronts::SpeedInterval speed_interval = fronts::SpeedInterval::centred;
   double arrest_time_s = 20e-6;
   double min_length_m = 2e-3;
   double crack_share = 0.5;

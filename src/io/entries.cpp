@@ -171,6 +171,7 @@ Entry only_with(Condition condition, Entry entry) {
 }
 
 std::vector<Entry> make_common_entries() {
+  using fronts::SpeedInterval;
   using interface::ContactAlgorithm;
   using interface::EventKind;
   using interface::Nucleation;
@@ -178,6 +179,7 @@ std::vector<Entry> make_common_entries() {
   using interface::Regularisation;
   using interface::Relaxed;
   using interface::Trigger;
+  using interface::TriggerForm;
   using mesh::Corner;
   using mesh::Plate;
   using mesh::Sides;
@@ -321,10 +323,17 @@ std::vector<Entry> make_common_entries() {
            {"nucleation", EventKind::nucleation}},
           "start of the event: nothing, shear just past the critical one, a trigger at an edge, or a "
           "nucleation patch"),
+      word<TriggerForm>(
+          "event.trigger_form", at(&Case::trigger, &Trigger::form),
+          {{"added", TriggerForm::added},
+           {"raised", TriggerForm::raised},
+           {"weakened", TriggerForm::weakened}},
+          "tangential traction added, or raised to a multiple of mu_s p_s, or mu = mu_k from the start"),
       number("event.trigger_zone_m", at(&Case::trigger, &Trigger::zone_m), above(0),
              "length of the trigger zone, inward from the outermost node in contact"),
-      number("event.trigger_amount", at(&Case::trigger, &Trigger::amount), at_least(0),
-             "added tangential traction over what is missing to mu_s p_s"),
+      number(
+          "event.trigger_amount", at(&Case::trigger, &Trigger::amount), at_least(0),
+          "added tangential traction over what is missing to mu_s p_s; raised: the traction over mu_s p_s"),
       number("event.trigger_ramp_s", at(&Case::trigger, &Trigger::ramp_s), at_least(0),
              "time over which the trigger rises linearly"),
       number("event.trigger_duration_s", at(&Case::trigger, &Trigger::duration_s), above_or_infinite(0),
@@ -367,6 +376,9 @@ std::vector<Entry> make_common_entries() {
 
       number("fronts.l_star_m", at(&Case::fronts, &FrontSettings::l_star_m), above(0),
              "length l* over which the front speed is taken; one element where that is longer"),
+      word<SpeedInterval>("fronts.speed_interval", at(&Case::fronts, &FrontSettings::speed_interval),
+                          {{"centred", SpeedInterval::centred}, {"approach", SpeedInterval::approach}},
+                          "where l* lies: centred at the node, or from where t_d, p_d are taken to the node"),
       number("fronts.arrest_time_s", at(&Case::fronts, &FrontSettings::arrest_time_s), above(0),
              "a tip that waits longer than this for its next onset has arrested"),
       number("fronts.min_length_m", at(&Case::fronts, &FrontSettings::min_length_m), at_least(0),

@@ -347,7 +347,7 @@ void check_prestress(const Case& config, const Document& document, const Require
   require(config.event != EventKind::spontaneous, {"event.kind", "loading.method"},
           "event.kind = spontaneous raises the shear past the critical one, which loading.method = prestress "
           "does not know; choose nucleation, left, right or none");
-  const bool at_edge = config.event == EventKind::left || config.event == EventKind::right;
+  const bool at_edge = interface::is_at_edge(config.event);
   require(!at_edge || config.plate.sides != mesh::Sides::periodic, {"event.kind", "plate.sides"},
           "event.kind = left and right need an edge, which plate.sides = periodic does not have; choose "
           "nucleation");
@@ -373,6 +373,16 @@ void check_nucleation(const Case& config, const Require& require) {
       "nucleation.form = weakened does nothing where the friction law does not weaken; choose overstress");
 }
 
+void check_trigger(const Case& config, const Require& require) {
+  if (!interface::is_at_edge(config.event)) return;
+  require(
+      config.trigger.form != interface::TriggerForm::weakened ||
+          interface::kinetic_coefficient(config.friction) < interface::static_coefficient(config.friction),
+      {"event.trigger_form", "event.kind", "friction.law"},
+      "event.trigger_form = weakened does nothing where the friction law does not weaken; choose added or "
+      "raised");
+}
+
 /// Relations between keys that need no mesh; mesh::make_plate checks the rest of the geometry.
 void check_relations(const Case& config, const Document& document, const std::string& name) {
   const auto require = [&](bool holds, const std::vector<std::string>& keys, const std::string& message) {
@@ -386,8 +396,7 @@ void check_relations(const Case& config, const Document& document, const std::st
       {"plate.element_size_m", "plate.width_m", "plate.height_m"},
       fmt::format("plate.element_size_m is {} m; that makes more than {:.3g} nodes, choose a larger one",
                   plate.element_size_m, most_nodes));
-  const bool at_edge =
-      config.event == interface::EventKind::left || config.event == interface::EventKind::right;
+  const bool at_edge = interface::is_at_edge(config.event);
   const double shorter_m = std::min(plate.width_m, plate.height_m);
   require(plate.element_size_m <= shorter_m, {"plate.element_size_m", "plate.width_m", "plate.height_m"},
           fmt::format("plate.element_size_m is {} m; it must be at most the plate's shorter side, {} m",
@@ -421,6 +430,7 @@ void check_relations(const Case& config, const Document& document, const std::st
       fmt::format(
           "time.step_factor is {}, beyond the stable step; use at most 1, or set time.allow_unstable = true",
           config.time.step_factor));
+  check_trigger(config, require);
   check_nucleation(config, require);
   require(config.fronts.l_star_m < plate.width_m, {"fronts.l_star_m", "plate.width_m"},
           fmt::format("fronts.l_star_m is {} m; it must be less than plate.width_m, {} m",

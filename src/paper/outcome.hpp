@@ -26,9 +26,7 @@ struct Outcome {
   double ramp_critical_shear_m = 0;  ///< NaN where there was no ramp
   std::size_t ramp_onsets = 0;       ///< beginnings of slip at the edges during the ramp
 
-  bool triggered() const {
-    return config.event == interface::EventKind::left || config.event == interface::EventKind::right;
-  }
+  bool triggered() const { return interface::is_at_edge(config.event); }
 };
 
 /// Shorter fronts are left out of the claims.

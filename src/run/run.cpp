@@ -210,6 +210,7 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
 fronts::FrontOptions front_options(const io::Case& config, const InitialState& initial) {
   fronts::FrontOptions o;
   o.l_star_m = config.fronts.l_star_m;
+  o.speed_interval = config.fronts.speed_interval;
   o.arrest_time_s = config.fronts.arrest_time_s;
   o.min_length_m = config.fronts.min_length_m;
   o.crack_share = config.fronts.crack_share;
@@ -247,6 +248,8 @@ fronts::FrontOptions front_options(const io::Case& config, const InitialState& i
 
 namespace {
 
+using interface::is_at_edge;
+
 std::unique_ptr<solve::Stepper> new_stepper(const io::Case& config, const mesh::Mesh& mesh,
                                             const solve::Execution& execution) {
   return std::make_unique<solve::Stepper>(mesh, config.material, io::contact_model(config), config.time,
@@ -261,6 +264,11 @@ std::unique_ptr<solve::Stepper> started_stepper(const io::Case& config, const In
   if (initial.prescribed) stepper->set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
   auto forces = solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger,
                                       interface::static_coefficient(config.friction));
+  if (config.trigger.form == interface::TriggerForm::weakened && is_at_edge(config.event)) {
+    std::vector<double> intact(forces.size(), 1.0);
+    for (const auto k : solve::trigger_zone(state, config.event, config.trigger.zone_m)) intact[k] = 0;
+    stepper->set_intact(std::move(intact));
+  }
   if (config.event == interface::EventKind::nucleation) {
     auto B = patch(config.nucleation, initial.mesh);
     if (config.nucleation.form == interface::NucleationForm::weakened) {
@@ -317,10 +325,10 @@ std::unique_ptr<solve::Stepper> make_stepper(const io::Case& config, InitialStat
 }
 
 solve::EventRun begin_event(const io::Case& config, const InitialState& initial, solve::Stepper& stepper) {
-  const bool triggered = config.event == interface::EventKind::left ||
-                         config.event == interface::EventKind::right ||
-                         (config.event == interface::EventKind::nucleation &&
-                          config.nucleation.form == interface::NucleationForm::overstress);
+  const bool triggered =
+      (is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened) ||
+      (config.event == interface::EventKind::nucleation &&
+       config.nucleation.form == interface::NucleationForm::overstress);
   return {stepper,
           event_state(config, initial),
           interface::static_coefficient(config.friction),

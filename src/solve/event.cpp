@@ -47,23 +47,36 @@ double top_speed_m_per_s(const Stepper& stepper) {
 
 }  // namespace
 
+std::vector<std::size_t> trigger_zone(const Equilibrium& state, interface::EventKind kind, double zone_m) {
+  const auto& x_m = state.tractions.x_m;
+  std::vector<std::size_t> zone;
+  if (kind != interface::EventKind::left && kind != interface::EventKind::right) return zone;
+  const auto in_contact = [&](std::size_t k) { return state.contact[k] != Contact::open; };
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (std::size_t k = 0; k < x_m.size(); ++k) {
+    if (!in_contact(k)) continue;
+    first = std::min(first, x_m[k]);
+    last = std::max(last, x_m[k]);
+  }
+  for (std::size_t k = 0; k < x_m.size(); ++k) {
+    const double from_edge = kind == interface::EventKind::left ? x_m[k] - first : last - x_m[k];
+    if (in_contact(k) && from_edge <= zone_m * (1 + 1e-9)) zone.push_back(k);
+  }
+  return zone;
+}
+
 std::vector<double> trigger_forces(const Equilibrium& state, std::span<const double> tributary_m,
                                    interface::EventKind kind, const interface::Trigger& trigger,
                                    double mu_s) {
+  using enum interface::TriggerForm;
   const auto& s = state.tractions;
   std::vector<double> force(s.x_m.size(), 0.0);
-  if (kind != interface::EventKind::left && kind != interface::EventKind::right) return force;
-  const auto in_contact = [&](std::size_t k) { return state.contact[k] != Contact::open; };
-  double first = std::numeric_limits<double>::infinity(), last = -first;
-  for (std::size_t k = 0; k < force.size(); ++k) {
-    if (!in_contact(k)) continue;
-    first = std::min(first, s.x_m[k]);
-    last = std::max(last, s.x_m[k]);
-  }
-  for (std::size_t k = 0; k < force.size(); ++k) {
-    const double from_edge = kind == interface::EventKind::left ? s.x_m[k] - first : last - s.x_m[k];
-    if (in_contact(k) && from_edge <= trigger.zone_m * (1 + 1e-9))
-      force[k] = trigger.amount * (mu_s * s.p_s_Pa[k] - s.t_s_Pa[k]) * tributary_m[k];
+  if (trigger.form == weakened) return force;
+  for (const auto k : trigger_zone(state, kind, trigger.zone_m)) {
+    const double strength_Pa = mu_s * s.p_s_Pa[k];
+    const double added_Pa = trigger.form == added ? trigger.amount * (strength_Pa - s.t_s_Pa[k])
+                                                  : trigger.amount * strength_Pa - s.t_s_Pa[k];
+    force[k] = added_Pa * tributary_m[k];
   }
   return force;
 }

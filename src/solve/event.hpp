@@ -74,8 +74,10 @@ struct Event {
   }
 };
 
-/// Trigger forces on the interface nodes: amount (mu_s p_s - t_s) over the zone next to an edge of contact, N
-/// per unit thickness. [lower]
+/// Interface nodes in contact that lie within zone_m of the outermost one of the event's edge.
+std::vector<std::size_t> trigger_zone(const Equilibrium& state, interface::EventKind kind, double zone_m);
+
+/// Forces on the interface nodes that the trigger adds, see TriggerForm, N per unit thickness. [lower]
 std::vector<double> trigger_forces(const Equilibrium& state, std::span<const double> tributary_m,
                                    interface::EventKind kind, const interface::Trigger& trigger, double mu_s);
 

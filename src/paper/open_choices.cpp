@@ -1,0 +1,471 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "paper/open_choices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <boost/random/sobol.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "base/error.hpp"
+#include "io/schema.hpp"
+#include "run/batch.hpp"
+
+namespace slipfront::paper {
+
+namespace {
+
+using Between = OpenChoice::Between;
+using interface::EventKind;
+using interface::TriggerForm;
+
+constexpr double plate_width_m = 0.2;
+constexpr double quick_element_m = 4e-3;
+constexpr std::size_t n_triggers = 512, n_all = 256, n_quick = 4;
+
+/// Choices of the trigger at one edge.
+void add_trigger(std::vector<OpenChoice>& list, EventKind event, const std::string& edge) {
+  const interface::Trigger standard;
+  const auto add = [&](const char* name, const char* key, const char* why, std::vector<double> levels,
+                       Between between, double standard_value, std::function<void(io::Case&, double)> set) {
+    list.push_back(
+        {edge + "_" + name, key, event, why, std::move(levels), {}, between, standard_value, std::move(set)});
+  };
+  list.push_back({edge + "_form",
+                  "event.trigger_form",
+                  event,
+                  "the traction is \"increased manually\": by an amount, to a level, or against a lowered "
+                  "strength",
+                  {0, 1, 2},
+                  {"added", "raised", "weakened"},
+                  Between::nothing,
+                  0,
+                  [](io::Case& c, double v) { c.trigger.form = static_cast<TriggerForm>(std::lround(v)); }});
+  add("zone_m", "event.trigger_zone_m",
+      "\"small\": 1 to 10 % of the interface; a zone of 3 elements still starts a front",
+      {2e-3, 5e-3, 10e-3, 15e-3, 20e-3}, Between::logarithmic, standard.zone_m,
+      [](io::Case& c, double v) { c.trigger.zone_m = v; });
+  add("added", "event.trigger_amount",
+      "from just enough for a front, to 40 times what is missing to the strength", {2, 3.5, 5, 10, 20, 40},
+      Between::logarithmic, standard.amount, [](io::Case& c, double v) {
+        if (c.trigger.form == TriggerForm::added) c.trigger.amount = v;
+      });
+  add("raised", "event.trigger_amount", "from just above the strength to four times it", {1.05, 1.5, 2, 4},
+      Between::logarithmic, 1.5, [](io::Case& c, double v) {
+        if (c.trigger.form == TriggerForm::raised) c.trigger.amount = v;
+      });
+  add("ramp_s", "event.trigger_ramp_s",
+      "from within one step to the time that a longitudinal wave takes for 16 mm",
+      {0.1e-6, 1e-6, 5e-6, 10e-6}, Between::logarithmic, standard.ramp_s,
+      [](io::Case& c, double v) { c.trigger.ramp_s = v; });
+  add("duration_s", "event.trigger_duration_s", "taken away behind the front, or held",
+      {15e-6, 30e-6, 60e-6, std::numeric_limits<double>::infinity()}, Between::nothing, standard.duration_s,
+      [](io::Case& c, double v) { c.trigger.duration_s = v; });
+}
+
+void add_plate_and_loading(std::vector<OpenChoice>& list) {
+  list.push_back({"top",
+                  "loading.top_during_tilt",
+                  {},
+                  "a vertical displacement is imposed; nothing is said of the horizontal one",
+                  {0, 1},
+                  {"held", "free"},
+                  Between::nothing,
+                  0,
+                  [](io::Case& c, double v) {
+                    c.loading.top_during_tilt = v == 0 ? solve::TopEdge::held : solve::TopEdge::free;
+                  }});
+  list.push_back(
+      {"corner",
+       "plate.corner",
+       {},
+       "rounded, without a radius; the relief is this program's standard, right angles a limit",
+       {0, 1, 2, 3, 4},
+       {"none", "relief", "fillet 2 mm", "fillet 5 mm", "fillet 10 mm"},
+       Between::nothing,
+       1,
+       [](io::Case& c, double v) {
+         constexpr std::array radii_m = {2e-3, 5e-3, 10e-3};
+         const auto k = std::lround(v);
+         c.plate.corner = k == 0 ? mesh::Corner::none : k == 1 ? mesh::Corner::relief : mesh::Corner::fillet;
+         if (k >= 2) c.plate.fillet_radius_m = radii_m[k - 2];
+       }});
+  list.push_back({"element_size_m",
+                  "plate.element_size_m",
+                  {},
+                  "the paper's meshes have 0.67 to 2 mm; which figure has which is not said",
+                  {plate_width_m / 300, plate_width_m / 200, plate_width_m / 150, plate_width_m / 100},
+                  {},
+                  Between::nothing,
+                  plate_width_m / 300,
+                  [](io::Case& c, double v) { c.plate.element_size_m = v; }});
+}
+
+void add_numerics(std::vector<OpenChoice>& list) {
+  list.push_back({"step_factor",
+                  "time.step_factor",
+                  {},
+                  "the step is not given; the velocity on which the damping acts is half a step old, so this "
+                  "choice holds that one as well",
+                  {0.225, 0.45, 0.9},
+                  {},
+                  Between::logarithmic,
+                  0.9,
+                  [](io::Case& c, double v) { c.time.step_factor = v; }});
+  list.push_back(
+      {"substeps",
+       "time.interface_substeps",
+       {},
+       "the paper's scheme has one step; this program's resolves the change of friction",
+       {1, 3, 9, 18},
+       {},
+       Between::nothing,
+       18,
+       [](io::Case& c, double v) { c.time.interface_substeps = static_cast<int>(std::lround(v)); }});
+  list.push_back({"contact",
+                  "contact.algorithm",
+                  {},
+                  "an energy conserving algorithm, of which there are several",
+                  {0, 1},
+                  {"direct", "predictor_corrector"},
+                  Between::nothing,
+                  0,
+                  [](io::Case& c, double v) {
+                    c.contact = v == 0 ? interface::ContactAlgorithm::direct
+                                       : interface::ContactAlgorithm::predictor_corrector;
+                  }});
+  list.push_back({"speed_interval",
+                  "fronts.speed_interval",
+                  {},
+                  "V_tip belongs to the advance over l* or to the node at its end",
+                  {0, 1},
+                  {"centred", "approach"},
+                  Between::nothing,
+                  0,
+                  [](io::Case& c, double v) {
+                    c.fronts.speed_interval =
+                        v == 0 ? fronts::SpeedInterval::centred : fronts::SpeedInterval::approach;
+                  }});
+}
+
+std::size_t index_of(const std::vector<OpenChoice>& choices, std::string_view name) {
+  const auto found = std::ranges::find(choices, name, &OpenChoice::name);
+  SLIPFRONT_ASSERT(found != choices.end(), "no such choice");
+  return static_cast<std::size_t>(found - choices.begin());
+}
+
+std::vector<double> standard_values(const std::vector<OpenChoice>& choices) {
+  std::vector<double> values;
+  for (const auto& choice : choices) values.push_back(choice.standard);
+  return values;
+}
+
+/// Levels of one choice by themselves. Those that only count with another form come with it.
+void add_one_at_a_time(const std::vector<OpenChoice>& choices, std::vector<Sample>& list) {
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    const auto& choice = choices[k];
+    const bool is_of_raised = choice.name.ends_with("_raised");
+    for (const double level : choice.levels) {
+      Sample sample{Sample::Set::one_at_a_time, standard_values(choices)};
+      sample.values[k] = level;
+      if (is_of_raised)
+        sample.values[index_of(choices, choice.name.substr(0, choice.name.find('_')) + "_form")] = 1;
+      if (sample.values != standard_values(choices)) list.push_back(std::move(sample));
+    }
+  }
+}
+
+/// Where two choices act together: how much and over which length or time an edge is pushed; mesh and step.
+void add_pairs(const std::vector<OpenChoice>& choices, std::vector<Sample>& list) {
+  const std::array<std::pair<const char*, const char*>, 5> pairs = {{{"left_zone_m", "left_added"},
+                                                                     {"left_ramp_s", "left_added"},
+                                                                     {"right_zone_m", "right_added"},
+                                                                     {"right_ramp_s", "right_added"},
+                                                                     {"element_size_m", "substeps"}}};
+  for (const auto& [first, second] : pairs) {
+    const auto i = index_of(choices, first), j = index_of(choices, second);
+    for (const double a : choices[i].levels)
+      for (const double b : choices[j].levels) {
+        if (a == choices[i].standard || b == choices[j].standard) continue;  // one at a time
+        Sample sample{Sample::Set::pairs, standard_values(choices)};
+        sample.values[i] = a;
+        sample.values[j] = b;
+        list.push_back(std::move(sample));
+      }
+  }
+}
+
+/// Points of Sobol's sequence, from its first one behind the origin on.
+void add_space_filling(const std::vector<OpenChoice>& choices, Sample::Set set, std::size_t n,
+                       std::vector<Sample>& list) {
+  std::vector<std::size_t> varied;
+  for (std::size_t k = 0; k < choices.size(); ++k)
+    if (set == Sample::Set::all || choices[k].event) varied.push_back(k);
+  boost::random::sobol sequence(varied.size());
+  constexpr double range = 1 + static_cast<double>(boost::random::sobol::max());
+  for (std::size_t point = 0; point < n; ++point) {
+    Sample sample{set, standard_values(choices)};
+    for (const auto k : varied) sample.values[k] = choices[k].at(static_cast<double>(sequence()) / range);
+    list.push_back(std::move(sample));
+  }
+}
+
+/// The four events of a sample.
+std::array<io::Case, 4> cases_of(const std::vector<OpenChoice>& choices, const Sample& sample, bool quick) {
+  auto named = paper_cases(false);
+  std::array<io::Case, 4> cases;
+  for (std::size_t e = 0; e < cases.size(); ++e) {
+    auto& c = cases[e] = std::move(named[e].config);
+    c.title.clear();
+    c.output.snapshot_times_s.clear();
+    c.output.history_interval_s = c.output.energy_interval_s = 1e-5;
+    for (std::size_t k = 0; k < choices.size(); ++k)
+      if (!choices[k].event || choices[k].event == c.event) choices[k].set(c, sample.values[k]);
+    if (quick) c.plate.element_size_m = quick_element_m;
+    // Nothing else of a trigger that is not there, so that equal runs are known as equal.
+    if (!interface::is_at_edge(c.event)) c.trigger = {};
+    if (c.trigger.form == TriggerForm::weakened) c.trigger = {c.trigger.form, c.trigger.zone_m};
+  }
+  return cases;
+}
+
+/// Events, by the text of their case, each once.
+class Events {
+ public:
+  std::size_t place(const io::Case& config) {
+    const auto [found, is_new] = places_.try_emplace(io::to_toml(config), cases_.size());
+    if (is_new) cases_.push_back(config);
+    return found->second;
+  }
+  const std::vector<io::Case>& cases() const { return cases_; }
+
+ private:
+  std::map<std::string, std::size_t> places_;
+  std::vector<io::Case> cases_;
+};
+
+/// Whether a sample's plate can be meshed: small fillets need small elements.
+class Possible {
+ public:
+  bool operator()(const std::array<io::Case, 4>& cases) {
+    return std::ranges::all_of(cases, [this](const io::Case& c) {
+      const auto [found, is_new] = known_.try_emplace(run::initial_state_key(c), true);
+      if (is_new) found->second = can_be_meshed(c);
+      return found->second;
+    });
+  }
+
+ private:
+  static bool can_be_meshed(const io::Case& config) {
+    try {
+      run::check(config);
+      return true;
+    } catch (const UserError&) {
+      return false;
+    }
+  }
+
+  std::map<std::string, bool> known_;
+};
+
+double figure(const std::vector<Claim>& claims, const char* id, const char* name) {
+  const auto claim = std::ranges::find(claims, id, &Claim::id);
+  if (claim == claims.end()) return fronts::undefined;
+  const auto found = std::ranges::find(claim->figures, name, &Figure::name);
+  return found == claim->figures.end() ? fronts::undefined : found->value;
+}
+
+double distance_from_paper(const fronts::ExponentialFit& fit) {
+  const PaperFit paper;
+  const auto units = [](const fronts::Estimate& ours, double theirs) {
+    const double interval = theirs > ours.value ? ours.high - ours.value : ours.value - ours.low;
+    return interval > 0 ? std::abs(theirs - ours.value) / interval : fronts::undefined;
+  };
+  return std::max({units(fit.a, paper.a), units(fit.b, paper.b), units(fit.c, paper.c)});
+}
+
+double extremity(const std::vector<OpenChoice>& choices, const Sample& sample) {
+  double largest = 0;
+  for (std::size_t k = 0; k < choices.size(); ++k)
+    largest = std::max(
+        largest, std::abs(choices[k].share_of(sample.values[k]) - choices[k].share_of(choices[k].standard)));
+  return largest;
+}
+
+std::optional<bool> verdict(const std::vector<Claim>& claims, const std::string& id) {
+  const auto found = std::ranges::find(claims, id, &Claim::id);
+  return found == claims.end() ? std::nullopt : found->holds;
+}
+
+SampleOutcome judge(const std::vector<OpenChoice>& choices, const Sample& sample,
+                    const std::array<const Outcome*, 4>& events, std::vector<std::string>& ids) {
+  const Reproduction runs{*events[0], *events[1], *events[2], *events[3], {}, {}};
+  const auto claims = scorecard(runs);
+  SampleOutcome o;
+  o.sample = sample;
+  o.extremity = extremity(choices, sample);
+  const bool is_first = ids.empty();
+  for (const auto& claim : claims) {
+    o.holds.push_back(claim.holds);
+    if (is_first) ids.push_back(claim.id);
+  }
+  o.left_max = figure(claims, "C11", "left");
+  o.right_max = figure(claims, "C11", "right");
+  o.spontaneous_max = figure(claims, "C11", "spontaneous");
+  o.is_constrained = std::ranges::all_of(constraining_claims(), [&](const std::string& id) {
+    return verdict(claims, id) == std::optional(true);
+  });
+  const std::array<const Outcome*, 3> three = {events[0], events[1], events[2]};
+  const auto main = collapse(three, true);
+  o.share_in_band = main.share_in_paper_band;
+  if (main.fitted) o.fit = main.fit;
+  o.distance = main.fitted ? distance_from_paper(main.fit) : fronts::undefined;
+  return o;
+}
+
+/// C1 to C11.
+bool has_slow_left(const SampleOutcome& o, const std::vector<std::string>& ids) {
+  for (int k = 1; k <= 11; ++k) {
+    const auto place = std::ranges::find(ids, fmt::format("C{}", k)) - ids.begin();
+    if (o.holds[place] != std::optional(true)) return false;
+  }
+  return true;
+}
+
+void find_region(OpenChoicesResult& result) {
+  for (std::size_t k = 0; k < result.outcomes.size(); ++k) {
+    const auto& o = result.outcomes[k];
+    if (!o.is_constrained || !(o.distance <= most_distance) || !(o.share_in_band >= least_share_in_band))
+      continue;
+    result.region.push_back(k);
+    if (result.chosen < 0 || o.extremity < result.outcomes[result.chosen].extremity)
+      result.chosen = static_cast<int>(k);
+  }
+}
+
+}  // namespace
+
+double OpenChoice::at(double share) const {
+  const auto n = static_cast<double>(levels.size());
+  const double low = levels.front(), high = levels.back();
+  switch (between) {
+    case Between::nothing:
+      return levels[static_cast<std::size_t>(std::min(share * n, n - 1))];
+    case Between::linear:
+      return low + share * (high - low);
+    case Between::logarithmic:
+      return low * std::pow(high / low, share);
+  }
+  return fronts::undefined;
+}
+
+double OpenChoice::share_of(double value) const {
+  const double low = levels.front(), high = levels.back();
+  switch (between) {
+    case Between::nothing:
+      return static_cast<double>(std::ranges::find(levels, value) - levels.begin()) /
+             static_cast<double>(levels.size() - 1);
+    case Between::linear:
+      return (value - low) / (high - low);
+    case Between::logarithmic:
+      return std::log(value / low) / std::log(high / low);
+  }
+  return fronts::undefined;
+}
+
+std::string OpenChoice::text(double value) const {
+  return words.empty() ? fmt::format("{:.4g}", value) : words[static_cast<std::size_t>(std::lround(value))];
+}
+
+std::string_view name(Sample::Set set) {
+  switch (set) {
+    case Sample::Set::standard:
+      return "standard";
+    case Sample::Set::one_at_a_time:
+      return "one at a time";
+    case Sample::Set::pairs:
+      return "pairs";
+    case Sample::Set::triggers:
+      return "triggers";
+    case Sample::Set::all:
+      return "all";
+  }
+  return "";
+}
+
+const std::vector<std::string>& constraining_claims() {
+  static const std::vector<std::string> ids = {"C2",  "C3",  "C4",  "C5",  "C6",  "C7",  "C8",  "C9",
+                                               "C10", "C11", "C12", "C13", "C15", "C16", "C17", "C23"};
+  return ids;
+}
+
+std::vector<OpenChoice> open_choices() {
+  std::vector<OpenChoice> list;
+  add_trigger(list, EventKind::left, "left");
+  add_trigger(list, EventKind::right, "right");
+  add_plate_and_loading(list);
+  add_numerics(list);
+  return list;
+}
+
+std::vector<Sample> samples(const std::vector<OpenChoice>& choices, bool quick) {
+  std::vector<Sample> list = {{Sample::Set::standard, standard_values(choices)}};
+  if (!quick) {
+    add_one_at_a_time(choices, list);
+    add_pairs(choices, list);
+  }
+  add_space_filling(choices, Sample::Set::triggers, quick ? n_quick : n_triggers, list);
+  add_space_filling(choices, Sample::Set::all, quick ? n_quick : n_all, list);
+  return list;
+}
+
+OpenChoicesResult study_open_choices(
+    const OpenChoicesOptions& options,
+    const std::function<bool(std::size_t done, std::size_t total)>& monitor) {
+  OpenChoicesResult result;
+  result.choices = open_choices();
+  std::vector<Sample> all;
+  Events events;
+  Possible is_possible;
+  std::vector<std::array<std::size_t, 4>> places;
+  for (auto& sample : samples(result.choices, options.quick)) {
+    const auto cases = cases_of(result.choices, sample, options.quick);
+    if (!is_possible(cases)) {
+      ++result.n_impossible;
+      continue;
+    }
+    all.push_back(std::move(sample));
+    auto& of_sample = places.emplace_back();
+    for (std::size_t e = 0; e < cases.size(); ++e) of_sample[e] = events.place(cases[e]);
+  }
+  std::vector<Outcome> outcomes(events.cases().size());
+  std::atomic<std::size_t> done = 0;
+  run::Batch batch(
+      options.threads, [&] { return monitor(done, outcomes.size()); },
+      "interrupted; the runs that were done are kept: give the same command again to go on", options.kept);
+  batch.run(events.cases(), [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
+    outcomes[k] = make_outcome("", r, initial);
+    if (r.event.end == solve::EventEnd::blow_up) outcomes[k].fronts.clear();
+    ++done;
+  });
+  result.n_runs = outcomes.size();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const auto& at = places[k];
+    result.outcomes.push_back(judge(result.choices, all[k],
+                                    {&outcomes[at[0]], &outcomes[at[1]], &outcomes[at[2]], &outcomes[at[3]]},
+                                    result.claims));
+    if (all[k].set != Sample::Set::triggers) continue;
+    ++result.n_triggers;
+    result.n_triggers_slow_left += has_slow_left(result.outcomes.back(), result.claims) ? 1 : 0;
+  }
+  find_region(result);
+  return result;
+}
+
+}  // namespace slipfront::paper

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fronts/fit.hpp"
+#include "io/case.hpp"
+#include "paper/scorecard.hpp"
+
+namespace slipfront::paper {
+
+/// A choice that the paper leaves open.
+struct OpenChoice {
+  std::string name;                           ///< column of the tables
+  std::string key;                            ///< of the case file
+  std::optional<interface::EventKind> event;  ///< the only event that it concerns
+  std::string why;                            ///< reason of the range
+  std::vector<double> levels;                 ///< values tried by themselves, ascending; indices of the words
+  std::vector<std::string> words;             ///< of the levels where they are no numbers
+  enum class Between { nothing, linear, logarithmic } between = Between::nothing;  ///< values between levels
+  double standard = 0;  ///< the case's without the study
+  std::function<void(io::Case&, double)> set;
+
+  /// The value at a share of the range, 0 to 1.
+  double at(double share) const;
+  /// The share of the range at which a value lies.
+  double share_of(double value) const;
+  /// As it stands in tables.
+  std::string text(double value) const;
+};
+
+/// All of them, in the order in which they are set.
+std::vector<OpenChoice> open_choices();
+
+/// What is chosen: a value for each open choice.
+struct Sample {
+  enum class Set {
+    standard,       ///< the choices of the paper's cases of this program
+    one_at_a_time,  ///< one other level of one choice
+    pairs,          ///< two of them
+    triggers,       ///< space-filling over the choices of the edge triggers
+    all,            ///< space-filling over all choices
+  };
+  Set set = Set::standard;
+  std::vector<double> values;  ///< [choices]
+};
+std::string_view name(Sample::Set set);
+
+struct OpenChoicesOptions {
+  bool quick = false;               ///< few samples with elements of 4 mm, to try the command
+  int threads = 1;                  ///< runs side by side
+  std::filesystem::path kept = {};  ///< folder of the runs that are done
+};
+
+std::vector<Sample> samples(const std::vector<OpenChoice>& choices, bool quick);
+
+/// What comes out for one sample.
+struct SampleOutcome {
+  Sample sample;
+  std::vector<std::optional<bool>> holds;                   ///< [claims]
+  double left_max = 0, right_max = 0, spontaneous_max = 0;  ///< V_tip/c_L, see C11
+  std::optional<fronts::ExponentialFit> fit;  ///< of the main fronts without their tails, see C18b
+  double share_in_band = 0;                   ///< of their points within the paper's band
+  /// Largest distance of a, b and c from the paper's in units of our interval on that side: at most 1 where
+  /// the paper's lie inside our intervals; NaN without a fit.
+  double distance = 0;
+  bool is_constrained = false;  ///< all constraints hold
+  double extremity = 0;         ///< largest distance of a choice from the standard, in shares of its range
+};
+
+/// Claims that decide which choices are possible: statements about the fronts that a choice can turn. The
+/// paper's conclusions, C14 and C18 to C22, are none.
+const std::vector<std::string>& constraining_claims();
+
+/// Limits within which the calibration counts as met.
+inline constexpr double most_distance = 1, least_share_in_band = 0.8;
+
+struct OpenChoicesResult {
+  std::vector<OpenChoice> choices;
+  std::vector<std::string> claims;      ///< their ids
+  std::vector<SampleOutcome> outcomes;  ///< the standard one first
+  std::vector<std::size_t> region;      ///< outcomes that satisfy constraints and calibration
+  int chosen = -1;                      ///< the least extreme of the region; -1: it is empty
+  /// C11b: of the trigger samples, those for which C1 to C11 hold.
+  std::size_t n_triggers = 0, n_triggers_slow_left = 0;
+  std::size_t n_impossible = 0;  ///< samples left out: fillets too small for their elements
+  std::size_t n_runs = 0;
+};
+
+/// Runs the four events of every sample (equal ones once) and judges them.
+/// @throws UserError, Interrupted
+OpenChoicesResult study_open_choices(const OpenChoicesOptions& options,
+                                     const std::function<bool(std::size_t done, std::size_t total)>& monitor);
+
+/// open_choices.csv, a row per sample, and open_choices.json: choices with ranges and reasons, rule, matrix
+/// of claims and choices, region, chosen values.
+void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResult& result);
+
+}  // namespace slipfront::paper

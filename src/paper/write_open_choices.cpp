@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/version.hpp"
+#include "io/files.hpp"
+#include "paper/open_choices.hpp"
+
+namespace slipfront::paper {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// Numbers as they are, infinity as in case files.
+Json value_json(const OpenChoice& choice, double value) {
+  if (!choice.words.empty() || std::isinf(value)) return choice.text(value);
+  return value;
+}
+
+/// Empty where undefined.
+std::string cell(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
+}
+
+std::string cell(std::optional<bool> holds) {
+  return holds ? (*holds ? "holds" : "does not") : "";
+}
+
+std::string csv(const OpenChoicesResult& result) {
+  std::string text = "set";
+  for (const auto& choice : result.choices) text += fmt::format(",{}", choice.name);
+  text +=
+      ",constraints,distance,share_in_band,extremity,a,a_low,a_high,b,b_low,b_high,c,c_low,c_high,"
+      "rms_over_c_L,left_max_over_c_L,spontaneous_max_over_c_L,right_max_over_c_L";
+  for (const auto& id : result.claims) text += fmt::format(",{}", id);
+  text += "\n";
+  for (const auto& o : result.outcomes) {
+    text += name(o.sample.set);
+    for (std::size_t k = 0; k < result.choices.size(); ++k)
+      text += fmt::format(",{}", result.choices[k].text(o.sample.values[k]));
+    text += fmt::format(",{},{},{},{}", o.is_constrained ? "hold" : "do not", cell(o.distance),
+                        cell(o.share_in_band), cell(o.extremity));
+    const auto fit = o.fit.value_or(fronts::ExponentialFit{});
+    for (const auto* e : {&fit.a, &fit.b, &fit.c})
+      for (const double value : {e->value, e->low, e->high}) text += fmt::format(",{}", o.fit ? cell(value) : "");
+    text += fmt::format(",{},{},{},{}", o.fit ? cell(fit.rms) : "", cell(o.left_max), cell(o.spontaneous_max),
+                        cell(o.right_max));
+    for (const auto holds : o.holds) text += fmt::format(",{}", cell(holds));
+    text += "\n";
+  }
+  return text;
+}
+
+Json choices_json(const OpenChoicesResult& result) {
+  Json list = Json::array();
+  for (const auto& choice : result.choices) {
+    Json levels = Json::array();
+    for (const double level : choice.levels) levels.push_back(value_json(choice, level));
+    list.push_back({{"name", choice.name},
+                    {"key", choice.key},
+                    {"why", choice.why},
+                    {"levels", levels},
+                    {"standard", value_json(choice, choice.standard)}});
+  }
+  return list;
+}
+
+/// Samples of a set for which a claim holds, over those for which it is tested.
+Json share_json(const OpenChoicesResult& result, Sample::Set set, std::size_t claim) {
+  std::size_t tested = 0, holding = 0;
+  for (const auto& o : result.outcomes) {
+    if (o.sample.set != set || !o.holds[claim]) continue;
+    ++tested;
+    holding += *o.holds[claim] ? 1 : 0;
+  }
+  return tested == 0 ? Json(nullptr) : Json(static_cast<double>(holding) / static_cast<double>(tested));
+}
+
+/// Of each claim: how often it holds, and at which levels of which choice, taken by itself, it turns.
+Json matrix_json(const OpenChoicesResult& result) {
+  Json list = Json::array();
+  const auto& standard = result.outcomes.front();
+  for (std::size_t claim = 0; claim < result.claims.size(); ++claim) {
+    if (!standard.holds[claim]) continue;
+    Json turns = Json::array();
+    for (const auto& o : result.outcomes) {
+      if (o.sample.set != Sample::Set::one_at_a_time || o.holds[claim] == standard.holds[claim]) continue;
+      for (std::size_t k = 0; k < result.choices.size(); ++k)
+        if (o.sample.values[k] != standard.sample.values[k])
+          turns.push_back({{"choice", result.choices[k].name},
+                           {"level", value_json(result.choices[k], o.sample.values[k])}});
+    }
+    list.push_back({{"id", result.claims[claim]},
+                    {"holds", *standard.holds[claim]},
+                    {"share_of_triggers", share_json(result, Sample::Set::triggers, claim)},
+                    {"share_of_all", share_json(result, Sample::Set::all, claim)},
+                    {"turns", turns}});
+  }
+  return list;
+}
+
+Json estimate_json(const fronts::Estimate& e) {
+  return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};
+}
+
+Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
+  Json values;
+  for (std::size_t k = 0; k < result.choices.size(); ++k)
+    values[result.choices[k].name] = value_json(result.choices[k], o.sample.values[k]);
+  Json json = {{"set", name(o.sample.set)},
+               {"values", values},
+               {"constraints_hold", o.is_constrained},
+               {"distance", number(o.distance)},
+               {"share_in_band", number(o.share_in_band)},
+               {"extremity", number(o.extremity)},
+               {"fit", nullptr}};
+  if (o.fit)
+    json["fit"] = {{"a", estimate_json(o.fit->a)},
+                   {"b", estimate_json(o.fit->b)},
+                   {"c", estimate_json(o.fit->c)},
+                   {"rms_over_c_L", o.fit->rms}};
+  return json;
+}
+
+/// Least and largest value of each choice in the region, numbers only; words that occur.
+Json region_json(const OpenChoicesResult& result) {
+  Json json = Json::object();
+  for (std::size_t k = 0; k < result.choices.size(); ++k) {
+    std::vector<double> values;
+    for (const auto place : result.region) values.push_back(result.outcomes[place].sample.values[k]);
+    std::ranges::sort(values);
+    const auto [first, last] = std::ranges::unique(values);
+    values.erase(first, last);
+    Json list = Json::array();
+    const bool as_range = result.choices[k].words.empty() && values.size() > 2;
+    if (as_range) values = {values.front(), values.back()};
+    for (const double value : values) list.push_back(value_json(result.choices[k], value));
+    json[result.choices[k].name] = list;
+  }
+  return json;
+}
+
+}  // namespace
+
+void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResult& result) {
+  const auto count = [&](auto&& condition) { return std::ranges::count_if(result.outcomes, condition); };
+  Json json = {{"version", version_line()},
+               {"n_runs", result.n_runs},
+               {"n_samples", result.outcomes.size()},
+               {"n_impossible", result.n_impossible},
+               {"constraints", constraining_claims()},
+               {"most_distance", most_distance},
+               {"least_share_in_band", least_share_in_band},
+               {"choices", choices_json(result)},
+               {"matrix", matrix_json(result)},
+               {"n_triggers", result.n_triggers},
+               {"n_triggers_slow_left", result.n_triggers_slow_left},
+               {"n_constrained", count([](const SampleOutcome& o) { return o.is_constrained; })},
+               {"n_region", result.region.size()},
+               {"region", region_json(result)},
+               {"standard", outcome_json(result, result.outcomes.front())},
+               {"chosen", nullptr}};
+  if (result.chosen >= 0) json["chosen"] = outcome_json(result, result.outcomes[result.chosen]);
+  io::write_text(dir / "open_choices.csv", csv(result));
+  io::write_text(dir / "open_choices.json", json.dump(2) + "\n");
+}
+
+}  // namespace slipfront::paper
