@@ -172,11 +172,12 @@ void add_one_at_a_time(const std::vector<OpenChoice>& choices, std::vector<Sampl
     const auto& choice = choices[k];
     const bool is_of_raised = choice.name.ends_with("_raised");
     for (const double level : choice.levels) {
+      if (level == choice.standard) continue;
       Sample sample{Sample::Set::one_at_a_time, standard_values(choices)};
       sample.values[k] = level;
       if (is_of_raised)
         sample.values[index_of(choices, choice.name.substr(0, choice.name.find('_')) + "_form")] = 1;
-      if (sample.values != standard_values(choices)) list.push_back(std::move(sample));
+      list.push_back(std::move(sample));
     }
   }
 }

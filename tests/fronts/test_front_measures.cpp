@@ -69,6 +69,28 @@ TEST(TipSpeed, AcceleratingFront) {
   for (const FrontPoint& point : slowing.points) EXPECT_FALSE(point.accelerating);
 }
 
+TEST(TipSpeed, MayBeThatOfTheApproach) {
+  // Each element at a speed of its own, from the right: the speed at a node is that of the element behind the
+  // tip.
+  const auto x = nodes(31, h);
+  std::vector<double> tau(x.size(), 0);
+  const auto speed_m_per_s = [](std::size_t element) {
+    return 500.0 + 20.0 * static_cast<double>(element % 7);
+  };
+  for (std::size_t k = x.size() - 1; k-- > 0;) tau[k] = tau[k + 1] + h / speed_m_per_s(k);
+  auto options = make_options();
+  options.l_star_m = h;
+  options.speed_interval = SpeedInterval::approach;
+  const auto front = find(make_record(x, tau), options).at(0);
+  ASSERT_EQ(front.points.size(), x.size());
+  EXPECT_TRUE(std::isnan(front.points[0].v_tip_m_per_s));
+  for (std::size_t k = 1; k < front.points.size(); ++k)
+    EXPECT_NEAR(front.points[k].v_tip_m_per_s, speed_m_per_s(x.size() - 1 - k), 1e-6) << k;
+  options.speed_interval = SpeedInterval::centred;
+  const auto centred = find(make_record(x, tau), options).at(0);
+  EXPECT_NE(centred.points[5].v_tip_m_per_s, front.points[5].v_tip_m_per_s);
+}
+
 TEST(TipSpeed, AccelerationIsSmoothed) {
   constexpr double V0 = 500.0, k = 1e4;
   const auto x = nodes(301, h);

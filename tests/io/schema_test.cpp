@@ -48,8 +48,8 @@ auto members(const interface::Regularisation& r) {
   return std::tuple(a, b, c, d);
 }
 auto members(const interface::Trigger& t) {
-  const auto& [a, b, c, d] = t;
-  return std::tuple(a, b, c, d);
+  const auto& [a, b, c, d, e] = t;
+  return std::tuple(a, b, c, d, e);
 }
 auto members(const Prestress& p) {
   const auto& [a, b, c, table] = p;
@@ -64,8 +64,8 @@ auto members(const solve::TimeStepping& t) {
   return std::tuple(a, b, c, d, e, f, g, h);
 }
 auto members(const FrontSettings& s) {
-  const auto& [a, b, c, d, e, f] = s;
-  return std::tuple(a, b, c, d, e, f);
+  const auto& [a, b, c, d, e, f, g] = s;
+  return std::tuple(a, b, c, d, e, f, g);
 }
 auto members(const Output& o) {
   const auto& [a, b, c] = o;
@@ -127,10 +127,10 @@ Case changed_case() {
   c.regularisation = {interface::Relaxed::strength, 1e-5 / 3, 0.25, 2e-6};
   c.contact = interface::ContactAlgorithm::predictor_corrector;
   c.event = interface::EventKind::right;
-  c.trigger = {7e-3, 2.5, 0, 3e-5};
+  c.trigger = {interface::TriggerForm::raised, 7e-3, 2.5, 0, 3e-5};
   c.time = {1.5,   true, solve::Precision::single_precision,     7, 11,
             false, 1e-4, std::numeric_limits<double>::infinity()};
-  c.fronts = {1e-3, 1e-5, 3e-3, 0.625, 0.25, 5e-3};
+  c.fronts = {1e-3, fronts::SpeedInterval::approach, 1e-5, 3e-3, 0.625, 0.25, 5e-3};
   c.output = {1e-7, {0, 1e-5, 1.0 / 3 * 1e-4}, 3e-5};
   return c;
 }
@@ -266,6 +266,14 @@ TEST(Schema, WhatPrescribedTractionsAskOfOtherKeys) {
               AllOf(StartsWith("c.toml:2: "), HasSubstr("prestress")));
 }
 
+TEST(Schema, AWeakenedTriggerNeedsALawThatWeakens) {
+  const std::vector<Override> weakened = {{"event.kind", "left"}, {"event.trigger_form", "weakened"}};
+  EXPECT_EQ(parse_case("title = 'a'\n", "c.toml", weakened).trigger.form, interface::TriggerForm::weakened);
+  auto coulomb = weakened;
+  coulomb.push_back({"friction.law", "coulomb"});
+  EXPECT_THAT(parse_error("title = 'a'\n", coulomb), HasSubstr("choose added or raised"));
+}
+
 TEST(Schema, IterativeStaticsKnowNoGradedPlates) {
   EXPECT_THAT(
       parse_error("[plate]\ncoarsenings = 1\nfine_height_m = 0.02\n[loading]\nsolver = \"iterative\"\n"),
@@ -314,6 +322,7 @@ relaxation_time_s = inf
 algorithm = "predictor_corrector"
 [event]
 kind = "left"
+trigger_form = "raised"
 trigger_zone_m = 0.03
 trigger_amount = 4
 trigger_ramp_s = 6e-6
@@ -334,6 +343,7 @@ min_length_m = 4e-3
 crack_share = 0.6
 pulse_share = 0.1
 trigger_margin_m = 5e-3
+speed_interval = "approach"
 [output]
 history_interval_s = 1e-6
 energy_interval_s = 1e-5
@@ -352,9 +362,9 @@ snapshot_times_s = [1e-5, 2e-5]
                              std::numeric_limits<double>::infinity()};
   expected.contact = interface::ContactAlgorithm::predictor_corrector;
   expected.event = interface::EventKind::left;
-  expected.trigger = {0.03, 4, 6e-6, std::numeric_limits<double>::infinity()};
+  expected.trigger = {interface::TriggerForm::raised, 0.03, 4, 6e-6, std::numeric_limits<double>::infinity()};
   expected.time = {0.5, true, solve::Precision::single_precision, 3, 9, false, 1e-4, 2e-5};
-  expected.fronts = {2e-3, 3e-5, 4e-3, 0.6, 0.1, 5e-3};
+  expected.fronts = {2e-3, fronts::SpeedInterval::approach, 3e-5, 4e-3, 0.6, 0.1, 5e-3};
   expected.output = {1e-6, {1e-5, 2e-5}, 1e-5};
   expect_equal(c, expected);
 }

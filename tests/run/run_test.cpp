@@ -107,7 +107,7 @@ TEST(InitialStateKey, IgnoresWhatOnlyConcernsTheEvent) {
   });
   for (const auto event : {EventKind::none, EventKind::left, EventKind::right})
     same("event", [event](io::Case& c) { c.event = event; });
-  same("trigger", [](io::Case& c) { c.trigger = {1e-3, 2, 1e-6, 1e-5}; });
+  same("trigger", [](io::Case& c) { c.trigger = {interface::TriggerForm::raised, 1e-3, 2, 1e-6, 1e-5}; });
   same("time", [](io::Case& c) { c.time.step_factor = 0.1; });
   same("l*", [](io::Case& c) { c.fronts.l_star_m = 5e-3; });
   same("output", [](io::Case& c) { c.output = {1e-6, {1e-5}}; });
@@ -360,6 +360,31 @@ TEST(FrontOptions, KnowTheTriggerZone) {
   EXPECT_EQ(driven(EventKind::spontaneous), std::pair(std::size_t{0}, std::size_t{0}));
   EXPECT_EQ(driven(EventKind::left), std::pair(std::size_t{1}, std::size_t{3}));
   EXPECT_EQ(driven(EventKind::right), std::pair(std::size_t{1}, std::size_t{3}));
+}
+
+TEST(Trigger, AWeakenedZoneSlipsByItself) {
+  // t/p next to the edge is above so low a mu_k.
+  auto config = coarse_case(EventKind::right);
+  law(config).mu_k = 0.2;
+  config.trigger.form = interface::TriggerForm::weakened;
+  config.time.end_s = 20e-6;
+  const auto initial = make_initial_state(config, go_on);
+  const auto result = run_event(config, initial, go_on);
+  const auto zone = solve::trigger_zone(initial.common, EventKind::right, config.trigger.zone_m);
+  ASSERT_FALSE(zone.empty());
+  const auto& s = initial.common.tractions;
+  std::size_t n_beyond = 0;
+  for (const auto k : zone) {
+    const bool is_beyond = s.t_s_Pa[k] > 1.001 * law(config).mu_k * s.p_s_Pa[k];
+    n_beyond += is_beyond ? 1 : 0;
+    const bool has_slipped = std::ranges::any_of(
+        result.event.record.onsets, [&](const auto& onset) { return std::cmp_equal(onset.node, k); });
+    if (is_beyond) {
+      EXPECT_TRUE(has_slipped) << k;
+    }
+  }
+  EXPECT_GT(n_beyond, 0U);
+  EXPECT_EQ(result.event.energies.back().trigger_work, 0);
 }
 
 TEST(Info, AgreesWithTheRun) {

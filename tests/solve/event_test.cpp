@@ -311,6 +311,24 @@ TEST(TriggerForces, FillTheZoneFromTheEdgeOfContact) {
   EXPECT_EQ(forces(EventKind::none).size(), 6);
 }
 
+TEST(TriggerForces, RaiseToAMultipleOfTheStrengthOrLeaveItToTheFriction) {
+  const std::vector<double> tributary = {0.5, 1, 1, 2, 1, 0.5};
+  using interface::EventKind;
+  using interface::TriggerForm;
+  const auto forces = [&](TriggerForm form) {
+    return trigger_forces(six_nodes(), tributary, EventKind::left,
+                          {.form = form, .zone_m = 0.01, .amount = 2}, mu_s);
+  };
+  using ::testing::DoubleNear;
+  // mu_s p_s = 13 Pa.
+  EXPECT_THAT(forces(TriggerForm::raised),
+              ElementsAre(0, DoubleNear(2 * 13 - 10, 1e-13), DoubleNear(2 * 13 - 7, 1e-13), 0, 0, 0));
+  EXPECT_THAT(forces(TriggerForm::weakened), Each(0));
+  EXPECT_THAT(trigger_zone(six_nodes(), EventKind::left, 0.01), ElementsAre(1, 2));
+  EXPECT_THAT(trigger_zone(six_nodes(), EventKind::right, 0.02), ElementsAre(2, 3, 4));
+  EXPECT_THAT(trigger_zone(six_nodes(), EventKind::spontaneous, 0.02), ::testing::IsEmpty());
+}
+
 TEST(Halo, ReachesPastTheDistanceAhead) {
   const auto mesh = support::make_plate(0.2, 0.1, 2e-3, Corner::none);
   EXPECT_EQ(halo_for(mesh, 2e-3), 2);

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "paper/open_choices.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "../io/support.hpp"
+#include "io/schema.hpp"
+
+namespace slipfront::paper {
+namespace {
+
+using test::TemporaryFolder;
+using testing::Contains;
+using testing::Each;
+
+std::size_t n_changed(const std::vector<OpenChoice>& choices, const Sample& sample) {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < choices.size(); ++k) n += sample.values[k] != choices[k].standard ? 1 : 0;
+  return n;
+}
+
+TEST(OpenChoices, RangesHoldTheStandardAndGoBackAndForth) {
+  for (const auto& choice : open_choices()) {
+    SCOPED_TRACE(choice.name);
+    EXPECT_FALSE(choice.why.empty());
+    EXPECT_TRUE(std::ranges::is_sorted(choice.levels));
+    if (!choice.words.empty()) {
+      EXPECT_EQ(choice.words.size(), choice.levels.size());
+    }
+    EXPECT_GE(choice.share_of(choice.standard), 0);
+    EXPECT_LE(choice.share_of(choice.standard), 1);
+    EXPECT_EQ(choice.at(0), choice.levels.front());
+    EXPECT_NEAR(choice.share_of(choice.at(1)), 1, 1e-12);
+    if (choice.between != OpenChoice::Between::nothing) {
+      EXPECT_NEAR(choice.share_of(choice.at(0.3)), 0.3, 1e-12);
+    } else {
+      EXPECT_THAT(choice.levels, Contains(choice.standard));
+    }
+  }
+}
+
+TEST(OpenChoices, SetTheKeysThatTheyName) {
+  const auto choices = open_choices();
+  std::set<std::string> names;
+  for (const auto& choice : choices) {
+    SCOPED_TRACE(choice.name);
+    EXPECT_TRUE(names.insert(choice.name).second);
+    for (const double level : choice.levels) {
+      io::Case changed, standard;
+      if (choice.name.ends_with("_raised"))
+        changed.trigger.form = standard.trigger.form = interface::TriggerForm::raised;
+      choice.set(standard, choice.standard);
+      choice.set(changed, level);
+      const auto differing = io::to_toml(changed) != io::to_toml(standard);
+      EXPECT_EQ(differing, level != choice.standard) << level;
+      const auto key = choice.key.substr(choice.key.find('.') + 1);
+      EXPECT_THAT(io::to_toml(changed), testing::HasSubstr(key));
+    }
+  }
+}
+
+TEST(OpenChoices, SamplesAreWhatTheirSetSays) {
+  const auto choices = open_choices();
+  std::map<Sample::Set, std::size_t> n;
+  std::set<std::vector<double>> different;
+  for (const auto& sample : samples(choices, false)) {
+    ++n[sample.set];
+    different.insert(sample.values);
+    ASSERT_EQ(sample.values.size(), choices.size());
+    const auto changed = n_changed(choices, sample);
+    if (sample.set == Sample::Set::standard) {
+      EXPECT_EQ(changed, 0U);
+    }
+    if (sample.set == Sample::Set::one_at_a_time) {
+      EXPECT_GE(changed, 1U);
+      EXPECT_LE(changed, 2U);
+    }
+    if (sample.set == Sample::Set::pairs) {
+      EXPECT_EQ(changed, 2U);
+    }
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+      if (sample.set == Sample::Set::triggers && !choices[k].event) {
+        EXPECT_EQ(sample.values[k], choices[k].standard) << choices[k].name;
+      }
+      EXPECT_GE(sample.values[k], choices[k].levels.front()) << choices[k].name;
+      EXPECT_LE(sample.values[k], choices[k].levels.back()) << choices[k].name;
+    }
+  }
+  EXPECT_EQ(n[Sample::Set::standard], 1U);
+  EXPECT_EQ(n[Sample::Set::triggers], 512U);
+  EXPECT_EQ(n[Sample::Set::all], 256U);
+  EXPECT_EQ(different.size(), samples(choices, false).size());
+}
+
+TEST(OpenChoices, SpaceFillingReachesEveryTenthOfEveryRange) {
+  const auto choices = open_choices();
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    if (choices[k].between == OpenChoice::Between::nothing) continue;
+    std::array<int, 10> n{};
+    for (const auto& sample : samples(choices, false))
+      if (sample.set == Sample::Set::all)
+        ++n[std::min(9, static_cast<int>(10 * choices[k].share_of(sample.values[k])))];
+    EXPECT_THAT(n, Each(testing::AllOf(testing::Ge(23), testing::Le(28)))) << choices[k].name;  // of 256
+  }
+}
+
+TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) {
+  const auto go_on = [](std::size_t, std::size_t) { return true; };
+  const auto once = study_open_choices({.quick = true, .threads = 1, .kept = {}}, go_on);
+  const auto again = study_open_choices({.quick = true, .threads = 2, .kept = {}}, go_on);
+  ASSERT_EQ(once.outcomes.size() + once.n_impossible, 9U);
+  EXPECT_EQ(once.n_runs, again.n_runs);
+  EXPECT_EQ(once.n_triggers, 4U);
+  const TemporaryFolder a, b;
+  write_open_choices(a.path(), once);
+  write_open_choices(b.path(), again);
+  for (const char* name : {"open_choices.csv", "open_choices.json"})
+    EXPECT_EQ(test::read_file(a / name), test::read_file(b / name)) << name;
+
+  const auto& standard = once.outcomes.front();
+  EXPECT_EQ(standard.sample.set, Sample::Set::standard);
+  EXPECT_EQ(standard.extremity, 0);
+  // A region is made of samples that satisfy all that it asks for.
+  for (const auto place : once.region) {
+    EXPECT_TRUE(once.outcomes[place].is_constrained);
+    EXPECT_LE(once.outcomes[place].distance, most_distance);
+  }
+  const auto json = nlohmann::json::parse(test::read_file(a / "open_choices.json"));
+  EXPECT_EQ(json["n_runs"], once.n_runs);
+  EXPECT_EQ(json["choices"].size(), once.choices.size());
+  std::istringstream csv(test::read_file(a / "open_choices.csv"));
+  std::string line;
+  std::size_t n_lines = 0;
+  while (std::getline(csv, line)) ++n_lines;
+  EXPECT_EQ(n_lines, 1 + once.outcomes.size());
+}
+
+TEST(OpenChoices, CanBeInterrupted) {
+  const TemporaryFolder folder;
+  const OpenChoicesOptions options{.quick = true, .threads = 1, .kept = folder / "runs"};
+  EXPECT_THROW(study_open_choices(options, [](std::size_t done, std::size_t) { return done < 3; }),
+               Interrupted);
+  std::size_t least = 1000;
+  study_open_choices(options, [&](std::size_t done, std::size_t) {
+    least = std::min(least, done);
+    return true;
+  });
+  EXPECT_EQ(least, 3U);  // it goes on behind those that were done
+}
+
+}  // namespace
+}  // namespace slipfront::paper
