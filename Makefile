@@ -18,7 +18,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce sensitivity quick regularised convergence interface-step reference contact-algorithms bench docs format format-check verify verification-pages tidy hostile fuzz sanitize coverage clean
+.PHONY: help setup build test reproduce sensitivity quick regularised convergence interface-step open-choices reference contact-algorithms bench docs format format-check verify verification-pages tidy hostile fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -103,6 +103,11 @@ convergence: build $(VENV)/.installed  ## front speeds over mesh, step and dampi
 interface-step: build $(VENV)/.installed  ## error of front speeds against the cost of sub-cycling, into results-interface-step/ and docs/figures
 	for event in left spontaneous right; do $(PROGRAM) study interface-step cases/kammer2012/$$event.toml -o $(RESULTS)-interface-step/$$event --overwrite; done
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.interface_step docs/figures/interface_step.png $(RESULTS)-interface-step/{left,spontaneous,right}
+
+open-choices: build $(VENV)/.installed  ## what the paper leaves open, varied: renews docs/open-choices.md and its figure
+	$(PROGRAM) study open-choices -o $(RESULTS)-open-choices --overwrite
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures.open_choices docs/figures/open_choices.png $(RESULTS)-open-choices
+	$(PYTHON) scripts/open-choices-page.py $(RESULTS)-open-choices docs/open-choices.md
 
 reference: build $(VENV)/.installed  ## Problem A of docs/prestress.md on four meshes against other codes, into results-reference/
 	$(PYTHON) scripts/compare-reference.py --program $(PROGRAM) --results $(RESULTS)-reference

@@ -84,6 +84,14 @@ Json share_json(const OpenChoicesResult& result, Sample::Set set, std::size_t cl
   return tested == 0 ? Json(nullptr) : Json(static_cast<double>(holding) / static_cast<double>(tested));
 }
 
+/// The choice that a sample of one other level changes. An amount comes with its form, which stands before it.
+std::size_t changed_choice(const Sample& sample, const Sample& standard) {
+  std::size_t changed = 0;
+  for (std::size_t k = 0; k < sample.values.size(); ++k)
+    if (sample.values[k] != standard.values[k]) changed = k;
+  return changed;
+}
+
 /// Of each claim: how often it holds, and at which levels of which choice, taken by itself, it turns.
 Json matrix_json(const OpenChoicesResult& result) {
   Json list = Json::array();
@@ -93,10 +101,9 @@ Json matrix_json(const OpenChoicesResult& result) {
     Json turns = Json::array();
     for (const auto& o : result.outcomes) {
       if (o.sample.set != Sample::Set::one_at_a_time || o.holds[claim] == standard.holds[claim]) continue;
-      for (std::size_t k = 0; k < result.choices.size(); ++k)
-        if (o.sample.values[k] != standard.sample.values[k])
-          turns.push_back({{"choice", result.choices[k].name},
-                           {"level", value_json(result.choices[k], o.sample.values[k])}});
+      const auto k = changed_choice(o.sample, standard.sample);
+      turns.push_back({{"choice", result.choices[k].name},
+                       {"level", value_json(result.choices[k], o.sample.values[k])}});
     }
     list.push_back({{"id", result.claims[claim]},
                     {"holds", *standard.holds[claim]},

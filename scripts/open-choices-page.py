@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the tables of docs/open-choices.md anew from a study of the open choices; the text around them stays.
+
+Usage: open-choices-page.py RESULTS docs/open-choices.md
+"""
+
+import json
+import pathlib
+import sys
+from typing import Any
+
+results, page = map(pathlib.Path, sys.argv[1:])
+study = json.loads((results / "open_choices.json").read_text())
+
+
+def told(value: Any) -> str:
+    return value if isinstance(value, str) else f"{value:.3g}"
+
+
+def range_of(values: list[Any]) -> str:
+    return ", ".join(told(value) for value in values)
+
+
+def table(header: list[str], rows: list[list[str]]) -> str:
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+
+
+def choices() -> str:
+    region, chosen = study["region"], study["chosen"]
+    rows = []
+    for choice in study["choices"]:
+        name = choice["name"]
+        rows.append(
+            [
+                f"`{name}`",
+                f"`{choice['key']}`",
+                range_of(choice["levels"]),
+                choice["why"],
+                told(choice["standard"]),
+                range_of(region[name]) or "-",
+                told(chosen["values"][name]) if chosen else "-",
+            ]
+        )
+    return table(["choice", "key", "range", "reason", "standard", "region found", "chosen"], rows)
+
+
+def fit_of(outcome: dict[str, Any]) -> list[str]:
+    fit = outcome["fit"]
+    if not fit:
+        return ["-"] * 3
+    return [f"{fit[k]['value']:.2f} [{fit[k]['low']:.2f}, {fit[k]['high']:.2f}]" for k in "abc"]
+
+
+def outcomes() -> str:
+    rows = [["paper", "0.76 (band 0.07)", "1.80", "3.05", "", ""]]
+    for name in ("standard", "chosen"):
+        outcome = study[name]
+        if outcome:
+            holds = "hold" if outcome["constraints_hold"] else "do not all hold"
+            rows.append([name, *fit_of(outcome), f"{100 * outcome['share_in_band']:.0f} %", holds])
+    counts = (
+        f"{study['n_samples']} samples, {study['n_runs']} runs; {study['n_impossible']} more samples have fillets too "
+        f"small for their elements. All constraints hold for {study['n_constrained']} samples; of these, "
+        f"{study['n_region']} meet a, b, c and the band. C1 to C11 hold for {study['n_triggers_slow_left']} of the "
+        f"{study['n_triggers']} trigger samples.\n\n"
+    )
+    return counts + table(["", "a", "b", "c", "points in the paper's band", "constraints"], rows)
+
+
+text = page.read_text()
+for mark, content in (("choices", choices()), ("outcomes", outcomes())):
+    start, end = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
+    before, rest = text.split(start)
+    text = before + start + content + end + rest.split(end)[1]
+page.write_text(text)
