@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the table of docs/scorecard.md anew from a reproduction's scorecard.json; the text below it stays.
 
-The columns of the variations are there where `slipfront reproduce --sensitivity` has written them.
+A first test whose claim is judged by a second one says so beside its verdict. The columns of the variations are there where `slipfront reproduce --sensitivity` has written them.
 
 Usage: scorecard-page.py RESULTS docs/scorecard.md
 """
@@ -13,6 +13,7 @@ import sys
 results, page = map(pathlib.Path, sys.argv[1:])
 scorecard = json.loads((results / "scorecard.json").read_text())
 verdict = {True: "holds", False: "**does not hold**", None: "not tested"}
+judges = {row["second_test_of"]: row["id"] for row in scorecard if "second_test_of" in row and row["counts"]}
 variations = {}  # heading by key
 for row in scorecard:
     for key in ("mesh_variation", "step_variation"):
@@ -25,6 +26,15 @@ def moves(row: dict, key: str) -> str:
     return text.replace("there does not hold", "**there does not hold**") or "-"
 
 
+def verdict_of(row: dict) -> str:
+    return verdict[row["holds"]] + (f"; {judges[row['id']]} counts" if row["id"] in judges else "")
+
+
+def how(row: dict) -> str:
+    """The test, and of a second one why the first misjudges."""
+    return f"{row['how']}. Instead of {row['second_test_of']}: {row['why']}" if "why" in row else row["how"]
+
+
 header = ["id", "claim", "our figure", "verdict", *variations.values(), "test"]
 rows = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
 for row in scorecard:
@@ -32,9 +42,9 @@ for row in scorecard:
         row["id"],
         f"{row['claim']} ({row['paper']})",
         row["measured"],
-        verdict[row["holds"]],
+        verdict_of(row),
         *(moves(row, key) for key in variations),
-        row["how"],
+        how(row),
     )
     rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
 start, end = "<!-- table -->\n", "<!-- end of table -->"

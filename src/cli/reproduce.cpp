@@ -17,18 +17,19 @@ namespace slipfront::cli {
 namespace {
 
 void print_report(const paper::ReproduceReport& report, const std::string& dir) {
-  int n_hold = 0, n_not = 0, n_open = 0;
   print("\nScorecard of Kammer, Yastrebov, Spijker, Molinari (2012)\n\n");
   for (const auto& c : report.claims) {
     const char* verdict = !c.holds ? "not tested" : *c.holds ? "holds" : "does not hold";
-    (!c.holds ? n_open : *c.holds ? n_hold : n_not) += 1;
     print("{:<6}{:<15}{} [{}]\n{:21}{}\n", c.id, verdict, c.claim, c.paper, "", c.measured);
+    if (!c.second_test_of.empty())
+      print("{:21}second test of {}{}: {}\n", "", c.second_test_of, c.counts ? ", counts in its place" : "",
+            c.why);
     for (const auto& v : c.variations) {
       const std::string moves = describe(c, v);
       if (!moves.empty()) print("{:21}at {} = {:g} it moves by: {}\n", "", v.key, v.value, moves);
     }
   }
-  print("\n{} claims hold, {} do not hold, {} not tested\n\n", n_hold, n_not, n_open);
+  print("\n{}\n\n", paper::summary(report.claims));
   for (const auto& t : report.timings) print("{:8.2f} s  {}\n", t.wall_s, t.part);
   for (const auto& warning : report.warnings) print("warning: {}\n", warning);
   print("results: {}\n", dir);

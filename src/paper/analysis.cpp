@@ -107,7 +107,12 @@ void write_scorecard(const std::filesystem::path& file, const std::vector<Claim>
                 {"measured", c.measured},
                 {"holds", verdict(c.holds)},
                 {"how", c.how},
-                {"figures", Json::array()}};
+                {"counts", c.counts}};
+    if (!c.second_test_of.empty()) {
+      row["second_test_of"] = c.second_test_of;
+      row["why"] = c.why;
+    }
+    row["figures"] = Json::array();
     for (const auto& f : c.figures)
       row["figures"].push_back({{"name", f.name}, {"value", number(f.value)}, {"unit", f.unit}});
     for (const auto& v : c.variations) {

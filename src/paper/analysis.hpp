@@ -8,7 +8,8 @@
 
 namespace slipfront::paper {
 
-/// scorecard.json: a list of id, claim, paper, measured, holds (true, false, or null where not tested), how.
+/// scorecard.json: a list of id, claim, paper, measured, holds (true, false, or null where not tested), how,
+/// counts (whether the verdict is the claim's), figures; of second tests also second_test_of and why.
 void write_scorecard(const std::filesystem::path& file, const std::vector<Claim>& claims);
 
 /// analysis.json: the fit of V_tip/c_L against the energy rise with its intervals, the paper's fit, the

@@ -7,10 +7,13 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "fronts/measures.hpp"
+#include "paper/evidence.hpp"
+#include "paper/second_tests.hpp"
 
 namespace slipfront::paper {
 
@@ -19,23 +22,8 @@ namespace {
 using fronts::Front;
 using fronts::FrontPoint;
 
-constexpr double leave_out_m = 5e-3;  ///< next to a spontaneous nucleation, left out of maxima
-constexpr double mm = 1e3;
-
-std::string percent(double share) {
-  return fmt::format("{:.0f} %", 100 * share);
-}
-
 std::string share(double part, double whole) {
   return whole > 0 ? percent(part / whole) : "no share";
-}
-
-/// Points of a front that count and have a speed.
-std::vector<const FrontPoint*> speed_points(const Outcome& o, const Front& front, double leave_out = 0) {
-  std::vector<const FrontPoint*> points;
-  for (const auto& p : front.points)
-    if (counts(o, front, p, leave_out) && std::isfinite(p.v_tip_m_per_s)) points.push_back(&p);
-  return points;
 }
 
 /// Highest speed of a front over c_L and where; zero without points.
@@ -99,13 +87,6 @@ fronts::Series pick(std::span<const Outcome* const> outcomes, Criterion criterio
   return series;
 }
 
-enum class Kind { crack, pulse, mixed };
-
-Kind kind_of(const Outcome& o, const FrontPoint& p) {
-  if (p.slipping_share > o.config.fronts.crack_share) return Kind::crack;
-  return p.slipping_share < o.config.fronts.pulse_share ? Kind::pulse : Kind::mixed;
-}
-
 class Scorecard {
  public:
   explicit Scorecard(const Reproduction& runs)
@@ -122,6 +103,8 @@ class Scorecard {
     transition_parameter();
     longitudinal_wave();
     experiment();
+    std::ranges::move(second_tests(r_, claims_), std::back_inserter(claims_));
+    choose_verdicts(claims_);
     // A further test stands behind the one it goes with.
     std::ranges::stable_sort(
         claims_, {}, [](const Claim& c) { return c.id[0] == 'C' ? std::stoi(c.id.substr(1)) : 1000; });
@@ -394,22 +377,11 @@ class Scorecard {
       add(id, claim, "Fig. 6", "too few points for a fit", {}, std::nullopt, how);
       return;
     }
-    add(id, claim, "Fig. 6",
-        fmt::format("(a) rms {:.3f} c_L about a = {:.2f} [{:.2f}, {:.2f}], b = {:.2f} [{:.2f}, {:.2f}], "
-                    "c = {:.2f} [{:.2f}, {:.2f}]; (b) {} of {} points within the paper's band",
-                    c.fit.rms, c.fit.a.value, c.fit.a.low, c.fit.a.high, c.fit.b.value, c.fit.b.low,
-                    c.fit.b.high, c.fit.c.value, c.fit.c.low, c.fit.c.high, percent(c.share_in_paper_band),
-                    c.n_points),
-        {{"rms", c.fit.rms, "c_L"},
-         {"a", c.fit.a.value, ""},
-         {"b", c.fit.b.value, ""},
-         {"c", c.fit.c.value, ""},
-         {"within the band", 100 * c.share_in_paper_band, "%"}},
+    add(id, claim, "Fig. 6", describe(c), figures_of(c),
         c.fit.rms <= PaperFit{}.band && c.share_in_paper_band >= 0.8, how);
   }
 
   void energy() {
-    const PaperFit paper;
     collapse_claim("C18", collapse_,
                    "(a) rms about our own fit at most 0.07 c_L; (b) at least 80 % of the points within a = "
                    "0.76 +- 0.07, "
@@ -422,9 +394,7 @@ class Scorecard {
       for (const auto& front : o->fronts) {
         for (const auto* p : speed_points(*o, front)) {
           const double rise = criterion_value(*p, Criterion::energy_rise);
-          if (!std::isfinite(rise) ||
-              (rise >= 0 && std::abs(p->v_tip_m_per_s / o->speeds.c_L - paper(rise)) <= paper.band))
-            continue;
+          if (!std::isfinite(rise) || in_paper_band(rise, p->v_tip_m_per_s / o->speeds.c_L)) continue;
           ++outside;
           near_end += in_tail(front, *p);
         }
@@ -442,24 +412,6 @@ class Scorecard {
             : fmt::format("{} of {} points outside the band", percent(double(near_end) / outside), outside),
         {{"share", outside > 0 ? 100.0 * near_end / outside : fronts::undefined, "%"}},
         outside == 0 || near_end >= 0.7 * outside, how);
-  }
-
-  const StudyOutcome* study(const char* name) const {
-    const auto found =
-        std::ranges::find(r_.studies, name, [](const StudyOutcome& s) { return s.study.name; });
-    return found == r_.studies.end() ? nullptr : &*found;
-  }
-
-  /// Points of each kind along the fronts of the runs that a condition picks, for one value of mu_k.
-  static std::array<int, 3> count_kinds(const std::vector<Outcome>& outcomes, bool spontaneous_only) {
-    std::array<int, 3> n = {0, 0, 0};
-    for (const auto& o : outcomes) {
-      if (spontaneous_only && o.triggered()) continue;
-      for (const auto& front : o.fronts)
-        for (const auto& p : front.points)
-          if (std::isfinite(p.slipping_share)) ++n[static_cast<int>(kind_of(o, p))];
-    }
-    return n;
   }
 
   void crack_share_claim(const char* id, const StudyOutcome& mu_k, bool spontaneous_only, const char* how) {
@@ -514,7 +466,7 @@ class Scorecard {
         "over bins, below the "
         "band's full width, 0.14 c_L";
     constexpr const char* independent = "V_tip against the stress state does not depend on the type of slip";
-    const auto* mu_k = study("mu_k");
+    const auto* mu_k = find_study(r_, "mu_k");
     if (mu_k == nullptr) {
       add("C20", "larger mu_s - mu_k: crack-like; smaller: pulse-like; mixed modes exist", "Results",
           "not tested: no studies", {}, std::nullopt, how_share);
@@ -555,6 +507,9 @@ class Scorecard {
             how_kind);
     verdict("C21+", fronts::median(differences), each.empty() ? "" : each + ")",
             "as C21 at one mu_k at a time, median over mu_k: the relation itself changes with mu_k");
+    claims_.back().second_test_of = "C21";
+    claims_.back().why =
+        "the relation of speed and stress state changes with mu_k, whatever the kind of slip";
   }
 
   /// Median over bins of x of the largest difference of the series' medians of y, in bins that at least two
@@ -582,7 +537,7 @@ class Scorecard {
   }
 
   void transition_parameter() {
-    const auto* alpha = study("alpha");
+    const auto* alpha = find_study(r_, "alpha");
     const char* how =
         "alpha = 0.01 to 1 m2/s2, spontaneous: mean V_tip falls at every step; from least to largest alpha "
         "it drops more in the first and last "
@@ -723,6 +678,24 @@ void add_variation(std::vector<Claim>& claims, const Variation& variation, std::
     }
     claim.variations.push_back(std::move(result));
   }
+}
+
+std::string summary(std::span<const Claim> claims) {
+  struct Verdicts {
+    int n_hold = 0, n_not = 0, n_open = 0;
+    void add(std::optional<bool> holds) { ++(!holds ? n_open : *holds ? n_hold : n_not); }
+  } counted, first;
+  for (const auto& c : claims) {
+    if (!c.id.starts_with('C')) continue;
+    if (c.counts) counted.add(c.holds);
+    if (is_first_test(c)) first.add(c.holds);
+  }
+  return fmt::format(
+      "Of the paper's {} claims {} hold, {} do not, {} not tested, where second tests take the place of "
+      "first "
+      "ones; by the first tests alone {} hold, {} do not, {} not tested.",
+      counted.n_hold + counted.n_not + counted.n_open, counted.n_hold, counted.n_not, counted.n_open,
+      first.n_hold, first.n_not, first.n_open);
 }
 
 std::string describe(const Claim& claim, const ClaimVariation& variation) {

@@ -38,6 +38,9 @@ struct Claim {
   std::string how;              ///< the test
   std::vector<Figure> figures;  ///< the numbers of `measured`; none where not tested
   std::vector<ClaimVariation> variations;
+  std::string second_test_of = {};  ///< id of the row whose test this one corrects; empty: no second test
+  std::string why = {};             ///< that row's test misjudges the claim; only with second_test_of
+  bool counts = true;               ///< whether the verdict is the claim's, see choose_verdicts
 };
 
 /// The runs of one study.
@@ -46,19 +49,32 @@ struct StudyOutcome {
   std::vector<std::vector<Outcome>> outcomes;  ///< [points][cases]
 };
 
+/// How many of the triggers that were sampled within the ranges the paper leaves open let C1 to C10 hold and
+/// keep the left-triggered maximum at most at 60 % of the other two.
+struct TriggerSample {
+  int n_triggers = 0;
+  int n_holding = 0;
+};
+
 /// All runs of a reproduction.
 struct Reproduction {
   Outcome spontaneous, left, right, spontaneous_mu_k_1;
   std::vector<StudyOutcome> studies;
-  std::optional<io::Experiment> experiment;  ///< measured points, where the user has a file of them
+  std::optional<io::Experiment> experiment;    ///< measured points, where the user has a file of them
+  std::optional<TriggerSample> triggers = {};  ///< where the open choices were studied
 };
 
-/// Tests every claim; each row says how. Rows whose id ends in + are further tests beside the first one.
+/// Tests every claim; each row says how. Rows whose id ends in + are further tests beside the first one, rows
+/// that end in b second tests; second tests (C21+ is one, too) say why the first one misjudges its claim.
 std::vector<Claim> scorecard(const Reproduction& runs);
 
 /// Tells each claim by how much its figures differ from those of the same claim in the variation's runs. Rows
 /// are matched by id, figures by name.
 void add_variation(std::vector<Claim>& claims, const Variation& variation, std::span<const Claim> varied);
+
+/// How many of the paper's claims hold, do not, and are not tested: by the rows that count, and by the first
+/// tests alone. For people. Without the comparison with experiments (E1).
+std::string summary(std::span<const Claim> claims);
 
 /// How far a row moves, for people: the differences with their units, and the verdict where it is another.
 std::string describe(const Claim& claim, const ClaimVariation& variation);

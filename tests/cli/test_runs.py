@@ -367,6 +367,17 @@ def test_reproduce_quick(program, tmp_path):
         )
         assert claim["measured"] in result.stdout
     assert "results: out" in result.stdout
+    # Both verdicts of a claim with a second test, and how many hold with and without such tests.
+    second = [claim for claim in claims if "second_test_of" in claim]
+    assert [claim["id"] for claim in second] == ["C11b", "C18b", "C19b", "C20b", "C21+", "C22b"]
+    for claim in second:
+        place = ", counts in its place" if claim["counts"] else ""
+        assert f"second test of {claim['second_test_of']}{place}: {claim['why']}" in result.stdout
+    counted = [claim["holds"] for claim in claims if claim["counts"] and claim["id"] != "E1"]
+    first = [claim["holds"] for claim in claims if re.fullmatch(r"C\d+", claim["id"])]
+    assert len(counted) == len(first) == 23
+    assert f"Of the paper's 23 claims {counted.count(True)} hold, {counted.count(False)} do not, " in result.stdout
+    assert f"by the first tests alone {first.count(True)} hold, {first.count(False)} do not, " in result.stdout
     for folder in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0"):
         assert files_in(tmp_path / "out" / folder) >= FILES
     # Replaced on demand.

@@ -131,6 +131,9 @@ TEST_F(QuickReproduction, ScorecardListsEveryClaim) {
     const auto& claim = s.report.claims[k];
     EXPECT_EQ(row["id"], claim.id);
     EXPECT_EQ(row["measured"], claim.measured);
+    EXPECT_EQ(row["counts"], claim.counts);
+    EXPECT_EQ(row.value("second_test_of", ""), claim.second_test_of);
+    EXPECT_EQ(row.value("why", ""), claim.why);
     EXPECT_EQ(row["holds"], claim.holds ? json(*claim.holds) : json(nullptr));
   }
   for (int k = 1; k <= 23; ++k) EXPECT_TRUE(ids.contains(fmt::format("C{}", k))) << k;

@@ -459,6 +459,31 @@ def test_report_tells_how_far_the_scorecard_moves(output):
     assert "runs with plate.element_size_m = 0.001, one at a time" in html
 
 
+def test_report_tells_which_of_two_verdicts_counts(output):
+    file = output / "scorecard.json"
+    scorecard = json.loads(file.read_text())
+    for row in scorecard:
+        row["counts"] = row["id"] in ("C1", "E1")
+    second = {"claim": "claim", "paper": "Fig. 1", "measured": "0.5", "how": "better"}
+    scorecard.append(
+        second | {"id": "C1b", "holds": None, "counts": False, "second_test_of": "C1", "why": "untried"}
+    )
+    scorecard.append(
+        second | {"id": "C2b", "holds": True, "counts": True, "second_test_of": "C2", "why": "a < b"}
+    )
+    file.write_text(json.dumps(scorecard))
+    assert main([str(output)]) == 0
+    html = (output / "figures/index.html").read_text(encoding="utf-8")
+    rows = re.findall(r"<tr><td>.*?</tr>", html.split(">Scorecard</h2>")[1].split("</table>")[0])
+    assert ">✓</td>" in rows[0]  # its second test was not done
+    assert '>✗<br><span class="note">C2b counts</span></td>' in rows[2]
+    assert 'better<br><span class="note">Instead of C1: untried</span>' in rows[4]
+    assert ">✓</td>" in rows[5] and "Instead of C2: a &lt; b" in rows[5]
+    assert "Of 3 statements 2 hold (✓), 0 do not (✗), 1 could not be decided (–)." in html
+    assert "a second one (2) counts, once it was done; by the first tests alone 1 hold." in html
+    assert "Rows with a + (1) are further tests" in html
+
+
 # Energy balance
 
 
@@ -679,6 +704,16 @@ def drop_dataset(path, name):
         (drop_dataset("left/interface.h5", "p_Pa"), "left/interface.h5", "'p_Pa'"),
         (drop_dataset("left/fields.vtkhdf", "VTKHDF/Steps/Values"), "left/fields.vtkhdf", "'Steps/Values'"),
         (overwrite("scorecard.json", '[{"id": "C1"}]'), "scorecard.json", "entry 1 has no 'claim'"),
+        (
+            replace("scorecard.json", '"holds": true', '"holds": true, "counts": 1'),
+            "scorecard.json",
+            "'counts' is not true or false",
+        ),
+        (
+            replace("scorecard.json", '"holds": true', '"holds": true, "second_test_of": null'),
+            "scorecard.json",
+            "'second_test_of' is not a text",
+        ),
         (overwrite("analysis.json", '{"fit": null}'), "analysis.json", "'paper_fit.a'"),
         (
             replace("analysis.json", '"speed_change": {"median"', '"speed_change": {"x"'),

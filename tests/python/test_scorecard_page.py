@@ -48,6 +48,26 @@ def test_table_without_variations(write_page):
     ]
 
 
+def test_table_tells_which_of_two_verdicts_counts(write_page):
+    second = {"second_test_of": "C2", "why": "the first | was blunt"}
+    untested = {"second_test_of": "C1", "why": "nobody tried"}
+    assert write_page(
+        [
+            claim("C1", True, counts=True),
+            claim("C1b", None, counts=False, **untested),
+            claim("C2", False, counts=False),
+            claim("C2+", False, counts=False),
+            claim("C2b", True, counts=True, **second),
+        ]
+    )[2:] == [
+        "| C1 | a\\|b (Fig. 1) | 0.79 | holds | x |",
+        "| C1b | a\\|b (Fig. 1) | 0.79 | not tested | x. Instead of C1: nobody tried |",
+        "| C2 | a\\|b (Fig. 1) | 0.79 | **does not hold**; C2b counts | x |",
+        "| C2+ | a\\|b (Fig. 1) | 0.79 | **does not hold** | x |",
+        "| C2b | a\\|b (Fig. 1) | 0.79 | holds | x. Instead of C2: the first \\| was blunt |",
+    ]
+
+
 def test_table_with_variations(write_page):
     mesh = varied("plate.element_size_m", 1e-3, "0.11; there does not hold")
     step = varied("time.interface_substeps", 9, "0.02")

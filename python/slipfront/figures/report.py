@@ -29,7 +29,7 @@ td.verdict { text-align: center; font-weight: bold; }
 .scroll { overflow-x: auto; }
 .dense { font-size: 0.78em; } .dense th, .dense td { padding: 0.15em 0.35em; white-space: nowrap; }
 .dense td[rowspan] { white-space: normal; min-width: 8em; border-right: 1px solid #ddd; }
-.note { color: #555; } .mark { color: #b2182b; font-weight: bold; }
+.note { color: #555; } td .note { font-weight: normal; } .mark { color: #b2182b; font-weight: bold; }
 nav a { margin-right: 1.2em; }
 """
 VERDICTS = {
@@ -67,22 +67,37 @@ def table(
 
 def scorecard_table(scorecard: list[dict]) -> str:
     variations = [key for key in VARIATIONS if any(key in entry for entry in scorecard)]
+    judges = {entry["second_test_of"]: entry["id"] for entry in scorecard if is_counted_second_test(entry)}
     rows = []
     for entry in scorecard:
         sign, kind, meaning = VERDICTS.get(entry["holds"], VERDICTS[None])
-        verdict = f'<td class="verdict {kind}" title="{meaning}">{sign}</td>'
+        judge = judges.get(entry["id"])
+        counted = f'<br><span class="note">{escape(judge)} counts</span>' if judge else ""
+        verdict = f'<td class="verdict {kind}" title="{meaning}">{sign}{counted}</td>'
         rows.append(
             [
                 *(text(entry[key]) for key in ("id", "claim", "paper", "measured")),
                 verdict,
                 *(text((entry.get(key) or {}).get("moves") or None) for key in variations),
-                text(entry["how"]),
+                text(entry["how"]) + second_test_note(entry),
             ]
         )
     added = [VARIATIONS[key] for key in variations]
     return variation_note(scorecard) + table(
         ["", "Claim", "Paper", "Measured", "Holds", *added, "How tested"], rows
     )
+
+
+def is_counted_second_test(entry: dict) -> bool:
+    return "second_test_of" in entry and entry.get("counts", False)
+
+
+def second_test_note(entry: dict) -> str:
+    """Of a second test, why the first one misjudges its claim."""
+    if "second_test_of" not in entry:
+        return ""
+    why = f"Instead of {entry['second_test_of']}: {entry.get('why', '')}"
+    return f'<br><span class="note">{escape(why)}</span>'
 
 
 def variation_note(scorecard: list[dict]) -> str:
@@ -104,15 +119,25 @@ def variation_note(scorecard: list[dict]) -> str:
 
 
 def scorecard_summary(scorecard: list[dict]) -> str:
-    own = [entry for entry in scorecard if not entry["id"].endswith("+")]
-    count = {key: sum(entry["holds"] is key for entry in own) for key in (True, False)}
-    rest = len(own) - sum(count.values())
-    added = len(scorecard) - len(own)
-    more = f" Rows with a + ({added}) are further tests of the same statement, not counted." if added else ""
-    return (
-        f"Of {len(own)} statements {count[True]} hold (✓), {count[False]} do not (✗), {rest} could "
-        f"not be decided (–).{more}"
+    first = [e for e in scorecard if not e["id"].endswith("+") and "second_test_of" not in e]
+    second = [e for e in scorecard if "second_test_of" in e]
+    counted = [e for e in first if e.get("counts", True)] + [e for e in second if is_counted_second_test(e)]
+    count = {key: sum(entry["holds"] is key for entry in counted) for key in (True, False)}
+    rest = len(counted) - sum(count.values())
+    summary = (
+        f"Of {len(counted)} statements {count[True]} hold (✓), {count[False]} do not (✗), {rest} could "
+        "not be decided (–)."
     )
+    if second:
+        held = sum(entry["holds"] is True for entry in first)
+        summary += (
+            f" Where the first test misjudges a statement a second one ({len(second)}) counts, once it was "
+            f"done; by the first tests alone {held} hold."
+        )
+    added = len(scorecard) - len(first) - len(second)
+    if added:
+        summary += f" Rows with a + ({added}) are further tests of the same statement, not counted."
+    return summary
 
 
 def fit_table(results: Results) -> str:

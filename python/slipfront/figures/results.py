@@ -134,6 +134,11 @@ def read_scorecard(file: Path) -> list[dict]:
                 raise DataError(f"{file}: entry {i + 1} has no '{key}'")
         if not isinstance(row["id"], str) or row["holds"] not in (True, False, None):
             raise DataError(f"{file}: entry {i + 1}: 'id' is not a text, or 'holds' not true, false or null")
+        if not isinstance(row.get("counts", True), bool):
+            raise DataError(f"{file}: entry {i + 1}: 'counts' is not true or false")
+        for key in ("second_test_of", "why"):
+            if not isinstance(row.get(key, ""), str):
+                raise DataError(f"{file}: entry {i + 1}: '{key}' is not a text")
         for key in VARIATIONS:
             if key in row and not is_variation(row[key]):
                 raise DataError(f"{file}: entry {i + 1}: '{key}' is not as expected")

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "paper/scorecard.hpp"
+
+namespace slipfront::paper {
+
+/// Better tests of claims that the first one misjudges: C11b, C18b, C19b, C20b, C22b. Each names its first
+/// test and why that misjudges the claim.
+/// @param first  rows of the first tests, for the claims' wording
+std::vector<Claim> second_tests(const Reproduction& runs, std::span<const Claim> first);
+
+/// Whether a row is the test that was there first for its claim.
+bool is_first_test(const Claim& claim);
+
+/// Decides which row's verdict counts for its claim: that of the second test where it was tested, else that
+/// of the first. Rows that are only further tests do not count.
+void choose_verdicts(std::span<Claim> claims);
+
+}  // namespace slipfront::paper
