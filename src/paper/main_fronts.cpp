@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paper/main_fronts.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "fronts/measures.hpp"
 
@@ -36,6 +39,25 @@ std::span<const FrontPoint> counted_points(const Outcome& o, const Front& front)
   return std::span(front.points).subspan(begin, end - begin);
 }
 
+/// The runs with their main fronts alone, these without their ends.
+std::vector<Outcome> without_tails(std::span<const MainFront> mains) {
+  std::vector<Outcome> runs;
+  const Outcome* last = nullptr;
+  for (const auto& m : mains) {
+    if (m.outcome != last) {
+      runs.push_back(*m.outcome);
+      runs.back().fronts.clear();
+      last = m.outcome;
+    }
+    Front kept = *m.front;
+    kept.points.clear();
+    std::ranges::copy_if(m.points, std::back_inserter(kept.points),
+                         [&](const FrontPoint& p) { return !in_tail(m, p); });
+    if (!kept.points.empty()) runs.back().fronts.push_back(std::move(kept));
+  }
+  return runs;
+}
+
 }  // namespace
 
 const Front* first_front(const Outcome& outcome, int direction) {
@@ -64,6 +86,13 @@ bool in_tail(const MainFront& front, const FrontPoint& point) {
   const bool slows_down = &front.points.back() != &front.front->points.back();
   if (!slows_down && front.front->end == fronts::End::record_end) return false;
   return std::abs(point.x_m - front.points.back().x_m) <= tail_m * (1 + 1e-9);
+}
+
+Collapse collapse_without_tails(std::span<const MainFront> mains) {
+  const auto runs = without_tails(mains);
+  std::vector<const Outcome*> pointers;
+  for (const auto& o : runs) pointers.push_back(&o);
+  return collapse(pointers);
 }
 
 }  // namespace slipfront::paper

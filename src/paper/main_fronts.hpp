@@ -39,4 +39,7 @@ std::vector<MainFront> main_fronts(std::span<const Outcome* const> outcomes);
 /// run when the record ends has no such end.
 bool in_tail(const MainFront& front, const fronts::FrontPoint& point);
 
+/// How well each criterion orders the speeds of main fronts without their tails.
+Collapse collapse_without_tails(std::span<const MainFront> mains);
+
 }  // namespace slipfront::paper

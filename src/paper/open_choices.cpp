@@ -15,6 +15,7 @@
 
 #include "base/error.hpp"
 #include "io/schema.hpp"
+#include "paper/main_fronts.hpp"
 #include "run/batch.hpp"
 
 namespace slipfront::paper {
@@ -323,7 +324,7 @@ SampleOutcome judge(const std::vector<OpenChoice>& choices, const Sample& sample
     return verdict(claims, id) == std::optional(true);
   });
   const std::array<const Outcome*, 3> three = {events[0], events[1], events[2]};
-  const auto main = collapse(three, true);
+  const auto main = collapse_without_tails(main_fronts(three));
   o.share_in_band = main.share_in_paper_band;
   if (main.fitted) o.fit = main.fit;
   o.distance = main.fitted ? distance_from_paper(main.fit) : fronts::undefined;

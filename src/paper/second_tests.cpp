@@ -70,34 +70,12 @@ Claim trigger_choice(const std::optional<TriggerSample>& sample, std::span<const
 
 // C18b
 
-/// The runs with their main fronts alone, these without their ends.
-std::vector<Outcome> without_tails(std::span<const MainFront> mains) {
-  std::vector<Outcome> runs;
-  const Outcome* last = nullptr;
-  for (const auto& m : mains) {
-    if (m.outcome != last) {
-      runs.push_back(*m.outcome);
-      runs.back().fronts.clear();
-      last = m.outcome;
-    }
-    Front kept = *m.front;
-    kept.points.clear();
-    std::ranges::copy_if(m.points, std::back_inserter(kept.points),
-                         [&](const FrontPoint& p) { return !in_tail(m, p); });
-    if (!kept.points.empty()) runs.back().fronts.push_back(std::move(kept));
-  }
-  return runs;
-}
-
 Claim collapse_of_main_fronts(std::span<const MainFront> mains, std::span<const Claim> first) {
   Claim row = second_test(
       first, "C18", "its points are those of late fronts in the wake of others, too",
       "main fronts without their last 20 mm: (a) and (b) as C18; (c) the median relative spread between the "
       "fronts is smaller at equal (U_r-U_s)/U_s than at equal t_d/p_d and at equal t_s/p_s");
-  const auto runs = without_tails(mains);
-  std::vector<const Outcome*> pointers;
-  for (const auto& o : runs) pointers.push_back(&o);
-  const Collapse c = collapse(pointers);
+  const Collapse c = collapse_without_tails(mains);
   if (!c.fitted) {
     row.measured = "too few points for a fit";
     return row;
