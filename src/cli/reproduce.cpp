@@ -42,6 +42,7 @@ void add_reproduce(CLI::App& app) {
   auto options = std::make_shared<paper::ReproduceOptions>();
   auto dir = std::make_shared<std::string>("results");
   auto experiment = std::make_shared<std::string>();
+  auto open_choices = std::make_shared<std::string>();
   command->add_option("-o,--output", *dir, "Folder for the results")->type_name("DIR")->capture_default_str();
   command->add_flag("--quick", options->quick,
                     "Elements of 2 mm and fewer studies: a second instead of half a minute");
@@ -60,13 +61,18 @@ void add_reproduce(CLI::App& app) {
       ->add_option("--experiment", *experiment,
                    "CSV of measured points for claim E1: static_ratio, v_over_c_L (or v_m_per_s)")
       ->type_name("FILE");
+  command
+      ->add_option("--open-choices", *open_choices,
+                   "Folder of slipfront study open-choices, for claim C11b: the share of its triggers")
+      ->type_name("DIR");
   options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("--threads", options->threads, "Runs side by side")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  command->callback([options, dir, experiment] {
+  command->callback([options, dir, experiment, open_choices] {
     options->dir = *dir;
     options->experiment = *experiment;
+    options->open_choices = *open_choices;
     catch_interrupts();
     std::optional<io::Progress> progress;
     const auto report =

@@ -176,7 +176,7 @@ void print_table(const paper::OpenChoicesResult& result, const std::string& dir)
   print("{} samples of {} choices, {} runs\n", result.outcomes.size(), result.choices.size(), result.n_runs);
   print("standard choices\n");
   print_outcome(result, standard);
-  print("C1 to C11 hold for {} of {} triggers\n", result.n_triggers_slow_left, result.n_triggers);
+  print("C1 to C11 hold for {} of {} triggers\n", result.triggers.n_holding, result.triggers.n_triggers);
   print("all constraints hold for {} samples; a, b, c and the band are met, too, for {}\n", n_constrained,
         result.region.size());
   if (result.chosen >= 0) {

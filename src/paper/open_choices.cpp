@@ -463,8 +463,8 @@ OpenChoicesResult study_open_choices(
                                     {&outcomes[at[0]], &outcomes[at[1]], &outcomes[at[2]], &outcomes[at[3]]},
                                     result.claims));
     if (all[k].set != Sample::Set::triggers) continue;
-    ++result.n_triggers;
-    result.n_triggers_slow_left += has_slow_left(result.outcomes.back(), result.claims) ? 1 : 0;
+    ++result.triggers.n_triggers;
+    result.triggers.n_holding += has_slow_left(result.outcomes.back(), result.claims) ? 1 : 0;
   }
   find_region(result);
   return result;

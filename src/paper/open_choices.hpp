@@ -86,7 +86,7 @@ struct OpenChoicesResult {
   std::vector<std::size_t> region;      ///< outcomes that satisfy constraints and calibration
   int chosen = -1;                      ///< the least extreme of the region; -1: it is empty
   /// C11b: of the trigger samples, those for which C1 to C11 hold.
-  std::size_t n_triggers = 0, n_triggers_slow_left = 0;
+  TriggerSample triggers;
   std::size_t n_impossible = 0;  ///< samples left out: fillets too small for their elements
   std::size_t n_runs = 0;
 };
@@ -99,5 +99,9 @@ OpenChoicesResult study_open_choices(const OpenChoicesOptions& options,
 /// open_choices.csv, a row per sample, and open_choices.json: choices with ranges and reasons, rule, matrix
 /// of claims and choices, region, chosen values.
 void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResult& result);
+
+/// What the folder of such a study says of its triggers, for C11b.
+/// @throws UserError where it is no such folder, or was changed
+TriggerSample read_trigger_sample(const std::filesystem::path& dir);
 
 }  // namespace slipfront::paper

@@ -13,6 +13,7 @@
 #include "io/files.hpp"
 #include "io/folder.hpp"
 #include "paper/analysis.hpp"
+#include "paper/open_choices.hpp"
 #include "run/batch.hpp"
 #include "run/checkpoint.hpp"
 
@@ -153,6 +154,8 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   std::optional<io::Experiment> experiment;
   if (!options.experiment.empty())
     experiment = io::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
+  std::optional<TriggerSample> triggers;
+  if (!options.open_choices.empty()) triggers = read_trigger_sample(options.open_choices);
   io::ResultFolder folder(options.dir, work(options));
   folder.require_empty(options.overwrite, true);
   folder.begin_or_resume();
@@ -173,7 +176,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   };
   Runner runner(options, folder, monitor, n_runs);
   auto four = runner.run(events);
-  Reproduction runs{four[0], four[1], four[2], four[3], {}, experiment};
+  Reproduction runs{four[0], four[1], four[2], four[3], {}, experiment, triggers};
   lap("statics, four events and their files");
   const auto event_blow_ups = runner.blow_ups;
   scorecard(runs);
@@ -187,7 +190,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
     auto all = runner.run(list_cases(variation));
     const auto varied_studies = by_study(variation.studies, std::span(all).subspan(4));
     add_variation(report.claims, variation,
-                  scorecard({all[0], all[1], all[2], all[3], varied_studies, experiment}));
+                  scorecard({all[0], all[1], all[2], all[3], varied_studies, experiment, triggers}));
   }
   if (!variation_list.empty()) lap("variations of mesh and step");
   write_scorecard(folder.unfinished() / "scorecard.json", report.claims);

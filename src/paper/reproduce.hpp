@@ -12,12 +12,13 @@ namespace slipfront::paper {
 
 struct ReproduceOptions {
   std::filesystem::path dir;
-  bool quick = false;                ///< elements of 2 mm, friction and mesh studies alone
-  bool regularised = false;          ///< regularised_studies in place of the paper's
-  bool sensitivity = false;          ///< add the variations to the scorecard
-  bool overwrite = false;            ///< replace the results of an earlier reproduction in `dir`
-  std::filesystem::path experiment;  ///< CSV file of measured points (io::read_experiment); empty: none
-  int threads = 2;                   ///< runs side by side; each result is the same for any number
+  bool quick = false;                  ///< elements of 2 mm, friction and mesh studies alone
+  bool regularised = false;            ///< regularised_studies in place of the paper's
+  bool sensitivity = false;            ///< add the variations to the scorecard
+  bool overwrite = false;              ///< replace the results of an earlier reproduction in `dir`
+  std::filesystem::path experiment;    ///< CSV file of measured points (io::read_experiment); empty: none
+  std::filesystem::path open_choices;  ///< folder of a study of the open choices, for C11b; empty: none
+  int threads = 2;                     ///< runs side by side; each result is the same for any number
 };
 
 /// Wall time of one part of the reproduction.

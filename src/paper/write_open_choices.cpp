@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/error.hpp"
 #include "base/version.hpp"
+#include "io/checksum.hpp"
 #include "io/files.hpp"
 #include "paper/open_choices.hpp"
 
@@ -14,6 +17,8 @@ namespace slipfront::paper {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* summary_file = "open_choices.json";
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -50,7 +55,8 @@ std::string csv(const OpenChoicesResult& result) {
                         cell(o.share_in_band), cell(o.extremity));
     const auto fit = o.fit.value_or(fronts::ExponentialFit{});
     for (const auto* e : {&fit.a, &fit.b, &fit.c})
-      for (const double value : {e->value, e->low, e->high}) text += fmt::format(",{}", o.fit ? cell(value) : "");
+      for (const double value : {e->value, e->low, e->high})
+        text += fmt::format(",{}", o.fit ? cell(value) : "");
     text += fmt::format(",{},{},{},{}", o.fit ? cell(fit.rms) : "", cell(o.left_max), cell(o.spontaneous_max),
                         cell(o.right_max));
     for (const auto holds : o.holds) text += fmt::format(",{}", cell(holds));
@@ -84,7 +90,8 @@ Json share_json(const OpenChoicesResult& result, Sample::Set set, std::size_t cl
   return tested == 0 ? Json(nullptr) : Json(static_cast<double>(holding) / static_cast<double>(tested));
 }
 
-/// The choice that a sample of one other level changes. An amount comes with its form, which stands before it.
+/// The choice that a sample of one other level changes. An amount comes with its form, which stands before
+/// it.
 std::size_t changed_choice(const Sample& sample, const Sample& standard) {
   std::size_t changed = 0;
   for (std::size_t k = 0; k < sample.values.size(); ++k)
@@ -102,8 +109,8 @@ Json matrix_json(const OpenChoicesResult& result) {
     for (const auto& o : result.outcomes) {
       if (o.sample.set != Sample::Set::one_at_a_time || o.holds[claim] == standard.holds[claim]) continue;
       const auto k = changed_choice(o.sample, standard.sample);
-      turns.push_back({{"choice", result.choices[k].name},
-                       {"level", value_json(result.choices[k], o.sample.values[k])}});
+      turns.push_back(
+          {{"choice", result.choices[k].name}, {"level", value_json(result.choices[k], o.sample.values[k])}});
     }
     list.push_back({{"id", result.claims[claim]},
                     {"holds", *standard.holds[claim]},
@@ -168,8 +175,8 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
                {"least_share_in_band", least_share_in_band},
                {"choices", choices_json(result)},
                {"matrix", matrix_json(result)},
-               {"n_triggers", result.n_triggers},
-               {"n_triggers_slow_left", result.n_triggers_slow_left},
+               {"n_triggers", result.triggers.n_triggers},
+               {"n_triggers_slow_left", result.triggers.n_holding},
                {"n_constrained", count([](const SampleOutcome& o) { return o.is_constrained; })},
                {"n_region", result.region.size()},
                {"region", region_json(result)},
@@ -177,7 +184,23 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
                {"chosen", nullptr}};
   if (result.chosen >= 0) json["chosen"] = outcome_json(result, result.outcomes[result.chosen]);
   io::write_text(dir / "open_choices.csv", csv(result));
-  io::write_text(dir / "open_choices.json", json.dump(2) + "\n");
+  io::write_text(dir / summary_file, json.dump(2) + "\n");
+}
+
+TriggerSample read_trigger_sample(const std::filesystem::path& dir) {
+  if (!io::is_there(dir / summary_file))
+    throw UserError("{}: holds no {}; give the folder of slipfront study open-choices", dir.string(),
+                    summary_file);
+  io::require_intact(dir);
+  std::ifstream stream(dir / summary_file);
+  const auto json = Json::parse(stream, nullptr, false);
+  const auto count = [&](const char* key) -> int {
+    if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned() || json[key] > 1000000000)
+      throw UserError("{}: has no count \"{}\"; make it anew by slipfront study open-choices",
+                      (dir / summary_file).string(), key);
+    return json[key];
+  };
+  return {count("n_triggers"), count("n_triggers_slow_left")};
 }
 
 }  // namespace slipfront::paper

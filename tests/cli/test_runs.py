@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import ROOT
-from slipfront.figures import interface_step
+from slipfront.figures import interface_step, open_choices
 from slipfront.figures.__main__ import main as figures
 from slipfront.figures.convergence import read_study
 
@@ -510,6 +510,31 @@ def test_wrong_table_is_named_with_the_line_of_its_key(program, write_case, tmp_
         assert f"{case}:{line}: prestress.file: " in failed.stderr
         assert "table.csv: covers x = 0 to 0.05 m" in failed.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_open_choices_are_judged_drawn_and_handed_to_the_scorecard(program, tmp_path):
+    result = program("study", "open-choices", "--quick", "-o", "choices", "--threads", "2")
+    assert result.returncode == 0, result.stderr
+    summary = json.loads((tmp_path / "choices/open_choices.json").read_text())
+    rows = list(csv.DictReader((tmp_path / "choices/open_choices.csv").open()))
+    assert len(rows) == summary["n_samples"]
+    assert f"{summary['n_samples']} samples of {len(summary['choices'])} choices" in result.stdout
+    # Shares of the matrix are those of the table.
+    for row in summary["matrix"]:
+        verdicts = [r[row["id"]] for r in rows if r["set"] == "all" and r[row["id"]]]
+        assert row["share_of_all"] == pytest.approx(verdicts.count("holds") / len(verdicts))
+        assert row["holds"] == (rows[0][row["id"]] == "holds")
+    picture = tmp_path / "picture.png"
+    assert open_choices.main(picture, tmp_path / "choices") == 0
+    assert picture.stat().st_size > 10000
+    result = program("reproduce", "--quick", "-o", "out", "--open-choices", "choices")
+    assert result.returncode == 0, result.stderr
+    claims = {c["id"]: c for c in json.loads((tmp_path / "out/scorecard.json").read_text())}
+    assert f"of {summary['n_triggers']} triggers" in claims["C11b"]["measured"]
+    (tmp_path / "choices/open_choices.csv").write_text("changed")
+    result = program("reproduce", "--quick", "-o", "again", "--open-choices", "choices")
+    assert result.returncode == 2
+    assert "choices/open_choices.csv" in result.stderr
 
 
 def test_interface_step_study_writes_a_case_that_runs(program, coarse, tmp_path):

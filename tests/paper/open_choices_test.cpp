@@ -116,7 +116,8 @@ TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) 
   const auto again = study_open_choices({.quick = true, .threads = 2, .kept = {}}, go_on);
   ASSERT_EQ(once.outcomes.size() + once.n_impossible, 9U);
   EXPECT_EQ(once.n_runs, again.n_runs);
-  EXPECT_EQ(once.n_triggers, 4U);
+  EXPECT_EQ(once.triggers.n_triggers, 4);
+  EXPECT_EQ(once.triggers.n_holding, again.triggers.n_holding);
   const TemporaryFolder a, b;
   write_open_choices(a.path(), once);
   write_open_choices(b.path(), again);
@@ -139,6 +140,27 @@ TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) 
   std::size_t n_lines = 0;
   while (std::getline(csv, line)) ++n_lines;
   EXPECT_EQ(n_lines, 1 + once.outcomes.size());
+}
+
+TEST(OpenChoices, TriggersAreReadFromTheFolderOfAStudy) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(test::error_of([&] { read_trigger_sample(folder.path()); }),
+              testing::HasSubstr("slipfront study open-choices"));
+  OpenChoicesResult result;
+  result.choices = open_choices();
+  result.triggers = {.n_triggers = 7, .n_holding = 3};
+  Sample standard;
+  for (const auto& choice : result.choices) standard.values.push_back(choice.standard);
+  result.outcomes.emplace_back().sample = standard;
+  write_open_choices(folder.path(), result);
+  const auto triggers = read_trigger_sample(folder.path());
+  EXPECT_EQ(triggers.n_triggers, 7);
+  EXPECT_EQ(triggers.n_holding, 3);
+  for (const char* text : {"", "[]", "{}", "{\"n_triggers\": -1}", "{\"n_triggers\": 1e300}"}) {
+    test::write_file(folder / "open_choices.json", text);
+    EXPECT_THAT(test::error_of([&] { read_trigger_sample(folder.path()); }), testing::HasSubstr("n_triggers"))
+        << text;
+  }
 }
 
 TEST(OpenChoices, CanBeInterrupted) {
