@@ -27,7 +27,8 @@ def moves(row: dict, key: str) -> str:
 
 
 def verdict_of(row: dict) -> str:
-    return verdict[row["holds"]] + (f"; {judges[row['id']]} counts" if row["id"] in judges else "")
+    own = "used to choose" if row["holds"] and row.get("used_to_choose") else verdict[row["holds"]]
+    return own + (f"; {judges[row['id']]} counts" if row["id"] in judges else "")
 
 
 def how(row: dict) -> str:

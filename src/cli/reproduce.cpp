@@ -19,8 +19,7 @@ namespace {
 void print_report(const paper::ReproduceReport& report, const std::string& dir) {
   print("\nScorecard of Kammer, Yastrebov, Spijker, Molinari (2012)\n\n");
   for (const auto& c : report.claims) {
-    const char* verdict = !c.holds ? "not tested" : *c.holds ? "holds" : "does not hold";
-    print("{:<6}{:<15}{} [{}]\n{:21}{}\n", c.id, verdict, c.claim, c.paper, "", c.measured);
+    print("{:<6}{:<15}{} [{}]\n{:21}{}\n", c.id, verdict(c), c.claim, c.paper, "", c.measured);
     if (!c.second_test_of.empty())
       print("{:21}second test of {}{}: {}\n", "", c.second_test_of, c.counts ? ", counts in its place" : "",
             c.why);

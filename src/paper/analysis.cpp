@@ -108,6 +108,7 @@ void write_scorecard(const std::filesystem::path& file, const std::vector<Claim>
                 {"holds", verdict(c.holds)},
                 {"how", c.how},
                 {"counts", c.counts}};
+    if (c.used_to_choose) row["used_to_choose"] = true;
     if (!c.second_test_of.empty()) {
       row["second_test_of"] = c.second_test_of;
       row["why"] = c.why;

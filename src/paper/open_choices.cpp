@@ -343,8 +343,7 @@ bool has_slow_left(const SampleOutcome& o, const std::vector<std::string>& ids) 
 void find_region(OpenChoicesResult& result) {
   for (std::size_t k = 0; k < result.outcomes.size(); ++k) {
     const auto& o = result.outcomes[k];
-    if (!o.is_constrained || !(o.distance <= most_distance) || !(o.share_in_band >= least_share_in_band))
-      continue;
+    if (!o.is_constrained) continue;
     result.region.push_back(k);
     if (result.chosen < 0 || o.extremity < result.outcomes[result.chosen].extremity)
       result.chosen = static_cast<int>(k);

@@ -76,14 +76,14 @@ struct SampleOutcome {
 /// paper's conclusions, C14 and C18 to C22, are none.
 const std::vector<std::string>& constraining_claims();
 
-/// Limits within which the calibration counts as met.
-inline constexpr double most_distance = 1, least_share_in_band = 0.8;
+/// Share of the points in the paper's band that C18 asks for.
+inline constexpr double wanted_share_in_band = 0.8;
 
 struct OpenChoicesResult {
   std::vector<OpenChoice> choices;
   std::vector<std::string> claims;      ///< their ids
   std::vector<SampleOutcome> outcomes;  ///< the standard one first
-  std::vector<std::size_t> region;      ///< outcomes that satisfy constraints and calibration
+  std::vector<std::size_t> region;      ///< outcomes that satisfy all constraints
   int chosen = -1;                      ///< the least extreme of the region; -1: it is empty
   /// C11b: of the trigger samples, those for which C1 to C11 hold.
   TriggerSample triggers;

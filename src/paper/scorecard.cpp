@@ -264,6 +264,7 @@ class Scorecard {
         left > 0 && left <= 0.6 * spontaneous && left <= 0.6 * right,
         "ratio of maxima to each at most 0.6; 5 mm next to spontaneous nucleation, trigger zones and margins "
         "left out");
+    claims_.back().used_to_choose = true;
   }
 
   void criteria() {
@@ -682,20 +683,31 @@ void add_variation(std::vector<Claim>& claims, const Variation& variation, std::
 
 std::string summary(std::span<const Claim> claims) {
   struct Verdicts {
-    int n_hold = 0, n_not = 0, n_open = 0;
-    void add(std::optional<bool> holds) { ++(!holds ? n_open : *holds ? n_hold : n_not); }
+    int n = 0, n_hold = 0, n_not = 0, n_open = 0, n_used = 0;
+    void add(const Claim& c) {
+      ++n;
+      ++(!c.holds ? n_open : !*c.holds ? n_not : c.used_to_choose ? n_used : n_hold);
+    }
+    std::string text() const {
+      return fmt::format("{} hold, {} do not, {} not tested{}", n_hold, n_not, n_open,
+                         n_used > 0 ? fmt::format(", {} used to choose", n_used) : "");
+    }
   } counted, first;
   for (const auto& c : claims) {
     if (!c.id.starts_with('C')) continue;
-    if (c.counts) counted.add(c.holds);
-    if (is_first_test(c)) first.add(c.holds);
+    if (c.counts) counted.add(c);
+    if (is_first_test(c)) first.add(c);
   }
   return fmt::format(
-      "Of the paper's {} claims {} hold, {} do not, {} not tested, where second tests take the place of "
-      "first "
-      "ones; by the first tests alone {} hold, {} do not, {} not tested.",
-      counted.n_hold + counted.n_not + counted.n_open, counted.n_hold, counted.n_not, counted.n_open,
-      first.n_hold, first.n_not, first.n_open);
+      "Of the paper's {} claims {}, where second tests take the place of first ones; by the first tests "
+      "alone {}.",
+      counted.n, counted.text(), first.text());
+}
+
+std::string_view verdict(const Claim& claim) {
+  if (!claim.holds) return "not tested";
+  if (!*claim.holds) return "does not hold";
+  return claim.used_to_choose ? "used to choose" : "holds";
 }
 
 std::string describe(const Claim& claim, const ClaimVariation& variation) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/experiment.hpp"
@@ -40,6 +41,7 @@ struct Claim {
   std::vector<ClaimVariation> variations;
   std::string second_test_of = {};  ///< id of the row whose test this one corrects; empty: no second test
   std::string why = {};             ///< that row's test misjudges the claim; only with second_test_of
+  bool used_to_choose = false;      ///< the paper's cases were chosen so that it holds, see open_choices.hpp
   bool counts = true;               ///< whether the verdict is the claim's, see choose_verdicts
 };
 
@@ -75,6 +77,9 @@ void add_variation(std::vector<Claim>& claims, const Variation& variation, std::
 /// How many of the paper's claims hold, do not, and are not tested: by the rows that count, and by the first
 /// tests alone. For people. Without the comparison with experiments (E1).
 std::string summary(std::span<const Claim> claims);
+
+/// "holds", "does not hold", "not tested", or "used to choose" where holding confirms nothing.
+std::string_view verdict(const Claim& claim);
 
 /// How far a row moves, for people: the differences with their units, and the verdict where it is another.
 std::string describe(const Claim& claim, const ClaimVariation& variation);

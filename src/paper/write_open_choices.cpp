@@ -171,14 +171,17 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
                {"n_samples", result.outcomes.size()},
                {"n_impossible", result.n_impossible},
                {"constraints", constraining_claims()},
-               {"most_distance", most_distance},
-               {"least_share_in_band", least_share_in_band},
+               {"wanted_share_in_band", wanted_share_in_band},
                {"choices", choices_json(result)},
                {"matrix", matrix_json(result)},
                {"n_triggers", result.triggers.n_triggers},
                {"n_triggers_slow_left", result.triggers.n_holding},
-               {"n_constrained", count([](const SampleOutcome& o) { return o.is_constrained; })},
                {"n_region", result.region.size()},
+               {"n_region_with_paper_fit",
+                count([](const SampleOutcome& o) { return o.is_constrained && o.distance <= 1; })},
+               {"n_region_in_paper_band", count([](const SampleOutcome& o) {
+                  return o.is_constrained && o.share_in_band >= wanted_share_in_band;
+                })},
                {"region", region_json(result)},
                {"standard", outcome_json(result, result.outcomes.front())},
                {"chosen", nullptr}};

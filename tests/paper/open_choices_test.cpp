@@ -127,10 +127,10 @@ TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) 
   const auto& standard = once.outcomes.front();
   EXPECT_EQ(standard.sample.set, Sample::Set::standard);
   EXPECT_EQ(standard.extremity, 0);
-  // A region is made of samples that satisfy all that it asks for.
+  EXPECT_EQ(once.chosen >= 0, !once.region.empty());
   for (const auto place : once.region) {
     EXPECT_TRUE(once.outcomes[place].is_constrained);
-    EXPECT_LE(once.outcomes[place].distance, most_distance);
+    EXPECT_GE(once.outcomes[place].extremity, once.outcomes[static_cast<std::size_t>(once.chosen)].extremity);
   }
   const auto json = nlohmann::json::parse(test::read_file(a / "open_choices.json"));
   EXPECT_EQ(json["n_runs"], once.n_runs);

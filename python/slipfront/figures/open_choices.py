@@ -113,7 +113,7 @@ def draw_samples(ax: Axes, folder: Path, summary: dict[str, Any]) -> None:
     ax.plot(ratio[hold], share[hold], "o", color="#0072b2", markersize=3, linestyle="none")
     ax.plot(ratio[0], share[0], "*", color="black", markersize=7, linestyle="none")
     ax.axvline(0.6, color="0.3", linewidth=0.6)
-    ax.axhline(100 * summary["least_share_in_band"], color="0.3", linewidth=0.6)
+    ax.axhline(100 * summary["wanted_share_in_band"], color="0.3", linewidth=0.6)
     ax.set(xlabel="maximum of the left-triggered front over the smaller of the others",
            ylabel="points of the main fronts within the paper's band (%)", xlim=(0, 1.4), ylim=(0, 100))  # fmt: skip
     marks = [

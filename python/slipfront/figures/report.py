@@ -37,6 +37,7 @@ VERDICTS = {
     False: ("✗", "no", "does not hold"),
     None: ("–", "open", "not decided"),
 }
+USED_TO_CHOOSE = ("=", "open", "used to choose what the paper leaves open")
 
 
 def text(value) -> str:
@@ -65,12 +66,18 @@ def table(
     return f'<div class="scroll">{opening}\n<thead>{head}</thead>\n<tbody>\n{body}\n</tbody></table></div>'
 
 
+def is_used_to_choose(entry: dict) -> bool:
+    """Whether a claim holds because the cases were chosen so."""
+    return entry["holds"] is True and entry.get("used_to_choose") is True
+
+
 def scorecard_table(scorecard: list[dict]) -> str:
     variations = [key for key in VARIATIONS if any(key in entry for entry in scorecard)]
     judges = {entry["second_test_of"]: entry["id"] for entry in scorecard if is_counted_second_test(entry)}
     rows = []
     for entry in scorecard:
-        sign, kind, meaning = VERDICTS.get(entry["holds"], VERDICTS[None])
+        used = is_used_to_choose(entry)
+        sign, kind, meaning = USED_TO_CHOOSE if used else VERDICTS.get(entry["holds"], VERDICTS[None])
         judge = judges.get(entry["id"])
         counted = f'<br><span class="note">{escape(judge)} counts</span>' if judge else ""
         verdict = f'<td class="verdict {kind}" title="{meaning}">{sign}{counted}</td>'
@@ -122,14 +129,17 @@ def scorecard_summary(scorecard: list[dict]) -> str:
     first = [e for e in scorecard if not e["id"].endswith("+") and "second_test_of" not in e]
     second = [e for e in scorecard if "second_test_of" in e]
     counted = [e for e in first if e.get("counts", True)] + [e for e in second if is_counted_second_test(e)]
+    used = sum(is_used_to_choose(entry) for entry in counted)
     count = {key: sum(entry["holds"] is key for entry in counted) for key in (True, False)}
     rest = len(counted) - sum(count.values())
     summary = (
-        f"Of {len(counted)} statements {count[True]} hold (✓), {count[False]} do not (✗), {rest} could "
+        f"Of {len(counted)} statements {count[True] - used} hold (✓), {count[False]} do not (✗), {rest} could "
         "not be decided (–)."
     )
+    if used:
+        summary += f" Used to choose what the paper leaves open (=): {used}."
     if second:
-        held = sum(entry["holds"] is True for entry in first)
+        held = sum(entry["holds"] is True and not is_used_to_choose(entry) for entry in first)
         summary += (
             f" Where the first test misjudges a statement a second one ({len(second)}) counts, once it was "
             f"done; by the first tests alone {held} hold."
