@@ -46,6 +46,7 @@ Claim second_test(std::span<const Claim> first, const char* of, const char* why,
   row.why = why;
   row.how = how;
   row.holds.reset();
+  row.used_to_choose = false;
   row.figures.clear();
   return row;
 }
