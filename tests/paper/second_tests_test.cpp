@@ -94,15 +94,29 @@ TEST(SecondTests, OneRowCountsForEachClaim) {
 
 TEST(SecondTests, SummaryCountsWithAndWithoutThem) {
   auto runs = make_good();
-  EXPECT_EQ(summary(scorecard(runs)),
-            "Of the paper's 23 claims 23 hold, 0 do not, 0 not tested, where second tests take the place of "
-            "first ones; by the first tests alone 23 hold, 0 do not, 0 not tested.");
+  EXPECT_EQ(
+      summary(scorecard(runs)),
+      "Of the paper's 23 claims 22 hold, 0 do not, 0 not tested, 1 used to choose, where second tests "
+      "take the place of first ones; by the first tests alone 22 hold, 0 do not, 0 not tested, 1 used to "
+      "choose.");
   runs.studies[0] = make_mu_k_study({0.9, 0.6, 0.7, 0.3, 0.2});  // C20 alone falls
   runs.studies.pop_back();                                       // of C22
   runs.triggers = {{10, 0}};                                     // C11b alone falls
   EXPECT_EQ(summary(scorecard(runs)),
             "Of the paper's 23 claims 21 hold, 1 do not, 1 not tested, where second tests take the place of "
-            "first ones; by the first tests alone 21 hold, 1 do not, 1 not tested.");
+            "first ones; by the first tests alone 20 hold, 1 do not, 1 not tested, 1 used to choose.");
+}
+
+TEST(SecondTests, WhatWasUsedToChooseConfirmsNothing) {
+  auto runs = make_good();
+  runs.triggers = {{10, 1}};
+  auto claims = scorecard(runs);
+  EXPECT_EQ(verdict(row(claims, "C11")), "used to choose");
+  EXPECT_EQ(verdict(row(claims, "C11b")), "holds");
+  EXPECT_EQ(verdict(row(claims, "C10")), "holds");
+  runs.left.fronts = runs.right.fronts;  // as fast as the right-triggered ones
+  claims = scorecard(runs);
+  EXPECT_EQ(verdict(row(claims, "C11")), "does not hold");
 }
 
 TEST(SecondTests, ProveNothingWithoutFronts) {
