@@ -96,6 +96,7 @@ Claim collapse_of_main_fronts(std::span<const MainFront> mains, std::span<const 
       "fronts is smaller at equal (U_r-U_s)/U_s than at equal t_d/p_d and at equal t_s/p_s");
   const auto runs = without_tails(mains);
   std::vector<const Outcome*> pointers;
+  pointers.reserve(runs.size());
   for (const auto& o : runs) pointers.push_back(&o);
   const Collapse c = collapse(pointers);
   if (!c.fitted) {
