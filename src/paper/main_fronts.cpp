@@ -91,6 +91,7 @@ bool in_tail(const MainFront& front, const FrontPoint& point) {
 Collapse collapse_without_tails(std::span<const MainFront> mains) {
   const auto runs = without_tails(mains);
   std::vector<const Outcome*> pointers;
+  pointers.reserve(runs.size());
   for (const auto& o : runs) pointers.push_back(&o);
   return collapse(pointers);
 }
