@@ -6,7 +6,7 @@ SHELL := bash
 
 APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv \
   libfmt-dev libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev \
-  libhdf5-dev libcereal-dev libssl-dev libsuitesparse-dev libopenblas-serial-dev libgtest-dev libgmock-dev
+  libhdf5-dev libboost-dev libcereal-dev libssl-dev libsuitesparse-dev libopenblas-serial-dev libgtest-dev libgmock-dev
 LINT_PACKAGES := clang-format-14 clang-tidy-14
 SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev libomp-14-dev
 FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
@@ -47,7 +47,7 @@ test: build $(VENV)/.installed  ## all tests, C++ and Python
 # The paper's runs and figures; the argument adds options.
 define REPRODUCE
 @echo "== Running the paper's cases into $(RESULTS)"
-$(PROGRAM) reproduce -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(1)
+$(PROGRAM) reproduce -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $(EXPERIMENT)) $(if $(wildcard $(RESULTS)-open-choices/checksums.sha256),--open-choices $(RESULTS)-open-choices) $(1)
 @echo "== Drawing the figures"
 PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
 endef
