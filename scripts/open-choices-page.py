@@ -17,8 +17,14 @@ def told(value: Any) -> str:
     return value if isinstance(value, str) else f"{value:.3g}"
 
 
-def range_of(values: list[Any]) -> str:
+def listed(values: list[Any]) -> str:
     return ", ".join(told(value) for value in values)
+
+
+def range_of(values: list[Any]) -> str:
+    """Of numbers the least and the largest."""
+    is_range = len(values) == 2 and not any(isinstance(value, str) for value in values)
+    return " to ".join(told(value) for value in values) if is_range else listed(values)
 
 
 def table(header: list[str], rows: list[list[str]]) -> str:
@@ -35,7 +41,7 @@ def choices() -> str:
             [
                 f"`{name}`",
                 f"`{choice['key']}`",
-                range_of(choice["levels"]),
+                listed(choice["levels"]),
                 choice["why"],
                 told(choice["standard"]),
                 range_of(region[name]) or "-",
@@ -59,9 +65,11 @@ def outcomes() -> str:
         if outcome:
             holds = "hold" if outcome["constraints_hold"] else "do not all hold"
             rows.append([name, *fit_of(outcome), f"{100 * outcome['share_in_band']:.0f} %", holds])
+    impossible = study["n_impossible"]
+    left_out = f"; {impossible} more samples have fillets too small for their elements" if impossible else ""
     counts = (
-        f"{study['n_samples']} samples, {study['n_runs']} runs; {study['n_impossible']} more samples have fillets too "
-        f"small for their elements. All constraints hold for {study['n_region']} samples. Of these the paper's a, b and "
+        f"{study['n_samples']} samples, {study['n_runs']} runs{left_out}. Of the {study['n_triggers']} samples of "
+        f"triggers {study['n_triggers_with_fronts']} start a front at both edges. All constraints hold for {study['n_region']} samples. Of these the paper's a, b and "
         f"c lie inside our intervals for {study['n_region_with_paper_fit']}, and at least 80 % of the points in its "
         f"band for {study['n_region_in_paper_band']}. C1 to C11 hold for {study['n_triggers_slow_left']} of the "
         f"{study['n_triggers']} trigger samples.\n\n"

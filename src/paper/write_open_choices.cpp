@@ -79,11 +79,16 @@ Json choices_json(const OpenChoicesResult& result) {
   return list;
 }
 
+/// Whether both triggers start a front.
+bool starts_fronts(const SampleOutcome& o) {
+  return o.left_max > 0 && o.right_max > 0;
+}
+
 /// Samples of a set for which a claim holds, over those for which it is tested.
-Json share_json(const OpenChoicesResult& result, Sample::Set set, std::size_t claim) {
+Json share_json(const OpenChoicesResult& result, Sample::Set set, std::size_t claim, bool with_fronts_only) {
   std::size_t tested = 0, holding = 0;
   for (const auto& o : result.outcomes) {
-    if (o.sample.set != set || !o.holds[claim]) continue;
+    if (o.sample.set != set || !o.holds[claim] || (with_fronts_only && !starts_fronts(o))) continue;
     ++tested;
     holding += *o.holds[claim] ? 1 : 0;
   }
@@ -114,8 +119,9 @@ Json matrix_json(const OpenChoicesResult& result) {
     }
     list.push_back({{"id", result.claims[claim]},
                     {"holds", *standard.holds[claim]},
-                    {"share_of_triggers", share_json(result, Sample::Set::triggers, claim)},
-                    {"share_of_all", share_json(result, Sample::Set::all, claim)},
+                    {"share_of_triggers", share_json(result, Sample::Set::triggers, claim, false)},
+                    {"share_of_triggers_with_fronts", share_json(result, Sample::Set::triggers, claim, true)},
+                    {"share_of_all", share_json(result, Sample::Set::all, claim, false)},
                     {"turns", turns}});
   }
   return list;
@@ -175,6 +181,9 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
                {"choices", choices_json(result)},
                {"matrix", matrix_json(result)},
                {"n_triggers", result.triggers.n_triggers},
+               {"n_triggers_with_fronts", count([](const SampleOutcome& o) {
+                  return o.sample.set == Sample::Set::triggers && starts_fronts(o);
+                })},
                {"n_triggers_slow_left", result.triggers.n_holding},
                {"n_region", result.region.size()},
                {"n_region_with_paper_fit",

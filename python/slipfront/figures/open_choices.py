@@ -25,6 +25,12 @@ from slipfront.folder import result_file
 
 TABLE = "open_choices.csv"
 SUMMARY = "open_choices.json"
+#: Shares of samples for which a claim holds, and their headings.
+SHARES = {
+    "share_of_triggers": "% of triggers",
+    "share_of_triggers_with_fronts": "% of those with fronts",
+    "share_of_all": "% of all choices",
+}
 HOLDS, FAILS, TURNS_ON, TURNS_OFF = "#c7d9ec", "#f0c9b0", "#0072b2", "#b5420f"
 
 
@@ -70,15 +76,15 @@ def draw_matrix(ax: Axes, summary: dict[str, Any]) -> None:
                 texts = [*texts[:2], "..."]
             ax.text(x + 0.5, y + 0.5, "\n".join(texts), color="white", fontsize=4.5, ha="center", va="center",
                     linespacing=0.85)  # fmt: skip
-        for x, key in ((n_choices, "share_of_triggers"), (n_choices + 1, "share_of_all")):
+        for x, key in enumerate(SHARES, start=n_choices):
             share = row[key]
             text = "" if share is None else f"{100 * share:.0f}"
             ax.text(x + 0.6, y + 0.5, text, fontsize=5.5, ha="center", va="center")
-    ax.set_xlim(0, n_choices + 2.2)
+    ax.set_xlim(0, n_choices + len(SHARES) + 0.2)
     ax.set_ylim(len(rows), 0)
     ax.set_yticks(np.arange(len(rows)) + 0.5, labels=[row["id"] for row in rows], fontsize=5.5)
-    headings = [title(c["name"]) for c in choices] + ["% of trigger samples", "% of samples of all"]
-    places = [*np.arange(n_choices) + 0.5, n_choices + 0.6, n_choices + 1.6]
+    headings = [title(c["name"]) for c in choices] + list(SHARES.values())
+    places = [*np.arange(n_choices) + 0.5, *(n_choices + np.arange(len(SHARES)) + 0.6)]
     ax.set_xticks(places, labels=headings, rotation=55, ha="left", fontsize=5.5)
     ax.xaxis.tick_top()
     ax.tick_params(length=0)
