@@ -8,9 +8,10 @@
 #include <atomic>
 #include <boost/random/sobol.hpp>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
-#include <set>
+#include <span>
 #include <utility>
 
 #include "base/error.hpp"
@@ -306,24 +307,17 @@ std::optional<bool> verdict(const std::vector<Claim>& claims, const std::string&
 }
 
 SampleOutcome judge(const std::vector<OpenChoice>& choices, const Sample& sample,
-                    const std::array<const Outcome*, 4>& events, std::vector<std::string>& ids) {
-  const Reproduction runs{*events[0], *events[1], *events[2], *events[3], {}, {}};
-  const auto claims = scorecard(runs);
+                    std::span<const Outcome* const, 3> three, const std::vector<Claim>& claims) {
   SampleOutcome o;
   o.sample = sample;
   o.extremity = extremity(choices, sample);
-  const bool is_first = ids.empty();
-  for (const auto& claim : claims) {
-    o.holds.push_back(claim.holds);
-    if (is_first) ids.push_back(claim.id);
-  }
+  for (const auto& claim : claims) o.holds.push_back(claim.holds);
   o.left_max = figure(claims, "C11", "left");
   o.right_max = figure(claims, "C11", "right");
   o.spontaneous_max = figure(claims, "C11", "spontaneous");
   o.is_constrained = std::ranges::all_of(constraining_claims(), [&](const std::string& id) {
     return verdict(claims, id) == std::optional(true);
   });
-  const std::array<const Outcome*, 3> three = {events[0], events[1], events[2]};
   const auto main = collapse_without_tails(main_fronts(three));
   o.share_in_band = main.share_in_paper_band;
   if (main.fitted) o.fit = main.fit;
@@ -457,10 +451,11 @@ OpenChoicesResult study_open_choices(
   });
   result.n_runs = outcomes.size();
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const auto& at = places[k];
-    result.outcomes.push_back(judge(result.choices, all[k],
-                                    {&outcomes[at[0]], &outcomes[at[1]], &outcomes[at[2]], &outcomes[at[3]]},
-                                    result.claims));
+    const auto event = [&](std::size_t e) -> const Outcome& { return outcomes[places[k][e]]; };
+    const std::array<const Outcome*, 3> three = {&event(0), &event(1), &event(2)};
+    const auto claims = scorecard({event(0), event(1), event(2), event(3), {}, {}, {}});
+    if (result.claims.empty()) std::ranges::transform(claims, std::back_inserter(result.claims), &Claim::id);
+    result.outcomes.push_back(judge(result.choices, all[k], three, claims));
     if (all[k].set != Sample::Set::triggers) continue;
     ++result.triggers.n_triggers;
     result.triggers.n_holding += has_slow_left(result.outcomes.back(), result.claims) ? 1 : 0;
