@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from slipfront.figures.criteria import falls
 from slipfront.figures.main_fronts import counted, main_fronts, tail
 from slipfront.read import read_run
 from synthetic import FRONTS_HEADER, WAVE_SPEEDS, case_text, make_front, write_csv, write_run
@@ -128,6 +129,21 @@ def test_a_front_that_runs_when_the_record_ends_has_no_tail(run_of):
     assert tail(run, front).any()
     run.info["fronts"][0]["end"] = "record_end"
     assert not tail(run, front).any()
+
+
+def test_falls_are_stretches_of_five_millimetres_where_speed_falls_and_ratio_rises(run_of):
+    front = make_front(1, X_M, 1, 0.008, 0.19, 1e-6)
+    for row in front:
+        x_mm = 1e3 * row[1]
+        if row[7] != "":
+            row[7], row[8] = x_mm * 1e4, 1e6  # t_d / p_d rises with x
+        falling = 60.3 < x_mm < 70.3 or 100.3 < x_mm < 103.3
+        row[4] = (2 - 1e-3 * x_mm if falling else 1 + 1e-3 * x_mm) * C_L
+    run = run_of("left", [front])
+    (front,) = main_fronts(run)
+    x = 1e3 * front.x_m[falls(run, front)]
+    # The step up before 60.667 mm is none, the step down behind 70 mm is; the second stretch is too short.
+    assert (x[0], x[-1]) == pytest.approx((60.667, 70.667), abs=0.01) and len(x) == 16
 
 
 def test_a_run_without_fronts_has_none(run_of):

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from matplotlib.patches import Ellipse, Patch
+from matplotlib.patches import Patch
 
 from slipfront.figures import sketch, style
 from slipfront.figures.drawing import Drawing
@@ -29,8 +29,9 @@ from slipfront.read import Front, Run
 SELECTION = (
     "Strong: main fronts, the longest in each direction that starts at the event's nucleation or trigger, to "
     f"the last node before V<sub>tip</sub> stays below {SLOW_OVER_C_L:g} c<sub>L</sub> or the front ends, "
-    f"without the trigger zone and its margin or the {1e3 * NUCLEATION_M:g} mm around a spontaneous nucleation. Thin and light: "
-    f"their other nodes, and other fronts of at least {1e3 * DRAWN_LENGTH_M:g} mm."
+    "without the trigger zone and its margin or the "
+    f"{1e3 * NUCLEATION_M:g} mm around a spontaneous nucleation. Thin and light: their other nodes, and other "
+    f"fronts of at least {1e3 * DRAWN_LENGTH_M:g} mm."
 )
 HIGHEST_V = 3.0  # the axis ends there at the latest: the speed diverges where fronts nucleate or meet
 LARGEST_RISE = 5.0  # the relative energy rise as well, where the stored energy vanishes
@@ -203,21 +204,19 @@ def falls(run: Run, front: Front) -> np.ndarray:
     return part
 
 
-def enclose_falls(ax: Axes, runs: list[Run]) -> list[Line2D]:
-    """An ellipse around the stretches where the general trend is reversed; returns its legend entry."""
-    x, y = [], []
+def underlay_falls(ax: Axes, runs: list[Run]) -> list[Line2D]:
+    """A broad light line under stretches where the general trend is reversed; returns its legend entry."""
+    look = {"color": "#f0e442", "linewidth": 6, "alpha": 0.75, "solid_capstyle": "butt"}
+    found = False
     for run in runs:
         for front in main_fronts(run):
             part = falls(run, front)
-            x.extend(front.dynamic_ratio[part])
-            y.extend(speed(run)(front)[part])
-    if not x:
-        return []
-    middle = (np.min(x) + np.max(x)) / 2, (np.min(y) + np.max(y)) / 2
-    size = {"width": 1.5 * np.ptp(x), "height": 1.5 * np.ptp(y)}
-    ax.add_patch(Ellipse(middle, fill=False, color="0.2", linewidth=0.7, gid="falls", **size))
-    look = {"marker": "o", "markersize": 7, "markerfacecolor": "none", "linestyle": "none", "color": "0.2"}
-    return [Line2D([], [], label=f"{style.V_NAME} falls, {style.DYNAMIC_LABEL} rises", **look)]
+            found = found or part.any()
+            x, y = (np.where(part, values, np.nan) for values in (front.dynamic_ratio, speed(run)(front)))
+            ax.plot(x, y, gid=style.front_gid(run, front, "falls"), zorder=0.8, **look)
+    return (
+        [Line2D([], [], label=f"{style.V_NAME} falls, {style.DYNAMIC_LABEL} rises", **look)] if found else []
+    )
 
 
 def dynamic_criterion(results: Results) -> Drawing:
@@ -227,21 +226,26 @@ def dynamic_criterion(results: Results) -> Drawing:
         draw_fronts(ax, run, lambda front: front.dynamic_ratio, speed(run))
     ax.set(xlabel=style.DYNAMIC_LABEL, ylabel=style.V_LABEL)
     outside = finish(ax, results.events[0])
-    enclosed = enclose_falls(ax, results.events)
-    handles = [*style.event_handles(results.events), *style.fill_handles(), style.pale_handle(), *enclosed]
+    reversed_trend = underlay_falls(ax, results.events)
+    handles = [
+        *style.event_handles(results.events),
+        *style.fill_handles(),
+        style.pale_handle(),
+        *reversed_trend,
+    ]
     style.legend_below(figure, handles, 3)
     return Drawing(
         "fig5_dynamic_criterion",
         figure,
         "Front speed against the dynamic stress ratio t<sub>d</sub>/p<sub>d</sub> for the three events. "
-        f"Ellipse: around all stretches of main fronts, at least {1e3 * SHORTEST_FALL_M:g} mm long, where "
+        f"Yellow: stretches of main fronts, at least {1e3 * SHORTEST_FALL_M:g} mm long, where "
         "V<sub>tip</sub> falls while t<sub>d</sub>/p<sub>d</sub> rises. "
         f"Thin horizontal lines: wave speeds. {SELECTION}{outside}",
     )
 
 
 def draw_paper_fit(ax: Axes, results: Results, r: np.ndarray) -> tuple:
-    """The paper's curve in its band; returns the parts of a legend entry."""
+    """The paper's curve in its band; returns parts of a legend entry."""
     fit = results.paper_fit(r)
     low, high = fit - results.paper_a_band, fit + results.paper_a_band
     ax.fill_between(r, low, high, color="0.85", linewidth=0, gid="paper_band", zorder=0)
@@ -251,7 +255,7 @@ def draw_paper_fit(ax: Axes, results: Results, r: np.ndarray) -> tuple:
 
 
 def draw_own_fit(ax: Axes, results: Results, r: np.ndarray) -> tuple:
-    """Our curve, its interval where its points are; returns the parts of a legend entry."""
+    """Our curve, its interval where its points are; returns parts of a legend entry."""
     look = {"color": FIT_COLOUR, "linestyle": (0, (1, 1)), "linewidth": 1.4}
     ax.plot(r, results.fit(r), gid="fit", zorder=2.2, **look)
     if len(results.fit_interval) == 0:

@@ -20,7 +20,7 @@ from slipfront.read import Run
 
 COLUMNS = 3
 CELL_MM = 48.0  # height of a pair of panels
-LEGEND_MM = 14.0  # above the panels, where they leave no room for it
+LEGEND_MM = 16.0  # above the panels, where they leave no room for it
 HIGHEST_V = 4.5
 HIGHEST_RMS = 0.3
 HIGHEST_SPREAD = 1.0
@@ -206,7 +206,7 @@ def small_multiples(results: Results, upper, lower, labels: tuple[str, str], han
 def place_legend(figure: Figure, handles: list, n_free: int, height_mm: float) -> None:
     """In the cells that the studies leave free at the end, or above the panels."""
     if n_free == 0:
-        at = {"loc": "upper center", "bbox_to_anchor": (0.5, 1 - 1 / height_mm), "ncols": 4}
+        at = {"loc": "upper center", "bbox_to_anchor": (0.5, 1 - 1 / height_mm), "ncols": 3}
     else:
         left = (14 + 54.5 * (COLUMNS - n_free)) / style.PAGE_MM
         at = {"loc": "upper left", "bbox_to_anchor": (left, (CELL_MM - 5) / height_mm), "ncols": n_free}
@@ -240,7 +240,7 @@ def speeds(results: Results) -> Drawing:
     grey = {"color": "0.3", "linestyle": "none"}
     handles.append(handle("maximum", marker="o", markersize=3.0, **grey))
     handles.append(handle("mean", marker="_", markersize=5.0, **grey))
-    handles.append(handle("maximum, front from elsewhere", marker="x", markersize=3.0, **grey))
+    handles.append(handle("maximum, other front", marker="x", markersize=3.0, **grey))
     labels = (style.V_LABEL, "change (%)")
     return Drawing(
         "studies",
