@@ -22,6 +22,8 @@ constexpr Eigen::Index n_grid = 64;
 constexpr int fit_bisections = 48;       // to rounding
 constexpr int resample_bisections = 16;  // to 1e-5 of c, far below the intervals' own scatter
 
+constexpr int n_curve_steps = 60;
+
 /// All usable points. s is counted from its least value, so that exp(-c s) is at most 1 for every c.
 struct Points {
   Eigen::ArrayXd s;
@@ -166,18 +168,25 @@ ExponentialFit fit_exponential(std::span<const Series> series, const BootstrapOp
   const Parameters best = solve(points, grid, Eigen::ArrayXd::Ones(points.s.size()), fit_bisections);
 
   std::mt19937 random(options.seed);
-  std::vector<double> a, b, c;
+  std::vector<Parameters> resampled;
   for (int k = 0; k < options.resamples; ++k) {
     const Parameters p = solve(points, grid, draw(points, options.block_points, random), resample_bisections);
-    if (!std::isfinite(p.b)) continue;  // all drawn points at one x
-    a.push_back(p.a);
-    b.push_back(p.b);
-    c.push_back(p.c);
+    if (std::isfinite(p.b)) resampled.push_back(p);  // else all drawn points are at one x
   }
+  const auto estimated = [&](auto quantity) {
+    std::vector<double> values(resampled.size());
+    std::ranges::transform(resampled, values.begin(), quantity);
+    return estimate(quantity(best), std::move(values), options.confidence);
+  };
   ExponentialFit fit;
-  fit.a = estimate(best.a, std::move(a), options.confidence);
-  fit.b = estimate(best.b, std::move(b), options.confidence);
-  fit.c = estimate(best.c, std::move(c), options.confidence);
+  fit.a = estimated([](const Parameters& p) { return p.a; });
+  fit.b = estimated([](const Parameters& p) { return p.b; });
+  fit.c = estimated([](const Parameters& p) { return p.c; });
+  for (int k = 0; k <= n_curve_steps; ++k) {
+    const double s = points.s_min + points.s.maxCoeff() * k / n_curve_steps;
+    const auto y = estimated([s](const Parameters& p) { return p.a + p.b * std::exp(-p.c * s); });
+    fit.curve.push_back({s * s, y});
+  }
   fit.n_points = static_cast<std::size_t>(points.s.size());
   fit.rms = std::sqrt(best.sum_of_squares / static_cast<double>(fit.n_points));
   return fit;

@@ -22,10 +22,17 @@ struct Series {
   std::vector<double> y;
 };
 
+/// A fitted curve at one x.
+struct CurvePoint {
+  double x = 0;
+  Estimate y;
+};
+
 /// y = a + b exp(-c sqrt(x)), Kammer et al. 2012, Eq. 3.
 struct ExponentialFit {
   Estimate a, b, c;
-  double rms = 0;  ///< of the residuals
+  std::vector<CurvePoint> curve;  ///< from the least to the largest x, at equal distances of sqrt(x)
+  double rms = 0;                 ///< of the residuals
   std::size_t n_points = 0;
   double operator()(double x) const;
 };

@@ -22,6 +22,14 @@ Json estimate_json(const fronts::Estimate& e) {
   return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};
 }
 
+/// A fitted curve with its interval; empty where there is no fit.
+Json curve_json(const std::vector<fronts::CurvePoint>& curve) {
+  Json json = Json::array();
+  for (const auto& [x, y] : curve)
+    json.push_back({{"x", x}, {"value", number(y.value)}, {"low", number(y.low)}, {"high", number(y.high)}});
+  return json;
+}
+
 /// The entries that tell how well the criteria order the speeds.
 Json collapse_json(const Collapse& c) {
   Json json;
@@ -130,7 +138,9 @@ void write_scorecard(const std::filesystem::path& file, const std::vector<Claim>
 
 void write_analysis(const std::filesystem::path& file, const Reproduction& runs) {
   const std::vector<const Outcome*> three = {&runs.spontaneous, &runs.left, &runs.right};
-  Json json = collapse_json(collapse(three));
+  const Collapse own = collapse(three);
+  Json json = collapse_json(own);
+  json["fit_curve"] = curve_json(own.fit.curve);
   const PaperFit paper;
   json["paper_fit"] = {{"a", paper.a}, {"a_band", paper.band}, {"b", paper.b}, {"c", paper.c}};
   Json studies = Json::array();

@@ -96,17 +96,35 @@ TEST(FitExponential, IntervalsHoldTheTruth) {
   // Of 95 % intervals some miss. 40 independent data sets: fewer than 32 hits have a probability of 0.01 %
   // for a coverage of 0.95, and of 5 % for one of 0.87, as a percentile bootstrap of this many points may
   // have.
-  int hits_a = 0, hits_b = 0, hits_c = 0;
+  int hits_a = 0, hits_b = 0, hits_c = 0, hits_curve = 0;
   for (unsigned seed = 0; seed < 40; ++seed) {
     const std::vector<Series> series{noisy(200, 0.05, 0.6, 2 * seed), noisy(200, 0.05, 0.6, 2 * seed + 1)};
     const ExponentialFit fit = fit_exponential(series, {.resamples = 200});
     hits_a += holds(fit.a, a);
     hits_b += holds(fit.b, b);
     hits_c += holds(fit.c, c);
+    hits_curve += holds(fit.curve[30].y, law(fit.curve[30].x));
   }
   EXPECT_GE(hits_a, 32);
   EXPECT_GE(hits_b, 32);
   EXPECT_GE(hits_c, 32);
+  EXPECT_GE(hits_curve, 32);
+}
+
+TEST(FitExponential, CurveIsThatOfTheParameters) {
+  const std::vector<Series> series{noisy(200, 0.05, 0.5, 3), noisy(150, 0.05, 0.5, 4)};
+  const ExponentialFit fit = fit_exponential(series);
+  ASSERT_EQ(fit.curve.size(), 61u);
+  const double first = 1.2 / 200;
+  for (std::size_t k = 0; k < fit.curve.size(); ++k) {
+    const auto& [x, y] = fit.curve[k];
+    EXPECT_NEAR(std::sqrt(x), first + (1.2 - first) / 60 * static_cast<double>(k), 1e-12);
+    EXPECT_NEAR(y.value, fit(x), 1e-12);
+    EXPECT_LT(y.low, y.value);
+    EXPECT_GT(y.high, y.value);
+  }
+  // a, b and c vary together: amid the points the curve is known better than its asymptote.
+  EXPECT_LT(width(fit.curve[30].y), 0.5 * width(fit.a));
 }
 
 TEST(FitExponential, IntervalsShrinkWithTheNumberOfPoints) {

@@ -142,7 +142,8 @@ TEST_F(QuickReproduction, ScorecardListsEveryClaim) {
 
 TEST_F(QuickReproduction, AnalysisAndTimingsAreComplete) {
   const json analysis = json::parse(test::read_file(s.folder / "analysis.json"));
-  for (const char* key : {"fit", "paper_fit", "share_in_paper_band", "n_points", "spread", "studies"})
+  for (const char* key :
+       {"fit", "fit_curve", "paper_fit", "share_in_paper_band", "n_points", "spread", "studies"})
     EXPECT_TRUE(analysis.contains(key)) << key;
   EXPECT_EQ(analysis["paper_fit"]["a"], 0.76);
   EXPECT_EQ(analysis["paper_fit"]["b"], 1.80);

@@ -7,6 +7,7 @@ import csv
 import json
 import re
 import shutil
+from dataclasses import replace as replace_fields
 
 import matplotlib
 import numpy as np
@@ -14,7 +15,9 @@ import pytest
 from matplotlib.figure import Figure
 from slipfront.figures import balance, criteria, events, plate, space_time, studies
 from slipfront.figures.__main__ import draw_all, main
-from slipfront.figures.results import drawn_fronts, main_fronts, read_results
+from slipfront.figures.main_fronts import drawn_fronts, main_fronts
+from slipfront.figures.results import read_results
+from slipfront.figures.statements import STATEMENTS
 from slipfront.figures.style import RC
 from synthetic import (
     CONTACT_FROM_M,
@@ -196,7 +199,7 @@ def test_figure_2_shows_the_speeds_of_the_high_mu_k_run(pristine, results, front
     np.testing.assert_allclose(line.get_ydata(), np.where(weak, np.nan, v))
     assert np.isnan(line.get_ydata()[-1])
     assert rows["direction"][0] == direction
-    assert (line.get_linestyle() == "-") == (direction < 0)
+    assert line.get_linestyle() == ("-" if direction > 0 else "--")  # in the order of the text's words
 
 
 def test_figure_2_shows_the_wave_speeds(results):
@@ -221,15 +224,39 @@ def test_short_fronts_are_pale_or_left_out(results):
     assert secondary.get_marker() == "None"
 
 
-def test_last_stretch_is_pale_in_figures_5_and_6_alone(pristine, results):
+def test_last_stretch_is_pale_in_figure_6_alone(pristine, results):
     rows = front_rows(pristine, "left", 1)
     tail = rows["x_m"] >= rows["x_m"][-1] - 20.001e-3
     v = rows["v_tip_m_per_s"] / C_L
-    pale = artist(criteria.energy(results).figure, "left:1:weak").get_ydata()
-    np.testing.assert_allclose(pale[tail], v[tail])
-    assert np.isnan(pale[~tail][:-1]).all() and np.isfinite(pale[~tail][-1])  # one more, to meet the other
-    assert "left:1:weak" in gids(criteria.dynamic_criterion(results).figure)
-    assert "left:1:weak" not in gids(events.three_events(results).figure, 4)
+    figure = criteria.energy(results).figure
+    pale, strong = artist(figure, "left:1:tail"), artist(figure, "left:1")
+    np.testing.assert_allclose(pale.get_ydata()[tail], v[tail])
+    assert np.isnan(pale.get_ydata()[~tail]).all() and np.isnan(strong.get_ydata()[tail]).all()
+    assert not matplotlib.colors.same_color(pale.get_color(), strong.get_color())
+    for other, panel in ((criteria.dynamic_criterion(results), 0), (events.three_events(results), 4)):
+        assert "left:1:tail" not in gids(other.figure, panel)
+        assert np.isfinite(artist(other.figure, "left:1", panel).get_ydata()[tail][:-1]).all()
+
+
+def test_nodes_of_main_fronts_that_do_not_count_are_pale(pristine, results):
+    rows = front_rows(pristine, "spontaneous", 1)
+    near = at_nucleation("spontaneous", rows)
+    line = artist(criteria.dynamic_ratio_along_x(results).figure, "spontaneous:1:weak")
+    wider = near | np.roll(near, 1)  # one more node, to meet the other line
+    np.testing.assert_allclose(line.get_xdata(), np.where(wider, 1e3 * rows["x_m"], np.nan))
+    assert line.get_linewidth() < 1 and line.get_zorder() < 2
+
+
+def test_figure_6_shows_a_marker_per_node(pristine, results):
+    figure = criteria.energy(results).figure
+    for run, front_id in (("left", 1), ("spontaneous", 1), ("spontaneous", 2), ("right", 1)):
+        points, pale = artist(figure, f"{run}:{front_id}"), artist(figure, f"{run}:{front_id}:tail")
+        rows = front_rows(pristine, run, front_id)
+        rise = (rows["U_r_J_per_m3"] - rows["U_s_J_per_m3"]) / rows["U_s_J_per_m3"]
+        defined = np.isfinite(rise * rows["v_tip_m_per_s"]) & shown(run, rows) & ~at_nucleation(run, rows)
+        drawn = sum(np.isfinite(np.column_stack(a.get_data())).all(axis=1).sum() for a in (points, pale))
+        assert drawn == defined.sum() > 0
+        assert points.get_linestyle() == "None" and points.get_markevery() is None
 
 
 @pytest.mark.parametrize("run, front_id", [("left", 1), ("spontaneous", 1), ("spontaneous", 2), ("right", 1)])
@@ -245,8 +272,8 @@ def test_figures_3_to_6_show_the_three_events(pristine, results, run, front_id):
     assert strong.sum() < len(v)
     for figure, panel, x, y, drawn in (
         (events.three_events(results).figure, 4, static, v, strong),
-        (criteria.dynamic_ratio_along_x(results).figure, 0, 1e3 * rows["x_m"], dynamic, shown(run, rows)),
-        (criteria.dynamic_criterion(results).figure, 0, dynamic, v, strong & before_end),
+        (criteria.dynamic_ratio_along_x(results).figure, 0, 1e3 * rows["x_m"], dynamic, strong),
+        (criteria.dynamic_criterion(results).figure, 0, dynamic, v, strong),
         (criteria.energy(results).figure, 0, energy, v, strong & before_end),
     ):
         line = artist(figure, f"{run}:{front_id}", panel)
@@ -273,6 +300,22 @@ def test_figure_6_shows_our_fit_and_the_papers_band(results):
     at_zero = corners[np.isclose(corners[:, 0], 0)][:, 1]
     assert at_zero.min() == pytest.approx(0.76 + 1.80 - 0.07)
     assert at_zero.max() == pytest.approx(0.76 + 1.80 + 0.07)
+
+
+def test_figure_6_shows_the_interval_of_our_fit(output, results):
+    assert "fit_interval" not in gids(criteria.energy(results).figure)  # an older folder tells none
+    file = output / "analysis.json"
+    analysis = json.loads(file.read_text())
+    r, low, high = [0.1, 0.4, 0.9], [1.2, 0.9, 0.5], [1.6, 1.1, 0.8]
+    keys = ("x", "value", "low", "high")
+    analysis["fit_curve"] = [
+        dict(zip(keys, point, strict=True)) for point in zip(r, [1.4, 1, 0.6], low, high, strict=True)
+    ]
+    file.write_text(json.dumps(analysis))
+    corners = artist(criteria.energy(read_results(output)).figure, "fit_interval").get_paths()[0].vertices
+    for x, bottom, top in zip(r, low, high, strict=True):
+        there = corners[np.isclose(corners[:, 0], x)][:, 1]
+        assert (there.min(), there.max()) == pytest.approx((bottom, top))
 
 
 def test_figure_6_without_a_fit(output):
@@ -484,6 +527,75 @@ def test_report_tells_which_of_two_verdicts_counts(output):
     assert "Rows with a + (1) are further tests" in html
 
 
+def test_report_tells_what_was_used_to_choose(output):
+    file = output / "scorecard.json"
+    scorecard = json.loads(file.read_text())
+    for row in scorecard:
+        row["counts"] = not row["id"].endswith("+")
+    held = [row for row in scorecard if row["holds"] is True and row["counts"]]
+    held[0]["used_to_choose"] = True
+    file.write_text(json.dumps(scorecard))
+    assert main([str(output)]) == 0
+    html = (output / "figures/index.html").read_text(encoding="utf-8")
+    assert f"{len(held) - 1} hold (✓)" in html
+    assert "Used to choose what the paper leaves open (=): 1." in html
+    assert 'title="used to choose what the paper leaves open">=</td>' in html
+
+
+# Captions
+
+
+CAPTION_NUMBER = r"(?<![\w.])\d+\.\d\d(?!\d)"
+
+
+def test_caption_of_figure_6_has_the_numbers_of_the_file(output):
+    file = output / "analysis.json"
+    analysis = json.loads(file.read_text())
+    new = {"a": (0.11, 0.12, 0.13), "b": (2.21, 2.22, 2.23), "c": (3.31, 3.32, 3.33)}
+    analysis["fit"] |= {name: dict(zip(("low", "value", "high"), v, strict=True)) for name, v in new.items()}
+    analysis["paper_fit"] = {"a": 0.71, "a_band": 0.09, "b": 1.72, "c": 3.73}
+    file.write_text(json.dumps(analysis))
+    caption = criteria.energy(read_results(output)).caption
+    assert "a = 0.71 ± 0.09, b = 1.72, c = 3.73" in caption
+    assert "a = 0.12 [0.11, 0.13], b = 2.22 [2.21, 2.23], c = 3.32 [3.31, 3.33]" in caption
+    told = {0.71, 0.09, 1.72, 3.73} | {number for triple in new.values() for number in triple}
+    assert {float(number) for number in re.findall(CAPTION_NUMBER, caption)} == told
+
+
+def statement_rows(output, figure: str) -> list[list[str]]:
+    assert main([str(output)]) == 0
+    html = (output / "figures/index.html").read_text(encoding="utf-8")
+    body = html.split(f'<figure id="{figure}"')[1].split("</figure>")[0].split("<tbody>")
+    rows = re.findall(r"<tr>(.*?)</tr>", body[1]) if len(body) > 1 else []
+    return [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in rows]
+
+
+def test_statements_of_the_paper_stand_beside_the_scorecards_figures(output):
+    claims = {"C18": ("rms 0.123 c_L & more", False), "C18b": ("rms 0.045 c_L", True), "C19": ("77 %", None)}
+    rows = [
+        {"id": name, "claim": "x", "paper": "Fig. 6", "measured": measured, "holds": holds, "how": "y"}
+        for name, (measured, holds) in claims.items()
+    ]
+    rows[1]["second_test_of"] = "C18"
+    (output / "scorecard.json").write_text(json.dumps(rows))
+    found = statement_rows(output, "fig6_energy")
+    said = [statement for statement, _ in STATEMENTS["fig6_energy"]]
+    assert found == [
+        [said[0], "rms 0.123 c_L &amp; more", "✗", "C18"],
+        ["the same, second test", "rms 0.045 c_L", "✓", "C18b"],
+        [said[1], "77 %", "–", "C19"],
+    ]
+    assert statement_rows(output, "fig5_dynamic_criterion") == []  # claims that the file lacks
+
+
+def test_statements_have_no_numbers_of_their_own_and_known_claims():
+    for name, statements in STATEMENTS.items():
+        assert name in FIGURES
+        for statement, claim in statements:
+            assert not re.search(r"\d", statement)
+            assert re.fullmatch(r"C([1-9]|1\d|2[0-3])|E1", claim)
+
+
 # Energy balance
 
 
@@ -533,6 +645,53 @@ def test_single_run_has_its_balance(output, capsys):
     assert str(run / "figures" / "energy_balance.png") in capsys.readouterr().out
 
 
+def test_legend_of_the_balance_is_inside_the_figure(results):
+    one = balance.Books("left", "left", results.runs["left"].balance)
+    with matplotlib.rc_context(RC):
+        for figure in (balance.balance(results).figure, balance.draw_balances([one]).figure):
+            figure.canvas.draw()
+            box = figure.legends[0].get_window_extent()
+            assert box.x0 >= 0 and box.x1 <= figure.bbox.x1 and box.y0 >= 0
+
+
+# Severe red and green blindness in linear RGB: Machado, Oliveira and Fernandes (2009).
+BLINDNESS = {
+    "protan": [
+        [0.152286, 1.052583, -0.204868],
+        [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+    "deutan": [
+        [0.367322, 0.860646, -0.227968],
+        [0.280085, 0.672501, 0.047413],
+        [-0.011820, 0.042940, 0.968881],
+    ],
+}
+
+
+def lab(colour: str, blindness: str) -> np.ndarray:
+    """CIE L*a*b* of a colour as somebody with the blindness sees it."""
+    rgb = np.array(matplotlib.colors.to_rgb(colour))
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    seen = np.clip(np.array(BLINDNESS[blindness]) @ linear, 0, 1)
+    to_xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+    t = np.array(to_xyz) @ seen / [0.9505, 1.0, 1.089]
+    f = np.where(t > (6 / 29) ** 3, np.cbrt(t), t / (3 * (6 / 29) ** 2) + 4 / 29)
+    return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
+
+
+@pytest.mark.parametrize("blindness", BLINDNESS)
+def test_terms_of_the_balance_differ_for_the_colour_blind(blindness):
+    looks = list(balance.TERMS.values())
+    for i, (label, colour, line) in enumerate(looks):
+        for other_label, other_colour, other_line in looks[i + 1 :]:
+            distance = np.linalg.norm(lab(colour, blindness) - lab(other_colour, blindness))
+            assert line != other_line or distance > 25, f"{label}, {other_label}"
+    friction, damping = balance.TERMS["friction_work"], balance.TERMS["damping_work"]
+    assert friction[2] != damping[2]
+    assert np.linalg.norm(lab(friction[1], blindness) - lab(damping[1], blindness)) > 25
+
+
 def test_run_in_which_nothing_happens_has_a_balance(output):
     write_csv(output / "left" / "energy.csv", ENERGY_HEADER, [[0] * 12, [1e-6] + [0] * 11])
     assert main([str(output / "left")]) == 0
@@ -567,8 +726,32 @@ def test_studies_of_words_have_no_lines(results):
     upper, lower = study_panels(figure, 2)
     assert artist(figure, "max:spontaneous:-1", upper).get_linestyle() == "None"
     labels = [label.get_text() for label in figure.axes[lower].get_xticklabels()]
-    assert labels == ["relief", "fillet 2mm"]
-    assert figure.axes[lower].get_xlabel() == "plate.corner"
+    assert labels == ["relief", "fillet\n2mm"]
+
+
+def test_studies_are_named_in_words(results):
+    figure = studies.speeds(results).figure
+    titles = [figure.axes[study_panels(figure, i)[0]].get_title(loc="left") for i in range(3)]
+    assert titles == [r"kinetic friction $\mu_k$", "element size (mm)", "rounding of the corners"]
+    shown_texts = [text for ax in figure.axes for text in ax.findobj(matplotlib.text.Text) if text.get_text()]
+    for study in results.studies:
+        assert not any(study.parameter in text.get_text() for text in shown_texts)
+
+
+def legend_place(results, n_studies: int) -> tuple[Figure, object]:
+    many = replace_fields(results, studies=(results.studies * n_studies)[:n_studies])
+    with matplotlib.rc_context(RC):
+        figure = studies.speeds(many).figure
+        figure.canvas.draw()
+        return figure, figure.legends[0].get_window_extent()
+
+
+@pytest.mark.parametrize("n_studies", [3, 4, 5, 13])
+def test_legend_of_studies_takes_free_room(results, n_studies):
+    figure, legend = legend_place(results, n_studies)
+    boxes = [ax.get_tightbbox() for ax in figure.axes]
+    assert not any(legend.overlaps(box) for box in boxes)
+    assert legend.x0 >= 0 and legend.y0 >= 0 and legend.x1 <= figure.bbox.x1 and legend.y1 <= figure.bbox.y1
 
 
 def test_numbers_above_the_axis_stand_side_by_side(results):
@@ -580,8 +763,8 @@ def test_numbers_above_the_axis_stand_side_by_side(results):
     assert offsets == [
         ("first:above", 0, 0),
         ("first:above", 2, 0),
-        ("second:above", 0, 6),
-        ("second:above", 2, 6),
+        ("second:above", 0, 7.5),
+        ("second:above", 2, 7.5),
     ]
 
 
@@ -721,6 +904,11 @@ def drop_dataset(path, name):
             "1 has",
         ),
         (replace("analysis.json", '"points": [', '"points": [3, '), "analysis.json", "study 1 is not as"),
+        (
+            replace("analysis.json", '"studies": ', '"fit_curve": [3], "studies": '),
+            "analysis.json",
+            "'fit_curve'",
+        ),
         (overwrite("timings.json", '[{"part": "a"}]'), "timings.json", "'wall_s'"),
     ],
 )

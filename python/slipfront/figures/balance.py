@@ -16,16 +16,17 @@ from slipfront.figures.results import Results
 from slipfront.read import BLEW_UP, ENERGY_TERMS, Balance, read_balance, read_place
 
 SMALL = 0.02  # a term that never exceeds this share of the largest is drawn below, where it can be seen
+# No two terms share both a hue and a dash for eyes without red or green receptors.
 TERMS = {
     "strain": ("strain energy", "#000000", "-"),
     "kinetic": ("kinetic energy", "#0072b2", "-"),
-    "friction_work": ("friction", "#d55e00", (0, (4, 1.5))),
-    "damping_work": ("damping", "#117733", (0, (4, 1.5))),
+    "friction_work": ("friction", "#d55e00", (0, (5, 1.5))),
+    "damping_work": ("damping", "#009e73", (0, (7, 1.5, 1, 1.5, 1, 1.5))),
     "trigger_work": ("trigger", "#882255", (0, (1, 1.2))),
-    "top_work": ("top edge", "#999933", (0, (1, 1.2))),
+    "top_work": ("top edge", "#e69f00", (0, (1, 1.2))),
     "prestress_work": ("prescribed tractions", "#56b4e9", (0, (1, 1.2))),
     "contact_work": ("landings", "#aa4499", (0, (6, 1.5, 1, 1.5))),
-    "boundary_work": ("absorbing edges", "#44aa99", (0, (6, 1.5, 1, 1.5))),
+    "boundary_work": ("absorbing edges", "#56b4e9", (0, (6, 1.5, 1, 1.5))),
     "coupling_work": ("coupling of the layer", "#e69f00", "-"),
 }
 IMBALANCE = ("imbalance", "#cc3311", "-")
@@ -90,7 +91,7 @@ def closing(books: Books) -> str:
 
 def draw_balances(every: list[Books]) -> Drawing:
     width_mm = max(style.COLUMN_MM, style.PAGE_MM * len(every) / 4)
-    figure = style.new_figure(width_mm, 100)
+    figure = style.new_figure(width_mm, 100 if len(every) > 1 else 120)  # alone, its legend takes more rows
     panels = figure.subplots(2, len(every), squeeze=False, sharex="col")
     drawn: set[str] = set()
     for column, books in enumerate(every):
@@ -103,9 +104,14 @@ def draw_balances(every: list[Books]) -> Drawing:
             lower.set_yticklabels([])
     panels[0, 0].set_ylabel("change, or work done (J/m)")
     panels[1, 0].set_ylabel("magnitude / largest change")
+    figure.align_ylabels(panels[:, 0])
     styles = {name: TERMS[name] for name in TERMS if name in drawn} | {"imbalance": IMBALANCE}
-    handles = [Line2D([], [], color=c, linestyle=line, label=label) for label, c, line in styles.values()]
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 2 + len(every)))
+    handles = [
+        Line2D([], [], color=c, linestyle=line, label=label, marker="." if name == "imbalance" else None)
+        for name, (label, c, line) in styles.items()
+    ]
+    n_columns = 2 if len(every) == 1 else 1 + len(every)
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), n_columns))
     return Drawing(
         "energy_balance",
         figure,

@@ -8,34 +8,35 @@ from collections.abc import Callable
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-from slipfront.figures import style
+from slipfront.figures import sketch, style
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.results import (
+from slipfront.figures.main_fronts import (
     DRAWN_LENGTH_M,
-    HIGH_MU_K,
-    MAIN_LENGTH_M,
     NUCLEATION_M,
+    SLOW_OVER_C_L,
     TAIL_M,
-    Results,
-    at_nucleation,
     away_from_trigger,
+    counted,
     drawn_fronts,
-    in_tail,
     main_fronts,
+    tail,
 )
+from slipfront.figures.results import HIGH_MU_K, Results
 from slipfront.read import Front, Run
 
 SELECTION = (
-    "Strong lines: main fronts, that is, the longest of an event in each direction if at least "
-    f"{1e3 * MAIN_LENGTH_M:g} mm long; thin pale lines: other fronts of at least {1e3 * DRAWN_LENGTH_M:g} mm"
+    "Strong: main fronts, the longest in each direction that starts at the event's nucleation or trigger, to "
+    f"the last node before V<sub>tip</sub> stays below {SLOW_OVER_C_L:g} c<sub>L</sub> or the front ends, "
+    "without the trigger zone and its margin or the "
+    f"{1e3 * NUCLEATION_M:g} mm around a spontaneous nucleation. Thin and light: their other nodes, and other "
+    f"fronts of at least {1e3 * DRAWN_LENGTH_M:g} mm."
 )
-NUCLEATION = f", and the first {1e3 * NUCLEATION_M:g} mm of a front that nucleates by itself"
-TAIL = f", and the last {1e3 * TAIL_M:g} mm before a front arrests or runs out of contact"
-OMITTED = "Points in and next to the trigger zones are left out."
 HIGHEST_V = 3.0  # the axis ends there at the latest: the speed diverges where fronts nucleate or meet
 LARGEST_RISE = 5.0  # the relative energy rise as well, where the stored energy vanishes
-DIRECTIONS = "Filled markers: the front runs against the imposed shear; open markers: along it."
+SHORTEST_FALL_M = 5e-3  # a stretch over which V_tip falls while t_d / p_d rises
+FIT_COLOUR = "#7b3294"
 
 Measure = Callable[[Front], np.ndarray]
 
@@ -44,27 +45,47 @@ def speed(run: Run) -> Measure:
     return lambda front: front.v_tip_m_per_s / run.c_L_m_per_s
 
 
-def draw_fronts(ax: Axes, run: Run, x: Measure, y: Measure, weak=None, lines: dict | None = None) -> None:
+def draw_fronts(
+    ax: Axes, run: Run, x: Measure, y: Measure, lines: dict | None = None, as_points: bool = False
+) -> None:
     """Two measures of a run's fronts against each other, without points next to a trigger zone.
 
-    weak(run, front) tells which points of main fronts are drawn pale; lines gives dashes by direction.
+    Main fronts are lines, with dashes by direction where `lines` gives them, or points, their tails pale.
     """
-    main = {front.id for front in main_fronts(run)}
-    for front in drawn_fronts(run):
+    main = main_fronts(run)
+    for front in main + [front for front in drawn_fronts(run) if front not in main]:
         shown = away_from_trigger(run, front.x_m)
-        x_shown, y_shown = np.where(shown, x(front), np.nan), np.where(shown, y(front), np.nan)
-        if front.id not in main:
-            style.draw_pale(ax, run, x_shown, y_shown, f"{run.name}:{front.id}:other")
+
+        def where(part: np.ndarray, front=front, shown=shown) -> tuple[np.ndarray, np.ndarray]:
+            return tuple(np.where(part & shown, measure(front), np.nan) for measure in (x, y))
+
+        if front not in main:
+            style.draw_pale(ax, run, front, *where(shown), "other")
             continue
-        pale = weak(run, front) if weak is not None else np.full(len(shown), False)
-        style.draw_front(
-            ax, run, front, x_shown, y_shown, pale, lines[front.direction] if lines is not None else None
-        )
+        count = counted(run, front)
+        if not count[shown].all():
+            style.draw_pale(ax, run, front, *where(widened(~count)), "weak")
+        if as_points:
+            end = tail(run, front)
+            style.draw_points(ax, run, front, *where(count & ~end))
+            style.draw_points(ax, run, front, *where(end), "tail")
+        else:
+            style.draw_line(
+                ax, run, front, *where(count), lines[front.direction] if lines is not None else None
+            )
+
+
+def widened(part: np.ndarray) -> np.ndarray:
+    """With one more point at each side, so that its line meets the other's."""
+    wider = part.copy()
+    wider[1:] |= part[:-1]
+    wider[:-1] |= part[1:]
+    return wider
 
 
 def speed_over_static_ratio(ax: Axes, runs: list[Run]) -> None:
     for run in runs:
-        draw_fronts(ax, run, lambda front: front.static_ratio, speed(run), at_nucleation)
+        draw_fronts(ax, run, lambda front: front.static_ratio, speed(run))
     ax.set(xlabel=style.STATIC_LABEL, ylabel=style.V_LABEL)
 
 
@@ -76,10 +97,11 @@ def drawn_points(ax: Axes) -> np.ndarray:
 
 
 def largest(ax: Axes, axis: int) -> float:
-    """Largest coordinate along the strong lines; a running median of three passes over single outliers."""
+    """Largest coordinate of the main fronts; a running median of three passes over single outliers."""
     top = 0.0
     for line in ax.lines:
-        if (line.get_gid() or "").count(":") != 1:
+        name = (line.get_gid() or "").split(":")
+        if len(name) == 1 or name[-1] in ("weak", "other"):
             continue
         values = np.column_stack(line.get_data())
         values = values[np.isfinite(values).all(axis=1), axis]
@@ -103,60 +125,41 @@ def finish(ax: Axes, run: Run) -> str:
 
 def static_ratio_mu_k(results: Results) -> Drawing:
     run = results.runs[HIGH_MU_K]
-    colour = style.EVENT_STYLES[run.name].colour
-    figure = style.new_figure(style.COLUMN_MM, 66)
+    figure = style.new_figure(style.TEXT_MM, 84)
     ax = figure.subplots()
-    lines = {-1: "-", 1: (0, (4.5, 1.8))}
-    draw_fronts(ax, run, lambda front: front.static_ratio, speed(run), at_nucleation, lines)
+    lines = {-1: (0, (4.5, 1.8)), 1: "-"}
+    draw_fronts(ax, run, lambda front: front.static_ratio, speed(run), lines)
+    colour = style.EVENT_STYLES[run.name].colour
+    look = {"color": colour, "marker": "o"}
     handles = [
-        Line2D([], [], color=colour, linestyle=lines[-1], marker="o", label="against the shear"),
-        Line2D(
-            [],
-            [],
-            color=colour,
-            linestyle=lines[1],
-            marker="o",
-            markerfacecolor="white",
-            label="along the shear",
-        ),
+        Line2D([], [], linestyle=lines[1], markerfacecolor="white", label="front along the shear", **look),
+        Line2D([], [], linestyle=lines[-1], label="front against the shear", **look),
+        style.pale_handle(colour),
     ]
     measured = "No file of experimental data was given, so none are drawn."
     if results.experiment is not None:
         x, y = results.experiment
-        points = ax.plot(
-            x, y, linestyle="none", marker="x", color="0.3", label="experiment", gid="experiment", zorder=1
-        )
-        handles += points
+        look = {"linestyle": "none", "marker": "x", "color": "0.3", "zorder": 1}
+        handles += ax.plot(x, y, label="experiment", gid="experiment", **look)
         measured = f"Crosses: the {np.isfinite(x * y).sum()} points of the experimental data file given."
     else:
-        ax.annotate(
-            "no experimental data given",
-            (0.02, 0.02),
-            xycoords="axes fraction",
-            color="0.45",
-            fontsize=5.5,
-            va="bottom",
-        )
+        place = {"xycoords": "axes fraction", "va": "bottom", "color": "0.45"}
+        ax.annotate("no experimental data given", (0.015, 0.02), **place)
     ax.set(xlabel=style.STATIC_LABEL, ylabel=style.V_LABEL)
     outside = finish(ax, run)
-    ax.legend(handles=handles, loc="upper left")
+    style.legend_below(figure, handles, 3 if results.experiment is None else 4)
     return Drawing(
         "fig2_static_ratio_mu_k_1.0",
         figure,
         f"Front speed against the static stress ratio, μ<sub>k</sub> = {run.parameter('friction.mu_k')}: "
-        f"solid against the imposed shear, dashed along it. Thin lines: wave speeds. "
-        f"{SELECTION}{NUCLEATION}.{outside} {measured}",
+        "solid along the imposed shear, dashed against it. Thin horizontal lines: wave speeds. "
+        f"{SELECTION}{outside} {measured}",
     )
-
-
-def weak(run: Run, front: Front) -> np.ndarray:
-    """Points where no criterion is expected to hold: at nucleation and before the end. [points]"""
-    return at_nucleation(run, front) | in_tail(run, front)
 
 
 def dynamic_ratio_along_x(results: Results) -> Drawing:
     reference = results.runs["spontaneous"]
-    figure = style.new_figure(style.COLUMN_MM, 62)
+    figure = style.new_figure(style.TEXT_MM, 90)
     ax = figure.subplots()
     (static,) = ax.plot(
         style.mm(reference.static_x_m),
@@ -164,7 +167,7 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
         color="0.6",
         linewidth=1.8,
         solid_capstyle="butt",
-        label=style.STATIC_LABEL + ", all",
+        label=style.STATIC_LABEL + ", all events",
         gid="static",
         zorder=1,
     )
@@ -176,78 +179,137 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
     style.x_axis(ax, reference)
     ax.set_ylabel(style.DYNAMIC_LABEL)
     ax.set_ylim(0, max(ax.get_ylim()[1], 1.12 * mu_s))
-    ax.legend(handles=[*style.event_handles(results.events), static], loc="lower center", ncols=2)
+    sketch.dynamic_ratio(ax.inset_axes((0.16, 0.035, 0.5, 0.3)))
+    handles = [*style.event_handles(results.events), *style.fill_handles(), style.pale_handle(), static]
+    style.legend_below(figure, handles, 3)
     return Drawing(
         "fig4_dynamic_ratio",
         figure,
         "Dynamic stress ratio t<sub>d</sub>/p<sub>d</sub> at each point of the interface at the moment the "
         "front is l* short of it: not one instant but the whole passage. Thick grey line: the static ratio "
-        f"t<sub>s</sub>/p<sub>s</sub> before the events; thin line: μ<sub>s</sub>. {DIRECTIONS} "
-        f"{SELECTION}. {OMITTED}",
+        "t<sub>s</sub>/p<sub>s</sub> before the events; thin line: μ<sub>s</sub>. Inset, a sketch: "
+        "t<sub>d</sub> and p<sub>d</sub> belong to the sticking node ahead (in the ring) when the one before it "
+        f"begins to slip (filled). {SELECTION}",
+    )
+
+
+def falls(run: Run, front: Front) -> np.ndarray:
+    """Whether a main front's nodes belong to a stretch where V_tip falls while t_d / p_d rises. [points]"""
+    count = counted(run, front)
+    step = (np.diff(front.v_tip_m_per_s) < 0) & (np.diff(front.dynamic_ratio) > 0) & count[1:] & count[:-1]
+    borders = np.flatnonzero(np.diff(step, prepend=False, append=False))
+    part = np.full(len(count), False)
+    for first, last in borders.reshape(-1, 2):
+        part[first : last + 1] = abs(front.x_m[last] - front.x_m[first]) >= SHORTEST_FALL_M
+    return part
+
+
+def underlay_falls(ax: Axes, runs: list[Run]) -> list[Line2D]:
+    """A broad light line under stretches where the general trend is reversed; returns its legend entry."""
+    look = {"color": "#f0e442", "linewidth": 6, "alpha": 0.75, "solid_capstyle": "butt"}
+    found = False
+    for run in runs:
+        for front in main_fronts(run):
+            part = falls(run, front)
+            found = found or part.any()
+            x, y = (np.where(part, values, np.nan) for values in (front.dynamic_ratio, speed(run)(front)))
+            ax.plot(x, y, gid=style.front_gid(run, front, "falls"), zorder=0.8, **look)
+    return (
+        [Line2D([], [], label=f"{style.V_NAME} falls, {style.DYNAMIC_LABEL} rises", **look)] if found else []
     )
 
 
 def dynamic_criterion(results: Results) -> Drawing:
-    figure = style.new_figure(style.COLUMN_MM, 66)
+    figure = style.new_figure(style.TEXT_MM, 90)
     ax = figure.subplots()
     for run in results.events:
-        draw_fronts(ax, run, lambda front: front.dynamic_ratio, speed(run), weak)
+        draw_fronts(ax, run, lambda front: front.dynamic_ratio, speed(run))
     ax.set(xlabel=style.DYNAMIC_LABEL, ylabel=style.V_LABEL)
     outside = finish(ax, results.events[0])
-    ax.legend(handles=style.event_handles(results.events), loc="upper left")
+    reversed_trend = underlay_falls(ax, results.events)
+    handles = [
+        *style.event_handles(results.events),
+        *style.fill_handles(),
+        style.pale_handle(),
+        *reversed_trend,
+    ]
+    style.legend_below(figure, handles, 3)
     return Drawing(
         "fig5_dynamic_criterion",
         figure,
         "Front speed against the dynamic stress ratio t<sub>d</sub>/p<sub>d</sub> for the three events. "
-        f"Thin lines: wave speeds. {DIRECTIONS} {SELECTION}{NUCLEATION}{TAIL}. {OMITTED}{outside}",
+        f"Yellow: stretches of main fronts, at least {1e3 * SHORTEST_FALL_M:g} mm long, where "
+        "V<sub>tip</sub> falls while t<sub>d</sub>/p<sub>d</sub> rises. "
+        f"Thin horizontal lines: wave speeds. {SELECTION}{outside}",
+    )
+
+
+def draw_paper_fit(ax: Axes, results: Results, r: np.ndarray) -> tuple:
+    """The paper's curve in its band; returns parts of a legend entry."""
+    fit = results.paper_fit(r)
+    low, high = fit - results.paper_a_band, fit + results.paper_a_band
+    ax.fill_between(r, low, high, color="0.85", linewidth=0, gid="paper_band", zorder=0)
+    look = {"color": "0.55", "linewidth": 0.8}
+    ax.plot(r, fit, gid="paper_fit", zorder=0.4, **look)
+    return Patch(facecolor="0.85"), Line2D([], [], label="the paper's fit and band", **look)
+
+
+def draw_own_fit(ax: Axes, results: Results, r: np.ndarray) -> tuple:
+    """Our curve, its interval where its points are; returns parts of a legend entry."""
+    look = {"color": FIT_COLOUR, "linestyle": (0, (1, 1)), "linewidth": 1.4}
+    ax.plot(r, results.fit(r), gid="fit", zorder=2.2, **look)
+    if len(results.fit_interval) == 0:
+        return (Line2D([], [], label="this program's fit", **look),)
+    shade = {"color": FIT_COLOUR, "alpha": 0.22, "linewidth": 0}
+    ax.fill_between(*results.fit_interval.T, gid="fit_interval", zorder=0.3, **shade)
+    return Patch(**shade), Line2D([], [], label="this program's fit, interval", **look)
+
+
+def fit_sentence(results: Results) -> str:
+    """Both fits in numbers."""
+    paper, own = results.paper_fit, results.fit
+    text = (
+        f"Grey: a + b exp(−c √r) as the paper gives it, a = {paper.a:.2f} ± {results.paper_a_band:.2f}, "
+        f"b = {paper.b:.2f}, c = {paper.c:.2f}. "
+    )
+    if own is None:
+        return text + "Too few points for a fit of our own."
+    intervals = [results.interval_of_fit(name) for name in "abc"]
+    values = (
+        f"{name} = {getattr(own, name):.2f}" + (f" [{i[0]:.2f}, {i[1]:.2f}]" if i is not None else "")
+        for name, i in zip("abc", intervals, strict=True)
+    )
+    return (
+        f"{text}Dotted: the same law fitted to all points of the program's fronts, those of the thin lines "
+        f"too, {', '.join(values)}; shaded: the curve's bootstrap interval."
     )
 
 
 def energy(results: Results) -> Drawing:
-    figure = style.new_figure(style.COLUMN_MM, 66)
+    figure = style.new_figure(style.TEXT_MM, 94)
     ax = figure.subplots()
     for run in results.events:
-        draw_fronts(ax, run, lambda front: front.energy_rise, speed(run), weak)
+        draw_fronts(ax, run, lambda front: front.energy_rise, speed(run), as_points=True)
     right = np.clip(1.1 * largest(ax, 0), 1.0, LARGEST_RISE)
     r = right * np.linspace(0, 1, 400) ** 2  # closer at zero, where the fit is steep
-    band = ax.fill_between(
-        r,
-        results.paper_fit(r) - results.paper_a_band,
-        results.paper_fit(r) + results.paper_a_band,
-        color="0.85",
-        linewidth=0,
-        label="fit and band of the paper",
-        gid="paper_band",
-        zorder=0,
-    )
-    handles = [*style.event_handles(results.events), band]
-    text = "Too few points for a fit of our own."
+    fits = [draw_paper_fit(ax, results, r)]
     if results.fit is not None:
-        (line,) = ax.plot(
-            r,
-            results.fit(r),
-            color="#7b3294",
-            linestyle=(0, (1, 1)),
-            linewidth=1.6,
-            label="fit, this program",
-            gid="fit",
-            zorder=1.5,  # below the fronts
-        )
-        handles.insert(3, line)
-        text = (
-            f"Dotted: a + b exp(−c √r) fitted to the program's points, a = {results.fit.a:.2f}, "
-            f"b = {results.fit.b:.2f}, c = {results.fit.c:.2f}."
-        )
+        fits.append(draw_own_fit(ax, results, r))
     ax.set(xlabel=style.ENERGY_LABEL, ylabel=style.V_LABEL)
     ax.set_xlim(0, right)
     outside = finish(ax, results.events[0])
-    ax.legend(handles=handles, loc="upper right")
-    paper = results.paper_fit
+    sketch.energies(ax.inset_axes((0.4, 0.66, 0.57, 0.3)))
+    handles = style.event_handles(results.events)
+    for handle in handles:
+        handle.set_linestyle("none")
+    tails = Line2D([], [], color="0.6", linestyle="none", marker="o", label=f"pale: last {1e3 * TAIL_M:g} mm")
+    handles += [*style.fill_handles(), style.pale_handle(), tails, *fits]
+    style.legend_below(figure, handles, 3)
     return Drawing(
         "fig6_energy",
         figure,
         "Front speed against the relative rise of the energy density at the tip, r = (U<sub>r</sub> − "
-        f"U<sub>s</sub>)/U<sub>s</sub>. Grey: the paper's fit, a = {paper.a:.2f} ± "
-        f"{results.paper_a_band:.2f}, b = {paper.b:.2f}, c = {paper.c:.2f}. {text} Thin lines: wave speeds. "
-        f"{DIRECTIONS} {SELECTION}{NUCLEATION}{TAIL}. {OMITTED}{outside}",
+        f"U<sub>s</sub>)/U<sub>s</sub>. {fit_sentence(results)} Thin horizontal lines: wave speeds. Inset, a "
+        "sketch: U<sub>s</sub> is stored at the node in the ring when the tip reaches it, U<sub>r</sub> when "
+        f"it is about to slip. {SELECTION} Pale markers: the last {1e3 * TAIL_M:g} mm of a main front.{outside}",
     )

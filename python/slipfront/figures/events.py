@@ -10,17 +10,11 @@ from matplotlib.colors import Normalize
 from matplotlib.patches import FancyArrowPatch
 
 from slipfront.figures import style
-from slipfront.figures.criteria import (
-    DIRECTIONS,
-    NUCLEATION,
-    OMITTED,
-    SELECTION,
-    finish,
-    speed_over_static_ratio,
-)
+from slipfront.figures.criteria import SELECTION, finish, speed_over_static_ratio
 from slipfront.figures.drawing import Drawing
+from slipfront.figures.main_fronts import drawn_fronts, start
 from slipfront.figures.plate import NO_FIELDS, draw_edges, edges
-from slipfront.figures.results import Results, drawn_fronts, start
+from slipfront.figures.results import Results
 from slipfront.files import DataError
 from slipfront.read import Front, Run
 
@@ -115,7 +109,7 @@ def draw_snapshot(ax: Axes, run: Run) -> None:
         ax.plot(
             1e3 * x_m,
             0,
-            marker=[(0, 0), (-0.5, 1.0), (0.5, 1.0)],
+            marker=style.TIP_MARKER,
             markersize=9,
             color="black",
             markerfacecolor="white",
@@ -152,45 +146,48 @@ def draw_snapshot(ax: Axes, run: Run) -> None:
     ax.text(
         width, 1.03 * height, f"{event.label}, {1e6 * fields.time_s[step]:.0f} µs", ha="right", va="bottom"
     )
-    ax.set(ylim=(-0.02 * height, height), aspect="equal", yticks=[])
+    ax.set(ylim=(-0.02 * height, height), aspect="equal", ylabel="$y$ (mm)")
     style.x_axis(ax, run)
-    ax.tick_params(top=False, direction="out")
+    ax.locator_params(axis="y", nbins=2)
+    ax.tick_params(top=False, right=False, direction="out")
     ax.spines[:].set_visible(False)
 
 
 def three_events(results: Results) -> Drawing:
-    width_mm, height_mm = style.PAGE_MM, 124.0
+    width_mm, height_mm = style.PAGE_MM, 128.0
     figure = style.new_figure(width_mm, height_mm, constrained=False)
 
     def axes(x: float, y: float, w: float, h: float) -> Axes:
         return figure.add_axes((x / width_mm, y / height_mm, w / width_mm, h / height_mm))
 
-    panels = [axes(4, 73, 80, 42), axes(90, 73, 80, 42), axes(4, 18, 80, 42)]
+    panels = [axes(11, 83, 72, 37), axes(97, 83, 72, 37), axes(11, 31, 72, 37)]
     for ax, letter, run in zip(panels, "abc", results.events, strict=True):
         draw_snapshot(ax, run)
         ax.text(0, 1.05, f"({letter})", transform=ax.transAxes, fontweight="bold", va="bottom")
     bar = figure.colorbar(
         ScalarMappable(Normalize(*SPEED_RANGE_M_PER_S), COLOURS),
-        cax=axes(10, 6, 58, 2.2),
+        cax=axes(16, 16, 50, 2.2),
         orientation="horizontal",
         extend="max",
     )
     bar.set_ticks(np.linspace(*SPEED_RANGE_M_PER_S, 5))
     bar.ax.annotate("$|v|$ (m/s)", (1.06, 0.5), xycoords="axes fraction", va="center")
-    d = axes(103, 9, 64, 51)
+    d = axes(103, 24, 64, 46)
     speed_over_static_ratio(d, results.events)
     outside = finish(d, results.events[0])
-    d.legend(handles=style.event_handles(results.events), loc="upper left")
+    handles = [*style.event_handles(results.events), *style.fill_handles(), style.pale_handle()]
+    d.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.46, -0.2), ncols=2, columnspacing=1.6)
     d.text(-0.16, 1.03, "(d)", transform=d.transAxes, fontweight="bold", va="bottom")
     return Drawing(
         "fig3_three_events",
         figure,
-        "Magnitude of the material velocity, blue to white for 0 to 2 m/s, in the event (a) triggered at "
-        "the left edge, (b) nucleated spontaneously, (c) triggered at the right edge; the deformation is "
-        "not drawn. Square, circle and triangle: where the first front starts; small white triangles: tips "
-        "of the fronts that run, white arrows: where they go; black arrow: the imposed shear. Instants: of "
-        "the snapshots, the one with the first front nearest to 60 % (a) and 52 % (c) of the width, and "
-        "(b) nearest to 30 µs after nucleation with both tips inside. (d) Front speed against the static "
-        f"stress ratio for the three events; thin lines: wave speeds. {DIRECTIONS} "
-        f"{SELECTION}{NUCLEATION}. {OMITTED}{outside}",
+        f"Magnitude of the material velocity, blue to white for 0 to {SPEED_RANGE_M_PER_S[1]:g} m/s and more, "
+        "in the event (a) triggered at the left edge, (b) nucleated spontaneously, (c) triggered at the right "
+        "edge; the deformation is not drawn. Square, circle and triangle: where the first front starts; small "
+        "white triangles: tips of the fronts that run, white arrows: where they go; black arrow: the imposed "
+        "shear. Instants: of the snapshots, the one with the first front nearest to "
+        f"{100 * AIM_OVER_WIDTH['left']:.0f} % (a) and {100 * AIM_OVER_WIDTH['right']:.0f} % (c) of the width, "
+        f"and (b) nearest to {1e6 * SPONTANEOUS_AIM_S:.0f} µs after nucleation with both tips inside. (d) Front "
+        "speed against the static stress ratio for the three events; thin horizontal lines: wave speeds. "
+        f"{SELECTION}{outside}",
     )

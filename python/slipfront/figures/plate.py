@@ -9,7 +9,8 @@ from matplotlib.patches import Circle, Rectangle
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.results import HIGH_MU_K, Results, start
+from slipfront.figures.main_fronts import start
+from slipfront.figures.results import HIGH_MU_K, Results
 from slipfront.files import DataError
 from slipfront.read import Fields, Run
 

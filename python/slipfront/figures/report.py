@@ -10,8 +10,10 @@ from pathlib import Path
 
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.results import VARIATIONS, Results
+from slipfront.figures.statements import STATEMENTS
 from slipfront.figures.studies import is_another, paper_value
 from slipfront.figures.study import SPREADS
+from slipfront.figures.style import COLUMN_MM, TEXT_MM
 from slipfront.files import is_number
 
 STYLE = """
@@ -20,7 +22,8 @@ body { max-width: 64em; margin: 2em auto; padding: 0 1em; }
 h1 { font-size: 1.6em; } h2 { font-size: 1.25em; margin-top: 2.2em; }
 figure { margin: 2em 0; } figure img { max-width: 100%; display: block; }
 figcaption { font-size: 0.9em; color: #333; margin-top: 0.5em; max-width: 52em; }
-.column img { width: 34em; } .page img { width: 100%; }
+.column img { width: 34em; } .text img { width: 44em; } .page img { width: 100%; }
+.statements { margin-top: 0.6em; }
 table { border-collapse: collapse; font-size: 0.87em; }
 th, td { text-align: left; vertical-align: top; padding: 0.3em 0.7em; }
 thead { border-bottom: 1px solid #111; } tbody tr { border-bottom: 1px solid #ddd; }
@@ -38,6 +41,7 @@ VERDICTS = {
     None: ("–", "open", "not decided"),
 }
 USED_TO_CHOOSE = ("=", "open", "used to choose what the paper leaves open")
+STATEMENT_HEADER = ["The paper says", "This program", "", ""]
 
 
 def text(value) -> str:
@@ -71,13 +75,17 @@ def is_used_to_choose(entry: dict) -> bool:
     return entry["holds"] is True and entry.get("used_to_choose") is True
 
 
+def verdict_of(entry: dict) -> tuple[str, str, str]:
+    """Sign, class and meaning of a row's verdict."""
+    return USED_TO_CHOOSE if is_used_to_choose(entry) else VERDICTS.get(entry["holds"], VERDICTS[None])
+
+
 def scorecard_table(scorecard: list[dict]) -> str:
     variations = [key for key in VARIATIONS if any(key in entry for entry in scorecard)]
     judges = {entry["second_test_of"]: entry["id"] for entry in scorecard if is_counted_second_test(entry)}
     rows = []
     for entry in scorecard:
-        used = is_used_to_choose(entry)
-        sign, kind, meaning = USED_TO_CHOOSE if used else VERDICTS.get(entry["holds"], VERDICTS[None])
+        sign, kind, meaning = verdict_of(entry)
         judge = judges.get(entry["id"])
         counted = f'<br><span class="note">{escape(judge)} counts</span>' if judge else ""
         verdict = f'<td class="verdict {kind}" title="{meaning}">{sign}{counted}</td>'
@@ -222,7 +230,7 @@ def study_table(results: Results) -> str:
         unit = f" ({study.unit[0]})" if study.numeric and study.unit[0] else ""
         first = (
             f'<td rowspan="{len(study.points)}"><b>{escape(study.name.replace("_", " "))}</b>{unit}<br>'
-            f'<span class="note">{escape(study.why)}</span></td>'
+            f'<span class="note">{escape(study.why)}; <code>{escape(study.parameter)}</code></span></td>'
         )
         for i, point in enumerate(study.points):
             value = escape(study.shown(point))
@@ -276,9 +284,29 @@ def origin(results: Results) -> str:
     )
 
 
-def figure_html(drawing: Drawing, folder: Path) -> str:
+def verdict_cell(entry: dict) -> str:
+    sign, kind, meaning = verdict_of(entry)
+    return f'<td class="verdict {kind}" title="{meaning}">{sign}</td>'
+
+
+def statements_table(drawing: Drawing, results: Results) -> str:
+    """What the paper says of a figure beside what the scorecard finds; nothing for other figures."""
+    rows = []
+    for statement, claim in STATEMENTS.get(drawing.name, ()):
+        for row in results.claims(claim):
+            rows.append([statement, text(row["measured"]), verdict_cell(row), text(row["id"])])
+            statement = "the same, second test"
+    return f'<div class="statements">{table(STATEMENT_HEADER, rows)}</div>' if rows else ""
+
+
+def figure_kind(drawing: Drawing) -> str:
+    """Which width a figure has, so that its text appears at the same size as that of the others."""
+    width_mm = 25.4 * drawing.figure.get_figwidth()
+    return "column" if width_mm <= COLUMN_MM + 1 else "text" if width_mm <= TEXT_MM + 1 else "page"
+
+
+def figure_html(drawing: Drawing, results: Results, folder: Path) -> str:
     image = base64.b64encode((folder / f"{drawing.name}.png").read_bytes()).decode()
-    kind = "page" if drawing.figure.get_figwidth() > 5 else "column"
     title = escape(drawing.name)
     number = re.match(r"fig(\d+)_", drawing.name)
     label = f"<b>Figure {number[1]} of the paper.</b> " if number else ""
@@ -286,8 +314,10 @@ def figure_html(drawing: Drawing, folder: Path) -> str:
         f'<span class="mark">{escape(drawing.mark.replace(chr(10), "; "))}.</span> ' if drawing.mark else ""
     )
     return (
-        f'<figure id="{title}" class="{kind}"><img alt="{title}" src="data:image/png;base64,{image}">\n'
-        f'<figcaption>{mark}{label}{drawing.caption} <a href="{title}.pdf">PDF</a></figcaption></figure>'
+        f'<figure id="{title}" class="{figure_kind(drawing)}">'
+        f'<img alt="{title}" src="data:image/png;base64,{image}">\n'
+        f'<figcaption>{mark}{label}{drawing.caption} <a href="{title}.pdf">PDF</a>'
+        f"{statements_table(drawing, results)}</figcaption></figure>"
     )
 
 
@@ -334,7 +364,7 @@ def write_report(results: Results, drawings: list[Drawing], folder: Path) -> Pat
         f"<p>{scorecard_summary(results.scorecard)}</p>",
         scorecard_table(results.scorecard),
         '<h2 id="figures">Figures</h2>',
-        *(figure_html(drawing, folder) for drawing in drawings),
+        *(figure_html(drawing, results, folder) for drawing in drawings),
         '<h2 id="fit">Fit of the energy criterion</h2>',
         "<p>V<sub>tip</sub>/c<sub>L</sub> = a + b exp(−c √r), r = (U<sub>r</sub> − "
         "U<sub>s</sub>)/U<sub>s</sub></p>",

@@ -11,16 +11,10 @@ import numpy as np
 from slipfront.figures.study import Study, read_studies
 from slipfront.files import DataError, is_folder, is_number, number, read_json, read_json_table
 from slipfront.folder import belongs, located, result_file
-from slipfront.read import Front, Run, read_experiment, read_run
+from slipfront.read import Run, read_experiment, read_run
 
 EVENTS = ("left", "spontaneous", "right")  # the three events of one initial state
 HIGH_MU_K = "spontaneous_mu_k_1.0"
-# Shorter fronts, mostly secondary ones late in a record, would hide the events' own in the plots of V_tip.
-DRAWN_LENGTH_M = 10e-3
-MAIN_LENGTH_M = 25e-3
-NUCLEATION_M = 5e-3  # the speed diverges where a front nucleates
-TAIL_M = 20e-3  # the last stretch before a front stops, where the paper sees it leave the energy criterion
-STOPS = ("arrest", "contact_end")
 # Columns of `slipfront reproduce --sensitivity`.
 VARIATIONS = {"mesh_variation": "With the mesh, moves by", "step_variation": "With the step, moves by"}
 
@@ -44,6 +38,7 @@ class Results:
     scorecard: list[dict]
     analysis: dict
     fit: Fit | None  # of this program's points; None where it found too few
+    fit_interval: np.ndarray  # of the fitted curve: energy rise, low, high; empty where not told. [points, 3]
     paper_fit: Fit
     paper_a_band: float
     studies: list[Study]
@@ -53,6 +48,16 @@ class Results:
     @property
     def events(self) -> list[Run]:
         return [self.runs[name] for name in EVENTS]
+
+    def interval_of_fit(self, name: str) -> tuple[float, float] | None:
+        """Of a, b or c of our own fit; None where it is not told."""
+        entry = self.analysis["fit"].get(name)
+        ends = (entry.get("low"), entry.get("high")) if isinstance(entry, dict) else (None, None)
+        return ends if all(map(is_number, ends)) else None
+
+    def claims(self, name: str) -> list[dict]:
+        """The scorecard's rows of a claim: its first test and, where there is one, its second."""
+        return [row for row in self.scorecard if name in (row["id"], row.get("second_test_of"))]
 
     @property
     def mark(self) -> str:
@@ -65,56 +70,6 @@ class Results:
         return [line for run in self.runs.values() for line in run.remarks]
 
 
-def drawn_fronts(run: Run) -> list[Front]:
-    """The fronts long enough to be drawn, in the order of their start."""
-    return sorted((f for f in run.fronts if f.length_m >= DRAWN_LENGTH_M), key=lambda f: f.onset_s[0])
-
-
-def main_fronts(run: Run) -> list[Front]:
-    """The longest front in each direction, where it is at least MAIN_LENGTH_M long."""
-    longest = [
-        max((f for f in run.fronts if f.direction == way), key=lambda f: f.length_m, default=None)
-        for way in (-1, 1)
-    ]
-    return [f for f in longest if f is not None and f.length_m >= MAIN_LENGTH_M]
-
-
-def away_from_trigger(run: Run, x_m: np.ndarray) -> np.ndarray:
-    """Whether points lie outside the trigger zone or patch and its margin; everywhere in other events."""
-    if run.kind == "nucleation":
-        reach_m = run.parameter("nucleation.half_length_m") + run.parameter("nucleation.taper_m")
-        distance_m = np.abs(x_m - run.parameter("nucleation.x_m"))
-        return distance_m > reach_m + run.parameter("fronts.trigger_margin_m")
-    if run.kind not in ("left", "right"):
-        return np.full(np.shape(x_m), True)
-    # The zone begins at the end of the contact, an edge margin outside of what counts as inside.
-    edge_m = 0.0 if run.prescribed else run.parameter("loading.edge_margin_m")
-    omitted_m = run.parameter("event.trigger_zone_m") + run.parameter("fronts.trigger_margin_m")
-    if run.kind == "left":
-        return x_m >= run.fact("statics.inside_from_m") - edge_m + omitted_m
-    return x_m <= run.fact("statics.inside_to_m") + edge_m - omitted_m
-
-
-def at_nucleation(run: Run, front: Front) -> np.ndarray:
-    """Whether a front's points are near to where it nucleated by itself. [points]"""
-    if run.kind in ("left", "right"):
-        return np.full(len(front.x_m), False)
-    return np.abs(front.x_m - front.x_m[0]) < NUCLEATION_M
-
-
-def in_tail(run: Run, front: Front) -> np.ndarray:
-    """Whether a front's points are within TAIL_M of where it arrests or runs out of contact. [points]"""
-    if run.end_of(front) not in STOPS:
-        return np.full(len(front.x_m), False)
-    return np.abs(front.x_m - front.x_m[-1]) <= TAIL_M
-
-
-def start(run: Run) -> tuple[float, float] | None:
-    """Where (m) and when (s) the first drawn front starts; None in a run without one."""
-    fronts = drawn_fronts(run)
-    return (float(fronts[0].x_m[0]), float(fronts[0].onset_s[0])) if fronts else None
-
-
 def read_fit(file: Path, table: dict, part: str) -> Fit:
     def value(key: str) -> float:
         group = table.get(part)
@@ -122,6 +77,14 @@ def read_fit(file: Path, table: dict, part: str) -> Fit:
         return number(file, table, f"{part}.{key}.value" if isinstance(entry, dict) else f"{part}.{key}")
 
     return Fit(value("a"), value("b"), value("c"))
+
+
+def read_fit_interval(file: Path, analysis: dict) -> np.ndarray:
+    points = analysis.get("fit_curve", [])
+    if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
+        raise DataError(f"{file}: 'fit_curve' is not a list of points")
+    rows = [[number(file, point, key) for key in ("x", "low", "high")] for point in points]
+    return np.array(rows).reshape(-1, 3)
 
 
 def read_scorecard(file: Path) -> list[dict]:
@@ -173,6 +136,7 @@ def read_results(folder: Path, experiment: Path | None = None) -> Results:
         scorecard=read_scorecard(folder / "scorecard.json"),
         analysis=analysis,
         fit=read_fit(file, analysis, "fit") if analysis["fit"] is not None else None,
+        fit_interval=read_fit_interval(file, analysis),
         paper_fit=read_fit(file, analysis, "paper_fit"),
         paper_a_band=number(file, analysis, "paper_fit.a_band"),
         studies=read_studies(file, analysis),

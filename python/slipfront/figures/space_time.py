@@ -12,7 +12,8 @@ from matplotlib.patches import Patch
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.results import DRAWN_LENGTH_M, Results, drawn_fronts, start
+from slipfront.figures.main_fronts import DRAWN_LENGTH_M, drawn_fronts, start
+from slipfront.figures.results import Results
 from slipfront.read import Run
 
 RATE_RANGE_M_PER_S = (0.1, 30.0)

@@ -13,18 +13,33 @@ from matplotlib.transforms import blended_transform_factory
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.results import Results, main_fronts
+from slipfront.figures.main_fronts import main_fronts
+from slipfront.figures.results import Results
 from slipfront.figures.study import Study, StudyPoint
 from slipfront.read import Run
 
-COLUMNS = 4
-CELL_MM = 50.0  # height of a pair of panels
-LEGEND_MM = 11.0
+COLUMNS = 3
+CELL_MM = 48.0  # height of a pair of panels
+LEGEND_MM = 16.0  # above the panels, where they leave no room for it
 HIGHEST_V = 4.5
 HIGHEST_RMS = 0.3
 HIGHEST_SPREAD = 1.0
 SAME_START_M = 10e-3  # a main front that starts farther off is another than the paper's run has
-NAMES = {"mu_k": r"$\mu_k$", "alpha": r"$\alpha$", "l_star": "$l^*$"}
+NAMES = {
+    "mu_k": r"kinetic friction $\mu_k$",
+    "alpha": r"transition $\alpha$",
+    "element_size": "element size",
+    "substeps": "sub-steps at the interface",
+    "damping": r"stiffness damping $\beta_R$",
+    "corner": "rounding of the corners",
+    "top": "top edge while tilted",
+    "trigger_amount": "strength of the trigger",
+    "trigger_zone": "length of the trigger zone",
+    "trigger_ramp": "rise time of the trigger",
+    "trigger_duration": "duration of the trigger",
+    "l_star": "length $l^*$",
+    "loading_method": "way to the critical state",
+}
 
 # The main fronts followed: event, direction, and the shift of its markers over the width of the panel,
 # without which they would cover each other.
@@ -52,7 +67,9 @@ def paper_value(study: Study, run: Run) -> int | None:
 
 
 def title(study: Study) -> str:
-    return NAMES.get(study.name, study.name.replace("_", " "))
+    """Name of the parameter, with the unit of its values."""
+    unit = f" ({study.unit[0]})" if study.unit[0] and study.numeric else ""
+    return NAMES.get(study.name, study.name.replace("_", " ")) + unit
 
 
 def draw_values(
@@ -71,13 +88,15 @@ def draw_values(
             f"{yi:.3g}↑",
             (xi, 1),
             xycoords=blended_transform_factory(ax.transData, ax.transAxes),
-            xytext=(6 * beside, -1),
+            xytext=(7.5 * beside, -1),
             textcoords="offset points",
             ha="center",
             va="top",
             color=look["color"],
-            fontsize=5,
+            fontsize=6.5,
             rotation=90,
+            path_effects=style.outlined("white", 2.0),
+            zorder=5,
             gid=f"{gid}:above",
         )
 
@@ -130,7 +149,7 @@ def draw_changes(ax: Axes, results: Results, study: Study) -> None:
     ax.axhline(0, **style.REFERENCE)
     ax.set_yscale("symlog", linthresh=1, linscale=0.6)
     ax.set_ylim(-70, 70)
-    ax.set_yticks([-50, -10, -1, 1, 10, 50], labels=["−50", "−10", "−1", "+1", "+10", "+50"], fontsize=5.5)
+    ax.set_yticks([-50, -10, -1, 1, 10, 50], labels=["−50", "", "−1", "+1", "", "+50"])
     ax.minorticks_off()
 
 
@@ -153,18 +172,18 @@ def draw_spreads(ax: Axes, results: Results, study: Study) -> None:
 def small_multiples(results: Results, upper, lower, labels: tuple[str, str], handles: list) -> Figure:
     """Two panels above each other for every study: upper(ax, results, study) and lower(...)."""
     n_rows = -(-len(results.studies) // COLUMNS)
-    height_mm = LEGEND_MM + CELL_MM * n_rows
+    n_free = n_rows * COLUMNS - len(results.studies)
+    height_mm = CELL_MM * n_rows + (LEGEND_MM if n_free == 0 else 0)
     figure = style.new_figure(style.PAGE_MM, height_mm, constrained=False)
     for i, study in enumerate(results.studies):
         row, column = divmod(i, COLUMNS)
-        left, width = 11 + 41.5 * column, 36.5
-        bottom = height_mm - LEGEND_MM - CELL_MM * (row + 1)
+        left, bottom = 14 + 54.5 * column, CELL_MM * (n_rows - 1 - row)
 
-        def axes(y: float, h: float, left=left, width=width, bottom=bottom) -> Axes:
-            place = (left / style.PAGE_MM, (bottom + y) / height_mm, width / style.PAGE_MM, h / height_mm)
+        def axes(y: float, h: float, left=left, bottom=bottom) -> Axes:
+            place = (left / style.PAGE_MM, (bottom + y) / height_mm, 48.5 / style.PAGE_MM, h / height_mm)
             return figure.add_axes(place)
 
-        pair = axes(27, 19), axes(11.5, 14)
+        pair = axes(25, 17), axes(9, 13)
         for ax, draw, label in zip(pair, (upper, lower), labels, strict=True):
             draw(ax, results, study)
             ax.set_xlim(-0.5, len(study.points) - 0.5)
@@ -172,30 +191,26 @@ def small_multiples(results: Results, upper, lower, labels: tuple[str, str], han
             ax.tick_params(axis="x", top=False, direction="out")
             if column == 0:
                 ax.set_ylabel(label)
-                ax.yaxis.set_label_coords(-0.19, 0.5)
+                ax.yaxis.set_label_coords(-0.17, 0.5)
             else:
                 ax.tick_params(axis="y", labelleft=False)
             paper = paper_value(study, results.runs["left"])
             if paper is not None:
-                ax.axvline(paper, color="0.75", linewidth=5, alpha=0.4, zorder=0.2, gid="paper_value")
-        values = [study.shown(point) for point in study.points]
-        long = max(map(len, values)) > 5
-        pair[1].set_xticklabels(
-            values, rotation=20 if long else 0, ha="right" if long else "center", fontsize=5.5
-        )
-        pair[0].set_title(title(study), loc="left", fontweight="bold", pad=2.5)
-        unit = f" ({study.unit[0]})" if study.unit[0] and study.numeric else ""
-        pair[1].set_xlabel(key_without_unit(study) + unit, fontsize=6, color="0.25", labelpad=2)
-    figure.legend(handles=handles, loc="upper center", ncols=4, bbox_to_anchor=(0.5, 1 - 1 / height_mm))
+                ax.axvline(paper, color="0.75", linewidth=6, alpha=0.4, zorder=0.2, gid="paper_value")
+        pair[1].set_xticklabels([study.shown(point).replace("fillet ", "fillet\n") for point in study.points])
+        pair[0].set_title(title(study), loc="left", fontweight="bold", pad=3)
+    place_legend(figure, handles, n_free, height_mm)
     return figure
 
 
-def key_without_unit(study: Study) -> str:
-    """The key in the case file without the unit at its end."""
-    for ending in ("_m2_per_s2", "_m", "_s"):
-        if study.parameter.endswith(ending):
-            return study.parameter.removesuffix(ending)
-    return study.parameter
+def place_legend(figure: Figure, handles: list, n_free: int, height_mm: float) -> None:
+    """In the cells that the studies leave free at the end, or above the panels."""
+    if n_free == 0:
+        at = {"loc": "upper center", "bbox_to_anchor": (0.5, 1 - 1 / height_mm), "ncols": 3}
+    else:
+        left = (14 + 54.5 * (COLUMNS - n_free)) / style.PAGE_MM
+        at = {"loc": "upper left", "bbox_to_anchor": (left, (CELL_MM - 5) / height_mm), "ncols": n_free}
+    figure.legend(handles=handles, **at)
 
 
 def handle(label: str, **look) -> Line2D:
@@ -225,7 +240,7 @@ def speeds(results: Results) -> Drawing:
     grey = {"color": "0.3", "linestyle": "none"}
     handles.append(handle("maximum", marker="o", markersize=3.0, **grey))
     handles.append(handle("mean", marker="_", markersize=5.0, **grey))
-    handles.append(handle("maximum, front from elsewhere", marker="x", markersize=3.0, **grey))
+    handles.append(handle("maximum, other front", marker="x", markersize=3.0, **grey))
     labels = (style.V_LABEL, "change (%)")
     return Drawing(
         "studies",

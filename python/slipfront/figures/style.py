@@ -15,6 +15,7 @@ from matplotlib.lines import Line2D
 from slipfront.read import Front, Run
 
 COLUMN_MM = 84.0
+TEXT_MM = 120.0
 PAGE_MM = 174.0
 
 RC = {
@@ -24,9 +25,9 @@ RC = {
     "font.size": 7.0,
     "axes.titlesize": 7.0,
     "axes.labelsize": 7.0,
-    "xtick.labelsize": 6.5,
-    "ytick.labelsize": 6.5,
-    "legend.fontsize": 6.5,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 7.0,
     "legend.edgecolor": "none",
     "legend.fancybox": False,
     "legend.framealpha": 0.85,
@@ -64,8 +65,10 @@ EVENT_STYLES = {
     "right": EventStyle("right-triggered", "#d55e00", (0, (6, 1.5, 1, 1.5)), "^"),
     "spontaneous_mu_k_1.0": EventStyle("spontaneous, $\\mu_k = 1.0$", "#117733", "-", "o"),
 }
+TIP_MARKER = [(0, 0), (-0.5, 1.0), (0.5, 1.0), (0, 0)]  # a triangle that stands on the tip
 REFERENCE = {"color": "0.45", "linewidth": 0.5, "zorder": 0.5}  # wave speeds, mu_s
 
+V_NAME = r"$V_\mathrm{tip}$"
 V_LABEL = r"$V_\mathrm{tip} / c_\mathrm{L}$"
 STATIC_LABEL = r"$t_s / p_s$"
 DYNAMIC_LABEL = r"$t_d / p_d$"
@@ -106,7 +109,6 @@ def name_level(ax: Axes, level: float, label: str, below: bool = False) -> None:
         ha="left",
         va="top" if below else "bottom",
         color="0.3",
-        fontsize=6,
         annotation_clip=False,
     )
 
@@ -124,39 +126,76 @@ def pale(colour: str) -> tuple:
     return tuple(1 - 0.5 * (1 - np.array(to_rgb(colour))))
 
 
-def draw_front(
-    ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, weak: np.ndarray, line=None
-) -> None:
-    """A main front's path in a plane of two of its measures; broken where one is undefined.
+def front_gid(run: Run, front: Front, part: str = "") -> str:
+    """What a front's line is called: the plain name for the nodes that count, a part for others."""
+    return f"{run.name}:{front.id}" + (f":{part}" if part else "")
 
-    Markers, every 10 mm of path, are filled for a front against the imposed shear and open for one along it.
-    Its weak points are drawn as a thin pale line.
-    """
+
+def fill(event: EventStyle, direction: int) -> str:
+    """Markers are filled for fronts against the imposed shear, open for those along it."""
+    return event.colour if direction < 0 else "white"
+
+
+def draw_line(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, line=None) -> None:
+    """A main front as a line with a marker every 10 mm of path; broken where it is undefined."""
     style = EVENT_STYLES[run.name]
-    name = f"{run.name}:{front.id}"
     every = max(1, round(10e-3 / np.median(np.abs(np.diff(front.x_m)))))
     ax.plot(
-        np.where(weak, np.nan, x),
-        np.where(weak, np.nan, y),
+        x,
+        y,
         color=style.colour,
         linestyle=style.line if line is None else line,
         marker=style.marker,
         markevery=(every // 2, every),
-        markerfacecolor=style.colour if front.direction < 0 else "white",
-        gid=name,
+        markerfacecolor=fill(style, front.direction),
+        gid=front_gid(run, front),
     )
-    if weak.any():
-        # With one more point at each side the two lines meet.
-        wider = weak | np.roll(weak, 1) | np.roll(weak, -1)
-        wider[[0, -1]] = weak[[0, -1]]
-        draw_pale(ax, run, np.where(wider, x, np.nan), np.where(wider, y, np.nan), f"{name}:weak")
 
 
-def draw_pale(ax: Axes, run: Run, x: np.ndarray, y: np.ndarray, gid: str) -> None:
-    ax.plot(x, y, color=pale(EVENT_STYLES[run.name].colour), linewidth=0.5, zorder=1.2, gid=gid)
+def draw_points(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, part: str = "") -> None:
+    """A main front as a marker per node; those of a part in a pale colour."""
+    style = EVENT_STYLES[run.name]
+    colour = pale(style.colour) if part else style.colour
+    ax.plot(
+        x,
+        y,
+        linestyle="none",
+        marker=style.marker,
+        markersize=2.4,
+        markeredgewidth=0.5,
+        color=colour,
+        markerfacecolor=colour if front.direction < 0 else "white",
+        zorder=1.6 if part else 2.0,
+        gid=front_gid(run, front, part),
+    )
+
+
+def draw_pale(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, part: str) -> None:
+    """What is shown for completeness only: thin, light and behind all else."""
+    look = {"color": pale(EVENT_STYLES[run.name].colour), "linewidth": 0.5, "zorder": 1.2}
+    ax.plot(x, y, gid=front_gid(run, front, part), **look)
 
 
 def event_handles(runs: list[Run]) -> list[Line2D]:
     """Legend entries of events."""
     styles = [EVENT_STYLES[run.name] for run in runs]
     return [Line2D([], [], color=s.colour, linestyle=s.line, marker=s.marker, label=s.label) for s in styles]
+
+
+def fill_handles() -> list[Line2D]:
+    """Legend entries that tell what filled and open markers mean."""
+    look = {"color": "0.35", "linestyle": "none", "marker": "o"}
+    return [
+        Line2D([], [], markerfacecolor="0.35", label="filled: against the shear", **look),
+        Line2D([], [], markerfacecolor="white", label="open: along the shear", **look),
+    ]
+
+
+def pale_handle(colour: str = "#000000") -> Line2D:
+    return Line2D([], [], color=pale(colour), linewidth=0.5, label="other fronts and nodes")
+
+
+def legend_below(figure: Figure, handles: list, n_columns: int) -> None:
+    """A legend under the axes, where it hides nothing; of handles in a tuple the last one has the label."""
+    labels = [(handle[-1] if isinstance(handle, tuple) else handle).get_label() for handle in handles]
+    figure.legend(handles, labels, loc="outside lower center", ncols=n_columns, columnspacing=1.6)
