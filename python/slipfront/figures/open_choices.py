@@ -42,7 +42,7 @@ def turned_levels(row: dict[str, Any], choice: str) -> list[Any]:
 def label(level: Any, key: str) -> str:
     """A level for a narrow cell: lengths in mm, times in us."""
     if isinstance(level, str):
-        return level.replace("predictor_corrector", "p.-c.").replace("fillet ", "R ")
+        return level.replace("predictor_corrector", "p.-c.").replace("fillet ", "R ").replace("weakened", "weak")
     if key.endswith("_m"):
         return f"{1e3 * level:.3g}"
     if key.endswith("_s"):
@@ -131,7 +131,7 @@ def draw_samples(ax: Axes, folder: Path, summary: dict[str, Any]) -> None:
     ]
     ax.legend(
         handles=[Line2D([], [], marker=m, color=c, linestyle="none", label=text) for m, c, text in marks],
-        loc="lower left",
+        loc="center right",
     )
 
 
