@@ -210,7 +210,8 @@ Front measure(const SlipRecord& record, const StaticState& state, const FirstOns
     point.x_m = record.x_m[node];
     point.onset_s = first.time_s[node];
     if (!is_driven(options, point.x_m))
-      point.v_tip_m_per_s = tip_speed_m_per_s(tip, run_m, l_star_m, options.speed_interval, record.resolution_s);
+      point.v_tip_m_per_s =
+          tip_speed_m_per_s(tip, run_m, l_star_m, options.speed_interval, record.resolution_s);
     point.t_s_Pa = state.t_s_Pa[node];
     point.p_s_Pa = state.p_s_Pa[node];
     const Traction at_onset = traction_at(record, first.index[node], node);

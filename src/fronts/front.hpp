@@ -31,7 +31,7 @@ struct Zone {
 
 /// How fronts are found and measured. Lengths in m, times in s.
 struct FrontOptions {
-  double l_star_m = 0.67e-3;     ///< length over which the speed is taken; one element where that is longer
+  double l_star_m = 0.67e-3;  ///< length over which the speed is taken; one element where that is longer
   SpeedInterval speed_interval = SpeedInterval::centred;
   double arrest_time_s = 20e-6;  ///< a tip that waits longer than this for its next onset has arrested
   double min_length_m =
@@ -77,7 +77,7 @@ struct FrontPoint {
   std::int32_t node = 0;
   double x_m = 0;
   double onset_s = 0;
-  double v_tip_m_per_s = undefined;  ///< speed over l*, positive in the front's own direction
+  double v_tip_m_per_s = undefined;               ///< speed over l*, positive in the front's own direction
   double t_s_Pa = undefined, p_s_Pa = undefined;  ///< before the event
   double t_d_Pa = undefined, p_d_Pa = undefined;  ///< when the front is l* short of x
   double t_r_Pa = undefined, p_r_Pa = undefined;  ///< at the onset
@@ -108,7 +108,8 @@ struct Front {
 ///
 /// Measures. The tip passes x when the first node at or beyond x on the path slips; between nodes the time
 /// is linear in x. l* at a node is the longest of l_star_m and the elements beside the node.
-/// - v_tip: l* over the time that the tip needs for it, see SpeedInterval. Undefined where that leaves the path; in the trigger
+/// - v_tip: l* over the time that the tip needs for it, see SpeedInterval. Undefined where that leaves the
+/// path; in the trigger
 ///   zone and the nucleation patch, whose nodes slip when the trigger makes them; and where the time is not
 ///   resolved: where the nodes on either side of that length begin to slip less than resolution_s apart.
 /// - t_d, p_d: linear in tip position between the two nodes that bracket the tip (a tip within 2 % of their
