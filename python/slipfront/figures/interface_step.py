@@ -72,7 +72,7 @@ def draw(folders: list[Path]) -> Figure:
             ax.legend(
                 title="lines: 90 % of stations within; dots: median", title_fontsize=6, loc="lower left"
             )
-            ax.set_ylim(bottom=ax.get_ylim()[0] / 20)
+            ax.set_ylim(bottom=ax.get_ylim()[0] / 200)
     return figure
 
 
