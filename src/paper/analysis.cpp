@@ -2,16 +2,16 @@
 #include "paper/analysis.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "fronts/measures.hpp"
 #include "io/files.hpp"
+#include "io/json.hpp"
 
 namespace slipfront::paper {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using io::Json;
 
 /// JSON has no NaN: null.
 Json number(double value) {

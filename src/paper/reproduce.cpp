@@ -4,7 +4,6 @@
 #include <chrono>
 #include <iterator>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
 
@@ -12,6 +11,7 @@
 #include "io/checksum.hpp"
 #include "io/files.hpp"
 #include "io/folder.hpp"
+#include "io/json.hpp"
 #include "paper/analysis.hpp"
 #include "run/batch.hpp"
 #include "run/checkpoint.hpp"
@@ -194,7 +194,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   write_analysis(folder.unfinished() / "analysis.json", runs);
   lap("analysis and scorecard");
 
-  nlohmann::ordered_json timings;
+  io::Json timings;
   for (const auto& t : report.timings) timings.push_back({{"part", t.part}, {"wall_s", t.wall_s}});
   io::write_text(folder.unfinished() / "timings.json", timings.dump(2) + "\n");
   folder.publish();

@@ -3,13 +3,13 @@
 
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "io/files.hpp"
 #include "io/folder.hpp"
 #include "io/history.hpp"
+#include "io/json.hpp"
 #include "io/results.hpp"
 #include "io/schema.hpp"
 #include "io/snapshots.hpp"
@@ -19,7 +19,7 @@ namespace slipfront::run {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using io::Json;
 
 std::string host_name() {
   std::array<char, 256> name{};

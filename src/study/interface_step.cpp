@@ -7,12 +7,12 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "fronts/fit.hpp"
 #include "io/files.hpp"
+#include "io/json.hpp"
 #include "io/schema.hpp"
 #include "study/sequence.hpp"
 
@@ -145,10 +145,8 @@ InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOp
 
 void write_interface_step(const std::filesystem::path& dir, const io::Case& config,
                           const InterfaceStep& result) {
-  using nlohmann::ordered_json;
-  const auto number = [](double value) {
-    return std::isfinite(value) ? ordered_json(value) : ordered_json();
-  };
+  using io::Json;
+  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(); };
   std::string csv =
       "kind,step_factor,interface_rows,interface_substeps,cost_over_plain,time_s,median_error,p90_error,"
       "n_stations\n";
@@ -157,15 +155,15 @@ void write_interface_step(const std::filesystem::path& dir, const io::Case& conf
                    s.step_factor, s.rows, s.substeps, s.cost, s.time_s, s.median_error, s.p90_error,
                    s.n_stations);
   io::write_text(dir / "interface_step.csv", csv);
-  ordered_json summary = {{"version", version_line()},
-                          {"title", config.title},
-                          {"tolerance", result.options.tolerance},
-                          {"station_spacing_m", result.options.station_spacing_m},
-                          {"n_stations", result.stations.size()},
-                          {"median_order_of_reference", number(result.median_order)},
-                          {"n_runs", result.n_runs},
-                          {"warnings", result.warnings},
-                          {"chosen", nullptr}};
+  Json summary = {{"version", version_line()},
+                  {"title", config.title},
+                  {"tolerance", result.options.tolerance},
+                  {"station_spacing_m", result.options.station_spacing_m},
+                  {"n_stations", result.stations.size()},
+                  {"median_order_of_reference", number(result.median_order)},
+                  {"n_runs", result.n_runs},
+                  {"warnings", result.warnings},
+                  {"chosen", nullptr}};
   io::remove_file(dir / "chosen.toml");  // of an earlier study
   if (result.chosen >= 0) {
     const auto& s = result.all[result.chosen];

@@ -3,10 +3,10 @@
 
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "base/version.hpp"
 #include "io/files.hpp"
+#include "io/json.hpp"
 #include "run/run.hpp"
 #include "study/convergence.hpp"
 
@@ -14,18 +14,18 @@ namespace slipfront::study {
 
 namespace {
 
-using nlohmann::ordered_json;
+using io::Json;
 
 /// Empty where undefined.
 std::string cell(double value) {
   return std::isfinite(value) ? fmt::format("{:.10g}", value) : std::string();
 }
 
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
 }
 
-ordered_json entry(const Summary& s) {
+Json entry(const Summary& s) {
   return {{"verdict", name(s.verdict)},
           {"median_relative_error", number(s.median_relative_error)},
           {"median_order", number(s.median_order)},
@@ -49,30 +49,30 @@ std::string csv(const Convergence& result) {
 }  // namespace
 
 void write_convergence(const std::filesystem::path& dir, const io::Case& config, const Convergence& result) {
-  ordered_json sequences = ordered_json::array();
+  Json sequences = Json::array();
   for (const auto& s : result.sequences) {
-    ordered_json values = ordered_json::array(), used = ordered_json::array();
+    Json values = Json::array(), used = Json::array();
     for (const auto& member : s.plan.members) values.push_back(member.value);
     for (const auto k : s.plan.last) used.push_back(s.plan.members[k].value);
-    auto e = ordered_json{{"parameter", s.plan.parameter},
-                          {"values", values},
-                          {"case_value", s.plan.case_value},
-                          {"extrapolated_from", used}};
+    auto e = Json{{"parameter", s.plan.parameter},
+                  {"values", values},
+                  {"case_value", s.plan.case_value},
+                  {"extrapolated_from", used}};
     e.update(entry(s.both));
     e["relative_difference_at_limit"] = number(s.relative_difference_at_limit);
     e["direction_-1"] = entry(s.left);
     e["direction_+1"] = entry(s.right);
     sequences.push_back(std::move(e));
   }
-  const ordered_json summary = {{"version", version_line()},
-                                {"title", config.title},
-                                {"tolerance", result.options.tolerance},
-                                {"station_spacing_m", result.options.station_spacing_m},
-                                {"l_star_m", result.l_star_m},
-                                {"c_L_m_per_s", run::wave_speeds(config.material).c_L},
-                                {"n_runs", result.n_runs},
-                                {"sequences", sequences},
-                                {"warnings", result.warnings}};
+  const Json summary = {{"version", version_line()},
+                        {"title", config.title},
+                        {"tolerance", result.options.tolerance},
+                        {"station_spacing_m", result.options.station_spacing_m},
+                        {"l_star_m", result.l_star_m},
+                        {"c_L_m_per_s", run::wave_speeds(config.material).c_L},
+                        {"n_runs", result.n_runs},
+                        {"sequences", sequences},
+                        {"warnings", result.warnings}};
   io::write_text(dir / "convergence.csv", csv(result));
   io::write_text(dir / "convergence.json", summary.dump(2) + "\n");
 }

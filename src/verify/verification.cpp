@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/version.hpp"
 #include "io/files.hpp"
+#include "io/json.hpp"
 #include "verify/problems.hpp"
 
 namespace slipfront::verify {
@@ -43,8 +43,8 @@ std::span<const Verification> verifications() {
 
 void write_outcome(const std::filesystem::path& dir, const Verification& verification, Effort effort,
                    const Outcome& outcome) {
-  using nlohmann::ordered_json;
-  ordered_json checks = ordered_json::array(), charts = ordered_json::array();
+  using io::Json;
+  Json checks = Json::array(), charts = Json::array();
   for (const auto& c : outcome.checks)
     checks.push_back({{"quantity", c.quantity},
                       {"unit", c.unit},
@@ -54,7 +54,7 @@ void write_outcome(const std::filesystem::path& dir, const Verification& verific
                       {"reason", c.reason},
                       {"holds", c.holds()}});
   for (const auto& chart : outcome.charts) {
-    ordered_json curves = ordered_json::array();
+    Json curves = Json::array();
     for (const auto& c : chart.curves)
       curves.push_back({{"label", c.label},
                         {"kind", c.kind == Curve::Kind::theory ? "theory" : "program"},
@@ -66,13 +66,13 @@ void write_outcome(const std::filesystem::path& dir, const Verification& verific
                       {"log_y", chart.log_y},
                       {"curves", curves}});
   }
-  const ordered_json all = {{"version", version_line()},
-                            {"name", verification.name},
-                            {"title", verification.title},
-                            {"effort", effort == Effort::quick ? "quick" : "full"},
-                            {"holds", outcome.holds()},
-                            {"checks", checks},
-                            {"charts", charts}};
+  const Json all = {{"version", version_line()},
+                    {"name", verification.name},
+                    {"title", verification.title},
+                    {"effort", effort == Effort::quick ? "quick" : "full"},
+                    {"holds", outcome.holds()},
+                    {"checks", checks},
+                    {"charts", charts}};
   io::write_text(dir / (verification.name + ".json"), all.dump(1) + "\n");
 }
 
