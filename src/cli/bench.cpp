@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/bench.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -91,22 +90,21 @@ void print_statics(const bench::StaticsRun& r) {
 
 }  // namespace
 
-void add_bench(CLI::App& app) {
-  CLI::App* command =
+void add_bench(Command& app) {
+  Command* command =
       app.add_subcommand("bench", "Measure node updates per second against the machine's bounds");
   auto options = std::make_shared<bench::Options>();
   options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON, for comparison between versions");
-  command->add_option("--threads", options->threads, "The most threads to measure with")
-      ->check(CLI::Range(1, 1024));
+  command->add_option("--threads", options->threads, "The most threads to measure with")->range(1, 1024);
   command->add_flag("--large", options->large, "Also 10,000 x 5,000 cells, some 7 GB");
   auto columns = std::make_shared<int>(0);
   auto solver = std::make_shared<std::string>("iterative");
   command->add_option("--statics", *columns, "Measure the statics of a plate of so many columns instead")
-      ->check(CLI::Range(2, 100'000));
+      ->range(2, 100'000);
   command->add_option("--solver", *solver, "... by this solver: auto, direct or iterative")
-      ->check(CLI::IsMember({"auto", "direct", "iterative"}));
+      ->one_of({"auto", "direct", "iterative"});
   command->callback([options, json, columns, solver] {
     if (*columns > 0) {
       for (const auto s :

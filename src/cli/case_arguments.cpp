@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <CLI/CLI.hpp>
-
 #include "cli/commands.hpp"
 
 namespace slipfront::cli {
@@ -14,7 +12,7 @@ const io::CaseFile& CaseArguments::case_file() const {
   return *case_file_;
 }
 
-std::shared_ptr<CaseArguments> add_case_arguments(CLI::App& command) {
+std::shared_ptr<CaseArguments> add_case_arguments(Command& command) {
   auto arguments = std::make_shared<CaseArguments>();
   command.add_option("CASE", arguments->file, "Case file (TOML)")->required()->type_name("FILE");
   command

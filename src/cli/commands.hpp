@@ -6,24 +6,21 @@
 #include <string>
 #include <vector>
 
+#include "cli/command.hpp"
 #include "io/schema.hpp"
 
-namespace CLI {
-class App;
-}
-
-/// The subcommands, one file each. `add_<name>` registers its options and, as CLI11's callback, its work; the
+/// The subcommands, one file each. `add_<name>` registers its options and, as its callback, its work; the
 /// work reports failure by the exceptions of base/error.hpp, which main turns into one line and an exit code.
 namespace slipfront::cli {
 
-void add_run(CLI::App& app);
-void add_reproduce(CLI::App& app);
-void add_study(CLI::App& app);
-void add_verify(CLI::App& app);
-void add_info(CLI::App& app);
-void add_bench(CLI::App& app);
-void add_validate(CLI::App& app);
-void add_keys(CLI::App& app);
+void add_run(Command& app);
+void add_reproduce(Command& app);
+void add_study(Command& app);
+void add_verify(Command& app);
+void add_info(Command& app);
+void add_bench(Command& app);
+void add_validate(Command& app);
+void add_keys(Command& app);
 
 /// The arguments of every subcommand that works on a case: CASE.toml [--set key=value]...
 class CaseArguments {
@@ -42,6 +39,6 @@ class CaseArguments {
 
 /// Adds them to a subcommand; filled when the command line is parsed. The subcommand's callback must keep the
 /// result alive by capturing it.
-std::shared_ptr<CaseArguments> add_case_arguments(CLI::App& command);
+std::shared_ptr<CaseArguments> add_case_arguments(Command& command);
 
 }  // namespace slipfront::cli

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
@@ -73,8 +71,8 @@ void print_info(const CaseArguments& arguments) {
 
 }  // namespace
 
-void add_info(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
+void add_info(Command& app) {
+  Command* command = app.add_subcommand(
       "info",
       "Print what follows from a case: wave speeds, step, size, memory, expected time, stability of sliding");
   const auto arguments = add_case_arguments(*command);

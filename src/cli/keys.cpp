@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <CLI/CLI.hpp>
-
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 
 namespace slipfront::cli {
 
-void add_keys(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("keys", "Print the reference of all keys of a case file (Markdown)");
+void add_keys(Command& app) {
+  Command* command = app.add_subcommand("keys", "Print the reference of all keys of a case file (Markdown)");
   command->callback([] { print_output(io::schema_reference()); });
 }
 

@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
-#include <vector>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/output.hpp"
 
 namespace {
 
@@ -49,31 +46,19 @@ int report(int code, const std::string& message) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Slip fronts at frictional interfaces", "slipfront");
-  app.set_version_flag("--version", slipfront::version_line());
-  app.require_subcommand(1);
-  slipfront::cli::add_run(app);
-  slipfront::cli::add_reproduce(app);
-  slipfront::cli::add_study(app);
-  slipfront::cli::add_verify(app);
-  slipfront::cli::add_info(app);
-  slipfront::cli::add_bench(app);
-  slipfront::cli::add_validate(app);
-  slipfront::cli::add_keys(app);
-  try {
-    app.parse(argc, argv);
-    return done;
-  } catch (const CLI::Success& help) {
-    const int code = app.exit(help);
-    slipfront::cli::finish_output();
-    return code;
-  } catch (const CLI::ParseError& error) {
-    const std::vector<std::string> unused = app.remaining();
-    if (!unused.empty() && app.get_subcommands().empty())
-      return report(user_error,
-                    fmt::format("slipfront: no subcommand {}; see slipfront --help", unused.front()));
-    return report(user_error, fmt::format("slipfront: {}; see slipfront --help", error.what()));
-  }
+  slipfront::cli::Program program("slipfront", "Slip fronts at frictional interfaces",
+                                  slipfront::version_line());
+  auto& command = program.command();
+  slipfront::cli::add_run(command);
+  slipfront::cli::add_reproduce(command);
+  slipfront::cli::add_study(command);
+  slipfront::cli::add_verify(command);
+  slipfront::cli::add_info(command);
+  slipfront::cli::add_bench(command);
+  slipfront::cli::add_validate(command);
+  slipfront::cli::add_keys(command);
+  program.run(argc, argv);
+  return done;
 }
 
 }  // namespace

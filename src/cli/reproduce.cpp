@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paper/reproduce.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <thread>
 
@@ -36,8 +35,8 @@ void print_report(const paper::ReproduceReport& report, const std::string& dir) 
 
 }  // namespace
 
-void add_reproduce(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("reproduce", "Run everything behind the paper and test its claims");
+void add_reproduce(Command& app) {
+  Command* command = app.add_subcommand("reproduce", "Run everything behind the paper and test its claims");
   auto options = std::make_shared<paper::ReproduceOptions>();
   auto dir = std::make_shared<std::string>("results");
   auto experiment = std::make_shared<std::string>();
@@ -66,7 +65,7 @@ void add_reproduce(CLI::App& app) {
       ->type_name("DIR");
   options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("--threads", options->threads, "Runs side by side")
-      ->check(CLI::Range(1, 1024))
+      ->range(1, 1024)
       ->capture_default_str();
   command->callback([options, dir, experiment, open_choices] {
     options->dir = *dir;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
+#include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -154,8 +153,8 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
 
 }  // namespace
 
-void add_run(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
+void add_run(Command& app) {
+  Command* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
   const auto arguments = add_case_arguments(*command);
   auto options = std::make_shared<RunArguments>();
   command->get_option("CASE")->required(false);
@@ -174,18 +173,18 @@ void add_run(CLI::App& app) {
       ->add_option("--threads", session.execution.threads,
                    "Threads of the run; the results do not depend on them. They wait for each other: give no "
                    "more than are idle")
-      ->check(CLI::Range(1, 1024))
+      ->range(1, 1024)
       ->capture_default_str();
   command
       ->add_option("--checkpoint-every", session.keep_every_wall_s,
                    "Wall time between checkpoints, s; the signal USR1 asks for one at once")
-      ->check(CLI::NonNegativeNumber)
+      ->non_negative()
       ->type_name("S")
       ->capture_default_str();
   command
       ->add_option("--checkpoint-every-simulated", session.keep_every_s,
                    "Simulated time between checkpoints, s; by default only wall time counts")
-      ->check(CLI::PositiveNumber)
+      ->positive()
       ->type_name("S");
   command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
   command->callback([arguments, options] { run_case(*arguments, *options); });

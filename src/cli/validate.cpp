@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
+#include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <utility>
 
 #include "base/error.hpp"
@@ -31,8 +30,8 @@ void validate(const CaseArguments& arguments) {
 
 }  // namespace
 
-void add_validate(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("validate", "Check a case file without running it");
+void add_validate(Command& app) {
+  Command* command = app.add_subcommand("validate", "Check a case file without running it");
   const auto arguments = add_case_arguments(*command);
   command->callback([arguments] { validate(*arguments); });
 }

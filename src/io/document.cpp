@@ -2,7 +2,7 @@
 // The only file that sees toml++.
 #include "io/document.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "solve/load_case.hpp"
 
 namespace slipfront::solve {
 

@@ -7,6 +7,7 @@
 #include "base/memory.hpp"
 #include "solve/factorisation.hpp"
 #include "solve/iterative.hpp"
+#include "solve/load_case.hpp"
 
 namespace slipfront::solve {
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "solve/load_case.hpp"
 
 namespace slipfront::solve {
 
@@ -307,6 +308,8 @@ Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const 
   tilted_top_ = tilt;
   sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_.u_m, 0);
 }
+
+Statics::~Statics() = default;
 
 template <class FindShear>
 Equilibrium Statics::shear(FindShear&& find_shear) const {

@@ -57,6 +57,7 @@ class Statics {
   Statics(
       const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
       std::string mu_s_key = "friction.mu_s", GoOn go_on = [] { return true; });
+  ~Statics();
 
   /// The tilted plate before any shear.
   const Equilibrium& tilted() const { return tilted_; }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "solve/load_case.hpp"
 #include "support.hpp"
 
 namespace slipfront::solve {
