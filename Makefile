@@ -18,7 +18,7 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup build test reproduce sensitivity quick regularised convergence interface-step open-choices reference contact-algorithms bench docs format format-check verify verification-pages tidy hostile fuzz sanitize coverage clean
+.PHONY: help setup program build test reproduce sensitivity quick regularised convergence interface-step open-choices reference contact-algorithms bench docs format format-check verify verification-pages tidy hostile fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -36,8 +36,13 @@ $(VENV)/.installed: pyproject.toml | packages
 	$(PYTHON) scripts/python-requirements.py | $(PYTHON) -m pip install --quiet --disable-pip-version-check -r /dev/stdin
 	@touch $@
 
-build: packages  ## build the program: build/release/slipfront
+program: packages  ## build the program alone: build/release/slipfront
 	@echo "== Building $(PROGRAM)"
+	cmake --preset release
+	cmake --build --preset release --target slipfront
+
+build: packages  ## build the program and all tests
+	@echo "== Building everything"
 	cmake --preset release
 	cmake --build --preset release
 
@@ -52,13 +57,13 @@ $(PROGRAM) reproduce -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $
 PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
 endef
 
-reproduce: build $(VENV)/.installed  ## everything behind the paper: runs, scorecard, figures, into results/
+reproduce: program $(VENV)/.installed  ## everything behind the paper: runs, scorecard, figures, into results/
 	$(call REPRODUCE)
 
-sensitivity: build $(VENV)/.installed  ## the same, and how far each figure of the scorecard moves with mesh and step
+sensitivity: program $(VENV)/.installed  ## the same, and how far each figure of the scorecard moves with mesh and step
 	$(call REPRODUCE,--sensitivity)
 
-quick: build $(VENV)/.installed  ## the same in a second, on a coarse mesh, into results-quick/
+quick: program $(VENV)/.installed  ## the same in a second, on a coarse mesh, into results-quick/
 	$(PROGRAM) reproduce --quick -o $(RESULTS)-quick --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-quick
 
@@ -71,13 +76,13 @@ verification-pages: verify  ## renew the numbers and pictures of docs/verificati
 	$(PYTHON) scripts/verification-pages.py $(RESULTS)-verify docs/verification
 	cp $(RESULTS)-verify/figures/*.png docs/figures/
 
-bench: build  ## node updates per second against the machine's bandwidth
+bench: program  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench
 
-contact-algorithms: build $(VENV)/.installed  ## the paper's events with each contact algorithm: renews docs/contact-algorithms.md
+contact-algorithms: program $(VENV)/.installed  ## the paper's events with each contact algorithm: renews docs/contact-algorithms.md
 	PYTHONPATH=python $(PYTHON) scripts/contact-algorithms.py $(PROGRAM) cases/kammer2012 $(RESULTS)-contact docs/contact-algorithms.md docs/figures/contact_algorithms.png
 
-regularised: build $(VENV)/.installed  ## the same events with friction that has a length scale, into results-regularised/
+regularised: program $(VENV)/.installed  ## the same events with friction that has a length scale, into results-regularised/
 	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-regularised
 	cp $(RESULTS)-regularised/figures/studies.png docs/figures/regularised_studies.png
@@ -93,23 +98,23 @@ endef
 DELAYED := --set friction.regularisation=strength --set friction.relaxation_time_s=0.5e-6
 FINE := --element-sizes 1.3333333333333333e-3,6.6666666666666667e-4,3.3333333333333333e-4,1.6666666666666667e-4
 
-convergence: build $(VENV)/.installed  ## front speeds over mesh, step and damping, into results-convergence/ and docs/figures
+convergence: program $(VENV)/.installed  ## front speeds over mesh, step and damping, into results-convergence/ and docs/figures
 	$(call CONVERGENCE,spontaneous,$(FINE))
 	$(call CONVERGENCE,left)
 	$(call CONVERGENCE,right)
 	cp $(RESULTS)-convergence/plain/spontaneous/figures/convergence.png docs/figures/convergence_plain.png
 	cp $(RESULTS)-convergence/regularised/spontaneous/figures/convergence.png docs/figures/convergence_regularised.png
 
-interface-step: build $(VENV)/.installed  ## error of front speeds against the cost of sub-cycling, into results-interface-step/ and docs/figures
+interface-step: program $(VENV)/.installed  ## error of front speeds against the cost of sub-cycling, into results-interface-step/ and docs/figures
 	for event in left spontaneous right; do $(PROGRAM) study interface-step cases/kammer2012/$$event.toml -o $(RESULTS)-interface-step/$$event --overwrite; done
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.interface_step docs/figures/interface_step.png $(RESULTS)-interface-step/{left,spontaneous,right}
 
-open-choices: build $(VENV)/.installed  ## what the paper leaves open, varied: renews docs/open-choices.md and its figure
+open-choices: program $(VENV)/.installed  ## what the paper leaves open, varied: renews docs/open-choices.md and its figure
 	$(PROGRAM) study open-choices -o $(RESULTS)-open-choices --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.open_choices docs/figures/open_choices.png $(RESULTS)-open-choices
 	$(PYTHON) scripts/open-choices-page.py $(RESULTS)-open-choices docs/open-choices.md
 
-reference: build $(VENV)/.installed  ## Problem A of docs/prestress.md on four meshes against other codes, into results-reference/
+reference: program $(VENV)/.installed  ## Problem A of docs/prestress.md on four meshes against other codes, into results-reference/
 	$(PYTHON) scripts/compare-reference.py --program $(PROGRAM) --results $(RESULTS)-reference
 
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
