@@ -157,8 +157,7 @@ Json region_json(const OpenChoicesResult& result) {
     std::vector<double> values;
     for (const auto place : result.region) values.push_back(result.outcomes[place].sample.values[k]);
     std::ranges::sort(values);
-    const auto [first, last] = std::ranges::unique(values);
-    values.erase(first, last);
+    values.erase(std::unique(values.begin(), values.end()), values.end());
     Json list = Json::array();
     const bool as_range = result.choices[k].words.empty() && values.size() > 2;
     if (as_range) values = {values.front(), values.back()};
