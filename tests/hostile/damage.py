@@ -9,7 +9,7 @@ import signal
 import time
 
 from .cases import long
-from .trials import Trial, alone, one_line, remove, require, require_same
+from .trials import Trial, Wrong, alone, one_line, remove, require, require_same
 
 SUM_DIGITS = 64  # at the end of a checkpoint
 FEW = ("--checkpoint-every", "1e9", "--checkpoint-every-simulated")
@@ -201,22 +201,36 @@ def meddlings():
     yield "a file of its own", lambda u, s: (u / "interface.h5").write_text("mine\n"), 0
 
 
+def stopped_under_way(setting):
+    """The folder and process of a run that stands still; again where it was over before it could be stopped."""
+    for _ in range(50):
+        folder = setting.bench.folder()
+        process = setting.bench.start("run", setting.case, "-o", folder, "-q")
+        state = folder / "unfinished/state"
+        raw = [state / name for name in ("history.raw", "snapshots.raw")]
+
+        def is_under_way(folder=folder, raw=raw):
+            begun = (folder / "unfinished/fronts.csv").exists()
+            return begun and all(path.exists() and path.stat().st_size >= 16 for path in raw)
+
+        try:
+            while process.poll() is None and not is_under_way():
+                time.sleep(0.001)
+            process.send_signal(signal.SIGSTOP)
+            if is_under_way() and process.poll() is None:
+                return folder, process
+        except FileNotFoundError:  # published between two looks
+            pass
+        process.send_signal(signal.SIGCONT)
+        process.communicate()
+        remove(folder.parent)
+    raise Wrong("over too soon, each time")
+
+
 def meddle(setting, how, may_be):
     """The same while the run goes on."""
-    folder = setting.bench.folder()
-    process = setting.bench.start("run", setting.case, "-o", folder, "-q")
+    folder, process = stopped_under_way(setting)
     state = folder / "unfinished/state"
-
-    def is_under_way():
-        return (folder / "unfinished/fronts.csv").exists() and all(
-            (state / name).exists() and (state / name).stat().st_size >= 16
-            for name in ("history.raw", "snapshots.raw")
-        )
-
-    while process.poll() is None and not is_under_way():
-        time.sleep(0.001)
-    require(process.poll() is None, "over too soon")
-    process.send_signal(signal.SIGSTOP)
     how(folder / "unfinished", state)
     process.send_signal(signal.SIGCONT)
     _, errors = process.communicate()
