@@ -56,8 +56,9 @@ std::array<io::Case, 3> cases() {
   return cases;
 }
 
-bool stop(std::int64_t, std::int64_t) {
-  return false;
+/// At the first step; the statics before it go on.
+bool stop(std::int64_t, std::int64_t total) {
+  return total == 0;
 }
 
 std::string content_of(const std::filesystem::path& file) {
@@ -73,7 +74,8 @@ std::string checkpoint_of(const io::Case& config) {
   if (config.loading.method == solve::LoadingMethod::ramp) {
     solve::Stepper* stepper = nullptr;
     solve::RampRun* ramp = nullptr;
-    const auto keep = [&](std::int64_t, std::int64_t) {
+    const auto keep = [&](std::int64_t step, std::int64_t total) {
+      if (stepper == nullptr) return stop(step, total);
       checkpoints.keep(head, [&](io::OutputArchive& archive) { archive(*stepper, *ramp); });
       return false;
     };
