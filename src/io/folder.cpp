@@ -60,8 +60,11 @@ bool is_lock(const fs::path& file) {
   const auto status = fs::symlink_status(file, error);
   if (!fs::exists(status)) return true;
   if (!fs::is_regular_file(status)) return false;
-  const std::string text = read_line(file);
-  return text.starts_with(begin) || (begin.starts_with(text) && fs::file_size(file, error) == text.size());
+  // Read once: its owner may write or remove it meanwhile. Opening it says what cannot be read.
+  std::array<char, begin.size()> first{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(first.data(), first.size());
+  return begin.starts_with(std::string_view(first.data(), static_cast<std::size_t>(stream.gcount())));
 }
 
 /// Names in a folder, sorted.

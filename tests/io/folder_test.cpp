@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <set>
+#include <thread>
 
 #include "io/checksum.hpp"
 #include "support.hpp"
@@ -16,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::error_of;
+using ::testing::Each;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -266,6 +268,21 @@ TEST(ResultFolder, IsHeldByOneProcessAtATime) {
   EXPECT_TRUE(fs::exists(folder / ".slipfront.lock"));  // a file that is left is no lock
   { const ResultFolder taken(folder.path(), "test"); }
   EXPECT_THAT(below(folder.path()), IsEmpty());
+}
+
+TEST(ResultFolder, OfManyThatWantItAtOnceEachHasItOrIsToldWhoHas) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> refusals(4);
+  std::vector<std::thread> threads;
+  for (auto& refusal : refusals)
+    threads.emplace_back([&folder, &refusal] {
+      for (int k = 0; k < 2000 && refusal.empty(); ++k) {
+        const auto error = error_of([&] { ResultFolder(folder.path(), "test"); });
+        if (error != "(nothing thrown)" && error.find("is in use by") == std::string::npos) refusal = error;
+      }
+    });
+  for (auto& thread : threads) thread.join();
+  EXPECT_THAT(refusals, Each(IsEmpty()));
 }
 
 TEST(Checksums, AreThoseOfSha256sum) {
