@@ -32,8 +32,7 @@ packages:
 $(VENV)/.installed: pyproject.toml | packages
 	@echo "== Python environment $(VENV)"
 	python3 -m venv $(VENV)
-	$(PYTHON) -m pip install --quiet --disable-pip-version-check --upgrade pip
-	$(PYTHON) scripts/python-requirements.py | $(PYTHON) -m pip install --quiet --disable-pip-version-check -r /dev/stdin
+	$(PYTHON) scripts/python-requirements.py | $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
 	@touch $@
 
 program: packages  ## build the program alone: build/release/slipfront
@@ -41,12 +40,20 @@ program: packages  ## build the program alone: build/release/slipfront
 	cmake --preset release
 	cmake --build --preset release --target slipfront
 
+# What the targets below need, the downloads beside the compilation.
+.PHONY: ready ready-to-test
+ready: packages
+	@$(MAKE) --no-print-directory -j2 program $(VENV)/.installed
+
+ready-to-test: packages
+	@$(MAKE) --no-print-directory -j2 build $(VENV)/.installed
+
 build: packages  ## build the program and all tests
 	@echo "== Building everything"
 	cmake --preset release
 	cmake --build --preset release
 
-test: build $(VENV)/.installed  ## all tests, C++ and Python
+test: ready-to-test  ## all tests, C++ and Python
 	@scripts/run-tests build/release $(PYTHON)
 
 # The paper's runs and figures; the argument adds options.
@@ -57,17 +64,17 @@ $(PROGRAM) reproduce -o $(RESULTS) --overwrite $(if $(EXPERIMENT),--experiment $
 PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS) $(if $(EXPERIMENT),--experiment $(EXPERIMENT))
 endef
 
-reproduce: program $(VENV)/.installed  ## everything behind the paper: runs, scorecard, figures, into results/
+reproduce: ready  ## everything behind the paper: runs, scorecard, figures, into results/
 	$(call REPRODUCE)
 
-sensitivity: program $(VENV)/.installed  ## the same, and how far each figure of the scorecard moves with mesh and step
+sensitivity: ready  ## the same, and how far each figure of the scorecard moves with mesh and step
 	$(call REPRODUCE,--sensitivity)
 
-quick: program $(VENV)/.installed  ## the same in a second, on a coarse mesh, into results-quick/
+quick: ready  ## the same in a second, on a coarse mesh, into results-quick/
 	$(PROGRAM) reproduce --quick -o $(RESULTS)-quick --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-quick
 
-verify: build $(VENV)/.installed  ## problems with known answers, with their pictures, and the energy balance over a million steps
+verify: ready-to-test  ## problems with known answers, with their pictures, and the energy balance over a million steps
 	$(PROGRAM) verify -o $(RESULTS)-verify
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.verification $(RESULTS)-verify $(RESULTS)-verify/figures
 	build/release/test_solve --gtest_also_run_disabled_tests --gtest_filter='*Million*'
@@ -79,10 +86,10 @@ verification-pages: verify  ## renew the numbers and pictures of docs/verificati
 bench: program  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench
 
-contact-algorithms: program $(VENV)/.installed  ## the paper's events with each contact algorithm: renews docs/contact-algorithms.md
+contact-algorithms: ready  ## the paper's events with each contact algorithm: renews docs/contact-algorithms.md
 	PYTHONPATH=python $(PYTHON) scripts/contact-algorithms.py $(PROGRAM) cases/kammer2012 $(RESULTS)-contact docs/contact-algorithms.md docs/figures/contact_algorithms.png
 
-regularised: program $(VENV)/.installed  ## the same events with friction that has a length scale, into results-regularised/
+regularised: ready  ## the same events with friction that has a length scale, into results-regularised/
 	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-regularised
 	cp $(RESULTS)-regularised/figures/studies.png docs/figures/regularised_studies.png
@@ -98,23 +105,23 @@ endef
 DELAYED := --set friction.regularisation=strength --set friction.relaxation_time_s=0.5e-6
 FINE := --element-sizes 1.3333333333333333e-3,6.6666666666666667e-4,3.3333333333333333e-4,1.6666666666666667e-4
 
-convergence: program $(VENV)/.installed  ## front speeds over mesh, step and damping, into results-convergence/ and docs/figures
+convergence: ready  ## front speeds over mesh, step and damping, into results-convergence/ and docs/figures
 	$(call CONVERGENCE,spontaneous,$(FINE))
 	$(call CONVERGENCE,left)
 	$(call CONVERGENCE,right)
 	cp $(RESULTS)-convergence/plain/spontaneous/figures/convergence.png docs/figures/convergence_plain.png
 	cp $(RESULTS)-convergence/regularised/spontaneous/figures/convergence.png docs/figures/convergence_regularised.png
 
-interface-step: program $(VENV)/.installed  ## error of front speeds against the cost of sub-cycling, into results-interface-step/ and docs/figures
+interface-step: ready  ## error of front speeds against the cost of sub-cycling, into results-interface-step/ and docs/figures
 	for event in left spontaneous right; do $(PROGRAM) study interface-step cases/kammer2012/$$event.toml -o $(RESULTS)-interface-step/$$event --overwrite; done
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.interface_step docs/figures/interface_step.png $(RESULTS)-interface-step/{left,spontaneous,right}
 
-open-choices: program $(VENV)/.installed  ## what the paper leaves open, varied: renews docs/open-choices.md and its figure
+open-choices: ready  ## what the paper leaves open, varied: renews docs/open-choices.md and its figure
 	$(PROGRAM) study open-choices -o $(RESULTS)-open-choices --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.open_choices docs/figures/open_choices.png $(RESULTS)-open-choices
 	$(PYTHON) scripts/open-choices-page.py $(RESULTS)-open-choices docs/open-choices.md
 
-reference: program $(VENV)/.installed  ## Problem A of docs/prestress.md on four meshes against other codes, into results-reference/
+reference: ready  ## Problem A of docs/prestress.md on four meshes against other codes, into results-reference/
 	$(PYTHON) scripts/compare-reference.py --program $(PROGRAM) --results $(RESULTS)-reference
 
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
@@ -134,11 +141,13 @@ format: lint-packages  ## format all C++ sources
 format-check: lint-packages  ## fail where a C++ source is not formatted
 	clang-format-14 --dry-run --Werror $(SOURCES)
 
-tidy: build lint-packages  ## clang-tidy over src, warnings are errors
-	run-clang-tidy-14 -quiet -extra-arg=-Wno-unknown-warning-option -p build/release '^$(CURDIR)/src/.*' > build/tidy.log 2>&1 || { grep -E 'error|warning' build/tidy.log | sort -u; exit 1; }
+# In a folder of its own: clang cannot read what gcc has precompiled.
+tidy: packages lint-packages  ## clang-tidy over src, warnings are errors
+	cmake --preset release -B build/tidy -D SLIPFRONT_TOGETHER=OFF
+	run-clang-tidy-14 -quiet -extra-arg=-Wno-unknown-warning-option -p build/tidy '^$(CURDIR)/src/.*' > build/tidy.log 2>&1 || { grep -E 'error|warning' build/tidy.log | sort -u; exit 1; }
 	@echo "clang-tidy: no findings"
 
-hostile: build $(VENV)/.installed  ## runs that are killed, damaged, signalled, or fail at any call: results are right or refused
+hostile: ready-to-test  ## runs that are killed, damaged, signalled, or fail at any call: results are right or refused
 	PYTHONPATH=tests $(PYTHON) -m hostile $(PROGRAM)
 
 sanitize: packages  ## the C++ tests and coarse runs under the address, undefined-behaviour and thread sanitizers

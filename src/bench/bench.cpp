@@ -6,13 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <numeric>
 #include <random>
 #include <thread>
 
+#include "base/clock.hpp"
 #include "base/memory.hpp"
 #include "fronts/fit.hpp"
 #include "io/case.hpp"
@@ -27,12 +27,6 @@
 namespace slipfront::bench {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Median over repetitions of units of work per second; each repetition runs for at least 0.1 s.
 double rate(double units_per_call, const std::function<void()>& call) {

@@ -10,7 +10,7 @@
 namespace slipfront::io {
 namespace {
 
-constexpr std::size_t most_bytes_waiting = std::size_t{1} << 18U;
+constexpr std::size_t buffer_bytes = std::size_t{1} << 18U;
 constexpr std::size_t sum_digits = 64;
 
 }  // namespace
@@ -20,7 +20,7 @@ OutputArchive::OutputArchive(const std::filesystem::path& file)
       path_(file),
       fresh_(file.string() + ".new"),
       file_((remove_file(fresh_), OutputFile::create(fresh_))) {
-  waiting_.reserve(most_bytes_waiting);
+  waiting_.reserve(buffer_bytes);
 }
 
 OutputArchive::~OutputArchive() {
@@ -31,8 +31,8 @@ OutputArchive::~OutputArchive() {
 
 void OutputArchive::save(const void* data, std::size_t bytes) {
   const std::span<const std::byte> piece(static_cast<const std::byte*>(data), bytes);
-  if (waiting_.size() + bytes > most_bytes_waiting) flush();
-  if (bytes > most_bytes_waiting) {
+  if (waiting_.size() + bytes > buffer_bytes) flush();
+  if (bytes > buffer_bytes) {
     sum_.add(piece);
     file_.write(piece);
   } else {
@@ -67,7 +67,7 @@ InputArchive::InputArchive(const std::filesystem::path& file)
   left_ = length - sum_digits;
 
   Sha256 sum;
-  std::vector<std::byte> piece(most_bytes_waiting);
+  std::vector<std::byte> piece(buffer_bytes);
   for (auto rest = left_; rest > 0;) {
     const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(rest, piece.size()));
     if (!stream_.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(n)))

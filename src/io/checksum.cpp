@@ -21,7 +21,7 @@ namespace slipfront::io {
 namespace {
 
 constexpr std::size_t digits = 64;
-constexpr std::size_t piece_bytes = std::size_t{1} << 18U;
+constexpr std::size_t bytes_at_once = std::size_t{1} << 18U;
 
 [[noreturn]] void throw_changed(const std::filesystem::path& file, const char* what) {
   throw UserError("{}: {}; run the case again", file.string(), what);
@@ -86,7 +86,7 @@ std::string sha256_of_file(const std::filesystem::path& file) {
   };
   if (!opened.valid()) refuse();
   Sha256 sum;
-  std::vector<std::byte> piece(piece_bytes);
+  std::vector<std::byte> piece(bytes_at_once);
   for (;;) {
     const ssize_t n = ::read(opened.get(), piece.data(), piece.size());
     if (n < 0 && errno == EINTR) continue;

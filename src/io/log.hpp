@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <string>
+
+#include "base/clock.hpp"
 
 namespace slipfront::io {
 
@@ -25,7 +26,6 @@ class Progress {
   void finish();
 
  private:
-  using Clock = std::chrono::steady_clock;
   std::string state(Clock::time_point now) const;
 
   std::string label_;

@@ -10,20 +10,10 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "io/files.hpp"
 
 namespace slipfront::io {
 namespace {
-
-struct Descriptor {
-  int number;
-  explicit Descriptor(const std::filesystem::path& file)
-      : number(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~Descriptor() {
-    if (number >= 0) ::close(number);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-};
 
 [[noreturn]] void throw_unreadable(const std::string& shown, std::string_view what) {
   if (errno == EISDIR) throw UserError("{}: is a folder; name the {} in it", shown, what);
@@ -57,12 +47,12 @@ std::size_t bytes_of_character(std::string_view text) {
 
 std::string read_text(const std::filesystem::path& file, const std::string& shown, std::string_view what,
                       std::size_t most_bytes) {
-  const Descriptor descriptor(file);
-  if (descriptor.number < 0) throw_unreadable(shown, what);
+  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!opened.valid()) throw_unreadable(shown, what);
   std::string text;
   std::array<char, 1 << 16> part{};
   for (;;) {
-    const ssize_t count = ::read(descriptor.number, part.data(), part.size());
+    const ssize_t count = ::read(opened.get(), part.data(), part.size());
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw_unreadable(shown, what);
     if (count == 0) break;

@@ -12,7 +12,7 @@
 // What the tests of the claims read off the runs, and how they state it.
 namespace slipfront::paper {
 
-inline constexpr double leave_out_m = 5e-3;  ///< next to a spontaneous nucleation, left out of maxima
+inline constexpr double near_nucleation_m = 5e-3;  ///< next to a spontaneous nucleation, left out of maxima
 inline constexpr double mm = 1e3;
 
 std::string percent(double share);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paper/reproduce.hpp"
 
-#include <chrono>
 #include <iterator>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "io/checksum.hpp"
 #include "io/files.hpp"
@@ -20,8 +20,6 @@
 namespace slipfront::paper {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Runs cases and writes each to its folder.
 class Runner {
@@ -171,7 +169,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   auto last = Clock::now();
   const auto lap = [&](const char* part) {
     const auto now = Clock::now();
-    report.timings.push_back({part, std::chrono::duration<double>(now - last).count()});
+    report.timings.push_back({part, seconds_between(last, now)});
     last = now;
   };
   Runner runner(options, folder, monitor, n_runs);

@@ -33,7 +33,7 @@ struct Peak {
 Peak peak_speed(const Outcome& o, const Front* front) {
   Peak peak;
   if (front == nullptr) return peak;
-  for (const auto* p : speed_points(o, *front, leave_out_m))
+  for (const auto* p : speed_points(o, *front, near_nucleation_m))
     if (p->v_tip_m_per_s / o.speeds.c_L > peak.v_over_c_L) peak = {p->v_tip_m_per_s / o.speeds.c_L, p->x_m};
   return peak;
 }
@@ -208,7 +208,7 @@ class Scorecard {
 
     double fast = 0;
     for (const auto* o : three_)
-      fast = std::max(fast, longest_stretch_m(*o, leave_out_m, [&](const FrontPoint& p) {
+      fast = std::max(fast, longest_stretch_m(*o, near_nucleation_m, [&](const FrontPoint& p) {
                         return p.v_tip_m_per_s > o->speeds.c_L;
                       }));
     add("C9", "supersonic fronts occur", "Results",
@@ -560,7 +560,7 @@ class Scorecard {
         for (const int direction : {-1, 1}) {
           const auto* front = main_front(o, direction);
           if (front == nullptr) continue;
-          for (const auto* p : speed_points(o, *front, leave_out_m)) {
+          for (const auto* p : speed_points(o, *front, near_nucleation_m)) {
             const double s = std::abs(p->x_m - front->points.front().x_m) / fronts::length_m(*front);
             const int fifth = std::min(4, static_cast<int>(5 * s));
             sum[fifth] += p->v_tip_m_per_s / o.speeds.c_L;

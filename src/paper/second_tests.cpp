@@ -239,7 +239,7 @@ double mean_speed(const Outcome* o) {
   for (const int direction : {-1, 1}) {
     const Front* front = o != nullptr ? first_front(*o, direction) : nullptr;
     if (front == nullptr) continue;
-    for (const auto* p : speed_points(*o, *front, leave_out_m)) {
+    for (const auto* p : speed_points(*o, *front, near_nucleation_m)) {
       sum += p->v_tip_m_per_s / o->speeds.c_L;
       n += 1;
     }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <future>
 #include <limits>
 #include <numeric>
 
+#include "base/clock.hpp"
 #include "run/choices.hpp"
 #include "run/run.hpp"
 #include "solve/plate_solver.hpp"
@@ -15,12 +15,6 @@
 namespace slipfront::run {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 stability::WellPosedness well_posedness(const io::Case& config, const mesh::Mesh& mesh) {
   const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);

@@ -2,7 +2,6 @@
 #include "run/run.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -10,6 +9,7 @@
 #include <malloc.h>
 #endif
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "interface/nucleation.hpp"
@@ -26,12 +26,6 @@
 namespace slipfront::run {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// B at the nodes of the interface. [lower]
 std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::Mesh& mesh) {

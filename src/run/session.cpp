@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/session.hpp"
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "io/results.hpp"
 #include "io/schema.hpp"
@@ -14,12 +14,6 @@
 
 namespace slipfront::run {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Wall time between two looks of the outside at a run; longer where writing them takes long.
 constexpr double least_tell_interval_s = 2;

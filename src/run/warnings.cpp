@@ -32,7 +32,7 @@ std::vector<std::string> warnings_of_case(const io::Case& config) {
     warnings.push_back(fmt::format(
         "fronts.l_star_m = {:.4g} m is below the element size: one element is used", config.fronts.l_star_m));
   if (config.time.step_factor > 1)
-    warnings.push_back("the step is above the largest stable one (time.allow_unstable)");
+    warnings.emplace_back("the step is above the largest stable one (time.allow_unstable)");
   return warnings;
 }
 
