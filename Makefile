@@ -77,7 +77,7 @@ quick: ready  ## the same in a second, on a coarse mesh, into results-quick/
 verify: ready-to-test  ## problems with known answers, with their pictures, and the energy balance over a million steps
 	$(PROGRAM) verify -o $(RESULTS)-verify
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.verification $(RESULTS)-verify $(RESULTS)-verify/figures
-	build/release/test_solve --gtest_also_run_disabled_tests --gtest_filter='*Million*'
+	build/release/test_motion --gtest_also_run_disabled_tests --gtest_filter='*Million*'
 
 verification-pages: verify  ## renew the numbers and pictures of docs/verification
 	$(PYTHON) scripts/verification-pages.py $(RESULTS)-verify docs/verification

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "../tests/solve/reflection.hpp"
+#include "../tests/motion/reflection.hpp"
 
 using namespace slipfront;
-using namespace slipfront::solve::test;
+using namespace slipfront::motion::test;
 
 int main() {
   const solid::Material material{.stiffness_damping_s = 0};

@@ -15,14 +15,14 @@
 #include "base/clock.hpp"
 #include "base/memory.hpp"
 #include "fronts/fit.hpp"
-#include "io/case.hpp"
+#include "input/case.hpp"
 #include "mesh/plate.hpp"
 #include "mesh/reorder.hpp"
+#include "motion/stepper.hpp"
 #include "run/run.hpp"
 #include "solid/kernels.hpp"
-#include "solve/prestress.hpp"
-#include "solve/statics.hpp"
-#include "solve/stepper.hpp"
+#include "statics/prestress.hpp"
+#include "statics/statics.hpp"
 
 namespace slipfront::bench {
 
@@ -129,34 +129,34 @@ mesh::Plate plate_of(int columns) {
 /// A plate of the paper's material pressed on the plane, that begins to slip on its left half.
 class SlippingPlate {
  public:
-  SlippingPlate(const mesh::Mesh& mesh, const solve::TimeStepping& time, const solve::Execution& execution)
+  SlippingPlate(const mesh::Mesh& mesh, const motion::TimeStepping& time, const motion::Execution& execution)
       : stepper_(mesh, {}, {interface::VelocityWeakening{}}, time, execution), recorder_(start(mesh)) {}
 
-  solve::Stepper& stepper() { return stepper_; }
-  solve::Recorder& recorder() { return recorder_; }
+  motion::Stepper& stepper() { return stepper_; }
+  motion::Recorder& recorder() { return recorder_; }
 
  private:
-  solve::Recorder start(const mesh::Mesh& mesh) {
-    fronts::StaticState tractions;
+  motion::Recorder start(const mesh::Mesh& mesh) {
+    record::StaticState tractions;
     for (const auto n : mesh.lower) tractions.x_m.push_back(mesh.x_m[n]);
     tractions.p_s_Pa.assign(mesh.lower.size(), 1e6);
     tractions.t_s_Pa.assign(mesh.lower.size(), 0.7e6);
     std::fill_n(tractions.t_s_Pa.begin(), mesh.lower.size() / 2, 1.4e6);
-    const auto state = solve::prestressed(mesh, tractions);
+    const auto state = statics::prestressed(mesh, tractions);
     stepper_.start(state, 0);
     stepper_.set_prestress(tractions.t_s_Pa, tractions.p_s_Pa);
     return {state, interface::VelocityWeakening{}.mu_s, 1};
   }
 
-  solve::Stepper stepper_;
-  solve::Recorder recorder_;
+  motion::Stepper stepper_;
+  motion::Recorder recorder_;
 };
 
 /// @param make_mesh  called when there is memory for so many columns of squares
-Rate measure_path(const std::string& path, int columns, const solve::TimeStepping& time,
-                  const solve::Execution& execution, const std::function<mesh::Mesh()>& make_mesh) {
+Rate measure_path(const std::string& path, int columns, const motion::TimeStepping& time,
+                  const motion::Execution& execution, const std::function<mesh::Mesh()>& make_mesh) {
   const double nodes = (columns + 1.0) * (columns / 2 + 1.0);
-  require_memory(solve::event_bytes(nodes, nodes, false, time.precision),
+  require_memory(motion::event_bytes(nodes, nodes, false, time.precision),
                  fmt::format("a plate of {:.4g} nodes", nodes), "free some memory");
   const double before = resident_bytes();
   SlippingPlate plate(make_mesh(), time, execution);
@@ -195,7 +195,7 @@ mesh::Mesh general_mesh(int columns, double moved) {
 }
 
 PaperRun paper_run(int columns, int threads) {
-  io::Case config;
+  input::Case config;
   config.plate = plate_of(columns);
   config.event = interface::EventKind::left;
   PaperRun result{columns, columns / 2, threads};
@@ -213,20 +213,20 @@ PaperRun paper_run(int columns, int threads) {
 
 }  // namespace
 
-StaticsRun measure_statics(int columns, solve::StaticSolver solver) {
+StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
   const auto plate = plate_of(columns);
   const double n_unknowns = 2 * (columns + 1.0) * (columns / 2 + 1.0);
-  solve::require_statics_memory(solver, n_unknowns);
+  statics::require_statics_memory(solver, n_unknowns);
   const auto mesh = mesh::make_plate(plate);
   const auto start = Clock::now();
   const auto processor_start = std::clock();
-  solve::Loading loading;
+  statics::Loading loading;
   loading.solver = solver;
   const double mu_s = interface::VelocityWeakening {
   }.mu_s;
-  const solve::Statics statics(mesh, {}, loading, mu_s);
+  const statics::Statics statics(mesh, {}, loading, mu_s);
   StaticsRun result{columns, mesh.grid.rows,
-                    std::string(solve::name_of(solve::choose_solver(solver, n_unknowns))), n_unknowns};
+                    std::string(statics::name_of(statics::choose_solver(solver, n_unknowns))), n_unknowns};
   result.critical_shear_m = statics.shear_to(mu_s).shear_m;
   const auto common = statics.shear_to((1 - loading.critical_margin) * mu_s);
   const auto spontaneous = statics.shear_to((1 + loading.critical_margin) * mu_s);
@@ -235,7 +235,7 @@ StaticsRun measure_statics(int columns, solve::StaticSolver solver) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   result.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
-  result.expected_bytes = solve::statics_bytes(solve::choose_solver(solver, n_unknowns), n_unknowns);
+  result.expected_bytes = statics::statics_bytes(statics::choose_solver(solver, n_unknowns), n_unknowns);
   result.cycles = statics.solver().n_cycles();
   return result;
 }
@@ -251,14 +251,15 @@ Results measure(const Options& options, const std::function<void(const std::stri
   if (options.threads > 1) threads.push_back(options.threads);
   std::vector<int> columns{300, 3000};
   if (options.large) columns.push_back(10'000);
-  const solve::TimeStepping plain{.interface_substeps = 1}, sub_cycled;
-  const solve::TimeStepping single{.precision = solve::Precision::single_precision, .interface_substeps = 1};
+  const motion::TimeStepping plain{.interface_substeps = 1}, sub_cycled;
+  const motion::TimeStepping single{.precision = motion::Precision::single_precision,
+                                    .interface_substeps = 1};
   for (const int n : columns)
     for (const int t : threads) {
       const double bandwidth =
           t == 1 ? results.bandwidth_bytes_per_s : results.bandwidth_all_threads_bytes_per_s;
-      const auto add = [&](const std::string& path, const solve::TimeStepping& time,
-                           const solve::Execution& execution) {
+      const auto add = [&](const std::string& path, const motion::TimeStepping& time,
+                           const motion::Execution& execution) {
         progress(fmt::format("{}, {} x {}, threads: {}", path, n, n / 2, t));
         auto row = measure_path(path, n, time, execution, [n] { return mesh::make_plate(plate_of(n)); });
         const bool streams = n > 1000 && row.steps_per_sweep == 1;

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "solve/settings.hpp"
+#include "motion/settings.hpp"
+#include "statics/settings.hpp"
 
 namespace slipfront::bench {
 
@@ -52,7 +53,7 @@ struct StaticsRun {
   double critical_shear_m = 0;
 };
 /// @throws UserError where the memory does not suffice.
-StaticsRun measure_statics(int columns, solve::StaticSolver solver);
+StaticsRun measure_statics(int columns, statics::StaticSolver solver);
 
 struct Results {
   double bandwidth_bytes_per_s = 0;  ///< of one thread, over arrays far larger than the caches

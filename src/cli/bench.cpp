@@ -11,7 +11,7 @@
 
 #include "base/version.hpp"
 #include "cli/commands.hpp"
-#include "solve/plate_solver.hpp"
+#include "statics/plate_solver.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -107,9 +107,9 @@ void add_bench(Command& app) {
       ->one_of({"auto", "direct", "iterative"});
   command->callback([options, json, columns, solver] {
     if (*columns > 0) {
-      for (const auto s :
-           {solve::StaticSolver::automatic, solve::StaticSolver::direct, solve::StaticSolver::iterative})
-        if (solve::name_of(s) == *solver) print_statics(bench::measure_statics(*columns, s));
+      for (const auto s : {statics::StaticSolver::automatic, statics::StaticSolver::direct,
+                           statics::StaticSolver::iterative})
+        if (statics::name_of(s) == *solver) print_statics(bench::measure_statics(*columns, s));
       return;
     }
     const auto results = bench::measure(

@@ -3,10 +3,10 @@
 
 namespace slipfront::cli {
 
-const io::CaseFile& CaseArguments::case_file() const {
+const input::CaseFile& CaseArguments::case_file() const {
   if (!case_file_) {
-    std::vector<io::Override> overrides;
-    for (const std::string& text : set) overrides.push_back(io::parse_override(text));
+    std::vector<input::Override> overrides;
+    for (const std::string& text : set) overrides.push_back(input::parse_override(text));
     case_file_.emplace(file, overrides);
   }
   return *case_file_;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "io/schema.hpp"
+#include "input/schema.hpp"
 
 /// The subcommands, one file each. `add_<name>` registers its options and, as its callback, its work; the
 /// work reports failure by the exceptions of base/error.hpp, which main turns into one line and an exit code.
@@ -28,13 +28,13 @@ class CaseArguments {
   std::string file;
   std::vector<std::string> set;
 
-  const io::Case& read() const { return case_file().config(); }
-  /// See io::CaseFile.
+  const input::Case& read() const { return case_file().config(); }
+  /// See input::CaseFile.
   std::string with_place(const std::string& message) const { return case_file().with_place(message); }
 
  private:
-  const io::CaseFile& case_file() const;
-  mutable std::optional<io::CaseFile> case_file_;  ///< once read
+  const input::CaseFile& case_file() const;
+  mutable std::optional<input::CaseFile> case_file_;  ///< once read
 };
 
 /// Adds them to a subcommand; filled when the command line is parsed. The subcommand's callback must keep the

@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
-#include "io/text.hpp"
+#include "files/text.hpp"
 #include "run/run.hpp"
 #include "run/warnings.hpp"
 
@@ -19,7 +19,7 @@ std::string fastest_wavelength(const stability::WellPosedness& w) {
 }
 
 void print_info(const CaseArguments& arguments) {
-  const io::Case& config = arguments.read();
+  const input::Case& config = arguments.read();
   run::Info info;
   try {
     info = run::info(config);
@@ -30,7 +30,7 @@ void print_info(const CaseArguments& arguments) {
   const auto line = [&](const char* what, const std::string& value) {
     text += fmt::format("{:<32}{}\n", what, value);
   };
-  if (!config.title.empty()) line("title", io::one_line(config.title));
+  if (!config.title.empty()) line("title", files::one_line(config.title));
   line("longitudinal wave speed c_L", fmt::format("{:.1f} m/s", info.speeds.c_L));
   line("shear wave speed c_S", fmt::format("{:.1f} m/s", info.speeds.c_S));
   line("Rayleigh wave speed c_R", fmt::format("{:.1f} m/s", info.speeds.c_R));
@@ -43,7 +43,7 @@ void print_info(const CaseArguments& arguments) {
   line("steps to the end", fmt::format("{}", info.n_steps));
   if (info.needs.ramp_steps > 0)
     line("steps of the ramp before", fmt::format("about {:.3g}", static_cast<double>(info.needs.ramp_steps)));
-  const auto statics = info.solver_bytes > 0 ? fmt::format(" ({})", solve::name_of(info.solver)) : "";
+  const auto statics = info.solver_bytes > 0 ? fmt::format(" ({})", statics::name_of(info.solver)) : "";
   line("memory", fmt::format("{:.3g} GB, of it {:.3g} GB for the statics{}", info.memory_bytes * 1e-9,
                              info.solver_bytes * 1e-9, statics));
   const auto& n = info.needs;

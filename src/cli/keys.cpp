@@ -6,7 +6,7 @@ namespace slipfront::cli {
 
 void add_keys(Command& app) {
   Command* command = app.add_subcommand("keys", "Print the reference of all keys of a case file (Markdown)");
-  command->callback([] { print_output(io::schema_reference()); });
+  command->callback([] { print_output(input::schema_reference()); });
 }
 
 }  // namespace slipfront::cli

@@ -9,8 +9,8 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/log.hpp"
 #include "cli/print.hpp"
-#include "io/log.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -72,7 +72,7 @@ void add_reproduce(Command& app) {
     options->experiment = *experiment;
     options->open_choices = *open_choices;
     catch_interrupts();
-    std::optional<io::Progress> progress;
+    std::optional<cli::Progress> progress;
     const auto report =
         paper::reproduce(*options, [&](std::size_t done, std::size_t total, const std::string&) {
           if (!progress) progress.emplace("runs", static_cast<std::int64_t>(total));

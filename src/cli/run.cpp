@@ -9,10 +9,10 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/log.hpp"
 #include "cli/print.hpp"
 #include "fronts/fit.hpp"
-#include "io/folder.hpp"
-#include "io/log.hpp"
+#include "results/folder.hpp"
 #include "run/needs.hpp"
 #include "run/session.hpp"
 
@@ -65,13 +65,13 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
 run::SessionHooks hooks(bool quiet) {
   struct Shown {
     std::string part;
-    std::unique_ptr<io::Progress> progress;
+    std::unique_ptr<cli::Progress> progress;
   };
   auto shown = std::make_shared<Shown>();
   run::SessionHooks hooks;
   // The total is known only when the first step is done.
   hooks.progress = [quiet, shown](const char* part, std::int64_t step, std::int64_t total) {
-    if (shown->part != part) shown->progress = std::make_unique<io::Progress>(part, total, quiet);
+    if (shown->part != part) shown->progress = std::make_unique<cli::Progress>(part, total, quiet);
     shown->part = part;
     shown->progress->update(step);
   };
@@ -80,24 +80,24 @@ run::SessionHooks hooks(bool quiet) {
     return checkpoint_wanted() ? run::Request::keep : run::Request::none;
   };
   hooks.note = [quiet, shown](const std::string& note) {
-    if (!shown->progress) shown->progress = std::make_unique<io::Progress>("", 1, quiet);
+    if (!shown->progress) shown->progress = std::make_unique<cli::Progress>("", 1, quiet);
     shown->progress->note("note: " + note);
   };
   return hooks;
 }
 
 /// What to say of a run that has not come to its end.
-std::string what_was_kept(const io::ResultFolder& folder) {
+std::string what_was_kept(const results::ResultFolder& folder) {
   return fmt::format("what there is was kept in {}", folder.unfinished().string());
 }
 
-std::string how_to_go_on(const io::ResultFolder& folder) {
+std::string how_to_go_on(const results::ResultFolder& folder) {
   return fmt::format("{}; slipfront run --restart {} goes on with it", what_was_kept(folder),
                      folder.dir().string());
 }
 
 run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& options,
-                           io::ResultFolder& folder, const std::optional<io::Case>& config) {
+                           results::ResultFolder& folder, const std::optional<input::Case>& config) {
   const auto hooks = cli::hooks(options.quiet);
   if (options.restart) return run::go_on(folder, config ? &*config : nullptr, options.session, hooks);
   try {
@@ -108,7 +108,8 @@ run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& o
 }
 
 /// Refuses what the machine cannot hold before anything is written.
-void require_fit(const CaseArguments& arguments, const io::Case& config, const std::filesystem::path& dir) {
+void require_fit(const CaseArguments& arguments, const input::Case& config,
+                 const std::filesystem::path& dir) {
   try {
     run::require_fit(config, dir);
   } catch (const UserError& error) {
@@ -117,7 +118,7 @@ void require_fit(const CaseArguments& arguments, const io::Case& config, const s
 }
 
 void run_case(const CaseArguments& arguments, const RunArguments& options) {
-  std::optional<io::Case> config;
+  std::optional<input::Case> config;
   if (!arguments.file.empty()) config = arguments.read();
   const bool compares_nothing = !config && !arguments.set.empty();
   if (options.restart ? options.dir || options.overwrite || compares_nothing : !config || !options.dir)
@@ -126,7 +127,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
         "slipfront run --help");
   if (std::isnan(options.session.keep_every_wall_s) || std::isnan(options.session.keep_every_s))
     throw UserError("slipfront: --checkpoint-every must be a number of seconds, is nan");
-  io::ResultFolder folder(options.folder(), run::run_work);
+  results::ResultFolder folder(options.folder(), run::run_work);
   if (options.restart && !folder.has_unfinished() && run::is_complete(folder.dir())) {
     if (config) run::require_same_case(*config, folder.dir());
     if (!options.quiet) print("{}: is complete\n", folder.dir().string());
@@ -139,9 +140,9 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
   catch_interrupts();
   try {
     const auto [result, initial] = run_or_go_on(arguments, options, folder, config);
-    if (result.event.end == solve::EventEnd::blow_up)
+    if (result.event.end == motion::EventEnd::blow_up)
       throw BlowUp(result.event.blow_up + "; " + what_was_kept(folder));
-    if (result.event.end == solve::EventEnd::interrupted)
+    if (result.event.end == motion::EventEnd::interrupted)
       throw Interrupted(
           fmt::format("interrupted at t = {:.4g} s; {}", result.event.time_s, how_to_go_on(folder)));
     if (!options.quiet) print_summary(result, initial, folder.dir().string());

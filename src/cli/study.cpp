@@ -9,10 +9,10 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/log.hpp"
 #include "cli/print.hpp"
-#include "io/folder.hpp"
-#include "io/log.hpp"
 #include "paper/open_choices.hpp"
+#include "results/folder.hpp"
 #include "run/checkpoint.hpp"
 #include "study/convergence.hpp"
 #include "study/interface_step.hpp"
@@ -48,11 +48,11 @@ void add_target(Command& command, Target& target) {
 /// @param study  given the monitor, the folder to write to and that of the runs that are done
 template <class Study>
 void run_study(const std::string& name, const CaseArguments* arguments, const Target& target, Study&& study) {
-  io::ResultFolder folder(target.dir, fmt::format("study {} with {}", name, run::program_identity()));
+  results::ResultFolder folder(target.dir, fmt::format("study {} with {}", name, run::program_identity()));
   folder.require_empty(target.overwrite, true);
   folder.begin_or_resume();
   catch_interrupts();
-  std::optional<io::Progress> progress;
+  std::optional<cli::Progress> progress;
   const study::StudyMonitor monitor = [&](std::size_t done, std::size_t n) {
     if (!progress) progress.emplace("runs", static_cast<std::int64_t>(n), target.quiet);
     progress->update(static_cast<std::int64_t>(done));
@@ -99,7 +99,7 @@ void print_table(const study::Convergence& result, const std::string& dir) {
 }
 
 void study_convergence(const CaseArguments& arguments, const StudyArguments& study) {
-  const io::Case config = arguments.read();
+  const input::Case config = arguments.read();
   study::plan_convergence(config, study.options);  // mistakes in the options, before a folder is made
   study::Convergence result;
   run_study("convergence", &arguments, study.target,
@@ -141,7 +141,7 @@ void print_table(const study::InterfaceStep& result, const std::string& dir) {
 }
 
 void study_interface_step(const CaseArguments& arguments, const InterfaceStepArguments& study) {
-  const io::Case config = arguments.read();
+  const input::Case config = arguments.read();
   study::InterfaceStep result;
   run_study("interface-step", &arguments, study.target,
             [&](const study::StudyMonitor& monitor, const auto& dir, const auto& kept) {

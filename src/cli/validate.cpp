@@ -14,7 +14,7 @@ namespace slipfront::cli {
 namespace {
 
 void validate(const CaseArguments& arguments) {
-  const io::Case& config = arguments.read();
+  const input::Case& config = arguments.read();
   try {
     run::check(config);
   } catch (const UserError& error) {

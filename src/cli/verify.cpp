@@ -9,8 +9,8 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/print.hpp"
-#include "io/archive.hpp"
-#include "io/folder.hpp"
+#include "results/archive.hpp"
+#include "results/folder.hpp"
 #include "run/checkpoint.hpp"
 #include "verify/verification.hpp"
 
@@ -39,19 +39,19 @@ std::vector<verify::Verification> chosen(const std::vector<std::string>& names) 
 /// The outcome of a problem, or what an interrupted verification has found of it.
 /// @param folder  where outcomes are kept, or null
 verify::Outcome outcome_of(const verify::Verification& problem, verify::Effort effort,
-                           const io::ResultFolder* folder) {
+                           const results::ResultFolder* folder) {
   if (folder == nullptr) return problem.run(effort);
   const auto file = folder->state() / (problem.name + ".bin");
   verify::Outcome outcome;
-  if (io::is_there(file)) {
-    io::InputArchive archive(file);
+  if (files::is_there(file)) {
+    results::InputArchive archive(file);
     archive(outcome);
     archive.close();
     return outcome;
   }
   outcome = problem.run(effort);
   verify::write_outcome(folder->unfinished(), problem, effort, outcome);
-  io::OutputArchive archive(file);
+  results::OutputArchive archive(file);
   archive(outcome);
   archive.close();
   return outcome;
@@ -63,7 +63,7 @@ void run_verifications(const VerifyArguments& arguments) {
     for (const auto& v : some) print("{:<22}{}\n", v.name, v.title);
     return;
   }
-  std::optional<io::ResultFolder> folder;
+  std::optional<results::ResultFolder> folder;
   if (!arguments.dir.empty()) {
     folder.emplace(arguments.dir, fmt::format("verify{} {} with {}", arguments.quick ? " --quick" : "",
                                               fmt::join(arguments.names, " "), run::program_identity()));

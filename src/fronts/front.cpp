@@ -32,11 +32,11 @@ struct FirstOnsets {
   std::vector<std::size_t> index;
 };
 
-FirstOnsets first_onsets(const SlipRecord& record) {
+FirstOnsets first_onsets(const record::SlipRecord& record) {
   FirstOnsets first{std::vector<double>(record.x_m.size(), infinity),
                     std::vector<std::size_t>(record.x_m.size())};
   for (std::size_t k = 0; k < record.onsets.size(); ++k) {
-    const Onset& onset = record.onsets[k];
+    const record::Onset& onset = record.onsets[k];
     SLIPFRONT_ASSERT(onset.node >= 0 && onset.node < std::ssize(record.x_m),
                      "onsets name nodes of the interface");
     if (onset.time_s < first.time_s[onset.node]) {
@@ -53,11 +53,11 @@ struct SlipTimes {
   std::vector<std::vector<double>> end_s;
 };
 
-SlipTimes slip_times(const SlipRecord& record) {
+SlipTimes slip_times(const record::SlipRecord& record) {
   SlipTimes times{std::vector<std::vector<double>>(record.x_m.size()),
                   std::vector<std::vector<double>>(record.x_m.size())};
-  for (const Onset& onset : record.onsets) times.begin_s[onset.node].push_back(onset.time_s);
-  for (const Stop& stop : record.stops) {
+  for (const record::Onset& onset : record.onsets) times.begin_s[onset.node].push_back(onset.time_s);
+  for (const record::Stop& stop : record.stops) {
     SLIPFRONT_ASSERT(stop.node >= 0 && stop.node < std::ssize(record.x_m),
                      "stops name nodes of the interface");
     times.end_s[stop.node].push_back(stop.time_s);
@@ -89,7 +89,7 @@ struct Passage {
   std::vector<std::size_t> onset;  // the onset, in record.onsets, by which it passes
 };
 
-Passage passage(const SlipRecord& record, const FirstOnsets& first, const Path& path) {
+Passage passage(const record::SlipRecord& record, const FirstOnsets& first, const Path& path) {
   const std::size_t n = path.nodes.size();
   Passage tip{std::vector<double>(n), std::vector<double>(n), std::vector<std::size_t>(n)};
   double earliest_s = infinity;
@@ -144,7 +144,7 @@ double tip_speed_m_per_s(const Passage& tip, double run_m, double l_star_m, Spee
 }
 
 /// Tractions of a node at an onset; undefined beyond the halo.
-Traction traction_at(const SlipRecord& record, std::size_t onset, int node) {
+record::Traction traction_at(const record::SlipRecord& record, std::size_t onset, int node) {
   const int offset = node - record.onsets[onset].node;
   if (std::abs(offset) > record.halo) return {undefined, undefined};
   const int index = offset + record.halo;
@@ -152,15 +152,15 @@ Traction traction_at(const SlipRecord& record, std::size_t onset, int node) {
 }
 
 /// Tractions of `node` when the tip is at run_m, which it has to reach before it reaches the node.
-Traction traction_ahead(const SlipRecord& record, const Passage& tip, double run_m, int node,
-                        double reaches_node_s) {
+record::Traction traction_ahead(const record::SlipRecord& record, const Passage& tip, double run_m, int node,
+                                double reaches_node_s) {
   Bracket at = bracket(tip, run_m);
   if (at.fraction < position_tolerance) at.fraction = 0.0;
   if (at.fraction > 1.0 - position_tolerance) at.fraction = 1.0;
   if (time_at(tip, at) >= reaches_node_s) return {undefined, undefined};  // a jump
-  const Traction ahead = traction_at(record, tip.onset[at.ahead], node);
+  const record::Traction ahead = traction_at(record, tip.onset[at.ahead], node);
   if (at.fraction == 1.0) return ahead;
-  const Traction behind = traction_at(record, tip.onset[at.behind], node);
+  const record::Traction behind = traction_at(record, tip.onset[at.behind], node);
   if (at.fraction == 0.0) return behind;
   return {interpolate(behind.t_Pa, ahead.t_Pa, at.fraction),
           interpolate(behind.p_Pa, ahead.p_Pa, at.fraction)};
@@ -194,7 +194,7 @@ SlipMode mode_of(const std::vector<FrontPoint>& points, const FrontOptions& opti
   return SlipMode::mixed;
 }
 
-Front measure(const SlipRecord& record, const StaticState& state, const FirstOnsets& first,
+Front measure(const record::SlipRecord& record, const record::StaticState& state, const FirstOnsets& first,
               const SlipTimes& slip, const Path& path, const FrontOptions& options) {
   Front front;
   front.direction = path.direction;
@@ -214,12 +214,12 @@ Front measure(const SlipRecord& record, const StaticState& state, const FirstOns
           tip_speed_m_per_s(tip, run_m, l_star_m, options.speed_interval, record.resolution_s);
     point.t_s_Pa = state.t_s_Pa[node];
     point.p_s_Pa = state.p_s_Pa[node];
-    const Traction at_onset = traction_at(record, first.index[node], node);
+    const record::Traction at_onset = traction_at(record, first.index[node], node);
     point.t_r_Pa = at_onset.t_Pa;
     point.p_r_Pa = at_onset.p_Pa;
 
     if (!is_excluded(options, point.x_m) && run_m > l_star_m * (1.0 + position_tolerance)) {
-      const Traction ahead = traction_ahead(record, tip, run_m - l_star_m, node, tip.time_s[k]);
+      const record::Traction ahead = traction_ahead(record, tip, run_m - l_star_m, node, tip.time_s[k]);
       point.t_d_Pa = ahead.t_Pa;
       point.p_d_Pa = ahead.p_Pa;
       if (!std::isnan(ahead.t_Pa)) {
@@ -244,7 +244,7 @@ Front measure(const SlipRecord& record, const StaticState& state, const FirstOns
 
 }  // namespace
 
-double energy_density_J_per_m3(const Traction& traction, const Elasticity& elasticity) {
+double energy_density_J_per_m3(const record::Traction& traction, const Elasticity& elasticity) {
   const double nu = elasticity.poissons_ratio;
   const double normal = elasticity.plane_strain ? 1.0 - nu * nu : 1.0;
   return (2.0 * (1.0 + nu) * traction.t_Pa * traction.t_Pa + normal * traction.p_Pa * traction.p_Pa) /
@@ -284,7 +284,7 @@ std::string_view name(SlipMode mode) {
   return "unknown";
 }
 
-std::vector<Front> find_fronts(const SlipRecord& record, const StaticState& state,
+std::vector<Front> find_fronts(const record::SlipRecord& record, const record::StaticState& state,
                                const FrontOptions& options) {
   const std::size_t n = record.x_m.size();
   SLIPFRONT_ASSERT(state.x_m == record.x_m && state.t_s_Pa.size() == n && state.p_s_Pa.size() == n,

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "fronts/record.hpp"
 #include "fronts/speed_interval.hpp"
+#include "record/record.hpp"
 
 namespace slipfront::fronts {
 
@@ -22,7 +22,7 @@ struct Elasticity {
 
 /// Heuristic energy density of the tractions (t, p) with the in-plane stress left out, J/m3 (Kammer et al.
 /// 2012, Eq. 2): (2 (1 + nu) t^2 + p^2) / (2E) in plane stress; p^2 becomes (1 - nu^2) p^2 in plane strain.
-double energy_density_J_per_m3(const Traction& traction, const Elasticity& elasticity);
+double energy_density_J_per_m3(const record::Traction& traction, const Elasticity& elasticity);
 
 /// A part of the interface.
 struct Zone {
@@ -125,7 +125,7 @@ struct Front {
 ///   where there are as many) is positive.
 ///
 /// @pre state.x_m equals record.x_m; onset nodes are valid; `around` is complete.
-std::vector<Front> find_fronts(const SlipRecord& record, const StaticState& state,
+std::vector<Front> find_fronts(const record::SlipRecord& record, const record::StaticState& state,
                                const FrontOptions& options);
 
 }  // namespace slipfront::fronts

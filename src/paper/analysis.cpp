@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "files/files.hpp"
 #include "fronts/measures.hpp"
-#include "io/files.hpp"
 
 namespace slipfront::paper {
 
@@ -133,7 +133,7 @@ void write_scorecard(const std::filesystem::path& file, const std::vector<Claim>
     }
     list.push_back(std::move(row));
   }
-  io::write_text(file, list.dump(2) + "\n");
+  files::write_text(file, list.dump(2) + "\n");
 }
 
 void write_analysis(const std::filesystem::path& file, const Reproduction& runs) {
@@ -165,7 +165,7 @@ void write_analysis(const std::filesystem::path& file, const Reproduction& runs)
                        {"points", points}});
   }
   json["studies"] = std::move(studies);
-  io::write_text(file, json.dump(2) + "\n");
+  files::write_text(file, json.dump(2) + "\n");
 }
 
 }  // namespace slipfront::paper

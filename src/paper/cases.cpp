@@ -18,8 +18,8 @@ constexpr double width_m = 0.2;
 /// than the default: docs/open-choices.md.
 constexpr double inferred_left_zone_m = 15e-3, inferred_left_amount = 10;
 
-io::Case base_case(interface::EventKind event, bool quick) {
-  io::Case c;  // the other defaults are the paper's
+input::Case base_case(interface::EventKind event, bool quick) {
+  input::Case c;  // the other defaults are the paper's
   c.event = event;
   if (event == interface::EventKind::left) {
     c.trigger.zone_m = inferred_left_zone_m;
@@ -29,11 +29,11 @@ io::Case base_case(interface::EventKind event, bool quick) {
   return c;
 }
 
-interface::VelocityWeakening& law(io::Case& c) {
+interface::VelocityWeakening& law(input::Case& c) {
   return std::get<interface::VelocityWeakening>(c.friction);
 }
 
-using Change = std::function<void(io::Case&)>;
+using Change = std::function<void(input::Case&)>;
 
 /// The events of one study point: the paper's with one change, at a history spacing that keeps their files
 /// small.
@@ -41,7 +41,7 @@ StudyPoint make_point(std::string value, double number, bool quick, std::vector<
                       const Change& change) {
   StudyPoint point{std::move(value), number, {}};
   for (const auto event : events) {
-    io::Case c = base_case(event, quick);
+    input::Case c = base_case(event, quick);
     c.output.history_interval_s = 2e-6;
     change(c);
     const char* name = event == interface::EventKind::left    ? "left"
@@ -78,62 +78,62 @@ std::vector<Study> studies(bool quick) {
   std::vector<Study> list;
   const auto numbers = [&](const char* name, const char* key, const char* why,
                            const std::vector<double>& values, const std::vector<interface::EventKind>& events,
-                           const std::function<void(io::Case&, double)>& set) {
+                           const std::function<void(input::Case&, double)>& set) {
     Study study{name, key, why, {}};
     for (const double value : values)
-      study.points.push_back(
-          make_point(fmt::format("{:g}", value), value, quick, events, [&](io::Case& c) { set(c, value); }));
+      study.points.push_back(make_point(fmt::format("{:g}", value), value, quick, events,
+                                        [&](input::Case& c) { set(c, value); }));
     list.push_back(std::move(study));
   };
 
   numbers("mu_k", "friction.mu_k", "kind of slip (C20, C21)", {0.4, 0.6, 0.8, 1.0, 1.1, 1.2}, all,
-          [](io::Case& c, double v) { law(c).mu_k = v; });
+          [](input::Case& c, double v) { law(c).mu_k = v; });
   numbers("alpha", "friction.alpha_m2_per_s2", "speed of fronts (C22)", {0.01, 0.03, 0.1, 0.3, 1}, all,
-          [](io::Case& c, double v) { law(c).alpha_m2_per_s2 = v; });
+          [](input::Case& c, double v) { law(c).alpha_m2_per_s2 = v; });
   const std::vector<int> columns = quick ? std::vector<int>{50, 100} : std::vector<int>{300, 200, 150, 100};
   Study mesh{"element_size", "plate.element_size_m", "dependence on the mesh", {}};
   for (const int n : columns)
     mesh.points.push_back(make_point(fmt::format("{:.3g}", width_m / n), width_m / n, quick, all,
-                                     [&](io::Case& c) { c.plate.element_size_m = width_m / n; }));
+                                     [&](input::Case& c) { c.plate.element_size_m = width_m / n; }));
   list.push_back(std::move(mesh));
   if (quick) return list;
 
   numbers("substeps", "time.interface_substeps", "dependence on the time step at the interface",
           {1, 3, 9, 18, 36, 72}, all,
-          [](io::Case& c, double v) { c.time.interface_substeps = static_cast<int>(v); });
+          [](input::Case& c, double v) { c.time.interface_substeps = static_cast<int>(v); });
   numbers("damping", "material.stiffness_damping_s", "dependence on the damping",
           {0.05e-6, 0.1e-6, 0.2e-6, 0.4e-6}, all,
-          [](io::Case& c, double v) { c.material.stiffness_damping_s = v; });
+          [](input::Case& c, double v) { c.material.stiffness_damping_s = v; });
 
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Study corner{"corner", "plate.corner", "rounding of the corners, not given in the paper", {}};
-  corner.points.push_back(make_point("relief", nan, quick, all, [](io::Case&) {}));
+  corner.points.push_back(make_point("relief", nan, quick, all, [](input::Case&) {}));
   corner.points.push_back(
-      make_point("none", nan, quick, all, [](io::Case& c) { c.plate.corner = mesh::Corner::none; }));
+      make_point("none", nan, quick, all, [](input::Case& c) { c.plate.corner = mesh::Corner::none; }));
   for (const double radius : {2e-3, 5e-3, 10e-3})
     corner.points.push_back(
-        make_point(fmt::format("fillet_{:g}mm", radius * 1e3), radius, quick, all, [&](io::Case& c) {
+        make_point(fmt::format("fillet_{:g}mm", radius * 1e3), radius, quick, all, [&](input::Case& c) {
           c.plate.corner = mesh::Corner::fillet;
           c.plate.fillet_radius_m = radius;
         }));
   list.push_back(std::move(corner));
 
   Study top{"top", "loading.top_during_tilt", "top edge held or free along x while it is tilted", {}};
-  top.points.push_back(make_point("held", nan, quick, all, [](io::Case&) {}));
-  top.points.push_back(make_point("free", nan, quick, all,
-                                  [](io::Case& c) { c.loading.top_during_tilt = solve::TopEdge::free; }));
+  top.points.push_back(make_point("held", nan, quick, all, [](input::Case&) {}));
+  top.points.push_back(make_point(
+      "free", nan, quick, all, [](input::Case& c) { c.loading.top_during_tilt = statics::TopEdge::free; }));
   list.push_back(std::move(top));
 
   numbers("trigger_amount", "event.trigger_amount", "strength of the trigger", {2, 3.5, 5, 7, 10}, triggered,
-          [](io::Case& c, double v) { c.trigger.amount = v; });
+          [](input::Case& c, double v) { c.trigger.amount = v; });
   numbers("trigger_zone", "event.trigger_zone_m", "length of the trigger zone", {5e-3, 10e-3, 15e-3},
-          triggered, [](io::Case& c, double v) { c.trigger.zone_m = v; });
+          triggered, [](input::Case& c, double v) { c.trigger.zone_m = v; });
   numbers("trigger_ramp", "event.trigger_ramp_s", "rise time of the trigger", {1e-6, 5e-6, 10e-6}, triggered,
-          [](io::Case& c, double v) { c.trigger.ramp_s = v; });
+          [](input::Case& c, double v) { c.trigger.ramp_s = v; });
   numbers("trigger_duration", "event.trigger_duration_s", "trigger taken away again", {15e-6, 30e-6, 60e-6},
-          triggered, [](io::Case& c, double v) { c.trigger.duration_s = v; });
+          triggered, [](input::Case& c, double v) { c.trigger.duration_s = v; });
   numbers("l_star", "fronts.l_star_m", "length over which speed and tractions are taken",
-          {0.67e-3, 1.33e-3, 2.67e-3, 5.33e-3}, all, [](io::Case& c, double v) { c.fronts.l_star_m = v; });
+          {0.67e-3, 1.33e-3, 2.67e-3, 5.33e-3}, all, [](input::Case& c, double v) { c.fronts.l_star_m = v; });
 
   // The ramp takes a third of a second of physical time: elements of 2 mm.
   Study method{"loading_method",
@@ -142,8 +142,8 @@ std::vector<Study> studies(bool quick) {
                {}};
   method.own_reference = true;
   for (const auto& [word, value] :
-       {std::pair{"direct", solve::LoadingMethod::direct}, {"ramp", solve::LoadingMethod::ramp}})
-    method.points.push_back(make_point(word, nan, quick, {spontaneous}, [&, m = value](io::Case& c) {
+       {std::pair{"direct", statics::LoadingMethod::direct}, {"ramp", statics::LoadingMethod::ramp}})
+    method.points.push_back(make_point(word, nan, quick, {spontaneous}, [&, m = value](input::Case& c) {
       c.plate.element_size_m = width_m / 100;
       c.loading.method = m;
     }));
@@ -154,7 +154,7 @@ std::vector<Study> studies(bool quick) {
 std::vector<Variation> variations(bool quick) {
   const auto make = [&](const char* name, const char* key, double value, const Change& change) {
     Variation variation{name, key, value, paper_cases(quick), {}};
-    const auto vary = [&](io::Case& c) {
+    const auto vary = [&](input::Case& c) {
       change(c);
       c.title += fmt::format(", {} = {:g}", key, value);
     };
@@ -171,11 +171,11 @@ std::vector<Variation> variations(bool quick) {
     return variation;
   };
   const double element_size_m = quick ? 4e-3 : 1e-3;
-  const int substeps = io::Case{}.time.interface_substeps / 2;
+  const int substeps = input::Case{}.time.interface_substeps / 2;
   return {make("mesh", "plate.element_size_m", element_size_m,
-               [=](io::Case& c) { c.plate.element_size_m = element_size_m; }),
+               [=](input::Case& c) { c.plate.element_size_m = element_size_m; }),
           make("step", "time.interface_substeps", substeps,
-               [=](io::Case& c) { c.time.interface_substeps = substeps; })};
+               [=](input::Case& c) { c.time.interface_substeps = substeps; })};
 }
 
 std::vector<Study> regularised_studies() {
@@ -189,22 +189,22 @@ std::vector<Study> regularised_studies() {
     study.own_reference = true;
     for (const int n : {600, 300, 150, 100})
       study.points.push_back(
-          make_point(fmt::format("{:.3g}", width_m / n), width_m / n, false, all, [&](io::Case& c) {
+          make_point(fmt::format("{:.3g}", width_m / n), width_m / n, false, all, [&](input::Case& c) {
             c.plate.element_size_m = width_m / n;
             change(c);
           }));
     list.push_back(std::move(study));
   };
   const auto delayed = [](Relaxed what, double time_s) {
-    return [=](io::Case& c) {
+    return [=](input::Case& c) {
       c.regularisation.relaxed = what;
       c.regularisation.time_s = time_s;
     };
   };
-  over_meshes("element_size", "the paper's law, without a length scale", [](io::Case&) {});
+  over_meshes("element_size", "the paper's law, without a length scale", [](input::Case&) {});
   over_meshes("element_size_strength", "strength relaxed over 0.5 us", delayed(Relaxed::strength, 0.5e-6));
   over_meshes("element_size_pressure", "pressure relaxed over 0.5 us", delayed(Relaxed::pressure, 0.5e-6));
-  over_meshes("element_size_undamped", "strength relaxed over 0.5 us, no bulk damping", [&](io::Case& c) {
+  over_meshes("element_size_undamped", "strength relaxed over 0.5 us, no bulk damping", [&](input::Case& c) {
     delayed(Relaxed::strength, 0.5e-6)(c);
     c.material.stiffness_damping_s = 0;
   });
@@ -225,7 +225,7 @@ std::vector<Study> regularised_studies() {
                {}};
   length.own_reference = true;
   for (const double l : {0.01e-6, 0.03e-6, 0.1e-6, 0.3e-6, 1e-6, 3e-6})
-    length.points.push_back(make_point(fmt::format("{:g}", l), l, false, all, [&](io::Case& c) {
+    length.points.push_back(make_point(fmt::format("{:g}", l), l, false, all, [&](input::Case& c) {
       c.regularisation = {Relaxed::strength, l, 0.1, std::numeric_limits<double>::infinity()};
     }));
   list.push_back(std::move(length));

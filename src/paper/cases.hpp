@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "io/case.hpp"
+#include "input/case.hpp"
 
 namespace slipfront::paper {
 
 /// A run of the reproduction.
 struct NamedCase {
   std::string name;  ///< its folder below the output folder
-  io::Case config;
+  input::Case config;
 };
 
 /// The paper's four events: spontaneous, left, right (mu_k = 0.6) and spontaneous_mu_k_1.0. The same as the

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "io/schema.hpp"
+#include "input/schema.hpp"
 #include "paper/main_fronts.hpp"
 #include "run/batch.hpp"
 
@@ -35,40 +35,42 @@ constexpr std::size_t n_triggers = 512, n_all = 256, n_quick = 4;
 void add_trigger(std::vector<OpenChoice>& list, EventKind event, const std::string& edge) {
   const interface::Trigger standard;
   const auto add = [&](const char* name, const char* key, const char* why, std::vector<double> levels,
-                       Between between, double standard_value, std::function<void(io::Case&, double)> set) {
+                       Between between, double standard_value,
+                       std::function<void(input::Case&, double)> set) {
     list.push_back(
         {edge + "_" + name, key, event, why, std::move(levels), {}, between, standard_value, std::move(set)});
   };
-  list.push_back({edge + "_form",
-                  "event.trigger_form",
-                  event,
-                  "the traction is \"increased manually\": by an amount, to a level, or against a lowered "
-                  "strength",
-                  {0, 1, 2},
-                  {"added", "raised", "weakened"},
-                  Between::nothing,
-                  0,
-                  [](io::Case& c, double v) { c.trigger.form = static_cast<TriggerForm>(std::lround(v)); }});
+  list.push_back(
+      {edge + "_form",
+       "event.trigger_form",
+       event,
+       "the traction is \"increased manually\": by an amount, to a level, or against a lowered "
+       "strength",
+       {0, 1, 2},
+       {"added", "raised", "weakened"},
+       Between::nothing,
+       0,
+       [](input::Case& c, double v) { c.trigger.form = static_cast<TriggerForm>(std::lround(v)); }});
   add("zone_m", "event.trigger_zone_m",
       "\"small\": 1 to 10 % of the interface; a zone of 3 elements still starts a front",
       {2e-3, 5e-3, 10e-3, 15e-3, 20e-3}, Between::logarithmic, standard.zone_m,
-      [](io::Case& c, double v) { c.trigger.zone_m = v; });
+      [](input::Case& c, double v) { c.trigger.zone_m = v; });
   add("added", "event.trigger_amount",
       "from just enough for a front, to 40 times what is missing to the strength", {2, 3.5, 5, 10, 20, 40},
-      Between::logarithmic, standard.amount, [](io::Case& c, double v) {
+      Between::logarithmic, standard.amount, [](input::Case& c, double v) {
         if (c.trigger.form == TriggerForm::added) c.trigger.amount = v;
       });
   add("raised", "event.trigger_amount", "from just above the strength to four times it", {1.05, 1.5, 2, 4},
-      Between::logarithmic, 1.5, [](io::Case& c, double v) {
+      Between::logarithmic, 1.5, [](input::Case& c, double v) {
         if (c.trigger.form == TriggerForm::raised) c.trigger.amount = v;
       });
   add("ramp_s", "event.trigger_ramp_s",
       "from within one step to the time that a longitudinal wave takes for 16 mm",
       {0.1e-6, 1e-6, 5e-6, 10e-6}, Between::logarithmic, standard.ramp_s,
-      [](io::Case& c, double v) { c.trigger.ramp_s = v; });
+      [](input::Case& c, double v) { c.trigger.ramp_s = v; });
   add("duration_s", "event.trigger_duration_s", "taken away behind the front, or held",
       {15e-6, 30e-6, 60e-6, std::numeric_limits<double>::infinity()}, Between::nothing, standard.duration_s,
-      [](io::Case& c, double v) { c.trigger.duration_s = v; });
+      [](input::Case& c, double v) { c.trigger.duration_s = v; });
 }
 
 void add_plate_and_loading(std::vector<OpenChoice>& list) {
@@ -80,8 +82,8 @@ void add_plate_and_loading(std::vector<OpenChoice>& list) {
                   {"held", "free"},
                   Between::nothing,
                   0,
-                  [](io::Case& c, double v) {
-                    c.loading.top_during_tilt = v == 0 ? solve::TopEdge::held : solve::TopEdge::free;
+                  [](input::Case& c, double v) {
+                    c.loading.top_during_tilt = v == 0 ? statics::TopEdge::held : statics::TopEdge::free;
                   }});
   list.push_back(
       {"corner",
@@ -92,7 +94,7 @@ void add_plate_and_loading(std::vector<OpenChoice>& list) {
        {"none", "relief", "fillet 2 mm", "fillet 5 mm", "fillet 10 mm"},
        Between::nothing,
        1,
-       [](io::Case& c, double v) {
+       [](input::Case& c, double v) {
          constexpr std::array radii_m = {2e-3, 5e-3, 10e-3};
          const auto k = std::lround(v);
          c.plate.corner = k == 0 ? mesh::Corner::none : k == 1 ? mesh::Corner::relief : mesh::Corner::fillet;
@@ -106,7 +108,7 @@ void add_plate_and_loading(std::vector<OpenChoice>& list) {
                   {},
                   Between::nothing,
                   plate_width_m / 300,
-                  [](io::Case& c, double v) { c.plate.element_size_m = v; }});
+                  [](input::Case& c, double v) { c.plate.element_size_m = v; }});
 }
 
 void add_numerics(std::vector<OpenChoice>& list) {
@@ -119,7 +121,7 @@ void add_numerics(std::vector<OpenChoice>& list) {
                   {},
                   Between::logarithmic,
                   0.9,
-                  [](io::Case& c, double v) { c.time.step_factor = v; }});
+                  [](input::Case& c, double v) { c.time.step_factor = v; }});
   list.push_back(
       {"substeps",
        "time.interface_substeps",
@@ -129,7 +131,7 @@ void add_numerics(std::vector<OpenChoice>& list) {
        {},
        Between::nothing,
        18,
-       [](io::Case& c, double v) { c.time.interface_substeps = static_cast<int>(std::lround(v)); }});
+       [](input::Case& c, double v) { c.time.interface_substeps = static_cast<int>(std::lround(v)); }});
   list.push_back({"contact",
                   "contact.algorithm",
                   {},
@@ -138,7 +140,7 @@ void add_numerics(std::vector<OpenChoice>& list) {
                   {"direct", "predictor_corrector"},
                   Between::nothing,
                   0,
-                  [](io::Case& c, double v) {
+                  [](input::Case& c, double v) {
                     c.contact = v == 0 ? interface::ContactAlgorithm::direct
                                        : interface::ContactAlgorithm::predictor_corrector;
                   }});
@@ -150,7 +152,7 @@ void add_numerics(std::vector<OpenChoice>& list) {
                   {"centred", "approach"},
                   Between::nothing,
                   0,
-                  [](io::Case& c, double v) {
+                  [](input::Case& c, double v) {
                     c.fronts.speed_interval =
                         v == 0 ? fronts::SpeedInterval::centred : fronts::SpeedInterval::approach;
                   }});
@@ -220,9 +222,10 @@ void add_space_filling(const std::vector<OpenChoice>& choices, Sample::Set set, 
 }
 
 /// The four events of a sample.
-std::array<io::Case, 4> cases_of(const std::vector<OpenChoice>& choices, const Sample& sample, bool quick) {
+std::array<input::Case, 4> cases_of(const std::vector<OpenChoice>& choices, const Sample& sample,
+                                    bool quick) {
   auto named = paper_cases(false);
-  std::array<io::Case, 4> cases;
+  std::array<input::Case, 4> cases;
   for (std::size_t e = 0; e < cases.size(); ++e) {
     auto& c = cases[e] = std::move(named[e].config);
     c.title.clear();
@@ -241,23 +244,23 @@ std::array<io::Case, 4> cases_of(const std::vector<OpenChoice>& choices, const S
 /// Events, by the text of their case, each once.
 class Events {
  public:
-  std::size_t place(const io::Case& config) {
-    const auto [found, is_new] = places_.try_emplace(io::to_toml(config), cases_.size());
+  std::size_t place(const input::Case& config) {
+    const auto [found, is_new] = places_.try_emplace(input::to_toml(config), cases_.size());
     if (is_new) cases_.push_back(config);
     return found->second;
   }
-  const std::vector<io::Case>& cases() const { return cases_; }
+  const std::vector<input::Case>& cases() const { return cases_; }
 
  private:
   std::map<std::string, std::size_t> places_;
-  std::vector<io::Case> cases_;
+  std::vector<input::Case> cases_;
 };
 
 /// Whether a sample's plate can be meshed: small fillets need small elements.
 class Possible {
  public:
-  bool operator()(const std::array<io::Case, 4>& cases) {
-    return std::ranges::all_of(cases, [this](const io::Case& c) {
+  bool operator()(const std::array<input::Case, 4>& cases) {
+    return std::ranges::all_of(cases, [this](const input::Case& c) {
       const auto [found, is_new] = known_.try_emplace(run::initial_state_key(c), true);
       if (is_new) found->second = can_be_meshed(c);
       return found->second;
@@ -265,7 +268,7 @@ class Possible {
   }
 
  private:
-  static bool can_be_meshed(const io::Case& config) {
+  static bool can_be_meshed(const input::Case& config) {
     try {
       run::check(config);
       return true;
@@ -446,7 +449,7 @@ OpenChoicesResult study_open_choices(
       "interrupted; the runs that were done are kept: give the same command again to go on", options.kept);
   batch.run(events.cases(), [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
     outcomes[k] = make_outcome("", r, initial);
-    if (r.event.end == solve::EventEnd::blow_up) outcomes[k].fronts.clear();
+    if (r.event.end == motion::EventEnd::blow_up) outcomes[k].fronts.clear();
     ++done;
   });
   result.n_runs = outcomes.size();

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fronts/fit.hpp"
-#include "io/case.hpp"
+#include "input/case.hpp"
 #include "paper/scorecard.hpp"
 
 namespace slipfront::paper {
@@ -23,7 +23,7 @@ struct OpenChoice {
   std::vector<std::string> words;             ///< of the levels where they are no numbers
   enum class Between { nothing, linear, logarithmic } between = Between::nothing;  ///< values between levels
   double standard = 0;  ///< the case's without the study
-  std::function<void(io::Case&, double)> set;
+  std::function<void(input::Case&, double)> set;
 
   /// The value at a share of the range, 0 to 1.
   double at(double share) const;

@@ -14,10 +14,10 @@ namespace slipfront::paper {
 /// What analysis needs of a run, without its histories and fields.
 struct Outcome {
   std::string name;
-  io::Case config;
+  input::Case config;
   run::WaveSpeeds speeds;
   std::vector<fronts::Front> fronts;  ///< at least criteria_length_m long
-  fronts::StaticState common;
+  record::StaticState common;
   double contact_from_m = 0, contact_to_m = 0;
   double inside_from_m = 0, inside_to_m = 0;
   double peak_x_m = 0;         ///< of t_s/p_s inside

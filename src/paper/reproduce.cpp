@@ -9,11 +9,11 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
-#include "io/checksum.hpp"
-#include "io/files.hpp"
-#include "io/folder.hpp"
+#include "files/checksum.hpp"
+#include "files/files.hpp"
 #include "paper/analysis.hpp"
 #include "paper/open_choices.hpp"
+#include "results/folder.hpp"
 #include "run/batch.hpp"
 #include "run/checkpoint.hpp"
 
@@ -24,7 +24,7 @@ namespace {
 /// Runs cases and writes each to its folder.
 class Runner {
  public:
-  Runner(const ReproduceOptions& options, const io::ResultFolder& folder, const RunMonitor& monitor,
+  Runner(const ReproduceOptions& options, const results::ResultFolder& folder, const RunMonitor& monitor,
          std::size_t total)
       : dir_(folder.unfinished()),
         monitor_(monitor),
@@ -38,7 +38,7 @@ class Runner {
 
   /// The outcomes, in the order of the cases.
   std::vector<Outcome> run(const std::vector<NamedCase>& cases) {
-    std::vector<io::Case> configs;
+    std::vector<input::Case> configs;
     for (const auto& c : cases) configs.push_back(c.config);
     std::vector<Outcome> outcomes(cases.size());
     batch_.run(
@@ -48,7 +48,7 @@ class Runner {
           {
             const std::lock_guard lock(files_);  // HDF5 need not be built for several threads
             if (!was_kept) write(dir_ / name, result, initial);
-            if (result.event.end == solve::EventEnd::blow_up)
+            if (result.event.end == motion::EventEnd::blow_up)
               blow_ups.push_back(name + ": " + result.event.blow_up);
           }
           outcomes[k] = make_outcome(config_name(name), result, initial);
@@ -72,8 +72,8 @@ class Runner {
   /// Whether a run's folder is complete and as it was written.
   static bool is_written(const std::filesystem::path& dir) {
     try {
-      io::require_intact(dir);
-      return io::is_there(dir / io::checksum_list);
+      files::require_intact(dir);
+      return files::is_there(dir / files::checksum_list);
     } catch (const UserError&) {
       return false;
     }
@@ -137,7 +137,7 @@ std::vector<NamedCase> list_cases(const Variation& variation) {
   return list;
 }
 
-/// What is done, for io::ResultFolder: a reproduction goes on behind one of the same runs by the same
+/// What is done, for results::ResultFolder: a reproduction goes on behind one of the same runs by the same
 /// program.
 std::string work(const ReproduceOptions& options) {
   return fmt::format("reproduce{}{}{} with {}", options.quick ? " --quick" : "",
@@ -149,12 +149,12 @@ std::string work(const ReproduceOptions& options) {
 
 ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& monitor) {
   SLIPFRONT_ASSERT(!(options.regularised && options.sensitivity), "no variations of the delayed friction");
-  std::optional<io::Experiment> experiment;
+  std::optional<input::Experiment> experiment;
   if (!options.experiment.empty())
-    experiment = io::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
+    experiment = input::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
   std::optional<TriggerSample> triggers;
   if (!options.open_choices.empty()) triggers = read_trigger_sample(options.open_choices);
-  io::ResultFolder folder(options.dir, work(options));
+  results::ResultFolder folder(options.dir, work(options));
   folder.require_empty(options.overwrite, true);
   folder.begin_or_resume();
   const auto events = paper_cases(options.quick);
@@ -197,7 +197,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
 
   nlohmann::ordered_json timings;
   for (const auto& t : report.timings) timings.push_back({{"part", t.part}, {"wall_s", t.wall_s}});
-  io::write_text(folder.unfinished() / "timings.json", timings.dump(2) + "\n");
+  files::write_text(folder.unfinished() / "timings.json", timings.dump(2) + "\n");
   folder.publish();
   report.warnings = runner.blow_ups;
   if (!event_blow_ups.empty()) throw BlowUp(event_blow_ups.front());

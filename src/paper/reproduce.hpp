@@ -16,7 +16,7 @@ struct ReproduceOptions {
   bool regularised = false;            ///< regularised_studies in place of the paper's
   bool sensitivity = false;            ///< add the variations to the scorecard
   bool overwrite = false;              ///< replace the results of an earlier reproduction in `dir`
-  std::filesystem::path experiment;    ///< CSV file of measured points (io::read_experiment); empty: none
+  std::filesystem::path experiment;    ///< CSV file of measured points (input::read_experiment); empty: none
   std::filesystem::path open_choices;  ///< folder of a study of the open choices, for C11b; empty: none
   int threads = 2;                     ///< runs side by side; each result is the same for any number
 };

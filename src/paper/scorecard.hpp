@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/experiment.hpp"
+#include "input/experiment.hpp"
 #include "paper/outcome.hpp"
 
 namespace slipfront::paper {
@@ -62,8 +62,8 @@ struct TriggerSample {
 struct Reproduction {
   Outcome spontaneous, left, right, spontaneous_mu_k_1;
   std::vector<StudyOutcome> studies;
-  std::optional<io::Experiment> experiment;    ///< measured points, where the user has a file of them
-  std::optional<TriggerSample> triggers = {};  ///< where the open choices were studied
+  std::optional<input::Experiment> experiment;  ///< measured points, where the user has a file of them
+  std::optional<TriggerSample> triggers = {};   ///< where the open choices were studied
 };
 
 /// Tests every claim; each row says how. Rows whose id ends in + are further tests beside the first one, rows

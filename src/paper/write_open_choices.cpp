@@ -8,8 +8,8 @@
 
 #include "base/error.hpp"
 #include "base/version.hpp"
-#include "io/checksum.hpp"
-#include "io/files.hpp"
+#include "files/checksum.hpp"
+#include "files/files.hpp"
 #include "paper/open_choices.hpp"
 
 namespace slipfront::paper {
@@ -194,15 +194,15 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
                {"standard", outcome_json(result, result.outcomes.front())},
                {"chosen", nullptr}};
   if (result.chosen >= 0) json["chosen"] = outcome_json(result, result.outcomes[result.chosen]);
-  io::write_text(dir / "open_choices.csv", csv(result));
-  io::write_text(dir / summary_file, json.dump(2) + "\n");
+  files::write_text(dir / "open_choices.csv", csv(result));
+  files::write_text(dir / summary_file, json.dump(2) + "\n");
 }
 
 TriggerSample read_trigger_sample(const std::filesystem::path& dir) {
-  if (!io::is_there(dir / summary_file))
+  if (!files::is_there(dir / summary_file))
     throw UserError("{}: holds no {}; give the folder of slipfront study open-choices", dir.string(),
                     summary_file);
-  io::require_intact(dir);
+  files::require_intact(dir);
   std::ifstream stream(dir / summary_file);
   const auto json = Json::parse(stream, nullptr, false);
   const auto count = [&](const char* key) -> int {

@@ -52,9 +52,9 @@ Batch::Batch(int threads, std::function<bool()> go_on, std::string interruption,
   if (!kept.empty()) kept_.emplace(kept);
 }
 
-void Batch::run(std::span<const io::Case> cases, const Done& done, const Usable& usable) {
+void Batch::run(std::span<const input::Case> cases, const Done& done, const Usable& usable) {
   std::vector<std::size_t> missing;
-  std::vector<const io::Case*> missing_cases;
+  std::vector<const input::Case*> missing_cases;
   for (std::size_t k = 0; k < cases.size(); ++k) {
     Result result;
     InitialState initial;
@@ -70,7 +70,7 @@ void Batch::run(std::span<const io::Case> cases, const Done& done, const Usable&
     const std::size_t k = missing[m];
     const auto& initial = states_.at(initial_state_key(cases[k]));
     const auto result = run_event(cases[k], initial, monitor());
-    if (result.event.end == solve::EventEnd::interrupted) throw Interrupted(interruption_);
+    if (result.event.end == motion::EventEnd::interrupted) throw Interrupted(interruption_);
     done(k, result, initial, false);
     if (kept_) {
       const std::lock_guard lock(mutex_);
@@ -80,8 +80,8 @@ void Batch::run(std::span<const io::Case> cases, const Done& done, const Usable&
   });
 }
 
-void Batch::compute_initial_states(std::span<const io::Case* const> cases) {
-  std::vector<std::pair<std::string, const io::Case*>> missing;
+void Batch::compute_initial_states(std::span<const input::Case* const> cases) {
+  std::vector<std::pair<std::string, const input::Case*>> missing;
   for (const auto* config : cases) {
     auto key = initial_state_key(*config);
     if (states_.contains(key)) continue;
@@ -103,7 +103,7 @@ bool Batch::wanted() {
   return !interrupted_;
 }
 
-solve::Monitor Batch::monitor() {
+motion::Monitor Batch::monitor() {
   return [this](std::int64_t, std::int64_t) { return wanted(); };
 }
 

@@ -34,12 +34,12 @@ class Batch {
   /// Runs all cases, in their order where there are more than threads, but for those that were kept. Initial
   /// states are kept for later calls.
   /// @throws Interrupted, and what a run or `done` throws first.
-  void run(std::span<const io::Case> cases, const Done& done, const Usable& usable = {});
+  void run(std::span<const input::Case> cases, const Done& done, const Usable& usable = {});
 
  private:
-  void compute_initial_states(std::span<const io::Case* const> cases);
+  void compute_initial_states(std::span<const input::Case* const> cases);
   bool wanted();
-  solve::Monitor monitor();
+  motion::Monitor monitor();
 
   int threads_;
   std::function<bool()> go_on_;

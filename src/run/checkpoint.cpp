@@ -38,33 +38,34 @@ std::map<std::int64_t, fs::path> numbered(const fs::path& dir) {
 
 const std::string& program_identity() {
   static const std::string identity =
-      fmt::format("{}, build {}", version_line(), io::sha256_of_file("/proc/self/exe").substr(0, 16));
+      fmt::format("{}, build {}", version_line(), files::sha256_of_file("/proc/self/exe").substr(0, 16));
   return identity;
 }
 
-InitialState read_initial_state(io::InputArchive& archive, const io::Case& config) {
+InitialState read_initial_state(results::InputArchive& archive, const input::Case& config) {
   InitialState initial;
   initial.mesh = check(config);
   archive(initial);
   const std::size_t n = initial.mesh.lower.size();
   const auto fits = [&](const auto& states) {
-    return solve::has_nodes(states.common, n) && solve::has_nodes(states.spontaneous, n);
+    return statics::has_nodes(states.common, n) && statics::has_nodes(states.spontaneous, n);
   };
   if (initial.tributary_m.size() != n || !fits(initial) ||
-      (initial.ramp && (!fits(*initial.ramp) || !fronts::is_consistent(initial.ramp->record))))
+      (initial.ramp && (!fits(*initial.ramp) || !record::is_consistent(initial.ramp->record))))
     throw UserError("the state before the event that was kept is of another plate");
   return initial;
 }
 
-void Checkpoints::keep(const CheckpointHead& head, const std::function<void(io::OutputArchive&)>& write) {
+void Checkpoints::keep(const CheckpointHead& head,
+                       const std::function<void(results::OutputArchive&)>& write) {
   auto files = numbered(dir_);
   const auto number = files.empty() ? 1 : files.rbegin()->first + 1;
-  io::OutputArchive archive(dir_ / fmt::format("{}{:06}{}", prefix, number, suffix));
+  results::OutputArchive archive(dir_ / fmt::format("{}{:06}{}", prefix, number, suffix));
   archive(magic, head);
   write(archive);
   archive.close();
   while (files.size() >= n_kept) {
-    io::remove_file(files.begin()->second);
+    files::remove_file(files.begin()->second);
     files.erase(files.begin());
   }
 }

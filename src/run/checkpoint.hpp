@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "io/archive.hpp"
+#include "results/archive.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::run {
@@ -32,7 +32,7 @@ struct CheckpointHead {
 
 /// Reads what was kept of a case's initial state, and makes its mesh.
 /// @throws UserError where it is of another plate
-InitialState read_initial_state(io::InputArchive& archive, const io::Case& config);
+InitialState read_initial_state(results::InputArchive& archive, const input::Case& config);
 
 /// The checkpoints in a folder: the last two are kept, numbered as they come.
 class Checkpoints {
@@ -41,12 +41,12 @@ class Checkpoints {
 
   /// Writes a checkpoint by `write`, and when that is on the device removes the last but two.
   /// @throws WriteError, the earlier ones being left.
-  void keep(const CheckpointHead& head, const std::function<void(io::OutputArchive&)>& write);
+  void keep(const CheckpointHead& head, const std::function<void(results::OutputArchive&)>& write);
 
   struct Kept {
     explicit Kept(const std::filesystem::path& file) : rest(file) {}
     CheckpointHead head;
-    io::InputArchive rest;
+    results::InputArchive rest;
   };
   /// The last one that is intact, null where there is none; of others behind it `note` is told.
   std::unique_ptr<Kept> last(const std::function<void(const std::string&)>& note) const;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "fronts/record.hpp"
-#include "io/case.hpp"
+#include "input/case.hpp"
 #include "mesh/plate.hpp"
-#include "solve/settings.hpp"
+#include "motion/settings.hpp"
+#include "record/record.hpp"
+#include "statics/settings.hpp"
 
 namespace slipfront::run {
 
@@ -12,19 +13,19 @@ namespace slipfront::run {
 double approximate_unknowns(const mesh::Plate& plate);
 
 /// Refuses a plate in motion that would not fit into the memory, before anything is built.
-void require_plate_fits(const io::Case& config);
+void require_plate_fits(const input::Case& config);
 
 /// Of the top edge where the plate is loaded by a ramp, and during the event.
-double top_speed_m_per_s(const io::Case& config);
+double top_speed_m_per_s(const input::Case& config);
 
 /// What the plate's shape leaves of loading.solver.
-solve::StaticSolver wanted_solver(const io::Case& config);
+statics::StaticSolver wanted_solver(const input::Case& config);
 
 /// Whether the tractions of the interface are given: no statics, no ramp.
-bool is_prestressed(const io::Case& config);
+bool is_prestressed(const input::Case& config);
 
 /// Given tractions at the nodes of the interface, from their file if there is one.
 /// @throws UserError
-fronts::StaticState prescribed_tractions(const io::Prestress& prestress, const mesh::Mesh& mesh);
+record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh);
 
 }  // namespace slipfront::run

@@ -2,13 +2,13 @@
 #include "run/finished.hpp"
 
 #include "base/error.hpp"
-#include "io/archive.hpp"
+#include "results/archive.hpp"
 #include "run/checkpoint.hpp"
 
 namespace slipfront::run {
 namespace {
 
-solve::Equilibrium at_interface(const solve::Equilibrium& state) {
+statics::Equilibrium at_interface(const statics::Equilibrium& state) {
   return {{},
           {},
           state.shear_m,
@@ -35,31 +35,32 @@ InitialState at_interface(const InitialState& state) {
   light.solver_bytes = state.solver_bytes;
   light.wall_s = state.wall_s;
   if (state.ramp)
-    light.ramp = solve::Ramp{at_interface(state.ramp->common), at_interface(state.ramp->spontaneous),
-                             state.ramp->record, state.ramp->steps, state.ramp->interrupted};
+    light.ramp = motion::Ramp{at_interface(state.ramp->common), at_interface(state.ramp->spontaneous),
+                              state.ramp->record, state.ramp->steps, state.ramp->interrupted};
   return light;
 }
 
 }  // namespace
 
-std::filesystem::path FinishedRuns::file_of(const io::Case& config) const {
-  return dir_ / (io::sha256(program_identity() + "\n" + resolved_text(config) + config.prestress.table.text)
-                     .substr(0, 32) +
-                 ".bin");
+std::filesystem::path FinishedRuns::file_of(const input::Case& config) const {
+  return dir_ /
+         (files::sha256(program_identity() + "\n" + resolved_text(config) + config.prestress.table.text)
+              .substr(0, 32) +
+          ".bin");
 }
 
-bool FinishedRuns::has(const io::Case& config) const {
-  return io::is_there(file_of(config));
+bool FinishedRuns::has(const input::Case& config) const {
+  return files::is_there(file_of(config));
 }
 
-bool FinishedRuns::take(const io::Case& config, Result& result, InitialState& initial) const {
+bool FinishedRuns::take(const input::Case& config, Result& result, InitialState& initial) const {
   if (!has(config)) return false;
   try {
-    io::InputArchive archive(file_of(config));
+    results::InputArchive archive(file_of(config));
     archive(result);
     initial = read_initial_state(archive, config);
     archive.close();
-    if (result.event.energies.empty() || !fronts::is_consistent(result.event.record)) return false;
+    if (result.event.energies.empty() || !record::is_consistent(result.event.record)) return false;
   } catch (const UserError&) {
     return false;
   }
@@ -70,9 +71,9 @@ bool FinishedRuns::take(const io::Case& config, Result& result, InitialState& in
 }
 
 void FinishedRuns::keep(const Result& result, const InitialState& initial) const {
-  if (!io::is_there(dir_)) io::make_folder(dir_);
+  if (!files::is_there(dir_)) files::make_folder(dir_);
   auto light = at_interface(initial);
-  io::OutputArchive archive(file_of(result.config));
+  results::OutputArchive archive(file_of(result.config));
   archive(result, light);
   archive.close();
 }

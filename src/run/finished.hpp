@@ -16,14 +16,14 @@ class FinishedRuns {
   /// @param dir  made when the first run is kept
   explicit FinishedRuns(std::filesystem::path dir) : dir_(std::move(dir)) {}
 
-  bool has(const io::Case& config) const;
+  bool has(const input::Case& config) const;
   /// @return whether it was there and intact
-  bool take(const io::Case& config, Result& result, InitialState& initial) const;
+  bool take(const input::Case& config, Result& result, InitialState& initial) const;
   /// @throws WriteError
   void keep(const Result& result, const InitialState& initial) const;
 
  private:
-  std::filesystem::path file_of(const io::Case& config) const;
+  std::filesystem::path file_of(const input::Case& config) const;
 
   std::filesystem::path dir_;
 };

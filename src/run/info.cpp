@@ -6,17 +6,17 @@
 #include <numeric>
 
 #include "base/clock.hpp"
+#include "motion/stepper.hpp"
 #include "run/choices.hpp"
 #include "run/run.hpp"
-#include "solve/plate_solver.hpp"
-#include "solve/prestress.hpp"
-#include "solve/stepper.hpp"
+#include "statics/plate_solver.hpp"
+#include "statics/prestress.hpp"
 
 namespace slipfront::run {
 
 namespace {
 
-stability::WellPosedness well_posedness(const io::Case& config, const mesh::Mesh& mesh) {
+stability::WellPosedness well_posedness(const input::Case& config, const mesh::Mesh& mesh) {
   const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
   double pressure_Pa = stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m);
   if (is_prestressed(config)) {
@@ -29,7 +29,7 @@ stability::WellPosedness well_posedness(const io::Case& config, const mesh::Mesh
 
 }  // namespace
 
-Info info(const io::Case& config) {
+Info info(const input::Case& config) {
   Info info;
   info.speeds = wave_speeds(config.material);
   const auto mesh = check(config);
@@ -40,7 +40,7 @@ Info info(const io::Case& config) {
   // About as long as making the stepper.
   auto sliding =
       std::async(std::launch::async | std::launch::deferred, [&] { return well_posedness(config, mesh); });
-  solve::Stepper stepper(mesh, config.material, io::contact_model(config), config.time);
+  motion::Stepper stepper(mesh, config.material, input::contact_model(config), config.time);
   info.well_posedness = sliding.get();
   info.n_irregular = static_cast<std::int64_t>(stepper.plate().whole.irregular.size() +
                                                stepper.plate().whole.general.size());
@@ -55,15 +55,15 @@ Info info(const io::Case& config) {
   info.memory_bytes = info.needs.memory_bytes();
   info.solver_bytes = info.needs.statics_bytes;
   const double n_unknowns = 2.0 * static_cast<double>(info.n_nodes);
-  if (!is_prestressed(config)) info.solver = solve::choose_solver(wanted_solver(config), n_unknowns);
+  if (!is_prestressed(config)) info.solver = statics::choose_solver(wanted_solver(config), n_unknowns);
 
   // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
-  fronts::StaticState no_tractions;
+  record::StaticState no_tractions;
   for (const auto n : mesh.lower) no_tractions.x_m.push_back(mesh.x_m[n]);
   no_tractions.t_s_Pa = no_tractions.p_s_Pa = std::vector<double>(mesh.lower.size(), 0.0);
-  const auto rest = solve::prestressed(mesh, no_tractions);
+  const auto rest = statics::prestressed(mesh, no_tractions);
   stepper.start(rest, 0);
-  solve::Recorder recorder(rest, 1, 0);
+  motion::Recorder recorder(rest, 1, 0);
   const auto start = Clock::now();
   double fastest_s = std::numeric_limits<double>::infinity();
   do {
@@ -74,9 +74,9 @@ Info info(const io::Case& config) {
   info.node_updates_per_s = stepper.node_updates_per_step() / fastest_s;
   double statics_s = 0;
   // The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
-  if (info.solver == solve::StaticSolver::direct)
+  if (info.solver == statics::StaticSolver::direct)
     statics_s = 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
-  if (info.solver == solve::StaticSolver::iterative) statics_s = 2e-6 * n_unknowns;
+  if (info.solver == statics::StaticSolver::iterative) statics_s = 2e-6 * n_unknowns;
   info.expected_s = info.node_updates / info.node_updates_per_s + statics_s;
 
   return info;

@@ -10,11 +10,11 @@
 #include "base/memory.hpp"
 #include "interface/friction/registry.hpp"
 #include "mesh/plate.hpp"
+#include "motion/event.hpp"
 #include "run/choices.hpp"
 #include "solid/operator.hpp"
-#include "solve/event.hpp"
-#include "solve/plate_solver.hpp"
 #include "stability/verdict.hpp"
+#include "statics/plate_solver.hpp"
 
 namespace slipfront::run {
 
@@ -50,11 +50,11 @@ mesh::Plate coarse_plate(mesh::Plate plate) {
 }
 
 /// Shear at which t/p inside reaches mu_s, from the statics of a coarse mesh.
-double estimated_critical_shear_m(const io::Case& config) {
+double estimated_critical_shear_m(const input::Case& config) {
   const double mu_s = interface::static_coefficient(config.friction);
   try {
     const auto mesh = mesh::make_plate(coarse_plate(config.plate));
-    return solve::Statics(mesh, config.material, config.loading, mu_s).shear_to(mu_s).shear_m;
+    return statics::Statics(mesh, config.material, config.loading, mu_s).shear_to(mu_s).shear_m;
   } catch (const UserError&) {
     // No coarse mesh fits, or its edges give way first: of uniform compression and shear.
     const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
@@ -65,7 +65,7 @@ double estimated_critical_shear_m(const io::Case& config) {
 }
 
 /// The interface's state, and the recorder with the copy of its record in the order of time.
-double interface_bytes(const io::Case& config, const Size& size) {
+double interface_bytes(const input::Case& config, const Size& size) {
   const double halo = std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
   const double around = 2 * number * (2 * halo + 1);
   const double state = 30 * number + 2 * number + around;
@@ -123,7 +123,7 @@ void require_disk(const Needs& needs, const std::filesystem::path& folder) {
 
 }  // namespace
 
-SnapshotPlan snapshot_plan(const io::Case& config, double step_s) {
+SnapshotPlan snapshot_plan(const input::Case& config, double step_s) {
   SnapshotPlan plan;
   const auto& asked_s = config.output.snapshot_times_s;
   std::int64_t n_late = 0, n_near = 0;
@@ -151,7 +151,7 @@ SnapshotPlan snapshot_plan(const io::Case& config, double step_s) {
   return plan;
 }
 
-Size estimated_size(const io::Case& config) {
+Size estimated_size(const input::Case& config) {
   Size size;
   size.n_nodes = size.n_cells = 0.5 * approximate_unknowns(config.plate);
   const double h = config.plate.element_size_m;
@@ -162,11 +162,11 @@ Size estimated_size(const io::Case& config) {
   return size;
 }
 
-Needs needs(const io::Case& config, const Size& size) {
+Needs needs(const input::Case& config, const Size& size) {
   Needs n;
   n.steps = countable(std::ceil(config.time.end_s / size.step_s * (1 - 1e-12)),
                       fmt::format("time.end_s = {:g}", config.time.end_s), "an earlier end");
-  if (config.loading.method == solve::LoadingMethod::ramp)
+  if (config.loading.method == statics::LoadingMethod::ramp)
     n.ramp_steps = countable(
         std::ceil(estimated_critical_shear_m(config) / (top_speed_m_per_s(config) * size.step_s)),
         fmt::format("the ramp with loading.shear_speed_over_c_L = {:g}", config.loading.shear_speed_over_c_L),
@@ -179,9 +179,9 @@ Needs needs(const io::Case& config, const Size& size) {
   const double n_unknowns = 2 * size.n_nodes;
   if (!is_prestressed(config))
     n.statics_bytes =
-        solve::statics_bytes(solve::choose_solver(wanted_solver(config), n_unknowns), n_unknowns);
-  n.event_bytes = solve::event_bytes(size.n_nodes, size.n_cells, n.snapshots > 0, config.time.precision) +
-                  interface_bytes(config, size) + n.energy_rows * sizeof(solve::Energies);
+        statics::statics_bytes(statics::choose_solver(wanted_solver(config), n_unknowns), n_unknowns);
+  n.event_bytes = motion::event_bytes(size.n_nodes, size.n_cells, n.snapshots > 0, config.time.precision) +
+                  interface_bytes(config, size) + n.energy_rows * sizeof(record::Energies);
 
   constexpr double bytes_per_number_in_text = 20;
   const double history = number * n.history_rows * (1 + 4 * size.n_interface);
@@ -191,17 +191,17 @@ Needs needs(const io::Case& config, const Size& size) {
   n.history_bytes = 2 * history;
   if (n.snapshots > 0) n.snapshot_bytes = mesh_of_fields + n.snapshots * (snapshot_raw + snapshot_written);
   n.checkpoint_bytes = 2 * (2 * field + interface_bytes(config, size));
-  n.energy_bytes = n.energy_rows * bytes_per_number_in_text * sizeof(solve::Energies) / number;
+  n.energy_bytes = n.energy_rows * bytes_per_number_in_text * sizeof(record::Energies) / number;
   return n;
 }
 
-void require_fit(const io::Case& config, const std::filesystem::path& folder) {
+void require_fit(const input::Case& config, const std::filesystem::path& folder) {
   require_plate_fits(config);
   if (!is_prestressed(config))
-    solve::require_statics_memory(wanted_solver(config), approximate_unknowns(config.plate));
+    statics::require_statics_memory(wanted_solver(config), approximate_unknowns(config.plate));
   const Size size = estimated_size(config);
   const Needs n = needs(config, size);
-  const bool energies = n.energy_rows * sizeof(solve::Energies) > 0.5 * n.memory_bytes();
+  const bool energies = n.energy_rows * sizeof(record::Energies) > 0.5 * n.memory_bytes();
   require_memory(
       n.memory_bytes(), fmt::format("the run on a plate of {:.4g} nodes", size.n_nodes),
       energies ? "choose a larger output.energy_interval_s" : "choose a larger plate.element_size_m");

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/case.hpp"
+#include "input/case.hpp"
 
 namespace slipfront::run {
 
@@ -17,7 +17,7 @@ struct SnapshotPlan {
 };
 
 /// Leaves out the times that a run does not reach, and those that fall into the step of an earlier one.
-SnapshotPlan snapshot_plan(const io::Case& config, double step_s);
+SnapshotPlan snapshot_plan(const input::Case& config, double step_s);
 
 /// Sizes on which the needs of a run depend.
 struct Size {
@@ -27,7 +27,7 @@ struct Size {
 
 /// The same from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,
 /// which is shorter, and of a graded plate, which may be longer.
-Size estimated_size(const io::Case& config);
+Size estimated_size(const input::Case& config);
 
 /// Work, memory and space on disk that a run takes. Bytes on disk are the most that lies there at one time:
 /// while they become the results, raw history and snapshots lie beside them.
@@ -43,11 +43,11 @@ struct Needs {
 };
 
 /// @throws UserError where more steps are asked for than any machine takes.
-Needs needs(const io::Case& config, const Size& size);
+Needs needs(const input::Case& config, const Size& size);
 
 /// Refuses a case whose run would not fit into the memory or onto the disk of `folder`, which need not exist
 /// yet.
 /// @throws UserError naming what to change.
-void require_fit(const io::Case& config, const std::filesystem::path& folder);
+void require_fit(const input::Case& config, const std::filesystem::path& folder);
 
 }  // namespace slipfront::run

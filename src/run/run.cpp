@@ -12,16 +12,16 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "input/prestress.hpp"
+#include "input/schema.hpp"
 #include "interface/nucleation.hpp"
-#include "io/prestress.hpp"
-#include "io/schema.hpp"
 #include "mesh/plate.hpp"
+#include "motion/stepper.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
 #include "run/warnings.hpp"
-#include "solve/plate_solver.hpp"
-#include "solve/prestress.hpp"
-#include "solve/stepper.hpp"
+#include "statics/plate_solver.hpp"
+#include "statics/prestress.hpp"
 
 namespace slipfront::run {
 
@@ -35,12 +35,12 @@ std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::M
   return B;
 }
 
-const solve::Equilibrium& event_state(const io::Case& config, const InitialState& initial) {
+const statics::Equilibrium& event_state(const input::Case& config, const InitialState& initial) {
   return config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
 }
 
 /// Prescribed tractions beyond the static strength, said in one line; empty where there are none.
-std::string prestress_warning(const solve::Equilibrium& state, double mu_s) {
+std::string prestress_warning(const statics::Equilibrium& state, double mu_s) {
   const auto& s = state.tractions;
   std::int64_t n = 0;
   for (std::size_t k = 0; k < s.x_m.size(); ++k) n += std::abs(s.t_s_Pa[k]) > mu_s * s.p_s_Pa[k] ? 1 : 0;
@@ -50,9 +50,9 @@ std::string prestress_warning(const solve::Equilibrium& state, double mu_s) {
 }
 
 /// Nodes in contact that slip or are open at rest, said in one line; empty where all stick.
-std::string contact_warning(const solve::Equilibrium& state) {
-  const auto n_slip = std::ranges::count(state.contact, solve::Contact::slip);
-  const auto n_open = std::ranges::count(state.contact, solve::Contact::open);
+std::string contact_warning(const statics::Equilibrium& state) {
+  const auto n_slip = std::ranges::count(state.contact, statics::Contact::slip);
+  const auto n_open = std::ranges::count(state.contact, statics::Contact::open);
   if (n_slip + n_open == 0) return {};
   return fmt::format(
       "before the event {} interface nodes are open and {} slip at mu_s p, all outside {:.4g} to {:.4g} m",
@@ -73,32 +73,32 @@ double approximate_unknowns(const mesh::Plate& plate) {
   return unknowns;
 }
 
-void require_plate_fits(const io::Case& config) {
+void require_plate_fits(const input::Case& config) {
   const double n_nodes = 0.5 * approximate_unknowns(config.plate);
   require_memory(
-      solve::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
+      motion::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
       fmt::format("a plate of {:.4g} nodes", n_nodes), "choose a larger plate.element_size_m");
 }
 
-double top_speed_m_per_s(const io::Case& config) {
+double top_speed_m_per_s(const input::Case& config) {
   return config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
 }
 
-solve::StaticSolver wanted_solver(const io::Case& config) {
+statics::StaticSolver wanted_solver(const input::Case& config) {
   const auto& plate = config.plate;
-  return solve::solver_for_shape(config.loading.solver, plate.coarsenings > 0,
-                                 std::round(plate.width_m / plate.element_size_m),
-                                 std::round(plate.height_m / plate.element_size_m));
+  return statics::solver_for_shape(config.loading.solver, plate.coarsenings > 0,
+                                   std::round(plate.width_m / plate.element_size_m),
+                                   std::round(plate.height_m / plate.element_size_m));
 }
 
-bool is_prestressed(const io::Case& config) {
-  return config.loading.method == solve::LoadingMethod::prestress;
+bool is_prestressed(const input::Case& config) {
+  return config.loading.method == statics::LoadingMethod::prestress;
 }
 
-fronts::StaticState prescribed_tractions(const io::Prestress& prestress, const mesh::Mesh& mesh) {
-  fronts::StaticState state;
+record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh) {
+  record::StaticState state;
   for (const auto n : mesh.lower) state.x_m.push_back(mesh.x_m[n]);
-  if (!prestress.file.empty()) return io::prestress_at(prestress, state.x_m);
+  if (!prestress.file.empty()) return input::prestress_at(prestress, state.x_m);
   state.t_s_Pa.assign(state.x_m.size(), prestress.t_Pa);
   state.p_s_Pa.assign(state.x_m.size(), prestress.p_Pa);
   return state;
@@ -109,31 +109,31 @@ WaveSpeeds wave_speeds(const solid::Material& m) {
           solid::rayleigh_speed_m_per_s(m)};
 }
 
-std::string initial_state_key(const io::Case& config) {
-  io::Case relevant;
+std::string initial_state_key(const input::Case& config) {
+  input::Case relevant;
   relevant.plate = config.plate;
   if (is_prestressed(config)) {
     relevant.loading.method = config.loading.method;
     relevant.prestress = config.prestress;
-    return io::to_toml(relevant) + config.prestress.table.text;
+    return input::to_toml(relevant) + config.prestress.table.text;
   }
   relevant.material = config.material;
   relevant.loading = config.loading;
   relevant.friction = interface::Coulomb { interface::static_coefficient(config.friction) };
-  if (config.loading.method == solve::LoadingMethod::ramp) {
+  if (config.loading.method == statics::LoadingMethod::ramp) {
     // Nodes at the edges slip during the ramp, by the law itself.
     relevant.friction = config.friction;
     relevant.regularisation = config.regularisation;
     relevant.contact = config.contact;
     relevant.time = config.time;
   } else {
-    relevant.material.density_kg_per_m3 = io::Case{}.material.density_kg_per_m3;
-    relevant.material.stiffness_damping_s = io::Case{}.material.stiffness_damping_s;
+    relevant.material.density_kg_per_m3 = input::Case{}.material.density_kg_per_m3;
+    relevant.material.stiffness_damping_s = input::Case{}.material.stiffness_damping_s;
   }
-  return io::to_toml(relevant);
+  return input::to_toml(relevant);
 }
 
-mesh::Mesh check(const io::Case& config) {
+mesh::Mesh check(const input::Case& config) {
   require_plate_fits(config);
   if (!is_prestressed(config)) {
     if (config.plate.sides == mesh::Sides::periodic)
@@ -144,19 +144,19 @@ mesh::Mesh check(const io::Case& config) {
       throw UserError(
           "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
           config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
-    solve::require_statics_memory(wanted_solver(config), approximate_unknowns(config.plate));
+    statics::require_statics_memory(wanted_solver(config), approximate_unknowns(config.plate));
   }
-  if (config.time.precision == solve::Precision::single_precision && config.plate.sides != mesh::Sides::free)
+  if (config.time.precision == motion::Precision::single_precision && config.plate.sides != mesh::Sides::free)
     throw UserError(
         "time.precision = single needs rows between free sides; choose plate.sides = free or double");
   auto mesh = mesh::make_plate(config.plate);
-  solve::require_rows_fit(mesh, config.time);
+  motion::require_rows_fit(mesh, config.time);
   if (is_prestressed(config)) prescribed_tractions(config.prestress, mesh);
   return mesh;
 }
 
-InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor,
-                                const solve::Execution& execution, const RampBegins& ramp_begins) {
+InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
+                                const motion::Execution& execution, const RampBegins& ramp_begins) {
   const auto start = Clock::now();
   const double mu_s = interface::static_coefficient(config.friction);
   const double margin = config.loading.critical_margin;
@@ -167,30 +167,30 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
   if (is_prestressed(config)) {
     initial.prescribed = true;
-    initial.common = solve::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh));
+    initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh));
     initial.spontaneous = initial.common;
     initial.critical_shear_m = fronts::undefined;
     initial.wall_s = seconds_since(start);
     return initial;
   }
-  const solve::Statics statics(initial.mesh, config.material, config.loading, mu_s,
-                               interface::static_coefficient_key(config.friction),
-                               [&] { return monitor(0, 0); });
+  const statics::Statics statics(initial.mesh, config.material, config.loading, mu_s,
+                                 interface::static_coefficient_key(config.friction),
+                                 [&] { return monitor(0, 0); });
   initial.n_unknowns = statics.solver().n_unknowns();
-  initial.solver = solve::choose_solver(wanted_solver(config), 2.0 * initial.mesh.n_nodes());
+  initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * initial.mesh.n_nodes());
   initial.solver_bytes = statics.solver().bytes();
   initial.critical_shear_m = statics.shear_to(mu_s).shear_m;
-  if (config.loading.method == solve::LoadingMethod::direct) {
+  if (config.loading.method == statics::LoadingMethod::direct) {
     initial.common = statics.shear_to((1 - margin) * mu_s);
     initial.spontaneous = statics.shear_to((1 + margin) * mu_s);
   } else {
     auto plain = config.time;
     plain.interface_substeps = 1;
-    solve::Stepper stepper(initial.mesh, config.material, io::contact_model(config), plain, execution);
+    motion::Stepper stepper(initial.mesh, config.material, input::contact_model(config), plain, execution);
     const auto tilted = statics.shear_by(0);
     stepper.start(tilted, top_speed_m_per_s(config));
-    solve::RampRun ramp(stepper, tilted, config.loading, mu_s, top_speed_m_per_s(config),
-                        solid::longitudinal_speed_m_per_s(config.material), initial.critical_shear_m);
+    motion::RampRun ramp(stepper, tilted, config.loading, mu_s, top_speed_m_per_s(config),
+                         solid::longitudinal_speed_m_per_s(config.material), initial.critical_shear_m);
     if (ramp_begins) ramp_begins(stepper, ramp);
     initial.ramp = ramp.run(monitor);
     if (initial.ramp->interrupted) throw Interrupted("interrupted during the ramp, before the event");
@@ -201,7 +201,7 @@ InitialState make_initial_state(const io::Case& config, const solve::Monitor& mo
   return initial;
 }
 
-fronts::FrontOptions front_options(const io::Case& config, const InitialState& initial) {
+fronts::FrontOptions front_options(const input::Case& config, const InitialState& initial) {
   fronts::FrontOptions o;
   o.l_star_m = config.fronts.l_star_m;
   o.speed_interval = config.fronts.speed_interval;
@@ -244,23 +244,23 @@ namespace {
 
 using interface::is_at_edge;
 
-std::unique_ptr<solve::Stepper> new_stepper(const io::Case& config, const mesh::Mesh& mesh,
-                                            const solve::Execution& execution) {
-  return std::make_unique<solve::Stepper>(mesh, config.material, io::contact_model(config), config.time,
-                                          execution);
+std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& mesh,
+                                             const motion::Execution& execution) {
+  return std::make_unique<motion::Stepper>(mesh, config.material, input::contact_model(config), config.time,
+                                           execution);
 }
 
-std::unique_ptr<solve::Stepper> started_stepper(const io::Case& config, const InitialState& initial,
-                                                const solve::Execution& execution) {
+std::unique_ptr<motion::Stepper> started_stepper(const input::Case& config, const InitialState& initial,
+                                                 const motion::Execution& execution) {
   const auto& state = event_state(config, initial);
   auto stepper = new_stepper(config, initial.mesh, execution);
   stepper->start(state, top_speed_m_per_s(config));
   if (initial.prescribed) stepper->set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
-  auto forces = solve::trigger_forces(state, initial.tributary_m, config.event, config.trigger,
-                                      interface::static_coefficient(config.friction));
+  auto forces = motion::trigger_forces(state, initial.tributary_m, config.event, config.trigger,
+                                       interface::static_coefficient(config.friction));
   if (config.trigger.form == interface::TriggerForm::weakened && is_at_edge(config.event)) {
     std::vector<double> intact(forces.size(), 1.0);
-    for (const auto k : solve::trigger_zone(state, config.event, config.trigger.zone_m)) intact[k] = 0;
+    for (const auto k : motion::trigger_zone(state, config.event, config.trigger.zone_m)) intact[k] = 0;
     stepper->set_intact(std::move(intact));
   }
   if (config.event == interface::EventKind::nucleation) {
@@ -270,7 +270,7 @@ std::unique_ptr<solve::Stepper> started_stepper(const io::Case& config, const In
       stepper->set_intact(std::move(B));
     } else {
       for (std::size_t k = 0; k < B.size(); ++k)
-        if (state.contact[k] != solve::Contact::open)
+        if (state.contact[k] != statics::Contact::open)
           forces[k] = config.nucleation.overstress_Pa * B[k] * initial.tributary_m[k];
     }
   }
@@ -278,7 +278,7 @@ std::unique_ptr<solve::Stepper> started_stepper(const io::Case& config, const In
   return stepper;
 }
 
-void release_displacements(solve::Equilibrium& state) {
+void release_displacements(statics::Equilibrium& state) {
   state.u_m = {};
   state.u_per_shear = {};
 }
@@ -295,8 +295,8 @@ void release_nodes(mesh::Mesh& mesh) {
 
 }  // namespace
 
-std::unique_ptr<solve::Stepper> start_event(const io::Case& config, InitialState& initial,
-                                            const solve::Execution& execution) {
+std::unique_ptr<motion::Stepper> start_event(const input::Case& config, InitialState& initial,
+                                             const motion::Execution& execution) {
   const auto* from = &event_state(config, initial);
   if (from != &initial.common) release_displacements(initial.common);
   if (from != &initial.spontaneous) release_displacements(initial.spontaneous);
@@ -311,14 +311,15 @@ std::unique_ptr<solve::Stepper> start_event(const io::Case& config, InitialState
   return stepper;
 }
 
-std::unique_ptr<solve::Stepper> make_stepper(const io::Case& config, InitialState& initial,
-                                             const solve::Execution& execution) {
+std::unique_ptr<motion::Stepper> make_stepper(const input::Case& config, InitialState& initial,
+                                              const motion::Execution& execution) {
   auto stepper = new_stepper(config, initial.mesh, execution);
   release_nodes(initial.mesh);
   return stepper;
 }
 
-solve::EventRun begin_event(const io::Case& config, const InitialState& initial, solve::Stepper& stepper) {
+motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
+                             motion::Stepper& stepper) {
   const bool triggered =
       (is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened) ||
       (config.event == interface::EventKind::nucleation &&
@@ -331,17 +332,17 @@ solve::EventRun begin_event(const io::Case& config, const InitialState& initial,
           config.time,
           {config.output.history_interval_s, config.output.energy_interval_s,
            snapshot_plan(config, stepper.step_s()).times_s},
-          solve::halo_for(initial.mesh, config.fronts.l_star_m)};
+          motion::halo_for(initial.mesh, config.fronts.l_star_m)};
 }
 
-Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor,
-                 const solve::Execution& execution) {
+Result run_event(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
+                 const motion::Execution& execution) {
   const auto stepper = started_stepper(config, initial, execution);
   return run_event(config, initial, *stepper, monitor);
 }
 
-Result run_event(const io::Case& config, const InitialState& initial, solve::Stepper& stepper,
-                 const solve::Monitor& monitor, solve::Sink* sink) {
+Result run_event(const input::Case& config, const InitialState& initial, motion::Stepper& stepper,
+                 const motion::Monitor& monitor, motion::Sink* sink) {
   const auto start = Clock::now();
   auto result = unmeasured(config, stepper, begin_event(config, initial, stepper).run(monitor, sink));
   result.stepping_wall_s = seconds_since(start);
@@ -349,7 +350,7 @@ Result run_event(const io::Case& config, const InitialState& initial, solve::Ste
   return result;
 }
 
-Result unmeasured(const io::Case& config, const solve::Stepper& stepper, solve::Event event) {
+Result unmeasured(const input::Case& config, const motion::Stepper& stepper, motion::Event event) {
   Result result;
   result.config = config;
   result.speeds = wave_speeds(config.material);
@@ -382,7 +383,7 @@ void measure(Result& result, const InitialState& initial) {
   for (const auto& note : snapshots.notes) result.warnings.push_back(note);
   const auto n_after =
       std::ranges::count_if(snapshots.times_s, [&](double time_s) { return time_s > result.event.time_s; });
-  if (result.event.end == solve::EventEnd::quiet && n_after > 0)
+  if (result.event.end == motion::EventEnd::quiet && n_after > 0)
     result.warnings.push_back(fmt::format(
         "{} of {} output.snapshot_times_s are after the end of the event at t = {:.4g} s, where no node had "
         "slipped for time.quiet_s = {:g}",

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "fronts/front.hpp"
-#include "io/case.hpp"
+#include "input/case.hpp"
 #include "mesh/mesh.hpp"
+#include "motion/event.hpp"
 #include "run/needs.hpp"
-#include "solve/event.hpp"
-#include "solve/statics.hpp"
 #include "stability/verdict.hpp"
+#include "statics/statics.hpp"
 
 namespace slipfront::run {
 
@@ -23,16 +23,16 @@ namespace slipfront::run {
 struct InitialState {
   mesh::Mesh mesh;
   std::int64_t n_nodes = 0, n_cells = 0;
-  std::vector<double> tributary_m;  ///< [lower]
-  solve::Equilibrium common;        ///< at t/p = (1 - critical_margin) mu_s inside
-  solve::Equilibrium spontaneous;   ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
-  bool prescribed = false;          ///< loading.method is prestress: no statics, no critical shear
-  double critical_shear_m = 0;      ///< shear at t/p = mu_s inside, found directly
+  std::vector<double> tributary_m;   ///< [lower]
+  statics::Equilibrium common;       ///< at t/p = (1 - critical_margin) mu_s inside
+  statics::Equilibrium spontaneous;  ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
+  bool prescribed = false;           ///< loading.method is prestress: no statics, no critical shear
+  double critical_shear_m = 0;       ///< shear at t/p = mu_s inside, found directly
   std::int64_t n_unknowns = 0;
-  solve::StaticSolver solver = solve::StaticSolver::automatic;  ///< of the statics, auto without any
-  double solver_bytes = 0;                                      ///< held by it
+  statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
+  double solver_bytes = 0;                                          ///< held by it
   double wall_s = 0;
-  std::optional<solve::Ramp> ramp;  ///< where loading.method is ramp
+  std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
 
   /// All but the mesh.
   template <class Archive>
@@ -45,17 +45,17 @@ struct InitialState {
 /// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer.
 /// @return the mesh.
 /// @throws UserError
-mesh::Mesh check(const io::Case& config);
+mesh::Mesh check(const input::Case& config);
 
 /// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.
-using RampBegins = std::function<void(solve::Stepper& stepper, solve::RampRun& ramp)>;
+using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
 
 /// @throws UserError, BlowUp, Interrupted as its parts do.
-InitialState make_initial_state(const io::Case& config, const solve::Monitor& monitor,
-                                const solve::Execution& execution = {}, const RampBegins& ramp_begins = {});
+InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
+                                const motion::Execution& execution = {}, const RampBegins& ramp_begins = {});
 
 /// A text that is the same for two cases if and only if they share their initial state.
-std::string initial_state_key(const io::Case& config);
+std::string initial_state_key(const input::Case& config);
 
 /// Wave speeds in the plane chosen, m/s.
 struct WaveSpeeds {
@@ -65,12 +65,12 @@ WaveSpeeds wave_speeds(const solid::Material& material);
 
 /// A run with all it found.
 struct Result {
-  io::Case config;
+  input::Case config;
   WaveSpeeds speeds;
   double stable_step_s = 0, step_s = 0, substep_s = 0;
   double node_updates_per_step = 0;
   double stepping_wall_s = 0;
-  solve::Event event;
+  motion::Event event;
   std::vector<fronts::Front> fronts;
   std::vector<std::string> warnings;
 
@@ -83,18 +83,19 @@ struct Result {
 
 /// The plate in a case's initial state, about to move. Takes what only this needs out of the initial state:
 /// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
-std::unique_ptr<solve::Stepper> start_event(const io::Case& config, InitialState& initial,
-                                            const solve::Execution& execution = {});
+std::unique_ptr<motion::Stepper> start_event(const input::Case& config, InitialState& initial,
+                                             const motion::Execution& execution = {});
 
 /// The same plate without its motion, which is to be read from where it was kept.
-std::unique_ptr<solve::Stepper> make_stepper(const io::Case& config, InitialState& initial,
-                                             const solve::Execution& execution = {});
+std::unique_ptr<motion::Stepper> make_stepper(const input::Case& config, InitialState& initial,
+                                              const motion::Execution& execution = {});
 
 /// The event of a case, about to begin with a started stepper.
-solve::EventRun begin_event(const io::Case& config, const InitialState& initial, solve::Stepper& stepper);
+motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
+                             motion::Stepper& stepper);
 
 /// The case, the steps and an event, without fronts yet.
-Result unmeasured(const io::Case& config, const solve::Stepper& stepper, solve::Event event);
+Result unmeasured(const input::Case& config, const motion::Stepper& stepper, motion::Event event);
 /// Finds the fronts of a result's event, and what its reader should know.
 void measure(Result& result, const InitialState& initial);
 
@@ -102,14 +103,14 @@ void measure(Result& result, const InitialState& initial);
 /// ends the event early and is told by event.end.
 /// @param started  by start_event
 /// @param sink     takes samples and snapshots; without one the event keeps them
-Result run_event(const io::Case& config, const InitialState& initial, solve::Stepper& started,
-                 const solve::Monitor& monitor, solve::Sink* sink = nullptr);
+Result run_event(const input::Case& config, const InitialState& initial, motion::Stepper& started,
+                 const motion::Monitor& monitor, motion::Sink* sink = nullptr);
 /// Starts the event as well, and leaves the initial state as it is.
-Result run_event(const io::Case& config, const InitialState& initial, const solve::Monitor& monitor,
-                 const solve::Execution& execution = {});
+Result run_event(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
+                 const motion::Execution& execution = {});
 
 /// How a case's fronts are measured.
-fronts::FrontOptions front_options(const io::Case& config, const InitialState& initial);
+fronts::FrontOptions front_options(const input::Case& config, const InitialState& initial);
 
 /// How a run stands, as run.json tells it.
 struct Status {
@@ -125,9 +126,9 @@ inline constexpr const char* case_file = "case.resolved.toml";
 inline constexpr const char* table_file = "prestress.csv";
 
 /// The case as case.resolved.toml has it: its table of tractions lies beside it.
-std::string resolved_text(const io::Case& config);
+std::string resolved_text(const input::Case& config);
 /// Writes both.
-void write_case(const std::filesystem::path& dir, const io::Case& config);
+void write_case(const std::filesystem::path& dir, const input::Case& config);
 
 /// Writes the run's folder, which is there: case.resolved.toml with its table, run.json, interface.h5,
 /// fronts.csv, static.csv, energy.csv, fields.vtkhdf where there are snapshots, and their checksums.
@@ -136,7 +137,7 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
 void write_so_far(const std::filesystem::path& dir, const Result& result, const InitialState& initial,
                   const Status& status);
 /// run.json of a run without an event yet, or that has come to none.
-void write_status(const std::filesystem::path& dir, const io::Case& config, const Status& status);
+void write_status(const std::filesystem::path& dir, const input::Case& config, const Status& status);
 
 /// Derived quantities of a case, found without solving anything.
 struct Info {
@@ -144,15 +145,15 @@ struct Info {
   std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0, n_irregular = 0;
   double stable_step_s = 0, step_s = 0, substep_s = 0;
   Needs needs;
-  std::int64_t n_steps = 0;                                     ///< of the event, to time.end_s
-  double node_updates = 0;                                      ///< of the event and of the ramp
-  double memory_bytes = 0;                                      ///< the largest of statics and event
-  solve::StaticSolver solver = solve::StaticSolver::automatic;  ///< of the statics, auto without any
-  double solver_bytes = 0;                                      ///< of the statics, estimated
+  std::int64_t n_steps = 0;                                         ///< of the event, to time.end_s
+  double node_updates = 0;                                          ///< of the event and of the ramp
+  double memory_bytes = 0;                                          ///< the largest of statics and event
+  statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
+  double solver_bytes = 0;                                          ///< of the statics, estimated
   double expected_s = 0;                    ///< at the kernel rate measured on the spot, statics estimated
   double node_updates_per_s = 0;            ///< measured on the spot
   stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure
 };
-Info info(const io::Case& config);
+Info info(const input::Case& config);
 
 }  // namespace slipfront::run

@@ -7,9 +7,9 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
-#include "io/results.hpp"
-#include "io/schema.hpp"
-#include "io/stream.hpp"
+#include "input/schema.hpp"
+#include "results/results.hpp"
+#include "results/stream.hpp"
 #include "run/checkpoint.hpp"
 
 namespace slipfront::run {
@@ -21,7 +21,7 @@ constexpr double tell_share = 0.02;
 
 class Session {
  public:
-  Session(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
+  Session(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
           const SessionHooks& hooks, bool resumed)
       : folder_(folder),
         dir_(folder.unfinished()),
@@ -38,7 +38,7 @@ class Session {
   Finished run(std::unique_ptr<Checkpoints::Kept> kept);
 
  private:
-  void begin_ramp(Checkpoints::Kept* kept, solve::Stepper& stepper, solve::RampRun& ramp);
+  void begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, motion::RampRun& ramp);
   void begin_event(Checkpoints::Kept* kept);
   /// Between linear solutions. @return whether the run goes on
   bool look_at_statics();
@@ -48,13 +48,13 @@ class Session {
   void tell();
   double wall_s() const { return head_.wall_s + seconds_since(event_began_); }
   /// The run's event is over: makes its results.
-  Finished finish(solve::Event event);
+  Finished finish(motion::Event event);
   void write_results(const Finished& run);
   void fail(const char* status, const std::string& reason) noexcept;
 
-  io::ResultFolder& folder_;
+  results::ResultFolder& folder_;
   std::filesystem::path dir_;
-  const io::Case& config_;
+  const input::Case& config_;
   const SessionOptions& options_;
   const SessionHooks& hooks_;
   Checkpoints checkpoints_;
@@ -65,11 +65,11 @@ class Session {
   double kept_time_s_ = 0, tell_interval_s_ = least_tell_interval_s;
 
   InitialState initial_;
-  solve::Stepper* stepper_ = nullptr;  ///< of the ramp or of the event
-  solve::RampRun* ramp_ = nullptr;     ///< while it goes
-  std::unique_ptr<solve::Stepper> event_stepper_;
-  std::optional<solve::EventRun> event_;
-  std::optional<io::ResultStream> stream_;
+  motion::Stepper* stepper_ = nullptr;  ///< of the ramp or of the event
+  motion::RampRun* ramp_ = nullptr;     ///< while it goes
+  std::unique_ptr<motion::Stepper> event_stepper_;
+  std::optional<motion::EventRun> event_;
+  std::optional<results::ResultStream> stream_;
 };
 
 Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
@@ -88,7 +88,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
             return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
           },
           options_.execution,
-          [&](solve::Stepper& stepper, solve::RampRun& ramp) { begin_ramp(kept.get(), stepper, ramp); });
+          [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept.get(), stepper, ramp); });
       ramp_ = nullptr;
       stepper_ = nullptr;
       if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
@@ -122,7 +122,7 @@ void Session::fail(const char* status, const std::string& reason) noexcept {
   }
 }
 
-void Session::begin_ramp(Checkpoints::Kept* kept, solve::Stepper& stepper, solve::RampRun& ramp) {
+void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
   if (kept != nullptr) {
     kept->rest(stepper, ramp);
     kept->rest.close();
@@ -139,18 +139,18 @@ void Session::begin_event(Checkpoints::Kept* kept) {
     event_stepper_ = make_stepper(config_, initial_, options_.execution);
     kept->rest(*event_stepper_);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
-    io::ResultStream::Extents extents;
+    results::ResultStream::Extents extents;
     kept->rest(*event_, extents);
     kept->rest.close();
     stream_.emplace(folder_.state(), extents);
   } else {
-    io::remove_file(io::ResultStream::history_file(folder_.state()));
-    io::remove_file(io::ResultStream::snapshot_file(folder_.state()));
+    files::remove_file(results::ResultStream::history_file(folder_.state()));
+    files::remove_file(results::ResultStream::snapshot_file(folder_.state()));
     stream_.emplace(folder_.state());
     event_stepper_ = start_event(config_, initial_, options_.execution);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
   }
-  io::write_static(dir_ / "static.csv", initial_.common.tractions);
+  results::write_static(dir_ / "static.csv", initial_.common.tractions);
   began_ = true;
   stepper_ = event_stepper_.get();
   kept_time_s_ = stepper_->time_s();
@@ -181,8 +181,8 @@ void Session::keep() {
   head.in_event = event_.has_value();
   if (head.in_event) head.wall_s = wall_s();
   // The streams first: a checkpoint must not count on rows that are not there yet.
-  auto extents = stream_ ? stream_->keep() : io::ResultStream::Extents{};
-  checkpoints_.keep(head, [&](io::OutputArchive& archive) {
+  auto extents = stream_ ? stream_->keep() : results::ResultStream::Extents{};
+  checkpoints_.keep(head, [&](results::OutputArchive& archive) {
     if (head.in_event)
       archive(initial_, *stepper_, *event_, extents);
     else
@@ -195,7 +195,7 @@ void Session::keep() {
 void Session::tell() {
   const auto start = Clock::now();
   stream_->hand_over();
-  solve::Event so_far;
+  motion::Event so_far;
   so_far.steps = stepper_->step();
   so_far.time_s = stepper_->time_s();
   so_far.energies = event_->energies();
@@ -208,12 +208,12 @@ void Session::tell() {
   tell_interval_s_ = std::max(least_tell_interval_s, seconds_since(start) / tell_share);
 }
 
-Finished Session::finish(solve::Event event) {
+Finished Session::finish(motion::Event event) {
   Finished run{unmeasured(config_, *stepper_, std::move(event)), {}};
   run.result.stepping_wall_s = wall_s();
   const auto extents = stream_->keep();
   stream_.reset();
-  io::ResultStream::require_unchanged(folder_.state(), extents);
+  results::ResultStream::require_unchanged(folder_.state(), extents);
   event_.reset();
   event_stepper_.reset();
   run.initial = std::move(initial_);
@@ -227,14 +227,14 @@ void Session::write_results(const Finished& run) {
   status.sessions = head_.sessions;
   // As they are, whatever has happened to the files meanwhile.
   write_case(dir_, config_);
-  io::write_static(dir_ / "static.csv", run.initial.common.tractions);
+  results::write_static(dir_ / "static.csv", run.initial.common.tractions);
   // What takes no time first: the program may be given none after an interruption.
   write_so_far(dir_, run.result, run.initial, status);
-  io::write_history(dir_ / "interface.h5", io::ResultStream::history_file(folder_.state()),
-                    run.initial.common.tractions.x_m);
+  results::write_history(dir_ / "interface.h5", results::ResultStream::history_file(folder_.state()),
+                         run.initial.common.tractions.x_m);
   if (!config_.output.snapshot_times_s.empty())
-    io::write_snapshots(dir_ / "fields.vtkhdf", io::ResultStream::snapshot_file(folder_.state()),
-                        check(config_));
+    results::write_snapshots(dir_ / "fields.vtkhdf", results::ResultStream::snapshot_file(folder_.state()),
+                             check(config_));
   if (status.name == "complete") folder_.publish();
 }
 
@@ -255,7 +255,7 @@ void require_same(const std::string& wanted, const std::string& kept, const std:
 
 }  // namespace
 
-Finished run_into(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
+Finished run_into(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
                   const SessionHooks& hooks) {
   try {
     folder.begin();
@@ -267,12 +267,12 @@ Finished run_into(io::ResultFolder& folder, const io::Case& config, const Sessio
   return Session(folder, config, options, hooks, false).run({});
 }
 
-Finished go_on(io::ResultFolder& folder, const io::Case* expected, const SessionOptions& options,
+Finished go_on(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                const SessionHooks& hooks) {
   const auto file = folder.unfinished() / case_file;
-  if (!folder.has_unfinished() || !io::is_there(file))
+  if (!folder.has_unfinished() || !files::is_there(file))
     throw UserError("{}: holds no unfinished run to go on with", folder.dir().string());
-  const io::Case config = io::read_case(file);
+  const input::Case config = input::read_case(file);
   const std::string text = resolved_text(config);
   if (expected != nullptr) require_same_case(*expected, folder.unfinished());
   auto kept = Checkpoints(folder.state()).last(hooks.note);
@@ -285,20 +285,20 @@ Finished go_on(io::ResultFolder& folder, const io::Case* expected, const Session
       throw UserError("{}: was changed since the run was begun; put it back, or begin anew",
                       config.prestress.file);
   }
-  io::write_text(file, text);  // as it was, however it was written meanwhile
-  for (const char* name : {"interface.h5", "fields.vtkhdf"}) io::remove_file(folder.unfinished() / name);
+  files::write_text(file, text);  // as it was, however it was written meanwhile
+  for (const char* name : {"interface.h5", "fields.vtkhdf"}) files::remove_file(folder.unfinished() / name);
   return Session(folder, config, options, hooks, true).run(std::move(kept));
 }
 
-void require_same_case(const io::Case& wanted, const std::filesystem::path& dir) {
-  const io::Case config = io::read_case(dir / case_file);
+void require_same_case(const input::Case& wanted, const std::filesystem::path& dir) {
+  const input::Case config = input::read_case(dir / case_file);
   require_same(resolved_text(wanted), resolved_text(config), "the case");
   require_same(wanted.prestress.table.text, config.prestress.table.text, "the table of its tractions");
 }
 
 bool is_complete(const std::filesystem::path& dir) {
-  return io::is_there(dir / io::checksum_list) && io::is_there(dir / "run.json") &&
-         io::is_there(dir / "interface.h5");
+  return files::is_there(dir / files::checksum_list) && files::is_there(dir / "run.json") &&
+         files::is_there(dir / "interface.h5");
 }
 
 }  // namespace slipfront::run

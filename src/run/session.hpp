@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "io/folder.hpp"
+#include "results/folder.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::run {
@@ -19,7 +19,7 @@ enum class Request {
 };
 
 struct SessionOptions {
-  solve::Execution execution;
+  motion::Execution execution;
   double keep_every_wall_s = 300;                                 ///< wall time between checkpoints
   double keep_every_s = std::numeric_limits<double>::infinity();  ///< simulated time between them
 };
@@ -38,7 +38,7 @@ struct Finished {
   InitialState initial;
 };
 
-/// The kind of work that a run is, see io::ResultFolder.
+/// The kind of work that a run is, see results::ResultFolder.
 inline constexpr const char* run_work = "run";
 
 /// Runs a case into its folder. While it goes, DIR/unfinished has the case, run.json with its status, and
@@ -46,18 +46,18 @@ inline constexpr const char* run_work = "run";
 /// run that is complete is published to DIR; one that was interrupted or blew up stays where it is.
 /// @throws UserError and BlowUp, nothing being kept but the reason where there was no event yet;
 /// Interrupted in ramp or statics; WriteError, what there is being kept.
-Finished run_into(io::ResultFolder& folder, const io::Case& config, const SessionOptions& options,
+Finished run_into(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
                   const SessionHooks& hooks);
 
 /// Goes on with a run that was left unfinished, as if it had never stopped: from its last checkpoint that is
 /// intact, or from its beginning where there is none. Ramps solve their statics again.
 /// @param expected  a case that it must be, or null
 /// @throws UserError where there is none, or it is one of another program or case
-Finished go_on(io::ResultFolder& folder, const io::Case* expected, const SessionOptions& options,
+Finished go_on(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                const SessionHooks& hooks);
 
 /// @throws UserError where a folder has the results or the unfinished work of another case.
-void require_same_case(const io::Case& wanted, const std::filesystem::path& dir);
+void require_same_case(const input::Case& wanted, const std::filesystem::path& dir);
 
 /// Whether a folder has the results of a run that is complete.
 bool is_complete(const std::filesystem::path& dir);

@@ -9,7 +9,7 @@ namespace slipfront::run {
 namespace {
 
 /// A table that reaches beyond the plate may have its positions in another unit; empty where it does not.
-std::string table_warning(const io::Prestress& prestress, double width_m) {
+std::string table_warning(const input::Prestress& prestress, double width_m) {
   const auto& x_m = prestress.table.rows.x_m;
   const double tolerance_m = 1e-6 * width_m;
   const auto is_beyond = [&](double x) { return x < -tolerance_m || x > width_m + tolerance_m; };
@@ -24,7 +24,7 @@ std::string table_warning(const io::Prestress& prestress, double width_m) {
 
 }  // namespace
 
-std::vector<std::string> warnings_of_case(const io::Case& config) {
+std::vector<std::string> warnings_of_case(const input::Case& config) {
   std::vector<std::string> warnings;
   if (auto warning = table_warning(config.prestress, config.plate.width_m); !warning.empty())
     warnings.push_back(std::move(warning));

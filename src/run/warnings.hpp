@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "io/case.hpp"
+#include "input/case.hpp"
 
 namespace slipfront::run {
 
 /// What is allowed in a case but is hardly meant, a line each.
-std::vector<std::string> warnings_of_case(const io::Case& config);
+std::vector<std::string> warnings_of_case(const input::Case& config);
 
 }  // namespace slipfront::run

@@ -7,12 +7,12 @@
 
 #include "base/error.hpp"
 #include "base/version.hpp"
-#include "io/files.hpp"
-#include "io/folder.hpp"
-#include "io/history.hpp"
-#include "io/results.hpp"
-#include "io/schema.hpp"
-#include "io/snapshots.hpp"
+#include "files/files.hpp"
+#include "input/schema.hpp"
+#include "results/folder.hpp"
+#include "results/history.hpp"
+#include "results/results.hpp"
+#include "results/snapshots.hpp"
 #include "run/run.hpp"
 
 namespace slipfront::run {
@@ -32,21 +32,21 @@ constexpr const char* compiler = "clang ";
 constexpr const char* compiler = "g++ ";
 #endif
 
-const char* name(solve::EventEnd end) {
+const char* name(motion::EventEnd end) {
   switch (end) {
-    case solve::EventEnd::end_time:
+    case motion::EventEnd::end_time:
       return "end_time";
-    case solve::EventEnd::quiet:
+    case motion::EventEnd::quiet:
       return "quiet";
-    case solve::EventEnd::interrupted:
+    case motion::EventEnd::interrupted:
       return "interrupted";
-    case solve::EventEnd::blow_up:
+    case motion::EventEnd::blow_up:
       return "blow_up";
   }
   return "";
 }
 
-Json energy_json(const solve::Energies& e) {
+Json energy_json(const record::Energies& e) {
   return {{"strain_J_per_m", e.strain},
           {"kinetic_J_per_m", e.kinetic},
           {"top_work_J_per_m", e.top_work},
@@ -72,7 +72,7 @@ Json statics_json(const InitialState& initial) {
                {"inside_from_m", initial.common.inside_from_m},
                {"inside_to_m", initial.common.inside_to_m},
                {"unknowns", initial.n_unknowns},
-               {"solver", solve::name_of(initial.solver)},
+               {"solver", statics::name_of(initial.solver)},
                {"solver_bytes", initial.solver_bytes},
                {"wall_s", initial.wall_s}};
   if (initial.ramp) {
@@ -111,7 +111,7 @@ Json fronts_json(const std::vector<fronts::Front>& fronts) {
 }
 
 /// What every run.json begins with.
-Json about(const io::Case& config, const Status& status) {
+Json about(const input::Case& config, const Status& status) {
   Json json = {{"version", version()},
                {"commit", commit()},
                {"compiler", std::string(compiler) + __VERSION__},
@@ -157,49 +157,50 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
 }
 
 void write_json(const std::filesystem::path& dir, const Json& json) {
-  io::write_text(dir / "run.json", json.dump(2) + "\n");
+  files::write_text(dir / "run.json", json.dump(2) + "\n");
 }
 
 }  // namespace
 
 Status status_of(const Result& result) {
   const auto& event = result.event;
-  if (event.end == solve::EventEnd::blow_up) return {"blew_up", event.blow_up};
-  if (event.end == solve::EventEnd::interrupted)
+  if (event.end == motion::EventEnd::blow_up) return {"blew_up", event.blow_up};
+  if (event.end == motion::EventEnd::interrupted)
     return {"interrupted", fmt::format("interrupted at t = {:.4g} s", event.time_s)};
   return {};
 }
 
-std::string resolved_text(const io::Case& config) {
+std::string resolved_text(const input::Case& config) {
   auto resolved = config;
   if (!resolved.prestress.file.empty()) resolved.prestress.file = table_file;
-  return io::to_toml(resolved);
+  return input::to_toml(resolved);
 }
 
-void write_case(const std::filesystem::path& dir, const io::Case& config) {
-  io::write_text(dir / case_file, resolved_text(config));
-  if (!config.prestress.file.empty()) io::write_text(dir / table_file, config.prestress.table.text);
+void write_case(const std::filesystem::path& dir, const input::Case& config) {
+  files::write_text(dir / case_file, resolved_text(config));
+  if (!config.prestress.file.empty()) files::write_text(dir / table_file, config.prestress.table.text);
 }
 
-void write_status(const std::filesystem::path& dir, const io::Case& config, const Status& status) {
+void write_status(const std::filesystem::path& dir, const input::Case& config, const Status& status) {
   write_json(dir, about(config, status));
 }
 
 void write_so_far(const std::filesystem::path& dir, const Result& result, const InitialState& initial,
                   const Status& status) {
-  io::write_fronts(dir / "fronts.csv", result.fronts);
-  io::write_energies(dir / "energy.csv", result.event.energies);
+  results::write_fronts(dir / "fronts.csv", result.fronts);
+  results::write_energies(dir / "energy.csv", result.event.energies);
   write_json(dir, run_json(result, initial, status));
 }
 
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial) {
   const auto& event = result.event;
   write_case(dir, result.config);
-  io::write_static(dir / "static.csv", initial.common.tractions);
-  io::write_history(dir / "interface.h5", event.history);
-  if (!event.snapshots.empty()) io::write_snapshots(dir / "fields.vtkhdf", initial.mesh, event.snapshots);
+  results::write_static(dir / "static.csv", initial.common.tractions);
+  results::write_history(dir / "interface.h5", event.history);
+  if (!event.snapshots.empty())
+    results::write_snapshots(dir / "fields.vtkhdf", initial.mesh, event.snapshots);
   write_so_far(dir, result, initial, status_of(result));
-  io::seal(dir);
+  results::seal(dir);
 }
 
 }  // namespace slipfront::run

@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "fronts/fit.hpp"
 #include "fronts/measures.hpp"
-#include "io/schema.hpp"
+#include "input/schema.hpp"
 
 namespace slipfront::study {
 
@@ -31,7 +31,7 @@ Plan finish(Plan plan) {
   return plan;
 }
 
-std::vector<double> element_sizes(const io::Case& config, const ConvergenceOptions& options) {
+std::vector<double> element_sizes(const input::Case& config, const ConvergenceOptions& options) {
   const double h = config.plate.element_size_m;
   auto sizes = options.element_sizes_m;
   if (sizes.empty()) sizes = {2 * h, h, h / 2};
@@ -44,10 +44,10 @@ std::vector<double> element_sizes(const io::Case& config, const ConvergenceOptio
   return sizes;
 }
 
-Plan element_plan(const io::Case& base, const std::vector<double>& sizes) {
+Plan element_plan(const input::Case& base, const std::vector<double>& sizes) {
   Plan plan{"plate.element_size_m", base.plate.element_size_m, {}, {}, 0};
   for (const double h : sizes) {
-    io::Case c = base;
+    input::Case c = base;
     // The case's own size to the last digit: it shares the base run.
     c.plate.element_size_m = same(h, base.plate.element_size_m) ? base.plate.element_size_m : h;
     plan.members.push_back({h, h, c});
@@ -55,12 +55,12 @@ Plan element_plan(const io::Case& base, const std::vector<double>& sizes) {
   return finish(std::move(plan));
 }
 
-Plan step_plan(const io::Case& base) {
+Plan step_plan(const input::Case& base) {
   const int n = base.time.interface_substeps;
   if (n == 1 || base.time.interface_rows == 0) {
     Plan plan{"time.step_factor", base.time.step_factor, {}, {}, 0};
     for (const double factor : {1.0, 0.5, 0.25}) {
-      io::Case c = base;
+      input::Case c = base;
       c.time.step_factor *= factor;
       plan.members.push_back({c.time.step_factor, c.time.step_factor, c});
     }
@@ -68,17 +68,17 @@ Plan step_plan(const io::Case& base) {
   }
   Plan plan{"time.interface_substeps", static_cast<double>(n), {}, {}, 0};
   for (const int m : {n / 2, n, 2 * n, 4 * n}) {
-    io::Case c = base;
+    input::Case c = base;
     c.time.interface_substeps = m;
     plan.members.push_back({static_cast<double>(m), 1.0 / m, c});
   }
   return finish(std::move(plan));
 }
 
-Plan damping_plan(const io::Case& base) {
+Plan damping_plan(const input::Case& base) {
   Plan plan{"material.stiffness_damping_s", base.material.stiffness_damping_s, {}, {}, 0};
   for (const double factor : {2.0, 1.0, 0.5, 0.0}) {
-    io::Case c = base;
+    input::Case c = base;
     c.material.stiffness_damping_s *= factor;
     plan.members.push_back({c.material.stiffness_damping_s, c.material.stiffness_damping_s, c});
   }
@@ -131,22 +131,22 @@ Sequence compare(const Plan& plan, const std::vector<Run>& runs, const Convergen
 
 }  // namespace
 
-std::vector<Plan> plan_convergence(const io::Case& config, const ConvergenceOptions& options) {
+std::vector<Plan> plan_convergence(const input::Case& config, const ConvergenceOptions& options) {
   const auto sizes = element_sizes(config, options);
-  io::Case base = for_study(config);
+  input::Case base = for_study(config);
   base.fronts.l_star_m = std::max(base.fronts.l_star_m, sizes.front());
   std::vector<Plan> plans = {element_plan(base, sizes), step_plan(base)};
   if (base.material.stiffness_damping_s > 0) plans.push_back(damping_plan(base));
   return plans;
 }
 
-Convergence study_convergence(const io::Case& config, const ConvergenceOptions& options,
+Convergence study_convergence(const input::Case& config, const ConvergenceOptions& options,
                               const StudyMonitor& monitor) {
   auto plans = plan_convergence(config, options);
-  std::vector<io::Case> cases;
+  std::vector<input::Case> cases;
   std::map<std::string, std::size_t> index;
-  const auto add = [&](const io::Case& c) {
-    const auto [it, is_new] = index.try_emplace(io::to_toml(c), cases.size());
+  const auto add = [&](const input::Case& c) {
+    const auto [it, is_new] = index.try_emplace(input::to_toml(c), cases.size());
     if (is_new) cases.push_back(c);
     return it->second;
   };

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fronts/front.hpp"
-#include "io/case.hpp"
+#include "input/case.hpp"
 #include "study/runs.hpp"
 #include "study/sequence.hpp"
 
@@ -25,7 +25,7 @@ struct ConvergenceOptions {
 struct Member {
   double value = 0;      ///< of the parameter
   double step_size = 0;  ///< q of sequence.hpp: falls towards the limit; 0 at the limit itself
-  io::Case config;
+  input::Case config;
   std::size_t run = 0;  ///< index of its run; sequences share runs
 };
 
@@ -43,7 +43,7 @@ struct Plan {
 /// the case has no damping). fronts.l_star_m is raised to the largest element, so that all speeds are taken
 /// over the same length.
 /// @throws UserError where the element sizes are fewer than three, or leave out the case's.
-std::vector<Plan> plan_convergence(const io::Case& config, const ConvergenceOptions& options);
+std::vector<Plan> plan_convergence(const input::Case& config, const ConvergenceOptions& options);
 
 /// Speeds at a station, for the members of a sequence.
 struct Station {
@@ -75,10 +75,11 @@ struct Convergence {
 /// the start of the case's own front, where the speed diverges, and within a trigger zone and its margin. The
 /// run that blew up counts as one without fronts.
 /// @throws UserError, Interrupted
-Convergence study_convergence(const io::Case& config, const ConvergenceOptions& options,
+Convergence study_convergence(const input::Case& config, const ConvergenceOptions& options,
                               const StudyMonitor& monitor);
 
 /// convergence.csv (a row per sequence, station and value) and convergence.json (verdicts).
-void write_convergence(const std::filesystem::path& dir, const io::Case& config, const Convergence& result);
+void write_convergence(const std::filesystem::path& dir, const input::Case& config,
+                       const Convergence& result);
 
 }  // namespace slipfront::study

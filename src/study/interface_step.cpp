@@ -11,9 +11,9 @@
 
 #include "base/error.hpp"
 #include "base/version.hpp"
+#include "files/files.hpp"
 #include "fronts/fit.hpp"
-#include "io/files.hpp"
-#include "io/schema.hpp"
+#include "input/schema.hpp"
 #include "study/sequence.hpp"
 
 namespace slipfront::study {
@@ -51,14 +51,14 @@ const char* name(Stepping::Kind kind) {
 
 }  // namespace
 
-InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOptions& options,
+InterfaceStep study_interface_step(const input::Case& config, const InterfaceStepOptions& options,
                                    const StudyMonitor& monitor) {
   InterfaceStep result;
   result.options = options;
-  const io::Case base = for_study(config);
+  const input::Case base = for_study(config);
   const double factor = base.time.step_factor;
 
-  std::vector<io::Case> cases;
+  std::vector<input::Case> cases;
   const auto add = [&](double step_factor, int rows, int substeps) {
     auto& c = cases.emplace_back(base);
     c.time.step_factor = step_factor;
@@ -143,7 +143,7 @@ InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOp
   return result;
 }
 
-void write_interface_step(const std::filesystem::path& dir, const io::Case& config,
+void write_interface_step(const std::filesystem::path& dir, const input::Case& config,
                           const InterfaceStep& result) {
   using nlohmann::ordered_json;
   const auto number = [](double value) {
@@ -156,7 +156,7 @@ void write_interface_step(const std::filesystem::path& dir, const io::Case& conf
     fmt::format_to(std::back_inserter(csv), "{},{:.10g},{},{},{:.6g},{:.4g},{:.6g},{:.6g},{}\n", name(s.kind),
                    s.step_factor, s.rows, s.substeps, s.cost, s.time_s, s.median_error, s.p90_error,
                    s.n_stations);
-  io::write_text(dir / "interface_step.csv", csv);
+  files::write_text(dir / "interface_step.csv", csv);
   ordered_json summary = {{"version", version_line()},
                           {"title", config.title},
                           {"tolerance", result.options.tolerance},
@@ -166,7 +166,7 @@ void write_interface_step(const std::filesystem::path& dir, const io::Case& conf
                           {"n_runs", result.n_runs},
                           {"warnings", result.warnings},
                           {"chosen", nullptr}};
-  io::remove_file(dir / "chosen.toml");  // of an earlier study
+  files::remove_file(dir / "chosen.toml");  // of an earlier study
   if (result.chosen >= 0) {
     const auto& s = result.all[result.chosen];
     summary["chosen"] = {{"step_factor", s.step_factor},
@@ -174,13 +174,13 @@ void write_interface_step(const std::filesystem::path& dir, const io::Case& conf
                          {"interface_substeps", s.substeps},
                          {"cost_over_plain", s.cost},
                          {"p90_error", s.p90_error}};
-    io::Case chosen = config;
+    input::Case chosen = config;
     chosen.time.step_factor = s.step_factor;
     chosen.time.interface_substeps = s.substeps;
     if (s.kind == Stepping::Kind::layer) chosen.time.interface_rows = s.rows;
-    io::write_text(dir / "chosen.toml", io::to_toml(chosen));
+    files::write_text(dir / "chosen.toml", input::to_toml(chosen));
   }
-  io::write_text(dir / "interface_step.json", summary.dump(2) + "\n");
+  files::write_text(dir / "interface_step.json", summary.dump(2) + "\n");
 }
 
 }  // namespace slipfront::study

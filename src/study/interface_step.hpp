@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/case.hpp"
+#include "input/case.hpp"
 #include "study/runs.hpp"
 
 namespace slipfront::study {
@@ -52,12 +52,12 @@ struct InterfaceStep {
 /// station (sequence.hpp); compared with it are the plain scheme at the step_factor over 1, 2, 4, 8 and all
 /// pairs of rows and sub-steps that fit.
 /// @throws UserError, Interrupted
-InterfaceStep study_interface_step(const io::Case& config, const InterfaceStepOptions& options,
+InterfaceStep study_interface_step(const input::Case& config, const InterfaceStepOptions& options,
                                    const StudyMonitor& monitor);
 
 /// interface_step.csv (a row per way of stepping), interface_step.json, and chosen.toml, the case with the
 /// chosen rows and sub-steps, where one is within the tolerance.
-void write_interface_step(const std::filesystem::path& dir, const io::Case& config,
+void write_interface_step(const std::filesystem::path& dir, const input::Case& config,
                           const InterfaceStep& result);
 
 }  // namespace slipfront::study

@@ -7,13 +7,13 @@
 
 namespace slipfront::study {
 
-io::Case for_study(io::Case config) {
+input::Case for_study(input::Case config) {
   config.output.history_interval_s = 1e-5;
   config.output.snapshot_times_s.clear();
   return config;
 }
 
-std::vector<Run> run_cases(std::span<const io::Case> cases, int threads, const StudyMonitor& monitor,
+std::vector<Run> run_cases(std::span<const input::Case> cases, int threads, const StudyMonitor& monitor,
                            const std::filesystem::path& kept) {
   for (const auto& c : cases) run::check(c);
   std::vector<Run> runs(cases.size());
@@ -24,7 +24,7 @@ std::vector<Run> run_cases(std::span<const io::Case> cases, int threads, const S
   batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
     auto& run = runs[k];
     run.main.options = run::front_options(cases[k], initial);
-    if (r.event.end == solve::EventEnd::blow_up)
+    if (r.event.end == motion::EventEnd::blow_up)
       run.blow_up = r.event.blow_up;
     else
       run.main.fronts = main_fronts(r.fronts);

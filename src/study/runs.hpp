@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/case.hpp"
+#include "input/case.hpp"
 #include "study/speeds.hpp"
 
 namespace slipfront::study {
@@ -24,12 +24,12 @@ struct Run {
 };
 
 /// The case without the records that studies do not read.
-io::Case for_study(io::Case config);
+input::Case for_study(input::Case config);
 
 /// Runs all cases; the results do not depend on the number of threads.
 /// @param kept  folder of the runs that are done, see run::FinishedRuns; empty for none
 /// @throws UserError, Interrupted
-std::vector<Run> run_cases(std::span<const io::Case> cases, int threads, const StudyMonitor& monitor,
+std::vector<Run> run_cases(std::span<const input::Case> cases, int threads, const StudyMonitor& monitor,
                            const std::filesystem::path& kept = {});
 
 }  // namespace slipfront::study

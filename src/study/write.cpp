@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.hpp"
-#include "io/files.hpp"
+#include "files/files.hpp"
 #include "run/run.hpp"
 #include "study/convergence.hpp"
 
@@ -48,7 +48,8 @@ std::string csv(const Convergence& result) {
 
 }  // namespace
 
-void write_convergence(const std::filesystem::path& dir, const io::Case& config, const Convergence& result) {
+void write_convergence(const std::filesystem::path& dir, const input::Case& config,
+                       const Convergence& result) {
   ordered_json sequences = ordered_json::array();
   for (const auto& s : result.sequences) {
     ordered_json values = ordered_json::array(), used = ordered_json::array();
@@ -73,8 +74,8 @@ void write_convergence(const std::filesystem::path& dir, const io::Case& config,
                                 {"n_runs", result.n_runs},
                                 {"sequences", sequences},
                                 {"warnings", result.warnings}};
-  io::write_text(dir / "convergence.csv", csv(result));
-  io::write_text(dir / "convergence.json", summary.dump(2) + "\n");
+  files::write_text(dir / "convergence.csv", csv(result));
+  files::write_text(dir / "convergence.json", summary.dump(2) + "\n");
 }
 
 }  // namespace slipfront::study

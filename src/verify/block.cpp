@@ -65,20 +65,20 @@ History program(const Drive& drive, const solid::Material& material, int rows, d
   // Full weakening within one step of any slip.
   const interface::SlipWeakeningHealing law { .mu_s = mu_s, .mu_k = mu_k, .d_c_m = 1e-15 };
   // Constant pressure: otherwise waves of a few elements along x grow from rounding.
-  solve::Stepper stepper(mesh, material, {law, {.relaxed = interface::Relaxed::pressure}},
-                         plain_stepping(step_factor));
+  motion::Stepper stepper(mesh, material, {law, {.relaxed = interface::Relaxed::pressure}},
+                          plain_stepping(step_factor));
   const double strain = drive.first_traction * drop_Pa / solid::shear_modulus_Pa(material);
   const auto state = start(stepper, mesh,
                            {.u_x_m =
                                 [&](mesh::Node n, double time) {
                                   return mesh.y_m[n] * (strain + drive.top_speed * v_m_per_s * time / H_m);
                                 },
-                            .contact = solve::Contact::stick,
+                            .contact = statics::Contact::stick,
                             .t_Pa = drive.first_traction * drop_Pa,
                             .p_Pa = p_Pa});
   stepper.set_prestress(std::vector<double>(mesh.lower.size(), 0.0),
                         std::vector<double>(mesh.lower.size(), p_Pa));
-  solve::Recorder recorder(state, mu_s, 0);
+  motion::Recorder recorder(state, mu_s, 0);
   History h;
   while (stepper.time_s() < drive.end * T_s) {
     // The tractions of a step belong to the places at its beginning.

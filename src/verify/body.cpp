@@ -3,8 +3,8 @@
 
 namespace slipfront::verify {
 
-solve::Equilibrium start(solve::Stepper& stepper, const mesh::Mesh& mesh, const Start& start) {
-  solve::Equilibrium state;
+statics::Equilibrium start(motion::Stepper& stepper, const mesh::Mesh& mesh, const Start& start) {
+  statics::Equilibrium state;
   state.u_m = state.u_per_shear = solid::Field(static_cast<std::size_t>(mesh.n_nodes()));
   const auto orphan = mesh::orphans(mesh);
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {

@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "mesh/plate.hpp"
-#include "solve/statics.hpp"
-#include "solve/stepper.hpp"
+#include "motion/stepper.hpp"
+#include "statics/statics.hpp"
 
 namespace slipfront::verify {
 
@@ -14,16 +14,16 @@ namespace slipfront::verify {
 /// it.
 struct Start {
   std::function<double(mesh::Node, double time_s)> u_x_m = {}, u_y_m = {};  ///< empty for none
-  solve::Contact contact = solve::Contact::open;
+  statics::Contact contact = statics::Contact::open;
   double t_Pa = 0, p_Pa = 0;
 };
 
 /// @return the state from which the stepper was started, as a recorder needs it.
-solve::Equilibrium start(solve::Stepper& stepper, const mesh::Mesh& mesh, const Start& start);
+statics::Equilibrium start(motion::Stepper& stepper, const mesh::Mesh& mesh, const Start& start);
 
 /// The whole plate with one step.
-inline solve::TimeStepping plain_stepping(double step_factor = 0.9) {
-  solve::TimeStepping time;
+inline motion::TimeStepping plain_stepping(double step_factor = 0.9) {
+  motion::TimeStepping time;
   time.step_factor = step_factor;
   time.interface_substeps = 1;
   return time;

@@ -49,15 +49,15 @@ Outcome column(Effort effort) {
                        Case{1.3, 1.0, 1.35e6}, Case{1.3, 1.0, 1.40e6}}) {
     const interface::VelocityWeakening law { c.mu_s, c.mu_k, 0.1 };
     const double v = slip_rate(c.tau0_Pa, impedance, law);
-    solve::Stepper stepper(mesh, material, {law}, plain_stepping());
+    motion::Stepper stepper(mesh, material, {law}, plain_stepping());
     const double shear = c.tau0_Pa / G, strain = pressure_Pa / solid::longitudinal_modulus_Pa(material);
     const auto state = start(stepper, mesh,
                              {.u_x_m = [&](mesh::Node n, double) { return shear * mesh.y_m[n]; },
                               .u_y_m = [&](mesh::Node n, double) { return -strain * mesh.y_m[n]; },
-                              .contact = solve::Contact::stick,
+                              .contact = statics::Contact::stick,
                               .t_Pa = c.tau0_Pa,
                               .p_Pa = pressure_Pa});
-    solve::Recorder recorder(state, c.mu_s, 0);
+    motion::Recorder recorder(state, c.mu_s, 0);
     const auto node = mesh.lower[1];
     Curve program{"", Curve::Kind::program, {}, {}};
     double next = 0;

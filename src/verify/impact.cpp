@@ -69,11 +69,11 @@ class Fall {
     for (std::size_t n = 0; n < m.size(); ++n) momentum += m[n] * stepper_.v_m_per_s().y[n], mass += m[n];
     return momentum / mass;
   }
-  solve::Energies start() const { return start_; }
-  solve::Energies energies() { return stepper_.energies(); }
+  record::Energies start() const { return start_; }
+  record::Energies energies() { return stepper_.energies(); }
 
  private:
-  solve::Equilibrium fall() {
+  statics::Equilibrium fall() {
     const double gap_m = (3 + share_left) * speed_m_per_s * stepper_.step_s();
     return verify::start(stepper_, mesh_,
                          {.u_y_m = [=](mesh::Node, double time) { return gap_m - speed_m_per_s * time; }});
@@ -81,9 +81,9 @@ class Fall {
 
   double h_m_;
   mesh::Mesh mesh_;
-  solve::Stepper stepper_;
-  solve::Recorder recorder_;
-  solve::Energies start_;
+  motion::Stepper stepper_;
+  motion::Recorder recorder_;
+  record::Energies start_;
   bool touched_ = false;
   int n_changes_ = 0;
 };

@@ -99,10 +99,10 @@ Seismogram run(Load load, double h_m, double end_s, double coarsest_h_m, const s
   const auto mesh = mesh::make_plate(
       {.width_m = width_m, .height_m = height_m, .element_size_m = h_m, .corner = mesh::Corner::none});
   const auto steps = steps_to(end_s, h_m, coarsest_h_m, material);
-  solve::Stepper stepper(mesh, material, {interface::Coulomb{}},
-                         plain_stepping(factor_of_step(mesh, material, steps.step_s)));
+  motion::Stepper stepper(mesh, material, {interface::Coulomb{}},
+                          plain_stepping(factor_of_step(mesh, material, steps.step_s)));
   const auto state = start(stepper, mesh, {.u_y_m = [](mesh::Node, double) { return lift_m; }});
-  solve::Recorder recorder(state, 1, 0);
+  motion::Recorder recorder(state, 1, 0);
   const auto at = [&](double x) { return static_cast<int>(std::lround((0.5 * width_m + x) / h_m)); };
   Seismogram s;
   std::vector<double> none(mesh.lower.size(), 0.0), traction = none;

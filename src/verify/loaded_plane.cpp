@@ -23,7 +23,7 @@ LoadedBody::LoadedBody(const LoadedPlane& plane)
     : plane_(plane),
       mesh_(make_mesh(plane)),
       stepper_(mesh_, plane.material, {plane.law, constant_pressure}, plain_stepping()),
-      recorder_(start(stepper_, mesh_, {.contact = solve::Contact::stick, .p_Pa = plane.pressure_Pa}),
+      recorder_(start(stepper_, mesh_, {.contact = statics::Contact::stick, .p_Pa = plane.pressure_Pa}),
                 plane.law.mu_s, 0) {
   for (const auto n : mesh_.lower) x_m_.push_back(mesh_.x_m[n] - 0.5 * plane.width_m);
 }

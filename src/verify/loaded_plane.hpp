@@ -26,20 +26,20 @@ class LoadedBody {
   void weaken(const std::function<double(double x_m)>& intact);
 
   void advance() { stepper_.advance(recorder_); }
-  const solve::Stepper& stepper() const { return stepper_; }
+  const motion::Stepper& stepper() const { return stepper_; }
   double time_s() const { return stepper_.time_s(); }
   const interface::Interface& interface_state() const { return stepper_.interface_state(); }
   const std::vector<double>& x_m() const { return x_m_; }  ///< [lower]
   double slip_m(std::size_t i) const { return stepper_.u_m().x[mesh_.lower[i]]; }
-  const fronts::SlipRecord& record() const { return recorder_.record(); }
+  const record::SlipRecord& record() const { return recorder_.record(); }
 
  private:
   std::vector<double> at(const std::function<double(double)>& f) const;
   LoadedPlane plane_;
   mesh::Mesh mesh_;
   std::vector<double> x_m_;
-  solve::Stepper stepper_;
-  solve::Recorder recorder_;
+  motion::Stepper stepper_;
+  motion::Recorder recorder_;
 };
 
 /// Shear stiffness of a half-space on the plane against slip: t = -Y0 |k| u at the wavenumber k.

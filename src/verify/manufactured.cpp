@@ -131,7 +131,7 @@ struct Errors {
 };
 
 /// Relative change of the frequency by the join above `rows` rows of cells: docs/verification/subcycling.md.
-double shift_by_join(const LayerWave& wave, double h_m, double step_s, const solve::TimeStepping& stepping) {
+double shift_by_join(const LayerWave& wave, double h_m, double step_s, const motion::TimeStepping& stepping) {
   const auto& material = wave.material;
   const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
   const double G = solid::shear_modulus_Pa(material), P = solid::longitudinal_modulus_Pa(material);
@@ -167,10 +167,10 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
                                       .sides = mesh::Sides::periodic});
   const auto steps = steps_to(time_s, h_m, coarsest_h_m, wave.material);
   const double factor = factor_of_step(mesh, wave.material, steps.step_s);
-  solve::TimeStepping stepping;  // 4 rows of cells, 18 sub-steps
+  motion::TimeStepping stepping;  // 4 rows of cells, 18 sub-steps
   stepping.step_factor = factor;
-  solve::Stepper stepper(mesh, wave.material, {interface::Coulomb{edge == Edge::stuck ? 10.0 : 0.0}},
-                         subcycled ? stepping : plain_stepping(factor));
+  motion::Stepper stepper(mesh, wave.material, {interface::Coulomb{edge == Edge::stuck ? 10.0 : 0.0}},
+                          subcycled ? stepping : plain_stepping(factor));
   // At rest: lifted, or pressed down uniformly.
   const double strain = edge == Edge::free ? 0 : pressure_Pa / solid::longitudinal_modulus_Pa(wave.material);
   const auto u_x = [&](mesh::Node n, double time) {
@@ -184,11 +184,11 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
   const auto state = start(stepper, mesh,
                            {.u_x_m = u_x,
                             .u_y_m = u_y,
-                            .contact = edge == Edge::free           ? solve::Contact::open
-                                       : edge == Edge::frictionless ? solve::Contact::slip
-                                                                    : solve::Contact::stick,
+                            .contact = edge == Edge::free           ? statics::Contact::open
+                                       : edge == Edge::frictionless ? statics::Contact::slip
+                                                                    : statics::Contact::stick,
                             .p_Pa = edge == Edge::free ? 0 : pressure_Pa});
-  solve::Recorder recorder(state, 10, 0);
+  motion::Recorder recorder(state, 10, 0);
   struct Norm {
     double error = 0, exact = 0;
     void add(double measured, double expected) {

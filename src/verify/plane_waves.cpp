@@ -36,10 +36,10 @@ class Column {
   Column(const mesh::Mesh& mesh, const solid::Material& material, Wave wave)
       : mesh_(mesh), wave_(wave), stepper_(mesh, material, {interface::Coulomb{}}, plain_stepping()) {}
 
-  solve::Stepper& stepper() { return stepper_; }
+  motion::Stepper& stepper() { return stepper_; }
 
   /// Uniform motion across, a Gaussian pulse that moves down from `from_m`.
-  solve::Equilibrium start_pulse(double from_m, double width_m) {
+  statics::Equilibrium start_pulse(double from_m, double width_m) {
     const auto pulse = [=, this](mesh::Node n, double time) {
       const double s = (mesh_.y_m[n] - from_m + wave_.c_m_per_s * time) / width_m;
       return amplitude_m * std::exp(-0.5 * s * s);
@@ -69,7 +69,7 @@ class Column {
   static constexpr double amplitude_m = 1e-6;
   const mesh::Mesh& mesh_;
   Wave wave_;
-  solve::Stepper stepper_;
+  motion::Stepper stepper_;
 };
 
 }  // namespace
@@ -88,7 +88,7 @@ Outcome plane_waves(Effort) {
     // The centroid moves with the group velocity of infinite wavelength, which the scheme does not disperse.
     // Neither the pulse nor the faint wave that the discrete start sends back reaches an edge.
     auto state = column.start_pulse(0.11, 6e-3);
-    solve::Recorder recorder(state, 1, 0);
+    motion::Recorder recorder(state, 1, 0);
     const double before = column.centroid_m();
     while (c * stepper.time_s() < 0.04) stepper.advance(recorder);
     outcome.checks.push_back({fmt::format("speed of a {} pulse", wave.name()), "m/s",

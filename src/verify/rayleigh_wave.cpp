@@ -59,11 +59,11 @@ Outcome rayleigh_wave(Effort effort) {
                                           .element_size_m = h_m,
                                           .corner = mesh::Corner::none,
                                           .sides = mesh::Sides::periodic});
-      solve::TimeStepping stepping;
+      motion::TimeStepping stepping;
       stepping.step_factor =
           factor_of_step(mesh, material, 0.85 * h_m / solid::longitudinal_speed_m_per_s(material));
       if (!subcycled) stepping.interface_substeps = 1;
-      solve::Stepper stepper(mesh, material, {interface::Coulomb{}}, stepping);
+      motion::Stepper stepper(mesh, material, {interface::Coulomb{}}, stepping);
       const auto phase = [&](mesh::Node node, double time) {
         return k_rad_per_m * (mesh.x_m[node] - wave.c_R * time);
       };
@@ -75,7 +75,7 @@ Outcome rayleigh_wave(Effort effort) {
         return lift_m + (held(node) ? 0 : wave.V(mesh.y_m[node]) * std::sin(phase(node, time)));
       };
       const auto state = start(stepper, mesh, {.u_x_m = u_x, .u_y_m = u_y});
-      solve::Recorder recorder(state, 1, 0);
+      motion::Recorder recorder(state, 1, 0);
       // Phase of the edge's motion along y, over three wavelengths: other waves of the layer, which the start
       // holds faintly, only make it swing.
       const auto angle = [&] {

@@ -106,8 +106,8 @@ Growth carry(const SlidingWave& w) {
                                       .sides = mesh::Sides::periodic});
   // The same c_L dt/h on every mesh, and a whole number of steps: errors then follow powers of h.
   const int n_steps = w.elements_per_wave * static_cast<int>(std::ceil(c_L * w.end_s / (0.9 * length)));
-  const double stable_s = solve::Stepper(mesh, w.material, w.contact, plain_stepping()).stable_step_s();
-  solve::Stepper stepper(mesh, w.material, w.contact, plain_stepping(w.end_s / (n_steps * stable_s)));
+  const double stable_s = motion::Stepper(mesh, w.material, w.contact, plain_stepping()).stable_step_s();
+  motion::Stepper stepper(mesh, w.material, w.contact, plain_stepping(w.end_s / (n_steps * stable_s)));
   const auto phase = [&](mesh::Node n, double time) {
     return amplitude_m * std::exp(i_unit * k * mesh.x_m[n] + w.s_per_s * time);
   };
@@ -122,7 +122,7 @@ Growth carry(const SlidingWave& w) {
                             // On the plane to the last digit, so that no gap opens.
                             return mesh.y_m[n] == 0 ? 0.0 : (phase(n, time) * shape.u_y(mesh.y_m[n])).real();
                           },
-                      .contact = solve::Contact::slip,
+                      .contact = statics::Contact::slip,
                       .t_Pa = mu * w.pressure_Pa,
                       .p_Pa = w.pressure_Pa});
   // A delayed response has a part of the wave in its memory.
@@ -142,7 +142,7 @@ Growth carry(const SlidingWave& w) {
       sum += (stepper.u_m().x[n] - w.speed_m_per_s * stepper.time_s()) * std::exp(-i_unit * k * mesh.x_m[n]);
     return sum;
   };
-  solve::Recorder recorder(state, mu, 0);
+  motion::Recorder recorder(state, mu, 0);
   Growth growth{{0}, {0}};
   Complex last = transform();
   while (stepper.step() < n_steps) {

@@ -28,21 +28,21 @@ double frequency(bool shear, int rows, double step_factor, bool subcycled, int n
                                       .element_size_m = h_m,
                                       .corner = mesh::Corner::none,
                                       .sides = mesh::Sides::periodic});
-  solve::TimeStepping stepping;  // 4 rows of cells, 18 sub-steps
+  motion::TimeStepping stepping;  // 4 rows of cells, 18 sub-steps
   stepping.step_factor = step_factor;
-  solve::Stepper stepper(mesh, material, {interface::Coulomb{shear ? 10.0 : 0.0}},
-                         subcycled ? stepping : plain_stepping(step_factor));
+  motion::Stepper stepper(mesh, material, {interface::Coulomb{shear ? 10.0 : 0.0}},
+                          subcycled ? stepping : plain_stepping(step_factor));
   const double strain = pressure_Pa / solid::longitudinal_modulus_Pa(material);
   const auto wave = [&](mesh::Node n, double time) {
     return amplitude_m * std::sin(q * mesh.y_m[n]) * std::sin(q * c * time);
   };
   const auto rest = [&](mesh::Node n) { return -strain * mesh.y_m[n]; };
   Start from{.u_y_m = [&](mesh::Node n, double time) { return rest(n) + (shear ? 0 : wave(n, time)); },
-             .contact = shear ? solve::Contact::stick : solve::Contact::slip,
+             .contact = shear ? statics::Contact::stick : statics::Contact::slip,
              .p_Pa = pressure_Pa};
   if (shear) from.u_x_m = wave;
   const auto state = start(stepper, mesh, from);
-  solve::Recorder recorder(state, 10, 0);
+  motion::Recorder recorder(state, 10, 0);
   const auto projection = [&] {
     double sum = 0;
     for (int j = 0; j < rows; ++j) {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "motion/event.hpp"
 #include "solid/element.hpp"
-#include "solve/event.hpp"
 #include "verify/body.hpp"
 #include "verify/problems.hpp"
 
@@ -40,8 +40,8 @@ double turned_cell(const solid::CellCoordinates& cell, double angle, const solid
 }
 
 struct Run {
-  solve::Equilibrium state;
-  std::vector<fronts::Onset> onsets;  ///< by node, then time
+  statics::Equilibrium state;
+  std::vector<record::Onset> onsets;  ///< by node, then time
   solid::Field u_m;
   double time_s = 0, substep_s = 0;
 };
@@ -53,26 +53,26 @@ Run run(const mesh::Mesh& mesh, const solid::Material& material, bool mirrored, 
       .mu_s = 1.3, .mu_k = 0.9, .d_c_m = 4e-6
     }
   };
-  solve::Loading loading;
+  statics::Loading loading;
   if (mirrored) std::swap(loading.tilt_left_m, loading.tilt_right_m);
   constexpr double mu_s = 1.3;
   const double sign = mirrored ? -1 : 1;
   // The shear is that of the original.
-  const solve::Statics original(mesh, material, {}, mu_s), statics(mesh, material, loading, mu_s);
+  const statics::Statics original(mesh, material, {}, mu_s), statics(mesh, material, loading, mu_s);
   Run run;
   run.state = statics.shear_by(sign * original.shear_to(0.95 * mu_s).shear_m);
-  solve::Stepper stepper(mesh, material, model, {});
+  motion::Stepper stepper(mesh, material, model, {});
   stepper.start(run.state, sign * 1e-6 * solid::longitudinal_speed_m_per_s(material));
   const interface::Trigger trigger;
   // Trigger forces are to +x; the mirrored one's are those of the mirrored tractions.
   auto towards = run.state;
   for (double& t : towards.tractions.t_s_Pa) t *= sign;
-  auto force = solve::trigger_forces(towards, mesh::tributary_lengths_m(mesh),
-                                     mirrored ? interface::EventKind::right : interface::EventKind::left,
-                                     trigger, mu_s);
+  auto force = motion::trigger_forces(towards, mesh::tributary_lengths_m(mesh),
+                                      mirrored ? interface::EventKind::right : interface::EventKind::left,
+                                      trigger, mu_s);
   for (double& f : force) f *= sign;
   stepper.set_trigger(trigger, force);
-  solve::Recorder recorder(run.state, mu_s, 0);
+  motion::Recorder recorder(run.state, mu_s, 0);
   while (stepper.time_s() < end_s) stepper.advance(recorder);
   run.onsets = recorder.take(end_s).onsets;
   const auto last = static_cast<std::int32_t>(mesh.lower.size()) - 1;

@@ -34,8 +34,8 @@ Outcome time_reversal(Effort effort) {
   for (const bool contact : {false, true})
     for (const bool subcycled : {false, true}) {
       // Undamped, without friction; in the air, or pressed down by more than the waves lift.
-      solve::Stepper stepper(mesh, material, {interface::Coulomb{0}},
-                             subcycled ? solve::TimeStepping{} : plain_stepping());
+      motion::Stepper stepper(mesh, material, {interface::Coulomb{0}},
+                              subcycled ? motion::TimeStepping{} : plain_stepping());
       // A bump that moves to the upper right and breaks up at the edges.
       const auto bump = [&](mesh::Node n, double time) {
         const double x = mesh.x_m[n] - 0.3 * width - 700 * time, y = mesh.y_m[n] - 0.4 * height - 400 * time;
@@ -47,9 +47,9 @@ Outcome time_reversal(Effort effort) {
                 {.u_x_m = bump,
                  .u_y_m = [&](mesh::Node n,
                               double time) { return rest(n) + (mesh.y_m[n] > 0 ? 0.5 * bump(n, time) : 0); },
-                 .contact = contact ? solve::Contact::slip : solve::Contact::open,
+                 .contact = contact ? statics::Contact::slip : statics::Contact::open,
                  .p_Pa = contact ? pressure : 0});
-      solve::Recorder recorder(state, 1, 0);
+      motion::Recorder recorder(state, 1, 0);
       double motion = 0;
       Curve curve{fmt::format("{}, {}", contact ? "plane" : "air", subcycled ? "sub-cycled" : "one step"),
                   Curve::Kind::program,

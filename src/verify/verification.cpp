@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/version.hpp"
-#include "io/files.hpp"
+#include "files/files.hpp"
 #include "verify/problems.hpp"
 
 namespace slipfront::verify {
@@ -73,7 +73,7 @@ void write_outcome(const std::filesystem::path& dir, const Verification& verific
                             {"holds", outcome.holds()},
                             {"checks", checks},
                             {"charts", charts}};
-  io::write_text(dir / (verification.name + ".json"), all.dump(1) + "\n");
+  files::write_text(dir / (verification.name + ".json"), all.dump(1) + "\n");
 }
 
 }  // namespace slipfront::verify

@@ -38,15 +38,15 @@ struct Recipe {
   double end_time_s = 1e-3;
   /// How long each node slips.
   std::function<double(double x_m)> duration_s = [](double) { return never; };
-  std::function<Traction(double x_m, double time_s)> traction = [](double, double) {
-    return Traction{4e6, 5e6};
+  std::function<record::Traction(double x_m, double time_s)> traction = [](double, double) {
+    return record::Traction{4e6, 5e6};
   };
 };
 
 /// A record in which every node slips once, at tau (never where infinite).
-inline SlipRecord make_record(const std::vector<double>& x, const std::vector<double>& tau,
-                              const Recipe& recipe = {}) {
-  SlipRecord record;
+inline record::SlipRecord make_record(const std::vector<double>& x, const std::vector<double>& tau,
+                                      const Recipe& recipe = {}) {
+  record::SlipRecord record;
   record.x_m = x;
   record.halo = recipe.halo;
   record.end_time_s = recipe.end_time_s;
@@ -57,18 +57,19 @@ inline SlipRecord make_record(const std::vector<double>& x, const std::vector<do
     const double stop_s = tau[k] + recipe.duration_s(x[k]);
     if (stop_s < recipe.end_time_s) record.stops.push_back({k, stop_s});
   }
-  std::ranges::stable_sort(record.onsets, {}, &Onset::time_s);
-  std::ranges::stable_sort(record.stops, {}, &Stop::time_s);
-  for (const Onset& onset : record.onsets) {
+  std::ranges::stable_sort(record.onsets, {}, &record::Onset::time_s);
+  std::ranges::stable_sort(record.stops, {}, &record::Stop::time_s);
+  for (const record::Onset& onset : record.onsets) {
     for (int k = onset.node - recipe.halo; k <= onset.node + recipe.halo; ++k) {
       const bool inside = k >= 0 && k < n;
-      record.around.push_back(inside ? recipe.traction(x[k], onset.time_s) : Traction{undefined, undefined});
+      record.around.push_back(inside ? recipe.traction(x[k], onset.time_s)
+                                     : record::Traction{undefined, undefined});
     }
   }
   return record;
 }
 
-inline StaticState make_state(const std::vector<double>& x) {
+inline record::StaticState make_state(const std::vector<double>& x) {
   return {x, std::vector<double>(x.size(), 4e6), std::vector<double>(x.size(), 5e6)};
 }
 
@@ -79,7 +80,8 @@ inline FrontOptions make_options() {
   return options;
 }
 
-inline std::vector<Front> find(const SlipRecord& record, const FrontOptions& options = make_options()) {
+inline std::vector<Front> find(const record::SlipRecord& record,
+                               const FrontOptions& options = make_options()) {
   return find_fronts(record, make_state(record.x_m), options);
 }
 

@@ -168,7 +168,7 @@ TEST(TipSpeed, IsUndefinedWhereTheTriggerDrives) {
 }
 
 /// Tractions linear in the distance of a front that runs to +x from x = 0: t_d and p_d are exact.
-Traction ahead_of_tip(double x_m, double time_s) {
+record::Traction ahead_of_tip(double x_m, double time_s) {
   const double distance_m = x_m - V * time_s;
   return {5.2e6 - 1e9 * distance_m, 4e6 + 0.5e9 * distance_m};
 }
@@ -316,7 +316,7 @@ TEST(SlippingShare, SlipAgain) {
     record.onsets.push_back({k, 110e-6});
     record.around.push_back({4e6, 5e6});
   }
-  std::ranges::stable_sort(record.onsets, {}, &Onset::time_s);
+  std::ranges::stable_sort(record.onsets, {}, &record::Onset::time_s);
   const auto front = find(record).at(0);
   ASSERT_EQ(front.points.size(), 301u);
   EXPECT_NEAR(front.points[164].slipping_share, 7 * h / x[164], 1e-12);             // at 109 us
@@ -332,7 +332,7 @@ TEST(SlippingShare, RejoinsSlipBehind) {
     record.onsets.push_back({k, 110.01e-6});
     record.around.push_back({4e6, 5e6});
   }
-  std::ranges::stable_sort(record.onsets, {}, &Onset::time_s);
+  std::ranges::stable_sort(record.onsets, {}, &record::Onset::time_s);
   EXPECT_DOUBLE_EQ(find(record).at(0).points[166].slipping_share, 1.0);
 }
 

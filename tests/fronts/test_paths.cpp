@@ -27,7 +27,7 @@ std::vector<int> range(int first, int last) {
 TEST(Paths, NoOnsets) {
   const auto x = nodes(301, h);
   EXPECT_TRUE(find(make_record(x, std::vector<double>(x.size(), never))).empty());
-  EXPECT_TRUE(find(SlipRecord{}).empty());
+  EXPECT_TRUE(find(record::SlipRecord{}).empty());
 }
 
 TEST(Paths, NucleationStartsOneFrontToEachSide) {

@@ -11,9 +11,9 @@
 #include <array>
 #include <iterator>
 
+#include "files/checksum.hpp"
 #include "fuzz.hpp"
-#include "io/checksum.hpp"
-#include "io/stream.hpp"
+#include "results/stream.hpp"
 #include "run/run.hpp"
 
 using namespace slipfront;
@@ -24,8 +24,8 @@ constexpr std::size_t sum_digits = 64;
 constexpr const char* file_name = "checkpoint-000001.bin";
 
 /// 4 x 2 cells.
-io::Case tiny_case() {
-  io::Case config;
+input::Case tiny_case() {
+  input::Case config;
   config.plate.width_m = 0.04;
   config.plate.height_m = 0.02;
   config.plate.element_size_m = 0.01;
@@ -37,9 +37,9 @@ io::Case tiny_case() {
   return config;
 }
 
-io::Case prestressed_case() {
+input::Case prestressed_case() {
   auto config = tiny_case();
-  config.loading.method = solve::LoadingMethod::prestress;
+  config.loading.method = statics::LoadingMethod::prestress;
   config.prestress = {.t_Pa = 0.65e6, .p_Pa = 1e6, .file = {}};
   config.event = interface::EventKind::nucleation;
   config.nucleation.x_m = 0.02;
@@ -47,11 +47,11 @@ io::Case prestressed_case() {
   return config;
 }
 
-std::array<io::Case, 3> cases() {
+std::array<input::Case, 3> cases() {
   std::array cases = {prestressed_case(), tiny_case(), tiny_case()};
-  cases[1].time.precision = solve::Precision::single_precision;
+  cases[1].time.precision = motion::Precision::single_precision;
   cases[1].contact = interface::ContactAlgorithm::predictor_corrector;
-  cases[2].loading.method = solve::LoadingMethod::ramp;
+  cases[2].loading.method = statics::LoadingMethod::ramp;
   cases[2].loading.edge_margin_m = 0;
   return cases;
 }
@@ -67,19 +67,19 @@ std::string content_of(const std::filesystem::path& file) {
 }
 
 /// A whole checkpoint of a run's first steps, without its checksum.
-std::string checkpoint_of(const io::Case& config) {
+std::string checkpoint_of(const input::Case& config) {
   const fuzz::Scratch scratch;
   run::Checkpoints checkpoints(scratch.dir());
   run::CheckpointHead head;
-  if (config.loading.method == solve::LoadingMethod::ramp) {
-    solve::Stepper* stepper = nullptr;
-    solve::RampRun* ramp = nullptr;
+  if (config.loading.method == statics::LoadingMethod::ramp) {
+    motion::Stepper* stepper = nullptr;
+    motion::RampRun* ramp = nullptr;
     const auto keep = [&](std::int64_t step, std::int64_t total) {
       if (stepper == nullptr) return stop(step, total);
-      checkpoints.keep(head, [&](io::OutputArchive& archive) { archive(*stepper, *ramp); });
+      checkpoints.keep(head, [&](results::OutputArchive& archive) { archive(*stepper, *ramp); });
       return false;
     };
-    const auto begins = [&](solve::Stepper& its_stepper, solve::RampRun& run) {
+    const auto begins = [&](motion::Stepper& its_stepper, motion::RampRun& run) {
       stepper = &its_stepper;
       ramp = &run;
     };
@@ -93,8 +93,8 @@ std::string checkpoint_of(const io::Case& config) {
     auto event = run::begin_event(config, initial, *stepper);
     head.in_event = true;
     event.run([&](std::int64_t, std::int64_t) {
-      checkpoints.keep(head, [&](io::OutputArchive& archive) {
-        archive(initial, *stepper, event, io::ResultStream::Extents{});
+      checkpoints.keep(head, [&](results::OutputArchive& archive) {
+        archive(initial, *stepper, event, results::ResultStream::Extents{});
       });
       return false;
     });
@@ -106,18 +106,18 @@ std::string checkpoint_of(const io::Case& config) {
 }
 
 /// Goes on as run::go_on does, for some steps.
-void go_on(const io::Case& config, run::Checkpoints::Kept& kept) {
+void go_on(const input::Case& config, run::Checkpoints::Kept& kept) {
   if (kept.head.in_event) {
     auto initial = run::read_initial_state(kept.rest, config);
     const auto stepper = run::make_stepper(config, initial);
     kept.rest(*stepper);
     auto event = run::begin_event(config, initial, *stepper);
-    io::ResultStream::Extents extents;
+    results::ResultStream::Extents extents;
     kept.rest(event, extents);
     kept.rest.close();
     event.run(stop);
   } else {
-    run::make_initial_state(config, stop, {}, [&](solve::Stepper& stepper, solve::RampRun& ramp) {
+    run::make_initial_state(config, stop, {}, [&](motion::Stepper& stepper, motion::RampRun& ramp) {
       kept.rest(stepper, ramp);
       kept.rest.close();
     });
@@ -165,7 +165,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::size_t k = data[0] % configs.size();
   auto content = damaged(contents[k], fuzz::text_of(data + 1, size - 1));
-  content += io::sha256(content);
+  content += files::sha256(content);
   scratch.write(file_name, content);
   bool refused = false;
   const auto kept = run::Checkpoints(scratch.dir()).last([&](const std::string&) { refused = true; });

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "fuzz.hpp"
-#include "io/experiment.hpp"
-#include "io/prestress.hpp"
+#include "input/experiment.hpp"
+#include "input/prestress.hpp"
 
 using namespace slipfront;
 
@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const fuzz::Scratch scratch;
   const auto file = scratch.write("table.csv", fuzz::text_of(data, size));
   fuzz::takes([&] {
-    const auto table = io::read_prestress(file).rows;
+    const auto table = input::read_prestress(file).rows;
     const std::size_t n = table.x_m.size();
     fuzz::require(n > 0 && table.t_s_Pa.size() == n && table.p_s_Pa.size() == n, "columns differ in length");
     for (std::size_t k = 0; k < n; ++k)
@@ -23,7 +23,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   });
   fuzz::takes([&] {
     constexpr double c_L_m_per_s = 2400;
-    const auto points = io::read_experiment(file, c_L_m_per_s);
+    const auto points = input::read_experiment(file, c_L_m_per_s);
     fuzz::require(!points.static_ratio.empty() && points.static_ratio.size() == points.v_over_c_L.size(),
                   "columns differ in length");
     for (std::size_t k = 0; k < points.static_ratio.size(); ++k)

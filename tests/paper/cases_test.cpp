@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <set>
 
-#include "io/schema.hpp"
+#include "input/schema.hpp"
 
 namespace slipfront::paper {
 namespace {
@@ -44,7 +44,7 @@ TEST(PaperCases, AreTheCaseFiles) {
   for (const auto& c : paper_cases(false)) {
     known.insert(c.name);
     const auto file = case_folder / (c.name + ".toml");
-    EXPECT_EQ(io::to_toml(io::read_case(file)), io::to_toml(c.config)) << file;
+    EXPECT_EQ(input::to_toml(input::read_case(file)), input::to_toml(c.config)) << file;
   }
   EXPECT_EQ(known, files);
 }
@@ -78,7 +78,7 @@ TEST(PaperCases, QuickOnesDifferInTheMeshAlone) {
   for (std::size_t k = 0; k < full.size(); ++k) {
     EXPECT_DOUBLE_EQ(quick[k].config.plate.element_size_m, 2e-3);
     quick[k].config.plate.element_size_m = full[k].config.plate.element_size_m;
-    EXPECT_EQ(io::to_toml(quick[k].config), io::to_toml(full[k].config));
+    EXPECT_EQ(input::to_toml(quick[k].config), input::to_toml(full[k].config));
     EXPECT_EQ(quick[k].name, full[k].name);
   }
 }
@@ -119,7 +119,7 @@ TEST(Studies, SetWhatTheySay) {
         EXPECT_TRUE(values.insert(point.value).second) << study.name << ' ' << point.value;
         if (study.name == "corner") continue;  // its values name two keys
         for (const auto& c : point.cases) {
-          const auto line = line_of(io::to_toml(c.config), leaf);
+          const auto line = line_of(input::to_toml(c.config), leaf);
           const auto text = line.substr(line.find('=') + 2, line.find("  #") - line.find('=') - 2);
           if (std::isnan(point.number))
             EXPECT_EQ(text, '"' + point.value + '"') << study.name;
@@ -144,7 +144,7 @@ TEST(Studies, ChangeOneParameterOfThePapersRuns) {
         auto ours = c.config, theirs = reference->config;
         ours.title = theirs.title;
         ours.output = theirs.output;
-        auto a = io::to_toml(ours), b = io::to_toml(theirs);
+        auto a = input::to_toml(ours), b = input::to_toml(theirs);
         a.erase(a.find(line_of(a, leaf)), line_of(a, leaf).size());
         b.erase(b.find(line_of(b, leaf)), line_of(b, leaf).size());
         EXPECT_EQ(a, b) << study.name << ' ' << point.value;
@@ -154,8 +154,8 @@ TEST(Studies, ChangeOneParameterOfThePapersRuns) {
 }
 
 /// Every case of a variation in the order of the paper's runs, and those.
-std::vector<std::pair<io::Case, io::Case>> pairs_of(const Variation& variation, bool quick) {
-  std::vector<std::pair<io::Case, io::Case>> list;
+std::vector<std::pair<input::Case, input::Case>> pairs_of(const Variation& variation, bool quick) {
+  std::vector<std::pair<input::Case, input::Case>> list;
   const auto events = paper_cases(quick);
   for (std::size_t k = 0; k < events.size(); ++k) {
     list.emplace_back(variation.events[k].config, events[k].config);
@@ -181,14 +181,14 @@ TEST(Variations, DifferFromTheRunsOfTheScorecardInOneParameter) {
       for (const auto& study : variation.studies) names.push_back(study.name);
       EXPECT_THAT(names, ElementsAre("mu_k", "alpha"));
       for (auto& [varied, own] : pairs_of(variation, quick)) {
-        io::Case expected = own;
+        input::Case expected = own;
         expected.title = varied.title;
         if (variation.name == "mesh")
           expected.plate.element_size_m = variation.value;
         else
           expected.time.interface_substeps = static_cast<int>(variation.value);
-        EXPECT_EQ(io::to_toml(varied), io::to_toml(expected));
-        EXPECT_NE(io::to_toml(varied), io::to_toml(own));
+        EXPECT_EQ(input::to_toml(varied), input::to_toml(expected));
+        EXPECT_NE(input::to_toml(varied), input::to_toml(own));
       }
     }
     EXPECT_EQ(list[0].key, "plate.element_size_m");

@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "../io/support.hpp"
-#include "io/schema.hpp"
+#include "input/schema.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::paper {
 namespace {
@@ -52,15 +52,15 @@ TEST(OpenChoices, SetTheKeysThatTheyName) {
     SCOPED_TRACE(choice.name);
     EXPECT_TRUE(names.insert(choice.name).second);
     for (const double level : choice.levels) {
-      io::Case changed, standard;
+      input::Case changed, standard;
       if (choice.name.ends_with("_raised"))
         changed.trigger.form = standard.trigger.form = interface::TriggerForm::raised;
       choice.set(standard, choice.standard);
       choice.set(changed, level);
-      const auto differing = io::to_toml(changed) != io::to_toml(standard);
+      const auto differing = input::to_toml(changed) != input::to_toml(standard);
       EXPECT_EQ(differing, level != choice.standard) << level;
       const auto key = choice.key.substr(choice.key.find('.') + 1);
-      EXPECT_THAT(io::to_toml(changed), testing::HasSubstr(key));
+      EXPECT_THAT(input::to_toml(changed), testing::HasSubstr(key));
     }
   }
 }

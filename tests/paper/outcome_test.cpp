@@ -178,7 +178,7 @@ TEST(MainFront, IsTheLongestInItsDirection) {
 }
 
 /// A run with the given onsets, of which only what make_outcome reads is there.
-run::Result make_result(const std::vector<fronts::Onset>& onsets) {
+run::Result make_result(const std::vector<record::Onset>& onsets) {
   run::Result result;
   result.event.record.x_m = make_event("", EventKind::spontaneous).common.x_m;
   result.event.record.onsets = onsets;

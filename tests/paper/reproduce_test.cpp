@@ -10,9 +10,9 @@
 #include <set>
 #include <sstream>
 
-#include "../io/support.hpp"
-#include "io/checksum.hpp"
+#include "files/checksum.hpp"
 #include "paper/cases.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::paper {
 namespace {
@@ -259,7 +259,7 @@ TEST_F(QuickReproduction, GoesOnBehindTheRunsThatWereDone) {
   EXPECT_EQ(files.size(), expected.size());
   for (const auto& [name, text] : expected)
     EXPECT_TRUE(files.contains(name) && files.at(name) == text) << name;
-  io::require_intact(folder.path());
+  files::require_intact(folder.path());
 }
 
 TEST(Reproduce, InterruptionLeavesEarlierResultsAsTheyWere) {

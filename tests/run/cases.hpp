@@ -6,15 +6,15 @@
 namespace slipfront::test {
 
 /// The paper's plate on a mesh that a run takes milliseconds for.
-inline io::Case coarse_case(interface::EventKind event = interface::EventKind::spontaneous,
-                            double element_size_m = 4e-3) {
-  io::Case config;
+inline input::Case coarse_case(interface::EventKind event = interface::EventKind::spontaneous,
+                               double element_size_m = 4e-3) {
+  input::Case config;
   config.plate.element_size_m = element_size_m;
   config.event = event;
   return config;
 }
 
-inline interface::VelocityWeakening& law(io::Case& config) {
+inline interface::VelocityWeakening& law(input::Case& config) {
   return std::get<interface::VelocityWeakening>(config.friction);
 }
 

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "../io/support.hpp"
 #include "base/error.hpp"
 #include "cases.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -29,7 +29,7 @@ std::string refusal(F&& f) {
   return {};
 }
 
-Needs needs_of(const io::Case& config) {
+Needs needs_of(const input::Case& config) {
   return needs(config, estimated_size(config));
 }
 
@@ -62,7 +62,7 @@ TEST(SnapshotPlan, TellsWhatAQuietEndLeavesOut) {
   config.time.end_s = 1;
   config.output.snapshot_times_s = {0, 10e-6, 0.5, 1};
   const auto result = run_event(config, make_initial_state(config, go_on), go_on);
-  ASSERT_EQ(result.event.end, solve::EventEnd::quiet);
+  ASSERT_EQ(result.event.end, motion::EventEnd::quiet);
   EXPECT_EQ(result.event.snapshots.size(), 2U);
   EXPECT_THAT(result.warnings,
               testing::Contains(HasSubstr("2 of 4 output.snapshot_times_s are after the end")));
@@ -115,7 +115,7 @@ TEST(Needs, CountTheStepsOfTheRamp) {
   for (const double element_m : {4e-3, 5e-3}) {
     auto config = coarse_case(interface::EventKind::left, element_m);
     EXPECT_EQ(needs_of(config).ramp_steps, 0);
-    config.loading.method = solve::LoadingMethod::ramp;
+    config.loading.method = statics::LoadingMethod::ramp;
     config.loading.shear_speed_over_c_L = 3e-6;
     const auto foretold = info(config);
     const auto initial = make_initial_state(config, go_on);
@@ -128,7 +128,7 @@ TEST(Needs, CountTheStepsOfTheRamp) {
 
 TEST(Needs, TheRampIsEstimatedOnACoarseMesh) {
   auto config = coarse_case(interface::EventKind::left, 0.5e-3);
-  config.loading.method = solve::LoadingMethod::ramp;
+  config.loading.method = statics::LoadingMethod::ramp;
   const double fine = static_cast<double>(needs(config, {.step_s = 1e-7}).ramp_steps);
   config.plate.element_size_m = 2e-3;
   EXPECT_NEAR(static_cast<double>(needs(config, {.step_s = 1e-7}).ramp_steps) / fine, 1, 1e-6);
@@ -143,7 +143,7 @@ TEST(Needs, RefuseStepsBeyondCounting) {
   config.time.end_s = 1e9;
   EXPECT_THAT(refusal([&] { needs_of(config); }), HasSubstr("time.end_s = 1e+09 takes"));
   config.time.end_s = 1e-4;
-  config.loading.method = solve::LoadingMethod::ramp;
+  config.loading.method = statics::LoadingMethod::ramp;
   for (const double speed : {1e-20, 1e-300}) {
     config.loading.shear_speed_over_c_L = speed;
     for (const auto& message :
@@ -155,7 +155,7 @@ TEST(Needs, RefuseStepsBeyondCounting) {
 
 TEST(RequireFit, NamesWhatToChange) {
   const test::TemporaryFolder folder;
-  const auto message = [&](const io::Case& config) {
+  const auto message = [&](const input::Case& config) {
     return refusal([&] { require_fit(config, folder / "to be/made"); });
   };
   auto config = coarse_case();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "io/prestress.hpp"
+#include "input/prestress.hpp"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@
 
 #include "base/error.hpp"
 #include "cases.hpp"
-#include "io/schema.hpp"
+#include "input/schema.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -29,13 +29,13 @@ using test::go_on;
 
 const std::filesystem::path reference = std::filesystem::path(SLIPFRONT_SOURCE_DIR) / "cases/reference";
 
-Result run(const io::Case& config) {
+Result run(const input::Case& config) {
   return run_event(config, make_initial_state(config, go_on), go_on);
 }
 
 /// A column of four periodic elements on a frictional plane.
-io::Case column(mesh::Top top) {
-  io::Case c;
+input::Case column(mesh::Top top) {
+  input::Case c;
   c.plate = {.width_m = 4e-3,
              .height_m = 0.06,
              .element_size_m = 1e-3,
@@ -43,7 +43,7 @@ io::Case column(mesh::Top top) {
              .sides = mesh::Sides::periodic,
              .top = top};
   c.material.stiffness_damping_s = 0;
-  c.loading.method = solve::LoadingMethod::prestress;
+  c.loading.method = statics::LoadingMethod::prestress;
   c.loading.shear_speed_over_c_L = 0;
   c.event = EventKind::none;
   c.time.quiet_s = std::numeric_limits<double>::infinity();
@@ -52,7 +52,7 @@ io::Case column(mesh::Top top) {
 }
 
 /// Mean slip rate of the first node over the last part of the history, from the slip itself.
-double mean_rate(const fronts::History& h, double from_s) {
+double mean_rate(const record::History& h, double from_s) {
   const std::size_t n = h.x_m.size(), last = h.time_s.size() - 1;
   const auto first = static_cast<std::size_t>(std::ranges::lower_bound(h.time_s, from_s) - h.time_s.begin());
   return (h.slip_m[last * n] - h.slip_m[first * n]) / (h.time_s[last] - h.time_s[first]);
@@ -79,7 +79,7 @@ TEST(PrestressColumn, SlidesAtTheRateOfItsImpedance) {
       // by 60.
       c.time.end_s = 105e-6;
       const auto result = run(c);
-      ASSERT_EQ(result.event.end, solve::EventEnd::end_time) << result.event.blow_up;
+      ASSERT_EQ(result.event.end, motion::EventEnd::end_time) << result.event.blow_up;
       EXPECT_NEAR(mean_rate(result.event.history, 60e-6), v, 1e-3 * v);  // the start's remainder: 3e-4
       EXPECT_THAT(result.warnings, ::testing::Contains(::testing::HasSubstr("they slip at once")));
     }
@@ -106,7 +106,7 @@ TEST(PrestressColumn, BelowTheStrengthNothingMoves) {
     c.prestress = {0.499e6, 1e6, ""};
     c.time.end_s = 50e-6;
     const auto result = run(c);
-    EXPECT_EQ(result.event.end, solve::EventEnd::end_time) << result.event.blow_up;
+    EXPECT_EQ(result.event.end, motion::EventEnd::end_time) << result.event.blow_up;
     EXPECT_TRUE(result.event.record.onsets.empty());
     for (const double s : result.event.history.slip_m) EXPECT_EQ(s, 0);
     for (const double t : result.event.history.t_Pa) EXPECT_NEAR(t, 0.499e6, 1e-9 * 1e6);
@@ -136,13 +136,13 @@ TEST(PrestressColumn, TheMovingTopLoadsTheLayer) {
 }
 
 /// Problem A on a mesh of the given element size, in m.
-io::Case problem_a(double element_size_m) {
-  return io::read_case(reference / "rigid_flat_a.toml",
-                       {{"plate.element_size_m", fmt::format("{}", element_size_m)}});
+input::Case problem_a(double element_size_m) {
+  return input::read_case(reference / "rigid_flat_a.toml",
+                          {{"plate.element_size_m", fmt::format("{}", element_size_m)}});
 }
 
 /// First time at which the slip rate at each node passes 1 mm/s, linear between the samples.
-std::vector<double> arrivals(const fronts::History& h) {
+std::vector<double> arrivals(const record::History& h) {
   const std::size_t n = h.x_m.size();
   std::vector<double> times(n, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < n; ++i)
@@ -214,7 +214,7 @@ TEST(ProblemA, ArrivalsConvergeToThoseOfAnotherCode) {
 
   // The books close: no bulk damping, so that friction, prestress and boundary are all there is.
   const auto& energies = fine.event.energies;
-  EXPECT_LT(std::abs(solve::imbalance_J_per_m(energies.back(), energies.front())),
+  EXPECT_LT(std::abs(record::imbalance_J_per_m(energies.back(), energies.front())),
             1e-9 * energies.back().prestress_work);
   EXPECT_GT(energies.back().prestress_work, 0);
   EXPECT_LT(energies.back().boundary_work, 0);
@@ -282,7 +282,7 @@ TEST(Nucleation, ExcludedZoneOfAPatchAtThePeriodicEdge) {
   for (const double x : {0.021, 0.05, 0.099}) EXPECT_FALSE(fronts::is_driven(options, x)) << x;
 }
 
-std::string error_of(const io::Case& config) {
+std::string error_of(const input::Case& config) {
   try {
     check(config);
   } catch (const UserError& error) {
@@ -292,8 +292,8 @@ std::string error_of(const io::Case& config) {
 }
 
 TEST(Prestress, CombinationsThatHaveNoLoadingAreRefused) {
-  for (const auto method : {solve::LoadingMethod::direct, solve::LoadingMethod::ramp}) {
-    io::Case c;
+  for (const auto method : {statics::LoadingMethod::direct, statics::LoadingMethod::ramp}) {
+    input::Case c;
     c.plate.corner = mesh::Corner::none;
     c.loading.method = method;
     EXPECT_EQ(error_of(c), "");
@@ -320,7 +320,7 @@ TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
       std::filesystem::temp_directory_path() / fmt::format("slipfront_prestress_{}.csv", getpid());
   std::ofstream(file) << "x_m,t_Pa,p_Pa\n0,1e5,1e6\n4e-3,3e5,2e6\n";
   c.prestress.file = file.string();
-  c.prestress.table = io::read_prestress(file);
+  c.prestress.table = input::read_prestress(file);
   std::filesystem::remove(file);
   const auto key = initial_state_key(c);
   const auto state = make_initial_state(c, go_on);

@@ -16,6 +16,7 @@
 
 #include "base/error.hpp"
 #include "cases.hpp"
+#include "fronts/from_history.hpp"
 #include "fronts/measures.hpp"
 
 namespace slipfront::run {
@@ -34,7 +35,7 @@ const InitialState& coarse_state() {
   return initial;
 }
 
-Result run(const io::Case& config) {
+Result run(const input::Case& config) {
   return run_event(config, coarse_state(), go_on);
 }
 
@@ -48,7 +49,7 @@ bool same_bits(const solid::Field& a, const solid::Field& b) {
 }
 
 /// Largest t/p inside, from the tractions themselves.
-double largest_ratio(const solve::Equilibrium& e) {
+double largest_ratio(const statics::Equilibrium& e) {
   double most = 0;
   for (std::size_t k = 0; k < e.tractions.x_m.size(); ++k) {
     const double x = e.tractions.x_m[k];
@@ -100,20 +101,20 @@ TEST(InitialStateKey, IgnoresWhatOnlyConcernsTheEvent) {
     change(config);
     EXPECT_EQ(initial_state_key(config), key) << what;
   };
-  same("mu_k", [](io::Case& c) { law(c).mu_k = 1.0; });
-  same("alpha", [](io::Case& c) { law(c).alpha_m2_per_s2 = 1.0; });
-  same("law", [](io::Case& c) {
+  same("mu_k", [](input::Case& c) { law(c).mu_k = 1.0; });
+  same("alpha", [](input::Case& c) { law(c).alpha_m2_per_s2 = 1.0; });
+  same("law", [](input::Case& c) {
     c.friction = interface::Coulomb { 1.3 };
   });
   for (const auto event : {EventKind::none, EventKind::left, EventKind::right})
-    same("event", [event](io::Case& c) { c.event = event; });
-  same("trigger", [](io::Case& c) { c.trigger = {interface::TriggerForm::raised, 1e-3, 2, 1e-6, 1e-5}; });
-  same("time", [](io::Case& c) { c.time.step_factor = 0.1; });
-  same("l*", [](io::Case& c) { c.fronts.l_star_m = 5e-3; });
-  same("output", [](io::Case& c) { c.output = {1e-6, {1e-5}}; });
-  same("title", [](io::Case& c) { c.title = "another"; });
-  same("density", [](io::Case& c) { c.material.density_kg_per_m3 = 2400; });
-  same("damping", [](io::Case& c) { c.material.stiffness_damping_s = 0; });
+    same("event", [event](input::Case& c) { c.event = event; });
+  same("trigger", [](input::Case& c) { c.trigger = {interface::TriggerForm::raised, 1e-3, 2, 1e-6, 1e-5}; });
+  same("time", [](input::Case& c) { c.time.step_factor = 0.1; });
+  same("l*", [](input::Case& c) { c.fronts.l_star_m = 5e-3; });
+  same("output", [](input::Case& c) { c.output = {1e-6, {1e-5}}; });
+  same("title", [](input::Case& c) { c.title = "another"; });
+  same("density", [](input::Case& c) { c.material.density_kg_per_m3 = 2400; });
+  same("damping", [](input::Case& c) { c.material.stiffness_damping_s = 0; });
 }
 
 TEST(InitialStateKey, TellsApartWhatChangesTheStatics) {
@@ -123,28 +124,28 @@ TEST(InitialStateKey, TellsApartWhatChangesTheStatics) {
     change(config);
     EXPECT_NE(initial_state_key(config), key) << what;
   };
-  differs("width", [](io::Case& c) { c.plate.width_m = 0.4; });
-  differs("height", [](io::Case& c) { c.plate.height_m = 0.2; });
-  differs("element", [](io::Case& c) { c.plate.element_size_m = 2e-3; });
-  differs("corner", [](io::Case& c) { c.plate.corner = mesh::Corner::none; });
-  differs("relief", [](io::Case& c) { c.plate.relief_height_m = 0.4e-3; });
-  differs("E", [](io::Case& c) { c.material.youngs_modulus_Pa = 2.7e9; });
-  differs("nu", [](io::Case& c) { c.material.poissons_ratio = 0.3; });
-  differs("plane", [](io::Case& c) { c.material.plane = solid::Plane::strain; });
-  differs("tilt, left", [](io::Case& c) { c.loading.tilt_left_m = 0.38e-3; });
-  differs("tilt, right", [](io::Case& c) { c.loading.tilt_right_m = 0.04e-3; });
-  differs("top", [](io::Case& c) { c.loading.top_during_tilt = solve::TopEdge::free; });
-  differs("edge margin", [](io::Case& c) { c.loading.edge_margin_m = 5e-3; });
-  differs("critical margin", [](io::Case& c) { c.loading.critical_margin = 2e-3; });
-  differs("method", [](io::Case& c) { c.loading.method = solve::LoadingMethod::ramp; });
-  differs("mu_s", [](io::Case& c) { law(c).mu_s = 1.2; });
+  differs("width", [](input::Case& c) { c.plate.width_m = 0.4; });
+  differs("height", [](input::Case& c) { c.plate.height_m = 0.2; });
+  differs("element", [](input::Case& c) { c.plate.element_size_m = 2e-3; });
+  differs("corner", [](input::Case& c) { c.plate.corner = mesh::Corner::none; });
+  differs("relief", [](input::Case& c) { c.plate.relief_height_m = 0.4e-3; });
+  differs("E", [](input::Case& c) { c.material.youngs_modulus_Pa = 2.7e9; });
+  differs("nu", [](input::Case& c) { c.material.poissons_ratio = 0.3; });
+  differs("plane", [](input::Case& c) { c.material.plane = solid::Plane::strain; });
+  differs("tilt, left", [](input::Case& c) { c.loading.tilt_left_m = 0.38e-3; });
+  differs("tilt, right", [](input::Case& c) { c.loading.tilt_right_m = 0.04e-3; });
+  differs("top", [](input::Case& c) { c.loading.top_during_tilt = statics::TopEdge::free; });
+  differs("edge margin", [](input::Case& c) { c.loading.edge_margin_m = 5e-3; });
+  differs("critical margin", [](input::Case& c) { c.loading.critical_margin = 2e-3; });
+  differs("method", [](input::Case& c) { c.loading.method = statics::LoadingMethod::ramp; });
+  differs("mu_s", [](input::Case& c) { law(c).mu_s = 1.2; });
   // Neighbouring doubles are two cases.
-  differs("last bit", [](io::Case& c) { law(c).mu_s = std::nextafter(1.3, 2.0); });
+  differs("last bit", [](input::Case& c) { law(c).mu_s = std::nextafter(1.3, 2.0); });
 }
 
 TEST(InitialStateKey, OfARampHoldsTheLawAndTheStep) {
   auto config = coarse_case();
-  config.loading.method = solve::LoadingMethod::ramp;
+  config.loading.method = statics::LoadingMethod::ramp;
   const std::string key = initial_state_key(config);
   auto other = config;
   law(other).mu_k = 1.0;
@@ -308,7 +309,7 @@ TEST(Event, EnergiesKeepTheirSpacingAndBalance) {
     }
     for (const double term : {e.strain, e.kinetic, e.top_work, e.trigger_work, e.friction_work})
       largest = std::max(largest, std::abs(term));
-    worst = std::max(worst, std::abs(solve::imbalance_J_per_m(e, energies.front())));
+    worst = std::max(worst, std::abs(record::imbalance_J_per_m(e, energies.front())));
   }
   EXPECT_LT(energies.back().damping_work, 0);
   // Rounding alone: a few hundred steps' sums of 1e3 terms at 1e-16 stay far below this.
@@ -324,7 +325,7 @@ TEST(Event, InterruptionKeepsWhatThereIs) {
     last = step;
     return step < 100;
   });
-  EXPECT_EQ(result.event.end, solve::EventEnd::interrupted);
+  EXPECT_EQ(result.event.end, motion::EventEnd::interrupted);
   EXPECT_EQ(result.event.steps, last);
   EXPECT_GE(last, 100);
   EXPECT_FALSE(result.fronts.empty());
@@ -336,7 +337,7 @@ TEST(Event, BlowUpIsToldWithItsStep) {
   config.time.step_factor = 1.4;
   config.time.allow_unstable = true;
   const auto result = run(config);
-  EXPECT_EQ(result.event.end, solve::EventEnd::blow_up);
+  EXPECT_EQ(result.event.end, motion::EventEnd::blow_up);
   EXPECT_NE(result.event.blow_up.find(fmt::format("step {}", result.event.steps)), std::string::npos)
       << result.event.blow_up;
   EXPECT_NE(result.event.blow_up.find("time.step_factor"), std::string::npos);
@@ -348,7 +349,8 @@ TEST(FrontOptions, KnowTheTriggerZone) {
     const auto initial = make_initial_state(config, go_on);
     const auto zones = front_options(config, initial).driven;
     // What the trigger pushes.
-    const auto forces = solve::trigger_forces(initial.common, initial.tributary_m, kind, config.trigger, 1.3);
+    const auto forces =
+        motion::trigger_forces(initial.common, initial.tributary_m, kind, config.trigger, 1.3);
     const auto options = front_options(config, initial);
     std::size_t n = 0;
     for (std::size_t k = 0; k < forces.size(); ++k) {
@@ -370,7 +372,7 @@ TEST(Trigger, AWeakenedZoneSlipsByItself) {
   config.time.end_s = 20e-6;
   const auto initial = make_initial_state(config, go_on);
   const auto result = run_event(config, initial, go_on);
-  const auto zone = solve::trigger_zone(initial.common, EventKind::right, config.trigger.zone_m);
+  const auto zone = motion::trigger_zone(initial.common, EventKind::right, config.trigger.zone_m);
   ASSERT_FALSE(zone.empty());
   const auto& s = initial.common.tractions;
   std::size_t n_beyond = 0;
@@ -395,7 +397,7 @@ TEST(Info, AgreesWithTheRun) {
     const auto info = run::info(config);
     const auto initial = make_initial_state(config, go_on);
     const auto result = run_event(config, initial, go_on);
-    EXPECT_EQ(result.event.end, solve::EventEnd::end_time);
+    EXPECT_EQ(result.event.end, motion::EventEnd::end_time);
     EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes());
     EXPECT_EQ(info.n_cells, std::ssize(initial.mesh.cells));
     EXPECT_EQ(info.n_interface, std::ssize(result.event.history.x_m));
@@ -422,7 +424,7 @@ double allocated_bytes() {
 TEST(Memory, AnEventHoldsWhatIsSaid) {
   auto config = coarse_case(EventKind::nucleation, 0.5e-3);
   config.plate.corner = mesh::Corner::none;
-  config.loading.method = solve::LoadingMethod::prestress;
+  config.loading.method = statics::LoadingMethod::prestress;
   config.prestress = {4e6, 5e6, ""};
   config.nucleation.x_m = 0.1;
   const double before = allocated_bytes();
@@ -440,7 +442,7 @@ TEST(Memory, AnEventHoldsWhatIsSaid) {
   EXPECT_LT(held, 44 * n + 2 * (2 * 9 * 36 * rows + 60 * 8 * static_cast<double>(initial.mesh.lower.size())));
   // What is asked for in advance covers it, with the snapshot's 32 bytes, and no more than what is needed
   // while it is made: mesh, states, a number and four fields to find the largest frequency, 136 bytes a node.
-  const double asked = solve::event_bytes(n, n, true);
+  const double asked = motion::event_bytes(n, n, true);
   EXPECT_GT(asked, held + 32 * n);
   EXPECT_LT(asked, held + 136 * n);
 }
@@ -492,7 +494,7 @@ TEST(Record, RebuiltFromTheHistoryGivesTheSameFronts) {
 
 TEST(Ramp, ReachesTheDirectCriticalShear) {
   auto config = coarse_case(EventKind::spontaneous, 5e-3);
-  config.loading.method = solve::LoadingMethod::ramp;
+  config.loading.method = statics::LoadingMethod::ramp;
   std::int64_t asked = 0;
   const auto initial = make_initial_state(config, [&](std::int64_t, std::int64_t) { return ++asked > 0; });
   ASSERT_TRUE(initial.ramp.has_value());
@@ -502,7 +504,7 @@ TEST(Ramp, ReachesTheDirectCriticalShear) {
   EXPECT_NEAR(initial.ramp->spontaneous.shear_m, initial.critical_shear_m, 0.005 * initial.critical_shear_m);
   EXPECT_GE(initial.common.peak_ratio, (1 - 1e-3) * 1.3);
   EXPECT_LT(initial.common.peak_ratio, 1.3);
-  EXPECT_GE(initial.spontaneous.peak_ratio, (1 - solve::ramp_handover) * 1.3);
+  EXPECT_GE(initial.spontaneous.peak_ratio, (1 - motion::ramp_handover) * 1.3);
 
   const auto result = run_event(config, initial, go_on);
   const auto direct_config = coarse_case(EventKind::spontaneous, 5e-3);
@@ -518,7 +520,7 @@ TEST(Ramp, ReachesTheDirectCriticalShear) {
 
 TEST(Ramp, CanBeInterrupted) {
   auto config = coarse_case(EventKind::spontaneous, 5e-3);
-  config.loading.method = solve::LoadingMethod::ramp;
+  config.loading.method = statics::LoadingMethod::ramp;
   EXPECT_THROW(make_initial_state(config, [](std::int64_t, std::int64_t) { return false; }), Interrupted);
 }
 
@@ -554,9 +556,9 @@ TEST(Check, SinglePrecisionNeedsFreeSides) {
   auto config = coarse_case(EventKind::nucleation);
   config.plate.corner = mesh::Corner::none;
   config.plate.sides = mesh::Sides::absorbing;
-  config.loading.method = solve::LoadingMethod::prestress;
+  config.loading.method = statics::LoadingMethod::prestress;
   EXPECT_NO_THROW(check(config));
-  config.time.precision = solve::Precision::single_precision;
+  config.time.precision = motion::Precision::single_precision;
   EXPECT_THROW(check(config), UserError);
 }
 

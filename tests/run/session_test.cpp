@@ -7,11 +7,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "../io/support.hpp"
 #include "cases.hpp"
-#include "io/checksum.hpp"
-#include "io/schema.hpp"
+#include "files/checksum.hpp"
+#include "input/schema.hpp"
 #include "run/checkpoint.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -28,7 +28,7 @@ std::map<std::string, std::string> results_in(const fs::path& dir) {
   for (const auto& entry : fs::recursive_directory_iterator(dir))
     if (entry.is_regular_file())
       files[fs::relative(entry.path(), dir).string()] = test::read_file(entry.path());
-  files.erase(io::checksum_list);
+  files.erase(files::checksum_list);
   files.erase(".slipfront.lock");
   auto run = nlohmann::json::parse(files.at("run.json"));
   for (const char* key : {"wall_s", "node_updates_per_s", "sessions"}) run.erase(key);
@@ -60,18 +60,18 @@ SessionOptions with_threads(int threads) {
 }
 
 /// A whole run, undisturbed.
-std::map<std::string, std::string> undisturbed(const io::Case& config) {
+std::map<std::string, std::string> undisturbed(const input::Case& config) {
   const test::TemporaryFolder folder;
-  io::ResultFolder held(folder.path(), run_work);
+  results::ResultFolder held(folder.path(), run_work);
   run_into(held, config, with_threads(1), stopping_at("", -1));
   return results_in(folder.path());
 }
 
-io::Case prestressed_case() {
+input::Case prestressed_case() {
   auto config = coarse_case(interface::EventKind::nucleation, 2e-3);
   config.plate.corner = mesh::Corner::none;
   config.plate.sides = mesh::Sides::periodic;
-  config.loading.method = solve::LoadingMethod::prestress;
+  config.loading.method = statics::LoadingMethod::prestress;
   config.prestress.t_Pa = 4e6;
   config.prestress.p_Pa = 5e6;
   config.nucleation.x_m = 0.1;
@@ -79,51 +79,51 @@ io::Case prestressed_case() {
 }
 
 /// One case of each kind of state that has to be kept.
-std::vector<std::pair<const char*, io::Case>> kinds() {
-  std::vector<std::pair<const char*, io::Case>> list;
-  const auto add = [&](const char* name, io::Case config, auto&& change) {
+std::vector<std::pair<const char*, input::Case>> kinds() {
+  std::vector<std::pair<const char*, input::Case>> list;
+  const auto add = [&](const char* name, input::Case config, auto&& change) {
     change(config);
     config.output.snapshot_times_s = {0, 20e-6, 90e-6};
     config.output.energy_interval_s = 7e-6;
     list.emplace_back(name, config);
   };
   using interface::EventKind;
-  const auto as_it_is = [](io::Case&) {};
+  const auto as_it_is = [](input::Case&) {};
   add("spontaneous", coarse_case(), as_it_is);
-  add("left", coarse_case(EventKind::left), [](io::Case& c) { c.trigger.duration_s = 30e-6; });
+  add("left", coarse_case(EventKind::left), [](input::Case& c) { c.trigger.duration_s = 30e-6; });
   add("right, relief", coarse_case(EventKind::right),
-      [](io::Case& c) { c.plate.corner = mesh::Corner::relief; });
-  add("fillet", coarse_case(), [](io::Case& c) { c.plate.corner = mesh::Corner::fillet; });
-  add("plain step", coarse_case(), [](io::Case& c) { c.time.interface_substeps = 1; });
-  add("undamped", coarse_case(), [](io::Case& c) { c.material.stiffness_damping_s = 0; });
-  add("predictor-corrector", coarse_case(), [](io::Case& c) {
+      [](input::Case& c) { c.plate.corner = mesh::Corner::relief; });
+  add("fillet", coarse_case(), [](input::Case& c) { c.plate.corner = mesh::Corner::fillet; });
+  add("plain step", coarse_case(), [](input::Case& c) { c.time.interface_substeps = 1; });
+  add("undamped", coarse_case(), [](input::Case& c) { c.material.stiffness_damping_s = 0; });
+  add("predictor-corrector", coarse_case(), [](input::Case& c) {
     c.contact = interface::ContactAlgorithm::predictor_corrector;
     c.friction = interface::VelocityWeakening { .mu_k = 1.0 };
   });
-  add("delayed strength", coarse_case(), [](io::Case& c) {
+  add("delayed strength", coarse_case(), [](input::Case& c) {
     c.regularisation.relaxed = interface::Relaxed::strength;
     c.regularisation.time_s = 1e-6;
   });
-  add("delayed pressure", coarse_case(), [](io::Case& c) {
+  add("delayed pressure", coarse_case(), [](input::Case& c) {
     c.regularisation.relaxed = interface::Relaxed::pressure;
     c.regularisation.length_m = 1e-6;
     c.regularisation.slip_rate_m_per_s = 0.1;
   });
-  add("slip weakening", prestressed_case(), [](io::Case& c) {
+  add("slip weakening", prestressed_case(), [](input::Case& c) {
     c.friction = interface::SlipWeakening {};
   });
   add("patch weakened", prestressed_case(),
-      [](io::Case& c) { c.nucleation.form = interface::NucleationForm::weakened; });
-  add("absorbing", prestressed_case(), [](io::Case& c) {
+      [](input::Case& c) { c.nucleation.form = interface::NucleationForm::weakened; });
+  add("absorbing", prestressed_case(), [](input::Case& c) {
     c.plate.sides = mesh::Sides::absorbing;
     c.plate.top = mesh::Top::absorbing;
   });
-  add("graded", coarse_case(), [](io::Case& c) {
+  add("graded", coarse_case(), [](input::Case& c) {
     c.plate.coarsenings = 1;
     c.plate.fine_height_m = 0.04;
   });
   add("single precision", coarse_case(),
-      [](io::Case& c) { c.time.precision = solve::Precision::single_precision; });
+      [](input::Case& c) { c.time.precision = motion::Precision::single_precision; });
   return list;
 }
 
@@ -133,32 +133,32 @@ TEST(Session, GoesOnAsIfItHadNeverStopped) {
     const auto expected = undisturbed(config);
     const test::TemporaryFolder folder;
     {
-      io::ResultFolder held(folder.path(), run_work);
+      results::ResultFolder held(folder.path(), run_work);
       const auto run = run_into(held, config, with_threads(1), stopping_at("event", 50));
-      EXPECT_EQ(run.result.event.end, solve::EventEnd::interrupted);
+      EXPECT_EQ(run.result.event.end, motion::EventEnd::interrupted);
     }
     {
-      io::ResultFolder held(folder.path(), run_work);
+      results::ResultFolder held(folder.path(), run_work);
       const auto run = go_on(held, nullptr, with_threads(2), stopping_at("event", 100));
-      EXPECT_EQ(run.result.event.end, solve::EventEnd::interrupted);
+      EXPECT_EQ(run.result.event.end, motion::EventEnd::interrupted);
       EXPECT_EQ(run.result.event.steps, 100);
     }
-    io::ResultFolder held(folder.path(), run_work);
+    results::ResultFolder held(folder.path(), run_work);
     go_on(held, &config, with_threads(1), stopping_at("", -1));
     expect_same(results_in(folder.path()), expected);
     EXPECT_EQ(nlohmann::json::parse(test::read_file(folder / "run.json"))["sessions"], 3);
-    io::require_intact(folder.path());
+    files::require_intact(folder.path());
   }
 }
 
 TEST(Session, GoesOnWithARamp) {
   auto config = coarse_case(interface::EventKind::spontaneous, 5e-3);
-  config.loading.method = solve::LoadingMethod::ramp;
+  config.loading.method = statics::LoadingMethod::ramp;
   const auto expected = undisturbed(config);
   const test::TemporaryFolder folder;
   std::int64_t total = 0;
   {
-    io::ResultFolder held(folder.path(), run_work);
+    results::ResultFolder held(folder.path(), run_work);
     auto hooks = stopping_at("ramp", 2000);
     hooks.progress = [&, inner = hooks.progress](const char* part, std::int64_t step, std::int64_t n) {
       total = n;
@@ -168,10 +168,10 @@ TEST(Session, GoesOnWithARamp) {
   }
   // Behind the common state, which then has to be kept as well.
   for (const std::int64_t at : {total / 2, total - 1000}) {
-    io::ResultFolder held(folder.path(), run_work);
+    results::ResultFolder held(folder.path(), run_work);
     EXPECT_THROW(go_on(held, nullptr, with_threads(1), stopping_at("ramp", at)), Interrupted);
   }
-  io::ResultFolder held(folder.path(), run_work);
+  results::ResultFolder held(folder.path(), run_work);
   go_on(held, nullptr, with_threads(1), stopping_at("", -1));
   expect_same(results_in(folder.path()), expected);
 }
@@ -180,7 +180,7 @@ TEST(Session, KeepsTheLastTwoCheckpoints) {
   auto options = with_threads(1);
   options.keep_every_s = 20e-6;
   const test::TemporaryFolder folder;
-  io::ResultFolder held(folder.path(), run_work);
+  results::ResultFolder held(folder.path(), run_work);
   run_into(held, coarse_case(), options, stopping_at("event", 100));
   int n = 0;
   for (const auto& entry : fs::directory_iterator(held.state()))
@@ -192,7 +192,7 @@ TEST(Session, KeepsTheLastTwoCheckpoints) {
 class InterruptedRun : public testing::Test {
  protected:
   InterruptedRun() {
-    io::ResultFolder held(folder_.path(), run_work);
+    results::ResultFolder held(folder_.path(), run_work);
     auto options = with_threads(1);
     options.keep_every_s = 20e-6;
     run_into(held, config_, options, stopping_at("event", 100));
@@ -203,9 +203,9 @@ class InterruptedRun : public testing::Test {
       if (entry.path().extension() == ".bin") files[entry.path().filename().string()] = entry.path();
     return files.rbegin()->second;
   }
-  std::string go_on_error(const io::Case* expected = nullptr) {
+  std::string go_on_error(const input::Case* expected = nullptr) {
     return error_of([&] {
-      io::ResultFolder held(folder_.path(), run_work);
+      results::ResultFolder held(folder_.path(), run_work);
       auto hooks = stopping_at("", -1);
       hooks.note = [&](const std::string& note) { notes_ += note; };
       go_on(held, expected, with_threads(1), hooks);
@@ -217,7 +217,7 @@ class InterruptedRun : public testing::Test {
     test::write_file(file, bytes);
   }
 
-  io::Case config_ = coarse_case();
+  input::Case config_ = coarse_case();
   test::TemporaryFolder folder_;
   std::string notes_;
 };
@@ -241,7 +241,7 @@ TEST_F(InterruptedRun, RefusesAnotherCase) {
   EXPECT_THAT(go_on_error(&other),
               HasSubstr("is another case than the one that was begun, which has \"mu_k = "));
   const auto file = folder_ / "unfinished/case.resolved.toml";
-  test::write_file(file, io::to_toml(other));
+  test::write_file(file, input::to_toml(other));
   EXPECT_THAT(go_on_error(), StartsWith(file.string() + ": is another case"));
 }
 
@@ -249,7 +249,7 @@ TEST_F(InterruptedRun, RefusesAnotherProgram) {
   Checkpoints checkpoints(folder_ / "unfinished/state");
   CheckpointHead head;
   head.program = "slipfront 0.0.1";
-  checkpoints.keep(head, [](io::OutputArchive&) {});
+  checkpoints.keep(head, [](results::OutputArchive&) {});
   EXPECT_THAT(go_on_error(), HasSubstr("was begun by slipfront 0.0.1, and this is slipfront "));
 }
 
@@ -259,7 +259,7 @@ TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
   other.plate.element_size_m = 4e-3;
   const test::TemporaryFolder elsewhere;
   {
-    io::ResultFolder held(elsewhere.path(), run_work);
+    results::ResultFolder held(elsewhere.path(), run_work);
     run_into(held, other, with_threads(1), stopping_at("event", 50));
   }
   auto foreign = Checkpoints(elsewhere / "unfinished/state").last([](const std::string&) {});
@@ -268,7 +268,7 @@ TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
   head.case_text = resolved_text(config_);
   InitialState initial;
   foreign->rest(initial);
-  Checkpoints(folder_ / "unfinished/state").keep(head, [&](io::OutputArchive& archive) {
+  Checkpoints(folder_ / "unfinished/state").keep(head, [&](results::OutputArchive& archive) {
     archive(initial, std::vector<double>(7));
   });
   EXPECT_NE(go_on_error(), "(nothing thrown)");
@@ -281,7 +281,7 @@ TEST_F(InterruptedRun, RefusesAStateBeforeTheEventWithoutAllOfItsNodes) {
   const auto refused = [&](auto change) {
     InitialState initial = whole;
     change(initial);
-    Checkpoints(folder_ / "unfinished/state").keep(kept->head, [&](io::OutputArchive& archive) {
+    Checkpoints(folder_ / "unfinished/state").keep(kept->head, [&](results::OutputArchive& archive) {
       archive(initial);
     });
     return go_on_error();
@@ -291,7 +291,7 @@ TEST_F(InterruptedRun, RefusesAStateBeforeTheEventWithoutAllOfItsNodes) {
   EXPECT_EQ(refused([](InitialState& s) { s.common.contact.pop_back(); }), message);
   EXPECT_EQ(refused([](InitialState& s) { s.spontaneous.tractions.p_s_Pa.pop_back(); }), message);
   EXPECT_EQ(refused([](InitialState& s) {
-              s.ramp.emplace(solve::Ramp{s.common, s.spontaneous, {}, 0, false});
+              s.ramp.emplace(motion::Ramp{s.common, s.spontaneous, {}, 0, false});
               s.ramp->record.onsets.push_back({7, 0});
             }),
             message);
@@ -304,14 +304,14 @@ TEST_F(InterruptedRun, RefusesAHistoryThatIsShorterThanItWas) {
 
 TEST(Session, ThereMustBeARunToGoOnWith) {
   const test::TemporaryFolder folder;
-  io::ResultFolder held(folder.path(), run_work);
+  results::ResultFolder held(folder.path(), run_work);
   EXPECT_THAT(error_of([&] { go_on(held, nullptr, with_threads(1), stopping_at("", -1)); }),
               HasSubstr("holds no unfinished run"));
 }
 
 TEST(Session, TellsHowItStands) {
   const test::TemporaryFolder folder;
-  io::ResultFolder held(folder.path(), run_work);
+  results::ResultFolder held(folder.path(), run_work);
   auto hooks = stopping_at("event", 50);
   std::string status;
   hooks.request = [&, inner = hooks.request] {

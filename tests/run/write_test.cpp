@@ -6,15 +6,15 @@
 #include <set>
 #include <sstream>
 
-#include "../io/support.hpp"
 #include "base/version.hpp"
 #include "cases.hpp"
-#include "io/checksum.hpp"
-#include "io/hdf5.hpp"
-#include "io/history.hpp"
-#include "io/results.hpp"
-#include "io/schema.hpp"
+#include "files/checksum.hpp"
+#include "input/schema.hpp"
+#include "results/hdf5.hpp"
+#include "results/history.hpp"
+#include "results/results.hpp"
 #include "run/session.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -28,7 +28,7 @@ class WrittenRun : public testing::Test {
  protected:
   struct Shared {
     test::TemporaryFolder folder;
-    io::Case config;
+    input::Case config;
     InitialState initial;
     Result result;
     Shared() {
@@ -82,7 +82,7 @@ TEST_F(WrittenRun, HasTheFilesByTheirNames) {
   EXPECT_THAT(names_in(s.folder.path()),
               testing::UnorderedElementsAre("case.resolved.toml", "run.json", "interface.h5", "fronts.csv",
                                             "static.csv", "energy.csv", "fields.vtkhdf", "checksums.sha256"));
-  io::require_intact(s.folder.path());
+  files::require_intact(s.folder.path());
 }
 
 TEST_F(WrittenRun, WithoutSnapshotsHasNoFields) {
@@ -114,8 +114,8 @@ TEST_F(WrittenRun, EnergiesAreARowPerInstant) {
 }
 
 TEST_F(WrittenRun, ResolvedCaseReadsBackToTheSameCase) {
-  const auto again = io::read_case(s.folder / "case.resolved.toml");
-  EXPECT_EQ(io::to_toml(again), io::to_toml(s.config));
+  const auto again = input::read_case(s.folder / "case.resolved.toml");
+  EXPECT_EQ(input::to_toml(again), input::to_toml(s.config));
   EXPECT_EQ(again.title, s.config.title);
 }
 
@@ -131,7 +131,7 @@ TEST_F(WrittenRun, SummaryTellsTheRun) {
     EXPECT_TRUE(run.contains(key)) << key;
   EXPECT_EQ(run["version"], version());
   EXPECT_EQ(run["title"], s.config.title);
-  EXPECT_EQ(run["end"], s.result.event.end == solve::EventEnd::quiet ? "quiet" : "end_time");
+  EXPECT_EQ(run["end"], s.result.event.end == motion::EventEnd::quiet ? "quiet" : "end_time");
   EXPECT_EQ(run["mesh"]["nodes"], s.initial.mesh.n_nodes());
   EXPECT_EQ(run["wave_speeds"]["c_L_m_per_s"], s.result.speeds.c_L);
   EXPECT_EQ(run["dt_s"], s.result.step_s);
@@ -154,19 +154,19 @@ TEST_F(WrittenRun, SummaryTellsTheRun) {
 }
 
 TEST_F(WrittenRun, SummaryTellsHowTheRunEnded) {
-  for (const auto& [end, word] : {std::pair{solve::EventEnd::end_time, "end_time"},
-                                  {solve::EventEnd::quiet, "quiet"},
-                                  {solve::EventEnd::interrupted, "interrupted"},
-                                  {solve::EventEnd::blow_up, "blow_up"}}) {
+  for (const auto& [end, word] : {std::pair{motion::EventEnd::end_time, "end_time"},
+                                  {motion::EventEnd::quiet, "quiet"},
+                                  {motion::EventEnd::interrupted, "interrupted"},
+                                  {motion::EventEnd::blow_up, "blow_up"}}) {
     const test::TemporaryFolder folder;
     auto result = s.result;
     result.event.end = end;
-    if (end == solve::EventEnd::blow_up) result.event.blow_up = "blew up at step 7";
+    if (end == motion::EventEnd::blow_up) result.event.blow_up = "blew up at step 7";
     write(folder.path(), result, s.initial);
     const json run = json::parse(test::read_file(folder / "run.json"));
     EXPECT_EQ(run["end"], word);
     const bool told = !run["warnings"].empty() && run["warnings"].back() == "blew up at step 7";
-    EXPECT_EQ(told, end == solve::EventEnd::blow_up);
+    EXPECT_EQ(told, end == motion::EventEnd::blow_up);
   }
 }
 
@@ -217,17 +217,17 @@ TEST_F(WrittenRun, FrontsByColumn) {
 
 TEST_F(WrittenRun, HistoryHasItsUnitsAndReadsBack) {
   const auto path = s.folder / "interface.h5";
-  const auto file = io::hdf5::open_file(path);
+  const auto file = results::hdf5::open_file(path);
   for (const auto& [set, unit] : {std::pair{"time_s", "s"},
                                   {"x_m", "m"},
                                   {"slip_m", "m"},
                                   {"slip_rate_m_per_s", "m/s"},
                                   {"t_Pa", "Pa"},
                                   {"p_Pa", "Pa"}}) {
-    EXPECT_EQ(io::hdf5::text_attribute(file, set, "unit"), unit);
-    EXPECT_FALSE(io::hdf5::text_attribute(file, set, "description").empty()) << set;
+    EXPECT_EQ(results::hdf5::text_attribute(file, set, "unit"), unit);
+    EXPECT_FALSE(results::hdf5::text_attribute(file, set, "description").empty()) << set;
   }
-  const auto history = io::read_history(path);
+  const auto history = results::read_history(path);
   const auto& ours = s.result.event.history;
   EXPECT_EQ(history.time_s, ours.time_s);
   EXPECT_EQ(history.x_m, ours.x_m);
@@ -238,8 +238,8 @@ TEST_F(WrittenRun, HistoryHasItsUnitsAndReadsBack) {
 }
 
 TEST_F(WrittenRun, FieldsHoldEverySnapshot) {
-  const auto file = io::hdf5::open_file(s.folder / "fields.vtkhdf");
-  const auto times = io::hdf5::read(file, "/VTKHDF/Steps/Values");
+  const auto file = results::hdf5::open_file(s.folder / "fields.vtkhdf");
+  const auto times = results::hdf5::read(file, "/VTKHDF/Steps/Values");
   ASSERT_EQ(times.values.size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
     // Taken at the first step at or after the time asked for.
@@ -247,7 +247,7 @@ TEST_F(WrittenRun, FieldsHoldEverySnapshot) {
     EXPECT_LT(times.values[k], s.config.output.snapshot_times_s[k] + s.result.step_s);
   }
   const auto n_nodes = static_cast<std::size_t>(s.initial.mesh.n_nodes());
-  const auto u = io::hdf5::read(file, "/VTKHDF/PointData/displacement_m");
+  const auto u = results::hdf5::read(file, "/VTKHDF/PointData/displacement_m");
   ASSERT_EQ(u.values.size(), 3 * 3 * n_nodes);
   for (std::size_t n = 0; n < n_nodes; ++n) {
     EXPECT_EQ(u.values[3 * n], s.initial.spontaneous.u_m.x[n]);
@@ -256,9 +256,9 @@ TEST_F(WrittenRun, FieldsHoldEverySnapshot) {
 }
 
 /// A run's folder written while the run goes; the part of it that holds the files.
-std::filesystem::path run_streamed(const io::Case& config, const std::filesystem::path& dir,
-                                   const solve::Monitor& monitor) {
-  io::ResultFolder folder(dir, run_work);
+std::filesystem::path run_streamed(const input::Case& config, const std::filesystem::path& dir,
+                                   const motion::Monitor& monitor) {
+  results::ResultFolder folder(dir, run_work);
   bool stop = false;
   SessionHooks hooks;
   hooks.progress = [&](const char* part, std::int64_t step, std::int64_t total) {
@@ -271,7 +271,8 @@ std::filesystem::path run_streamed(const io::Case& config, const std::filesystem
   return status_of(run.result).name == "complete" ? dir : folder.unfinished();
 }
 
-void run_in_memory(const io::Case& config, const std::filesystem::path& dir, const solve::Monitor& monitor) {
+void run_in_memory(const input::Case& config, const std::filesystem::path& dir,
+                   const motion::Monitor& monitor) {
   const auto initial = make_initial_state(config, go_on);
   write(dir, run_event(config, initial, monitor), initial);
 }
@@ -293,11 +294,11 @@ json summary_of(const std::filesystem::path& dir) {
   return run;
 }
 
-io::Case prestressed_case() {
+input::Case prestressed_case() {
   auto config = coarse_case(interface::EventKind::nucleation, 2e-3);
   config.plate.corner = mesh::Corner::none;
   config.plate.sides = mesh::Sides::periodic;
-  config.loading.method = solve::LoadingMethod::prestress;
+  config.loading.method = statics::LoadingMethod::prestress;
   config.prestress = {4e6, 5e6, ""};
   config.nucleation.x_m = 0.1;
   return config;
@@ -305,15 +306,15 @@ io::Case prestressed_case() {
 
 TEST(StreamedRun, EqualsTheOneKeptInMemory) {
   auto ramp = coarse_case(interface::EventKind::spontaneous, 5e-3);
-  ramp.loading.method = solve::LoadingMethod::ramp;
+  ramp.loading.method = statics::LoadingMethod::ramp;
   auto blow_up = coarse_case();
   blow_up.time.step_factor = 1.4;
   blow_up.time.allow_unstable = true;
-  const solve::Monitor stop = [](std::int64_t step, std::int64_t) { return step < 100; };
+  const motion::Monitor stop = [](std::int64_t step, std::int64_t) { return step < 100; };
   struct Run {
     const char* name;
-    io::Case config;
-    solve::Monitor monitor;
+    input::Case config;
+    motion::Monitor monitor;
   };
   const std::vector<Run> runs = {{"spontaneous", coarse_case(), go_on},
                                  {"left", coarse_case(interface::EventKind::left), go_on},
@@ -332,7 +333,8 @@ TEST(StreamedRun, EqualsTheOneKeptInMemory) {
       EXPECT_EQ(test::read_file(dir / file), test::read_file(kept / file)) << file;
     EXPECT_EQ(summary_of(dir), summary_of(kept.path()));
     // The files may differ in where their chunks lie.
-    const auto a = io::read_history(dir / "interface.h5"), b = io::read_history(kept / "interface.h5");
+    const auto a = results::read_history(dir / "interface.h5"),
+               b = results::read_history(kept / "interface.h5");
     EXPECT_GT(a.time_s.size(), 10U);
     EXPECT_EQ(a.time_s, b.time_s);
     EXPECT_EQ(a.x_m, b.x_m);
@@ -351,7 +353,7 @@ TEST(StreamedRun, TwoOfThemMakeEqualFiles) {
 
 TEST(Write, OfARampTellsBothWays) {
   auto config = coarse_case(interface::EventKind::spontaneous, 5e-3);
-  config.loading.method = solve::LoadingMethod::ramp;
+  config.loading.method = statics::LoadingMethod::ramp;
   const auto initial = make_initial_state(config, go_on);
   const test::TemporaryFolder folder;
   write(folder.path(), run_event(config, initial, go_on), initial);

@@ -6,16 +6,16 @@
 
 #include <cmath>
 
-#include "../io/support.hpp"
 #include "base/error.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::study {
 namespace {
 
 using testing::ElementsAre;
 
-io::Case coarse_case() {
-  io::Case config;
+input::Case coarse_case() {
+  input::Case config;
   config.plate.element_size_m = 2.5e-3;
   return config;
 }

@@ -7,17 +7,17 @@
 #include <cmath>
 #include <fstream>
 
-#include "../io/support.hpp"
 #include "base/error.hpp"
-#include "io/schema.hpp"
+#include "input/schema.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::study {
 namespace {
 
 using Kind = Stepping::Kind;
 
-io::Case coarse_case() {
-  io::Case config;
+input::Case coarse_case() {
+  input::Case config;
   config.plate.element_size_m = 2.5e-3;
   config.fronts.l_star_m = 2.5e-3;
   config.event = interface::EventKind::left;
@@ -101,7 +101,7 @@ TEST_F(CoarseStudy, WritesTheCaseItChose) {
   test::TemporaryFolder folder;
   write_interface_step(folder.path(), coarse_case(), study());
   const auto& chosen = study().all[study().chosen];
-  const auto config = io::read_case(folder.path() / "chosen.toml", {});
+  const auto config = input::read_case(folder.path() / "chosen.toml", {});
   EXPECT_EQ(config.time.interface_substeps, chosen.substeps);
   EXPECT_EQ(config.time.step_factor, chosen.step_factor);
   EXPECT_EQ(config.event, interface::EventKind::left);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/clock.hpp"
+
+namespace slipfront::cli {
+
+/// Progress of a known number of steps on standard error: on a terminal one line that is redrawn with
+/// percentage, steps/s and time to go; otherwise a plain line every 10 %. Draws at most 10 times a second;
+/// silent where `quiet`.
+class Progress {
+ public:
+  Progress(std::string label, std::int64_t total_steps, bool quiet = false);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// `step` steps are done. Cheap enough to be called every step.
+  void update(std::int64_t step);
+  /// Writes a line of its own, on a terminal above that of the progress.
+  void note(const std::string& line);
+  /// The work is done, perhaps before the last step; says how long it took.
+  void finish();
+
+ private:
+  std::string state(Clock::time_point now) const;
+
+  std::string label_;
+  std::int64_t total_, step_ = 0;
+  bool quiet_, terminal_, finished_ = false;
+  bool line_open_ = false;  ///< the terminal's line waits to be redrawn
+  Clock::time_point start_, drawn_;
+  std::int64_t tenth_ = 0;  ///< last 10 % that a plain line was written for
+};
+
+/// "2.5 s", "3:07" (minutes:seconds) or "1:02:03".
+std::string duration_text(double seconds);
+
+}  // namespace slipfront::cli

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "files/files.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace slipfront::files {
+namespace {
+
+/// Largest piece handed to the system at once; Linux takes no more than 2 GiB.
+constexpr std::size_t most_bytes_at_once = std::size_t{1} << 30U;
+
+[[noreturn]] void throw_write(const std::filesystem::path& file, const char* what) {
+  const int error = errno;
+  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+  throw WriteError("{}: cannot be {} ({}); {}", file.string(), what, std::strerror(error),
+                   full ? "free space there" : "check that its folder can be written");
+}
+
+Descriptor open(const std::filesystem::path& path, int flags) {
+  return Descriptor(::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW, 0666));
+}
+
+}  // namespace
+
+Descriptor::~Descriptor() {
+  close();
+}
+
+Descriptor::Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  if (this != &other) {
+    close();
+    fd_ = std::exchange(other.fd_, -1);
+  }
+  return *this;
+}
+
+bool Descriptor::close() {
+  // Not again after EINTR: Linux has released the number by then.
+  return fd_ < 0 || ::close(std::exchange(fd_, -1)) == 0;
+}
+
+OutputFile OutputFile::create(const std::filesystem::path& path) {
+  Descriptor file = open(path, O_WRONLY | O_CREAT | O_EXCL);
+  if (!file.valid()) throw_write(path, "made");
+  return {path, std::move(file), 0};
+}
+
+OutputFile OutputFile::go_on(const std::filesystem::path& path, std::uint64_t length) {
+  Descriptor file = open(path, O_WRONLY);
+  struct stat now {};
+  if (!file.valid() && errno == ENOENT) throw UserError("{}: is missing; begin the run again", path.string());
+  if (!file.valid() || ::fstat(file.get(), &now) != 0) throw_write(path, "continued");
+  if (!S_ISREG(now.st_mode) || static_cast<std::uint64_t>(now.st_size) < length)
+    throw UserError("{}: is shorter than when the run was kept; begin the run again", path.string());
+  if (::ftruncate(file.get(), static_cast<off_t>(length)) != 0 ||
+      ::lseek(file.get(), static_cast<off_t>(length), SEEK_SET) < 0)
+    throw_write(path, "continued");
+  return {path, std::move(file), length};
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(file_.get(), bytes.data(), std::min(bytes.size(), most_bytes_at_once));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) {
+      if (n == 0) errno = ENOSPC;
+      throw_write(path_, "written");
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+    length_ += static_cast<std::uint64_t>(n);
+  }
+}
+
+void OutputFile::sync() {
+  if (::fsync(file_.get()) != 0) throw_write(path_, "written");
+}
+
+void OutputFile::close() {
+  if (!file_.close()) throw_write(path_, "written");
+}
+
+void write_text(const std::filesystem::path& file, std::string_view text) {
+  const std::filesystem::path fresh = file.string() + ".new";
+  remove_file(fresh);
+  try {
+    OutputFile output = OutputFile::create(fresh);
+    output.write(text);
+    output.close();
+    move_file(fresh, file);
+  } catch (const WriteError&) {
+    std::error_code ignored;
+    std::filesystem::remove(fresh, ignored);
+    throw;
+  }
+}
+
+void sync_file(const std::filesystem::path& file) {
+  Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!opened.valid() || ::fsync(opened.get()) != 0 || !opened.close()) throw_write(file, "written");
+}
+
+void move_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) throw_write(to, "put in its place");
+}
+
+void remove_file(const std::filesystem::path& file) {
+  if (std::remove(file.c_str()) != 0 && errno != ENOENT) throw_write(file, "removed");
+}
+
+void make_folder(const std::filesystem::path& dir) {
+  if (::mkdir(dir.c_str(), 0777) != 0) throw_write(dir, "made");
+}
+
+bool is_there(const std::filesystem::path& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 || errno != ENOENT;
+}
+
+bool is_folder(const std::filesystem::path& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+}  // namespace slipfront::files

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+/// Files that are written for good: every call to the system is checked, nothing that is there is followed or
+/// replaced by accident. Every function throws WriteError, naming the file, where the system refuses.
+namespace slipfront::files {
+
+/// Owner of a file descriptor.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor();
+  Descriptor(Descriptor&& other) noexcept;
+  Descriptor& operator=(Descriptor&& other) noexcept;
+
+  int get() const { return fd_; }
+  bool valid() const { return fd_ >= 0; }
+  /// Closes and tells what close says: the last chance of some file systems to report a failed write.
+  bool close();
+
+ private:
+  int fd_ = -1;
+};
+
+/// A file that is written from its beginning to its end.
+class OutputFile {
+ public:
+  /// Makes a new file; one of this name must not be there, not even as a link.
+  static OutputFile create(const std::filesystem::path& path);
+  /// Goes on at `length` in a file of this program's own; what it holds beyond is cut off.
+  /// @throws UserError where it is missing or shorter
+  static OutputFile go_on(const std::filesystem::path& path, std::uint64_t length);
+
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+  std::uint64_t length() const { return length_; }
+  /// Returns when all is on the device.
+  void sync();
+  void close();
+
+ private:
+  OutputFile(std::filesystem::path path, Descriptor file, std::uint64_t length)
+      : path_(std::move(path)), file_(std::move(file)), length_(length) {}
+
+  std::filesystem::path path_;
+  Descriptor file_;
+  std::uint64_t length_ = 0;
+};
+
+/// Writes a text file that is there completely, or not at all: under another name first.
+void write_text(const std::filesystem::path& file, std::string_view text);
+
+/// Returns when what a file or a folder holds is on the device.
+void sync_file(const std::filesystem::path& file);
+
+/// Renames within one file system, replacing what has the new name.
+void move_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Removes a file or an empty folder; it may be gone already.
+void remove_file(const std::filesystem::path& file);
+
+/// Makes a folder whose parent is there.
+void make_folder(const std::filesystem::path& dir);
+
+/// Whether something of this name is there, be it a link to nowhere.
+bool is_there(const std::filesystem::path& path);
+/// Whether it is a folder itself, not a link to one.
+bool is_folder(const std::filesystem::path& path);
+
+}  // namespace slipfront::files

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fronts/from_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "base/error.hpp"
+
+namespace slipfront::fronts {
+namespace {
+
+/// An onset with the place in the history it was found at, to interpolate the tractions there.
+struct Found {
+  record::Onset onset;
+  std::size_t row = 0;    // the time lies between this row and the next
+  double fraction = 0.0;  // of the way to the next row
+};
+
+// std::lerp may return a number where one end is NaN.
+double interpolate(double from, double to, double fraction) {
+  return from + fraction * (to - from);
+}
+
+void check(const record::History& history, double threshold_m_per_s, int halo) {
+  SLIPFRONT_ASSERT(threshold_m_per_s > 0.0, "the slip rate of a sticking node is never exactly zero");
+  SLIPFRONT_ASSERT(halo >= 0, "a halo is a number of nodes");
+  const std::size_t n = history.time_s.size() * history.x_m.size();
+  SLIPFRONT_ASSERT(
+      history.slip_rate_m_per_s.size() == n && history.t_Pa.size() == n && history.p_Pa.size() == n,
+      "matrices are [times x nodes]");
+  SLIPFRONT_ASSERT(std::ranges::adjacent_find(history.time_s, std::greater_equal<>{}) == history.time_s.end(),
+                   "times ascend strictly");
+}
+
+record::Traction traction_at(const record::History& history, const Found& found, std::size_t node) {
+  const std::size_t n_nodes = history.x_m.size();
+  const std::size_t here = found.row * n_nodes + node;
+  if (found.fraction == 0.0) return {history.t_Pa[here], history.p_Pa[here]};
+  const std::size_t next = here + n_nodes;
+  return {interpolate(history.t_Pa[here], history.t_Pa[next], found.fraction),
+          interpolate(history.p_Pa[here], history.p_Pa[next], found.fraction)};
+}
+
+}  // namespace
+
+record::SlipRecord record_from_history(const record::History& history, double threshold_m_per_s, int halo) {
+  check(history, threshold_m_per_s, halo);
+  record::SlipRecord record;
+  record.x_m = history.x_m;
+  record.halo = halo;
+  if (history.time_s.empty()) return record;
+  record.end_time_s = history.time_s.back();
+
+  const std::size_t n_nodes = history.x_m.size();
+  const auto rate = [&](std::size_t row, std::size_t node) {
+    return history.slip_rate_m_per_s[row * n_nodes + node];
+  };
+  const auto slips = [&](double v) { return std::abs(v) > threshold_m_per_s; };
+
+  std::vector<Found> found;
+  for (std::size_t node = 0; node < n_nodes; ++node) {
+    const auto id = static_cast<std::int32_t>(node);
+    if (slips(rate(0, node))) found.push_back({{id, history.time_s[0]}, 0, 0.0});
+    for (std::size_t row = 0; row + 1 < history.time_s.size(); ++row) {
+      const double v0 = rate(row, node);
+      const double v1 = rate(row + 1, node);
+      const bool turns = (v0 > 0.0) != (v1 > 0.0);  // through rest: a stop and an onset in one interval
+      if (slips(v0) && (!slips(v1) || turns)) {
+        const double fraction = (v0 - std::copysign(threshold_m_per_s, v0)) / (v0 - v1);
+        record.stops.push_back({id, interpolate(history.time_s[row], history.time_s[row + 1], fraction)});
+      }
+      if (slips(v1) && (!slips(v0) || turns)) {
+        const double fraction = (std::copysign(threshold_m_per_s, v1) - v0) / (v1 - v0);
+        found.push_back(
+            {{id, interpolate(history.time_s[row], history.time_s[row + 1], fraction)}, row, fraction});
+      }
+    }
+  }
+
+  // Nodes are already in order, so a stable sort puts simultaneous events from left to right.
+  std::ranges::stable_sort(found, {}, [](const Found& f) { return f.onset.time_s; });
+  std::ranges::stable_sort(record.stops, {}, &record::Stop::time_s);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Found& f : found) {
+    record.onsets.push_back(f.onset);
+    for (int offset = -halo; offset <= halo; ++offset) {
+      const int node = f.onset.node + offset;
+      const bool inside = node >= 0 && node < static_cast<int>(n_nodes);
+      record.around.push_back(inside ? traction_at(history, f, static_cast<std::size_t>(node))
+                                     : record::Traction{nan, nan});
+    }
+  }
+  return record;
+}
+
+}  // namespace slipfront::fronts

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fronts/speed_interval.hpp"
+#include "interface/interface.hpp"
+#include "interface/nucleation.hpp"
+#include "interface/trigger.hpp"
+#include "mesh/plate.hpp"
+#include "motion/settings.hpp"
+#include "record/energies.hpp"
+#include "record/record.hpp"
+#include "solid/material.hpp"
+#include "statics/settings.hpp"
+
+namespace slipfront::input {
+
+/// How fronts are found and measured; see fronts::FrontOptions.
+struct FrontSettings {
+  double l_star_m = 0.67e-3;
+  fronts::SpeedInterval speed_interval = fronts::SpeedInterval::centred;
+  double arrest_time_s = 20e-6;
+  double min_length_m = 2e-3;
+  double crack_share = 0.5;
+  double pulse_share = 0.2;
+  double trigger_margin_m =
+      10e-3;  ///< t_d, p_d are left out within trigger zone or nucleation patch plus this
+};
+
+/// A table of tractions along the interface as it was read, see input/prestress.hpp.
+struct PrestressTable {
+  std::string text;          ///< of the file
+  record::StaticState rows;  ///< [rows]
+};
+
+/// Tractions of the interface before the event under loading.method = prestress: uniform, or from a table.
+struct Prestress {
+  double t_Pa = 0;            ///< drives the plate to +x
+  double p_Pa = 1e6;          ///< positive in compression
+  std::string file;           ///< CSV table; empty for uniform tractions
+  PrestressTable table = {};  ///< read from it by input::read_case
+};
+
+/// What a run writes besides its fronts.
+struct Output {
+  double history_interval_s = 0.5e-6;    ///< spacing of the rows of interface.h5
+  std::vector<double> snapshot_times_s;  ///< whole-plate fields, written to fields.vtkhdf
+  double energy_interval_s = 20e-6;      ///< spacing of the rows of energy.csv
+};
+
+/// One run, completely. Every member is an entry of the schema (input/schema.hpp).
+struct Case {
+  std::string title;
+  mesh::Plate plate;
+  solid::Material material;
+  statics::Loading loading;
+  Prestress prestress;
+  interface::FrictionLaw friction;
+  interface::Regularisation regularisation;
+  interface::ContactAlgorithm contact = interface::ContactAlgorithm::direct;
+  interface::EventKind event = interface::EventKind::spontaneous;
+  interface::Trigger trigger;
+  interface::Nucleation nucleation;
+  motion::TimeStepping time;
+  FrontSettings fronts;
+  Output output;
+};
+
+inline interface::ContactModel contact_model(const Case& config) {
+  return {config.friction, config.regularisation, config.contact};
+}
+
+}  // namespace slipfront::input

@@ -1,0 +1,495 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/entries.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "base/error.hpp"
+
+namespace slipfront::input {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Range above(double min) {
+  return {min, infinity, true, true};
+}
+Range above_or_infinite(double min) {
+  return {min, infinity, true, false};
+}
+Range at_least(double min) {
+  return {min, infinity, false, true};
+}
+Range between(double min, double max) {
+  return {min, max, false, false};
+}
+Range strictly_between(double min, double max) {
+  return {min, max, true, true};
+}
+Range any() {
+  return {};
+}
+
+/// Access to a member of a member of a case, const or not.
+template <class Part, class Member>
+auto at(Part Case::*part, Member Part::*member) {
+  return [ part, member ](auto& config) -> auto& {
+    return config.*part.*member;
+  };
+}
+template <class Member>
+auto at(Member Case::*member) {
+  return [member](auto& config) -> auto& {
+    return config.*member;
+  };
+}
+
+template <class Ref>
+Entry number(std::string key, Ref ref, Range range, std::string help) {
+  return {std::move(key),
+          Kind::number,
+          range,
+          {},
+          std::move(help),
+          [ref](const Case& config) -> Value { return ref(config); },
+          [ref](Case& config, const Value& value) { ref(config) = std::get<double>(value); }};
+}
+
+template <class Ref>
+Entry integer(std::string key, Ref ref, Range range, std::string help) {
+  return {std::move(key),
+          Kind::integer,
+          range,
+          {},
+          std::move(help),
+          [ref](const Case& config) -> Value { return static_cast<std::int64_t>(ref(config)); },
+          [ref](Case& config, const Value& value) {
+            ref(config) = static_cast<int>(std::get<std::int64_t>(value));
+          }};
+}
+
+template <class T, class Ref>
+Entry plain(Kind kind, std::string key, Ref ref, Range range, std::string help) {
+  return {std::move(key),
+          kind,
+          range,
+          {},
+          std::move(help),
+          [ref](const Case& config) -> Value { return ref(config); },
+          [ref](Case& config, const Value& value) { ref(config) = std::get<T>(value); }};
+}
+
+template <class Ref>
+Entry flag(std::string key, Ref ref, std::string help) {
+  return plain<bool>(Kind::flag, std::move(key), ref, any(), std::move(help));
+}
+
+template <class Ref>
+Entry text(std::string key, Ref ref, std::string help) {
+  return plain<std::string>(Kind::text, std::move(key), ref, any(), std::move(help));
+}
+
+template <class Ref>
+Entry numbers(std::string key, Ref ref, Range range, std::string help) {
+  return plain<std::vector<double>>(Kind::numbers, std::move(key), ref, range, std::move(help));
+}
+
+template <class Enum>
+using Words = std::vector<std::pair<std::string, Enum>>;
+
+template <class Enum, class Ref>
+Entry word(std::string key, Ref ref, Words<Enum> words, std::string help) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : words) names.push_back(name);
+  return {std::move(key),
+          Kind::word,
+          any(),
+          std::move(names),
+          std::move(help),
+          [ref, words](const Case& config) -> Value {
+            const auto found = std::find_if(words.begin(), words.end(),
+                                            [&](const auto& word) { return word.second == ref(config); });
+            SLIPFRONT_ASSERT(found != words.end(), "an enumerator has no word in the case file");
+            return found->first;
+          },
+          [ref, words](Case& config, const Value& value) {
+            const auto found = std::find_if(words.begin(), words.end(), [&](const auto& word) {
+              return word.first == std::get<std::string>(value);
+            });
+            SLIPFRONT_ASSERT(found != words.end(), "a word was not checked");
+            ref(config) = found->second;
+          }};
+}
+
+template <class Law>
+LawEntries law_entries() {
+  LawEntries law{Law::name, Law::help, Law{}, {}, {}};
+  for (const auto& parameter : Law::parameters())
+    law.entries.push_back(number(
+        std::string("friction.") + parameter.key,
+        [member = parameter.member](auto& config) -> auto& { return std::get<Law>(config.friction).*member; },
+        between(parameter.min, parameter.max), parameter.help));
+  law.inconsistency = [](const Case& config) {
+    return std::string(std::get<Law>(config.friction).inconsistency());
+  };
+  return law;
+}
+
+/// One description per alternative of the registry.
+template <class... Laws>
+std::vector<LawEntries> law_entries_of(std::type_identity<std::variant<Laws...>>) {
+  return {law_entries<Laws>()...};
+}
+
+Entry friction_law_entry() {
+  std::vector<std::string> names;
+  std::string help = "friction law";
+  for (const LawEntries& law : friction_laws()) {
+    names.push_back(law.name);
+    help += fmt::format("{} {}: {}", names.size() == 1 ? ";" : ",", law.name, law.help);
+  }
+  return {"friction.law",
+          Kind::word,
+          any(),
+          names,
+          help,
+          [](const Case& config) -> Value { return law_of(config).name; },
+          [](Case& config, const Value& value) {
+            for (const LawEntries& law : friction_laws())
+              if (law.name == std::get<std::string>(value)) config.friction = law.defaults;
+          }};
+}
+
+Entry only_with(Condition condition, Entry entry) {
+  entry.only_with = std::move(condition);
+  return entry;
+}
+
+std::vector<Entry> make_common_entries() {
+  using fronts::SpeedInterval;
+  using interface::ContactAlgorithm;
+  using interface::EventKind;
+  using interface::Nucleation;
+  using interface::NucleationForm;
+  using interface::Regularisation;
+  using interface::Relaxed;
+  using interface::Trigger;
+  using interface::TriggerForm;
+  using mesh::Corner;
+  using mesh::Plate;
+  using mesh::Sides;
+  using mesh::Top;
+  using motion::Precision;
+  using motion::TimeStepping;
+  using solid::Material;
+  using solid::Plane;
+  using statics::Loading;
+  using statics::LoadingMethod;
+  using statics::StaticSolver;
+  using statics::TopEdge;
+
+  const Condition tilted = {"loading.method = direct or ramp",
+                            [](const Case& c) { return c.loading.method != LoadingMethod::prestress; }};
+  const Condition prestressed = {"loading.method = prestress",
+                                 [](const Case& c) { return c.loading.method == LoadingMethod::prestress; }};
+  const Condition uniform = {
+      "loading.method = prestress and no prestress.file",
+      [](const Case& c) { return c.loading.method == LoadingMethod::prestress && c.prestress.file.empty(); }};
+  const Condition graded = {"plate.coarsenings > 0", [](const Case& c) { return c.plate.coarsenings > 0; }};
+  const Condition nucleated = {"event.kind = nucleation",
+                               [](const Case& c) { return c.event == EventKind::nucleation; }};
+  const Condition overstressed = {
+      "event.kind = nucleation and nucleation.form = overstress", [](const Case& c) {
+        return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
+      }};
+
+  return {
+      text("title", at(&Case::title), "title of figures and reports"),
+
+      number("plate.width_m", at(&Case::plate, &Plate::width_m), above(0), "along the interface"),
+      number("plate.height_m", at(&Case::plate, &Plate::height_m), above(0), "away from the interface"),
+      number("plate.element_size_m", at(&Case::plate, &Plate::element_size_m), above(0),
+             "side of the square elements; width and height are whole multiples of it"),
+      integer("plate.coarsenings", at(&Case::plate, &Plate::coarsenings), between(0, 20),
+              "how often the element size doubles on the way up from the interface, see graded.md"),
+      only_with(graded, number("plate.fine_height_m", at(&Case::plate, &Plate::fine_height_m), above(0),
+                               "least height of the elements of element_size_m, next to the interface")),
+      word<Corner>("plate.corner", at(&Case::plate, &Plate::corner),
+                   {{"none", Corner::none}, {"relief", Corner::relief}, {"fillet", Corner::fillet}},
+                   "lower corners: right angles, a shallow arc tangent to the base, or a quarter circle"),
+      number("plate.relief_length_m", at(&Case::plate, &Plate::relief_length_m), above(0),
+             "length of the relief's arc along the interface"),
+      number("plate.relief_height_m", at(&Case::plate, &Plate::relief_height_m), above(0),
+             "rise of the relief's arc at the edge"),
+      number("plate.relief_depth_m", at(&Case::plate, &Plate::relief_depth_m), above(0),
+             "height over which the relief's shift of the nodes fades out"),
+      number("plate.fillet_radius_m", at(&Case::plate, &Plate::fillet_radius_m), above(0),
+             "radius of the fillet's quarter circle"),
+      word<Sides>("plate.sides", at(&Case::plate, &Plate::sides),
+                  {{"free", Sides::free}, {"periodic", Sides::periodic}, {"absorbing", Sides::absorbing}},
+                  "vertical edges: free of traction, the right one identical to the left one, or with "
+                  "dashpots that let waves out; other than free only with plate.corner = none"),
+      word<Top>(
+          "plate.top", at(&Case::plate, &Plate::top),
+          {{"loaded", Top::loaded}, {"free", Top::free}, {"absorbing", Top::absorbing}},
+          "upper edge: displacements prescribed, free of traction, or with dashpots that let waves out"),
+
+      number("material.youngs_modulus_Pa", at(&Case::material, &Material::youngs_modulus_Pa), above(0),
+             "Young's modulus E"),
+      number("material.poissons_ratio", at(&Case::material, &Material::poissons_ratio),
+             strictly_between(-1, 0.5), "Poisson's ratio nu"),
+      number("material.density_kg_per_m3", at(&Case::material, &Material::density_kg_per_m3), above(0),
+             "density rho"),
+      word<Plane>("material.plane", at(&Case::material, &Material::plane),
+                  {{"stress", Plane::stress}, {"strain", Plane::strain}},
+                  "plane stress (thin plate) or plane strain"),
+      number("material.stiffness_damping_s", at(&Case::material, &Material::stiffness_damping_s), at_least(0),
+             "Rayleigh damping beta_R: the internal force is K (u + beta_R v)"),
+
+      only_with(tilted,
+                number("loading.tilt_left_m", at(&Case::loading, &Loading::tilt_left_m), at_least(0),
+                       "downward displacement of the top edge at its left end, linear between the ends")),
+      only_with(tilted, number("loading.tilt_right_m", at(&Case::loading, &Loading::tilt_right_m),
+                               at_least(0), "the same at its right end")),
+      only_with(tilted,
+                word<TopEdge>("loading.top_during_tilt", at(&Case::loading, &Loading::top_during_tilt),
+                              {{"held", TopEdge::held}, {"free", TopEdge::free}},
+                              "whether the top edge may move along x while it is tilted")),
+      word<LoadingMethod>("loading.method", at(&Case::loading, &Loading::method),
+                          {{"direct", LoadingMethod::direct},
+                           {"ramp", LoadingMethod::ramp},
+                           {"prestress", LoadingMethod::prestress}},
+                          "state before the event: tilt and shear to the critical one by static equilibria, "
+                          "the same by explicit dynamics with the top moving, or given tractions of the "
+                          "interface with the plate undeformed at rest"),
+      only_with(tilted,
+                word<StaticSolver>(
+                    "loading.solver", at(&Case::loading, &Loading::solver),
+                    {{"auto", StaticSolver::automatic},
+                     {"direct", StaticSolver::direct},
+                     {"iterative", StaticSolver::iterative}},
+                    "static equilibria by a sparse factorisation, by conjugate gradients with a multigrid "
+                    "preconditioner, or by the one that suits the number of elements")),
+      number("loading.shear_speed_over_c_L", at(&Case::loading, &Loading::shear_speed_over_c_L),
+             {0, 1, false, true},
+             "speed of the top edge to +x over the longitudinal wave speed; 0, held still, only with "
+             "loading.method = prestress"),
+      only_with(tilted,
+                number("loading.edge_margin_m", at(&Case::loading, &Loading::edge_margin_m), at_least(0),
+                       "length at each end of the contact that does not count for the critical shear")),
+      only_with(tilted,
+                number("loading.critical_margin", at(&Case::loading, &Loading::critical_margin),
+                       strictly_between(0, 1),
+                       "common state at t/p = (1 - margin) mu_s, spontaneous event at (1 + margin) mu_s")),
+
+      only_with(uniform, number("prestress.t_Pa", at(&Case::prestress, &Prestress::t_Pa), any(),
+                                "uniform tangential traction, positive where it drives the plate to +x")),
+      only_with(uniform, number("prestress.p_Pa", at(&Case::prestress, &Prestress::p_Pa), above(0),
+                                "uniform pressure")),
+      only_with(prestressed,
+                text("prestress.file", at(&Case::prestress, &Prestress::file),
+                     "CSV table x_m,t_Pa,p_Pa of both instead, linear between its rows, from the first to "
+                     "the last node of the interface; its path is relative to the case file")),
+
+      friction_law_entry(),
+      word<Relaxed>(
+          "friction.regularisation", at(&Case::regularisation, &Regularisation::relaxed),
+          {{"none", Relaxed::none}, {"strength", Relaxed::strength}, {"pressure", Relaxed::pressure}},
+          "what follows changes of pressure with a delay, at the rate (|v| + v*)/L + 1/t*"),
+      number("friction.relaxation_length_m", at(&Case::regularisation, &Regularisation::length_m),
+             above_or_infinite(0), "L of that rate"),
+      number("friction.relaxation_slip_rate_m_per_s",
+             at(&Case::regularisation, &Regularisation::slip_rate_m_per_s), at_least(0), "v* of that rate"),
+      number("friction.relaxation_time_s", at(&Case::regularisation, &Regularisation::time_s),
+             above_or_infinite(0), "t* of that rate"),
+
+      word<ContactAlgorithm>("contact.algorithm", at(&Case::contact),
+                             {{"direct", ContactAlgorithm::direct},
+                              {"predictor_corrector", ContactAlgorithm::predictor_corrector}},
+                             "pressure that closes the gap within the step, or normal velocity locked in "
+                             "contact with friction on the predicted slip rate"),
+
+      word<EventKind>(
+          "event.kind", at(&Case::event),
+          {{"none", EventKind::none},
+           {"spontaneous", EventKind::spontaneous},
+           {"left", EventKind::left},
+           {"right", EventKind::right},
+           {"nucleation", EventKind::nucleation}},
+          "start of the event: nothing, shear just past the critical one, a trigger at an edge, or a "
+          "nucleation patch"),
+      word<TriggerForm>(
+          "event.trigger_form", at(&Case::trigger, &Trigger::form),
+          {{"added", TriggerForm::added},
+           {"raised", TriggerForm::raised},
+           {"weakened", TriggerForm::weakened}},
+          "tangential traction added, or raised to a multiple of mu_s p_s, or mu = mu_k from the start"),
+      number("event.trigger_zone_m", at(&Case::trigger, &Trigger::zone_m), above(0),
+             "length of the trigger zone, inward from the outermost node in contact"),
+      number(
+          "event.trigger_amount", at(&Case::trigger, &Trigger::amount), at_least(0),
+          "added tangential traction over what is missing to mu_s p_s; raised: the traction over mu_s p_s"),
+      number("event.trigger_ramp_s", at(&Case::trigger, &Trigger::ramp_s), at_least(0),
+             "time over which the trigger rises linearly"),
+      number("event.trigger_duration_s", at(&Case::trigger, &Trigger::duration_s), above_or_infinite(0),
+             "the trigger is taken away this long after its start"),
+
+      only_with(nucleated,
+                word<NucleationForm>(
+                    "nucleation.form", at(&Case::nucleation, &Nucleation::form),
+                    {{"weakened", NucleationForm::weakened}, {"overstress", NucleationForm::overstress}},
+                    "patch with a profile B(x): mu = mu_k + (1 - B) (mu of the law - mu_k), "
+                    "or an added tangential traction, with the trigger's ramp and duration")),
+      only_with(nucleated, number("nucleation.x_m", at(&Case::nucleation, &Nucleation::x_m), any(),
+                                  "centre of the patch, from the plate's left edge")),
+      only_with(nucleated,
+                number("nucleation.half_length_m", at(&Case::nucleation, &Nucleation::half_length_m),
+                       at_least(0), "B = 1 within this distance of the centre")),
+      only_with(nucleated, number("nucleation.taper_m", at(&Case::nucleation, &Nucleation::taper_m),
+                                  at_least(0), "B falls to 0 over this length, as half a cosine wave")),
+      only_with(overstressed,
+                number("nucleation.overstress_Pa", at(&Case::nucleation, &Nucleation::overstress_Pa), any(),
+                       "added tangential traction where B = 1")),
+
+      number("time.step_factor", at(&Case::time, &TimeStepping::step_factor), above(0),
+             "time step over the largest stable one; above 1 only with time.allow_unstable"),
+      flag("time.allow_unstable", at(&Case::time, &TimeStepping::allow_unstable),
+           "accept a step_factor above 1"),
+      word<Precision>(
+          "time.precision", at(&Case::time, &TimeStepping::precision),
+          {{"double", Precision::double_precision}, {"single", Precision::single_precision}},
+          "numbers for rows of the plate beyond those next to the interface; single with plate.sides = free"),
+      integer("time.interface_rows", at(&Case::time, &TimeStepping::interface_rows), between(1, 1e6),
+              "rows of cells next to the interface that are sub-cycled"),
+      integer("time.interface_substeps", at(&Case::time, &TimeStepping::interface_substeps), between(1, 1e6),
+              "sub-steps per time step there; 1 for none"),
+      only_with(graded, flag("time.local_steps", at(&Case::time, &TimeStepping::local_steps),
+                             "larger elements take larger time steps")),
+      number("time.end_s", at(&Case::time, &TimeStepping::end_s), above(0), "end of the event"),
+      number("time.quiet_s", at(&Case::time, &TimeStepping::quiet_s), above_or_infinite(0),
+             "the event ends earlier when no node has slipped for this long"),
+
+      number("fronts.l_star_m", at(&Case::fronts, &FrontSettings::l_star_m), above(0),
+             "length l* over which the front speed is taken; one element where that is longer"),
+      word<SpeedInterval>("fronts.speed_interval", at(&Case::fronts, &FrontSettings::speed_interval),
+                          {{"centred", SpeedInterval::centred}, {"approach", SpeedInterval::approach}},
+                          "where l* lies: centred at the node, or from where t_d, p_d are taken to the node"),
+      number("fronts.arrest_time_s", at(&Case::fronts, &FrontSettings::arrest_time_s), above(0),
+             "a tip that waits longer than this for its next onset has arrested"),
+      number("fronts.min_length_m", at(&Case::fronts, &FrontSettings::min_length_m), at_least(0),
+             "a shorter path is not a front of its own"),
+      number("fronts.crack_share", at(&Case::fronts, &FrontSettings::crack_share), between(0, 1),
+             "crack-like above this share of slipping length to distance run"),
+      number("fronts.pulse_share", at(&Case::fronts, &FrontSettings::pulse_share), between(0, 1),
+             "pulse-like below it"),
+      number("fronts.trigger_margin_m", at(&Case::fronts, &FrontSettings::trigger_margin_m), at_least(0),
+             "t_d and p_d are left out within the trigger zone or nucleation patch plus this"),
+
+      number("output.history_interval_s", at(&Case::output, &Output::history_interval_s), above(0),
+             "spacing of the rows of interface.h5"),
+      numbers("output.snapshot_times_s", at(&Case::output, &Output::snapshot_times_s), at_least(0),
+              "ascending times of the whole-plate fields in fields.vtkhdf"),
+      number("output.energy_interval_s", at(&Case::output, &Output::energy_interval_s), above(0),
+             "spacing of the rows of energy.csv; one step where that is longer"),
+  };
+}
+
+}  // namespace
+
+bool contains(const Range& range, double value) {
+  const bool above_min = range.min_open ? value > range.min : value >= range.min;
+  const bool below_max = range.max_open ? value < range.max : value <= range.max;
+  return above_min && below_max;
+}
+
+std::string describe(const Range& range, const std::string& unit) {
+  const std::string suffix = unit.empty() ? "" : " " + unit;
+  std::string lower, upper;
+  if (range.min > -infinity)
+    lower = fmt::format("{} {}{}", range.min_open ? "greater than" : "at least", range.min, suffix);
+  if (range.max < infinity)
+    upper = fmt::format("{} {}{}", range.max_open ? "less than" : "at most", range.max, suffix);
+  else if (!range.max_open)
+    upper = "may be inf";
+  return lower + (lower.empty() || upper.empty() ? "" : " and ") + upper;
+}
+
+const std::vector<Magnitudes>& all_magnitudes() {
+  static const std::vector<Magnitudes> all = {
+      {"m", 1e-12, 1e6},   {"s", 1e-15, 1e6},      {"Pa", 1e-6, 1e15}, {"kg/m3", 1e-6, 1e6},
+      {"m/s", 1e-12, 1e6}, {"m2/s2", 1e-12, 1e12}, {"", 1e-18, 1e9}};
+  return all;
+}
+
+const Magnitudes& magnitudes_of(std::string_view unit) {
+  const auto& all = all_magnitudes();
+  const auto found = std::ranges::find(all, unit, &Magnitudes::unit);
+  return found == all.end() ? all.back() : *found;
+}
+
+std::string unit_of(std::string_view key) {
+  static constexpr std::array<std::string_view, 9> units = {"m", "m2", "m3", "s", "s2", "Pa", "kg", "N", "J"};
+  std::string leaf = leaf_of(std::string(key));
+  if (leaf.rfind("mu_", 0) == 0) return "";
+  std::string unit;
+  bool after_unit = false;  // of the part to the right
+  while (true) {
+    const std::size_t bar = leaf.rfind('_');
+    if (bar == std::string::npos) break;
+    const std::string part = leaf.substr(bar + 1);
+    leaf.resize(bar);
+    if (part == "per" && after_unit) {
+      unit = "/" + unit;
+      after_unit = false;
+    } else if (!after_unit && std::find(units.begin(), units.end(), part) != units.end()) {
+      unit = part + unit;
+      after_unit = true;
+    } else {
+      break;
+    }
+  }
+  return unit.rfind('/', 0) == 0 ? "1" + unit : unit;
+}
+
+const std::vector<LawEntries>& friction_laws() {
+  static const std::vector<LawEntries> laws = law_entries_of(std::type_identity<interface::FrictionLaw>{});
+  return laws;
+}
+
+const LawEntries& law_of(const Case& config) {
+  return friction_laws()[config.friction.index()];
+}
+
+const std::vector<Entry>& common_entries() {
+  static const std::vector<Entry> entries = make_common_entries();
+  return entries;
+}
+
+std::vector<Entry> entries_of(const Case& config) {
+  std::vector<Entry> entries;
+  for (const Entry& entry : common_entries()) {
+    if (entry.only_with && !entry.only_with->holds(config)) continue;
+    entries.push_back(entry);
+    if (entry.key != "friction.law") continue;
+    const auto& parameters = law_of(config).entries;
+    entries.insert(entries.end(), parameters.begin(), parameters.end());
+  }
+  return entries;
+}
+
+std::string table_of(const std::string& key) {
+  const std::size_t dot = key.rfind('.');
+  return dot == std::string::npos ? "" : key.substr(0, dot);
+}
+
+std::string leaf_of(const std::string& key) {
+  const std::size_t dot = key.rfind('.');
+  return dot == std::string::npos ? key : key.substr(dot + 1);
+}
+
+}  // namespace slipfront::input

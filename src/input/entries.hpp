@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "input/case.hpp"
+#include "input/document.hpp"
+
+namespace slipfront::input {
+
+/// What a key takes.
+enum class Kind { number, integer, flag, text, word, numbers };
+
+/// Interval of allowed numbers; an open end at infinity asks for a finite value.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_open = true;
+  bool max_open = true;
+};
+bool contains(const Range& range, double value);
+
+/// "greater than 0 m", "at least 0 and at most 1", ...; empty where every finite number is allowed.
+std::string describe(const Range& range, const std::string& unit);
+
+/// Magnitudes of numbers other than 0, by their unit. They are far beyond any use, and such that no product
+/// or quotient of the program leaves the range of doubles.
+struct Magnitudes {
+  std::string unit;
+  double least = 0, most = 0;
+};
+const std::vector<Magnitudes>& all_magnitudes();
+/// Those of a unit, e.g. "m"; of plain numbers, the last ones, where it has none of its own.
+const Magnitudes& magnitudes_of(std::string_view unit);
+
+/// A setting on which a key depends, e.g. "event.kind = nucleation".
+struct Condition {
+  std::string text;
+  std::function<bool(const Case&)> holds;
+};
+
+/// A key of the case file: everything the program knows about it. Its default is the struct's own.
+struct Entry {
+  std::string key;  ///< dotted
+  Kind kind = Kind::number;
+  Range range;                     ///< of a number, an integer, each number of a list
+  std::vector<std::string> words;  ///< allowed for Kind::word
+  std::string help;
+  std::function<Value(const Case&)> get;
+  /// @pre the value is of the entry's kind and allowed: a double for a number, std::int64_t for an integer.
+  std::function<void(Case&, const Value&)> set;
+  /// The setting without which the key does nothing, and may not be set.
+  std::optional<Condition> only_with = {};
+};
+
+/// The unit that a key ends with: "m" for plate.width_m, "kg/m3" for density_kg_per_m3; empty for a plain
+/// number. Friction coefficients, mu..., have none.
+std::string unit_of(std::string_view key);
+
+/// A friction law of the registry and the keys of its parameters.
+struct LawEntries {
+  std::string name;
+  std::string help;
+  interface::FrictionLaw defaults;
+  std::vector<Entry> entries;
+  std::function<std::string(const Case&)>
+      inconsistency;  ///< empty, or what is wrong with the parameters together
+};
+const std::vector<LawEntries>& friction_laws();
+
+/// The law that a case holds.
+const LawEntries& law_of(const Case& config);
+
+/// Keys of every case, in the order of the case file; those of the friction laws follow `friction.law`.
+const std::vector<Entry>& common_entries();
+
+/// All keys that a case can set, those of its friction law among them, in the order of the case file.
+std::vector<Entry> entries_of(const Case& config);
+
+/// The part before the last dot: "plate"; empty for a key outside all tables.
+std::string table_of(const std::string& key);
+/// The part after the last dot: "width_m".
+std::string leaf_of(const std::string& key);
+
+}  // namespace slipfront::input

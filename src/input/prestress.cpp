@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/prestress.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "base/error.hpp"
+#include "files/fields.hpp"
+#include "files/text.hpp"
+#include "input/entries.hpp"
+
+namespace slipfront::input {
+
+namespace {
+
+constexpr std::array<const char*, 3> columns = {"x_m", "t_Pa", "p_Pa"};
+constexpr const char* header = "x_m,t_Pa,p_Pa";
+using Row = std::array<double, 3>;
+
+/// The key that names the file comes first, so that the message finds its place in the case file.
+std::string place(const std::filesystem::path& file) {
+  return "prestress.file: " + files::one_line(file.native());
+}
+
+Row row_of(const std::vector<std::string_view>& fields, const std::string& at) {
+  if (fields.size() != columns.size())
+    throw UserError("{}: has {} columns; a row is {}", at, fields.size(), header);
+  Row row{};
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    const auto number = files::number_of(fields[k]);
+    if (!number)
+      throw UserError("{}: {} is \"{}\"; it must be a finite number", at, columns[k],
+                      files::shortened(fields[k]));
+    const double most = magnitudes_of(unit_of(columns[k])).most;
+    if (std::abs(*number) > most)
+      throw UserError("{}: {} is {}; its magnitude must be at most {:g}", at, columns[k], *number, most);
+    row[k] = *number;
+  }
+  return row;
+}
+
+void append(const Row& row, const std::string& at, record::StaticState& rows) {
+  const auto [x_m, t_Pa, p_Pa] = row;
+  if (!rows.x_m.empty() && x_m <= rows.x_m.back())
+    throw UserError("{}: x_m is {} after {}; write the rows with x ascending", at, x_m, rows.x_m.back());
+  if (p_Pa <= 0)
+    throw UserError("{}: p_Pa is {}; it must be greater than 0, the interface starts in contact", at, p_Pa);
+  const double least_Pa = magnitudes_of("Pa").least;
+  if (p_Pa < least_Pa) throw UserError("{}: p_Pa is {}; it must be at least {:g}", at, p_Pa, least_Pa);
+  rows.x_m.push_back(x_m);
+  rows.t_s_Pa.push_back(t_Pa);
+  rows.p_s_Pa.push_back(p_Pa);
+}
+
+}  // namespace
+
+PrestressTable read_prestress(const std::filesystem::path& file) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 30U;
+  PrestressTable table{files::read_text(file, place(file), "table", most_bytes), {}};
+  bool have_header = false;
+  files::for_each_row(table.text, [&](int line, const std::vector<std::string_view>& fields) {
+    const std::string at = fmt::format("{}:{}", place(file), line);
+    if (have_header) return append(row_of(fields, at), at, table.rows);
+    have_header = true;
+    if (!std::ranges::equal(fields, columns))
+      throw UserError("{}: the first line must be the header {}", at, header);
+  });
+  if (table.rows.x_m.empty())
+    throw UserError("{}: holds no rows; write the header {} and a row per position", place(file), header);
+  return table;
+}
+
+record::StaticState prestress_at(const Prestress& prestress, const std::vector<double>& x_m) {
+  const record::StaticState& rows = prestress.table.rows;
+  SLIPFRONT_ASSERT(!rows.x_m.empty(), "the table of prestress.file has not been read");
+  // Positions in a table are written with few digits.
+  const double tolerance_m = 1e-6 * (x_m.back() - x_m.front());
+  if (rows.x_m.front() > x_m.front() + tolerance_m || rows.x_m.back() < x_m.back() - tolerance_m)
+    throw UserError(
+        "{}: covers x = {:.6g} to {:.6g} m, the interface reaches from {:.6g} to {:.6g} m; add rows",
+        place(prestress.file), rows.x_m.front(), rows.x_m.back(), x_m.front(), x_m.back());
+  record::StaticState state;
+  state.x_m = x_m;
+  for (const double wanted : x_m) {
+    const double x = std::clamp(wanted, rows.x_m.front(), rows.x_m.back());
+    const auto after = std::ranges::lower_bound(rows.x_m, x);
+    const auto k = static_cast<std::size_t>(after - rows.x_m.begin());
+    const std::size_t before = k > 0 ? k - 1 : 0;
+    const double part = k > 0 ? (x - rows.x_m[before]) / (rows.x_m[k] - rows.x_m[before]) : 1;
+    const auto between = [&](const std::vector<double>& y) { return y[before] + part * (y[k] - y[before]); };
+    state.t_s_Pa.push_back(between(rows.t_s_Pa));
+    state.p_s_Pa.push_back(between(rows.p_s_Pa));
+  }
+  return state;
+}
+
+}  // namespace slipfront::input

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "input/case.hpp"
+#include "input/document.hpp"
+
+namespace slipfront::input {
+
+/// `--set key=value` from the command line: dotted key, value as TOML; a word or text needs no quotes.
+using Override = std::pair<std::string, std::string>;
+
+/// Splits "key=value". @throws UserError where there is no "=" or no key.
+Override parse_override(const std::string& text);
+
+/// A case file, read once, since it may be a pipe, with the overrides of the command line. What it does not
+/// name keeps its default. Overrides win over the file, the last one over earlier ones. Where an override
+/// changes friction.law, the file's parameters of its own law do not count. The table of prestress.file is
+/// read as well.
+class CaseFile {
+ public:
+  /// @throws UserError with file, line and what to do: missing file, no key in it, syntax, unknown key (with
+  /// the nearest known one), wrong type, value out of range, parameters that do not fit together, table.
+  explicit CaseFile(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
+
+  const Case& config() const { return config_; }
+
+  /// For an error found after reading (geometry, step): "--set key=value" where an override sets the dotted
+  /// key, else "FILE:LINE" where the file does, else FILE alone.
+  std::string place_of_key(const std::string& key) const;
+
+  /// Puts the place of the first key that `message` names before it: "FILE:LINE: message".
+  std::string with_place(const std::string& message) const;
+
+ private:
+  std::string name_;
+  Document document_;  ///< overrides included
+  Case config_;
+};
+
+/// The case alone.
+Case read_case(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
+
+/// The same from a text; `name` stands for the file in messages. No table is read.
+Case parse_case(const std::string& text, const std::string& name,
+                const std::vector<Override>& overrides = {});
+
+/// Every key with its value, as a case file that reads back to the same case (doubles to full precision),
+/// each with its help as a comment.
+std::string to_toml(const Case& config);
+
+/// Reference page of all keys (Markdown): per table a row per key with type, unit, default, range, meaning.
+std::string schema_reference();
+
+}  // namespace slipfront::input

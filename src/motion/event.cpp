@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/event.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "motion/watch.hpp"
+
+namespace slipfront::motion {
+
+namespace {
+
+constexpr std::int64_t monitor_interval = 50;
+
+/// Nodes at the edges creep along with the loading; slip that is no faster than this multiple of the top's
+/// speed does not keep an event going.
+constexpr double creep_over_top_speed = 10;
+
+/// Empties a history but for its places; the memory stays for the next rows.
+void clear_rows(record::History& history) {
+  for (auto* column :
+       {&history.time_s, &history.slip_m, &history.slip_rate_m_per_s, &history.t_Pa, &history.p_Pa})
+    column->clear();
+}
+
+/// Steps, at least one, until the stepper's time is at least time_s; a far time is beyond any run.
+std::int64_t steps_until(const Stepper& stepper, double time_s) {
+  constexpr double far_steps = 1e13;
+  if (!(time_s < far_steps * stepper.step_s())) return static_cast<std::int64_t>(far_steps);
+  auto step = static_cast<std::int64_t>(time_s / stepper.step_s()) - 1;
+  while (static_cast<double>(step) * stepper.step_s() < time_s) ++step;
+  return std::max<std::int64_t>(step - stepper.step(), 1);
+}
+
+/// The number of the next row, at least the one after n, of rows at multiples of an interval.
+std::int64_t next_row(std::int64_t n, double time_s, double interval_s) {
+  return std::max(n, static_cast<std::int64_t>(time_s / interval_s)) + 1;
+}
+
+/// Of the loaded edge, which keeps it; 0 without one.
+double top_speed_m_per_s(const Stepper& stepper) {
+  const auto& top = stepper.plate().top.node;
+  return top.empty() ? 0 : stepper.v_m_per_s().x[top.front()];
+}
+
+}  // namespace
+
+std::vector<std::size_t> trigger_zone(const statics::Equilibrium& state, interface::EventKind kind,
+                                      double zone_m) {
+  const auto& x_m = state.tractions.x_m;
+  std::vector<std::size_t> zone;
+  if (kind != interface::EventKind::left && kind != interface::EventKind::right) return zone;
+  const auto in_contact = [&](std::size_t k) { return state.contact[k] != statics::Contact::open; };
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (std::size_t k = 0; k < x_m.size(); ++k) {
+    if (!in_contact(k)) continue;
+    first = std::min(first, x_m[k]);
+    last = std::max(last, x_m[k]);
+  }
+  for (std::size_t k = 0; k < x_m.size(); ++k) {
+    const double from_edge = kind == interface::EventKind::left ? x_m[k] - first : last - x_m[k];
+    if (in_contact(k) && from_edge <= zone_m * (1 + 1e-9)) zone.push_back(k);
+  }
+  return zone;
+}
+
+std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<const double> tributary_m,
+                                   interface::EventKind kind, const interface::Trigger& trigger,
+                                   double mu_s) {
+  using enum interface::TriggerForm;
+  const auto& s = state.tractions;
+  std::vector<double> force(s.x_m.size(), 0.0);
+  if (trigger.form == weakened) return force;
+  for (const auto k : trigger_zone(state, kind, trigger.zone_m)) {
+    const double strength_Pa = mu_s * s.p_s_Pa[k];
+    const double added_Pa = trigger.form == added ? trigger.amount * (strength_Pa - s.t_s_Pa[k])
+                                                  : trigger.amount * strength_Pa - s.t_s_Pa[k];
+    force[k] = added_Pa * tributary_m[k];
+  }
+  return force;
+}
+
+int halo_for(const mesh::Mesh& mesh, double l_star_m) {
+  return static_cast<int>(std::ceil(l_star_m / mesh.grid.spacing_m - 0.01)) + 1;
+}
+
+double event_bytes(double n_nodes, double n_cells, bool with_snapshots, Precision precision) {
+  constexpr double number = sizeof(double), field = 2 * number;
+  const double mesh = field * n_nodes + sizeof(mesh::Cell) * n_cells;
+  const double state = 2 * field * n_nodes;  // u_m, u_per_shear
+  const double single = precision == Precision::single_precision ? field * n_nodes : 0;
+  const double motion = (number + 2 * field) * n_nodes + single;  // mass, u, v
+  // The largest frequency by iterations, or the cells around each node.
+  const double building = (n_nodes < solid::many_nodes ? number + 4 * field : 28) * n_nodes;
+  const double stepping = 2 * n_nodes;  // of the stepper besides: levels, orphans
+  const double snapshot = with_snapshots ? 2 * field * n_nodes : 0;
+  return motion + std::max(mesh + state + building, stepping + snapshot);
+}
+
+Snapshot take_snapshot(const Stepper& stepper) {
+  return {stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()};
+}
+
+EventRun::EventRun(Stepper& stepper, const statics::Equilibrium& state, double mu_s, double c_L_m_per_s,
+                   const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
+                   int halo)
+    : stepper_(stepper),
+      c_L_m_per_s_(c_L_m_per_s),
+      time_(time),
+      snapshot_times_s_(sampling.snapshot_times_s),
+      sample_interval_s_(std::max(sampling.history_interval_s, stepper.step_s())),
+      energy_interval_s_(std::max(sampling.energy_interval_s, stepper.step_s())),
+      quiet_from_s_(std::isfinite(trigger.ramp_s) ? trigger.ramp_s : 0),
+      recorder_(state, mu_s, halo, creep_over_top_speed * top_speed_m_per_s(stepper)),
+      watch_(std::in_place, stepper, c_L_m_per_s) {
+  const double all_steps = std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12));
+  if (all_steps > 1e12)
+    throw UserError("time.end_s = {:g} takes {:g} steps of {:.4g} s; choose an earlier end", time.end_s,
+                    all_steps, stepper.step_s());
+  n_steps_ = static_cast<std::int64_t>(all_steps);
+  event_.history.x_m = state.tractions.x_m;
+  event_.energies.push_back(watch_->start());
+}
+
+void EventRun::require_possible(std::int64_t checked_step) const {
+  const auto step = stepper_.step();
+  const auto is_count = [step](std::int64_t rows) { return rows >= 0 && rows <= step + 2; };
+  if (step < 0 || step > n_steps_ || checked_step < 0 || checked_step > step || !is_count(n_samples_) ||
+      !is_count(n_energies_) || next_snapshot_ > snapshot_times_s_.size() || event_.energies.empty())
+    throw UserError("the state that was kept is of another event");
+}
+
+void EventRun::take_snapshots(Sink* sink) {
+  while (next_snapshot_ < snapshot_times_s_.size() &&
+         stepper_.time_s() >= snapshot_times_s_[next_snapshot_]) {
+    if (sink != nullptr)
+      sink->snapshot(stepper_);
+    else
+      event_.snapshots.push_back(take_snapshot(stepper_));
+    ++next_snapshot_;
+  }
+}
+
+bool EventRun::is_quiet() const {
+  return stepper_.time_s() - std::max(recorder_.last_motion_s(), quiet_from_s_) > time_.quiet_s;
+}
+
+double EventRun::energy_time_s() const {
+  return static_cast<double>(n_energies_) * energy_interval_s_;
+}
+
+Between EventRun::between(Sink* sink, record::History& row) {
+  Between between;
+  between.sample = [this, sink, &row]() -> record::History* {
+    if (stepper_.time_s() < static_cast<double>(n_samples_) * sample_interval_s_) return nullptr;
+    n_samples_ = next_row(n_samples_, stepper_.time_s(), sample_interval_s_);
+    return sink != nullptr ? &row : &event_.history;
+  };
+  between.go_on = [this, sink, &row] {
+    if (!row.time_s.empty()) {
+      sink->sample(row);
+      clear_rows(row);
+    }
+    return watch_->look() && !is_quiet();
+  };
+  return between;
+}
+
+std::int64_t EventRun::steps_to_next_look() const {
+  const std::int64_t steps =
+      std::min({n_steps_ - stepper_.step(), monitor_interval - stepper_.step() % monitor_interval,
+                watch_->steps_to_check(), steps_until(stepper_, energy_time_s())});
+  if (next_snapshot_ == snapshot_times_s_.size()) return steps;
+  return std::min(steps, steps_until(stepper_, snapshot_times_s_[next_snapshot_]));
+}
+
+bool EventRun::look() {
+  const bool energies = stepper_.time_s() >= energy_time_s();
+  if (energies) {
+    n_energies_ = next_row(n_energies_, stepper_.time_s(), energy_interval_s_);
+    event_.energies.push_back(stepper_.energies());
+  }
+  if (auto trouble = watch_->trouble(energies ? &event_.energies.back() : nullptr); !trouble.empty()) {
+    event_.end = EventEnd::blow_up;
+    event_.blow_up = blow_up_message(stepper_, trouble);
+    return false;
+  }
+  if (is_quiet()) event_.end = EventEnd::quiet;
+  return !is_quiet();
+}
+
+Event EventRun::run(const Monitor& monitor, Sink* sink) {
+  record::History row;
+  const auto samples = between(sink, row);
+  while (stepper_.step() < n_steps_) {
+    take_snapshots(sink);
+    stepper_.advance(recorder_, steps_to_next_look(), samples);
+    if (!look()) break;
+    if (stepper_.step() % monitor_interval == 0 && !monitor(stepper_.step(), n_steps_)) {
+      event_.end = EventEnd::interrupted;
+      break;
+    }
+  }
+  take_snapshots(sink);
+  event_.steps = stepper_.step();
+  event_.time_s = stepper_.time_s();
+  if (event_.energies.back().time_s < event_.time_s) event_.energies.push_back(stepper_.energies());
+  event_.record = recorder_.take(event_.time_s);
+  return std::move(event_);
+}
+
+Event run_event(Stepper& stepper, const statics::Equilibrium& state, double mu_s, double c_L_m_per_s,
+                const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
+                int halo, const Monitor& monitor, Sink* sink) {
+  return EventRun(stepper, state, mu_s, c_L_m_per_s, trigger, time, sampling, halo).run(monitor, sink);
+}
+
+namespace {
+
+/// Of a ramp that is expected to end at a shear: twice as many as to that.
+std::int64_t most_steps(const Stepper& stepper, double shear_m, double top_speed_m_per_s,
+                        double c_L_m_per_s) {
+  const double steps = 2 * shear_m / (top_speed_m_per_s * stepper.step_s());
+  if (!(steps <= 2e12))
+    throw UserError(
+        "the ramp with loading.shear_speed_over_c_L = {:g} takes {:g} steps; choose a higher speed, or "
+        "loading.method = direct",
+        top_speed_m_per_s / c_L_m_per_s, 0.5 * steps);
+  return static_cast<std::int64_t>(steps);
+}
+
+}  // namespace
+
+RampRun::RampRun(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading,
+                 double mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m)
+    : stepper_(stepper),
+      tilted_(tilted),
+      loading_(loading),
+      mu_s_(mu_s),
+      top_speed_m_per_s_(top_speed_m_per_s),
+      c_L_m_per_s_(c_L_m_per_s),
+      expected_shear_m_(expected_shear_m),
+      most_steps_(most_steps(stepper, expected_shear_m, top_speed_m_per_s, c_L_m_per_s)),
+      recorder_(tilted, mu_s, 0),
+      watch_(std::in_place, stepper, c_L_m_per_s),
+      from_m_(tilted.inside_from_m),
+      to_m_(tilted.inside_to_m) {}
+
+void RampRun::require_possible(std::int64_t checked_step) const {
+  const auto step = stepper_.step();
+  const auto& u_m = ramp_.common.u_m;
+  if (step < 0 || step > most_steps_ + 1 || checked_step < 0 || checked_step > step ||
+      (have_common_ && (!statics::has_nodes(ramp_.common, tilted_.contact.size()) ||
+                        u_m.size() != tilted_.u_m.size() || u_m.y.size() != u_m.x.size())))
+    throw UserError("the state that was kept is of another ramp");
+}
+
+/// The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.
+statics::Equilibrium RampRun::state_now() const {
+  statics::Equilibrium e = tilted_;
+  const auto& s = stepper_.interface_state();
+  e.u_m = stepper_.u_m();
+  for (std::size_t n = 0; n < e.u_per_shear.size(); ++n) {
+    e.u_per_shear.x[n] = stepper_.v_m_per_s().x[n] / top_speed_m_per_s_;
+    e.u_per_shear.y[n] = stepper_.v_m_per_s().y[n] / top_speed_m_per_s_;
+  }
+  e.shear_m = top_speed_m_per_s_ * stepper_.time_s();
+  e.tractions.t_s_Pa = s.t_Pa;
+  e.tractions.p_s_Pa = s.p_Pa;
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    e.contact[k] = s.p_Pa[k] > 0 ? (s.slipping[k] != 0 ? statics::Contact::slip : statics::Contact::stick)
+                                 : statics::Contact::open;
+    if (e.contact[k] == statics::Contact::open) continue;
+    first = std::min(first, e.tractions.x_m[k]);
+    last = std::max(last, e.tractions.x_m[k]);
+  }
+  e.inside_from_m = first + loading_.edge_margin_m;
+  e.inside_to_m = last - loading_.edge_margin_m;
+  e.peak_ratio = 0;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const double x = e.tractions.x_m[k];
+    if (x < e.inside_from_m || x > e.inside_to_m || s.p_Pa[k] <= 0 || s.t_Pa[k] / s.p_Pa[k] <= e.peak_ratio)
+      continue;
+    e.peak_ratio = s.t_Pa[k] / s.p_Pa[k];
+    e.peak_x_m = x;
+  }
+  return e;
+}
+
+double RampRun::peak_now() const {
+  const auto& s = stepper_.interface_state();
+  double peak = 0;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const double x = tilted_.tractions.x_m[k];
+    if (x >= from_m_ && x <= to_m_ && s.p_Pa[k] > 0) peak = std::max(peak, s.t_Pa[k] / s.p_Pa[k]);
+  }
+  return peak;
+}
+
+Ramp RampRun::run(const Monitor& monitor) {
+  constexpr std::int64_t renewal_interval = 1000;
+  double peak = 0;
+  Between between;
+  between.go_on = [&] {
+    peak = peak_now();
+    return watch_->look() && peak < mu_s_ * (1 - (have_common_ ? ramp_handover : loading_.critical_margin));
+  };
+  for (;;) {
+    if (stepper_.step() > most_steps_)
+      throw UserError("the ramp does not bring t/p inside the interface to mu_s within a shear of {:.4g} m",
+                      2 * expected_shear_m_);
+    stepper_.advance(recorder_,
+                     std::min({renewal_interval - stepper_.step() % renewal_interval,
+                               watch_->steps_to_check(), most_steps_ + 1 - stepper_.step()}),
+                     between);
+    if (auto trouble = watch_->trouble(nullptr); !trouble.empty())
+      throw BlowUp(blow_up_message(stepper_, trouble));
+    if (!have_common_ && peak >= mu_s_ * (1 - loading_.critical_margin)) {
+      ramp_.common = state_now();
+      have_common_ = true;
+    }
+    if (peak >= mu_s_ * (1 - ramp_handover)) {
+      ramp_.spontaneous = state_now();
+      break;
+    }
+    if (stepper_.step() % renewal_interval == 0) {
+      const statics::Equilibrium e = state_now();
+      from_m_ = e.inside_from_m;
+      to_m_ = e.inside_to_m;
+      if (!monitor(stepper_.step(), expected_steps())) {
+        ramp_.interrupted = true;
+        break;
+      }
+    }
+  }
+  ramp_.steps = stepper_.step();
+  ramp_.record = recorder_.take(stepper_.time_s());
+  return std::move(ramp_);
+}
+
+Ramp run_ramp(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading,
+              double mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m,
+              const Monitor& monitor) {
+  stepper.start(tilted, top_speed_m_per_s);
+  return RampRun(stepper, tilted, loading, mu_s, top_speed_m_per_s, c_L_m_per_s, expected_shear_m)
+      .run(monitor);
+}
+
+}  // namespace slipfront::motion

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "interface/trigger.hpp"
+#include "mesh/mesh.hpp"
+#include "motion/recorder.hpp"
+#include "motion/stepper.hpp"
+#include "motion/watch.hpp"
+#include "record/record.hpp"
+#include "statics/statics.hpp"
+
+namespace slipfront::motion {
+
+/// Asked once in a while during long work with the steps done and their total, which are 0 before the first
+/// step; returns false to interrupt it.
+using Monitor = std::function<bool(std::int64_t step, std::int64_t total)>;
+
+/// What to keep of an event besides its onsets.
+struct Sampling {
+  double history_interval_s = 0.5e-6;
+  double energy_interval_s = 20e-6;
+  std::vector<double> snapshot_times_s;  ///< ascending
+};
+
+/// Motion of the whole plate at one instant. The velocity belongs to half a step (half a sub-step in the
+/// interface layer) earlier.
+struct Snapshot {
+  double time_s = 0;
+  solid::Field u_m, v_m_per_s;
+};
+
+Snapshot take_snapshot(const Stepper& stepper);
+
+/// Takes what an event is to keep of its motion, while it goes.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// One row of the history; x_m is empty.
+  virtual void sample(const record::History& row) = 0;
+  /// It is time for a snapshot.
+  virtual void snapshot(const Stepper& stepper) = 0;
+};
+
+/// Bytes of a plate in motion: the larger of what its stepper takes while it is built, the mesh and the state
+/// before the event beside it, and of the event itself with the snapshot that waits to be written. But for
+/// the interface, the irregular nodes and the program itself.
+double event_bytes(double n_nodes, double n_cells, bool with_snapshots,
+                   Precision precision = Precision::double_precision);
+
+/// Why an event ended.
+enum class EventEnd { end_time, quiet, interrupted, blow_up };
+
+/// A slip event as it was computed.
+struct Event {
+  EventEnd end = EventEnd::end_time;
+  std::string blow_up;  ///< which step, and why
+  std::int64_t steps = 0;
+  double time_s = 0;
+  record::SlipRecord record;
+  record::History history;                 ///< without a sink
+  std::vector<Snapshot> snapshots;         ///< without a sink
+  std::vector<record::Energies> energies;  ///< at the start, at the given interval, and at the end
+
+  /// Without what a sink would take.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(end, blow_up, steps, time_s, record, energies);
+  }
+};
+
+/// Interface nodes in contact that lie within zone_m of the outermost one of the event's edge.
+std::vector<std::size_t> trigger_zone(const statics::Equilibrium& state, interface::EventKind kind,
+                                      double zone_m);
+
+/// Forces on the interface nodes that the trigger adds, see TriggerForm, N per unit thickness. [lower]
+std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<const double> tributary_m,
+                                   interface::EventKind kind, const interface::Trigger& trigger, double mu_s);
+
+/// Halo of the slip record that t_d, p_d at a distance l_star_m ahead of the tip need.
+int halo_for(const mesh::Mesh& mesh, double l_star_m);
+
+/// An event under way: steps a started stepper until the end time, or until no node has slipped for
+/// time.quiet_s after the trigger's ramp. The motion is checked: in every step numbers finite and slip rates
+/// below c_L, with each of the energies and at least every 100 steps energy not above what there was at the
+/// start plus what the loaded edge and the trigger have added, by more than 1 %.
+class EventRun {
+ public:
+  /// @param state  tractions and contact before the event; its displacements are not needed
+  EventRun(Stepper& stepper, const statics::Equilibrium& state, double mu_s, double c_L_m_per_s,
+           const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling, int halo);
+
+  /// To the end, or until the monitor interrupts it, which it may do for good.
+  /// @param sink  takes samples and snapshots; without one the event keeps them all
+  Event run(const Monitor& monitor, Sink* sink = nullptr);
+
+  std::int64_t n_steps() const { return n_steps_; }  ///< to the end time
+  const std::vector<record::Energies>& energies() const { return event_.energies; }
+  /// Of what has happened so far.
+  record::SlipRecord record() { return recorder_.take(stepper_.time_s()); }
+
+  /// All that changes while the monitor is asked, but for the stepper and what a sink would take.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    auto start = watch_->start();
+    auto checked_step = watch_->checked_step();
+    archive(recorder_, start, checked_step, event_.energies, n_samples_, n_energies_, next_snapshot_);
+    if constexpr (Archive::is_loading::value) {
+      require_possible(checked_step);
+      watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+    }
+  }
+
+ private:
+  /// Refuses counts that no event of this length comes to.
+  void require_possible(std::int64_t checked_step) const;
+  void take_snapshots(Sink* sink);
+  bool is_quiet() const;
+  Between between(Sink* sink, record::History& row);
+  std::int64_t steps_to_next_look() const;
+  double energy_time_s() const;
+  /// Looks at the motion. @return whether the event goes on
+  bool look();
+
+  Stepper& stepper_;
+  double c_L_m_per_s_;
+  TimeStepping time_;
+  std::vector<double> snapshot_times_s_;
+  double sample_interval_s_, energy_interval_s_, quiet_from_s_;
+  std::int64_t n_steps_ = 0;
+  Recorder recorder_;
+  std::optional<Watch> watch_;  ///< always there
+  Event event_;
+  std::int64_t n_samples_ = 0, n_energies_ = 1;
+  std::size_t next_snapshot_ = 0;
+};
+Event run_event(Stepper& stepper, const statics::Equilibrium& state, double mu_s, double c_L_m_per_s,
+                const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
+                int halo, const Monitor& monitor, Sink* sink = nullptr);
+
+/// States that the explicit ramp reaches, and what happened on the way.
+struct Ramp {
+  statics::Equilibrium common;       ///< at (1 - critical_margin) mu_s inside
+  statics::Equilibrium spontaneous;  ///< just before mu_s is reached inside
+  record::SlipRecord record;         ///< of all slip during the ramp
+  std::int64_t steps = 0;
+  bool interrupted = false;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(common, spontaneous, record, steps, interrupted);
+  }
+};
+
+/// Relative distance to mu_s at which the ramp hands over to the spontaneous event.
+inline constexpr double ramp_handover = 1e-5;
+
+/// A ramp under way: moves the loaded edge of the tilted plate at top_speed_m_per_s by explicit steps until
+/// t/p inside the interface reaches mu_s.
+class RampRun {
+ public:
+  /// @param stepper  started from `tilted` at the top's speed
+  RampRun(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading, double mu_s,
+          double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m);
+
+  /// @throws BlowUp, and UserError where mu_s is not reached within twice the shear `expected_shear_m`.
+  Ramp run(const Monitor& monitor);
+
+  std::int64_t expected_steps() const { return most_steps_ / 2; }
+
+  /// All that changes while the monitor is asked, but for the stepper.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    auto start = watch_->start();
+    auto checked_step = watch_->checked_step();
+    archive(recorder_, start, checked_step, ramp_, have_common_, from_m_, to_m_);
+    if constexpr (Archive::is_loading::value) {
+      require_possible(checked_step);
+      watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+    }
+  }
+
+ private:
+  /// Refuses counts that no ramp comes to, and a state of another plate.
+  void require_possible(std::int64_t checked_step) const;
+  statics::Equilibrium state_now() const;
+  double peak_now() const;
+
+  Stepper& stepper_;
+  const statics::Equilibrium& tilted_;
+  const statics::Loading& loading_;
+  double mu_s_, top_speed_m_per_s_, c_L_m_per_s_, expected_shear_m_;
+  std::int64_t most_steps_;
+  Recorder recorder_;
+  std::optional<Watch> watch_;  ///< always there
+  Ramp ramp_;
+  bool have_common_ = false;
+  /// The contact's extent changes slowly; the peak is looked for between bounds that are renewed at times.
+  double from_m_, to_m_;
+};
+Ramp run_ramp(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading,
+              double mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m,
+              const Monitor& monitor);
+
+}  // namespace slipfront::motion

@@ -1,0 +1,611 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/level.hpp"
+
+#include <algorithm>
+
+namespace slipfront::motion {
+
+namespace {
+
+std::ptrdiff_t row_start(const Plate& plate, int row) {
+  return plate.op.rows[row].first;
+}
+
+/// Rows that the stencil of `row` reads.
+solid::Span rows_read(const solid::StencilRow& row) {
+  return {row.squares == solid::Squares::above ? row.row : row.row - 1,
+          row.squares == solid::Squares::below ? row.row + 1 : row.row + 2};
+}
+
+solid::ConstRow row_of(solid::RollingRows& w, int row) {
+  return {w.x(row), w.y(row)};
+}
+
+/// Fills rows of w = u + beta_R v just before the first row that reads them moves.
+class Filler {
+ public:
+  Filler(const Plate& plate, solid::RollingRows& w, int first) : plate_(plate), w_(w), next_(first) {}
+
+  void fill(solid::Span rows) {
+    for (next_ = std::max(next_, rows.begin); next_ < rows.end; ++next_) {
+      const auto o = row_start(plate_, next_);
+      solid::combine_row(plate_.op.rows[next_].count, plate_.damping_s, &plate_.u_m.x[o], &plate_.u_m.y[o],
+                         &plate_.v_m_per_s.x[o], &plate_.v_m_per_s.y[o], w_.x(next_), w_.y(next_));
+    }
+  }
+
+ private:
+  const Plate& plate_;
+  solid::RollingRows& w_;
+  int next_;
+};
+
+/// w of a node in the three rows around `row`.
+class RowsAround {
+ public:
+  RowsAround(solid::RollingRows& w, const solid::Operator& op, int row)
+      : first_node_(op.rows[row - 1].first),
+        stride_(op.rows[row].count),
+        rows_{row_of(w, row + 2), row_of(w, row), row_of(w, row + 1)} {}
+
+  solid::Pair operator()(mesh::Node n) const {
+    const mesh::Node from_first = n - first_node_;
+    const int k = static_cast<int>(from_first >= stride_) + static_cast<int>(from_first >= 2 * stride_);
+    const int column = from_first - k * stride_;
+    return {rows_[k].x[column], rows_[k].y[column]};
+  }
+
+ private:
+  mesh::Node first_node_;
+  int stride_;
+  solid::ConstRow rows_[3];  ///< row - 1, which rolls where row + 2 does, row, row + 1
+};
+
+/// Sum of m (x . a) over the general rows.
+double general_product(const Level& level, const Plate& plate, const solid::Field& x) {
+  double sum = 0;
+  for (const auto& run : level.general_runs) {
+    const auto at = run.at, count = run.count;
+    const auto first = run.first;
+    const double* mass = &plate.op.mass_kg[first];
+    const double* x_x = &x.x[first];
+    const double* x_y = &x.y[first];
+    const double* a_x = &level.a_x[at];
+    const double* a_y = &level.a_y[at];
+#pragma omp simd reduction(+ : sum)
+    for (std::size_t k = 0; k < count; ++k) sum += mass[k] * (x_x[k] * a_x[k] + x_y[k] * a_y[k]);
+  }
+  return sum;
+}
+
+/// Kicks and moves the nodes of the general rows.
+void move_general(const Level& level, Plate& plate) {
+  const double dt = level.step_s;
+  for (const auto& [at, first, count] : level.general_runs) {
+    const double* a_x = &level.a_x[at];
+    const double* a_y = &level.a_y[at];
+    double* __restrict u_x = &plate.u_m.x[first];
+    double* __restrict u_y = &plate.u_m.y[first];
+    double* __restrict v_x = &plate.v_m_per_s.x[first];
+    double* __restrict v_y = &plate.v_m_per_s.y[first];
+    // Runs end where these change.
+    if (!level.takes_push[at]) continue;
+    const double moving_s = level.moves[at] ? dt : 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      v_x[k] -= dt * a_x[k];
+      v_y[k] -= dt * a_y[k];
+      u_x[k] += moving_s * v_x[k];
+      u_y[k] += moving_s * v_y[k];
+    }
+  }
+}
+
+template <class W>
+void compute_irregular(Level& level, const Band& band, const Plate& plate, W&& w, record::Energies& works) {
+  solid::for_each_row_product(level.part.irregular, band.irregular, w,
+                              [&](std::size_t r, double x, double y) {
+                                level.a_x[r] = x;
+                                level.a_y[r] = y;
+                              });
+  if (!band.has_top) return;
+  const solid::Span all{0, static_cast<int>(level.top_rows.size())};
+  solid::for_each_row_product(level.top_rows, all, w, [&](std::size_t r, double x, double y) {
+    level.top_force_N[r] = {x, y};
+    works.top_work += level.step_s * x * plate.v_m_per_s.x[level.top_rows.node[r]];
+  });
+}
+
+void add_kicks(solid::KickSums& to, const solid::KickSums& kicks, double mass) {
+  to.w_d += mass * kicks.w_d;
+  to.v_d += mass * kicks.v_d;
+  to.d_d += mass * kicks.d_d;
+}
+
+void sweep(Level& level, const Band& band, Plate& plate, Filler& filler, solid::RollingRows& w,
+           PushProducts& products) {
+  const int stride = plate.op.grid.stride();
+  const double dt = level.step_s;
+  const bool with_products = plate.damping_s > 0;
+  const auto push_interior =
+      with_products ? solid::push_interior_row<true, double> : solid::push_interior_row<false, double>;
+  const auto right = solid::scaled(plate.op.edge, -dt);
+  // Sums over kicks of nodes with one mass, which is 1/kick_scale of that amid the smallest squares.
+  solid::KickSums kicks = products.kicks;
+  products.kicks = {};
+  double kick_scale = 1;
+  int edge = band.edges.begin;
+  for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
+    const auto& row = level.part.stencil[k];
+    const auto& [j, squares, scale, spans] = row;
+    const auto o = row_start(plate, j);
+    double* u_x = &plate.u_m.x[o];
+    double* u_y = &plate.u_m.y[o];
+    double* v_x = &plate.v_m_per_s.x[o];
+    double* v_y = &plate.v_m_per_s.y[o];
+    filler.fill(rows_read(row));
+    if (scale != kick_scale && !solid::is_horizontal_edge(row)) {
+      add_kicks(products.kicks, kicks, 1 / kick_scale);
+      kicks = {};
+      kick_scale = scale;
+    }
+    if (squares == solid::Squares::right || squares == solid::Squares::left) {
+      const auto side =
+          solid::scaled(squares == solid::Squares::right ? right : solid::mirrored(right), scale);
+      const int inner = squares == solid::Squares::right ? 1 : -1;
+      for (const auto span : spans)
+        solid::push_side_node(side, span.begin, inner, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1),
+                              v_x, v_y, u_x, u_y, kicks);
+      continue;
+    }
+    if (squares == solid::Squares::all) {
+      const auto interior = solid::scaled(plate.op.interior, -dt * scale);
+      for (const auto span : spans)
+        push_interior(interior, span, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1), v_x, v_y, u_x,
+                      u_y, kicks);
+      continue;
+    }
+    const auto above = solid::scaled(plate.op.edge, -dt * scale);
+    const auto stencil = squares == solid::Squares::above ? above : solid::mirrored(above);
+    const auto inner = row_of(w, squares == solid::Squares::above ? j + 1 : j - 1);
+    auto& kick = level.edge_kick_m_per_s[edge++];
+    double* kick_x = kick.data();
+    double* kick_y = kick_x + stride;
+    for (const auto span : spans) {
+      const auto [u_d, v_d] =
+          solid::kick_edge_row(stencil, span, row_of(w, j), inner, {u_x, u_y}, {v_x, v_y}, kick_x, kick_y);
+      // The nodes of an edge with a stencil have one mass.
+      const double mass = plate.op.mass_kg[o + span.begin];
+      products.u_K_w -= mass / dt * u_d;
+      products.v_K_w -= mass / dt * v_d;
+    }
+    // Nodes shared with the next level get the kick as a push; the others wait for the contact update or for
+    // the level before.
+    if (squares == solid::Squares::above && j > 0) continue;
+    for (const auto span : spans) solid::kick_row(span, kick_x, kick_y, v_x, v_y);
+  }
+  add_kicks(products.kicks, kicks, 1 / kick_scale);
+}
+
+/// Products over a band's block rows and loaded edge.
+void add_irregular_products(const Level& level, const Band& band, const Plate& plate,
+                            PushProducts& products) {
+  const auto& u = plate.u_m;
+  const auto& v = plate.v_m_per_s;
+  for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
+    const auto n = level.irregular[r];
+    products.u_K_w += plate.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
+    products.v_K_w += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
+  }
+  if (&band == &level.bands.front()) {
+    products.u_K_w += general_product(level, plate, u);
+    products.v_K_w += general_product(level, plate, v);
+  }
+  if (!band.has_top) return;
+  for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
+    const auto n = level.top_rows.node[r];
+    products.u_K_w += u.x[n] * level.top_force_N[r].x + u.y[n] * level.top_force_N[r].y;
+    products.v_K_w += v.x[n] * level.top_force_N[r].x + v.y[n] * level.top_force_N[r].y;
+  }
+}
+
+void move_irregular(const Level& level, const Band& band, Plate& plate, record::Energies& works) {
+  auto& u = plate.u_m;
+  auto& v = plate.v_m_per_s;
+  const double dt = level.step_s;
+  for (int k = band.dashpots.begin; k < band.dashpots.end; ++k) {
+    const auto& dashpot = level.dashpots[k];
+    const auto n = dashpot.node;
+    const solid::Pair trial{v.x[n] - dt * level.a_x[dashpot.at], v.y[n] - dt * level.a_y[dashpot.at]};
+    const auto after = damp(dashpot, plate.op.mass_kg[n], {v.x[n], v.y[n]}, trial, works);
+    v.x[n] = after.x;
+    v.y[n] = after.y;
+    u.x[n] += dt * after.x;
+    u.y[n] += dt * after.y;
+  }
+  for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
+    if (!level.takes_push[r]) continue;
+    const auto n = level.irregular[r];
+    v.x[n] -= dt * level.a_x[r];
+    v.y[n] -= dt * level.a_y[r];
+    if (!level.moves[r]) continue;
+    u.x[n] += dt * v.x[n];
+    u.y[n] += dt * v.y[n];
+  }
+  if (&band == &level.bands.front()) move_general(level, plate);
+  if (band.has_top)
+    for (const auto n : level.top) u.x[n] += dt * v.x[n];
+}
+
+/// Sums of m (K w/m) . w and m (K w/m) . v over a level's nodes, w given for each node.
+template <class W>
+StiffnessProducts products_with(const Level& level, const Plate& plate, const W& w_of) {
+  const auto& v = plate.v_m_per_s;
+  const auto& mass = plate.op.mass_kg;
+  const int widest = plate.op.widest_row();
+  solid::RollingRows w(widest);
+  std::vector<double> a_x(widest), a_y(widest);
+  StiffnessProducts sums;
+  int next = 0;
+  for (const auto& row : level.part.stencil) {
+    const auto o = row_start(plate, row.row);
+    const auto read = rows_read(row);
+    for (next = std::max(next, read.begin); next < read.end; ++next) {
+      double* w_x = w.x(next);
+      double* w_y = w.y(next);
+      const auto first = static_cast<mesh::Node>(row_start(plate, next));
+      for (int i = 0; i < plate.op.rows[next].count; ++i) {
+        const solid::Pair at = w_of(first + i);
+        w_x[i] = at.x;
+        w_y[i] = at.y;
+      }
+    }
+    std::ranges::fill(a_x, 0.0);
+    std::ranges::fill(a_y, 0.0);
+    solid::add_stencil_row(plate.op, row, row_of(w, row.row + 2), row_of(w, row.row), row_of(w, row.row + 1),
+                           a_x.data(), a_y.data());
+    const solid::ConstRow a{a_x.data(), a_y.data()};
+    for (const auto span : row.spans) {
+      sums.u_K_u += solid::row_product(span, &mass[o], a, row_of(w, row.row));
+      sums.v_K_u += solid::row_product(span, &mass[o], a, {&v.x[o], &v.y[o]});
+    }
+  }
+  const auto add = [&](mesh::Node n, double m, double x, double y) {
+    const solid::Pair at = w_of(n);
+    sums.u_K_u += m * (at.x * x + at.y * y);
+    sums.v_K_u += m * (v.x[n] * x + v.y[n] * y);
+  };
+  const auto all = [](const solid::BlockRows& rows) { return solid::Span{0, static_cast<int>(rows.size())}; };
+  const auto& irregular = level.part.irregular;
+  solid::for_each_row_product(irregular, all(irregular), w_of, [&](std::size_t r, double x, double y) {
+    add(irregular.node[r], mass[irregular.node[r]], x, y);
+  });
+  if (const auto& general = level.part.general; general.size() > 0) {
+    solid::Field w_field(mass.size()), a(general.size());
+    for (std::size_t n = 0; n < mass.size(); ++n) {
+      const solid::Pair at = w_of(static_cast<mesh::Node>(n));
+      w_field.x[n] = at.x;
+      w_field.y[n] = at.y;
+    }
+    auto space = general.workspace();
+    general.multiply(w_field, 0, w_field, space, a.x.data(), a.y.data());
+    for (std::size_t r = 0; r < general.size(); ++r)
+      add(general.node()[r], mass[general.node()[r]], a.x[r], a.y[r]);
+  }
+  const auto& top = level.top_rows;
+  solid::for_each_row_product(top, all(top), w_of,
+                              [&](std::size_t r, double x, double y) { add(top.node[r], 1, x, y); });
+  return sums;
+}
+
+}  // namespace
+
+solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, solid::Pair trial,
+                 record::Energies& works) {
+  const double mean_x = 0.5 * (before.x + trial.x) / (1 + dashpot.d_x);
+  const double mean_y = 0.5 * (before.y + trial.y) / (1 + dashpot.d_y);
+  works.boundary_work -= 2 * mass_kg * (dashpot.d_x * mean_x * mean_x + dashpot.d_y * mean_y * mean_y);
+  return {trial.x - 2 * dashpot.d_x * mean_x, trial.y - 2 * dashpot.d_y * mean_y};
+}
+
+void set_motion_before(Level& level, const Plate& plate) {
+  auto& s = level.shared;
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    const auto n = s.node[k];
+    s.u_before_m.x[k] = plate.u_m.x[n] - level.step_s * plate.v_m_per_s.x[n];
+    s.u_before_m.y[k] = plate.u_m.y[n] - level.step_s * plate.v_m_per_s.y[n];
+    s.v_last_m_per_s.x[k] = plate.v_m_per_s.x[n];
+    s.v_last_m_per_s.y[k] = plate.v_m_per_s.y[n];
+  }
+}
+
+void begin_push(Level& level, Plate& plate, record::Energies& works) {
+  auto& s = level.shared;
+  exchange_velocities(level, plate);
+  works.coupling_work += coupling_work(level, plate);
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    const auto n = s.node[k];
+    s.v_mean_before_m_per_s.x[k] = plate.v_m_per_s.x[n];
+    s.v_mean_before_m_per_s.y[k] = plate.v_m_per_s.y[n];
+    s.u_before_m.x[k] = plate.u_m.x[n];
+    s.u_before_m.y[k] = plate.u_m.y[n];
+  }
+}
+
+void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows& w, PushProducts& products,
+               record::Energies& works) {
+  const bool is_first = &band == &level.bands.front(), is_last = &band == &level.bands.back();
+  if (plate.damping_s > 0) products.late_K_w += late_product(level, band, plate);
+  if (is_first) {
+    const auto w_now = [&](mesh::Node n) {
+      return solid::Pair{plate.u_m.x[n] + plate.damping_s * plate.v_m_per_s.x[n],
+                         plate.u_m.y[n] + plate.damping_s * plate.v_m_per_s.y[n]};
+    };
+    compute_irregular(level, band, plate, w_now, works);
+    level.part.general.multiply(plate.u_m, plate.damping_s, plate.v_m_per_s, level.general_space,
+                                level.a_x.data() + level.general.begin,
+                                level.a_y.data() + level.general.begin);
+  }
+  // The rows below a later band have moved already, and of its own row w is filled.
+  Filler filler(plate, w, is_first ? band.first_row : band.first_row + 1);
+  sweep(level, band, plate, filler, w, products);
+  if (!is_last) filler.fill({band.last_row, band.last_row + 2});
+  if (!is_first) compute_irregular(level, band, plate, RowsAround(w, plate.op, band.first_row), works);
+  if (plate.damping_s > 0) add_irregular_products(level, band, plate, products);
+  move_irregular(level, band, plate, works);
+}
+
+SingleRows make_single_rows(const Level& coarsest, const solid::Operator& op) {
+  SingleRows single;
+  const auto& bands = coarsest.bands;
+  const auto has_block_rows = [](const Band& band) {
+    return band.irregular.begin < band.irregular.end || band.edges.begin < band.edges.end || band.has_top;
+  };
+  for (int begin = 1; begin < std::ssize(bands); ++begin) {
+    int end = begin;
+    while (end < std::ssize(bands) && !has_block_rows(bands[end])) ++end;
+    if (end - begin > single.bands.end - single.bands.begin) single.bands = {begin, end};
+    begin = end;
+  }
+  if (single.bands.begin == single.bands.end) return single;
+  single.first_row = bands[single.bands.begin].first_row;
+  single.last_row = bands[single.bands.end - 1].last_row;
+  const auto& last = op.rows[single.last_row];
+  const auto n = static_cast<std::size_t>(last.first + last.count - op.rows[single.first_row].first);
+  for (auto* values : {&single.u_x_m, &single.u_y_m, &single.v_x_m_per_s, &single.v_y_m_per_s})
+    values->resize(n);
+  return single;
+}
+
+void to_single(const Plate& plate, SingleRows& single) {
+  const auto o = row_start(plate, single.first_row);
+  const auto n = static_cast<int>(single.u_x_m.size());
+  solid::convert_row(n, plate.u_m.x.data() + o, single.u_x_m.data());
+  solid::convert_row(n, plate.u_m.y.data() + o, single.u_y_m.data());
+  solid::convert_row(n, plate.v_m_per_s.x.data() + o, single.v_x_m_per_s.data());
+  solid::convert_row(n, plate.v_m_per_s.y.data() + o, single.v_y_m_per_s.data());
+}
+
+namespace {
+
+/// A row of w in the other precision.
+template <class From, class To>
+void convert_w(int count, int row, From& from, To& to) {
+  solid::convert_row(count, from.x(row), to.x(row));
+  solid::convert_row(count, from.y(row), to.y(row));
+}
+
+/// The first n of these nodes' motion.
+void to_double(const SingleRows& single, int n, Plate& plate) {
+  const auto o = row_start(plate, single.first_row);
+  solid::convert_row(n, single.u_x_m.data(), plate.u_m.x.data() + o);
+  solid::convert_row(n, single.u_y_m.data(), plate.u_m.y.data() + o);
+  solid::convert_row(n, single.v_x_m_per_s.data(), plate.v_m_per_s.x.data() + o);
+  solid::convert_row(n, single.v_y_m_per_s.data(), plate.v_m_per_s.y.data() + o);
+}
+
+}  // namespace
+
+void to_double(const SingleRows& single, Plate& plate) {
+  to_double(single, static_cast<int>(single.u_x_m.size()), plate);
+}
+
+void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& single, solid::RollingRows& w,
+               solid::RollingRowsOf<float>& w_single, PushProducts& products) {
+  const auto& rows = plate.op.rows;
+  const int count = rows[band.first_row].count;
+  const double dt = level.step_s;
+  const bool is_first = band.first_row == single.first_row, is_last = band.last_row == single.last_row;
+  const auto row = [&](int j) { return solid::ConstRowOf<float>{w_single.x(j), w_single.y(j)}; };
+  const auto start_of = [&](int j) {
+    return static_cast<std::ptrdiff_t>(rows[j].first - rows[single.first_row].first);
+  };
+  const auto fill = [&](int j) {
+    const auto o = start_of(j);
+    solid::combine_row(count, plate.damping_s, &single.u_x_m[o], &single.u_y_m[o], &single.v_x_m_per_s[o],
+                       &single.v_y_m_per_s[o], w_single.x(j), w_single.y(j));
+  };
+  if (is_first) {
+    // The row below is the first band's, and comes in double precision.
+    convert_w(count, band.first_row - 1, w, w_single);
+    fill(band.first_row);
+  }
+  // All these rows lie in one block of squares.
+  const double scale = level.part.stencil[band.stencil.begin].scale;
+  const auto interior = solid::scaled(plate.op.interior, -dt * scale);
+  const auto right = solid::scaled(plate.op.edge, -dt * scale);
+  const auto push_interior =
+      plate.damping_s > 0 ? solid::push_interior_row<true, float> : solid::push_interior_row<false, float>;
+  solid::KickSums kicks;
+  int filled = band.first_row;
+  for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
+    const auto& row_of_stencil = level.part.stencil[k];
+    const int j = row_of_stencil.row;
+    const auto squares = row_of_stencil.squares;
+    const auto o = start_of(j);
+    float* u_x = &single.u_x_m[o];
+    float* u_y = &single.u_y_m[o];
+    float* v_x = &single.v_x_m_per_s[o];
+    float* v_y = &single.v_y_m_per_s[o];
+    if (filled == j) {
+      ++filled;
+      if (j < single.last_row) {
+        fill(j + 1);
+      } else {
+        Filler(plate, w, j + 1).fill({j + 1, j + 2});
+        convert_w(count, j + 1, w, w_single);
+      }
+    }
+    for (const auto span : row_of_stencil.spans) {
+      if (squares == solid::Squares::all) {
+        push_interior(interior, span, dt, row(j + 2), row(j), row(j + 1), v_x, v_y, u_x, u_y, kicks);
+      } else {
+        const bool to_right = squares == solid::Squares::right;
+        const auto side = to_right ? right : solid::mirrored(right);
+        solid::push_side_node(side, span.begin, to_right ? 1 : -1, dt, row(j + 2), row(j), row(j + 1), v_x,
+                              v_y, u_x, u_y, kicks);
+      }
+    }
+  }
+  add_kicks(products.kicks, kicks, 1 / scale);
+  if (is_last) {
+    // The bands above go on in double precision, with this row's w as it was.
+    convert_w(count, band.last_row, w_single, w);
+  }
+  // The next step's first band needs the first row's new place.
+  if (is_first) to_double(single, count, plate);
+}
+
+void end_push(Level& level, Plate& plate) {
+  const int stride = plate.op.grid.stride();
+  auto& s = level.shared;
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    const auto r = s.irregular_row[k];
+    const auto column = s.node[k] % stride;
+    const double x = r < 0 ? level.edge_kick_m_per_s[0][column] : -level.step_s * level.a_x[r];
+    const double y = r < 0 ? level.edge_kick_m_per_s[0][stride + column] : -level.step_s * level.a_y[r];
+    s.a_m_per_s2.x[k] = -x / level.step_s;
+    s.a_m_per_s2.y[k] = -y / level.step_s;
+    s.push_m_per_s.x[k] = x - level.step_s * s.steady_m_per_s2.x[k];
+    s.push_m_per_s.y[k] = y - level.step_s * s.steady_m_per_s2.y[k];
+  }
+  restore_velocities(level, plate);
+}
+
+void move_shared(Level& coarser, Plate& plate, double dt, record::Energies& works) {
+  auto& s = coarser.shared;
+  auto& u = plate.u_m;
+  auto& v = plate.v_m_per_s;
+  for (const auto& dashpot : s.dashpots) {
+    const auto k = dashpot.at;
+    const auto n = dashpot.node;
+    const double kick_x = dt * s.steady_m_per_s2.x[k] + s.push_m_per_s.x[k];
+    const double kick_y = dt * s.steady_m_per_s2.y[k] + s.push_m_per_s.y[k];
+    const solid::Pair before{s.v_last_m_per_s.x[k], s.v_last_m_per_s.y[k]};
+    const auto after = damp(dashpot, plate.op.mass_kg[n], before, {v.x[n] + kick_x, v.y[n] + kick_y}, works);
+    v.x[n] = after.x - kick_x;
+    v.y[n] = after.y - kick_y;
+  }
+  for (const auto& run : s.runs) {
+    const auto at = run.at, count = run.count;
+    const auto first = run.first;
+    double* __restrict u_x = &u.x[first];
+    double* __restrict u_y = &u.y[first];
+    double* __restrict v_x = &v.x[first];
+    double* __restrict v_y = &v.y[first];
+    double* __restrict v_last_x = &s.v_last_m_per_s.x[at];
+    double* __restrict v_last_y = &s.v_last_m_per_s.y[at];
+    double* __restrict push_x = &s.push_m_per_s.x[at];
+    double* __restrict push_y = &s.push_m_per_s.y[at];
+    const double* steady_x = &s.steady_m_per_s2.x[at];
+    const double* steady_y = &s.steady_m_per_s2.y[at];
+    const double* mass = &plate.op.mass_kg[first];
+    double work = 0;
+#pragma omp simd reduction(+ : work)
+    for (std::size_t k = 0; k < count; ++k) {
+      const double kick_x = dt * steady_x[k] + push_x[k];
+      const double kick_y = dt * steady_y[k] + push_y[k];
+      v_x[k] += kick_x;
+      v_y[k] += kick_y;
+      work += mass[k] * (kick_x * (v_x[k] + v_last_x[k]) + kick_y * (v_y[k] + v_last_y[k]));
+      v_last_x[k] = v_x[k];
+      v_last_y[k] = v_y[k];
+      u_x[k] += dt * v_x[k];
+      u_y[k] += dt * v_y[k];
+      push_x[k] = push_y[k] = 0;
+    }
+    works.coupling_work += 0.5 * work;
+  }
+}
+
+void exchange_velocities(const Level& level, Plate& plate) {
+  const auto& s = level.shared;
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    const auto n = s.node[k];
+    plate.v_m_per_s.x[n] = (plate.u_m.x[n] - s.u_before_m.x[k]) / level.step_s;
+    plate.v_m_per_s.y[n] = (plate.u_m.y[n] - s.u_before_m.y[k]) / level.step_s;
+  }
+}
+
+void restore_velocities(const Level& level, Plate& plate) {
+  const auto& s = level.shared;
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    plate.v_m_per_s.x[s.node[k]] = s.v_last_m_per_s.x[k];
+    plate.v_m_per_s.y[s.node[k]] = s.v_last_m_per_s.y[k];
+  }
+}
+
+double coupling_work(const Level& level, const Plate& plate) {
+  const auto& s = level.shared;
+  const auto& v = plate.v_m_per_s;
+  double work = 0;
+  for (std::size_t k = 0; k < s.node.size(); ++k) {
+    const auto n = s.node[k];
+    const double impulse = 0.5 * level.step_s * plate.op.mass_kg[n];
+    work += impulse * (s.a_m_per_s2.x[k] * (s.v_mean_before_m_per_s.x[k] + v.x[n]) +
+                       s.a_m_per_s2.y[k] * (s.v_mean_before_m_per_s.y[k] + v.y[n]));
+  }
+  return work;
+}
+
+double late_product(const Level& level, const Band& band, const Plate& plate) {
+  const auto& v = plate.v_m_per_s;
+  double sum = 0;
+  for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
+    const auto n = level.irregular[r];
+    sum += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
+  }
+  if (&band == &level.bands.front()) sum += general_product(level, plate, v);
+  int edge = band.edges.begin;
+  for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
+    const auto& row = level.part.stencil[k];
+    if (!solid::is_horizontal_edge(row)) continue;
+    const auto o = row_start(plate, row.row);
+    const double* kick_x = level.edge_kick_m_per_s[edge++].data();
+    const solid::ConstRow kick{kick_x, kick_x + plate.op.grid.stride()};
+    for (const auto span : row.spans)
+      sum -= solid::row_product(span, &plate.op.mass_kg[o], kick, {&v.x[o], &v.y[o]}) / level.step_s;
+  }
+  if (band.has_top)
+    for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
+      const auto n = level.top_rows.node[r];
+      sum += v.x[n] * level.top_force_N[r].x + v.y[n] * level.top_force_N[r].y;
+    }
+  return sum;
+}
+
+StiffnessProducts stiffness_products(const Level& level, const Plate& plate) {
+  return products_with(level, plate, [&](mesh::Node n) {
+    return solid::Pair{plate.u_m.x[n], plate.u_m.y[n]};
+  });
+}
+
+double stiffness_product_before(const Level& level, const Plate& plate, double back_s) {
+  return products_with(level, plate,
+                       [&](mesh::Node n) {
+                         return solid::Pair{plate.u_m.x[n] - back_s * plate.v_m_per_s.x[n],
+                                            plate.u_m.y[n] - back_s * plate.v_m_per_s.y[n]};
+                       })
+      .u_K_u;
+}
+
+}  // namespace slipfront::motion

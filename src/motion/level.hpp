@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/state.hpp"
+#include "mesh/mesh.hpp"
+#include "motion/damping_work.hpp"
+#include "motion/settings.hpp"
+#include "record/energies.hpp"
+#include "solid/kernels.hpp"
+#include "solid/material.hpp"
+#include "solid/operator.hpp"
+
+namespace slipfront::motion {
+
+/// The plate and its motion: displacements at whole steps, velocities at half steps.
+struct Plate {
+  solid::Operator op;
+  double damping_s = 0;
+  solid::Field u_m, v_m_per_s;
+};
+
+/// Nodes with consecutive numbers in a list: node at + k is first + k for k < count.
+struct NodeRun {
+  std::size_t at = 0;
+  mesh::Node first = 0;
+  std::size_t count = 0;
+};
+std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes);
+
+/// An absorbing node: with the mass m and the constant c of its dashpot, d = c dt/(2 m), dt the step with
+/// which it moves; v+ = ((1 - d) v- - dt a)/(1 + d), stable whatever c.
+struct Dashpot {
+  std::size_t at = 0;  ///< row of the level, shared node, or interface node
+  mesh::Node node = 0;
+  double d_x = 0, d_y = 0;
+};
+
+/// Nodes between a level and the next finer one, which moves them.
+struct Shared {
+  std::vector<mesh::Node> node;
+  std::vector<NodeRun> runs;
+  std::vector<Dashpot> dashpots;
+  std::vector<std::int32_t> irregular_row;  ///< of the level; -1: in its stencil row
+  solid::Field u_before_m;                  ///< place at the level's last push
+  solid::Field push_m_per_s;                ///< change of velocity that waits for the next sub-step
+  /// Acceleration by the level's cells in the equilibrium at the start.
+  solid::Field steady_m_per_s2;
+  // For the energies: velocity after the last sub-step; acceleration at the last push and the mean velocity
+  // before it.
+  solid::Field v_last_m_per_s, a_m_per_s2, v_mean_before_m_per_s;
+
+  /// All that changes.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    for (auto* field :
+         {&u_before_m, &push_m_per_s, &steady_m_per_s2, &v_last_m_per_s, &a_m_per_s2, &v_mean_before_m_per_s})
+      archive_field(archive, *field, node.size());
+  }
+};
+
+/// Rows of nodes of a level that are pushed together. The first band of a level holds all that concerns other
+/// levels, the interface, and nodes whose neighbours are farther away than the next rows. The bands above it
+/// need, of other bands, the places of the next rows only; one with block rows is a single row.
+struct Band {
+  int first_row = 0, last_row = 0;
+  // Ranges within the level's lists:
+  solid::Span stencil, edges, irregular, dashpots;
+  bool has_top = false;
+};
+
+/// Motion of rows of the coarsest level in single precision. While steps are taken it is what counts; Plate
+/// has it again after them.
+struct SingleRows {
+  solid::Span bands;  ///< without block rows, above the first one
+  int first_row = 0, last_row = -1;
+  std::vector<float> u_x_m, u_y_m, v_x_m_per_s, v_y_m_per_s;  ///< [nodes of these rows]
+};
+
+/// Cells with one step; each level's step is a whole multiple of the next one's. The last level holds the
+/// interface.
+struct Level {
+  double step_s = 0;
+  int period = 1;  ///< in steps of the last level
+  solid::Part part;
+  std::vector<mesh::Node> irregular;  ///< nodes of the block rows, then of the general rows
+  solid::Span general;                ///< the latter, all of them in the first band
+  solid::GeneralRows::Workspace general_space;
+  std::vector<NodeRun> general_runs;  ///< of the general rows; takes_push and moves do not change within one
+  std::vector<Band> bands;            ///< rows ascending
+  std::vector<Dashpot> dashpots;      ///< rows ascending
+  std::vector<bool> takes_push;       ///< [irregular rows] not shared with a finer level, no dashpot
+  std::vector<bool> moves;            ///< [irregular rows] moved with the level's own push
+  std::vector<double> a_x, a_y;       ///< [irregular rows]
+  std::vector<mesh::Node> top;        ///< nodes of the loaded edge that move with this level
+  Shared shared;
+  solid::BlockRows top_rows;  ///< K of the level's cells, N/m
+  /// Kicks of the stencil's edge rows, x then y, in their order. [2 columns]
+  std::vector<std::vector<double>> edge_kick_m_per_s;
+  std::vector<solid::Pair> top_force_N;  ///< K w of top_rows at the last push
+  DampingWork damping_work;
+
+  /// All that changes.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive_vector(archive, a_x);
+    archive_vector(archive, a_y);
+    for (auto& kick : edge_kick_m_per_s) archive_vector(archive, kick);
+    archive_vector(archive, top_force_N);
+    archive(shared, damping_work);
+  }
+};
+
+/// The plate's cells, divided into levels.
+struct Levels {
+  std::vector<Level> level;                 ///< coarsest first
+  std::vector<std::uint8_t> level_of_node;  ///< [nodes]; orphans count to the first
+  std::vector<bool> is_orphan;
+  std::vector<Dashpot> contact_dashpots;  ///< of interface nodes
+  /// Nodes moved in one step of the coarsest level, sub-steps counted.
+  double node_updates_per_step = 0;
+};
+
+/// @throws UserError where the interface rows do not fit into the mesh.
+void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time);
+
+/// For each block of the mesh, its step over that of the lowest one: the largest power of two that its cells
+/// allow, twice, four times ... as long for squares.
+/// @param stable_step_s  of the whole plate
+std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
+                                const TimeStepping& time, double stable_step_s);
+
+/// @param step_s  of the coarsest level
+/// @param multiples  of step_multiples
+Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const Plate& plate,
+                   const TimeStepping& time, double step_s, std::span<const int> multiples);
+
+/// Velocity of a dashpot's node after a kick that alone would lead from `before` to `trial`; its work is
+/// added to `works`.
+solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, solid::Pair trial,
+                 record::Energies& works);
+
+/// Motion of a level's shared nodes before now, as if it had been steady.
+void set_motion_before(Level& level, const Plate& plate);
+
+/// Begins a push: the velocities become those that the level sees, mean ones since its last push at shared
+/// nodes. end_push restores them.
+void begin_push(Level& level, Plate& plate, record::Energies& works);
+/// Forces of a level's cells on the nodes of one band, at their places before the push, and the moves of the
+/// nodes that no finer level has. Bands go from the first to the last, with the same `w`.
+void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows& w, PushProducts& products,
+               record::Energies& works);
+/// Longest run of bands that can be pushed in single precision; none where all have block rows.
+SingleRows make_single_rows(const Level& coarsest, const solid::Operator& op);
+void to_single(const Plate& plate, SingleRows& single);
+void to_double(const SingleRows& single, Plate& plate);
+/// The same as push_band for one of these bands.
+/// @param w  holds the row below at the first of these bands, and after the last one its last row and the
+/// next
+void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& single, solid::RollingRows& w,
+               solid::RollingRowsOf<float>& w_single, PushProducts& products);
+
+/// Collects what a level does to its shared nodes: its force without the steady part. After the first band.
+void end_push(Level& level, Plate& plate);
+
+/// Moves the shared nodes of a coarser level by a step dt_s of the next finer one.
+void move_shared(Level& coarser, Plate& plate, double dt_s, record::Energies& works);
+
+// With the velocities as the level sees them:
+void exchange_velocities(const Level& level, Plate& plate);
+void restore_velocities(const Level& level, Plate& plate);
+/// What the level's force at its last push has not done through the mean velocities around it; the works of
+/// its parts through the sub-steps' velocities are summed as they happen.
+double coupling_work(const Level& level, const Plate& plate);
+/// The rest of after_K_w of the last push on a band, now that all velocities after it are known.
+double late_product(const Level& level, const Band& band, const Plate& plate);
+
+/// Products with K of a level's cells: of the place itself, and of the velocity.
+struct StiffnessProducts {
+  double u_K_u = 0, v_K_u = 0;
+};
+StiffnessProducts stiffness_products(const Level& level, const Plate& plate);
+/// u K u of the place `back_s` earlier, at the present velocity.
+double stiffness_product_before(const Level& level, const Plate& plate, double back_s);
+
+}  // namespace slipfront::motion

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <optional>
+
+#include "base/error.hpp"
+#include "motion/level.hpp"
+#include "solid/element.hpp"
+
+namespace slipfront::motion {
+
+namespace {
+
+/// For each cell, whether it is among the `rows` rows of cells next to the interface, counted in cells.
+std::vector<bool> cells_next_to_interface(const mesh::Mesh& mesh, int rows) {
+  std::vector<bool> near(mesh.cells.size(), false), reached(mesh.n_nodes(), false);
+  for (const auto n : mesh.lower) reached[n] = true;
+  for (int row = 0; row < rows; ++row) {
+    const auto reached_before = reached;
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+      if (near[c] || std::ranges::none_of(mesh.cells[c], [&](mesh::Node n) { return reached_before[n]; }))
+        continue;
+      near[c] = true;
+      for (const auto n : mesh.cells[c]) reached[n] = true;
+    }
+  }
+  return near;
+}
+
+/// Least damping beta_R with which blocks take steps of their own, in steps of the lowest one. Undamped, the
+/// coupling feeds resonant modes, which grow by some thousandths in a step; 0.02 was enough wherever it was
+/// tried (docs/graded.md).
+constexpr double least_damping_in_steps = 0.05;
+
+/// The block to which each cell belongs; the transition between two blocks belongs to the lower one. All
+/// cells of a mesh that knows no grid are in one block.
+std::vector<int> block_of_cells(const mesh::Mesh& mesh) {
+  const auto grids = mesh::blocks(mesh);
+  std::vector<int> block;
+  for (const auto& cell : mesh.cells) {
+    const auto lowest = *std::ranges::min_element(cell);
+    const auto above = std::ranges::upper_bound(grids, lowest, {}, &mesh::Grid::first);
+    block.push_back(static_cast<int>(above - grids.begin()) - 1);
+  }
+  return block;
+}
+
+/// Nodes of short rows that make a band worth its while.
+constexpr int nodes_per_band = 1500;
+
+std::optional<std::size_t> place(const std::vector<mesh::Node>& nodes, mesh::Node n) {
+  const auto found = std::ranges::find(nodes, n);
+  if (found == nodes.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - nodes.begin());
+}
+
+/// The last row of the first band: with the nodes marked, and with those whose neighbours are not all in the
+/// rows beside their own.
+int last_row_of_first_band(const Level& level, const solid::Operator& op, const std::vector<bool>& marked) {
+  int last = 0;
+  for (std::size_t n = 0; n < marked.size(); ++n)
+    if (marked[n]) last = std::max(last, op.row_of(static_cast<mesh::Node>(n)));
+  for (const auto n : level.part.general.node()) last = std::max(last, op.row_of(n));
+  const auto& irregular = level.part.irregular;
+  for (std::size_t r = 0; r < irregular.size(); ++r)
+    for (auto k = irregular.first[r]; k < irregular.first[r + 1]; ++k) {
+      const int row = op.row_of(irregular.node[r]), other = op.row_of(irregular.neighbour[k]);
+      if (std::abs(row - other) > 1) last = std::max({last, row, other});
+    }
+  return last;
+}
+
+/// Divides a level's lists, all of them in the order of rows, into bands that end after the rows given.
+void set_bands(Level& level, const solid::Operator& op, std::vector<int> last_rows) {
+  std::size_t stencil = 0, edges = 0, irregular = 0, dashpots = 0;
+  int first_row = 0;
+  for (const int last_row : last_rows) {
+    Band band;
+    band.first_row = first_row;
+    band.last_row = last_row;
+    const auto take = [&](std::size_t& next, std::size_t n, auto&& row_of) {
+      const auto begin = next;
+      while (next < n && row_of(next) <= last_row) ++next;
+      return solid::Span{static_cast<int>(begin), static_cast<int>(next)};
+    };
+    band.stencil =
+        take(stencil, level.part.stencil.size(), [&](std::size_t k) { return level.part.stencil[k].row; });
+    band.edges.begin = static_cast<int>(edges);
+    for (int k = band.stencil.begin; k < band.stencil.end; ++k)
+      if (solid::is_horizontal_edge(level.part.stencil[k])) ++edges;
+    band.edges.end = static_cast<int>(edges);
+    const auto& node = level.part.irregular.node;
+    const auto row_of_irregular = [&](std::size_t r) { return op.row_of(node[r]); };
+    band.irregular = take(irregular, node.size(), row_of_irregular);
+    band.dashpots = take(dashpots, level.dashpots.size(), [&](std::size_t k) {
+      return level.dashpots[k].at < node.size() ? row_of_irregular(level.dashpots[k].at) : 0;
+    });
+    band.has_top = last_row + 1 == op.n_rows();
+    level.bands.push_back(band);
+    first_row = last_row + 1;
+  }
+}
+
+/// Gives each absorbing node a dashpot where it moves: with the interface, with a coarser level's shared
+/// nodes, or with its level.
+void set_dashpots(Levels& levels, const mesh::Mesh& mesh, const solid::Material& material,
+                  const Plate& plate) {
+  const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
+  for (const auto& [n, side_m, top_m] : mesh.absorbing) {
+    const std::size_t l = levels.level_of_node[n];
+    auto& level = levels.level[l];
+    const double factor = 0.5 * level.step_s * material.density_kg_per_m3 / plate.op.mass_kg[n];
+    Dashpot dashpot{0, n, factor * (c_L * side_m + c_S * top_m), factor * (c_S * side_m + c_L * top_m)};
+    if (const auto i = place(mesh.lower, n)) {
+      dashpot.at = *i;
+      levels.contact_dashpots.push_back(dashpot);
+    } else if (const auto k = l > 0 ? place(levels.level[l - 1].shared.node, n) : std::nullopt) {
+      dashpot.at = *k;
+      levels.level[l - 1].shared.dashpots.push_back(dashpot);
+    } else {
+      const auto row = place(level.irregular, n);
+      SLIPFRONT_ASSERT(row, "an absorbing node without a block row");
+      dashpot.at = *row;
+      level.takes_push[*row] = false;
+      level.dashpots.push_back(dashpot);
+    }
+  }
+  // Those of general rows, all in the first band, come first; the others in the order of rows.
+  for (auto& level : levels.level)
+    std::ranges::sort(level.dashpots, {}, [&](const Dashpot& d) {
+      return d.at < level.part.irregular.size() ? static_cast<std::ptrdiff_t>(d.at)
+                                                : -static_cast<std::ptrdiff_t>(d.at);
+    });
+}
+
+}  // namespace
+
+std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes) {
+  std::vector<NodeRun> runs;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (k > 0 && nodes[k] == nodes[k - 1] + 1) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({k, nodes[k], 1});
+    }
+  }
+  return runs;
+}
+
+void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time) {
+  if (mesh.grid.columns == 0 || time.interface_rows < mesh.grid.rows) return;
+  if (!mesh.coarser.empty())
+    throw UserError(
+        "time.interface_rows = {} does not fit below the larger elements above {} rows; choose fewer, or a "
+        "larger plate.fine_height_m",
+        time.interface_rows, mesh.grid.rows);
+  throw UserError(
+      "time.interface_rows = {} does not fit below the loaded edge of a mesh of {} rows; choose fewer",
+      time.interface_rows, mesh.grid.rows);
+}
+
+std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
+                                const TimeStepping& time, double stable_step_s) {
+  const double damping_s = material.stiffness_damping_s;
+  std::vector<int> multiples(1 + mesh.coarser.size(), 1);
+  const bool damped = damping_s >= least_damping_in_steps * time.step_factor * stable_step_s;
+  if (!time.local_steps || mesh.coarser.empty() || !damped) return multiples;
+  // The largest frequency of its free cells bounds a block's from above. Squares do so the more closely the
+  // more of them there are: what the lowest block's squares show is no more than what larger ones would.
+  const double h = mesh.grid.spacing_m;
+  const double of_square = solid::cell_frequency_rad_per_s({0, 0, h, 0, h, h, 0, h}, material);
+  const double overestimate = std::max(1.0, stable_step_s / solid::stable_step_s(of_square, damping_s));
+  const auto block_of_cell = block_of_cells(mesh);
+  for (std::size_t b = 1; b < multiples.size(); ++b) {
+    std::vector<bool> in_block;
+    for (const int of_cell : block_of_cell) in_block.push_back(of_cell == static_cast<int>(b));
+    const double omega = solid::largest_cell_frequency_rad_per_s(mesh, material, in_block);
+    const double ratio = overestimate * solid::stable_step_s(omega, damping_s) / stable_step_s;
+    for (multiples[b] = 1 << b; multiples[b] > ratio * (1 + 1e-9) && multiples[b] > 1;) multiples[b] /= 2;
+  }
+  for (std::size_t b = multiples.size() - 1; b > 0; --b)
+    multiples[b - 1] = std::min(multiples[b - 1], multiples[b]);
+  return multiples;
+}
+
+Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const Plate& plate,
+                   const TimeStepping& time, double step_s, std::span<const int> multiples) {
+  require_rows_fit(mesh, time);
+  const auto& op = plate.op;
+  // Levels by their steps, those of the blocks and that of the interface rows.
+  const bool layered = time.interface_substeps > 1;
+  std::vector<int> periods;
+  for (const int multiple : multiples)
+    if (const int period = multiple * time.interface_substeps; periods.empty() || periods.back() != period)
+      periods.push_back(period);
+  const int substeps = periods.back();
+  if (layered) periods.insert(periods.begin(), 1);
+  std::ranges::reverse(periods);
+  Levels levels;
+  levels.level.resize(periods.size());
+  const std::size_t n_levels = levels.level.size();
+  const auto block_of_cell = block_of_cells(mesh);
+  std::vector<std::uint8_t> level_of_cell(mesh.cells.size(), 0);
+  for (std::size_t c = 0; c < level_of_cell.size(); ++c) {
+    const int period = multiples[block_of_cell[c]] * time.interface_substeps;
+    level_of_cell[c] = static_cast<std::uint8_t>(std::ranges::find(periods, period) - periods.begin());
+  }
+  if (layered) {
+    const auto near = cells_next_to_interface(mesh, time.interface_rows);
+    for (std::size_t c = 0; c < near.size(); ++c)
+      if (near[c]) level_of_cell[c] = static_cast<std::uint8_t>(n_levels - 1);
+  }
+  // A node moves with the finest of its cells.
+  auto& level_of_node = levels.level_of_node;
+  level_of_node.assign(mesh.n_nodes(), 0);
+  levels.is_orphan = mesh::orphans(mesh);
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    for (const auto n : mesh.cells[c]) level_of_node[n] = std::max(level_of_node[n], level_of_cell[c]);
+  std::vector<bool> in_contact(mesh.n_nodes(), false), is_shared(mesh.n_nodes(), false);
+  for (const auto n : mesh.lower) in_contact[n] = true;
+
+  for (std::size_t l = 0; l < n_levels; ++l) {
+    auto& level = levels.level[l];
+    level.period = periods[l];
+    level.step_s = step_s * level.period / substeps;
+    level.damping_work = {level.step_s, plate.damping_s,
+                          material.density_kg_per_m3 * mesh.grid.spacing_m * mesh.grid.spacing_m};
+    std::vector<bool> in_level(mesh.cells.size());
+    for (std::size_t c = 0; c < in_level.size(); ++c) in_level[c] = level_of_cell[c] == l;
+    const int edge_row = layered ? time.interface_rows : 0;
+    level.part = n_levels > 1 ? solid::make_part(mesh, material, op, in_level, edge_row) : op.whole;
+    auto& irregular = level.irregular;
+    irregular = level.part.irregular.node;
+    level.general.begin = static_cast<int>(irregular.size());
+    irregular.insert(irregular.end(), level.part.general.node().begin(), level.part.general.node().end());
+    level.general.end = static_cast<int>(irregular.size());
+    level.general_space = level.part.general.workspace();
+    std::vector<std::int32_t> irregular_row(mesh.n_nodes(), -1);
+    for (std::size_t r = 0; r < irregular.size(); ++r)
+      irregular_row[irregular[r]] = static_cast<std::int32_t>(r);
+    std::vector<bool> shared(mesh.n_nodes(), false), in_cells(mesh.n_nodes(), false);
+    for (std::size_t c = 0; c < in_level.size(); ++c) {
+      if (!in_level[c]) continue;
+      for (const auto n : mesh.cells[c]) {
+        in_cells[n] = true;
+        if (level_of_node[n] > l && !op.is_top[n]) shared[n] = true;
+      }
+    }
+    std::vector<mesh::Node> top;
+    for (const auto n : mesh.top) {
+      if (level_of_node[n] == l) level.top.push_back(n);
+      if (in_cells[n]) top.push_back(n);
+    }
+    auto& s = level.shared;
+    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+      if (!shared[n]) continue;
+      s.node.push_back(n);
+      s.irregular_row.push_back(irregular_row[n]);
+      is_shared[n] = true;
+    }
+    s.runs = runs_of(s.node);
+    s.u_before_m = s.push_m_per_s = s.steady_m_per_s2 = solid::Field(s.node.size());
+    for (const auto& row : level.part.stencil)
+      if (solid::is_horizontal_edge(row))
+        level.edge_kick_m_per_s.emplace_back(2 * static_cast<std::size_t>(mesh.grid.stride()));
+    for (const auto n : irregular) {
+      level.takes_push.push_back(!shared[n]);
+      level.moves.push_back(!in_contact[n] && !is_shared[n]);
+    }
+    level.top_rows = solid::assemble_rows(mesh, material, top, {}, in_level);
+    level.top_force_N.resize(top.size());
+    level.a_x.resize(irregular.size());
+    level.a_y.resize(irregular.size());
+  }
+  set_dashpots(levels, mesh, material, plate);
+  for (auto& level : levels.level)
+    for (int r = level.general.begin; r < level.general.end; ++r) {
+      const bool goes_on = r > level.general.begin && level.irregular[r] == level.irregular[r - 1] + 1 &&
+                           level.takes_push[r] == level.takes_push[r - 1] &&
+                           level.moves[r] == level.moves[r - 1];
+      if (goes_on) {
+        ++level.general_runs.back().count;
+      } else {
+        level.general_runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1});
+      }
+    }
+
+  for (std::size_t l = 0; l < n_levels; ++l) {
+    auto& level = levels.level[l];
+    if (l > 0) {
+      set_bands(level, op, {op.n_rows() - 1});
+      continue;
+    }
+    // The work of landing nodes needs the places of their neighbours after the step.
+    std::vector<bool> marked(mesh.n_nodes(), false);
+    for (const auto& cell : mesh.cells)
+      if (std::ranges::any_of(cell, [&](mesh::Node n) { return in_contact[n]; }))
+        for (const auto n : cell) marked[n] = true;
+    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
+      if (level_of_node[n] > 0) marked[n] = true;
+    const int top_row = op.n_rows() - 1;
+    std::vector<bool> single(op.rows.size(), false);
+    single[top_row] = true;
+    for (const auto n : level.part.irregular.node) single[op.row_of(n)] = true;
+    const int most_rows = std::max(1, nodes_per_band / op.rows[top_row].count);
+    int row = last_row_of_first_band(level, op, marked);
+    std::vector<int> last_rows{row};
+    while (row < top_row) {
+      const int first = ++row;
+      while (row - first + 1 < most_rows && !single[row] && !single[row + 1]) ++row;
+      last_rows.push_back(row);
+    }
+    set_bands(level, op, last_rows);
+  }
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
+    if (!levels.is_orphan[n] && !op.is_top[n])
+      levels.node_updates_per_step += substeps / levels.level[level_of_node[n]].period;
+  return levels;
+}
+
+}  // namespace slipfront::motion

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/state.hpp"
+#include "interface/interface.hpp"
+#include "record/record.hpp"
+#include "statics/statics.hpp"
+
+namespace slipfront::motion {
+
+/// Records beginnings and ends of slip while the run goes, located inside the (sub-)step.
+///
+/// Fronts are found from the first onset of each node, and from whether other nodes slip at these times. A
+/// node's end of slip and its next onset, or a later onset and the end after it, are left out where no node
+/// began to slip for the first time between the two: so the record stays bounded however often nodes slip
+/// again.
+class Recorder {
+ public:
+  /// @param before  the state at time 0, before the first (sub-)step; nodes that slip in it have no onset
+  /// @param mu_s    coefficient at rest in that state
+  /// @param creep_m_per_s  slip no faster than this does not count in last_motion_s
+  /// @param halo    nodes on each side whose tractions are kept at an onset
+  Recorder(const statics::Equilibrium& before, double mu_s, int halo, double creep_m_per_s = 0);
+
+  /// After a contact update whose tractions belong to time_s. `changed` is update_contact's answer.
+  void observe(double time_s, const interface::Interface& state, bool changed);
+
+  std::size_t n_slipping() const { return n_slipping_; }
+  /// Last time at which a node slipped faster than creep; 0 before that.
+  double last_motion_s() const { return last_motion_s_; }
+
+  /// Without the last change of each node, which may yet be left out.
+  const record::SlipRecord& record() const { return record_; }
+  /// The whole record up to now.
+  record::SlipRecord take(double end_time_s) const;
+
+  /// All that changes while a run goes.
+  /// @throws UserError where what is read is of another interface
+  template <class Archive>
+  void serialize(Archive& archive) {
+    const std::size_t n_nodes = record_.x_m.size();
+    const int halo = record_.halo;
+    archive(last_motion_s_, record_, previous_time_s_, n_slipping_, last_first_onset_s_);
+    if (Archive::is_loading::value &&
+        (record_.x_m.size() != n_nodes || record_.halo != halo || !record::is_consistent(record_)))
+      throw UserError("the state that was kept has a record of another interface");
+    for (auto* values : {&previous_t_Pa_, &previous_p_Pa_, &previous_strength_Pa_})
+      archive_vector(archive, *values);
+    archive_vector(archive, previous_slipping_);
+    archive_vector(archive, has_slipped_);
+    archive_vector(archive, waiting_);
+    archive_vector(archive, around_waiting_);
+  }
+
+ private:
+  /// Last change of a node, not in the record yet.
+  struct Waiting {
+    double time_s = 0;
+    std::uint8_t change = 0;  ///< a Change
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(time_s, change);
+    }
+  };
+  enum Change : std::uint8_t { none, onset, stop };
+
+  void take_changes(double time_s, const interface::Interface& state);
+  /// A node's change but for its first onset: it waits, or goes together with the change that waited.
+  void take_change(std::size_t node, const Waiting& change, std::span<const record::Traction> around);
+  /// Adds the change of a node that waits, if there is one, to a record.
+  void add_waiting(std::size_t node, record::SlipRecord& record) const;
+  /// Finds the time of an onset and the tractions around it.
+  double locate_onset(std::size_t node, double time_s, const interface::Interface& state,
+                      std::span<record::Traction> around) const;
+  std::size_t n_around() const { return 2 * static_cast<std::size_t>(record_.halo) + 1; }
+
+  double creep_m_per_s_;
+  double last_motion_s_ = 0;
+  record::SlipRecord record_;
+  double previous_time_s_ = 0;
+  std::vector<double> previous_t_Pa_, previous_p_Pa_, previous_strength_Pa_;
+  std::vector<std::uint8_t> previous_slipping_;
+  std::size_t n_slipping_ = 0;
+  double last_first_onset_s_ = -1;                ///< the latest first onset of any node
+  std::vector<std::uint8_t> has_slipped_;         ///< since the start. [nodes]
+  std::vector<Waiting> waiting_;                  ///< [nodes]
+  std::vector<record::Traction> around_waiting_;  ///< [nodes x (2 halo + 1)]
+};
+
+}  // namespace slipfront::motion

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/watch.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace slipfront::motion {
+
+namespace {
+
+/// Most steps between two looks at the energy.
+constexpr std::int64_t energy_check_interval = 100;
+
+/// Energy may exceed what was supplied by this part of it,
+constexpr double tolerated_excess = 0.01;
+/// and by the coupling's work up to this part. That work swings with waves as short as the elements, by 1.2 %
+/// where an undamped plate's edge is set in motion at once; where sub-cycling is unstable it grows beyond all
+/// bounds.
+constexpr double tolerated_coupling = 0.1;
+
+/// A part of the energy that the tractions could bring about. They cancel at a node that sticks, but for
+/// rounding, 1e-16 of them; the plate then moves with at most 1e-16 times the number of steps of the velocity
+/// that they could give it, and has the square of that as its energy: 1e-12 leaves room for 1e10 steps. Slip
+/// that matters releases far more: a drop of 1 % of the stress over 1 % of the plate's area is 1e-6.
+constexpr double negligible_part = 1e-12;
+
+/// Kinetic energy of a plate that moves as fast as an interface node would after one step in which its
+/// tractions are not balanced. With h/c_L for the step it is near sigma^2/(2E) times the plate's area.
+double energy_of_tractions_J_per_m(const Stepper& stepper) {
+  const auto& face = stepper.interface_state();
+  double v = 0;
+  for (std::size_t i = 0; i < face.size(); ++i)
+    v = std::max(v, stepper.stable_step_s() * std::max(std::abs(face.t_Pa[i]), std::abs(face.p_Pa[i])) /
+                        face.mass_per_length_kg_m2[i]);
+  const auto& mass_kg = stepper.plate().mass_kg;
+  return 0.5 * std::reduce(mass_kg.begin(), mass_kg.end()) * v * v;
+}
+
+double supplied_J_per_m(const record::Energies& now, const record::Energies& start) {
+  // Of a plate at rest rounding may leave less than nothing.
+  return std::max(0.0, start.stored()) + std::abs(now.top_work) + std::abs(now.trigger_work) +
+         std::abs(now.prestress_work);
+}
+
+/// What of the case gives the plate most of its energy.
+const char* strongest_load(const record::Energies& now, const record::Energies& start) {
+  struct Load {
+    double energy_J_per_m;
+    const char* keys;
+  };
+  const std::array<Load, 4> loads = {{
+      {std::abs(now.trigger_work), "event.trigger_amount, or nucleation.overstress_Pa of a patch"},
+      {std::abs(now.prestress_work), "prestress.t_Pa, or the tractions in prestress.file"},
+      {std::abs(now.top_work), "loading.shear_speed_over_c_L"},
+      {start.stored(), "loading.tilt_left_m and loading.tilt_right_m"},
+  }};
+  return std::ranges::max_element(loads, {}, &Load::energy_J_per_m)->keys;
+}
+
+}  // namespace
+
+Watch::Watch(Stepper& stepper, double c_L_m_per_s) : Watch(stepper, c_L_m_per_s, stepper.energies(), 0) {}
+
+Watch::Watch(Stepper& stepper, double c_L_m_per_s, const record::Energies& start, std::int64_t checked_step)
+    : stepper_(stepper), c_L_m_per_s_(c_L_m_per_s), start_(start), checked_step_(checked_step) {}
+
+bool Watch::look() {
+  double fastest = 0;
+  bool finite = true;
+  for (const double v : stepper_.interface_state().slip_rate_m_per_s) {
+    finite &= std::isfinite(v);
+    fastest = std::max(fastest, std::abs(v));
+  }
+  if (!finite) {
+    trouble_ = "the slip rate is not a number";
+  } else if (fastest > c_L_m_per_s_) {
+    trouble_ = fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", fastest);
+  }
+  return trouble_.empty();
+}
+
+std::int64_t Watch::steps_to_check() const {
+  return checked_step_ + energy_check_interval - stepper_.step();
+}
+
+std::string Watch::trouble(const record::Energies* known) {
+  if (trouble_.empty() && known == nullptr && steps_to_check() > 0) return {};
+  checked_step_ = stepper_.step();
+  const record::Energies now = known != nullptr ? *known : stepper_.energies();
+  if (trouble_.empty()) trouble_ = energy_trouble(now);
+  if (trouble_.empty()) return {};
+  return trouble_ + "; " + remedy(now);
+}
+
+std::string Watch::energy_trouble(const record::Energies& now) const {
+  const double total = now.stored();
+  if (!std::isfinite(total)) return "the energy is not a number";
+  if (!is_from_nowhere(total, now)) return {};
+  return fmt::format("the energy has grown to {:.4g} J/m with {:.4g} J/m supplied", total,
+                     supplied_J_per_m(now, start_));
+}
+
+bool Watch::is_from_nowhere(double energy_J_per_m, const record::Energies& now) const {
+  const double supplied = supplied_J_per_m(now, start_);
+  return energy_J_per_m > (1 + tolerated_excess) * supplied +
+                              std::clamp(now.coupling_work, 0.0, tolerated_coupling * supplied) +
+                              negligible_part * energy_of_tractions_J_per_m(stepper_);
+}
+
+std::string Watch::remedy(const record::Energies& now) const {
+  // Above the stable step, the strain energy between two places falls as the kinetic energy grows: their sum
+  // tells nothing.
+  const bool numerical = stepper_.lowest_step_s() > (1 + 1e-9) * stepper_.stable_step_s() ||
+                         is_from_nowhere(std::max(now.kinetic, now.stored()), now);
+  if (numerical) return "reduce time.step_factor";
+  return fmt::format("the work of the loads accounts for the energy: reduce {}", strongest_load(now, start_));
+}
+
+std::string blow_up_message(const Stepper& stepper, const std::string& trouble) {
+  return fmt::format("the run blew up at step {} (t = {:.6g} s): {}", stepper.step(), stepper.time_s(),
+                     trouble);
+}
+
+}  // namespace slipfront::motion

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "motion/stepper.hpp"
+
+namespace slipfront::motion {
+
+/// Watches that the motion stays physical: slip rates below c_L, and no more energy than was there at the
+/// start and has been supplied since.
+class Watch {
+ public:
+  Watch(Stepper& stepper, double c_L_m_per_s);
+  /// Goes on from another watch's start and last look at the energy.
+  Watch(Stepper& stepper, double c_L_m_per_s, const record::Energies& start, std::int64_t checked_step);
+
+  const record::Energies& start() const { return start_; }
+  /// Step of the last look at the energy.
+  std::int64_t checked_step() const { return checked_step_; }
+
+  /// Looks at the interface after a step. @return whether its motion is physical
+  bool look();
+
+  /// Steps to the next look at the energy.
+  std::int64_t steps_to_check() const;
+
+  /// Empty, or what is wrong with the motion and what to change.
+  /// @param known  energies that were taken after this step for another purpose; null for none
+  std::string trouble(const record::Energies* known);
+
+ private:
+  std::string energy_trouble(const record::Energies& now) const;
+  /// Whether neither the start nor the loads account for an energy.
+  bool is_from_nowhere(double energy_J_per_m, const record::Energies& now) const;
+  std::string remedy(const record::Energies& now) const;
+
+  Stepper& stepper_;
+  double c_L_m_per_s_;
+  record::Energies start_;
+  std::int64_t checked_step_ = 0;
+  std::string trouble_;  ///< found at the interface
+};
+
+std::string blow_up_message(const Stepper& stepper, const std::string& trouble);
+
+}  // namespace slipfront::motion

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace slipfront::record {
+
+/// Tractions of the plane on the plate: p >= 0 in compression, t > 0 when it opposes sliding to +x. Pa.
+struct Traction {
+  double t_Pa = 0;
+  double p_Pa = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(t_Pa, p_Pa);
+  }
+};
+
+/// A node begins to slip.
+struct Onset {
+  std::int32_t node = 0;  ///< index along the interface, left to right
+  double time_s = 0;      ///< located inside the step, where |t|/p passes the static friction coefficient
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(node, time_s);
+  }
+};
+
+/// A slipping node sticks again.
+struct Stop {
+  std::int32_t node = 0;
+  double time_s = 0;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(node, time_s);
+  }
+};
+
+/// What a run records of its interface at full time resolution: beginnings and ends of slip, and the
+/// tractions around each beginning. All that front analysis needs, whatever the decimation of the history.
+struct SlipRecord {
+  std::vector<double> x_m;       ///< [nodes] positions along the interface, ascending
+  int halo = 0;                  ///< nodes on each side whose tractions are kept at an onset
+  std::vector<Onset> onsets;     ///< in the order of time; a node that slips again appears again
+  std::vector<Traction> around;  ///< [onsets x (2 halo + 1)] tractions of nodes node - halo ... node + halo
+                                 ///< at the onset's time; nodes beyond the interface's ends are NaN
+  std::vector<Stop> stops;       ///< in the order of time
+  double end_time_s = 0;         ///< the record covers [0, end_time_s]
+  std::uint64_t n_onsets_left_out = 0;  ///< of nodes that had slipped before; find_fronts does not need them
+  /// Longest time between two looks at the interface. Nodes that begin to slip within it know nothing of each
+  /// other: the time between them is no travel time. 0 where that is unknown.
+  double resolution_s = 0;
+
+  /// All beginnings of slip.
+  std::uint64_t n_onsets() const { return onsets.size() + n_onsets_left_out; }
+
+  /// Tractions of nodes node - halo ... node + halo at onset k.
+  std::span<const Traction> around_onset(std::size_t k) const {
+    const std::size_t n = 2 * static_cast<std::size_t>(halo) + 1;
+    return {around.data() + k * n, n};
+  }
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x_m, halo, onsets, around, stops, end_time_s, n_onsets_left_out, resolution_s);
+  }
+};
+
+/// Whether a record's parts fit each other: lengths, and nodes that there are.
+bool is_consistent(const SlipRecord& record);
+
+/// Time history of an interface, from a run or from elsewhere. Matrices are row-major [times x nodes].
+struct History {
+  std::vector<double> time_s;             ///< [times], ascending
+  std::vector<double> x_m;                ///< [nodes], ascending
+  std::vector<double> slip_m;             ///< displacement of the plate along x since the start
+  std::vector<double> slip_rate_m_per_s;  ///< positive to +x
+  std::vector<double> t_Pa;
+  std::vector<double> p_Pa;
+};
+
+/// Tractions before the event, at the nodes of the interface. [nodes]
+struct StaticState {
+  std::vector<double> x_m;
+  std::vector<double> t_s_Pa;
+  std::vector<double> p_s_Pa;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(x_m, t_s_Pa, p_s_Pa);
+  }
+};
+
+}  // namespace slipfront::record

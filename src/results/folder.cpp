@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/folder.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace slipfront::results {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* lock_name = ".slipfront.lock";
+constexpr const char* state_name = "state";
+/// Names the kind of work, and tells a folder of this program from a foreign one of the same name.
+constexpr const char* kind_name = "kind";
+
+/// Results of a run by versions that wrote no list of checksums.
+constexpr std::array<const char*, 7> unlisted_results = {"case.resolved.toml", "run.json",   "interface.h5",
+                                                         "fronts.csv",         "static.csv", "energy.csv",
+                                                         "fields.vtkhdf"};
+
+[[noreturn]] void throw_unusable(const fs::path& dir, const char* what, int error) {
+  throw UserError("output folder {}: cannot be {} ({}); choose another place", dir.string(), what,
+                  std::strerror(error));
+}
+
+std::string read_line(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  return line;
+}
+
+std::string host_and_process() {
+  std::array<char, 256> host{};
+  if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '?';
+  return fmt::format("process {} on {}", getpid(), host.data());
+}
+
+/// Whether a lock's file is one: it holds the line above, the beginning of one, or nothing yet.
+bool is_lock(const fs::path& file) {
+  constexpr std::string_view begin = "process ";
+  std::error_code error;
+  const auto status = fs::symlink_status(file, error);
+  if (!fs::exists(status)) return true;
+  if (!fs::is_regular_file(status)) return false;
+  // Read once: its owner may write or remove it meanwhile. Opening it says what cannot be read.
+  std::array<char, begin.size()> first{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(first.data(), first.size());
+  return begin.starts_with(std::string_view(first.data(), static_cast<std::size_t>(stream.gcount())));
+}
+
+/// Names in a folder, sorted.
+std::vector<std::string> names_in(const fs::path& dir) {
+  std::error_code error;
+  std::set<std::string> names;
+  for (fs::directory_iterator k(dir, error), end; !error && k != end; k.increment(error))
+    names.insert(k->path().filename().string());
+  if (error) throw_unusable(dir, "read", error.value());
+  return {names.begin(), names.end()};
+}
+
+/// Left by a file that was cut off while it was written, see write_text.
+bool is_cut_off(const std::string& name) {
+  return name.ends_with(".new");
+}
+
+/// Calls file(name) for the files below a folder, by their names relative to it, and after that folder(name)
+/// for each folder that was left. The state is passed over.
+void walk(const fs::path& dir, const std::string& prefix, const std::function<void(const std::string&)>& file,
+          const std::function<void(const std::string&)>& folder) {
+  for (const auto& name : names_in(dir / prefix)) {
+    const std::string relative = prefix + name;
+    if (prefix.empty() && name == state_name) continue;
+    if (!files::is_folder(dir / relative)) {
+      file(relative);
+      continue;
+    }
+    walk(dir, relative + "/", file, folder);
+    folder(relative);
+  }
+}
+
+/// Names in the folder's list of checksums, in the lists that it names, and these lists.
+std::set<std::string> set_of(const fs::path& dir, const std::string& prefix = "") {
+  std::set<std::string> names;
+  for (const auto& [name, sum] : files::read_checksums(dir / prefix)) {
+    const fs::path path(name);
+    if (path.filename() == files::checksum_list)
+      names.merge(set_of(dir, prefix + path.parent_path().string() + "/"));
+    else
+      names.insert(prefix + name);
+  }
+  if (!names.empty()) names.insert(prefix + files::checksum_list);
+  return names;
+}
+
+/// The files of an earlier set; of a damaged list nothing is believed.
+std::set<std::string> earlier_set(const fs::path& dir) {
+  std::set<std::string> names;
+  try {
+    names = set_of(dir);
+  } catch (const UserError&) {
+  }
+  for (const char* name : unlisted_results) names.insert(name);
+  return names;
+}
+
+/// Removes what writing that was cut off has left.
+void remove_cut_off(const fs::path& dir) {
+  walk(
+      dir, "",
+      [&](const std::string& name) {
+        if (is_cut_off(name)) files::remove_file(dir / name);
+      },
+      [](const std::string&) {});
+}
+
+void remove_empty_folders(const fs::path& dir, const std::set<std::string>& files) {
+  std::error_code ignored;
+  for (const auto& name : files)
+    for (auto parent = fs::path(name).parent_path(); !parent.empty(); parent = parent.parent_path())
+      fs::remove(dir / parent, ignored);
+}
+
+/// Removes a folder or file of this program's own with all that is in it; links are not followed.
+void remove_tree(const fs::path& dir) {
+  std::error_code error;
+  fs::remove_all(dir, error);
+  if (error) throw WriteError("{}: cannot be removed ({}); remove it by hand", dir.string(), error.message());
+}
+
+/// Removes what a folder holds but for one name.
+void remove_others(const fs::path& dir, const char* name) {
+  if (!files::is_folder(dir)) return;
+  for (const auto& other : names_in(dir))
+    if (other != name) remove_tree(dir / other);
+}
+
+/// Removes a folder's state; the kind last, so that what is left of it is known for what it is.
+void remove_state(const fs::path& dir) {
+  remove_others(dir / state_name, kind_name);
+  remove_tree(dir / state_name);
+}
+
+void remove_work(const fs::path& unfinished) {
+  remove_others(unfinished, state_name);
+  remove_state(unfinished);
+  files::remove_file(unfinished);
+}
+
+/// Whether a folder holds any file that was written to its end, but for one name.
+bool holds_others(const fs::path& dir, const char* name) {
+  return std::ranges::any_of(names_in(dir),
+                             [&](const auto& other) { return other != name && !is_cut_off(other); });
+}
+
+/// Whether there is a folder's state, or the beginning or the rest of one.
+bool has_own_state(const fs::path& dir) {
+  const auto state = dir / state_name;
+  return files::is_folder(state) && (files::is_there(state / kind_name) || !holds_others(state, ""));
+}
+
+bool is_own_work(const fs::path& unfinished) {
+  return files::is_folder(unfinished) && (has_own_state(unfinished) || names_in(unfinished).empty());
+}
+
+/// Whether there is more of it than its beginning.
+bool is_under_way(const fs::path& unfinished) {
+  return is_own_work(unfinished) && has_own_state(unfinished) &&
+         (holds_others(unfinished, state_name) || holds_others(unfinished / state_name, kind_name));
+}
+
+/// Whether it is on its way, or what is left when it has arrived: the list at most.
+bool is_own_publication(const fs::path& publishing) {
+  return files::is_folder(publishing) &&
+         (has_own_state(publishing) || !holds_others(publishing, files::checksum_list));
+}
+
+[[noreturn]] void throw_foreign(const fs::path& path, const char* kind) {
+  throw UserError("{}: is not a {} of slipfront, which needs the name; move it away", path.string(), kind);
+}
+
+}  // namespace
+
+ResultFolder::ResultFolder(const fs::path& dir, std::string work) : dir_(dir), work_(std::move(work)) {
+  try {
+    make();
+    lock();
+    if (files::is_there(unfinished()) && !is_own_work(unfinished())) throw_foreign(unfinished(), "folder");
+    finish_publication();
+  } catch (...) {
+    give_back();
+    throw;
+  }
+}
+
+ResultFolder::~ResultFolder() {
+  give_back();
+}
+
+void ResultFolder::give_back() {
+  std::error_code ignored;
+  if (lock_.valid()) fs::remove(dir_ / lock_name, ignored);  // before the lock goes: nobody else can hold it
+  lock_.close();
+  for (auto p = dir_; !outermost_made_.empty(); p = p.parent_path())
+    if (!fs::remove(p, ignored) || ignored || p == outermost_made_) return;
+}
+
+void ResultFolder::make() {
+  std::error_code error;
+  // Its own end would take what another process keeps in it.
+  for (fs::path p = fs::absolute(dir_, error); p.has_relative_path(); p = p.parent_path()) {
+    const auto name = p.filename();
+    if ((name == unfinished().filename() || name == publishing().filename()) && has_own_state(p))
+      throw UserError(
+          "output folder {}: is inside {}, where another run keeps its work; choose another place",
+          dir_.string(), p.string());
+  }
+  const auto status = fs::status(dir_, error);
+  if (!fs::exists(status) && error && error != std::errc::no_such_file_or_directory)
+    throw_unusable(dir_, "used", error.value());
+  if (fs::exists(status) && !fs::is_directory(status))
+    throw UserError("output folder {}: is a file; choose another name", dir_.string());
+  fs::path outermost;  // a link to nowhere is not ours
+  for (fs::path p = dir_; !p.empty() && !files::is_there(p); p = p.parent_path()) outermost = p;
+  error.clear();
+  fs::create_directories(dir_, error);
+  if (error) throw_unusable(dir_, "made", error.value());
+  outermost_made_ = outermost;
+  if (::access(dir_.c_str(), R_OK | W_OK | X_OK) != 0) throw_unusable(dir_, "written", errno);
+  auto names = std::vector<const char*>(unlisted_results.begin(), unlisted_results.end());
+  names.push_back(files::checksum_list);
+  for (const char* name : names)
+    if (files::is_folder(dir_ / name))
+      throw UserError("{}: is a folder where a result file is to go; move it away", (dir_ / name).string());
+}
+
+void ResultFolder::lock() {
+  const auto file = dir_ / lock_name;
+  for (;;) {
+    if (!is_lock(file)) throw_foreign(file, "file");
+    lock_ = files::Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
+    if (!lock_.valid()) throw_unusable(dir_, "locked", errno);
+    // Held by the open file, so that it ends with the process, however that ends.
+    struct flock whole {};
+    whole.l_type = F_WRLCK;
+    whole.l_whence = SEEK_SET;
+    if (::fcntl(lock_.get(), F_OFD_SETLK, &whole) != 0) {
+      const int error = errno;
+      const std::string holder = read_line(file);
+      lock_.close();
+      if (error != EAGAIN && error != EACCES) throw_unusable(dir_, "locked", error);
+      throw UserError("output folder {}: is in use by {}; wait for it or choose another folder",
+                      dir_.string(), holder.empty() ? "another process" : holder);
+    }
+    struct stat held {
+    }, named{};
+    if (::fstat(lock_.get(), &held) == 0 && ::stat(file.c_str(), &named) == 0 && held.st_ino == named.st_ino)
+      break;  // else its holder removed it while we opened it
+  }
+  const std::string text = host_and_process() + "\n";
+  if (::ftruncate(lock_.get(), 0) != 0 ||
+      ::pwrite(lock_.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
+    throw_unusable(dir_, "written", errno);
+  }
+}
+
+bool ResultFolder::has_results() const {
+  for (const auto& name : names_in(dir_))
+    if (name != lock_name && name != unfinished().filename()) return true;
+  return false;
+}
+
+bool ResultFolder::has_unfinished() const {
+  return is_under_way(unfinished()) && read_line(state() / kind_name) == work_;
+}
+
+void ResultFolder::require_empty(bool overwrite, bool resumes) const {
+  if (overwrite) return;
+  if (is_under_way(unfinished()) && !(resumes && has_unfinished()))
+    throw UserError(
+        "output folder {}: holds unfinished work; go on with it (slipfront run --restart) or pass "
+        "--overwrite to begin anew",
+        dir_.string());
+  if (has_results())
+    throw UserError(
+        "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
+        dir_.string());
+}
+
+void ResultFolder::begin() {
+  if (files::is_there(unfinished())) remove_work(unfinished());
+  files::make_folder(unfinished());
+  files::make_folder(state());
+  files::write_text(state() / kind_name, work_ + "\n");
+}
+
+void ResultFolder::begin_or_resume() {
+  if (!has_unfinished()) begin();
+}
+
+void ResultFolder::abandon() {
+  if (files::is_there(unfinished())) remove_work(unfinished());
+}
+
+void ResultFolder::publish(bool adds) {
+  seal(unfinished(), adds ? files::read_checksums(dir_) : files::Checksums{});
+  walk(
+      unfinished(), "", [&](const std::string& name) { files::sync_file(unfinished() / name); },
+      [&](const std::string& name) { files::sync_file(unfinished() / name); });
+  files::sync_file(unfinished());
+  files::move_file(unfinished(), publishing());
+  files::sync_file(dir_);
+  finish_publication();
+}
+
+void ResultFolder::finish_publication() {
+  if (!files::is_there(publishing())) return;
+  if (!is_own_publication(publishing())) throw_foreign(publishing(), "folder");
+  if (files::is_there(publishing() / files::checksum_list)) {
+    const auto fresh = set_of(publishing());
+    auto stale = earlier_set(dir_);
+    for (const auto& name : fresh) stale.erase(name);
+    // Lists last: as long as they are there, what they name can be found.
+    const auto is_list = [](const std::string& name) {
+      return fs::path(name).filename() == files::checksum_list;
+    };
+    for (const auto& name : stale)
+      if (!is_list(name)) files::remove_file(dir_ / name);
+    for (const auto& name : stale)
+      if (is_list(name)) files::remove_file(dir_ / name);
+    remove_empty_folders(dir_, stale);
+    walk(
+        publishing(), "",
+        [&](const std::string& name) {
+          if (name == files::checksum_list) return;
+          std::error_code error;
+          fs::create_directories((dir_ / name).parent_path(), error);
+          if (error) throw_unusable((dir_ / name).parent_path(), "made", error.value());
+          files::move_file(publishing() / name, dir_ / name);
+        },
+        [&](const std::string& name) { files::remove_file(publishing() / name); });
+    if (files::is_there(publishing() / state_name)) remove_state(publishing());
+    files::move_file(publishing() / files::checksum_list, dir_ / files::checksum_list);
+  }
+  files::remove_file(publishing());
+  files::sync_file(dir_);
+}
+
+void seal(const fs::path& dir, const files::Checksums& others) {
+  remove_cut_off(dir);
+  files::Checksums checksums = others;
+  std::set<std::string> sealed;  // folders with a list of their own
+  const auto is_below_sealed = [&](fs::path name) {
+    while (!(name = name.parent_path()).empty())
+      if (sealed.contains(name.string())) return true;
+    return false;
+  };
+  walk(
+      dir, "",
+      [&](const std::string& name) {
+        const fs::path path(name);
+        if (path.filename() == files::checksum_list && path.has_parent_path())
+          sealed.insert(path.parent_path().string());
+      },
+      [](const std::string&) {});
+  walk(
+      dir, "",
+      [&](const std::string& name) {
+        const bool is_list = fs::path(name).filename() == files::checksum_list;
+        if (name == files::checksum_list || (is_below_sealed(name) && !is_list)) return;
+        checksums[name] = files::sha256_of_file(dir / name);
+      },
+      [](const std::string&) {});
+  files::write_checksums(dir, checksums);
+}
+
+fs::path published(const fs::path& dir, const std::string& name) {
+  const auto on_its_way = dir / "publishing" / name;
+  return files::is_there(on_its_way) ? on_its_way : dir / name;
+}
+
+}  // namespace slipfront::results

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/results.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "files/files.hpp"
+
+namespace slipfront::results {
+namespace {
+
+/// A field of a CSV file; empty where the value is undefined.
+std::string field(double value) {
+  return std::isnan(value) ? "" : fmt::format("{}", value);
+}
+
+}  // namespace
+
+void write_static(const std::filesystem::path& file, const record::StaticState& state) {
+  SLIPFRONT_ASSERT(state.t_s_Pa.size() == state.x_m.size() && state.p_s_Pa.size() == state.x_m.size(),
+                   "columns of the static state differ in length");
+  std::string text = "x_m,t_s_Pa,p_s_Pa\n";
+  for (std::size_t i = 0; i < state.x_m.size(); ++i)
+    text += fmt::format("{},{},{}\n", field(state.x_m[i]), field(state.t_s_Pa[i]), field(state.p_s_Pa[i]));
+  files::write_text(file, text);
+}
+
+void write_energies(const std::filesystem::path& file, std::span<const record::Energies> energies) {
+  std::string text =
+      "time_s,strain_J_per_m,kinetic_J_per_m,top_work_J_per_m,trigger_work_J_per_m,prestress_work_J_per_m,"
+      "friction_work_J_per_m,contact_work_J_per_m,damping_work_J_per_m,boundary_work_J_per_m,"
+      "coupling_work_J_per_m,imbalance_J_per_m\n";
+  for (const auto& e : energies)
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", field(e.time_s), field(e.strain),
+                        field(e.kinetic), field(e.top_work), field(e.trigger_work), field(e.prestress_work),
+                        field(e.friction_work), field(e.contact_work), field(e.damping_work),
+                        field(e.boundary_work), field(e.coupling_work),
+                        field(record::imbalance_J_per_m(e, energies.front())));
+  files::write_text(file, text);
+}
+
+void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts) {
+  std::string text =
+      "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"
+      "U_s_J_per_m3,U_r_J_per_m3\n";
+  for (const fronts::Front& front : fronts)
+    for (const fronts::FrontPoint& point : front.points)
+      text +=
+          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", front.id, field(point.x_m),
+                      field(point.onset_s), front.direction, field(point.v_tip_m_per_s), field(point.t_s_Pa),
+                      field(point.p_s_Pa), field(point.t_d_Pa), field(point.p_d_Pa), field(point.t_r_Pa),
+                      field(point.p_r_Pa), field(point.U_s_J_per_m3), field(point.U_r_J_per_m3));
+  files::write_text(file, text);
+}
+
+}  // namespace slipfront::results

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "fronts/front.hpp"
+#include "record/energies.hpp"
+#include "record/record.hpp"
+
+namespace slipfront::results {
+
+/// static.csv: x_m, t_s_Pa, p_s_Pa.
+void write_static(const std::filesystem::path& file, const record::StaticState& state);
+
+/// fronts.csv: front_id, x_m, onset_s, direction, v_tip_m_per_s, t_s_Pa, p_s_Pa, t_d_Pa, p_d_Pa, t_r_Pa,
+/// p_r_Pa, U_s_J_per_m3, U_r_J_per_m3, a row per front and node in the order of travel; what is undefined is
+/// left empty.
+void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts);
+
+/// energy.csv: time_s, the terms of record::Energies with their unit, and imbalance_J_per_m, a row per
+/// instant; the first is the start.
+void write_energies(const std::filesystem::path& file, std::span<const record::Energies> energies);
+
+}  // namespace slipfront::results

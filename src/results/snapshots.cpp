@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/snapshots.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace slipfront::results {
+namespace {
+
+/// Rows that are put together at a time: what is written takes little memory beside the fields themselves.
+constexpr std::size_t piece_rows = 32 * 1024;
+
+/// Most rows of a chunk; HDF5 takes chunks below 4 GiB.
+constexpr std::size_t most_chunk_rows = 1U << 26U;
+
+/// Nodes of the left edge of a periodic plate and of the right one, which have the same motion.
+std::vector<std::pair<mesh::Node, mesh::Node>> seam(const mesh::Mesh& mesh) {
+  std::vector<std::pair<mesh::Node, mesh::Node>> pairs;
+  if (mesh.period_m == 0) return pairs;
+  for (const auto& grid : mesh::blocks(mesh))
+    for (int j = 0; j <= grid.rows; ++j) pairs.emplace_back(grid.node(0, j), grid.node(grid.columns, j));
+  return pairs;
+}
+
+/// For each point of a periodic plate the one whose values it has; empty for others.
+std::vector<std::size_t> sources(const mesh::Mesh& mesh) {
+  std::vector<std::size_t> source;
+  if (mesh.period_m == 0) return source;
+  source.resize(mesh.x_m.size());
+  std::iota(source.begin(), source.end(), std::size_t{0});
+  for (const auto& [left, right] : seam(mesh)) source[right] = left;
+  return source;
+}
+
+/// Calls f(first row, rows, values) for the points of a mesh, x y z each, piece by piece.
+template <class F>
+void for_point_pieces(const mesh::Mesh& mesh, F&& f) {
+  std::vector<double> values;
+  for (std::size_t from = 0; from < mesh.x_m.size(); from += piece_rows) {
+    const std::size_t n = std::min(piece_rows, mesh.x_m.size() - from);
+    values.clear();
+    for (std::size_t k = from; k < from + n; ++k)
+      values.insert(values.end(), {mesh.x_m[k], mesh.y_m[k], 0.0});
+    f(from, values);
+  }
+}
+
+/// The same for the corners of its cells. The last column of a periodic plate is drawn with nodes of its own.
+template <class F>
+void for_corner_pieces(const mesh::Mesh& mesh, F&& f) {
+  const auto joined = seam(mesh);
+  const auto right_of = [&](mesh::Node n) {
+    return std::ranges::lower_bound(joined, std::pair(n, mesh::Node{0}))->second;
+  };
+  std::vector<std::int64_t> nodes;
+  for (std::size_t from = 0; from < mesh.cells.size(); from += piece_rows) {
+    nodes.clear();
+    for (std::size_t c = from; c < std::min(from + piece_rows, mesh.cells.size()); ++c) {
+      const mesh::Cell& cell = mesh.cells[c];
+      double right_most_m = 0;
+      for (const mesh::Node n : cell) right_most_m = std::max(right_most_m, mesh.x_m[n]);
+      for (const mesh::Node n : cell) {
+        const bool round = mesh.period_m > 0 && right_most_m - mesh.x_m[n] > 0.5 * mesh.period_m;
+        nodes.push_back(round ? right_of(n) : n);
+      }
+    }
+    f(4 * from, nodes);
+  }
+}
+
+/// The same for the first corner of each cell in that list, and its end.
+template <class F>
+void for_offset_pieces(std::size_t n_cells, F&& f) {
+  std::vector<std::int64_t> offsets;
+  for (std::size_t from = 0; from <= n_cells; from += piece_rows) {
+    offsets.clear();
+    for (std::size_t c = from; c < std::min(from + piece_rows, n_cells + 1); ++c)
+      offsets.push_back(static_cast<std::int64_t>(4 * c));
+    f(from, offsets);
+  }
+}
+
+/// The same for a field over the points.
+template <class F>
+void for_field_pieces(const solid::Field& field, std::span<const std::size_t> source, F&& f) {
+  std::vector<double> values;
+  for (std::size_t from = 0; from < field.size(); from += piece_rows) {
+    const std::size_t n = std::min(piece_rows, field.size() - from);
+    values.clear();
+    for (std::size_t k = from; k < from + n; ++k) {
+      const std::size_t node = source.empty() ? k : source[k];
+      values.insert(values.end(), {field.x[node], field.y[node], 0.0});
+    }
+    f(from, values);
+  }
+}
+
+constexpr std::uint8_t vtk_quad = 9;
+
+void write_mesh(const hdf5::File& file, const mesh::Mesh& mesh) {
+  const std::size_t n_points = mesh.x_m.size(), n_cells = mesh.cells.size();
+  const auto write_count = [&](const char* name, std::size_t n) {
+    const auto value = static_cast<std::int64_t>(n);
+    hdf5::write(file, name, std::span<const std::int64_t>(&value, 1), {1});
+  };
+  write_count("/VTKHDF/NumberOfPoints", n_points);
+  write_count("/VTKHDF/NumberOfCells", n_cells);
+  write_count("/VTKHDF/NumberOfConnectivityIds", 4 * n_cells);
+  hdf5::create(file, "/VTKHDF/Points", hdf5::Type::float64, {n_points, 3});
+  for_point_pieces(mesh, [&](std::size_t row, std::span<const double> values) {
+    hdf5::write_rows(file, "/VTKHDF/Points", row, values);
+  });
+  hdf5::create(file, "/VTKHDF/Connectivity", hdf5::Type::int64, {4 * n_cells});
+  for_corner_pieces(mesh, [&](std::size_t row, std::span<const std::int64_t> nodes) {
+    hdf5::write_rows(file, "/VTKHDF/Connectivity", row, nodes);
+  });
+  hdf5::create(file, "/VTKHDF/Offsets", hdf5::Type::int64, {n_cells + 1});
+  for_offset_pieces(n_cells, [&](std::size_t row, std::span<const std::int64_t> offsets) {
+    hdf5::write_rows(file, "/VTKHDF/Offsets", row, offsets);
+  });
+  hdf5::write(file, "/VTKHDF/Types", std::vector<std::uint8_t>(n_cells, vtk_quad), {n_cells});
+}
+
+}  // namespace
+
+SnapshotFile::SnapshotFile(const std::filesystem::path& path, const mesh::Mesh& mesh)
+    : file_(hdf5::create_file(path)), n_points_(mesh.x_m.size()), source_(sources(mesh)) {
+  hdf5::create_group(file_, "/VTKHDF");
+  hdf5::set_attribute(file_, "/VTKHDF", "Version", std::array<std::int64_t, 2>{2, 0});
+  hdf5::set_ascii_attribute(file_, "/VTKHDF", "Type", "UnstructuredGrid");
+  write_mesh(file_, mesh);
+  hdf5::create_group(file_, "/VTKHDF/PointData");
+}
+
+void SnapshotFile::append_field(const std::string& name, const solid::Field& field) {
+  SLIPFRONT_ASSERT(field.size() == n_points_, "a snapshot does not fit its mesh");
+  const std::string dataset = "/VTKHDF/PointData/" + name;
+  if (time_s_.empty())
+    hdf5::create_growing(file_, dataset, {3}, std::clamp<std::size_t>(n_points_, 1, most_chunk_rows),
+                         n_points_ <= most_chunk_rows ? hdf5::Chunks::whole : hdf5::Chunks::any);
+  hdf5::add_rows(file_, dataset, n_points_);
+  for_field_pieces(field, source_, [&](std::size_t row, std::span<const double> values) {
+    hdf5::write_rows(file_, dataset, time_s_.size() * n_points_ + row, values);
+  });
+}
+
+void SnapshotFile::append(const motion::Snapshot& snapshot) {
+  append_field("displacement_m", snapshot.u_m);
+  append_field("velocity_m_per_s", snapshot.v_m_per_s);
+  time_s_.push_back(snapshot.time_s);
+}
+
+void SnapshotFile::close() {
+  const std::size_t n_steps = time_s_.size();
+  if (n_steps == 0) return hdf5::close(std::move(file_));  // readers take no grid of zero steps
+
+  // All steps share the one mesh: its offsets stay at zero, only the point data move on.
+  std::vector<std::int64_t> data_offsets;
+  for (std::size_t k = 0; k < n_steps; ++k) data_offsets.push_back(static_cast<std::int64_t>(k * n_points_));
+  const std::vector<std::int64_t> zeros(n_steps, 0), ones(n_steps, 1);
+  const auto count = static_cast<std::int64_t>(n_steps);
+  hdf5::create_group(file_, "/VTKHDF/Steps");
+  hdf5::set_attribute(file_, "/VTKHDF/Steps", "NSteps", std::span<const std::int64_t>(&count, 1));
+  hdf5::write(file_, "/VTKHDF/Steps/Values", time_s_, {n_steps});
+  hdf5::write(file_, "/VTKHDF/Steps/PartOffsets", zeros, {n_steps});
+  hdf5::write(file_, "/VTKHDF/Steps/NumberOfParts", ones, {n_steps});
+  hdf5::write(file_, "/VTKHDF/Steps/PointOffsets", zeros, {n_steps});
+  hdf5::write(file_, "/VTKHDF/Steps/CellOffsets", zeros, {n_steps, 1});
+  hdf5::write(file_, "/VTKHDF/Steps/ConnectivityIdOffsets", zeros, {n_steps, 1});
+  hdf5::create_group(file_, "/VTKHDF/Steps/PointDataOffsets");
+  for (const char* name : {"displacement_m", "velocity_m_per_s"})
+    hdf5::write(file_, std::string("/VTKHDF/Steps/PointDataOffsets/") + name, data_offsets, {n_steps});
+  hdf5::close(std::move(file_));
+}
+
+void write_snapshots(const std::filesystem::path& path, const mesh::Mesh& mesh,
+                     std::span<const motion::Snapshot> snapshots) {
+  SnapshotFile file(path, mesh);
+  for (const auto& snapshot : snapshots) file.append(snapshot);
+  file.close();
+  if (snapshots.empty()) return;
+  const WrittenSnapshots written(path, mesh);
+  for (std::size_t k = 0; k < snapshots.size(); ++k) written.require(k, snapshots[k]);
+  written.require_steps(snapshots.size());
+}
+
+WrittenSnapshots::WrittenSnapshots(const std::filesystem::path& path, const mesh::Mesh& mesh)
+    : file_(hdf5::open_written_file(path)), n_points_(mesh.x_m.size()), source_(sources(mesh)) {
+  for_point_pieces(mesh, [&](std::size_t row, std::span<const double> values) {
+    hdf5::require_rows(file_, "/VTKHDF/Points", row, values);
+  });
+  // Whole numbers are read as doubles, which hold them exactly.
+  const auto require_numbers = [&](const char* name) {
+    return [this, name](std::size_t row, std::span<const std::int64_t> numbers) {
+      hdf5::require_rows(file_, name, row, std::vector<double>(numbers.begin(), numbers.end()));
+    };
+  };
+  for_corner_pieces(mesh, require_numbers("/VTKHDF/Connectivity"));
+  for_offset_pieces(mesh.cells.size(), require_numbers("/VTKHDF/Offsets"));
+  hdf5::require_rows(file_, "/VTKHDF/Types", 0, std::vector<double>(mesh.cells.size(), vtk_quad));
+}
+
+void WrittenSnapshots::require(std::size_t step, const motion::Snapshot& snapshot) const {
+  hdf5::require_rows(file_, "/VTKHDF/Steps/Values", step, std::span(&snapshot.time_s, 1));
+  const auto require_field = [&](const char* name, const solid::Field& field) {
+    for_field_pieces(field, source_, [&](std::size_t row, std::span<const double> values) {
+      hdf5::require_rows(file_, name, step * n_points_ + row, values);
+    });
+  };
+  require_field("/VTKHDF/PointData/displacement_m", snapshot.u_m);
+  require_field("/VTKHDF/PointData/velocity_m_per_s", snapshot.v_m_per_s);
+}
+
+void WrittenSnapshots::require_steps(std::size_t n) const {
+  for (const char* name : {"/VTKHDF/PointData/displacement_m", "/VTKHDF/PointData/velocity_m_per_s"})
+    hdf5::require_length(file_, name, n * n_points_);
+}
+
+}  // namespace slipfront::results

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/stream.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "base/error.hpp"
+#include "results/history.hpp"
+#include "results/snapshots.hpp"
+
+namespace slipfront::results {
+namespace {
+
+/// That may wait to be written; a snapshot of a large plate is more, and waits alone.
+constexpr std::size_t most_bytes_waiting = 16U << 20U;
+/// Rows are handed to the writer in blocks of this size.
+constexpr std::size_t block_values = 32 * 1024;
+constexpr std::size_t piece_bytes = std::size_t{1} << 18U;
+
+void append(std::vector<double>& to, const std::vector<double>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+/// Records of one length that a stream has written.
+class Records {
+ public:
+  Records(const std::filesystem::path& file, std::size_t values)
+      : path_(file), stream_(file, std::ios::binary), values_(values) {
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(file, error);
+    if (!stream_ || error) throw UserError("{}: cannot be read; begin the run again", path_.string());
+    count_ = bytes / (sizeof(double) * values);
+  }
+  std::size_t count() const { return count_; }
+
+  /// The next `n` records, value by value.
+  std::vector<double> read(std::size_t n) {
+    std::vector<double> values(n * values_);
+    if (!stream_.read(reinterpret_cast<char*>(values.data()),
+                      static_cast<std::streamsize>(sizeof(double) * values.size())))
+      throw UserError("{}: cannot be read; begin the run again", path_.string());
+    return values;
+  }
+  void rewind() { stream_.seekg(0); }
+
+ private:
+  std::filesystem::path path_;
+  std::ifstream stream_;
+  std::size_t values_, count_ = 0;
+};
+
+/// The next rows of a history; none at the end.
+record::History read_rows(Records& records, std::size_t n, std::span<const double> x_m) {
+  const std::size_t nx = x_m.size();
+  const auto values = records.read(n);
+  record::History rows;
+  rows.x_m.assign(x_m.begin(), x_m.end());
+  for (std::size_t k = 0; k < n; ++k) {
+    auto from = values.begin() + static_cast<std::ptrdiff_t>(k * (1 + 4 * nx));
+    rows.time_s.push_back(*from++);
+    for (auto* column : {&rows.slip_m, &rows.slip_rate_m_per_s, &rows.t_Pa, &rows.p_Pa}) {
+      column->insert(column->end(), from, from + static_cast<std::ptrdiff_t>(nx));
+      from += static_cast<std::ptrdiff_t>(nx);
+    }
+  }
+  return rows;
+}
+
+motion::Snapshot read_snapshot(Records& records, std::size_t n_nodes) {
+  const auto values = records.read(1);
+  motion::Snapshot snapshot{values[0], solid::Field(n_nodes), solid::Field(n_nodes)};
+  auto from = values.begin() + 1;
+  for (auto* column : {&snapshot.u_m.x, &snapshot.u_m.y, &snapshot.v_m_per_s.x, &snapshot.v_m_per_s.y}) {
+    std::copy_n(from, n_nodes, column->begin());
+    from += static_cast<std::ptrdiff_t>(n_nodes);
+  }
+  return snapshot;
+}
+
+}  // namespace
+
+std::filesystem::path ResultStream::history_file(const std::filesystem::path& dir) {
+  return dir / "history.raw";
+}
+
+std::filesystem::path ResultStream::snapshot_file(const std::filesystem::path& dir) {
+  return dir / "snapshots.raw";
+}
+
+ResultStream::Summed::Summed(const std::filesystem::path& path, const Extent& extent)
+    : file(files::OutputFile::go_on(path, extent.bytes)) {
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<char> piece(piece_bytes);
+  for (auto rest = extent.bytes; rest > 0;) {
+    const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(rest, piece.size()));
+    if (!stream.read(piece.data(), static_cast<std::streamsize>(n))) break;
+    sum.add(std::as_bytes(std::span(piece).first(n)));
+    rest -= n;
+  }
+  if (sum.digest() != extent.checksum)
+    throw UserError("{}: was changed or damaged since the run was kept; begin the run again", path.string());
+}
+
+void ResultStream::Summed::write(std::span<const double> values) {
+  file.write(std::as_bytes(values));
+  sum.add(std::as_bytes(values));
+}
+
+ResultStream::Extent ResultStream::Summed::sync() {
+  file.sync();
+  return {file.length(), sum.digest()};
+}
+
+ResultStream::ResultStream(const std::filesystem::path& dir)
+    : history_(history_file(dir)), snapshots_(snapshot_file(dir)), writer_(most_bytes_waiting) {}
+
+ResultStream::ResultStream(const std::filesystem::path& dir, const Extents& extents)
+    : history_(history_file(dir), extents.history),
+      snapshots_(snapshot_file(dir), extents.snapshots),
+      writer_(most_bytes_waiting) {}
+
+void ResultStream::require_unchanged(const std::filesystem::path& dir, const Extents& extents) {
+  for (const auto& [file, extent] :
+       {std::pair(history_file(dir), &extents.history), std::pair(snapshot_file(dir), &extents.snapshots)})
+    if (!files::is_there(file) || files::sha256_of_file(file) != extent->checksum)
+      throw WriteError("{}: is not what was written: it was changed, damaged or removed meanwhile",
+                       file.string());
+}
+
+void ResultStream::sample(const record::History& row) {
+  for (const auto* column : {&row.time_s, &row.slip_m, &row.slip_rate_m_per_s, &row.t_Pa, &row.p_Pa})
+    append(block_, *column);
+  if (block_.size() >= block_values) hand_over();
+}
+
+void ResultStream::hand_over() {
+  if (block_.empty()) return;
+  const auto block = std::make_shared<const std::vector<double>>(std::exchange(block_, {}));
+  writer_.put(sizeof(double) * block->size(), [this, block] { history_.write(*block); });
+}
+
+void ResultStream::snapshot(const motion::Stepper& stepper) {
+  const std::size_t bytes = 4 * sizeof(double) * stepper.u_m().size();
+  writer_.wait_for_room(bytes);
+  const auto taken = std::make_shared<const motion::Snapshot>(motion::take_snapshot(stepper));
+  writer_.put(bytes, [this, taken] {
+    snapshots_.write(std::span(&taken->time_s, 1));
+    for (const auto* column : {&taken->u_m.x, &taken->u_m.y, &taken->v_m_per_s.x, &taken->v_m_per_s.y})
+      snapshots_.write(*column);
+  });
+}
+
+ResultStream::Extents ResultStream::keep() {
+  hand_over();
+  Extents extents;
+  writer_.put(0, [&] { extents = {history_.sync(), snapshots_.sync()}; });
+  writer_.finish();
+  return extents;
+}
+
+void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,
+                   std::span<const double> x_m) {
+  Records records(raw, 1 + 4 * x_m.size());
+  const std::size_t block = history_block_rows(x_m.size());
+  const auto for_each_block = [&](auto&& f) {
+    records.rewind();
+    for (std::size_t row = 0; row < records.count(); row += block)
+      f(row, read_rows(records, std::min(block, records.count() - row), x_m));
+  };
+  HistoryFile output(file, x_m);
+  for_each_block([&](std::size_t, const record::History& rows) { output.append(rows); });
+  output.close();
+  const WrittenHistory written(file);
+  for_each_block([&](std::size_t row, const record::History& rows) { written.require(row, rows); });
+  written.require_lengths(records.count(), x_m.size());
+}
+
+std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
+                            const mesh::Mesh& mesh) {
+  const std::size_t n_nodes = mesh.x_m.size();
+  Records records(raw, 1 + 4 * n_nodes);
+  if (records.count() == 0) return 0;
+  SnapshotFile output(file, mesh);
+  for (std::size_t k = 0; k < records.count(); ++k) output.append(read_snapshot(records, n_nodes));
+  output.close();
+  records.rewind();
+  const WrittenSnapshots written(file, mesh);
+  for (std::size_t k = 0; k < records.count(); ++k) written.require(k, read_snapshot(records, n_nodes));
+  written.require_steps(records.count());
+  return records.count();
+}
+
+}  // namespace slipfront::results

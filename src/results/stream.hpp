@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "files/checksum.hpp"
+#include "files/files.hpp"
+#include "motion/event.hpp"
+#include "threads/writer.hpp"
+
+namespace slipfront::results {
+
+/// Keeps history and snapshots of a run in files while it goes, behind the computation, in memory that does
+/// not grow with the run. The files hold nothing but numbers, one record after the other, so that they can be
+/// read whenever the run ends, and cut to where a run that goes on begins; the results are made from them.
+///
+/// history.raw: per row time_s, slip_m [nodes], slip_rate_m_per_s [nodes], t_Pa [nodes], p_Pa [nodes];
+/// snapshots.raw: per snapshot time_s and u_x, u_y, v_x, v_y [nodes of the plate]; doubles as in memory.
+class ResultStream : public motion::Sink {
+ public:
+  /// What a file of the stream holds so far.
+  struct Extent {
+    std::uint64_t bytes = 0;
+    std::string checksum;
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(bytes, checksum);
+    }
+  };
+  struct Extents {
+    Extent history, snapshots;
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(history, snapshots);
+    }
+  };
+
+  /// Makes the files.
+  explicit ResultStream(const std::filesystem::path& dir);
+  /// Goes on in files that hold at least so much; what they hold beyond is cut off.
+  /// @throws UserError where one is missing, shorter, or another
+  ResultStream(const std::filesystem::path& dir, const Extents& extents);
+
+  // Each throws WriteError where a file could not be written, perhaps long before.
+  void sample(const record::History& row) override;
+  /// Copies the motion once there is room for it.
+  void snapshot(const motion::Stepper& stepper) override;
+  /// Hands what waits to the writer, for those who look into the files.
+  void hand_over();
+  /// Waits until all that was given is on the device.
+  Extents keep();
+
+  /// Compares files that are complete. @throws WriteError where one is not what was written.
+  static void require_unchanged(const std::filesystem::path& dir, const Extents& extents);
+
+  static std::filesystem::path history_file(const std::filesystem::path& dir);
+  static std::filesystem::path snapshot_file(const std::filesystem::path& dir);
+
+ private:
+  /// A file and the checksum of what was written to it.
+  struct Summed {
+    files::OutputFile file;
+    files::Sha256 sum;
+
+    /// Of a new file.
+    explicit Summed(const std::filesystem::path& path) : file(files::OutputFile::create(path)) {}
+    /// Of one that goes on.
+    Summed(const std::filesystem::path& path, const Extent& extent);
+    void write(std::span<const double> values);
+    Extent sync();
+  };
+
+  Summed history_, snapshots_;  ///< the writer's
+  std::vector<double> block_;   ///< rows to be handed to the writer
+  threads::Writer writer_;
+};
+
+/// Makes interface.h5 of a stream's file. A record that was cut off at its end is left out.
+/// @throws WriteError, UserError where the file is missing
+void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,
+                   std::span<const double> x_m);
+
+/// Makes fields.vtkhdf of a stream's file.
+/// @return the number of snapshots; without any no file is made
+std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
+                            const mesh::Mesh& mesh);
+
+}  // namespace slipfront::results

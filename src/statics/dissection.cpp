@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/dissection.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+namespace slipfront::statics {
+
+namespace {
+
+class Dissection {
+ public:
+  explicit Dissection(const mesh::Mesh& mesh) : mesh_(mesh), part_(mesh.n_nodes(), 0) {
+    first_.assign(mesh.n_nodes() + 1, 0);
+    for (const auto& cell : mesh.cells)
+      for (const auto n : cell) ++first_[n + 1];
+    for (std::size_t n = 0; n + 1 < first_.size(); ++n) first_[n + 1] += first_[n];
+    cell_.resize(4 * mesh.cells.size());
+    auto next = first_;
+    for (std::size_t k = 0; k < mesh.cells.size(); ++k)
+      for (const auto n : mesh.cells[k]) cell_[next[n]++] = static_cast<std::int32_t>(k);
+  }
+
+  /// Appends the nodes to `order`: one half, the other half, then the nodes of the first that touch the
+  /// second.
+  void order_nodes(std::span<mesh::Node> nodes, std::vector<mesh::Node>& order) {
+    constexpr std::size_t leaf = 32;
+    if (nodes.size() <= leaf) {
+      order.insert(order.end(), nodes.begin(), nodes.end());
+      return;
+    }
+    const auto& along = longer_extent(nodes);
+    const auto middle = nodes.begin() + static_cast<std::ptrdiff_t>(nodes.size() / 2);
+    // Ties are broken by the number, so that the cut is reproducible.
+    std::nth_element(nodes.begin(), middle, nodes.end(), [&](mesh::Node a, mesh::Node b) {
+      return along[a] != along[b] ? along[a] < along[b] : a < b;
+    });
+    const std::span<mesh::Node> low(nodes.begin(), middle), high(middle, nodes.end());
+    const std::int32_t mark = ++marks_;
+    for (const auto n : high) part_[n] = mark;
+    const auto touches_high = [&](mesh::Node n) {
+      for (auto k = first_[n]; k < first_[n + 1]; ++k)
+        for (const auto neighbour : mesh_.cells[cell_[k]])
+          if (part_[neighbour] == mark) return true;
+      return false;
+    };
+    const auto separator =
+        std::stable_partition(low.begin(), low.end(), [&](mesh::Node n) { return !touches_high(n); });
+    std::vector<mesh::Node> between(separator, low.end());
+    order_nodes({low.begin(), separator}, order);
+    order_nodes(high, order);
+    order.insert(order.end(), between.begin(), between.end());
+  }
+
+ private:
+  const std::vector<double>& longer_extent(std::span<const mesh::Node> nodes) const {
+    const auto extent = [&](const std::vector<double>& c) {
+      const auto [low, high] = std::ranges::minmax(nodes, {}, [&](mesh::Node n) { return c[n]; });
+      return c[high] - c[low];
+    };
+    return extent(mesh_.x_m) >= extent(mesh_.y_m) ? mesh_.x_m : mesh_.y_m;
+  }
+
+  const mesh::Mesh& mesh_;
+  std::vector<std::int32_t> part_;  ///< mark of the half a node was last put into
+  std::vector<std::int32_t> first_, cell_;
+  std::int32_t marks_ = 0;
+};
+
+}  // namespace
+
+std::vector<mesh::Node> dissect(const mesh::Mesh& mesh, const std::vector<mesh::Node>& last) {
+  std::vector<bool> left_out = mesh::orphans(mesh);
+  for (const auto n : last) left_out[n] = true;
+  std::vector<mesh::Node> nodes;
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
+    if (!left_out[n]) nodes.push_back(n);
+  std::vector<mesh::Node> order;
+  order.reserve(nodes.size() + last.size());
+  Dissection(mesh).order_nodes(nodes, order);
+  order.insert(order.end(), last.begin(), last.end());
+  return order;
+}
+
+}  // namespace slipfront::statics

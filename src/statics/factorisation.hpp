@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "solid/material.hpp"
+#include "solid/operator.hpp"
+#include "statics/plate_solver.hpp"
+
+namespace slipfront::statics {
+
+/// Bytes a factorisation of this plate needs, estimated from the number of unknowns alone (nested dissection
+/// of a plane grid).
+double estimated_factor_bytes(double n_unknowns);
+
+/// Bytes the statics need at their peak: assembly, or matrix and factor.
+double statics_bytes(double n_unknowns, double factor_bytes);
+
+/// Refuses statics that would not fit into the memory at hand.
+/// @throws UserError with the figures.
+void require_statics_memory(double n_unknowns, double factor_bytes);
+
+/// The plate's stiffness factorised once, with the interface condensed.
+///
+/// The unknowns are all displacements that are not prescribed on the loaded edge; the interface is free. They
+/// are numbered by nested dissection with the interface last, so that the last diagonal block L_ii of the
+/// Cholesky factor gives the interface's condensed stiffness S = L_ii L_ii^T. The forces of the plane on the
+/// interface nodes are then f = S u_i - g, with u_i their displacements and g the load that the loaded edge
+/// sends to the interface. Contact states change on this small dense system without another factorisation.
+///
+/// Vectors over the interface hold x and y of each node of mesh.lower in turn. Forces are per unit thickness.
+class Factorisation {
+ public:
+  /// @throws UserError where the factor does not fit into the memory at hand, with the figures.
+  Factorisation(const mesh::Mesh& mesh, const solid::Material& material, TopConstraint top);
+  ~Factorisation();
+  Factorisation(const Factorisation&) = delete;
+  Factorisation& operator=(const Factorisation&) = delete;
+
+  using Top = TopDisplacement;
+
+  /// S, N/m.
+  const Eigen::MatrixXd& condensed_stiffness() const { return condensed_; }
+  /// The loaded edge's displacements with the load g they send to the interface, N.
+  struct Load {
+    Top top;
+    Eigen::VectorXd g_N;
+  };
+  Load load(const Top& top) const;
+  /// Displacement of all nodes under the load for given displacements of the interface.
+  solid::Field displacement(const Load& load, const Eigen::VectorXd& interface_u_m) const;
+
+  std::int64_t n_unknowns() const { return n_unknowns_; }
+  double factor_bytes() const { return factor_bytes_; }
+
+ private:
+  struct Cholmod;
+  solid::Field solve(const Top& top, const Eigen::VectorXd& interface_force) const;
+  Eigen::VectorXd at_interface(const solid::Field& u) const;
+
+  std::unique_ptr<Cholmod> cholmod_;
+  const mesh::Mesh& mesh_;
+  TopConstraint top_;
+  /// Springs along x under the interface nodes, N/m, that keep the factorised matrix definite where nothing
+  /// else holds the plate along x. They add exactly to S and are taken off again.
+  double spring_ = 0;
+  solid::BlockRows near_top_;          ///< K rows of the loaded edge's nodes and their neighbours
+  std::vector<std::int64_t> unknown_;  ///< [2 nodes] index of the unknown, -1 where prescribed or an orphan
+  Eigen::MatrixXd condensed_;
+  std::int64_t n_unknowns_ = 0;
+  double factor_bytes_ = 0;
+};
+
+}  // namespace slipfront::statics

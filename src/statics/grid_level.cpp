@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/grid_level.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+
+#include "base/error.hpp"
+#include "solid/element.hpp"
+
+namespace slipfront::statics {
+
+namespace {
+
+using Block = std::array<double, 4>;
+
+solid::InteriorStencil square_stencil(const solid::Material& material) {
+  const auto K = solid::cell_stiffness({0, 0, 1, 0, 1, 1, 0, 1}, material);
+  // Rows x0 against x0, x1, x2 and y2, x3: the lower left node of a square against its four nodes.
+  return {.centre = 4 * K[0], .along = 2 * K[2], .across = 2 * K[6], .corner = K[4], .twist = K[5]};
+}
+
+bool is_square_in_place(const mesh::Mesh& mesh, const mesh::Cell& cell) {
+  const int stride = mesh.grid.stride();
+  const auto n = cell[0];
+  if (cell[1] != n + 1 || cell[2] != n + stride + 1 || cell[3] != n + stride) return false;
+  const double h = mesh.grid.spacing_m;
+  const std::array<double, 8> square = {0, 0, h, 0, h, h, 0, h};
+  for (int k = 0; k < 4; ++k)
+    if (std::abs(mesh.x_m[cell[k]] - mesh.x_m[n] - square[2 * k]) > 1e-9 * h ||
+        std::abs(mesh.y_m[cell[k]] - mesh.y_m[n] - square[2 * k + 1]) > 1e-9 * h)
+      return false;
+  return true;
+}
+
+/// Fills the places of rows in `level` from marks by row: with_stencil(i), else used(i), else unused.
+struct RowPlaces {
+  GridLevel& level;
+  std::vector<mesh::Node> block_nodes;
+  explicit RowPlaces(GridLevel& l) : level(l) {
+    level.first_span.push_back(0);
+    level.first_block.push_back(0);
+  }
+  template <class Stencil, class Used>
+  void add_row(int j, Stencil&& with_stencil, Used&& used) {
+    for (int i = 0; i <= level.columns; ++i) {
+      if (with_stencil(i)) {
+        const bool joins = static_cast<std::int32_t>(level.span.size()) > level.first_span.back() &&
+                           level.span.back().end == i;
+        if (!joins) level.span.push_back({i, i});
+        ++level.span.back().end;
+      } else {
+        (used(i) ? block_nodes : level.unused).push_back(level.node(i, j));
+      }
+    }
+    level.first_span.push_back(static_cast<std::int32_t>(level.span.size()));
+    level.first_block.push_back(static_cast<std::int32_t>(block_nodes.size()));
+  }
+};
+
+Transfer1D make_transfer_1d(const std::vector<double>& fine) {
+  const auto n = static_cast<std::int32_t>(fine.size()) - 1;
+  const std::int32_t m = n / 2;
+  Transfer1D t;
+  for (std::int32_t k = 0; k < m; ++k) t.place.push_back(2 * k);
+  t.place.push_back(n);
+  for (std::int32_t k = 0; k <= n; ++k) {
+    const std::int32_t left = std::min(k / 2, m - 1);
+    const double from = fine[t.place[left]], to = fine[t.place[left + 1]];
+    t.left.push_back(left);
+    t.weight.push_back(static_cast<float>((fine[k] - from) / (to - from)));
+  }
+  return t;
+}
+
+/// Calls f(coarse column, coarse row, weight) for the up to four nodes that the bilinear interpolation takes.
+template <class F>
+void for_each_bilinear(const Transfer& t, int i, int j, F&& f) {
+  const float wx = t.x.weight[i], wy = t.y.weight[j];
+  for (int b = 0; b < 2; ++b)
+    for (int a = 0; a < 2; ++a) {
+      const float w = (a == 1 ? wx : 1 - wx) * (b == 1 ? wy : 1 - wy);
+      if (w != 0) f(t.x.left[i] + a, t.y.left[j] + b, w);
+    }
+}
+
+void place_neighbours(GridLevel& level) {
+  const auto& rows = level.block;
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+      const int j = rows.neighbour[k] / level.stride();
+      level.neighbour_row.push_back(j);
+      level.neighbour_column.push_back(rows.neighbour[k] % level.stride());
+      level.reach = std::max(level.reach, std::abs(j - rows.node[r] / level.stride()));
+    }
+}
+
+int coarse_stride(const Transfer& t) {
+  return static_cast<int>(t.x.place.size());
+}
+
+template <class F>
+void for_each_weight(const GridLevel& fine, const Transfer& t, mesh::Node n, F&& f) {
+  if (!t.special.empty()) {
+    if (const auto own = t.special.find(n); own != t.special.end()) {
+      for (const auto& e : own->second) f(e.coarse, e.weight);
+      return;
+    }
+  }
+  const int stride = coarse_stride(t);
+  for_each_bilinear(t, n % fine.stride(), n / fine.stride(),
+                    [&](int I, int J, float w) { f(J * stride + I, w); });
+}
+
+}  // namespace
+
+bool GridLevel::has_stencil(int i, int j) const {
+  for (auto k = first_span[j]; k < first_span[j + 1]; ++k)
+    if (i >= span[k].begin && i < span[k].end) return true;
+  return false;
+}
+
+std::int32_t GridLevel::block_row(mesh::Node n) const {
+  const int j = n / stride();
+  const auto begin = block.node.begin() + first_block[j], end = block.node.begin() + first_block[j + 1];
+  const auto place = std::lower_bound(begin, end, n);
+  return place != end && *place == n ? static_cast<std::int32_t>(place - block.node.begin()) : -1;
+}
+
+GridLevel make_level(const mesh::Mesh& mesh, const solid::Material& material) {
+  SLIPFRONT_ASSERT(mesh.period_m == 0, "the logical grid of a periodic plate is not a rectangle");
+  GridLevel level;
+  level.columns = mesh.grid.columns;
+  level.rows = mesh.grid.rows;
+  for (int i = 0; i <= level.columns; ++i) level.x.push_back(i);
+  for (int j = 0; j <= level.rows; ++j) level.y.push_back(j);
+  level.stencil = square_stencil(material);
+
+  // Squares in place around each node, and whether any cell uses it.
+  std::vector<std::uint8_t> squares(mesh.n_nodes(), 0);
+  constexpr std::uint8_t is_used = 0x80;
+  for (const auto& cell : mesh.cells) {
+    const bool square = is_square_in_place(mesh, cell);
+    for (const auto n : cell)
+      squares[n] = static_cast<std::uint8_t>((squares[n] + (square ? 1 : 0)) | is_used);
+    if (square) continue;
+    // The upper nodes of a cell are never glued and tell its place in the grid.
+    const mesh::Node in_place = cell[2] - mesh.grid.stride();
+    if (cell[1] != in_place) level.glued[in_place] = cell[1];
+    if (cell[0] != in_place - 1) level.glued[in_place - 1] = cell[0];
+  }
+  RowPlaces places(level);
+  for (int j = 0; j <= level.rows; ++j)
+    places.add_row(
+        j, [&](int i) { return squares[level.node(i, j)] == (is_used | 4); },
+        [&](int i) { return squares[level.node(i, j)] != 0; });
+  level.block = solid::assemble_rows(mesh, material, places.block_nodes);
+  place_neighbours(level);
+  return level;
+}
+
+Transfer make_transfer(const GridLevel& fine) {
+  Transfer t{make_transfer_1d(fine.x), make_transfer_1d(fine.y), {}};
+  if (fine.unused.empty()) return t;
+  const auto is_unused = [&](mesh::Node n) { return std::ranges::binary_search(fine.unused, n); };
+  const auto place = [&](int I, int J) { return fine.node(t.x.place[I], t.y.place[J]); };
+  const int stride = coarse_stride(t);
+  // An interpolation reaches two fine rows at most.
+  const int last_row = std::min(fine.rows, fine.unused.back() / fine.stride() + 2);
+  for (int j = 0; j <= last_row; ++j)
+    for (int i = 0; i <= fine.columns; ++i) {
+      const auto n = fine.node(i, j);
+      if (is_unused(n)) continue;
+      bool touches = false;
+      for_each_bilinear(t, i, j, [&](int I, int J, float) { touches = touches || is_unused(place(I, J)); });
+      if (!touches) continue;
+      std::map<mesh::Node, float> weights;
+      float sum = 0;
+      const auto add = [&](int I, int J, float w) {
+        weights[J * stride + I] += w;
+        sum += w;
+      };
+      for_each_bilinear(t, i, j, [&](int I, int J, float w) {
+        const auto at = place(I, J);
+        if (!is_unused(at)) {
+          add(I, J, w);
+          return;
+        }
+        const auto glued = fine.glued.find(at);
+        if (glued == fine.glued.end()) return;
+        for_each_bilinear(t, glued->second % fine.stride(), glued->second / fine.stride(),
+                          [&](int I2, int J2, float w2) {
+                            if (!is_unused(place(I2, J2))) add(I2, J2, w * w2);
+                          });
+      });
+      auto& row = t.special[n];
+      for (const auto& [coarse, w] : weights) row.push_back({coarse, w / sum});
+    }
+  return t;
+}
+
+GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
+  GridLevel coarse;
+  coarse.columns = static_cast<int>(t.x.place.size()) - 1;
+  coarse.rows = static_cast<int>(t.y.place.size()) - 1;
+  coarse.stencil = fine.stencil;
+  for (const auto k : t.x.place) coarse.x.push_back(fine.x[k]);
+  for (const auto k : t.y.place) coarse.y.push_back(fine.y[k]);
+  const auto place = [&](mesh::Node n) {
+    return fine.node(t.x.place[n % coarse.stride()], t.y.place[n / coarse.stride()]);
+  };
+  const auto is_unused = [&](mesh::Node n) { return std::ranges::binary_search(fine.unused, place(n)); };
+
+  // A node keeps the stencil where the finer nodes around it have it and all its cells are two by two finer
+  // ones with their own interpolation.
+  const int last_i = fine.columns % 2 == 0 ? coarse.columns - 1 : coarse.columns - 2;
+  const int last_j = fine.rows % 2 == 0 ? coarse.rows - 1 : coarse.rows - 2;
+  const auto covers = [&](int j, int from, int to) {
+    for (auto k = fine.first_span[j]; k < fine.first_span[j + 1]; ++k)
+      if (from >= fine.span[k].begin && to < fine.span[k].end) return true;
+    return false;
+  };
+  const int last_special = t.special.empty() ? -1 : t.special.rbegin()->first / fine.stride();
+  const auto near_special = [&](int i, int j) {
+    if (j - 2 > last_special) return false;
+    for (int dj = -2; dj <= 2; ++dj)
+      for (int di = -2; di <= 2; ++di)
+        if (t.special.contains(fine.node(i + di, j + dj))) return true;
+    return false;
+  };
+  RowPlaces places(coarse);
+  for (int J = 0; J <= coarse.rows; ++J) {
+    const int j = t.y.place[J];
+    places.add_row(
+        J,
+        [&](int I) {
+          if (I < 1 || J < 1 || I > last_i || J > last_j) return false;
+          const int i = t.x.place[I];
+          return covers(j - 1, i - 1, i + 1) && covers(j, i - 1, i + 1) && covers(j + 1, i - 1, i + 1) &&
+                 !near_special(i, j);
+        },
+        [&](int I) { return fine.unused.empty() || !is_unused(coarse.node(I, J)); });
+  }
+  for (const auto& [from, to] : fine.glued) {
+    const auto at = [&](mesh::Node n) -> mesh::Node {
+      const int i = n % fine.stride(), j = n / fine.stride();
+      const int I = t.x.weight[i] == 1 ? t.x.left[i] + 1 : t.x.left[i];
+      const int J = t.y.weight[j] == 1 ? t.y.left[j] + 1 : t.y.left[j];
+      return t.x.place[I] == i && t.y.place[J] == j ? coarse.node(I, J) : -1;
+    };
+    if (at(from) >= 0 && at(to) >= 0) coarse.glued[at(from)] = at(to);
+  }
+
+  // Finer nodes that interpolate from a coarse node by a row of their own.
+  std::unordered_map<mesh::Node, std::vector<std::pair<mesh::Node, float>>> special_of;
+  for (const auto& [n, row] : t.special)
+    for (const auto& e : row) special_of[e.coarse].emplace_back(n, e.weight);
+
+  auto& rows = coarse.block;
+  rows.node = places.block_nodes;
+  rows.first.push_back(0);
+  std::vector<std::pair<mesh::Node, Block>> row;
+  for (const auto N : rows.node) {
+    row.clear();
+    const auto add_finer = [&](mesh::Node n, double w) {
+      for_each_block(fine, n, [&](mesh::Node neighbour, const Block& b) {
+        for_each_weight(fine, t, neighbour, [&](mesh::Node M, float w2) {
+          auto known = std::ranges::find(row, M, [](const auto& e) { return e.first; });
+          if (known == row.end()) known = row.insert(row.end(), {M, Block{}});
+          for (int k = 0; k < 4; ++k) known->second[k] += w * w2 * b[k];
+        });
+      });
+    };
+    const int I = N % coarse.stride(), J = N / coarse.stride();
+    const int i_from = I > 0 ? t.x.place[I - 1] + 1 : 0, j_from = J > 0 ? t.y.place[J - 1] + 1 : 0;
+    const int i_to = I < coarse.columns ? t.x.place[I + 1] - 1 : fine.columns;
+    const int j_to = J < coarse.rows ? t.y.place[J + 1] - 1 : fine.rows;
+    for (int j = j_from; j <= j_to; ++j)
+      for (int i = i_from; i <= i_to; ++i) {
+        const auto n = fine.node(i, j);
+        if (!t.special.empty() && t.special.contains(n)) continue;
+        for_each_bilinear(t, i, j, [&](int A, int B, float w) {
+          if (A == I && B == J) add_finer(n, w);
+        });
+      }
+    if (const auto own = special_of.find(N); own != special_of.end())
+      for (const auto& [n, w] : own->second) add_finer(n, w);
+    std::ranges::sort(row, {}, [](const auto& e) { return e.first; });
+    for (const auto& [M, b] : row) {
+      rows.neighbour.push_back(M);
+      rows.block.push_back(b);
+    }
+    rows.first.push_back(static_cast<std::int32_t>(rows.neighbour.size()));
+  }
+  place_neighbours(coarse);
+  return coarse;
+}
+
+double largest_smoothed_eigenvalue(const solid::InteriorStencil& s) {
+  // The stencil's Fourier symbol is a symmetric 2 x 2 matrix; its largest eigenvalue over the wave numbers.
+  constexpr int n = 64;
+  double largest = 0;
+  for (int a = 0; a <= n; ++a)
+    for (int b = 0; b <= n; ++b) {
+      const double x = std::numbers::pi * a / n, y = std::numbers::pi * b / n;
+      const double cx = 2 * std::cos(x), cy = 2 * std::cos(y), both = cx * cy;
+      const double xx = s.centre + s.along * cx + s.across * cy + s.corner * both;
+      const double yy = s.centre + s.across * cx + s.along * cy + s.corner * both;
+      const double xy = -4 * s.twist * std::sin(x) * std::sin(y);
+      largest = std::max(largest, 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy));
+    }
+  return largest / s.centre;
+}
+
+}  // namespace slipfront::statics

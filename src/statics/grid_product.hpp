@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "statics/grid_level.hpp"
+#include "threads/team.hpp"
+
+// K times a vector on a grid level, row by row, in single or double precision.
+namespace slipfront::statics {
+
+/// A vector field on a grid level.
+template <class T>
+struct GridField {
+  std::vector<T> x, y;
+  GridField() = default;
+  explicit GridField(std::size_t n) : x(n, T(0)), y(n, T(0)) {}
+  std::size_t size() const { return x.size(); }
+};
+
+/// Rows of a vector field on a grid level: all of them, or as a ring the last few of a sweep.
+template <class T>
+struct Rows {
+  T* x_begin;
+  T* y_begin;
+  std::ptrdiff_t stride;
+  int mask = -1;  ///< of a row's number: -1 for all rows, their number less 1 for a ring of 2^n rows
+  T* x(int j) const { return x_begin + (j & mask) * stride; }
+  T* y(int j) const { return y_begin + (j & mask) * stride; }
+  Rows<const T> as_const() const { return {x_begin, y_begin, stride, mask}; }
+};
+
+template <class F>
+auto all_rows(F& field, const GridLevel& level) {
+  return Rows<std::remove_reference_t<decltype(field.x[0])>>{field.x.data(), field.y.data(), level.stride()};
+}
+
+/// A ring of rows.
+template <class T>
+class RowRing {
+ public:
+  RowRing() = default;
+  RowRing(int least_rows, int longest_row) {
+    while (rows_ < least_rows) rows_ *= 2;
+    field_ = GridField<T>(static_cast<std::size_t>(rows_) * longest_row);
+  }
+  Rows<T> on(const GridLevel& level) { return {field_.x.data(), field_.y.data(), level.stride(), rows_ - 1}; }
+
+ private:
+  int rows_ = 1;
+  GridField<T> field_;
+};
+
+/// Copies of the rows next to a part of a field's rows, where the neighbouring part is changed meanwhile.
+template <class T>
+class RowsBeside {
+ public:
+  RowsBeside() = default;
+  RowsBeside(int most_rows, int longest_row) : field_(2UL * most_rows * longest_row) {}
+  /// Copies up to n rows before and after the part.
+  void copy(const GridLevel& level, const Rows<const T>& from, threads::PartOf part, int n) {
+    part_ = part;
+    n_ = n;
+    stride_ = level.stride();
+    for (int j = std::max(0, part.begin - n); j < std::min(level.rows + 1, part.end + n); ++j) {
+      if (j >= part.begin && j < part.end) continue;
+      std::copy_n(from.x(j), stride_, field_.x.data() + place(j));
+      std::copy_n(from.y(j), stride_, field_.y.data() + place(j));
+    }
+  }
+  /// The row of the field itself within the part, the copy beside it.
+  const T* x(const Rows<const T>& field, int j) const {
+    return j >= part_.begin && j < part_.end ? field.x(j) : field_.x.data() + place(j);
+  }
+  const T* y(const Rows<const T>& field, int j) const {
+    return j >= part_.begin && j < part_.end ? field.y(j) : field_.y.data() + place(j);
+  }
+
+ private:
+  std::ptrdiff_t place(int j) const {
+    return (j < part_.begin ? j - part_.begin + n_ : n_ + j - part_.end) * stride_;
+  }
+  threads::PartOf part_{0, 0, 1};
+  int n_ = 0;
+  std::ptrdiff_t stride_ = 0;
+  GridField<T> field_;
+};
+
+/// Blocks of a level's block rows in the precision of the product.
+template <class T>
+std::vector<std::array<T, 4>> blocks_as(const solid::BlockRows& rows) {
+  std::vector<std::array<T, 4>> blocks;
+  blocks.reserve(rows.block.size());
+  for (const auto& b : rows.block)
+    blocks.push_back(
+        {static_cast<T>(b[0]), static_cast<T>(b[1]), static_cast<T>(b[2]), static_cast<T>(b[3])});
+  return blocks;
+}
+
+#ifdef __AVX512F__
+inline constexpr int vector_bytes = 64;
+#else
+inline constexpr int vector_bytes = 32;
+#endif
+
+/// n consecutive numbers of a row.
+template <class T, int n>
+struct VectorOf {
+  typedef T Type __attribute__((vector_size(n * sizeof(T))));
+  /// The same anywhere in memory: packed, so that no alignment is promised.
+  struct __attribute__((packed, may_alias)) InMemory {
+    Type values;
+  };
+};
+/// So many as are computed at a time in the precision T.
+template <class T>
+inline constexpr int lanes = vector_bytes / sizeof(T);
+template <class T>
+using Lanes = typename VectorOf<T, lanes<T>>::Type;
+template <class V>
+inline constexpr int length = sizeof(V) / sizeof(std::declval<V>()[0]);
+
+/// Numbers from `from` on in the type V: a vector, or one number.
+template <class V, class In>
+inline V load(const In* from) {
+  if constexpr (std::is_arithmetic_v<V>) {
+    return static_cast<V>(*from);
+  } else {
+    return __builtin_convertvector(
+        reinterpret_cast<const typename VectorOf<In, length<V>>::InMemory*>(from)->values, V);
+  }
+}
+template <class V, class Out>
+inline void store(Out* to, const V& value) {
+  if constexpr (std::is_arithmetic_v<V>) {
+    *to = static_cast<Out>(value);
+  } else {
+    using To = VectorOf<Out, length<V>>;
+    reinterpret_cast<typename To::InMemory*>(to)->values = __builtin_convertvector(value, typename To::Type);
+  }
+}
+
+/// A sum in double precision of products computed in the precision T, in an order that only depends on the
+/// columns.
+template <class T>
+class RowSum {
+ public:
+  /// Adds a b.
+  template <class V>
+  void add(const V& a, const V& b) {
+    if constexpr (std::is_arithmetic_v<V>) {
+      one_ += static_cast<double>(a) * static_cast<double>(b);
+    } else {
+      several_ += __builtin_convertvector(a, Doubles) * __builtin_convertvector(b, Doubles);
+    }
+  }
+  double value() const {
+    double sum = one_;
+    for (int k = 0; k < lanes<T>; ++k) sum += several_[k];
+    return sum;
+  }
+
+ private:
+  using Doubles = typename VectorOf<double, lanes<T>>::Type;
+  double one_ = 0;
+  Doubles several_{};
+};
+
+/// What a column gives to the stencil's products at itself and at its neighbours, so that two vectors per
+/// component have to be shifted instead of loading all neighbours.
+template <class V>
+struct ColumnTerms {
+  V own_x, own_y, to_right_x, to_right_y, to_left_x, to_left_y;
+};
+
+/// A stencil in the precision T.
+template <class T>
+struct StencilAs {
+  T centre, along, across, corner, twist;
+  explicit StencilAs(const solid::InteriorStencil& s)
+      : centre(static_cast<T>(s.centre)),
+        along(static_cast<T>(s.along)),
+        across(static_cast<T>(s.across)),
+        corner(static_cast<T>(s.corner)),
+        twist(static_cast<T>(s.twist)) {}
+
+  template <class V, class In>
+  ColumnTerms<V> terms(const Rows<const In>& f, int j, int i) const {
+    const V south_x = load<V>(f.x(j - 1) + i), south_y = load<V>(f.y(j - 1) + i);
+    const V north_x = load<V>(f.x(j + 1) + i), north_y = load<V>(f.y(j + 1) + i);
+    const V w_x = load<V>(f.x(j) + i), w_y = load<V>(f.y(j) + i);
+    const V sum_x = south_x + north_x, twist_x = twist * (north_x - south_x);
+    const V sum_y = south_y + north_y, twist_y = twist * (north_y - south_y);
+    const V beside_x = along * w_x + corner * sum_x, beside_y = across * w_y + corner * sum_y;
+    return {centre * w_x + across * sum_x,
+            centre * w_y + along * sum_y,
+            beside_x - twist_y,
+            beside_y - twist_x,
+            beside_x + twist_y,
+            beside_y + twist_x};
+  }
+};
+
+/// The vector one column to the left of `here`, where `left` stands before it, and one to the right.
+template <int by, class V, int... k>
+inline V shifted(const V& first, const V& second, std::integer_sequence<int, k...>) {
+  return __builtin_shufflevector(first, second, (by + k)...);
+}
+template <class V>
+inline V from_left(const V& left, const V& here) {
+  return shifted<length<V> - 1>(left, here, std::make_integer_sequence<int, length<V>>{});
+}
+template <class V>
+inline V from_right(const V& here, const V& right) {
+  return shifted<1>(here, right, std::make_integer_sequence<int, length<V>>{});
+}
+
+/// even[0], odd[0], even[1], odd[1] ... in two vectors.
+template <int from, class V, int... k>
+inline V interleaved_from(const V& even, const V& odd, std::integer_sequence<int, k...>) {
+  return __builtin_shufflevector(even, odd, ((from + k) / 2 + (k % 2) * length<V>)...);
+}
+template <class V>
+inline std::pair<V, V> interleaved(const V& even, const V& odd) {
+  constexpr auto all = std::make_integer_sequence<int, length<V>>{};
+  return {interleaved_from<0>(even, odd, all), interleaved_from<length<V>>(even, odd, all)};
+}
+
+/// Calls f(i, a_x, a_y) with the stencil's products in columns [begin, end) of row j, of type Lanes<T> for
+/// the columns from i on, or T.
+template <class T, class In, class F>
+void for_stencil_products(const solid::InteriorStencil& stencil, solid::Span span, int j,
+                          const Rows<const In>& field, F&& f) {
+  const StencilAs<T> s(stencil);
+  using V = Lanes<T>;
+  int i = span.begin;
+  if (i + 2 * lanes<T> <= span.end + 1) {
+    const auto before = s.template terms<T>(field, j, i - 1);
+    V left_x{}, left_y{};
+    left_x[lanes<T> - 1] = before.to_right_x;
+    left_y[lanes<T> - 1] = before.to_right_y;
+    auto here = s.template terms<V>(field, j, i);
+    for (; i + 2 * lanes<T> <= span.end + 1; i += lanes<T>) {
+      const auto right = s.template terms<V>(field, j, i + lanes<T>);
+      f(i, V(here.own_x + (from_left(left_x, here.to_right_x) + from_right(here.to_left_x, right.to_left_x))),
+        V(here.own_y + (from_left(left_y, here.to_right_y) + from_right(here.to_left_y, right.to_left_y))));
+      left_x = here.to_right_x;
+      left_y = here.to_right_y;
+      here = right;
+    }
+  }
+  if (i == span.end) return;
+  auto left = s.template terms<T>(field, j, i - 1), here = s.template terms<T>(field, j, i);
+  for (; i < span.end; ++i) {
+    const auto right = s.template terms<T>(field, j, i + 1);
+    f(i, here.own_x + (left.to_right_x + right.to_left_x), here.own_y + (left.to_right_y + right.to_left_y));
+    left = here;
+    here = right;
+  }
+}
+
+/// Row j of K times `field`, friction included: calls inside(i, a_x, a_y) as for_stencil_products does, and
+/// other(i, r, a_x, a_y) for the block rows r; nothing for unused grid numbers. `slip`: factors of the block
+/// rows by which f_y is added to f_x, or null.
+template <class T, class In, class Inside, class Other>
+void for_row_products(const GridLevel& level, const std::vector<std::array<T, 4>>& blocks, const T* slip,
+                      int j, const Rows<const In>& field, Inside&& inside, Other&& other) {
+  for (auto k = level.first_span[j]; k < level.first_span[j + 1]; ++k)
+    for_stencil_products<T>(level.stencil, level.span[k], j, field, inside);
+  const auto& rows = level.block;
+  for (auto r = level.first_block[j]; r < level.first_block[j + 1]; ++r) {
+    T sum_x = 0, sum_y = 0;
+    for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+      const auto& b = blocks[k];
+      const auto row = level.neighbour_row[k], column = level.neighbour_column[k];
+      const T w_x = static_cast<T>(field.x(row)[column]), w_y = static_cast<T>(field.y(row)[column]);
+      sum_x += b[0] * w_x + b[1] * w_y;
+      sum_y += b[2] * w_x + b[3] * w_y;
+    }
+    if (slip != nullptr) sum_x += slip[r] * sum_y;
+    other(rows.node[r] - j * level.stride(), r, sum_x, sum_y);
+  }
+}
+
+/// Sets the numbers of row j without a node of the plate to 0.
+template <class T>
+void clear_unused(const GridLevel& level, int j, T* x, T* y) {
+  if (level.unused.empty() || level.node(0, j) > level.unused.back()) return;
+  for (auto n = std::ranges::lower_bound(level.unused, level.node(0, j));
+       n != level.unused.end() && *n < level.node(0, j + 1); ++n)
+    x[*n - level.node(0, j)] = y[*n - level.node(0, j)] = 0;
+}
+
+}  // namespace slipfront::statics

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "statics/multigrid.hpp"
+#include "statics/plate_solver.hpp"
+
+namespace slipfront::statics {
+
+/// Bytes of the iterative statics at their peak, the mesh and the equilibria included: 107 an unknown.
+double iterative_bytes(double n_unknowns);
+
+/// Equations of the plate on one level of the multigrid, without any matrix: conjugate gradients with one
+/// multigrid cycle as preconditioner; where nodes slip, whose friction makes the equations unsymmetric,
+/// BiCGStab (van der Vorst, SIAM J. Sci. Stat. Comput. 13, 631-644, 1992) with the same preconditioner.
+class LevelEquations {
+ public:
+  LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, threads::Team& team, int level);
+
+  /// Fixes displacements: the loaded edge's, and those that the support does not leave free.
+  void fix(TopConstraint constraint, const Support& support);
+  /// Improves u, whose fixed displacements are right, until the rest is in equilibrium.
+  /// @throws UserError where that takes too many cycles.
+  void solve(double accuracy, solid::Field& u);
+  /// Forces that u takes at the interface. [2 interface nodes of the level]
+  Eigen::VectorXd interface_forces(const solid::Field& u) const;
+
+  const GridLevel& grid() const { return grid_; }
+  const Multigrid& multigrid() const { return multigrid_; }
+  int level() const { return level_; }
+  mesh::Node finest(mesh::Node n) const;  ///< node of the mesh at the place of the level's node
+  const std::vector<mesh::Node>& lower() const { return lower_; }
+  const std::vector<std::size_t>& in_mesh_lower() const { return in_mesh_lower_; }
+
+ private:
+  /// Calls f(i, a_x, a_y) with row j of A p in the precision T: friction added, 0 at fixed displacements. i
+  /// stands for several columns where a_x is a vector.
+  template <class T, class P, class F>
+  void for_products(int j, const Rows<const P>& p, F&& f) const;
+  /// r = -A u; returns u . K u.
+  double start_residual(const solid::Field& u);
+  /// direction = z + beta direction; returns direction . A direction.
+  double next_direction(double beta);
+  /// u += step z, r -= step A z; returns the new r . shadow, where there is one.
+  double take_step(double step, const GridField<float>& z, solid::Field& u);
+  void add_z(solid::Field& u);
+  void conjugate_gradients(double accuracy, solid::Field& u);
+  void bicgstab(double accuracy, solid::Field& u);
+  /// Calls f(row) -> two terms for all rows and returns the sums of the terms.
+  template <class F>
+  std::array<double, 2> sum_rows(F&& f);
+
+  /// What a thread needs for its sweeps.
+  struct Workspace {
+    RowRing<float> direction;
+    RowsBeside<float> beside;
+  };
+
+  Multigrid& multigrid_;
+  threads::Team& team_;
+  int level_;
+  const GridLevel& grid_;
+  int parts_;
+  std::vector<mesh::Node> lower_, top_;     ///< the level's nodes
+  std::vector<std::size_t> in_mesh_lower_;  ///< [lower] places in mesh.lower
+  std::vector<std::array<float, 4>> blocks_f_;
+  std::vector<std::uint8_t> fixed_;  ///< [block rows] bit 0: x, bit 1: y
+  std::vector<double> slip_;         ///< [block rows] factor of f_y, 0 where the node does not slip
+  std::vector<float> slip_f_;
+  bool slips_ = false;
+  std::vector<Workspace> workspace_;            ///< [threads]
+  std::vector<std::array<double, 2>> row_sum_;  ///< [rows]
+  /// The residual is that of u up to rounding in double precision, since both change by the same step of the
+  /// same direction, however the direction was rounded.
+  solid::Field residual_;
+  GridField<float> direction_, shadow_, product_;
+};
+
+/// Equilibria by LevelEquations. Coarser levels with enough interface nodes give first guesses.
+class IterativeSolver : public PlateSolver {
+ public:
+  IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material);
+  IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material, int threads);
+
+  std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
+                                      const solid::Field* start, int level) override;
+  std::int64_t n_unknowns() const override { return n_unknowns_; }
+  double bytes() const override { return iterative_bytes(static_cast<double>(n_unknowns_)); }
+  bool iterates() const override { return true; }
+  int n_cycles() const override { return multigrid_.n_cycles(); }
+  int n_levels() const override { return n_levels_; }
+  std::vector<std::size_t> interface_of(int level) const override;
+
+  Multigrid& multigrid() { return multigrid_; }
+  threads::Team& team() { return team_; }
+
+ private:
+  const mesh::Mesh& mesh_;
+  threads::Team team_;
+  Multigrid multigrid_;
+  std::int64_t n_unknowns_ = 0;
+  int n_levels_ = 1;
+};
+
+}  // namespace slipfront::statics

@@ -1,0 +1,578 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/multigrid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.hpp"
+
+namespace slipfront::statics {
+
+namespace {
+
+constexpr std::size_t most_coarsest_nodes = 400;
+constexpr int least_cells = 4;  ///< a level is made coarser only where it has as many in both directions
+/// The smoother acts on the eigenvalues of D^-1 K from this fraction of the largest one; the coarse grid
+/// takes the rest.
+constexpr double smoothed_fraction = 0.1;
+constexpr double eigenvalue_margin = 1.05;
+constexpr std::size_t least_nodes_for_threads = 40000;  ///< of a level
+
+/// Reproducible numbers between -1/2 and 1/2.
+class RandomNumbers {
+ public:
+  double operator()() {
+    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state_ >> 11) / 9007199254740992.0 - 0.5;
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+}  // namespace
+
+struct Multigrid::Level {
+  GridLevel grid;
+  Transfer transfer;                  ///< from the next coarser level
+  std::vector<mesh::Node> special;    ///< nodes with an interpolation of their own, ascending
+  GridField<float> special_residual;  ///< of these nodes
+  std::vector<std::array<float, 4>> blocks;
+  std::vector<std::uint8_t> fixed;      ///< [block rows] bit 0: x, bit 1: y
+  std::vector<float> slip;              ///< [block rows] factor, 0 where the node does not slip
+  std::vector<float> inverse_diagonal;  ///< [2 block rows], 0 where fixed
+  double largest = 0;                   ///< eigenvalue of D^-1 K
+  double damping = 1;                   ///< factor of D at the block rows
+  GridField<float> u, b;                ///< the finest level's b is not kept
+
+  Level(GridLevel g, bool is_finest)
+      : grid(std::move(g)),
+        blocks(blocks_as<float>(grid.block)),
+        fixed(grid.block.size(), 0),
+        slip(grid.block.size(), 0.0F),
+        inverse_diagonal(2 * grid.block.size(), 0.0F),
+        u(grid.n_nodes()),
+        b(is_finest ? 0 : grid.n_nodes()) {}
+
+  Rows<float> u_rows() { return all_rows(u, grid); }
+  Rows<float> b_rows() { return all_rows(b, grid); }
+
+  void set_diagonal() {
+    for (std::size_t r = 0; r < grid.block.size(); ++r)
+      for (auto k = grid.block.first[r]; k < grid.block.first[r + 1]; ++k) {
+        if (grid.block.neighbour[k] != grid.block.node[r]) continue;
+        const auto& d = grid.block.block[k];
+        for (int c = 0; c < 2; ++c)
+          inverse_diagonal[2 * r + c] =
+              (fixed[r] >> c & 1) != 0 || d[3 * c] <= 0 ? 0 : static_cast<float>(1 / (damping * d[3 * c]));
+      }
+  }
+
+  /// Calls step(i, a_x, a_y, D^-1_x, D^-1_y) with the products A = K with friction of row j; the D^-1 are
+  /// times `gain`. i stands for several columns where a_x is a vector.
+  template <class Step>
+  void for_products(int j, const Rows<const float>& field, float gain, Step&& step) const {
+    const float inverse = gain / static_cast<float>(grid.stencil.centre);
+    for_row_products<float>(
+        grid, blocks, slip.data(), j, field,
+        [&](int i, const auto& a_x, const auto& a_y) { step(i, a_x, a_y, inverse, inverse); },
+        [&](int i, std::int32_t r, float a_x, float a_y) {
+          step(i, a_x, a_y, gain * inverse_diagonal[2 * r], gain * inverse_diagonal[2 * r + 1]);
+        });
+  }
+
+  /// Fields are 0 at fixed displacements and unused grid numbers.
+  void clear_fixed(int j, float* x, float* y) const {
+    for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) {
+      const auto i = grid.block.node[r] - j * grid.stride();
+      if (inverse_diagonal[2 * r] == 0) x[i] = 0;
+      if (inverse_diagonal[2 * r + 1] == 0) y[i] = 0;
+    }
+    clear_unused(grid, j, x, y);
+  }
+
+  /// Calls f(k, column) for the special nodes of row j.
+  template <class F>
+  void for_special(int j, F&& f) const {
+    if (special.empty() || grid.node(0, j) > special.back()) return;
+    for (auto n = std::ranges::lower_bound(special, grid.node(0, j));
+         n != special.end() && *n < grid.node(0, j + 1); ++n)
+      f(static_cast<std::size_t>(n - special.begin()), *n - grid.node(0, j));
+  }
+
+  /// Gains of two Chebyshev steps: c1 = first D^-1 (b - K u), u1 = u + c1,
+  /// c2 = keep c1 + second D^-1 (b - K u1), u2 = u1 + c2.
+  struct Gains {
+    float first, second, keep;
+  };
+  Gains gains() const {
+    const double high = eigenvalue_margin * largest, low = smoothed_fraction * high;
+    const double theta = 0.5 * (high + low), delta = 0.5 * (high - low), sigma = theta / delta;
+    const double rho = sigma / (2 * sigma * sigma - 1);
+    return {static_cast<float>(1 / theta), static_cast<float>(2 * rho / delta),
+            static_cast<float>(rho / sigma)};
+  }
+};
+
+/// What a thread needs for its sweeps.
+struct Multigrid::Workspace {
+  RowRing<float> start, change, smoothed;
+  RowsBeside<float> beside;
+  std::vector<float> residual_x, residual_y, coarse_row;
+  Workspace(int reach, int longest_row)
+      : start(2 * reach + 1, longest_row),
+        change(2 * reach + 1, longest_row),
+        smoothed(2 * reach + 1, longest_row),
+        beside(2 * reach, longest_row),
+        residual_x(longest_row),
+        residual_y(longest_row),
+        coarse_row(longest_row) {}
+};
+
+Multigrid::~Multigrid() = default;
+
+Multigrid::Multigrid(const mesh::Mesh& mesh, const solid::Material& material, threads::Team& team)
+    : team_(team) {
+  levels_.push_back(std::make_unique<Level>(make_level(mesh, material), true));
+  const auto is_coarse = [](const GridLevel& g) {
+    return g.n_nodes() <= most_coarsest_nodes || std::min(g.columns, g.rows) < least_cells;
+  };
+  while (!is_coarse(levels_.back()->grid)) {
+    auto& fine = *levels_.back();
+    fine.transfer = make_transfer(fine.grid);
+    for (const auto& [n, row] : fine.transfer.special) fine.special.push_back(n);
+    fine.special_residual = GridField<float>(fine.special.size());
+    levels_.push_back(std::make_unique<Level>(make_coarse_level(fine.grid, fine.transfer), false));
+  }
+  int reach = 1;
+  for (const auto& level : levels_) {
+    damp_block_rows(*level);
+    estimate_largest_eigenvalue(*level);
+    reach = std::max(reach, level->grid.reach);
+  }
+  workspace_.assign(team.size(), Workspace(reach, mesh.grid.stride()));
+  row_sum_.resize(mesh.grid.rows + 1);
+}
+
+int Multigrid::parts(int level) const {
+  return levels_[level]->grid.n_nodes() >= least_nodes_for_threads ? team_.size() : 1;
+}
+
+const GridLevel& Multigrid::grid(int level) const {
+  return levels_[level]->grid;
+}
+
+const Transfer& Multigrid::transfer(int finer_level) const {
+  return levels_[finer_level]->transfer;
+}
+
+const GridField<float>& Multigrid::z() const {
+  return levels_[top_level_]->u;
+}
+
+void Multigrid::prescribe(const BoundaryNodes& boundary, int first) {
+  top_level_ = first;
+  for (std::size_t l = first; l < levels_.size(); ++l) {
+    auto& level = *levels_[l];
+    std::ranges::fill(level.fixed, std::uint8_t{0});
+    std::ranges::fill(level.slip, 0.0F);
+    if (l == static_cast<std::size_t>(first)) {
+      const auto block_row = [&](mesh::Node n) {
+        const auto r = level.grid.block_row(n);
+        SLIPFRONT_ASSERT(r >= 0, "a node with a condition is not on the boundary");
+        return r;
+      };
+      for (const auto n : boundary.fixed_x) level.fixed[block_row(n)] |= 1;
+      for (const auto n : boundary.fixed_y) level.fixed[block_row(n)] |= 2;
+      for (const auto& slip : boundary.slip)
+        level.slip[block_row(slip.node)] = static_cast<float>(slip.factor);
+    } else {
+      const auto& finer = *levels_[l - 1];
+      const auto& t = finer.transfer;
+      for (std::size_t r = 0; r < level.fixed.size(); ++r) {
+        const auto n = level.grid.block.node[r];
+        const auto finer_row = finer.grid.block_row(
+            finer.grid.node(t.x.place[n % level.grid.stride()], t.y.place[n / level.grid.stride()]));
+        if (finer_row < 0) continue;
+        level.fixed[r] = finer.fixed[finer_row];
+        level.slip[r] = finer.slip[finer_row];
+      }
+    }
+    level.set_diagonal();
+  }
+  factorise_coarsest();
+}
+
+double Multigrid::apply(const Rows<const double>& r) {
+  return cycle(top_level_, r);
+}
+double Multigrid::apply(const Rows<const float>& r) {
+  return cycle(top_level_, r);
+}
+
+template <class B>
+double Multigrid::cycle(std::size_t l, const Rows<const B>& b) {
+  n_cycles_ += l == 0 ? 1 : 0;
+  if (l + 1 == levels_.size()) return solve_coarsest(b);
+  smooth_and_restrict(l, b);
+  cycle(l + 1, levels_[l + 1]->b_rows().as_const());
+  return prolong_and_smooth(l, b);
+}
+
+namespace {
+
+/// Restricts row r of a residual to the coarse columns.
+void restrict_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict r,
+                  float* __restrict c) {
+  // Cells that consist of two finer ones; the last may have three.
+  const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
+  c[0] = r[0] + (n_pairs > 0 ? 0.5F * r[1] : 0.0F);
+  for (int I = 1; I < n_pairs; ++I) c[I] = r[2 * I] + 0.5F * (r[2 * I - 1] + r[2 * I + 1]);
+  if (n_pairs > 0) c[n_pairs] = r[2 * n_pairs] + 0.5F * r[2 * n_pairs - 1];
+  if (n_pairs == coarse_columns) return;
+  const int i = 2 * n_pairs;
+  const float w1 = t.weight[i + 1], w2 = t.weight[i + 2];
+  c[n_pairs] += (1 - w1) * r[i + 1] + (1 - w2) * r[i + 2];
+  c[n_pairs + 1] = w1 * r[i + 1] + w2 * r[i + 2] + r[i + 3];
+}
+
+/// u = start + interpolation of the values c at the coarse columns.
+void interpolate_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict c,
+                     const float* __restrict start, float* __restrict u) {
+  const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
+  using V = Lanes<float>;
+  int I = 0;
+  for (; I + length<V> <= n_pairs; I += length<V>) {
+    const V here = load<V>(c + I), between = 0.5F * (here + load<V>(c + I + 1));
+    const auto [first, second] = interleaved(here, between);
+    store(u + 2 * I, V(load<V>(start + 2 * I) + first));
+    store(u + 2 * I + length<V>, V(load<V>(start + 2 * I + length<V>) + second));
+  }
+  for (; I < n_pairs; ++I) {
+    u[2 * I] = start[2 * I] + c[I];
+    u[2 * I + 1] = start[2 * I + 1] + 0.5F * (c[I] + c[I + 1]);
+  }
+  for (int i = 2 * n_pairs; i <= columns; ++i) {
+    const int left = t.left[i];
+    u[i] = start[i] + (1 - t.weight[i]) * c[left] + t.weight[i] * c[left + 1];
+  }
+}
+
+/// Takes rows [begin, end) through three steps. A step of a row needs the step before of the rows within
+/// K's reach, so it follows by that much, and the earlier steps begin and end so much further out.
+template <class First, class Second, class Third>
+void sweep(const GridLevel& grid, int begin, int end, First&& first, Second&& second, Third&& third) {
+  const int reach = grid.reach;
+  const auto is_within = [&](int j, int margin) {
+    return j >= std::max(0, begin - margin) && j < std::min(grid.rows + 1, end + margin);
+  };
+  for (int j = begin - 2 * reach; j < end + 2 * reach; ++j) {
+    if (is_within(j, 2 * reach)) first(j);
+    if (is_within(j - reach, reach)) second(j - reach);
+    if (is_within(j - 2 * reach, 0)) third(j - 2 * reach);
+  }
+}
+
+}  // namespace
+
+template <class B>
+void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
+  auto& fine = *levels_[l];
+  auto& coarse = *levels_[l + 1];
+  const auto& grid = fine.grid;
+  const auto& t = fine.transfer;
+  const int coarse_stride = coarse.grid.stride(), n_parts = parts(static_cast<int>(l));
+  const auto gains = fine.gains();
+  const auto u = fine.u_rows(), coarse_b = coarse.b_rows();
+
+  team_.run(n_parts, [&](int part) {
+    auto& work = workspace_[part];
+    const auto change = work.change.on(grid), smoothed = work.smoothed.on(grid);
+    // Own coarse rows, the finer rows that lie on or above them, and those whose residual they take.
+    const threads::PartOf own(coarse.grid.rows + 1, part, n_parts);
+    const auto first_above = [&](int J) {
+      return static_cast<int>(std::ranges::lower_bound(t.y.left, J) - t.y.left.begin());
+    };
+    const int begin = first_above(own.begin - 1), u_begin = first_above(own.begin),
+              end = first_above(own.end);
+    for (int J = own.begin; J < own.end; ++J) {
+      std::fill_n(coarse_b.x(J), coarse_stride, 0.0F);
+      std::fill_n(coarse_b.y(J), coarse_stride, 0.0F);
+    }
+
+    const auto first_step = [&](int j) {
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      float* __restrict c_x = change.x(j), * __restrict c_y = change.y(j);
+      const float gain = gains.first / static_cast<float>(grid.stencil.centre);
+      for (int i = 0; i < grid.stride(); ++i) {
+        c_x[i] = gain * static_cast<float>(b_x[i]);
+        c_y[i] = gain * static_cast<float>(b_y[i]);
+      }
+      for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) {
+        const auto i = grid.block.node[r] - j * grid.stride();
+        c_x[i] = gains.first * fine.inverse_diagonal[2 * r] * static_cast<float>(b_x[i]);
+        c_y[i] = gains.first * fine.inverse_diagonal[2 * r + 1] * static_cast<float>(b_y[i]);
+      }
+    };
+    const auto second_step = [&](int j) {
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      const float *c_x = change.x(j), *c_y = change.y(j);
+      float *v_x = smoothed.x(j), *v_y = smoothed.y(j);
+      fine.for_products(j, change.as_const(), gains.second,
+                        [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                          const float kept = 1 + gains.keep;
+                          store(v_x + i, V(kept * load<V>(c_x + i) + inverse_x * (load<V>(b_x + i) - a_x)));
+                          store(v_y + i, V(kept * load<V>(c_y + i) + inverse_y * (load<V>(b_y + i) - a_y)));
+                        });
+      fine.clear_fixed(j, v_x, v_y);
+      if (j < u_begin || j >= end) return;
+      std::copy_n(v_x, grid.stride(), u.x(j));
+      std::copy_n(v_y, grid.stride(), u.y(j));
+    };
+    const auto restrict_residual = [&](int j) {
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      float *r_x = work.residual_x.data(), *r_y = work.residual_y.data();
+      for_row_products<float>(
+          grid, fine.blocks, fine.slip.data(), j, smoothed.as_const(),
+          [&]<class V>(int i, const V& a_x, const V& a_y) {
+            store(r_x + i, V(load<V>(b_x + i) - a_x));
+            store(r_y + i, V(load<V>(b_y + i) - a_y));
+          },
+          [&](int i, std::int32_t, float a_x, float a_y) {
+            r_x[i] = static_cast<float>(b_x[i]) - a_x;
+            r_y[i] = static_cast<float>(b_y[i]) - a_y;
+          });
+      fine.clear_fixed(j, r_x, r_y);
+      fine.for_special(j, [&](std::size_t k, int i) {
+        if (j >= u_begin && j < end) {
+          fine.special_residual.x[k] = r_x[i];
+          fine.special_residual.y[k] = r_y[i];
+        }
+        r_x[i] = r_y[i] = 0;
+      });
+      const float w = t.y.weight[j];
+      const int below = t.y.left[j];
+      for (int component = 0; component < 2; ++component) {
+        float* __restrict c = work.coarse_row.data();
+        restrict_row(t.x, grid.columns, coarse.grid.columns, component == 0 ? r_x : r_y, c);
+        const auto add = [&](int J, float weight) {
+          if (weight == 0 || J < own.begin || J >= own.end) return;
+          float* __restrict to = component == 0 ? coarse_b.x(J) : coarse_b.y(J);
+          for (int I = 0; I < coarse_stride; ++I) to[I] += weight * c[I];
+        };
+        add(below, 1 - w);
+        add(below + 1, w);
+      }
+    };
+    sweep(grid, begin, end, first_step, second_step, restrict_residual);
+  });
+
+  std::size_t k = 0;
+  for (const auto& [n, entries] : t.special) {
+    for (const auto& e : entries) {
+      coarse.b.x[e.coarse] += e.weight * fine.special_residual.x[k];
+      coarse.b.y[e.coarse] += e.weight * fine.special_residual.y[k];
+    }
+    ++k;
+  }
+}
+
+template <class B>
+double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
+  auto& fine = *levels_[l];
+  auto& coarse = *levels_[l + 1];
+  const auto& grid = fine.grid;
+  const auto& t = fine.transfer;
+  const int reach = grid.reach, coarse_stride = coarse.grid.stride(), n_parts = parts(static_cast<int>(l));
+  const auto gains = fine.gains();
+  const auto u = fine.u_rows(), coarse_u = coarse.u_rows();
+
+  team_.run(n_parts, [&](int part) {
+    auto& work = workspace_[part];
+    const auto start = work.start.on(grid), change = work.change.on(grid), smoothed = work.smoothed.on(grid);
+    const threads::PartOf own(grid.rows + 1, part, n_parts);
+    work.beside.copy(grid, u.as_const(), own, 2 * reach);
+    team_.meet(n_parts);
+
+    const auto prolong = [&](int j) {
+      const float *u_x = work.beside.x(u.as_const(), j), *u_y = work.beside.y(u.as_const(), j);
+      const float w = t.y.weight[j];
+      const int below = t.y.left[j];
+      for (int component = 0; component < 2; ++component) {
+        const float* __restrict e0 = component == 0 ? coarse_u.x(below) : coarse_u.y(below);
+        const float* __restrict e1 = component == 0 ? coarse_u.x(below + 1) : coarse_u.y(below + 1);
+        float* __restrict c = work.coarse_row.data();
+        if (w != 0)
+          for (int I = 0; I < coarse_stride; ++I) c[I] = (1 - w) * e0[I] + w * e1[I];
+        interpolate_row(t.x, grid.columns, coarse.grid.columns, w == 0 ? e0 : c, component == 0 ? u_x : u_y,
+                        component == 0 ? start.x(j) : start.y(j));
+      }
+      fine.for_special(j, [&](std::size_t k, int i) {
+        float x = u_x[i], y = u_y[i];
+        for (const auto& e : t.special.at(fine.special[k])) {
+          x += e.weight * coarse.u.x[e.coarse];
+          y += e.weight * coarse.u.y[e.coarse];
+        }
+        start.x(j)[i] = x;
+        start.y(j)[i] = y;
+      });
+      fine.clear_fixed(j, start.x(j), start.y(j));
+    };
+    const auto first_step = [&](int j) {
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      const float *u_x = start.x(j), *u_y = start.y(j);
+      float *c_x = change.x(j), *c_y = change.y(j), *v_x = smoothed.x(j), *v_y = smoothed.y(j);
+      fine.for_products(j, start.as_const(), gains.first,
+                        [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                          const V x = inverse_x * (load<V>(b_x + i) - a_x),
+                                  y = inverse_y * (load<V>(b_y + i) - a_y);
+                          store(c_x + i, x);
+                          store(c_y + i, y);
+                          store(v_x + i, V(load<V>(u_x + i) + x));
+                          store(v_y + i, V(load<V>(u_y + i) + y));
+                        });
+    };
+    const auto second_step = [&](int j) {
+      const B *b_x = b.x(j), *b_y = b.y(j);
+      const float *c_x = change.x(j), *c_y = change.y(j), *v_x = smoothed.x(j), *v_y = smoothed.y(j);
+      float *u_x = u.x(j), *u_y = u.y(j);
+      RowSum<float> sum;
+      fine.for_products(
+          j, smoothed.as_const(), gains.second,
+          [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+            const V r_x = load<V>(b_x + i), r_y = load<V>(b_y + i);
+            const V x = load<V>(v_x + i) + gains.keep * load<V>(c_x + i) + inverse_x * (r_x - a_x);
+            const V y = load<V>(v_y + i) + gains.keep * load<V>(c_y + i) + inverse_y * (r_y - a_y);
+            store(u_x + i, x);
+            store(u_y + i, y);
+            sum.add(r_x, x);  // of fixed displacements both are 0
+            sum.add(r_y, y);
+          });
+      clear_unused(grid, j, u_x, u_y);
+      row_sum_[j] = sum.value();
+    };
+    sweep(grid, own.begin, own.end, prolong, first_step, second_step);
+  });
+  return std::accumulate(row_sum_.begin(), row_sum_.begin() + grid.rows + 1, 0.0);
+}
+
+void Multigrid::damp_block_rows(Level& level) {
+  // Distorted cells have larger eigenvalues than the squares, in modes of a few nodes that a power iteration
+  // on the whole level would miss. So it is done on the block rows alone, and D is enlarged there.
+  const auto& rows = level.grid.block;
+  level.set_diagonal();
+  std::vector<std::int32_t> row_of(rows.neighbour.size());
+  for (std::size_t k = 0; k < row_of.size(); ++k) row_of[k] = level.grid.block_row(rows.neighbour[k]);
+  std::vector<double> u(2 * rows.size()), product(2 * rows.size());
+  RandomNumbers random;
+  for (double& value : u) value = random();
+  double largest = 0;
+  constexpr int iterations = 60;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    double norm = 0;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      double x = 0, y = 0;
+      for (auto k = rows.first[r]; k < rows.first[r + 1]; ++k) {
+        if (row_of[k] < 0) continue;
+        const auto& b = rows.block[k];
+        x += b[0] * u[2 * row_of[k]] + b[1] * u[2 * row_of[k] + 1];
+        y += b[2] * u[2 * row_of[k]] + b[3] * u[2 * row_of[k] + 1];
+      }
+      product[2 * r] = level.inverse_diagonal[2 * r] * x;
+      product[2 * r + 1] = level.inverse_diagonal[2 * r + 1] * y;
+      norm += product[2 * r] * product[2 * r] + product[2 * r + 1] * product[2 * r + 1];
+    }
+    norm = std::sqrt(norm);
+    largest = norm;  // of a vector of norm 1, but for the first
+    for (std::size_t k = 0; k < u.size(); ++k) u[k] = product[k] / norm;
+  }
+  level.damping = std::max(1.0, largest / largest_smoothed_eigenvalue(level.grid.stencil));
+  level.set_diagonal();
+}
+
+void Multigrid::estimate_largest_eigenvalue(Level& level) {
+  const auto& grid = level.grid;
+  RandomNumbers random;
+  GridField<float> next(grid.n_nodes());
+  for (std::size_t n = 0; n < grid.n_nodes(); ++n) {
+    level.u.x[n] = static_cast<float>(random());
+    level.u.y[n] = static_cast<float>(random());
+  }
+  for (const auto n : grid.unused) level.u.x[n] = level.u.y[n] = 0;
+  double norm_before = 0;
+  constexpr int iterations = 8;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    const auto from = level.u_rows().as_const();
+    const auto to = all_rows(next, grid);
+    double norm = 0;
+    for (int j = 0; j <= grid.rows; ++j) {
+      float *to_x = to.x(j), *to_y = to.y(j);
+      RowSum<float> sum;
+      level.for_products(j, from, 1,
+                         [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                           const V x = inverse_x * a_x, y = inverse_y * a_y;
+                           store(to_x + i, x);
+                           store(to_y + i, y);
+                           sum.add(x, x);
+                           sum.add(y, y);
+                         });
+      norm += sum.value();
+    }
+    std::swap(level.u, next);
+    if (iteration + 1 == iterations) level.largest = std::sqrt(norm / norm_before);
+    norm_before = norm;
+  }
+  level.largest = std::max(level.largest, largest_smoothed_eigenvalue(grid.stencil));
+  std::ranges::fill(level.u.x, 0.0F);
+  std::ranges::fill(level.u.y, 0.0F);
+}
+
+void Multigrid::factorise_coarsest() {
+  const auto& level = *levels_.back();
+  const auto& grid = level.grid;
+  coarsest_unknown_.assign(2 * grid.n_nodes(), -1);
+  std::int32_t n_unknowns = 0;
+  for (mesh::Node n = 0; n < static_cast<mesh::Node>(grid.n_nodes()); ++n) {
+    const auto r = grid.block_row(n);
+    const bool stencil = r < 0 && grid.has_stencil(n % grid.stride(), n / grid.stride());
+    for (int c = 0; c < 2; ++c)
+      if (stencil || (r >= 0 && level.inverse_diagonal[2 * r + c] > 0))
+        coarsest_unknown_[2 * n + c] = n_unknowns++;
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (mesh::Node n = 0; n < static_cast<mesh::Node>(grid.n_nodes()); ++n)
+    for_each_block(grid, n, [&](mesh::Node m, const std::array<double, 4>& b) {
+      for (int a = 0; a < 2; ++a)
+        for (int c = 0; c < 2; ++c) {
+          const auto row = coarsest_unknown_[2 * n + a], column = coarsest_unknown_[2 * m + c];
+          if (row >= 0 && column >= 0) entries.emplace_back(row, column, b[2 * a + c]);
+        }
+    });
+  Eigen::SparseMatrix<double> K(n_unknowns, n_unknowns);
+  K.setFromTriplets(entries.begin(), entries.end());
+  // Where nothing sticks and the loaded edge may move along x, that motion costs nothing.
+  coarsest_.setShift(1e-9 * grid.stencil.centre);
+  coarsest_.compute(K);
+  SLIPFRONT_ASSERT(coarsest_.info() == Eigen::Success, "the coarsest level is not positive definite");
+  coarsest_b_.resize(n_unknowns);
+}
+
+template <class B>
+double Multigrid::solve_coarsest(const Rows<const B>& b) {
+  auto& level = *levels_.back();
+  const std::size_t n_nodes = level.grid.n_nodes();
+  for (std::size_t n = 0; n < n_nodes; ++n) {
+    if (coarsest_unknown_[2 * n] >= 0) coarsest_b_(coarsest_unknown_[2 * n]) = b.x(0)[n];
+    if (coarsest_unknown_[2 * n + 1] >= 0) coarsest_b_(coarsest_unknown_[2 * n + 1]) = b.y(0)[n];
+  }
+  const Eigen::VectorXd u = coarsest_.solve(coarsest_b_);
+  for (std::size_t n = 0; n < n_nodes; ++n) {
+    const auto x = coarsest_unknown_[2 * n], y = coarsest_unknown_[2 * n + 1];
+    level.u.x[n] = x < 0 ? 0 : static_cast<float>(u(x));
+    level.u.y[n] = y < 0 ? 0 : static_cast<float>(u(y));
+  }
+  return coarsest_b_.dot(u);
+}
+
+}  // namespace slipfront::statics

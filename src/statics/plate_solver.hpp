@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "solid/material.hpp"
+#include "solid/operator.hpp"
+#include "statics/settings.hpp"
+
+namespace slipfront::statics {
+
+/// Contact state of an interface node at rest.
+enum class Contact : std::uint8_t { stick, slip, open };
+
+/// Which displacements of the loaded edge are prescribed.
+enum class TopConstraint { both, vertical };
+
+/// Prescribed displacements of the loaded edge, in the order of mesh.top (u_x is ignored where only the
+/// vertical is prescribed).
+struct TopDisplacement {
+  std::vector<double> u_x_m, u_y_m;
+};
+
+/// What the plane does to each node of mesh.lower: u_y = -gap unless open, u_x = anchor where it sticks,
+/// f_x = -slip_sign mu_s f_y where it slips.
+struct Support {
+  std::vector<Contact> contact;
+  std::vector<double> slip_sign;   ///< of t where the node slips
+  std::vector<double> anchor_x_m;  ///< u_x where the node sticks, or began to slip
+  double mu_s = 0;
+  bool operator==(const Support&) const = default;
+};
+
+class LoadCase;  // load_case.hpp
+
+/// Solves the linear equilibria of one plate.
+class PlateSolver {
+ public:
+  virtual ~PlateSolver() = default;
+  /// The loaded edge at `top`, and where `sheared` moved on along x by the shear. `start`: a guess of the
+  /// displacement without shear on the finest level, or null.
+  virtual std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top,
+                                              bool sheared, const solid::Field* start, int level) = 0;
+  virtual int n_levels() const = 0;
+  /// Interface nodes of a level, as places in mesh.lower.
+  virtual std::vector<std::size_t> interface_of(int level) const = 0;
+  virtual std::int64_t n_unknowns() const = 0;
+  /// Bytes it holds.
+  virtual double bytes() const = 0;
+  /// Whether each solution only costs what it has to change of the last one, so that beginning with the
+  /// states of a similar case pays.
+  virtual bool iterates() const = 0;
+  /// Multigrid cycles on the finest level so far; 0 where there are none.
+  virtual int n_cycles() const = 0;
+};
+
+/// Up to here a factorisation is chosen by StaticSolver::automatic: elements of 0.333 mm on the paper's plate
+/// are the finest ones for which it takes seconds.
+inline constexpr double most_direct_unknowns = 400e3;
+/// `wanted`, or what suits the number of unknowns.
+StaticSolver choose_solver(StaticSolver wanted, double n_unknowns);
+
+/// What a plate of so many columns and rows of elements leaves of `wanted`. Graded plates are solved
+/// directly. Multigrid cannot follow a plate far higher than wide; there a factorisation is cheap. On a long
+/// interface its dense part is not.
+StaticSolver solver_for_shape(StaticSolver wanted, bool is_graded, double columns, double rows);
+
+/// Rows over columns up to which multigrid converges, and columns up to which automatic takes a
+/// factorisation.
+inline constexpr double most_iterative_slenderness = 10, most_direct_columns = 1500;
+
+std::string_view name_of(StaticSolver solver);
+
+/// Bytes the statics need at their peak, the mesh and the equilibria found included.
+double statics_bytes(StaticSolver solver, double n_unknowns);
+
+/// Refuses statics that would not fit into the memory at hand.
+/// @throws UserError with the figures.
+void require_statics_memory(StaticSolver solver, double n_unknowns);
+
+/// By the solver that the plate's shape leaves of `solver`.
+std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
+                                               StaticSolver solver);
+
+}  // namespace slipfront::statics

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/prestress.hpp"
+
+#include <utility>
+
+namespace slipfront::statics {
+
+Equilibrium prestressed(const mesh::Mesh& mesh, record::StaticState tractions) {
+  Equilibrium e;
+  e.u_m = e.u_per_shear = solid::Field(mesh.n_nodes());
+  for (const auto n : mesh.top) e.u_per_shear.x[n] = 1;
+  e.contact.assign(mesh.lower.size(), Contact::stick);
+  e.tractions = std::move(tractions);
+  e.inside_from_m = e.tractions.x_m.front();
+  e.inside_to_m = e.tractions.x_m.back();
+  e.peak_x_m = e.inside_from_m;
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    const double ratio = e.tractions.t_s_Pa[k] / e.tractions.p_s_Pa[k];
+    if (ratio <= e.peak_ratio) continue;
+    e.peak_ratio = ratio;
+    e.peak_x_m = e.tractions.x_m[k];
+  }
+  return e;
+}
+
+}  // namespace slipfront::statics

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace slipfront::statics {
+
+/// How the state before the event comes about: by tilt and shear of the top edge, or prescribed.
+enum class LoadingMethod {
+  direct,  ///< tilt, then shear by static equilibria from a sparse factorisation
+  ramp,    ///< tilt, then shear by explicit dynamics with the top edge moving
+  /// Tractions of the interface are given; the plate is at rest with u = 0, its motion is what they change.
+  prestress,
+};
+
+/// Whether the top edge's nodes may move along x while it is tilted.
+enum class TopEdge { held, free };
+
+/// How static equilibria are solved.
+enum class StaticSolver {
+  automatic,  ///< by a factorisation up to a number of unknowns, iteratively beyond
+  direct,     ///< sparse factorisation, the interface condensed
+  iterative,  ///< conjugate gradients with a multigrid preconditioner
+};
+
+/// Displacements of the top edge: pushed down along a line, then moved to +x.
+struct Loading {
+  double tilt_left_m = 0.37e-3;    ///< downward displacement at the left end
+  double tilt_right_m = 0.037e-3;  ///< ... at the right end, linear between
+  TopEdge top_during_tilt = TopEdge::held;
+  LoadingMethod method = LoadingMethod::direct;
+  StaticSolver solver = StaticSolver::automatic;
+  double shear_speed_over_c_L = 1e-6;  ///< v_x / c_L of the top edge
+  double edge_margin_m = 10e-3;  ///< "inside" the interface leaves out this much at each end of the contact
+  double critical_margin =
+      1e-3;  ///< common state at t/p = (1 - margin) mu_s inside, spontaneous event at (1 + margin)
+};
+
+}  // namespace slipfront::statics

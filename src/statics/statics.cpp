@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/statics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "statics/load_case.hpp"
+
+namespace slipfront::statics {
+
+bool has_nodes(const Equilibrium& state, std::size_t n_lower) {
+  const auto& [x_m, t_s_Pa, p_s_Pa] = state.tractions;
+  return state.contact.size() == n_lower && x_m.size() == n_lower && t_s_Pa.size() == n_lower &&
+         p_s_Pa.size() == n_lower;
+}
+
+namespace {
+
+/// The interface of one level of the solver. [nodes]
+struct InterfaceNodes {
+  std::vector<double> x_m, gap_m, tributary_m;
+};
+
+InterfaceNodes interface_nodes(const mesh::Mesh& mesh, const std::vector<std::size_t>& places) {
+  const auto tributary_m = mesh::tributary_lengths_m(mesh);
+  InterfaceNodes nodes;
+  for (const auto place : places) {
+    nodes.x_m.push_back(mesh.x_m[mesh.lower[place]]);
+    nodes.gap_m.push_back(mesh.y_m[mesh.lower[place]]);
+    nodes.tributary_m.push_back(tributary_m[place]);
+  }
+  return nodes;
+}
+
+/// The states at some of the nodes.
+ContactStates at_places(const ContactStates& all, const std::vector<std::size_t>& places) {
+  ContactStates some;
+  some.support.mu_s = all.support.mu_s;
+  for (const auto place : places) {
+    some.support.contact.push_back(all.support.contact[place]);
+    some.support.slip_sign.push_back(all.support.slip_sign[place]);
+    some.support.anchor_x_m.push_back(all.support.anchor_x_m[place]);
+    some.has_touched.push_back(all.has_touched[place]);
+  }
+  return some;
+}
+
+/// Gives each node the contact state of the coarse node nearest to it along the interface.
+void take_nearest(const ContactStates& coarse, const std::vector<std::size_t>& coarse_places,
+                  const std::vector<std::size_t>& places, ContactStates& states) {
+  std::size_t c = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    while (c + 1 < coarse_places.size() && 2 * places[k] > coarse_places[c] + coarse_places[c + 1]) ++c;
+    states.support.contact[k] = coarse.support.contact[c];
+    states.support.slip_sign[k] = coarse.support.slip_sign[c];
+    states.has_touched[k] |= coarse.support.contact[c] != Contact::open;
+  }
+}
+
+/// The interface on the rigid plane: contact states, and the linear equilibrium they make on the condensed
+/// stiffness.
+class ContactProblem {
+ public:
+  ContactProblem(InterfaceNodes interface_nodes, LoadCase& plate, ContactStates start)
+      : nodes(std::move(interface_nodes)),
+        states(std::move(start)),
+        contact(states.support.contact),
+        plate_(plate),
+        n_(nodes.x_m.size()) {}
+
+  void solve(double accuracy) { plate_.solve(states.support, accuracy); }
+
+  double gap_m(std::size_t k) const { return nodes.gap_m[k]; }
+  double u_x_m(std::size_t k, double shear) const { return plate_.u0(2 * k) + shear * plate_.u1(2 * k); }
+  double u_y_m(std::size_t k, double shear) const {
+    return plate_.u0(2 * k + 1) + shear * plate_.u1(2 * k + 1);
+  }
+  double t_Pa(std::size_t k, double shear) const {
+    return -(plate_.f0(2 * k) + shear * plate_.f1(2 * k)) / nodes.tributary_m[k];
+  }
+  double p_Pa(std::size_t k, double shear) const {
+    return (plate_.f0(2 * k + 1) + shear * plate_.f1(2 * k + 1)) / nodes.tributary_m[k];
+  }
+
+  /// Corrects the states that the solution at `shear` contradicts; `may_slip(k)`: whether node k may pass
+  /// mu_s. With `one_only` just the worst contradiction is corrected, against cycles. Returns whether
+  /// anything changed.
+  template <class MaySlip>
+  bool correct(double shear, bool one_only, double tolerance, MaySlip&& may_slip) {
+    auto& slip_sign = states.support.slip_sign;
+    const auto& anchor_x_m = states.support.anchor_x_m;
+    const double mu_s = states.support.mu_s;
+    auto& has_touched = states.has_touched;
+    double p_max = 0;
+    for (std::size_t k = 0; k < n_; ++k) p_max = std::max(p_max, std::abs(p_Pa(k, shear)));
+    struct Change {
+      std::size_t node;
+      Contact to;
+      double sign, severity;
+    };
+    std::vector<Change> changes;
+    const double u_scale = std::max(plate_.u0.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+    for (std::size_t k = 0; k < n_; ++k) {
+      const double t = t_Pa(k, shear), p = p_Pa(k, shear);
+      if (contact[k] == Contact::open) {
+        const double depth = -(gap_m(k) + u_y_m(k, shear));
+        if (depth <= tolerance * u_scale) continue;
+        // A node that was released comes back at another place than it left: it slips. A new one sticks.
+        const double moved = u_x_m(k, shear) - anchor_x_m[k];
+        if (has_touched[k] != 0)
+          changes.push_back({k, Contact::slip, moved > 0 ? 1.0 : -1.0, depth / u_scale});
+        if (has_touched[k] == 0) changes.push_back({k, Contact::stick, 0, depth / u_scale});
+      } else if (p < -tolerance * p_max) {
+        changes.push_back({k, Contact::open, 0, -p / p_max});
+      } else if (contact[k] == Contact::stick) {
+        const double excess = std::abs(t) - mu_s * p;
+        if (excess > tolerance * p_max && may_slip(k))
+          changes.push_back({k, Contact::slip, t > 0 ? 1.0 : -1.0, excess / p_max});
+      } else {
+        const double backward = -slip_sign[k] * (u_x_m(k, shear) - anchor_x_m[k]);
+        if (backward > tolerance * u_scale) changes.push_back({k, Contact::stick, 0, backward / u_scale});
+      }
+    }
+    if (one_only && changes.size() > 1)
+      changes = {*std::ranges::max_element(changes, {}, [](const Change& c) { return c.severity; })};
+    for (const auto& change : changes) {
+      contact[change.node] = change.to;
+      has_touched[change.node] |= change.to != Contact::open;
+      slip_sign[change.node] = change.sign;
+    }
+    return !changes.empty();
+  }
+
+  const InterfaceNodes nodes;
+  ContactStates states;
+  std::vector<Contact>& contact;
+
+ private:
+  LoadCase& plate_;
+  std::size_t n_;
+};
+
+constexpr int max_iterations = 400;
+constexpr int iterations_at_once = 40;  ///< then one contradiction at a time
+
+/// Error in the energy norm of the first iterative solution, its decrease from one change of contact to the
+/// next, and the error with which the final contact states are confirmed.
+constexpr double first_accuracy = 1e-3, accuracy_decrease = 0.5, final_accuracy = 1e-10;
+/// The same with which coarse levels end and the finest then begins.
+constexpr double guess_accuracy = 2e-4;
+/// Contradictions of a contact state that count, over the largest pressure or displacement.
+constexpr double state_tolerance = 1e-9;
+
+[[noreturn]] void contact_does_not_settle() {
+  throw UserError(
+      "the static contact states do not settle; change loading.tilt_left_m, loading.tilt_right_m or "
+      "plate.corner");
+}
+
+/// Solves and corrects the contact states until nothing changes; `find_shear()` is called after each
+/// solution. An iterative solution is only made as accurate as the states at that point deserve.
+/// @return the shear.
+template <class FindShear, class MaySlip>
+double settle(ContactProblem& problem, double accuracy, double final, FindShear&& find_shear,
+              MaySlip&& may_slip, const Statics::GoOn& go_on) {
+  for (int iteration = 1; iteration <= max_iterations; ++iteration) {
+    if (!go_on()) throw Interrupted("interrupted in the statics");
+    problem.solve(accuracy);
+    const double shear = find_shear();
+    const bool is_final = accuracy <= final;
+    const bool changed = problem.correct(shear, iteration > iterations_at_once,
+                                         accuracy > final_accuracy ? accuracy : state_tolerance, may_slip);
+    if (!changed && is_final) return shear;
+    if (!changed) {
+      accuracy = final;
+    } else {
+      accuracy = is_final ? std::max(guess_accuracy, final) : std::max(accuracy_decrease * accuracy, final);
+    }
+  }
+  contact_does_not_settle();
+}
+
+/// First and last coordinate of the contact, less the margin at each end.
+struct Inside {
+  double from_m, to_m;
+  bool contains(double x) const { return x >= from_m && x <= to_m; }
+};
+
+Inside inside_contact(const ContactProblem& problem, double margin_m) {
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (std::size_t k = 0; k < problem.contact.size(); ++k) {
+    if (problem.contact[k] == Contact::open) continue;
+    first = std::min(first, problem.nodes.x_m[k]);
+    last = std::max(last, problem.nodes.x_m[k]);
+  }
+  return {first + margin_m, last - margin_m};
+}
+
+Equilibrium make_equilibrium(const ContactProblem& problem, double shear, double margin_m) {
+  Equilibrium e;
+  e.shear_m = shear;
+  e.contact = problem.contact;
+  const Inside inside = inside_contact(problem, margin_m);
+  e.inside_from_m = inside.from_m;
+  e.inside_to_m = inside.to_m;
+  for (std::size_t k = 0; k < problem.nodes.x_m.size(); ++k) {
+    const bool open = problem.contact[k] == Contact::open;
+    const double x = problem.nodes.x_m[k];
+    const double t = open ? 0 : problem.t_Pa(k, shear), p = open ? 0 : problem.p_Pa(k, shear);
+    e.tractions.x_m.push_back(x);
+    e.tractions.t_s_Pa.push_back(t);
+    e.tractions.p_s_Pa.push_back(p);
+    if (p > 0 && inside.contains(x) && t / p > e.peak_ratio) {
+      e.peak_ratio = t / p;
+      e.peak_x_m = x;
+    }
+  }
+  return e;
+}
+
+/// Finds contact states on the coarser levels of the solver, each from the next coarser one, and gives the
+/// finest the last ones and their displacement to begin from. `make_case(level)` makes the load case of a
+/// level, settle_coarse(problem) settles its states.
+/// @return whether there are any.
+template <class MakeCase, class SettleCoarse>
+bool begin_on_coarse_levels(const mesh::Mesh& mesh, const PlateSolver& solver, const ContactStates& start,
+                            MakeCase&& make_case, SettleCoarse&& settle_coarse, LoadCase& finest,
+                            ContactStates& states) {
+  std::unique_ptr<LoadCase> coarser;
+  ContactStates coarser_states;
+  std::vector<std::size_t> coarser_places;
+  for (int level = solver.n_levels() - 1; level > 0; --level) {
+    const auto places = solver.interface_of(level);
+    auto plate = make_case(level);
+    auto here = at_places(start, places);
+    if (coarser) {
+      plate->begin_from(*coarser);
+      take_nearest(coarser_states, coarser_places, places, here);
+    }
+    ContactProblem problem(interface_nodes(mesh, places), *plate, std::move(here));
+    try {
+      settle_coarse(problem);
+    } catch (const UserError&) {  // what is impossible on a coarse level need not be so on the next
+      coarser.reset();
+      continue;
+    }
+    coarser = std::move(plate);
+    coarser_states = problem.states;
+    coarser_places = places;
+  }
+  if (!coarser) return false;
+  finest.begin_from(*coarser);
+  take_nearest(coarser_states, coarser_places, solver.interface_of(0), states);
+  return true;
+}
+
+}  // namespace
+
+Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
+                 std::string mu_s_key, GoOn go_on)
+    : mesh_(mesh), loading_(loading), mu_s_(mu_s), mu_s_key_(std::move(mu_s_key)), go_on_(std::move(go_on)) {
+  solver_ = make_plate_solver(mesh, material, loading.solver);
+
+  TopDisplacement tilt{std::vector<double>(mesh.top.size(), 0.0), {}};
+  const double x0 = mesh.x_m[mesh.top.front()], width = mesh.x_m[mesh.top.back()] - x0;
+  for (const auto n : mesh.top) {
+    const double s = (mesh.x_m[n] - x0) / width;
+    tilt.u_y_m.push_back(-((1 - s) * loading.tilt_left_m + s * loading.tilt_right_m));
+  }
+  const bool is_free = loading.top_during_tilt == TopEdge::free;
+  const auto make_case = [&](int level) {
+    return solver_->load_case(is_free ? TopConstraint::vertical : TopConstraint::both, tilt, false, nullptr,
+                              level);
+  };
+  auto plate = make_case(0);
+
+  const std::size_t n = mesh.lower.size();
+  ContactStates start{{std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 0.0),
+                       std::vector<double>(n, 0.0), mu_s},
+                      std::vector<std::uint8_t>(n, 0)};
+  for (std::size_t k = 0; k < n; ++k) {
+    start.support.contact[k] = mesh.y_m[mesh.lower[k]] > 0 ? Contact::open : Contact::stick;
+    start.has_touched[k] = start.support.contact[k] == Contact::stick;
+  }
+  const auto no_shear = [] { return 0.0; };
+  const auto may_slip = [](std::size_t) { return true; };
+  double accuracy = solver_->iterates() ? first_accuracy : final_accuracy;
+  auto states = start;
+  const auto settle_coarse = [&](ContactProblem& coarse) {
+    settle(coarse, first_accuracy, guess_accuracy, no_shear, may_slip, go_on_);
+  };
+  if (begin_on_coarse_levels(mesh, *solver_, start, make_case, settle_coarse, *plate, states))
+    accuracy = guess_accuracy;
+  ContactProblem problem(interface_nodes(mesh, solver_->interface_of(0)), *plate, std::move(states));
+  settle(problem, accuracy, final_accuracy, no_shear, may_slip, go_on_);
+  tilted_ = make_equilibrium(problem, 0, loading.edge_margin_m);
+  if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
+    throw UserError(
+        "the tilt leaves the plate without contact; increase loading.tilt_left_m or loading.tilt_right_m");
+  tilted_.u_m = plate->displacement(0);
+  tilted_.u_per_shear = solid::Field(mesh.n_nodes());
+  plate.reset();
+
+  if (is_free)
+    for (std::size_t k = 0; k < mesh.top.size(); ++k) tilt.u_x_m[k] = tilted_.u_m.x[mesh.top[k]];
+  tilted_top_ = tilt;
+  sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_.u_m, 0);
+}
+
+Statics::~Statics() = default;
+
+template <class FindShear>
+Equilibrium Statics::shear(FindShear&& find_shear) const {
+  Inside inside{};
+  const auto settle_problem = [&](ContactProblem& problem, double accuracy, double final) {
+    return settle(
+        problem, accuracy, final,
+        [&] {
+          inside = inside_contact(problem, loading_.edge_margin_m);
+          return find_shear(problem, inside);
+        },
+        [&](std::size_t k) { return !inside.contains(problem.nodes.x_m[k]); }, go_on_);
+  };
+  ContactStates states;
+  double accuracy = final_accuracy;
+  if (last_) {
+    states = *last_;
+  } else {
+    const std::size_t n = mesh_.lower.size();
+    states = {{tilted_.contact, std::vector<double>(n, 0.0), std::vector<double>(n, 0.0), mu_s_},
+              std::vector<std::uint8_t>(n, 0)};
+    for (std::size_t k = 0; k < n; ++k) {
+      if (tilted_.contact[k] != Contact::open) states.support.contact[k] = Contact::stick;
+      states.has_touched[k] = tilted_.contact[k] != Contact::open;
+      states.support.anchor_x_m[k] = tilted_.u_m.x[mesh_.lower[k]];
+    }
+    if (solver_->iterates()) accuracy = first_accuracy;
+    const auto start = states;
+    const auto make_case = [&](int level) {
+      return solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_.u_m, level);
+    };
+    const auto settle_coarse = [&](ContactProblem& coarse) {
+      settle_problem(coarse, first_accuracy, guess_accuracy);
+    };
+    if (begin_on_coarse_levels(mesh_, *solver_, start, make_case, settle_coarse, *sheared_, states))
+      accuracy = guess_accuracy;
+  }
+  ContactProblem problem(interface_nodes(mesh_, solver_->interface_of(0)), *sheared_, std::move(states));
+  const double shear = settle_problem(problem, accuracy, final_accuracy);
+  if (solver_->iterates()) last_ = problem.states;
+
+  Equilibrium e = make_equilibrium(problem, shear, loading_.edge_margin_m);
+  e.u_m = sheared_->displacement(shear);
+  e.u_per_shear = sheared_->displacement_per_shear();
+  return e;
+}
+
+Equilibrium Statics::shear_by(double shear_m) const {
+  return shear([shear_m](const ContactProblem&, const Inside&) { return shear_m; });
+}
+
+Equilibrium Statics::shear_to(double ratio) const {
+  if (tilted_.peak_ratio > ratio)
+    throw UserError(
+        "the tilt alone brings t/p inside the interface to {:.4g}, not below {:.4g}; raise {} or change the "
+        "tilt",
+        tilted_.peak_ratio, ratio, mu_s_key_);
+  bool reached = true;
+  Equilibrium e = shear([&](const ContactProblem& problem, const Inside& inside) {
+    // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a state
+    // that does not last until then is corrected, and the shear found again.
+    double shear = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < problem.contact.size(); ++k) {
+      if (problem.contact[k] != Contact::stick || !inside.contains(problem.nodes.x_m[k])) continue;
+      const double excess = problem.t_Pa(k, 0) - ratio * problem.p_Pa(k, 0);
+      const double growth = problem.t_Pa(k, 1) - ratio * problem.p_Pa(k, 1) - excess;
+      if (growth > 0 && excess <= 0 && problem.p_Pa(k, -excess / growth) > 0)
+        shear = std::min(shear, -excess / growth);
+    }
+    reached = std::isfinite(shear);
+    return reached ? shear : 0.0;
+  });
+  if (!reached)
+    throw UserError(
+        "no shear brings t/p inside the interface to {:.4g}; reduce {}, or change the tilt or "
+        "loading.edge_margin_m",
+        ratio, mu_s_key_);
+  // Slip at mu_s p that has spread from an edge past the margin would itself count as the peak.
+  if (std::abs(e.peak_ratio - ratio) > 1e-6 * ratio)
+    throw UserError(
+        "slip spreads from an edge of contact before t/p inside reaches {:.4g}; reduce {}, or change the "
+        "tilt or "
+        "loading.edge_margin_m",
+        ratio, mu_s_key_);
+  return e;
+}
+
+}  // namespace slipfront::statics

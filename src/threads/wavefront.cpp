@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "threads/wavefront.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <system_error>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace slipfront::threads {
+
+namespace {
+
+/// Looks at a condition before the processor is left to others.
+constexpr int most_looks = 2000;
+
+void pause() {
+#ifdef __x86_64__
+  __builtin_ia32_pause();
+#endif
+}
+
+}  // namespace
+
+Wavefront::Wavefront(int threads, int depth) : depth_(depth) {
+  SLIPFRONT_ASSERT(threads >= 1 && depth >= 1, "a wavefront needs a thread and a step");
+  ended_ = std::make_unique<Progress[]>(static_cast<std::size_t>(threads));
+  try {
+    for (int thread = 1; thread < threads; ++thread) workers_.emplace_back([this, thread] { work(thread); });
+  } catch (const std::system_error&) {
+    // No more threads to be had: those that are there do the work.
+  }
+}
+
+Wavefront::~Wavefront() {
+  closing_ = true;
+  ++task_number_;
+  task_number_.notify_all();
+}
+
+void Wavefront::work(int thread) {
+  for (std::int64_t done = 0;; ++done) {
+    task_number_.wait(done);
+    if (closing_) return;
+    take_groups(thread);
+    --working_;
+    working_.notify_one();
+  }
+}
+
+std::int64_t Wavefront::run(std::int64_t first, std::int64_t n, int units, const Unit& unit) {
+  task_ = {first, n, units, &unit};
+  end_ = first + n;
+  failed_ = false;
+  for (int thread = 0; thread < threads(); ++thread) ended_[static_cast<std::size_t>(thread)].value = 0;
+  // One group alone needs no other thread.
+  const bool alone = n <= depth_ || workers_.empty();
+  if (!alone) {
+    working_ = static_cast<int>(workers_.size());
+    ++task_number_;
+    task_number_.notify_all();
+  }
+  take_groups(0);
+  if (!alone)
+    for (int left = working_; left > 0; left = working_) working_.wait(left);
+  if (failed_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return end_ - first;
+}
+
+bool Wavefront::wait_for(int thread, std::int64_t value) const {
+  const auto& ended = ended_[static_cast<std::size_t>(thread)].value;
+  for (int looks = 0; ended.load(std::memory_order_acquire) < value; ++looks) {
+    if (failed_.load(std::memory_order_relaxed)) return false;
+    if (looks < most_looks) {
+      pause();
+    } else {
+      std::this_thread::yield();
+    }
+  }
+  return true;
+}
+
+void Wavefront::take_groups(int thread) {
+  const auto& [first, n, units, unit] = task_;
+  auto& ended = ended_[static_cast<std::size_t>(thread)].value;
+  const int n_threads = threads();
+  try {
+    for (std::int64_t group = thread;; group += n_threads) {
+      const std::int64_t first_step = first + group * depth_;
+      // Progress of group g counts from g times this.
+      const std::int64_t per_group = units + 1;
+      const std::int64_t before = (group - 1) * per_group;
+      const int other = static_cast<int>((group + n_threads - 1) % n_threads);
+      std::int64_t steps = std::min<std::int64_t>(depth_, first + n - first_step);
+      if (steps <= 0) break;
+      for (std::int64_t front = 0; front < units + steps - 1; ++front) {
+        if (group > 0 && front < units && n_threads > 1) {
+          if (!wait_for(other, before + std::min<std::int64_t>(front + 2, units))) return;
+        }
+        for (std::int64_t s = 0; s < steps; ++s) {
+          const std::int64_t k = front - s;
+          if (k < 0 || k >= units) continue;
+          const std::int64_t step = first_step + s;
+          if (k == 0 && step >= end_.load(std::memory_order_relaxed)) {
+            steps = s;
+            break;
+          }
+          const bool go_on = (*unit)(step, static_cast<int>(k));
+          if (k == 0 && !go_on) end_.store(step + 1, std::memory_order_relaxed);
+        }
+        if (steps == 0) break;
+        // The group's last step stands for it.
+        const std::int64_t units_done = std::clamp<std::int64_t>(front - (steps - 1) + 1, 0, units);
+        ended.store(group * per_group + units_done, std::memory_order_release);
+      }
+      if (steps < depth_) break;
+    }
+  } catch (...) {
+    if (!failed_.exchange(true)) failure_ = std::current_exception();
+    return;
+  }
+  // Nobody waits for a thread that has come to its end.
+  ended.store(std::numeric_limits<std::int64_t>::max(), std::memory_order_release);
+}
+
+}  // namespace slipfront::threads

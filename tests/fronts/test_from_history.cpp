@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "fronts/from_history.hpp"
+#include "synthetic.hpp"
+
+namespace slipfront::fronts::testing {
+namespace {
+
+constexpr double h = 0.2 / 300;
+constexpr double V = 1000.0;
+constexpr double threshold = 0.01;
+
+TEST(RecordFromHistory, EqualsTheDirectRecord) {
+  const auto x = nodes(31, h);
+  const auto tau = bilateral(x, x[10], V, 3.3e-6);
+  const auto traction = [](double x_m, double time_s) {
+    return record::Traction{4e6 + 1e9 * x_m - 1e10 * time_s,
+                            5e6 + 2e9 * x_m + 3e10 * time_s};  // linear in time
+  };
+  const record::SlipRecord direct = make_record(
+      x, tau,
+      {.halo = 2, .end_time_s = 50e-6, .duration_s = [](double) { return 10e-6; }, .traction = traction});
+
+  // The slip rate rises through the threshold at tau and falls through it 10 us later, over straight lines
+  // whose ends are instants of the history (all of them 0.1 us apart).
+  record::History history;
+  history.x_m = x;
+  constexpr double dt = 0.1e-6;
+  for (int row = 0; row <= 500; ++row) history.time_s.push_back(row * dt);
+  history.time_s.back() = 50e-6;
+  for (const double time_s : history.time_s) {
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const double past_s = std::min(time_s - tau[k], tau[k] + 10e-6 - time_s);
+      // Linear within 0.2 us about the crossings, so the interval that holds a crossing is straight.
+      history.slip_rate_m_per_s.push_back(
+          std::max(0.0, threshold + std::clamp(past_s, -0.2e-6, 0.2e-6) * 5e4));
+      history.t_Pa.push_back(traction(x[k], time_s).t_Pa);
+      history.p_Pa.push_back(traction(x[k], time_s).p_Pa);
+    }
+  }
+  // At 0.2 us before tau the rate would be 0.01 - 0.01 = 0: never cut off inside the straight part.
+  const record::SlipRecord record = record_from_history(history, threshold, 2);
+
+  EXPECT_EQ(record.x_m, direct.x_m);
+  EXPECT_EQ(record.halo, 2);
+  EXPECT_DOUBLE_EQ(record.end_time_s, 50e-6);
+  ASSERT_EQ(record.onsets.size(), direct.onsets.size());
+  ASSERT_EQ(record.stops.size(), direct.stops.size());
+  ASSERT_EQ(record.around.size(), direct.around.size());
+  std::vector<double> time_s(x.size());
+  for (std::size_t k = 0; k < record.onsets.size(); ++k) {
+    if (k > 0) {
+      EXPECT_LE(record.onsets[k - 1].time_s, record.onsets[k].time_s);
+      EXPECT_LE(record.stops[k - 1].time_s, record.stops[k].time_s);
+    }
+    const record::Onset& onset = record.onsets[k];
+    EXPECT_NEAR(onset.time_s, tau[onset.node], 1e-15);
+    EXPECT_NEAR(record.stops[k].time_s, tau[record.stops[k].node] + 10e-6, 1e-15);
+    for (int offset = -2; offset <= 2; ++offset) {
+      const int node = onset.node + offset;
+      const record::Traction& found = record.around_onset(k)[static_cast<std::size_t>(offset + 2)];
+      if (node < 0 || node > 30) {
+        EXPECT_TRUE(std::isnan(found.t_Pa) && std::isnan(found.p_Pa));
+        continue;
+      }
+      const record::Traction expected = traction(x[node], tau[onset.node]);
+      EXPECT_NEAR(found.t_Pa, expected.t_Pa, 1e-3);  // rounding of values of 1e6
+      EXPECT_NEAR(found.p_Pa, expected.p_Pa, 1e-3);
+    }
+  }
+
+  const auto fronts = find(record);
+  const auto expected = find(direct);
+  ASSERT_EQ(fronts.size(), 2u);
+  ASSERT_EQ(expected.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_EQ(fronts[i].points.size(), expected[i].points.size());
+    for (std::size_t k = 2; k + 1 < fronts[i].points.size(); ++k) {
+      EXPECT_NEAR(fronts[i].points[k].v_tip_m_per_s, expected[i].points[k].v_tip_m_per_s, 1e-5);
+      EXPECT_NEAR(fronts[i].points[k].t_d_Pa, expected[i].points[k].t_d_Pa, 1e-3);
+    }
+  }
+}
+
+record::History one_node(std::vector<double> rate) {
+  record::History history;
+  history.x_m = {0.0};
+  for (std::size_t k = 0; k < rate.size(); ++k) {
+    history.time_s.push_back(static_cast<double>(k));
+    history.t_Pa.push_back(10.0 * static_cast<double>(k));
+    history.p_Pa.push_back(1.0);
+  }
+  history.slip_rate_m_per_s = std::move(rate);
+  return history;
+}
+
+TEST(RecordFromHistory, SlipsFromTheFirstTime) {
+  const auto record = record_from_history(one_node({1.0, 1.0, 0.0}), 0.5, 0);
+  ASSERT_EQ(record.onsets.size(), 1u);
+  EXPECT_EQ(record.onsets[0].time_s, 0.0);
+  EXPECT_EQ(record.around[0].t_Pa, 0.0);
+  ASSERT_EQ(record.stops.size(), 1u);
+  EXPECT_DOUBLE_EQ(record.stops[0].time_s, 1.5);
+}
+
+TEST(RecordFromHistory, ReversalIsAStopAndAnOnset) {
+  const auto record = record_from_history(one_node({0.0, -1.0, 1.0, 1.0}), 0.5, 0);
+  ASSERT_EQ(record.onsets.size(), 2u);
+  EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 0.5);
+  EXPECT_DOUBLE_EQ(record.onsets[1].time_s, 1.75);
+  EXPECT_DOUBLE_EQ(record.around[1].t_Pa, 17.5);
+  ASSERT_EQ(record.stops.size(), 1u);
+  EXPECT_DOUBLE_EQ(record.stops[0].time_s, 1.25);
+}
+
+TEST(RecordFromHistory, NothingSlips) {
+  const auto record = record_from_history(one_node({0.5, -0.5, 0.1}), 0.5, 3);
+  EXPECT_TRUE(record.onsets.empty() && record.stops.empty() && record.around.empty());
+  EXPECT_EQ(record.end_time_s, 2.0);
+  EXPECT_TRUE(record_from_history({}, 0.5, 3).onsets.empty());
+}
+
+TEST(RecordFromHistoryDeathTest, WrongInput) {
+  EXPECT_DEATH(record_from_history(one_node({1.0}), 0.0, 0), "slip rate");
+  record::History history = one_node({1.0, 1.0});
+  history.time_s[1] = 0.0;
+  EXPECT_DEATH(record_from_history(history, 0.5, 0), "ascend");
+  history = one_node({1.0, 1.0});
+  history.p_Pa.pop_back();
+  EXPECT_DEATH(record_from_history(history, 0.5, 0), "times x nodes");
+}
+
+}  // namespace
+}  // namespace slipfront::fronts::testing

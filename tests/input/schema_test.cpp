@@ -1,0 +1,769 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/schema.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+
+#include "input/entries.hpp"
+#include "support/files.hpp"
+
+namespace slipfront::input {
+namespace {
+
+using test::error_of;
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+std::string parse_error(const std::string& text, const std::vector<Override>& overrides = {}) {
+  const std::string message = error_of([&] { parse_case(text, "c.toml", overrides); });
+  EXPECT_EQ(message.find('\n'), std::string::npos) << "more than one line: " << message;
+  return message;
+}
+
+// Structured bindings name every member: one more member of a struct does not compile here until it is
+// listed, which reminds of its entry in the schema.
+auto members(const mesh::Plate& p) {
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l] = p;
+  return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l);
+}
+auto members(const solid::Material& m) {
+  const auto& [a, b, c, d, e] = m;
+  return std::tuple(a, b, c, d, e);
+}
+auto members(const statics::Loading& l) {
+  const auto& [a, b, c, d, e, f, g, h] = l;
+  return std::tuple(a, b, c, d, e, f, g, h);
+}
+auto members(const interface::Regularisation& r) {
+  const auto& [a, b, c, d] = r;
+  return std::tuple(a, b, c, d);
+}
+auto members(const interface::Trigger& t) {
+  const auto& [a, b, c, d, e] = t;
+  return std::tuple(a, b, c, d, e);
+}
+auto members(const Prestress& p) {
+  const auto& [a, b, c, table] = p;
+  return std::tuple(a, b, c, table.text, table.rows.x_m, table.rows.t_s_Pa, table.rows.p_s_Pa);
+}
+auto members(const interface::Nucleation& n) {
+  const auto& [a, b, c, d, e] = n;
+  return std::tuple(a, b, c, d, e);
+}
+auto members(const motion::TimeStepping& t) {
+  const auto& [a, b, c, d, e, f, g, h] = t;
+  return std::tuple(a, b, c, d, e, f, g, h);
+}
+auto members(const FrontSettings& s) {
+  const auto& [a, b, c, d, e, f, g] = s;
+  return std::tuple(a, b, c, d, e, f, g);
+}
+auto members(const Output& o) {
+  const auto& [a, b, c] = o;
+  return std::tuple(a, b, c);
+}
+
+/// Members of a friction law, by its own list of parameters.
+std::vector<double> members(const interface::FrictionLaw& friction) {
+  return std::visit(
+      [](const auto& law) {
+        std::vector<double> values;
+        for (const auto& parameter : law.parameters()) values.push_back(law.*parameter.member);
+        return values;
+      },
+      friction);
+}
+
+void expect_equal(const Case& a, const Case& b) {
+  const auto& [title, plate, material, loading, prestress, friction, regularisation, contact, event, trigger,
+               nucleation, time, fronts, output] = b;
+  EXPECT_EQ(a.title, title);
+  EXPECT_EQ(members(a.plate), members(plate));
+  EXPECT_EQ(members(a.material), members(material));
+  EXPECT_EQ(members(a.loading), members(loading));
+  EXPECT_EQ(members(a.prestress), members(prestress));
+  EXPECT_EQ(a.friction.index(), friction.index());
+  EXPECT_EQ(members(a.friction), members(friction));
+  EXPECT_EQ(members(a.regularisation), members(regularisation));
+  EXPECT_EQ(a.contact, contact);
+  EXPECT_EQ(a.event, event);
+  EXPECT_EQ(members(a.trigger), members(trigger));
+  EXPECT_EQ(members(a.nucleation), members(nucleation));
+  EXPECT_EQ(members(a.time), members(time));
+  EXPECT_EQ(members(a.fronts), members(fronts));
+  EXPECT_EQ(members(a.output), members(output));
+}
+
+/// A case in which no member has its default.
+Case changed_case() {
+  Case c;
+  c.title = "a \"title\" with \\ and\ttab, \xc2\xb5";
+  c.plate = {0.1 + 0.2,
+             1.0 / 3,
+             1e-3 / 7,
+             2,
+             4e-3 / 3,
+             mesh::Corner::fillet,
+             4e-3,
+             0.3e-3,
+             8e-3,
+             3e-3,
+             mesh::Sides::absorbing,
+             mesh::Top::absorbing};
+  c.material = {1.0e9 / 3, -0.25, 1.1e3, solid::Plane::strain, 0};
+  c.loading = {
+      1e-4, 2e-4, statics::TopEdge::free, statics::LoadingMethod::ramp, statics::StaticSolver::direct, 1e-5,
+      0,    1e-4};
+  c.friction = interface::VelocityWeakening { 1.25, 0.75, 1.0 / 3 };
+  c.regularisation = {interface::Relaxed::strength, 1e-5 / 3, 0.25, 2e-6};
+  c.contact = interface::ContactAlgorithm::predictor_corrector;
+  c.event = interface::EventKind::right;
+  c.trigger = {interface::TriggerForm::raised, 7e-3, 2.5, 0, 3e-5};
+  c.time = {1.5,   true, motion::Precision::single_precision,    7, 11,
+            false, 1e-4, std::numeric_limits<double>::infinity()};
+  c.fronts = {1e-3, fronts::SpeedInterval::approach, 1e-5, 3e-3, 0.625, 0.25, 5e-3};
+  c.output = {1e-7, {0, 1e-5, 1.0 / 3 * 1e-4}, 3e-5};
+  return c;
+}
+
+/// A case of prescribed tractions in which no member that it can set has its default.
+Case changed_prestress() {
+  Case c = changed_case();
+  c.plate.corner = mesh::Corner::none;
+  c.loading = {};
+  c.loading.method = statics::LoadingMethod::prestress;
+  c.loading.shear_speed_over_c_L = 0;
+  c.prestress = {1e6 / 3, 2e6 / 7, ""};
+  c.event = interface::EventKind::nucleation;
+  c.nucleation = {interface::NucleationForm::overstress, 0.1 / 3, 7e-3, 0, -2e5};
+  return c;
+}
+
+TEST(Schema, EmptyFileGivesTheDefaults) {
+  expect_equal(parse_case("", "c.toml"), Case{});
+}
+
+TEST(Schema, DefaultsReadBackFromToml) {
+  expect_equal(parse_case(to_toml(Case{}), "c.toml"), Case{});
+}
+
+TEST(Schema, EveryKeyReadsBackFromToml) {
+  const Case changed = changed_case();
+  const Case defaults;
+  for (const Entry& entry : entries_of(changed))
+    if (entry.key != "friction.law") {
+      EXPECT_NE(toml_text(entry.get(changed)), toml_text(entry.get(defaults)))
+          << entry.key << " is not changed";
+      expect_equal(parse_case(to_toml(changed), "c.toml"), changed);
+    }
+}
+
+TEST(Schema, PrestressAndNucleationReadBackFromToml) {
+  const Case uniform = changed_prestress();
+  std::set<std::string> keys;
+  for (const Entry& entry : entries_of(uniform)) keys.insert(entry.key);
+  for (const Entry& entry : entries_of(uniform))
+    if (entry.key.starts_with("prestress.") || entry.key.starts_with("nucleation.")) {
+      EXPECT_EQ(toml_text(entry.get(uniform)) != toml_text(entry.get(Case{})), entry.key != "prestress.file")
+          << entry.key;
+    }
+  EXPECT_TRUE(keys.contains("nucleation.overstress_Pa"));
+  EXPECT_FALSE(keys.contains("loading.tilt_left_m"));
+  expect_equal(parse_case(to_toml(uniform), "c.toml"), uniform);
+
+  Case table = uniform;
+  table.prestress = {};
+  table.prestress.file = "table.csv";
+  expect_equal(parse_case(to_toml(table), "c.toml"), table);
+}
+
+TEST(Schema, PrestressAndNucleationKeysStandForTheirMembers) {
+  const Case c = parse_case(R"(
+[plate]
+corner = "none"
+sides = "periodic"
+[loading]
+method = "prestress"
+[prestress]
+t_Pa = 2e6
+p_Pa = 5e6
+[event]
+kind = "nucleation"
+[nucleation]
+form = "overstress"
+x_m = 0.12
+half_length_m = 0.02
+taper_m = 0.01
+overstress_Pa = 3e6
+)",
+                            "c.toml");
+  Case expected;
+  expected.plate.corner = mesh::Corner::none;
+  expected.plate.sides = mesh::Sides::periodic;
+  expected.loading.method = statics::LoadingMethod::prestress;
+  expected.prestress = {2e6, 5e6, ""};
+  expected.event = interface::EventKind::nucleation;
+  expected.nucleation = {interface::NucleationForm::overstress, 0.12, 0.02, 0.01, 3e6};
+  expect_equal(c, expected);
+}
+
+TEST(Schema, KeysThatDoNotApplyAreRefused) {
+  EXPECT_EQ(parse_error("[prestress]\nt_Pa = 1\n"),
+            "c.toml:2: prestress.t_Pa applies only with loading.method = prestress and no prestress.file; "
+            "remove the key or set that");
+  EXPECT_EQ(parse_error("[nucleation]\nx_m = 0.1\n"),
+            "c.toml:2: nucleation.x_m applies only with event.kind = nucleation; remove the key or set that");
+  EXPECT_EQ(parse_error("[event]\nkind = \"nucleation\"\n[nucleation]\noverstress_Pa = 1\n"),
+            "c.toml:4: nucleation.overstress_Pa applies only with event.kind = nucleation and "
+            "nucleation.form = overstress; remove the key or set that");
+  EXPECT_EQ(parse_error("[loading]\ntilt_left_m = 0\nmethod = \"prestress\"\n"),
+            "c.toml:2: loading.tilt_left_m applies only with loading.method = direct or ramp; remove the key "
+            "or set that");
+  EXPECT_THAT(parse_error("[loading]\nmethod = \"prestress\"\n[prestress]\nt_Pa = 1\np_Pa = 1\n"
+                          "file = \"a.csv\"\n"),
+              StartsWith("c.toml:4: prestress.t_Pa applies only with"));
+}
+
+TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
+  const std::string nucleated = to_toml(changed_prestress());
+  const Case left = parse_case(nucleated, "c.toml", {{"event.kind", "left"}});
+  EXPECT_EQ(members(left.nucleation), members(Case{}.nucleation));
+  EXPECT_EQ(left.event, interface::EventKind::left);
+  const Case table = parse_case(nucleated, "c.toml", {{"prestress.file", "t.csv"}});
+  EXPECT_EQ(table.prestress.p_Pa, Case{}.prestress.p_Pa);
+  const Case weakened = parse_case(nucleated, "c.toml", {{"nucleation.form", "weakened"}});
+  EXPECT_EQ(weakened.nucleation.overstress_Pa, Case{}.nucleation.overstress_Pa);
+  // An override of a key that does not apply is wrong all the same.
+  EXPECT_THAT(parse_error(nucleated, {{"event.kind", "left"}, {"nucleation.x_m", "0.1"}}),
+              StartsWith("--set nucleation.x_m=0.1: nucleation.x_m applies only with"));
+}
+
+TEST(Schema, WhatPrescribedTractionsAskOfOtherKeys) {
+  const std::string good = to_toml(changed_prestress());
+  EXPECT_THAT(parse_error("[loading]\nmethod = \"prestress\"\n"),
+              AllOf(StartsWith("c.toml:2: "), HasSubstr("needs prestress.t_Pa and prestress.p_Pa")));
+  EXPECT_THAT(parse_error(good, {{"plate.corner", "relief"}}), HasSubstr("needs plate.corner = none"));
+  EXPECT_THAT(parse_error(good, {{"event.kind", "spontaneous"}}), HasSubstr("choose nucleation"));
+  EXPECT_THAT(parse_error(good, {{"event.kind", "left"}, {"plate.sides", "periodic"}}),
+              HasSubstr("does not have"));
+  EXPECT_THAT(parse_error(good, {{"prestress.p_Pa", "0"}}), HasSubstr("greater than 0"));
+  EXPECT_THAT(parse_error(good, {{"nucleation.x_m", "1"}}), HasSubstr("it must be on the interface"));
+  EXPECT_THAT(parse_error(good, {{"nucleation.half_length_m", "0"}}), HasSubstr("give the patch a length"));
+  EXPECT_THAT(parse_error(good, {{"plate.sides", "periodic"}, {"nucleation.taper_m", "0.2"}}),
+              HasSubstr("at most half of plate.width_m"));
+  EXPECT_THAT(parse_error(good, {{"friction.law", "coulomb"}, {"nucleation.form", "weakened"}}),
+              HasSubstr("choose overstress"));
+  EXPECT_THAT(parse_error("[loading]\nshear_speed_over_c_L = 0\n"),
+              AllOf(StartsWith("c.toml:2: "), HasSubstr("prestress")));
+}
+
+TEST(Schema, AWeakenedTriggerNeedsALawThatWeakens) {
+  const std::vector<Override> weakened = {{"event.kind", "left"}, {"event.trigger_form", "weakened"}};
+  EXPECT_EQ(parse_case("title = 'a'\n", "c.toml", weakened).trigger.form, interface::TriggerForm::weakened);
+  auto coulomb = weakened;
+  coulomb.push_back({"friction.law", "coulomb"});
+  EXPECT_THAT(parse_error("title = 'a'\n", coulomb), HasSubstr("choose added or raised"));
+}
+
+TEST(Schema, IterativeStaticsKnowNoGradedPlates) {
+  EXPECT_THAT(
+      parse_error("[plate]\ncoarsenings = 1\nfine_height_m = 0.02\n[loading]\nsolver = \"iterative\"\n"),
+      HasSubstr("knows no graded plates"));
+}
+
+TEST(Schema, TheKeysStandForTheirMembers) {
+  const Case c = parse_case(R"(
+title = "run"
+[plate]
+width_m = 1
+height_m = 0.5
+element_size_m = 0.01
+coarsenings = 1
+fine_height_m = 0.03
+corner = "none"
+relief_length_m = 2e-3
+relief_height_m = 3e-4
+relief_depth_m = 4e-3
+fillet_radius_m = 6e-3
+[material]
+youngs_modulus_Pa = 1e9
+poissons_ratio = 0.25
+density_kg_per_m3 = 1000
+plane = "strain"
+stiffness_damping_s = 2e-7
+[loading]
+tilt_left_m = 1e-4
+tilt_right_m = 2e-4
+top_during_tilt = "free"
+method = "ramp"
+solver = "direct"
+shear_speed_over_c_L = 1e-5
+edge_margin_m = 0.02
+critical_margin = 0.01
+[friction]
+law = "velocity_weakening"
+mu_s = 0.9
+mu_k = 0.5
+alpha_m2_per_s2 = 0.2
+regularisation = "pressure"
+relaxation_length_m = 2e-5
+relaxation_slip_rate_m_per_s = 0.5
+relaxation_time_s = inf
+[contact]
+algorithm = "predictor_corrector"
+[event]
+kind = "left"
+trigger_form = "raised"
+trigger_zone_m = 0.03
+trigger_amount = 4
+trigger_ramp_s = 6e-6
+trigger_duration_s = inf
+[time]
+step_factor = 0.5
+allow_unstable = true
+precision = "single"
+interface_rows = 3
+interface_substeps = 9
+local_steps = false
+end_s = 1e-4
+quiet_s = 2e-5
+[fronts]
+l_star_m = 2e-3
+arrest_time_s = 3e-5
+min_length_m = 4e-3
+crack_share = 0.6
+pulse_share = 0.1
+trigger_margin_m = 5e-3
+speed_interval = "approach"
+[output]
+history_interval_s = 1e-6
+energy_interval_s = 1e-5
+snapshot_times_s = [1e-5, 2e-5]
+)",
+                            "c.toml");
+  Case expected;
+  expected.title = "run";
+  expected.plate = {1, 0.5, 0.01, 1, 0.03, mesh::Corner::none, 2e-3, 3e-4, 4e-3, 6e-3};
+  expected.material = {1e9, 0.25, 1000, solid::Plane::strain, 2e-7};
+  expected.loading = {
+      1e-4, 2e-4, statics::TopEdge::free, statics::LoadingMethod::ramp, statics::StaticSolver::direct, 1e-5,
+      0.02, 0.01};
+  expected.friction = interface::VelocityWeakening { 0.9, 0.5, 0.2 };
+  expected.regularisation = {interface::Relaxed::pressure, 2e-5, 0.5,
+                             std::numeric_limits<double>::infinity()};
+  expected.contact = interface::ContactAlgorithm::predictor_corrector;
+  expected.event = interface::EventKind::left;
+  expected.trigger = {interface::TriggerForm::raised, 0.03, 4, 6e-6, std::numeric_limits<double>::infinity()};
+  expected.time = {0.5, true, motion::Precision::single_precision, 3, 9, false, 1e-4, 2e-5};
+  expected.fronts = {2e-3, fronts::SpeedInterval::approach, 3e-5, 4e-3, 0.6, 0.1, 5e-3};
+  expected.output = {1e-6, {1e-5, 2e-5}, 1e-5};
+  expect_equal(c, expected);
+}
+
+TEST(Schema, EveryLawOfTheRegistryIsReadByItsName) {
+  ASSERT_EQ(friction_laws().size(), std::variant_size_v<interface::FrictionLaw>);
+  std::set<std::string> names;
+  for (const LawEntries& law : friction_laws()) {
+    SCOPED_TRACE(law.name);
+    EXPECT_TRUE(names.insert(law.name).second) << "two laws of one name";
+    const Case plain = parse_case("friction.law = \"" + law.name + "\"", "c.toml");
+    EXPECT_EQ(plain.friction.index(), law.defaults.index());
+    EXPECT_EQ(members(plain.friction), members(law.defaults));
+
+    // A common factor keeps relations between parameters, e.g. mu_k <= mu_s.
+    Case scaled;
+    scaled.friction = law.defaults;
+    std::visit(
+        [](auto& friction) {
+          for (const auto& parameter : friction.parameters()) friction.*parameter.member *= 0.75;
+        },
+        scaled.friction);
+    EXPECT_NE(members(scaled.friction), members(law.defaults));
+    expect_equal(parse_case(to_toml(scaled), "c.toml"), scaled);
+
+    for (const Entry& entry : law.entries) {
+      std::string too_small = toml_text(Value(entry.range.min - 1));
+      EXPECT_THAT(
+          parse_error("friction.law = \"" + law.name + "\"\n" + entry.key + " = " + too_small),
+          AllOf(StartsWith("c.toml:2: " + entry.key + " is " + too_small), HasSubstr("it must be at least")));
+    }
+  }
+}
+
+TEST(Schema, AnUnknownLawIsNamed) {
+  EXPECT_THAT(parse_error("[friction]\nlaw = \"coulom\""),
+              AllOf(StartsWith("c.toml:2: friction.law is \"coulom\"; it must be one of "),
+                    HasSubstr("velocity_weakening"), EndsWith("(did you mean coulomb?)")));
+}
+
+TEST(Schema, AParameterOfAnotherLawIsNamedAsSuch) {
+  EXPECT_EQ(
+      parse_error("[friction]\nlaw = \"coulomb\"\nmu_k = 0.5"),
+      "c.toml:3: friction.mu_k belongs to the friction law velocity_weakening, but friction.law is coulomb; "
+      "remove the key or set the law");
+}
+
+TEST(Schema, ParametersThatDoNotFitTogetherAreRefused) {
+  EXPECT_EQ(parse_error("[friction]\nmu_s = 0.5\nmu_k = 0.7"),
+            "c.toml:2: friction: mu_k must be at most mu_s (mu_s = 0.5, mu_k = 0.7, alpha_m2_per_s2 = 0.1)");
+  EXPECT_THAT(parse_error("[friction]\nmu_s = 0.9", {{"friction.mu_k", "1"}}),
+              StartsWith("--set friction.mu_k=1: friction: mu_k must be at most mu_s"));
+}
+
+TEST(Schema, UnknownKeysAreAnsweredWithTheNearestOne) {
+  EXPECT_EQ(parse_error("[plate]\n\nwidht_m = 0.2"),
+            "c.toml:3: unknown key plate.widht_m; did you mean plate.width_m?");
+  EXPECT_EQ(parse_error("titel = \"x\""), "c.toml:1: unknown key titel; did you mean title?");
+  EXPECT_EQ(parse_error("[friction]\nmus = 1"),
+            "c.toml:2: unknown key friction.mus; did you mean friction.mu_s?");
+  EXPECT_EQ(parse_error("[time]\nunheard_of_quantity = 1"),
+            "c.toml:2: unknown key time.unheard_of_quantity; `slipfront keys` lists all keys");
+}
+
+TEST(Schema, AKeyInTheWrongTableIsAnsweredWithTheRightOne) {
+  EXPECT_EQ(parse_error("[material]\nwidth_m = 1"),
+            "c.toml:2: unknown key material.width_m; did you mean plate.width_m?");
+  EXPECT_EQ(parse_error("width_m = 1"), "c.toml:1: unknown key width_m; did you mean plate.width_m?");
+}
+
+TEST(Schema, UnknownTables) {
+  EXPECT_EQ(parse_error("[plat]\nwidth_m = 1"), "c.toml:1: unknown table [plat]; did you mean [plate]?");
+  EXPECT_EQ(parse_error("title = \"\"\n[contacts]"),
+            "c.toml:2: unknown table [contacts]; did you mean [contact]?");
+  EXPECT_EQ(parse_error("title = \"\"\n[boundaries]"),
+            "c.toml:2: unknown table [boundaries]; tables are plate, material, loading, prestress, friction, "
+            "contact, "
+            "event, nucleation, time, "
+            "fronts, "
+            "output");
+  EXPECT_THAT(parse_error("[plate.inner]\nwidth_m = 1"), StartsWith("c.toml:1: unknown table [plate.inner]"));
+}
+
+TEST(Schema, TablesAndKeysAreNotMixedUp) {
+  EXPECT_EQ(parse_error("plate = 3"),
+            "c.toml:1: plate is a table, not a key; set its keys, plate.NAME, one by one");
+  EXPECT_EQ(parse_error("[[plate]]\nwidth_m = 1"),
+            "c.toml:1: plate is a table, not a key; set its keys, plate.NAME, one by one");
+  EXPECT_EQ(parse_error("[plate.width_m]\nvalue = 1"),
+            "c.toml:1: plate.width_m must be a number, is a table; write it as a key");
+}
+
+TEST(Schema, WrongTypes) {
+  EXPECT_EQ(parse_error("[plate]\nwidth_m = \"0.2\""),
+            "c.toml:2: plate.width_m must be a number, is a string; write for example width_m = 0.2");
+  EXPECT_EQ(parse_error("[plate]\nwidth_m = true"),
+            "c.toml:2: plate.width_m must be a number, is a boolean; write for example width_m = 0.2");
+  EXPECT_EQ(parse_error("[plate]\nwidth_m = 1979-05-27"),
+            "c.toml:2: plate.width_m must be a number, is a date or time; write for example width_m = 0.2");
+  EXPECT_EQ(
+      parse_error("[time]\ninterface_rows = 4.5"),
+      "c.toml:2: time.interface_rows must be an integer, is a number; write for example interface_rows = 4");
+  EXPECT_EQ(parse_error("[time]\nallow_unstable = 1"),
+            "c.toml:2: time.allow_unstable must be true or false, is an integer; write for example "
+            "allow_unstable = false");
+  EXPECT_EQ(parse_error("title = 5"),
+            "c.toml:1: title must be a string, is an integer; write for example title = \"\"");
+  EXPECT_EQ(parse_error("[event]\nkind = 1"),
+            "c.toml:2: event.kind must be a word in quotes, is an integer; write for example kind = "
+            "\"spontaneous\"");
+  EXPECT_EQ(parse_error("[output]\nsnapshot_times_s = 1e-5"),
+            "c.toml:2: output.snapshot_times_s must be a list of numbers, is a number; write for example "
+            "snapshot_times_s = [1e-5, 2e-5]");
+  EXPECT_THAT(
+      parse_error("[output]\nsnapshot_times_s = [0, \"a\"]"),
+      StartsWith(
+          "c.toml:2: output.snapshot_times_s must be a list of numbers, is a list with something else"));
+}
+
+TEST(Schema, AnIntegerDoesForANumber) {
+  EXPECT_EQ(parse_case("[plate]\nwidth_m = 2", "c.toml").plate.width_m, 2.0);
+  EXPECT_EQ(parse_case("[output]\nsnapshot_times_s = [0, 1.5, 2]", "c.toml").output.snapshot_times_s,
+            (std::vector<double>{0, 1.5, 2}));
+}
+
+TEST(Schema, ValuesOutOfRange) {
+  EXPECT_EQ(parse_error("[plate]\nheight_m = 0.0"),
+            "c.toml:2: plate.height_m is 0 m; it must be greater than 0 m");
+  EXPECT_EQ(parse_error("[material]\npoissons_ratio = 0.5"),
+            "c.toml:2: material.poissons_ratio is 0.5; it must be greater than -1 and less than 0.5");
+  EXPECT_EQ(parse_error("[material]\ndensity_kg_per_m3 = -1"),
+            "c.toml:2: material.density_kg_per_m3 is -1 kg/m3; it must be greater than 0 kg/m3");
+  EXPECT_EQ(parse_error("[time]\ninterface_substeps = 0"),
+            "c.toml:2: time.interface_substeps is 0; it must be at least 1 and at most 1000000");
+  EXPECT_EQ(parse_error("[time]\nend_s = inf"),
+            "c.toml:2: time.end_s is inf s; it must be a finite number greater than 0 s");
+  EXPECT_EQ(parse_error("[plate]\nwidth_m = nan"),
+            "c.toml:2: plate.width_m is nan m; it must be a finite number greater than 0 m");
+  EXPECT_EQ(parse_error("[event]\ntrigger_duration_s = -1"),
+            "c.toml:2: event.trigger_duration_s is -1 s; it must be greater than 0 s and may be inf");
+  EXPECT_EQ(parse_error("[output]\nsnapshot_times_s = [0, -1]"),
+            "c.toml:2: output.snapshot_times_s is -1 s; it must be at least 0 s");
+  EXPECT_EQ(parse_error("[event]\nkind = \"lft\""),
+            "c.toml:2: event.kind is \"lft\"; it must be one of none, spontaneous, left, right, nucleation "
+            "(did you mean left?)");
+}
+
+TEST(Schema, NoNumberMayBeNan) {
+  for (const Entry& entry : entries_of(Case{}))
+    if (entry.kind == Kind::number) {
+      EXPECT_THAT(parse_error(entry.key + " = nan"), HasSubstr("is nan")) << entry.key;
+    }
+}
+
+TEST(Schema, OnlyOpenEndedTimesMayBeInfinite) {
+  std::vector<std::string> infinite;
+  for (const Entry& entry : entries_of(Case{}))
+    if (entry.kind == Kind::number && parse_error(entry.key + " = inf") == "(nothing thrown)")
+      infinite.push_back(entry.key);
+  EXPECT_THAT(infinite, ::testing::ElementsAre("friction.relaxation_length_m", "friction.relaxation_time_s",
+                                               "event.trigger_duration_s", "time.quiet_s"));
+}
+
+TEST(Schema, RelationsBetweenKeys) {
+  EXPECT_EQ(parse_error("[plate]\nwidth_m = 3\n\nelement_size_m = 0.2"),
+            "c.toml:4: plate.element_size_m is 0.2 m; it must be at most the plate's shorter side, 0.1 m");
+  EXPECT_THAT(parse_error("[loading]\ntilt_right_m = 0.1"),
+              StartsWith("c.toml:2: loading.tilt_left_m and tilt_right_m"));
+  EXPECT_THAT(parse_error("[loading]\nedge_margin_m = 0.1"),
+              StartsWith("c.toml:2: loading.edge_margin_m is 0.1 m"));
+  EXPECT_THAT(parse_error("[event]\ntrigger_zone_m = 0.3"),
+              StartsWith("c.toml:2: event.trigger_zone_m is 0.3 m"));
+  EXPECT_EQ(parse_error("[time]\nstep_factor = 1.5"),
+            "c.toml:2: time.step_factor is 1.5, beyond the stable step; use at most 1, or set "
+            "time.allow_unstable = true");
+  EXPECT_EQ(parse_case("[time]\nstep_factor = 1.5\nallow_unstable = true", "c.toml").time.step_factor, 1.5);
+  EXPECT_EQ(parse_error("[fronts]\npulse_share = 0.9"),
+            "c.toml:2: fronts.pulse_share is 0.9; it must be at most fronts.crack_share, 0.5");
+  EXPECT_EQ(
+      parse_error("[output]\nsnapshot_times_s = [0, 2e-5, 2e-5]"),
+      "c.toml:2: output.snapshot_times_s has 2e-05 s before 2e-05 s; write the times in ascending order");
+}
+
+TEST(Schema, ARegularisationNeedsItsScale) {
+  EXPECT_EQ(parse_error("[friction]\nregularisation = \"strength\""),
+            "c.toml:2: friction.regularisation needs a finite friction.relaxation_length_m or "
+            "relaxation_time_s; set one");
+  for (const std::string scale : {"relaxation_length_m = 1e-5", "relaxation_time_s = 1e-6"})
+    EXPECT_EQ(
+        parse_case("[friction]\nregularisation = \"strength\"\n" + scale, "c.toml").regularisation.relaxed,
+        interface::Relaxed::strength);
+  EXPECT_EQ(parse_error("[friction]\nregularisation = \"pressure\"\nrelaxation_time_s = 1e-6\n"
+                        "relaxation_slip_rate_m_per_s = 0.1"),
+            "c.toml:4: friction.relaxation_slip_rate_m_per_s does nothing without a finite "
+            "friction.relaxation_length_m; set that, or remove it");
+  // Without a regularisation its scale may stay in the file, for comparisons by overrides.
+  EXPECT_EQ(parse_case("[friction]\nrelaxation_length_m = 1e-5", "c.toml").regularisation.length_m, 1e-5);
+}
+
+TEST(Schema, SyntaxErrorsHaveTheirLine) {
+  EXPECT_THAT(parse_error("title = \"x\"\n\n[plate\n"),
+              AllOf(StartsWith("c.toml:3: "), EndsWith("; correct the TOML there")));
+  EXPECT_THAT(parse_error("[plate]\nwidth_m = 0.2.1"), StartsWith("c.toml:2: "));
+  EXPECT_THAT(parse_error("[plate]\nwidth_m =\n"), StartsWith("c.toml:2: "));
+  EXPECT_THAT(parse_error("\n\ntitle = \"\xff\""), AllOf(StartsWith("c.toml:3: "), HasSubstr("utf-8")));
+}
+
+TEST(Schema, DuplicatesAreRefused) {
+  EXPECT_THAT(parse_error("[plate]\nwidth_m = 0.2\nwidth_m = 0.3"),
+              AllOf(StartsWith("c.toml:3: "), HasSubstr("width_m"), EndsWith("; keep only one of the two")));
+  EXPECT_THAT(parse_error("[plate]\n[plate]"),
+              AllOf(StartsWith("c.toml:2: "), EndsWith("; keep only one of the two")));
+}
+
+TEST(Schema, TheFirstErrorOfTheFileIsReported) {
+  EXPECT_THAT(parse_error("[time]\nend_s = -1\n[material]\ndensity_kg_per_m3 = -1"),
+              StartsWith("c.toml:2: time.end_s"));
+}
+
+TEST(Overrides, AreSplitAtTheFirstEqualsSign) {
+  EXPECT_EQ(parse_override("title=a=b"), Override("title", "a=b"));
+  EXPECT_EQ(parse_override(" plate.width_m = 0.4 "), Override("plate.width_m", "0.4"));
+  EXPECT_EQ(parse_override("title="), Override("title", ""));
+  EXPECT_EQ(error_of([] { parse_override("plate.width_m"); }),
+            "--set plate.width_m: is not of the form key=value; write for example --set friction.mu_k=1.0");
+  EXPECT_THAT(error_of([] { parse_override("=1"); }), StartsWith("--set =1: is not of the form key=value"));
+}
+
+TEST(Overrides, WinOverTheFileAndTheLastOverEarlierOnes) {
+  const Case c =
+      parse_case("[plate]\nwidth_m = 0.3\nheight_m = 0.2", "c.toml",
+                 {{"plate.width_m", "0.4"}, {"plate.width_m", "0.5"}, {"time.interface_rows", "6"}});
+  EXPECT_EQ(c.plate.width_m, 0.5);
+  EXPECT_EQ(c.plate.height_m, 0.2);
+  EXPECT_EQ(c.time.interface_rows, 6);
+}
+
+TEST(Overrides, MendAnErrorOfTheFile) {
+  EXPECT_EQ(parse_case("[plate]\nwidth_m = -1", "c.toml", {{"plate.width_m", "0.4"}}).plate.width_m, 0.4);
+}
+
+TEST(Overrides, WordsAndTextNeedNoQuotes) {
+  EXPECT_EQ(parse_case("", "c.toml", {{"event.kind", "left"}}).event, interface::EventKind::left);
+  EXPECT_EQ(parse_case("", "c.toml", {{"event.kind", "\"left\""}}).event, interface::EventKind::left);
+  EXPECT_EQ(parse_case("", "c.toml", {{"title", "my run"}}).title, "my run");
+  EXPECT_EQ(parse_case("", "c.toml", {{"title", "12"}}).title, "12");
+  EXPECT_EQ(parse_case("", "c.toml", {{"title", "'12'"}}).title, "12");
+}
+
+TEST(Overrides, TakeListsFlagsAndInfinity) {
+  const Case c = parse_case("", "c.toml",
+                            {{"output.snapshot_times_s", "[1e-5, 2e-5]"},
+                             {"time.allow_unstable", "true"},
+                             {"event.trigger_duration_s", "inf"}});
+  EXPECT_EQ(c.output.snapshot_times_s, (std::vector<double>{1e-5, 2e-5}));
+  EXPECT_TRUE(c.time.allow_unstable);
+  EXPECT_TRUE(std::isinf(c.trigger.duration_s));
+}
+
+TEST(Overrides, ErrorsNameTheOverride) {
+  EXPECT_EQ(parse_error("", {{"plate.widht_m", "1"}}),
+            "--set plate.widht_m=1: unknown key plate.widht_m; did you mean plate.width_m?");
+  EXPECT_EQ(parse_error("", {{"plate.width_m", "0,2"}}),
+            "--set plate.width_m=0,2: plate.width_m must be a number, is a string; write for example --set "
+            "plate.width_m=0.2");
+  EXPECT_EQ(parse_error("", {{"plate.width_m", "-1"}}),
+            "--set plate.width_m=-1: plate.width_m is -1 m; it must be greater than 0 m");
+  EXPECT_THAT(parse_error("", {{"event.kind", "lft"}}),
+              StartsWith("--set event.kind=lft: event.kind is \"lft\""));
+  EXPECT_THAT(parse_error("", {{"plate.width_m", "0.2\nheight_m = 3"}}),
+              StartsWith("--set plate.width_m=0.2"));
+  EXPECT_THAT(parse_error("", {{"plate", "3"}}), StartsWith("--set plate=3: plate is a table"));
+  EXPECT_THAT(parse_error("[plate]\nelement_size_m = 0.1", {{"plate.height_m", "0.01"}}),
+              StartsWith("--set plate.height_m=0.01: plate.element_size_m is 0.1 m"));
+}
+
+TEST(Overrides, ChangeTheFrictionLaw) {
+  const std::string file = "[friction]\nlaw = \"velocity_weakening\"\nmu_s = 1.3\nmu_k = 0.6";
+  const Case c = parse_case(file, "c.toml", {{"friction.mu", "0.75"}, {"friction.law", "coulomb"}});
+  ASSERT_TRUE(std::holds_alternative<interface::Coulomb>(c.friction));
+  EXPECT_EQ(std::get<interface::Coulomb>(c.friction).mu, 0.75);
+
+  EXPECT_THAT(
+      parse_error(file, {{"friction.law", "coulomb"}, {"friction.mu_k", "1"}}),
+      StartsWith("--set friction.mu_k=1: friction.mu_k belongs to the friction law velocity_weakening"));
+  EXPECT_EQ(parse_error(file + "\nmuk = 1", {{"friction.law", "coulomb"}}),
+            "c.toml:5: unknown key friction.muk; did you mean friction.mu?");
+}
+
+TEST(Reference, NamesEveryKeyWithUnitDefaultRangeAndHelp) {
+  const std::string reference = schema_reference();
+  for (const Entry& entry : common_entries())
+    EXPECT_THAT(reference, HasSubstr("| `" + leaf_of(entry.key) + "` |"));
+  for (const LawEntries& law : friction_laws()) {
+    EXPECT_THAT(reference, HasSubstr("With `law = \"" + law.name + "\"`"));
+    for (const Entry& entry : law.entries)
+      EXPECT_THAT(reference, HasSubstr("| `" + leaf_of(entry.key) + "` |"));
+  }
+  EXPECT_THAT(reference, HasSubstr("\n## [plate]\n"));
+  EXPECT_THAT(reference,
+              HasSubstr("| `width_m` | number | m | `0.2` | greater than 0 | along the interface |\n"));
+  EXPECT_THAT(reference, HasSubstr("| `plane` | word |  | `\"stress\"` | `\"stress\"`, `\"strain\"` |"));
+}
+
+TEST(Entries, KeysAreUniqueAndHaveHelp) {
+  std::set<std::string> keys;
+  for (const Entry& entry : common_entries()) {
+    EXPECT_TRUE(keys.insert(entry.key).second) << entry.key;
+    EXPECT_FALSE(entry.help.empty()) << entry.key;
+  }
+}
+
+TEST(Entries, DefaultsAreInRange) {
+  for (const Entry& entry : entries_of(Case{})) {
+    const Value value = entry.get(Case{});
+    if (const auto* number = std::get_if<double>(&value)) {
+      EXPECT_TRUE(contains(entry.range, *number)) << entry.key;
+    }
+    if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+      EXPECT_TRUE(contains(entry.range, static_cast<double>(*integer))) << entry.key;
+    }
+  }
+}
+
+TEST(Entries, UnitsComeFromTheKey) {
+  EXPECT_EQ(unit_of("plate.width_m"), "m");
+  EXPECT_EQ(unit_of("material.density_kg_per_m3"), "kg/m3");
+  EXPECT_EQ(unit_of("friction.alpha_m2_per_s2"), "m2/s2");
+  EXPECT_EQ(unit_of("event.trigger_amount"), "");
+  EXPECT_EQ(unit_of("friction.mu_s"), "");
+  EXPECT_EQ(unit_of("loading.shear_speed_over_c_L"), "");
+  EXPECT_EQ(unit_of("friction.rate_per_s"), "1/s");
+}
+
+TEST(CaseFile, MissingFileAndFolderAreRefused) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(error_of([&] { read_case(folder / "none.toml"); }),
+            (folder / "none.toml").string() + ": cannot be read (No such file or directory); check the path");
+  EXPECT_THAT(error_of([&] { read_case(folder.path()); }),
+              EndsWith(": is a folder; name the case file in it"));
+}
+
+TEST(CaseFile, MessagesNameTheFile) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "my case.toml";
+  test::write_file(file, "\xef\xbb\xbf# with a byte order mark\r\n[plate]\r\nwidth_m = -1\r\n");
+  EXPECT_THAT(error_of([&] { read_case(file); }), StartsWith(file.string() + ":3: plate.width_m is -1 m"));
+}
+
+TEST(CaseFile, PlacesOfLaterErrors) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "c.toml";
+  test::write_file(file, "title = \"x\"\n[plate]\n\nelement_size_m = 1e-3\n");
+  const CaseFile plain(file);
+  EXPECT_EQ(plain.place_of_key("plate.element_size_m"), file.string() + ":4");
+  EXPECT_EQ(plain.place_of_key("plate.width_m"), file.string());
+  EXPECT_EQ(plain.with_place("no key in here"), file.string() + ": no key in here");
+  const CaseFile overridden(file, {{"plate.width_m", "3"}});
+  std::filesystem::remove(file);  // what has been read is not read again
+  EXPECT_EQ(overridden.place_of_key("plate.width_m"), "--set plate.width_m=3");
+  EXPECT_EQ(overridden.with_place("plate.element_size_m does not divide plate.width_m"),
+            file.string() + ":4: plate.element_size_m does not divide plate.width_m");
+  EXPECT_EQ(overridden.with_place("plate.width_m is odd"), "--set plate.width_m=3: plate.width_m is odd");
+}
+
+TEST(CaseFile, ThePapersRuns) {
+  const std::filesystem::path folder = std::filesystem::path(SLIPFRONT_SOURCE_DIR) / "cases" / "kammer2012";
+  std::set<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    if (file.path().extension() != ".toml") continue;
+    SCOPED_TRACE(file.path());
+    names.insert(file.path().stem().string());
+    const Case c = read_case(file.path());
+    EXPECT_FALSE(c.title.empty());
+    EXPECT_EQ(c.plate.width_m, 0.2);
+    EXPECT_EQ(c.plate.height_m, 0.1);
+    EXPECT_DOUBLE_EQ(c.plate.element_size_m, 0.2 / 300);
+    EXPECT_EQ(c.material.youngs_modulus_Pa, 2.6e9);
+    EXPECT_EQ(c.material.poissons_ratio, 0.37);
+    EXPECT_EQ(c.material.density_kg_per_m3, 1200);
+    EXPECT_EQ(c.material.plane, solid::Plane::stress);
+    EXPECT_EQ(c.material.stiffness_damping_s, 0.1e-6);
+    EXPECT_EQ(c.loading.tilt_left_m, 0.37e-3);
+    EXPECT_EQ(c.loading.tilt_right_m, 0.037e-3);
+    EXPECT_EQ(c.loading.shear_speed_over_c_L, 1e-6);
+    const auto& friction = std::get<interface::VelocityWeakening>(c.friction);
+    EXPECT_EQ(friction.mu_s, 1.3);
+    EXPECT_EQ(friction.alpha_m2_per_s2, 0.1);
+    const std::string stem = file.path().stem().string();
+    EXPECT_EQ(friction.mu_k, stem == "spontaneous_mu_k_1.0" ? 1.0 : 0.6);
+    EXPECT_EQ(c.event, stem == "left"    ? interface::EventKind::left
+                       : stem == "right" ? interface::EventKind::right
+                                         : interface::EventKind::spontaneous);
+    ASSERT_EQ(c.output.snapshot_times_s.size(), 20u);
+    for (int k = 0; k < 20; ++k)
+      EXPECT_DOUBLE_EQ(c.output.snapshot_times_s[static_cast<std::size_t>(k)], (k + 1) * 1e-5);
+  }
+  EXPECT_THAT(names, ::testing::ElementsAre("left", "right", "spontaneous", "spontaneous_mu_k_1.0"));
+}
+
+}  // namespace
+}  // namespace slipfront::input

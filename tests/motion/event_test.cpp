@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/event.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "motion/support.hpp"
+
+namespace slipfront::motion {
+namespace {
+
+using mesh::Corner;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double mu_s = 1.3;
+
+/// The paper's plate with 5 mm cells.
+class EventRun : public ::testing::Test {
+ protected:
+  mesh::Mesh mesh_ = support::make_plate(0.2, 0.1, 5e-3, Corner::none);
+  solid::Material material_;
+  statics::Statics statics_{mesh_, material_, {}, mu_s};
+  statics::Equilibrium common_ = statics_.shear_to(0.999 * mu_s);
+  statics::Equilibrium calm_ = statics_.shear_to(0.5 * mu_s);
+  double c_L_ = solid::longitudinal_speed_m_per_s(material_);
+  TimeStepping time_{.interface_substeps = 4, .end_s = 60e-6, .quiet_s = 1};
+  Sampling sampling_;
+  interface::Trigger none_;
+
+  Event run(
+      const statics::Equilibrium& state, const Monitor& monitor = [](auto, auto) { return true; },
+      Sink* sink = nullptr) {
+    Stepper stepper(mesh_, material_, support::paper_law, time_);
+    stepper.start(state, 1e-6 * c_L_);
+    return run_event(stepper, state, mu_s, c_L_, none_, time_, sampling_, 2, monitor, sink);
+  }
+  double step_s() { return Stepper(mesh_, material_, support::paper_law, time_).step_s(); }
+};
+
+TEST_F(EventRun, EndsAtItsEnd) {
+  const Event event = run(calm_);
+  EXPECT_EQ(event.end, EventEnd::end_time);
+  EXPECT_EQ(event.blow_up, "");
+  EXPECT_EQ(event.steps, static_cast<std::int64_t>(std::ceil(60e-6 / step_s())));
+  EXPECT_DOUBLE_EQ(event.time_s, static_cast<double>(event.steps) * step_s());
+  EXPECT_GE(event.time_s, 60e-6);
+  EXPECT_EQ(event.record.end_time_s, event.time_s);
+  EXPECT_EQ(event.record.halo, 2);
+  EXPECT_TRUE(event.record.onsets.empty());
+}
+
+TEST_F(EventRun, EnergiesMayBeAskedForAtEveryStep) {
+  // Multiples of the step that are rounded: a row for each step all the same.
+  time_.end_s = 2e-3;
+  for (const double interval_s : {1e-12, step_s()}) {
+    sampling_.energy_interval_s = interval_s;
+    sampling_.history_interval_s = interval_s;
+    const Event event = run(calm_);
+    ASSERT_GT(event.steps, 500);
+    EXPECT_EQ(std::ssize(event.energies), event.steps + 1);
+    EXPECT_EQ(std::ssize(event.history.time_s), event.steps);
+  }
+}
+
+TEST_F(EventRun, FarTimesAreNever) {
+  sampling_.energy_interval_s = 1e300;
+  sampling_.snapshot_times_s = {1e300};
+  const Event event = run(calm_);
+  EXPECT_EQ(event.end, EventEnd::end_time);
+  EXPECT_EQ(event.energies.size(), 2);
+  EXPECT_TRUE(event.snapshots.empty());
+}
+
+TEST_F(EventRun, EndsWhenNothingMoves) {
+  time_.quiet_s = 20e-6;
+  none_.ramp_s = 7e-6;
+  const Event event = run(calm_);
+  EXPECT_EQ(event.end, EventEnd::quiet);
+  // No node slips, so the time counts from the ramp's end; to the next step.
+  EXPECT_GT(event.time_s, 27e-6);
+  EXPECT_LE(event.time_s, 27e-6 + step_s() * (1 + 1e-9));
+}
+
+TEST_F(EventRun, SlippingKeepsItGoing) {
+  time_.quiet_s = 20e-6;
+  time_.end_s = 1e-3;
+  none_.ramp_s = 0;
+  const Event event = run(statics_.shear_to(1.001 * mu_s));
+  EXPECT_EQ(event.end, EventEnd::quiet);
+  ASSERT_FALSE(event.record.onsets.empty());
+  // Slip faster than ten times the loading: the event goes on for 20 us after the last of it, to within a
+  // sample.
+  double last_s = 0;
+  for (std::size_t k = 0; k < event.history.slip_rate_m_per_s.size(); ++k)
+    if (std::abs(event.history.slip_rate_m_per_s[k]) > 10e-6 * c_L_ && event.history.p_Pa[k] > 0)
+      last_s = event.history.time_s[k / event.history.x_m.size()];
+  EXPECT_GT(last_s, 1e-6);
+  EXPECT_GT(event.time_s, last_s + 20e-6 - sampling_.history_interval_s - step_s());
+}
+
+TEST_F(EventRun, EndsWhenTheMonitorSaysSo) {
+  time_.end_s = 1e-3;
+  std::vector<std::int64_t> asked;
+  std::int64_t total = 0;
+  const Event event = run(calm_, [&](std::int64_t step, std::int64_t n_steps) {
+    asked.push_back(step);
+    total = n_steps;
+    return step < 150;
+  });
+  EXPECT_EQ(event.end, EventEnd::interrupted);
+  EXPECT_THAT(asked, ElementsAre(50, 100, 150));
+  EXPECT_EQ(event.steps, 150);
+  EXPECT_EQ(total, static_cast<std::int64_t>(std::ceil(1e-3 / step_s())));
+}
+
+TEST_F(EventRun, EndsWhenItBlowsUp) {
+  time_.step_factor = 1.3;
+  time_.allow_unstable = true;
+  time_.end_s = 1;
+  const Event event = run(calm_);
+  EXPECT_EQ(event.end, EventEnd::blow_up);
+  EXPECT_THAT(event.blow_up, HasSubstr(fmt::format("the run blew up at step {} (t = ", event.steps)));
+  EXPECT_THAT(event.blow_up, HasSubstr("reduce time.step_factor"));
+  EXPECT_LT(event.steps, 1000);
+  // Seen before the numbers are lost.
+  for (const double slip : event.history.slip_m) ASSERT_TRUE(std::isfinite(slip));
+}
+
+TEST_F(EventRun, EndsWhenEnergyComesFromNowhere) {
+  // Unstable by so little that the energy, looked at now and then, tells before any slip rate does.
+  time_.step_factor = 1.02;
+  time_.allow_unstable = true;
+  time_.end_s = 1;
+  const Event event = run(calm_);
+  EXPECT_EQ(event.end, EventEnd::blow_up);
+  EXPECT_THAT(event.blow_up, HasSubstr("the energy has grown to"));
+  EXPECT_LT(event.time_s, 1);
+}
+
+TEST_F(EventRun, SamplesAreSpacedAsAsked) {
+  sampling_.history_interval_s = 7e-6;
+  const Event event = run(calm_);
+  const double step = step_s();
+  ASSERT_LT(step, 7e-6);
+  ASSERT_EQ(event.history.time_s.size(), 9);  // 0, 7, ... 56 us
+  for (std::size_t k = 0; k < 9; ++k) {
+    // The first step at or after the time.
+    const double asked = 7e-6 * static_cast<double>(k);
+    EXPECT_GE(event.history.time_s[k], asked * (1 - 1e-12));
+    EXPECT_LT(event.history.time_s[k], asked + step);
+  }
+  const std::size_t n = 9 * mesh_.lower.size();
+  for (const auto* matrix :
+       {&event.history.slip_m, &event.history.slip_rate_m_per_s, &event.history.t_Pa, &event.history.p_Pa})
+    EXPECT_EQ(matrix->size(), n);
+  EXPECT_EQ(event.history.x_m, calm_.tractions.x_m);
+
+  sampling_.history_interval_s = 0.1 * step;  // no finer than the steps
+  EXPECT_EQ(run(calm_).history.time_s.size(), static_cast<std::size_t>(event.steps));
+}
+
+TEST_F(EventRun, SnapshotsAreTakenAtTheTimesAsked) {
+  const double step = step_s();
+  sampling_.snapshot_times_s = {0, 10e-6, 10.001e-6, 33e-6, 1};
+  const Event event = run(calm_);
+  ASSERT_EQ(event.snapshots.size(), 4);  // the last time is not reached
+  EXPECT_EQ(event.snapshots[0].time_s, 0);
+  EXPECT_EQ(event.snapshots[0].u_m.x, calm_.u_m.x);
+  for (std::size_t k = 1; k < 4; ++k) {
+    EXPECT_GE(event.snapshots[k].time_s, sampling_.snapshot_times_s[k]);
+    EXPECT_LT(event.snapshots[k].time_s, sampling_.snapshot_times_s[k] + step);
+    EXPECT_EQ(event.snapshots[k].u_m.size(), static_cast<std::size_t>(mesh_.n_nodes()));
+  }
+}
+
+/// Keeps what it is given, and may fail.
+class KeepingSink : public Sink {
+ public:
+  void sample(const record::History& row) override {
+    if (history_.time_s.size() == fails_after_) throw std::runtime_error("no room");
+    EXPECT_EQ(row.time_s.size(), 1U);
+    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(history_.time_s, row.time_s);
+    append(history_.slip_m, row.slip_m);
+    append(history_.slip_rate_m_per_s, row.slip_rate_m_per_s);
+    append(history_.t_Pa, row.t_Pa);
+    append(history_.p_Pa, row.p_Pa);
+  }
+  void snapshot(const Stepper& stepper) override { snapshots_.push_back(take_snapshot(stepper)); }
+
+  record::History history_;
+  std::vector<Snapshot> snapshots_;
+  std::size_t fails_after_ = std::numeric_limits<std::size_t>::max();
+};
+
+TEST_F(EventRun, ASinkIsGivenWhatTheEventWouldKeep) {
+  sampling_.snapshot_times_s = {0, 10e-6, 10.001e-6, 33e-6, 1};
+  const Event kept = run(calm_);
+  KeepingSink sink;
+  const Event event = run(
+      calm_, [](auto, auto) { return true; }, &sink);
+  EXPECT_TRUE(event.history.time_s.empty());
+  EXPECT_TRUE(event.snapshots.empty());
+  EXPECT_EQ(event.steps, kept.steps);
+  ASSERT_GT(kept.history.time_s.size(), 10U);
+  EXPECT_EQ(sink.history_.time_s, kept.history.time_s);
+  EXPECT_EQ(sink.history_.slip_m, kept.history.slip_m);
+  EXPECT_EQ(sink.history_.slip_rate_m_per_s, kept.history.slip_rate_m_per_s);
+  EXPECT_EQ(sink.history_.t_Pa, kept.history.t_Pa);
+  EXPECT_EQ(sink.history_.p_Pa, kept.history.p_Pa);
+  ASSERT_EQ(sink.snapshots_.size(), kept.snapshots.size());
+  for (std::size_t k = 0; k < kept.snapshots.size(); ++k) {
+    EXPECT_EQ(sink.snapshots_[k].time_s, kept.snapshots[k].time_s);
+    EXPECT_EQ(sink.snapshots_[k].u_m.x, kept.snapshots[k].u_m.x);
+    EXPECT_EQ(sink.snapshots_[k].v_m_per_s.y, kept.snapshots[k].v_m_per_s.y);
+  }
+}
+
+TEST_F(EventRun, AFailingSinkEndsTheEvent) {
+  KeepingSink sink;
+  sink.fails_after_ = 5;
+  EXPECT_THROW(run(
+                   calm_, [](auto, auto) { return true; }, &sink),
+               std::runtime_error);
+  EXPECT_EQ(sink.history_.time_s.size(), 5U);
+}
+
+TEST_F(EventRun, SlipReleasesEnergyAndTheBooksShowIt) {
+  const auto spontaneous = statics_.shear_to(1.001 * mu_s);
+  time_.end_s = 100e-6;
+  const Event event = run(spontaneous);
+  EXPECT_EQ(event.end, EventEnd::end_time);
+  EXPECT_GT(event.record.onsets.size(), 10);
+  // Nucleation is where t/p had its maximum.
+  EXPECT_NEAR(event.record.x_m[event.record.onsets[0].node], spontaneous.peak_x_m, 1e-12);
+  const auto& a = event.energies.front();
+  const auto& b = event.energies.back();
+  EXPECT_EQ(a.top_work, 0);
+  EXPECT_EQ(b.trigger_work, 0);
+  EXPECT_GT(b.top_work, 0);  // the edge pushes to +x and moves there
+  EXPECT_LT(b.strain, a.strain);
+  EXPECT_GT(b.kinetic, a.kinetic);
+  EXPECT_LT(b.strain + b.kinetic, a.strain + a.kinetic + b.top_work);  // friction and damping only take
+}
+
+TEST_F(EventRun, TopWorkIsTheReactionTimesThePath) {
+  // Until the first wave reaches the loaded edge (0.1 m / c_L = 63 us) its force is the static one.
+  const auto spontaneous = statics_.shear_to(1.001 * mu_s);
+  const Event event = run(spontaneous);
+  double reaction = 0;
+  const auto tributary = mesh::tributary_lengths_m(mesh_);
+  for (std::size_t k = 0; k < tributary.size(); ++k)
+    reaction += spontaneous.tractions.t_s_Pa[k] * tributary[k];
+  // The ramp of shear adds 1e-4 to the force in this time.
+  EXPECT_NEAR(event.energies.back().top_work / (reaction * 1e-6 * c_L_ * event.time_s), 1, 1e-3);
+}
+
+TEST_F(EventRun, TriggersNucleateAtTheirEdge) {
+  const auto tributary = mesh::tributary_lengths_m(mesh_);
+  time_.end_s = 40e-6;
+  for (const auto kind : {interface::EventKind::left, interface::EventKind::right}) {
+    Stepper stepper(mesh_, material_, support::paper_law, time_);
+    stepper.start(common_, 1e-6 * c_L_);
+    const interface::Trigger trigger;
+    stepper.set_trigger(trigger, trigger_forces(common_, tributary, kind, trigger, mu_s));
+    const Event event = run_event(stepper, common_, mu_s, c_L_, trigger, time_, sampling_, 2,
+                                  [](auto, auto) { return true; });
+    EXPECT_EQ(event.end, EventEnd::end_time);
+    ASSERT_FALSE(event.record.onsets.empty());
+    const double x = event.record.x_m[event.record.onsets[0].node];
+    if (kind == interface::EventKind::left) {
+      EXPECT_LT(x, 0.03);
+    } else {
+      EXPECT_GT(x, 0.17);
+    }
+    EXPECT_GT(event.energies.back().trigger_work, 0);
+  }
+}
+
+/// Six nodes 10 mm apart, the outermost two open; mu_s p_s - t_s = 3, 6, 9, 12 Pa inside.
+statics::Equilibrium six_nodes() {
+  statics::Equilibrium e;
+  e.tractions.x_m = {0, 0.01, 0.02, 0.03, 0.04, 0.05};
+  e.tractions.p_s_Pa = {0, 10, 10, 10, 10, 0};
+  e.tractions.t_s_Pa = {0, 10, 7, 4, 1, 0};
+  e.contact = {statics::Contact::open, statics::Contact::stick, statics::Contact::stick,
+               statics::Contact::slip, statics::Contact::stick, statics::Contact::open};
+  return e;
+}
+
+TEST(TriggerForces, FillTheZoneFromTheEdgeOfContact) {
+  const std::vector<double> tributary = {0.5, 1, 1, 2, 1, 0.5};
+  const interface::Trigger trigger { .zone_m = 0.01, .amount = 2 };
+  using interface::EventKind;
+  const auto forces = [&](EventKind kind) {
+    return trigger_forces(six_nodes(), tributary, kind, trigger, mu_s);
+  };
+  using ::testing::DoubleNear;
+  const auto near = [](double value) { return DoubleNear(value, 1e-13); };
+  EXPECT_THAT(forces(EventKind::left), ElementsAre(0, near(2 * 3), near(2 * 6), 0, 0, 0));
+  EXPECT_THAT(forces(EventKind::right), ElementsAre(0, 0, 0, near(2 * 9 * 2), near(2 * 12), 0));
+  EXPECT_THAT(forces(EventKind::none), Each(0));
+  EXPECT_THAT(forces(EventKind::spontaneous), Each(0));
+  EXPECT_EQ(forces(EventKind::none).size(), 6);
+}
+
+TEST(TriggerForces, RaiseToAMultipleOfTheStrengthOrLeaveItToTheFriction) {
+  const std::vector<double> tributary = {0.5, 1, 1, 2, 1, 0.5};
+  using interface::EventKind;
+  using interface::TriggerForm;
+  const auto forces = [&](TriggerForm form) {
+    return trigger_forces(six_nodes(), tributary, EventKind::left,
+                          {.form = form, .zone_m = 0.01, .amount = 2}, mu_s);
+  };
+  using ::testing::DoubleNear;
+  // mu_s p_s = 13 Pa.
+  EXPECT_THAT(forces(TriggerForm::raised),
+              ElementsAre(0, DoubleNear(2 * 13 - 10, 1e-13), DoubleNear(2 * 13 - 7, 1e-13), 0, 0, 0));
+  EXPECT_THAT(forces(TriggerForm::weakened), Each(0));
+  EXPECT_THAT(trigger_zone(six_nodes(), EventKind::left, 0.01), ElementsAre(1, 2));
+  EXPECT_THAT(trigger_zone(six_nodes(), EventKind::right, 0.02), ElementsAre(2, 3, 4));
+  EXPECT_THAT(trigger_zone(six_nodes(), EventKind::spontaneous, 0.02), ::testing::IsEmpty());
+}
+
+TEST(Halo, ReachesPastTheDistanceAhead) {
+  const auto mesh = support::make_plate(0.2, 0.1, 2e-3, Corner::none);
+  EXPECT_EQ(halo_for(mesh, 2e-3), 2);
+  EXPECT_EQ(halo_for(mesh, 0.67e-3), 2);
+  EXPECT_EQ(halo_for(mesh, 2.01e-3), 2);  // l* = 0.67 mm on cells of 0.667 mm is one cell
+  EXPECT_EQ(halo_for(mesh, 3e-3), 3);
+  EXPECT_EQ(halo_for(mesh, 6e-3), 4);
+}
+
+TEST(Ramp, ReachesTheStaticStates) {
+  // Under Coulomb's law, which does not weaken nodes that slip at the edges. The edge moves ten times faster
+  // than the paper's, on a coarse mesh: inertia and damping change stresses by rho c v, 1e-3 of p at most.
+  const auto mesh = support::make_plate(0.2, 0.1, 10e-3, Corner::none);
+  const solid::Material material;
+  const statics::Loading loading;
+  const statics::Statics statics(mesh, material, loading, mu_s);
+  const auto expected = statics.shear_to((1 - loading.critical_margin) * mu_s);
+  const auto tilted = statics.shear_by(0);
+  TimeStepping time;
+  time.interface_substeps = 1;
+  Stepper stepper(mesh, material, {interface::Coulomb{.mu = mu_s}}, time);
+  const double c_L = solid::longitudinal_speed_m_per_s(material), speed = 1e-5 * c_L;
+  const auto always = [](auto, auto) { return true; };
+  const Ramp ramp = run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m, always);
+  EXPECT_FALSE(ramp.interrupted);
+  EXPECT_NEAR(ramp.common.shear_m / expected.shear_m, 1, 2e-3);
+  EXPECT_EQ(ramp.common.peak_x_m, expected.peak_x_m);
+  EXPECT_GE(ramp.common.peak_ratio, (1 - loading.critical_margin) * mu_s);
+  EXPECT_GE(ramp.spontaneous.peak_ratio, (1 - ramp_handover) * mu_s);
+  EXPECT_GT(ramp.spontaneous.shear_m, ramp.common.shear_m);
+  const double p_max = *std::ranges::max_element(expected.tractions.p_s_Pa);
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    EXPECT_NEAR(ramp.common.tractions.t_s_Pa[k], expected.tractions.t_s_Pa[k], 2e-3 * p_max) << k;
+    EXPECT_NEAR(ramp.common.tractions.p_s_Pa[k], expected.tractions.p_s_Pa[k], 2e-3 * p_max) << k;
+  }
+
+  // It can be interrupted, and tells when mu_s is out of reach.
+  EXPECT_TRUE(run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m, [](auto, auto) {
+                return false;
+              }).interrupted);
+  try {
+    run_ramp(stepper, tilted, loading, mu_s, speed, c_L, 0.1 * expected.shear_m, always);
+    FAIL() << "no error";
+  } catch (const UserError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the ramp does not bring t/p inside the interface to mu_s"));
+  }
+}
+
+}  // namespace
+}  // namespace slipfront::motion

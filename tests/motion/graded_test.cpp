@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <tuple>
+
+#include "base/error.hpp"
+#include "mesh/reorder.hpp"
+#include "motion/event.hpp"
+#include "motion/stepper.hpp"
+#include "motion/support.hpp"
+
+namespace slipfront::motion {
+namespace {
+
+using mesh::Corner;
+using support::flat;
+using support::max_abs;
+
+constexpr double mu_s = 1.3;
+
+/// 24 mm x 24 mm in elements of 1, 2 and 4 mm: rows 4, 3 and 2 of them.
+mesh::Plate graded_plate(Corner corner, int coarsenings = 2) {
+  mesh::Plate plate;
+  plate.width_m = 0.024;
+  plate.height_m = 0.024;
+  plate.element_size_m = 1e-3;
+  plate.corner = corner;
+  plate.relief_length_m = 3e-3;
+  plate.relief_height_m = 0.3e-3;
+  plate.relief_depth_m = 8e-3;
+  plate.coarsenings = coarsenings;
+  plate.fine_height_m = 4e-3;
+  return plate;
+}
+
+TimeStepping stepping(int substeps, bool local) {
+  TimeStepping time;
+  time.interface_rows = 3;
+  time.interface_substeps = substeps;
+  time.local_steps = local;
+  return time;
+}
+
+/// Corner, sub-steps at the interface, local steps.
+class GradedPlate : public ::testing::TestWithParam<std::tuple<Corner, int, bool>> {
+ protected:
+  mesh::Mesh mesh_ = mesh::make_plate(graded_plate(std::get<0>(GetParam())));
+  TimeStepping time_ = stepping(std::get<1>(GetParam()), std::get<2>(GetParam()));
+  bool is_plain() const { return time_.interface_substeps == 1 && !time_.local_steps; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Levels, GradedPlate,
+                         ::testing::Combine(::testing::Values(Corner::none, Corner::relief),
+                                            ::testing::Values(1, 5), ::testing::Bool()));
+
+TEST_P(GradedPlate, LargerElementsTakeLargerSteps) {
+  for (const double damping_s : {0.0, 1e-7}) {
+    const Stepper stepper(mesh_, {.stiffness_damping_s = damping_s}, support::paper_law, time_);
+    const auto grids = mesh::blocks(mesh_);
+    ASSERT_EQ(grids.size(), 3);
+    const double lowest_s = 0.9 * stepper.stable_step_s();
+    for (int k = 1; k < 3; ++k) {
+      const auto n = grids[k].node(2, grids[k].rows - 1);
+      EXPECT_DOUBLE_EQ(stepper.step_s(n), (time_.local_steps && damping_s > 0 ? 1 << k : 1) * lowest_s);
+    }
+    EXPECT_DOUBLE_EQ(stepper.step_s(mesh_.lower[4]), lowest_s / time_.interface_substeps);
+    EXPECT_DOUBLE_EQ(stepper.lowest_step_s(), lowest_s);
+  }
+}
+
+TEST_P(GradedPlate, TheBooksCloseWithEverythingOn) {
+  const statics::Loading loading{.tilt_left_m = 0.12e-3, .tilt_right_m = 0.05e-3, .edge_margin_m = 2e-3};
+  const statics::Statics statics(mesh_, {}, loading, mu_s);
+  const auto e = statics.shear_to(0.9 * mu_s);
+  for (const auto algorithm :
+       {interface::ContactAlgorithm::direct, interface::ContactAlgorithm::predictor_corrector}) {
+    Stepper stepper(mesh_, {}, support::with_algorithm(support::gentle_law, algorithm), time_);
+    stepper.start(e, 0.2);
+    const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
+    stepper.set_trigger(trigger, trigger_forces(e, mesh::tributary_lengths_m(mesh_),
+                                                interface::EventKind::left, trigger, mu_s));
+    Recorder recorder(e, mu_s, 0);
+    const record::Energies start = stepper.energies();
+    double worst_J = 0, largest_J = 0;
+    record::Energies now;
+    for (int step = 0; step < 300; ++step) {
+      stepper.advance(recorder);
+      now = stepper.energies();
+      worst_J = std::max(worst_J, std::abs(now.stored() - start.stored() - now.work()));
+      for (const double term : {now.kinetic, now.strain, now.top_work, now.trigger_work, now.friction_work})
+        largest_J = std::max(largest_J, std::abs(term));
+    }
+    EXPECT_GT(recorder.take(stepper.time_s()).onsets.size(), 5);
+    EXPECT_LT(now.friction_work, -1e-6 * largest_J);
+    EXPECT_LT(now.damping_work, -1e-6 * largest_J);
+    EXPECT_EQ(now.coupling_work != 0, !is_plain());
+    EXPECT_LE(worst_J, 1e-12 * largest_J);  // as on plain plates, see energies_test
+  }
+}
+
+TEST_P(GradedPlate, AtRestStaysAtRest) {
+  const statics::Statics statics(
+      mesh_, {}, {.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3, .edge_margin_m = 2e-3}, mu_s);
+  const auto e = statics.shear_by(0.02e-3);
+  Stepper stepper(mesh_, {}, support::paper_law, time_);
+  stepper.start(e, 0);
+  Recorder recorder(e, mu_s, 0);
+  for (int step = 0; step < 500; ++step) stepper.advance(recorder);
+  EXPECT_EQ(recorder.take(0).onsets.size(), 0);
+  // The static solution's residual (1e-11 of the forces) is all that moves.
+  EXPECT_LE(max_abs(flat(stepper.u_m()) - flat(e.u_m)), 1e-10 * max_abs(flat(e.u_m)));
+}
+
+TEST_P(GradedPlate, FlightDoesNotGrow) {
+  // A rough start, which excites all resonances between levels; with the least damping that local steps need.
+  const double undamped_s =
+      Stepper(mesh_, {.stiffness_damping_s = 0}, support::paper_law, time_).lowest_step_s();
+  Stepper stepper(mesh_, {.stiffness_damping_s = 0.05 * undamped_s}, support::paper_law, time_);
+  ASSERT_EQ(stepper.step_s() > stepper.lowest_step_s(), time_.local_steps);
+  support::Random random(11);
+  solid::Field u(mesh_.n_nodes()), v(mesh_.n_nodes());
+  std::ranges::fill(u.y, 0.01);
+  for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) v.x[n] = random(), v.y[n] = random();
+  for (const auto n : mesh_.top) v.x[n] = v.y[n] = 0;
+  const auto rough = support::in_flight(mesh_, u, v);
+  stepper.start(rough, 1);
+  Recorder recorder(rough, mu_s, 0);
+  double last = std::numeric_limits<double>::infinity();
+  for (int block = 0; block < 6; ++block) {
+    double largest = 0;
+    for (int step = 0; step < 1000; ++step) {
+      stepper.advance(recorder);
+      largest = std::max(largest, stepper.energy_J_per_m());
+    }
+    EXPECT_LT(largest, last);
+    last = largest;
+  }
+}
+
+TEST_P(GradedPlate, ThreadsAndStepsPerSweepDoNotMatter) {
+  const statics::Loading loading{.tilt_left_m = 0.12e-3, .tilt_right_m = 0.05e-3, .edge_margin_m = 2e-3};
+  auto plate = graded_plate(std::get<0>(GetParam()), 1);  // several rows of the largest elements
+  const auto mesh = mesh::make_plate(plate);
+  const auto e = statics::Statics(mesh, {}, loading, mu_s).shear_by(0.02e-3);
+  const auto run = [&](const Execution& execution) {
+    Stepper stepper(mesh, {}, support::gentle_law, time_, execution);
+    stepper.start(e, 0.2);
+    const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
+    stepper.set_trigger(trigger, trigger_forces(e, mesh::tributary_lengths_m(mesh),
+                                                interface::EventKind::left, trigger, mu_s));
+    Recorder recorder(e, mu_s, 0);
+    EXPECT_EQ(stepper.advance(recorder, 60, {}), 60);
+    return std::tuple(stepper.u_m().x, stepper.u_m().y, stepper.energies().stored(),
+                      stepper.energies().work());
+  };
+  const auto alone = run({.threads = 1, .steps_per_sweep = 1});
+  EXPECT_EQ(run({.threads = 1, .steps_per_sweep = 5}), alone);
+  EXPECT_EQ(run({.threads = 3, .steps_per_sweep = 2}), alone);
+}
+
+TEST(Graded, SinglePrecisionOfTheCoarsestBlockDiffersByRounding) {
+  // 0.1 m x 0.1 m: 100 and 50 columns, above them a block of rows that can be in single precision.
+  auto plate = graded_plate(Corner::none, 1);
+  plate.width_m = plate.height_m = 0.1;
+  const auto mesh = mesh::make_plate(plate);
+  support::Random random(5);
+  statics::Equilibrium e =
+      support::in_flight(mesh, solid::Field(mesh.n_nodes()), solid::Field(mesh.n_nodes()));
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+    e.u_m.y[n] = 20e-6;
+    e.u_per_shear.x[n] = random();
+    e.u_per_shear.y[n] = random();
+  }
+  for (const auto n : mesh.top) e.u_m.y[n] = e.u_per_shear.x[n] = e.u_per_shear.y[n] = 0;
+  solid::Field v[2];
+  constexpr int n_steps = 40;
+  for (const int k : {0, 1}) {
+    auto time = stepping(4, true);
+    time.precision = k == 0 ? Precision::double_precision : Precision::single_precision;
+    Stepper stepper(mesh, {}, support::paper_law, time);
+    stepper.start(e, 1);
+    Recorder recorder(e, mu_s, 0);
+    EXPECT_EQ(stepper.advance(recorder, n_steps, {}), n_steps);
+    v[k] = stepper.v_m_per_s();
+  }
+  // Rounding of u (20 um, turned into velocities by 1/dt) and v (1 m/s), 6e-8 of each in every step.
+  const double dt = 8e-7, difference = max_abs(flat(v[1]) - flat(v[0]));
+  EXPECT_LE(difference, n_steps * 6e-8 * (1 + 20e-6 / dt));
+  EXPECT_GT(difference, 1e-10);
+}
+
+TEST(Graded, RefusesAnInterfaceLayerAboveTheSmallestElements) {
+  auto time = stepping(5, true);
+  time.interface_rows = 4;
+  const auto mesh = mesh::make_plate(graded_plate(Corner::none));
+  EXPECT_THAT([&] { Stepper(mesh, {}, support::paper_law, time); },
+              ::testing::ThrowsMessage<UserError>(::testing::HasSubstr("plate.fine_height_m")));
+}
+
+TEST(Graded, StaticsAreNearThoseOfTheUniformPlate) {
+  const statics::Loading loading{.tilt_left_m = 0.12e-3, .tilt_right_m = 0.09e-3, .edge_margin_m = 2e-3};
+  auto plate = graded_plate(Corner::relief);
+  const auto tractions = [&](const mesh::Plate& p) {
+    const auto mesh = mesh::make_plate(p);
+    return statics::Statics(mesh, {}, loading, mu_s).shear_by(0.02e-3).tractions;
+  };
+  const auto coarse_above = tractions(plate);
+  plate.coarsenings = 0;
+  const auto uniform = tractions(plate);
+  plate.element_size_m *= 2;
+  const auto coarse = tractions(plate);
+  const auto difference = [&](const record::StaticState& a, std::size_t stride) {
+    double worst = 0;
+    for (std::size_t k = 4; k + 4 < uniform.x_m.size(); k += 2)  // away from the edges
+      worst = std::max(worst, std::abs(a.p_s_Pa[k / stride] / uniform.p_s_Pa[k] - 1));
+    return worst;
+  };
+  const double graded = difference(coarse_above, 1), doubled = difference(coarse, 2);
+  fmt::print("pressure against the uniform plate: graded {:.2g}, all elements doubled {:.2g}\n", graded,
+             doubled);
+  // Larger elements away from the interface must cost less than larger ones everywhere.
+  EXPECT_LT(graded, doubled);
+  EXPECT_GT(graded, 1e-6);
+}
+
+/// Largest difference, in the lower part of a plate of 1 mm elements, between a plate that is coarsened above
+/// four wavelengths and one that is not, after a packet of plane waves has met the transition; over the
+/// amplitude that damping leaves.
+double reflection(bool shear, int elements_per_wave, bool local) {
+  const double h = 1e-3, wave_m = elements_per_wave * h;
+  const double join_m = 4 * wave_m, middle_m = 2.5 * wave_m, width_m = 0.5 * wave_m;
+  mesh::Plate plate;
+  plate.width_m = 8 * h;
+  plate.height_m = 10 * wave_m;
+  plate.element_size_m = h;
+  plate.corner = Corner::none;
+  plate.sides = mesh::Sides::periodic;
+  plate.top = mesh::Top::free;
+  plate.fine_height_m = join_m;
+  const solid::Material material{.stiffness_damping_s = 0.05 * 0.6e-6};
+  const double c = shear ? solid::shear_speed_m_per_s(material) : solid::longitudinal_speed_m_per_s(material);
+  const double k = 2 * std::numbers::pi / wave_m;
+  const auto run = [&](int coarsenings) {
+    plate.coarsenings = coarsenings;
+    const auto mesh = mesh::make_plate(plate);
+    solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
+    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+      const double s = mesh.y_m[n] - middle_m;
+      const double window = 1e-6 * std::exp(-s * s / (2 * width_m * width_m));
+      (shear ? u.x[n] : u.y[n]) = window * std::sin(k * s);
+      (shear ? v.x[n] : v.y[n]) =
+          -c * window * (k * std::cos(k * s) - std::sin(k * s) * s / (width_m * width_m));
+      u.y[n] += 0.01;
+    }
+    const auto e = support::in_flight(mesh, u, v);
+    Stepper stepper(mesh, material, support::paper_law, stepping(1, local));
+    EXPECT_EQ(stepper.step_s() > stepper.lowest_step_s(), local && coarsenings > 0);
+    stepper.start(e, 1);
+    Recorder recorder(e, mu_s, 0);
+    // Until what comes back is where it began; both plates at the same time, the steps being of two lengths.
+    const int n_steps = static_cast<int>(2 * (join_m - middle_m) / (c * 2 * stepper.lowest_step_s())) * 2;
+    while (stepper.time_s() < (n_steps - 0.5) * stepper.lowest_step_s()) stepper.advance(recorder);
+    std::vector<double> values;
+    for (int j = 0; j < static_cast<int>(3.8 * elements_per_wave); ++j) {
+      const auto n = mesh.grid.node(2, j);
+      values.push_back(shear ? stepper.u_m().x[n] : stepper.u_m().y[n]);
+    }
+    return values;
+  };
+  const auto plain = run(0), graded = run(1);
+  double largest = 0;
+  for (std::size_t j = 0; j < plain.size(); ++j) largest = std::max(largest, std::abs(plain[j] - graded[j]));
+  const double decay_per_s = 0.5 * material.stiffness_damping_s * k * k * c * c;
+  return largest / (1e-6 * std::exp(-decay_per_s * 2 * (join_m - middle_m) / c));
+}
+
+TEST(Graded, TheTransitionReflectsLittle) {
+  for (const bool local : {false, true})
+    for (const bool shear : {false, true}) {
+      std::vector<double> of_length;
+      for (const int elements : {10, 20, 40, 80}) {
+        of_length.push_back(reflection(shear, elements, local));
+        fmt::print("{} wave of {} elements, {}: {:.2g} of the amplitude reflected\n",
+                   shear ? "shear" : "pressure", elements, local ? "local steps" : "one step",
+                   of_length.back());
+      }
+      for (const int i : {2, 3}) {
+        const double kh = 2 * std::numbers::pi / (i == 2 ? 40 : 80);
+        if (local) {
+          // The join of two steps acts as if the larger element, 2 h, were thinner by less than a tenth.
+          EXPECT_LT(of_length[i], 0.1 * kh);
+        } else {
+          // A chain of elements h has the impedance cos(k h/2)/cos(omega dt/2) of the continuum's; of two
+          // chains with one step, half the logarithm of the ratio is reflected.
+          EXPECT_NEAR(of_length[i] / (3.0 / 16 * kh * kh), 1, 0.1);
+        }
+      }
+    }
+}
+
+/// Any numbering and the general rows give the motion of the plain plate.
+TEST(GeneralMesh, MovesAsThePlainPlate) {
+  const statics::Loading loading{.tilt_left_m = 0.12e-3, .tilt_right_m = 0.05e-3, .edge_margin_m = 2e-3};
+  const auto mesh = mesh::make_plate(graded_plate(Corner::relief, 0));
+  auto general = mesh;
+  const auto number = mesh::near_numbers(mesh);
+  mesh::renumber(general, number);
+  const auto e = statics::Statics(mesh, {}, loading, mu_s).shear_to(0.9 * mu_s);
+  auto renumbered = e;
+  for (std::size_t n = 0; n < number.size(); ++n) {
+    renumbered.u_m.x[number[n]] = e.u_m.x[n];
+    renumbered.u_m.y[number[n]] = e.u_m.y[n];
+    renumbered.u_per_shear.x[number[n]] = e.u_per_shear.x[n];
+    renumbered.u_per_shear.y[number[n]] = e.u_per_shear.y[n];
+  }
+  // The frequency is found up to 1e-3 from a start vector that depends on the numbers.
+  auto time = stepping(5, true);
+  const double stable_step_s = Stepper(mesh, {}, support::gentle_law, time).stable_step_s();
+  const auto run = [&](const mesh::Mesh& m, const statics::Equilibrium& state) {
+    time.step_factor = 0.9 * stable_step_s / Stepper(m, {}, support::gentle_law, time).stable_step_s();
+    Stepper stepper(m, {}, support::gentle_law, time);
+    stepper.start(state, 0.2);
+    const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
+    stepper.set_trigger(trigger, trigger_forces(state, mesh::tributary_lengths_m(m),
+                                                interface::EventKind::left, trigger, mu_s));
+    Recorder recorder(state, mu_s, 0);
+    const record::Energies start = stepper.energies();
+    for (int step = 0; step < 40; ++step) stepper.advance(recorder);
+    const record::Energies now = stepper.energies();
+    EXPECT_LE(std::abs(now.stored() - start.stored() - now.work()), 1e-12 * now.stored());
+    return stepper.u_m();
+  };
+  const auto plain = run(mesh, e), other = run(general, renumbered);
+  double worst = 0;
+  for (std::size_t n = 0; n < number.size(); ++n)
+    worst = std::max(
+        {worst, std::abs(plain.x[n] - other.x[number[n]]), std::abs(plain.y[n] - other.y[number[n]])});
+  EXPECT_LE(worst, 1e-15);  // rounding of some ten steps, displacements of 0.1 mm; see stepper_test
+}
+
+}  // namespace
+}  // namespace slipfront::motion

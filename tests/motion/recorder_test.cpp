@@ -1,0 +1,477 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/recorder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fronts/front.hpp"
+#include "motion/support.hpp"
+
+namespace slipfront::motion {
+namespace {
+
+constexpr double mu_s = 0.5;
+constexpr std::size_t n_nodes = 5;
+
+/// Five nodes 1 mm apart under p = 4 Pa, each at t/p = 0.25, half of mu_s.
+statics::Equilibrium at_rest() {
+  statics::Equilibrium e;
+  for (std::size_t k = 0; k < n_nodes; ++k) e.tractions.x_m.push_back(1e-3 * static_cast<double>(k));
+  e.tractions.t_s_Pa.assign(n_nodes, 1.0);
+  e.tractions.p_s_Pa.assign(n_nodes, 4.0);
+  e.contact.assign(n_nodes, statics::Contact::stick);
+  return e;
+}
+
+interface::Interface unchanged() {
+  interface::Interface s(n_nodes);
+  s.t_Pa.assign(n_nodes, 1.0);
+  s.p_Pa.assign(n_nodes, 4.0);
+  s.demand_Pa.assign(n_nodes, 1.0);
+  s.strength_Pa.assign(n_nodes, mu_s * 4.0);
+  return s;
+}
+
+void set(interface::Interface& s, std::size_t node, double demand, double t, double p, bool slips) {
+  s.demand_Pa[node] = demand;
+  s.t_Pa[node] = t;
+  s.p_Pa[node] = p;
+  s.strength_Pa[node] = mu_s * p;
+  s.slipping[node] = slips;
+}
+
+TEST(Recorder, LocatesTheOnsetInsideTheStep) {
+  Recorder recorder(at_rest(), mu_s, 1);
+  recorder.observe(0, unchanged(), false);
+  recorder.observe(1, unchanged(), false);
+  auto s = unchanged();
+  // |t| / (mu_s p) goes from 0.5 to 2.5: through 1 after a quarter of the step from 1 s to 3 s.
+  set(s, 2, 2.5 * mu_s * 8, 0.3 * 8, 8, true);
+  set(s, 1, 3, 3, 12, false);
+  set(s, 3, 1.8, 1.8, 3.6, false);
+  recorder.observe(3, s, true);
+  const auto record = recorder.take(4);
+  ASSERT_EQ(record.onsets.size(), 1);
+  EXPECT_EQ(record.onsets[0].node, 2);
+  EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 1.5);
+  EXPECT_EQ(record.end_time_s, 4);
+  EXPECT_EQ(record.x_m, at_rest().tractions.x_m);
+  // Tractions interpolated to that time; at the node itself the strength mu_s p, not the weakened traction.
+  EXPECT_EQ(record.halo, 1);
+  const auto around = record.around_onset(0);
+  ASSERT_EQ(around.size(), 3);
+  EXPECT_DOUBLE_EQ(around[0].t_Pa, 1.5);
+  EXPECT_DOUBLE_EQ(around[0].p_Pa, 6);
+  EXPECT_DOUBLE_EQ(around[1].t_Pa, mu_s * 5);
+  EXPECT_DOUBLE_EQ(around[1].p_Pa, 5);
+  EXPECT_DOUBLE_EQ(around[2].t_Pa, 1.2);
+  EXPECT_DOUBLE_EQ(around[2].p_Pa, 3.9);
+}
+
+TEST(Recorder, KeepsTheSignOfTheTraction) {
+  Recorder recorder(at_rest(), mu_s, 0);
+  recorder.observe(0, unchanged(), false);
+  auto s = unchanged();
+  set(s, 2, 6, -2, 4, true);
+  recorder.observe(1, s, true);
+  EXPECT_DOUBLE_EQ(recorder.take(1).around_onset(0)[0].t_Pa, -mu_s * 4);
+}
+
+TEST(Recorder, HasNoTractionsBeyondTheEnds) {
+  Recorder recorder(at_rest(), mu_s, 2);
+  recorder.observe(0, unchanged(), false);
+  auto s = unchanged();
+  set(s, 1, 4, 2, 4, true);
+  set(s, 4, 6, 2, 4, true);
+  recorder.observe(1, s, true);
+  const auto record = recorder.take(1);
+  ASSERT_EQ(record.onsets.size(), 2);
+  ASSERT_EQ(record.around.size(), 10);
+  // The node at the right end passes its strength first (ratio to 3, against 2).
+  EXPECT_EQ(record.onsets[0].node, 4);
+  EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 0.2);
+  EXPECT_EQ(record.onsets[1].node, 1);
+  EXPECT_DOUBLE_EQ(record.onsets[1].time_s, 1.0 / 3);
+  const auto at_end = record.around_onset(0), near_start = record.around_onset(1);
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(std::isnan(at_end[k].t_Pa), k > 2) << k;
+    EXPECT_EQ(std::isnan(at_end[k].p_Pa), k > 2) << k;
+    EXPECT_EQ(std::isnan(near_start[k].t_Pa), k < 1) << k;
+  }
+  // The halo went with its onset when they were put in order: both nodes slip at 2 of 4 Pa.
+  EXPECT_DOUBLE_EQ(at_end[2].t_Pa, mu_s * 4);
+  EXPECT_DOUBLE_EQ(near_start[2].t_Pa, mu_s * 4);
+  EXPECT_DOUBLE_EQ(at_end[1].t_Pa, 1);
+}
+
+TEST(Recorder, ANodeThatWasNotPressedBeginsNow) {
+  auto before = at_rest();
+  before.contact[3] = statics::Contact::open;
+  before.tractions.t_s_Pa[3] = before.tractions.p_s_Pa[3] = 0;
+  Recorder recorder(before, mu_s, 0);
+  auto s = unchanged();
+  set(s, 3, 0, 0, 0, false);
+  recorder.observe(0, s, false);
+  set(s, 3, 6, 2, 4, true);
+  recorder.observe(2, s, true);
+  const auto record = recorder.take(2);
+  ASSERT_EQ(record.onsets.size(), 1);
+  EXPECT_EQ(record.onsets[0].time_s, 2);
+}
+
+TEST(Recorder, SlipInTheFirstUpdateBeginsAtTimeZero) {
+  Recorder recorder(at_rest(), mu_s, 0);
+  auto s = unchanged();
+  set(s, 0, 6, 2, 4, true);
+  recorder.observe(0, s, true);
+  const auto record = recorder.take(1);
+  ASSERT_EQ(record.onsets.size(), 1);
+  EXPECT_EQ(record.onsets[0].time_s, 0);
+}
+
+TEST(Recorder, InitiallySlippingNodesHaveNoOnsetUntilTheySlipAnew) {
+  auto before = at_rest();
+  before.contact[2] = statics::Contact::slip;
+  Recorder recorder(before, mu_s, 0);
+  EXPECT_EQ(recorder.n_slipping(), 1);
+  auto s = unchanged();
+  set(s, 2, 2, 2, 4, true);
+  recorder.observe(0, s, false);
+  set(s, 2, 1, 1, 4, false);
+  recorder.observe(1, s, true);
+  EXPECT_EQ(recorder.n_slipping(), 0);
+  set(s, 2, 3, 2, 4, true);
+  recorder.observe(2, s, true);
+  EXPECT_EQ(recorder.n_slipping(), 1);
+  recorder.observe(3, s, false);
+  const auto record = recorder.take(3);
+  ASSERT_EQ(record.stops.size(), 1);
+  EXPECT_EQ(record.stops[0].node, 2);
+  EXPECT_EQ(record.stops[0].time_s, 1);
+  ASSERT_EQ(record.onsets.size(), 1);
+  EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 1.5);  // ratio from 0.5 to 1.5
+}
+
+TEST(Recorder, CreepIsNoMotion) {
+  Recorder recorder(at_rest(), mu_s, 0, 1e-2);
+  auto s = unchanged();
+  recorder.observe(0, s, false);
+  EXPECT_EQ(recorder.last_motion_s(), 0);
+  set(s, 1, 3, 2, 4, true);
+  s.slip_rate_m_per_s[1] = -0.02;
+  recorder.observe(1, s, true);
+  EXPECT_EQ(recorder.last_motion_s(), 1);
+  s.slip_rate_m_per_s[1] = -0.009;  // slower than creep
+  s.slip_rate_m_per_s[3] = 5;       // in the air
+  recorder.observe(2, s, false);
+  EXPECT_EQ(recorder.last_motion_s(), 1);
+  EXPECT_EQ(recorder.n_slipping(), 1);
+  s.slip_rate_m_per_s[1] = 0.011;
+  recorder.observe(3, s, false);
+  EXPECT_EQ(recorder.last_motion_s(), 3);
+}
+
+TEST(Recorder, SeesTheMotionOfAnyNode) {
+  // More nodes than the vectors of the search hold, and a rest.
+  constexpr std::size_t n = 19;
+  for (std::size_t node = 0; node < n; ++node) {
+    statics::Equilibrium e;
+    e.tractions.x_m.assign(n, 0.0);
+    e.tractions.t_s_Pa.assign(n, 1.0);
+    e.tractions.p_s_Pa.assign(n, 4.0);
+    e.contact.assign(n, statics::Contact::slip);
+    Recorder recorder(e, mu_s, 0, 0.01);
+    interface::Interface s(n);
+    s.slipping.assign(n, 1);
+    s.slip_rate_m_per_s.assign(n, -0.009);
+    s.slipping[node] = 0;
+    s.slip_rate_m_per_s[node] = 1;  // in the air
+    recorder.observe(1, s, true);
+    EXPECT_EQ(recorder.last_motion_s(), 0) << node;
+    s.slipping[node] = 1;
+    s.slip_rate_m_per_s[node] = -0.011;
+    recorder.observe(2, s, true);
+    EXPECT_EQ(recorder.last_motion_s(), 2) << node;
+  }
+}
+
+TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
+  // A strength that is not mu_s p: relaxed, or of a weakened node. It falls from 2 Pa to 1.6 Pa while the
+  // demand rises from 1.6 Pa to 1.92 Pa: the ratio from 0.8 to 1.2, through 1 after half of the step.
+  Recorder recorder(at_rest(), mu_s, 0);
+  auto s = unchanged();
+  s.t_Pa[2] = 1.6;
+  recorder.observe(0, s, false);
+  set(s, 2, 1.92, 1.6, 4, true);
+  s.strength_Pa[2] = 1.6;
+  recorder.observe(1, s, true);
+  const auto record = recorder.take(1);
+  ASSERT_EQ(record.onsets.size(), 1);
+  EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 0.5);
+  EXPECT_DOUBLE_EQ(record.around_onset(0)[0].t_Pa, 1.8);
+  EXPECT_DOUBLE_EQ(record.around_onset(0)[0].p_Pa, 4);
+}
+
+TEST(Recorder, TimesAscend) {
+  // Onsets found in the order of nodes, at times that run the other way within each step.
+  Recorder recorder(at_rest(), mu_s, 0);
+  recorder.observe(0, unchanged(), false);
+  auto s = unchanged();
+  for (std::size_t k = 0; k < 3; ++k) set(s, k, 3 + static_cast<double>(k), 2, 4, true);
+  recorder.observe(1, s, true);
+  set(s, 3, 3, 2, 4, true);
+  set(s, 4, 30, 2, 4, true);
+  set(s, 0, 1, 1, 4, false);
+  recorder.observe(2, s, true);
+  set(s, 1, 1, 1, 4, false);
+  recorder.observe(3, s, true);
+  const auto record = recorder.take(3);
+  std::vector<int> order;
+  double last = 0;
+  for (const auto& onset : record.onsets) {
+    order.push_back(onset.node);
+    EXPECT_GE(onset.time_s, last);
+    last = onset.time_s;
+  }
+  EXPECT_EQ(order, (std::vector<int>{2, 1, 0, 4, 3}));
+  ASSERT_EQ(record.stops.size(), 2);
+  EXPECT_EQ(record.stops[0].node, 0);
+  EXPECT_EQ(record.stops[1].node, 1);
+  EXPECT_EQ(recorder.n_slipping(), 3);
+}
+
+/// Keeps every beginning and end of slip, in the order in which they are seen.
+class EveryChange {
+ public:
+  EveryChange(const statics::Equilibrium& before, int halo) : before_(before), halo_(halo) {
+    record_.x_m = before.tractions.x_m;
+    record_.halo = halo;
+    for (const auto contact : before.contact) slipping_.push_back(contact == statics::Contact::slip);
+  }
+
+  void observe(double time_s, const interface::Interface& state) {
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      if (state.slipping[i] == slipping_[i]) continue;
+      slipping_[i] = state.slipping[i];
+      if (state.slipping[i] != 0)
+        add_onset(i, time_s, state);
+      else
+        record_.stops.push_back({static_cast<std::int32_t>(i), time_s});
+    }
+    record_.resolution_s = std::max(record_.resolution_s, time_s - time_s_);
+    before_.tractions.t_s_Pa = state.t_Pa;
+    before_.tractions.p_s_Pa = state.p_Pa;
+    strength_Pa_ = state.strength_Pa;
+    time_s_ = time_s;
+  }
+
+  record::SlipRecord take(double end_time_s) {
+    record_.end_time_s = end_time_s;
+    return record_;
+  }
+
+ private:
+  /// A recorder that knows the last state and sees one node begin.
+  void add_onset(std::size_t i, double time_s, interface::Interface state) {
+    auto before = before_;
+    before.contact.assign(state.size(), statics::Contact::stick);
+    Recorder recorder(before, 0, halo_);
+    interface::Interface last(state.size());
+    last.t_Pa = before.tractions.t_s_Pa;
+    last.p_Pa = before.tractions.p_s_Pa;
+    last.strength_Pa = strength_Pa_;
+    recorder.observe(time_s_, last, false);
+    state.slipping.assign(state.size(), 0);
+    state.slipping[i] = 1;
+    recorder.observe(time_s, state, true);
+    const auto one = recorder.take(time_s);
+    record_.onsets.push_back(one.onsets.at(0));
+    record_.around.insert(record_.around.end(), one.around.begin(), one.around.end());
+  }
+
+  statics::Equilibrium before_;
+  int halo_;
+  record::SlipRecord record_;
+  std::vector<std::uint8_t> slipping_;
+  std::vector<double> strength_Pa_ = std::vector<double>(before_.tractions.x_m.size(), 0.0);
+  double time_s_ = 0;
+};
+
+void expect_same(double a, double b) {
+  EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << a << " and " << b;
+}
+
+void expect_same_fronts(const record::SlipRecord& a, const record::SlipRecord& b,
+                        const record::StaticState& state, const fronts::FrontOptions& options) {
+  const auto one = fronts::find_fronts(a, state, options), other = fronts::find_fronts(b, state, options);
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t f = 0; f < one.size(); ++f) {
+    EXPECT_EQ(one[f].end, other[f].end);
+    EXPECT_EQ(one[f].mode, other[f].mode);
+    ASSERT_EQ(one[f].points.size(), other[f].points.size());
+    for (std::size_t k = 0; k < one[f].points.size(); ++k) {
+      const auto &p = one[f].points[k], &q = other[f].points[k];
+      EXPECT_EQ(p.node, q.node);
+      EXPECT_EQ(p.accelerating, q.accelerating);
+      for (const auto value :
+           {&fronts::FrontPoint::onset_s, &fronts::FrontPoint::v_tip_m_per_s, &fronts::FrontPoint::t_d_Pa,
+            &fronts::FrontPoint::p_d_Pa, &fronts::FrontPoint::t_r_Pa, &fronts::FrontPoint::p_r_Pa,
+            &fronts::FrontPoint::U_s_J_per_m3, &fronts::FrontPoint::slipping_share})
+        expect_same(p.*value, q.*value);
+    }
+  }
+}
+
+/// Nodes of a line that slip at random once a front has reached them, some of them before.
+struct RandomSlip {
+  explicit RandomSlip(std::uint64_t seed) : random(seed), state(n), before(make_before()) {
+    state.t_Pa.assign(n, 1);
+    state.p_Pa.assign(n, 4);
+  }
+  statics::Equilibrium make_before() {
+    statics::Equilibrium e;
+    for (std::size_t k = 0; k < n; ++k) e.tractions.x_m.push_back(1e-3 * static_cast<double>(k));
+    e.tractions.t_s_Pa.assign(n, 1.0);
+    e.tractions.p_s_Pa.assign(n, 4.0);
+    for (std::size_t k = 0; k < n; ++k)
+      e.contact.push_back(random() > 0.9 ? statics::Contact::slip : statics::Contact::stick);
+    for (std::size_t k = 0; k < n; ++k) state.slipping[k] = e.contact[k] == statics::Contact::slip;
+    return e;
+  }
+  /// Onsets at the step's beginning, its end and in between.
+  void advance(int step) {
+    for (std::size_t k = 0; k < n; ++k) {
+      state.strength_Pa[k] = 2;
+      const bool reached = 3 * static_cast<int>(k) < step || random() > 0.999;
+      if (reached) state.slipping[k] = random() > (step / 40 % 2 == 0 ? 0.2 : -0.6);
+      const double ratio = random();
+      state.t_Pa[k] = state.slipping[k] != 0 ? 2 : ratio > 0.5 ? 2 : 1 + ratio;
+      state.demand_Pa[k] = state.slipping[k] == 0 ? state.t_Pa[k] : ratio < -0.5 ? 2 : 3 + ratio;
+    }
+  }
+
+  static constexpr std::size_t n = 60;
+  support::Random random;
+  interface::Interface state;
+  statics::Equilibrium before;
+};
+
+TEST(Recorder, LeavesOutWhatNoFrontNeeds) {
+  fronts::FrontOptions options;
+  options.mu_s = mu_s;
+  options.elasticity = {1e9, 0.3, false};
+  options.l_star_m = 1e-3;
+  options.arrest_time_s = 20;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    RandomSlip slip(seed);
+    Recorder recorder(slip.before, mu_s, 2);
+    EveryChange every(slip.before, 2);
+    for (int step = 0; step < 2000; ++step) {
+      slip.advance(step);
+      recorder.observe(step, slip.state, true);
+      every.observe(step, slip.state);
+    }
+    const auto record = recorder.take(2000), all = every.take(2000);
+    EXPECT_EQ(record.n_onsets(), all.onsets.size());
+    EXPECT_LT(10 * record.onsets.size(), all.onsets.size());
+    EXPECT_LT(10 * record.stops.size(), all.stops.size());
+    EXPECT_TRUE(std::ranges::is_sorted(record.onsets, {}, &record::Onset::time_s));
+    EXPECT_TRUE(std::ranges::is_sorted(record.stops, {}, &record::Stop::time_s));
+    expect_same_fronts(record, all, slip.before.tractions, options);
+  }
+}
+
+TEST(Recorder, StaysBoundedInLongUndampedRuns) {
+  for (const auto& [element_m, load] :
+       {std::pair(4e-3, 1.001), std::pair(5e-3, 1.001), std::pair(5e-3, 1.02)}) {
+    const auto mesh = support::make_plate(0.2, 0.1, element_m, mesh::Corner::none);
+    solid::Material material;
+    material.stiffness_damping_s = 0;
+    const statics::Statics statics(mesh, material, {}, 1.3);
+    const auto state = statics.shear_to(1.3 * load);
+    Stepper stepper(mesh, material, support::paper_law, support::one_substep());
+    stepper.start(state, 1e-6 * solid::longitudinal_speed_m_per_s(material));
+    Recorder recorder(state, 1.3, 2);
+    EveryChange every(state, 2);
+    Between between;
+    between.go_on = [&] {
+      // The contact of a step is that at its beginning.
+      every.observe(static_cast<double>(stepper.step() - 1) * stepper.step_s(), stepper.interface_state());
+      return true;
+    };
+    stepper.advance(recorder, 20000, between);
+    const auto record = recorder.take(stepper.time_s()), all = every.take(stepper.time_s());
+    ASSERT_GT(all.onsets.size(), 20 * mesh.lower.size());
+    EXPECT_EQ(record.n_onsets(), all.onsets.size());
+    EXPECT_LT(record.onsets.size(), 6 * mesh.lower.size());
+    EXPECT_LT(record.stops.size(), 6 * mesh.lower.size());
+    fronts::FrontOptions options;
+    options.mu_s = 1.3;
+    options.elasticity = {2.6e9, 0.37, false};
+    expect_same_fronts(record, all, state.tractions, options);
+  }
+}
+
+/// Writes numbers, vectors and what serializes itself to a list, or reads them from it.
+template <bool reads>
+class NumberList {
+ public:
+  using is_loading = std::bool_constant<reads>;
+  explicit NumberList(std::vector<double>& numbers) : numbers_(numbers) {}
+  template <class... T>
+  void operator()(T&... values) {
+    (take(values), ...);
+  }
+
+ private:
+  template <class T>
+  void take(T& value) {
+    if constexpr (requires { value.serialize(*this); }) {
+      value.serialize(*this);
+    } else if constexpr (requires { value.resize(1); }) {
+      auto size = static_cast<double>(value.size());
+      take(size);
+      value.resize(static_cast<std::size_t>(size));
+      for (auto& element : value) take(element);
+    } else if constexpr (reads) {
+      value = static_cast<T>(numbers_.at(next_++));
+    } else {
+      numbers_.push_back(static_cast<double>(value));
+    }
+  }
+  std::vector<double>& numbers_;
+  std::size_t next_ = 0;
+};
+
+TEST(Recorder, GoesOnFromWhatItHasWritten) {
+  for (const int stop : {0, 1, 30, 100, 500}) {
+    RandomSlip slip(7);
+    Recorder whole(slip.before, mu_s, 2), second(slip.before, mu_s, 2);
+    for (int step = 0; step < 600; ++step) {
+      if (step == stop) {
+        std::vector<double> numbers;
+        NumberList<false> writer(numbers);
+        whole.serialize(writer);
+        NumberList<true> reader(numbers);
+        second.serialize(reader);
+      }
+      slip.advance(step);
+      whole.observe(step, slip.state, true);
+      if (step >= stop) second.observe(step, slip.state, true);
+    }
+    auto a = whole.take(600), b = second.take(600);
+    std::vector<double> of_a, of_b;
+    NumberList<false> write_a(of_a), write_b(of_b);
+    a.serialize(write_a);
+    b.serialize(write_b);
+    ASSERT_EQ(of_a.size(), of_b.size());
+    for (std::size_t k = 0; k < of_a.size(); ++k) expect_same(of_a[k], of_b[k]);
+    EXPECT_EQ(whole.n_slipping(), second.n_slipping());
+    EXPECT_EQ(whole.last_motion_s(), second.last_motion_s());
+  }
+}
+
+}  // namespace
+}  // namespace slipfront::motion

@@ -1,0 +1,721 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/stepper.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <tuple>
+
+#include "base/error.hpp"
+#include "motion/event.hpp"
+#include "motion/support.hpp"
+
+namespace slipfront::motion {
+namespace {
+
+using mesh::Corner;
+using support::flat;
+using support::gentle_law;
+using support::in_flight;
+using support::max_abs;
+using support::one_substep;
+using support::paper_law;
+using support::tiny_plate;
+
+constexpr double mu_s = 1.3;
+
+solid::Material undamped() {
+  return {.stiffness_damping_s = 0};
+}
+
+/// Random displacements and velocities of all nodes below the loaded edge, high above the plane.
+statics::Equilibrium random_flight(const mesh::Mesh& mesh, double amplitude_m, double speed_m_per_s,
+                                   double height_m = 50e-6) {
+  support::Random random(11);
+  solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+    u.x[n] = amplitude_m * random();
+    u.y[n] = amplitude_m * random();
+    v.x[n] = speed_m_per_s * random();
+    v.y[n] = speed_m_per_s * random();
+  }
+  for (const auto n : mesh.top) u.x[n] = u.y[n] = v.x[n] = v.y[n] = 0;
+  for (double& y : u.y) y += height_m;
+  return in_flight(mesh, u, v);
+}
+
+/// Rounding of some ten steps of an event with displacements of 0.05 mm and velocities of some 10 m/s. Two
+/// schemes that differ do so by more than 1e-6 of that.
+constexpr double rounding_m = 1e-16, rounding_m_per_s = 1e-10;
+
+/// 1/2 v M v + 1/2 u K u' with v at the half step between the displacements u and u'.
+double leapfrog_energy(const solid::Operator& plate, const solid::Field& u, const solid::Field& v,
+                       const solid::Field& u_next) {
+  // The energy's polarisation: u K u' = ((u + u') K (u + u') - (u - u') K (u - u')) / 4.
+  solid::Field sum = u, difference = u;
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    sum.x[n] += u_next.x[n];
+    sum.y[n] += u_next.y[n];
+    difference.x[n] -= u_next.x[n];
+    difference.y[n] -= u_next.y[n];
+  }
+  return solid::kinetic_energy_J_per_m(plate, v) +
+         0.25 * (solid::strain_energy_J_per_m(plate, sum) - solid::strain_energy_J_per_m(plate, difference));
+}
+
+bool touches(const Stepper& stepper) {
+  return std::ranges::any_of(stepper.interface_state().p_Pa, [](double p) { return p > 0; });
+}
+
+class FreeFlight : public ::testing::TestWithParam<Corner> {};
+INSTANTIATE_TEST_SUITE_P(Corners, FreeFlight, ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                         [](const auto& corner) { return support::name_of(corner.param); });
+
+TEST_P(FreeFlight, UndampedFlightConservesTheLeapfrogEnergy) {
+  const auto mesh = tiny_plate(GetParam());
+  Stepper stepper(mesh, undamped(), paper_law, one_substep());
+  const auto e = random_flight(mesh, 1e-6, 1);
+  stepper.start(e, 1);
+  Recorder recorder(e, mu_s, 0);
+  double first = 0, worst = 0;
+  for (int step = 0; step < 5000; ++step) {
+    const solid::Field before = stepper.u_m();
+    stepper.advance(recorder);
+    ASSERT_FALSE(touches(stepper));
+    const double energy = leapfrog_energy(stepper.plate(), before, stepper.v_m_per_s(), stepper.u_m());
+    if (step == 0) first = energy;
+    worst = std::max(worst, std::abs(energy / first - 1));
+  }
+  EXPECT_GT(first, 0);
+  EXPECT_LE(worst, 1e-12);  // exactly conserved but for rounding
+}
+
+TEST_P(FreeFlight, UndampedFlightIsReversible) {
+  const auto mesh = tiny_plate(GetParam());
+  Stepper stepper(mesh, undamped(), paper_law, one_substep());
+  const auto e = random_flight(mesh, 1e-6, 1);
+  stepper.start(e, 1);
+  Recorder recorder(e, mu_s, 0);
+  const int n_steps = 1000;
+  for (int step = 0; step < n_steps; ++step) stepper.advance(recorder);
+  const solid::Field u = stepper.u_m();
+  stepper.advance(recorder);
+  solid::Field v = stepper.v_m_per_s();
+  for (auto* component : {&v.x, &v.y})
+    for (double& value : *component) value = -value;
+  stepper.start(in_flight(mesh, u, v), 1);
+  for (int step = 0; step < n_steps; ++step) stepper.advance(recorder);
+  EXPECT_LE(max_abs(flat(stepper.u_m()) - flat(e.u_m)), 1e-6 * 1e-9);  // rounding of a thousand steps
+  EXPECT_GT(max_abs(flat(u) - flat(e.u_m)), 1e-6);
+}
+
+TEST_P(FreeFlight, TheStableStepIsSharp) {
+  // The step is a lower bound within 0.05 %.
+  const auto mesh = tiny_plate(GetParam());
+  for (const double damping_s : {0.0, 0.1e-6, 1e-6}) {
+    for (const double factor : {0.999, 1.005}) {
+      Stepper stepper(mesh, {.stiffness_damping_s = damping_s}, paper_law, one_substep(factor));
+      const auto e = random_flight(mesh, 1e-6, 1, 1e-2);
+      stepper.start(e, 1);
+      Recorder recorder(e, mu_s, 0);
+      // Below the limit the energy taken half a step apart swings up to 1 / (1 - factor^2) = 500 times its
+      // mean.
+      const double limit = 1e3 * stepper.energy_J_per_m();
+      bool grows = false;
+      for (int step = 0; step < 2000 && !grows; ++step) {
+        stepper.advance(recorder);
+        grows = stepper.energy_J_per_m() > limit;
+      }
+      EXPECT_EQ(grows, factor > 1) << damping_s << " " << factor;
+    }
+  }
+}
+
+TEST(SubcycledFlight, EnergyStaysBounded) {
+  // A symplectic scheme conserves an energy near its own, which shows as a swing without growth. The swing is
+  // that of a leapfrog whose displacements and velocities are half a step apart, omega dt/2 = 0.031 for the
+  // lowest mode, which the smooth start excites most; a random start swings more but not increasingly.
+  for (const auto corner : {Corner::none, Corner::relief, Corner::fillet}) {
+    SCOPED_TRACE(support::name_of(corner));
+    const auto mesh = tiny_plate(corner);
+    Stepper stepper(mesh, undamped(), paper_law, {});
+    solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
+    std::ranges::fill(u.y, 0.01);
+    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+      const double depth = std::sin(std::numbers::pi * (0.01 - mesh.y_m[n]) / 0.02);
+      v.x[n] = depth;
+      v.y[n] = 0.3 * depth * std::cos(200 * mesh.x_m[n]);
+    }
+    const auto smooth = in_flight(mesh, u, v);
+    stepper.start(smooth, 1);
+    Recorder recorder(smooth, mu_s, 0);
+    const double lowest = std::numbers::pi * solid::longitudinal_speed_m_per_s({}) / (2 * 0.01);
+    const double swing = lowest * stepper.step_s() / 2;
+    const double before = stepper.energy_J_per_m();
+    double least = before, most = before;
+    for (int step = 0; step < 20000; ++step) {
+      stepper.advance(recorder);
+      if (step % 7 != 0) continue;
+      least = std::min(least, stepper.energy_J_per_m());
+      most = std::max(most, stepper.energy_J_per_m());
+    }
+    EXPECT_LT(most / before, 1 + swing);
+    EXPECT_GT(least / before, 1 - swing);
+
+    const auto rough = random_flight(mesh, 0, 1, 0.01);
+    stepper.start(rough, 1);
+    const auto largest_of = [&](int n_steps) {
+      double largest = 0;
+      for (int step = 0; step < n_steps; ++step) {
+        stepper.advance(recorder);
+        if (step % 3 != 0) continue;
+        largest = std::max(largest, stepper.energy_J_per_m());
+      }
+      return largest;
+    };
+    const double early = largest_of(1000);
+    for (int step = 0; step < 8000; ++step) stepper.advance(recorder);
+    EXPECT_LT(largest_of(1000), early);  // the early swing, of phases yet in order, is never reached again
+    ASSERT_FALSE(touches(stepper));
+  }
+}
+
+TEST(OneSubstep, IsTheLeapfrogScheme) {
+  // A triggered event by whole-plate accelerations and contact updates.
+  const auto mesh = tiny_plate(Corner::relief);
+  const solid::Material material;
+  const statics::Statics statics(
+      mesh, material, {.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3}, mu_s);
+  const auto e = statics.shear_to(0.9 * mu_s);
+  const auto tributary = mesh::tributary_lengths_m(mesh);
+  const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
+  const auto force = trigger_forces(e, tributary, interface::EventKind::right, trigger, mu_s);
+  for (const int rows : {1, 4}) {
+    auto time = one_substep();
+    time.interface_rows = rows;
+    Stepper stepper(mesh, material, gentle_law, time);
+    stepper.start(e, 0);
+    stepper.set_trigger(trigger, force);
+    Recorder recorder(e, mu_s, 0);
+
+    const solid::Operator plate = solid::make_operator(mesh, material);
+    const double dt = stepper.step_s();
+    solid::Field u = e.u_m, v(u.size()), w(u.size()), a(u.size());
+    interface::Interface s(mesh.lower.size());
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      s.initial_gap_m[k] = mesh.y_m[mesh.lower[k]];
+      s.mass_per_length_kg_m2[k] = plate.mass_kg[mesh.lower[k]] / tributary[k];
+      s.slipping[k] = e.contact[k] == statics::Contact::slip;
+    }
+    double u_worst = 0, v_worst = 0;
+    for (int step = 0; step < 40; ++step) {
+      for (std::size_t n = 0; n < u.size(); ++n) {
+        w.x[n] = u.x[n] + material.stiffness_damping_s * v.x[n];
+        w.y[n] = u.y[n] + material.stiffness_damping_s * v.y[n];
+      }
+      solid::apply(plate, w, a);
+      for (std::size_t n = 0; n < u.size(); ++n) v.x[n] -= dt * a.x[n], v.y[n] -= dt * a.y[n];
+      for (std::size_t k = 0; k < s.size(); ++k) {
+        const auto n = mesh.lower[k];
+        s.v_x_m_per_s[k] =
+            v.x[n] + dt * interface::trigger_factor(trigger, step * dt) * force[k] / plate.mass_kg[n];
+        s.v_y_m_per_s[k] = v.y[n];
+        s.u_y_m[k] = u.y[n];
+      }
+      interface::update_contact(gentle_law, dt, s);
+      for (std::size_t k = 0; k < s.size(); ++k) {
+        v.x[mesh.lower[k]] = s.v_x_m_per_s[k];
+        v.y[mesh.lower[k]] = s.v_y_m_per_s[k];
+      }
+      for (std::size_t n = 0; n < u.size(); ++n) u.x[n] += dt * v.x[n], u.y[n] += dt * v.y[n];
+      stepper.advance(recorder);
+      u_worst = std::max(u_worst, max_abs(flat(stepper.u_m()) - flat(u)));
+      v_worst = std::max(v_worst, max_abs(flat(stepper.v_m_per_s()) - flat(v)));
+    }
+    EXPECT_GT(recorder.take(0).onsets.size(), 5);
+    EXPECT_EQ(stepper.interface_state().slipping, s.slipping);
+    EXPECT_LE(u_worst, rounding_m);
+    EXPECT_LE(v_worst, rounding_m_per_s);
+  }
+}
+
+/// The scheme written down plainly: whole matrices, one for each kind of cells. The coarse cells push at the
+/// beginning of each step; nodes between the two kinds feel the coarse cells' force at the start in all
+/// sub-steps and its change in the pushes, and count for the coarse cells' damping with their mean velocity.
+class PlainScheme {
+ public:
+  PlainScheme(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& settings,
+              double step_s)
+      : mesh_(mesh),
+        mass_(solid::lumped_mass(mesh, material)),
+        damping_s_(material.stiffness_damping_s),
+        step_s_(step_s),
+        substeps_(settings.interface_substeps),
+        kind_(mesh.n_nodes(), coarse),
+        tributary_(mesh::tributary_lengths_m(mesh)) {
+    // Fine cells: as near to the interface, counted in cells.
+    std::vector<int> distance(mesh.n_nodes(), 1000);
+    for (const auto n : mesh.lower) distance[n] = 0;
+    for (int round = 0; round < settings.interface_rows; ++round) {
+      const auto last = distance;
+      for (const auto& cell : mesh.cells)
+        for (const auto a : cell)
+          for (const auto b : cell) distance[a] = std::min(distance[a], last[b] + 1);
+    }
+    std::vector<bool> fine_cell, coarse_cell;
+    std::vector<bool> has_fine(mesh.n_nodes()), has_coarse(mesh.n_nodes());
+    for (const auto& cell : mesh.cells) {
+      int nearest = 1000;
+      for (const auto n : cell) nearest = std::min(nearest, distance[n]);
+      fine_cell.push_back(nearest < settings.interface_rows && substeps_ > 1);
+      coarse_cell.push_back(!fine_cell.back());
+      for (const auto n : cell) (fine_cell.back() ? has_fine : has_coarse)[n] = true;
+    }
+    K_fine_ = support::assembled_stiffness(mesh, material, fine_cell);
+    K_coarse_ = support::assembled_stiffness(mesh, material, coarse_cell);
+    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+      if (has_fine[n]) kind_[n] = has_coarse[n] ? shared : fine;
+      if (mass_[n] == 0) kind_[n] = none;
+    }
+    for (const auto n : mesh.lower) kind_[n] = contact;
+    for (const auto n : mesh.top) kind_[n] = top;
+  }
+
+  void start(const statics::Equilibrium& e, double top_speed) {
+    u = flat(e.u_m);
+    v = top_speed * flat(e.u_per_shear);
+    u_before_ = u - step_s_ * v;
+    steady_ = K_coarse_ * (u + damping_s_ * v);
+    trigger_force.assign(mesh_.lower.size(), 0);
+  }
+
+  void advance() {
+    Eigen::VectorXd v_coarse = v;
+    for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n)
+      if (kind_[n] == shared) v_coarse.segment<2>(2 * n) = (u - u_before_).segment<2>(2 * n) / step_s_;
+    u_before_ = u;
+    const Eigen::VectorXd f_coarse = K_coarse_ * (u + damping_s_ * v_coarse);
+    const double dt = step_s_ / substeps_;
+    for (int k = 0; k < substeps_; ++k) {
+      const Eigen::VectorXd f = K_fine_ * (u + damping_s_ * v);
+      for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {
+        if (kind_[n] == top) u(2 * n) += dt * v(2 * n);
+        if (kind_[n] == none || kind_[n] == top) continue;
+        const auto at = [&](const Eigen::VectorXd& field) { return field.segment<2>(2 * n); };
+        v.segment<2>(2 * n) -= dt / mass_[n] * at(f);
+        if (kind_[n] == shared) v.segment<2>(2 * n) -= dt / mass_[n] * at(steady_);
+        const Eigen::Vector2d held =
+            kind_[n] == shared ? Eigen::Vector2d(at(steady_)) : Eigen::Vector2d(0, 0);
+        if (k == 0) v.segment<2>(2 * n) -= step_s_ / mass_[n] * (at(f_coarse) - held);
+        if (kind_[n] != contact) u.segment<2>(2 * n) += dt * at(v);
+      }
+      touch(dt, time_s + k * dt);
+    }
+    time_s += step_s_;
+  }
+
+  Eigen::VectorXd u, v;
+  double time_s = 0;
+  std::vector<double> trigger_force, slip_rate = std::vector<double>(1000, 0.0);
+  interface::Trigger trigger;
+
+ private:
+  void touch(double dt, double now) {
+    const auto mu = std::get<interface::VelocityWeakening>(gentle_law.law).evaluator();
+    for (std::size_t i = 0; i < mesh_.lower.size(); ++i) {
+      const auto n = mesh_.lower[i];
+      const double m = mass_[n], B = tributary_[i];
+      const double x = v(2 * n) + dt * trigger_factor(trigger, now) * trigger_force[i] / m, y = v(2 * n + 1);
+      const double gap = mesh_.y_m[n] + u(2 * n + 1);
+      const double p = std::max(0.0, -(y + gap / dt) * m / (dt * B));
+      const double stop = x * m / (dt * B);
+      double mean = slip_rate[i];
+      for (int evaluation = 0; evaluation < 3; ++evaluation) {
+        const double strength = mu(std::abs(mean), 0) * p;
+        const bool sticks = std::abs(stop) <= strength;
+        v(2 * n) = sticks ? 0 : x - dt * B * std::copysign(strength, stop) / m;
+        mean = 0.5 * (slip_rate[i] + v(2 * n));
+      }
+      v(2 * n + 1) = y + dt * B * p / m;
+      slip_rate[i] = v(2 * n);
+      u.segment<2>(2 * n) += dt * v.segment<2>(2 * n);
+    }
+  }
+
+  enum Kind { coarse, shared, fine, contact, top, none };
+  const mesh::Mesh& mesh_;
+  support::Sparse K_fine_, K_coarse_;
+  Eigen::VectorXd u_before_, steady_;
+  std::vector<double> mass_;
+  double damping_s_, step_s_;
+  int substeps_;
+  std::vector<Kind> kind_;
+  std::vector<double> tributary_;
+};
+
+class Scheme : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {};
+INSTANTIATE_TEST_SUITE_P(Layers, Scheme,
+                         ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                                            ::testing::Values(1, 4, 8), ::testing::Values(1, 5)),
+                         [](const auto& p) {
+                           return support::name_of(std::get<0>(p.param)) + "_" +
+                                  std::to_string(std::get<1>(p.param)) + "rows_" +
+                                  std::to_string(std::get<2>(p.param)) + "substeps";
+                         });
+
+TEST_P(Scheme, EqualsThePlainAlgorithm) {
+  // A triggered event with stick, slip and opening.
+  const auto [corner, rows, substeps] = GetParam();
+  const auto mesh = tiny_plate(corner);
+  const solid::Material material;
+  const statics::Loading loading{.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3};
+  const statics::Statics statics(mesh, material, loading, mu_s);
+  auto e = statics.shear_to(0.9 * mu_s);
+  TimeStepping time;
+  time.interface_rows = rows;
+  time.interface_substeps = substeps;
+  Stepper stepper(mesh, material, gentle_law, time);
+  PlainScheme plain(mesh, material, time, stepper.step_s());
+  stepper.start(e, 0.2);
+  plain.start(e, 0.2);
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k)
+    plain.slip_rate[k] = 0.2 * e.u_per_shear.x[mesh.lower[k]];
+  plain.trigger = {.zone_m = 3e-3, .ramp_s = 1e-6};
+  plain.trigger_force =
+      trigger_forces(e, mesh::tributary_lengths_m(mesh), interface::EventKind::left, plain.trigger, mu_s);
+  stepper.set_trigger(plain.trigger, plain.trigger_force);
+  Recorder recorder(e, mu_s, 0);
+  double u_worst = 0, v_worst = 0;
+  for (int step = 0; step < 40; ++step) {
+    stepper.advance(recorder);
+    plain.advance();
+    u_worst = std::max(u_worst, max_abs(flat(stepper.u_m()) - plain.u));
+    v_worst = std::max(v_worst, max_abs(flat(stepper.v_m_per_s()) - plain.v));
+  }
+  const auto record = recorder.take(stepper.time_s());
+  EXPECT_GT(record.onsets.size(), 5);
+  EXPECT_GT(max_abs(plain.v), 0.1);
+  EXPECT_LE(u_worst, rounding_m);
+  EXPECT_LE(v_worst, rounding_m_per_s);
+}
+
+TEST(Stepper, CountsTheNodesItMoves) {
+  const auto mesh = tiny_plate(Corner::none);
+  TimeStepping time;
+  time.interface_rows = 4;
+  time.interface_substeps = 18;
+  const Stepper stepper(mesh, {}, paper_law, time);
+  EXPECT_EQ(stepper.node_updates_per_step(), 21 * (5 + 5 * 18));
+  EXPECT_DOUBLE_EQ(stepper.step_s(), 0.9 * stepper.stable_step_s());
+  EXPECT_DOUBLE_EQ(stepper.substep_s(), stepper.step_s() / 18);
+}
+
+TEST(Stepper, RefusesALayerAsHighAsThePlate) {
+  const auto mesh = tiny_plate(Corner::none);
+  TimeStepping time;
+  time.interface_rows = 10;
+  try {
+    Stepper(mesh, {}, paper_law, time);
+    FAIL() << "no error";
+  } catch (const UserError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("time.interface_rows = 10 does not fit"));
+  }
+}
+
+class Substeps : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(OneAndMany, Substeps, ::testing::Values(1, 18));
+
+TEST_P(Substeps, APlateAtRestStaysAtRest) {
+  const auto mesh = support::make_plate(0.04, 0.02, 1e-3, Corner::relief);
+  const solid::Material material;
+  const statics::Statics statics(mesh, material, {.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3}, mu_s);
+  const auto e = statics.shear_by(0.02e-3);
+  double p_max = 0;
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    ASSERT_NE(e.contact[k], statics::Contact::slip);
+    p_max = std::max(p_max, e.tractions.p_s_Pa[k]);
+  }
+  TimeStepping time;
+  time.interface_substeps = GetParam();
+  Stepper stepper(mesh, material, paper_law, time);
+  stepper.start(e, 0);
+  Recorder recorder(e, mu_s, 0);
+  for (int step = 0; step < 500; ++step) stepper.advance(recorder);
+  EXPECT_EQ(recorder.take(0).onsets.size(), 0);
+  const auto& s = stepper.interface_state();
+  // The static solution's residual (1e-11 of the forces) is all that moves.
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    EXPECT_NEAR(s.t_Pa[k], e.tractions.t_s_Pa[k], 1e-9 * p_max) << k;
+    EXPECT_NEAR(s.p_Pa[k], e.tractions.p_s_Pa[k], 1e-9 * p_max) << k;
+  }
+  EXPECT_LE(max_abs(flat(stepper.u_m()) - flat(e.u_m)), 1e-10 * max_abs(flat(e.u_m)));
+}
+
+TEST_P(Substeps, StuckPlateFollowsTheTop) {
+  // Started with the static motion under a moving edge, the stuck plate keeps to the static solution.
+  const auto mesh = support::make_plate(0.04, 0.02, 1e-3, Corner::none);
+  const solid::Material material;
+  const statics::Statics statics(mesh, material, {.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3}, mu_s);
+  const auto e = statics.shear_by(0.01e-3);
+  ASSERT_EQ(std::ranges::count(e.contact, statics::Contact::stick), 41);
+  TimeStepping time;
+  time.interface_substeps = GetParam();
+  Stepper stepper(mesh, material, paper_law, time);
+  const double speed = 1e-3;
+  stepper.start(e, speed);
+  Recorder recorder(e, mu_s, 0);
+  for (int step = 0; step < 500; ++step) stepper.advance(recorder);
+  const Eigen::VectorXd expected = flat(e.u_m) + speed * stepper.time_s() * flat(e.u_per_shear);
+  // A uniform motion from the start would be exact; the stiffness damping shifts the force by beta_R v, which
+  // the stress takes up within the displacement v beta_R. Between two pushes, the force of the coarse cells
+  // lags by up to a step: v step.
+  const double lag_s = material.stiffness_damping_s + (GetParam() > 1 ? stepper.step_s() : 0);
+  EXPECT_LE(max_abs(flat(stepper.u_m()) - expected), speed * lag_s);
+  EXPECT_GT(speed * stepper.time_s(), 200 * speed * lag_s);
+}
+
+TEST(Stepper, DampingDissipates) {
+  const auto mesh = tiny_plate(Corner::fillet);
+  for (const int substeps : {1, 18}) {
+    TimeStepping time;
+    time.interface_substeps = substeps;
+    Stepper stepper(mesh, {}, paper_law, time);
+    const auto e = random_flight(mesh, 1e-6, 1);
+    stepper.start(e, 1);
+    Recorder recorder(e, mu_s, 0);
+    // Energy at one instant fluctuates by the half step between u and v, and between pushes; its largest
+    // value in 400 steps falls.
+    double last = stepper.energy_J_per_m();
+    for (int block = 0; block < 6; ++block) {
+      double largest = 0;
+      for (int step = 0; step < 400; ++step) {
+        stepper.advance(recorder);
+        if (step >= 200) largest = std::max(largest, stepper.energy_J_per_m());
+      }
+      EXPECT_LT(largest, last) << substeps << " " << block;
+      last = largest;
+    }
+    ASSERT_FALSE(touches(stepper));
+  }
+}
+
+TEST(Stepper, MirroredPlateMovesMirrored) {
+  const auto mesh = support::make_plate(0.04, 0.02, 1e-3, Corner::relief);
+  const solid::Material material;
+  const statics::Statics statics(
+      mesh, material, {.tilt_left_m = 0.1e-3, .tilt_right_m = 0.04e-3, .edge_margin_m = 4e-3}, mu_s);
+  const auto e = statics.shear_to(0.95 * mu_s);
+  const int stride = mesh.grid.stride();
+  const auto mirror = [&](solid::Field u) {
+    const solid::Field old = u;
+    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+      const mesh::Node image = n / stride * stride + stride - 1 - n % stride;
+      u.x[image] = -old.x[n];
+      u.y[image] = old.y[n];
+    }
+    return u;
+  };
+  statics::Equilibrium m = e;
+  m.u_m = mirror(e.u_m);
+  m.u_per_shear = mirror(e.u_per_shear);
+  std::ranges::reverse(m.contact);
+  std::ranges::reverse(m.tractions.p_s_Pa);
+  std::ranges::reverse(m.tractions.t_s_Pa);
+  for (double& t : m.tractions.t_s_Pa) t = -t;
+
+  const interface::Trigger trigger { .zone_m = 4e-3, .ramp_s = 1e-6 };
+  auto force = trigger_forces(e, mesh::tributary_lengths_m(mesh), interface::EventKind::right, trigger, mu_s);
+  const TimeStepping time;
+  Stepper one(mesh, material, paper_law, time), other(mesh, material, paper_law, time);
+  one.start(e, 1e-3);
+  other.start(m, 1e-3);
+  one.set_trigger(trigger, force);
+  std::ranges::reverse(force);
+  for (double& f : force) f = -f;
+  other.set_trigger(trigger, force);
+  Recorder of_one(e, mu_s, 1), of_other(m, mu_s, 1);
+  for (int step = 0; step < 60; ++step) {
+    one.advance(of_one);
+    other.advance(of_other);
+  }
+  const double duration = one.time_s();
+  const auto a = of_one.take(duration), b = of_other.take(duration);
+  ASSERT_GT(a.onsets.size(), 10);
+  ASSERT_EQ(a.onsets.size(), b.onsets.size());
+  ASSERT_EQ(a.stops.size(), b.stops.size());
+  // Only the order of sums differs; friction amplifies rounding, by far less than this within the event.
+  const auto by_node = [](auto list) {
+    std::ranges::sort(list, {}, [](const auto& o) { return std::pair(o.node, o.time_s); });
+    return list;
+  };
+  auto mirrored = b.onsets;
+  for (auto& onset : mirrored) onset.node = stride - 1 - onset.node;
+  const auto left = by_node(a.onsets), right = by_node(mirrored);
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    EXPECT_EQ(left[k].node, right[k].node);
+    EXPECT_NEAR(left[k].time_s, right[k].time_s, 1e-9 * duration);
+  }
+  EXPECT_LE(max_abs(flat(one.u_m()) - flat(mirror(other.u_m()))), 1e-9 * max_abs(flat(one.u_m())));
+  EXPECT_LE(max_abs(flat(one.v_m_per_s()) - flat(mirror(other.v_m_per_s()))),
+            1e-7 * max_abs(flat(one.v_m_per_s())));
+}
+
+TEST(Stepper, TriggerWorkIsForceTimesPath) {
+  const auto mesh = tiny_plate(Corner::none);
+  Stepper stepper(mesh, undamped(), paper_law, one_substep(0.2));
+  // From rest in the air, so that the trigger's work is all the energy there is.
+  solid::Field u(mesh.n_nodes());
+  std::ranges::fill(u.y, 1e-3);
+  const auto e = in_flight(mesh, u, solid::Field(mesh.n_nodes()));
+  stepper.start(e, 0);
+  const interface::Trigger trigger { .ramp_s = 10e-6, .duration_s = 30e-6 };
+  std::vector<double> force(mesh.lower.size());
+  for (std::size_t k = 0; k < force.size(); ++k) force[k] = 100.0 * static_cast<double>(k + 1);
+  stepper.set_trigger(trigger, force);
+  Recorder recorder(e, mu_s, 0);
+  double work = 0;
+  while (stepper.time_s() < 40e-6) {
+    const double factor = interface::trigger_factor(trigger, stepper.time_s());
+    const auto before = stepper.v_m_per_s().x;
+    stepper.advance(recorder);
+    for (std::size_t k = 0; k < force.size(); ++k) {
+      const auto n = mesh.lower[k];
+      work += factor * force[k] * 0.5 * (before[n] + stepper.v_m_per_s().x[n]) * stepper.step_s();
+    }
+  }
+  ASSERT_FALSE(touches(stepper));
+  EXPECT_GT(work, 0);
+  EXPECT_NEAR(stepper.energies().trigger_work / work, 1, 1e-12);
+  // The energy is taken half a step apart.
+  EXPECT_NEAR(stepper.energy_J_per_m() / work, 1, 0.02);
+  // A new start forgets it.
+  stepper.start(e, 0);
+  EXPECT_EQ(stepper.energies().trigger_work, 0);
+  stepper.advance(recorder);
+  EXPECT_EQ(stepper.energies().trigger_work, 0);
+}
+
+/// Rows of bands that threads and steps of one sweep share; relief and fillet make the first band irregular.
+class Execute
+    : public ::testing::TestWithParam<std::tuple<Corner, int, interface::ContactAlgorithm, Precision>> {};
+INSTANTIATE_TEST_SUITE_P(
+    Cases, Execute,
+    ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                       ::testing::Values(1, 4),
+                       ::testing::Values(interface::ContactAlgorithm::direct,
+                                         interface::ContactAlgorithm::predictor_corrector),
+                       ::testing::Values(Precision::double_precision, Precision::single_precision)));
+
+TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
+  const auto corner = std::get<0>(GetParam());
+  const int substeps = std::get<1>(GetParam());
+  const auto algorithm = std::get<2>(GetParam());
+  const auto precision = std::get<3>(GetParam());
+  const auto mesh = support::make_plate(0.2, 0.01, 0.5e-3, corner);
+  const auto law = support::with_algorithm(gentle_law, algorithm);
+  const auto e = random_flight(mesh, 1e-6, 1, 0);
+  constexpr int n_steps = 50;
+  struct Result {
+    solid::Field u, v;
+    record::Energies energies;
+    std::size_t onsets = 0;
+  };
+  const auto run = [&](const Execution& execution, int block) {
+    Stepper stepper(mesh, {}, law, {.precision = precision, .interface_substeps = substeps}, execution);
+    stepper.start(e, 0);
+    stepper.set_trigger({.ramp_s = 1e-6}, std::vector<double>(mesh.lower.size(), 1.0));
+    Recorder recorder(e, mu_s, 1);
+    record::History history;
+    while (stepper.step() < n_steps) {
+      const auto before = stepper.step();
+      const auto most = std::min<std::int64_t>(block, n_steps - before);
+      EXPECT_EQ(stepper.advance(recorder, most, {.sample = [&] { return &history; }}), most);
+      EXPECT_EQ(stepper.step(), before + most);
+    }
+    EXPECT_GT(std::ranges::max(history.p_Pa), 0);
+    EXPECT_EQ(history.time_s.size(), n_steps);
+    return Result{stepper.u_m(), stepper.v_m_per_s(), stepper.energies(), recorder.record().onsets.size()};
+  };
+  const Result plain = run({1, 1}, 1);
+  EXPECT_GT(plain.onsets, 0);
+  for (const auto& [threads, depth, block] :
+       {std::tuple{1, 4, 50}, {1, 16, 7}, {2, 1, 50}, {2, 3, 50}, {3, 2, 20}}) {
+    const Result other = run({threads, depth}, block);
+    EXPECT_EQ(other.u.x, plain.u.x);
+    EXPECT_EQ(other.u.y, plain.u.y);
+    EXPECT_EQ(other.v.x, plain.v.x);
+    EXPECT_EQ(other.v.y, plain.v.y);
+    EXPECT_EQ(other.energies.damping_work, plain.energies.damping_work);
+    EXPECT_EQ(other.energies.strain, plain.energies.strain);
+    EXPECT_EQ(other.energies.work(), plain.energies.work());
+    EXPECT_EQ(other.onsets, plain.onsets);
+  }
+}
+
+class SinglePrecision : public ::testing::TestWithParam<std::tuple<Corner, int>> {};
+INSTANTIATE_TEST_SUITE_P(Cases, SinglePrecision,
+                         ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                                            ::testing::Values(1, 4)));
+
+TEST_P(SinglePrecision, MovesAsDoublePrecisionDoesButForRounding) {
+  const auto corner = std::get<0>(GetParam());
+  const int substeps = std::get<1>(GetParam());
+  const auto mesh = support::make_plate(0.1, 0.02, 0.5e-3, corner);
+  const double size_m = 1e-6, speed_m_per_s = 1;
+  const auto e = random_flight(mesh, size_m, speed_m_per_s, 10e-6);
+  constexpr int n_steps = 40;
+  record::Energies energies[2], start[2];
+  solid::Field u[2], v[2];
+  for (const int k : {0, 1}) {
+    const auto precision = k == 0 ? Precision::double_precision : Precision::single_precision;
+    Stepper stepper(mesh, {}, gentle_law, {.precision = precision, .interface_substeps = substeps});
+    stepper.start(e, 1);
+    start[k] = stepper.energies();
+    Recorder recorder(e, mu_s, 0);
+    EXPECT_EQ(stepper.advance(recorder, n_steps, {}), n_steps);
+    energies[k] = stepper.energies();
+    u[k] = stepper.u_m();
+    v[k] = stepper.v_m_per_s();
+  }
+  // Each step rounds u and v to 6e-8 of themselves, u at some 10 um, v at some 1 m/s; what is rounded adds up
+  // over the steps, and forces turn errors of u into errors of v by 1/dt.
+  const double eps = 6e-8, dt = 1e-7;
+  const double limit_v = n_steps * eps * (speed_m_per_s + 20e-6 / dt);
+  EXPECT_LE(max_abs(flat(v[1]) - flat(v[0])), limit_v);
+  EXPECT_LE(max_abs(flat(u[1]) - flat(u[0])), n_steps * dt * limit_v + n_steps * eps * 20e-6);
+  // And it is another computation.
+  EXPECT_GT(max_abs(flat(v[1]) - flat(v[0])), 1e-9 * speed_m_per_s);
+  const double stored = start[0].stored();
+  EXPECT_LE(std::abs(record::imbalance_J_per_m(energies[0], start[0])), 1e-12 * stored);
+  EXPECT_LE(std::abs(record::imbalance_J_per_m(energies[1], start[1])), n_steps * 10 * eps * stored);
+}
+
+TEST(Stepper, SamplesBelongToTheBeginningOfTheStep) {
+  const auto mesh = tiny_plate(Corner::none);
+  const solid::Material material;
+  const statics::Statics statics(
+      mesh, material, {.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3}, mu_s);
+  const auto e = statics.shear_to(0.5 * mu_s);
+  Stepper stepper(mesh, material, paper_law, {});
+  stepper.start(e, 0);
+  Recorder recorder(e, mu_s, 0);
+  record::History history;
+  stepper.advance(recorder, &history);
+  stepper.advance(recorder);
+  stepper.advance(recorder, &history);
+  ASSERT_EQ(history.time_s.size(), 2);
+  EXPECT_EQ(history.time_s[0], 0);
+  EXPECT_DOUBLE_EQ(history.time_s[1], 2 * stepper.step_s());
+  EXPECT_EQ(history.t_Pa.size(), 2 * mesh.lower.size());
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    EXPECT_EQ(history.slip_m[k], 0);
+    EXPECT_NEAR(history.t_Pa[k], e.tractions.t_s_Pa[k], 1e-9 * e.tractions.p_s_Pa[0]);
+    EXPECT_NEAR(history.p_Pa[k], e.tractions.p_s_Pa[k], 1e-9 * e.tractions.p_s_Pa[0]);
+  }
+}
+
+}  // namespace
+}  // namespace slipfront::motion

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each room of the program includes what the plan names for it, and nothing else."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+
+def built() -> dict[str, set[str]]:
+    """What src/CMakeLists.txt lets each room see, in its order."""
+    text = (ROOT / "src/CMakeLists.txt").read_text(encoding="utf-8")
+    calls = re.findall(r"^slipfront_room\((\w+)([^)]*)\)", text, re.MULTILINE)
+    return {name: set(rest.partition("USES")[0].split()) - {"SEES"} for name, rest in calls}
+
+
+def planned() -> dict[str, set[str]]:
+    """The table of docs/architecture.md."""
+    text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\w+)` \| ([^|]*)\|", text, re.MULTILINE)
+    return {name: set(re.findall(r"\w+", sees)) for name, sees in rows}
+
+
+def included(room: str) -> set[str]:
+    """Rooms of which a room includes headers."""
+    seen = set()
+    for file in (ROOT / "src" / room).rglob("*.[ch]pp"):
+        seen |= set(re.findall(r'^#include "(\w+)/', file.read_text(encoding="utf-8"), re.MULTILINE))
+    return seen - {room}
+
+
+def test_the_plan_is_what_is_built():
+    assert built() == planned()
+    assert list(built()) == list(planned())
+
+
+def test_rooms_include_what_they_are_named_and_nothing_else():
+    folders = {path.name for path in (ROOT / "src").iterdir() if path.is_dir()}
+    assert folders == set(built())
+    # base brings errors and assertions: every room may use it.
+    assert {room: included(room) | {"base"} for room in folders} == {
+        room: sees | {"base"} for room, sees in built().items()
+    }
+
+
+def test_the_way_is_one_way():
+    above: set[str] = set()
+    for room, sees in built().items():
+        assert sees <= above, room
+        above.add(room)

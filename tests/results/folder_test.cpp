@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "results/folder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <set>
+#include <thread>
+
+#include "files/checksum.hpp"
+#include "support/files.hpp"
+
+namespace slipfront::results {
+namespace {
+
+namespace fs = std::filesystem;
+using test::error_of;
+using ::testing::Each;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
+
+std::set<std::string> below(const fs::path& dir) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(dir))
+    names.insert(fs::relative(entry.path(), dir).string());
+  return names;
+}
+
+/// Publishes files, each with its name as its content.
+void publish(const fs::path& dir, const std::vector<std::string>& names, bool adds = false) {
+  ResultFolder folder(dir, "test");
+  folder.begin();
+  for (const auto& name : names) {
+    fs::create_directories((folder.unfinished() / name).parent_path());
+    files::write_text(folder.unfinished() / name, name);
+  }
+  folder.publish(adds);
+}
+
+TEST(ResultFolder, IsMadeWithItsParentsAndGoesAgainUnused) {
+  const test::TemporaryFolder folder;
+  {
+    const ResultFolder made(folder / "a" / "b", "test");
+    EXPECT_TRUE(fs::is_directory(folder / "a" / "b"));
+  }
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  publish(folder / "a" / "b", {"run.json"});
+  EXPECT_THAT(below(folder / "a" / "b"), UnorderedElementsAre("run.json", "checksums.sha256"));
+}
+
+TEST(ResultFolder, IsRefusedWhereItHoldsAnything) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "notes.txt", "mine");
+  {
+    const ResultFolder taken(folder.path(), "test");
+    EXPECT_EQ(error_of([&] { taken.require_empty(false); }),
+              "output folder " + folder.path().string() +
+                  ": is not empty; choose another or pass --overwrite to replace a run's results");
+    EXPECT_EQ(error_of([&] { taken.require_empty(true); }), "(nothing thrown)");
+  }
+  EXPECT_THAT(below(folder.path()), UnorderedElementsAre("notes.txt"));
+}
+
+TEST(ResultFolder, UnfinishedWorkIsNotLostByAccident) {
+  const test::TemporaryFolder folder;
+  {
+    ResultFolder left(folder.path(), "one");
+    left.begin();
+    files::write_text(left.unfinished() / "run.json", "so far");
+  }
+  ResultFolder again(folder.path(), "one");
+  EXPECT_FALSE(again.has_results());
+  EXPECT_TRUE(again.has_unfinished());
+  EXPECT_THAT(error_of([&] { again.require_empty(false); }), HasSubstr("holds unfinished work"));
+  EXPECT_EQ(error_of([&] { again.require_empty(false, true); }), "(nothing thrown)");
+  again.begin_or_resume();
+  EXPECT_EQ(test::read_file(again.unfinished() / "run.json"), "so far");
+}
+
+TEST(ResultFolder, WorkOfAnotherKindIsNotResumed) {
+  const test::TemporaryFolder folder;
+  {
+    ResultFolder one(folder.path(), "one");
+    one.begin();
+    files::write_text(one.unfinished() / "run.json", "so far");
+  }
+  ResultFolder other(folder.path(), "another");
+  EXPECT_FALSE(other.has_unfinished());
+  EXPECT_THAT(error_of([&] { other.require_empty(false, true); }), HasSubstr("holds unfinished work"));
+  other.begin_or_resume();
+  EXPECT_FALSE(fs::exists(other.unfinished() / "run.json"));
+}
+
+TEST(ResultFolder, EarlierResultsStayUntilTheNewOnesAreComplete) {
+  const test::TemporaryFolder folder;
+  publish(folder.path(), {"run.json", "fields.vtkhdf"});
+  test::write_file(folder / "notes.txt", "mine");
+  const auto before = below(folder.path());
+  ResultFolder next(folder.path(), "test");
+  next.begin();
+  files::write_text(next.unfinished() / "run.json", "new");
+  EXPECT_EQ(test::read_file(folder / "run.json"), "run.json");
+  next.publish();
+  EXPECT_EQ(test::read_file(folder / "run.json"), "new");
+  // The earlier set's fields are not the new one's; what is nobody's stays.
+  EXPECT_FALSE(fs::exists(folder / "fields.vtkhdf"));
+  EXPECT_TRUE(fs::exists(folder / "notes.txt"));
+  files::require_intact(folder.path());
+}
+
+TEST(ResultFolder, ReplacesTheResultsOfFoldersWithoutAListAndNothingElse) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv",
+                           "energy.csv", "fields.vtkhdf", "notes.txt", "old.interface.h5"})
+    test::write_file(folder / name, "x");
+  fs::create_directory(folder / "figures");
+  test::write_file(folder / "figures" / "fronts.csv", "x");
+  publish(folder.path(), {"run.json"});
+  EXPECT_THAT(below(folder.path()),
+              UnorderedElementsAre("run.json", "checksums.sha256", "notes.txt", "old.interface.h5", "figures",
+                                   "figures/fronts.csv"));
+}
+
+TEST(ResultFolder, ASetMayHaveFoldersWithSetsOfTheirOwn) {
+  const test::TemporaryFolder folder;
+  const auto with_runs = [&](const std::vector<std::string>& runs) {
+    ResultFolder held(folder.path(), "test");
+    held.begin();
+    for (const auto& run : runs) {
+      fs::create_directories(held.unfinished() / run);
+      files::write_text(held.unfinished() / run / "run.json", run);
+      seal(held.unfinished() / run);
+    }
+    files::write_text(held.unfinished() / "scorecard.json", "all");
+    held.publish();
+  };
+  with_runs({"left", "studies/a/right"});
+  EXPECT_THAT(below(folder.path()),
+              UnorderedElementsAre("checksums.sha256", "scorecard.json", "left", "left/run.json",
+                                   "left/checksums.sha256", "studies", "studies/a", "studies/a/right",
+                                   "studies/a/right/run.json", "studies/a/right/checksums.sha256"));
+  for (const char* run : {"", "left", "studies/a/right"}) files::require_intact(folder / run);
+  with_runs({"left"});
+  EXPECT_THAT(below(folder.path()), UnorderedElementsAre("checksums.sha256", "scorecard.json", "left",
+                                                         "left/run.json", "left/checksums.sha256"));
+}
+
+TEST(ResultFolder, ASetMayBeAddedTo) {
+  const test::TemporaryFolder folder;
+  publish(folder.path(), {"a.json", "b.json"});
+  publish(folder.path(), {"b.json", "c.json"}, true);
+  EXPECT_THAT(below(folder.path()), UnorderedElementsAre("a.json", "b.json", "c.json", "checksums.sha256"));
+  EXPECT_EQ(files::read_checksums(folder.path()).size(), 3U);
+  files::require_intact(folder.path());
+}
+
+/// A publication that is cut off after the set was made complete, with some files moved and some not.
+TEST(ResultFolder, APublicationThatWasCutOffIsEnded) {
+  for (const bool listed : {true, false}) {
+    const test::TemporaryFolder folder;
+    publish(folder.path(), {"run.json", "fronts.csv", "fields.vtkhdf"});
+    {
+      ResultFolder next(folder.path(), "test");
+      next.begin();
+      files::write_text(next.unfinished() / "run.json", "new");
+      files::write_text(next.unfinished() / "fronts.csv", "new");
+      seal(next.unfinished());
+    }
+    fs::rename(folder / "unfinished", folder / "publishing");
+    fs::rename(folder / "publishing/fronts.csv", folder / "fronts.csv");
+    EXPECT_EQ(test::read_file(published(folder.path(), "run.json")), "new");
+    EXPECT_EQ(test::read_file(published(folder.path(), "fronts.csv")), "new");
+    if (!listed) {  // at the very end
+      fs::rename(folder / "publishing/run.json", folder / "run.json");
+      fs::rename(folder / "publishing/checksums.sha256", folder / "checksums.sha256");
+      fs::remove(folder / "fields.vtkhdf");
+      fs::remove_all(folder / "publishing/state");
+    }
+    { const ResultFolder claimed(folder.path(), "test"); }
+    EXPECT_THAT(below(folder.path()), UnorderedElementsAre("run.json", "fronts.csv", "checksums.sha256"));
+    EXPECT_EQ(test::read_file(folder / "run.json"), "new");
+    files::require_intact(folder.path());
+  }
+}
+
+TEST(ResultFolder, ForeignFoldersAndLinksOfItsNamesAreLeftAlone) {
+  for (const char* name : {"unfinished", "publishing"}) {
+    const test::TemporaryFolder folder, elsewhere;
+    test::write_file(elsewhere / "precious", "x");
+    fs::create_directory_symlink(elsewhere.path(), folder / name);
+    EXPECT_THAT(error_of([&] { ResultFolder(folder.path(), "test"); }), EndsWith("; move it away"));
+    fs::remove(folder / name);
+    fs::create_directory(folder / name);
+    test::write_file(folder / name / "precious", "x");
+    EXPECT_THAT(error_of([&] { ResultFolder(folder.path(), "test"); }), EndsWith("; move it away"));
+    EXPECT_EQ(test::read_file(folder / name / "precious"), "x");
+    EXPECT_EQ(test::read_file(elsewhere / "precious"), "x");
+  }
+}
+
+TEST(ResultFolder, IsNotMadeInsideAnothersWork) {
+  const test::TemporaryFolder folder;
+  ResultFolder other(folder / "a", "test");
+  other.begin();
+  EXPECT_THAT(error_of([&] { ResultFolder(folder / "a" / "unfinished" / "b" / "c", "test"); }),
+              HasSubstr("is inside " + (folder / "a" / "unfinished").string()));
+  fs::create_directories(folder / "unfinished");  // somebody's, who likes the name
+  EXPECT_NO_THROW(ResultFolder(folder / "unfinished" / "d", "test"));
+}
+
+TEST(ResultFolder, LeavesTheTargetOfALinkAlone) {
+  const test::TemporaryFolder folder, elsewhere;
+  test::write_file(elsewhere / "run.json", "precious");
+  fs::create_symlink(elsewhere / "run.json", folder / "run.json");
+  publish(folder.path(), {"run.json"});
+  EXPECT_FALSE(fs::is_symlink(folder / "run.json"));
+  EXPECT_EQ(test::read_file(elsewhere / "run.json"), "precious");
+}
+
+TEST(ResultFolder, AFolderInPlaceOfAResultIsRefused) {
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "run.json");
+  EXPECT_THAT(error_of([&] { ResultFolder(folder.path(), "test"); }),
+              HasSubstr("is a folder where a result"));
+  EXPECT_TRUE(fs::is_directory(folder / "run.json"));
+}
+
+TEST(ResultFolder, WhatCannotBeAFolderIsRefused) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "file", "x");
+  EXPECT_THAT(error_of([&] { ResultFolder(folder / "file", "test"); }),
+              EndsWith(": is a file; choose another name"));
+  EXPECT_THAT(error_of([&] { ResultFolder(folder / "file" / "inner", "test"); }),
+              HasSubstr("; choose another place"));
+  EXPECT_THAT(error_of([&] { ResultFolder(folder / std::string(300, 'a'), "test"); }),
+              HasSubstr("; choose another place"));
+  fs::create_symlink(folder / "loop", folder / "loop");
+  EXPECT_THAT(error_of([&] { ResultFolder(folder / "loop", "test"); }), HasSubstr("; choose another place"));
+  // Nobody, root included, makes folders in /proc.
+  EXPECT_THAT(error_of([] { ResultFolder("/proc/slipfront", "test"); }),
+              StartsWith("output folder /proc/slipfront: cannot be made ("));
+}
+
+TEST(ResultFolder, IsHeldByOneProcessAtATime) {
+  const test::TemporaryFolder folder;
+  int ready[2], leave[2];
+  ASSERT_EQ(pipe(ready), 0);
+  ASSERT_EQ(pipe(leave), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const ResultFolder held(folder.path(), "test");
+    char c = 'x';
+    _exit(write(ready[1], &c, 1) == 1 && read(leave[0], &c, 1) == 1 ? 1 : 2);  // as by a kill: not given back
+  }
+  char c = 'x';
+  ASSERT_EQ(read(ready[0], &c, 1), 1);
+  EXPECT_THAT(error_of([&] { ResultFolder(folder.path(), "test"); }),
+              HasSubstr(fmt::format("is in use by process {} on ", child)));
+  ASSERT_EQ(write(leave[1], &c, 1), 1);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_TRUE(fs::exists(folder / ".slipfront.lock"));  // a file that is left is no lock
+  { const ResultFolder taken(folder.path(), "test"); }
+  EXPECT_THAT(below(folder.path()), IsEmpty());
+}
+
+TEST(ResultFolder, OfManyThatWantItAtOnceEachHasItOrIsToldWhoHas) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> refusals(4);
+  std::vector<std::thread> threads;
+  for (auto& refusal : refusals)
+    threads.emplace_back([&folder, &refusal] {
+      for (int k = 0; k < 2000 && refusal.empty(); ++k) {
+        const auto error = error_of([&] { ResultFolder(folder.path(), "test"); });
+        if (error != "(nothing thrown)" && error.find("is in use by") == std::string::npos) refusal = error;
+      }
+    });
+  for (auto& thread : threads) thread.join();
+  EXPECT_THAT(refusals, Each(IsEmpty()));
+}
+
+TEST(Checksums, AreThoseOfSha256sum) {
+  // Of "abc", FIPS 180-4.
+  EXPECT_EQ(files::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "abc", "abc");
+  EXPECT_EQ(files::sha256_of_file(folder / "abc"), files::sha256("abc"));
+  seal(folder.path());
+  EXPECT_EQ(test::read_file(folder / files::checksum_list), files::sha256("abc") + "  abc\n");
+}
+
+TEST(Checksums, TellDamage) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "a", "abc");
+  seal(folder.path());
+  test::write_file(folder / "a", "abd");
+  EXPECT_EQ(error_of([&] { files::require_intact(folder.path()); }),
+            (folder / "a").string() +
+                ": does not match checksums.sha256: it was changed or damaged; run the case again");
+  fs::remove(folder / "a");
+  EXPECT_THAT(error_of([&] { files::require_intact(folder.path()); }), HasSubstr("a: is missing"));
+}
+
+TEST(Checksums, ListsThatNameOtherPlacesAreRefused) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"../a", "/etc/passwd", "a/../../b", ""}) {
+    test::write_file(folder / files::checksum_list, files::sha256("") + "  " + name + "\n");
+    EXPECT_THAT(error_of([&] { files::read_checksums(folder.path()); }),
+                HasSubstr("is not a list of checksums"));
+  }
+}
+
+}  // namespace
+}  // namespace slipfront::results

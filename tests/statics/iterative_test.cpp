@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/iterative.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "statics/load_case.hpp"
+#include "statics/statics.hpp"
+#include "support/plate.hpp"
+
+namespace slipfront::statics {
+namespace {
+
+using mesh::Corner;
+using test::flat;
+using test::max_abs;
+
+constexpr double mu_s = 1.3;
+
+/// Interpolation as a matrix, for one component.
+Eigen::MatrixXd interpolation(const GridLevel& fine, const GridLevel& coarse, const Transfer& t) {
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(fine.n_nodes(), coarse.n_nodes());
+  for (int j = 0; j <= fine.rows; ++j)
+    for (int i = 0; i <= fine.columns; ++i) {
+      const auto n = fine.node(i, j);
+      if (std::ranges::binary_search(fine.unused, n)) continue;
+      if (const auto own = t.special.find(n); own != t.special.end()) {
+        for (const auto& e : own->second) P(n, e.coarse) = e.weight;
+        continue;
+      }
+      for (int b = 0; b < 2; ++b)
+        for (int a = 0; a < 2; ++a) {
+          const double w =
+              (a == 1 ? t.x.weight[i] : 1 - t.x.weight[i]) * (b == 1 ? t.y.weight[j] : 1 - t.y.weight[j]);
+          if (w != 0) P(n, coarse.node(t.x.left[i] + a, t.y.left[j] + b)) = w;
+        }
+    }
+  return P;
+}
+
+Eigen::MatrixXd matrix(const GridLevel& level) {
+  const auto size = static_cast<Eigen::Index>(2 * level.n_nodes());
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(size, size);
+  for (mesh::Node n = 0; n < static_cast<mesh::Node>(level.n_nodes()); ++n)
+    for_each_block(level, n, [&](mesh::Node m, const std::array<double, 4>& b) {
+      for (int k = 0; k < 4; ++k) K(2 * n + k / 2, 2 * m + k % 2) += b[k];
+    });
+  return K;
+}
+
+struct Shape {
+  int columns, rows;
+  Corner corner;
+};
+mesh::Mesh plate_of(const Shape& s) {
+  mesh::Plate plate;
+  plate.element_size_m = 1e-3;
+  plate.width_m = 1e-3 * s.columns;
+  plate.height_m = 1e-3 * s.rows;
+  plate.corner = s.corner;
+  plate.fillet_radius_m = 4e-3;
+  return mesh::make_plate(plate);
+}
+
+class Levels : public ::testing::TestWithParam<Shape> {};
+INSTANTIATE_TEST_SUITE_P(Shapes, Levels,
+                         ::testing::Values(Shape{24, 12, Corner::none}, Shape{23, 13, Corner::none},
+                                           Shape{24, 12, Corner::relief}, Shape{25, 15, Corner::relief},
+                                           Shape{24, 12, Corner::fillet}, Shape{25, 13, Corner::fillet}),
+                         [](const auto& s) {
+                           return test::name_of(s.param.corner) + std::to_string(s.param.columns) + "x" +
+                                  std::to_string(s.param.rows);
+                         });
+
+TEST_P(Levels, FinestIsTheAssembledStiffness) {
+  const auto mesh = plate_of(GetParam());
+  const auto level = make_level(mesh, {});
+  EXPECT_FALSE(level.span.empty());
+  const Eigen::MatrixXd K = test::assembled_stiffness(mesh, {});
+  EXPECT_LE(max_abs(matrix(level) - K), 1e-13 * max_abs(K));
+}
+
+TEST_P(Levels, CoarseOnesAreGalerkinProducts) {
+  auto fine = make_level(plate_of(GetParam()), {});
+  for (int l = 0; l < 2; ++l) {
+    const auto t = make_transfer(fine);
+    auto coarse = make_coarse_level(fine, t);
+    const Eigen::MatrixXd P1 = interpolation(fine, coarse, t);
+    for (std::size_t n = 0; n < fine.n_nodes(); ++n) {  // translations are interpolated exactly
+      const bool used = !std::ranges::binary_search(fine.unused, static_cast<mesh::Node>(n));
+      EXPECT_NEAR(P1.row(n).sum(), used ? 1 : 0, 1e-6) << n;
+    }
+    Eigen::MatrixXd P = Eigen::MatrixXd::Zero(2 * P1.rows(), 2 * P1.cols());
+    for (Eigen::Index r = 0; r < P1.rows(); ++r)
+      for (Eigen::Index c = 0; c < P1.cols(); ++c) P(2 * r, 2 * c) = P(2 * r + 1, 2 * c + 1) = P1(r, c);
+    const Eigen::MatrixXd expected = P.transpose() * matrix(fine) * P;
+    // Weights of thirds are rounded to single precision, alike on both sides.
+    EXPECT_LE(max_abs(matrix(coarse) - expected), 1e-6 * max_abs(expected)) << l;
+    EXPECT_FALSE(coarse.block.node.empty());
+    fine = std::move(coarse);
+  }
+}
+
+Support mixed_support(const mesh::Mesh& mesh, bool with_slip) {
+  const std::size_t n = mesh.lower.size();
+  Support s{std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 1.0), std::vector<double>(n, 0.0),
+            mu_s};
+  for (std::size_t k = 0; k < n; ++k) {
+    if (mesh.y_m[mesh.lower[k]] > 0 || k < n / 10) s.contact[k] = Contact::open;
+    if (with_slip && k > n - n / 4 && s.contact[k] != Contact::open) s.contact[k] = Contact::slip;
+    s.anchor_x_m[k] = 1e-6 * static_cast<double>(k % 3);
+  }
+  return s;
+}
+
+TEST_P(Levels, CycleIsASymmetricPositiveInverse) {
+  const auto mesh = plate_of({4 * GetParam().columns, 4 * GetParam().rows, GetParam().corner});
+  IterativeSolver solver(mesh, {});
+  EXPECT_GE(solver.multigrid().n_levels(), 3);
+  auto& cycle = solver.multigrid();
+  LevelEquations(mesh, cycle, solver.team(), 0).fix(TopConstraint::both, mixed_support(mesh, false));
+  test::Random random(3);
+  solid::Field a(mesh.n_nodes()), b(mesh.n_nodes());
+  for (auto* f : {&a, &b})
+    for (std::size_t n = 0; n < f->size(); ++n) f->x[n] = random(), f->y[n] = random();
+  const auto product = [&](const solid::Field& f) {
+    double sum = 0;
+    for (std::size_t n = 0; n < f.size(); ++n) sum += f.x[n] * cycle.z().x[n] + f.y[n] * cycle.z().y[n];
+    return sum;
+  };
+  const auto apply = [&](const solid::Field& f) { return cycle.apply(all_rows(f, cycle.grid(0))); };
+  const double returned = apply(a);
+  double size = 0;
+  for (std::size_t n = 0; n < a.size(); ++n)
+    size += std::abs(a.x[n] * cycle.z().x[n]) + std::abs(a.y[n] * cycle.z().y[n]);
+  EXPECT_NEAR(returned, product(a), 0x1p-24 * size);  // it takes a in single precision
+  const double b_B_a = product(b), a_B_a = product(a);
+  apply(b);
+  EXPECT_GT(a_B_a, 0);
+  EXPECT_NEAR(product(a), b_B_a, 1e-5 * a_B_a);  // single precision
+  for (const auto n : mesh.top) EXPECT_EQ(cycle.z().x[n], 0);
+}
+
+class Corners : public ::testing::TestWithParam<Corner> {};
+INSTANTIATE_TEST_SUITE_P(AllOfThem, Corners, ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                         [](const auto& corner) { return test::name_of(corner.param); });
+
+TEST_P(Corners, EquilibriumIsThatOfTheFactorisation) {
+  const auto mesh = test::make_plate(0.2, 0.1, 2e-3, GetParam());
+  test::Random random(5);
+  TopDisplacement top;
+  for (std::size_t k = 0; k < mesh.top.size(); ++k) {
+    top.u_x_m.push_back(1e-4 * random());
+    top.u_y_m.push_back(-1e-3 + 1e-4 * random());
+  }
+  const auto direct = make_plate_solver(mesh, {}, StaticSolver::direct);
+  const auto iterative = make_plate_solver(mesh, {}, StaticSolver::iterative);
+  EXPECT_EQ(direct->n_unknowns(), iterative->n_unknowns());
+  for (const auto constraint : {TopConstraint::both, TopConstraint::vertical})
+    for (const bool slip : {false, true}) {
+      const bool sheared = constraint == TopConstraint::both;
+      const auto a = direct->load_case(constraint, top, sheared, nullptr, 0);
+      const auto b = iterative->load_case(constraint, top, sheared, nullptr, 0);
+      a->solve(mixed_support(mesh, slip), 0);
+      b->solve(mixed_support(mesh, slip), 1e-11);
+      // The energy norm bounds the error of a node's displacement and force only up to the number of nodes.
+      const double tolerance = 1e-9;
+      EXPECT_LE(max_abs(a->u0 - b->u0), tolerance * max_abs(a->u0));
+      EXPECT_LE(max_abs(a->f0 - b->f0), tolerance * max_abs(a->f0));
+      EXPECT_LE(max_abs(a->u1 - b->u1), tolerance);
+      EXPECT_LE(max_abs(a->f1 - b->f1), tolerance * max_abs(a->f1));
+      const double shear = sheared ? 1e-3 : 0;
+      const Eigen::VectorXd u = flat(a->displacement(shear));
+      EXPECT_LE(max_abs(u - flat(b->displacement(shear))), tolerance * max_abs(u));
+    }
+}
+
+TEST_P(Corners, ResultIsTheSameForAnyNumberOfThreads) {
+  const auto mesh = test::make_plate(0.2, 0.1, 0.5e-3, GetParam());
+  const TopDisplacement top{std::vector<double>(mesh.top.size(), 1e-4),
+                            std::vector<double>(mesh.top.size(), -1e-4)};
+  for (const bool slip : {false, true}) {
+    const auto solved = [&](int threads) {
+      IterativeSolver solver(mesh, {}, threads);
+      EXPECT_EQ(solver.team().size(), threads);
+      EXPECT_EQ(solver.multigrid().parts(0), threads);
+      auto plate = solver.load_case(TopConstraint::both, top, false, nullptr, 0);
+      plate->solve(mixed_support(mesh, slip), 1e-8);
+      return plate->displacement(0);
+    };
+    const auto one = solved(1);
+    for (const int threads : {2, 3, 7}) {
+      const auto several = solved(threads);
+      EXPECT_EQ(one.x, several.x) << threads;
+      EXPECT_EQ(one.y, several.y) << threads;
+    }
+  }
+}
+
+TEST_P(Corners, CyclesDoNotGrowWithTheMesh) {
+  int least = 1000, most = 0;
+  for (const double element_m : {4e-3, 2e-3, 1e-3, 0.5e-3, 0.25e-3}) {
+    const auto mesh = test::make_plate(0.2, 0.1, element_m, GetParam());
+    IterativeSolver solver(mesh, {});
+    const TopDisplacement top{std::vector<double>(mesh.top.size(), 1e-4),
+                              std::vector<double>(mesh.top.size(), -1e-4)};
+    auto plate = solver.load_case(TopConstraint::both, top, false, nullptr, 0);
+    plate->solve(mixed_support(mesh, false), 1e-10);
+    least = std::min(least, solver.multigrid().n_cycles());
+    most = std::max(most, solver.multigrid().n_cycles());
+  }
+  EXPECT_LE(most, least + 4);
+  EXPECT_LE(most, 24);  // a reduction of the error to 0.4 in each
+}
+
+TEST_P(Corners, LoadedPlateIsThatOfTheFactorisation) {
+  const auto mesh = test::make_plate(0.2, 0.1, 2e-3, GetParam());
+  for (const auto edge : {TopEdge::held, TopEdge::free}) {
+    const Statics direct(mesh, {}, {.top_during_tilt = edge, .solver = StaticSolver::direct}, mu_s);
+    const Statics iterative(mesh, {}, {.top_during_tilt = edge, .solver = StaticSolver::iterative}, mu_s);
+    const auto compare = [](const Equilibrium& a, const Equilibrium& b) {
+      EXPECT_EQ(a.contact, b.contact);
+      const Eigen::VectorXd u = flat(a.u_m), v = flat(a.u_per_shear);
+      EXPECT_LE(max_abs(u - flat(b.u_m)), 1e-8 * max_abs(u));
+      EXPECT_LE(max_abs(v - flat(b.u_per_shear)), 1e-8);
+      EXPECT_NEAR(a.shear_m, b.shear_m, 1e-8 * a.shear_m);
+      const double p_max = *std::ranges::max_element(a.tractions.p_s_Pa);
+      for (std::size_t k = 0; k < a.contact.size(); ++k) {
+        EXPECT_NEAR(a.tractions.t_s_Pa[k], b.tractions.t_s_Pa[k], 1e-8 * p_max);
+        EXPECT_NEAR(a.tractions.p_s_Pa[k], b.tractions.p_s_Pa[k], 1e-8 * p_max);
+      }
+    };
+    compare(direct.tilted(), iterative.tilted());
+    for (const double ratio : {mu_s, 0.9 * mu_s, 1.001 * mu_s})
+      compare(direct.shear_to(ratio), iterative.shear_to(ratio));
+  }
+}
+
+TEST(ChooseSolver, SuitsTheShapeOfThePlate) {
+  const auto automatic = StaticSolver::automatic, direct = StaticSolver::direct,
+             iterative = StaticSolver::iterative;
+  EXPECT_EQ(solver_for_shape(automatic, false, 300, 150), automatic);
+  EXPECT_EQ(solver_for_shape(automatic, false, 5000, 10), iterative);
+  EXPECT_EQ(solver_for_shape(automatic, false, 10, 5000), direct);
+  EXPECT_EQ(solver_for_shape(automatic, true, 5000, 10), direct);
+  EXPECT_EQ(solver_for_shape(direct, false, 5000, 10), direct);
+  EXPECT_EQ(solver_for_shape(iterative, false, 10, 5000), iterative);
+}
+
+TEST(StaticSolver, IsChosenByTheNumberOfUnknowns) {
+  EXPECT_EQ(choose_solver(StaticSolver::automatic, 9e4), StaticSolver::direct);
+  EXPECT_EQ(choose_solver(StaticSolver::automatic, 361'802), StaticSolver::direct);  // 600 x 300
+  EXPECT_EQ(choose_solver(StaticSolver::automatic, 9e6), StaticSolver::iterative);
+  EXPECT_EQ(choose_solver(StaticSolver::direct, 9e6), StaticSolver::direct);
+  EXPECT_EQ(choose_solver(StaticSolver::iterative, 10), StaticSolver::iterative);
+  EXPECT_GT(statics_bytes(StaticSolver::direct, 9e6), 8 * statics_bytes(StaticSolver::iterative, 9e6));
+}
+
+TEST(StaticSolver, SaysHowMuchMemoryItWouldNeed) {
+  try {
+    require_statics_memory(StaticSolver::iterative, 1e13);
+    FAIL() << "no error";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("the iterative solution of 1e+13 static unknowns needs about"),
+              std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace slipfront::statics

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/statics.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "base/error.hpp"
+#include "support/plate.hpp"
+
+namespace slipfront::statics {
+namespace {
+
+using mesh::Corner;
+using test::flat;
+using test::max_abs;
+using ::testing::HasSubstr;
+
+constexpr double mu_s = 1.3;
+
+mesh::Mesh paper_plate(double element_m, Corner corner = Corner::relief) {
+  return test::make_plate(0.2, 0.1, element_m, corner);
+}
+
+std::string error_of(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+double largest_pressure(const Equilibrium& e) {
+  return *std::ranges::max_element(e.tractions.p_s_Pa);
+}
+
+/// Forces on all nodes that the displacement needs: K u.
+Eigen::VectorXd force(const mesh::Mesh& mesh, const Equilibrium& e) {
+  return test::assembled_stiffness(mesh, {}) * flat(e.u_m);
+}
+
+/// The tractions are those of the displacement field, no other node is loaded, and all forces and moments of
+/// the whole plate balance.
+void expect_equilibrium(const mesh::Mesh& mesh, const Equilibrium& e) {
+  Eigen::VectorXd f = force(mesh, e);
+  const auto tributary = mesh::tributary_lengths_m(mesh);
+  const double tolerance = 1e-10 * solid::Material{}.youngs_modulus_Pa * max_abs(flat(e.u_m));
+  double push = 0, weight = 0, moment = 0;
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    const auto n = mesh.lower[k];
+    const double f_x = -e.tractions.t_s_Pa[k] * tributary[k], f_y = e.tractions.p_s_Pa[k] * tributary[k];
+    EXPECT_NEAR(f(2 * n), f_x, tolerance) << k;
+    EXPECT_NEAR(f(2 * n + 1), f_y, tolerance) << k;
+    push += f_x;
+    weight += f_y;
+    moment += mesh.x_m[n] * f_y - mesh.y_m[n] * f_x;
+    f.segment<2>(2 * n).setZero();
+  }
+  double top_x = 0, top_y = 0, top_moment = 0;
+  for (const auto n : mesh.top) {
+    top_x += f(2 * n);
+    top_y += f(2 * n + 1);
+    top_moment += mesh.x_m[n] * f(2 * n + 1) - mesh.y_m[n] * f(2 * n);
+    f.segment<2>(2 * n).setZero();
+  }
+  EXPECT_LE(max_abs(f), tolerance);
+  EXPECT_NEAR(push, -top_x, 100 * tolerance);  // sums over some hundred nodes
+  EXPECT_NEAR(weight, -top_y, 100 * tolerance);
+  EXPECT_NEAR(moment, -top_moment, 100 * tolerance);
+  EXPECT_GT(weight, 1e3 * tolerance);
+}
+
+/// Each node's tractions and motion are those its contact state allows. The states are set with a tolerance
+/// of 1e-9 of the largest pressure and displacement. `start_x`: where a sticking node was put down; `ratio`:
+/// the largest |t|/p allowed where the node may not slip.
+void expect_complementarity(const mesh::Mesh& mesh, const Equilibrium& e, const std::vector<double>& start_x,
+                            double ratio) {
+  const double p_tolerance = 2e-9 * largest_pressure(e), u_tolerance = 2e-9 * max_abs(flat(e.u_m));
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    SCOPED_TRACE(k);
+    const auto n = mesh.lower[k];
+    const double t = e.tractions.t_s_Pa[k], p = e.tractions.p_s_Pa[k];
+    const double gap = mesh.y_m[n] + e.u_m.y[n], moved = e.u_m.x[n] - start_x[k];
+    if (e.contact[k] == Contact::open) {
+      EXPECT_EQ(t, 0);
+      EXPECT_EQ(p, 0);
+      EXPECT_GE(gap, -u_tolerance);
+      continue;
+    }
+    EXPECT_NEAR(gap, 0, 1e-3 * u_tolerance);
+    EXPECT_GE(p, -p_tolerance);
+    const bool inside = e.tractions.x_m[k] >= e.inside_from_m && e.tractions.x_m[k] <= e.inside_to_m;
+    if (e.contact[k] == Contact::stick) {
+      EXPECT_LE(std::abs(t), (inside ? ratio : mu_s) * p + p_tolerance);
+      EXPECT_NEAR(moved, 0, 1e-3 * u_tolerance);
+    } else {
+      EXPECT_NEAR(std::abs(t), mu_s * p, 1e-3 * p_tolerance);
+      EXPECT_GE(t * moved, -p_tolerance * u_tolerance);  // friction opposes the motion
+    }
+  }
+}
+
+std::vector<double> lower_x(const mesh::Mesh& mesh, const Equilibrium& e) {
+  std::vector<double> x;
+  for (const auto n : mesh.lower) x.push_back(e.u_m.x[n]);
+  return x;
+}
+
+TEST(Statics, UniformCompressionIsExact) {
+  const auto mesh = paper_plate(0.01, Corner::none);
+  solid::Material m{.poissons_ratio = 0};
+  const double pressed = 0.2e-3;
+  const Statics statics(mesh, m, {.tilt_left_m = pressed, .tilt_right_m = pressed}, mu_s);
+  const auto& e = statics.tilted();
+  const double p = 2.6e9 * pressed / 0.1;
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    EXPECT_EQ(e.contact[k], Contact::stick);
+    EXPECT_NEAR(e.tractions.p_s_Pa[k] / p, 1, 1e-12);
+    EXPECT_NEAR(e.tractions.t_s_Pa[k] / p, 0, 1e-12);
+  }
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+    EXPECT_NEAR(e.u_m.x[n], 0, 1e-12 * pressed);
+    EXPECT_NEAR(e.u_m.y[n], -pressed * mesh.y_m[n] / 0.1, 1e-12 * pressed);
+  }
+}
+
+class PaperTilt : public ::testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Elements, PaperTilt, ::testing::Values(4e-3, 2e-3), [](const auto& size) {
+  return std::to_string(std::lround(size.param * 1e3)) + "mm";
+});
+
+TEST_P(PaperTilt, StatesObeyContactAndEquilibrium) {
+  const auto mesh = paper_plate(GetParam());
+  const Statics statics(mesh, {}, {}, mu_s);
+  expect_equilibrium(mesh, statics.tilted());
+  expect_complementarity(mesh, statics.tilted(), std::vector<double>(mesh.lower.size(), 0.0), mu_s);
+  const auto put_down = lower_x(mesh, statics.tilted());
+  for (const double ratio : {0.9 * mu_s, 0.999 * mu_s, 1.001 * mu_s}) {
+    SCOPED_TRACE(ratio);
+    const auto e = statics.shear_to(ratio);
+    expect_equilibrium(mesh, e);
+    expect_complementarity(mesh, e, put_down, ratio);
+    // All kinds of states are there to be checked; slip only at an edge of contact, near the critical shear.
+    EXPECT_GT(std::ranges::count(e.contact, Contact::open), 0);
+    EXPECT_GT(std::ranges::count(e.contact, Contact::stick), 0);
+    EXPECT_EQ(std::ranges::count(e.contact, Contact::slip) > 0, ratio > 0.9 * mu_s);
+    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+      if (e.contact[k] != Contact::slip) continue;
+      EXPECT_FALSE(e.tractions.x_m[k] >= e.inside_from_m && e.tractions.x_m[k] <= e.inside_to_m);
+    }
+  }
+}
+
+TEST_P(PaperTilt, ShearEndsAtTheRatioAskedFor) {
+  const auto mesh = paper_plate(GetParam());
+  const Statics statics(mesh, {}, {}, mu_s);
+  double shear = 0;
+  for (const double ratio : {0.8, 1.0, 0.999 * mu_s, 1.001 * mu_s}) {
+    const auto e = statics.shear_to(ratio);
+    EXPECT_NEAR(e.peak_ratio, ratio, 1e-11);
+    double peak = 0, peak_x = 0;
+    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+      const double x = e.tractions.x_m[k];
+      if (e.contact[k] == Contact::open || x < e.inside_from_m || x > e.inside_to_m) continue;
+      const double here = e.tractions.t_s_Pa[k] / e.tractions.p_s_Pa[k];
+      if (here > peak) peak = here, peak_x = x;
+    }
+    EXPECT_EQ(e.peak_ratio, peak);
+    EXPECT_EQ(e.peak_x_m, peak_x);
+    EXPECT_GT(e.shear_m, shear);
+    shear = e.shear_m;
+
+    // The same state by its shear.
+    const auto same = statics.shear_by(e.shear_m);
+    EXPECT_LE(max_abs(flat(same.u_m) - flat(e.u_m)), 1e-11 * shear);
+    EXPECT_EQ(same.contact, e.contact);
+  }
+}
+
+TEST_P(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
+  const auto mesh = paper_plate(GetParam());
+  const Statics statics(mesh, {}, {}, mu_s);
+  const auto e = statics.shear_to(0.999 * mu_s);
+  // So small an increment that no contact state changes.
+  const double increment = 1e-6 * e.shear_m;
+  const auto further = statics.shear_by(e.shear_m + increment);
+  ASSERT_EQ(further.contact, e.contact);
+  const Eigen::VectorXd slope = (flat(further.u_m) - flat(e.u_m)) / increment;
+  // Affine between: only the rounding of u, magnified by u over the increment.
+  EXPECT_LE(max_abs(slope - flat(e.u_per_shear)), 1e-11 * 1e6);
+  for (const auto n : mesh.top) {
+    EXPECT_EQ(e.u_per_shear.x[n], 1);
+    EXPECT_EQ(e.u_per_shear.y[n], 0);
+  }
+}
+
+TEST(Statics, ShearReleasesTheHeavyCorner) {
+  // The shear's moment lifts the left end: it was pressed by the tilt, and nodes leave the plane in a row
+  // from the left edge.
+  const auto mesh = paper_plate(2e-3);
+  const Statics statics(mesh, {}, {}, mu_s);
+  const auto e = statics.shear_to(0.999 * mu_s);
+  const auto first_touching = [](const Equilibrium& s) {
+    return std::ranges::find_if(s.contact, [](Contact c) { return c != Contact::open; }) - s.contact.begin();
+  };
+  const auto before = first_touching(statics.tilted()), after = first_touching(e);
+  EXPECT_GT(after, before);
+  for (auto k = before; k < after; ++k) EXPECT_GT(mesh.y_m[mesh.lower[k]] + e.u_m.y[mesh.lower[k]], 0) << k;
+  EXPECT_GT(e.tractions.x_m[after], 1e-3);
+  EXPECT_LT(e.tractions.x_m[after], 10e-3);
+}
+
+TEST(Statics, CriticalShearOfACoarsePlateByDenseSolution) {
+  // The whole plate without condensation: every unknown of every node, with the contact states found.
+  for (const auto corner : {Corner::none, Corner::relief}) {
+    SCOPED_TRACE(test::name_of(corner));
+    mesh::Plate plate;
+    plate.element_size_m = 0.01;
+    plate.corner = corner;
+    plate.relief_length_m = 0.01;
+    plate.relief_height_m = 2e-6;  // so shallow that it closes
+    plate.relief_depth_m = 0.01;
+    const auto mesh = mesh::make_plate(plate);
+    const Statics statics(mesh, {}, {}, mu_s);
+    const auto e = statics.shear_to(0.999 * mu_s);
+    const auto put_down = lower_x(mesh, statics.tilted());
+
+    const Eigen::MatrixXd K = test::assembled_stiffness(mesh, {});
+    Eigen::MatrixXd A = K;  // A u = b0 + shear b1
+    Eigen::MatrixXd b = Eigen::MatrixXd::Zero(K.rows(), 2);
+    const auto prescribe = [&](Eigen::Index d, double u0, double u1) {
+      A.row(d).setZero();
+      A(d, d) = K(d, d);
+      b(d, 0) = K(d, d) * u0;
+      b(d, 1) = K(d, d) * u1;
+    };
+    for (const auto n : mesh.top) {
+      prescribe(2 * n, 0, 1);
+      prescribe(2 * n + 1, -(0.37e-3 + (0.037e-3 - 0.37e-3) * mesh.x_m[n] / 0.2), 0);
+    }
+    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+      const auto n = mesh.lower[k];
+      if (e.contact[k] == Contact::open) continue;
+      if (e.contact[k] == Contact::stick) prescribe(2 * n, put_down[k], 0);
+      if (e.contact[k] == Contact::slip)
+        A.row(2 * n) += (e.tractions.t_s_Pa[k] > 0 ? 1 : -1) * mu_s * K.row(2 * n + 1);
+      prescribe(2 * n + 1, -mesh.y_m[n], 0);
+    }
+    const Eigen::MatrixXd u = A.partialPivLu().solve(b);
+    const Eigen::MatrixXd f = K * u;
+    double shear = 1;
+    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+      const auto n = mesh.lower[k];
+      const double x = mesh.x_m[n], r = 0.999 * mu_s;
+      if (x < e.inside_from_m || x > e.inside_to_m) continue;
+      // -(f_x0 + s f_x1) = r (f_y0 + s f_y1)
+      const double rise = -f(2 * n, 1) - r * f(2 * n + 1, 1);
+      if (rise > 0) shear = std::min(shear, (r * f(2 * n + 1, 0) + f(2 * n, 0)) / rise);
+    }
+    EXPECT_NEAR(e.shear_m / shear, 1, 1e-10);
+    EXPECT_LE(max_abs(flat(e.u_m) - u.col(0) - shear * u.col(1)), 1e-10 * shear);
+    EXPECT_LE(max_abs(flat(e.u_per_shear) - u.col(1)), 1e-10);
+    expect_complementarity(mesh, e, put_down, 0.999 * mu_s);
+    EXPECT_GT(std::ranges::count(e.contact, Contact::open), 0);
+  }
+}
+
+TEST(Statics, FreeLoadedEdgeCarriesNoHorizontalForceDuringTheTilt) {
+  const auto mesh = paper_plate(4e-3);
+  const Statics held(mesh, {}, {}, mu_s);
+  const Statics free(mesh, {}, {.top_during_tilt = TopEdge::free}, mu_s);
+  const Eigen::VectorXd f_held = force(mesh, held.tilted()), f_free = force(mesh, free.tilted());
+  double most_held = 0;
+  for (const auto n : mesh.top) {
+    most_held = std::max(most_held, std::abs(f_held(2 * n)));
+    EXPECT_NEAR(f_free(2 * n), 0, 1e-10 * max_abs(f_free)) << n;
+    EXPECT_EQ(held.tilted().u_m.x[n], 0);
+  }
+  EXPECT_GT(most_held, 1e-3 * max_abs(f_held));
+  expect_equilibrium(mesh, free.tilted());
+  expect_complementarity(mesh, free.tilted(), std::vector<double>(mesh.lower.size(), 0.0), mu_s);
+
+  // The shear starts from where the edge stands.
+  const auto put_down = lower_x(mesh, free.tilted());
+  const auto e = free.shear_to(0.999 * mu_s);
+  for (const auto n : mesh.top) EXPECT_NEAR(e.u_m.x[n], free.tilted().u_m.x[n] + e.shear_m, 1e-15);
+  expect_equilibrium(mesh, e);
+  expect_complementarity(mesh, e, put_down, 0.999 * mu_s);
+}
+
+TEST(Statics, CanBeInterruptedBetweenSolutions) {
+  const auto mesh = paper_plate(4e-3);
+  int asked = 0;
+  {
+    const Statics statics(mesh, {}, {}, mu_s, "friction.mu_s", [&] { return ++asked > 0; });
+    statics.shear_to(mu_s);
+  }
+  const int all = asked;
+  EXPECT_GT(all, 2);
+  for (int last = 0; last < all; ++last) {
+    asked = 0;
+    const auto solve_statics = [&] {
+      const Statics statics(mesh, {}, {}, mu_s, "friction.mu_s", [&] { return asked++ < last; });
+      statics.shear_to(mu_s);
+    };
+    EXPECT_THROW(solve_statics(), Interrupted) << last;
+    EXPECT_EQ(asked, last + 1);
+  }
+}
+
+TEST(Statics, TellsTheUserWhatCannotBe) {
+  const auto mesh = paper_plate(0.01, Corner::none);
+  EXPECT_THAT(error_of([&] { Statics(mesh, {}, {.tilt_left_m = -1e-4, .tilt_right_m = -1e-4}, mu_s); }),
+              HasSubstr("leaves the plate without contact; increase loading.tilt_left_m"));
+  const Statics statics(mesh, {}, {}, mu_s);
+  EXPECT_THAT(error_of([&] { statics.shear_to(0.01); }), HasSubstr("the tilt alone brings t/p"));
+  const Statics nothing_inside(mesh, {}, {.edge_margin_m = 0.15}, mu_s);
+  EXPECT_THAT(error_of([&] { nothing_inside.shear_to(1); }), HasSubstr("no shear brings t/p inside"));
+}
+
+}  // namespace
+}  // namespace slipfront::statics

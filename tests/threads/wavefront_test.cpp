@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "threads/wavefront.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <tuple>
+#include <vector>
+
+namespace slipfront::threads {
+namespace {
+
+/// Threads, depth, units, steps.
+using Shape = std::tuple<int, int, int, int>;
+
+class AnyWavefront : public ::testing::TestWithParam<Shape> {};
+INSTANTIATE_TEST_SUITE_P(Shapes, AnyWavefront,
+                         ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Values(1, 2, 5),
+                                            ::testing::Values(1, 2, 7), ::testing::Values(0, 1, 4, 23)));
+
+/// A chain of cells whose next value depends on both neighbours' present ones, updated in place: a step that
+/// comes too early or too late on any unit leaves other numbers.
+std::vector<double> diffused(int threads, int depth, int units, int steps) {
+  const auto n = static_cast<std::size_t>(units);
+  std::vector<double> value(n + 2, 0.0);
+  for (std::size_t k = 0; k < n; ++k) value[k + 1] = static_cast<double>(k * k % 11);
+  Wavefront wavefront(threads, depth);
+  std::vector<double> below(static_cast<std::size_t>(wavefront.most_steps()));
+  const auto taken = wavefront.run(0, steps, units, [&](std::int64_t step, int unit) {
+    double& old_below = below[static_cast<std::size_t>(step % wavefront.most_steps())];
+    if (unit == 0) old_below = 0;
+    double& here = value[static_cast<std::size_t>(unit) + 1];
+    const double old = here;
+    here += 0.25 * (old_below - 2 * old + value[static_cast<std::size_t>(unit) + 2]) + 0.001 * unit;
+    old_below = old;
+    return true;
+  });
+  EXPECT_EQ(taken, steps);
+  return value;
+}
+
+TEST_P(AnyWavefront, ComputesWhatStepAfterStepDoes) {
+  const auto [threads, depth, units, steps] = GetParam();
+  EXPECT_EQ(diffused(threads, depth, units, steps), diffused(1, 1, units, steps));
+}
+
+TEST_P(AnyWavefront, EndsAfterTheStepThatAsksForIt) {
+  const auto [threads, depth, units, steps] = GetParam();
+  Wavefront wavefront(threads, depth);
+  for (int last = 10; last < 10 + steps; ++last) {
+    std::vector<std::atomic<int>> done(static_cast<std::size_t>(steps));
+    const auto taken = wavefront.run(10, steps, units, [&](std::int64_t step, int) {
+      ++done[static_cast<std::size_t>(step - 10)];
+      return step < last;
+    });
+    EXPECT_EQ(taken, last - 10 + 1);
+    for (int step = 0; step < steps; ++step)
+      EXPECT_EQ(done[static_cast<std::size_t>(step)], step <= last - 10 ? units : 0);
+  }
+}
+
+TEST_P(AnyWavefront, PassesOnWhatAUnitThrows) {
+  const auto [threads, depth, units, steps] = GetParam();
+  Wavefront wavefront(threads, depth);
+  const auto failing = [](std::int64_t step, int unit) -> bool {
+    if (step == 3 && unit == 0) throw std::runtime_error("no more");
+    return true;
+  };
+  if (steps > 3) {
+    EXPECT_THROW(wavefront.run(0, steps, units, failing), std::runtime_error);
+  }
+  // And is of use again.
+  EXPECT_EQ(wavefront.run(0, steps, units, [](std::int64_t, int) { return true; }), steps);
+}
+
+}  // namespace
+}  // namespace slipfront::threads
