@@ -9,15 +9,9 @@ namespace slipfront::run {
 namespace {
 
 statics::Equilibrium at_interface(const statics::Equilibrium& state) {
-  return {{},
-          {},
-          state.shear_m,
-          state.contact,
-          state.tractions,
-          state.peak_ratio,
-          state.peak_x_m,
-          state.inside_from_m,
-          state.inside_to_m};
+  auto light = state;
+  for (auto* field : {&light.u_m, &light.u_per_shear, &light.below_u_m, &light.below_u_per_shear}) *field = {};
+  return light;
 }
 
 /// The state without the plate's displacements, and without its mesh.

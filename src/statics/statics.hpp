@@ -24,18 +24,21 @@ struct ContactStates {
 
 /// Equilibrium of the plate with its interface, and how it changes with the shear.
 struct Equilibrium {
-  solid::Field u_m;               ///< [nodes] displacement
-  solid::Field u_per_shear;       ///< [nodes] change of u per unit displacement of the loaded edge along x
-  double shear_m = 0;             ///< displacement of the loaded edge along x since the tilt
-  std::vector<Contact> contact;   ///< [lower]
-  record::StaticState tractions;  ///< [lower]
-  double peak_ratio = 0;          ///< largest t/p inside
-  double peak_x_m = 0;            ///< where it is
+  solid::Field u_m;          ///< [nodes] displacement
+  solid::Field u_per_shear;  ///< [nodes] change of u per unit displacement of the loaded edge along x
+  /// The same of a deformable body below, described upside down; empty for the rigid plane.
+  solid::Field below_u_m, below_u_per_shear;
+  double shear_m = 0;                         ///< displacement of the loaded edge along x since the tilt
+  std::vector<Contact> contact;               ///< [lower]
+  record::StaticState tractions;              ///< [lower]
+  double peak_ratio = 0;                      ///< largest t/p inside
+  double peak_x_m = 0;                        ///< where it is
   double inside_from_m = 0, inside_to_m = 0;  ///< the part of the contact that counts as inside
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(u_m, u_per_shear, shear_m, contact, tractions, peak_ratio, peak_x_m, inside_from_m, inside_to_m);
+    archive(u_m, u_per_shear, below_u_m, below_u_per_shear, shear_m, contact, tractions, peak_ratio, peak_x_m,
+            inside_from_m, inside_to_m);
   }
 };
 

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/state.hpp"
+#include "mesh/mesh.hpp"
+#include "motion/landing.hpp"
+#include "motion/level.hpp"
+#include "motion/settings.hpp"
+#include "record/energies.hpp"
+#include "solid/material.hpp"
+#include "solid/operator.hpp"
+
+namespace slipfront::motion {
+
+/// What a step under way has of its own in a body.
+struct BodyStep {
+  solid::RollingRows w;                  ///< of u + beta_R v, of the coarsest level's sweep
+  solid::RollingRowsOf<float> w_single;  ///< the same in single precision, if it is asked for
+  PushProducts products;
+  record::Energies works;
+};
+
+/// A deformable body on its own: its cells in levels, each with a step of its own, and its motion. It knows
+/// nothing of contact: the velocities of its interface nodes are kicked by its cells, and someone else moves
+/// them.
+///
+/// Every body lies above its interface, y pointing away from it: a body below is described upside down, with
+/// u_y and y reversed.
+class Body {
+ public:
+  /// @throws UserError where the interface rows do not fit into the mesh.
+  Body(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time);
+
+  double stable_step_s() const { return stable_step_s_; }
+  /// Steps of the lowest block in a step of the coarsest one.
+  int multiple() const { return multiples_.back(); }
+
+  /// Divides the cells into levels, before anything else.
+  /// @param step_s      of the coarsest level
+  /// @param substeps    of the last level in a step of the lowest block
+  /// @param steps       that may be under way at a time
+  void divide(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time,
+              double step_s, int substeps);
+  void expect_steps_under_way(int n);
+
+  const solid::Operator& op() const { return plate_.op; }
+  const solid::Field& u_m() const { return plate_.u_m; }
+  const solid::Field& v_m_per_s() const { return plate_.v_m_per_s; }
+  double damping_s() const { return plate_.damping_s; }
+  const Levels& levels() const { return levels_; }
+  std::size_t n_bands() const { return levels_.level.front().bands.size(); }
+  /// Sub-steps in a step of the coarsest level.
+  int period() const { return levels_.level.front().period; }
+  /// With which a node moves.
+  double step_s(mesh::Node n) const;
+
+  /// Begins the motion at a place of equilibrium: what the levels do to each other there is kept as a steady
+  /// force, without which a stressed body at rest would not stay at rest.
+  void start(const solid::Field& u_m, const solid::Field& v_m_per_s);
+
+  /// The step of the stepper that is under way.
+  BodyStep& under_way(std::int64_t step) { return under_way_[step % std::ssize(under_way_)]; }
+  /// All kicks that are due at sub-step k, by the places and velocities before it, and the moves of all nodes
+  /// but those of the interface; of a coarsest level that `leads`, the first band alone.
+  void push_due(BodyStep& step, int k, bool leads);
+  /// A later band of the coarsest level, where it leads; the last one completes the step.
+  void push_later_band(BodyStep& step, std::size_t band);
+  /// Adds up what a step did.
+  void complete(const BodyStep& step);
+  /// After steps, before anyone looks at the motion.
+  void settle() { to_double(single_, plate_); }
+
+  /// Interface nodes, and what the contact has to know of them. [lower]
+  const std::vector<mesh::Node>& lower() const { return lower_; }
+  const std::vector<NodeRun>& lower_runs() const { return lower_runs_; }
+  const std::vector<double>& lower_mass_kg() const { return lower_mass_kg_; }
+  const std::vector<double>& lower_y_m() const { return lower_y_m_; }
+  const std::vector<double>& tributary_m() const { return tributary_m_; }
+  const std::vector<Dashpot>& contact_dashpots() const { return levels_.contact_dashpots; }
+  /// Motion of the interface nodes, which the contact moves.
+  solid::Field& u_m() { return plate_.u_m; }
+  solid::Field& v_m_per_s() { return plate_.v_m_per_s; }
+  /// Work of shifts that the contact has made, see Landing.
+  void expect_landings(const mesh::Mesh& mesh, const solid::Material& material) {
+    landing_ = Landing(mesh, material, lower_);
+  }
+  Landing& landing() { return landing_; }
+
+  /// Energies and works up to the last half (sub-)step.
+  record::Energies energies();
+  double kinetic_energy_J_per_m() const;
+  double strain_energy_J_per_m() const;
+  solid::Field mean_velocity_m_per_s() const;
+
+  /// Turns the motion round at the places `u_m`, see Stepper::reverse.
+  void reverse(const solid::Field& u_m, double time_s);
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive_field(archive, plate_.u_m, plate_.u_m.size());
+    archive_field(archive, plate_.v_m_per_s, plate_.v_m_per_s.size());
+    for (auto& level : levels_.level) archive(level);
+    archive(landing_, works_);
+    if constexpr (Archive::is_loading::value) to_single(plate_, single_);
+  }
+
+ private:
+  void push(Level& level, record::Energies& works);
+  /// Products of the landings since the last push of a level, if it is the last one.
+  void take_landing(const Level& level, PushProducts& products);
+  void begin_damping_work();
+  void find_steady_force(Level& level);
+
+  Plate plate_;
+  double stable_step_s_ = 0;
+  std::vector<int> multiples_;
+  Levels levels_;
+  SingleRows single_;           ///< none unless time.precision is single
+  solid::RollingRows finer_w_;  ///< of u + beta_R v, of the other levels' sweeps
+  std::vector<BodyStep> under_way_;
+
+  std::vector<mesh::Node> lower_;
+  std::vector<NodeRun> lower_runs_;
+  std::vector<double> tributary_m_, lower_mass_kg_, lower_y_m_;  ///< [lower]
+  Landing landing_;
+  record::Energies works_;  ///< the works alone
+};
+
+}  // namespace slipfront::motion

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/coupling.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace slipfront::motion {
+
+namespace {
+
+/// Velocity of an interface node with a dashpot before the contact's part: its tractions act on the effective
+/// mass m (1 + d).
+void damp_trial(const Dashpot& dashpot, double v_x_before, double v_y_before, double& v_x, double& v_y) {
+  v_x = (v_x - dashpot.d_x * v_x_before) / (1 + dashpot.d_x);
+  v_y = (v_y - dashpot.d_y * v_y_before) / (1 + dashpot.d_y);
+}
+
+double dashpot_work(const Dashpot& dashpot, double mass_kg, double mean_x, double mean_y) {
+  return -2 * mass_kg * (dashpot.d_x * mean_x * mean_x + dashpot.d_y * mean_y * mean_y);
+}
+
+}  // namespace
+
+Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body> bodies)
+    : contact_(contact),
+      face_(bodies.front().lower().size()),
+      tributary_m_(bodies.front().tributary_m()),
+      mass_kg_(bodies.front().lower_mass_kg()),
+      v_x_before_(face_.size()),
+      v_y_before_(face_.size()),
+      v_x_trial_(face_.size()),
+      v_y_trial_(face_.size()),
+      trigger_force_N_(face_.size(), 0.0),
+      start_u_x_m_(face_.size()) {
+  // Effective masses along x and y of each body.
+  std::vector<std::vector<double>> mass_x, mass_y;
+  for (const auto& body : bodies) {
+    SLIPFRONT_ASSERT(body.lower().size() == face_.size(), "interfaces of different nodes");
+    auto x = body.lower_mass_kg(), y = x;
+    for (const auto& dashpot : body.contact_dashpots()) {
+      x[dashpot.at] *= 1 + dashpot.d_x;
+      y[dashpot.at] *= 1 + dashpot.d_y;
+    }
+    mass_x.push_back(std::move(x));
+    mass_y.push_back(std::move(y));
+  }
+  contact_mass_kg_ = mass_y.front();
+  for (std::size_t i = 0; i < face_.size(); ++i) {
+    face_.initial_gap_m[i] = bodies.front().lower_y_m()[i];
+    face_.mass_per_length_kg_m2[i] = mass_kg_[i] / tributary_m_[i];
+  }
+  for (const auto& dashpot : bodies.front().contact_dashpots()) {
+    face_.mass_per_length_kg_m2[dashpot.at] *= 1 + dashpot.d_y;
+    face_.tangential_mass_ratio[dashpot.at] = (1 + dashpot.d_x) / (1 + dashpot.d_y);
+  }
+  if (bodies.size() == 1) return;
+  const auto of_pair = [](double a, double b) { return a * b / (a + b); };
+  for (std::size_t s = 0; s < 2; ++s) {
+    Side side;
+    side.sign = s == 0 ? 1 : -1;
+    for (auto* values : {&side.v_x, &side.v_y, &side.v_x_before, &side.v_y_before})
+      values->resize(face_.size());
+    for (std::size_t i = 0; i < face_.size(); ++i) {
+      side.share_x.push_back(mass_x[1 - s][i] / (mass_x[0][i] + mass_x[1][i]));
+      side.share_y.push_back(mass_y[1 - s][i] / (mass_y[0][i] + mass_y[1][i]));
+    }
+    sides_.push_back(std::move(side));
+  }
+  for (std::size_t i = 0; i < face_.size(); ++i) {
+    face_.initial_gap_m[i] += bodies[1].lower_y_m()[i];
+    mass_kg_[i] = of_pair(bodies[0].lower_mass_kg()[i], bodies[1].lower_mass_kg()[i]);
+    contact_mass_kg_[i] = of_pair(mass_y[0][i], mass_y[1][i]);
+    face_.mass_per_length_kg_m2[i] = contact_mass_kg_[i] / tributary_m_[i];
+    face_.tangential_mass_ratio[i] = of_pair(mass_x[0][i], mass_x[1][i]) / contact_mass_kg_[i];
+  }
+}
+
+double Coupling::relative_u_x_m(std::span<const Body> bodies, std::size_t i) const {
+  const double above = bodies[0].u_m().x[bodies[0].lower()[i]];
+  return bodies.size() == 1 ? above : above - bodies[1].u_m().x[bodies[1].lower()[i]];
+}
+
+void Coupling::start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium) {
+  const auto& above = bodies.front();
+  for (std::size_t i = 0; i < face_.size(); ++i) {
+    start_u_x_m_[i] = relative_u_x_m(bodies, i);
+    face_.v_x_m_per_s[i] = above.v_m_per_s().x[above.lower()[i]];
+    face_.v_y_m_per_s[i] = above.v_m_per_s().y[above.lower()[i]];
+  }
+  for (std::size_t s = 0; s < sides_.size(); ++s) {
+    for (std::size_t i = 0; i < face_.size(); ++i) {
+      sides_[s].v_x[i] = bodies[s].v_m_per_s().x[bodies[s].lower()[i]];
+      sides_[s].v_y[i] = bodies[s].v_m_per_s().y[bodies[s].lower()[i]];
+    }
+    if (s == 0) continue;
+    for (std::size_t i = 0; i < face_.size(); ++i) {
+      face_.v_x_m_per_s[i] -= sides_[s].v_x[i];
+      face_.v_y_m_per_s[i] += sides_[s].v_y[i];
+    }
+  }
+  for (std::size_t i = 0; i < face_.size(); ++i) {
+    face_.slip_rate_m_per_s[i] = face_.v_x_m_per_s[i];
+    face_.t_Pa[i] = equilibrium.tractions.t_s_Pa[i];
+    face_.p_Pa[i] = equilibrium.tractions.p_s_Pa[i];
+    face_.slipping[i] = equilibrium.contact[i] == statics::Contact::slip;
+  }
+  std::ranges::fill(face_.intact, 1.0);
+  start_contact(contact_, face_);
+  set_trigger({}, std::vector<double>(face_.size(), 0.0));
+  prestress_t_Pa_.clear();
+  prestress_p_Pa_.clear();
+}
+
+void Coupling::set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m) {
+  trigger_ = trigger;
+  trigger_force_N_ = std::move(force_N_per_m);
+  trigger_nodes_.clear();
+  for (std::size_t i = 0; i < trigger_force_N_.size(); ++i)
+    if (trigger_force_N_[i] != 0) trigger_nodes_.push_back(i);
+}
+
+void Coupling::set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa) {
+  SLIPFRONT_ASSERT(t0_Pa.size() == face_.size() && p0_Pa.size() == face_.size(), "prestress of other nodes");
+  prestress_t_Pa_ = std::move(t0_Pa);
+  prestress_p_Pa_ = std::move(p0_Pa);
+}
+
+void Coupling::set_intact(std::vector<double> intact) {
+  SLIPFRONT_ASSERT(intact.size() == face_.size(), "intact of other nodes");
+  face_.intact = std::move(intact);
+}
+
+void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, Recorder& recorder,
+                      record::History* sample, record::Energies& works) {
+  const double impulse_s = dt_s * trigger_factor(trigger_, time_s);
+  std::swap(face_.v_x_m_per_s, v_x_before_);
+  std::swap(face_.v_y_m_per_s, v_y_before_);
+  if (sides_.empty())
+    gather(bodies, dt_s, impulse_s);
+  else
+    gather_both(bodies, dt_s, impulse_s);
+  std::ranges::copy(face_.v_y_m_per_s, v_y_trial_.begin());
+  const bool changed = interface::update_contact(contact_, dt_s, face_);
+  recorder.observe(time_s, face_, changed);
+  if (sample != nullptr) append_sample(bodies, time_s, *sample);
+  if (sides_.empty())
+    scatter(bodies.front(), dt_s, works);
+  else
+    scatter_both(bodies, dt_s, works);
+  add_works_of_loads(bodies, dt_s, impulse_s, works);
+}
+
+void Coupling::gather(std::span<const Body> bodies, double dt_s, double impulse_s) {
+  const auto& body = bodies.front();
+  const auto& u = body.u_m();
+  const auto& v = body.v_m_per_s();
+  for (const auto& [at, first, count] : body.lower_runs()) {
+    std::copy_n(&v.x[first], count, &face_.v_x_m_per_s[at]);
+    std::copy_n(&v.y[first], count, &face_.v_y_m_per_s[at]);
+    std::copy_n(&u.y[first], count, &face_.u_y_m[at]);
+  }
+  for (const auto i : trigger_nodes_) face_.v_x_m_per_s[i] += impulse_s * trigger_force_N_[i] / mass_kg_[i];
+  for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i) {
+    const double per_pressure = dt_s * tributary_m_[i] / mass_kg_[i];
+    face_.v_x_m_per_s[i] += per_pressure * prestress_t_Pa_[i];
+    face_.v_y_m_per_s[i] -= per_pressure * prestress_p_Pa_[i];
+  }
+  for (const auto& dashpot : body.contact_dashpots()) {
+    const auto i = dashpot.at;
+    damp_trial(dashpot, v_x_before_[i], v_y_before_[i], face_.v_x_m_per_s[i], face_.v_y_m_per_s[i]);
+  }
+}
+
+void Coupling::gather(const Body& body, Side& side, double dt_s, double impulse_s) const {
+  std::swap(side.v_x, side.v_x_before);
+  std::swap(side.v_y, side.v_y_before);
+  for (const auto& [at, first, count] : body.lower_runs()) {
+    std::copy_n(&body.v_m_per_s().x[first], count, &side.v_x[at]);
+    std::copy_n(&body.v_m_per_s().y[first], count, &side.v_y[at]);
+  }
+  const auto& mass = body.lower_mass_kg();
+  for (const auto i : trigger_nodes_) side.v_x[i] += side.sign * impulse_s * trigger_force_N_[i] / mass[i];
+  for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i) {
+    const double per_pressure = dt_s * tributary_m_[i] / mass[i];
+    side.v_x[i] += side.sign * per_pressure * prestress_t_Pa_[i];
+    side.v_y[i] -= per_pressure * prestress_p_Pa_[i];
+  }
+  for (const auto& dashpot : body.contact_dashpots()) {
+    const auto i = dashpot.at;
+    damp_trial(dashpot, side.v_x_before[i], side.v_y_before[i], side.v_x[i], side.v_y[i]);
+  }
+}
+
+void Coupling::gather_both(std::span<const Body> bodies, double dt_s, double impulse_s) {
+  for (std::size_t s = 0; s < 2; ++s) gather(bodies[s], sides_[s], dt_s, impulse_s);
+  for (std::size_t i = 0; i < face_.size(); ++i) {
+    face_.v_x_m_per_s[i] = v_x_trial_[i] = sides_[0].v_x[i] - sides_[1].v_x[i];
+    face_.v_y_m_per_s[i] = sides_[0].v_y[i] + sides_[1].v_y[i];
+    face_.u_y_m[i] = bodies[0].u_m().y[bodies[0].lower()[i]] + bodies[1].u_m().y[bodies[1].lower()[i]];
+  }
+}
+
+void Coupling::scatter(Body& body, double dt_s, record::Energies& works) {
+  auto& u = body.u_m();
+  auto& v = body.v_m_per_s();
+  if (contact_.algorithm == interface::ContactAlgorithm::predictor_corrector) {
+    for (std::size_t i = 0; i < face_.size(); ++i) {
+      const double shift_m = face_.u_y_m[i] - u.y[body.lower()[i]];
+      if (shift_m != 0) body.landing().add(i, shift_m);
+    }
+  }
+  double contact_work = 0, friction_work = 0;
+  for (const auto& run : body.lower_runs()) {
+    const auto at = run.at, count = run.count;
+    const auto first = run.first;
+    const double* v_x_now = &face_.v_x_m_per_s[at];
+    const double* v_y_now = &face_.v_y_m_per_s[at];
+    const double* u_y_now = &face_.u_y_m[at];
+    const double* t = &face_.t_Pa[at];
+    const double* v_x_before = &v_x_before_[at];
+    const double* v_y_before = &v_y_before_[at];
+    const double* v_y_trial = &v_y_trial_[at];
+    const double* contact_mass = &contact_mass_kg_[at];
+    const double* tributary = &tributary_m_[at];
+    double* __restrict v_x = &v.x[first];
+    double* __restrict v_y = &v.y[first];
+    double* __restrict u_x = &u.x[first];
+    double* __restrict u_y = &u.y[first];
+#pragma omp simd reduction(+ : contact_work, friction_work)
+    for (std::size_t k = 0; k < count; ++k) {
+      // The impulse from the velocities: a landing by projection has no pressure.
+      contact_work += 0.5 * contact_mass[k] * (v_y_now[k] - v_y_trial[k]) * (v_y_now[k] + v_y_before[k]);
+      friction_work -= 0.5 * dt_s * tributary[k] * t[k] * (v_x_now[k] + v_x_before[k]);
+      v_x[k] = v_x_now[k];
+      v_y[k] = v_y_now[k];
+      u_x[k] += dt_s * v_x_now[k];
+      u_y[k] = u_y_now[k] + dt_s * v_y_now[k];
+    }
+  }
+  works.contact_work += contact_work + body.landing().work(u, v, dt_s);
+  works.friction_work += friction_work;
+}
+
+void Coupling::scatter_both(std::span<Body> bodies, double dt_s, record::Energies& works) {
+  const bool shifts = contact_.algorithm == interface::ContactAlgorithm::predictor_corrector;
+  for (std::size_t i = 0; i < face_.size(); ++i) {
+    works.contact_work += 0.5 * contact_mass_kg_[i] * (face_.v_y_m_per_s[i] - v_y_trial_[i]) *
+                          (face_.v_y_m_per_s[i] + v_y_before_[i]);
+    works.friction_work -=
+        0.5 * dt_s * tributary_m_[i] * face_.t_Pa[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]);
+    const double shift_m = shifts ? face_.u_y_m[i] - (bodies[0].u_m().y[bodies[0].lower()[i]] +
+                                                      bodies[1].u_m().y[bodies[1].lower()[i]])
+                                  : 0;
+    const double change_x = face_.v_x_m_per_s[i] - v_x_trial_[i];
+    const double change_y = face_.v_y_m_per_s[i] - v_y_trial_[i];
+    for (std::size_t s = 0; s < 2; ++s) {
+      auto& side = sides_[s];
+      auto& body = bodies[s];
+      const auto n = body.lower()[i];
+      side.v_x[i] += side.sign * side.share_x[i] * change_x;
+      side.v_y[i] += side.share_y[i] * change_y;
+      body.v_m_per_s().x[n] = side.v_x[i];
+      body.v_m_per_s().y[n] = side.v_y[i];
+      body.u_m().x[n] += dt_s * side.v_x[i];
+      body.u_m().y[n] += side.share_y[i] * shift_m + dt_s * side.v_y[i];
+      if (shift_m != 0) body.landing().add(i, side.share_y[i] * shift_m);
+    }
+  }
+  for (auto& body : bodies) works.contact_work += body.landing().work(body.u_m(), body.v_m_per_s(), dt_s);
+}
+
+void Coupling::add_works_of_loads(std::span<const Body> bodies, double dt_s, double impulse_s,
+                                  record::Energies& works) const {
+  const auto add_dashpots = [&](const Body& body, const auto& v_x, const auto& v_y, const auto& v_x_before,
+                                const auto& v_y_before) {
+    for (const auto& dashpot : body.contact_dashpots()) {
+      const auto i = dashpot.at;
+      works.boundary_work += dashpot_work(dashpot, body.lower_mass_kg()[i], 0.5 * (v_x[i] + v_x_before[i]),
+                                          0.5 * (v_y[i] + v_y_before[i]));
+    }
+  };
+  if (sides_.empty())
+    add_dashpots(bodies.front(), face_.v_x_m_per_s, face_.v_y_m_per_s, v_x_before_, v_y_before_);
+  for (std::size_t s = 0; s < sides_.size(); ++s)
+    add_dashpots(bodies[s], sides_[s].v_x, sides_[s].v_y, sides_[s].v_x_before, sides_[s].v_y_before);
+  for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i)
+    works.prestress_work += 0.5 * dt_s * tributary_m_[i] *
+                            (prestress_t_Pa_[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]) -
+                             prestress_p_Pa_[i] * (face_.v_y_m_per_s[i] + v_y_before_[i]));
+  for (const auto i : trigger_nodes_)
+    works.trigger_work += 0.5 * impulse_s * trigger_force_N_[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]);
+}
+
+void Coupling::append_sample(std::span<const Body> bodies, double time_s, record::History& history) const {
+  history.time_s.push_back(time_s);
+  for (std::size_t i = 0; i < face_.size(); ++i)
+    history.slip_m.push_back(relative_u_x_m(bodies, i) - start_u_x_m_[i]);
+  const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  append(history.slip_rate_m_per_s, face_.slip_rate_m_per_s);
+  append(history.t_Pa, face_.t_Pa);
+  append(history.p_Pa, face_.p_Pa);
+}
+
+void Coupling::reverse() {
+  const auto negate = [](std::vector<double>& values) {
+    for (double& value : values) value = -value;
+  };
+  for (auto* v :
+       {&face_.v_x_m_per_s, &face_.v_y_m_per_s, &face_.slip_rate_m_per_s, &face_.acceleration_m_per_s2})
+    negate(*v);
+  for (auto& side : sides_)
+    for (auto* v : {&side.v_x, &side.v_y}) negate(*v);
+}
+
+}  // namespace slipfront::motion

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "base/state.hpp"
+#include "interface/interface.hpp"
+#include "interface/trigger.hpp"
+#include "mesh/mesh.hpp"
+#include "motion/body.hpp"
+#include "motion/recorder.hpp"
+#include "record/energies.hpp"
+#include "record/record.hpp"
+#include "statics/statics.hpp"
+
+namespace slipfront::motion {
+
+/// Contact and friction between a body and the rigid plane below it, or between two bodies whose interface
+/// nodes face each other.
+///
+/// Between two bodies all quantities of interface::Interface are relative: the slip rate is that of the body
+/// above less that of the one below, the gap what opens between them, the mass m_1 m_2/(m_1 + m_2). What the
+/// interface does to a pair of nodes is shared between them in inverse proportion to their masses, so that
+/// their momentum is exchanged.
+class Coupling {
+ public:
+  /// @param bodies  the one above, and the one below where there is one, with as many interface nodes
+  Coupling(const interface::ContactModel& contact, std::span<const Body> bodies);
+
+  /// Begins with the bodies' motion, and the tractions of an equilibrium.
+  void start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium);
+  void set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m);
+  void set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa);
+  void set_intact(std::vector<double> intact);
+
+  /// The sub-step of length dt_s that begins at time_s: finds the tractions and moves the interface nodes.
+  /// @param sample  where to put the state at time_s, or null
+  void update(std::span<Body> bodies, double time_s, double dt_s, Recorder& recorder, record::History* sample,
+              record::Energies& works);
+
+  /// Turns the relative motion round.
+  void reverse();
+
+  const interface::Interface& state() const { return face_; }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(face_);
+    for (auto* values : {&v_x_before_, &v_y_before_, &v_y_trial_, &trigger_force_N_, &start_u_x_m_})
+      archive_vector(archive, *values);
+    for (auto& side : sides_)
+      for (auto* values : {&side.v_x, &side.v_y, &side.v_x_before, &side.v_y_before})
+        archive_vector(archive, *values);
+    archive(prestress_t_Pa_, prestress_p_Pa_, trigger_);
+    if constexpr (Archive::is_loading::value) {
+      if (prestress_t_Pa_.size() != prestress_p_Pa_.size() ||
+          (!prestress_t_Pa_.empty() && prestress_t_Pa_.size() != face_.size()))
+        throw UserError("the state that was kept has tractions of another interface");
+      set_trigger(trigger_, std::vector<double>(trigger_force_N_));
+    }
+  }
+
+ private:
+  /// One of two bodies. Velocities in its own axes.
+  struct Side {
+    double sign = 1;  ///< of its velocity along x in the relative one
+    std::vector<double> v_x, v_y, v_x_before, v_y_before;
+    std::vector<double> share_x, share_y;  ///< of the relative motion's change
+  };
+
+  double relative_u_x_m(std::span<const Body> bodies, std::size_t i) const;
+  /// The trial motion of the interface nodes, all forces but the contact's included.
+  void gather(std::span<const Body> bodies, double dt_s, double impulse_s);
+  void gather_both(std::span<const Body> bodies, double dt_s, double impulse_s);
+  void gather(const Body& body, Side& side, double dt_s, double impulse_s) const;
+  /// Gives the corrected velocities to the bodies and moves their nodes.
+  void scatter(Body& body, double dt_s, record::Energies& works);
+  void scatter_both(std::span<Body> bodies, double dt_s, record::Energies& works);
+  void add_works_of_loads(std::span<const Body> bodies, double dt_s, double impulse_s,
+                          record::Energies& works) const;
+  void append_sample(std::span<const Body> bodies, double time_s, record::History& history) const;
+
+  interface::ContactModel contact_;
+  interface::Interface face_;
+  std::vector<double> tributary_m_;      ///< [nodes]
+  std::vector<double> mass_kg_;          ///< without the dashpots' part. [nodes]
+  std::vector<double> contact_mass_kg_;  ///< along y, effective; see Dashpot. [nodes]
+  std::vector<double> v_x_before_, v_y_before_, v_x_trial_, v_y_trial_;  ///< relative. [nodes]
+  std::vector<Side> sides_;                                              ///< of two bodies; else none
+  interface::Trigger trigger_;
+  std::vector<double> trigger_force_N_;
+  std::vector<std::size_t> trigger_nodes_;               ///< where the force is not zero
+  std::vector<double> prestress_t_Pa_, prestress_p_Pa_;  ///< [nodes], or empty
+  std::vector<double> start_u_x_m_;                      ///< slip is counted from it
+};
+
+}  // namespace slipfront::motion

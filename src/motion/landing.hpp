@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "motion/damping_work.hpp"
+#include "solid/material.hpp"
+#include "solid/operator.hpp"
+
+namespace slipfront::motion {
+
+/// Shifts that put landing interface nodes onto the plane (predictor-corrector contact), and their work
+/// against the body's forces.
+class Landing {
+ public:
+  Landing() = default;
+  Landing(const mesh::Mesh& mesh, const solid::Material& material, const std::vector<mesh::Node>& lower);
+
+  /// Interface node i was put away from its place before the sub-step by shift_m, away from the interface.
+  void add(std::size_t i, double shift_m);
+  /// Work of the shifts, after the sub-step of length dt_s that began with them. @param u_m, v_m_per_s of now
+  double work(const solid::Field& u_m, const solid::Field& v_m_per_s, double dt_s);
+  /// What the shifts since the last call of clear have left open, for a push.
+  void add_to(PushProducts& products) const {
+    products.shift_K_v = K_v_;
+    products.shift_K_u = K_u_;
+  }
+  void clear() { K_v_ = K_u_ = 0; }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(K_v_, K_u_);
+  }
+
+ private:
+  std::vector<mesh::Node> lower_;
+  solid::BlockRows rows_;           ///< K of the interface nodes, N/m
+  std::vector<double> shift_m_;     ///< [nodes]; 0 but for nodes that land
+  std::vector<std::size_t> nodes_;  ///< of this sub-step, interface nodes
+  double K_v_ = 0, K_u_ = 0;        ///< see PushProducts
+};
+
+}  // namespace slipfront::motion
