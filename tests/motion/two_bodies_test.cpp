@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two deformable bodies on each other, under prescribed tractions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "motion/recorder.hpp"
+#include "motion/stepper.hpp"
+#include "motion/support.hpp"
+#include "statics/prestress.hpp"
+
+namespace slipfront::motion {
+namespace {
+
+constexpr double p0_Pa = 1e6, mu_s = 1.3;
+const solid::Material pmma{};
+/// Slower by a factor of 2.3, lighter, hardly damped.
+const solid::Material gel{.youngs_modulus_Pa = 0.3e9,
+                          .poissons_ratio = 0.45,
+                          .density_kg_per_m3 = 800,
+                          .stiffness_damping_s = 0.02e-6};
+
+mesh::Mesh free_plate(double height_m = 0.01) {
+  mesh::Plate plate;
+  plate.width_m = 0.02;
+  plate.height_m = height_m;
+  plate.element_size_m = 1e-3;
+  plate.corner = mesh::Corner::none;
+  plate.top = mesh::Top::free;
+  return mesh::make_plate(plate);
+}
+
+TimeStepping stepping(int substeps) {
+  TimeStepping time;
+  time.interface_rows = substeps > 1 ? 2 : 1;
+  time.interface_substeps = substeps;
+  return time;
+}
+
+/// A rupture from the middle, under a shear traction below the strength.
+class Rupture {
+ public:
+  Rupture(const solid::Material& above, const solid::Material* below, const TimeStepping& time,
+          interface::ContactAlgorithm algorithm = interface::ContactAlgorithm::direct)
+      : mesh_(free_plate()), mesh_below_(free_plate(0.012)) {
+    const auto law = support::with_algorithm(support::gentle_law, algorithm);
+    stepper_ = below == nullptr ? std::make_unique<Stepper>(mesh_, above, law, time)
+                                : std::make_unique<Stepper>(BodySource{mesh_, above},
+                                                            BodySource{mesh_below_, *below}, law, time);
+    const std::size_t n = mesh_.lower.size();
+    record::StaticState tractions;
+    for (const auto node : mesh_.lower) tractions.x_m.push_back(mesh_.x_m[node]);
+    tractions.t_s_Pa.assign(n, 1.2 * p0_Pa);
+    tractions.p_s_Pa.assign(n, p0_Pa);
+    auto state = statics::prestressed(mesh_, tractions);
+    state.below_u_m = state.below_u_per_shear = solid::Field(mesh_below_.n_nodes());
+    stepper_->start(state, 0);
+    stepper_->set_prestress(tractions.t_s_Pa, tractions.p_s_Pa);
+    std::vector<double> intact(n, 1.0);
+    for (std::size_t i = n / 3; i < n / 2; ++i) intact[i] = 0;
+    stepper_->set_intact(intact);
+    recorder_ = std::make_unique<Recorder>(state, mu_s, 0);
+  }
+
+  void advance(int steps) {
+    for (int k = 0; k < steps; ++k) stepper_->advance(*recorder_);
+  }
+  void advance_to(double time_s) {
+    while (stepper_->time_s() < time_s) stepper_->advance(*recorder_);
+  }
+  Stepper& stepper() { return *stepper_; }
+  const Body& body(int b) { return stepper_->bodies()[b]; }
+  std::size_t n_onsets() const { return recorder_->take(stepper_->time_s()).onsets.size(); }
+
+ private:
+  mesh::Mesh mesh_, mesh_below_;
+  std::unique_ptr<Stepper> stepper_;
+  std::unique_ptr<Recorder> recorder_;
+};
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
+}
+
+TEST(TwoBodies, OfOneKindMoveOppositelyUnderAnUnchangedPressure) {
+  // Of one height: the reflection at the interface, with its sign changed, leaves the problem as it is.
+  const auto mesh = free_plate();
+  for (const int substeps : {1, 4}) {
+    Stepper stepper(BodySource{mesh, pmma}, BodySource{mesh, pmma}, support::gentle_law, stepping(substeps));
+    const std::size_t n = mesh.lower.size();
+    record::StaticState tractions;
+    for (const auto node : mesh.lower) tractions.x_m.push_back(mesh.x_m[node]);
+    tractions.t_s_Pa.assign(n, 1.2 * p0_Pa);
+    tractions.p_s_Pa.assign(n, p0_Pa);
+    auto state = statics::prestressed(mesh, tractions);
+    state.below_u_m = state.below_u_per_shear = solid::Field(mesh.n_nodes());
+    stepper.start(state, 0);
+    stepper.set_prestress(tractions.t_s_Pa, tractions.p_s_Pa);
+    std::vector<double> intact(n, 1.0);
+    for (std::size_t i = n / 3; i < n / 2; ++i) intact[i] = 0;
+    stepper.set_intact(intact);
+    Recorder recorder(state, mu_s, 0);
+    for (int k = 0; k < 60; ++k) stepper.advance(recorder);
+    const auto& a = stepper.bodies()[0].u_m();
+    const auto& b = stepper.bodies()[1].u_m();
+    const double u = largest(a.x);
+    EXPECT_GT(u, 1e-7);
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      EXPECT_NEAR(b.x[k], -a.x[k], 1e-12 * u);
+      EXPECT_NEAR(b.y[k], -a.y[k], 1e-12 * u);  // upside down: both to the same side
+    }
+    for (const double p : stepper.interface_state().p_Pa) EXPECT_NEAR(p, p0_Pa, 1e-9 * p0_Pa);
+    EXPECT_GT(recorder.take(stepper.time_s()).onsets.size(), 5U);
+  }
+}
+
+TEST(TwoBodies, ExchangeTheirMomentum) {
+  for (const auto algorithm :
+       {interface::ContactAlgorithm::direct, interface::ContactAlgorithm::predictor_corrector}) {
+    Rupture rupture(pmma, &gel, stepping(1), algorithm);
+    rupture.advance(200);
+    EXPECT_GT(rupture.n_onsets(), 5U);
+    double sum_x = 0, sum_y = 0, all = 0;
+    for (int b = 0; b < 2; ++b) {
+      const auto& body = rupture.body(b);
+      const double sign_y = b == 0 ? 1 : -1;
+      for (std::size_t k = 0; k < body.u_m().size(); ++k) {
+        const double m = body.op().mass_kg[k];
+        sum_x += m * body.v_m_per_s().x[k];
+        sum_y += sign_y * m * body.v_m_per_s().y[k];
+        all += m * std::hypot(body.v_m_per_s().x[k], body.v_m_per_s().y[k]);
+      }
+    }
+    EXPECT_LT(std::abs(sum_x), 1e-12 * all);
+    EXPECT_LT(std::abs(sum_y), 1e-12 * all);
+  }
+}
+
+TEST(TwoBodies, EnergyIsBalanced) {
+  for (const auto algorithm :
+       {interface::ContactAlgorithm::direct, interface::ContactAlgorithm::predictor_corrector})
+    for (const int substeps : {1, 5}) {
+      Rupture rupture(pmma, &gel, stepping(substeps), algorithm);
+      const auto start = rupture.stepper().energies();
+      double worst_J = 0, largest_J = 0;
+      for (int k = 0; k < 150; ++k) {
+        rupture.advance(1);
+        const auto now = rupture.stepper().energies();
+        worst_J = std::max(worst_J, std::abs(imbalance_J_per_m(now, start)));
+        for (const double term : {now.kinetic, now.strain, now.prestress_work, now.friction_work})
+          largest_J = std::max(largest_J, std::abs(term));
+      }
+      EXPECT_GT(largest_J, 1e-4);
+      EXPECT_LT(worst_J, 1e-12 * largest_J) << substeps;
+      EXPECT_LT(rupture.stepper().energies().friction_work, -1e-4);
+      EXPECT_GT(rupture.n_onsets(), 5U);
+    }
+}
+
+TEST(TwoBodies, TheSlowerOneTakesLongerSteps) {
+  Rupture rupture(pmma, &gel, stepping(6));
+  EXPECT_EQ(rupture.body(0).period(), 6);
+  EXPECT_EQ(rupture.body(1).period(), 12);
+  EXPECT_NEAR(rupture.stepper().step_s(), 2 * rupture.stepper().lowest_step_s(),
+              1e-15 * rupture.stepper().step_s());
+}
+
+TEST(TwoBodies, OnABaseEverStifferAndDenserComeToTheRigidPlane) {
+  const double time_s = 10e-6;
+  const auto slip_of = [&](double factor) {
+    auto base = pmma;
+    base.youngs_modulus_Pa *= factor;
+    base.density_kg_per_m3 *= factor;
+    Rupture rupture(pmma, factor > 0 ? &base : nullptr, stepping(3));
+    rupture.advance_to(time_s);
+    auto slip_m = rupture.stepper().interface_state().slip_m;
+    EXPECT_GT(rupture.n_onsets(), 5U);
+    return slip_m;
+  };
+  const auto rigid = slip_of(0);
+  std::vector<double> errors;
+  for (const double factor : {10, 100, 1000}) {
+    const auto slip_m = slip_of(factor);
+    double error = 0;
+    for (std::size_t i = 0; i < rigid.size(); ++i) error = std::max(error, std::abs(slip_m[i] - rigid[i]));
+    errors.push_back(error / largest(rigid));
+  }
+  // The base's compliance is the plate's over the factor, and so is its part in the slip.
+  EXPECT_LT(errors[1], 3.0 / 100);
+  EXPECT_LT(errors[2], 3.0 / 1000);
+  EXPECT_NEAR(errors[1] / errors[2], 10, 1);
+}
+
+}  // namespace
+}  // namespace slipfront::motion
