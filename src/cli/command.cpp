@@ -59,6 +59,12 @@ Option* Option::one_of(const std::vector<std::string>& values) {
   return this;
 }
 
+Option* Option::not_empty() {
+  option_.check(CLI::Validator(
+      [](const std::string& text) { return text.empty() ? "is empty; give a path" : std::string(); }, ""));
+  return this;
+}
+
 Command::Command(CLI::App& app) : app_(app) {}
 Command::~Command() = default;
 

@@ -36,6 +36,8 @@ class Option {
   Option* positive();
   Option* non_negative();
   Option* one_of(const std::vector<std::string>& values);
+  /// An empty text, as of a variable that is not set, is no path.
+  Option* not_empty();
 
  private:
   CLI::Option& option_;

@@ -58,11 +58,13 @@ void add_reproduce(Command& app) {
   command
       ->add_option("--experiment", *experiment,
                    "CSV of measured points for claim E1: static_ratio, v_over_c_L (or v_m_per_s)")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->not_empty();
   command
       ->add_option("--open-choices", *open_choices,
                    "Folder of slipfront study open-choices, for claim C11b: the share of its triggers")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->not_empty();
   options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("--threads", options->threads, "Runs side by side")
       ->range(1, 1024)

@@ -80,11 +80,12 @@ std::string sha256(std::string_view text) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   const auto refuse = [&] {
     throw UserError("{}: cannot be read ({}); check that it is there", file.string(), std::strerror(errno));
   };
   if (!opened.valid()) refuse();
+  if (!is_file(file)) throw UserError("{}: is no file; put back what was there", file.string());
   Sha256 sum;
   std::vector<std::byte> piece(bytes_at_once);
   for (;;) {
@@ -105,6 +106,7 @@ void write_checksums(const std::filesystem::path& dir, const Checksums& checksum
 Checksums read_checksums(const std::filesystem::path& dir) {
   const auto file = dir / checksum_list;
   if (!is_there(file)) return {};
+  if (!is_file(file)) throw_changed(file, "is not a list of checksums");
   std::ifstream stream(file, std::ios::binary);
   Checksums checksums;
   for (std::string line; std::getline(stream, line);) {

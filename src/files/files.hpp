@@ -74,5 +74,7 @@ void make_folder(const std::filesystem::path& dir);
 bool is_there(const std::filesystem::path& path);
 /// Whether it is a folder itself, not a link to one.
 bool is_folder(const std::filesystem::path& path);
+/// Whether it is a file with an end, or a link to one: no device, no pipe.
+bool is_file(const std::filesystem::path& path);
 
 }  // namespace slipfront::files

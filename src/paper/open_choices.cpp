@@ -51,8 +51,7 @@ void add_trigger(std::vector<OpenChoice>& list, EventKind event, const std::stri
        Between::nothing,
        0,
        [](input::Case& c, double v) { c.trigger.form = static_cast<TriggerForm>(std::lround(v)); }});
-  add("zone_m", "event.trigger_zone_m",
-      "\"small\": 1 to 10 % of the interface; a zone of 3 elements still starts a front",
+  add("zone_m", "event.trigger_zone_m", "\"small\": 1 to 10 % of the interface; 2 mm are 3 elements",
       {2e-3, 5e-3, 10e-3, 15e-3, 20e-3}, Between::logarithmic, standard.zone_m,
       [](input::Case& c, double v) { c.trigger.zone_m = v; });
   add("added", "event.trigger_amount",
@@ -73,7 +72,7 @@ void add_trigger(std::vector<OpenChoice>& list, EventKind event, const std::stri
       [](input::Case& c, double v) { c.trigger.duration_s = v; });
 }
 
-void add_plate_and_loading(std::vector<OpenChoice>& list) {
+void add_plate_and_loading(std::vector<OpenChoice>& list, bool quick) {
   list.push_back({"top",
                   "loading.top_during_tilt",
                   {},
@@ -104,10 +103,12 @@ void add_plate_and_loading(std::vector<OpenChoice>& list) {
                   "plate.element_size_m",
                   {},
                   "the paper's meshes have 0.67 to 2 mm; which figure has which is not said",
-                  {plate_width_m / 300, plate_width_m / 200, plate_width_m / 150, plate_width_m / 100},
+                  quick ? std::vector{quick_element_m}
+                        : std::vector{plate_width_m / 300, plate_width_m / 200, plate_width_m / 150,
+                                      plate_width_m / 100},
                   {},
                   Between::nothing,
-                  plate_width_m / 300,
+                  quick ? quick_element_m : plate_width_m / 300,
                   [](input::Case& c, double v) { c.plate.element_size_m = v; }});
 }
 
@@ -170,22 +171,6 @@ std::vector<double> standard_values(const std::vector<OpenChoice>& choices) {
   return values;
 }
 
-/// Levels of one choice by themselves. Those that only count with another form come with it.
-void add_one_at_a_time(const std::vector<OpenChoice>& choices, std::vector<Sample>& list) {
-  for (std::size_t k = 0; k < choices.size(); ++k) {
-    const auto& choice = choices[k];
-    const bool is_of_raised = choice.name.ends_with("_raised");
-    for (const double level : choice.levels) {
-      if (level == choice.standard) continue;
-      Sample sample{Sample::Set::one_at_a_time, standard_values(choices)};
-      sample.values[k] = level;
-      if (is_of_raised)
-        sample.values[index_of(choices, choice.name.substr(0, choice.name.find('_')) + "_form")] = 1;
-      list.push_back(std::move(sample));
-    }
-  }
-}
-
 /// Where two choices act together: how much and over which length or time an edge is pushed; mesh and step.
 void add_pairs(const std::vector<OpenChoice>& choices, std::vector<Sample>& list) {
   const std::array<std::pair<const char*, const char*>, 5> pairs = {{{"left_zone_m", "left_added"},
@@ -222,8 +207,7 @@ void add_space_filling(const std::vector<OpenChoice>& choices, Sample::Set set, 
 }
 
 /// The four events of a sample.
-std::array<input::Case, 4> cases_of(const std::vector<OpenChoice>& choices, const Sample& sample,
-                                    bool quick) {
+std::array<input::Case, 4> cases_of(const std::vector<OpenChoice>& choices, const Sample& sample) {
   auto named = paper_cases(false);
   std::array<input::Case, 4> cases;
   for (std::size_t e = 0; e < cases.size(); ++e) {
@@ -233,7 +217,6 @@ std::array<input::Case, 4> cases_of(const std::vector<OpenChoice>& choices, cons
     c.output.history_interval_s = c.output.energy_interval_s = 1e-5;
     for (std::size_t k = 0; k < choices.size(); ++k)
       if (!choices[k].event || choices[k].event == c.event) choices[k].set(c, sample.values[k]);
-    if (quick) c.plate.element_size_m = quick_element_m;
     // Nothing else of a trigger that is not there, so that equal runs are known as equal.
     if (!interface::is_at_edge(c.event)) c.trigger = {};
     if (c.trigger.form == TriggerForm::weakened) c.trigger = {c.trigger.form, c.trigger.zone_m};
@@ -337,14 +320,17 @@ bool has_slow_left(const SampleOutcome& o, const std::vector<std::string>& ids) 
   return true;
 }
 
-void find_region(OpenChoicesResult& result) {
+void choose(OpenChoicesResult& result) {
   for (std::size_t k = 0; k < result.outcomes.size(); ++k) {
     const auto& o = result.outcomes[k];
-    if (!o.is_constrained) continue;
-    result.region.push_back(k);
-    if (result.chosen < 0 || o.extremity < result.outcomes[result.chosen].extremity)
+    if (o.is_constrained && (result.chosen < 0 || o.extremity < result.outcomes[result.chosen].extremity))
       result.chosen = static_cast<int>(k);
   }
+}
+
+void find_region(OpenChoicesResult& result) {
+  for (std::size_t k = 0; k < result.outcomes.size(); ++k)
+    if (result.outcomes[k].is_constrained) result.region.push_back(k);
 }
 
 }  // namespace
@@ -365,6 +351,7 @@ double OpenChoice::at(double share) const {
 
 double OpenChoice::share_of(double value) const {
   const double low = levels.front(), high = levels.back();
+  if (levels.size() == 1) return 0;
   switch (between) {
     case Between::nothing:
       return static_cast<double>(std::ranges::find(levels, value) - levels.begin()) /
@@ -378,7 +365,7 @@ double OpenChoice::share_of(double value) const {
 }
 
 std::string OpenChoice::text(double value) const {
-  return words.empty() ? fmt::format("{:.4g}", value) : words[static_cast<std::size_t>(std::lround(value))];
+  return words.empty() ? fmt::format("{}", value) : words[static_cast<std::size_t>(std::lround(value))];
 }
 
 std::string_view name(Sample::Set set) {
@@ -393,6 +380,8 @@ std::string_view name(Sample::Set set) {
       return "triggers";
     case Sample::Set::all:
       return "all";
+    case Sample::Set::about_chosen:
+      return "about the chosen";
   }
   return "";
 }
@@ -403,19 +392,38 @@ const std::vector<std::string>& constraining_claims() {
   return ids;
 }
 
-std::vector<OpenChoice> open_choices() {
+std::vector<OpenChoice> open_choices(bool quick) {
   std::vector<OpenChoice> list;
   add_trigger(list, EventKind::left, "left");
   add_trigger(list, EventKind::right, "right");
-  add_plate_and_loading(list);
+  add_plate_and_loading(list, quick);
   add_numerics(list);
+  return list;
+}
+
+std::vector<Sample> samples_about(const std::vector<OpenChoice>& choices, Sample::Set set,
+                                  const std::vector<double>& values) {
+  std::vector<Sample> list;
+  for (std::size_t k = 0; k < choices.size(); ++k) {
+    const auto& name = choices[k].name;
+    for (const double level : choices[k].levels) {
+      Sample sample{set, values};
+      sample.values[k] = level;
+      // What only counts with a form comes with it.
+      for (const auto& [ending, form] : {std::pair("_added", 0.0), std::pair("_raised", 1.0)})
+        if (name.ends_with(ending))
+          sample.values[index_of(choices, name.substr(0, name.find('_')) + "_form")] = form;
+      if (sample.values != values) list.push_back(std::move(sample));
+    }
+  }
   return list;
 }
 
 std::vector<Sample> samples(const std::vector<OpenChoice>& choices, bool quick) {
   std::vector<Sample> list = {{Sample::Set::standard, standard_values(choices)}};
   if (!quick) {
-    add_one_at_a_time(choices, list);
+    const auto one_at_a_time = samples_about(choices, Sample::Set::one_at_a_time, standard_values(choices));
+    list.insert(list.end(), one_at_a_time.begin(), one_at_a_time.end());
     add_pairs(choices, list);
   }
   add_space_filling(choices, Sample::Set::triggers, quick ? n_quick : n_triggers, list);
@@ -427,43 +435,56 @@ OpenChoicesResult study_open_choices(
     const OpenChoicesOptions& options,
     const std::function<bool(std::size_t done, std::size_t total)>& monitor) {
   OpenChoicesResult result;
-  result.choices = open_choices();
-  std::vector<Sample> all;
+  result.quick = options.quick;
+  result.choices = open_choices(options.quick);
+  std::atomic<std::size_t> done = 0, total = 0;
+  run::Batch batch(
+      options.threads, [&] { return monitor(done, total); },
+      "interrupted; the runs that were done are kept: give the same command again to go on", options.kept);
   Events events;
   Possible is_possible;
-  std::vector<std::array<std::size_t, 4>> places;
-  for (auto& sample : samples(result.choices, options.quick)) {
-    const auto cases = cases_of(result.choices, sample, options.quick);
-    if (!is_possible(cases)) {
-      ++result.n_impossible;
-      continue;
+  std::vector<Outcome> outcomes;
+  const auto run_and_judge = [&](const std::vector<Sample>& list) {
+    std::vector<std::pair<Sample, std::array<std::size_t, 4>>> possible;
+    for (const auto& sample : list) {
+      const auto cases = cases_of(result.choices, sample);
+      if (!is_possible(cases)) {
+        ++result.n_impossible;
+        continue;
+      }
+      auto& [kept, places] = possible.emplace_back(sample, std::array<std::size_t, 4>{});
+      for (std::size_t e = 0; e < cases.size(); ++e) places[e] = events.place(cases[e]);
     }
-    all.push_back(std::move(sample));
-    auto& of_sample = places.emplace_back();
-    for (std::size_t e = 0; e < cases.size(); ++e) of_sample[e] = events.place(cases[e]);
-  }
-  std::vector<Outcome> outcomes(events.cases().size());
-  std::atomic<std::size_t> done = 0;
-  run::Batch batch(
-      options.threads, [&] { return monitor(done, outcomes.size()); },
-      "interrupted; the runs that were done are kept: give the same command again to go on", options.kept);
-  batch.run(events.cases(), [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
-    outcomes[k] = make_outcome("", r, initial);
-    if (r.event.end == motion::EventEnd::blow_up) outcomes[k].fronts.clear();
-    ++done;
-  });
-  result.n_runs = outcomes.size();
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    const auto event = [&](std::size_t e) -> const Outcome& { return outcomes[places[k][e]]; };
-    const std::array<const Outcome*, 3> three = {&event(0), &event(1), &event(2)};
-    const auto claims = scorecard({event(0), event(1), event(2), event(3), {}, {}, {}});
-    if (result.claims.empty()) std::ranges::transform(claims, std::back_inserter(result.claims), &Claim::id);
-    result.outcomes.push_back(judge(result.choices, all[k], three, claims));
-    if (all[k].set != Sample::Set::triggers) continue;
-    ++result.triggers.n_triggers;
-    result.triggers.n_holding += has_slow_left(result.outcomes.back(), result.claims) ? 1 : 0;
-  }
+    const std::size_t first = outcomes.size();
+    total = events.cases().size();
+    outcomes.resize(total);
+    batch.run(std::span(events.cases()).subspan(first),
+              [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
+                outcomes[first + k] = make_outcome("", r, initial);
+                if (r.event.end == motion::EventEnd::blow_up) outcomes[first + k].fronts.clear();
+                ++done;
+              });
+    for (const auto& [sample, places] : possible) {
+      const auto event = [&outcomes, &places = places](std::size_t e) -> const Outcome& {
+        return outcomes[places[e]];
+      };
+      const std::array<const Outcome*, 3> three = {&event(0), &event(1), &event(2)};
+      const auto claims = scorecard({event(0), event(1), event(2), event(3), {}, {}, {}});
+      if (result.claims.empty())
+        std::ranges::transform(claims, std::back_inserter(result.claims), &Claim::id);
+      result.outcomes.push_back(judge(result.choices, sample, three, claims));
+      if (sample.set != Sample::Set::triggers) continue;
+      ++result.triggers.n_triggers;
+      result.triggers.n_holding += has_slow_left(result.outcomes.back(), result.claims) ? 1 : 0;
+    }
+  };
+  run_and_judge(samples(result.choices, options.quick));
+  choose(result);
+  if (result.chosen >= 0)
+    run_and_judge(samples_about(result.choices, Sample::Set::about_chosen,
+                                result.outcomes[result.chosen].sample.values));
   find_region(result);
+  result.n_runs = outcomes.size();
   return result;
 }
 

@@ -22,7 +22,7 @@ struct OpenChoice {
   std::vector<double> levels;                 ///< values tried by themselves, ascending; indices of the words
   std::vector<std::string> words;             ///< of the levels where they are no numbers
   enum class Between { nothing, linear, logarithmic } between = Between::nothing;  ///< values between levels
-  double standard = 0;  ///< the case's without the study
+  double standard = 0;  ///< about which the others are varied
   std::function<void(input::Case&, double)> set;
 
   /// The value at a share of the range, 0 to 1.
@@ -34,7 +34,8 @@ struct OpenChoice {
 };
 
 /// All of them, in the order in which they are set.
-std::vector<OpenChoice> open_choices();
+/// @param quick  with elements of 4 mm alone
+std::vector<OpenChoice> open_choices(bool quick = false);
 
 /// What is chosen: a value for each open choice.
 struct Sample {
@@ -44,6 +45,7 @@ struct Sample {
     pairs,          ///< two of them
     triggers,       ///< space-filling over the choices of the edge triggers
     all,            ///< space-filling over all choices
+    about_chosen,   ///< one other level of one choice, about the chosen sample
   };
   Set set = Set::standard;
   std::vector<double> values;  ///< [choices]
@@ -56,7 +58,11 @@ struct OpenChoicesOptions {
   std::filesystem::path kept = {};  ///< folder of the runs that are done
 };
 
+/// All but those about the chosen one.
 std::vector<Sample> samples(const std::vector<OpenChoice>& choices, bool quick);
+/// One other level of one choice at a time, about a sample.
+std::vector<Sample> samples_about(const std::vector<OpenChoice>& choices, Sample::Set set,
+                                  const std::vector<double>& values);
 
 /// What comes out for one sample.
 struct SampleOutcome {
@@ -80,11 +86,13 @@ const std::vector<std::string>& constraining_claims();
 inline constexpr double wanted_share_in_band = 0.8;
 
 struct OpenChoicesResult {
+  bool quick = false;
   std::vector<OpenChoice> choices;
   std::vector<std::string> claims;      ///< their ids
   std::vector<SampleOutcome> outcomes;  ///< the standard one first
   std::vector<std::size_t> region;      ///< outcomes that satisfy all constraints
-  int chosen = -1;                      ///< the least extreme of the region; -1: it is empty
+  /// The least extreme of the region before the samples about it were added; -1: it was empty.
+  int chosen = -1;
   /// C11b: of the trigger samples, those for which C1 to C11 hold.
   TriggerSample triggers;
   std::size_t n_impossible = 0;  ///< samples left out: fillets too small for their elements
@@ -101,7 +109,8 @@ OpenChoicesResult study_open_choices(const OpenChoicesOptions& options,
 void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResult& result);
 
 /// What the folder of such a study says of its triggers, for C11b.
-/// @throws UserError where it is no such folder, or was changed
-TriggerSample read_trigger_sample(const std::filesystem::path& dir);
+/// @param quick  whether a quick study is wanted
+/// @throws UserError where it is no such folder, is of the other kind, or was changed
+TriggerSample read_trigger_sample(const std::filesystem::path& dir, bool quick);
 
 }  // namespace slipfront::paper

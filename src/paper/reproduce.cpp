@@ -153,7 +153,13 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   if (!options.experiment.empty())
     experiment = input::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
   std::optional<TriggerSample> triggers;
-  if (!options.open_choices.empty()) triggers = read_trigger_sample(options.open_choices);
+  if (!options.open_choices.empty()) {
+    std::error_code error;
+    if (std::filesystem::equivalent(options.open_choices, options.dir, error))
+      throw UserError("output folder {}: holds the study of the open choices; choose another",
+                      options.dir.string());
+    triggers = read_trigger_sample(options.open_choices, options.quick);
+  }
   results::ResultFolder folder(options.dir, work(options));
   folder.require_empty(options.overwrite, true);
   folder.begin_or_resume();
@@ -188,7 +194,8 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
     auto all = runner.run(list_cases(variation));
     const auto varied_studies = by_study(variation.studies, std::span(all).subspan(4));
     add_variation(report.claims, variation,
-                  scorecard({all[0], all[1], all[2], all[3], varied_studies, experiment, triggers}));
+                  // The triggers were not sampled on other meshes.
+                  scorecard({all[0], all[1], all[2], all[3], varied_studies, experiment, {}}));
   }
   if (!variation_list.empty()) lap("variations of mesh and step");
   write_scorecard(folder.unfinished() / "scorecard.json", report.claims);

@@ -717,6 +717,7 @@ std::string describe(const Claim& claim, const ClaimVariation& variation) {
     if (d > 0 && d < 1e-3) return "< 0.001" + ending;
     return (d < 10 ? fmt::format("{:.2g}", d) : fmt::format("{:.0f}", d)) + ending;
   };
+  if (claim.holds && !variation.holds) return "not tested";
   std::string text;
   for (std::size_t k = 0; k < claim.figures.size(); ++k) {
     if (k > 0) text += ", ";
@@ -724,10 +725,7 @@ std::string describe(const Claim& claim, const ClaimVariation& variation) {
     text += difference(variation.differences[k], claim.figures[k].unit);
   }
   if (variation.holds != claim.holds)
-    text += fmt::format("{}there {}", text.empty() ? "" : "; ",
-                        !variation.holds   ? "not tested"
-                        : *variation.holds ? "holds"
-                                           : "does not hold");
+    text += fmt::format("{}there {}", text.empty() ? "" : "; ", *variation.holds ? "holds" : "does not hold");
   return text;
 }
 

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "files/checksum.hpp"
 #include "files/files.hpp"
+#include "files/text.hpp"
 #include "paper/open_choices.hpp"
 
 namespace slipfront::paper {
@@ -110,19 +110,29 @@ Json matrix_json(const OpenChoicesResult& result) {
   const auto& standard = result.outcomes.front();
   for (std::size_t claim = 0; claim < result.claims.size(); ++claim) {
     if (!standard.holds[claim]) continue;
-    Json turns = Json::array();
-    for (const auto& o : result.outcomes) {
-      if (o.sample.set != Sample::Set::one_at_a_time || o.holds[claim] == standard.holds[claim]) continue;
-      const auto k = changed_choice(o.sample, standard.sample);
-      turns.push_back(
-          {{"choice", result.choices[k].name}, {"level", value_json(result.choices[k], o.sample.values[k])}});
+    const auto turns_about = [&](Sample::Set set, const SampleOutcome& centre) {
+      Json turns = Json::array();
+      for (const auto& o : result.outcomes) {
+        if (o.sample.set != set || o.holds[claim] == centre.holds[claim]) continue;
+        const auto k = changed_choice(o.sample, centre.sample);
+        turns.push_back({{"choice", result.choices[k].name},
+                         {"level", value_json(result.choices[k], o.sample.values[k])}});
+      }
+      return turns;
+    };
+    Json about_chosen = nullptr;
+    if (result.chosen >= 0) {
+      const auto& chosen = result.outcomes[result.chosen];
+      about_chosen = {{"holds", chosen.holds[claim] ? Json(*chosen.holds[claim]) : Json(nullptr)},
+                      {"turns", turns_about(Sample::Set::about_chosen, chosen)}};
     }
     list.push_back({{"id", result.claims[claim]},
                     {"holds", *standard.holds[claim]},
                     {"share_of_triggers", share_json(result, Sample::Set::triggers, claim, false)},
                     {"share_of_triggers_with_fronts", share_json(result, Sample::Set::triggers, claim, true)},
                     {"share_of_all", share_json(result, Sample::Set::all, claim, false)},
-                    {"turns", turns}});
+                    {"turns", turns_about(Sample::Set::one_at_a_time, standard)},
+                    {"about_chosen", about_chosen}});
   }
   return list;
 }
@@ -150,12 +160,31 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
   return json;
 }
 
-/// Least and largest value of each choice in the region, numbers only; words that occur.
+/// "left_zone_m" is "zone_m" of the "left" edge.
+std::pair<std::string, std::string> split(const std::string& name) {
+  const auto place = name.find('_');
+  return {name.substr(0, place), place == std::string::npos ? "" : name.substr(place + 1)};
+}
+
+/// Whether a choice has a part in a sample: amounts count with their form alone, and a weakened zone has
+/// neither ramp nor end.
+bool is_in_use(const OpenChoicesResult& result, std::size_t choice, const Sample& sample) {
+  const auto [edge, what] = split(result.choices[choice].name);
+  if (what != "added" && what != "raised" && what != "ramp_s" && what != "duration_s") return true;
+  const auto form = std::ranges::find(result.choices, edge + "_form", &OpenChoice::name);
+  const auto word = form->text(sample.values[static_cast<std::size_t>(form - result.choices.begin())]);
+  return what == "added" || what == "raised" ? word == what : word != "weakened";
+}
+
+/// Least and largest value in use of each choice in the region, numbers only; words that occur.
 Json region_json(const OpenChoicesResult& result) {
   Json json = Json::object();
   for (std::size_t k = 0; k < result.choices.size(); ++k) {
     std::vector<double> values;
-    for (const auto place : result.region) values.push_back(result.outcomes[place].sample.values[k]);
+    for (const auto place : result.region) {
+      const auto& sample = result.outcomes[place].sample;
+      if (is_in_use(result, k, sample)) values.push_back(sample.values[k]);
+    }
     std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     Json list = Json::array();
@@ -172,6 +201,7 @@ Json region_json(const OpenChoicesResult& result) {
 void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResult& result) {
   const auto count = [&](auto&& condition) { return std::ranges::count_if(result.outcomes, condition); };
   Json json = {{"version", version_line()},
+               {"quick", result.quick},
                {"n_runs", result.n_runs},
                {"n_samples", result.outcomes.size()},
                {"n_impossible", result.n_impossible},
@@ -198,20 +228,34 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
   files::write_text(dir / summary_file, json.dump(2) + "\n");
 }
 
-TriggerSample read_trigger_sample(const std::filesystem::path& dir) {
-  if (!files::is_there(dir / summary_file))
+TriggerSample read_trigger_sample(const std::filesystem::path& dir, bool quick) {
+  const auto file = dir / summary_file;
+  if (!files::is_there(file))
     throw UserError("{}: holds no {}; give the folder of slipfront study open-choices", dir.string(),
                     summary_file);
+  if (!files::is_there(dir / files::checksum_list))
+    throw UserError("{}: holds no {}; make it anew by slipfront study open-choices", dir.string(),
+                    files::checksum_list);
+  files::require_listed(file);
   files::require_intact(dir);
-  std::ifstream stream(dir / summary_file);
-  const auto json = Json::parse(stream, nullptr, false);
+  constexpr std::size_t most_bytes = 64U << 20U;
+  const auto json =
+      Json::parse(files::read_text(file, file.string(), "summary of the study", most_bytes), nullptr, false);
+  if (json.is_object() && json.contains("quick") && json["quick"].is_boolean() && json["quick"] != quick)
+    throw UserError("{}: is a {} study, which does not suit a {} reproduction; give one made {}--quick",
+                    dir.string(), quick ? "full" : "quick", quick ? "quick" : "full",
+                    quick ? "with " : "without ");
   const auto count = [&](const char* key) -> int {
     if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned() || json[key] > 1000000000)
-      throw UserError("{}: has no count \"{}\"; make it anew by slipfront study open-choices",
-                      (dir / summary_file).string(), key);
+      throw UserError("{}: has no count \"{}\"; make it anew by slipfront study open-choices", file.string(),
+                      key);
     return json[key];
   };
-  return {count("n_triggers"), count("n_triggers_slow_left")};
+  const TriggerSample sample{count("n_triggers"), count("n_triggers_slow_left")};
+  if (sample.n_triggers == 0 || sample.n_holding > sample.n_triggers)
+    throw UserError("{}: {} of {} triggers cannot be; make it anew by slipfront study open-choices",
+                    file.string(), sample.n_holding, sample.n_triggers);
+  return sample;
 }
 
 }  // namespace slipfront::paper

@@ -59,8 +59,8 @@ void OutputArchive::close() {
 InputArchive::InputArchive(const std::filesystem::path& file)
     : cereal::InputArchive<InputArchive, cereal::AllowEmptyClassElision>(this),
       path_(file),
-      stream_(file, std::ios::binary) {
-  if (!stream_) throw UserError("{}: cannot be read; check that it is there", path_.string());
+      stream_(files::is_file(file) ? std::ifstream(file, std::ios::binary) : std::ifstream()) {
+  if (!stream_.is_open()) throw UserError("{}: cannot be read; check that it is there", path_.string());
   std::error_code error;
   const auto length = std::filesystem::file_size(file, error);
   if (error || length < sum_digits) throw_damaged();

@@ -41,6 +41,7 @@ constexpr std::array<const char*, 7> unlisted_results = {"case.resolved.toml", "
 }
 
 std::string read_line(const fs::path& file) {
+  if (!files::is_file(file)) return {};
   std::ifstream stream(file);
   std::string line;
   std::getline(stream, line);
@@ -295,10 +296,20 @@ bool ResultFolder::has_unfinished() const {
 
 void ResultFolder::require_empty(bool overwrite, bool resumes) const {
   if (overwrite) return;
-  if (is_under_way(unfinished()) && !(resumes && has_unfinished()))
+  const bool goes_on = resumes && has_unfinished();
+  if (is_under_way(unfinished()) && !goes_on) {
+    const std::string work = read_line(state() / kind_name), command = work.substr(0, work.find(" with "));
     throw UserError(
-        "output folder {}: holds unfinished work; go on with it (slipfront run --restart) or pass "
-        "--overwrite to begin anew",
+        "output folder {}: holds unfinished work; go on with it ({}) or pass --overwrite to begin anew",
+        dir_.string(),
+        command == "run" ? "slipfront run --restart"
+                         : fmt::format("slipfront {}, of the same program", command));
+  }
+  if (has_results() && goes_on)
+    throw UserError(
+        "output folder {}: holds results, and unfinished work that is to replace them; choose another or "
+        "pass "
+        "--overwrite to go on with it",
         dir_.string());
   if (has_results())
     throw UserError(

@@ -9,8 +9,14 @@ namespace slipfront::run {
 namespace {
 
 statics::Equilibrium at_interface(const statics::Equilibrium& state) {
-  auto light = state;
-  for (auto* field : {&light.u_m, &light.u_per_shear, &light.below_u_m, &light.below_u_per_shear}) *field = {};
+  statics::Equilibrium light;
+  light.shear_m = state.shear_m;
+  light.contact = state.contact;
+  light.tractions = state.tractions;
+  light.peak_ratio = state.peak_ratio;
+  light.peak_x_m = state.peak_x_m;
+  light.inside_from_m = state.inside_from_m;
+  light.inside_to_m = state.inside_to_m;
   return light;
 }
 
@@ -36,11 +42,12 @@ InitialState at_interface(const InitialState& state) {
 
 }  // namespace
 
+std::string FinishedRuns::key_of(const input::Case& config) {
+  return files::sha256(program_identity() + "\n" + resolved_text(config) + config.prestress.table.text);
+}
+
 std::filesystem::path FinishedRuns::file_of(const input::Case& config) const {
-  return dir_ /
-         (files::sha256(program_identity() + "\n" + resolved_text(config) + config.prestress.table.text)
-              .substr(0, 32) +
-          ".bin");
+  return dir_ / (key_of(config).substr(0, 32) + ".bin");
 }
 
 bool FinishedRuns::has(const input::Case& config) const {
@@ -51,6 +58,9 @@ bool FinishedRuns::take(const input::Case& config, Result& result, InitialState&
   if (!has(config)) return false;
   try {
     results::InputArchive archive(file_of(config));
+    std::string key;
+    archive(key);
+    if (key != key_of(config)) return false;  // a file that took another one's name
     archive(result);
     initial = read_initial_state(archive, config);
     archive.close();
@@ -68,7 +78,8 @@ void FinishedRuns::keep(const Result& result, const InitialState& initial) const
   if (!files::is_there(dir_)) files::make_folder(dir_);
   auto light = at_interface(initial);
   results::OutputArchive archive(file_of(result.config));
-  archive(result, light);
+  auto key = key_of(result.config);
+  archive(key, result, light);
   archive.close();
 }
 

@@ -23,6 +23,8 @@ class FinishedRuns {
   void keep(const Result& result, const InitialState& initial) const;
 
  private:
+  /// What a kept run is known by: the program and the case.
+  static std::string key_of(const input::Case& config);
   std::filesystem::path file_of(const input::Case& config) const;
 
   std::filesystem::path dir_;

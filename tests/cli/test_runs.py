@@ -531,6 +531,16 @@ def test_open_choices_are_judged_drawn_and_handed_to_the_scorecard(program, tmp_
     assert result.returncode == 0, result.stderr
     claims = {c["id"]: c for c in json.loads((tmp_path / "out/scorecard.json").read_text())}
     assert f"of {summary['n_triggers']} triggers" in claims["C11b"]["measured"]
+    for arguments, said in (
+        (["--quick", "-o", "choices", "--overwrite", "--open-choices", "choices"], "choose another"),
+        (["-o", "again", "--open-choices", "choices"], "is a quick study"),
+        (["--quick", "-o", "again", "--open-choices", ""], "is empty; give a path"),
+        (["--quick", "-o", "again", "--experiment", ""], "is empty; give a path"),
+    ):
+        result = program("reproduce", *arguments)
+        assert result.returncode == 2, arguments
+        assert said in result.stderr
+        assert not (tmp_path / "again").exists()
     (tmp_path / "choices/open_choices.csv").write_text("changed")
     result = program("reproduce", "--quick", "-o", "again", "--open-choices", "choices")
     assert result.returncode == 2

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paper/open_choices.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
+#include "files/checksum.hpp"
 #include "input/schema.hpp"
 #include "support/files.hpp"
 
@@ -130,6 +133,7 @@ TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) 
   EXPECT_EQ(once.chosen >= 0, !once.region.empty());
   for (const auto place : once.region) {
     EXPECT_TRUE(once.outcomes[place].is_constrained);
+    if (once.outcomes[place].sample.set == Sample::Set::about_chosen) continue;
     EXPECT_GE(once.outcomes[place].extremity, once.outcomes[static_cast<std::size_t>(once.chosen)].extremity);
   }
   const auto json = nlohmann::json::parse(test::read_file(a / "open_choices.json"));
@@ -144,8 +148,14 @@ TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) 
 
 TEST(OpenChoices, TriggersAreReadFromTheFolderOfAStudy) {
   const TemporaryFolder folder;
-  EXPECT_THAT(test::error_of([&] { read_trigger_sample(folder.path()); }),
-              testing::HasSubstr("slipfront study open-choices"));
+  const auto error = [&](bool quick = false) {
+    return test::error_of([&] { read_trigger_sample(folder.path(), quick); });
+  };
+  const auto seal = [&] {
+    files::write_checksums(folder.path(),
+                           {{"open_choices.json", files::sha256_of_file(folder / "open_choices.json")}});
+  };
+  EXPECT_THAT(error(), testing::HasSubstr("slipfront study open-choices"));
   OpenChoicesResult result;
   result.choices = open_choices();
   result.triggers = {.n_triggers = 7, .n_holding = 3};
@@ -153,14 +163,63 @@ TEST(OpenChoices, TriggersAreReadFromTheFolderOfAStudy) {
   for (const auto& choice : result.choices) standard.values.push_back(choice.standard);
   result.outcomes.emplace_back().sample = standard;
   write_open_choices(folder.path(), result);
-  const auto triggers = read_trigger_sample(folder.path());
+  EXPECT_THAT(error(), testing::HasSubstr("holds no checksums.sha256"));
+  seal();
+  EXPECT_THAT(error(true), testing::HasSubstr("is a full study"));
+  const auto triggers = read_trigger_sample(folder.path(), false);
   EXPECT_EQ(triggers.n_triggers, 7);
   EXPECT_EQ(triggers.n_holding, 3);
   for (const char* text : {"", "[]", "{}", "{\"n_triggers\": -1}", "{\"n_triggers\": 1e300}"}) {
     test::write_file(folder / "open_choices.json", text);
-    EXPECT_THAT(test::error_of([&] { read_trigger_sample(folder.path()); }), testing::HasSubstr("n_triggers"))
-        << text;
+    EXPECT_THAT(error(), testing::HasSubstr("was changed or damaged")) << text;
+    seal();
+    EXPECT_THAT(error(), testing::HasSubstr("n_triggers")) << text;
   }
+  for (const char* counts : {"0, \"n_triggers_slow_left\": 0", "4, \"n_triggers_slow_left\": 5"}) {
+    test::write_file(folder / "open_choices.json", fmt::format("{{\"n_triggers\": {}}}", counts));
+    seal();
+    EXPECT_THAT(error(), testing::HasSubstr("cannot be")) << counts;
+  }
+}
+
+TEST(OpenChoices, AQuickStudySaysSoAndNamesItsElements) {
+  OpenChoicesResult result;
+  result.quick = true;
+  result.choices = open_choices(true);
+  Sample standard;
+  for (const auto& choice : result.choices) standard.values.push_back(choice.standard);
+  result.outcomes.emplace_back().sample = standard;
+  const TemporaryFolder folder;
+  write_open_choices(folder.path(), result);
+  const auto json = nlohmann::json::parse(test::read_file(folder / "open_choices.json"));
+  EXPECT_EQ(json["quick"], true);
+  EXPECT_EQ(json["standard"]["values"]["element_size_m"], 4e-3);
+  for (const auto& sample : samples(result.choices, true)) {
+    const auto place =
+        std::ranges::find(result.choices, "element_size_m", &OpenChoice::name) - result.choices.begin();
+    EXPECT_EQ(sample.values[static_cast<std::size_t>(place)], 4e-3);
+  }
+}
+
+TEST(OpenChoices, SamplesAboutAnotherChangeOneChoiceOrAnAmountWithItsForm) {
+  const auto choices = open_choices();
+  std::vector<double> values;
+  for (const auto& choice : choices) values.push_back(choice.standard);
+  values[0] = 2;  // weakened at the left
+  const auto list = samples_about(choices, Sample::Set::about_chosen, values);
+  std::set<std::size_t> changed_choices;
+  for (const auto& sample : list) {
+    std::vector<std::size_t> changed;
+    for (std::size_t k = 0; k < choices.size(); ++k)
+      if (sample.values[k] != values[k]) changed.push_back(k);
+    ASSERT_FALSE(changed.empty());
+    ASSERT_LE(changed.size(), 2U);
+    if (changed.size() == 2) {
+      EXPECT_THAT(choices[changed.front()].name, testing::EndsWith("_form"));
+    }
+    changed_choices.insert(changed.back());
+  }
+  EXPECT_EQ(changed_choices.size(), choices.size());
 }
 
 TEST(OpenChoices, CanBeInterrupted) {

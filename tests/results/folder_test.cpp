@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -80,6 +81,44 @@ TEST(ResultFolder, UnfinishedWorkIsNotLostByAccident) {
   EXPECT_EQ(error_of([&] { again.require_empty(false, true); }), "(nothing thrown)");
   again.begin_or_resume();
   EXPECT_EQ(test::read_file(again.unfinished() / "run.json"), "so far");
+}
+
+TEST(ResultFolder, WhatGoesOnWithUnfinishedWorkIsTold) {
+  for (const auto& [work, way] : {std::pair("run", "(slipfront run --restart)"),
+                                  std::pair("study open-choices --quick with program 7",
+                                            "(slipfront study open-choices --quick, of the same program)")}) {
+    const test::TemporaryFolder folder;
+    {
+      ResultFolder left(folder.path(), work);
+      left.begin();
+      files::write_text(left.unfinished() / "run.json", "so far");
+    }
+    ResultFolder other(folder.path(), "another");
+    EXPECT_THAT(error_of([&] { other.require_empty(false, true); }), HasSubstr(way));
+  }
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "run.json", "old");
+  {
+    ResultFolder left(folder.path(), "one");
+    left.begin();
+    files::write_text(left.unfinished() / "run.json", "so far");
+  }
+  ResultFolder again(folder.path(), "one");
+  EXPECT_THAT(error_of([&] { again.require_empty(false, true); }), HasSubstr("--overwrite to go on with it"));
+  EXPECT_EQ(error_of([&] { again.require_empty(true, true); }), "(nothing thrown)");
+}
+
+TEST(ResultFolder, APipeIsNoKindOfWork) {
+  const test::TemporaryFolder folder;
+  {
+    ResultFolder left(folder.path(), "one");
+    left.begin();
+    files::write_text(left.unfinished() / "run.json", "so far");
+    fs::remove(left.state() / "kind");
+    ASSERT_EQ(mkfifo((left.state() / "kind").c_str(), 0600), 0);
+  }
+  const ResultFolder again(folder.path(), "one");
+  EXPECT_FALSE(again.has_unfinished());  // nor does it wait for someone to write into it
 }
 
 TEST(ResultFolder, WorkOfAnotherKindIsNotResumed) {
