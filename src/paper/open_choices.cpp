@@ -407,13 +407,14 @@ std::vector<Sample> samples_about(const std::vector<OpenChoice>& choices, Sample
   for (std::size_t k = 0; k < choices.size(); ++k) {
     const auto& name = choices[k].name;
     for (const double level : choices[k].levels) {
+      if (level == values[k]) continue;
       Sample sample{set, values};
       sample.values[k] = level;
       // What only counts with a form comes with it.
       for (const auto& [ending, form] : {std::pair("_added", 0.0), std::pair("_raised", 1.0)})
         if (name.ends_with(ending))
           sample.values[index_of(choices, name.substr(0, name.find('_')) + "_form")] = form;
-      if (sample.values != values) list.push_back(std::move(sample));
+      list.push_back(std::move(sample));
     }
   }
   return list;
