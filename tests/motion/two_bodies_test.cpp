@@ -196,5 +196,66 @@ TEST(TwoBodies, OnABaseEverStifferAndDenserComeToTheRigidPlane) {
   EXPECT_NEAR(errors[1] / errors[2], 10, 1);
 }
 
+/// A plane pulse that falls from above onto the bonded interface of two tall bodies.
+class Pulse : public ::testing::TestWithParam<std::tuple<bool, int>> {
+ protected:
+  static mesh::Mesh column() {
+    mesh::Plate plate;
+    plate.width_m = 3e-3;
+    plate.height_m = 0.2;
+    plate.element_size_m = 1e-3;
+    plate.corner = mesh::Corner::none;
+    plate.sides = mesh::Sides::periodic;
+    plate.top = mesh::Top::free;
+    return mesh::make_plate(plate);
+  }
+  /// Momentum along one axis.
+  static double momentum(const Body& body, bool shear) {
+    double sum = 0;
+    const auto& v = shear ? body.v_m_per_s().x : body.v_m_per_s().y;
+    for (std::size_t k = 0; k < v.size(); ++k) sum += body.op().mass_kg[k] * v[k];
+    return sum;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Waves, Pulse, ::testing::Combine(::testing::Bool(), ::testing::Values(1, 4)));
+
+TEST_P(Pulse, IsReflectedAndTransmittedByTheImpedances) {
+  const auto [shear, substeps] = GetParam();
+  auto above = pmma, below = gel;
+  above.stiffness_damping_s = below.stiffness_damping_s = 0;
+  const auto speed = [&](const solid::Material& m) {
+    return shear ? solid::shear_speed_m_per_s(m) : solid::longitudinal_speed_m_per_s(m);
+  };
+  const auto mesh = column();
+  Stepper stepper(BodySource{mesh, above}, BodySource{mesh, below},
+                  interface::ContactModel{interface::Coulomb{100.0}}, stepping(substeps));
+  // v = c F', u = F of y + c t: behind the pulse the body has moved.
+  const double c = speed(above), middle_m = 0.1, width_m = 0.02, peak_m_per_s = 0.01;
+  solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
+  for (mesh::Node k = 0; k < mesh.n_nodes(); ++k) {
+    const double x = (mesh.y_m[k] - middle_m) / width_m;
+    (shear ? v.x : v.y)[k] = peak_m_per_s * std::exp(-x * x);
+    (shear ? u.x : u.y)[k] = peak_m_per_s / c * width_m * std::sqrt(M_PI) / 2 * (1 + std::erf(x));
+  }
+  auto state = support::in_flight(mesh, u, v);
+  state.contact.assign(mesh.lower.size(), statics::Contact::stick);
+  state.tractions.p_s_Pa.assign(mesh.lower.size(), p0_Pa);
+  state.below_u_m = state.below_u_per_shear = solid::Field(mesh.n_nodes());
+  stepper.start(state, 1);
+  stepper.set_prestress(std::vector<double>(mesh.lower.size(), 0.0),
+                        std::vector<double>(mesh.lower.size(), p0_Pa));
+  Recorder recorder(state, 100, 0);
+  const double incident = momentum(stepper.bodies()[0], shear);
+  // Until both have left the interface, and none has come to an end.
+  const double time_s = middle_m / c + 0.1 / std::max(c, speed(below));
+  while (stepper.time_s() < time_s) stepper.advance(recorder);
+  const double Z_1 = above.density_kg_per_m3 * c, Z_2 = below.density_kg_per_m3 * speed(below);
+  EXPECT_NEAR(momentum(stepper.bodies()[0], shear) / incident, (Z_1 - Z_2) / (Z_1 + Z_2), 1e-6);
+  // Upside down: y is reversed.
+  EXPECT_NEAR((shear ? 1 : -1) * momentum(stepper.bodies()[1], shear) / incident, 2 * Z_2 / (Z_1 + Z_2),
+              1e-6);
+  EXPECT_TRUE(recorder.take(stepper.time_s()).onsets.empty());
+}
+
 }  // namespace
 }  // namespace slipfront::motion
