@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the tables of docs/open-choices.md anew from a study of the open choices; the text around them stays.
-
-Usage: open-choices-page.py RESULTS docs/open-choices.md
 """
 
-import json
-import pathlib
+from __future__ import annotations
+
+import argparse
 import sys
+from pathlib import Path
 from typing import Any
 
-results, page = map(pathlib.Path, sys.argv[1:])
-study = json.loads((results / "open_choices.json").read_text())
+from shared import between_marks, expecting, read_result, renew, run
 
 
 def told(value: Any) -> str:
@@ -32,7 +31,7 @@ def table(header: list[str], rows: list[list[str]]) -> str:
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
-def choices() -> str:
+def choices(study: dict[str, Any]) -> str:
     region, chosen = study["region"], study["chosen"]
     rows = []
     for choice in study["choices"]:
@@ -58,7 +57,7 @@ def fit_of(outcome: dict[str, Any]) -> list[str]:
     return [f"{fit[k]['value']:.2f} [{fit[k]['low']:.2f}, {fit[k]['high']:.2f}]" for k in "abc"]
 
 
-def outcomes() -> str:
+def outcomes(study: dict[str, Any]) -> str:
     rows = [["paper", "0.76 (band 0.07)", "1.80", "3.05", "", ""]]
     for name in ("standard", "chosen"):
         outcome = study[name]
@@ -77,9 +76,23 @@ def outcomes() -> str:
     return counts + table(["", "a", "b", "c", "points in the paper's band", "constraints"], rows)
 
 
-text = page.read_text()
-for mark, content in (("choices", choices()), ("outcomes", outcomes())):
-    start, end = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
-    before, rest = text.split(start)
-    text = before + start + content + end + rest.split(end)[1]
-page.write_text(text)
+def write(results: Path, page: Path) -> None:
+    file = results / "open_choices.json"
+    study = read_result(file)
+    with expecting("a study of the open choices", file):
+        parts = {"choices": choices(study), "outcomes": outcomes(study)}
+
+    def change(text: str) -> str:
+        for mark, content in parts.items():
+            text = between_marks(page, text, mark, content)
+        return text
+
+    renew(page, change)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("results", type=Path, help="output folder of `slipfront study open-choices`")
+    parser.add_argument("page", type=Path, help="docs/open-choices.md")
+    options = parser.parse_args()
+    sys.exit(run(__file__, lambda: write(options.results, options.page)))
