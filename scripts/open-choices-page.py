@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the tables of docs/open-choices.md anew from a study of the open choices; the text around them stays.
-
-Usage: open-choices-page.py RESULTS docs/open-choices.md
 """
 
-import json
-import pathlib
+from __future__ import annotations
+
+import argparse
 import sys
+from pathlib import Path
 from typing import Any
 
-results, page = map(pathlib.Path, sys.argv[1:])
-study = json.loads((results / "open_choices.json").read_text())
+from shared import between_marks, expecting, read_result, renew, run
 
 
 def told(value: Any) -> str:
@@ -32,7 +31,13 @@ def table(header: list[str], rows: list[list[str]]) -> str:
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
-def choices() -> str:
+def in_use(name: str, values: dict[str, Any]) -> bool:
+    """An amount counts with its form alone."""
+    edge, _, what = name.partition("_")
+    return what not in ("added", "raised") or values[f"{edge}_form"] == what
+
+
+def choices(study: dict[str, Any]) -> str:
     region, chosen = study["region"], study["chosen"]
     rows = []
     for choice in study["choices"]:
@@ -45,7 +50,7 @@ def choices() -> str:
                 choice["why"],
                 told(choice["standard"]),
                 range_of(region[name]) or "-",
-                told(chosen["values"][name]) if chosen else "-",
+                told(chosen["values"][name]) if chosen and in_use(name, chosen["values"]) else "-",
             ]
         )
     return table(["choice", "key", "range", "reason", "standard", "region found", "chosen"], rows)
@@ -58,7 +63,7 @@ def fit_of(outcome: dict[str, Any]) -> list[str]:
     return [f"{fit[k]['value']:.2f} [{fit[k]['low']:.2f}, {fit[k]['high']:.2f}]" for k in "abc"]
 
 
-def outcomes() -> str:
+def outcomes(study: dict[str, Any]) -> str:
     rows = [["paper", "0.76 (band 0.07)", "1.80", "3.05", "", ""]]
     for name in ("standard", "chosen"):
         outcome = study[name]
@@ -66,20 +71,38 @@ def outcomes() -> str:
             holds = "hold" if outcome["constraints_hold"] else "do not all hold"
             rows.append([name, *fit_of(outcome), f"{100 * outcome['share_in_band']:.0f} %", holds])
     impossible = study["n_impossible"]
-    left_out = f"; {impossible} more samples have fillets too small for their elements" if impossible else ""
-    counts = (
-        f"{study['n_samples']} samples, {study['n_runs']} runs{left_out}. Of the {study['n_triggers']} samples of "
-        f"triggers {study['n_triggers_with_fronts']} start a front at both edges. All constraints hold for {study['n_region']} samples. Of these the paper's a, b and "
-        f"c lie inside our intervals for {study['n_region_with_paper_fit']}, and at least 80 % of the points in its "
-        f"band for {study['n_region_in_paper_band']}. C1 to C11 hold for {study['n_triggers_slow_left']} of the "
+    counts = f"{study['n_samples']} samples, {study['n_runs']} runs"
+    if study["quick"]:
+        counts += " with elements of 4 mm, to try the command"
+    if impossible:
+        counts += f"; {impossible} more samples have fillets too small for their elements"
+    counts += (
+        f". Of the {study['n_triggers']} samples of triggers {study['n_triggers_with_fronts']} start a front at both "
+        f"edges. All constraints hold for {study['n_region']} samples. Of these the paper's a, b and c lie inside our "
+        f"intervals for {study['n_region_with_paper_fit']}, and at least 80 % of the points in its band for "
+        f"{study['n_region_in_paper_band']}. C1 to C11 hold for {study['n_triggers_slow_left']} of the "
         f"{study['n_triggers']} trigger samples.\n\n"
     )
     return counts + table(["", "a", "b", "c", "points in the paper's band", "constraints"], rows)
 
 
-text = page.read_text()
-for mark, content in (("choices", choices()), ("outcomes", outcomes())):
-    start, end = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
-    before, rest = text.split(start)
-    text = before + start + content + end + rest.split(end)[1]
-page.write_text(text)
+def write(results: Path, page: Path) -> None:
+    file = results / "open_choices.json"
+    study = read_result(file)
+    with expecting("a study of the open choices", file):
+        parts = {"choices": choices(study), "outcomes": outcomes(study)}
+
+    def change(text: str) -> str:
+        for mark, content in parts.items():
+            text = between_marks(page, text, mark, content)
+        return text
+
+    renew(page, change)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("results", type=Path, help="output folder of `slipfront study open-choices`")
+    parser.add_argument("page", type=Path, help="docs/open-choices.md")
+    options = parser.parse_args()
+    sys.exit(run(__file__, lambda: write(options.results, options.page)))

@@ -1,24 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the table of docs/scorecard.md anew from a reproduction's scorecard.json; the text below it stays.
 
-A first test whose claim is judged by a second one says so beside its verdict. The columns of the variations are there where `slipfront reproduce --sensitivity` has written them.
+A first test whose claim is judged by a second one says so beside its verdict. The columns of the variations are there
+where `slipfront reproduce --sensitivity` has written them."""
 
-Usage: scorecard-page.py RESULTS docs/scorecard.md
-"""
+from __future__ import annotations
 
-import json
-import pathlib
+import argparse
 import sys
+from pathlib import Path
 
-results, page = map(pathlib.Path, sys.argv[1:])
-scorecard = json.loads((results / "scorecard.json").read_text())
-verdict = {True: "holds", False: "**does not hold**", None: "not tested"}
-judges = {row["second_test_of"]: row["id"] for row in scorecard if "second_test_of" in row and row["counts"]}
-variations = {}  # heading by key
-for row in scorecard:
-    for key in ("mesh_variation", "step_variation"):
-        if key in row:
-            variations[key] = f"moves by, at {row[key]['parameter']} = {row[key]['value']:g}"
+from shared import between_marks, expecting, read_result, renew, run
+
+VERDICTS = {True: "holds", False: "**does not hold**", None: "not tested"}
+
+
+def variations_of(scorecard: list[dict]) -> dict[str, str]:
+    """Headings of the variations that were run, by their keys."""
+    headings = {}
+    for row in scorecard:
+        for key in ("mesh_variation", "step_variation"):
+            if key in row:
+                headings[key] = f"moves by, at {row[key]['parameter']} = {row[key]['value']:g}"
+    return headings
 
 
 def moves(row: dict, key: str) -> str:
@@ -26,8 +30,8 @@ def moves(row: dict, key: str) -> str:
     return text.replace("there does not hold", "**there does not hold**") or "-"
 
 
-def verdict_of(row: dict) -> str:
-    own = "used to choose" if row["holds"] and row.get("used_to_choose") else verdict[row["holds"]]
+def verdict_of(row: dict, judges: dict[str, str]) -> str:
+    own = "used to choose" if row["holds"] and row.get("used_to_choose") else VERDICTS[row["holds"]]
     return own + (f"; {judges[row['id']]} counts" if row["id"] in judges else "")
 
 
@@ -36,18 +40,35 @@ def how(row: dict) -> str:
     return f"{row['how']}. Instead of {row['second_test_of']}: {row['why']}" if "why" in row else row["how"]
 
 
-header = ["id", "claim", "our figure", "verdict", *variations.values(), "test"]
-rows = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-for row in scorecard:
-    cells = (
-        row["id"],
-        f"{row['claim']} ({row['paper']})",
-        row["measured"],
-        verdict_of(row),
-        *(moves(row, key) for key in variations),
-        how(row),
-    )
-    rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-start, end = "<!-- table -->\n", "<!-- end of table -->"
-before, rest = page.read_text().split(start)
-page.write_text(before + start + "\n".join(rows) + "\n" + end + rest.split(end)[1])
+def table(scorecard: list[dict]) -> str:
+    judges = {row["second_test_of"]: row["id"] for row in scorecard if "second_test_of" in row and row["counts"]}
+    variations = variations_of(scorecard)
+    header = ["id", "claim", "our figure", "verdict", *variations.values(), "test"]
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    for row in scorecard:
+        cells = (
+            row["id"],
+            f"{row['claim']} ({row['paper']})",
+            row["measured"],
+            verdict_of(row, judges),
+            *(moves(row, key) for key in variations),
+            how(row),
+        )
+        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def write(results: Path, page: Path) -> None:
+    file = results / "scorecard.json"
+    scorecard = read_result(file)
+    with expecting("a scorecard", file):
+        content = table(scorecard)
+    renew(page, lambda text: between_marks(page, text, "table", content))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("results", type=Path, help="output folder of `slipfront reproduce`")
+    parser.add_argument("page", type=Path, help="docs/scorecard.md")
+    options = parser.parse_args()
+    sys.exit(run(__file__, lambda: write(options.results, options.page)))

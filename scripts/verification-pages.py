@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Puts the numbers and the picture of `slipfront verify -o DIR` at the end of each page of docs/verification.
+"""Puts the numbers and the picture of `slipfront verify -o DIR` at the end of each page of docs/verification."""
 
-usage: verification-pages.py DIR docs/verification"""
+from __future__ import annotations
 
-import json
+import argparse
 import sys
 from pathlib import Path
+
+from shared import DataError, after_mark, expecting, read_result, read_text, run, write_pages
 
 MARK = "<!-- numbers -->"
 
@@ -26,24 +28,33 @@ def numbers(results: dict) -> str:
     return "\n".join(lines) + "\n"
 
 
-def main(results_dir: Path, pages: Path) -> None:
-    rows = []
-    for page in sorted(pages.glob("*.md")):
-        if page.stem == "README":
-            continue
-        text = page.read_text()
-        if MARK not in text:
-            sys.exit(f"{page}: no line {MARK}")
-        results = json.loads((results_dir / f"{page.stem}.json").read_text())
-        page.write_text(text.split(MARK)[0] + MARK + "\n\n" + numbers(results))
-        holding = sum(c["holds"] for c in results["checks"])
-        rows.append(f"| [{results['title']}]({page.name}) | {holding} of {len(results['checks'])} |")
+def row_of(results: dict, name: str) -> str:
+    """Of the table of all problems."""
+    holding = sum(c["holds"] for c in results["checks"])
+    return f"| [{results['title']}]({name}) | {holding} of {len(results['checks'])} |"
+
+
+def write(results_dir: Path, pages: Path) -> None:
+    texts, rows = {}, []
+    files = sorted(page for page in pages.glob("*.md") if page.stem != "README")
+    if not files:
+        raise DataError(f"{pages}: no pages of problems")
+    for page in files:
+        file = results_dir / f"{page.stem}.json"
+        results = read_result(file)
+        with expecting("a file of `slipfront verify`", file):
+            content = numbers(results)
+            rows.append(row_of(results, page.name))
+        texts[page.name] = after_mark(page, read_text(page), MARK, content)
     index = pages / "README.md"
-    text = index.read_text()
-    index.write_text(
-        text.split(MARK)[0] + MARK + "\n\n" + "\n".join(["| problem | checks that hold |", "|---|---|", *rows]) + "\n"
-    )
+    table = "\n".join(["| problem | checks that hold |", "|---|---|", *rows]) + "\n"
+    texts[index.name] = after_mark(index, read_text(index), MARK, table)
+    write_pages(pages, texts)
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("results", metavar="DIR", type=Path, help="output folder of `slipfront verify`")
+    parser.add_argument("pages", type=Path, help="docs/verification")
+    options = parser.parse_args()
+    sys.exit(run(__file__, lambda: write(options.results, options.pages)))

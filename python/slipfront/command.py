@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import stat
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -57,6 +58,19 @@ def run(name: str, work: Callable[[], list[str]]) -> int:
         report_error(name, f"standard output: {error.strerror}")
         return REFUSED
     return DONE
+
+
+def replaceable(file: Path) -> Path:
+    """The path of a file to write, unless something is there that is no regular file: a device, a pipe, a link."""
+    try:
+        is_regular = stat.S_ISREG(os.lstat(file).st_mode)
+    except (FileNotFoundError, NotADirectoryError):
+        return file
+    except OSError as error:
+        raise DataError(f"{file}: {error.strerror}") from None
+    if not is_regular:
+        raise DataError(f"{file}: is there and not a regular file: not replaced")
+    return file
 
 
 @contextmanager

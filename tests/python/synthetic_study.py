@@ -171,3 +171,65 @@ def write_interface_step(folder: Path, title: str = "made up") -> Path:
     write_csv(folder / "interface_step.csv", header, rows)
     (folder / "interface_step.json").write_text(json.dumps({"title": title, "tolerance": 0.01}))
     return folder
+
+
+def open_choice(name: str, levels: list, standard) -> dict:
+    return {"name": name, "key": f"event.{name}", "why": "open", "levels": levels, "standard": standard}
+
+
+def write_open_choices(folder: Path) -> Path:
+    """A study of the open choices: three of the left trigger are varied by themselves, the corner is not."""
+    folder.mkdir()
+    standard = {"left_form": "added", "left_zone_m": 0.01, "left_added": 5.0, "corner": "relief"}
+    standard |= {"right_form": "weakened", "right_zone_m": 0.01}
+    levels = {
+        "left_form": ["added", "weakened"],
+        "left_zone_m": [0.01, 0.015],
+        "left_added": [5.0, 10.0],
+        "corner": ["relief", "fillet 10 mm"],
+    }
+    chosen = standard | {"left_added": 10.0}
+    samples = [
+        # set, values, constraints, maximum of the left, spontaneous and right front, share in the band
+        ("standard", standard, "do not", 1.8, 2.0, 3.0, 0.66),
+        ("one at a time", standard | {"left_form": "weakened"}, "do not", 0, 2.0, 3.0, 0.84),
+        ("one at a time", standard | {"left_zone_m": 0.015}, "do not", 1.5, 2.0, 3.0, 0.70),
+        ("one at a time", chosen, "hold", 1.0, 2.0, 3.0, 0.75),
+        ("triggers", chosen | {"left_zone_m": 0.012346}, "hold", 1.1, 2.0, 3.0, 0.76),
+        ("all", standard | {"corner": "fillet 10 mm"}, "do not", 3.2, 2.0, 3.0, 0.31),
+        ("all", standard, "do not", 1.0, 2.0, 0, 0.35),
+    ]
+    header = ["set", *standard, "constraints", *(f"{e}_max_over_c_L" for e in ("left", "spontaneous", "right"))]
+    rows = [
+        [name, *(v if isinstance(v, str) else f"{v:.4g}" for v in values.values()), *rest]
+        for name, values, *rest in samples
+    ]
+    write_csv(folder / "open_choices.csv", [*header, "share_in_band"], rows)
+
+    def claim(name: str, holds: bool, turns: list) -> dict:
+        shares = {"share_of_triggers": 1.0, "share_of_triggers_with_fronts": None, "share_of_all": 0.5}
+        return {"id": name, "holds": holds, **shares, "turns": turns}
+
+    def outcome(name: str, values: dict, hold: bool) -> dict:
+        fit = {k: {"value": v, "low": v - 0.1, "high": v + 0.1} for k, v in zip("abc", (0.8, 2, 3), strict=True)}
+        return {"set": name, "values": values, "constraints_hold": hold, "share_in_band": 0.75, "fit": fit}
+
+    counts = (
+        "runs samples impossible triggers triggers_with_fronts triggers_slow_left region "
+        "region_with_paper_fit region_in_paper_band"
+    )
+    summary = {
+        "version": "0",
+        **{f"n_{name}": n for n, name in enumerate(counts.split())},
+        "wanted_share_in_band": 0.8,
+        "choices": [open_choice(name, values, standard[name]) for name, values in levels.items()],
+        "matrix": [
+            claim("C2", True, [{"choice": "left_form", "level": "weakened"}]),
+            claim("C11", False, [{"choice": "left_added", "level": 10.0}]),
+        ],
+        "region": {name: [] for name in levels} | {"left_added": [9.0, 10.0]},
+        "standard": outcome("standard", standard, False),
+        "chosen": outcome("one at a time", chosen, True),
+    }
+    (folder / "open_choices.json").write_text(json.dumps(summary))
+    return folder

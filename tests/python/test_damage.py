@@ -16,13 +16,13 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import pytest
-from slipfront.figures import interface_step, verification
+from slipfront.figures import interface_step, open_choices, verification
 from slipfront.figures.__main__ import main
 from slipfront.figures.results import read_results
 from slipfront.figures.style import RC
 from slipfront.files import DataError
 from synthetic import interrupt, seal, write_output
-from synthetic_study import write_interface_step, write_study, write_verification
+from synthetic_study import write_interface_step, write_open_choices, write_study, write_verification
 
 FUZZ_S = float(os.environ.get("SLIPFRONT_FUZZ_S", "4"))
 SEED = int(os.environ.get("SLIPFRONT_FUZZ_SEED", "20120401"))
@@ -171,6 +171,12 @@ def test_a_damaged_study_of_the_interface_step_is_drawn_or_refused(tmp_path):
     folder, picture = write_interface_step(tmp_path / "step"), tmp_path / "picture.png"
     assert interface_step.main(picture, [folder]) == 0
     fuzz(folder, done_or_refused(lambda: interface_step.main(picture, [folder])), FUZZ_S / 4)
+
+
+def test_a_damaged_study_of_the_open_choices_is_drawn_or_refused(tmp_path):
+    folder, picture = write_open_choices(tmp_path / "choices"), tmp_path / "picture.png"
+    assert open_choices.main(picture, folder) == 0
+    fuzz(folder, done_or_refused(lambda: open_choices.main(picture, folder)), FUZZ_S / 4)
 
 
 def test_no_change_to_a_file_with_a_checksum_is_accepted(output):

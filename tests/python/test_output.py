@@ -17,7 +17,7 @@ from slipfront.figures.style import RC
 from slipfront.files import DataError, read_json, read_table, read_toml
 from slipfront.read import read_experiment, read_fronts, read_history
 from synthetic import ENERGY_HEADER, energy_rows, write_csv, write_run
-from synthetic_study import write_interface_step, write_study, write_verification
+from synthetic_study import write_interface_step, write_open_choices, write_study, write_verification
 
 PACKAGE = Path(__file__).parents[2] / "python"
 NOBODY = 65534
@@ -210,6 +210,42 @@ def test_verify_without_results_is_refused(tmp_path, capsys):
     assert capsys.readouterr().err.count("\n") == 1 and not (tmp_path / "figures").exists()
 
 
+PICTURES = {
+    "slipfront.figures.interface_step": write_interface_step,
+    "slipfront.figures.open_choices": write_open_choices,
+}
+
+
+@pytest.mark.parametrize("module", PICTURES)
+@pytest.mark.parametrize("name", ["picture", "picture.txt", "picture.jpg", ".png"])
+def test_a_path_that_names_no_picture_is_refused(tmp_path, module, name):
+    folder = PICTURES[module](tmp_path / "study")
+    (tmp_path / name).write_text("mine")
+    done = command(tmp_path / name, folder, module=module)
+    refused(done, f"{tmp_path / name}: the picture's name must end with .png, .pdf, .svg")
+    assert (tmp_path / name).read_text() == "mine"
+
+
+def link_to_a_file(path):
+    path.with_name("mine").write_text("mine")
+    path.symlink_to(path.with_name("mine"))
+
+
+def link_to_a_device(path):
+    path.symlink_to("/dev/full")
+
+
+@pytest.mark.parametrize("module", PICTURES)
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, link_to_a_file, link_to_a_device])
+def test_what_is_no_regular_file_is_not_replaced(tmp_path, module, make):
+    picture = tmp_path / "picture.png"
+    make(picture)
+    kind = os.lstat(picture).st_mode
+    done = command(picture, PICTURES[module](tmp_path / "study"), module=module)
+    refused(done, f"{picture}: is there and not a regular file")
+    assert os.lstat(picture).st_mode == kind
+
+
 def test_figures_that_is_a_file_is_refused(run, capsys):
     (run / "figures").write_text("mine")
     assert main([str(run)]) == 2
@@ -259,6 +295,6 @@ def test_closed_streams_do_not_matter(run):
 
 
 def test_without_arguments_the_usage_is_told():
-    for module in ("slipfront.figures", "slipfront.figures.verification", "slipfront.figures.interface_step"):
+    for module in ("slipfront.figures", "slipfront.figures.verification", *PICTURES):
         done = command(module=module)
         assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr

@@ -11,7 +11,17 @@ from pathlib import Path
 import matplotlib
 
 from slipfront import command
-from slipfront.figures import balance, convergence, criteria, events, plate, space_time, studies
+from slipfront.figures import (
+    balance,
+    convergence,
+    criteria,
+    events,
+    interface_step,
+    open_choices,
+    plate,
+    space_time,
+    studies,
+)
 from slipfront.figures.drawing import Drawing, guarded
 from slipfront.figures.report import write_report
 from slipfront.figures.results import Results, read_results
@@ -40,7 +50,7 @@ def is_single_run(folder: Path) -> bool:
 
 
 def write_single(folder: Path, draw: Callable[[], tuple[Drawing, list[str]]]) -> list[str]:
-    """The one figure of a run or a convergence study; returns what to print."""
+    """The one figure of a run or a study; returns what to print."""
     drawing, remarks = guarded(folder, draw)
     with command.publishing_into(folder / "figures") as made:
         drawing.save(made)
@@ -68,6 +78,10 @@ def write_figures(folder: Path, experiment: Path | None) -> list[str]:
     with matplotlib.rc_context(RC):
         if belongs(folder / "convergence.json"):
             return write_single(folder, lambda: (convergence.convergence(folder), []))
+        if belongs(folder / interface_step.SUMMARY):
+            return write_single(folder, lambda: (interface_step.draw([folder]), []))
+        if belongs(folder / open_choices.SUMMARY):
+            return write_single(folder, lambda: (open_choices.draw(folder), []))
         if is_single_run(folder):
             return write_single(folder, lambda: balance.balance_of_run(folder))
         return write_reproduction(folder, experiment)
@@ -77,13 +91,13 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.figures",
         description="Draws the figures (PNG, PDF) and the report (HTML) of a reproduction, the figure of a "
-        "convergence study, or the energy balance of a single run, into DIR/figures.",
+        "study, or the energy balance of a single run, into DIR/figures.",
     )
     parser.add_argument(
         "dir",
         metavar="DIR",
         type=Path,
-        help="output folder of `slipfront reproduce`, `slipfront study convergence` or `slipfront run`",
+        help="output folder of `slipfront reproduce`, `slipfront study` or `slipfront run`",
     )
     parser.add_argument(
         "--experiment",

@@ -10,14 +10,16 @@ import sys
 from pathlib import Path
 
 import matplotlib
-from matplotlib.figure import Figure
 
 from slipfront import command
 from slipfront.figures.drawing import Drawing, guarded, plain
+from slipfront.figures.picture import write_picture
 from slipfront.figures.style import COLUMN_MM, RC, new_figure
 from slipfront.files import DataError, number, read_json_table, read_table
 from slipfront.folder import result_file
 
+TABLE = "interface_step.csv"
+SUMMARY = "interface_step.json"
 NUMBERS = ("interface_rows", "cost_over_plain", "median_error", "p90_error")
 COLOURS = {1: "#88ccee", 2: "#0072b2", 4: "#d55e00", 8: "#117733"}
 
@@ -34,12 +36,12 @@ def read_rows(file: Path) -> list[dict]:
     ]
 
 
-def draw(folders: list[Path]) -> Figure:
+def draw(folders: list[Path]) -> Drawing:
     """A panel per study: lines through the 90th percentiles, small marks for the medians."""
     figure = new_figure(COLUMN_MM * len(folders), 70)
     for k, folder in enumerate(folders):
-        rows = read_rows(folder / "interface_step.csv")
-        file = result_file(folder / "interface_step.json")
+        rows = read_rows(folder / TABLE)
+        file = result_file(folder / SUMMARY)
         summary = read_json_table(file)
         ax = figure.add_subplot(1, len(folders), k + 1)
         groups = [("plain", 0)] + sorted(
@@ -73,18 +75,13 @@ def draw(folders: list[Path]) -> Figure:
                 title="lines: 90 % of stations within; dots: median", title_fontsize=6, loc="lower left"
             )
             ax.set_ylim(bottom=ax.get_ylim()[0] / 200)
-    return figure
+    return Drawing("interface_step", figure, "")
 
 
 def write(picture: Path, folders: list[Path]) -> list[str]:
     """Writes the picture; returns what to print."""
     with matplotlib.rc_context(RC):
-        drawing = guarded(folders[0], lambda: Drawing(picture.stem, draw(folders), ""))
-        kind = picture.suffix.removeprefix(".") or "png"
-        image = guarded(picture, lambda: drawing.rendered(kind, Software=None))
-    with command.publishing_into(picture.parent) as folder:
-        (folder / picture.name).write_bytes(image)
-    return [f"figure: {picture}"]
+        return write_picture(picture, lambda: guarded(folders[0], lambda: draw(folders)))
 
 
 def main(picture: Path, folders: list[Path]) -> int:
@@ -96,7 +93,7 @@ def parsed() -> argparse.Namespace:
         prog="python -m slipfront.figures.interface_step",
         description="Draws the error of the front speeds against the cost of the step at the interface.",
     )
-    parser.add_argument("picture", metavar="PICTURE", type=Path, help="the file to write, a PNG")
+    parser.add_argument("picture", metavar="PICTURE", type=Path, help="the file to write: .png, .pdf or .svg")
     parser.add_argument(
         "dirs", metavar="DIR", type=Path, nargs="+", help="output folders of `slipfront study interface-step`"
     )

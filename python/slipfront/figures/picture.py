@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A picture in a file that the caller names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from slipfront import command
+from slipfront.figures.drawing import Drawing, guarded
+from slipfront.files import DataError
+
+#: Kinds of pictures, each with the entry without which the same figure gives the same file.
+KINDS = {
+    ".png": {"Software": None},
+    ".pdf": {"CreationDate": None},
+    ".svg": {"Date": None},
+}
+FIXED_NAMES = {"svg.hashsalt": "slipfront"}  # of the parts of an SVG, which are random otherwise
+
+
+def checked(picture: Path) -> Path:
+    """The path, unless it does not name a picture, or names what is no regular file."""
+    if picture.suffix.lower() not in KINDS:
+        raise DataError(f"{picture}: the picture's name must end with {', '.join(KINDS)}")
+    return command.replaceable(picture)
+
+
+def write_drawing(picture: Path, drawing: Drawing) -> None:
+    """Writes the picture, whole or not at all."""
+    kind = checked(picture).suffix.lower()
+    with matplotlib.rc_context(FIXED_NAMES):
+        image = guarded(picture, lambda: drawing.rendered(kind[1:], **KINDS[kind]))
+    with command.publishing_into(picture.parent) as folder:
+        (folder / picture.name).write_bytes(image)
+
+
+def write_figure(picture: Path, figure: Figure) -> None:
+    write_drawing(picture, Drawing(picture.stem, figure, ""))
+
+
+def write_picture(picture: Path, draw: Callable[[], Drawing]) -> list[str]:
+    """Draws and writes it; a path that is refused is so before the drawing. Returns what to print."""
+    checked(picture)
+    write_drawing(picture, draw())
+    return [f"figure: {picture}"]

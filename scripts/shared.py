@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the scripts beside this file share: results that are checked, pages that are written whole, errors as one line."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
+
+from slipfront import command  # noqa: E402
+from slipfront.files import DataError, read_json, read_text  # noqa: E402
+from slipfront.folder import result_file  # noqa: E402
+
+
+def read_result(file: Path) -> Any:
+    """A JSON file of a folder of results, refused where it is not as the folder's checksums say."""
+    return read_json(result_file(file))
+
+
+@contextmanager
+def expecting(what: str, file: Path) -> Iterator[None]:
+    """Whatever values of a file are missing or of another kind is told as one error."""
+    try:
+        yield
+    except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
+        raise DataError(f"{file}: not {what}: {type(error).__name__}: {error}") from None
+
+
+def between_marks(page: Path, text: str, mark: str, content: str) -> str:
+    """The page's text with the lines between <!-- mark --> and <!-- end of mark --> replaced."""
+    start, end = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
+    before, found_start, rest = text.partition(start)
+    _, found_end, after = rest.partition(end)
+    if not found_start or not found_end:
+        raise DataError(f"{page}: no lines {start.strip()} and {end}")
+    return before + start + content + end + after
+
+
+def after_mark(page: Path, text: str, mark: str, content: str) -> str:
+    """The page's text with all that follows a line replaced."""
+    before, found, _ = text.partition(mark)
+    if not found:
+        raise DataError(f"{page}: no line {mark}")
+    return f"{before}{mark}\n\n{content}"
+
+
+def write_pages(folder: Path, pages: dict[str, str]) -> None:
+    """Writes pages of a folder, by their names; after an error each is as before."""
+    for name in pages:
+        command.replaceable(folder / name)
+    with command.publishing_into(folder) as made:
+        for name, text in pages.items():
+            (made / name).write_bytes(text.encode())
+
+
+def renew(page: Path, change: Callable[[str], str]) -> None:
+    """Writes a page with its text changed."""
+    write_pages(page.parent, {page.name: change(read_text(command.replaceable(page)))})
+
+
+def run(script: str, work: Callable[[], None]) -> int:
+    """Exit code of a script; its error is one line."""
+
+    def work_silently() -> list[str]:
+        work()
+        return []
+
+    return command.run(Path(script).name, work_silently)

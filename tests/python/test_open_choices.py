@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The figure of the open choices shows what the study's files say, and nothing that was not varied."""
+
+from __future__ import annotations
+
+import json
+import shutil
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from slipfront.figures import open_choices
+from slipfront.figures.__main__ import main
+from slipfront.figures.style import RC
+from slipfront.files import DataError
+from synthetic import write_checksums
+from synthetic_study import write_interface_step, write_open_choices
+
+
+@pytest.fixture(autouse=True)
+def coarse_pictures(monkeypatch):
+    monkeypatch.setitem(RC, "savefig.dpi", 30)
+    with matplotlib.rc_context(RC):
+        yield
+
+
+@pytest.fixture
+def study(tmp_path):
+    return write_open_choices(tmp_path / "study")
+
+
+def artist(figure, gid: str):
+    (found,) = (a for ax in figure.axes for a in [*ax.patches, *ax.lines] if a.get_gid() == gid)
+    return found
+
+
+def legend_texts(legend) -> list[str]:
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def change_summary(study, change) -> None:
+    file = study / "open_choices.json"
+    summary = json.loads(file.read_text())
+    change(summary)
+    file.write_text(json.dumps(summary))
+
+
+def test_the_command_draws_a_study_into_its_folder(study, capsys):
+    write_checksums(study)
+    assert main([str(study)]) == 0
+    assert sorted(f.name for f in (study / "figures").iterdir()) == ["open_choices.pdf", "open_choices.png"]
+    assert capsys.readouterr().out == f"figure: {study / 'figures/open_choices'}.png (and PDF)\n"
+
+
+@pytest.mark.parametrize("name", ["open_choices.csv", "open_choices.json"])
+def test_a_damaged_study_is_refused(study, capsys, name):
+    write_checksums(study)
+    (study / name).write_text("changed")
+    assert main([str(study)]) == 2
+    assert f"{study / name}: does not match checksums.sha256" in capsys.readouterr().err
+    assert not (study / "figures").exists()
+
+
+def test_cells_tell_where_a_verdict_turns(study):
+    figure = open_choices.draw(study).figure
+    colours = {
+        "C2:left_form": open_choices.TURNS_OFF,
+        "C2:left_zone_m": open_choices.HOLDS,
+        "C11:left_added": open_choices.TURNS_ON,
+        "C11:left_zone_m": open_choices.FAILS,
+    }
+    for gid, colour in colours.items():
+        cell = artist(figure, gid)
+        assert to_hex(cell.get_facecolor()) == colour and not cell.get_hatch()
+
+
+def test_what_was_not_varied_has_no_verdict(study):
+    figure = open_choices.draw(study).figure
+    for claim in ("C2", "C11"):
+        cell = artist(figure, f"{claim}:corner")
+        assert to_hex(cell.get_facecolor()) == "#ffffff" and cell.get_hatch()
+    assert "not varied by itself" in legend_texts(figure.axes[0].get_legend())
+    change_summary(study, lambda s: s["choices"].pop())  # the corner
+    assert "not varied by itself" not in legend_texts(open_choices.draw(study).figure.axes[0].get_legend())
+
+
+def test_every_sample_with_fronts_at_both_edges_is_a_point(study):
+    figure = open_choices.draw(study).figure
+    points = {line.get_gid(): line.get_xydata() for line in figure.axes[1].lines if line.get_gid()}
+    expected = {
+        "standard": [[0.9, 66]],
+        "one at a time": [[0, 84], [0.75, 70]],
+        "triggers": np.empty((0, 2)),
+        "pairs": np.empty((0, 2)),
+        "all": [[1.6, 31], [np.nan, 35]],
+        "hold": [[0.5, 75], [0.55, 76]],
+        "chosen": [[0.5, 75]],
+    }
+    assert points.keys() == expected.keys()
+    for name, xy in expected.items():
+        np.testing.assert_allclose(points[name], xy, err_msg=name)
+    left, right = figure.axes[1].get_xlim()
+    assert left < 0 and right > 1.6
+
+
+def test_the_legend_names_the_chosen_trigger_and_hides_no_point(study):
+    drawing = open_choices.draw(study)
+    drawing.rendered("png")
+    (legend,) = drawing.figure.legends
+    assert "chosen: left added 10 over 10 mm, right weakened over 10 mm" in legend_texts(legend)
+    assert "the study's standard" in legend_texts(legend)
+    assert not legend.get_window_extent().overlaps(drawing.figure.axes[1].get_tightbbox())
+
+
+def test_without_a_chosen_sample_none_is_marked(study):
+    change_summary(study, lambda s: s.update(chosen=None))
+    figure = open_choices.draw(study).figure
+    assert not any(line.get_gid() == "chosen" for line in figure.axes[1].lines)
+
+
+def test_a_chosen_sample_that_the_table_lacks_is_refused(study):
+    change_summary(study, lambda s: s["chosen"]["values"].update(left_added=11.0))
+    with pytest.raises(DataError, match="open_choices.csv: has no row of the chosen sample"):
+        open_choices.draw(study)
+
+
+@pytest.mark.parametrize(
+    "labels, text",
+    [
+        (["none", "R2", "R10"], "none\nR2 R10"),
+        (["1", "1.33", "2"], "1 1.33\n2"),
+        (["raised", "weak"], "raised\nweak"),
+        (["0.001", "0.002", "0.003", "0.004"], "0.001\n0.002\n..."),
+        ([], ""),
+    ],
+)
+def test_the_text_of_a_cell_has_few_short_lines(labels, text):
+    assert open_choices.cell_text(labels) == text
+
+
+def test_the_texts_of_cells_stay_inside(study):
+    """With all levels of the widest choice."""
+    levels = ["none", "fillet 2 mm", "fillet 10 mm"]
+    turns = [{"choice": "corner", "level": level} for level in levels]
+    change_summary(study, lambda s: s["matrix"][0].update(turns=turns))
+    change_summary(study, lambda s: s.update(matrix=25 * s["matrix"][:1]))
+    change_summary(study, lambda s: s.update(choices=5 * s["choices"][-1:] + 14 * s["choices"][:1]))
+    drawing = open_choices.draw(study)
+    drawing.rendered("png")
+    ax = drawing.figure.axes[0]
+    cell = ax.patches[0].get_window_extent()
+    text = next(text for text in ax.texts if "R10" in text.get_text()).get_window_extent()
+    assert text.width < cell.width and text.height < cell.height
+
+
+def test_a_study_of_the_step_is_drawn_into_its_folder_too(tmp_path):
+    folder = write_interface_step(tmp_path / "step")
+    assert main([str(folder)]) == 0
+    assert sorted(f.name for f in (folder / "figures").iterdir()) == ["interface_step.pdf", "interface_step.png"]
+
+
+def test_the_picture_is_written_where_it_is_wanted(study, tmp_path, capsys):
+    for kind in ("png", "pdf", "svg"):
+        picture = tmp_path / f"a/picture.{kind}"
+        assert open_choices.main(picture, study) == 0
+        first = picture.read_bytes()
+        assert open_choices.main(picture, study) == 0  # a regular file is replaced, by the same bytes
+        assert picture.read_bytes() == first and len(first) > 1000
+    shutil.rmtree(study)
+    assert open_choices.main(tmp_path / "a/picture.png", study) == 2
+    assert "No such file" in capsys.readouterr().err

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The scripts that renew pages: their tables are those of checked results, and a page is renewed whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from synthetic import write_checksums
+from synthetic_study import write_open_choices
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+OLD = "x" * 8192 + "\n"  # of a page's text: more than a file may have on the full disk below
+
+
+@dataclass
+class Pages:
+    """A script, its results and the pages that it renews."""
+
+    script: str
+    results: Path
+    file: str  # of the results
+    target: Path  # the argument: a page or a folder of pages
+    page: Path
+    marks: list[str]
+
+    def run(self, **options) -> subprocess.CompletedProcess:
+        command = [sys.executable, SCRIPTS / self.script, self.results, self.target]
+        return subprocess.run(command, capture_output=True, text=True, timeout=120, **options)
+
+    def refused(self, *says: str, **options) -> None:
+        before = self.page.read_bytes()
+        done = self.run(**options)
+        assert done.returncode == 2 and done.stdout == ""
+        assert done.stderr.count("\n") == 1 and done.stderr.startswith(f"{self.script}: error: "), done.stderr
+        for part in says:
+            assert part in done.stderr
+        assert self.page.read_bytes() == before
+        assert not list(self.page.parent.glob(".unfinished-*"))
+
+
+def open_choices(folder: Path) -> Pages:
+    results, page = write_open_choices(folder / "results"), folder / "page.md"
+    marks = ["<!-- choices -->", "<!-- end of choices -->", "<!-- outcomes -->", "<!-- end of outcomes -->"]
+    return Pages("open-choices-page.py", results, "open_choices.json", page, page, marks)
+
+
+def scorecard(folder: Path) -> Pages:
+    results, page = folder / "results", folder / "page.md"
+    results.mkdir()
+    row = {"id": "C1", "claim": "a", "paper": "Fig. 1", "measured": "0.79", "holds": True, "how": "x"}
+    (results / "scorecard.json").write_text(json.dumps([row]))
+    marks = ["<!-- table -->", "<!-- end of table -->"]
+    return Pages("scorecard-page.py", results, "scorecard.json", page, page, marks)
+
+
+def verification(folder: Path) -> Pages:
+    results, pages = folder / "results", folder / "pages"
+    results.mkdir()
+    pages.mkdir()
+    check = {"quantity": "error", "unit": "", "measured": 1, "expected": 0, "tolerance": 2, "reason": "y"}
+    summary = {"name": "column", "title": "Column", "checks": [check | {"holds": True}]}
+    (results / "column.json").write_text(json.dumps(summary))
+    (pages / "README.md").write_text(OLD + "<!-- numbers -->\nstale\n")
+    return Pages("verification-pages.py", results, "column.json", pages, pages / "column.md", ["<!-- numbers -->"])
+
+
+@pytest.fixture(params=[open_choices, scorecard, verification])
+def pages(request, tmp_path) -> Pages:
+    made = request.param(tmp_path)
+    made.page.write_text(OLD + "\nstale\n".join(made.marks) + "\n")
+    write_checksums(made.results)
+    return made
+
+
+def test_a_page_is_renewed_once_and_for_all(pages):
+    done = pages.run()
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    text = pages.page.read_text()
+    assert text.startswith(OLD) and "stale" not in text and "|---|" in text
+    assert all(text.count(mark) == 1 for mark in pages.marks)
+    assert pages.run().returncode == 0 and pages.page.read_text() == text
+
+
+def test_the_tables_of_the_open_choices(tmp_path):
+    pages = open_choices(tmp_path)
+    pages.page.write_text("\n".join(pages.marks))
+    assert pages.run().returncode == 0
+    lines = pages.page.read_text().split("\n")
+    assert "| `left_added` | `event.left_added` | 5, 10 | open | 5 | 9 to 10 | 10 |" in lines
+    assert "| `corner` | `event.corner` | relief, fillet 10 mm | open | relief | - | relief |" in lines
+    fit = "0.80 [0.70, 0.90] | 2.00 [1.90, 2.10] | 3.00 [2.90, 3.10] | 75 %"
+    assert f"| standard | {fit} | do not all hold |" in lines and f"| chosen | {fit} | hold |" in lines
+
+
+def test_all_pages_of_the_problems_are_renewed(tmp_path):
+    pages = verification(tmp_path)
+    pages.page.write_text("<!-- numbers -->")
+    assert pages.run().returncode == 0
+    assert "| error | 1 | 0 | 2 | y |" in pages.page.read_text()
+    assert (pages.target / "README.md").read_text().endswith("| [Column](column.md) | 1 of 1 |\n")
+
+
+def test_damaged_results_are_refused(pages):
+    file = pages.results / pages.file
+    file.write_text(file.read_text().replace("1", "2", 1) + " ")
+    pages.refused(f"{file}: does not match checksums.sha256")
+
+
+def test_results_that_are_not_there_are_refused(pages):
+    pages.results = pages.results / "nowhere"
+    pages.refused(f"{pages.results / pages.file}: No such file or directory")
+
+
+@pytest.mark.parametrize("text, says", [("[{", "not JSON"), ('{"checks": 1}', "not a"), ("[1]", "not a"), ("", "")])
+def test_results_that_are_not_as_expected_are_refused(pages, text, says):
+    """In a folder of an older program, without checksums."""
+    (pages.results / "checksums.sha256").unlink()
+    (pages.results / pages.file).write_text(text)
+    pages.refused(f"{pages.results / pages.file}: {says}")
+
+
+def test_a_page_without_its_marks_is_refused(pages):
+    for mark in pages.marks:
+        text = pages.page.read_text()
+        pages.page.write_text(text.replace(mark, ""))
+        pages.refused(f"{pages.page}: no line", mark)
+        pages.page.write_text(text)
+
+
+def test_a_page_that_is_no_file_is_refused(pages):
+    pages.page.rename(pages.page.with_name("other"))
+    pages.page.symlink_to(pages.page.with_name("other"))
+    pages.refused(f"{pages.page}: is there and not a regular file")
+    assert pages.page.is_symlink()
+
+
+def test_a_full_disk_leaves_the_page_as_it_was(pages):
+    pages.refused("File too large", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
+                  env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})  # fmt: skip
+
+
+@pytest.mark.parametrize("script", ["open-choices-page.py", "scorecard-page.py", "verification-pages.py"])
+def test_without_arguments_the_usage_is_told(script):
+    done = subprocess.run([sys.executable, SCRIPTS / script], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
