@@ -203,6 +203,8 @@ std::vector<Entry> make_common_entries() {
   const Condition graded = {"plate.coarsenings > 0", [](const Case& c) { return c.plate.coarsenings > 0; }};
   const Condition nucleated = {"event.kind = nucleation",
                                [](const Case& c) { return c.event == EventKind::nucleation; }};
+  const Condition pushed = {"event.trigger_form = added or raised",
+                            [](const Case& c) { return c.trigger.form != TriggerForm::weakened; }};
   const Condition overstressed = {
       "event.kind = nucleation and nucleation.form = overstress", [](const Case& c) {
         return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
@@ -323,17 +325,18 @@ std::vector<Entry> make_common_entries() {
            {"nucleation", EventKind::nucleation}},
           "start of the event: nothing, shear just past the critical one, a trigger at an edge, or a "
           "nucleation patch"),
-      word<TriggerForm>(
-          "event.trigger_form", at(&Case::trigger, &Trigger::form),
-          {{"added", TriggerForm::added},
-           {"raised", TriggerForm::raised},
-           {"weakened", TriggerForm::weakened}},
-          "tangential traction added, or raised to a multiple of mu_s p_s, or mu = mu_k from the start"),
+      word<TriggerForm>("event.trigger_form", at(&Case::trigger, &Trigger::form),
+                        {{"added", TriggerForm::added},
+                         {"raised", TriggerForm::raised},
+                         {"weakened", TriggerForm::weakened}},
+                        "tangential traction added, or raised to a multiple of mu_s p_s, in the direction in "
+                        "which the zone "
+                        "is loaded, or mu = mu_k from the start"),
       number("event.trigger_zone_m", at(&Case::trigger, &Trigger::zone_m), above(0),
              "length of the trigger zone, inward from the outermost node in contact"),
-      number(
-          "event.trigger_amount", at(&Case::trigger, &Trigger::amount), at_least(0),
-          "added tangential traction over what is missing to mu_s p_s; raised: the traction over mu_s p_s"),
+      only_with(pushed, number("event.trigger_amount", at(&Case::trigger, &Trigger::amount), at_least(0),
+                               "added tangential traction over what is missing to mu_s p_s; raised: the "
+                               "traction over mu_s p_s")),
       number("event.trigger_ramp_s", at(&Case::trigger, &Trigger::ramp_s), at_least(0),
              "time over which the trigger rises linearly"),
       number("event.trigger_duration_s", at(&Case::trigger, &Trigger::duration_s), above_or_infinite(0),

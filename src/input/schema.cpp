@@ -149,8 +149,8 @@ void apply(const std::vector<Override>& overrides, Document& document) {
 }
 
 /// Keys whose values decide which later ones of these, and which other keys, there are.
-constexpr std::array deciding_keys = {"plate.coarsenings", "loading.method", "prestress.file", "event.kind",
-                                      "nucleation.form"};
+constexpr std::array deciding_keys = {"plate.coarsenings", "loading.method",     "prestress.file",
+                                      "event.kind",        "event.trigger_form", "nucleation.form"};
 
 bool applies(const Entry& entry, const Case& config) {
   return !entry.only_with || entry.only_with->holds(config);

@@ -21,13 +21,14 @@ inline bool is_at_edge(EventKind kind) {
 
 /// How a trigger next to an edge of contact starts the event.
 enum class TriggerForm {
-  added,     ///< an external traction amount * (mu_s p_s - t_s) along +x
+  added,     ///< an external traction amount * (mu_s p_s - t_s)
   raised,    ///< one that raises t_s to amount * mu_s p_s
   weakened,  ///< its friction is mu_k from the start: Interface::intact = 0
 };
 
 /// A zone next to an edge of contact. The traction of `added` and `raised` is an external force on the plate,
-/// not part of the reported t, times a ramp in time.
+/// not part of the reported t, times a ramp in time. It acts, and t_s counts, in the direction in which the
+/// zone as a whole is loaded, +x for none; where it would lower t_s it is left out.
 struct Trigger {
   TriggerForm form = TriggerForm::added;
   double zone_m = 10e-3;  ///< measured inward from the outermost node in contact

@@ -66,19 +66,38 @@ std::vector<std::size_t> trigger_zone(const statics::Equilibrium& state, interfa
   return zone;
 }
 
+double load_direction(const statics::Equilibrium& state, std::span<const double> tributary_m,
+                      std::span<const std::size_t> zone) {
+  double force = 0;
+  for (const auto k : zone) force += state.tractions.t_s_Pa[k] * tributary_m[k];
+  return force < 0 ? -1 : 1;
+}
+
+namespace {
+
+/// What `added` and `raised` add to a traction.
+double trigger_traction_Pa(const interface::Trigger& trigger, double t_s_Pa, double strength_Pa) {
+  // A node that slips before the event is at its strength but for this share of its traction.
+  constexpr double rounding = 1e-9;
+  const double added_Pa = trigger.form == interface::TriggerForm::added
+                              ? trigger.amount * (strength_Pa - t_s_Pa)
+                              : trigger.amount * strength_Pa - t_s_Pa;
+  return added_Pa < -rounding * t_s_Pa ? 0 : added_Pa;
+}
+
+}  // namespace
+
 std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<const double> tributary_m,
                                    interface::EventKind kind, const interface::Trigger& trigger,
                                    double mu_s) {
-  using enum interface::TriggerForm;
   const auto& s = state.tractions;
   std::vector<double> force(s.x_m.size(), 0.0);
-  if (trigger.form == weakened) return force;
-  for (const auto k : trigger_zone(state, kind, trigger.zone_m)) {
-    const double strength_Pa = mu_s * s.p_s_Pa[k];
-    const double added_Pa = trigger.form == added ? trigger.amount * (strength_Pa - s.t_s_Pa[k])
-                                                  : trigger.amount * strength_Pa - s.t_s_Pa[k];
-    force[k] = added_Pa * tributary_m[k];
-  }
+  if (trigger.form == interface::TriggerForm::weakened) return force;
+  const auto zone = trigger_zone(state, kind, trigger.zone_m);
+  const double direction = load_direction(state, tributary_m, zone);
+  for (const auto k : zone)
+    force[k] = direction * trigger_traction_Pa(trigger, direction * s.t_s_Pa[k], mu_s * s.p_s_Pa[k]) *
+               tributary_m[k];
   return force;
 }
 

@@ -78,6 +78,10 @@ struct Event {
 std::vector<std::size_t> trigger_zone(const statics::Equilibrium& state, interface::EventKind kind,
                                       double zone_m);
 
+/// Sign of the tangential force on a zone before the event; 1 where that is 0.
+double load_direction(const statics::Equilibrium& state, std::span<const double> tributary_m,
+                      std::span<const std::size_t> zone);
+
 /// Forces on the interface nodes that the trigger adds, see TriggerForm, N per unit thickness. [lower]
 std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<const double> tributary_m,
                                    interface::EventKind kind, const interface::Trigger& trigger, double mu_s);

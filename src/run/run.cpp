@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #ifdef __GLIBC__  // known from the headers above
@@ -26,6 +27,8 @@
 namespace slipfront::run {
 
 namespace {
+
+using interface::is_at_edge;
 
 /// B at the nodes of the interface. [lower]
 std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::Mesh& mesh) {
@@ -57,6 +60,38 @@ std::string contact_warning(const statics::Equilibrium& state) {
   return fmt::format(
       "before the event {} interface nodes are open and {} slip at mu_s p, all outside {:.4g} to {:.4g} m",
       n_open, n_slip, state.inside_from_m, state.inside_to_m);
+}
+
+/// Why a trigger at an edge adds nothing, and which amount does.
+std::string idle_trigger(const input::Case& config, const statics::Equilibrium& state,
+                         std::span<const double> tributary_m) {
+  const auto& trigger = config.trigger;
+  const auto zone = motion::trigger_zone(state, config.event, trigger.zone_m);
+  const double direction = motion::load_direction(state, tributary_m, zone);
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto k : zone)
+    least = std::min(least, direction * state.tractions.t_s_Pa[k] / state.tractions.p_s_Pa[k]);
+  least /= interface::static_coefficient(config.friction);
+  const bool added = trigger.form == interface::TriggerForm::added;
+  return fmt::format(
+      "event.trigger_amount = {:g} adds no traction in the trigger zone, where t is at least {:.4g} mu_s p "
+      "before the event; choose more than {}",
+      trigger.amount, least,
+      !added      ? fmt::format("{:.4g}", least)
+      : least < 1 ? "0"
+                  : fmt::format("{:.4g} with event.trigger_form = raised", least));
+}
+
+/// Forces of a trigger at an edge, none for other events.
+/// @throws UserError  where the trigger adds nothing
+std::vector<double> trigger_forces(const input::Case& config, const statics::Equilibrium& state,
+                                   std::span<const double> tributary_m) {
+  auto forces = motion::trigger_forces(state, tributary_m, config.event, config.trigger,
+                                       interface::static_coefficient(config.friction));
+  const bool pushes = is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened;
+  if (pushes && std::ranges::all_of(forces, [](double force) { return force == 0; }))
+    throw UserError("{}", idle_trigger(config, state, tributary_m));
+  return forces;
 }
 
 }  // namespace
@@ -151,7 +186,9 @@ mesh::Mesh check(const input::Case& config) {
         "time.precision = single needs rows between free sides; choose plate.sides = free or double");
   auto mesh = mesh::make_plate(config.plate);
   motion::require_rows_fit(mesh, config.time);
-  if (is_prestressed(config)) prescribed_tractions(config.prestress, mesh);
+  if (is_prestressed(config))
+    trigger_forces(config, statics::prestressed(mesh, prescribed_tractions(config.prestress, mesh)),
+                   mesh::tributary_lengths_m(mesh));
   return mesh;
 }
 
@@ -242,8 +279,6 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
 
 namespace {
 
-using interface::is_at_edge;
-
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& mesh,
                                              const motion::Execution& execution) {
   return std::make_unique<motion::Stepper>(mesh, config.material, input::contact_model(config), config.time,
@@ -253,11 +288,10 @@ std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const me
 std::unique_ptr<motion::Stepper> started_stepper(const input::Case& config, const InitialState& initial,
                                                  const motion::Execution& execution) {
   const auto& state = event_state(config, initial);
+  auto forces = trigger_forces(config, state, initial.tributary_m);
   auto stepper = new_stepper(config, initial.mesh, execution);
   stepper->start(state, top_speed_m_per_s(config));
   if (initial.prescribed) stepper->set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
-  auto forces = motion::trigger_forces(state, initial.tributary_m, config.event, config.trigger,
-                                       interface::static_coefficient(config.friction));
   if (config.trigger.form == interface::TriggerForm::weakened && is_at_edge(config.event)) {
     std::vector<double> intact(forces.size(), 1.0);
     for (const auto k : motion::trigger_zone(state, config.event, config.trigger.zone_m)) intact[k] = 0;

@@ -64,14 +64,10 @@ Run run(const mesh::Mesh& mesh, const solid::Material& material, bool mirrored, 
   motion::Stepper stepper(mesh, material, model, {});
   stepper.start(run.state, sign * 1e-6 * solid::longitudinal_speed_m_per_s(material));
   const interface::Trigger trigger;
-  // Trigger forces are to +x; the mirrored one's are those of the mirrored tractions.
-  auto towards = run.state;
-  for (double& t : towards.tractions.t_s_Pa) t *= sign;
-  auto force = motion::trigger_forces(towards, mesh::tributary_lengths_m(mesh),
+  stepper.set_trigger(
+      trigger, motion::trigger_forces(run.state, mesh::tributary_lengths_m(mesh),
                                       mirrored ? interface::EventKind::right : interface::EventKind::left,
-                                      trigger, mu_s);
-  for (double& f : force) f *= sign;
-  stepper.set_trigger(trigger, force);
+                                      trigger, mu_s));
   motion::Recorder recorder(run.state, mu_s, 0);
   while (stepper.time_s() < end_s) stepper.advance(recorder);
   run.onsets = recorder.take(end_s).onsets;

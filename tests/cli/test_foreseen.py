@@ -74,6 +74,14 @@ def test_overload_is_not_blamed_on_the_step(program, coarse, values, key):
     assert "step_factor" not in message
 
 
+def test_a_trigger_that_adds_nothing_is_refused(program, coarse, tmp_path):
+    sets = settings({"event.kind": "right", "event.trigger_form": "raised", "event.trigger_amount": 1e-3})
+    message = one_line(program("run", coarse, "-o", "out", "-q", *sets), 2)
+    assert "event.trigger_amount = 0.001 adds no traction" in message
+    assert "choose more than" in message
+    assert not (tmp_path / "out").exists()
+
+
 def test_speeds_in_the_trigger_zone_are_undefined(program, coarse, tmp_path):
     result = program("run", coarse, "-o", "out", "--set", "event.kind=right")
     assert result.returncode == 0

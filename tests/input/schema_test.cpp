@@ -274,6 +274,19 @@ TEST(Schema, AWeakenedTriggerNeedsALawThatWeakens) {
   EXPECT_THAT(parse_error("title = 'a'\n", coulomb), HasSubstr("choose added or raised"));
 }
 
+TEST(Schema, AWeakenedTriggerHasNoAmount) {
+  EXPECT_EQ(
+      parse_error("[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\ntrigger_amount = 5\n"),
+      "c.toml:4: event.trigger_amount applies only with event.trigger_form = added or raised; remove the "
+      "key or set that");
+  const std::string pushed = "[event]\nkind = \"left\"\ntrigger_amount = 7\n";
+  const std::vector<Override> weakened = {{"event.trigger_form", "weakened"}};
+  EXPECT_EQ(parse_case(pushed, "c.toml", weakened).trigger.amount, interface::Trigger{}.amount);
+  EXPECT_EQ(parse_case(pushed, "c.toml", {{"event.trigger_form", "raised"}}).trigger.amount, 7);
+  EXPECT_THAT(parse_error(pushed, {weakened[0], {"event.trigger_amount", "3"}}),
+              StartsWith("--set event.trigger_amount=3: event.trigger_amount applies only with"));
+}
+
 TEST(Schema, IterativeStaticsKnowNoGradedPlates) {
   EXPECT_THAT(
       parse_error("[plate]\ncoarsenings = 1\nfine_height_m = 0.02\n[loading]\nsolver = \"iterative\"\n"),

@@ -330,6 +330,44 @@ TEST(TriggerForces, RaiseToAMultipleOfTheStrengthOrLeaveItToTheFriction) {
   EXPECT_THAT(trigger_zone(six_nodes(), EventKind::spontaneous, 0.02), ::testing::IsEmpty());
 }
 
+TEST(TriggerForces, ActInTheDirectionInWhichTheZoneIsLoaded) {
+  const std::vector<double> tributary = {0.5, 1, 1, 2, 1, 0.5};
+  auto there = six_nodes();
+  there.tractions.t_s_Pa[2] = -3;  // against its neighbour, which outweighs it
+  auto back = there;
+  for (double& t : back.tractions.t_s_Pa) t = -t;
+  auto idle = there;
+  for (double& t : idle.tractions.t_s_Pa) t = 0;
+  for (const auto form : {interface::TriggerForm::added, interface::TriggerForm::raised}) {
+    const auto forces = [&](const statics::Equilibrium& state) {
+      return trigger_forces(state, tributary, interface::EventKind::left,
+                            {.form = form, .zone_m = 0.01, .amount = 2}, mu_s);
+    };
+    const auto to_right = forces(there), to_left = forces(back);
+    EXPECT_GT(to_right[1], 0);
+    EXPECT_GT(to_right[2], to_right[1]);
+    for (std::size_t k = 0; k < tributary.size(); ++k) EXPECT_EQ(to_left[k], -to_right[k]) << k;
+    EXPECT_DOUBLE_EQ(forces(idle)[1], 2 * 13.0);
+  }
+}
+
+TEST(TriggerForces, LowerNoTraction) {
+  const std::vector<double> tributary = {0.5, 1, 1, 2, 1, 0.5};
+  using interface::TriggerForm;
+  using ::testing::DoubleNear;
+  const auto forces = [&](const statics::Equilibrium& state, TriggerForm form, double amount) {
+    return trigger_forces(state, tributary, interface::EventKind::left,
+                          {.form = form, .zone_m = 0.01, .amount = amount}, mu_s);
+  };
+  // To 0.6 * 13 = 7.8 Pa: between the 10 and 7 Pa that are there.
+  EXPECT_THAT(forces(six_nodes(), TriggerForm::raised, 0.6),
+              ElementsAre(0, 0, DoubleNear(0.8, 1e-13), 0, 0, 0));
+  EXPECT_THAT(forces(six_nodes(), TriggerForm::raised, 0.5), Each(0));
+  auto beyond = six_nodes();
+  beyond.tractions.t_s_Pa[1] = 14;
+  EXPECT_THAT(forces(beyond, TriggerForm::added, 2), ElementsAre(0, 0, DoubleNear(2 * 6, 1e-13), 0, 0, 0));
+}
+
 TEST(Halo, ReachesPastTheDistanceAhead) {
   const auto mesh = support::make_plate(0.2, 0.1, 2e-3, Corner::none);
   EXPECT_EQ(halo_for(mesh, 2e-3), 2);

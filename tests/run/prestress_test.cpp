@@ -313,6 +313,79 @@ TEST(Prestress, CombinationsThatHaveNoLoadingAreRefused) {
     }
 }
 
+/// A plate under uniform tractions whose event is triggered at an edge.
+input::Case triggered(EventKind edge, double t_Pa, interface::TriggerForm form) {
+  auto c = column(mesh::Top::absorbing);
+  c.plate.width_m = 0.1;
+  c.plate.height_m = 0.05;
+  c.plate.element_size_m = 2e-3;
+  c.plate.sides = mesh::Sides::free;
+  c.material.stiffness_damping_s = 1e-7;
+  c.friction = interface::LinearSlipWeakening<interface::SlipMemory::lasting> {
+    .mu_s = 0.6, .mu_k = 0.3, .d_c_m = 2e-6
+  };
+  c.prestress = {t_Pa, 1e6, ""};
+  c.event = edge;
+  c.trigger = {.form = form, .zone_m = 20e-3, .amount = 3, .ramp_s = 2e-6};
+  c.time.end_s = 100e-6;
+  c.output.history_interval_s = 1e-6;
+  return c;
+}
+
+TEST(Trigger, MirroredLoadGivesTheMirroredEvent) {
+  for (const auto form :
+       {interface::TriggerForm::added, interface::TriggerForm::raised, interface::TriggerForm::weakened}) {
+    SCOPED_TRACE(static_cast<int>(form));
+    const auto a = run(triggered(EventKind::left, 0.5e6, form));
+    const auto b = run(triggered(EventKind::right, -0.5e6, form));
+    const auto first_onsets = [](const record::SlipRecord& record, bool mirrored) {
+      std::map<std::size_t, double> first_s;
+      for (const auto& onset : record.onsets) {
+        const auto k = static_cast<std::size_t>(onset.node);
+        first_s.try_emplace(mirrored ? record.x_m.size() - 1 - k : k, onset.time_s);
+      }
+      return first_s;
+    };
+    const auto there = first_onsets(a.event.record, false), back = first_onsets(b.event.record, true);
+    ASSERT_GT(there.size(), 20U);  // a front leaves the 11 nodes of the zone
+    ASSERT_EQ(there.size(), back.size());
+    for (const auto& [k, time_s] : there) {
+      ASSERT_TRUE(back.contains(k)) << k;
+      EXPECT_NEAR(back.at(k), time_s, 1e-9 * a.event.time_s) << k;
+    }
+    const auto work = a.event.energies.back().trigger_work;
+    EXPECT_EQ(work > 0, form != interface::TriggerForm::weakened);
+    EXPECT_NEAR(b.event.energies.back().trigger_work, work, 1e-9 * work);
+  }
+}
+
+TEST(Trigger, OneThatAddsNothingIsRefused) {
+  using interface::TriggerForm;
+  const auto error = [](TriggerForm form, double amount, double t_Pa) {
+    auto c = triggered(EventKind::right, t_Pa, form);
+    c.trigger.amount = amount;
+    return error_of(c);
+  };
+  // 0.4 MPa are 2/3 of mu_s p.
+  EXPECT_EQ(error(TriggerForm::raised, 0.67, 0.4e6), "");
+  EXPECT_EQ(
+      error(TriggerForm::raised, 0.66, -0.4e6),
+      "event.trigger_amount = 0.66 adds no traction in the trigger zone, where t is at least 0.6667 mu_s p "
+      "before the event; choose more than 0.6667");
+  EXPECT_EQ(error(TriggerForm::added, 1e-3, -0.4e6), "");
+  EXPECT_THAT(error(TriggerForm::added, 0, 0.4e6), ::testing::EndsWith("choose more than 0"));
+  EXPECT_THAT(error(TriggerForm::added, 3, -0.9e6),
+              ::testing::EndsWith("choose more than 1.5 with event.trigger_form = raised"));
+  EXPECT_EQ(error(TriggerForm::weakened, 0, 0.4e6), "");
+  // Where the tractions have to be found first, the run refuses.
+  auto tilted = test::coarse_case(EventKind::right);
+  tilted.trigger.form = TriggerForm::raised;
+  tilted.trigger.amount = 1e-3;
+  tilted.trigger.zone_m = 2e-2;
+  EXPECT_EQ(error_of(tilted), "");
+  EXPECT_THROW(run(tilted), UserError);
+}
+
 TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
   auto c = column(mesh::Top::absorbing);
   c.plate.sides = mesh::Sides::free;
