@@ -14,6 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from shared import DataError, checked, write_figure
 
 CASE = Path(__file__).resolve().parent.parent / "cases/reference/rigid_flat_a.toml"
 CENTRE_M = 0.2  # of the nucleation patch in the case; x = 0 of the problem
@@ -104,7 +105,7 @@ def table(results, n_points):
 
 
 def draw(results, reference, picture):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained", dpi=110)
     sides = [reference.x_m < 0, reference.x_m > 0]  # a gap between them
     limit_us = 1e6 * arrival_limit_s(reference.arrivals_s)
     for side in sides:
@@ -137,7 +138,7 @@ def draw(results, reference, picture):
     right.plot([], [], "k--", lw=1.4, label="uguca")
     right.set(xlabel="x (mm)", ylabel="slip rate (m/s)", xlim=(-140, 140))
     right.legend(fontsize=7)
-    figure.savefig(picture, dpi=110, metadata={"Software": None})
+    write_figure(picture, figure)
 
 
 def main():
@@ -147,6 +148,11 @@ def main():
     parser.add_argument("--figure", type=Path, help="default: reference_a.png in the folder of the results")
     parser.add_argument("--h-mm", type=float, nargs="+", default=[2, 1, 0.5, 0.25])
     options = parser.parse_args()
+    picture = options.figure or options.results / "reference_a.png"
+    try:
+        checked(picture)  # before the runs
+    except DataError as error:
+        parser.error(str(error))
     reference = Reference(CASE.parent / "data")
     results = []
     for h_mm in options.h_mm:
@@ -160,7 +166,7 @@ def main():
     print(table(results, len(reference.x_m)))
     between = np.nanmax(np.abs(reference.other_s - reference.arrivals_s))
     print(f"\nBetween the two reference codes (SEM2DPACK at 1 mm): {1e6 * between:.2f} us in arrivals.")
-    draw(results, reference, options.figure or options.results / "reference_a.png")
+    draw(results, reference, picture)
     finest = results[-1][2]
     holds = finest["beyond"] == 0 and all(
         max(finest[name], finest[name, "outside"]) < limit for name, limit in LIMITS.items()

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+import shared
 from matplotlib.figure import Figure
 
 from slipfront.figures.style import PAGE_MM, RC
@@ -48,7 +49,6 @@ SPEED_PAIRS = (
 ONSET_PAIRS = (SPEED_PAIRS[1], *SPEED_PAIRS[-3:])
 SHOWN = ("direct 18", "direct 36", "predictor_corrector 18", "predictor_corrector 36")
 NEAR_NUCLEATION_M = 5e-3  # the speed diverges there
-START, END = "<!-- table -->\n", "<!-- end of table -->"
 
 
 @dataclass(frozen=True)
@@ -145,6 +145,8 @@ def draw(all_results: dict[str, dict[str, dict[str, Event]]], c_L: float) -> Fig
 
 
 def main(program: Path, cases: Path, folder: Path, page: Path, picture: Path) -> None:
+    shared.checked(picture)  # before the runs, as the page
+    shared.between_marks(page, shared.read_text(page), "table", "")
     titles = [f"V, %: {what}" for what, _, _ in SPEED_PAIRS]
     titles += [f"onset, us: {what}" for what, _, _ in ONSET_PAIRS]
     titles += ["last node, mm: " + " / ".join(SHOWN)]
@@ -172,11 +174,11 @@ def main(program: Path, cases: Path, folder: Path, page: Path, picture: Path) ->
                 contact = " / ".join(f"{1e3 * e.contact_work_J_per_m:.2g}" for e in events)
                 works.append(f"| {law} | {event} | {algorithm} | {friction} | {contact} |")
             print(f"{law}, {event}: done", flush=True)
-    before, rest = page.read_text().split(START)
-    page.write_text(before + START + "\n".join([*table, "", *works]) + "\n" + END + rest.split(END)[1])
+    content = "\n".join([*table, "", *works]) + "\n"
+    shared.renew(page, lambda text: shared.between_marks(page, text, "table", content))
     with matplotlib.rc_context(RC):
-        draw(all_results, c_L).savefig(picture, metadata={"Software": None})
+        shared.write_figure(picture, draw(all_results, c_L))
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:6]))
+    sys.exit(shared.run(__file__, lambda: main(*map(Path, sys.argv[1:6]))))

@@ -4,17 +4,20 @@
 
 import csv
 import sys
+from pathlib import Path
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from shared import checked, run, write_figure
 
 
 def main(table, picture):
+    checked(picture)
     with open(table, newline="") as file:
         rows = list(csv.DictReader(file))
-    figure, axes = plt.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained")
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4), sharey=True, layout="constrained", dpi=110)
     for axis, incident in zip(axes, ("longitudinal", "shear"), strict=True):
         for k, reflected in enumerate(("longitudinal", "shear", "energy")):
             for source, style in (("theory", "-"), ("measured", "o")):
@@ -29,8 +32,8 @@ def main(table, picture):
     axes[0].set_ylabel("reflected over incident")
     axes[0].plot([], [], "ko", markersize=4, label="measured")
     axes[0].legend(fontsize=8)
-    figure.savefig(picture, dpi=110, metadata={"Software": None})
+    write_figure(picture, figure)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:3])
+    sys.exit(run(__file__, lambda: main(*map(Path, sys.argv[1:3]))))

@@ -9,9 +9,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+__all__ = ["DataError", "checked", "read_text", "write_figure"]  # handed on
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
 from slipfront import command  # noqa: E402
+from slipfront.figures.picture import checked, write_figure  # noqa: E402
 from slipfront.files import DataError, read_json, read_text  # noqa: E402
 from slipfront.folder import result_file  # noqa: E402
 

@@ -4,14 +4,17 @@
 
 import csv
 import sys
+from pathlib import Path
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from shared import checked, run, write_figure
 
 
 def main(table, picture):
+    checked(picture)
     curves = {}
     with open(table, newline="") as file:
         for row in csv.DictReader(file):
@@ -19,7 +22,7 @@ def main(table, picture):
             curve[0].append(float(row["kH"]))
             curve[1].append(float(row["growth_H_over_c_S"]))
     laws = list(dict.fromkeys(law for body in curves.values() for law in body))
-    figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), sharey=True, layout="constrained")
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), sharey=True, layout="constrained", dpi=110)
     for axis, (body, of_law) in zip(axes, sorted(curves.items()), strict=True):
         for law, (x, y) in of_law.items():
             # Delay of strength and of pressure agree where there is no slope: dashes show both.
@@ -31,8 +34,8 @@ def main(table, picture):
     handles = {label: h for axis in axes for h, label in zip(*axis.get_legend_handles_labels(), strict=True)}
     axes[1].legend([handles[law] for law in laws], laws, fontsize=7)
     axes[0].set_ylim(1e-2, 1e5)
-    figure.savefig(picture, dpi=110)
+    write_figure(picture, figure)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:3])
+    sys.exit(run(__file__, lambda: main(*map(Path, sys.argv[1:3]))))

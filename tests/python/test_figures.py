@@ -18,7 +18,7 @@ from slipfront.figures.__main__ import draw_all, main
 from slipfront.figures.main_fronts import drawn_fronts, main_fronts
 from slipfront.figures.results import read_results
 from slipfront.figures.statements import STATEMENTS
-from slipfront.figures.style import RC
+from slipfront.figures.style import EVENT_STYLES, RC
 from synthetic import (
     CONTACT_FROM_M,
     CONTACT_TO_M,
@@ -316,6 +316,55 @@ def test_figure_6_shows_the_interval_of_our_fit(output, results):
     for x, bottom, top in zip(r, low, high, strict=True):
         there = corners[np.isclose(corners[:, 0], x)][:, 1]
         assert (there.min(), there.max()) == pytest.approx((bottom, top))
+
+
+def add_second_test(output, **change):
+    """C18b, whose fit is that of the main fronts."""
+    file = output / "scorecard.json"
+    values = {"rms": 0.065, "a": 0.8, "b": 2.14, "c": 3.56}
+    row = {"id": "C18b", "claim": "x", "paper": "Fig. 6", "measured": "a = 0.80 [0.71, 0.86] & more", "how": "y"}
+    row |= {"holds": False, "counts": True, "second_test_of": "C18", "why": "z"}
+    row["figures"] = [{"name": name, "value": value, "unit": ""} for name, value in values.items()]
+    file.write_text(json.dumps([*json.loads(file.read_text()), row | change]))
+    return read_results(output)
+
+
+def test_figure_6_shows_the_fit_that_counts(output, results):
+    assert "judging_fit" not in gids(criteria.energy(results).figure)  # an older folder has none
+    drawing = criteria.energy(add_second_test(output))
+    curve = artist(drawing.figure, "judging_fit")
+    r = np.asarray(curve.get_xdata())
+    np.testing.assert_allclose(curve.get_ydata(), 0.8 + 2.14 * np.exp(-3.56 * np.sqrt(r)))
+    texts = [text.get_text() for text in drawing.figure.legends[0].get_texts()]
+    assert texts[-2:] == ["fit to all points (C18)", "fit to main fronts (C18b)"]
+    assert "all points of the program's fronts, those of the thin lines too (C18, the first test)" in drawing.caption
+    assert (
+        "main fronts without their last 20 mm (C18b, the test that counts): a = 0.80 [0.71, 0.86] &amp; more."
+        in drawing.caption
+    )
+
+
+def test_a_second_test_without_numbers_or_that_does_not_count(output):
+    assert add_second_test(output, figures=[{"name": "a", "value": 0.8}, 1]).judging_fit is None
+    (output / "scorecard.json").write_text("[]")
+    drawing = criteria.energy(add_second_test(output, counts=False))
+    assert "judging_fit" in gids(drawing.figure) and "that counts" not in drawing.caption
+
+
+def test_report_tells_both_fits(output):
+    add_second_test(output)
+    assert main([str(output)]) == 0
+    html = (output / "figures/index.html").read_text(encoding="utf-8").split('<h2 id="fit">')[1]
+    table, rest = html.split("</table>")[:2]
+    header = re.findall(r"<th>(.*?)</th>", table)
+    assert header[1] == "All points (C18)" and header[4] == "Main fronts without their last 20 mm (C18b)"
+    rows = [re.findall(r"<td>(.*?)</td>", row) for row in re.findall(r"<tr>(.*?)</tr>", table)[1:]]
+    assert rows == [
+        ["<i>a</i>", "0.500", "0.450 to 0.550", "0.76 ± 0.07", "0.800"],
+        ["<i>b</i>", "1.700", "1.500 to 1.900", "1.80", "2.140"],
+        ["<i>c</i>", "2.000", "1.800 to 2.200", "3.05", "3.560"],
+    ]
+    assert 'C18b in the scorecard: "a = 0.80 [0.71, 0.86] &amp; more". This test counts.' in rest
 
 
 def test_figure_6_without_a_fit(output):
@@ -761,11 +810,22 @@ def test_numbers_above_the_axis_stand_side_by_side(results):
         studies.draw_values(ax, results.studies[0], values, 0.0, 4.0, gid, linestyle="-", color="black")
     offsets = [(text.get_gid(), text.xy[0], text.xyann[0]) for text in ax.texts]
     assert offsets == [
-        ("first:above", 0, 0),
-        ("first:above", 2, 0),
-        ("second:above", 0, 7.5),
-        ("second:above", 2, 7.5),
+        ("first:above", 0, 12.0),
+        ("first:above", 2, 12.0),
+        ("second:above", 0, 19.5),
+        ("second:above", 2, 19.5),
     ]
+
+
+def test_numbers_above_the_axis_lie_on_no_marker(results):
+    figure = studies.speeds(results).figure
+    with matplotlib.rc_context(RC):
+        figure.canvas.draw()
+    ax = figure.axes[study_panels(figure, 0)[0]]
+    numbers = [t.get_window_extent() for t in ax.texts if str(t.get_gid()).endswith(":above")]
+    points = [ax.transData.transform(xy) for line in ax.lines[:-2] for xy in line.get_xydata()]
+    assert numbers and points
+    assert not any(number.contains(*xy) for number in numbers for xy in points)
 
 
 def test_studies_mark_the_papers_value(results):
@@ -776,6 +836,46 @@ def test_studies_mark_the_papers_value(results):
     np.testing.assert_allclose(artist(figure, "rms").get_ydata(), [0.11, 0.11, np.nan])
     np.testing.assert_allclose(artist(figure, "spread:t_s_over_p_s", 1).get_ydata(), 0.31)
     assert np.isnan(artist(figure, "spread:energy", 1).get_ydata()).all()
+
+
+def studies_of_trigger(output):
+    """The study of the mesh becomes one of the trigger zone, in which the edges' runs differ."""
+    analysis = json.loads((output / "analysis.json").read_text())
+    study = analysis["studies"][1]
+    study |= {"name": "trigger_zone", "parameter": "event.trigger_zone_m"}
+    (point,) = study["points"]
+    study["points"] = [point | {"value": str(v), "number": v} for v in (0.005, 0.01, 0.015)]
+    (output / "analysis.json").write_text(json.dumps(analysis))
+    for name, zone_m in (("left", 15e-3), ("right", 5e-3), ("spontaneous", 7e-3)):
+        case = output / name / "case.resolved.toml"
+        text, n = re.subn(r"(?m)^trigger_zone_m = .*$", f"trigger_zone_m = {zone_m}", case.read_text())
+        assert n == 1
+        case.write_text(text)
+    return read_results(output)
+
+
+def test_studies_mark_the_values_of_runs_that_differ_in_their_colours(output):
+    results = studies_of_trigger(output)
+    for draw in (studies.speeds, studies.criteria):
+        figure = draw(results).figure
+        panel = study_panels(figure, 1)[0]
+        for event, index in (("left", 2), ("right", 0)):
+            stripe = artist(figure, f"paper_value:{event}", panel)
+            assert stripe.get_xdata()[0] == index and stripe.get_color() == EVENT_STYLES[event].colour
+        assert not {"paper_value", "paper_value:spontaneous"} & gids(figure, panel)
+        assert "paper_value" in gids(figure, 0)
+        texts = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert texts[-3:] == [f"value of the {x}" for x in ("paper's runs", "left-triggered run", "right-triggered run")]
+
+
+def test_report_names_the_runs_whose_values_differ(output):
+    studies_of_trigger(output)
+    assert main([str(output)]) == 0
+    html = (output / "figures/index.html").read_text(encoding="utf-8")
+    assert '<td><b>15</b> <span class="note">left</span></td>' in html
+    assert '<td><b>5</b> <span class="note">right</span></td>' in html
+    assert "<td>10</td>" in html
+    assert "<td><b>0.6</b></td>" in html  # the same in all events
 
 
 # Missing data

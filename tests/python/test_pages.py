@@ -17,6 +17,7 @@ from synthetic_study import write_open_choices
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 OLD = "x" * 8192 + "\n"  # of a page's text: more than a file may have on the full disk below
+TEXTS = ("stale", "kept", "stale", "kept")  # within and behind a pair of marks
 
 
 @dataclass
@@ -74,7 +75,7 @@ def verification(folder: Path) -> Pages:
 @pytest.fixture(params=[open_choices, scorecard, verification])
 def pages(request, tmp_path) -> Pages:
     made = request.param(tmp_path)
-    made.page.write_text(OLD + "\nstale\n".join(made.marks) + "\n")
+    made.page.write_text(OLD + "".join(f"{mark}\n{text}\n" for mark, text in zip(made.marks, TEXTS, strict=False)))
     write_checksums(made.results)
     return made
 
@@ -85,6 +86,7 @@ def test_a_page_is_renewed_once_and_for_all(pages):
     text = pages.page.read_text()
     assert text.startswith(OLD) and "stale" not in text and "|---|" in text
     assert all(text.count(mark) == 1 for mark in pages.marks)
+    assert text.count("\nkept\n") == len(pages.marks) // 2
     assert pages.run().returncode == 0 and pages.page.read_text() == text
 
 
@@ -150,3 +152,14 @@ def test_a_full_disk_leaves_the_page_as_it_was(pages):
 def test_without_arguments_the_usage_is_told(script):
     done = subprocess.run([sys.executable, SCRIPTS / script], capture_output=True, text=True, timeout=120)
     assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("script", ["stability-figure.py", "reflection-figure.py"])
+@pytest.mark.parametrize("name, says", [("picture", "must end with"), ("picture.png", "not a regular file")])
+def test_scripts_that_draw_replace_pictures_alone(tmp_path, script, name, says):
+    (tmp_path / "mine").write_text("mine")
+    (tmp_path / name).symlink_to(tmp_path / "mine")
+    command = [sys.executable, SCRIPTS / script, tmp_path / "table.csv", tmp_path / name]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and says in done.stderr
+    assert (tmp_path / name).is_symlink() and (tmp_path / "mine").read_text() == "mine"

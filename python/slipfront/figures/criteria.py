@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from html import escape
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -23,7 +24,7 @@ from slipfront.figures.main_fronts import (
     main_fronts,
     tail,
 )
-from slipfront.figures.results import HIGH_MU_K, Results
+from slipfront.figures.results import HIGH_MU_K, JudgingFit, Results
 from slipfront.read import Front, Run
 
 SELECTION = (
@@ -259,10 +260,27 @@ def draw_own_fit(ax: Axes, results: Results, r: np.ndarray) -> tuple:
     look = {"color": FIT_COLOUR, "linestyle": (0, (1, 1)), "linewidth": 1.4}
     ax.plot(r, results.fit(r), gid="fit", zorder=2.2, **look)
     if len(results.fit_interval) == 0:
-        return (Line2D([], [], label="this program's fit", **look),)
+        return (Line2D([], [], label="fit to all points (C18)", **look),)
     shade = {"color": FIT_COLOUR, "alpha": 0.22, "linewidth": 0}
     ax.fill_between(*results.fit_interval.T, gid="fit_interval", zorder=0.3, **shade)
-    return Patch(**shade), Line2D([], [], label="this program's fit, interval", **look)
+    return Patch(**shade), Line2D([], [], label="fit to all points (C18)", **look)
+
+
+def draw_judging_fit(ax: Axes, judging: JudgingFit, r: np.ndarray) -> Line2D:
+    """The curve of the second test; returns its legend entry."""
+    look = {"color": FIT_COLOUR, "linestyle": "-", "linewidth": 1.0}
+    ax.plot(r, judging.fit(r), gid="judging_fit", zorder=2.3, **look)
+    return Line2D([], [], label=f"fit to main fronts ({judging.id})", **look)
+
+
+def judging_sentence(judging: JudgingFit | None) -> str:
+    if judging is None:
+        return ""
+    role = ", the test that counts" if judging.counts else ""
+    return (
+        f" Solid: fitted to the main fronts without their last {1e3 * TAIL_M:g} mm ({judging.id}{role}): "
+        f"{escape(judging.measured)}."
+    )
 
 
 def fit_sentence(results: Results) -> str:
@@ -281,7 +299,8 @@ def fit_sentence(results: Results) -> str:
     )
     return (
         f"{text}Dotted: the same law fitted to all points of the program's fronts, those of the thin lines "
-        f"too, {', '.join(values)}; shaded: the curve's bootstrap interval."
+        f"too (C18, the first test), {', '.join(values)}; shaded: the curve's bootstrap interval."
+        f"{judging_sentence(results.judging_fit)}"
     )
 
 
@@ -295,6 +314,8 @@ def energy(results: Results) -> Drawing:
     fits = [draw_paper_fit(ax, results, r)]
     if results.fit is not None:
         fits.append(draw_own_fit(ax, results, r))
+    if results.fit is not None and results.judging_fit is not None:
+        fits.append(draw_judging_fit(ax, results.judging_fit, r))
     ax.set(xlabel=style.ENERGY_LABEL, ylabel=style.V_LABEL)
     ax.set_xlim(0, right)
     outside = finish(ax, results.events[0])
@@ -303,7 +324,7 @@ def energy(results: Results) -> Drawing:
     for handle in handles:
         handle.set_linestyle("none")
     tails = Line2D([], [], color="0.6", linestyle="none", marker="o", label=f"pale: last {1e3 * TAIL_M:g} mm")
-    handles += [*style.fill_handles(), style.pale_handle(), tails, *fits]
+    handles += [tails, *style.fill_handles(), style.pale_handle(), *fits]
     style.legend_below(figure, handles, 3)
     return Drawing(
         "fig6_energy",

@@ -9,9 +9,10 @@ from html import escape
 from pathlib import Path
 
 from slipfront.figures.drawing import Drawing
-from slipfront.figures.results import VARIATIONS, Results
+from slipfront.figures.main_fronts import TAIL_M
+from slipfront.figures.results import VARIATIONS, JudgingFit, Results
 from slipfront.figures.statements import STATEMENTS
-from slipfront.figures.studies import is_another, paper_value
+from slipfront.figures.studies import is_another, paper_values
 from slipfront.figures.study import SPREADS
 from slipfront.figures.style import COLUMN_MM, TEXT_MM
 from slipfront.files import is_number
@@ -158,8 +159,16 @@ def scorecard_summary(scorecard: list[dict]) -> str:
     return summary
 
 
+def judging_note(judging: JudgingFit) -> str:
+    """The intervals of the second test's fit are in the scorecard's words alone."""
+    role = " This test counts." if judging.counts else ""
+    return f'<p>{escape(judging.id)} in the scorecard: "{escape(judging.measured)}".{role}</p>'
+
+
 def fit_table(results: Results) -> str:
+    """The fit to all points and the second test's beside the paper's."""
     fit = results.analysis["fit"] or {}  # its numbers were read already
+    judging = results.judging_fit
     rows = []
     for name in ("a", "b", "c"):
         own = fit.get(name)
@@ -169,10 +178,17 @@ def fit_table(results: Results) -> str:
         if name == "a":
             paper += f" ± {results.paper_a_band:.2f}"
         rows.append([f"<i>{name}</i>", formatted(own.get("value"), ".3f"), interval, paper])
-    return table(["", "This program", "Confidence interval", "Paper"], rows) + (
-        f"<p>Points: {text(fit.get('n_points'))}; rms about the fit: "
+        if judging is not None:
+            rows[-1].append(formatted(getattr(judging.fit, name), ".3f"))
+    header = ["", "All points (C18)", "Confidence interval", "Paper"]
+    if judging is not None:
+        header.append(f"Main fronts without their last {1e3 * TAIL_M:g} mm ({escape(judging.id)})")
+    return (
+        table(header, rows)
+        + f"<p>All points (C18). Points: {text(fit.get('n_points'))}; rms about the fit: "
         f"{formatted(fit.get('rms_over_c_L'), '.3f')} c<sub>L</sub>; within the paper's band: "
         f"{formatted(results.analysis.get('share_in_paper_band'), '.0f', 100)} % of the points.</p>"
+        + (judging_note(judging) if judging is not None else "")
     )
 
 
@@ -222,20 +238,28 @@ STUDY_FRONTS = (("left", 1), ("spontaneous", -1), ("spontaneous", 1), ("right", 
 STUDY_EVENTS = ("left", "spontaneous", "right")
 
 
+def value_html(value: str, index: int, paper: dict[str, int]) -> str:
+    """A study's value; bold where it is that of a run of the paper, with the events where they differ."""
+    events = [event for event in paper if paper[event] == index]
+    if not events:
+        return escape(value)
+    names = f' <span class="note">{", ".join(events)}</span>' if len(set(paper.values())) > 1 else ""
+    return f"<b>{escape(value)}</b>{names}"
+
+
 def study_table(results: Results) -> str:
     """One row for each value of each study."""
     rows = []
     for study in results.studies:
-        paper = paper_value(study, results.runs["left"])
+        paper = paper_values(results, study)
         unit = f" ({study.unit[0]})" if study.numeric and study.unit[0] else ""
         first = (
             f'<td rowspan="{len(study.points)}"><b>{escape(study.name.replace("_", " "))}</b>{unit}<br>'
             f'<span class="note">{escape(study.why)}; <code>{escape(study.parameter)}</code></span></td>'
         )
         for i, point in enumerate(study.points):
-            value = escape(study.shown(point))
             cells = [first] if i == 0 else []
-            cells.append(f"<td><b>{value}</b></td>" if i == paper else f"<td>{value}</td>")
+            cells.append(f"<td>{value_html(study.shown(point), i, paper)}</td>")
             for key in STUDY_FRONTS:
                 front = point.fronts.get(key)
                 if front is None:
@@ -326,7 +350,8 @@ def study_section(results: Results) -> list[str]:
         return []
     return [
         '<h2 id="studies-table">Studies</h2>',
-        "<p>How much the results depend on each parameter; bold: the value of the paper's runs. Speeds: of "
+        "<p>How much the results depend on each parameter; bold: the value of the paper's runs, with their names "
+        "where they differ. Speeds: of "
         "the longest front of an event in its direction, * where it starts more than 10 mm from that of the "
         "paper's run. Change: median over the interface of the change of V<sub>tip</sub> against the "
         "reference run. Fit: about each value's own a + b exp(−c √r), and the share of its points within the "

@@ -14,6 +14,7 @@ from slipfront.folder import belongs, located, result_file
 from slipfront.read import Run, read_experiment, read_run
 
 EVENTS = ("left", "spontaneous", "right")  # the three events of one initial state
+FITTED_CLAIM = "C18"  # the energy criterion
 HIGH_MU_K = "spontaneous_mu_k_1.0"
 # Columns of `slipfront reproduce --sensitivity`.
 VARIATIONS = {"mesh_variation": "With the mesh, moves by", "step_variation": "With the step, moves by"}
@@ -29,6 +30,27 @@ class Fit:
 
     def __call__(self, r: np.ndarray) -> np.ndarray:
         return self.a + self.b * np.exp(-self.c * np.sqrt(r))
+
+
+@dataclass(frozen=True)
+class JudgingFit:
+    """The fit to the main fronts without their ends, of the scorecard's second test."""
+
+    id: str
+    fit: Fit
+    measured: str  # the same with intervals, as the scorecard words it
+    counts: bool
+
+
+def read_judging_fit(row: dict) -> JudgingFit | None:
+    """From a scorecard's row, where it has all three numbers."""
+    figures = row.get("figures")
+    entries = [entry for entry in figures if isinstance(entry, dict)] if isinstance(figures, list) else []
+    values = {entry.get("name"): entry.get("value") for entry in entries if is_number(entry.get("value"))}
+    if not {"a", "b", "c"} <= values.keys():
+        return None
+    fit = Fit(values["a"], values["b"], values["c"])
+    return JudgingFit(row["id"], fit, str(row["measured"]), row.get("counts", False))
 
 
 @dataclass(frozen=True)
@@ -58,6 +80,12 @@ class Results:
     def claims(self, name: str) -> list[dict]:
         """The scorecard's rows of a claim: its first test and, where there is one, its second."""
         return [row for row in self.scorecard if name in (row["id"], row.get("second_test_of"))]
+
+    @property
+    def judging_fit(self) -> JudgingFit | None:
+        """The fit of the second test of the energy criterion; None where it was not done."""
+        rows = [row for row in self.scorecard if row.get("second_test_of") == FITTED_CLAIM]
+        return read_judging_fit(rows[0]) if rows else None
 
     @property
     def mark(self) -> str:

@@ -9,18 +9,22 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.transforms import blended_transform_factory
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import main_fronts
-from slipfront.figures.results import Results
+from slipfront.figures.results import EVENTS, Results
 from slipfront.figures.study import Study, StudyPoint
 from slipfront.read import Run
 
 COLUMNS = 3
 CELL_MM = 48.0  # height of a pair of panels
 LEGEND_MM = 16.0  # above the panels, where they leave no room for it
+BESIDE_MARKERS_PT = 12.0  # from a value to a number written beside its markers
+NUMBER_PT = 7.5  # width of such a number
+MOST_WITH_ROOM = 4  # values of a panel that leave room for one right of the last
 HIGHEST_V = 4.5
 HIGHEST_RMS = 0.3
 HIGHEST_SPREAD = 1.0
@@ -66,6 +70,38 @@ def paper_value(study: Study, run: Run) -> int | None:
     return None
 
 
+def paper_values(results: Results, study: Study) -> dict[str, int]:
+    """For each event of the study whose paper's run has one of its values, the index of that."""
+    told = {event for point in study.points for event, _ in point.fronts}
+    found = {event: paper_value(study, results.runs[event]) for event in EVENTS if event in told}
+    return {event: index for event, index in found.items() if index is not None}
+
+
+def draw_paper_values(ax: Axes, results: Results, study: Study) -> None:
+    """A grey stripe, or, where the events have different values, one in the colour of each."""
+    values = paper_values(results, study)
+    events = {index: [event for event in values if values[event] == index] for index in values.values()}
+    for index, same in events.items():
+        colour = "0.75" if len(events) == 1 else style.EVENT_STYLES[same[0]].colour
+        alpha = 0.4 if len(events) == 1 else 0.2
+        gid = "paper_value" if len(events) == 1 else f"paper_value:{','.join(same)}"
+        ax.axvline(index, color=colour, linewidth=6, alpha=alpha, zorder=0.2, gid=gid)
+
+
+def paper_value_handles(results: Results) -> list[Patch]:
+    """Legend entries of the stripes."""
+    handles = [Patch(facecolor="0.75", alpha=0.4, label="value of the paper's runs")]
+    differing = set()
+    for study in results.studies:
+        values = paper_values(results, study)
+        differing |= set(values) if len(set(values.values())) > 1 else set()
+    for event in EVENTS:
+        if event in differing:
+            look = style.EVENT_STYLES[event]
+            handles.append(Patch(facecolor=look.colour, alpha=0.2, label=f"value of the {look.label} run"))
+    return handles
+
+
 def title(study: Study) -> str:
     """Name of the parameter, with the unit of its values."""
     unit = f" ({study.unit[0]})" if study.unit[0] and study.numeric else ""
@@ -81,14 +117,15 @@ def draw_values(
     line = look.pop("linestyle")
     inside = np.where(y > top, np.nan, y)
     ax.plot(x, inside, linestyle=line if study.numeric else "none", gid=gid, **look)
-    for xi, yi in zip(x[y > top], y[y > top], strict=True):
-        # Beside those that other fronts have at the same value.
-        beside = sum(str(t.get_gid()).endswith(":above") and abs(t.xy[0] - xi) < 0.5 for t in ax.texts)
+    for i in np.flatnonzero(y > top):
+        # Beside the markers, and beside the numbers that other fronts have at the same value.
+        n_there = sum(str(t.get_gid()).endswith(":above") and t.xy[0] == i for t in ax.texts)
+        side = -1 if i == len(y) - 1 and len(y) > MOST_WITH_ROOM else 1
         ax.annotate(
-            f"{yi:.3g}↑",
-            (xi, 1),
+            f"{y[i]:.3g}↑",
+            (i, 1),
             xycoords=blended_transform_factory(ax.transData, ax.transAxes),
-            xytext=(7.5 * beside, -1),
+            xytext=(side * (BESIDE_MARKERS_PT + NUMBER_PT * n_there), -1),
             textcoords="offset points",
             ha="center",
             va="top",
@@ -194,12 +231,10 @@ def small_multiples(results: Results, upper, lower, labels: tuple[str, str], han
                 ax.yaxis.set_label_coords(-0.17, 0.5)
             else:
                 ax.tick_params(axis="y", labelleft=False)
-            paper = paper_value(study, results.runs["left"])
-            if paper is not None:
-                ax.axvline(paper, color="0.75", linewidth=6, alpha=0.4, zorder=0.2, gid="paper_value")
+            draw_paper_values(ax, results, study)
         pair[1].set_xticklabels([study.shown(point).replace("fillet ", "fillet\n") for point in study.points])
         pair[0].set_title(title(study), loc="left", fontweight="bold", pad=3)
-    place_legend(figure, handles, n_free, height_mm)
+    place_legend(figure, [*handles, *paper_value_handles(results)], n_free, height_mm)
     return figure
 
 
@@ -219,10 +254,11 @@ def handle(label: str, **look) -> Line2D:
 
 SETTING = (
     "One pair of panels per parameter, all else as in the paper's runs; its values at equal distances. Broad "
-    "grey stripe: the value of the paper's runs."
+    "grey stripe: the value of the paper's runs; where their triggers differ, a stripe in the colour of each."
 )
 LEFT_OUT = (
-    "Numbers with an arrow lie above the axis. Left out as in the scorecard: points in and next to trigger "
+    "Numbers with an arrow lie above the axis, at the value to their left, at the last of many to their right. "
+    "Left out as in the scorecard: points in and next to trigger "
     "zones and within 5 mm of spontaneous nucleation."
 )
 
@@ -266,5 +302,5 @@ def criteria(results: Results) -> Drawing:
         "the half width of the paper's band. Lower panels: median relative spread of V<sub>tip</sub> between "
         "the fronts at equal t<sub>s</sub>/p<sub>s</sub>, t<sub>d</sub>/p<sub>d</sub> and (U<sub>r</sub> − "
         "U<sub>s</sub>)/U<sub>s</sub>. The studies of the trigger have two events instead of three, that of "
-        f"the loading method one: their levels compare only among themselves. {LEFT_OUT.split('.')[0]}.",
+        f"the loading method one: their levels compare only among themselves. {LEFT_OUT.split(' Left out')[0][:-1]}.",
     )
