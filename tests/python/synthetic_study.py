@@ -198,17 +198,24 @@ def write_open_choices(folder: Path) -> Path:
         ("triggers", chosen | {"left_zone_m": 0.012346}, "hold", 1.1, 2.0, 3.0, 0.76),
         ("all", standard | {"corner": "fillet 10 mm"}, "do not", 3.2, 2.0, 3.0, 0.31),
         ("all", standard, "do not", 1.0, 2.0, 0, 0.35),
+        ("about the chosen", chosen | {"left_form": "weakened"}, "do not", 0, 2.0, 3.0, 0.83),
+        ("about the chosen", chosen | {"left_zone_m": 0.015}, "hold", 0.9, 2.0, 3.0, 0.8),
+        ("about the chosen", standard, "do not", 1.8, 2.0, 3.0, 0.66),
     ]
     header = ["set", *standard, "constraints", *(f"{e}_max_over_c_L" for e in ("left", "spontaneous", "right"))]
     rows = [
-        [name, *(v if isinstance(v, str) else f"{v:.4g}" for v in values.values()), *rest]
+        [name, *(v if isinstance(v, str) else f"{v:g}" for v in values.values()), *rest]
         for name, values, *rest in samples
     ]
     write_csv(folder / "open_choices.csv", [*header, "share_in_band"], rows)
 
-    def claim(name: str, holds: bool, turns: list) -> dict:
+    def turns(*levels: tuple) -> list:
+        return [{"choice": choice, "level": level} for choice, level in levels]
+
+    def claim(name: str, holds: bool, turns: list, about_chosen: list) -> dict:
         shares = {"share_of_triggers": 1.0, "share_of_triggers_with_fronts": None, "share_of_all": 0.5}
-        return {"id": name, "holds": holds, **shares, "turns": turns}
+        about = {"holds": True, "turns": about_chosen}
+        return {"id": name, "holds": holds, **shares, "turns": turns, "about_chosen": about}
 
     def outcome(name: str, values: dict, hold: bool) -> dict:
         fit = {k: {"value": v, "low": v - 0.1, "high": v + 0.1} for k, v in zip("abc", (0.8, 2, 3), strict=True)}
@@ -220,12 +227,13 @@ def write_open_choices(folder: Path) -> Path:
     )
     summary = {
         "version": "0",
+        "quick": False,
         **{f"n_{name}": n for n, name in enumerate(counts.split())},
         "wanted_share_in_band": 0.8,
         "choices": [open_choice(name, values, standard[name]) for name, values in levels.items()],
         "matrix": [
-            claim("C2", True, [{"choice": "left_form", "level": "weakened"}]),
-            claim("C11", False, [{"choice": "left_added", "level": 10.0}]),
+            claim("C2", True, turns(("left_form", "weakened")), turns(("left_form", "weakened"))),
+            claim("C11", False, turns(("left_added", 10.0)), turns(("left_added", 5.0))),
         ],
         "region": {name: [] for name in levels} | {"left_added": [9.0, 10.0]},
         "standard": outcome("standard", standard, False),

@@ -62,7 +62,21 @@ def test_a_damaged_study_is_refused(study, capsys, name):
     assert not (study / "figures").exists()
 
 
-def test_cells_tell_where_a_verdict_turns(study):
+def test_cells_tell_where_a_verdict_turns_about_the_chosen_sample(study):
+    figure = open_choices.draw(study).figure
+    colours = {
+        "C2:left_form": open_choices.TURNS_OFF,
+        "C2:left_zone_m": open_choices.HOLDS,
+        "C11:left_added": open_choices.TURNS_OFF,
+        "C11:left_zone_m": open_choices.HOLDS,
+    }
+    for gid, colour in colours.items():
+        cell = artist(figure, gid)
+        assert to_hex(cell.get_facecolor()) == colour and not cell.get_hatch()
+
+
+def test_cells_tell_where_a_verdict_turns_about_the_standard_where_none_was_chosen(study):
+    change_summary(study, lambda s: s.update(chosen=None))
     figure = open_choices.draw(study).figure
     colours = {
         "C2:left_form": open_choices.TURNS_OFF,
@@ -94,7 +108,8 @@ def test_every_sample_with_fronts_at_both_edges_is_a_point(study):
         "triggers": np.empty((0, 2)),
         "pairs": np.empty((0, 2)),
         "all": [[1.6, 31], [np.nan, 35]],
-        "hold": [[0.5, 75], [0.55, 76]],
+        "about the chosen": [[0, 83], [0.9, 66]],
+        "hold": [[0.5, 75], [0.55, 76], [0.45, 80]],
         "chosen": [[0.5, 75]],
     }
     assert points.keys() == expected.keys()
@@ -143,7 +158,7 @@ def test_the_texts_of_cells_stay_inside(study):
     """With all levels of the widest choice."""
     levels = ["none", "fillet 2 mm", "fillet 10 mm"]
     turns = [{"choice": "corner", "level": level} for level in levels]
-    change_summary(study, lambda s: s["matrix"][0].update(turns=turns))
+    change_summary(study, lambda s: s["matrix"][0]["about_chosen"].update(turns=turns))
     change_summary(study, lambda s: s.update(matrix=25 * s["matrix"][:1]))
     change_summary(study, lambda s: s.update(choices=5 * s["choices"][-1:] + 14 * s["choices"][:1]))
     drawing = open_choices.draw(study)
