@@ -220,7 +220,8 @@ class Pulse : public ::testing::TestWithParam<std::tuple<bool, int>> {
 INSTANTIATE_TEST_SUITE_P(Waves, Pulse, ::testing::Combine(::testing::Bool(), ::testing::Values(1, 4)));
 
 TEST_P(Pulse, IsReflectedAndTransmittedByTheImpedances) {
-  const auto [shear, substeps] = GetParam();
+  const bool shear = std::get<0>(GetParam());
+  const int substeps = std::get<1>(GetParam());
   auto above = pmma, below = gel;
   above.stiffness_damping_s = below.stiffness_damping_s = 0;
   const auto speed = [&](const solid::Material& m) {
