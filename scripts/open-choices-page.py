@@ -31,10 +31,9 @@ def table(header: list[str], rows: list[list[str]]) -> str:
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
 
 
-def in_use(name: str, values: dict[str, Any]) -> bool:
-    """An amount counts with its form alone."""
-    edge, _, what = name.partition("_")
-    return what not in ("added", "raised") or values[f"{edge}_form"] == what
+def in_use(choice: dict[str, Any], values: dict[str, Any]) -> bool:
+    """Whether a choice has a part among such values."""
+    return not choice["decided_by"] or values[choice["decided_by"]] in choice["counts_with"]
 
 
 def choices(study: dict[str, Any]) -> str:
@@ -50,7 +49,7 @@ def choices(study: dict[str, Any]) -> str:
                 choice["why"],
                 told(choice["standard"]),
                 range_of(region[name]) or "-",
-                told(chosen["values"][name]) if chosen and in_use(name, chosen["values"]) else "-",
+                told(chosen["values"][name]) if chosen and in_use(choice, chosen["values"]) else "-",
             ]
         )
     return table(["choice", "key", "range", "reason", "standard", "region found", "chosen"], rows)

@@ -330,8 +330,7 @@ std::vector<Entry> make_common_entries() {
                          {"raised", TriggerForm::raised},
                          {"weakened", TriggerForm::weakened}},
                         "tangential traction added, or raised to a multiple of mu_s p_s, in the direction in "
-                        "which the zone "
-                        "is loaded, or mu = mu_k from the start"),
+                        "which the zone is loaded, or mu = mu_k from the start"),
       number("event.trigger_zone_m", at(&Case::trigger, &Trigger::zone_m), above(0),
              "length of the trigger zone, inward from the outermost node in contact"),
       only_with(pushed, number("event.trigger_amount", at(&Case::trigger, &Trigger::amount), at_least(0),

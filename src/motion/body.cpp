@@ -54,9 +54,12 @@ double Body::step_s(mesh::Node n) const {
   return levels_.is_orphan[n] ? 0 : levels_.level[levels_.level_of_node[n]].step_s;
 }
 
-void Body::start(const solid::Field& u_m, const solid::Field& v_m_per_s) {
+void Body::start(const solid::Field& u_m, const solid::Field& u_per_shear, double top_speed_m_per_s) {
   plate_.u_m = u_m;
-  plate_.v_m_per_s = v_m_per_s;
+  for (std::size_t n = 0; n < plate_.v_m_per_s.size(); ++n) {
+    plate_.v_m_per_s.x[n] = top_speed_m_per_s * u_per_shear.x[n];
+    plate_.v_m_per_s.y[n] = top_speed_m_per_s * u_per_shear.y[n];
+  }
   for (auto& level : levels_.level)
     if (!level.shared.node.empty()) find_steady_force(level);
   to_single(plate_, single_);

@@ -57,9 +57,10 @@ class Body {
   /// With which a node moves.
   double step_s(mesh::Node n) const;
 
-  /// Begins the motion at a place of equilibrium: what the levels do to each other there is kept as a steady
-  /// force, without which a stressed body at rest would not stay at rest.
-  void start(const solid::Field& u_m, const solid::Field& v_m_per_s);
+  /// Begins the motion at a place of equilibrium, with the velocity that the top's gives to u_per_shear: what
+  /// the levels do to each other there is kept as a steady force, without which a stressed body at rest would
+  /// not stay at rest.
+  void start(const solid::Field& u_m, const solid::Field& u_per_shear, double top_speed_m_per_s);
 
   /// The step of the stepper that is under way.
   BodyStep& under_way(std::int64_t step) { return under_way_[step % std::ssize(under_way_)]; }

@@ -10,13 +10,6 @@ namespace slipfront::motion {
 
 namespace {
 
-/// Velocity of an interface node with a dashpot before the contact's part: its tractions act on the effective
-/// mass m (1 + d).
-void damp_trial(const Dashpot& dashpot, double v_x_before, double v_y_before, double& v_x, double& v_y) {
-  v_x = (v_x - dashpot.d_x * v_x_before) / (1 + dashpot.d_x);
-  v_y = (v_y - dashpot.d_y * v_y_before) / (1 + dashpot.d_y);
-}
-
 double dashpot_work(const Dashpot& dashpot, double mass_kg, double mean_x, double mean_y) {
   return -2 * mass_kg * (dashpot.d_x * mean_x * mean_x + dashpot.d_y * mean_y * mean_y);
 }
@@ -27,7 +20,6 @@ Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body>
     : contact_(contact),
       face_(bodies.front().lower().size()),
       tributary_m_(bodies.front().tributary_m()),
-      mass_kg_(bodies.front().lower_mass_kg()),
       v_x_before_(face_.size()),
       v_y_before_(face_.size()),
       v_x_trial_(face_.size()),
@@ -49,7 +41,7 @@ Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body>
   contact_mass_kg_ = mass_y.front();
   for (std::size_t i = 0; i < face_.size(); ++i) {
     face_.initial_gap_m[i] = bodies.front().lower_y_m()[i];
-    face_.mass_per_length_kg_m2[i] = mass_kg_[i] / tributary_m_[i];
+    face_.mass_per_length_kg_m2[i] = bodies.front().lower_mass_kg()[i] / tributary_m_[i];
   }
   for (const auto& dashpot : bodies.front().contact_dashpots()) {
     face_.mass_per_length_kg_m2[dashpot.at] *= 1 + dashpot.d_y;
@@ -70,7 +62,6 @@ Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body>
   }
   for (std::size_t i = 0; i < face_.size(); ++i) {
     face_.initial_gap_m[i] += bodies[1].lower_y_m()[i];
-    mass_kg_[i] = of_pair(bodies[0].lower_mass_kg()[i], bodies[1].lower_mass_kg()[i]);
     contact_mass_kg_[i] = of_pair(mass_y[0][i], mass_y[1][i]);
     face_.mass_per_length_kg_m2[i] = contact_mass_kg_[i] / tributary_m_[i];
     face_.tangential_mass_ratio[i] = of_pair(mass_x[0][i], mass_x[1][i]) / contact_mass_kg_[i];
@@ -138,7 +129,7 @@ void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, Record
   std::swap(face_.v_x_m_per_s, v_x_before_);
   std::swap(face_.v_y_m_per_s, v_y_before_);
   if (sides_.empty())
-    gather(bodies, dt_s, impulse_s);
+    gather(bodies.front(), dt_s, impulse_s);
   else
     gather_both(bodies, dt_s, impulse_s);
   std::ranges::copy(face_.v_y_m_per_s, v_y_trial_.begin());
@@ -152,49 +143,40 @@ void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, Record
   add_works_of_loads(bodies, dt_s, impulse_s, works);
 }
 
-void Coupling::gather(std::span<const Body> bodies, double dt_s, double impulse_s) {
-  const auto& body = bodies.front();
-  const auto& u = body.u_m();
-  const auto& v = body.v_m_per_s();
+void Coupling::take_trial(const Body& body, double sign, double dt_s, double impulse_s,
+                          const std::vector<double>& v_x_before, const std::vector<double>& v_y_before,
+                          std::vector<double>& v_x, std::vector<double>& v_y) const {
   for (const auto& [at, first, count] : body.lower_runs()) {
-    std::copy_n(&v.x[first], count, &face_.v_x_m_per_s[at]);
-    std::copy_n(&v.y[first], count, &face_.v_y_m_per_s[at]);
-    std::copy_n(&u.y[first], count, &face_.u_y_m[at]);
+    std::copy_n(&body.v_m_per_s().x[first], count, &v_x[at]);
+    std::copy_n(&body.v_m_per_s().y[first], count, &v_y[at]);
   }
-  for (const auto i : trigger_nodes_) face_.v_x_m_per_s[i] += impulse_s * trigger_force_N_[i] / mass_kg_[i];
+  const auto& mass = body.lower_mass_kg();
+  for (const auto i : trigger_nodes_) v_x[i] += sign * impulse_s * trigger_force_N_[i] / mass[i];
   for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i) {
-    const double per_pressure = dt_s * tributary_m_[i] / mass_kg_[i];
-    face_.v_x_m_per_s[i] += per_pressure * prestress_t_Pa_[i];
-    face_.v_y_m_per_s[i] -= per_pressure * prestress_p_Pa_[i];
+    const double per_pressure = dt_s * tributary_m_[i] / mass[i];
+    v_x[i] += sign * per_pressure * prestress_t_Pa_[i];
+    v_y[i] -= per_pressure * prestress_p_Pa_[i];
   }
-  for (const auto& dashpot : body.contact_dashpots()) {
-    const auto i = dashpot.at;
-    damp_trial(dashpot, v_x_before_[i], v_y_before_[i], face_.v_x_m_per_s[i], face_.v_y_m_per_s[i]);
+  for (const auto& [i, n, d_x, d_y] : body.contact_dashpots()) {
+    // The contact's tractions act on the effective mass m (1 + d).
+    v_x[i] = (v_x[i] - d_x * v_x_before[i]) / (1 + d_x);
+    v_y[i] = (v_y[i] - d_y * v_y_before[i]) / (1 + d_y);
   }
 }
 
-void Coupling::gather(const Body& body, Side& side, double dt_s, double impulse_s) const {
-  std::swap(side.v_x, side.v_x_before);
-  std::swap(side.v_y, side.v_y_before);
-  for (const auto& [at, first, count] : body.lower_runs()) {
-    std::copy_n(&body.v_m_per_s().x[first], count, &side.v_x[at]);
-    std::copy_n(&body.v_m_per_s().y[first], count, &side.v_y[at]);
-  }
-  const auto& mass = body.lower_mass_kg();
-  for (const auto i : trigger_nodes_) side.v_x[i] += side.sign * impulse_s * trigger_force_N_[i] / mass[i];
-  for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i) {
-    const double per_pressure = dt_s * tributary_m_[i] / mass[i];
-    side.v_x[i] += side.sign * per_pressure * prestress_t_Pa_[i];
-    side.v_y[i] -= per_pressure * prestress_p_Pa_[i];
-  }
-  for (const auto& dashpot : body.contact_dashpots()) {
-    const auto i = dashpot.at;
-    damp_trial(dashpot, side.v_x_before[i], side.v_y_before[i], side.v_x[i], side.v_y[i]);
-  }
+void Coupling::gather(const Body& body, double dt_s, double impulse_s) {
+  for (const auto& [at, first, count] : body.lower_runs())
+    std::copy_n(&body.u_m().y[first], count, &face_.u_y_m[at]);
+  take_trial(body, 1, dt_s, impulse_s, v_x_before_, v_y_before_, face_.v_x_m_per_s, face_.v_y_m_per_s);
 }
 
 void Coupling::gather_both(std::span<const Body> bodies, double dt_s, double impulse_s) {
-  for (std::size_t s = 0; s < 2; ++s) gather(bodies[s], sides_[s], dt_s, impulse_s);
+  for (std::size_t s = 0; s < 2; ++s) {
+    auto& side = sides_[s];
+    std::swap(side.v_x, side.v_x_before);
+    std::swap(side.v_y, side.v_y_before);
+    take_trial(bodies[s], side.sign, dt_s, impulse_s, side.v_x_before, side.v_y_before, side.v_x, side.v_y);
+  }
   for (std::size_t i = 0; i < face_.size(); ++i) {
     face_.v_x_m_per_s[i] = v_x_trial_[i] = sides_[0].v_x[i] - sides_[1].v_x[i];
     face_.v_y_m_per_s[i] = sides_[0].v_y[i] + sides_[1].v_y[i];

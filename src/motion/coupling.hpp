@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -72,9 +71,12 @@ class Coupling {
 
   double relative_u_x_m(std::span<const Body> bodies, std::size_t i) const;
   /// The trial motion of the interface nodes, all forces but the contact's included.
-  void gather(std::span<const Body> bodies, double dt_s, double impulse_s);
+  void gather(const Body& body, double dt_s, double impulse_s);
   void gather_both(std::span<const Body> bodies, double dt_s, double impulse_s);
-  void gather(const Body& body, Side& side, double dt_s, double impulse_s) const;
+  /// That of one body. @param sign  of its velocity along x in the relative one
+  void take_trial(const Body& body, double sign, double dt_s, double impulse_s,
+                  const std::vector<double>& v_x_before, const std::vector<double>& v_y_before,
+                  std::vector<double>& v_x, std::vector<double>& v_y) const;
   /// Gives the corrected velocities to the bodies and moves their nodes.
   void scatter(Body& body, double dt_s, record::Energies& works);
   void scatter_both(std::span<Body> bodies, double dt_s, record::Energies& works);
@@ -85,7 +87,6 @@ class Coupling {
   interface::ContactModel contact_;
   interface::Interface face_;
   std::vector<double> tributary_m_;      ///< [nodes]
-  std::vector<double> mass_kg_;          ///< without the dashpots' part. [nodes]
   std::vector<double> contact_mass_kg_;  ///< along y, effective; see Dashpot. [nodes]
   std::vector<double> v_x_before_, v_y_before_, v_x_trial_, v_y_trial_;  ///< relative. [nodes]
   std::vector<Side> sides_;                                              ///< of two bodies; else none

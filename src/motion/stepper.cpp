@@ -94,16 +94,9 @@ double Stepper::node_updates_per_step() const {
 }
 
 void Stepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s) {
-  const auto put = [&](Body& body, const solid::Field& u_m, const solid::Field& u_per_shear) {
-    auto v_m_per_s = u_per_shear;
-    for (std::size_t n = 0; n < v_m_per_s.size(); ++n) {
-      v_m_per_s.x[n] = top_speed_m_per_s * u_per_shear.x[n];
-      v_m_per_s.y[n] = top_speed_m_per_s * u_per_shear.y[n];
-    }
-    body.start(u_m, v_m_per_s);
-  };
-  put(bodies_.front(), equilibrium.u_m, equilibrium.u_per_shear);
-  if (bodies_.size() > 1) put(bodies_.back(), equilibrium.below_u_m, equilibrium.below_u_per_shear);
+  bodies_.front().start(equilibrium.u_m, equilibrium.u_per_shear, top_speed_m_per_s);
+  if (bodies_.size() > 1)
+    bodies_.back().start(equilibrium.below_u_m, equilibrium.below_u_per_shear, top_speed_m_per_s);
   coupling_.start(bodies_, equilibrium);
   step_ = 0;
 }
@@ -176,14 +169,14 @@ record::Energies Stepper::energies() {
 }
 
 double Stepper::kinetic_energy_J_per_m() const {
-  double sum = bodies_.front().kinetic_energy_J_per_m();
-  for (const auto& body : std::span(bodies_).subspan(1)) sum += body.kinetic_energy_J_per_m();
+  double sum = 0;
+  for (const auto& body : bodies_) sum += body.kinetic_energy_J_per_m();
   return sum;
 }
 
 double Stepper::energy_J_per_m() const {
-  double strain = bodies_.front().strain_energy_J_per_m();
-  for (const auto& body : std::span(bodies_).subspan(1)) strain += body.strain_energy_J_per_m();
+  double strain = 0;
+  for (const auto& body : bodies_) strain += body.strain_energy_J_per_m();
   return strain + kinetic_energy_J_per_m();
 }
 

@@ -35,11 +35,21 @@ constexpr std::size_t n_triggers = 512, n_all = 256, n_quick = 4;
 void add_trigger(std::vector<OpenChoice>& list, EventKind event, const std::string& edge) {
   const interface::Trigger standard;
   const auto add = [&](const char* name, const char* key, const char* why, std::vector<double> levels,
-                       Between between, double standard_value,
-                       std::function<void(input::Case&, double)> set) {
-    list.push_back(
-        {edge + "_" + name, key, event, why, std::move(levels), {}, between, standard_value, std::move(set)});
+                       Between between, double standard_value, std::function<void(input::Case&, double)> set,
+                       std::vector<std::string> forms = {}) {
+    list.push_back({edge + "_" + name,
+                    key,
+                    event,
+                    why,
+                    std::move(levels),
+                    {},
+                    between,
+                    standard_value,
+                    std::move(set),
+                    forms.empty() ? "" : edge + "_form",
+                    std::move(forms)});
   };
+  const auto set_amount = [](input::Case& c, double v) { c.trigger.amount = v; };
   list.push_back(
       {edge + "_form",
        "event.trigger_form",
@@ -56,20 +66,16 @@ void add_trigger(std::vector<OpenChoice>& list, EventKind event, const std::stri
       [](input::Case& c, double v) { c.trigger.zone_m = v; });
   add("added", "event.trigger_amount",
       "from just enough for a front, to 40 times what is missing to the strength", {2, 3.5, 5, 10, 20, 40},
-      Between::logarithmic, standard.amount, [](input::Case& c, double v) {
-        if (c.trigger.form == TriggerForm::added) c.trigger.amount = v;
-      });
+      Between::logarithmic, standard.amount, set_amount, {"added"});
   add("raised", "event.trigger_amount", "from just above the strength to four times it", {1.05, 1.5, 2, 4},
-      Between::logarithmic, 1.5, [](input::Case& c, double v) {
-        if (c.trigger.form == TriggerForm::raised) c.trigger.amount = v;
-      });
+      Between::logarithmic, 1.5, set_amount, {"raised"});
   add("ramp_s", "event.trigger_ramp_s",
       "from within one step to the time that a longitudinal wave takes for 16 mm",
       {0.1e-6, 1e-6, 5e-6, 10e-6}, Between::logarithmic, standard.ramp_s,
-      [](input::Case& c, double v) { c.trigger.ramp_s = v; });
+      [](input::Case& c, double v) { c.trigger.ramp_s = v; }, {"added", "raised"});
   add("duration_s", "event.trigger_duration_s", "taken away behind the front, or held",
       {15e-6, 30e-6, 60e-6, std::numeric_limits<double>::infinity()}, Between::nothing, standard.duration_s,
-      [](input::Case& c, double v) { c.trigger.duration_s = v; });
+      [](input::Case& c, double v) { c.trigger.duration_s = v; }, {"added", "raised"});
 }
 
 void add_plate_and_loading(std::vector<OpenChoice>& list, bool quick) {
@@ -216,7 +222,8 @@ std::array<input::Case, 4> cases_of(const std::vector<OpenChoice>& choices, cons
     c.output.snapshot_times_s.clear();
     c.output.history_interval_s = c.output.energy_interval_s = 1e-5;
     for (std::size_t k = 0; k < choices.size(); ++k)
-      if (!choices[k].event || choices[k].event == c.event) choices[k].set(c, sample.values[k]);
+      if ((!choices[k].event || choices[k].event == c.event) && is_in_use(choices, k, sample.values))
+        choices[k].set(c, sample.values[k]);
     // Nothing else of a trigger that is not there, so that equal runs are known as equal.
     if (!interface::is_at_edge(c.event)) c.trigger = {};
     if (c.trigger.form == TriggerForm::weakened) c.trigger = {c.trigger.form, c.trigger.zone_m};
@@ -368,6 +375,14 @@ std::string OpenChoice::text(double value) const {
   return words.empty() ? fmt::format("{}", value) : words[static_cast<std::size_t>(std::lround(value))];
 }
 
+bool is_in_use(const std::vector<OpenChoice>& choices, std::size_t choice,
+               const std::vector<double>& values) {
+  const auto& c = choices[choice];
+  if (c.decided_by.empty()) return true;
+  const auto decider = index_of(choices, c.decided_by);
+  return std::ranges::count(c.counts_with, choices[decider].text(values[decider])) > 0;
+}
+
 std::string_view name(Sample::Set set) {
   switch (set) {
     case Sample::Set::standard:
@@ -405,15 +420,16 @@ std::vector<Sample> samples_about(const std::vector<OpenChoice>& choices, Sample
                                   const std::vector<double>& values) {
   std::vector<Sample> list;
   for (std::size_t k = 0; k < choices.size(); ++k) {
-    const auto& name = choices[k].name;
     for (const double level : choices[k].levels) {
       if (level == values[k]) continue;
       Sample sample{set, values};
       sample.values[k] = level;
-      // What only counts with a form comes with it.
-      for (const auto& [ending, form] : {std::pair("_added", 0.0), std::pair("_raised", 1.0)})
-        if (name.ends_with(ending))
-          sample.values[index_of(choices, name.substr(0, name.find('_')) + "_form")] = form;
+      if (!is_in_use(choices, k, values)) {  // it comes with one that lets it count
+        const auto decider = index_of(choices, choices[k].decided_by);
+        const auto& words = choices[decider].words;
+        sample.values[decider] =
+            static_cast<double>(std::ranges::find(words, choices[k].counts_with.front()) - words.begin());
+      }
       list.push_back(std::move(sample));
     }
   }

@@ -24,6 +24,9 @@ struct OpenChoice {
   enum class Between { nothing, linear, logarithmic } between = Between::nothing;  ///< values between levels
   double standard = 0;  ///< about which the others are varied
   std::function<void(input::Case&, double)> set;
+  /// The choice whose value decides whether this one counts, and the words with which it does; none: always.
+  std::string decided_by = {};
+  std::vector<std::string> counts_with = {};
 
   /// The value at a share of the range, 0 to 1.
   double at(double share) const;
@@ -36,6 +39,10 @@ struct OpenChoice {
 /// All of them, in the order in which they are set.
 /// @param quick  with elements of 4 mm alone
 std::vector<OpenChoice> open_choices(bool quick = false);
+
+/// Whether a choice has a part among such values: an amount counts with its form of trigger alone, and a
+/// weakened zone has neither ramp nor end.
+bool is_in_use(const std::vector<OpenChoice>& choices, std::size_t choice, const std::vector<double>& values);
 
 /// What is chosen: a value for each open choice.
 struct Sample {

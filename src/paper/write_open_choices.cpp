@@ -74,7 +74,9 @@ Json choices_json(const OpenChoicesResult& result) {
                     {"key", choice.key},
                     {"why", choice.why},
                     {"levels", levels},
-                    {"standard", value_json(choice, choice.standard)}});
+                    {"standard", value_json(choice, choice.standard)},
+                    {"decided_by", choice.decided_by},
+                    {"counts_with", choice.counts_with}});
   }
   return list;
 }
@@ -160,22 +162,6 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
   return json;
 }
 
-/// "left_zone_m" is "zone_m" of the "left" edge.
-std::pair<std::string, std::string> split(const std::string& name) {
-  const auto place = name.find('_');
-  return {name.substr(0, place), place == std::string::npos ? "" : name.substr(place + 1)};
-}
-
-/// Whether a choice has a part in a sample: amounts count with their form alone, and a weakened zone has
-/// neither ramp nor end.
-bool is_in_use(const OpenChoicesResult& result, std::size_t choice, const Sample& sample) {
-  const auto [edge, what] = split(result.choices[choice].name);
-  if (what != "added" && what != "raised" && what != "ramp_s" && what != "duration_s") return true;
-  const auto form = std::ranges::find(result.choices, edge + "_form", &OpenChoice::name);
-  const auto word = form->text(sample.values[static_cast<std::size_t>(form - result.choices.begin())]);
-  return what == "added" || what == "raised" ? word == what : word != "weakened";
-}
-
 /// Least and largest value in use of each choice in the region, numbers only; words that occur.
 Json region_json(const OpenChoicesResult& result) {
   Json json = Json::object();
@@ -183,7 +169,7 @@ Json region_json(const OpenChoicesResult& result) {
     std::vector<double> values;
     for (const auto place : result.region) {
       const auto& sample = result.outcomes[place].sample;
-      if (is_in_use(result, k, sample)) values.push_back(sample.values[k]);
+      if (is_in_use(result.choices, k, sample.values)) values.push_back(sample.values[k]);
     }
     std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());

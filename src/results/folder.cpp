@@ -308,8 +308,7 @@ void ResultFolder::require_empty(bool overwrite, bool resumes) const {
   if (has_results() && goes_on)
     throw UserError(
         "output folder {}: holds results, and unfinished work that is to replace them; choose another or "
-        "pass "
-        "--overwrite to go on with it",
+        "pass --overwrite to go on with it",
         dir_.string());
   if (has_results())
     throw UserError(

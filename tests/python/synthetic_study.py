@@ -174,7 +174,9 @@ def write_interface_step(folder: Path, title: str = "made up") -> Path:
 
 
 def open_choice(name: str, levels: list, standard) -> dict:
-    return {"name": name, "key": f"event.{name}", "why": "open", "levels": levels, "standard": standard}
+    form = {"left_added": ["added"]}.get(name, [])
+    decides = {"decided_by": "left_form" if form else "", "counts_with": form}
+    return {"name": name, "key": f"event.{name}", "why": "open", "levels": levels, "standard": standard} | decides
 
 
 def write_open_choices(folder: Path) -> Path:

@@ -62,31 +62,33 @@ def test_a_damaged_study_is_refused(study, capsys, name):
     assert not (study / "figures").exists()
 
 
-def test_cells_tell_where_a_verdict_turns_about_the_chosen_sample(study):
+def assert_colours(study, colours: dict[str, str]) -> None:
+    """Of cells of the matrix, by claim and choice."""
     figure = open_choices.draw(study).figure
+    for gid, colour in colours.items():
+        cell = artist(figure, gid)
+        assert to_hex(cell.get_facecolor()) == colour and not cell.get_hatch()
+
+
+def test_cells_tell_where_a_verdict_turns_about_the_chosen_sample(study):
     colours = {
         "C2:left_form": open_choices.TURNS_OFF,
         "C2:left_zone_m": open_choices.HOLDS,
         "C11:left_added": open_choices.TURNS_OFF,
         "C11:left_zone_m": open_choices.HOLDS,
     }
-    for gid, colour in colours.items():
-        cell = artist(figure, gid)
-        assert to_hex(cell.get_facecolor()) == colour and not cell.get_hatch()
+    assert_colours(study, colours)
 
 
 def test_cells_tell_where_a_verdict_turns_about_the_standard_where_none_was_chosen(study):
     change_summary(study, lambda s: s.update(chosen=None))
-    figure = open_choices.draw(study).figure
     colours = {
         "C2:left_form": open_choices.TURNS_OFF,
         "C2:left_zone_m": open_choices.HOLDS,
         "C11:left_added": open_choices.TURNS_ON,
         "C11:left_zone_m": open_choices.FAILS,
     }
-    for gid, colour in colours.items():
-        cell = artist(figure, gid)
-        assert to_hex(cell.get_facecolor()) == colour and not cell.get_hatch()
+    assert_colours(study, colours)
 
 
 def test_what_was_not_varied_has_no_verdict(study):

@@ -16,9 +16,15 @@
 #include "solid/element.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
+#include "support/plate.hpp"
 
 // The finite elements written a second time, with B matrices and any number of Gauss points, slow and plain.
 namespace slipfront::solid::reference {
+
+using test::flat;
+using test::max_abs;
+using test::name_of;
+using test::Random;
 
 inline Eigen::Matrix3d elasticity(const Material& m) {
   // The inverse of the compliance, so that nothing is shared with the code under test.
@@ -107,18 +113,6 @@ inline std::vector<std::array<mesh::Node, 2>> boundary_edges(const mesh::Mesh& m
   return edges;
 }
 
-inline Eigen::VectorXd flat(const Field& u) {
-  Eigen::VectorXd v(2 * u.size());
-  for (std::size_t n = 0; n < u.size(); ++n) v(2 * n) = u.x[n], v(2 * n + 1) = u.y[n];
-  return v;
-}
-
-inline double max_abs(const Eigen::MatrixXd& m) {
-  double largest = 0;
-  for (const double value : m.reshaped()) largest = std::max(largest, std::abs(value));
-  return largest;
-}
-
 /// A plate of 40 mm x 20 mm with 1 mm cells.
 inline mesh::Mesh small_plate(mesh::Corner corner) {
   mesh::Plate plate;
@@ -133,28 +127,11 @@ inline mesh::Mesh small_plate(mesh::Corner corner) {
 /// random, one that also has its inner nodes moved at random, so that no two cells are similar.
 enum class Form { none, relief, fillet, graded, shuffled, distorted };
 
-/// Reproducible numbers in [-1, 1).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  double operator()() {
-    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<double>(state_ >> 11) / 4503599627370496.0 - 1;
-  }
-
- private:
-  std::uint64_t state_;
-};
-
 inline Field random_field(std::size_t n, std::uint64_t seed) {
   Random random(seed);
   Field u(n);
   for (std::size_t k = 0; k < n; ++k) u.x[k] = random(), u.y[k] = random();
   return u;
-}
-
-inline std::string name_of(mesh::Corner corner) {
-  return corner == mesh::Corner::none ? "none" : corner == mesh::Corner::relief ? "relief" : "fillet";
 }
 
 inline std::string name_of(Form form) {
