@@ -11,6 +11,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/log.hpp"
 #include "cli/print.hpp"
+#include "paper/bases.hpp"
 #include "paper/open_choices.hpp"
 #include "results/folder.hpp"
 #include "run/checkpoint.hpp"
@@ -213,6 +214,56 @@ void add_open_choices(Command& group) {
   command->callback([study] { study_open_choices(*study); });
 }
 
+struct BasesArguments {
+  Target target;
+  paper::BasesOptions options;
+};
+
+void print_table(const paper::BasesResult& result, const std::string& dir) {
+  print("{:<10} {:>26} {:>22} {:>8} {:>20}\n", "base", "V against / along (range)", "pressure along, against",
+        "in band", "spread: t/p, energy");
+  for (const auto& on : result.bases) {
+    const auto& r = on.speed_ratio;
+    const auto& m = on.main_fronts;
+    print("{:<10} {:>26} {:>22} {:>8} {:>20}\n", on.base.name,
+          fmt::format("{} ({} to {})", number(r.median), number(r.low), number(r.high)),
+          fmt::format("{}, {}", number(on.pressure_change.along, " %", 100),
+                      number(on.pressure_change.against, " %", 100)),
+          number(m.share_in_paper_band, " %", 100),
+          fmt::format("{}, {}", number(m.dynamic_ratio.fronts.median_relative),
+                      number(m.energy_rise.fronts.median_relative)));
+  }
+  for (const auto& warning : result.warnings) print("note: {}\n", warning);
+  print("results: {}\n", dir);
+}
+
+void study_base(const BasesArguments& study) {
+  paper::BasesResult result;
+  run_study(study.options.quick ? "base --quick" : "base", nullptr, study.target,
+            [&](const study::StudyMonitor& monitor, const auto& dir, const auto& kept) {
+              auto options = study.options;
+              options.kept = kept;
+              result = paper::study_bases(options, monitor);
+              paper::write_bases(dir, result);
+            });
+  if (!study.target.quiet) print_table(result, study.target.dir);
+}
+
+void add_base(Command& group) {
+  Command* command = group.add_subcommand("base",
+                                          "The events of Kammer et al. (2012) on deformable bases: what "
+                                          "remains of direction and energy criterion");
+  auto study = std::make_shared<BasesArguments>();
+  auto& options = study->options;
+  options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  add_target(*command, study->target);
+  command->add_flag("--quick", options.quick, "Elements of 2 mm, to try the command");
+  command->add_option("--threads", options.threads, "Runs side by side")
+      ->range(1, 1024)
+      ->capture_default_str();
+  command->callback([study] { study_base(*study); });
+}
+
 void add_convergence(Command& group) {
   Command* command = group.add_subcommand(
       "convergence", "Front speeds over element size, interface step and damping, with their limits");
@@ -275,6 +326,7 @@ void add_study(Command& app) {
   add_convergence(*group);
   add_interface_step(*group);
   add_open_choices(*group);
+  add_base(*group);
 }
 
 }  // namespace slipfront::cli

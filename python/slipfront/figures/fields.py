@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Speed of the particles in a run's snapshots, of both bodies where there are two.
+
+usage: python -m slipfront.figures.fields PICTURE DIR, output folder of `slipfront run` with snapshots;
+a PICTURE that ends with .gif is an animation of all of them"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from io import BytesIO
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import PowerNorm
+from matplotlib.tri import Triangulation
+from PIL import Image
+
+from slipfront import command
+from slipfront.figures import style
+from slipfront.figures.drawing import Drawing, guarded
+from slipfront.figures.picture import write_picture
+from slipfront.files import DataError
+from slipfront.read import Fields, read_fields
+
+MOST_PANELS = 6
+COLOURS = "magma"
+FRAME_MS = 120
+FRAME_DPI = 110
+
+
+def triangles(fields: Fields) -> Triangulation:
+    """Every cell as two triangles; lengths in mm."""
+    halves = np.concatenate([fields.cells[:, [0, 1, 2]], fields.cells[:, [0, 2, 3]]])
+    return Triangulation(*style.mm(fields.points_m).T, halves)
+
+
+def largest_speed(fields: Fields, steps: list[int]) -> float:
+    """All but the fastest thousandth of the nodes are below it in every step."""
+    return max(float(np.quantile(fields.speed_m_per_s(step), 0.999)) for step in steps)
+
+
+def draw_step(ax: Axes, grid: Triangulation, fields: Fields, step: int, norm: PowerNorm):
+    """One snapshot; the interface is a white line where a body lies below it. Returns the coloured picture."""
+    picture = ax.tripcolor(
+        grid, fields.speed_m_per_s(step), norm=norm, cmap=COLOURS, shading="gouraud", rasterized=True, gid=f"step:{step}"
+    )
+    low, high = fields.points_m.min(axis=0), fields.points_m.max(axis=0)
+    if low[1] < 0:
+        ax.axhline(0, color="white", linewidth=0.4, gid="interface")
+    ax.set(xlim=style.mm([low[0], high[0]]), ylim=style.mm([low[1], high[1]]), aspect="equal", ylabel="$y$ (mm)")
+    ax.set_title(f"$t$ = {1e6 * fields.time_s[step]:.3g} µs", loc="left", pad=2)
+    ax.locator_params(nbins=4)
+    return picture
+
+
+def chosen_steps(n_steps: int) -> list[int]:
+    """At most MOST_PANELS of the steps, evenly, the last one among them."""
+    return sorted({round(k) for k in np.linspace(0, n_steps - 1, min(n_steps, MOST_PANELS))})
+
+
+def read(folder: Path) -> Fields:
+    fields = read_fields(folder / "fields.vtkhdf")
+    if len(fields.time_s) == 0:
+        raise DataError(f"{fields.file}: holds no snapshot")
+    return fields
+
+
+def panel_height_mm(fields: Fields, width_mm: float) -> float:
+    size = np.ptp(fields.points_m, axis=0)
+    return width_mm * size[1] / size[0] + 9
+
+
+def draw(folder: Path) -> Drawing:
+    """The snapshots side by side, with one scale of colours."""
+    fields = read(folder)
+    steps = chosen_steps(len(fields.time_s))
+    columns = min(2, len(steps))
+    rows = -(-len(steps) // columns)
+    height = min(220.0, rows * panel_height_mm(fields, 0.42 * style.PAGE_MM) + 10)
+    figure = style.new_figure(style.PAGE_MM, height)
+    axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    norm = PowerNorm(0.5, 0, largest_speed(fields, steps) or 1.0)
+    grid = triangles(fields)
+    for ax, step in zip(axes.flat, steps, strict=False):
+        picture = draw_step(ax, grid, fields, step, norm)
+    for ax in axes.flat[len(steps) :]:
+        ax.axis("off")
+    for ax in axes[-1]:
+        ax.set_xlabel("$x$ (mm)")
+    bar = figure.colorbar(picture, ax=axes, shrink=0.6, pad=0.02)
+    bar.set_label("speed of the particles (m/s)")
+    return Drawing("fields", figure, "Speed of the particles, above the interface and, where a body is there, below it.")
+
+
+def animate(folder: Path) -> bytes:
+    """A GIF with a frame per snapshot."""
+    fields = read(folder)
+    steps = list(range(len(fields.time_s)))
+    norm = PowerNorm(0.5, 0, largest_speed(fields, steps) or 1.0)
+    grid = triangles(fields)
+    frames = []
+    for step in steps:
+        figure = style.new_figure(style.TEXT_MM, panel_height_mm(fields, 0.75 * style.TEXT_MM) + 10)
+        ax = figure.subplots()
+        bar = figure.colorbar(draw_step(ax, grid, fields, step, norm), ax=ax, shrink=0.8)
+        bar.set_label("speed (m/s)")
+        ax.set_xlabel("$x$ (mm)")
+        figure.set_dpi(FRAME_DPI)
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB"))
+    stream = BytesIO()
+    frames[0].save(stream, format="GIF", save_all=True, append_images=frames[1:], duration=FRAME_MS, loop=0)
+    return stream.getvalue()
+
+
+def write(picture: Path, folder: Path) -> list[str]:
+    with matplotlib.rc_context(style.RC):
+        if picture.suffix.lower() != ".gif":
+            return write_picture(picture, lambda: guarded(folder, lambda: draw(folder)))
+        command.replaceable(picture)
+        image = guarded(folder, lambda: animate(folder))
+        with command.publishing_into(picture.parent) as made:
+            (made / picture.name).write_bytes(image)
+        return [f"animation: {picture}"]
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(
+        prog="python -m slipfront.figures.fields",
+        description="Draws the speed of the particles in a run's snapshots; into a .gif as an animation.",
+    )
+    parser.add_argument("picture", metavar="PICTURE", type=Path, help="png, pdf, svg or gif to write")
+    parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront run` with snapshots")
+    options = parser.parse_args(arguments)
+    return command.run("slipfront.figures.fields", lambda: write(options.picture, options.dir))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
