@@ -159,7 +159,8 @@ def main():
         folder = options.results / f"h_{h_mm:g}_mm"
         size = f"plate.element_size_m={h_mm * 1e-3!r}"
         subprocess.run(
-            [options.program, "run", str(CASE), "-o", str(folder), "--overwrite", "-q", "--set", size], check=True
+            [options.program, "run", str(CASE), "-o", str(folder), "--overwrite", "-q", "--set", size],
+            check=True,
         )
         run = Run(folder)
         results.append((h_mm, run, compare(run, reference)))

@@ -7,6 +7,7 @@
 V_tip is compared node by node along the main front, away from the trigger and the edges. Times are the least
 of the repetitions: of the whole command (statics, event, files) and, from run.json, of the event's steps.
 """
+
 import argparse
 import csv
 import json
@@ -61,14 +62,20 @@ def errors(speeds, reference):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("program")
     parser.add_argument("case")
     parser.add_argument("--repetitions", type=int, default=3)
-    parser.add_argument("--sizes", type=float, nargs="+", default=SIZES_M, help="element sizes at the interface, m")
+    parser.add_argument(
+        "--sizes", type=float, nargs="+", default=SIZES_M, help="element sizes at the interface, m"
+    )
     options = parser.parse_args()
-    print("| h at the interface | plate | nodes | largest step over the lowest | median error of V_tip | "
-          "90 % below | largest | event (s) | whole run (s) |")
+    print(
+        "| h at the interface | plate | nodes | largest step over the lowest | median error of V_tip | "
+        "90 % below | largest | event (s) | whole run (s) |"
+    )
     print("|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         for size_m in options.sizes:
@@ -78,16 +85,23 @@ def main():
                 if columns % 2 ** int(settings.get("plate.coarsenings", 0)):
                     continue
                 speeds, summary, total_s, event_s = run(
-                    options.program, options.case, {"plate.element_size_m": repr(size_m)} | settings, folder,
-                    options.repetitions)
+                    options.program,
+                    options.case,
+                    {"plate.element_size_m": repr(size_m)} | settings,
+                    folder,
+                    options.repetitions,
+                )
                 step = round(summary["dt_s"] / summary["stable_dt_s"] / 0.9)
                 if reference is None:
                     reference = speeds
                     shown = " | | "
                 else:
                     shown = " | ".join(f"{e:.3f} %" for e in errors(speeds, reference))
-                print(f"| {1e3 * size_m:.3f} mm | {name} | {summary['mesh']['nodes']} | {step} | {shown} | "
-                      f"{event_s:.2f} | {total_s:.2f} |", flush=True)
+                print(
+                    f"| {1e3 * size_m:.3f} mm | {name} | {summary['mesh']['nodes']} | {step} | {shown} | "
+                    f"{event_s:.2f} | {total_s:.2f} |",
+                    flush=True,
+                )
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the tables of docs/open-choices.md anew from a study of the open choices; the text around them stays.
-"""
+"""Writes the tables of docs/open-choices.md anew from a study of the open choices; the text around them stays."""
 
 from __future__ import annotations
 

@@ -4,7 +4,5 @@
 import pathlib
 import tomllib
 
-project = tomllib.loads(
-    (pathlib.Path(__file__).parent.parent / "pyproject.toml").read_text()
-)["project"]
+project = tomllib.loads((pathlib.Path(__file__).parent.parent / "pyproject.toml").read_text())["project"]
 print("\n".join(project["dependencies"] + project["optional-dependencies"]["test"]))

@@ -41,7 +41,9 @@ def how(row: dict) -> str:
 
 
 def table(scorecard: list[dict]) -> str:
-    judges = {row["second_test_of"]: row["id"] for row in scorecard if "second_test_of" in row and row["counts"]}
+    judges = {
+        row["second_test_of"]: row["id"] for row in scorecard if "second_test_of" in row and row["counts"]
+    }
     variations = variations_of(scorecard)
     header = ["id", "claim", "our figure", "verdict", *variations.values(), "test"]
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]

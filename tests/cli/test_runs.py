@@ -376,8 +376,13 @@ def test_reproduce_quick(program, tmp_path):
     counted = [claim["holds"] for claim in claims if claim["counts"] and claim["id"] != "E1"]
     first = [claim["holds"] for claim in claims if re.fullmatch(r"C\d+", claim["id"])]
     assert len(counted) == len(first) == 23
-    assert f"Of the paper's 23 claims {counted.count(True)} hold, {counted.count(False)} do not, " in result.stdout
-    assert f"by the first tests alone {first.count(True)} hold, {first.count(False)} do not, " in result.stdout
+    assert (
+        f"Of the paper's 23 claims {counted.count(True)} hold, {counted.count(False)} do not, "
+        in result.stdout
+    )
+    assert (
+        f"by the first tests alone {first.count(True)} hold, {first.count(False)} do not, " in result.stdout
+    )
     for folder in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0"):
         assert files_in(tmp_path / "out" / folder) >= FILES
     # Replaced on demand.

@@ -44,7 +44,13 @@ SETS = {
 }
 HOLDING = {"marker": "o", "color": "#0072b2", "markersize": 3.0, "label": "all constraints hold"}
 STANDARD = {"marker": "*", "color": "black", "markersize": 7.0, "label": "the study's standard"}
-CHOSEN = {"marker": "D", "color": "black", "markersize": 6.0, "markerfacecolor": "none", "markeredgewidth": 1.0}
+CHOSEN = {
+    "marker": "D",
+    "color": "black",
+    "markersize": 6.0,
+    "markerfacecolor": "none",
+    "markeredgewidth": 1.0,
+}
 
 
 def about(row: dict[str, Any], summary: dict[str, Any]) -> dict[str, Any]:
@@ -61,7 +67,11 @@ def turned_levels(turns: list[dict[str, Any]], choice: str) -> list[Any]:
 def label(level: Any, key: str) -> str:
     """A level for a narrow cell: lengths in mm, times in us."""
     if isinstance(level, str):
-        short = level.replace("predictor_corrector", "p.-c.").replace("weakened", "weak").replace("approach", "appr.")
+        short = (
+            level.replace("predictor_corrector", "p.-c.")
+            .replace("weakened", "weak")
+            .replace("approach", "appr.")
+        )
         return short.replace("fillet ", "R").removesuffix(" mm")
     if key.endswith("_m"):
         return f"{1e3 * level:.3g}"

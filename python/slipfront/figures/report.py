@@ -184,8 +184,7 @@ def fit_table(results: Results) -> str:
     if judging is not None:
         header.append(f"Main fronts without their last {1e3 * TAIL_M:g} mm ({escape(judging.id)})")
     return (
-        table(header, rows)
-        + f"<p>All points (C18). Points: {text(fit.get('n_points'))}; rms about the fit: "
+        table(header, rows) + f"<p>All points (C18). Points: {text(fit.get('n_points'))}; rms about the fit: "
         f"{formatted(fit.get('rms_over_c_L'), '.3f')} c<sub>L</sub>; within the paper's band: "
         f"{formatted(results.analysis.get('share_in_paper_band'), '.0f', 100)} % of the points.</p>"
         + (judging_note(judging) if judging is not None else "")
