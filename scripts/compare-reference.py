@@ -7,6 +7,7 @@ import csv
 import json
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import h5py
 import matplotlib
@@ -25,12 +26,12 @@ LIMITS = {"tau": 0.03, "p": 0.03, "v": 0.03, "slip": 0.01}  # rms over range
 SNAPSHOTS_S = (60e-6, 90e-6, 120e-6)
 
 
-def arrival_limit_s(t):
+def arrival_limit_s(t: np.ndarray) -> np.ndarray:
     return np.maximum(0.01 * t, 0.5e-6)
 
 
 class Run:
-    def __init__(self, folder):
+    def __init__(self, folder: Path) -> None:
         with open(folder / "run.json") as file:
             facts = json.load(file)
         self.wall_s = facts["wall_s"]
@@ -41,7 +42,7 @@ class Run:
         # Slip rates are those of half a sub-step later.
         self.v_t_s = self.t_s + 0.5 * facts["interface_dt_s"]
 
-    def arrivals_s(self, x_m):
+    def arrivals_s(self, x_m: np.ndarray) -> np.ndarray:
         """First time that the slip rate passes the threshold, linear between steps and nodes."""
         v = self.fields["v"]
         after = np.argmax(v > THRESHOLD_M_PER_S, axis=0)
@@ -53,14 +54,14 @@ class Run:
         t[v[after, node] <= THRESHOLD_M_PER_S] = np.nan
         return np.interp(x_m, self.x_m, t)
 
-    def field(self, name, t_s, x_m):
+    def field(self, name: str, t_s: np.ndarray, x_m: np.ndarray) -> np.ndarray:
         own_t_s = self.v_t_s if name == "v" else self.t_s
         at_times = np.array([np.interp(t_s, own_t_s, column) for column in self.fields[name].T]).T
         return np.array([np.interp(x_m, self.x_m, row) for row in at_times])
 
 
 class Reference:
-    def __init__(self, folder):
+    def __init__(self, folder: Path) -> None:
         with open(folder / "problem_a_arrivals.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         x = np.array([float(row["x_m"]) for row in rows])
@@ -76,9 +77,13 @@ class Reference:
         self.fields = {name: fields[name][: len(self.t_s), inside] for name in FIELDS}
 
 
-def compare(run, reference):
+Measured = dict[str, Any]  # of a run against the reference, by name
+Compared = tuple[float, Run, Measured]  # with the element size, mm
+
+
+def compare(run: Run, reference: Reference) -> Measured:
     late_s = run.arrivals_s(reference.x_m) - reference.arrivals_s
-    measured = {"late_s": late_s}
+    measured: Measured = {"late_s": late_s}
     # Where the front is too slow to arrive at all, it is late without bound.
     size_s = np.where(np.isfinite(late_s), np.abs(late_s), np.inf)
     measured["largest_s"] = size_s.max()
@@ -87,24 +92,26 @@ def compare(run, reference):
     for name, expected in reference.fields.items():
         error = run.field(name, reference.t_s, reference.fields_x_m) - expected
         measured[name] = np.sqrt(np.mean(error**2)) / np.ptp(expected)
-        measured[name, "outside"] = np.sqrt(np.mean(error[:, outside] ** 2)) / np.ptp(expected[:, outside])
+        measured[f"{name} outside"] = np.sqrt(np.mean(error[:, outside] ** 2)) / np.ptp(expected[:, outside])
     return measured
 
 
-def table(results, n_points):
+def table(results: list[Compared], n_points: int) -> str:
     lines = [
-        "| h (mm) | arrival, largest difference (us) | beyond its limit | tau | p | v | slip | stepping (s) |",
+        "| h (mm) | arrival, largest difference (us) | beyond its limit | tau | p | v | slip | stepping "
+        "(s) |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for h_mm, run, m in results:
-        rms = " | ".join(f"{100 * m[name]:.2f} %, {100 * m[name, 'outside']:.2f} %" for name in FIELDS)
+        rms = " | ".join(f"{100 * m[name]:.2f} %, {100 * m[f'{name} outside']:.2f} %" for name in FIELDS)
         lines.append(
-            f"| {h_mm:g} | {1e6 * m['largest_s']:.2f} | {m['beyond']} of {n_points} | {rms} | {run.wall_s:.2g} |"
+            f"| {h_mm:g} | {1e6 * m['largest_s']:.2f} | {m['beyond']} of {n_points} | {rms} | "
+            f"{run.wall_s:.2g} |"
         )
     return "\n".join(lines)
 
 
-def draw(results, reference, picture):
+def draw(results: list[Compared], reference: Reference, picture: Path) -> None:
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained", dpi=110)
     sides = [reference.x_m < 0, reference.x_m > 0]  # a gap between them
     limit_us = 1e6 * arrival_limit_s(reference.arrivals_s)
@@ -141,7 +148,7 @@ def draw(results, reference, picture):
     write_figure(picture, figure)
 
 
-def main():
+def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default="build/release/slipfront")
     parser.add_argument("--results", type=Path, default=Path("results-reference"))
@@ -154,7 +161,7 @@ def main():
     except DataError as error:
         parser.error(str(error))
     reference = Reference(CASE.parent / "data")
-    results = []
+    results: list[Compared] = []
     for h_mm in options.h_mm:
         folder = options.results / f"h_{h_mm:g}_mm"
         size = f"plate.element_size_m={h_mm * 1e-3!r}"
@@ -170,7 +177,7 @@ def main():
     draw(results, reference, picture)
     finest = results[-1][2]
     holds = finest["beyond"] == 0 and all(
-        max(finest[name], finest[name, "outside"]) < limit for name, limit in LIMITS.items()
+        max(finest[name], finest[f"{name} outside"]) < limit for name, limit in LIMITS.items()
     )
     print(f"At h = {results[-1][0]:g} mm the limits {'hold' if holds else 'DO NOT HOLD'}.")
     return 0 if holds else 1

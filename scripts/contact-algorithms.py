@@ -63,7 +63,7 @@ class Event:
 
 
 def run(program: Path, case: Path, folder: Path, settings: list[str]) -> Event:
-    command = [program, "run", case, "-o", folder, "--overwrite", "--quiet"]
+    command: list[str | Path] = [program, "run", case, "-o", folder, "--overwrite", "--quiet"]
     for setting in [*settings, "output.snapshot_times_s=[]", "output.history_interval_s=1e-5"]:
         command += ["--set", setting]
     subprocess.run(command, check=True)

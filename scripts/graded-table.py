@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The table of docs/graded.md: V_tip of an event on graded plates against the uniform one, and processor time.
+"""The table of docs/graded.md: V_tip of an event on graded plates against a uniform one, processor time.
 
     scripts/graded-table.py build/release/slipfront cases/kammer2012/left.toml
 
@@ -16,12 +16,14 @@ import pathlib
 import resource
 import subprocess
 import tempfile
+from typing import Any
 
 # Where the main front is compared: clear of the trigger zone with its margin, and of the far edge.
 FROM_M, TO_M = 0.035, 0.19
+Speeds = dict[float, float]  # V_tip by place
 WIDTH_M = 0.2  # of the default plate
 SIZES_M = (2e-3 / 3, 1e-3 / 3)
-GRADINGS = (
+GRADINGS: tuple[tuple[str, dict[str, str]], ...] = (
     ("uniform", {}),
     ("uniform, single precision", {"time.precision": "single"}),
     ("1 doubling above 10 mm", {"plate.coarsenings": "1"}),
@@ -32,7 +34,9 @@ GRADINGS = (
 )
 
 
-def run(program, case, settings, folder, repetitions):
+def run(
+    program: str, case: str, settings: dict[str, str], folder: str, repetitions: int
+) -> tuple[Speeds, dict[str, Any], float, float]:
     """V_tip by place, run.json, and the least processor times."""
     command = [program, "run", case, "-q", "--overwrite", "--threads", "1", "-o", folder]
     for key, value in settings.items():
@@ -46,7 +50,7 @@ def run(program, case, settings, folder, repetitions):
         total_s.append(after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime)
         summary = json.loads((pathlib.Path(folder) / "run.json").read_text())
         event_s.append(summary["wall_s"])
-    fronts = {}
+    fronts: dict[str, list[dict[str, str]]] = {}
     with open(pathlib.Path(folder) / "fronts.csv", encoding="utf-8") as file:
         for point in csv.DictReader(file):
             fronts.setdefault(point["front_id"], []).append(point)
@@ -55,13 +59,13 @@ def run(program, case, settings, folder, repetitions):
     return speeds, summary, min(total_s), min(event_s)
 
 
-def errors(speeds, reference):
+def errors(speeds: Speeds, reference: Speeds) -> list[float]:
     """Median, 90th percentile and largest relative difference, in per cent."""
     e = sorted(abs(v / reference[x] - 1) for x, v in speeds.items() if x in reference and FROM_M < x < TO_M)
     return [100 * e[len(e) // 2], 100 * e[9 * len(e) // 10], 100 * e[-1]]
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

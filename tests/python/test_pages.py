@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The scripts that renew pages: their tables are those of checked results, and a page is renewed whole or not at all."""
+"""The scripts that renew pages: tables of checked results; a page is renewed whole or not at all."""
 
 from __future__ import annotations
 
@@ -150,8 +150,11 @@ def test_a_page_that_is_no_file_is_refused(pages):
 
 
 def test_a_full_disk_leaves_the_page_as_it_was(pages):
-    pages.refused("File too large", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
-                  env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})  # fmt: skip
+    pages.refused(
+        "File too large",
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
+        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+    )
 
 
 @pytest.mark.parametrize("script", ["open-choices-page.py", "scorecard-page.py", "verification-pages.py"])
