@@ -148,8 +148,8 @@ format-check: lint-packages  ## fail where a C++ source is not formatted
 	clang-format-14 --dry-run --Werror $(SOURCES)
 
 lint: $(VENV)/.installed-lint  ## fail where Python is not formatted, or ruff or mypy finds anything
-	$(VENV)/bin/ruff format --check --quiet
-	$(VENV)/bin/ruff check --quiet
+	$(VENV)/bin/ruff format --check
+	$(VENV)/bin/ruff check
 	$(VENV)/bin/mypy
 
 # In a folder of its own: clang cannot read what gcc has precompiled.

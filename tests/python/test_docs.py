@@ -57,6 +57,16 @@ def test_a_long_line_is_found():
     ) == [long, f"- {long}"]
 
 
+def test_files_that_are_named_are_there():
+    contributing = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = [ROOT / name for name in re.findall(r"`((?:src|tests|python|docs)/[\w./]+)`", contributing)]
+    glossary = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
+    places = re.findall(r"\| ([^|]*) \|$", glossary, re.MULTILINE)
+    named += [ROOT / "src" / name for place in places for name in re.findall(r"`([\w./]+)`", place)]
+    assert len(named) > 100
+    assert [path for path in named if not path.exists()] == []
+
+
 def test_a_broken_link_is_found(tmp_path):
     page = tmp_path / "page.md"
     page.write_text("# One `two`\n[a](#one-two) [b](#three) [c](other.md) [d](page.md#one-two)\n")
