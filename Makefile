@@ -126,8 +126,10 @@ open-choices: ready  ## what the paper leaves open, varied: renews docs/open-cho
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.open_choices docs/figures/open_choices.png $(RESULTS)-open-choices
 	$(PYTHON) scripts/open-choices-page.py $(RESULTS)-open-choices docs/open-choices.md
 
-reference: ready  ## Problem A of docs/prestress.md on four meshes against other codes, into results-reference/
-	$(PYTHON) scripts/compare-reference.py --program $(PROGRAM) --results $(RESULTS)-reference
+reference: ready  ## problems that other codes have solved, on several meshes each, into results-reference/
+	$(PYTHON) scripts/compare-reference.py a --program $(PROGRAM) --results $(RESULTS)-reference
+	$(PYTHON) scripts/compare-reference.py f --program $(PROGRAM) --results $(RESULTS)-reference
+	$(PYTHON) scripts/compare-tpv205.py --program $(PROGRAM) --results $(RESULTS)-reference
 
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/core.h>
 
+#include <numeric>
+
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
@@ -34,12 +36,20 @@ void print_info(const CaseArguments& arguments) {
   line("longitudinal wave speed c_L", fmt::format("{:.1f} m/s", info.speeds.c_L));
   line("shear wave speed c_S", fmt::format("{:.1f} m/s", info.speeds.c_S));
   line("Rayleigh wave speed c_R", fmt::format("{:.1f} m/s", info.speeds.c_R));
+  if (info.base_speeds)
+    line("base: c_L, c_S, c_R", fmt::format("{:.1f}, {:.1f}, {:.1f} m/s", info.base_speeds->c_L,
+                                            info.base_speeds->c_S, info.base_speeds->c_R));
   line("nodes", fmt::format("{} ({} on the interface, {} without a stencil)", info.n_nodes, info.n_interface,
                             info.n_irregular));
   line("cells", fmt::format("{}", info.n_cells));
   line("largest stable step", fmt::format("{:.4g} s", info.stable_step_s));
   line("step", fmt::format("{:.4g} s ({:.4g} s at the interface, {} rows)", info.step_s, info.substep_s,
                            config.time.interface_rows));
+  if (info.base_speeds)
+    line("sub-steps in a step",
+         fmt::format("{} of the plate, {} of the base, {} in a common one", info.substeps_of_bodies.front(),
+                     info.substeps_of_bodies.back(),
+                     std::lcm(info.substeps_of_bodies.front(), info.substeps_of_bodies.back())));
   line("steps to the end", fmt::format("{}", info.n_steps));
   if (info.needs.ramp_steps > 0)
     line("steps of the ramp before", fmt::format("about {:.3g}", static_cast<double>(info.needs.ramp_steps)));

@@ -29,6 +29,19 @@ struct FrontSettings {
       10e-3;  ///< t_d, p_d are left out within trigger zone or nucleation patch plus this
 };
 
+/// What the plate lies on.
+enum class BaseKind {
+  rigid,  ///< the plane y = 0
+  body,   ///< a deformable body below it, as wide as the plate
+};
+
+/// The body below the plate, where there is one; see base_plate and base_material.
+struct Base {
+  BaseKind kind = BaseKind::rigid;
+  mesh::Plate plate;         ///< upside down: its top is the far edge, away from the interface
+  solid::Material material;  ///< its plane is the plate's
+};
+
 /// A table of tractions along the interface as it was read, see input/prestress.hpp.
 struct PrestressTable {
   std::string text;          ///< of the file
@@ -55,6 +68,7 @@ struct Case {
   std::string title;
   mesh::Plate plate;
   solid::Material material;
+  Base base;
   statics::Loading loading;
   Prestress prestress;
   interface::FrictionLaw friction;
@@ -67,6 +81,26 @@ struct Case {
   FrontSettings fronts;
   Output output;
 };
+
+inline bool has_base_body(const Case& config) {
+  return config.base.kind == BaseKind::body;
+}
+
+/// The rectangle of the body below, upside down. It has the plate's width and elements, so that the nodes of
+/// the two face each other.
+inline mesh::Plate base_plate(const Case& config) {
+  auto plate = config.base.plate;
+  plate.width_m = config.plate.width_m;
+  plate.element_size_m = config.plate.element_size_m;
+  plate.corner = mesh::Corner::none;
+  return plate;
+}
+
+inline solid::Material base_material(const Case& config) {
+  auto material = config.base.material;
+  material.plane = config.material.plane;
+  return material;
+}
 
 inline interface::ContactModel contact_model(const Case& config) {
   return {config.friction, config.regularisation, config.contact};

@@ -42,6 +42,12 @@ auto at(Part Case::*part, Member Part::*member) {
     return config.*part.*member;
   };
 }
+template <class Part, class Inner, class Member>
+auto at(Part Case::*part, Inner Part::*inner, Member Inner::*member) {
+  return [ part, inner, member ](auto& config) -> auto& {
+    return config.*part.*inner.*member;
+  };
+}
 template <class Member>
 auto at(Member Case::*member) {
   return [member](auto& config) -> auto& {
@@ -200,6 +206,10 @@ std::vector<Entry> make_common_entries() {
   const Condition uniform = {
       "loading.method = prestress and no prestress.file",
       [](const Case& c) { return c.loading.method == LoadingMethod::prestress && c.prestress.file.empty(); }};
+  const Condition on_body = {"base.kind = body", [](const Case& c) { return has_base_body(c); }};
+  const Condition base_graded = {"base.kind = body and base.coarsenings > 0", [](const Case& c) {
+                                   return has_base_body(c) && c.base.plate.coarsenings > 0;
+                                 }};
   const Condition graded = {"plate.coarsenings > 0", [](const Case& c) { return c.plate.coarsenings > 0; }};
   const Condition nucleated = {"event.kind = nucleation",
                                [](const Case& c) { return c.event == EventKind::nucleation; }};
@@ -252,6 +262,42 @@ std::vector<Entry> make_common_entries() {
                   "plane stress (thin plate) or plane strain"),
       number("material.stiffness_damping_s", at(&Case::material, &Material::stiffness_damping_s), at_least(0),
              "Rayleigh damping beta_R: the internal force is K (u + beta_R v)"),
+
+      word<BaseKind>(
+          "base.kind", at(&Case::base, &Base::kind), {{"rigid", BaseKind::rigid}, {"body", BaseKind::body}},
+          "what the plate lies on: a rigid plane, or a second body of the plate's width and elements, "
+          "see two-bodies.md"),
+      only_with(on_body, number("base.height_m", at(&Case::base, &Base::plate, &Plate::height_m), above(0),
+                                "depth of the body below, a whole multiple of plate.element_size_m")),
+      only_with(
+          on_body,
+          integer("base.coarsenings", at(&Case::base, &Base::plate, &Plate::coarsenings), between(0, 20),
+                  "how often its element size doubles away from the interface, see graded.md")),
+      only_with(base_graded,
+                number("base.fine_height_m", at(&Case::base, &Base::plate, &Plate::fine_height_m), above(0),
+                       "least height of its elements of plate.element_size_m, next to the interface")),
+      only_with(
+          on_body,
+          word<Sides>("base.sides", at(&Case::base, &Base::plate, &Plate::sides),
+                      {{"free", Sides::free}, {"periodic", Sides::periodic}, {"absorbing", Sides::absorbing}},
+                      "its vertical edges; periodic if and only if plate.sides is")),
+      only_with(on_body,
+                word<Top>("base.bottom", at(&Case::base, &Base::plate, &Plate::top),
+                          {{"held", Top::loaded}, {"free", Top::free}, {"absorbing", Top::absorbing}},
+                          "its lower edge: held still, free of traction, or with dashpots that let "
+                          "waves out")),
+      only_with(on_body, number("base.youngs_modulus_Pa",
+                                at(&Case::base, &Base::material, &Material::youngs_modulus_Pa), above(0),
+                                "its Young's modulus; its plane is material.plane")),
+      only_with(on_body,
+                number("base.poissons_ratio", at(&Case::base, &Base::material, &Material::poissons_ratio),
+                       strictly_between(-1, 0.5), "its Poisson's ratio")),
+      only_with(on_body, number("base.density_kg_per_m3",
+                                at(&Case::base, &Base::material, &Material::density_kg_per_m3), above(0),
+                                "its density")),
+      only_with(on_body, number("base.stiffness_damping_s",
+                                at(&Case::base, &Base::material, &Material::stiffness_damping_s), at_least(0),
+                                "its Rayleigh damping")),
 
       only_with(tilted,
                 number("loading.tilt_left_m", at(&Case::loading, &Loading::tilt_left_m), at_least(0),

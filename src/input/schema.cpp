@@ -149,8 +149,9 @@ void apply(const std::vector<Override>& overrides, Document& document) {
 }
 
 /// Keys whose values decide which later ones of these, and which other keys, there are.
-constexpr std::array deciding_keys = {"plate.coarsenings", "loading.method",     "prestress.file",
-                                      "event.kind",        "event.trigger_form", "nucleation.form"};
+constexpr std::array deciding_keys = {"plate.coarsenings",  "base.kind",      "base.coarsenings",
+                                      "loading.method",     "prestress.file", "event.kind",
+                                      "event.trigger_form", "nucleation.form"};
 
 bool applies(const Entry& entry, const Case& config) {
   return !entry.only_with || entry.only_with->holds(config);
@@ -355,6 +356,13 @@ void check_prestress(const Case& config, const Document& document, const Require
           "nucleation");
 }
 
+void check_base(const Case& config, const Require& require) {
+  if (!has_base_body(config)) return;
+  const bool repeats = config.plate.sides == mesh::Sides::periodic;
+  require((config.base.plate.sides == mesh::Sides::periodic) == repeats, {"base.sides", "plate.sides"},
+          "base.sides and plate.sides must both be periodic, or neither of them");
+}
+
 void check_nucleation(const Case& config, const Require& require) {
   if (config.event != interface::EventKind::nucleation) return;
   const auto& n = config.nucleation;
@@ -432,6 +440,7 @@ void check_relations(const Case& config, const Document& document, const std::st
       fmt::format(
           "time.step_factor is {}, beyond the stable step; use at most 1, or set time.allow_unstable = true",
           config.time.step_factor));
+  check_base(config, require);
   check_trigger(config, require);
   check_nucleation(config, require);
   require(config.fronts.l_star_m < plate.width_m, {"fronts.l_star_m", "plate.width_m"},
@@ -485,9 +494,13 @@ void check_magnitudes(const Case& config, const Document& document, const std::s
 /// crosses an element.
 void check_duration(const Case& config, const Document& document, const std::string& name) {
   constexpr double most_steps = 1e12;
-  const double crossing_s = config.plate.element_size_m / solid::longitudinal_speed_m_per_s(config.material);
-  const double step_s =
-      config.time.step_factor * solid::stable_step_s(2 / crossing_s, config.material.stiffness_damping_s);
+  const auto stable_step_s = [&](const solid::Material& material) {
+    const double crossing_s = config.plate.element_size_m / solid::longitudinal_speed_m_per_s(material);
+    return solid::stable_step_s(2 / crossing_s, material.stiffness_damping_s);
+  };
+  double step_s = config.time.step_factor * stable_step_s(config.material);
+  if (has_base_body(config))
+    step_s = std::min(step_s, config.time.step_factor * stable_step_s(base_material(config)));
   const double steps = config.time.end_s / step_s;
   if (steps > most_steps)
     throw UserError(

@@ -85,10 +85,10 @@ Node inner_node(const Grid& below, int i) {
 }
 
 /// Grids of the blocks of a plate whose rectangle has the grid `whole`, upwards.
-std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole) {
+std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole, std::string_view table) {
   if (plate.coarsenings == 0) return {whole};
   if (plate.coarsenings < 0)
-    throw UserError("plate.coarsenings = {} must not be negative", plate.coarsenings);
+    throw UserError("{}.coarsenings = {} must not be negative", table, plate.coarsenings);
   require_positive(plate.fine_height_m, "fine_height_m");
   const bool periodic = plate.sides == Sides::periodic;
   const int divisor = periodic ? 4 : 2;
@@ -102,16 +102,17 @@ std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole) {
     } else {
       if (block.columns % divisor != 0)
         throw UserError(
-            "plate.coarsenings = {} needs a number of columns of elements that can be halved so often{}; {} "
+            "{}.coarsenings = {} needs a number of columns of elements that can be halved so often{}; {} "
             "columns can {} times: choose fewer, or another plate.element_size_m",
-            plate.coarsenings, periodic ? " and stay even, the sides being periodic" : "", whole.columns, k);
+            table, plate.coarsenings, periodic ? " and stay even, the sides being periodic" : "",
+            whole.columns, k);
       const double least_m = k == 0 ? plate.fine_height_m : below_m;
       const double least = std::max(1.0, std::ceil(least_m / block.spacing_m - whole_tolerance));
       if (least + 4 > rows_left)
         throw UserError(
-            "plate.coarsenings = {} leaves no room for the largest elements; choose fewer, or a "
-            "plate.fine_height_m below {:g}",
-            plate.coarsenings, plate.fine_height_m);
+            "{0}.coarsenings = {1} leaves no room for the largest elements; choose fewer, or a "
+            "{0}.fine_height_m below {2:g}",
+            table, plate.coarsenings, plate.fine_height_m);
       block.rows = static_cast<int>(least);
       block.rows += (rows_left - block.rows) % 2;
     }
@@ -155,9 +156,9 @@ void add_transition(Mesh& mesh, const Grid& below, const Grid& above) {
   }
 }
 
-Mesh make_rectangle(const Plate& plate) {
+Mesh make_rectangle(const Plate& plate, std::string_view table) {
   const Grid whole = make_grid(plate);
-  const auto grids = make_blocks(plate, whole);
+  const auto grids = make_blocks(plate, whole, table);
   std::size_t n_nodes = 0;
   for (const Grid& grid : grids)
     n_nodes += static_cast<std::size_t>(grid.stride()) * (static_cast<std::size_t>(grid.rows) + 2);
@@ -304,8 +305,8 @@ void absorb(Mesh& mesh, const Plate& plate) {
 
 }  // namespace
 
-Mesh make_plate(const Plate& plate) {
-  Mesh mesh = make_rectangle(plate);
+Mesh make_plate(const Plate& plate, std::string_view table) {
+  Mesh mesh = make_rectangle(plate, table);
   if (plate.sides != Sides::free && plate.corner != Corner::none)
     throw UserError("plate.sides other than free needs right-angled corners; set plate.corner = \"none\"");
   if (plate.sides == Sides::periodic) join_sides(mesh, plate);

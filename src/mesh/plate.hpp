@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string_view>
+
 #include "mesh/mesh.hpp"
 
 namespace slipfront::mesh {
@@ -68,7 +70,8 @@ struct Plate {
 ///
 /// A block whose columns are not a multiple of 4 ends with the left half of a unit.
 ///
+/// @param table  of the case file that holds coarsenings and fine_height_m, for messages
 /// @throws UserError for an impossible geometry, naming the quantity to change.
-Mesh make_plate(const Plate& plate);
+Mesh make_plate(const Plate& plate, std::string_view table = "plate");
 
 }  // namespace slipfront::mesh

@@ -39,6 +39,13 @@ std::int64_t next_row(std::int64_t n, double time_s, double interval_s) {
   return std::max(n, static_cast<std::int64_t>(time_s / interval_s)) + 1;
 }
 
+/// Adds the field of a body that is described upside down.
+void append_upright(solid::Field& field, const solid::Field& below) {
+  field.x.insert(field.x.end(), below.x.begin(), below.x.end());
+  field.y.reserve(field.y.size() + below.size());
+  for (const double y : below.y) field.y.push_back(-y);
+}
+
 /// Of the loaded edge, which keeps it; 0 without one.
 double top_speed_m_per_s(const Stepper& stepper) {
   const auto& top = stepper.plate().top.node;
@@ -119,7 +126,12 @@ double event_bytes(double n_nodes, double n_cells, bool with_snapshots, Precisio
 }
 
 Snapshot take_snapshot(const Stepper& stepper) {
-  return {stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()};
+  Snapshot snapshot{stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()};
+  for (const auto& below : stepper.bodies().subspan(1)) {
+    append_upright(snapshot.u_m, below.u_m());
+    append_upright(snapshot.v_m_per_s, below.mean_velocity_m_per_s());
+  }
+  return snapshot;
 }
 
 EventRun::EventRun(Stepper& stepper, const statics::Equilibrium& state, double mu_s, double c_L_m_per_s,
@@ -280,11 +292,15 @@ void RampRun::require_possible(std::int64_t checked_step) const {
 statics::Equilibrium RampRun::state_now() const {
   statics::Equilibrium e = tilted_;
   const auto& s = stepper_.interface_state();
-  e.u_m = stepper_.u_m();
-  for (std::size_t n = 0; n < e.u_per_shear.size(); ++n) {
-    e.u_per_shear.x[n] = stepper_.v_m_per_s().x[n] / top_speed_m_per_s_;
-    e.u_per_shear.y[n] = stepper_.v_m_per_s().y[n] / top_speed_m_per_s_;
-  }
+  const auto take = [&](const Body& body, solid::Field& u_m, solid::Field& u_per_shear) {
+    u_m = body.u_m();
+    for (std::size_t n = 0; n < u_per_shear.size(); ++n) {
+      u_per_shear.x[n] = body.v_m_per_s().x[n] / top_speed_m_per_s_;
+      u_per_shear.y[n] = body.v_m_per_s().y[n] / top_speed_m_per_s_;
+    }
+  };
+  take(stepper_.bodies().front(), e.u_m, e.u_per_shear);
+  if (stepper_.bodies().size() > 1) take(stepper_.bodies().back(), e.below_u_m, e.below_u_per_shear);
   e.shear_m = top_speed_m_per_s_ * stepper_.time_s();
   e.tractions.t_s_Pa = s.t_Pa;
   e.tractions.p_s_Pa = s.p_Pa;

@@ -28,8 +28,8 @@ struct Sampling {
   std::vector<double> snapshot_times_s;  ///< ascending
 };
 
-/// Motion of the whole plate at one instant. The velocity belongs to half a step (half a sub-step in the
-/// interface layer) earlier.
+/// Motion of all nodes at one instant, those of a body below after those of the plate, with u_y and v_y up.
+/// The velocity belongs to half a step (half a sub-step in the interface layer) earlier.
 struct Snapshot {
   double time_s = 0;
   solid::Field u_m, v_m_per_s;

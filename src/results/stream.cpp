@@ -146,7 +146,8 @@ void ResultStream::hand_over() {
 }
 
 void ResultStream::snapshot(const motion::Stepper& stepper) {
-  const std::size_t bytes = 4 * sizeof(double) * stepper.u_m().size();
+  std::size_t bytes = 0;
+  for (const auto& body : stepper.bodies()) bytes += 4 * sizeof(double) * body.u_m().size();
   writer_.wait_for_room(bytes);
   const auto taken = std::make_shared<const motion::Snapshot>(motion::take_snapshot(stepper));
   writer_.put(bytes, [this, taken] {

@@ -44,7 +44,9 @@ const std::string& program_identity() {
 
 InitialState read_initial_state(results::InputArchive& archive, const input::Case& config) {
   InitialState initial;
-  initial.mesh = check(config);
+  auto meshes = check(config);
+  initial.mesh = std::move(meshes.plate);
+  initial.base = std::move(meshes.base);
   archive(initial);
   const std::size_t n = initial.mesh.lower.size();
   const auto fits = [&](const auto& states) {

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+#include <optional>
+
 #include "input/case.hpp"
-#include "mesh/plate.hpp"
+#include "mesh/mesh.hpp"
 #include "motion/settings.hpp"
+#include "motion/stepper.hpp"
 #include "record/record.hpp"
 #include "statics/settings.hpp"
 
 namespace slipfront::run {
 
-/// Displacements of all nodes, from the plate's measures alone: for refusals before anything is built.
-double approximate_unknowns(const mesh::Plate& plate);
+/// Displacements of all nodes, from the bodies' measures alone: for refusals before anything is built.
+double approximate_unknowns(const input::Case& config);
 
 /// Refuses a plate in motion that would not fit into the memory, before anything is built.
 void require_plate_fits(const input::Case& config);
@@ -27,5 +31,10 @@ bool is_prestressed(const input::Case& config);
 /// Given tractions at the nodes of the interface, from their file if there is one.
 /// @throws UserError
 record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh);
+
+/// The bodies without their motion.
+std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
+                                             const std::optional<mesh::Mesh>& base,
+                                             const motion::Execution& execution = {});
 
 }  // namespace slipfront::run

@@ -32,18 +32,28 @@ stability::WellPosedness well_posedness(const input::Case& config, const mesh::M
 Info info(const input::Case& config) {
   Info info;
   info.speeds = wave_speeds(config.material);
-  const auto mesh = check(config);
+  const auto meshes = check(config);
+  const auto& mesh = meshes.plate;
   info.n_nodes = mesh.n_nodes();
-  info.n_cells = static_cast<std::int64_t>(mesh.cells.size());
+  info.n_cells = std::ssize(mesh.cells);
+  if (meshes.base) {
+    info.base_speeds = wave_speeds(input::base_material(config));
+    info.n_nodes += meshes.base->n_nodes();
+    info.n_cells += std::ssize(meshes.base->cells);
+  }
   info.n_interface = static_cast<std::int64_t>(mesh.lower.size());
 
   // About as long as making the stepper.
   auto sliding =
       std::async(std::launch::async | std::launch::deferred, [&] { return well_posedness(config, mesh); });
-  motion::Stepper stepper(mesh, config.material, input::contact_model(config), config.time);
+  const auto made = new_stepper(config, mesh, meshes.base);
+  auto& stepper = *made;
   info.well_posedness = sliding.get();
-  info.n_irregular = static_cast<std::int64_t>(stepper.plate().whole.irregular.size() +
-                                               stepper.plate().whole.general.size());
+  for (const auto& body : stepper.bodies()) {
+    info.n_irregular +=
+        static_cast<std::int64_t>(body.op().whole.irregular.size() + body.op().whole.general.size());
+    info.substeps_of_bodies.push_back(body.period());
+  }
   info.stable_step_s = stepper.stable_step_s();
   info.step_s = stepper.step_s();
   info.substep_s = stepper.substep_s();
@@ -61,7 +71,7 @@ Info info(const input::Case& config) {
   record::StaticState no_tractions;
   for (const auto n : mesh.lower) no_tractions.x_m.push_back(mesh.x_m[n]);
   no_tractions.t_s_Pa = no_tractions.p_s_Pa = std::vector<double>(mesh.lower.size(), 0.0);
-  const auto rest = statics::prestressed(mesh, no_tractions);
+  const auto rest = statics::prestressed(mesh, no_tractions, meshes.base ? &*meshes.base : nullptr);
   stepper.start(rest, 0);
   motion::Recorder recorder(rest, 1, 0);
   const auto start = Clock::now();

@@ -153,12 +153,16 @@ SnapshotPlan snapshot_plan(const input::Case& config, double step_s) {
 
 Size estimated_size(const input::Case& config) {
   Size size;
-  size.n_nodes = size.n_cells = 0.5 * approximate_unknowns(config.plate);
+  size.n_nodes = size.n_cells = 0.5 * approximate_unknowns(config);
   const double h = config.plate.element_size_m;
   size.n_interface = config.plate.width_m / h + 1;
-  size.step_s =
-      config.time.step_factor * solid::stable_step_s(frequency_of_squares_rad_per_s(h, config.material),
-                                                     config.material.stiffness_damping_s);
+  const auto stable_step_s = [&](const solid::Material& material) {
+    return solid::stable_step_s(frequency_of_squares_rad_per_s(h, material), material.stiffness_damping_s);
+  };
+  size.step_s = config.time.step_factor * stable_step_s(config.material);
+  if (input::has_base_body(config))
+    size.step_s =
+        std::min(size.step_s, config.time.step_factor * stable_step_s(input::base_material(config)));
   return size;
 }
 
@@ -198,7 +202,7 @@ Needs needs(const input::Case& config, const Size& size) {
 void require_fit(const input::Case& config, const std::filesystem::path& folder) {
   require_plate_fits(config);
   if (!is_prestressed(config))
-    statics::require_statics_memory(wanted_solver(config), approximate_unknowns(config.plate));
+    statics::require_statics_memory(wanted_solver(config), approximate_unknowns(config));
   const Size size = estimated_size(config);
   const Needs n = needs(config, size);
   const bool energies = n.energy_rows * sizeof(record::Energies) > 0.5 * n.memory_bytes();

@@ -96,7 +96,9 @@ std::vector<double> trigger_forces(const input::Case& config, const statics::Equ
 
 }  // namespace
 
-double approximate_unknowns(const mesh::Plate& plate) {
+namespace {
+
+double approximate_unknowns_of(const mesh::Plate& plate) {
   double unknowns = 0, h = plate.element_size_m, height_m = plate.fine_height_m, rest_m = plate.height_m;
   for (int k = 0; k <= std::max(0, plate.coarsenings) && rest_m > 0; ++k) {
     const double of_block_m = k == plate.coarsenings ? rest_m : std::min(height_m, rest_m);
@@ -108,11 +110,21 @@ double approximate_unknowns(const mesh::Plate& plate) {
   return unknowns;
 }
 
+}  // namespace
+
+double approximate_unknowns(const input::Case& config) {
+  const double of_plate = approximate_unknowns_of(config.plate);
+  return input::has_base_body(config) ? of_plate + approximate_unknowns_of(input::base_plate(config))
+                                      : of_plate;
+}
+
 void require_plate_fits(const input::Case& config) {
-  const double n_nodes = 0.5 * approximate_unknowns(config.plate);
+  const double n_nodes = 0.5 * approximate_unknowns(config);
   require_memory(
       motion::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
-      fmt::format("a plate of {:.4g} nodes", n_nodes), "choose a larger plate.element_size_m");
+      fmt::format("{} of {:.4g} nodes", input::has_base_body(config) ? "a plate and its base" : "a plate",
+                  n_nodes),
+      "choose a larger plate.element_size_m");
 }
 
 double top_speed_m_per_s(const input::Case& config) {
@@ -147,9 +159,11 @@ WaveSpeeds wave_speeds(const solid::Material& m) {
 std::string initial_state_key(const input::Case& config) {
   input::Case relevant;
   relevant.plate = config.plate;
+  relevant.base = config.base;
   if (is_prestressed(config)) {
     relevant.loading.method = config.loading.method;
     relevant.prestress = config.prestress;
+    relevant.base.material = {};
     return input::to_toml(relevant) + config.prestress.table.text;
   }
   relevant.material = config.material;
@@ -164,33 +178,116 @@ std::string initial_state_key(const input::Case& config) {
   } else {
     relevant.material.density_kg_per_m3 = input::Case{}.material.density_kg_per_m3;
     relevant.material.stiffness_damping_s = input::Case{}.material.stiffness_damping_s;
+    relevant.base.material.density_kg_per_m3 = relevant.material.density_kg_per_m3;
+    relevant.base.material.stiffness_damping_s = relevant.material.stiffness_damping_s;
   }
   return input::to_toml(relevant);
 }
 
-mesh::Mesh check(const input::Case& config) {
+namespace {
+
+/// Statics of a tilted plate need edges that hold.
+void require_edges_to_tilt(const input::Case& config) {
+  if (config.plate.sides == mesh::Sides::periodic)
+    throw UserError(
+        "plate.sides = periodic has no equilibrium under a tilted top edge; choose free or absorbing, or "
+        "loading.method = prestress");
+  if (config.plate.top != mesh::Top::loaded)
+    throw UserError(
+        "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
+        config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
+  if (input::has_base_body(config) && config.base.plate.top != mesh::Top::loaded)
+    throw UserError(
+        "base.bottom = {} does not hold the base under a tilted plate; choose held, or loading.method = "
+        "prestress",
+        config.base.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
+}
+
+void require_free_sides_for_single(const input::Case& config) {
+  if (config.time.precision != motion::Precision::single_precision) return;
+  const auto require = [](const mesh::Plate& plate, const char* table) {
+    if (plate.sides != mesh::Sides::free)
+      throw UserError(
+          "time.precision = single needs rows between free sides; choose {}.sides = free or double", table);
+  };
+  require(config.plate, "plate");
+  if (input::has_base_body(config)) require(config.base.plate, "base");
+}
+
+/// Of the body below, upside down.
+mesh::Mesh make_base(const input::Case& config) {
+  const auto plate = input::base_plate(config);
+  const double rows = plate.height_m / plate.element_size_m;
+  if (std::abs(rows - std::round(rows)) > 1e-6 * rows)
+    throw UserError(
+        "base.height_m = {:.8g} is no whole multiple of plate.element_size_m = {:.8g}, with which the nodes "
+        "of "
+        "the two bodies face each other; the nearest that fit are {:.8g} and {:.8g}",
+        plate.height_m, plate.element_size_m, std::floor(rows) * plate.element_size_m,
+        std::ceil(rows) * plate.element_size_m);
+  return mesh::make_plate(plate, "base");
+}
+
+}  // namespace
+
+Meshes check(const input::Case& config) {
   require_plate_fits(config);
   if (!is_prestressed(config)) {
-    if (config.plate.sides == mesh::Sides::periodic)
-      throw UserError(
-          "plate.sides = periodic has no equilibrium under a tilted top edge; choose free or absorbing, or "
-          "loading.method = prestress");
-    if (config.plate.top != mesh::Top::loaded)
-      throw UserError(
-          "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
-          config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
-    statics::require_statics_memory(wanted_solver(config), approximate_unknowns(config.plate));
+    require_edges_to_tilt(config);
+    statics::require_statics_memory(wanted_solver(config), approximate_unknowns(config));
   }
-  if (config.time.precision == motion::Precision::single_precision && config.plate.sides != mesh::Sides::free)
-    throw UserError(
-        "time.precision = single needs rows between free sides; choose plate.sides = free or double");
-  auto mesh = mesh::make_plate(config.plate);
-  motion::require_rows_fit(mesh, config.time);
+  require_free_sides_for_single(config);
+  Meshes meshes{mesh::make_plate(config.plate), {}};
+  motion::require_rows_fit(meshes.plate, config.time);
+  if (input::has_base_body(config)) {
+    meshes.base = make_base(config);
+    motion::require_rows_fit(*meshes.base, config.time);
+  }
   if (is_prestressed(config))
-    trigger_forces(config, statics::prestressed(mesh, prescribed_tractions(config.prestress, mesh)),
-                   mesh::tributary_lengths_m(mesh));
+    trigger_forces(config,
+                   statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate)),
+                   mesh::tributary_lengths_m(meshes.plate));
+  return meshes;
+}
+
+mesh::Mesh joined(Meshes meshes) {
+  auto mesh = std::move(meshes.plate);
+  if (!meshes.base) return mesh;
+  const auto& base = *meshes.base;
+  const auto first = mesh.n_nodes();
+  for (auto grid : mesh::blocks(base)) {
+    grid.first += first;
+    mesh.coarser.push_back(grid);
+  }
+  mesh.x_m.insert(mesh.x_m.end(), base.x_m.begin(), base.x_m.end());
+  for (const double y : base.y_m) mesh.y_m.push_back(-y);
+  for (const auto& [a, b, c, d] : base.cells)  // counterclockwise again
+    mesh.cells.push_back({first + d, first + c, first + b, first + a});
   return mesh;
 }
+
+std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
+                                             const std::optional<mesh::Mesh>& base,
+                                             const motion::Execution& execution) {
+  const auto contact = input::contact_model(config);
+  if (!base)
+    return std::make_unique<motion::Stepper>(plate, config.material, contact, config.time, execution);
+  const auto material = input::base_material(config);
+  return std::make_unique<motion::Stepper>(motion::BodySource{plate, config.material},
+                                           motion::BodySource{*base, material}, contact, config.time,
+                                           execution);
+}
+
+namespace {
+
+/// The largest that a slip rate can be by linear elasticity, see motion::Watch.
+double fastest_speed_m_per_s(const input::Case& config) {
+  const double of_plate = solid::longitudinal_speed_m_per_s(config.material);
+  if (!input::has_base_body(config)) return of_plate;
+  return std::max(of_plate, solid::longitudinal_speed_m_per_s(input::base_material(config)));
+}
+
+}  // namespace
 
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
                                 const motion::Execution& execution, const RampBegins& ramp_begins) {
@@ -198,13 +295,16 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   const double mu_s = interface::static_coefficient(config.friction);
   const double margin = config.loading.critical_margin;
   InitialState initial;
-  initial.mesh = check(config);
-  initial.n_nodes = initial.mesh.n_nodes();
-  initial.n_cells = std::ssize(initial.mesh.cells);
+  auto meshes = check(config);
+  initial.mesh = std::move(meshes.plate);
+  initial.base = std::move(meshes.base);
+  initial.n_nodes = initial.mesh.n_nodes() + (initial.base ? initial.base->n_nodes() : 0);
+  initial.n_cells = std::ssize(initial.mesh.cells) + (initial.base ? std::ssize(initial.base->cells) : 0);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
   if (is_prestressed(config)) {
     initial.prescribed = true;
-    initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh));
+    initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh),
+                                          initial.base ? &*initial.base : nullptr);
     initial.spontaneous = initial.common;
     initial.critical_shear_m = fronts::undefined;
     initial.wall_s = seconds_since(start);
@@ -221,13 +321,14 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
     initial.common = statics.shear_to((1 - margin) * mu_s);
     initial.spontaneous = statics.shear_to((1 + margin) * mu_s);
   } else {
-    auto plain = config.time;
-    plain.interface_substeps = 1;
-    motion::Stepper stepper(initial.mesh, config.material, input::contact_model(config), plain, execution);
+    auto of_ramp = config;
+    of_ramp.time.interface_substeps = 1;
+    const auto with_ramp = new_stepper(of_ramp, initial.mesh, initial.base, execution);
+    auto& stepper = *with_ramp;
     const auto tilted = statics.shear_by(0);
     stepper.start(tilted, top_speed_m_per_s(config));
     motion::RampRun ramp(stepper, tilted, config.loading, mu_s, top_speed_m_per_s(config),
-                         solid::longitudinal_speed_m_per_s(config.material), initial.critical_shear_m);
+                         fastest_speed_m_per_s(config), initial.critical_shear_m);
     if (ramp_begins) ramp_begins(stepper, ramp);
     initial.ramp = ramp.run(monitor);
     if (initial.ramp->interrupted) throw Interrupted("interrupted during the ramp, before the event");
@@ -279,17 +380,11 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
 
 namespace {
 
-std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& mesh,
-                                             const motion::Execution& execution) {
-  return std::make_unique<motion::Stepper>(mesh, config.material, input::contact_model(config), config.time,
-                                           execution);
-}
-
 std::unique_ptr<motion::Stepper> started_stepper(const input::Case& config, const InitialState& initial,
                                                  const motion::Execution& execution) {
   const auto& state = event_state(config, initial);
   auto forces = trigger_forces(config, state, initial.tributary_m);
-  auto stepper = new_stepper(config, initial.mesh, execution);
+  auto stepper = new_stepper(config, initial.mesh, initial.base, execution);
   stepper->start(state, top_speed_m_per_s(config));
   if (initial.prescribed) stepper->set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
   if (config.trigger.form == interface::TriggerForm::weakened && is_at_edge(config.event)) {
@@ -315,6 +410,8 @@ std::unique_ptr<motion::Stepper> started_stepper(const input::Case& config, cons
 void release_displacements(statics::Equilibrium& state) {
   state.u_m = {};
   state.u_per_shear = {};
+  state.below_u_m = {};
+  state.below_u_per_shear = {};
 }
 
 /// What only the stepper needed.
@@ -342,13 +439,15 @@ std::unique_ptr<motion::Stepper> start_event(const input::Case& config, InitialS
   release_displacements(initial.common);
   release_displacements(initial.spontaneous);
   release_nodes(initial.mesh);
+  if (initial.base) release_nodes(*initial.base);
   return stepper;
 }
 
 std::unique_ptr<motion::Stepper> make_stepper(const input::Case& config, InitialState& initial,
                                               const motion::Execution& execution) {
-  auto stepper = new_stepper(config, initial.mesh, execution);
+  auto stepper = new_stepper(config, initial.mesh, initial.base, execution);
   release_nodes(initial.mesh);
+  if (initial.base) release_nodes(*initial.base);
   return stepper;
 }
 
@@ -361,7 +460,7 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
   return {stepper,
           event_state(config, initial),
           interface::static_coefficient(config.friction),
-          wave_speeds(config.material).c_L,
+          fastest_speed_m_per_s(config),
           triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
           config.time,
           {config.output.history_interval_s, config.output.energy_interval_s,

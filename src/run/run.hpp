@@ -21,20 +21,21 @@ namespace slipfront::run {
 /// that it is computed once and shared. Where the tractions are prescribed, common and spontaneous are that
 /// state.
 struct InitialState {
-  mesh::Mesh mesh;
-  std::int64_t n_nodes = 0, n_cells = 0;
-  std::vector<double> tributary_m;   ///< [lower]
-  statics::Equilibrium common;       ///< at t/p = (1 - critical_margin) mu_s inside
-  statics::Equilibrium spontaneous;  ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
-  bool prescribed = false;           ///< loading.method is prestress: no statics, no critical shear
-  double critical_shear_m = 0;       ///< shear at t/p = mu_s inside, found directly
+  mesh::Mesh mesh;                        ///< of the plate
+  std::optional<mesh::Mesh> base;         ///< of the body below, upside down; none on the rigid plane
+  std::int64_t n_nodes = 0, n_cells = 0;  ///< of both
+  std::vector<double> tributary_m;        ///< [lower]
+  statics::Equilibrium common;            ///< at t/p = (1 - critical_margin) mu_s inside
+  statics::Equilibrium spontaneous;       ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
+  bool prescribed = false;                ///< loading.method is prestress: no statics, no critical shear
+  double critical_shear_m = 0;            ///< shear at t/p = mu_s inside, found directly
   std::int64_t n_unknowns = 0;
   statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                          ///< held by it
   double wall_s = 0;
   std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
 
-  /// All but the mesh.
+  /// All but the meshes.
   template <class Archive>
   void serialize(Archive& archive) {
     archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, critical_shear_m, n_unknowns,
@@ -42,10 +43,19 @@ struct InitialState {
   }
 };
 
+/// The plate's mesh, and that of the body below where there is one, upside down.
+struct Meshes {
+  mesh::Mesh plate;
+  std::optional<mesh::Mesh> base;
+};
+
 /// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer.
-/// @return the mesh.
 /// @throws UserError
-mesh::Mesh check(const input::Case& config);
+Meshes check(const input::Case& config);
+
+/// Both bodies in one mesh, for pictures: the nodes and cells of the body below follow those of the plate,
+/// its y turned downwards, as in motion::take_snapshot.
+mesh::Mesh joined(Meshes meshes);
 
 /// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.
 using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
@@ -66,7 +76,7 @@ WaveSpeeds wave_speeds(const solid::Material& material);
 /// A run with all it found.
 struct Result {
   input::Case config;
-  WaveSpeeds speeds;
+  WaveSpeeds speeds;  ///< of the plate
   double stable_step_s = 0, step_s = 0, substep_s = 0;
   double node_updates_per_step = 0;
   double stepping_wall_s = 0;
@@ -81,7 +91,7 @@ struct Result {
   }
 };
 
-/// The plate in a case's initial state, about to move. Takes what only this needs out of the initial state:
+/// The bodies in a case's initial state, about to move. Takes what only this needs out of the initial state:
 /// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
 std::unique_ptr<motion::Stepper> start_event(const input::Case& config, InitialState& initial,
                                              const motion::Execution& execution = {});
@@ -141,9 +151,11 @@ void write_status(const std::filesystem::path& dir, const input::Case& config, c
 
 /// Derived quantities of a case, found without solving anything.
 struct Info {
-  WaveSpeeds speeds;
+  WaveSpeeds speeds;                      ///< of the plate
+  std::optional<WaveSpeeds> base_speeds;  ///< of the body below
   std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0, n_irregular = 0;
   double stable_step_s = 0, step_s = 0, substep_s = 0;
+  std::vector<int> substeps_of_bodies;  ///< in a step of each, the plate first
   Needs needs;
   std::int64_t n_steps = 0;                                         ///< of the event, to time.end_s
   double node_updates = 0;                                          ///< of the event and of the ramp

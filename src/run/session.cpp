@@ -234,7 +234,7 @@ void Session::write_results(const Finished& run) {
                          run.initial.common.tractions.x_m);
   if (!config_.output.snapshot_times_s.empty())
     results::write_snapshots(dir_ / "fields.vtkhdf", results::ResultStream::snapshot_file(folder_.state()),
-                             check(config_));
+                             joined(check(config_)));
   if (status.name == "complete") folder_.publish();
 }
 

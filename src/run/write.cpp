@@ -95,6 +95,10 @@ Json statics_json(const InitialState& initial) {
   return json;
 }
 
+Json speeds_json(const WaveSpeeds& speeds) {
+  return {{"c_L_m_per_s", speeds.c_L}, {"c_S_m_per_s", speeds.c_S}, {"c_R_m_per_s", speeds.c_R}};
+}
+
 Json fronts_json(const std::vector<fronts::Front>& fronts) {
   Json list = Json::array();
   for (const auto& front : fronts) {
@@ -135,10 +139,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                  {"rows", initial.mesh.grid.rows},
                  {"nodes", initial.n_nodes},
                  {"cells", initial.n_cells}}},
-               {"wave_speeds",
-                {{"c_L_m_per_s", result.speeds.c_L},
-                 {"c_S_m_per_s", result.speeds.c_S},
-                 {"c_R_m_per_s", result.speeds.c_R}}},
+               {"wave_speeds", speeds_json(result.speeds)},
                {"stable_dt_s", result.stable_step_s},
                {"dt_s", result.step_s},
                {"interface_dt_s", result.substep_s},
@@ -153,6 +154,10 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                {"onsets", event.record.n_onsets()},
                {"fronts", fronts_json(result.fronts)},
                {"warnings", warnings}});
+  if (input::has_base_body(result.config))
+    json["base"] = {{"columns", initial.base->grid.columns},
+                    {"rows", initial.base->grid.rows},
+                    {"wave_speeds", speeds_json(wave_speeds(input::base_material(result.config)))}};
   return json;
 }
 
@@ -198,7 +203,7 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   results::write_static(dir / "static.csv", initial.common.tractions);
   results::write_history(dir / "interface.h5", event.history);
   if (!event.snapshots.empty())
-    results::write_snapshots(dir / "fields.vtkhdf", initial.mesh, event.snapshots);
+    results::write_snapshots(dir / "fields.vtkhdf", joined({initial.mesh, initial.base}), event.snapshots);
   write_so_far(dir, result, initial, status_of(result));
   results::seal(dir);
 }

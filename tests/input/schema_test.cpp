@@ -39,6 +39,10 @@ auto members(const solid::Material& m) {
   const auto& [a, b, c, d, e] = m;
   return std::tuple(a, b, c, d, e);
 }
+auto members(const Base& base) {
+  const auto& [kind, plate, material] = base;
+  return std::tuple(kind, members(plate), members(material));
+}
 auto members(const statics::Loading& l) {
   const auto& [a, b, c, d, e, f, g, h] = l;
   return std::tuple(a, b, c, d, e, f, g, h);
@@ -84,11 +88,12 @@ std::vector<double> members(const interface::FrictionLaw& friction) {
 }
 
 void expect_equal(const Case& a, const Case& b) {
-  const auto& [title, plate, material, loading, prestress, friction, regularisation, contact, event, trigger,
-               nucleation, time, fronts, output] = b;
+  const auto& [title, plate, material, base, loading, prestress, friction, regularisation, contact, event,
+               trigger, nucleation, time, fronts, output] = b;
   EXPECT_EQ(a.title, title);
   EXPECT_EQ(members(a.plate), members(plate));
   EXPECT_EQ(members(a.material), members(material));
+  EXPECT_EQ(members(a.base), members(base));
   EXPECT_EQ(members(a.loading), members(loading));
   EXPECT_EQ(members(a.prestress), members(prestress));
   EXPECT_EQ(a.friction.index(), friction.index());
@@ -120,6 +125,13 @@ Case changed_case() {
              mesh::Sides::absorbing,
              mesh::Top::absorbing};
   c.material = {1.0e9 / 3, -0.25, 1.1e3, solid::Plane::strain, 0};
+  c.base.kind = BaseKind::body;
+  c.base.plate.height_m = 2.0 / 7;
+  c.base.plate.coarsenings = 1;
+  c.base.plate.fine_height_m = 7e-3 / 3;
+  c.base.plate.sides = mesh::Sides::absorbing;
+  c.base.plate.top = mesh::Top::free;
+  c.base.material = {2.0e11 / 3, 0.125, 7.8e3, solid::Plane::stress, 1e-8 / 3};
   c.loading = {
       1e-4, 2e-4, statics::TopEdge::free, statics::LoadingMethod::ramp, statics::StaticSolver::direct, 1e-5,
       0,    1e-4};
@@ -247,6 +259,15 @@ TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
               StartsWith("--set nucleation.x_m=0.1: nucleation.x_m applies only with"));
 }
 
+TEST(Schema, ABodyBelowAsksForItsKeysOfThePlate) {
+  EXPECT_THAT(parse_error("[base]\nheight_m = 1"),
+              StartsWith("c.toml:2: base.height_m applies only with base.kind"));
+  EXPECT_THAT(parse_error("[base]\nkind = \"body\"\nsides = \"periodic\""),
+              AllOf(StartsWith("c.toml:3: "), HasSubstr("both be periodic")));
+  const Case rigid = parse_case(to_toml(changed_prestress()), "c.toml", {{"base.kind", "rigid"}});
+  EXPECT_EQ(members(rigid.base), members(Case{}.base));
+}
+
 TEST(Schema, WhatPrescribedTractionsAskOfOtherKeys) {
   const std::string good = to_toml(changed_prestress());
   EXPECT_THAT(parse_error("[loading]\nmethod = \"prestress\"\n"),
@@ -258,8 +279,10 @@ TEST(Schema, WhatPrescribedTractionsAskOfOtherKeys) {
   EXPECT_THAT(parse_error(good, {{"prestress.p_Pa", "0"}}), HasSubstr("greater than 0"));
   EXPECT_THAT(parse_error(good, {{"nucleation.x_m", "1"}}), HasSubstr("it must be on the interface"));
   EXPECT_THAT(parse_error(good, {{"nucleation.half_length_m", "0"}}), HasSubstr("give the patch a length"));
-  EXPECT_THAT(parse_error(good, {{"plate.sides", "periodic"}, {"nucleation.taper_m", "0.2"}}),
-              HasSubstr("at most half of plate.width_m"));
+  EXPECT_THAT(
+      parse_error(good,
+                  {{"plate.sides", "periodic"}, {"base.sides", "periodic"}, {"nucleation.taper_m", "0.2"}}),
+      HasSubstr("at most half of plate.width_m"));
   EXPECT_THAT(parse_error(good, {{"friction.law", "coulomb"}, {"nucleation.form", "weakened"}}),
               HasSubstr("choose overstress"));
   EXPECT_THAT(parse_error("[loading]\nshear_speed_over_c_L = 0\n"),
@@ -453,11 +476,8 @@ TEST(Schema, UnknownTables) {
   EXPECT_EQ(parse_error("title = \"\"\n[contacts]"),
             "c.toml:2: unknown table [contacts]; did you mean [contact]?");
   EXPECT_EQ(parse_error("title = \"\"\n[boundaries]"),
-            "c.toml:2: unknown table [boundaries]; tables are plate, material, loading, prestress, friction, "
-            "contact, "
-            "event, nucleation, time, "
-            "fronts, "
-            "output");
+            "c.toml:2: unknown table [boundaries]; tables are plate, material, base, loading, prestress, "
+            "friction, contact, event, nucleation, time, fronts, output");
   EXPECT_THAT(parse_error("[plate.inner]\nwidth_m = 1"), StartsWith("c.toml:1: unknown table [plate.inner]"));
 }
 

@@ -114,6 +114,13 @@ std::vector<std::pair<const char*, input::Case>> kinds() {
   });
   add("patch weakened", prestressed_case(),
       [](input::Case& c) { c.nucleation.form = interface::NucleationForm::weakened; });
+  add("two bodies", prestressed_case(), [](input::Case& c) {
+    c.base.kind = input::BaseKind::body;
+    c.base.plate.height_m = 0.05;
+    c.base.plate.sides = mesh::Sides::periodic;
+    c.base.material = {.youngs_modulus_Pa = 9e9, .density_kg_per_m3 = 2000, .stiffness_damping_s = 0};
+    c.friction = interface::SlipWeakening {};
+  });
   add("absorbing", prestressed_case(), [](input::Case& c) {
     c.plate.sides = mesh::Sides::absorbing;
     c.plate.top = mesh::Top::absorbing;
