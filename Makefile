@@ -16,9 +16,10 @@ RESULTS ?= results
 EXPERIMENT ?=
 VENV := .venv
 PYTHON := $(VENV)/bin/python
+PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup program build test reproduce sensitivity quick regularised convergence interface-step open-choices reference contact-algorithms bench docs format format-check verify verification-pages tidy hostile fuzz sanitize coverage clean
+.PHONY: help setup program build test reproduce sensitivity quick regularised convergence interface-step open-choices reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -32,7 +33,11 @@ packages:
 $(VENV)/.installed: pyproject.toml | packages
 	@echo "== Python environment $(VENV)"
 	python3 -m venv $(VENV)
-	$(PYTHON) scripts/python-requirements.py | $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
+	$(PYTHON) scripts/python-requirements.py test | $(PIP_INSTALL)
+	@touch $@
+
+$(VENV)/.installed-lint: $(VENV)/.installed
+	$(PYTHON) scripts/python-requirements.py lint | $(PIP_INSTALL)
 	@touch $@
 
 program: packages  ## build the program alone: build/release/slipfront
@@ -137,11 +142,17 @@ lint-packages:
 	@scripts/install-packages $(LINT_PACKAGES)
 
 .PHONY: lint-packages
-format: lint-packages  ## format all C++ sources
+format: lint-packages $(VENV)/.installed-lint  ## format all C++ and Python sources
 	clang-format-14 -i $(SOURCES)
+	$(VENV)/bin/ruff format --quiet
 
 format-check: lint-packages  ## fail where a C++ source is not formatted
 	clang-format-14 --dry-run --Werror $(SOURCES)
+
+lint: $(VENV)/.installed-lint  ## fail where Python is not formatted, or ruff or mypy finds anything
+	$(VENV)/bin/ruff format --check
+	$(VENV)/bin/ruff check
+	$(VENV)/bin/mypy
 
 # In a folder of its own: clang cannot read what gcc has precompiled.
 tidy: packages lint-packages  ## clang-tidy over src, warnings are errors
@@ -173,4 +184,4 @@ coverage: packages  ## lines of the numerical core that the C++ tests run: table
 	@scripts/run-coverage build/coverage
 
 clean:  ## remove build, venv and results
-	rm -rf build $(VENV) $(RESULTS) $(RESULTS)-*
+	rm -rf build .cache $(VENV) $(RESULTS) $(RESULTS)-*

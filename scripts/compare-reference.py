@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs Problem A (docs/prestress.md) or F (docs/two-bodies.md) on several meshes and compares it with other codes:
-table and figure."""
+"""Runs Problem A (docs/prestress.md) or F (docs/two-bodies.md) on several meshes and compares it with other
+codes: table and figure."""
 
 import argparse
 import csv
@@ -9,6 +9,7 @@ import json
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import h5py
 import matplotlib
@@ -35,7 +36,7 @@ class Problem:
     centre_m: float  # of the nucleation patch in the case; x = 0 of the problem
     least_arrival_limit_s: float  # at the finest mesh; else max(1 %, 0.5 us)
 
-    def arrival_limit_s(self, t, finest):
+    def arrival_limit_s(self, t: np.ndarray, finest: bool) -> np.ndarray:
         if finest and self.least_arrival_limit_s < 0.5e-6:
             return np.full_like(t, self.least_arrival_limit_s)
         return np.maximum(0.01 * t, 0.5e-6)
@@ -48,7 +49,7 @@ PROBLEMS = {
 
 
 class Run:
-    def __init__(self, folder, centre_m):
+    def __init__(self, folder: Path, centre_m: float) -> None:
         with open(folder / "run.json") as file:
             facts = json.load(file)
         self.wall_s = facts["wall_s"]
@@ -59,7 +60,7 @@ class Run:
         # Slip rates are those of half a sub-step later.
         self.v_t_s = self.t_s + 0.5 * facts["interface_dt_s"]
 
-    def arrivals_s(self, x_m):
+    def arrivals_s(self, x_m: np.ndarray) -> np.ndarray:
         """First time that the slip rate passes the threshold, linear between steps and nodes."""
         v = self.fields["v"]
         after = np.argmax(v > THRESHOLD_M_PER_S, axis=0)
@@ -71,14 +72,14 @@ class Run:
         t[v[after, node] <= THRESHOLD_M_PER_S] = np.nan
         return np.interp(x_m, self.x_m, t)
 
-    def field(self, name, t_s, x_m):
+    def field(self, name: str, t_s: np.ndarray, x_m: np.ndarray) -> np.ndarray:
         own_t_s = self.v_t_s if name == "v" else self.t_s
         at_times = np.array([np.interp(t_s, own_t_s, column) for column in self.fields[name].T]).T
         return np.array([np.interp(x_m, self.x_m, row) for row in at_times])
 
 
 class Reference:
-    def __init__(self, name):
+    def __init__(self, name: str) -> None:
         with open(CASES / f"data/{name}_arrivals.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         x = np.array([float(row["x_m"]) for row in rows])
@@ -94,9 +95,13 @@ class Reference:
         self.fields = {name: fields[name][: len(self.t_s), inside] for name in FIELDS}
 
 
-def compare(run, reference, limit_s):
+Measured = dict[str, Any]  # of a run against the reference, by name
+Compared = tuple[float, Run, Measured]  # with the element size, mm
+
+
+def compare(run: Run, reference: Reference, limit_s: np.ndarray) -> Measured:
     late_s = run.arrivals_s(reference.x_m) - reference.arrivals_s
-    measured = {"late_s": late_s}
+    measured: Measured = {"late_s": late_s}
     # Where the front is too slow to arrive at all, it is late without bound.
     size_s = np.where(np.isfinite(late_s), np.abs(late_s), np.inf)
     measured["largest_s"] = size_s.max()
@@ -105,24 +110,26 @@ def compare(run, reference, limit_s):
     for name, expected in reference.fields.items():
         error = run.field(name, reference.t_s, reference.fields_x_m) - expected
         measured[name] = np.sqrt(np.mean(error**2)) / np.ptp(expected)
-        measured[name, "outside"] = np.sqrt(np.mean(error[:, outside] ** 2)) / np.ptp(expected[:, outside])
+        measured[f"{name} outside"] = np.sqrt(np.mean(error[:, outside] ** 2)) / np.ptp(expected[:, outside])
     return measured
 
 
-def table(results, n_points):
+def table(results: list[Compared], n_points: int) -> str:
     lines = [
-        "| h (mm) | arrival, largest difference (us) | beyond its limit | tau | p | v | slip | stepping (s) |",
+        "| h (mm) | arrival, largest difference (us) | beyond its limit | tau | p | v | slip | "
+        "stepping (s) |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for h_mm, run, m in results:
-        rms = " | ".join(f"{100 * m[name]:.2f} %, {100 * m[name, 'outside']:.2f} %" for name in FIELDS)
+        rms = " | ".join(f"{100 * m[name]:.2f} %, {100 * m[f'{name} outside']:.2f} %" for name in FIELDS)
         lines.append(
-            f"| {h_mm:g} | {1e6 * m['largest_s']:.2f} | {m['beyond']} of {n_points} | {rms} | {run.wall_s:.2g} |"
+            f"| {h_mm:g} | {1e6 * m['largest_s']:.2f} | {m['beyond']} of {n_points} | {rms} | "
+            f"{run.wall_s:.2g} |"
         )
     return "\n".join(lines)
 
 
-def draw(results, reference, limit_s, picture):
+def draw(results: list[Compared], reference: Reference, limit_s: np.ndarray, picture: Path) -> None:
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained", dpi=110)
     sides = [reference.x_m < 0, reference.x_m > 0]  # a gap between them
     limit_us = 1e6 * limit_s
@@ -159,12 +166,14 @@ def draw(results, reference, limit_s, picture):
     write_figure(picture, figure)
 
 
-def main():
+def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("problem", choices=PROBLEMS)
     parser.add_argument("--program", default="build/release/slipfront")
     parser.add_argument("--results", type=Path, default=Path("results-reference"))
-    parser.add_argument("--figure", type=Path, help="default: reference_PROBLEM.png in the folder of the results")
+    parser.add_argument(
+        "--figure", type=Path, help="default: reference_PROBLEM.png in the folder of the results"
+    )
     parser.add_argument("--h-mm", type=float, nargs="+", default=[2, 1, 0.5, 0.25])
     options = parser.parse_args()
     problem = PROBLEMS[options.problem]
@@ -174,7 +183,7 @@ def main():
     except DataError as error:
         parser.error(str(error))
     reference = Reference(problem.name)
-    results = []
+    results: list[Compared] = []
     for h_mm in options.h_mm:
         folder = options.results / f"{problem.name}_h_{h_mm:g}_mm"
         size = f"plate.element_size_m={h_mm * 1e-3!r}"
@@ -189,7 +198,7 @@ def main():
     draw(results, reference, limit_s, picture)
     finest = results[-1][2]
     holds = finest["beyond"] == 0 and all(
-        max(finest[name], finest[name, "outside"]) < limit for name, limit in LIMITS.items()
+        max(finest[name], finest[f"{name} outside"]) < limit for name, limit in LIMITS.items()
     )
     print(f"At h = {results[-1][0]:g} mm the limits {'hold' if holds else 'DO NOT HOLD'}.")
     return 0 if holds else 1

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs TPV205-2D (docs/two-bodies.md) on several meshes and compares it with three other codes: tables and figure."""
+"""Runs TPV205-2D (docs/two-bodies.md) on several meshes and compares it with three other codes."""
 
 import argparse
 import csv
 import json
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import h5py
 import matplotlib
@@ -25,39 +26,40 @@ FROM_M, TO_M = 2e3, 15e3  # where arrivals are compared: outside the patch that 
 COLOURS = {"PyLith, 200 m": "0.6", "uguca, 50 m": "k"}
 
 
-def read_csv(name):
+def read_csv(name: str) -> dict[str, np.ndarray]:
     with open(CASES / "data" / name, newline="") as file:
         rows = list(csv.DictReader(file))
     return {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
 
 
-def passing_s(t, v, threshold):
+def passing_s(t: np.ndarray, v: np.ndarray, threshold: float) -> float:
     """First time that a slip rate passes a threshold, linear between samples; nan where it does not."""
     after = int(np.argmax(v > threshold))
     if v[after] <= threshold:
         return np.nan
     if after == 0:
-        return t[0]
+        return float(t[0])
     return float(np.interp(threshold, v[after - 1 : after + 1], t[after - 1 : after + 1]))
 
 
 class Station:
-    def __init__(self, t, rate, slip):
+    def __init__(self, t: np.ndarray, rate: np.ndarray, slip: np.ndarray) -> None:
         self.t, self.rate, self.slip = t, rate, slip
         self.pass_s = passing_s(t, rate, PASSING_M_PER_S)
         self.peak = rate.max()
         self.end = slip[-1]
 
 
-def reference_stations(name):
+Stations = dict[int, Station]  # by x, m
+
+
+def reference_stations(name: str) -> Stations:
     table = read_csv(name)
-    return {
-        x: Station(table["t_s"], table[f"sliprate_{x}_m_s"], table[f"slip_{x}_m"]) for x in STATIONS_M
-    }
+    return {x: Station(table["t_s"], table[f"sliprate_{x}_m_s"], table[f"slip_{x}_m"]) for x in STATIONS_M}
 
 
 class Run:
-    def __init__(self, folder):
+    def __init__(self, folder: Path) -> None:
         with open(folder / "run.json") as file:
             facts = json.load(file)
         self.wall_s = facts["wall_s"]
@@ -69,7 +71,7 @@ class Run:
         self.rate_t_s = self.t_s + 0.5 * facts["interface_dt_s"]
         self.stations = {x: self.station(x) for x in STATIONS_M}
 
-    def station(self, x):
+    def station(self, x: int) -> Station:
         at = int(np.argmin(np.abs(self.x_m - x)))
         if abs(self.x_m[at] - x) < 1e-6:
             return Station(self.rate_t_s, self.rate[:, at], self.slip[:, at])
@@ -80,12 +82,17 @@ class Run:
         weights = np.array([1 - share, share])
         return Station(self.rate_t_s, self.rate[:, pair] @ weights, self.slip[:, pair] @ weights)
 
-    def arrivals_s(self, x_m):
+    def arrivals_s(self, x_m: np.ndarray) -> np.ndarray:
         own = [passing_s(self.rate_t_s, column, ARRIVAL_M_PER_S) for column in self.rate.T]
         return np.interp(x_m, self.x_m, own)
 
 
-def station_table(runs, references):
+Measured = dict[str, Any]  # of a run against the references, by name
+Compared = tuple[float, Run, Measured]  # with the element size, m
+Arrivals = tuple[np.ndarray, np.ndarray]  # x, m, and time, s
+
+
+def station_table(runs: dict[str, Run], references: dict[str, Stations]) -> str:
     lines = [
         "| x (km) | " + " | ".join(f"{name}" for name in [*references, *runs]) + " |",
         "|---" * (1 + len(references) + len(runs)) + "|",
@@ -97,8 +104,9 @@ def station_table(runs, references):
     return "\n".join(lines)
 
 
-def compare(run, references, arrivals, spread):
-    """Largest differences: of arrivals (s, and relative), of peaks and of final slip beyond the codes' own spread."""
+def compare(run: Run, references: dict[str, Stations], arrivals: Arrivals, spread: float) -> Measured:
+    """Largest differences: of arrivals (s, and relative), of peaks and of final slip, and how many arrivals
+    are beyond the codes' own spread."""
     x, expected = arrivals
     late_s = run.arrivals_s(x) - expected
     slips = [run.stations[s].end / references["uguca, 50 m"][s].end - 1 for s in STATIONS_M]
@@ -116,7 +124,7 @@ def compare(run, references, arrivals, spread):
     }
 
 
-def summary(results, n_points):
+def summary(results: list[Compared], n_points: int) -> str:
     lines = [
         "| h (m) | arrivals: median, largest difference (s) | beyond the limit | v > 1 m/s at stations (s) | "
         "peak slip rate | final slip | stepping (s) |",
@@ -124,13 +132,19 @@ def summary(results, n_points):
     ]
     for h, run, m in results:
         lines.append(
-            f"| {h:g} | {m['median_s']:.3f}, {m['largest_s']:.3f} | {m['beyond']} of {n_points} | {m['pass_s']:.3f} | "
-            f"{100 * m['peak']:.1f} % | {100 * m['slip']:.2f} % | {run.wall_s:.2g} |"
+            f"| {h:g} | {m['median_s']:.3f}, {m['largest_s']:.3f} | {m['beyond']} of {n_points} | "
+            f"{m['pass_s']:.3f} | {100 * m['peak']:.1f} % | {100 * m['slip']:.2f} % | {run.wall_s:.2g} |"
         )
     return "\n".join(lines)
 
 
-def draw(results, references, arrivals, between_s, picture):
+def draw(
+    results: list[Compared],
+    references: dict[str, Stations],
+    arrivals: Arrivals,
+    between_s: np.ndarray,
+    picture: Path,
+) -> None:
     figure, axes = plt.subplots(2, 2, figsize=(10, 7), layout="constrained", dpi=110)
     x, _ = arrivals
     for side in (x < 0, x > 0):
@@ -152,11 +166,13 @@ def draw(results, references, arrivals, between_s, picture):
     write_figure(picture, figure)
 
 
-def main():
+def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default="build/release/slipfront")
     parser.add_argument("--results", type=Path, default=Path("results-reference"))
-    parser.add_argument("--figure", type=Path, help="default: reference_tpv205.png in the folder of the results")
+    parser.add_argument(
+        "--figure", type=Path, help="default: reference_tpv205.png in the folder of the results"
+    )
     parser.add_argument("--h-m", type=float, nargs="+", default=[200, 100, 50])
     options = parser.parse_args()
     picture = options.figure or options.results / "reference_tpv205.png"
@@ -173,7 +189,7 @@ def main():
         "uguca, 50 m": reference_stations("tpv205_stations_uguca_50m.csv"),
     }
     spread = float(np.max(np.abs(between_s)))
-    results = []
+    results: list[Compared] = []
     for h in options.h_m:
         folder = options.results / f"tpv205_h_{h:g}_m"
         command = [options.program, "run", str(CASES / "tpv205.toml"), "-o", str(folder), "--overwrite", "-q"]
@@ -185,8 +201,8 @@ def main():
     print("\nLargest differences from uguca (arrivals: extrapolated; stations: 50 m):\n")
     print(summary(results, len(arrivals[0])))
     print(
-        f"\nBetween uguca and SEM2DPACK (50 m): {np.median(np.abs(between_s)):.3f} s in the median of the arrivals, "
-        f"{spread:.3f} s at most."
+        f"\nBetween uguca and SEM2DPACK (50 m): {np.median(np.abs(between_s)):.3f} s in the median of the "
+        f"arrivals, {spread:.3f} s at most."
     )
     draw(results, references, arrivals, between_s, picture)
     finest = results[-1][2]

@@ -15,7 +15,6 @@ import matplotlib
 import numpy as np
 import shared
 from matplotlib.figure import Figure
-
 from slipfront.figures.style import PAGE_MM, RC
 from slipfront.files import read_json
 from slipfront.read import Front, read_fronts
@@ -64,7 +63,7 @@ class Event:
 
 
 def run(program: Path, case: Path, folder: Path, settings: list[str]) -> Event:
-    command = [program, "run", case, "-o", folder, "--overwrite", "--quiet"]
+    command: list[str | Path] = [program, "run", case, "-o", folder, "--overwrite", "--quiet"]
     for setting in [*settings, "output.snapshot_times_s=[]", "output.history_interval_s=1e-5"]:
         command += ["--set", setting]
     subprocess.run(command, check=True)
@@ -133,8 +132,14 @@ def draw(all_results: dict[str, dict[str, dict[str, Event]]], c_L: float) -> Fig
                     if front is None:
                         continue
                     v = np.where(np.isfinite(front.dynamic_ratio), front.v_tip_m_per_s, np.nan) / c_L
-                    ax.plot(1e3 * front.x_m, v, color=colour, linestyle=line, linewidth=0.9,
-                            label=f"{name} sub-steps" if direction > 0 or event == "left" else None)
+                    ax.plot(
+                        1e3 * front.x_m,
+                        v,
+                        color=colour,
+                        linestyle=line,
+                        linewidth=0.9,
+                        label=f"{name} sub-steps" if direction > 0 or event == "left" else None,
+                    )
             ax.set_title(f"{event}, {law}", loc="left")
             ax.set_ylim(0, 3.2)
         axes[-1, column].set_xlabel("$x$ (mm)")

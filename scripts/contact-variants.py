@@ -108,13 +108,13 @@ def single(n: int) -> None:
         for r in (0.9, 0.05):
             row = Row(variant, n, r)
             start = row.energy()
-            first = last = None
+            first = last = math.nan
             highest = 0.0
             while row.time < 3:
                 row.step()
                 highest = max(highest, row.p)
                 if row.touches:
-                    first = row.time if first is None else first
+                    first = row.time if math.isnan(first) else first
                     last = row.time
             print(
                 f"| {variant} | {r} | {row.mean_v():.3f} | {(last - first) / 2:.3f} | "

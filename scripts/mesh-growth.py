@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Growth of the shortest waves that the mesh carries, on uniform sliding with a constant friction coefficient below 1,
-where the half-space is stable. Prints the table of docs/verification/growing_modes.md.
+"""Growth of the shortest waves that the mesh carries, on uniform sliding with a constant friction
+coefficient below 1, where the half-space is stable. Prints the table of docs/verification/growing_modes.md.
 
 usage: mesh-growth.py PROGRAM
 
-A periodic plate with an absorbing top slides uniformly; what grows, grows from rounding. Growth: slope of the logarithm of
-the largest Fourier amplitude of the slip rate over time, between rounding and a thousandth of the sliding speed."""
+A periodic plate with an absorbing top slides uniformly; what grows, grows from rounding. Growth: slope of
+the logarithm of the largest Fourier amplitude of the slip rate over time, between rounding and a thousandth
+of the sliding speed."""
 
 from __future__ import annotations
 

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the tables of docs/open-choices.md anew from a study of the open choices; the text around them stays.
-"""
+"""Writes the tables of docs/open-choices.md anew from a study of the open choices; the text stays."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+import textwrap
 from pathlib import Path
 from typing import Any
 
 from shared import between_marks, expecting, read_result, renew, run
+
+PAGE_WIDTH = 120  # of the docs' lines
 
 
 def told(value: Any) -> str:
@@ -76,13 +78,14 @@ def outcomes(study: dict[str, Any]) -> str:
     if impossible:
         counts += f"; {impossible} more samples have fillets too small for their elements"
     counts += (
-        f". Of the {study['n_triggers']} samples of triggers {study['n_triggers_with_fronts']} start a front at both "
-        f"edges. All constraints hold for {study['n_region']} samples. Of these the paper's a, b and c lie inside our "
-        f"intervals for {study['n_region_with_paper_fit']}, and at least 80 % of the points in its band for "
-        f"{study['n_region_in_paper_band']}. C1 to C11 hold for {study['n_triggers_slow_left']} of the "
-        f"{study['n_triggers']} trigger samples.\n\n"
+        f". Of the {study['n_triggers']} samples of triggers {study['n_triggers_with_fronts']} start a "
+        f"front at both edges. All constraints hold for {study['n_region']} samples. Of these the paper's a, "
+        f"b and c lie inside our intervals for {study['n_region_with_paper_fit']}, and at least 80 % of the "
+        f"points in its band for {study['n_region_in_paper_band']}. C1 to C11 hold for "
+        f"{study['n_triggers_slow_left']} of the {study['n_triggers']} trigger samples."
     )
-    return counts + table(["", "a", "b", "c", "points in the paper's band", "constraints"], rows)
+    lines = textwrap.fill(counts, PAGE_WIDTH, break_on_hyphens=False)
+    return lines + "\n\n" + table(["", "a", "b", "c", "points in the paper's band", "constraints"], rows)
 
 
 def write(results: Path, page: Path) -> None:

@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 from shared import checked, run, write_figure
 
 
-def main(table, picture):
+def main(table: Path, picture: Path) -> None:
     checked(picture)
     with open(table, newline="") as file:
         rows = list(csv.DictReader(file))

@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the table of docs/scorecard.md anew from a reproduction's scorecard.json; the text below it stays.
 
-A first test whose claim is judged by a second one says so beside its verdict. The columns of the variations are there
-where `slipfront reproduce --sensitivity` has written them."""
+A first test whose claim is judged by a second one says so beside its verdict. The columns of the variations
+are there where `slipfront reproduce --sensitivity` has written them."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
 from shared import between_marks, expecting, read_result, renew, run
 
 VERDICTS = {True: "holds", False: "**does not hold**", None: "not tested"}
 
 
-def variations_of(scorecard: list[dict]) -> dict[str, str]:
+def variations_of(scorecard: list[dict[str, Any]]) -> dict[str, str]:
     """Headings of the variations that were run, by their keys."""
-    headings = {}
+    headings: dict[str, str] = {}
     for row in scorecard:
         for key in ("mesh_variation", "step_variation"):
             if key in row:
@@ -25,23 +26,25 @@ def variations_of(scorecard: list[dict]) -> dict[str, str]:
     return headings
 
 
-def moves(row: dict, key: str) -> str:
+def moves(row: dict[str, Any], key: str) -> str:
     text = row[key]["moves"] if key in row else ""
     return text.replace("there does not hold", "**there does not hold**") or "-"
 
 
-def verdict_of(row: dict, judges: dict[str, str]) -> str:
+def verdict_of(row: dict[str, Any], judges: dict[str, str]) -> str:
     own = "used to choose" if row["holds"] and row.get("used_to_choose") else VERDICTS[row["holds"]]
     return own + (f"; {judges[row['id']]} counts" if row["id"] in judges else "")
 
 
-def how(row: dict) -> str:
+def how(row: dict[str, Any]) -> str:
     """The test, and of a second one why the first misjudges."""
     return f"{row['how']}. Instead of {row['second_test_of']}: {row['why']}" if "why" in row else row["how"]
 
 
-def table(scorecard: list[dict]) -> str:
-    judges = {row["second_test_of"]: row["id"] for row in scorecard if "second_test_of" in row and row["counts"]}
+def table(scorecard: list[dict[str, Any]]) -> str:
+    judges = {
+        row["second_test_of"]: row["id"] for row in scorecard if "second_test_of" in row and row["counts"]
+    }
     variations = variations_of(scorecard)
     header = ["id", "claim", "our figure", "verdict", *variations.values(), "test"]
     lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the scripts beside this file share: results that are checked, pages that are written whole, errors as one line."""
+"""What the scripts beside this file share: checked results, pages written whole, errors as one line."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ __all__ = ["DataError", "checked", "read_text", "write_figure"]  # handed on
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
-from slipfront import command  # noqa: E402
-from slipfront.figures.picture import checked, write_figure  # noqa: E402
-from slipfront.files import DataError, read_json, read_text  # noqa: E402
-from slipfront.folder import result_file  # noqa: E402
+from slipfront import command
+from slipfront.figures.picture import checked, write_figure
+from slipfront.files import DataError, read_json, read_text
+from slipfront.folder import result_file
 
 
 def read_result(file: Path) -> Any:

@@ -13,9 +13,9 @@ import matplotlib.pyplot as plt
 from shared import checked, run, write_figure
 
 
-def main(table, picture):
+def main(table: Path, picture: Path) -> None:
     checked(picture)
-    curves = {}
+    curves: dict[str, dict[str, tuple[list[float], list[float]]]] = {}  # x and y by body and law
     with open(table, newline="") as file:
         for row in csv.DictReader(file):
             curve = curves.setdefault(row["body"], {}).setdefault(row["law"], ([], []))

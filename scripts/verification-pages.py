@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Puts the numbers and the picture of `slipfront verify -o DIR` at the end of each page of docs/verification."""
+"""Puts numbers and picture of `slipfront verify -o DIR` at the end of each page of docs/verification."""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
 from shared import DataError, after_mark, expecting, read_result, read_text, run, write_pages
 
 MARK = "<!-- numbers -->"
 
 
-def numbers(results: dict) -> str:
+def numbers(results: dict[str, Any]) -> str:
     lines = [
         f"![{results['title']}](../figures/verify_{results['name']}.png)",
         "",
@@ -23,12 +24,13 @@ def numbers(results: dict) -> str:
         unit = f" {c['unit']}" if c["unit"] else ""
         mark = "" if c["holds"] else " **does not hold**"
         lines.append(
-            f"| {c['quantity']} | {c['measured']:.6g}{unit}{mark} | {c['expected']:.6g} | {c['tolerance']:.2g} | {c['reason']} |"
+            f"| {c['quantity']} | {c['measured']:.6g}{unit}{mark} | {c['expected']:.6g} | "
+            f"{c['tolerance']:.2g} | {c['reason']} |"
         )
     return "\n".join(lines) + "\n"
 
 
-def row_of(results: dict, name: str) -> str:
+def row_of(results: dict[str, Any], name: str) -> str:
     """Of the table of all problems."""
     holding = sum(c["holds"] for c in results["checks"])
     return f"| [{results['title']}]({name}) | {holding} of {len(results['checks'])} |"

@@ -11,13 +11,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TextIO
 
 from slipfront.files import DataError, one_line
 
 DONE, REFUSED, INTERRUPTED = 0, 2, 130
 
 
-def write_line(stream, text: str) -> None:
+def write_line(stream: TextIO | None, text: str) -> None:
     """A line on standard output or error, which may be closed (None), full or without some signs."""
     if stream is None:
         return
@@ -25,7 +26,7 @@ def write_line(stream, text: str) -> None:
     print(one_line(text).encode(encoding, "backslashreplace").decode(encoding), file=stream, flush=True)
 
 
-def abandon(stream) -> None:
+def abandon(stream: TextIO) -> None:
     """Keeps the interpreter from writing, at its end, what could not be written before."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
@@ -61,7 +62,7 @@ def run(name: str, work: Callable[[], list[str]]) -> int:
 
 
 def replaceable(file: Path) -> Path:
-    """The path of a file to write, unless something is there that is no regular file: a device, a pipe, a link."""
+    """The path of a file to write, unless a device, a pipe, a link or a folder is there."""
     try:
         is_regular = stat.S_ISREG(os.lstat(file).st_mode)
     except (FileNotFoundError, NotADirectoryError):

@@ -13,7 +13,9 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -51,7 +53,7 @@ def exists(path: Path) -> bool:
 
 
 @contextmanager
-def open_file(file: Path) -> Iterator:
+def open_file(file: Path) -> Iterator[BufferedReader]:
     """A regular file's bytes. Pipes and devices, which would be waited for, are refused."""
     try:
         with open(os.open(file, os.O_RDONLY | os.O_NONBLOCK), "rb") as stream:
@@ -88,7 +90,7 @@ def read_text(file: Path) -> str:
         ) from None
 
 
-def read_toml(file: Path) -> dict:
+def read_toml(file: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(read_text(file).replace("\r\n", "\n"))
     except RecursionError:
@@ -101,7 +103,7 @@ def refuse_constant(name: str) -> None:
     raise ValueError(f"{name} is not a value of JSON")
 
 
-def read_json(file: Path):
+def read_json(file: Path) -> Any:
     try:
         return json.loads(read_text(file), parse_constant=refuse_constant)
     except RecursionError:
@@ -110,14 +112,14 @@ def read_json(file: Path):
         raise DataError(f"{file}: not JSON: {error}") from None
 
 
-def read_json_table(file: Path) -> dict:
+def read_json_table(file: Path) -> dict[str, Any]:
     table = read_json(file)
     if not isinstance(table, dict):
         raise DataError(f"{file}: not a JSON object")
     return table
 
 
-def is_number(value) -> bool:
+def is_number(value: Any) -> bool:
     """Whether a value of JSON or TOML is a finite number."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
@@ -127,9 +129,9 @@ def is_number(value) -> bool:
         return False
 
 
-def number(file: Path, table: dict, key: str) -> float:
+def number(file: Path, table: dict[str, Any], key: str) -> float:
     """Number of a dotted key of a file's table."""
-    value = table
+    value: Any = table
     for part in key.split("."):
         if not isinstance(value, dict) or part not in value:
             raise DataError(f"{file}: no entry '{key}'")

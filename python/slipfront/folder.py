@@ -101,7 +101,7 @@ def verify_checksums(folder: Path) -> list[str]:
     folders = lists_under(folder)
     if not folders:
         return [f"{folder / LIST}: No such file: nothing to compare with"]
-    problems = []
+    problems: list[str] = []
     for place in folders:
         try:
             sums = read_list(place) or {}

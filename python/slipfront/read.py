@@ -9,6 +9,7 @@ import argparse
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -155,7 +156,7 @@ class Place:
 
     name: str
     folder: Path  # the run's own, or its unfinished/
-    info: dict
+    info: dict[str, Any]
     status: str  # one of STATUSES
     reason: str  # may be empty
     notes: tuple[str, ...]  # what a reader of the figures should know besides, a line each
@@ -187,7 +188,7 @@ class Run:
     """One run's results. `case` is case.resolved.toml as a dictionary."""
 
     place: Place
-    case: dict
+    case: dict[str, Any]
     static_x_m: np.ndarray  # [nodes]
     static_ratio: np.ndarray  # [nodes], t_s / p_s
     fronts: list[Front]
@@ -200,7 +201,7 @@ class Run:
         return self.place.name
 
     @property
-    def info(self) -> dict:
+    def info(self) -> dict[str, Any]:
         """run.json as a dictionary."""
         return self.place.info
 
@@ -252,7 +253,7 @@ class Run:
         return next(ends, None)
 
 
-def entry(table: dict, part: str, key: str):
+def entry(table: dict[str, Any], part: str, key: str) -> Any:
     """A key of a part of a file; None where there is none."""
     inner = table.get(part)
     return inner.get(key) if isinstance(inner, dict) else None
@@ -272,7 +273,7 @@ def n_finite(*arrays: np.ndarray) -> int:
     return len(finite) if finite.all() else int(np.argmin(finite))
 
 
-def require(holds, file: Path, what: str) -> None:
+def require(holds: Any, file: Path, what: str) -> None:
     """Refuses a file unless all of `holds` is true."""
     if not np.all(holds):
         raise DataError(f"{file}: {what}")

@@ -68,7 +68,7 @@ void Body::start(const solid::Field& u_m, const solid::Field& u_per_shear, doubl
 }
 
 void Body::find_steady_force(Level& level) {
-  // The first look at the forces must not move anything.
+  // A push that is taken back: its kicks on the shared nodes are the level's force on them.
   auto& u = plate_.u_m;
   auto& v = plate_.v_m_per_s;
   auto& shared = level.shared;

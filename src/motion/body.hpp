@@ -41,7 +41,6 @@ class Body {
   /// Divides the cells into levels, before anything else.
   /// @param step_s      of the coarsest level
   /// @param substeps    of the last level in a step of the lowest block
-  /// @param steps       that may be under way at a time
   void divide(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time,
               double step_s, int substeps);
   void expect_steps_under_way(int n);
@@ -62,16 +61,17 @@ class Body {
   /// not stay at rest.
   void start(const solid::Field& u_m, const solid::Field& u_per_shear, double top_speed_m_per_s);
 
-  /// The step of the stepper that is under way.
+  /// What a step of the stepper has of its own while it is under way; several are, see threads::Wavefront.
   BodyStep& under_way(std::int64_t step) { return under_way_[step % std::ssize(under_way_)]; }
-  /// All kicks that are due at sub-step k, by the places and velocities before it, and the moves of all nodes
-  /// but those of the interface; of a coarsest level that `leads`, the first band alone.
+  /// Pushes every level whose step begins with sub-step k, and moves the nodes that are due, but for those of
+  /// the interface. Where the body `leads` (see Stepper::leads), only the first band of the coarsest level is
+  /// pushed here.
   void push_due(BodyStep& step, int k, bool leads);
-  /// A later band of the coarsest level, where it leads; the last one completes the step.
+  /// The other bands of the coarsest level of a body that leads, one by one.
   void push_later_band(BodyStep& step, std::size_t band);
-  /// Adds up what a step did.
+  /// Adds the works of a step that is done to the body's.
   void complete(const BodyStep& step);
-  /// After steps, before anyone looks at the motion.
+  /// Makes u_m and v_m_per_s those after the last step in all rows: before anyone looks at them.
   void settle() { to_double(single_, plate_); }
 
   /// Interface nodes, and what the contact has to know of them. [lower]

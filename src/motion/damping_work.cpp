@@ -6,9 +6,8 @@ namespace slipfront::motion {
 double DampingWork::add(const PushProducts& push) {
   const double dt = step_s_, beta = damping_s_, m_over_dt = interior_mass_kg_ / dt;
   const auto& kicks = push.kicks;
-  // With u' = u + dt v', v' the velocity after the last push: three unknowns, v' K u, v' K v', u' K u', in
-  // u' K w' = u' K u' + beta u' K v', v' K w' = v' K u + (dt + beta) v' K v', and u' K u' itself. A landing
-  // has shifted u' besides.
+  // In the head's notation `push` is the next push: its u, v and w are u', v' and w'. A landing has shifted
+  // u' since the last push; u_K_w is u' K w' without that shift.
   const double u_K_w_now = push.u_K_w - m_over_dt * (kicks.w_d - beta * kicks.v_d);
   const double v_K_w = push.v_K_w - m_over_dt * kicks.v_d - push.shift_K_v;
   const double u_K_w = u_K_w_now - push.shift_K_u - beta * push.shift_K_v;

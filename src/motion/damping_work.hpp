@@ -5,27 +5,42 @@
 
 namespace slipfront::motion {
 
-/// Products with the stiffness K of some cells at one push, w = u + beta_R v: of the place u and the velocity
-/// v before it, of the velocity after it as far as the push knows it, and of the velocity after the push
-/// before, where that one did not.
+/// Sums over nodes that a push forms beside the kicks, for the damping's work. A push kicks nodes by the
+/// force -K w of some cells, w = u + beta_R v, with u and v the displacements and velocities before it; v'
+/// are the velocities after it.
 struct PushProducts {
-  double u_K_w = 0, v_K_w = 0, after_K_w = 0;
+  double u_K_w = 0, v_K_w = 0, after_K_w = 0;  ///< without the nodes of `kicks`; after: v' K w
+  /// v' K w of the push before at the nodes that its `kicks` leave out, some of which got their v' only after
+  /// it, from the contact or from a finer level.
   double late_K_w = 0;
-  solid::KickSums kicks;  ///< over nodes amid four squares, all of one mass
-  /// Of the shift s of landing nodes since the push before: s K v, and s K (u' + u' - s) with u' the place
-  /// after it.
+  /// The same products in terms of the kick d = v' - v, K w = -m d/dt, at nodes that the stencils kick and
+  /// move at once; as if all had the mass m of a node amid the smallest squares.
+  solid::KickSums kicks;
+  /// s K v and s K (2 u - s), s the shift that has put landing nodes onto the plane since the push before.
   double shift_K_v = 0, shift_K_u = 0;
 };
 
-/// The stiffness damping's work on cells that are pushed with one step. It is known at the next push, from
-/// products that the pushes form anyway.
+/// Work of the stiffness damping on the cells of a level, without a product with K of its own.
+///
+/// The damping force of a push is -beta_R K v, and its work over the step dt
+///
+///     -dt/2 (v + v') beta_R K v = -dt/2 (beta_R v K v + v' K w - v' K u).
+///
+/// The pushes sum v' K w. The other two follow one push later: with u' = u + dt v' and w' = u' + beta_R v'
+/// the next push has
+///
+///     u' K w' = u K u + (2 dt + beta_R) v' K u + dt (dt + beta_R) v' K v'
+///     v' K w' = v' K u + (dt + beta_R) v' K v'
+///
+/// where u K u is known from the push before. This gives v' K u, which completes the work of the last push,
+/// and v' K v' and u' K u', with which the next one begins.
 class DampingWork {
  public:
   DampingWork() = default;
   DampingWork(double step_s, double damping_s, double interior_mass_kg)
       : step_s_(step_s), damping_s_(damping_s), interior_mass_kg_(interior_mass_kg) {}
 
-  /// @param u_K_u  of the place one step before the start
+  /// @param u_K_u  of the displacements one step before the start
   void begin(double u_K_u) {
     last_ = {};
     last_.u_K_u = u_K_u;
@@ -35,9 +50,9 @@ class DampingWork {
   /// @return the work at the push before, 0 at the first one
   double add(const PushProducts& push);
 
-  /// The work at the last push.
+  /// The work at the last push, without waiting for the next one.
   /// @param since_last  late product and landings since then
-  /// @param u_K_u, v_K_u  of the present place and velocity
+  /// @param u_K_u, v_K_u  of the present displacements and velocities
   double of_last_push(const PushProducts& since_last, double u_K_u, double v_K_u) const;
 
   template <class Archive>
@@ -46,10 +61,10 @@ class DampingWork {
   }
 
  private:
-  /// @param after_K_u  the velocity after the last push times K u at it
+  /// @param after_K_w, after_K_u  v' K w and v' K u of the last push
   double work(double after_K_w, double after_K_u) const;
 
-  /// What the next push needs of the last one's.
+  /// Of the last push: u K u and v K v before it, and v' K w as far as it was known at once.
   struct Last {
     double u_K_u = 0, v_K_v = 0, after_K_w = 0;
   };

@@ -21,7 +21,7 @@ class Landing {
   void add(std::size_t i, double shift_m);
   /// Work of the shifts, after the sub-step of length dt_s that began with them. @param u_m, v_m_per_s of now
   double work(const solid::Field& u_m, const solid::Field& v_m_per_s, double dt_s);
-  /// What the shifts since the last call of clear have left open, for a push.
+  /// The shifts since the last call of clear, for the damping's work at the next push of the last level.
   void add_to(PushProducts& products) const {
     products.shift_K_v = K_v_;
     products.shift_K_u = K_u_;

@@ -39,18 +39,20 @@ struct Dashpot {
   double d_x = 0, d_y = 0;
 };
 
-/// Nodes between a level and the next finer one, which moves them.
+/// Nodes of a level's cells that belong to finer cells, too, and move with the finer level's steps. Of the
+/// force of the level's own cells on them, what it was in the equilibrium at the start acts as a constant
+/// load in each of these steps; the change since then comes as one kick per step of the level, a push.
 struct Shared {
   std::vector<mesh::Node> node;
   std::vector<NodeRun> runs;
   std::vector<Dashpot> dashpots;
   std::vector<std::int32_t> irregular_row;  ///< of the level; -1: in its stencil row
-  solid::Field u_before_m;                  ///< place at the level's last push
-  solid::Field push_m_per_s;                ///< change of velocity that waits for the next sub-step
-  /// Acceleration by the level's cells in the equilibrium at the start.
+  solid::Field u_before_m;                  ///< displacements at the level's last push
+  solid::Field push_m_per_s;                ///< the push, until the finer level's next step takes it
+  /// The constant load, as an acceleration.
   solid::Field steady_m_per_s2;
-  // For the energies: velocity after the last sub-step; acceleration at the last push and the mean velocity
-  // before it.
+  // For the energies: velocities after the finer level's last step; K w/m at the level's last push, and the
+  // mean velocity over the level's step before it.
   solid::Field v_last_m_per_s, a_m_per_s2, v_mean_before_m_per_s;
 
   /// All that changes.
@@ -62,9 +64,13 @@ struct Shared {
   }
 };
 
-/// Rows of nodes of a level that are pushed together. The first band of a level holds all that concerns other
-/// levels, the interface, and nodes whose neighbours are farther away than the next rows. The bands above it
-/// need, of other bands, the places of the next rows only; one with block rows is a single row.
+/// Consecutive rows of nodes that are kicked and moved together: the unit in which threads::Wavefront takes a
+/// step, so that the rows of a band stay in cache while the next steps follow. That is possible since a band
+/// reads, besides its own rows, only the row below and the row above it.
+///
+/// What reads or writes more is in a level's first band, which is taken with the interface: nodes of the
+/// interface, nodes shared with other levels, and those that have neighbours farther away than the next row.
+/// A row that has block rows is a band of its own. Levels but the coarsest have one band.
 struct Band {
   int first_row = 0, last_row = 0;
   // Ranges within the level's lists:
@@ -72,15 +78,16 @@ struct Band {
   bool has_top = false;
 };
 
-/// Motion of rows of the coarsest level in single precision. While steps are taken it is what counts; Plate
-/// has it again after them.
+/// Motion of rows of the coarsest level in single precision. While steps are taken these rows of Plate are
+/// out of date; to_double brings them up to date afterwards.
 struct SingleRows {
-  solid::Span bands;  ///< without block rows, above the first one
+  solid::Span bands;  ///< of the level: above the first one, without block rows
   int first_row = 0, last_row = -1;
   std::vector<float> u_x_m, u_y_m, v_x_m_per_s, v_y_m_per_s;  ///< [nodes of these rows]
 };
 
-/// Cells with one step; each level's step is a whole multiple of the next one's. The last level holds the
+/// All cells that take the same time step, what they do to their nodes, and the nodes that move with this
+/// step. Each level's step is a whole multiple of the next one's. The last level, the finest, has the
 /// interface.
 struct Level {
   double step_s = 0;
@@ -92,8 +99,8 @@ struct Level {
   std::vector<NodeRun> general_runs;  ///< of the general rows; takes_push and moves do not change within one
   std::vector<Band> bands;            ///< rows ascending
   std::vector<Dashpot> dashpots;      ///< rows ascending
-  std::vector<bool> takes_push;       ///< [irregular rows] not shared with a finer level, no dashpot
-  std::vector<bool> moves;            ///< [irregular rows] moved with the level's own push
+  std::vector<bool> takes_push;       ///< [irregular rows] kicked at once: not shared, no dashpot
+  std::vector<bool> moves;            ///< [irregular rows] moved at once: not shared, not in contact
   std::vector<double> a_x, a_y;       ///< [irregular rows]
   std::vector<mesh::Node> top;        ///< nodes of the loaded edge that move with this level
   Shared shared;
@@ -143,14 +150,15 @@ Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, cons
 solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, solid::Pair trial,
                  record::Energies& works);
 
-/// Motion of a level's shared nodes before now, as if it had been steady.
+/// Sets what a level keeps of its shared nodes' motion before now, as if their velocities had been constant.
 void set_motion_before(Level& level, const Plate& plate);
 
-/// Begins a push: the velocities become those that the level sees, mean ones since its last push at shared
-/// nodes. end_push restores them.
+/// Begins a push. At shared nodes the level's cells see the mean velocity since their last push; it replaces
+/// that of the finer steps until end_push.
 void begin_push(Level& level, Plate& plate, record::Energies& works);
-/// Forces of a level's cells on the nodes of one band, at their places before the push, and the moves of the
-/// nodes that no finer level has. Bands go from the first to the last, with the same `w`.
+/// Kicks the nodes of one band by the forces of the level's cells, and moves those that move with the level.
+/// Bands go from the first to the last, with the same `w`, which keeps w = u + beta_R v from before the push
+/// of rows that have moved already.
 void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows& w, PushProducts& products,
                record::Energies& works);
 /// Longest run of bands that can be pushed in single precision; none where all have block rows.
@@ -163,27 +171,31 @@ void to_double(const SingleRows& single, Plate& plate);
 void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& single, solid::RollingRows& w,
                solid::RollingRowsOf<float>& w_single, PushProducts& products);
 
-/// Collects what a level does to its shared nodes: its force without the steady part. After the first band.
+/// Puts the level's force on its shared nodes, less the constant load, into Shared::push_m_per_s. After the
+/// first band, which has all shared nodes.
 void end_push(Level& level, Plate& plate);
 
-/// Moves the shared nodes of a coarser level by a step dt_s of the next finer one.
+/// Kicks the shared nodes of a coarser level by its constant load and by the push that waits, if any, and
+/// moves them by a step dt_s of the finer level.
 void move_shared(Level& coarser, Plate& plate, double dt_s, record::Energies& works);
 
-// With the velocities as the level sees them:
+// For the energies. Between exchange and restore, velocities of shared nodes are the mean ones that the level
+// sees, as between begin_push and end_push; the two functions after them need these.
 void exchange_velocities(const Level& level, Plate& plate);
 void restore_velocities(const Level& level, Plate& plate);
-/// What the level's force at its last push has not done through the mean velocities around it; the works of
-/// its parts through the sub-steps' velocities are summed as they happen.
+/// Less the work of the level's last force on its shared nodes through the mean velocities before and after
+/// it: that much the level's own cells account for. The coupling's work is this and the work that load and
+/// pushes do through the velocities of the finer steps, which move_shared sums.
 double coupling_work(const Level& level, const Plate& plate);
-/// The rest of after_K_w of the last push on a band, now that all velocities after it are known.
+/// PushProducts::late_K_w of a band, once all velocities after the last push are known.
 double late_product(const Level& level, const Band& band, const Plate& plate);
 
-/// Products with K of a level's cells: of the place itself, and of the velocity.
+/// Of the displacements u and the velocities v, K the stiffness of a level's cells.
 struct StiffnessProducts {
   double u_K_u = 0, v_K_u = 0;
 };
 StiffnessProducts stiffness_products(const Level& level, const Plate& plate);
-/// u K u of the place `back_s` earlier, at the present velocity.
+/// u K u of the displacements `back_s` earlier, had the velocity been the present one.
 double stiffness_product_before(const Level& level, const Plate& plate, double back_s);
 
 }  // namespace slipfront::motion

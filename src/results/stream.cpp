@@ -14,17 +14,20 @@
 namespace slipfront::results {
 namespace {
 
-/// That may wait to be written; a snapshot of a large plate is more, and waits alone.
+/// What the writer may hold at a time of blocks and snapshots that are not in their files yet; before more is
+/// handed to it, the steps wait. A snapshot that is larger by itself is handed over when the writer has
+/// nothing else.
 constexpr std::size_t most_bytes_waiting = 16U << 20U;
-/// Rows are handed to the writer in blocks of this size.
+/// Rows of the history are collected and handed to the writer in blocks of at least so many numbers.
 constexpr std::size_t block_values = 32 * 1024;
+/// Files that a run goes on in are read in pieces of this size for their checksum.
 constexpr std::size_t piece_bytes = std::size_t{1} << 18U;
 
 void append(std::vector<double>& to, const std::vector<double>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-/// Records of one length that a stream has written.
+/// Reads a file of the stream, a sequence of records of the same number of values.
 class Records {
  public:
   Records(const std::filesystem::path& file, std::size_t values)
@@ -52,7 +55,7 @@ class Records {
   std::size_t values_, count_ = 0;
 };
 
-/// The next rows of a history; none at the end.
+/// The next n rows of a history.
 record::History read_rows(Records& records, std::size_t n, std::span<const double> x_m) {
   const std::size_t nx = x_m.size();
   const auto values = records.read(n);

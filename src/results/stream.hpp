@@ -15,9 +15,11 @@
 
 namespace slipfront::results {
 
-/// Keeps history and snapshots of a run in files while it goes, behind the computation, in memory that does
-/// not grow with the run. The files hold nothing but numbers, one record after the other, so that they can be
-/// read whenever the run ends, and cut to where a run that goes on begins; the results are made from them.
+/// Appends history and snapshots of a run to files while it goes. Another thread writes them
+/// (threads::Writer), and the steps wait for it only where more than a bounded amount would be waiting: the
+/// memory does not grow with the run. The files hold nothing but numbers, one record after the other, so that
+/// they can be read whenever the run ends, and cut to where a run that goes on begins; interface.h5 and
+/// fields.vtkhdf are made of them at the end.
 ///
 /// history.raw: per row time_s, slip_m [nodes], slip_rate_m_per_s [nodes], t_Pa [nodes], p_Pa [nodes];
 /// snapshots.raw: per snapshot time_s and u_x, u_y, v_x, v_y [nodes of the plate]; doubles as in memory.
@@ -48,9 +50,9 @@ class ResultStream : public motion::Sink {
 
   // Each throws WriteError where a file could not be written, perhaps long before.
   void sample(const record::History& row) override;
-  /// Copies the motion once there is room for it.
+  /// Waits until there is room for a copy of the motion, then takes it.
   void snapshot(const motion::Stepper& stepper) override;
-  /// Hands what waits to the writer, for those who look into the files.
+  /// Hands rows that are not yet a whole block to the writer, for those who look into the files.
   void hand_over();
   /// Waits until all that was given is on the device.
   Extents keep();
@@ -76,7 +78,7 @@ class ResultStream : public motion::Sink {
   };
 
   Summed history_, snapshots_;  ///< the writer's
-  std::vector<double> block_;   ///< rows to be handed to the writer
+  std::vector<double> block_;   ///< rows that the writer does not have yet
   threads::Writer writer_;
 };
 

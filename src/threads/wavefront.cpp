@@ -94,7 +94,9 @@ void Wavefront::take_groups(int thread) {
       const int other = static_cast<int>((group + n_threads - 1) % n_threads);
       std::int64_t steps = std::min<std::int64_t>(depth_, first + n - first_step);
       if (steps <= 0) break;
+      // In round `front`, step s of the group takes unit front - s: each is one unit behind the step before.
       for (std::int64_t front = 0; front < units + steps - 1; ++front) {
+        // The first step follows the last one of the group before, which must have ended one unit more.
         if (group > 0 && front < units && n_threads > 1) {
           if (!wait_for(other, before + std::min<std::int64_t>(front + 2, units))) return;
         }
@@ -110,7 +112,7 @@ void Wavefront::take_groups(int thread) {
           if (k == 0 && !go_on) end_.store(step + 1, std::memory_order_relaxed);
         }
         if (steps == 0) break;
-        // The group's last step stands for it.
+        // A group is as far as its last step.
         const std::int64_t units_done = std::clamp<std::int64_t>(front - (steps - 1) + 1, 0, units);
         ended.store(group * per_group + units_done, std::memory_order_release);
       }

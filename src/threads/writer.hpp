@@ -11,8 +11,8 @@
 
 namespace slipfront::threads {
 
-/// Does jobs in their order in a thread of its own, behind the computation. What waits is bounded: who is
-/// faster than the jobs waits for them. Used by one thread.
+/// Does jobs one after the other in a thread of its own while the caller goes on. The memory that waiting
+/// jobs hold is bounded: where there is no room for another one, the caller waits. Used by one thread.
 class Writer {
  public:
   /// @param most_bytes  that the jobs which wait or are under way may hold together; one job may hold more

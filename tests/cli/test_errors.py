@@ -262,7 +262,12 @@ class TestOutputFolder:
 
 @pytest.mark.parametrize(
     "wrong",
-    ["plate.element_size_m=3e-3", "loading.edge_margin_m=0.0999", "loading.tilt_left_m=-1", "time.interface_rows=30"],
+    [
+        "plate.element_size_m=3e-3",
+        "loading.edge_margin_m=0.0999",
+        "loading.tilt_left_m=-1",
+        "time.interface_rows=30",
+    ],
 )
 def test_wrong_case_does_not_cost_earlier_results(program, coarse, tmp_path, wrong):
     assert program("run", coarse, "-o", "out", "-q").returncode == 0
@@ -408,7 +413,9 @@ def test_work_is_kept_where_a_result_cannot_be_made(program, coarse, tmp_path):
     settings = ("--set", "output.history_interval_s=1e-5")
     assert program("run", coarse, "-o", "whole", "-q", *settings).returncode == 0
     most = (tmp_path / "whole/interface.h5").stat().st_size - 1
-    assert "interface.h5" in write_error(program("run", coarse, "-o", "out", "-q", *settings, file_bytes=most))
+    assert "interface.h5" in write_error(
+        program("run", coarse, "-o", "out", "-q", *settings, file_bytes=most)
+    )
     assert program("run", "--restart", "out", "-q").returncode == 0
     for name in ("interface.h5", "fronts.csv", "energy.csv"):
         assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()

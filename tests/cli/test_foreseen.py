@@ -32,12 +32,17 @@ def test_snapshots_that_cannot_be_taken_are_told(program, coarse, tmp_path):
     assert result.returncode == 0
     notes = [line for line in result.stdout.splitlines() if "snapshot_times_s are left out" in line]
     assert len(notes) == 2
-    assert len([w for w in json.loads((tmp_path / "out/run.json").read_text())["warnings"] if "left out" in w]) == 2
+    assert (
+        len([w for w in json.loads((tmp_path / "out/run.json").read_text())["warnings"] if "left out" in w])
+        == 2
+    )
 
 
 def test_the_ramp_counts_among_the_steps(program, coarse, tmp_path):
     sets = settings({"loading.method": "ramp", "loading.shear_speed_over_c_L": 3e-6})
-    told = re.search(r"steps of the ramp before +about (\S+)$", program("info", coarse, *sets).stdout, re.MULTILINE)
+    told = re.search(
+        r"steps of the ramp before +about (\S+)$", program("info", coarse, *sets).stdout, re.MULTILINE
+    )
     assert program("run", coarse, "-o", "out", "-q", *sets).returncode == 0
     ramp = json.loads((tmp_path / "out/run.json").read_text())["statics"]["ramp"]
     assert float(told[1]) == pytest.approx(ramp["steps"], rel=0.05)
@@ -60,7 +65,13 @@ PRESSED = {"plate.corner": "none", "loading.method": "prestress", "event.kind": 
         ({"event.kind": "left", "event.trigger_amount": 1e9}, "event.trigger_amount"),
         ({**PRESSED, "prestress.t_Pa": 1e11, "prestress.p_Pa": 1e6}, "prestress.t_Pa"),
         (
-            {**PRESSED, "prestress.t_Pa": 0, "prestress.p_Pa": 1e6, "event.kind": "nucleation", "nucleation.form": "overstress"}
+            {
+                **PRESSED,
+                "prestress.t_Pa": 0,
+                "prestress.p_Pa": 1e6,
+                "event.kind": "nucleation",
+                "nucleation.form": "overstress",
+            }
             | {"nucleation.x_m": 0.1, "nucleation.overstress_Pa": 1e12},
             "nucleation.overstress_Pa",
         ),
@@ -99,7 +110,12 @@ def random_case(seed):
     def power(low, high):
         return 10 ** r.uniform(low, high)
 
-    case = {"plate.width_m": 0.04, "plate.height_m": 0.02, "plate.element_size_m": 2e-3, "plate.corner": "none"}
+    case = {
+        "plate.width_m": 0.04,
+        "plate.height_m": 0.02,
+        "plate.element_size_m": 2e-3,
+        "plate.corner": "none",
+    }
     case["loading.method"] = r.choice(["prestress"] * 6 + ["direct"])
     pressed = case["loading.method"] == "prestress"
     sides = "free"

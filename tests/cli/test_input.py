@@ -197,7 +197,7 @@ class TestStandardOutput:
 @pytest.mark.parametrize("megabytes", [60, 100, 150, 200, 300])
 def test_little_memory(program, write_case, megabytes):
     """Each ends within seconds: by its work, or with one line. Below some 70 MB no library is loaded."""
-    case = write_case("[plate]\ncorner = \"none\"\n[time]\nend_s = 2e-6\n")
+    case = write_case('[plate]\ncorner = "none"\n[time]\nend_s = 2e-6\n')
     for command in (["info", case], ["run", case, "-o", f"out{megabytes}", "-q"]):
         result = program(*command, timeout_s=20, memory_bytes=megabytes * 10**6)
         loaded = "while loading shared libraries" not in result.stderr

@@ -264,7 +264,8 @@ def test_interruption_of_a_ramp(program, coarse, tmp_path):
 
 def test_interruption_of_the_statics(program, coarse, tmp_path):
     process = program.start(
-        "run", coarse, "-o", "out", "--set", "plate.element_size_m=2.5e-4", "--set", "loading.solver=iterative",
+        "run", coarse, "-o", "out",
+        "--set", "plate.element_size_m=2.5e-4", "--set", "loading.solver=iterative",
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     try:
@@ -376,8 +377,13 @@ def test_reproduce_quick(program, tmp_path):
     counted = [claim["holds"] for claim in claims if claim["counts"] and claim["id"] != "E1"]
     first = [claim["holds"] for claim in claims if re.fullmatch(r"C\d+", claim["id"])]
     assert len(counted) == len(first) == 23
-    assert f"Of the paper's 23 claims {counted.count(True)} hold, {counted.count(False)} do not, " in result.stdout
-    assert f"by the first tests alone {first.count(True)} hold, {first.count(False)} do not, " in result.stdout
+    assert (
+        f"Of the paper's 23 claims {counted.count(True)} hold, {counted.count(False)} do not, "
+        in result.stdout
+    )
+    assert (
+        f"by the first tests alone {first.count(True)} hold, {first.count(False)} do not, " in result.stdout
+    )
     for folder in ("spontaneous", "left", "right", "spontaneous_mu_k_1.0"):
         assert files_in(tmp_path / "out" / folder) >= FILES
     # Replaced on demand.
@@ -489,7 +495,8 @@ def test_prescribed_tractions_from_a_table(program, write_case, tmp_path):
     run = program("run", "cases/c.toml", "-o", "out")
     assert run.returncode == 0, run.stderr
     assert "prescribed tractions, t/p up to 0.4596 at x = 0.099 m" in run.stdout
-    static = list(csv.DictReader(open(tmp_path / "out/static.csv", newline="")))
+    with open(tmp_path / "out/static.csv", newline="") as file:
+        static = list(csv.DictReader(file))
     assert len(static) == 100
     assert float(static[50]["t_s_Pa"]) == pytest.approx(2.2e6, rel=1e-12)
     assert {front["direction"] for front in summary(tmp_path / "out")["fronts"]} == {-1, 1}

@@ -96,7 +96,7 @@ def damages(dice, other):
         return lambda u, s, c: change(u / name, edit)
 
     def from_other(u, s, c):
-        shutil.copy(sorted((other / "unfinished/state").glob("checkpoint-*.bin"))[-1], c[-1])
+        shutil.copy(max((other / "unfinished/state").glob("checkpoint-*.bin")), c[-1])
 
     def all_from_other(u, s, c):
         shutil.rmtree(s)
@@ -183,8 +183,8 @@ def changed_table(bench):
 
 
 def meddlings():
-    """Name, what is done to (unfinished, state) of a run that goes on, and the exit code: what is on its way to
-    the results is compared, what is small is written anew."""
+    """Name, what is done to (unfinished, state) of a run that goes on, and the exit code: what is on its way
+    to the results is compared, what is small is written anew."""
     for name in ("history.raw", "snapshots.raw"):
 
         def change_first(u, s, name=name):
@@ -202,7 +202,7 @@ def meddlings():
 
 
 def stopped_under_way(setting):
-    """The folder and process of a run that stands still; again where it was over before it could be stopped."""
+    """The folder and process of a run that stands still; again where it was over before it was stopped."""
     for _ in range(50):
         folder = setting.bench.folder()
         process = setting.bench.start("run", setting.case, "-o", folder, "-q")

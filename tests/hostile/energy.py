@@ -6,7 +6,7 @@ import json
 import random
 
 from .cases import KINDS
-from .trials import Trial, alone, remove, require, require_same
+from .trials import Trial, Wrong, alone, remove, require, require_same
 
 #: Largest imbalance over the largest term. Every sub-step adds products that are rounded to 1.1e-16 of
 #: themselves; N of them leave at most N times that, and here N stays below 1e5.
@@ -96,7 +96,7 @@ def draw_legal(bench, dice):
         case = bench.case(settings)
         if bench.run("validate", case).returncode == 0:
             return settings, case
-    require(False, "no legal case among 100")
+    raise Wrong("no legal case among 100")
 
 
 def rest_J_per_m(settings):

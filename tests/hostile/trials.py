@@ -191,7 +191,7 @@ def hold(title, trials, jobs=None):
     def attempt(trial):
         try:
             trial.run()
-        except Exception as error:  # noqa: BLE001  whatever it is, it is told
+        except Exception as error:  # whatever it is, it is told
             return f"{trial.name}: {type(error).__name__}: {error}"
         return None
 

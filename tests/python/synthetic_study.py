@@ -176,7 +176,13 @@ def write_interface_step(folder: Path, title: str = "made up") -> Path:
 def open_choice(name: str, levels: list, standard) -> dict:
     form = {"left_added": ["added"]}.get(name, [])
     decides = {"decided_by": "left_form" if form else "", "counts_with": form}
-    return {"name": name, "key": f"event.{name}", "why": "open", "levels": levels, "standard": standard} | decides
+    return {
+        "name": name,
+        "key": f"event.{name}",
+        "why": "open",
+        "levels": levels,
+        "standard": standard,
+    } | decides
 
 
 def write_open_choices(folder: Path) -> Path:
@@ -204,7 +210,12 @@ def write_open_choices(folder: Path) -> Path:
         ("about the chosen", chosen | {"left_zone_m": 0.015}, "hold", 0.9, 2.0, 3.0, 0.8),
         ("about the chosen", standard, "do not", 1.8, 2.0, 3.0, 0.66),
     ]
-    header = ["set", *standard, "constraints", *(f"{e}_max_over_c_L" for e in ("left", "spontaneous", "right"))]
+    header = [
+        "set",
+        *standard,
+        "constraints",
+        *(f"{e}_max_over_c_L" for e in ("left", "spontaneous", "right")),
+    ]
     rows = [
         [name, *(v if isinstance(v, str) else f"{v:g}" for v in values.values()), *rest]
         for name, values, *rest in samples
@@ -220,7 +231,9 @@ def write_open_choices(folder: Path) -> Path:
         return {"id": name, "holds": holds, **shares, "turns": turns, "about_chosen": about}
 
     def outcome(name: str, values: dict, hold: bool) -> dict:
-        fit = {k: {"value": v, "low": v - 0.1, "high": v + 0.1} for k, v in zip("abc", (0.8, 2, 3), strict=True)}
+        fit = {
+            k: {"value": v, "low": v - 0.1, "high": v + 0.1} for k, v in zip("abc", (0.8, 2, 3), strict=True)
+        }
         return {"set": name, "values": values, "constraints_hold": hold, "share_in_band": 0.75, "fit": fit}
 
     counts = (

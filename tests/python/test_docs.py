@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pages of the documentation lead where they say, and agree on what is counted."""
+"""The pages of the documentation lead where they say, agree on what is counted, have no long lines."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+DOCS = [ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *DOCS]
+WIDTH = 120
 PROBLEMS = sorted(page.stem for page in (ROOT / "docs/verification").glob("*.md") if page.stem != "README")
 
 
@@ -32,9 +34,37 @@ def broken_links(page: Path) -> list[str]:
     return broken
 
 
+def long_lines(text: str) -> list[str]:
+    """Lines of prose beyond WIDTH; not those of tables, formulas and code, which cannot be wrapped."""
+    prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
+    return [line for line in prose.splitlines() if len(line) > WIDTH and not line.startswith(("|", "    "))]
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_lead_somewhere(page):
     assert broken_links(page) == []
+
+
+@pytest.mark.parametrize("page", DOCS, ids=lambda page: str(page.relative_to(ROOT)))
+def test_prose_is_wrapped(page):
+    assert long_lines(page.read_text(encoding="utf-8")) == []
+
+
+def test_a_long_line_is_found():
+    long = "x" * (WIDTH + 1)
+    assert long_lines(
+        f"{long[1:]}\n| {long}\n    {long}\n```\n{long}\n```\n{long}\n```\n```\n- {long}\n"
+    ) == [long, f"- {long}"]
+
+
+def test_files_that_are_named_are_there():
+    contributing = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    named = [ROOT / name for name in re.findall(r"`((?:src|tests|python|docs)/[\w./]+)`", contributing)]
+    glossary = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
+    places = re.findall(r"\| ([^|]*) \|$", glossary, re.MULTILINE)
+    named += [ROOT / "src" / name for place in places for name in re.findall(r"`([\w./]+)`", place)]
+    assert len(named) > 100
+    assert [path for path in named if not path.exists()] == []
 
 
 def test_a_broken_link_is_found(tmp_path):

@@ -322,7 +322,13 @@ def add_second_test(output, **change):
     """C18b, whose fit is that of the main fronts."""
     file = output / "scorecard.json"
     values = {"rms": 0.065, "a": 0.8, "b": 2.14, "c": 3.56}
-    row = {"id": "C18b", "claim": "x", "paper": "Fig. 6", "measured": "a = 0.80 [0.71, 0.86] & more", "how": "y"}
+    row = {
+        "id": "C18b",
+        "claim": "x",
+        "paper": "Fig. 6",
+        "measured": "a = 0.80 [0.71, 0.86] & more",
+        "how": "y",
+    }
     row |= {"holds": False, "counts": True, "second_test_of": "C18", "why": "z"}
     row["figures"] = [{"name": name, "value": value, "unit": ""} for name, value in values.items()]
     file.write_text(json.dumps([*json.loads(file.read_text()), row | change]))
@@ -337,7 +343,10 @@ def test_figure_6_shows_the_fit_that_counts(output, results):
     np.testing.assert_allclose(curve.get_ydata(), 0.8 + 2.14 * np.exp(-3.56 * np.sqrt(r)))
     texts = [text.get_text() for text in drawing.figure.legends[0].get_texts()]
     assert texts[-2:] == ["fit to all points (C18)", "fit to main fronts (C18b)"]
-    assert "all points of the program's fronts, those of the thin lines too (C18, the first test)" in drawing.caption
+    assert (
+        "all points of the program's fronts, those of the thin lines too (C18, the first test)"
+        in drawing.caption
+    )
     assert (
         "main fronts without their last 20 mm (C18b, the test that counts): a = 0.80 [0.71, 0.86] &amp; more."
         in drawing.caption
@@ -865,7 +874,9 @@ def test_studies_mark_the_values_of_runs_that_differ_in_their_colours(output):
         assert not {"paper_value", "paper_value:spontaneous"} & gids(figure, panel)
         assert "paper_value" in gids(figure, 0)
         texts = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert texts[-3:] == [f"value of the {x}" for x in ("paper's runs", "left-triggered run", "right-triggered run")]
+        assert texts[-3:] == [
+            f"value of the {x}" for x in ("paper's runs", "left-triggered run", "right-triggered run")
+        ]
 
 
 def test_report_names_the_runs_whose_values_differ(output):

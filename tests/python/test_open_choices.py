@@ -174,7 +174,10 @@ def test_the_texts_of_cells_stay_inside(study):
 def test_a_study_of_the_step_is_drawn_into_its_folder_too(tmp_path):
     folder = write_interface_step(tmp_path / "step")
     assert main([str(folder)]) == 0
-    assert sorted(f.name for f in (folder / "figures").iterdir()) == ["interface_step.pdf", "interface_step.png"]
+    assert sorted(f.name for f in (folder / "figures").iterdir()) == [
+        "interface_step.pdf",
+        "interface_step.png",
+    ]
 
 
 def test_the_picture_is_written_where_it_is_wanted(study, tmp_path, capsys):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The scripts that renew pages: their tables are those of checked results, and a page is renewed whole or not at all."""
+"""The scripts that renew pages: tables of checked results; a page is renewed whole or not at all."""
 
 from __future__ import annotations
 
@@ -69,13 +69,17 @@ def verification(folder: Path) -> Pages:
     summary = {"name": "column", "title": "Column", "checks": [check | {"holds": True}]}
     (results / "column.json").write_text(json.dumps(summary))
     (pages / "README.md").write_text(OLD + "<!-- numbers -->\nstale\n")
-    return Pages("verification-pages.py", results, "column.json", pages, pages / "column.md", ["<!-- numbers -->"])
+    return Pages(
+        "verification-pages.py", results, "column.json", pages, pages / "column.md", ["<!-- numbers -->"]
+    )
 
 
 @pytest.fixture(params=[open_choices, scorecard, verification])
 def pages(request, tmp_path) -> Pages:
     made = request.param(tmp_path)
-    made.page.write_text(OLD + "".join(f"{mark}\n{text}\n" for mark, text in zip(made.marks, TEXTS, strict=False)))
+    made.page.write_text(
+        OLD + "".join(f"{mark}\n{text}\n" for mark, text in zip(made.marks, TEXTS, strict=False))
+    )
     write_checksums(made.results)
     return made
 
@@ -120,7 +124,9 @@ def test_results_that_are_not_there_are_refused(pages):
     pages.refused(f"{pages.results / pages.file}: No such file or directory")
 
 
-@pytest.mark.parametrize("text, says", [("[{", "not JSON"), ('{"checks": 1}', "not a"), ("[1]", "not a"), ("", "")])
+@pytest.mark.parametrize(
+    "text, says", [("[{", "not JSON"), ('{"checks": 1}', "not a"), ("[1]", "not a"), ("", "")]
+)
 def test_results_that_are_not_as_expected_are_refused(pages, text, says):
     """In a folder of an older program, without checksums."""
     (pages.results / "checksums.sha256").unlink()
@@ -144,8 +150,11 @@ def test_a_page_that_is_no_file_is_refused(pages):
 
 
 def test_a_full_disk_leaves_the_page_as_it_was(pages):
-    pages.refused("File too large", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
-                  env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})  # fmt: skip
+    pages.refused(
+        "File too large",
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
+        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+    )
 
 
 @pytest.mark.parametrize("script", ["open-choices-page.py", "scorecard-page.py", "verification-pages.py"])

@@ -17,7 +17,7 @@ from slipfront.read import BLEW_UP, ENERGY_TERMS, Balance, read_balance, read_pl
 
 SMALL = 0.02  # a term that never exceeds this share of the largest is drawn below, where it can be seen
 # No two terms share both a hue and a dash for eyes without red or green receptors.
-TERMS = {
+TERMS: dict[str, tuple[str, str, style.Line]] = {
     "strain": ("strain energy", "#000000", "-"),
     "kinetic": ("kinetic energy", "#0072b2", "-"),
     "friction_work": ("friction", "#d55e00", (0, (5, 1.5))),
@@ -29,7 +29,7 @@ TERMS = {
     "boundary_work": ("absorbing edges", "#56b4e9", (0, (6, 1.5, 1, 1.5))),
     "coupling_work": ("coupling of the layer", "#e69f00", "-"),
 }
-IMBALANCE = ("imbalance", "#cc3311", "-")
+IMBALANCE: tuple[str, str, style.Line] = ("imbalance", "#cc3311", "-")
 assert set(TERMS) == set(ENERGY_TERMS)
 
 
@@ -117,8 +117,9 @@ def draw_balances(every: list[Books]) -> Drawing:
         figure,
         "Energy over time, per unit thickness. Above: change of the stored energies since the start, and the "
         "works done on the plate; what leaves it is negative. Below, on a logarithmic scale and over the "
-        f"largest change above: terms of at most {100 * SMALL:g} % of it, the coupling between the sub-cycled "
-        "layer and the other cells, an error of the time stepping, and the imbalance: change less all works, "
+        f"largest change above: terms of at most {100 * SMALL:g} % of it, the coupling between the "
+        "sub-cycled layer and the other cells, an error of the time stepping, and the imbalance: change "
+        "less all works, "
         f"each computed by itself. {'; '.join(closing(books) for books in every)}.",
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -13,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from slipfront.figures.drawing import Drawing, plain
-from slipfront.figures.style import PAGE_MM, V_LABEL
+from slipfront.figures.style import PAGE_MM, V_LABEL, Look
 from slipfront.files import DataError, is_number, number, read_json_table, read_table
 from slipfront.folder import result_file
 
@@ -33,7 +34,7 @@ NAMES = {
     "material.stiffness_damping_s": "damping",
 }
 WAYS = {-1: "to $-x$", 1: "to $+x$"}
-MARKERS = {-1: {"marker": "o"}, 1: {"marker": "o", "markerfacecolor": "white"}}
+MARKERS: dict[int, Look] = {-1: {"marker": "o"}, 1: {"marker": "o", "markerfacecolor": "white"}}
 HIGHEST_PERCENTILE = 98  # the speed diverges where fronts meet: the axis ends at this share of the points
 
 
@@ -99,7 +100,7 @@ class Study:
         return decided or [d for d in WAYS if any(s.stations[d].x_m.size for s in self.sequences)]
 
 
-def read_rows(file: Path) -> list[dict]:
+def read_rows(file: Path) -> list[dict[str, Any]]:
     table = read_table(result_file(file))
     try:
         numbers = {key: table.numbers(key) for key in NUMBERS}
@@ -109,11 +110,11 @@ def read_rows(file: Path) -> list[dict]:
                 raise DataError(f"{file}: empty cell in column '{key}'")
     except DataError as error:
         raise DataError(f"{error}; not a table of `slipfront study convergence`") from None
-    columns = {"parameter": parameters, **numbers}
+    columns: dict[str, Any] = {"parameter": parameters, **numbers}
     return [{key: values[i] for key, values in columns.items()} for i in range(len(parameters))]
 
 
-def read_stations(rows: list[dict], values: np.ndarray, c_L: float) -> Stations:
+def read_stations(rows: list[dict[str, Any]], values: np.ndarray, c_L: float) -> Stations:
     """The rows of one sequence and direction."""
     x_m = np.array(sorted({r["x_m"] for r in rows}))
     shape = (len(values), len(x_m))
@@ -127,7 +128,7 @@ def read_stations(rows: list[dict], values: np.ndarray, c_L: float) -> Stations:
     return Stations(x_m, v, error, extrapolated, order)
 
 
-def read_sequence(entry: dict, rows: list[dict], c_L: float) -> Sequence:
+def read_sequence(entry: dict[str, Any], rows: list[dict[str, Any]], c_L: float) -> Sequence:
     values = np.array(entry["values"], dtype=float)
     if values.ndim != 1 or values.size == 0 or not np.isfinite(values).all():
         raise ValueError("'values' is not a list of numbers")
@@ -277,7 +278,8 @@ def convergence(folder: Path) -> Drawing:
     )
     caption = (
         "Front speed for each value of a numerical parameter, the case's own thick; dots: extrapolated; "
-        "bars: error of the case's own, grey against the extrapolated value, orange where there is none: a lower "
-        "bound. Right: median error of each value, and the observed order (of the stations that have one)."
+        "bars: error of the case's own, grey against the extrapolated value, orange where there is none: a "
+        "lower bound. Right: median error of each value, and the observed order (of the stations that have "
+        "one)."
     )
     return Drawing("convergence", figure, caption)

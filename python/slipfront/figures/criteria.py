@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from html import escape
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -24,15 +26,15 @@ from slipfront.figures.main_fronts import (
     main_fronts,
     tail,
 )
-from slipfront.figures.results import HIGH_MU_K, JudgingFit, Results
+from slipfront.figures.results import HIGH_MU_K, Fit, JudgingFit, Results
 from slipfront.read import Front, Run
 
 SELECTION = (
     "Strong: main fronts, the longest in each direction that starts at the event's nucleation or trigger, to "
     f"the last node before V<sub>tip</sub> stays below {SLOW_OVER_C_L:g} c<sub>L</sub> or the front ends, "
     "without the trigger zone and its margin or the "
-    f"{1e3 * NUCLEATION_M:g} mm around a spontaneous nucleation. Thin and light: their other nodes, and other "
-    f"fronts of at least {1e3 * DRAWN_LENGTH_M:g} mm."
+    f"{1e3 * NUCLEATION_M:g} mm around a spontaneous nucleation. Thin and light: their other nodes, and "
+    f"other fronts of at least {1e3 * DRAWN_LENGTH_M:g} mm."
 )
 HIGHEST_V = 3.0  # the axis ends there at the latest: the speed diverges where fronts nucleate or meet
 LARGEST_RISE = 5.0  # the relative energy rise as well, where the stored energy vanishes
@@ -47,7 +49,12 @@ def speed(run: Run) -> Measure:
 
 
 def draw_fronts(
-    ax: Axes, run: Run, x: Measure, y: Measure, lines: dict | None = None, as_points: bool = False
+    ax: Axes,
+    run: Run,
+    x: Measure,
+    y: Measure,
+    lines: dict[int, style.Line] | None = None,
+    as_points: bool = False,
 ) -> None:
     """Two measures of a run's fronts against each other, without points next to a trigger zone.
 
@@ -57,8 +64,11 @@ def draw_fronts(
     for front in main + [front for front in drawn_fronts(run) if front not in main]:
         shown = away_from_trigger(run, front.x_m)
 
-        def where(part: np.ndarray, front=front, shown=shown) -> tuple[np.ndarray, np.ndarray]:
-            return tuple(np.where(part & shown, measure(front), np.nan) for measure in (x, y))
+        def where(
+            part: np.ndarray, front: Front = front, shown: np.ndarray = shown
+        ) -> tuple[np.ndarray, np.ndarray]:
+            counts = part & shown
+            return np.where(counts, x(front), np.nan), np.where(counts, y(front), np.nan)
 
         if front not in main:
             style.draw_pale(ax, run, front, *where(shown), "other")
@@ -128,23 +138,23 @@ def static_ratio_mu_k(results: Results) -> Drawing:
     run = results.runs[HIGH_MU_K]
     figure = style.new_figure(style.TEXT_MM, 84)
     ax = figure.subplots()
-    lines = {-1: (0, (4.5, 1.8)), 1: "-"}
+    lines: dict[int, style.Line] = {-1: (0, (4.5, 1.8)), 1: "-"}
     draw_fronts(ax, run, lambda front: front.static_ratio, speed(run), lines)
     colour = style.EVENT_STYLES[run.name].colour
-    look = {"color": colour, "marker": "o"}
+    plain: style.Look = {"color": colour, "marker": "o"}
     handles = [
-        Line2D([], [], linestyle=lines[1], markerfacecolor="white", label="front along the shear", **look),
-        Line2D([], [], linestyle=lines[-1], label="front against the shear", **look),
+        Line2D([], [], linestyle=lines[1], markerfacecolor="white", label="front along the shear", **plain),
+        Line2D([], [], linestyle=lines[-1], label="front against the shear", **plain),
         style.pale_handle(colour),
     ]
     measured = "No file of experimental data was given, so none are drawn."
     if results.experiment is not None:
         x, y = results.experiment
-        look = {"linestyle": "none", "marker": "x", "color": "0.3", "zorder": 1}
+        look: style.Look = {"linestyle": "none", "marker": "x", "color": "0.3", "zorder": 1}
         handles += ax.plot(x, y, label="experiment", gid="experiment", **look)
         measured = f"Crosses: the {np.isfinite(x * y).sum()} points of the experimental data file given."
     else:
-        place = {"xycoords": "axes fraction", "va": "bottom", "color": "0.45"}
+        place: style.Look = {"xycoords": "axes fraction", "va": "bottom", "color": "0.45"}
         ax.annotate("no experimental data given", (0.015, 0.02), **place)
     ax.set(xlabel=style.STATIC_LABEL, ylabel=style.V_LABEL)
     outside = finish(ax, run)
@@ -189,8 +199,8 @@ def dynamic_ratio_along_x(results: Results) -> Drawing:
         "Dynamic stress ratio t<sub>d</sub>/p<sub>d</sub> at each point of the interface at the moment the "
         "front is l* short of it: not one instant but the whole passage. Thick grey line: the static ratio "
         "t<sub>s</sub>/p<sub>s</sub> before the events; thin line: μ<sub>s</sub>. Inset, a sketch: "
-        "t<sub>d</sub> and p<sub>d</sub> belong to the sticking node ahead (in the ring) when the one before it "
-        f"begins to slip (filled). {SELECTION}",
+        "t<sub>d</sub> and p<sub>d</sub> belong to the sticking node ahead (in the ring) when the one "
+        f"before it begins to slip (filled). {SELECTION}",
     )
 
 
@@ -207,12 +217,12 @@ def falls(run: Run, front: Front) -> np.ndarray:
 
 def underlay_falls(ax: Axes, runs: list[Run]) -> list[Line2D]:
     """A broad light line under stretches where the general trend is reversed; returns its legend entry."""
-    look = {"color": "#f0e442", "linewidth": 6, "alpha": 0.75, "solid_capstyle": "butt"}
+    look: style.Look = {"color": "#f0e442", "linewidth": 6, "alpha": 0.75, "solid_capstyle": "butt"}
     found = False
     for run in runs:
         for front in main_fronts(run):
             part = falls(run, front)
-            found = found or part.any()
+            found = found or bool(part.any())
             x, y = (np.where(part, values, np.nan) for values in (front.dynamic_ratio, speed(run)(front)))
             ax.plot(x, y, gid=style.front_gid(run, front, "falls"), zorder=0.8, **look)
     return (
@@ -245,30 +255,30 @@ def dynamic_criterion(results: Results) -> Drawing:
     )
 
 
-def draw_paper_fit(ax: Axes, results: Results, r: np.ndarray) -> tuple:
+def draw_paper_fit(ax: Axes, results: Results, r: np.ndarray) -> tuple[Artist, ...]:
     """The paper's curve in its band; returns parts of a legend entry."""
     fit = results.paper_fit(r)
     low, high = fit - results.paper_a_band, fit + results.paper_a_band
     ax.fill_between(r, low, high, color="0.85", linewidth=0, gid="paper_band", zorder=0)
-    look = {"color": "0.55", "linewidth": 0.8}
+    look: style.Look = {"color": "0.55", "linewidth": 0.8}
     ax.plot(r, fit, gid="paper_fit", zorder=0.4, **look)
     return Patch(facecolor="0.85"), Line2D([], [], label="the paper's fit and band", **look)
 
 
-def draw_own_fit(ax: Axes, results: Results, r: np.ndarray) -> tuple:
+def draw_own_fit(ax: Axes, results: Results, fit: Fit, r: np.ndarray) -> tuple[Artist, ...]:
     """Our curve, its interval where its points are; returns parts of a legend entry."""
-    look = {"color": FIT_COLOUR, "linestyle": (0, (1, 1)), "linewidth": 1.4}
-    ax.plot(r, results.fit(r), gid="fit", zorder=2.2, **look)
+    look: style.Look = {"color": FIT_COLOUR, "linestyle": (0, (1, 1)), "linewidth": 1.4}
+    ax.plot(r, fit(r), gid="fit", zorder=2.2, **look)
     if len(results.fit_interval) == 0:
         return (Line2D([], [], label="fit to all points (C18)", **look),)
-    shade = {"color": FIT_COLOUR, "alpha": 0.22, "linewidth": 0}
+    shade: style.Look = {"color": FIT_COLOUR, "alpha": 0.22, "linewidth": 0}
     ax.fill_between(*results.fit_interval.T, gid="fit_interval", zorder=0.3, **shade)
     return Patch(**shade), Line2D([], [], label="fit to all points (C18)", **look)
 
 
 def draw_judging_fit(ax: Axes, judging: JudgingFit, r: np.ndarray) -> Line2D:
     """The curve of the second test; returns its legend entry."""
-    look = {"color": FIT_COLOUR, "linestyle": "-", "linewidth": 1.0}
+    look: style.Look = {"color": FIT_COLOUR, "linestyle": "-", "linewidth": 1.0}
     ax.plot(r, judging.fit(r), gid="judging_fit", zorder=2.3, **look)
     return Line2D([], [], label=f"fit to main fronts ({judging.id})", **look)
 
@@ -311,20 +321,20 @@ def energy(results: Results) -> Drawing:
         draw_fronts(ax, run, lambda front: front.energy_rise, speed(run), as_points=True)
     right = np.clip(1.1 * largest(ax, 0), 1.0, LARGEST_RISE)
     r = right * np.linspace(0, 1, 400) ** 2  # closer at zero, where the fit is steep
-    fits = [draw_paper_fit(ax, results, r)]
+    fits: list[Any] = [draw_paper_fit(ax, results, r)]
     if results.fit is not None:
-        fits.append(draw_own_fit(ax, results, r))
+        fits.append(draw_own_fit(ax, results, results.fit, r))
     if results.fit is not None and results.judging_fit is not None:
         fits.append(draw_judging_fit(ax, results.judging_fit, r))
     ax.set(xlabel=style.ENERGY_LABEL, ylabel=style.V_LABEL)
     ax.set_xlim(0, right)
     outside = finish(ax, results.events[0])
     sketch.energies(ax.inset_axes((0.4, 0.66, 0.57, 0.3)))
-    handles = style.event_handles(results.events)
-    for handle in handles:
+    events = style.event_handles(results.events)
+    for handle in events:
         handle.set_linestyle("none")
     tails = Line2D([], [], color="0.6", linestyle="none", marker="o", label=f"pale: last {1e3 * TAIL_M:g} mm")
-    handles += [tails, *style.fill_handles(), style.pale_handle(), *fits]
+    handles = [*events, tails, *style.fill_handles(), style.pale_handle(), *fits]
     style.legend_below(figure, handles, 3)
     return Drawing(
         "fig6_energy",
@@ -332,5 +342,6 @@ def energy(results: Results) -> Drawing:
         "Front speed against the relative rise of the energy density at the tip, r = (U<sub>r</sub> − "
         f"U<sub>s</sub>)/U<sub>s</sub>. {fit_sentence(results)} Thin horizontal lines: wave speeds. Inset, a "
         "sketch: U<sub>s</sub> is stored at the node in the ring when the tip reaches it, U<sub>r</sub> when "
-        f"it is about to slip. {SELECTION} Pale markers: the last {1e3 * TAIL_M:g} mm of a main front.{outside}",
+        f"it is about to slip. {SELECTION} Pale markers: the last {1e3 * TAIL_M:g} mm of a main "
+        f"front.{outside}",
     )

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from matplotlib.figure import Figure
 
@@ -31,11 +31,11 @@ class Drawing:
         if not mark:
             return self
         lines = "\n".join(map(plain, mark.split("\n")))
-        look = {"ha": "center", "va": "bottom", "color": MARK_COLOUR, "fontweight": "bold"}
+        look: dict[str, Any] = {"ha": "center", "va": "bottom", "color": MARK_COLOUR, "fontweight": "bold"}
         self.figure.text(0.5, 1.01, lines, gid="mark", **look)
         return replace(self, mark=mark)
 
-    def rendered(self, kind: str, **metadata) -> bytes:
+    def rendered(self, kind: str, **metadata: str | None) -> bytes:
         stream = BytesIO()
         tight = "tight" if self.mark else None  # the mark is outside the frame
         self.figure.savefig(stream, format=kind, metadata=metadata, bbox_inches=tight)

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.patches import FancyArrowPatch
+from matplotlib.tri import Triangulation
 
 from slipfront.figures import style
 from slipfront.figures.criteria import SELECTION, finish, speed_over_static_ratio
@@ -37,6 +38,8 @@ def choose_step(run: Run) -> int:
     Triggered: the tip of the first front nearest to its aim. Spontaneous: nearest to 30 us after nucleation,
     of those with the most tips well inside the interface.
     """
+    if run.fields is None:
+        raise DataError(f"{run.name}: no snapshots")
     times = run.fields.time_s
     if len(times) == 0:
         raise DataError(f"{run.fields.file}: no snapshots")
@@ -77,9 +80,7 @@ def draw_snapshot(ax: Axes, run: Run) -> None:
     width, height = 1e3 * run.parameter("plate.width_m"), 1e3 * run.parameter("plate.height_m")
     triangles = fields.cells[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
     ax.tripcolor(
-        points[:, 0],
-        points[:, 1],
-        triangles,
+        Triangulation(points[:, 0], points[:, 1], triangles),
         fields.speed_m_per_s(step),
         shading="gouraud",
         cmap=COLOURS,
@@ -170,7 +171,7 @@ def three_events(results: Results) -> Drawing:
         orientation="horizontal",
         extend="max",
     )
-    bar.set_ticks(np.linspace(*SPEED_RANGE_M_PER_S, 5))
+    bar.set_ticks(np.linspace(*SPEED_RANGE_M_PER_S, 5).tolist())
     bar.ax.annotate("$|v|$ (m/s)", (1.06, 0.5), xycoords="axes fraction", va="center")
     d = axes(103, 24, 64, 46)
     speed_over_static_ratio(d, results.events)
@@ -181,13 +182,14 @@ def three_events(results: Results) -> Drawing:
     return Drawing(
         "fig3_three_events",
         figure,
-        f"Magnitude of the material velocity, blue to white for 0 to {SPEED_RANGE_M_PER_S[1]:g} m/s and more, "
-        "in the event (a) triggered at the left edge, (b) nucleated spontaneously, (c) triggered at the right "
-        "edge; the deformation is not drawn. Square, circle and triangle: where the first front starts; small "
-        "white triangles: tips of the fronts that run, white arrows: where they go; black arrow: the imposed "
+        f"Magnitude of the material velocity, blue to white for 0 to {SPEED_RANGE_M_PER_S[1]:g} m/s and "
+        "more, in the event (a) triggered at the left edge, (b) nucleated spontaneously, (c) triggered at "
+        "the right edge; the deformation is not drawn. Square, circle and triangle: where the first front "
+        "starts; small white triangles: tips of the fronts that run, white arrows: where they go; black "
+        "arrow: the imposed "
         "shear. Instants: of the snapshots, the one with the first front nearest to "
-        f"{100 * AIM_OVER_WIDTH['left']:.0f} % (a) and {100 * AIM_OVER_WIDTH['right']:.0f} % (c) of the width, "
-        f"and (b) nearest to {1e6 * SPONTANEOUS_AIM_S:.0f} µs after nucleation with both tips inside. (d) Front "
-        "speed against the static stress ratio for the three events; thin horizontal lines: wave speeds. "
-        f"{SELECTION}{outside}",
+        f"{100 * AIM_OVER_WIDTH['left']:.0f} % (a) and {100 * AIM_OVER_WIDTH['right']:.0f} % (c) of the "
+        f"width, and (b) nearest to {1e6 * SPONTANEOUS_AIM_S:.0f} µs after nucleation with both tips inside. "
+        "(d) Front speed against the static stress ratio for the three events; thin horizontal lines: wave "
+        f"speeds. {SELECTION}{outside}",
     )

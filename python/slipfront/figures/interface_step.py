@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Error of the front speeds against the cost of the step at the interface.
 
-usage: python -m slipfront.figures.interface_step PICTURE DIR..., output folders of `slipfront study interface-step`"""
+usage: python -m slipfront.figures.interface_step PICTURE DIR...
+DIR: output folder of `slipfront study interface-step`"""
 
 from __future__ import annotations
 
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -24,7 +26,7 @@ NUMBERS = ("interface_rows", "cost_over_plain", "median_error", "p90_error")
 COLOURS = {1: "#88ccee", 2: "#0072b2", 4: "#d55e00", 8: "#117733"}
 
 
-def read_rows(file: Path) -> list[dict]:
+def read_rows(file: Path) -> list[dict[str, Any]]:
     table = read_table(result_file(file))
     try:
         numbers = {key: table.numbers(key) for key in NUMBERS}

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which statements of the paper depend on what it leaves open.
 
-usage: python -m slipfront.figures.open_choices PICTURE DIR, output folder of `slipfront study open-choices`"""
+usage: python -m slipfront.figures.open_choices PICTURE DIR
+DIR: output folder of `slipfront study open-choices`"""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ from matplotlib.patches import Patch, Rectangle
 from slipfront import command
 from slipfront.figures.drawing import Drawing, guarded
 from slipfront.figures.picture import write_picture
-from slipfront.figures.style import PAGE_MM, RC, new_figure
+from slipfront.figures.style import PAGE_MM, RC, Look, new_figure
 from slipfront.files import DataError, Table, read_json_table, read_table
 from slipfront.folder import result_file
 
@@ -32,7 +33,7 @@ SHARES = {
     "share_of_all": "% of all choices",
 }
 HOLDS, FAILS, TURNS_ON, TURNS_OFF = "#c7d9ec", "#f0c9b0", "#0072b2", "#b5420f"
-NOT_VARIED = {"facecolor": "white", "edgecolor": "0.75", "hatch": "/////", "linewidth": 0}
+NOT_VARIED: Look = {"facecolor": "white", "edgecolor": "0.75", "hatch": "/////", "linewidth": 0}
 LINE_LENGTH, MOST_LINES = 6, 3  # of a cell's text
 #: Marker, colour and name of the sets of samples, those with the fewest on top.
 SETS = {
@@ -42,9 +43,15 @@ SETS = {
     "one at a time": ("v", "#882255", "one choice at a time"),
     "about the chosen": ("^", "#44aa99", "one at a time about the chosen"),
 }
-HOLDING = {"marker": "o", "color": "#0072b2", "markersize": 3.0, "label": "all constraints hold"}
-STANDARD = {"marker": "*", "color": "black", "markersize": 7.0, "label": "the study's standard"}
-CHOSEN = {"marker": "D", "color": "black", "markersize": 6.0, "markerfacecolor": "none", "markeredgewidth": 1.0}
+HOLDING: Look = {"marker": "o", "color": "#0072b2", "markersize": 3.0, "label": "all constraints hold"}
+STANDARD: Look = {"marker": "*", "color": "black", "markersize": 7.0, "label": "the study's standard"}
+CHOSEN: Look = {
+    "marker": "D",
+    "color": "black",
+    "markersize": 6.0,
+    "markerfacecolor": "none",
+    "markeredgewidth": 1.0,
+}
 
 
 def about(row: dict[str, Any], summary: dict[str, Any]) -> dict[str, Any]:
@@ -61,7 +68,11 @@ def turned_levels(turns: list[dict[str, Any]], choice: str) -> list[Any]:
 def label(level: Any, key: str) -> str:
     """A level for a narrow cell: lengths in mm, times in us."""
     if isinstance(level, str):
-        short = level.replace("predictor_corrector", "p.-c.").replace("weakened", "weak").replace("approach", "appr.")
+        short = (
+            level.replace("predictor_corrector", "p.-c.")
+            .replace("weakened", "weak")
+            .replace("approach", "appr.")
+        )
         return short.replace("fillet ", "R").removesuffix(" mm")
     if key.endswith("_m"):
         return f"{1e3 * level:.3g}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 from matplotlib.figure import Figure
@@ -19,7 +20,9 @@ KINDS = {
     ".pdf": {"CreationDate": None},
     ".svg": {"Date": None},
 }
-FIXED_NAMES = {"svg.hashsalt": "slipfront"}  # of the parts of an SVG, which are random otherwise
+FIXED_NAMES: dict[Any, Any] = {
+    "svg.hashsalt": "slipfront"
+}  # of the parts of an SVG, which are random otherwise
 
 
 def checked(picture: Path) -> Path:

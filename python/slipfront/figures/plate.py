@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Rectangle
@@ -53,7 +55,7 @@ def joined(segments: np.ndarray) -> np.ndarray:
     return np.concatenate([segments, np.full((len(segments), 1, 2), np.nan)], axis=1).reshape(-1, 2)
 
 
-def draw_edges(ax: Axes, segments: np.ndarray, **look) -> None:
+def draw_edges(ax: Axes, segments: np.ndarray, **look: Any) -> None:
     ax.plot(*joined(segments).T, solid_capstyle="round", **look)
 
 
@@ -69,7 +71,7 @@ def draw_mesh(ax: Axes, fields: Fields, columns: int, rows: int) -> int:
     draw_edges(ax, points[ends[boundary]], color="black", linewidth=0.7, gid="outline")
 
     width, height = np.ptp(points, axis=0)
-    zoom = ax.inset_axes([0.28 * width, 0.24 * height, 0.44 * width, 0.58 * height], transform=ax.transData)
+    zoom = ax.inset_axes((0.28 * width, 0.24 * height, 0.44 * width, 0.58 * height), transform=ax.transData)
     near = (points[ends].min(axis=1) <= (0.06 * width, 0.08 * height)).all(axis=1)
     draw_edges(zoom, points[ends[near & ~boundary]], color="0.45", linewidth=0.3)
     draw_edges(zoom, points[ends[near & boundary]], color="black", linewidth=0.7)
@@ -114,7 +116,7 @@ def draw_loading(ax: Axes, run: Run, width: float, height: float) -> None:
     ax.text(0.45 * width, level, "$v_x$", ha="right", va="center")
 
 
-def dimension(ax: Axes, a: tuple[float, float], b: tuple[float, float], label: str, **text) -> None:
+def dimension(ax: Axes, a: tuple[float, float], b: tuple[float, float], label: str, **text: Any) -> None:
     ax.annotate(
         "",
         a,

@@ -7,6 +7,7 @@ import base64
 import re
 from html import escape
 from pathlib import Path
+from typing import Any
 
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import TAIL_M
@@ -45,14 +46,14 @@ USED_TO_CHOOSE = ("=", "open", "used to choose what the paper leaves open")
 STATEMENT_HEADER = ["The paper says", "This program", "", ""]
 
 
-def text(value) -> str:
+def text(value: Any) -> str:
     """A value of a JSON file for the page: floats to 4 digits, null as a dash."""
     if value is None:
         return "–"
     return escape(f"{value:.4g}" if isinstance(value, float) else str(value))
 
 
-def formatted(value, form: str, factor: float = 1.0) -> str:
+def formatted(value: Any, form: str, factor: float = 1.0) -> str:
     """A number of a JSON file in a given form; null or none as a dash."""
     return f"{factor * value:{form}}" if is_number(value) else "–"
 
@@ -71,17 +72,17 @@ def table(
     return f'<div class="scroll">{opening}\n<thead>{head}</thead>\n<tbody>\n{body}\n</tbody></table></div>'
 
 
-def is_used_to_choose(entry: dict) -> bool:
+def is_used_to_choose(entry: dict[str, Any]) -> bool:
     """Whether a claim holds because the cases were chosen so."""
     return entry["holds"] is True and entry.get("used_to_choose") is True
 
 
-def verdict_of(entry: dict) -> tuple[str, str, str]:
+def verdict_of(entry: dict[str, Any]) -> tuple[str, str, str]:
     """Sign, class and meaning of a row's verdict."""
     return USED_TO_CHOOSE if is_used_to_choose(entry) else VERDICTS.get(entry["holds"], VERDICTS[None])
 
 
-def scorecard_table(scorecard: list[dict]) -> str:
+def scorecard_table(scorecard: list[dict[str, Any]]) -> str:
     variations = [key for key in VARIATIONS if any(key in entry for entry in scorecard)]
     judges = {entry["second_test_of"]: entry["id"] for entry in scorecard if is_counted_second_test(entry)}
     rows = []
@@ -104,11 +105,11 @@ def scorecard_table(scorecard: list[dict]) -> str:
     )
 
 
-def is_counted_second_test(entry: dict) -> bool:
+def is_counted_second_test(entry: dict[str, Any]) -> bool:
     return "second_test_of" in entry and entry.get("counts", False)
 
 
-def second_test_note(entry: dict) -> str:
+def second_test_note(entry: dict[str, Any]) -> str:
     """Of a second test, why the first one misjudges its claim."""
     if "second_test_of" not in entry:
         return ""
@@ -116,7 +117,7 @@ def second_test_note(entry: dict) -> str:
     return f'<br><span class="note">{escape(why)}</span>'
 
 
-def variation_note(scorecard: list[dict]) -> str:
+def variation_note(scorecard: list[dict[str, Any]]) -> str:
     """Which runs the columns of the variations come from."""
     varied = {
         f"{entry[key]['parameter']} = {entry[key]['value']:.4g}"
@@ -129,12 +130,12 @@ def variation_note(scorecard: list[dict]) -> str:
     return (
         '<p class="note">Moves by: difference of each number from that of runs with '
         f"{escape(' and '.join(sorted(varied)))}, one at a time, in the same unit, and the verdict there "
-        "where it is another. The paper's friction law has no limit with the mesh: these are no distances from a "
-        "converged value.</p>"
+        "where it is another. The paper's friction law has no limit with the mesh: these are no distances "
+        "from a converged value.</p>"
     )
 
 
-def scorecard_summary(scorecard: list[dict]) -> str:
+def scorecard_summary(scorecard: list[dict[str, Any]]) -> str:
     first = [e for e in scorecard if not e["id"].endswith("+") and "second_test_of" not in e]
     second = [e for e in scorecard if "second_test_of" in e]
     counted = [e for e in first if e.get("counts", True)] + [e for e in second if is_counted_second_test(e)]
@@ -142,8 +143,8 @@ def scorecard_summary(scorecard: list[dict]) -> str:
     count = {key: sum(entry["holds"] is key for entry in counted) for key in (True, False)}
     rest = len(counted) - sum(count.values())
     summary = (
-        f"Of {len(counted)} statements {count[True] - used} hold (✓), {count[False]} do not (✗), {rest} could "
-        "not be decided (–)."
+        f"Of {len(counted)} statements {count[True] - used} hold (✓), {count[False]} do not (✗), {rest} "
+        "could not be decided (–)."
     )
     if used:
         summary += f" Used to choose what the paper leaves open (=): {used}."
@@ -184,8 +185,7 @@ def fit_table(results: Results) -> str:
     if judging is not None:
         header.append(f"Main fronts without their last {1e3 * TAIL_M:g} mm ({escape(judging.id)})")
     return (
-        table(header, rows)
-        + f"<p>All points (C18). Points: {text(fit.get('n_points'))}; rms about the fit: "
+        table(header, rows) + f"<p>All points (C18). Points: {text(fit.get('n_points'))}; rms about the fit: "
         f"{formatted(fit.get('rms_over_c_L'), '.3f')} c<sub>L</sub>; within the paper's band: "
         f"{formatted(results.analysis.get('share_in_paper_band'), '.0f', 100)} % of the points.</p>"
         + (judging_note(judging) if judging is not None else "")
@@ -207,23 +207,22 @@ def spread_table(results: Results) -> str:
     )
 
 
+def front_row(event: str, f: dict[str, Any]) -> list[str]:
+    return [
+        escape(event),
+        text(f.get("id")),
+        text(f.get("direction")),
+        formatted(f.get("start_x_m"), ".1f", 1e3),
+        formatted(f.get("start_s"), ".1f", 1e6),
+        formatted(f.get("end_x_m"), ".1f", 1e3),
+        formatted(f.get("end_s"), ".1f", 1e6),
+        text(f.get("end")).replace("_", " "),
+        text(f.get("mode")),
+    ]
+
+
 def front_table(results: Results) -> str:
-    rows = []
-    for name, run in results.runs.items():
-        for f in run.info.get("fronts", []):
-            rows.append(
-                [
-                    escape(name),
-                    text(f.get("id")),
-                    text(f.get("direction")),
-                    formatted(f.get("start_x_m"), ".1f", 1e3),
-                    formatted(f.get("start_s"), ".1f", 1e6),
-                    formatted(f.get("end_x_m"), ".1f", 1e3),
-                    formatted(f.get("end_s"), ".1f", 1e6),
-                    text(f.get("end")).replace("_", " "),
-                    text(f.get("mode")),
-                ]
-            )
+    rows = [front_row(name, f) for name, run in results.runs.items() for f in run.info.get("fronts", [])]
     header = ["Event", "Front", "Direction", "From (mm)", "at (µs)", "to (mm)", "at (µs)", "End", "Slip"]
     return table(header, rows)
 
@@ -308,7 +307,7 @@ def origin(results: Results) -> str:
     )
 
 
-def verdict_cell(entry: dict) -> str:
+def verdict_cell(entry: dict[str, Any]) -> str:
     sign, kind, meaning = verdict_of(entry)
     return f'<td class="verdict {kind}" title="{meaning}">{sign}</td>'
 
@@ -350,8 +349,8 @@ def study_section(results: Results) -> list[str]:
         return []
     return [
         '<h2 id="studies-table">Studies</h2>',
-        "<p>How much the results depend on each parameter; bold: the value of the paper's runs, with their names "
-        "where they differ. Speeds: of "
+        "<p>How much the results depend on each parameter; bold: the value of the paper's runs, with their "
+        "names where they differ. Speeds: of "
         "the longest front of an event in its direction, * where it starts more than 10 mm from that of the "
         "paper's run. Change: median over the interface of the change of V<sub>tip</sub> against the "
         "reference run. Fit: about each value's own a + b exp(−c √r), and the share of its points within the "

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -42,11 +43,11 @@ class JudgingFit:
     counts: bool
 
 
-def read_judging_fit(row: dict) -> JudgingFit | None:
+def read_judging_fit(row: dict[str, Any]) -> JudgingFit | None:
     """From a scorecard's row, where it has all three numbers."""
     figures = row.get("figures")
     entries = [entry for entry in figures if isinstance(entry, dict)] if isinstance(figures, list) else []
-    values = {entry.get("name"): entry.get("value") for entry in entries if is_number(entry.get("value"))}
+    values = {entry.get("name"): entry["value"] for entry in entries if is_number(entry.get("value"))}
     if not {"a", "b", "c"} <= values.keys():
         return None
     fit = Fit(values["a"], values["b"], values["c"])
@@ -57,8 +58,8 @@ def read_judging_fit(row: dict) -> JudgingFit | None:
 class Results:
     folder: Path
     runs: dict[str, Run]
-    scorecard: list[dict]
-    analysis: dict
+    scorecard: list[dict[str, Any]]
+    analysis: dict[str, Any]
     fit: Fit | None  # of this program's points; None where it found too few
     fit_interval: np.ndarray  # of the fitted curve: energy rise, low, high; empty where not told. [points, 3]
     paper_fit: Fit
@@ -74,10 +75,11 @@ class Results:
     def interval_of_fit(self, name: str) -> tuple[float, float] | None:
         """Of a, b or c of our own fit; None where it is not told."""
         entry = self.analysis["fit"].get(name)
-        ends = (entry.get("low"), entry.get("high")) if isinstance(entry, dict) else (None, None)
-        return ends if all(map(is_number, ends)) else None
+        if not isinstance(entry, dict) or not is_number(entry.get("low")) or not is_number(entry.get("high")):
+            return None
+        return entry["low"], entry["high"]
 
-    def claims(self, name: str) -> list[dict]:
+    def claims(self, name: str) -> list[dict[str, Any]]:
         """The scorecard's rows of a claim: its first test and, where there is one, its second."""
         return [row for row in self.scorecard if name in (row["id"], row.get("second_test_of"))]
 
@@ -98,7 +100,7 @@ class Results:
         return [line for run in self.runs.values() for line in run.remarks]
 
 
-def read_fit(file: Path, table: dict, part: str) -> Fit:
+def read_fit(file: Path, table: dict[str, Any], part: str) -> Fit:
     def value(key: str) -> float:
         group = table.get(part)
         entry = group.get(key) if isinstance(group, dict) else None
@@ -107,7 +109,7 @@ def read_fit(file: Path, table: dict, part: str) -> Fit:
     return Fit(value("a"), value("b"), value("c"))
 
 
-def read_fit_interval(file: Path, analysis: dict) -> np.ndarray:
+def read_fit_interval(file: Path, analysis: dict[str, Any]) -> np.ndarray:
     points = analysis.get("fit_curve", [])
     if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
         raise DataError(f"{file}: 'fit_curve' is not a list of points")
@@ -115,7 +117,7 @@ def read_fit_interval(file: Path, analysis: dict) -> np.ndarray:
     return np.array(rows).reshape(-1, 3)
 
 
-def read_scorecard(file: Path) -> list[dict]:
+def read_scorecard(file: Path) -> list[dict[str, Any]]:
     rows = read_json(result_file(file))
     if not isinstance(rows, list):
         raise DataError(f"{file}: not a list")
@@ -136,7 +138,7 @@ def read_scorecard(file: Path) -> list[dict]:
     return rows
 
 
-def is_variation(entry) -> bool:
+def is_variation(entry: Any) -> bool:
     return isinstance(entry, dict) and "parameter" in entry and is_number(entry.get("value"))
 
 

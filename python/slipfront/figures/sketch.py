@@ -5,18 +5,18 @@ from __future__ import annotations
 
 from matplotlib.axes import Axes
 
-from slipfront.figures.style import TIP_MARKER
+from slipfront.figures.style import TIP_MARKER, Look
 
 N_NODES = 6
 
 
 def nodes(ax: Axes, y: float, n_slipping: int, instant: str, measured: tuple[int, str] | None = None) -> None:
     """Nodes at an instant, filled where they slip, a triangle over the tip; what is measured in a ring."""
-    look = {"linestyle": "none", "marker": "o", "markersize": 4.5, "color": "0.2"}
+    look: Look = {"linestyle": "none", "marker": "o", "markersize": 4.5, "color": "0.2"}
     for first, last, face in ((0, n_slipping, "0.2"), (n_slipping, N_NODES, "white")):
         ax.plot(range(first, last), [y] * (last - first), markerfacecolor=face, zorder=3, **look)
     ax.plot([-0.5, N_NODES - 0.5], [y, y], color="0.2", linewidth=0.5, zorder=1)
-    tip = {"marker": TIP_MARKER, "markersize": 11, "markeredgewidth": 0.5}
+    tip: Look = {"marker": TIP_MARKER, "markersize": 11, "markeredgewidth": 0.5}
     ax.plot(n_slipping, y + 0.22, color="0.2", markerfacecolor="white", linestyle="none", **tip)
     ax.text(-0.9, y, instant, ha="right", va="center")
     if measured is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.lines import Line2D
@@ -19,7 +20,7 @@ from slipfront.read import Run
 RATE_RANGE_M_PER_S = (0.1, 30.0)
 OPEN_COLOUR = "0.8"
 FRONT_COLOUR = "#cc3311"
-WAVES = {"c_L": "-", "c_S": (0, (4, 2)), "c_R": (0, (1, 1.2))}
+WAVES: dict[str, style.Line] = {"c_L": "-", "c_S": (0, (4, 2)), "c_R": (0, (1, 1.2))}
 
 
 def draw_waves(ax: Axes, run: Run) -> None:
@@ -77,7 +78,7 @@ def space_time(results: Results, name: str) -> Drawing:
         )
     style.x_axis(ax, run)
     ax.set(ylabel="$t$ (µs)", ylim=(1e6 * history.time_s[0], 1e6 * history.time_s[-1]))
-    handles = [Line2D([], [], color=FRONT_COLOUR, linewidth=0.9, label="front")]
+    handles: list[Artist] = [Line2D([], [], color=FRONT_COLOUR, linewidth=0.9, label="front")]
     for wave, line in WAVES.items():
         handles.append(
             Line2D([], [], color="0.25", linestyle=line, linewidth=0.5, label=rf"$c_\mathrm{{{wave[-1]}}}$")

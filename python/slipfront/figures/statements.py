@@ -42,7 +42,8 @@ STATEMENTS: dict[str, tuple[tuple[str, str], ...]] = {
     ),
     "fig6_energy": (
         (
-            "Against the rise of energy at the tip the three events fall onto one curve within a narrow band.",
+            "Against the rise of energy at the tip the three events fall onto one curve within a narrow "
+            "band.",
             "C18",
         ),
         ("Only points where a front slows down sharply before its end lie outside of it.", "C19"),

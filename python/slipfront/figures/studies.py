@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.text import Annotation
 from matplotlib.transforms import blended_transform_factory
 
 from slipfront.figures import style
@@ -57,14 +59,14 @@ SPREADS = (
 
 def paper_value(study: Study, run: Run) -> int | None:
     """Index of the value that the paper's run has; None where it is not among the study's."""
-    value = run.case
+    value: Any = run.case
     for part in study.parameter.split("."):
         value = value.get(part) if isinstance(value, dict) else None
     for i, point in enumerate(study.points):
         if isinstance(value, str):
             same = point.value == value
         else:
-            same = None not in (value, point.number) and bool(np.isclose(point.number, value))
+            same = value is not None and point.number is not None and bool(np.isclose(point.number, value))
         if same:
             return i
     return None
@@ -109,7 +111,7 @@ def title(study: Study) -> str:
 
 
 def draw_values(
-    ax: Axes, study: Study, values: Iterable[float | None], offset: float, top: float, gid: str, **look
+    ax: Axes, study: Study, values: Iterable[float | None], offset: float, top: float, gid: str, **look: Any
 ) -> None:
     """One number per value of the study, at equal distances; one above the axis is written at its end."""
     x = np.arange(len(study.points)) + offset * len(study.points)
@@ -119,7 +121,11 @@ def draw_values(
     ax.plot(x, inside, linestyle=line if study.numeric else "none", gid=gid, **look)
     for i in np.flatnonzero(y > top):
         # Beside the markers, and beside the numbers that other fronts have at the same value.
-        n_there = sum(str(t.get_gid()).endswith(":above") and t.xy[0] == i for t in ax.texts)
+        n_there = sum(
+            str(t.get_gid()).endswith(":above") and t.xy[0] == i
+            for t in ax.texts
+            if isinstance(t, Annotation)
+        )
         side = -1 if i == len(y) - 1 and len(y) > MOST_WITH_ROOM else 1
         ax.annotate(
             f"{y[i]:.3g}↑",
@@ -145,7 +151,7 @@ def is_another(results: Results, point: StudyPoint, event: str, direction: int) 
     return own is not None and bool(theirs) and abs(own.start_x_m - theirs[0].x_m[0]) > SAME_START_M
 
 
-def front_look(event: str, direction: int) -> dict:
+def front_look(event: str, direction: int) -> dict[str, Any]:
     look = style.EVENT_STYLES[event]
     return {
         "color": look.colour,
@@ -191,7 +197,13 @@ def draw_changes(ax: Axes, results: Results, study: Study) -> None:
 
 
 def draw_rms(ax: Axes, results: Results, study: Study) -> None:
-    look = {"color": "black", "linestyle": "-", "marker": "o", "markersize": 3.0, "linewidth": 0.8}
+    look: style.Look = {
+        "color": "black",
+        "linestyle": "-",
+        "marker": "o",
+        "markersize": 3.0,
+        "linewidth": 0.8,
+    }
     rms = [point.rms_over_c_L for point in study.points]
     draw_values(ax, study, rms, 0.0, HIGHEST_RMS, "rms", **look)
     ax.axhspan(0, results.paper_a_band, color="0.9", linewidth=0, zorder=0)
@@ -200,13 +212,25 @@ def draw_rms(ax: Axes, results: Results, study: Study) -> None:
 
 def draw_spreads(ax: Axes, results: Results, study: Study) -> None:
     for (name, _, colour, marker), offset in zip(SPREADS, (-0.045, 0.0, 0.045), strict=True):
-        look = {"color": colour, "linestyle": "-", "marker": marker, "markersize": 3.0, "linewidth": 0.8}
+        look: style.Look = {
+            "color": colour,
+            "linestyle": "-",
+            "marker": marker,
+            "markersize": 3.0,
+            "linewidth": 0.8,
+        }
         values = [point.spread[name] for point in study.points]
         draw_values(ax, study, values, offset, HIGHEST_SPREAD, f"spread:{name}", **look)
     ax.set(ylim=(0, HIGHEST_SPREAD), yticks=[0, 0.5])
 
 
-def small_multiples(results: Results, upper, lower, labels: tuple[str, str], handles: list) -> Figure:
+#: Draws a study into axes.
+Panel = Callable[[Axes, Results, Study], None]
+
+
+def small_multiples(
+    results: Results, upper: Panel, lower: Panel, labels: tuple[str, str], handles: list[Any]
+) -> Figure:
     """Two panels above each other for every study: upper(ax, results, study) and lower(...)."""
     n_rows = -(-len(results.studies) // COLUMNS)
     n_free = n_rows * COLUMNS - len(results.studies)
@@ -216,7 +240,7 @@ def small_multiples(results: Results, upper, lower, labels: tuple[str, str], han
         row, column = divmod(i, COLUMNS)
         left, bottom = 14 + 54.5 * column, CELL_MM * (n_rows - 1 - row)
 
-        def axes(y: float, h: float, left=left, bottom=bottom) -> Axes:
+        def axes(y: float, h: float, left: float = left, bottom: float = bottom) -> Axes:
             place = (left / style.PAGE_MM, (bottom + y) / height_mm, 48.5 / style.PAGE_MM, h / height_mm)
             return figure.add_axes(place)
 
@@ -238,17 +262,17 @@ def small_multiples(results: Results, upper, lower, labels: tuple[str, str], han
     return figure
 
 
-def place_legend(figure: Figure, handles: list, n_free: int, height_mm: float) -> None:
+def place_legend(figure: Figure, handles: list[Any], n_free: int, height_mm: float) -> None:
     """In the cells that the studies leave free at the end, or above the panels."""
     if n_free == 0:
-        at = {"loc": "upper center", "bbox_to_anchor": (0.5, 1 - 1 / height_mm), "ncols": 3}
+        at: style.Look = {"loc": "upper center", "bbox_to_anchor": (0.5, 1 - 1 / height_mm), "ncols": 3}
     else:
         left = (14 + 54.5 * (COLUMNS - n_free)) / style.PAGE_MM
         at = {"loc": "upper left", "bbox_to_anchor": (left, (CELL_MM - 5) / height_mm), "ncols": n_free}
     figure.legend(handles=handles, **at)
 
 
-def handle(label: str, **look) -> Line2D:
+def handle(label: str, **look: Any) -> Line2D:
     return Line2D([], [], label=label, **look)
 
 
@@ -257,8 +281,8 @@ SETTING = (
     "grey stripe: the value of the paper's runs; where their triggers differ, a stripe in the colour of each."
 )
 LEFT_OUT = (
-    "Numbers with an arrow lie above the axis, at the value to their left, at the last of many to their right. "
-    "Left out as in the scorecard: points in and next to trigger "
+    "Numbers with an arrow lie above the axis, at the value to their left, at the last of many to their "
+    "right. Left out as in the scorecard: points in and next to trigger "
     "zones and within 5 mm of spontaneous nucleation."
 )
 
@@ -273,7 +297,7 @@ def speeds(results: Results) -> Drawing:
         )
         for event, way, _ in FRONTS
     ]
-    grey = {"color": "0.3", "linestyle": "none"}
+    grey: style.Look = {"color": "0.3", "linestyle": "none"}
     handles.append(handle("maximum", marker="o", markersize=3.0, **grey))
     handles.append(handle("mean", marker="_", markersize=5.0, **grey))
     handles.append(handle("maximum, other front", marker="x", markersize=3.0, **grey))
@@ -302,5 +326,6 @@ def criteria(results: Results) -> Drawing:
         "the half width of the paper's band. Lower panels: median relative spread of V<sub>tip</sub> between "
         "the fronts at equal t<sub>s</sub>/p<sub>s</sub>, t<sub>d</sub>/p<sub>d</sub> and (U<sub>r</sub> − "
         "U<sub>s</sub>)/U<sub>s</sub>. The studies of the trigger have two events instead of three, that of "
-        f"the loading method one: their levels compare only among themselves. {LEFT_OUT.split(' Left out')[0][:-1]}.",
+        "the loading method one: their levels compare only among themselves. "
+        f"{LEFT_OUT.split(' Left out')[0][:-1]}.",
     )

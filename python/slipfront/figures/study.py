@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from slipfront.files import DataError, is_number
 
@@ -61,25 +62,25 @@ class Study:
 
     def shown(self, point: StudyPoint) -> str:
         """The value as text, in the unit shown."""
-        if self.numeric:
+        if self.numeric and point.number is not None:
             return f"{point.number * self.unit[1]:.3g}"
         return point.value.replace("_", " ")
 
 
-def optional(value) -> float | None:
+def optional(value: Any) -> float | None:
     """A number or nothing."""
     if value is not None and not is_number(value):
         raise TypeError(f"{value} is not a number")
     return value
 
 
-def needed(value) -> float:
+def needed(value: Any) -> float:
     if not is_number(value):
         raise TypeError(f"{value} is not a number")
     return value
 
 
-def read_point(point: dict) -> StudyPoint:
+def read_point(point: dict[str, Any]) -> StudyPoint:
     fronts: dict[tuple[str, int], MainFront] = {}
     for event in point["events"]:
         for f in sorted(event["fronts"], key=lambda f: abs(needed(f["end_x_m"]) - needed(f["start_x_m"]))):
@@ -106,7 +107,7 @@ def read_point(point: dict) -> StudyPoint:
     )
 
 
-def read_studies(file: Path, analysis: dict) -> list[Study]:
+def read_studies(file: Path, analysis: dict[str, Any]) -> list[Study]:
     """The studies of analysis.json; none where it has no such list."""
     listed = analysis.get("studies", [])
     if not isinstance(listed, list):

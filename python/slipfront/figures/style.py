@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, Literal
 
 import matplotlib.patheffects as path_effects
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
 
 from slipfront.read import Front, Run
 
@@ -18,7 +20,14 @@ COLUMN_MM = 84.0
 TEXT_MM = 120.0
 PAGE_MM = 174.0
 
-RC = {
+#: Matplotlib's keyword arguments for lines, patches and texts.
+Look = dict[str, Any]
+#: A line style: a name, or an offset and the lengths of dashes and gaps.
+Line = Literal["-", "--", ":", "none"] | tuple[float, tuple[float, ...]]
+Colour = tuple[float, float, float]
+
+#: Matplotlib types the keys of its settings one by one.
+RC: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],  # comes with Matplotlib: the same figure on every machine
     "mathtext.fontset": "dejavusans",
@@ -55,7 +64,7 @@ RC = {
 class EventStyle:
     label: str
     colour: str
-    line: str | tuple
+    line: Line
     marker: str
 
 
@@ -66,7 +75,7 @@ EVENT_STYLES = {
     "spontaneous_mu_k_1.0": EventStyle("spontaneous, $\\mu_k = 1.0$", "#117733", "-", "o"),
 }
 TIP_MARKER = [(0, 0), (-0.5, 1.0), (0.5, 1.0), (0, 0)]  # a triangle that stands on the tip
-REFERENCE = {"color": "0.45", "linewidth": 0.5, "zorder": 0.5}  # wave speeds, mu_s
+REFERENCE: Look = {"color": "0.45", "linewidth": 0.5, "zorder": 0.5}  # wave speeds, mu_s
 
 V_NAME = r"$V_\mathrm{tip}$"
 V_LABEL = r"$V_\mathrm{tip} / c_\mathrm{L}$"
@@ -75,7 +84,7 @@ DYNAMIC_LABEL = r"$t_d / p_d$"
 ENERGY_LABEL = r"$(U_r - U_s) / U_s$"
 
 
-def mm(length_m):
+def mm(length_m: ArrayLike) -> np.ndarray:
     return np.asarray(length_m) * 1e3
 
 
@@ -93,7 +102,7 @@ def panel_letter(ax: Axes, letter: str) -> None:
     ax.set_title(f"({letter})", loc="left", fontweight="bold", pad=3)
 
 
-def outlined(colour: str, width: float) -> list:
+def outlined(colour: str, width: float) -> list[path_effects.AbstractPathEffect]:
     """Path effects that keep a thin line or letter readable on any ground."""
     return [path_effects.withStroke(linewidth=width, foreground=colour)]
 
@@ -121,9 +130,10 @@ def wave_speed_lines(ax: Axes, run: Run, waves: tuple[str, ...] = ("c_L", "c_S",
         name_level(ax, level, rf"$c_\mathrm{{{wave[-1]}}}$", below=wave == "c_R")
 
 
-def pale(colour: str) -> tuple:
+def pale(colour: str) -> Colour:
     """The colour mixed with white."""
-    return tuple(1 - 0.5 * (1 - np.array(to_rgb(colour))))
+    red, green, blue = (1 - 0.5 * (1 - part) for part in to_rgb(colour))
+    return red, green, blue
 
 
 def front_gid(run: Run, front: Front, part: str = "") -> str:
@@ -136,7 +146,9 @@ def fill(event: EventStyle, direction: int) -> str:
     return event.colour if direction < 0 else "white"
 
 
-def draw_line(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, line=None) -> None:
+def draw_line(
+    ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, line: Line | None = None
+) -> None:
     """A main front as a line with a marker every 10 mm of path; broken where it is undefined."""
     style = EVENT_STYLES[run.name]
     every = max(1, round(10e-3 / np.median(np.abs(np.diff(front.x_m)))))
@@ -172,7 +184,7 @@ def draw_points(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, 
 
 def draw_pale(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, part: str) -> None:
     """What is shown for completeness only: thin, light and behind all else."""
-    look = {"color": pale(EVENT_STYLES[run.name].colour), "linewidth": 0.5, "zorder": 1.2}
+    look: Look = {"color": pale(EVENT_STYLES[run.name].colour), "linewidth": 0.5, "zorder": 1.2}
     ax.plot(x, y, gid=front_gid(run, front, part), **look)
 
 
@@ -184,7 +196,7 @@ def event_handles(runs: list[Run]) -> list[Line2D]:
 
 def fill_handles() -> list[Line2D]:
     """Legend entries that tell what filled and open markers mean."""
-    look = {"color": "0.35", "linestyle": "none", "marker": "o"}
+    look: Look = {"color": "0.35", "linestyle": "none", "marker": "o"}
     return [
         Line2D([], [], markerfacecolor="0.35", label="filled: against the shear", **look),
         Line2D([], [], markerfacecolor="white", label="open: along the shear", **look),
@@ -195,7 +207,7 @@ def pale_handle(colour: str = "#000000") -> Line2D:
     return Line2D([], [], color=pale(colour), linewidth=0.5, label="other fronts and nodes")
 
 
-def legend_below(figure: Figure, handles: list, n_columns: int) -> None:
+def legend_below(figure: Figure, handles: list[Any], n_columns: int) -> None:
     """A legend under the axes, where it hides nothing; of handles in a tuple the last one has the label."""
     labels = [(handle[-1] if isinstance(handle, tuple) else handle).get_label() for handle in handles]
     figure.legend(handles, labels, loc="outside lower center", ncols=n_columns, columnspacing=1.6)

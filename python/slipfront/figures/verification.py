@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -27,7 +30,7 @@ LABEL_COLUMNS = 2
 LABEL_MM = 4.5
 
 
-def draw_chart(ax, chart: dict) -> None:
+def draw_chart(ax: Axes, chart: dict[str, Any]) -> None:
     n_program = n_theory = 0
     for curve in chart["curves"]:
         if curve["kind"] == "theory":
@@ -69,7 +72,7 @@ def draw_chart(ax, chart: dict) -> None:
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=LABEL_COLUMNS)
 
 
-def n_labels(chart: dict) -> int:
+def n_labels(chart: dict[str, Any]) -> int:
     return sum(bool(curve["label"]) for curve in chart["curves"])
 
 
@@ -101,7 +104,7 @@ def draw_all(results: Path, figures: Path) -> list[str]:
     with command.publishing_into(figures) as folder, matplotlib.rc_context(RC):
         for file in files:
             drawing = draw(file)
-            png = guarded(file, lambda drawing=drawing: drawing.rendered("png", Software=None))
+            png = guarded(file, partial(drawing.rendered, "png", Software=None))
             (folder / f"{drawing.name}.png").write_bytes(png)
     return [f"figures: {figures} ({len(files)})"]
 
