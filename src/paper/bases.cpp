@@ -114,27 +114,29 @@ Json base_json(const OnBase& on) {
     json["poissons_ratio"] = on.base.material->poissons_ratio;
     json["density_kg_per_m3"] = on.base.material->density_kg_per_m3;
   }
-  json.update({{"tilt_factor", on.tilt_factor},
-               {"speed_ratio",
-                {{"median", number(on.speed_ratio.median)},
-                 {"low", number(on.speed_ratio.low)},
-                 {"high", number(on.speed_ratio.high)},
-                 {"n_bins", on.speed_ratio.n_bins}}},
-               {"pressure_change",
-                {{"along", number(on.pressure_change.along)}, {"against", number(on.pressure_change.against)}}},
-               {"share_in_paper_band", number(on.main_fronts.share_in_paper_band)},
-               {"n_points", on.main_fronts.n_points},
-               {"fit", fit_json(on.main_fronts)},
-               {"spread",
-                {{"static_ratio", number(on.main_fronts.static_ratio.fronts.median_relative)},
-                 {"dynamic_ratio", number(on.main_fronts.dynamic_ratio.fronts.median_relative)},
-                 {"energy_rise", number(on.main_fronts.energy_rise.fronts.median_relative)}}},
-               {"events", events_json(on)}});
+  json.update(
+      {{"tilt_factor", on.tilt_factor},
+       {"speed_ratio",
+        {{"median", number(on.speed_ratio.median)},
+         {"low", number(on.speed_ratio.low)},
+         {"high", number(on.speed_ratio.high)},
+         {"n_bins", on.speed_ratio.n_bins}}},
+       {"pressure_change",
+        {{"along", number(on.pressure_change.along)}, {"against", number(on.pressure_change.against)}}},
+       {"share_in_paper_band", number(on.main_fronts.share_in_paper_band)},
+       {"n_points", on.main_fronts.n_points},
+       {"fit", fit_json(on.main_fronts)},
+       {"spread",
+        {{"static_ratio", number(on.main_fronts.static_ratio.fronts.median_relative)},
+         {"dynamic_ratio", number(on.main_fronts.dynamic_ratio.fronts.median_relative)},
+         {"energy_rise", number(on.main_fronts.energy_rise.fronts.median_relative)}}},
+       {"events", events_json(on)}});
   return json;
 }
 
 std::string points_csv(const BasesResult& result) {
-  std::string text = "base,event,direction,x_m,v_tip_over_c_L,t_d_over_p_d,energy_rise,p_r_over_p_s,in_tail\n";
+  std::string text =
+      "base,event,direction,x_m,v_tip_over_c_L,t_d_over_p_d,energy_rise,p_r_over_p_s,in_tail\n";
   for (const auto& on : result.bases)
     for (const auto& m : main_fronts_of(on.events, false))
       for (const auto& p : m.points)
@@ -156,9 +158,9 @@ std::string bases_csv(const BasesResult& result) {
     const auto& m = on.main_fronts;
     fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", on.base.name,
                    cell(on.tilt_factor), cell(r.median), cell(r.low), cell(r.high), r.n_bins,
-                   cell(on.pressure_change.along), cell(on.pressure_change.against), cell(m.share_in_paper_band),
-                   m.n_points, cell(m.static_ratio.fronts.median_relative), cell(m.dynamic_ratio.fronts.median_relative),
-                   cell(m.energy_rise.fronts.median_relative));
+                   cell(on.pressure_change.along), cell(on.pressure_change.against),
+                   cell(m.share_in_paper_band), m.n_points, cell(m.static_ratio.fronts.median_relative),
+                   cell(m.dynamic_ratio.fronts.median_relative), cell(m.energy_rise.fronts.median_relative));
   }
   return text;
 }

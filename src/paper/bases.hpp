@@ -24,8 +24,8 @@ const std::vector<BaseOption>& base_options();
 /// larger by the share of compression that the base takes, so that the nominal pressure is the paper's.
 std::vector<NamedCase> cases_on(const BaseOption& base, bool quick);
 
-/// Change of pressure from the state before the event to the onset, over that before it: median over the points
-/// of the main fronts of a direction; NaN without any.
+/// Change of pressure from the state before the event to the onset, over that before it: median over the
+/// points of the main fronts of a direction; NaN without any.
 struct PressureChange {
   double along = 0, against = 0;
 };
@@ -56,8 +56,8 @@ struct BasesResult {
 /// Told often how many runs are done; returns false to interrupt.
 using BasesMonitor = std::function<bool(std::size_t done, std::size_t total)>;
 
-/// What remains of the paper's directionality, which its rigid base explains, and of its energy criterion when
-/// the base is deformable, down to a base of the plate's own material.
+/// What remains of the paper's directionality, which its rigid base explains, and of its energy criterion
+/// when the base is deformable, down to a base of the plate's own material.
 /// @throws UserError, Interrupted
 BasesResult study_bases(const BasesOptions& options, const BasesMonitor& monitor);
 

@@ -46,12 +46,20 @@ def largest_speed(fields: Fields, steps: list[int]) -> float:
 def draw_step(ax: Axes, grid: Triangulation, fields: Fields, step: int, norm: PowerNorm):
     """One snapshot; the interface is a white line where a body lies below it. Returns the coloured picture."""
     picture = ax.tripcolor(
-        grid, fields.speed_m_per_s(step), norm=norm, cmap=COLOURS, shading="gouraud", rasterized=True, gid=f"step:{step}"
+        grid,
+        fields.speed_m_per_s(step),
+        norm=norm,
+        cmap=COLOURS,
+        shading="gouraud",
+        rasterized=True,
+        gid=f"step:{step}",
     )
     low, high = fields.points_m.min(axis=0), fields.points_m.max(axis=0)
     if low[1] < 0:
         ax.axhline(0, color="white", linewidth=0.4, gid="interface")
-    ax.set(xlim=style.mm([low[0], high[0]]), ylim=style.mm([low[1], high[1]]), aspect="equal", ylabel="$y$ (mm)")
+    ax.set(
+        xlim=style.mm([low[0], high[0]]), ylim=style.mm([low[1], high[1]]), aspect="equal", ylabel="$y$ (mm)"
+    )
     ax.set_title(f"$t$ = {1e6 * fields.time_s[step]:.3g} µs", loc="left", pad=2)
     ax.locator_params(nbins=4)
     return picture
@@ -93,7 +101,9 @@ def draw(folder: Path) -> Drawing:
         ax.set_xlabel("$x$ (mm)")
     bar = figure.colorbar(picture, ax=axes, shrink=0.6, pad=0.02)
     bar.set_label("speed of the particles (m/s)")
-    return Drawing("fields", figure, "Speed of the particles, above the interface and, where a body is there, below it.")
+    return Drawing(
+        "fields", figure, "Speed of the particles, above the interface and, where a body is there, below it."
+    )
 
 
 def animate(folder: Path) -> bytes:
@@ -135,7 +145,9 @@ def main(arguments: list[str] | None = None) -> int:
         description="Draws the speed of the particles in a run's snapshots; into a .gif as an animation.",
     )
     parser.add_argument("picture", metavar="PICTURE", type=Path, help="png, pdf, svg or gif to write")
-    parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront run` with snapshots")
+    parser.add_argument(
+        "dir", metavar="DIR", type=Path, help="output folder of `slipfront run` with snapshots"
+    )
     options = parser.parse_args(arguments)
     return command.run("slipfront.figures.fields", lambda: write(options.picture, options.dir))
 
