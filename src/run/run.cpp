@@ -216,10 +216,10 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * initial.mesh.n_nodes());
   initial.solver_bytes = statics.solver().bytes();
-  initial.critical_shear_m = statics.shear_to(mu_s).shear_m;
+  initial.critical_shear_m = statics.shear_to(1).shear_m;
   if (config.loading.method == statics::LoadingMethod::direct) {
-    initial.common = statics.shear_to((1 - margin) * mu_s);
-    initial.spontaneous = statics.shear_to((1 + margin) * mu_s);
+    initial.common = statics.shear_to(1 - margin);
+    initial.spontaneous = statics.shear_to(1 + margin);
   } else {
     auto plain = config.time;
     plain.interface_substeps = 1;
