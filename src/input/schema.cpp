@@ -361,6 +361,10 @@ void check_base(const Case& config, const Require& require) {
   const bool repeats = config.plate.sides == mesh::Sides::periodic;
   require((config.base.plate.sides == mesh::Sides::periodic) == repeats, {"base.sides", "plate.sides"},
           "base.sides and plate.sides must both be periodic, or neither of them");
+  require(config.loading.method == statics::LoadingMethod::prestress ||
+              config.loading.solver != statics::StaticSolver::iterative,
+          {"loading.solver", "base.kind"},
+          "loading.solver = iterative knows no base.kind = body; choose auto or direct");
 }
 
 void check_nucleation(const Case& config, const Require& require) {

@@ -25,6 +25,10 @@ double top_speed_m_per_s(const input::Case& config);
 /// What the plate's shape leaves of loading.solver.
 statics::StaticSolver wanted_solver(const input::Case& config);
 
+/// Mean pressure of the interface under the tilt, the bodies' sides free; a base takes its share of the
+/// compression.
+double nominal_pressure_Pa(const input::Case& config);
+
 /// Whether the tractions of the interface are given: no statics, no ramp.
 bool is_prestressed(const input::Case& config);
 

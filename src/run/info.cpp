@@ -17,8 +17,7 @@ namespace slipfront::run {
 namespace {
 
 stability::WellPosedness well_posedness(const input::Case& config, const mesh::Mesh& mesh) {
-  const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
-  double pressure_Pa = stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m);
+  double pressure_Pa = nominal_pressure_Pa(config);
   if (is_prestressed(config)) {
     const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
     pressure_Pa = std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());

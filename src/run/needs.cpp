@@ -52,15 +52,19 @@ mesh::Plate coarse_plate(mesh::Plate plate) {
 /// Shear at which t/p inside reaches mu_s, from the statics of a coarse mesh.
 double estimated_critical_shear_m(const input::Case& config) {
   const double mu_s = interface::static_coefficient(config.friction);
+  // Of uniform compression and shear.
+  const auto uniform_shear_m = [&] {
+    double compliance_m_per_Pa = config.plate.height_m / solid::shear_modulus_Pa(config.material);
+    if (input::has_base_body(config))
+      compliance_m_per_Pa += config.base.plate.height_m / solid::shear_modulus_Pa(config.base.material);
+    return mu_s * nominal_pressure_Pa(config) * compliance_m_per_Pa;
+  };
+  if (input::has_base_body(config)) return uniform_shear_m();
   try {
     const auto mesh = mesh::make_plate(coarse_plate(config.plate));
-    return statics::Statics(mesh, config.material, config.loading, mu_s).shear_to(mu_s).shear_m;
+    return statics::Statics(mesh, config.material, config.loading, mu_s).shear_to(1).shear_m;
   } catch (const UserError&) {
-    // No coarse mesh fits, or its edges give way first: of uniform compression and shear.
-    const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
-    const double pressure_Pa =
-        stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m);
-    return mu_s * pressure_Pa * config.plate.height_m / solid::shear_modulus_Pa(config.material);
+    return uniform_shear_m();  // no coarse mesh fits, or its edges give way first
   }
 }
 

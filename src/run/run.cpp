@@ -132,10 +132,22 @@ double top_speed_m_per_s(const input::Case& config) {
 }
 
 statics::StaticSolver wanted_solver(const input::Case& config) {
+  if (input::has_base_body(config)) return statics::StaticSolver::direct;  // the iterative one knows no base
   const auto& plate = config.plate;
   return statics::solver_for_shape(config.loading.solver, plate.coarsenings > 0,
                                    std::round(plate.width_m / plate.element_size_m),
                                    std::round(plate.height_m / plate.element_size_m));
+}
+
+double nominal_pressure_Pa(const input::Case& config) {
+  const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
+  double per_compression = stability::nominal_pressure_Pa(config.material, 1, config.plate.height_m);
+  if (input::has_base_body(config)) {
+    const double of_base =
+        stability::nominal_pressure_Pa(input::base_material(config), 1, config.base.plate.height_m);
+    per_compression *= of_base / (per_compression + of_base);
+  }
+  return compression_m * per_compression;
 }
 
 bool is_prestressed(const input::Case& config) {
@@ -310,16 +322,20 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
     initial.wall_s = seconds_since(start);
     return initial;
   }
-  const statics::Statics statics(initial.mesh, config.material, config.loading, mu_s,
+  const auto base_material = input::base_material(config);
+  std::optional<statics::ElasticBody> base;
+  if (initial.base) base.emplace(*initial.base, base_material);
+  const statics::Statics statics({initial.mesh, config.material}, base, config.loading,
+                                 std::vector<double>(initial.mesh.lower.size(), mu_s),
                                  interface::static_coefficient_key(config.friction),
                                  [&] { return monitor(0, 0); });
   initial.n_unknowns = statics.solver().n_unknowns();
-  initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * initial.mesh.n_nodes());
+  initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();
-  initial.critical_shear_m = statics.shear_to(mu_s).shear_m;
+  initial.critical_shear_m = statics.shear_to(1).shear_m;
   if (config.loading.method == statics::LoadingMethod::direct) {
-    initial.common = statics.shear_to((1 - margin) * mu_s);
-    initial.spontaneous = statics.shear_to((1 + margin) * mu_s);
+    initial.common = statics.shear_to(1 - margin);
+    initial.spontaneous = statics.shear_to(1 + margin);
   } else {
     auto of_ramp = config;
     of_ramp.time.interface_substeps = 1;

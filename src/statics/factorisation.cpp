@@ -238,6 +238,12 @@ solid::Field Factorisation::displacement(const Load& load, const Eigen::VectorXd
   return solve(load.top, force);
 }
 
+solid::Field Factorisation::displacement(const Eigen::VectorXd& interface_force_N) const {
+  SLIPFRONT_ASSERT(top_ == TopConstraint::both, "forces on a plate that nothing holds along x");
+  const std::vector<double> held(mesh_.top.size(), 0.0);
+  return solve({held, held}, interface_force_N);
+}
+
 solid::Field Factorisation::solve(const Top& top, const Eigen::VectorXd& interface_force) const {
   SLIPFRONT_ASSERT(top.u_x_m.size() == mesh_.top.size() && top.u_y_m.size() == mesh_.top.size(),
                    "size of the loaded edge");

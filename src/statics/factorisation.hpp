@@ -54,6 +54,9 @@ class Factorisation {
   Load load(const Top& top) const;
   /// Displacement of all nodes under the load for given displacements of the interface.
   solid::Field displacement(const Load& load, const Eigen::VectorXd& interface_u_m) const;
+  /// The same under given forces on the interface, with the loaded edge held where it is. Both its
+  /// displacements have to be prescribed.
+  solid::Field displacement(const Eigen::VectorXd& interface_force_N) const;
 
   std::int64_t n_unknowns() const { return n_unknowns_; }
   double factor_bytes() const { return factor_bytes_; }

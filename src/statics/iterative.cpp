@@ -138,16 +138,18 @@ class IterativeLoadCase : public LoadCase {
     }
   }
 
-  solid::Field displacement(double shear) const override {
-    solid::Field u = u0_;
+  Displacement displacement(double shear) const override {
+    Displacement u{u0_, {}};
     if (!sheared_) return u;
-    for (std::size_t n = 0; n < u.size(); ++n) {
-      u.x[n] += shear * u1_.x[n];
-      u.y[n] += shear * u1_.y[n];
+    for (std::size_t n = 0; n < u.above.size(); ++n) {
+      u.above.x[n] += shear * u1_.x[n];
+      u.above.y[n] += shear * u1_.y[n];
     }
     return u;
   }
-  solid::Field displacement_per_shear() const override { return sheared_ ? u1_ : solid::Field(u0_.size()); }
+  Displacement displacement_per_shear() const override {
+    return {sheared_ ? u1_ : solid::Field(u0_.size()), {}};
+  }
 
  private:
   /// Exactly the loaded edge's displacements, and 0 at numbers without a node.
@@ -253,7 +255,7 @@ void LevelEquations::fix(TopConstraint constraint, const Support& support) {
     if (support.contact[k] == Contact::stick) boundary.fixed_x.push_back(n);
     if (support.contact[k] != Contact::open) boundary.fixed_y.push_back(n);
     if (support.contact[k] == Contact::slip)
-      boundary.slip.push_back({n, support.slip_sign[k] * support.mu_s});
+      boundary.slip.push_back({n, support.slip_sign[k] * support.mu_s[k]});
   }
   multigrid_.prescribe(boundary, level_);
   std::ranges::fill(fixed_, std::uint8_t{0});

@@ -8,19 +8,25 @@
 
 namespace slipfront::statics {
 
-/// The plate under its loaded edge, held by the plane: displacements of the interface and forces of the plane
-/// on it, affine in the shear: u0 + shear u1, f0 + shear f1. Vectors over the interface hold x and y of each
-/// of the level's interface nodes in turn. Forces are per unit thickness.
+/// Displacements of all nodes: of the plate, and of the base where there is one.
+struct Displacement {
+  solid::Field above, below;
+};
+
+/// The plate under its loaded edge, held by what it stands on: displacements of the interface, relative to
+/// those of a base, and forces of the contact on the plate, affine in the shear: u0 + shear u1, f0 + shear
+/// f1. Vectors over the interface hold x and y of each of the level's interface nodes in turn. Forces are per
+/// unit thickness.
 class LoadCase {
  public:
   virtual ~LoadCase() = default;
   /// Finds u0, u1, f0, f1 for given contact states. `accuracy`: error of the displacement in the energy norm
   /// over the norm of the displacement; a direct solution ignores it.
   virtual void solve(const Support& support, double accuracy) = 0;
-  /// Displacement of all nodes at a shear, after solve.
-  virtual solid::Field displacement(double shear) const = 0;
+  /// Displacement at a shear, after solve.
+  virtual Displacement displacement(double shear) const = 0;
   /// Its change with the shear.
-  virtual solid::Field displacement_per_shear() const = 0;
+  virtual Displacement displacement_per_shear() const = 0;
   /// Takes the solution of the same case on the next coarser level as the guess from which solve begins.
   virtual void begin_from(const LoadCase& coarser) = 0;
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "statics/plate_solver.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "statics/condensed_interface.hpp"
 #include "statics/factorisation.hpp"
 #include "statics/iterative.hpp"
 #include "statics/load_case.hpp"
@@ -13,31 +16,30 @@ namespace slipfront::statics {
 
 namespace {
 
-/// On the condensed stiffness of a factorised plate.
 class CondensedLoadCase : public LoadCase {
  public:
-  CondensedLoadCase(const mesh::Mesh& mesh, std::shared_ptr<const Factorisation> plate,
+  CondensedLoadCase(std::vector<double> gap_m, std::shared_ptr<const CondensedInterface> interface,
                     const TopDisplacement& top, bool sheared)
-      : mesh_(mesh), plate_(std::move(plate)), load_(plate_->load(top)) {
-    const auto n = mesh.top.size();
+      : gap_m_(std::move(gap_m)), interface_(std::move(interface)), load_(interface_->load(top)) {
+    const auto n = top.u_x_m.size();
     unit_shear_ = {{std::vector<double>(n, sheared ? 1.0 : 0.0), std::vector<double>(n, 0.0)},
                    Eigen::VectorXd::Zero(load_.g_N.size())};
-    if (sheared) unit_shear_ = plate_->load(unit_shear_.top);
+    if (sheared) unit_shear_ = interface_->load(unit_shear_.top);
+    g0_N_ = interface_->relative_load(load_);
+    g1_N_ = interface_->relative_load(unit_shear_);
   }
 
   void solve(const Support& support, double) override {
-    const auto& S = plate_->condensed_stiffness();
-    const auto& load0 = load_.g_N;
-    const auto& load1 = unit_shear_.g_N;
+    const auto& S = interface_->stiffness();
     std::vector<Eigen::Index> unknown;  // degrees of freedom that are not held
     u0 = Eigen::VectorXd::Zero(S.rows());
     u1 = Eigen::VectorXd::Zero(S.rows());
-    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
+    for (std::size_t k = 0; k < gap_m_.size(); ++k) {
       const auto x = static_cast<Eigen::Index>(2 * k);
       const auto contact = support.contact[k];
       if (contact == Contact::stick) u0(x) = support.anchor_x_m[k];
       if (contact != Contact::stick) unknown.push_back(x);
-      if (contact != Contact::open) u0(x + 1) = -mesh_.y_m[mesh_.lower[k]];
+      if (contact != Contact::open) u0(x + 1) = -gap_m_[k];
       if (contact == Contact::open) unknown.push_back(x + 1);
     }
     if (!unknown.empty()) {
@@ -47,13 +49,13 @@ class CondensedLoadCase : public LoadCase {
       for (Eigen::Index r = 0; r < size; ++r) {
         // An open node carries no force; a slipping one obeys f_x = -sign mu_s f_y.
         const auto d = unknown[r];
-        const double mu = d % 2 == 0 ? support.slip_sign[d / 2] * support.mu_s : 0.0;
+        const double mu = d % 2 == 0 ? support.slip_sign[d / 2] * support.mu_s[d / 2] : 0.0;
         Eigen::RowVectorXd row = S.row(d);
-        double g0 = load0(d), g1 = load1(d);
+        double g0 = g0_N_(d), g1 = g1_N_(d);
         if (support.contact[d / 2] == Contact::slip) {
           row += mu * S.row(d + 1);
-          g0 += mu * load0(d + 1);
-          g1 += mu * load1(d + 1);
+          g0 += mu * g0_N_(d + 1);
+          g1 += mu * g1_N_(d + 1);
         }
         for (Eigen::Index c = 0; c < size; ++c) A(r, c) = row(unknown[c]);
         rhs(r, 0) = g0 - row.dot(u0);
@@ -65,43 +67,52 @@ class CondensedLoadCase : public LoadCase {
         u1(unknown[r]) = solution(r, 1);
       }
     }
-    f0 = S * u0 - load0;
-    f1 = S * u1 - load1;
+    f0 = S * u0 - g0_N_;
+    f1 = S * u1 - g1_N_;
   }
 
-  solid::Field displacement(double shear) const override {
+  Displacement displacement(double shear) const override {
     auto load = load_;
     for (std::size_t k = 0; k < load.top.u_x_m.size(); ++k)
       load.top.u_x_m[k] += shear * unit_shear_.top.u_x_m[k];
     load.g_N += shear * unit_shear_.g_N;
-    return plate_->displacement(load, u0 + shear * u1);
+    return interface_->displacement(load, u0 + shear * u1);
   }
   void begin_from(const LoadCase&) override {}
-  solid::Field displacement_per_shear() const override { return plate_->displacement(unit_shear_, u1); }
+  Displacement displacement_per_shear() const override { return interface_->displacement(unit_shear_, u1); }
 
  private:
-  const mesh::Mesh& mesh_;
-  std::shared_ptr<const Factorisation> plate_;
+  std::vector<double> gap_m_;
+  std::shared_ptr<const CondensedInterface> interface_;
   Factorisation::Load load_;        ///< the loaded edge where it stands without shear
   Factorisation::Load unit_shear_;  ///< the loaded edge moved by 1 m along x
+  Eigen::VectorXd g0_N_, g1_N_;     ///< what the two send to the interface
 };
 
 class DirectSolver : public PlateSolver {
  public:
-  DirectSolver(const mesh::Mesh& mesh, const solid::Material& material)
+  DirectSolver(const mesh::Mesh& mesh, const solid::Material& material,
+               const std::optional<ElasticBody>& base)
       : mesh_(mesh),
         material_(material),
-        held_(std::make_shared<Factorisation>(mesh, material, TopConstraint::both)) {}
+        gap_m_(gaps_m(mesh, base ? &base->mesh : nullptr)),
+        held_plate_(std::make_shared<Factorisation>(mesh, material, TopConstraint::both)) {
+    if (base) base_ = std::make_shared<Factorisation>(base->mesh, base->material, TopConstraint::both);
+    held_ = std::make_shared<CondensedInterface>(held_plate_, base_);
+  }
 
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
                                       const solid::Field*, int) override {
-    auto plate = held_;
+    auto interface = held_;
     if (constraint == TopConstraint::vertical)
-      plate = std::make_shared<Factorisation>(mesh_, material_, constraint);
-    return std::make_unique<CondensedLoadCase>(mesh_, std::move(plate), top, sheared);
+      interface = std::make_shared<CondensedInterface>(
+          std::make_shared<Factorisation>(mesh_, material_, constraint), base_);
+    return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top, sheared);
   }
-  std::int64_t n_unknowns() const override { return held_->n_unknowns(); }
-  double bytes() const override { return held_->factor_bytes(); }
+  std::int64_t n_unknowns() const override {
+    return held_plate_->n_unknowns() + (base_ ? base_->n_unknowns() : 0);
+  }
+  double bytes() const override { return held_plate_->factor_bytes() + (base_ ? base_->factor_bytes() : 0); }
   bool iterates() const override { return false; }
   int n_cycles() const override { return 0; }
   int n_levels() const override { return 1; }
@@ -114,10 +125,29 @@ class DirectSolver : public PlateSolver {
  private:
   const mesh::Mesh& mesh_;
   solid::Material material_;
-  std::shared_ptr<Factorisation> held_;  ///< both displacements of the loaded edge prescribed
+  std::vector<double> gap_m_;
+  // Both displacements of the edges away from the interface prescribed.
+  std::shared_ptr<const Factorisation> held_plate_, base_;
+  std::shared_ptr<const CondensedInterface> held_;
 };
 
+void require_base_fits(const mesh::Mesh& plate, const mesh::Mesh& base) {
+  SLIPFRONT_ASSERT(!base.top.empty(), "a base that nothing holds cannot be in equilibrium");
+  SLIPFRONT_ASSERT(base.lower.size() == plate.lower.size(), "interfaces of different nodes");
+  const double width_m = plate.x_m[plate.lower.back()] - plate.x_m[plate.lower.front()];
+  for (std::size_t k = 0; k < plate.lower.size(); ++k)
+    SLIPFRONT_ASSERT(std::abs(base.x_m[base.lower[k]] - plate.x_m[plate.lower[k]]) <= 1e-9 * width_m,
+                     "interface nodes that do not face each other");
+}
+
 }  // namespace
+
+std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base) {
+  std::vector<double> gap_m;
+  for (const auto n : plate.lower) gap_m.push_back(plate.y_m[n]);
+  for (std::size_t k = 0; base != nullptr && k < gap_m.size(); ++k) gap_m[k] += base->y_m[base->lower[k]];
+  return gap_m;
+}
 
 StaticSolver choose_solver(StaticSolver wanted, double n_unknowns) {
   if (wanted != StaticSolver::automatic) return wanted;
@@ -152,12 +182,31 @@ void require_statics_memory(StaticSolver solver, double n_unknowns) {
   }
 }
 
+void require_statics_memory_of_pair(double n_unknowns_plate, double n_unknowns_base) {
+  // The base is factorised while the plate's factor is there.
+  const double plate_factor = estimated_factor_bytes(n_unknowns_plate);
+  const double bytes =
+      std::max(statics_bytes(n_unknowns_plate, plate_factor),
+               plate_factor + statics_bytes(n_unknowns_base, estimated_factor_bytes(n_unknowns_base)));
+  require_memory(bytes,
+                 fmt::format("the factorisation of {:.4g} static unknowns of plate and base",
+                             n_unknowns_plate + n_unknowns_base),
+                 "choose a larger plate.element_size_m");
+}
+
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
-                                               StaticSolver solver) {
+                                               StaticSolver solver, const std::optional<ElasticBody>& base) {
+  if (base) {
+    require_base_fits(mesh, base->mesh);
+    if (solver == StaticSolver::iterative)
+      throw UserError("loading.solver = iterative knows no elastic base; choose auto or direct");
+    require_statics_memory_of_pair(2.0 * mesh.n_nodes(), 2.0 * base->mesh.n_nodes());
+    return std::make_unique<DirectSolver>(mesh, material, base);
+  }
   solver = solver_for_shape(solver, !mesh.coarser.empty(), mesh.grid.columns, mesh.grid.rows);
   require_statics_memory(solver, 2.0 * mesh.n_nodes());
   if (choose_solver(solver, 2.0 * mesh.n_nodes()) == StaticSolver::direct)
-    return std::make_unique<DirectSolver>(mesh, material);
+    return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(mesh, material);
 }
 

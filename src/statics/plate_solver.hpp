@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -25,19 +26,30 @@ struct TopDisplacement {
   std::vector<double> u_x_m, u_y_m;
 };
 
-/// What the plane does to each node of mesh.lower: u_y = -gap unless open, u_x = anchor where it sticks,
-/// f_x = -slip_sign mu_s f_y where it slips.
+/// What the contact does to each node of mesh.lower: u_y = -gap unless open, u_x = anchor where it sticks,
+/// f_x = -slip_sign mu_s f_y where it slips. u is the displacement relative to the rigid plane, or to a base.
 struct Support {
   std::vector<Contact> contact;
   std::vector<double> slip_sign;   ///< of t where the node slips
   std::vector<double> anchor_x_m;  ///< u_x where the node sticks, or began to slip
-  double mu_s = 0;
+  std::vector<double> mu_s;
   bool operator==(const Support&) const = default;
 };
 
+/// A plate, or a base below one. A base is described upside down: y points away from the interface into it,
+/// mesh.lower are its interface nodes at the places of the plate's along x, and mesh.top is its far edge,
+/// which is held still.
+struct ElasticBody {
+  const mesh::Mesh& mesh;
+  const solid::Material& material;
+};
+
+/// How far the interface of the undeformed bodies is open. [lower]
+std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base);
+
 class LoadCase;  // load_case.hpp
 
-/// Solves the linear equilibria of one plate.
+/// Solves the linear equilibria of one plate on the rigid plane or on a base.
 class PlateSolver {
  public:
   virtual ~PlateSolver() = default;
@@ -82,8 +94,14 @@ double statics_bytes(StaticSolver solver, double n_unknowns);
 /// @throws UserError with the figures.
 void require_statics_memory(StaticSolver solver, double n_unknowns);
 
-/// By the solver that the plate's shape leaves of `solver`.
+/// Refuses two bodies, which are solved directly, where their statics would not fit into the memory at hand.
+/// @throws UserError with the figures.
+void require_statics_memory_of_pair(double n_unknowns_plate, double n_unknowns_base);
+
+/// By the solver that the plate's shape leaves of `solver`; on a base directly.
+/// @throws UserError for an iterative solution on a base.
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
-                                               StaticSolver solver);
+                                               StaticSolver solver,
+                                               const std::optional<ElasticBody>& base = std::nullopt);
 
 }  // namespace slipfront::statics

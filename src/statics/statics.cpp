@@ -23,12 +23,14 @@ struct InterfaceNodes {
   std::vector<double> x_m, gap_m, tributary_m;
 };
 
-InterfaceNodes interface_nodes(const mesh::Mesh& mesh, const std::vector<std::size_t>& places) {
+InterfaceNodes interface_nodes(const mesh::Mesh& mesh, const mesh::Mesh* base,
+                               const std::vector<std::size_t>& places) {
   const auto tributary_m = mesh::tributary_lengths_m(mesh);
+  const auto gap_m = gaps_m(mesh, base);
   InterfaceNodes nodes;
   for (const auto place : places) {
     nodes.x_m.push_back(mesh.x_m[mesh.lower[place]]);
-    nodes.gap_m.push_back(mesh.y_m[mesh.lower[place]]);
+    nodes.gap_m.push_back(gap_m[place]);
     nodes.tributary_m.push_back(tributary_m[place]);
   }
   return nodes;
@@ -37,11 +39,11 @@ InterfaceNodes interface_nodes(const mesh::Mesh& mesh, const std::vector<std::si
 /// The states at some of the nodes.
 ContactStates at_places(const ContactStates& all, const std::vector<std::size_t>& places) {
   ContactStates some;
-  some.support.mu_s = all.support.mu_s;
   for (const auto place : places) {
     some.support.contact.push_back(all.support.contact[place]);
     some.support.slip_sign.push_back(all.support.slip_sign[place]);
     some.support.anchor_x_m.push_back(all.support.anchor_x_m[place]);
+    some.support.mu_s.push_back(all.support.mu_s[place]);
     some.has_touched.push_back(all.has_touched[place]);
   }
   return some;
@@ -59,8 +61,8 @@ void take_nearest(const ContactStates& coarse, const std::vector<std::size_t>& c
   }
 }
 
-/// The interface on the rigid plane: contact states, and the linear equilibrium they make on the condensed
-/// stiffness.
+/// Contact states of the interface, and the linear equilibrium they make. Displacements are those relative to
+/// what the plate stands on.
 class ContactProblem {
  public:
   ContactProblem(InterfaceNodes interface_nodes, LoadCase& plate, ContactStates start)
@@ -91,7 +93,7 @@ class ContactProblem {
   bool correct(double shear, bool one_only, double tolerance, MaySlip&& may_slip) {
     auto& slip_sign = states.support.slip_sign;
     const auto& anchor_x_m = states.support.anchor_x_m;
-    const double mu_s = states.support.mu_s;
+    const auto& mu_s = states.support.mu_s;
     auto& has_touched = states.has_touched;
     double p_max = 0;
     for (std::size_t k = 0; k < n_; ++k) p_max = std::max(p_max, std::abs(p_Pa(k, shear)));
@@ -115,7 +117,7 @@ class ContactProblem {
       } else if (p < -tolerance * p_max) {
         changes.push_back({k, Contact::open, 0, -p / p_max});
       } else if (contact[k] == Contact::stick) {
-        const double excess = std::abs(t) - mu_s * p;
+        const double excess = std::abs(t) - mu_s[k] * p;
         if (excess > tolerance * p_max && may_slip(k))
           changes.push_back({k, Contact::slip, t > 0 ? 1.0 : -1.0, excess / p_max});
       } else {
@@ -198,6 +200,20 @@ Inside inside_contact(const ContactProblem& problem, double margin_m) {
   return {first + margin_m, last - margin_m};
 }
 
+/// Whether a ratio t/p is a larger share of its mu_s than another one of its own.
+bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double other_mu_s) {
+  if (mu_s == other_mu_s) return ratio > other_ratio;
+  return ratio * other_mu_s > other_ratio * mu_s;
+}
+
+/// Interface nodes' displacement along x, relative to that of a base. [lower]
+std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Equilibrium& e) {
+  std::vector<double> u_x_m;
+  for (const auto n : mesh.lower) u_x_m.push_back(e.u_m.x[n]);
+  for (std::size_t k = 0; base != nullptr && k < u_x_m.size(); ++k) u_x_m[k] -= e.below_u_m.x[base->lower[k]];
+  return u_x_m;
+}
+
 Equilibrium make_equilibrium(const ContactProblem& problem, double shear, double margin_m) {
   Equilibrium e;
   e.shear_m = shear;
@@ -205,6 +221,8 @@ Equilibrium make_equilibrium(const ContactProblem& problem, double shear, double
   const Inside inside = inside_contact(problem, margin_m);
   e.inside_from_m = inside.from_m;
   e.inside_to_m = inside.to_m;
+  const auto& mu_s = problem.states.support.mu_s;
+  double mu_s_at_peak = mu_s.front();
   for (std::size_t k = 0; k < problem.nodes.x_m.size(); ++k) {
     const bool open = problem.contact[k] == Contact::open;
     const double x = problem.nodes.x_m[k];
@@ -212,9 +230,10 @@ Equilibrium make_equilibrium(const ContactProblem& problem, double shear, double
     e.tractions.x_m.push_back(x);
     e.tractions.t_s_Pa.push_back(t);
     e.tractions.p_s_Pa.push_back(p);
-    if (p > 0 && inside.contains(x) && t / p > e.peak_ratio) {
+    if (p > 0 && inside.contains(x) && is_nearer_to_slip(t / p, mu_s[k], e.peak_ratio, mu_s_at_peak)) {
       e.peak_ratio = t / p;
       e.peak_x_m = x;
+      mu_s_at_peak = mu_s[k];
     }
   }
   return e;
@@ -225,9 +244,9 @@ Equilibrium make_equilibrium(const ContactProblem& problem, double shear, double
 /// level, settle_coarse(problem) settles its states.
 /// @return whether there are any.
 template <class MakeCase, class SettleCoarse>
-bool begin_on_coarse_levels(const mesh::Mesh& mesh, const PlateSolver& solver, const ContactStates& start,
-                            MakeCase&& make_case, SettleCoarse&& settle_coarse, LoadCase& finest,
-                            ContactStates& states) {
+bool begin_on_coarse_levels(const mesh::Mesh& mesh, const mesh::Mesh* base, const PlateSolver& solver,
+                            const ContactStates& start, MakeCase&& make_case, SettleCoarse&& settle_coarse,
+                            LoadCase& finest, ContactStates& states) {
   std::unique_ptr<LoadCase> coarser;
   ContactStates coarser_states;
   std::vector<std::size_t> coarser_places;
@@ -239,7 +258,7 @@ bool begin_on_coarse_levels(const mesh::Mesh& mesh, const PlateSolver& solver, c
       plate->begin_from(*coarser);
       take_nearest(coarser_states, coarser_places, places, here);
     }
-    ContactProblem problem(interface_nodes(mesh, places), *plate, std::move(here));
+    ContactProblem problem(interface_nodes(mesh, base, places), *plate, std::move(here));
     try {
       settle_coarse(problem);
     } catch (const UserError&) {  // what is impossible on a coarse level need not be so on the next
@@ -260,8 +279,20 @@ bool begin_on_coarse_levels(const mesh::Mesh& mesh, const PlateSolver& solver, c
 
 Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
                  std::string mu_s_key, GoOn go_on)
-    : mesh_(mesh), loading_(loading), mu_s_(mu_s), mu_s_key_(std::move(mu_s_key)), go_on_(std::move(go_on)) {
-  solver_ = make_plate_solver(mesh, material, loading.solver);
+    : Statics({mesh, material}, std::nullopt, loading, std::vector<double>(mesh.lower.size(), mu_s),
+              std::move(mu_s_key), std::move(go_on)) {}
+
+Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>& base,
+                 const Loading& loading, std::vector<double> mu_s, std::string mu_s_key, GoOn go_on)
+    : mesh_(plate_body.mesh),
+      base_mesh_(base ? &base->mesh : nullptr),
+      loading_(loading),
+      mu_s_(std::move(mu_s)),
+      mu_s_key_(std::move(mu_s_key)),
+      go_on_(std::move(go_on)) {
+  const auto& mesh = mesh_;
+  SLIPFRONT_ASSERT(mu_s_.size() == mesh.lower.size(), "mu_s of another interface");
+  solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base);
 
   TopDisplacement tilt{std::vector<double>(mesh.top.size(), 0.0), {}};
   const double x0 = mesh.x_m[mesh.top.front()], width = mesh.x_m[mesh.top.back()] - x0;
@@ -278,10 +309,11 @@ Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const 
 
   const std::size_t n = mesh.lower.size();
   ContactStates start{{std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 0.0),
-                       std::vector<double>(n, 0.0), mu_s},
+                       std::vector<double>(n, 0.0), mu_s_},
                       std::vector<std::uint8_t>(n, 0)};
+  const auto gap_m = gaps_m(mesh, base_mesh_);
   for (std::size_t k = 0; k < n; ++k) {
-    start.support.contact[k] = mesh.y_m[mesh.lower[k]] > 0 ? Contact::open : Contact::stick;
+    start.support.contact[k] = gap_m[k] > 0 ? Contact::open : Contact::stick;
     start.has_touched[k] = start.support.contact[k] == Contact::stick;
   }
   const auto no_shear = [] { return 0.0; };
@@ -291,17 +323,21 @@ Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const 
   const auto settle_coarse = [&](ContactProblem& coarse) {
     settle(coarse, first_accuracy, guess_accuracy, no_shear, may_slip, go_on_);
   };
-  if (begin_on_coarse_levels(mesh, *solver_, start, make_case, settle_coarse, *plate, states))
+  if (begin_on_coarse_levels(mesh, base_mesh_, *solver_, start, make_case, settle_coarse, *plate, states))
     accuracy = guess_accuracy;
-  ContactProblem problem(interface_nodes(mesh, solver_->interface_of(0)), *plate, std::move(states));
+  ContactProblem problem(interface_nodes(mesh, base_mesh_, solver_->interface_of(0)), *plate,
+                         std::move(states));
   settle(problem, accuracy, final_accuracy, no_shear, may_slip, go_on_);
   tilted_ = make_equilibrium(problem, 0, loading.edge_margin_m);
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
     throw UserError(
         "the tilt leaves the plate without contact; increase loading.tilt_left_m or loading.tilt_right_m");
-  tilted_.u_m = plate->displacement(0);
-  tilted_.u_per_shear = solid::Field(mesh.n_nodes());
+  auto u = plate->displacement(0);
   plate.reset();
+  tilted_.u_m = std::move(u.above);
+  tilted_.below_u_m = std::move(u.below);
+  tilted_.u_per_shear = solid::Field(tilted_.u_m.size());
+  tilted_.below_u_per_shear = solid::Field(tilted_.below_u_m.size());
 
   if (is_free)
     for (std::size_t k = 0; k < mesh.top.size(); ++k) tilt.u_x_m[k] = tilted_.u_m.x[mesh.top[k]];
@@ -331,10 +367,10 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
     const std::size_t n = mesh_.lower.size();
     states = {{tilted_.contact, std::vector<double>(n, 0.0), std::vector<double>(n, 0.0), mu_s_},
               std::vector<std::uint8_t>(n, 0)};
+    states.support.anchor_x_m = relative_u_x_m(mesh_, base_mesh_, tilted_);
     for (std::size_t k = 0; k < n; ++k) {
       if (tilted_.contact[k] != Contact::open) states.support.contact[k] = Contact::stick;
       states.has_touched[k] = tilted_.contact[k] != Contact::open;
-      states.support.anchor_x_m[k] = tilted_.u_m.x[mesh_.lower[k]];
     }
     if (solver_->iterates()) accuracy = first_accuracy;
     const auto start = states;
@@ -344,16 +380,21 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
     const auto settle_coarse = [&](ContactProblem& coarse) {
       settle_problem(coarse, first_accuracy, guess_accuracy);
     };
-    if (begin_on_coarse_levels(mesh_, *solver_, start, make_case, settle_coarse, *sheared_, states))
+    if (begin_on_coarse_levels(mesh_, base_mesh_, *solver_, start, make_case, settle_coarse, *sheared_,
+                               states))
       accuracy = guess_accuracy;
   }
-  ContactProblem problem(interface_nodes(mesh_, solver_->interface_of(0)), *sheared_, std::move(states));
+  ContactProblem problem(interface_nodes(mesh_, base_mesh_, solver_->interface_of(0)), *sheared_,
+                         std::move(states));
   const double shear = settle_problem(problem, accuracy, final_accuracy);
   if (solver_->iterates()) last_ = problem.states;
 
   Equilibrium e = make_equilibrium(problem, shear, loading_.edge_margin_m);
-  e.u_m = sheared_->displacement(shear);
-  e.u_per_shear = sheared_->displacement_per_shear();
+  auto u = sheared_->displacement(shear), per_shear = sheared_->displacement_per_shear();
+  e.u_m = std::move(u.above);
+  e.below_u_m = std::move(u.below);
+  e.u_per_shear = std::move(per_shear.above);
+  e.below_u_per_shear = std::move(per_shear.below);
   return e;
 }
 
@@ -361,19 +402,30 @@ Equilibrium Statics::shear_by(double shear_m) const {
   return shear([shear_m](const ContactProblem&, const Inside&) { return shear_m; });
 }
 
-Equilibrium Statics::shear_to(double ratio) const {
-  if (tilted_.peak_ratio > ratio)
+double Statics::ratio_at_peak(const Equilibrium& state, double share) const {
+  const auto at = std::ranges::find(state.tractions.x_m, state.peak_x_m) - state.tractions.x_m.begin();
+  return share * (state.peak_ratio > 0 ? mu_s_[at] : mu_s_.front());
+}
+
+std::string Statics::name_of_ratio(double share) const {
+  const bool uniform = std::ranges::count(mu_s_, mu_s_.front()) == std::ssize(mu_s_);
+  return uniform ? fmt::format("{:.4g}", share * mu_s_.front()) : fmt::format("{:.4g} mu_s", share);
+}
+
+Equilibrium Statics::shear_to(double share) const {
+  if (tilted_.peak_ratio > ratio_at_peak(tilted_, share))
     throw UserError(
-        "the tilt alone brings t/p inside the interface to {:.4g}, not below {:.4g}; raise {} or change the "
-        "tilt",
-        tilted_.peak_ratio, ratio, mu_s_key_);
+        "the tilt alone brings t/p inside the interface to {:.4g}, not below {}; raise {} or change the tilt",
+        tilted_.peak_ratio, name_of_ratio(share), mu_s_key_);
   bool reached = true;
   Equilibrium e = shear([&](const ContactProblem& problem, const Inside& inside) {
     // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a state
     // that does not last until then is corrected, and the shear found again.
+    const auto& mu_s = problem.states.support.mu_s;
     double shear = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < problem.contact.size(); ++k) {
       if (problem.contact[k] != Contact::stick || !inside.contains(problem.nodes.x_m[k])) continue;
+      const double ratio = share * mu_s[k];
       const double excess = problem.t_Pa(k, 0) - ratio * problem.p_Pa(k, 0);
       const double growth = problem.t_Pa(k, 1) - ratio * problem.p_Pa(k, 1) - excess;
       if (growth > 0 && excess <= 0 && problem.p_Pa(k, -excess / growth) > 0)
@@ -384,16 +436,16 @@ Equilibrium Statics::shear_to(double ratio) const {
   });
   if (!reached)
     throw UserError(
-        "no shear brings t/p inside the interface to {:.4g}; reduce {}, or change the tilt or "
+        "no shear brings t/p inside the interface to {}; reduce {}, or change the tilt or "
         "loading.edge_margin_m",
-        ratio, mu_s_key_);
+        name_of_ratio(share), mu_s_key_);
   // Slip at mu_s p that has spread from an edge past the margin would itself count as the peak.
+  const double ratio = ratio_at_peak(e, share);
   if (std::abs(e.peak_ratio - ratio) > 1e-6 * ratio)
     throw UserError(
-        "slip spreads from an edge of contact before t/p inside reaches {:.4g}; reduce {}, or change the "
-        "tilt or "
+        "slip spreads from an edge of contact before t/p inside reaches {}; reduce {}, or change the tilt or "
         "loading.edge_margin_m",
-        ratio, mu_s_key_);
+        name_of_ratio(share), mu_s_key_);
   return e;
 }
 

@@ -23,16 +23,18 @@ struct ContactStates {
 };
 
 /// Equilibrium of the plate with its interface, and how it changes with the shear.
+///
+/// What limits the shear inside is the largest t/(mu_s p); peak_ratio and peak_x_m belong to its node.
 struct Equilibrium {
   solid::Field u_m;          ///< [nodes] displacement
   solid::Field u_per_shear;  ///< [nodes] change of u per unit displacement of the loaded edge along x
-  /// The same of a deformable body below, described upside down; empty for the rigid plane.
+  /// The same of a base, described upside down; empty for the rigid plane.
   solid::Field below_u_m, below_u_per_shear;
   double shear_m = 0;                         ///< displacement of the loaded edge along x since the tilt
   std::vector<Contact> contact;               ///< [lower]
   record::StaticState tractions;              ///< [lower]
-  double peak_ratio = 0;                      ///< largest t/p inside
-  double peak_x_m = 0;                        ///< where it is
+  double peak_ratio = 0;                      ///< t/p where t/(mu_s p) is largest inside
+  double peak_x_m = 0;                        ///< where that is
   double inside_from_m = 0, inside_to_m = 0;  ///< the part of the contact that counts as inside
 
   template <class Archive>
@@ -45,7 +47,8 @@ struct Equilibrium {
 /// Whether an equilibrium has a contact and tractions at each of so many interface nodes.
 bool has_nodes(const Equilibrium& state, std::size_t n_lower);
 
-/// Loading of the plate at rest: tilt, then shear until t/p inside the interface reaches a given value.
+/// Loading of the plate at rest: tilt, then shear until t/p reaches a given share of mu_s somewhere inside
+/// the interface.
 ///
 /// Nodes stick where they touch; a node whose pressure would be tensile is released; a node beyond mu_s slips
 /// at mu_s p, but inside only sticking is possible since the shear ends where mu_s is reached there.
@@ -54,9 +57,16 @@ class Statics {
   /// Asked before each linear solution; where it says no, Interrupted is thrown.
   using GoOn = std::function<bool()>;
 
+  /// @param base      what the plate stands on; nothing for the rigid plane
+  /// @param mu_s      coefficient at rest of each interface node. [lower]
   /// @param mu_s_key  key of mu_s in the case file, for messages
   /// @param go_on     of all solutions, those of later calls included
-  /// @throws UserError where the tilt presses no node against the plane; Interrupted.
+  /// @throws UserError where the tilt leaves the plate without contact, or where `loading` asks for an
+  /// iterative solution on a base; Interrupted.
+  Statics(
+      const ElasticBody& plate, const std::optional<ElasticBody>& base, const Loading& loading,
+      std::vector<double> mu_s, std::string mu_s_key = "friction.mu_s", GoOn go_on = [] { return true; });
+  /// On the rigid plane, with one coefficient everywhere.
   Statics(
       const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
       std::string mu_s_key = "friction.mu_s", GoOn go_on = [] { return true; });
@@ -65,9 +75,9 @@ class Statics {
   /// The tilted plate before any shear.
   const Equilibrium& tilted() const { return tilted_; }
 
-  /// Equilibrium at the shear at which the largest t/p inside equals `ratio`.
+  /// Equilibrium at the shear at which the largest t/(mu_s p) inside equals `share`.
   /// @throws UserError where no shear does it.
-  Equilibrium shear_to(double ratio) const;
+  Equilibrium shear_to(double share) const;
 
   /// Equilibrium at a given shear since the tilt.
   Equilibrium shear_by(double shear_m) const;
@@ -77,10 +87,15 @@ class Statics {
  private:
   template <class FindShear>
   Equilibrium shear(FindShear&& find_shear) const;
+  /// The share of mu_s where `state` has its peak.
+  double ratio_at_peak(const Equilibrium& state, double share) const;
+  /// That in messages; a number where mu_s is uniform.
+  std::string name_of_ratio(double share) const;
 
   const mesh::Mesh& mesh_;
+  const mesh::Mesh* base_mesh_;  ///< null on the rigid plane
   Loading loading_;
-  double mu_s_;
+  std::vector<double> mu_s_;  ///< [lower]
   std::string mu_s_key_;
   GoOn go_on_;
   std::unique_ptr<PlateSolver> solver_;

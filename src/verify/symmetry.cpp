@@ -60,7 +60,7 @@ Run run(const mesh::Mesh& mesh, const solid::Material& material, bool mirrored, 
   // The shear is that of the original.
   const statics::Statics original(mesh, material, {}, mu_s), statics(mesh, material, loading, mu_s);
   Run run;
-  run.state = statics.shear_by(sign * original.shear_to(0.95 * mu_s).shear_m);
+  run.state = statics.shear_by(sign * original.shear_to(0.95).shear_m);
   motion::Stepper stepper(mesh, material, model, {});
   stepper.start(run.state, sign * 1e-6 * solid::longitudinal_speed_m_per_s(material));
   const interface::Trigger trigger;

@@ -26,8 +26,8 @@ class EventRun : public ::testing::Test {
   mesh::Mesh mesh_ = support::make_plate(0.2, 0.1, 5e-3, Corner::none);
   solid::Material material_;
   statics::Statics statics_{mesh_, material_, {}, mu_s};
-  statics::Equilibrium common_ = statics_.shear_to(0.999 * mu_s);
-  statics::Equilibrium calm_ = statics_.shear_to(0.5 * mu_s);
+  statics::Equilibrium common_ = statics_.shear_to(0.999);
+  statics::Equilibrium calm_ = statics_.shear_to(0.5);
   double c_L_ = solid::longitudinal_speed_m_per_s(material_);
   TimeStepping time_{.interface_substeps = 4, .end_s = 60e-6, .quiet_s = 1};
   Sampling sampling_;
@@ -91,7 +91,7 @@ TEST_F(EventRun, SlippingKeepsItGoing) {
   time_.quiet_s = 20e-6;
   time_.end_s = 1e-3;
   none_.ramp_s = 0;
-  const Event event = run(statics_.shear_to(1.001 * mu_s));
+  const Event event = run(statics_.shear_to(1.001));
   EXPECT_EQ(event.end, EventEnd::quiet);
   ASSERT_FALSE(event.record.onsets.empty());
   // Slip faster than ten times the loading: the event goes on for 20 us after the last of it, to within a
@@ -234,7 +234,7 @@ TEST_F(EventRun, AFailingSinkEndsTheEvent) {
 }
 
 TEST_F(EventRun, SlipReleasesEnergyAndTheBooksShowIt) {
-  const auto spontaneous = statics_.shear_to(1.001 * mu_s);
+  const auto spontaneous = statics_.shear_to(1.001);
   time_.end_s = 100e-6;
   const Event event = run(spontaneous);
   EXPECT_EQ(event.end, EventEnd::end_time);
@@ -253,7 +253,7 @@ TEST_F(EventRun, SlipReleasesEnergyAndTheBooksShowIt) {
 
 TEST_F(EventRun, TopWorkIsTheReactionTimesThePath) {
   // Until the first wave reaches the loaded edge (0.1 m / c_L = 63 us) its force is the static one.
-  const auto spontaneous = statics_.shear_to(1.001 * mu_s);
+  const auto spontaneous = statics_.shear_to(1.001);
   const Event event = run(spontaneous);
   double reaction = 0;
   const auto tributary = mesh::tributary_lengths_m(mesh_);
@@ -384,7 +384,7 @@ TEST(Ramp, ReachesTheStaticStates) {
   const solid::Material material;
   const statics::Loading loading;
   const statics::Statics statics(mesh, material, loading, mu_s);
-  const auto expected = statics.shear_to((1 - loading.critical_margin) * mu_s);
+  const auto expected = statics.shear_to(1 - loading.critical_margin);
   const auto tilted = statics.shear_by(0);
   TimeStepping time;
   time.interface_substeps = 1;

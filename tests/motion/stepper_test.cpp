@@ -189,7 +189,7 @@ TEST(OneSubstep, IsTheLeapfrogScheme) {
   const solid::Material material;
   const statics::Statics statics(
       mesh, material, {.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3}, mu_s);
-  const auto e = statics.shear_to(0.9 * mu_s);
+  const auto e = statics.shear_to(0.9);
   const auto tributary = mesh::tributary_lengths_m(mesh);
   const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
   const auto force = trigger_forces(e, tributary, interface::EventKind::right, trigger, mu_s);
@@ -373,7 +373,7 @@ TEST_P(Scheme, EqualsThePlainAlgorithm) {
   const solid::Material material;
   const statics::Loading loading{.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3};
   const statics::Statics statics(mesh, material, loading, mu_s);
-  auto e = statics.shear_to(0.9 * mu_s);
+  auto e = statics.shear_to(0.9);
   TimeStepping time;
   time.interface_rows = rows;
   time.interface_substeps = substeps;
@@ -507,7 +507,7 @@ TEST(Stepper, MirroredPlateMovesMirrored) {
   const solid::Material material;
   const statics::Statics statics(
       mesh, material, {.tilt_left_m = 0.1e-3, .tilt_right_m = 0.04e-3, .edge_margin_m = 4e-3}, mu_s);
-  const auto e = statics.shear_to(0.95 * mu_s);
+  const auto e = statics.shear_to(0.95);
   const int stride = mesh.grid.stride();
   const auto mirror = [&](solid::Field u) {
     const solid::Field old = u;
@@ -698,7 +698,7 @@ TEST(Stepper, SamplesBelongToTheBeginningOfTheStep) {
   const solid::Material material;
   const statics::Statics statics(
       mesh, material, {.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3}, mu_s);
-  const auto e = statics.shear_to(0.5 * mu_s);
+  const auto e = statics.shear_to(0.5);
   Stepper stepper(mesh, material, paper_law, {});
   stepper.start(e, 0);
   Recorder recorder(e, mu_s, 0);

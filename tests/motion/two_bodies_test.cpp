@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two deformable bodies on each other, under prescribed tractions.
+// Two deformable bodies on each other.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <ostream>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "motion/recorder.hpp"
 #include "motion/stepper.hpp"
 #include "motion/support.hpp"
 #include "statics/prestress.hpp"
+#include "statics/statics.hpp"
 
 namespace slipfront::motion {
 namespace {
@@ -243,6 +247,98 @@ TEST_P(Pulse, IsReflectedAndTransmittedByTheImpedances) {
   EXPECT_NEAR((shear ? 1 : -1) * momentum(stepper.bodies()[1], shear) / incident, 2 * Z_2 / (Z_1 + Z_2),
               1e-6);
   EXPECT_TRUE(recorder.take(stepper.time_s()).onsets.empty());
+}
+
+mesh::Mesh loaded_plate(double height_m, mesh::Corner corner, int coarsenings = 0) {
+  mesh::Plate plate;
+  plate.width_m = 0.04;
+  plate.height_m = height_m;
+  plate.element_size_m = 1e-3;
+  plate.corner = corner;
+  plate.coarsenings = coarsenings;
+  plate.fine_height_m = 4e-3;
+  return mesh::make_plate(plate);
+}
+
+struct Base {
+  const char* name;
+  solid::Material material;
+  int coarsenings = 0;
+};
+void PrintTo(const Base& base, std::ostream* to) {
+  *to << base.name;
+}
+
+/// A tilted and sheared plate on a base of another height, without slip.
+class AtRest : public ::testing::TestWithParam<std::tuple<Base, int>> {};
+INSTANTIATE_TEST_SUITE_P(Bases, AtRest,
+                         ::testing::Combine(::testing::Values(Base{"equal", pmma}, Base{"gel", gel},
+                                                              Base{"graded", pmma, 2}),
+                                            ::testing::Values(1, 6)),
+                         [](const auto& test) {
+                           return std::string(std::get<0>(test.param).name) + "_" +
+                                  std::to_string(std::get<1>(test.param));
+                         });
+
+TEST_P(AtRest, StaticEquilibriumOfTwoBodiesStaysAtRest) {
+  const auto& [name, material, coarsenings] = std::get<0>(GetParam());
+  const auto mesh = loaded_plate(0.02, mesh::Corner::relief);
+  const auto base = loaded_plate(0.024, mesh::Corner::none, coarsenings);
+  const statics::Loading loading{.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3};
+  const statics::Statics statics({mesh, pmma}, statics::ElasticBody{base, material}, loading,
+                                 std::vector<double>(mesh.lower.size(), mu_s));
+  const auto e = statics.shear_by(0.02e-3);
+  EXPECT_GT(std::ranges::count(e.contact, statics::Contact::open), 0);
+  ASSERT_EQ(std::ranges::count(e.contact, statics::Contact::slip), 0);
+  Stepper stepper(BodySource{mesh, pmma}, BodySource{base, material}, support::paper_law,
+                  stepping(std::get<1>(GetParam())));
+  stepper.start(e, 0);
+  Recorder recorder(e, mu_s, 0);
+  double v_m_per_s = 0;
+  for (int step = 0; step < 500; ++step) {
+    stepper.advance(recorder);
+    for (const auto& body : stepper.bodies())
+      v_m_per_s = std::max({v_m_per_s, largest(body.v_m_per_s().x), largest(body.v_m_per_s().y)});
+  }
+  EXPECT_EQ(recorder.take(stepper.time_s()).onsets.size(), 0U);
+  const double strain = loading.tilt_left_m / 0.02;
+  EXPECT_LE(v_m_per_s, 1e-12 * strain * solid::longitudinal_speed_m_per_s(pmma));
+  const double p_max = largest(e.tractions.p_s_Pa);
+  const auto& s = stepper.interface_state();
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    EXPECT_NEAR(s.t_Pa[k], e.tractions.t_s_Pa[k], 1e-9 * p_max) << k;
+    EXPECT_NEAR(s.p_Pa[k], e.tractions.p_s_Pa[k], 1e-9 * p_max) << k;
+  }
+}
+
+TEST(TwoBodies, LoadedStaticallyFollowTheTop) {
+  // Started with the static motion under a moving edge, the bonded bodies keep to the static solution.
+  auto soft = gel;
+  soft.stiffness_damping_s = pmma.stiffness_damping_s;
+  const auto mesh = loaded_plate(0.02, mesh::Corner::none), base = loaded_plate(0.016, mesh::Corner::none);
+  const statics::Statics statics({mesh, pmma}, statics::ElasticBody{base, soft},
+                                 {.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3},
+                                 std::vector<double>(mesh.lower.size(), mu_s));
+  const auto e = statics.shear_by(0.01e-3);
+  ASSERT_EQ(std::ranges::count(e.contact, statics::Contact::stick), 41);
+  for (const int substeps : {1, 6}) {
+    Stepper stepper(BodySource{mesh, pmma}, BodySource{base, soft}, support::paper_law, stepping(substeps));
+    const double speed = 1e-3;
+    stepper.start(e, speed);
+    Recorder recorder(e, mu_s, 0);
+    for (int step = 0; step < 300; ++step) stepper.advance(recorder);
+    // As in StuckPlateFollowsTheTop; about the place to which a sudden force shifts it, the softer pair
+    // swings by as much.
+    const double lag_s = pmma.stiffness_damping_s + (substeps > 1 ? stepper.step_s() : 0);
+    const auto expect_static = [&](const solid::Field& u, const solid::Field& from,
+                                   const solid::Field& slope) {
+      const Eigen::VectorXd expected = support::flat(from) + speed * stepper.time_s() * support::flat(slope);
+      EXPECT_LE(support::max_abs(support::flat(u) - expected), 2 * speed * lag_s) << substeps;
+    };
+    expect_static(stepper.bodies()[0].u_m(), e.u_m, e.u_per_shear);
+    expect_static(stepper.bodies()[1].u_m(), e.below_u_m, e.below_u_per_shear);
+    EXPECT_GT(speed * stepper.time_s(), 100 * speed * lag_s);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
+#include <vector>
 
 #include "base/error.hpp"
 #include "support/plate.hpp"
@@ -140,7 +142,7 @@ TEST_P(PaperTilt, StatesObeyContactAndEquilibrium) {
   const auto put_down = lower_x(mesh, statics.tilted());
   for (const double ratio : {0.9 * mu_s, 0.999 * mu_s, 1.001 * mu_s}) {
     SCOPED_TRACE(ratio);
-    const auto e = statics.shear_to(ratio);
+    const auto e = statics.shear_to(ratio / mu_s);
     expect_equilibrium(mesh, e);
     expect_complementarity(mesh, e, put_down, ratio);
     // All kinds of states are there to be checked; slip only at an edge of contact, near the critical shear.
@@ -159,7 +161,7 @@ TEST_P(PaperTilt, ShearEndsAtTheRatioAskedFor) {
   const Statics statics(mesh, {}, {}, mu_s);
   double shear = 0;
   for (const double ratio : {0.8, 1.0, 0.999 * mu_s, 1.001 * mu_s}) {
-    const auto e = statics.shear_to(ratio);
+    const auto e = statics.shear_to(ratio / mu_s);
     EXPECT_NEAR(e.peak_ratio, ratio, 1e-11);
     double peak = 0, peak_x = 0;
     for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
@@ -183,7 +185,7 @@ TEST_P(PaperTilt, ShearEndsAtTheRatioAskedFor) {
 TEST_P(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
   const auto mesh = paper_plate(GetParam());
   const Statics statics(mesh, {}, {}, mu_s);
-  const auto e = statics.shear_to(0.999 * mu_s);
+  const auto e = statics.shear_to(0.999);
   // So small an increment that no contact state changes.
   const double increment = 1e-6 * e.shear_m;
   const auto further = statics.shear_by(e.shear_m + increment);
@@ -202,7 +204,7 @@ TEST(Statics, ShearReleasesTheHeavyCorner) {
   // from the left edge.
   const auto mesh = paper_plate(2e-3);
   const Statics statics(mesh, {}, {}, mu_s);
-  const auto e = statics.shear_to(0.999 * mu_s);
+  const auto e = statics.shear_to(0.999);
   const auto first_touching = [](const Equilibrium& s) {
     return std::ranges::find_if(s.contact, [](Contact c) { return c != Contact::open; }) - s.contact.begin();
   };
@@ -225,7 +227,7 @@ TEST(Statics, CriticalShearOfACoarsePlateByDenseSolution) {
     plate.relief_depth_m = 0.01;
     const auto mesh = mesh::make_plate(plate);
     const Statics statics(mesh, {}, {}, mu_s);
-    const auto e = statics.shear_to(0.999 * mu_s);
+    const auto e = statics.shear_to(0.999);
     const auto put_down = lower_x(mesh, statics.tilted());
 
     const Eigen::MatrixXd K = test::assembled_stiffness(mesh, {});
@@ -285,7 +287,7 @@ TEST(Statics, FreeLoadedEdgeCarriesNoHorizontalForceDuringTheTilt) {
 
   // The shear starts from where the edge stands.
   const auto put_down = lower_x(mesh, free.tilted());
-  const auto e = free.shear_to(0.999 * mu_s);
+  const auto e = free.shear_to(0.999);
   for (const auto n : mesh.top) EXPECT_NEAR(e.u_m.x[n], free.tilted().u_m.x[n] + e.shear_m, 1e-15);
   expect_equilibrium(mesh, e);
   expect_complementarity(mesh, e, put_down, 0.999 * mu_s);
@@ -296,7 +298,7 @@ TEST(Statics, CanBeInterruptedBetweenSolutions) {
   int asked = 0;
   {
     const Statics statics(mesh, {}, {}, mu_s, "friction.mu_s", [&] { return ++asked > 0; });
-    statics.shear_to(mu_s);
+    statics.shear_to(1);
   }
   const int all = asked;
   EXPECT_GT(all, 2);
@@ -304,7 +306,7 @@ TEST(Statics, CanBeInterruptedBetweenSolutions) {
     asked = 0;
     const auto solve_statics = [&] {
       const Statics statics(mesh, {}, {}, mu_s, "friction.mu_s", [&] { return asked++ < last; });
-      statics.shear_to(mu_s);
+      statics.shear_to(1);
     };
     EXPECT_THROW(solve_statics(), Interrupted) << last;
     EXPECT_EQ(asked, last + 1);
@@ -316,9 +318,102 @@ TEST(Statics, TellsTheUserWhatCannotBe) {
   EXPECT_THAT(error_of([&] { Statics(mesh, {}, {.tilt_left_m = -1e-4, .tilt_right_m = -1e-4}, mu_s); }),
               HasSubstr("leaves the plate without contact; increase loading.tilt_left_m"));
   const Statics statics(mesh, {}, {}, mu_s);
-  EXPECT_THAT(error_of([&] { statics.shear_to(0.01); }), HasSubstr("the tilt alone brings t/p"));
+  EXPECT_THAT(error_of([&] { statics.shear_to(0.01 / mu_s); }), HasSubstr("the tilt alone brings t/p"));
   const Statics nothing_inside(mesh, {}, {.edge_margin_m = 0.15}, mu_s);
   EXPECT_THAT(error_of([&] { nothing_inside.shear_to(1); }), HasSubstr("no shear brings t/p inside"));
+}
+
+TEST(VaryingFriction, OfOneValueIsTheUniformOne) {
+  const auto mesh = paper_plate(4e-3);
+  const Statics uniform(mesh, {}, {}, mu_s);
+  const Statics varying({mesh, solid::Material{}}, std::nullopt, {},
+                        std::vector<double>(mesh.lower.size(), mu_s));
+  for (const double share : {0.9, 0.999, 1.001}) {
+    const auto a = uniform.shear_to(share), b = varying.shear_to(share);
+    EXPECT_EQ(a.shear_m, b.shear_m);
+    EXPECT_EQ(a.u_m.x, b.u_m.x);
+    EXPECT_EQ(a.u_m.y, b.u_m.y);
+    EXPECT_EQ(a.u_per_shear.x, b.u_per_shear.x);
+    EXPECT_EQ(a.u_per_shear.y, b.u_per_shear.y);
+    EXPECT_EQ(a.tractions.t_s_Pa, b.tractions.t_s_Pa);
+    EXPECT_EQ(a.tractions.p_s_Pa, b.tractions.p_s_Pa);
+    EXPECT_EQ(a.contact, b.contact);
+    EXPECT_EQ(a.peak_ratio, b.peak_ratio);
+    EXPECT_EQ(a.peak_x_m, b.peak_x_m);
+  }
+}
+
+class FrictionAlong : public ::testing::Test {
+ protected:
+  /// mu_s as a function of x.
+  Statics statics(const std::function<double(double)>& mu) {
+    mu_s_.clear();
+    for (const auto n : mesh_.lower) mu_s_.push_back(mu(mesh_.x_m[n]));
+    return {{mesh_, material_}, std::nullopt, {}, mu_s_};
+  }
+  /// t/(mu_s p) of a node in contact.
+  double share(const Equilibrium& e, std::size_t k) const {
+    return e.tractions.t_s_Pa[k] / e.tractions.p_s_Pa[k] / mu_s_[k];
+  }
+  bool is_inside(const Equilibrium& e, std::size_t k) const {
+    return e.contact[k] != Contact::open && e.tractions.x_m[k] >= e.inside_from_m &&
+           e.tractions.x_m[k] <= e.inside_to_m;
+  }
+
+  mesh::Mesh mesh_ = paper_plate(4e-3);
+  solid::Material material_;
+  std::vector<double> mu_s_;
+};
+
+TEST_F(FrictionAlong, AWeakPatchIsWhereSlipBegins) {
+  const double strong = statics([](double) { return mu_s; }).shear_to(1).shear_m;
+  const double weak = statics([](double) { return 0.5 * mu_s; }).shear_to(1).shear_m;
+  for (const double from_m : {0.04, 0.1, 0.15}) {
+    const auto in_patch = [from_m](double x) { return x >= from_m && x <= from_m + 0.02; };
+    const auto patched = statics([&](double x) { return (in_patch(x) ? 0.5 : 1) * mu_s; });
+    const auto e = patched.shear_to(1);
+    EXPECT_TRUE(in_patch(e.peak_x_m)) << e.peak_x_m;
+    EXPECT_NEAR(e.peak_ratio, 0.5 * mu_s, 1e-11);
+    EXPECT_LT(e.shear_m, strong);
+    EXPECT_GE(e.shear_m, weak * (1 - 1e-12));
+    // The first one of all, and only just.
+    const auto before = patched.shear_by(0.99 * e.shear_m);
+    for (std::size_t k = 0; k < mu_s_.size(); ++k) {
+      if (!is_inside(e, k)) continue;
+      EXPECT_LE(share(e, k), 1 + 1e-11) << k;
+      EXPECT_EQ(e.contact[k], Contact::stick);
+      EXPECT_LT(share(before, k), 1) << k;
+    }
+  }
+}
+
+TEST_F(FrictionAlong, ThePeakIsTheNodeNearestToSlip) {
+  const auto varying = statics([](double x) { return mu_s * (0.7 + 3 * x); });
+  for (const double at : {0.6, 0.999, 1.001}) {
+    const auto e = varying.shear_to(at);
+    std::size_t peak = 0;
+    double most = 0;
+    for (std::size_t k = 0; k < mu_s_.size(); ++k)
+      if (is_inside(e, k) && share(e, k) > most) most = share(e, k), peak = k;
+    EXPECT_NEAR(most, at, 1e-11);
+    EXPECT_EQ(e.peak_x_m, e.tractions.x_m[peak]);
+    EXPECT_EQ(e.peak_ratio, e.tractions.t_s_Pa[peak] / e.tractions.p_s_Pa[peak]);
+    int slipping = 0;
+    for (std::size_t k = 0; k < mu_s_.size(); ++k) {
+      if (e.contact[k] != Contact::slip) continue;
+      EXPECT_NEAR(std::abs(e.tractions.t_s_Pa[k]), mu_s_[k] * e.tractions.p_s_Pa[k],
+                  1e-12 * largest_pressure(e));
+      ++slipping;
+    }
+    EXPECT_EQ(slipping > 0, at > 0.9);
+  }
+}
+
+TEST_F(FrictionAlong, MessagesNameSharesOfMuS) {
+  const auto varying = statics([](double x) { return mu_s * (0.7 + 3 * x); });
+  EXPECT_THAT(error_of([&] { varying.shear_to(0.01); }), HasSubstr(", not below 0.01 mu_s; raise friction"));
+  const auto uniform = statics([](double) { return mu_s; });
+  EXPECT_THAT(error_of([&] { uniform.shear_to(0.01); }), HasSubstr(", not below 0.013; raise friction.mu_s"));
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ def largest_speed(fields: Fields, steps: list[int]) -> float:
 
 
 def draw_step(ax: Axes, grid: Triangulation, fields: Fields, step: int, norm: PowerNorm):
-    """One snapshot; the interface is a white line where a body lies below it. Returns the coloured picture."""
+    """One snapshot; the interface is a white line where a body lies below it; returns the picture."""
     picture = ax.tripcolor(
         grid,
         fields.speed_m_per_s(step),

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Static equilibria of the plate on an elastic base.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "statics/condensed_interface.hpp"
+#include "statics/statics.hpp"
+#include "support/plate.hpp"
+
+namespace slipfront::statics {
+namespace {
+
+using mesh::Corner;
+using test::flat;
+using test::max_abs;
+
+constexpr double mu_s = 1.3;
+const solid::Material pmma{};
+const solid::Material gel{.youngs_modulus_Pa = 0.3e9, .poissons_ratio = 0.45, .density_kg_per_m3 = 800};
+
+std::vector<double> uniform_mu_s(const mesh::Mesh& mesh) {
+  return std::vector<double>(mesh.lower.size(), mu_s);
+}
+
+std::shared_ptr<const Factorisation> factorised(const mesh::Mesh& mesh, const solid::Material& material,
+                                                TopConstraint top = TopConstraint::both) {
+  return std::make_shared<Factorisation>(mesh, material, top);
+}
+
+/// Along one axis at both places; 0: x, 1: y.
+Eigen::MatrixXd components(const Eigen::MatrixXd& all, int to, int from) {
+  return all(Eigen::seq(to, Eigen::last, 2), Eigen::seq(from, Eigen::last, 2));
+}
+
+TEST(CondensedPair, OfTwoEqualBodiesIsTwiceAsCompliant) {
+  // Mirror images of each other: tangential forces do not open the interface, and both bodies give alike.
+  const auto mesh = test::tiny_plate(Corner::none);
+  const auto plate = factorised(mesh, pmma);
+  const CondensedInterface pair(plate, factorised(mesh, pmma));
+  EXPECT_EQ(max_abs(pair.stiffness() - pair.stiffness().transpose()), 0);
+  const Eigen::MatrixXd one = plate->condensed_stiffness().inverse(), two = pair.stiffness().inverse();
+  for (int d = 0; d < 2; ++d) {
+    EXPECT_LE(max_abs(components(two, d, d) - 2 * components(one, d, d)), 1e-11 * max_abs(one));
+    EXPECT_LE(max_abs(components(two, d, 1 - d)), 1e-11 * max_abs(one));
+  }
+  EXPECT_GT(max_abs(components(one, 0, 1)), 0.1 * max_abs(one));
+}
+
+TEST(CondensedPair, CompliancesOfUnlikeBodiesAdd) {
+  const auto mesh = test::tiny_plate(Corner::relief);
+  const auto base_mesh = test::make_plate(0.02, 0.014, 1e-3, Corner::none);
+  const Eigen::Index n = 2 * static_cast<Eigen::Index>(mesh.lower.size());
+  Eigen::VectorXd D = Eigen::VectorXd::Ones(n);
+  for (Eigen::Index k = 0; k < n; k += 2) D(k) = -1;
+  for (const double factor : {1e-4, 1.0, 1e4}) {
+    auto material = gel;
+    material.youngs_modulus_Pa *= factor;
+    const auto plate = factorised(mesh, pmma), base = factorised(base_mesh, material);
+    const Eigen::MatrixXd a = plate->condensed_stiffness().inverse();
+    const Eigen::MatrixXd b = D.asDiagonal() * base->condensed_stiffness().inverse() * D.asDiagonal();
+    const Eigen::MatrixXd pair = CondensedInterface(plate, base).stiffness().inverse();
+    EXPECT_LE(max_abs(pair - a - b), 1e-10 * max_abs(a + b)) << factor;
+  }
+}
+
+TEST(CondensedPair, OfAPlateFreeAlongXSlidesWithoutForce) {
+  const auto mesh = test::tiny_plate(Corner::relief);
+  const CondensedInterface pair(factorised(mesh, pmma, TopConstraint::vertical), factorised(mesh, gel));
+  Eigen::VectorXd along = Eigen::VectorXd::Zero(pair.stiffness().rows());
+  for (Eigen::Index k = 0; k < along.size(); k += 2) along(k) = 1;
+  EXPECT_LE(max_abs(pair.stiffness() * along), 1e-11 * max_abs(pair.stiffness()));
+}
+
+TopDisplacement tilted_and_sheared(const mesh::Mesh& mesh) {
+  TopDisplacement top;
+  for (const auto n : mesh.top) {
+    top.u_x_m.push_back(1e-4);
+    top.u_y_m.push_back(-2e-4 + 5e-3 * mesh.x_m[n]);
+  }
+  return top;
+}
+
+Support bonded(const mesh::Mesh& mesh) {
+  const std::size_t n = mesh.lower.size();
+  return {std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 0.0), std::vector<double>(n, 0.0),
+          uniform_mu_s(mesh)};
+}
+
+TEST(TwoBodies, BondedAreOneOfTheirHeight) {
+  const double height_m = 0.014, base_height_m = 0.01, h = 1e-3;
+  const auto whole = test::make_plate(0.02, height_m + base_height_m, h, Corner::none);
+  const auto plate = test::make_plate(0.02, height_m, h, Corner::none);
+  const auto base = test::make_plate(0.02, base_height_m, h, Corner::none);
+  const auto displacement = [](PlateSolver& solver, const mesh::Mesh& mesh, double shear) {
+    const auto load_case = solver.load_case(TopConstraint::both, tilted_and_sheared(mesh), true, nullptr, 0);
+    load_case->solve(bonded(mesh), 0);
+    return load_case->displacement(shear);
+  };
+  for (const double shear : {0.0, 1e-4}) {
+    const auto one = displacement(*make_plate_solver(whole, pmma, StaticSolver::direct), whole, shear).above;
+    const auto two = displacement(
+        *make_plate_solver(plate, pmma, StaticSolver::automatic, ElasticBody{base, pmma}), plate, shear);
+    const double tolerance = 1e-9 * max_abs(flat(one));
+    const int rows = base.grid.rows;
+    for (int j = 0; j <= whole.grid.rows; ++j)
+      for (int i = 0; i <= whole.grid.columns; ++i) {
+        const auto n = whole.grid.node(i, j);
+        if (j >= rows) {
+          const auto above = plate.grid.node(i, j - rows);
+          EXPECT_NEAR(two.above.x[above], one.x[n], tolerance);
+          EXPECT_NEAR(two.above.y[above], one.y[n], tolerance);
+        }
+        if (j <= rows) {
+          const auto below = base.grid.node(i, rows - j);
+          EXPECT_NEAR(two.below.x[below], one.x[n], tolerance);
+          EXPECT_NEAR(two.below.y[below], -one.y[n], tolerance);
+        }
+      }
+  }
+}
+
+/// Forces that a displacement takes: none but at the interface, where they are as given along x and y over
+/// the tributary length, and at the far edge, which they balance.
+void expect_body_in_equilibrium(const mesh::Mesh& mesh, const solid::Material& material,
+                                const solid::Field& u, const std::vector<double>& f_x_N,
+                                const std::vector<double>& f_y_N, double tolerance_N) {
+  Eigen::VectorXd f = test::assembled_stiffness(mesh, material) * flat(u);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();  // forces and moment
+  const auto take = [&](mesh::Node n) {
+    sum += Eigen::Vector3d(f(2 * n), f(2 * n + 1), mesh.x_m[n] * f(2 * n + 1) - mesh.y_m[n] * f(2 * n));
+    f.segment<2>(2 * n).setZero();
+  };
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    const auto n = mesh.lower[k];
+    EXPECT_NEAR(f(2 * n), f_x_N[k], tolerance_N) << k;
+    EXPECT_NEAR(f(2 * n + 1), f_y_N[k], tolerance_N) << k;
+    take(n);
+  }
+  for (const auto n : mesh.top) take(n);
+  EXPECT_LE(max_abs(f), tolerance_N);
+  EXPECT_LE(max_abs(sum), 100 * tolerance_N);  // some hundred nodes
+}
+
+struct Pair {
+  std::string name;
+  mesh::Mesh plate, base;
+  solid::Material base_material;
+  TopEdge top = TopEdge::held;
+  /// Shares of mu_s to shear to: 1 is reached only where slip does not spread from an edge before.
+  std::vector<double> shares = {0.7, 0.999, 1.001};
+};
+void PrintTo(const Pair& pair, std::ostream* to) {
+  *to << pair.name;
+}
+
+mesh::Mesh graded_base() {
+  mesh::Plate plate;
+  plate.height_m = 0.096;
+  plate.element_size_m = 4e-3;
+  plate.coarsenings = 1;
+  plate.fine_height_m = 16e-3;
+  plate.corner = Corner::none;
+  return mesh::make_plate(plate);
+}
+
+std::vector<Pair> pairs() {
+  const auto plate = test::make_plate(0.2, 0.1, 4e-3, Corner::relief);
+  const auto square = test::make_plate(0.2, 0.06, 4e-3, Corner::none);
+  return {{"equal", plate, plate, pmma},
+          {"gel", plate, square, gel, TopEdge::held, {0.5, 0.7}},
+          {"steel", plate, square, {.youngs_modulus_Pa = 200e9, .poissons_ratio = 0.3}},
+          {"graded", plate, graded_base(), pmma},
+          {"free_top", plate, square, pmma, TopEdge::free}};
+}
+
+class OnABase : public ::testing::TestWithParam<Pair> {
+ protected:
+  const mesh::Mesh& plate_ = GetParam().plate;
+  const mesh::Mesh& base_ = GetParam().base;
+  Statics statics_{{plate_, pmma},
+                   ElasticBody{base_, GetParam().base_material},
+                   {.top_during_tilt = GetParam().top},
+                   uniform_mu_s(plate_)};
+
+  double relative_x_m(const Equilibrium& e, std::size_t k) const {
+    return e.u_m.x[plate_.lower[k]] - e.below_u_m.x[base_.lower[k]];
+  }
+  double opening_m(const Equilibrium& e, std::size_t k) const {
+    const auto a = plate_.lower[k], b = base_.lower[k];
+    return plate_.y_m[a] + base_.y_m[b] + e.u_m.y[a] + e.below_u_m.y[b];
+  }
+  double tolerance_N(const Equilibrium& e) const {
+    return 1e-10 * std::max(pmma.youngs_modulus_Pa * max_abs(flat(e.u_m)),
+                            GetParam().base_material.youngs_modulus_Pa * max_abs(flat(e.below_u_m)));
+  }
+
+  void expect_equilibrium(const Equilibrium& e) const {
+    const auto tributary_m = mesh::tributary_lengths_m(plate_);
+    std::vector<double> f_x_N, minus_f_x_N, f_y_N;
+    for (std::size_t k = 0; k < tributary_m.size(); ++k) {
+      minus_f_x_N.push_back(e.tractions.t_s_Pa[k] * tributary_m[k]);
+      f_x_N.push_back(-minus_f_x_N[k]);
+      f_y_N.push_back(e.tractions.p_s_Pa[k] * tributary_m[k]);
+    }
+    const double tolerance = tolerance_N(e);
+    EXPECT_GT(*std::ranges::max_element(f_y_N), 1e4 * tolerance);
+    expect_body_in_equilibrium(plate_, pmma, e.u_m, f_x_N, f_y_N, tolerance);
+    expect_body_in_equilibrium(base_, GetParam().base_material, e.below_u_m, minus_f_x_N, f_y_N, tolerance);
+    for (const auto n : base_.top) {
+      EXPECT_EQ(e.below_u_m.x[n], 0);
+      EXPECT_EQ(e.below_u_m.y[n], 0);
+    }
+  }
+
+  /// As on the rigid plane, with the relative motion.
+  void expect_complementarity(const Equilibrium& e, const std::vector<double>& start_x_m) const {
+    const double p_tolerance = 2e-9 * *std::ranges::max_element(e.tractions.p_s_Pa);
+    const double u_tolerance = 2e-9 * max_abs(flat(e.u_m));
+    for (std::size_t k = 0; k < e.contact.size(); ++k) {
+      SCOPED_TRACE(k);
+      const double t = e.tractions.t_s_Pa[k], p = e.tractions.p_s_Pa[k];
+      const double moved = relative_x_m(e, k) - start_x_m[k];
+      if (e.contact[k] == Contact::open) {
+        EXPECT_GE(opening_m(e, k), -u_tolerance);
+        EXPECT_EQ(t, 0);
+        EXPECT_EQ(p, 0);
+        continue;
+      }
+      EXPECT_NEAR(opening_m(e, k), 0, 1e-2 * u_tolerance);
+      EXPECT_GE(p, -p_tolerance);
+      if (e.contact[k] == Contact::stick) {
+        EXPECT_NEAR(moved, 0, 1e-2 * u_tolerance);
+        EXPECT_LE(std::abs(t), 1.001 * mu_s * p + p_tolerance);
+      } else {
+        EXPECT_NEAR(std::abs(t), mu_s * p, 1e-3 * p_tolerance);
+        EXPECT_GE(t * moved, -p_tolerance * u_tolerance);
+      }
+    }
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Pairs, OnABase, ::testing::ValuesIn(pairs()),
+                         [](const auto& pair) { return pair.param.name; });
+
+TEST_P(OnABase, StatesObeyContactAndEquilibriumOfBothBodies) {
+  const auto& tilted = statics_.tilted();
+  std::vector<double> put_down_m;
+  for (std::size_t k = 0; k < plate_.lower.size(); ++k) put_down_m.push_back(relative_x_m(tilted, k));
+  expect_equilibrium(tilted);
+  expect_complementarity(tilted, std::vector<double>(put_down_m.size(), 0.0));
+  for (const double share : GetParam().shares) {
+    SCOPED_TRACE(share);
+    const auto e = statics_.shear_to(share);
+    EXPECT_NEAR(e.peak_ratio, share * mu_s, 1e-10);
+    expect_equilibrium(e);
+    expect_complementarity(e, put_down_m);
+    EXPECT_GT(std::ranges::count(e.contact, Contact::stick), 0);
+    EXPECT_GT(std::ranges::count(e.contact, Contact::open), 0);
+  }
+}
+
+TEST_P(OnABase, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
+  const auto e = statics_.shear_to(GetParam().shares[1]);
+  const double increment_m = 1e-6 * e.shear_m;
+  const auto further = statics_.shear_by(e.shear_m + increment_m);
+  ASSERT_EQ(further.contact, e.contact);
+  const auto expect_slope = [&](const solid::Field& to, const solid::Field& from, const solid::Field& slope) {
+    // Affine between: only the rounding of u, magnified by u over the increment.
+    EXPECT_LE(max_abs((flat(to) - flat(from)) / increment_m - flat(slope)), 1e-10 * 1e6);
+  };
+  expect_slope(further.u_m, e.u_m, e.u_per_shear);
+  expect_slope(further.below_u_m, e.below_u_m, e.below_u_per_shear);
+}
+
+TEST(TwoBodies, OnABaseEverStifferComeToTheRigidPlane) {
+  const auto mesh = test::make_plate(0.2, 0.1, 4e-3, Corner::relief);
+  const auto base = test::make_plate(0.2, 0.1, 4e-3, Corner::none);
+  const auto rigid = Statics(mesh, pmma, {}, mu_s).shear_to(0.999);
+  double last = 0;
+  for (const double factor : {1e4, 1e6, 1e8}) {
+    auto material = pmma;
+    material.youngs_modulus_Pa *= factor;
+    const auto e = Statics({mesh, pmma}, ElasticBody{base, material}, {}, uniform_mu_s(mesh)).shear_to(0.999);
+    EXPECT_EQ(e.contact, rigid.contact);
+    EXPECT_EQ(e.peak_x_m, rigid.peak_x_m);
+    const double error = max_abs(flat(e.u_m) - flat(rigid.u_m)) / max_abs(flat(rigid.u_m));
+    EXPECT_LT(error, 10 / factor);
+    // The base's compliance is the plate's over the factor, and so is its part in the displacement.
+    if (last > 0) {
+      EXPECT_NEAR(last / error, 100, 1) << factor;
+    }
+    last = error;
+  }
+}
+
+TEST(TwoBodies, NeedABaseThatIsHeldAndFacesThePlate) {
+  const auto mesh = test::tiny_plate(Corner::none);
+  mesh::Plate plate{.width_m = 0.02, .height_m = 0.01, .element_size_m = 1e-3, .corner = Corner::none};
+  plate.top = mesh::Top::free;
+  const auto free = mesh::make_plate(plate);
+  const auto shorter = test::make_plate(0.019, 0.01, 1e-3, Corner::none);
+  const auto solve = [&](const mesh::Mesh& base) {
+    make_plate_solver(mesh, pmma, StaticSolver::direct, ElasticBody{base, pmma});
+  };
+  EXPECT_DEATH(solve(free), "nothing holds");
+  EXPECT_DEATH(solve(shorter), "different nodes");
+}
+
+TEST(TwoBodies, AreRefusedByTheIterativeSolver) {
+  const auto mesh = test::tiny_plate(Corner::none);
+  try {
+    Statics({mesh, pmma}, ElasticBody{mesh, pmma}, {.solver = StaticSolver::iterative}, uniform_mu_s(mesh));
+    FAIL() << "no error";
+  } catch (const UserError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "loading.solver = iterative knows no elastic base; choose auto or direct");
+  }
+}
+
+TEST(TwoBodies, SayHowMuchMemoryTheyWouldNeed) {
+  try {
+    require_statics_memory_of_pair(1e11, 3e11);
+    FAIL() << "no error";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("4e+11 static unknowns of plate and base needs about"),
+              std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace slipfront::statics
