@@ -19,7 +19,7 @@ PYTHON := $(VENV)/bin/python
 PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup program build test reproduce sensitivity quick regularised convergence interface-step open-choices reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile fuzz sanitize coverage clean
+.PHONY: help setup program build test reproduce sensitivity quick regularised convergence interface-step open-choices bases reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -125,6 +125,11 @@ open-choices: ready  ## what the paper leaves open, varied: renews docs/open-cho
 	$(PROGRAM) study open-choices -o $(RESULTS)-open-choices --overwrite
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.open_choices docs/figures/open_choices.png $(RESULTS)-open-choices
 	$(PYTHON) scripts/open-choices-page.py $(RESULTS)-open-choices docs/open-choices.md
+
+bases: ready  ## the paper's events on deformable bases: renews docs/bases.md and its figure
+	$(PROGRAM) study base -o $(RESULTS)-bases --overwrite
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures.bases docs/figures/bases.png $(RESULTS)-bases
+	$(PYTHON) scripts/bases-page.py $(RESULTS)-bases docs/bases.md
 
 reference: ready  ## problems that other codes have solved, on several meshes each, into results-reference/
 	$(PYTHON) scripts/compare-reference.py a --program $(PROGRAM) --results $(RESULTS)-reference

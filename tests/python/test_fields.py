@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures and animations of snapshots."""
+
+from __future__ import annotations
+
+import h5py
+import numpy as np
+import pytest
+from PIL import Image
+from slipfront.figures import fields
+from synthetic import seal, write_output
+
+
+@pytest.fixture
+def run(tmp_path):
+    output = tmp_path / "output"
+    write_output(output)
+    seal(output)
+    return output / "left"
+
+
+def test_every_panel_shows_the_speeds_of_its_step(run):
+    figure = fields.draw(run).figure
+    read = fields.read(run)
+    steps = fields.chosen_steps(len(read.time_s))
+    assert 1 < len(steps) <= fields.MOST_PANELS and steps[-1] == len(read.time_s) - 1
+    for step in steps:
+        picture = next(artist for artist in figure.findobj() if artist.get_gid() == f"step:{step}")
+        assert np.array_equal(picture.get_array(), read.speed_m_per_s(step))
+
+
+def test_the_interface_is_drawn_where_a_body_lies_below(run):
+    def n_lines():
+        figure = fields.draw(run).figure
+        return sum(artist.get_gid() == "interface" for artist in figure.findobj())
+
+    assert n_lines() == 0
+    with h5py.File(run / "fields.vtkhdf", "r+") as file:
+        points = file["VTKHDF/Points"]
+        points[:, 1] = points[:, 1] - 0.5 * points[:, 1].max()
+    seal(run.parent)
+    assert n_lines() == len(fields.chosen_steps(len(fields.read(run).time_s)))
+
+
+def test_an_animation_has_a_frame_per_snapshot(run, tmp_path, capsys):
+    assert fields.main([str(tmp_path / "a.gif"), str(run)]) == 0
+    with Image.open(tmp_path / "a.gif") as image:
+        assert image.n_frames == len(fields.read(run).time_s)
+    assert "animation" in capsys.readouterr().out
+
+
+def test_a_run_without_snapshots_is_refused(run, tmp_path, capsys):
+    (run / "fields.vtkhdf").unlink()
+    seal(run.parent)
+    assert fields.main([str(tmp_path / "f.png"), str(run)]) == 2
+    error = capsys.readouterr().err
+    assert "fields.vtkhdf" in error and error.count("\n") == 1
