@@ -15,38 +15,20 @@ namespace {
 
 constexpr Complex i_unit{0, 1};
 
-/// What both relations share, in units of k and c_S.
-struct Scaled {
-  double eta2;               ///< (c_L/c_S)^2
-  Complex damped;            ///< complex over elastic moduli, 1 + beta_R s
-  Complex P2;                ///< p^2 over damped: the waves see complex moduli
-  Complex a_d, a_s;          ///< decay rates in y, over k
-  Complex delayed_p;         ///< response of strength to pressure, over f
-  Complex strength_of_slip;  ///< response of strength to u_x at constant pressure, over G k
+/// What friction does to a perturbation, in units of G k.
+struct Response {
+  Complex of_pressure;  ///< of strength to pressure, over mu
+  Complex of_slip;      ///< of strength to slip at constant pressure
 };
 
-/// The plain quotient: moduli here are far from where squares overflow, for which the operator looks out.
-Complex quotient(Complex a, Complex b) {
-  return a * std::conj(b) / std::norm(b);
-}
-
-Scaled scaled(const solid::Material& material, const Sliding& sliding, double k, Complex p) {
-  const double G = solid::shear_modulus_Pa(material);
-  const double c_S = solid::shear_speed_m_per_s(material);
-  const Complex s = p * k * c_S;
-  Scaled r;
-  r.eta2 = solid::longitudinal_modulus_Pa(material) / G;
-  r.damped = 1.0 + material.stiffness_damping_s * s;
-  r.P2 = quotient(p * p, r.damped);
-  r.a_d = std::sqrt(1.0 + r.P2 / r.eta2);
-  r.a_s = std::sqrt(1.0 + r.P2);
+Response response(const Sliding& sliding, double unit_Pa_per_m, Complex s) {
   const Complex delay = sliding.relaxed == interface::Relaxed::none
                             ? Complex{1}
                             : sliding.relaxation_rate_per_s / (sliding.relaxation_rate_per_s + s);
-  r.delayed_p = delay;
-  r.strength_of_slip = sliding.pressure_Pa * (sliding.slope_s_per_m * s + sliding.slip_slope_per_m) / (G * k);
-  if (sliding.relaxed == interface::Relaxed::strength) r.strength_of_slip *= delay;
-  return r;
+  Complex of_slip =
+      sliding.pressure_Pa * (sliding.slope_s_per_m * s + sliding.slip_slope_per_m) / unit_Pa_per_m;
+  if (sliding.relaxed == interface::Relaxed::strength) of_slip *= delay;
+  return {delay, of_slip};
 }
 
 Complex determinant(std::array<std::array<Complex, 4>, 4> m) {
@@ -92,57 +74,60 @@ Sliding uniform_sliding(const interface::FrictionLaw& law, double speed_m_per_s,
   return s;
 }
 
-Complex half_space_relation(const solid::Material& material, const Sliding& sliding, double wavenumber_per_m,
+Complex half_space_relation(const Bodies& bodies, const Sliding& sliding, double wavenumber_per_m,
                             Complex p) {
-  const Scaled r = scaled(material, sliding, wavenumber_per_m, p);
-  // (1 - a_d a_s)/P^2, written so that nothing cancels at small P.
-  const Complex d = -quotient(1 + 1 / r.eta2 + r.P2 / r.eta2, 1.0 + r.a_d * r.a_s);
-  return r.damped * (r.a_d - i_unit * sliding.mu * r.delayed_p * (1.0 + 2.0 * d)) - r.strength_of_slip * d;
+  const double k = wavenumber_per_m;
+  const Complex s = p * k * solid::shear_speed_m_per_s(bodies.above);
+  const auto r = response(sliding, solid::shear_modulus_Pa(bodies.above) * k, s);
+  const auto c = compliance(bodies, k, s);
+  return c.yy + sliding.mu * r.of_pressure * c.xy - r.of_slip * c.determinant;
 }
 
 Complex layer_relation(const solid::Material& material, const Sliding& sliding, double wavenumber_per_m,
                        double height_m, Complex p) {
-  const Scaled r = scaled(material, sliding, wavenumber_per_m, p);
+  const Complex s = p * wavenumber_per_m * solid::shear_speed_m_per_s(material);
+  const auto r = response(sliding, solid::shear_modulus_Pa(material) * wavenumber_per_m, s);
+  const Waves w(material, wavenumber_per_m, s);
   const double height = wavenumber_per_m * height_m;
-  const Complex fall_d = std::exp(-r.a_d * height);
-  const Complex fall_s = std::exp(-r.a_s * height);
+  const Complex fall_d = std::exp(-w.a_d * height);
+  const Complex fall_s = std::exp(-w.a_s * height);
   // Columns: the two potentials, falling from the interface and from the top. Rows: u_x and u_y at the top,
   // u_y at the interface, friction.
   std::array<std::array<Complex, 4>, 4> m;
   for (std::size_t c = 0; c < 4; ++c) {
     const bool dilatation = c < 2;
     const double sign = c % 2 == 0 ? -1 : 1;
-    const Complex a = sign * (dilatation ? r.a_d : r.a_s);
+    const Complex a = sign * (dilatation ? w.a_d : w.a_s);
     const Complex fall = dilatation ? fall_d : fall_s;
     const Complex below = sign < 0 ? 1.0 : fall;
     const Complex above = sign < 0 ? fall : 1.0;
     const Complex u_x = dilatation ? i_unit : a;
     const Complex u_y = dilatation ? a : -i_unit;
-    const Complex t = dilatation ? 2.0 * i_unit * a : r.P2 + 2.0;
-    const Complex pressure = dilatation ? -(r.P2 + 2.0) : 2.0 * i_unit * a;
-    const Complex friction = r.damped * (t - sliding.mu * r.delayed_p * pressure) - r.strength_of_slip * u_x;
+    const Complex t = dilatation ? 2.0 * i_unit * a : w.P2 + 2.0;
+    const Complex pressure = dilatation ? -(w.P2 + 2.0) : 2.0 * i_unit * a;
+    const Complex friction = w.damped * (t - sliding.mu * r.of_pressure * pressure) - r.of_slip * u_x;
     m[0][c] = u_x * above;
     m[1][c] = u_y * above;
     m[2][c] = u_y * below;
     m[3][c] = friction * below;
   }
   // The determinant is odd in a_d and in a_s: the quotient has no branch points.
-  return determinant(m) / (r.a_d * r.a_s);
+  return determinant(m) / (w.a_d * w.a_s);
 }
 
-std::vector<Mode> growing_modes(const solid::Material& material, const Sliding& sliding,
-                                double wavenumber_per_m, std::span<const Mode> expected) {
+std::vector<Mode> growing_modes(const Bodies& bodies, const Sliding& sliding, double wavenumber_per_m,
+                                std::span<const Mode> expected) {
   SLIPFRONT_ASSERT(wavenumber_per_m > 0, "modes are described by k > 0");
-  const double rate_per_s = wavenumber_per_m * solid::shear_speed_m_per_s(material);
-  const auto f = [&](Complex p) { return half_space_relation(material, sliding, wavenumber_per_m, p); };
+  const double rate_per_s = wavenumber_per_m * solid::shear_speed_m_per_s(bodies.above);
+  const auto f = [&](Complex p) { return half_space_relation(bodies, sliding, wavenumber_per_m, p); };
   std::vector<Complex> starts;
   for (const Mode& mode : expected) starts.push_back(mode.s_per_s / rate_per_s);
   return modes_of(zeros_by_argument_principle(f, {}, starts), rate_per_s);
 }
 
-std::optional<Mode> fastest_growing_mode(const solid::Material& material, const Sliding& sliding,
+std::optional<Mode> fastest_growing_mode(const Bodies& bodies, const Sliding& sliding,
                                          double wavenumber_per_m) {
-  const auto modes = growing_modes(material, sliding, wavenumber_per_m);
+  const auto modes = growing_modes(bodies, sliding, wavenumber_per_m);
   if (modes.empty()) return std::nullopt;
   return modes.front();
 }

@@ -9,12 +9,13 @@
 #include "interface/friction/registry.hpp"
 #include "interface/regularisation.hpp"
 #include "solid/material.hpp"
+#include "stability/compliance.hpp"
 #include "stability/roots.hpp"
 
 namespace slipfront::stability {
 
-/// Uniform sliding to +x of a body y > 0 on the rigid plane y = 0, and what friction does near it. The
-/// contact is never lost (u_y = 0). Derivations: docs/stability.md.
+/// Uniform sliding to +x of a body y > 0 relative to what is below, and what friction does near it. The
+/// contact is never lost. Derivations: docs/stability.md.
 struct Sliding {
   double mu = 0;                     ///< coefficient at the sliding speed
   double slope_s_per_m = 0;          ///< d mu / d|v| there; negative: weakening
@@ -37,24 +38,24 @@ struct Mode {
   double velocity_m_per_s(double wavenumber_per_m) const { return -s_per_s.imag() / wavenumber_per_m; }
 };
 
-/// Growing modes of a half-space, fastest first. Growth below 1e-6 |s| counts as neutral; |s| is sought
-/// between 1e-8 and 1e9 times k c_S.
+/// Growing modes of a half-space on the rigid plane or on another half-space, fastest first. Growth below
+/// 1e-6 |s| counts as neutral; |s| is sought between 1e-8 and 1e9 times k c_S, c_S of the body above.
 /// @param expected  modes of a nearby problem, such as another wavenumber: make the search shorter
-std::vector<Mode> growing_modes(const solid::Material& material, const Sliding& sliding,
-                                double wavenumber_per_m, std::span<const Mode> expected = {});
+std::vector<Mode> growing_modes(const Bodies& bodies, const Sliding& sliding, double wavenumber_per_m,
+                                std::span<const Mode> expected = {});
 
 /// The first of them; empty where uniform sliding is stable at this wavenumber.
-std::optional<Mode> fastest_growing_mode(const solid::Material& material, const Sliding& sliding,
+std::optional<Mode> fastest_growing_mode(const Bodies& bodies, const Sliding& sliding,
                                          double wavenumber_per_m);
 
-/// Growing modes of a layer whose upper edge y = height is held, fastest first. Without an upper bound there
-/// are infinitely many in general: |s| is sought up to largest_rate_per_s, from 1e-3 c_S max(k, 1/height).
+/// Growing modes of a layer on the rigid plane whose upper edge y = height is held, fastest first. Without an
+/// upper bound there are infinitely many in general: |s| is sought up to largest_rate_per_s, from 1e-3 c_S
+/// max(k, 1/height).
 std::vector<Mode> growing_layer_modes(const solid::Material& material, const Sliding& sliding,
                                       double wavenumber_per_m, double height_m, double largest_rate_per_s);
 
-/// The two relations F(s) = 0 in p = s/(k c_S), for other ways of finding their zeros.
-Complex half_space_relation(const solid::Material& material, const Sliding& sliding, double wavenumber_per_m,
-                            Complex p);
+/// The two relations F(s) = 0 in p = s/(k c_S), c_S of the body above, for other ways of finding their zeros.
+Complex half_space_relation(const Bodies& bodies, const Sliding& sliding, double wavenumber_per_m, Complex p);
 Complex layer_relation(const solid::Material& material, const Sliding& sliding, double wavenumber_per_m,
                        double height_m, Complex p);
 

@@ -13,8 +13,8 @@ namespace {
 
 using interface::Relaxed;
 
-double growth_at(const solid::Material& material, const Sliding& sliding, double k) {
-  const auto mode = fastest_growing_mode(material, sliding, k);
+double growth_at(const Bodies& bodies, const Sliding& sliding, double k) {
+  const auto mode = fastest_growing_mode(bodies, sliding, k);
   return mode ? mode->growth_per_s() : 0;
 }
 
@@ -24,14 +24,14 @@ struct Peak {
 };
 
 /// Fastest growth between two wavenumbers: a scan, ten to a decade, then golden sections about its best.
-Peak fastest_between(const solid::Material& material, const Sliding& sliding, double low, double high) {
+Peak fastest_between(const Bodies& bodies, const Sliding& sliding, double low, double high) {
   const int n = 1 + static_cast<int>(std::ceil(10 * std::log10(high / low)));
   const double ratio = std::pow(high / low, 1.0 / n);
   Peak best;
   int best_at = 0;
   std::vector<Mode> modes;
   const auto growth_here = [&](double k) {
-    modes = growing_modes(material, sliding, k, modes);
+    modes = growing_modes(bodies, sliding, k, modes);
     return modes.empty() ? 0 : modes.front().growth_per_s();
   };
   for (int i = 0; i <= n; ++i) {
@@ -54,6 +54,10 @@ Peak fastest_between(const solid::Material& material, const Sliding& sliding, do
   best.wavenumber_per_m = std::exp(0.5 * (from + to));
   best.growth_per_s = growth_here(best.wavenumber_per_m);
   return best;
+}
+
+double damping_length_m(const solid::Material& material) {
+  return material.stiffness_damping_s * solid::longitudinal_speed_m_per_s(material);
 }
 
 std::string statement_of(const WellPosedness& w) {
@@ -81,47 +85,64 @@ std::string statement_of(const WellPosedness& w) {
 
 }  // namespace
 
-bool growth_is_unbounded(const solid::Material& material, const Sliding& sliding) {
+double radiation_damping_Pa_s_per_m(const Bodies& bodies) {
+  const auto yields = [](const solid::Material& m) {
+    return solid::shear_speed_m_per_s(m) / solid::shear_modulus_Pa(m);
+  };
+  return 1 / (yields(bodies.above) + (bodies.below ? yields(*bodies.below) : 0));
+}
+
+bool growth_is_unbounded(const Bodies& bodies, const Sliding& sliding) {
+  const auto damped = [](const solid::Material& m) { return m.stiffness_damping_s > 0; };
+  // To short waves a damped body is rigid beside an undamped one.
+  if (bodies.below && damped(bodies.above) != damped(*bodies.below))
+    return growth_is_unbounded(damped(bodies.above) ? *bodies.below : bodies.above, sliding);
   // Waves with |s| far above the relaxation rate feel nothing of what is delayed.
   Sliding limit = sliding;
   limit.relaxed = Relaxed::none;
   limit.slip_slope_per_m = 0;
   if (sliding.relaxed != Relaxed::none) limit.mu = 0;
   if (sliding.relaxed == Relaxed::strength) limit.slope_s_per_m = 0;
-  solid::Material undamped = material;
-  undamped.stiffness_damping_s = 0;
-  if (material.stiffness_damping_s == 0) return !growing_modes(undamped, limit, 1).empty();
-  // Viscous stresses outgrow the slope: s = beta_R (k c_S)^2 P^2, with P a zero of the relation without
-  // both.
+  if (!damped(bodies.above)) return !growing_modes(bodies, limit, 1).empty();
+  // Viscous stresses outgrow the slope and the elastic ones: with moduli beta_R E in place of E, the relation
+  // without damping gives the square root of s.
   limit.slope_s_per_m = 0;
-  return std::ranges::any_of(growing_modes(undamped, limit, 1),
+  const auto viscous = [](solid::Material m) {
+    m.youngs_modulus_Pa *= m.stiffness_damping_s;
+    m.stiffness_damping_s = 0;
+    return m;
+  };
+  Bodies limits = viscous(bodies.above);
+  if (bodies.below) limits.below = viscous(*bodies.below);
+  return std::ranges::any_of(growing_modes(limits, limit, 1),
                              [](const Mode& mode) { return (mode.s_per_s * mode.s_per_s).real() > 0; });
 }
 
-WellPosedness well_posedness(const solid::Material& material, const interface::FrictionLaw& law,
-                             double pressure_Pa, double element_size_m, double longest_wavelength_m,
+WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw& law, double pressure_Pa,
+                             double element_size_m, double longest_wavelength_m,
                              const interface::Regularisation& regularisation) {
   constexpr double pi = std::numbers::pi;
+  const auto& other = bodies.below ? *bodies.below : bodies.above;
+  const double fastest_speed_m_per_s =
+      std::max(solid::longitudinal_speed_m_per_s(bodies.above), solid::longitudinal_speed_m_per_s(other));
   WellPosedness w;
   w.sliding = uniform_sliding(law, 0, pressure_Pa, regularisation);
   w.grid_wavelength_m = 2 * element_size_m;
-  w.growth_at_grid_per_s = growth_at(material, w.sliding, pi / element_size_m);
-  w.unbounded = growth_is_unbounded(material, w.sliding);
-  w.weakening_over_radiation = -w.sliding.slope_s_per_m * pressure_Pa * solid::shear_speed_m_per_s(material) /
-                               solid::shear_modulus_Pa(material);
+  w.growth_at_grid_per_s = growth_at(bodies, w.sliding, pi / element_size_m);
+  w.unbounded = growth_is_unbounded(bodies, w.sliding);
+  w.weakening_over_radiation = -w.sliding.slope_s_per_m * pressure_Pa / radiation_damping_Pa_s_per_m(bodies);
   w.longest_wavelength_m = std::max(longest_wavelength_m, w.grid_wavelength_m);
   if (w.unbounded) {
     w.fastest_growth_per_s = std::numeric_limits<double>::infinity();
   } else {
     // Four decades beyond the mesh: there damping or delay has long decided.
     const auto peak =
-        fastest_between(material, w.sliding, 2 * pi / w.longest_wavelength_m, 1e4 * pi / element_size_m);
+        fastest_between(bodies, w.sliding, 2 * pi / w.longest_wavelength_m, 1e4 * pi / element_size_m);
     w.fastest_growth_per_s = peak.growth_per_s;
     if (peak.growth_per_s > 0 && !peak.at_short_end) w.fastest_wavelength_m = 2 * pi / peak.wavenumber_per_m;
   }
-  w.growth_in_crossing =
-      w.fastest_growth_per_s * element_size_m / solid::longitudinal_speed_m_per_s(material);
-  w.damping_length_m = material.stiffness_damping_s * solid::longitudinal_speed_m_per_s(material);
+  w.growth_in_crossing = w.fastest_growth_per_s * element_size_m / fastest_speed_m_per_s;
+  w.damping_length_m = std::min(damping_length_m(bodies.above), damping_length_m(other));
   w.damping_length_over_h = w.damping_length_m / element_size_m;
   w.statement = statement_of(w);
   return w;

@@ -7,32 +7,39 @@
 
 namespace slipfront::stability {
 
-/// Whether slow uniform sliding of a half-space, as a mesh sees it, has a growth that a finer mesh would not
-/// change.
+/// Whether slow uniform sliding of a half-space on the rigid plane or on another one, as a mesh sees it, has
+/// a growth that a finer mesh would not change.
 struct WellPosedness {
-  Sliding sliding;                      ///< in the limit of slow sliding
-  double grid_wavelength_m = 0;         ///< 2 h, the shortest that the mesh carries
-  double growth_at_grid_per_s = 0;      ///< of the fastest mode there, 0 where none grows
-  bool unbounded = false;               ///< growth has no bound as the wavelength goes to zero: ill-posed
-  double weakening_over_radiation = 0;  ///< -mu'(0) p c_S/G; above 1 strength drops at once on slip
+  Sliding sliding;                  ///< in the limit of slow sliding
+  double grid_wavelength_m = 0;     ///< 2 h, the shortest that the mesh carries
+  double growth_at_grid_per_s = 0;  ///< of the fastest mode there, 0 where none grows
+  bool unbounded = false;           ///< growth has no bound as the wavelength goes to zero: ill-posed
+  /// -mu'(0) p over the radiation damping; above 1 strength drops at once on slip.
+  double weakening_over_radiation = 0;
   /// Fastest growth among all waves up to the longest; infinite where unbounded, 0 where none grows.
   double fastest_growth_per_s = 0;
   /// Its wavelength; 0 where growth rises to the end of the search, at ever shorter waves.
   double fastest_wavelength_m = 0;
   double longest_wavelength_m = 0;  ///< of the search
-  double growth_in_crossing = 0;    ///< fastest growth times h/c_L: above 1 no step follows it
-  double damping_length_m = 0;      ///< beta_R c_L: much shorter waves are overdamped
+  /// Fastest growth times h/c_L, of two bodies the faster one's: above 1 no step follows it.
+  double growth_in_crossing = 0;
+  /// beta_R c_L, of two bodies the smaller: much shorter waves are overdamped.
+  double damping_length_m = 0;
   double damping_length_over_h = 0;
   std::string statement;  ///< one plain line
 };
 
 /// @param longest_wavelength_m such as the length of the interface.
-WellPosedness well_posedness(const solid::Material& material, const interface::FrictionLaw& law,
-                             double pressure_Pa, double element_size_m, double longest_wavelength_m,
+WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw& law, double pressure_Pa,
+                             double element_size_m, double longest_wavelength_m,
                              const interface::Regularisation& regularisation = {});
 
+/// Shear traction per slip rate of waves that leave the interface at right angles: G/c_S on the rigid plane,
+/// of two bodies half the harmonic mean.
+double radiation_damping_Pa_s_per_m(const Bodies& bodies);
+
 /// Whether growth is unbounded as k grows, from the relation's limits (docs/stability.md).
-bool growth_is_unbounded(const solid::Material& material, const Sliding& sliding);
+bool growth_is_unbounded(const Bodies& bodies, const Sliding& sliding);
 
 /// Mean pressure of a plate of a height whose top is pushed down by a mean amount, its sides free.
 double nominal_pressure_Pa(const solid::Material& material, double mean_compression_m, double height_m);

@@ -9,13 +9,20 @@
 
 namespace slipfront::verify {
 
+using NodeMotion = std::function<double(mesh::Node, double time_s)>;  ///< empty for none
+
 /// Starts a stepper from a motion u(node, time) that is known: displacements at time 0, velocities of the
 /// step before it. Every interface node is in the contact state given, with tractions t, p of the plane on
 /// it.
 struct Start {
-  std::function<double(mesh::Node, double time_s)> u_x_m = {}, u_y_m = {};  ///< empty for none
+  NodeMotion u_x_m = {}, u_y_m = {};
   statics::Contact contact = statics::Contact::open;
   double t_Pa = 0, p_Pa = 0;
+  /// A body below, upside down.
+  struct Below {
+    const mesh::Mesh* mesh = nullptr;
+    NodeMotion u_x_m, u_y_m;
+  } below = {};
 };
 
 /// @return the state from which the stepper was started, as a recorder needs it.

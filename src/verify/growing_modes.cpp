@@ -78,7 +78,7 @@ Outcome growing_modes(Effort effort) {
   Chart speed{.x_label = "friction coefficient", .y_label = "phase speed / c_S"};
   Chart errors{.x_label = "k h", .y_label = "|s - theory| / (k c_S)", .log_x = true, .log_y = true};
   const auto carried = [&](const interface::ContactModel& contact, Complex p, int elements) {
-    return carry({.material = material(),
+    return carry({.bodies = material(),
                   .contact = contact,
                   .pressure_Pa = p_Pa,
                   .speed_m_per_s = V_m_per_s,

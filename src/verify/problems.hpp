@@ -15,6 +15,7 @@ Outcome time_reversal(Effort effort);
 Outcome subcycling(Effort effort);
 Outcome symmetry(Effort effort);
 Outcome growing_modes(Effort effort);
+Outcome growing_modes_of_two(Effort effort);
 Outcome slip_patch(Effort effort);
 Outcome crack(Effort effort);
 Outcome layer_spectrum(Effort effort);

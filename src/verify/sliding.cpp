@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verify/sliding.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -23,53 +24,65 @@ Complex determinant(const std::array<std::array<Complex, 3>, 3>& m) {
 }  // namespace
 
 WaveShape::WaveShape(const solid::Material& material, double wavenumber_per_m, Complex s_per_s,
+                     const Displacement& edge)
+    : k_per_m_(wavenumber_per_m), height_m_(0), edge_(edge) {
+  set_potentials(material, s_per_s);
+  const Complex determinant = u_x_[0] * u_y_[2] - u_x_[2] * u_y_[0];
+  set_amplitudes(material, {(edge.x * u_y_[2] - edge.y * u_x_[2]) / determinant, 0,
+                            (edge.y * u_x_[0] - edge.x * u_y_[0]) / determinant, 0});
+}
+
+WaveShape::WaveShape(const solid::Material& material, double wavenumber_per_m, Complex s_per_s,
                      double height_m)
-    : height_m_(height_m) {
-  const double k = wavenumber_per_m;
+    : k_per_m_(wavenumber_per_m), height_m_(height_m), edge_{1, 0} {
+  set_potentials(material, s_per_s);
+  // At rest at the top, on the plane below: three conditions, solved by their minors.
+  std::array<std::array<Complex, 4>, 3> rows;
+  std::array<Complex, 4> at_edge;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const Complex fall = std::exp((c % 2 == 0 ? 1.0 : -1.0) * rate_per_m_[c] * height_m);
+    const Complex above = c % 2 == 0 ? fall : 1.0, below = c % 2 == 0 ? 1.0 : fall;
+    rows[0][c] = u_x_[c] * above;
+    rows[1][c] = u_y_[c] * above;
+    rows[2][c] = u_y_[c] * below;
+    at_edge[c] = u_x_[c] * below;
+  }
+  std::array<Complex, 4> amplitude;
+  Complex u_x = 0;
+  for (std::size_t left_out = 0; left_out < 4; ++left_out) {
+    std::array<std::array<Complex, 3>, 3> minor;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0, to = 0; c < 4; ++c)
+        if (c != left_out) minor[r][to++] = rows[r][c];
+    amplitude[left_out] = (left_out % 2 == 0 ? 1.0 : -1.0) * determinant(minor);
+    u_x += amplitude[left_out] * at_edge[left_out];
+  }
+  for (auto& part : amplitude) part /= u_x;
+  set_amplitudes(material, amplitude);
+}
+
+void WaveShape::set_potentials(const solid::Material& material, Complex s_per_s) {
   const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
-  const Complex P2 = std::pow(s_per_s / (k * c_S), 2);
+  const Complex P2 = std::pow(s_per_s / (k_per_m_ * c_S), 2);
   const Complex a_d = std::sqrt(1.0 + P2 * (c_S * c_S / (c_L * c_L))), a_s = std::sqrt(1.0 + P2);
   // Dilatation falling from below and from above, then shear; each over its potential's k.
   const std::array<Complex, 4> a = {-a_d, a_d, -a_s, a_s};
-  const std::array<Complex, 4> x = {i_unit, i_unit, a[2], a[3]};
-  const std::array<Complex, 4> y = {a[0], a[1], -i_unit, -i_unit};
-  std::array<Complex, 4> amplitude{};
-  if (height_m == 0) {
-    amplitude = {y[2], 0, -y[0], 0};
-  } else {
-    // At rest at the top, on the plane below: three conditions, solved by their minors.
-    std::array<std::array<Complex, 4>, 3> rows;
-    for (std::size_t c = 0; c < 4; ++c) {
-      const Complex fall = std::exp((c % 2 == 0 ? a[c] : -a[c]) * k * height_m);
-      const Complex above = c % 2 == 0 ? fall : 1.0, below = c % 2 == 0 ? 1.0 : fall;
-      rows[0][c] = x[c] * above;
-      rows[1][c] = y[c] * above;
-      rows[2][c] = y[c] * below;
-    }
-    for (std::size_t left_out = 0; left_out < 4; ++left_out) {
-      std::array<std::array<Complex, 3>, 3> minor;
-      for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t c = 0, to = 0; c < 4; ++c)
-          if (c != left_out) minor[r][to++] = rows[r][c];
-      amplitude[left_out] = (left_out % 2 == 0 ? 1.0 : -1.0) * determinant(minor);
-    }
-  }
+  u_x_ = {i_unit, i_unit, a[2], a[3]};
+  u_y_ = {a[0], a[1], -i_unit, -i_unit};
+  for (std::size_t c = 0; c < 4; ++c) rate_per_m_[c] = a[c] * k_per_m_;
+}
+
+void WaveShape::set_amplitudes(const solid::Material& material, const std::array<Complex, 4>& amplitude) {
   for (std::size_t c = 0; c < 4; ++c) {
-    rate_per_m_[c] = a[c] * k;
-    u_x_[c] = amplitude[c] * x[c];
-    u_y_[c] = amplitude[c] * y[c];
-  }
-  const Complex scale = 1.0 / u_x(0);
-  for (std::size_t c = 0; c < 4; ++c) {
-    u_x_[c] *= scale;
-    u_y_[c] *= scale;
+    u_x_[c] *= amplitude[c];
+    u_y_[c] *= amplitude[c];
   }
   // p = -sigma_yy = -(rho c_L^2 du_y/dy + lambda du_x/dx), lambda = rho (c_L^2 - 2 c_S^2).
   const double M = solid::longitudinal_modulus_Pa(material), G = solid::shear_modulus_Pa(material);
   Complex strain_yy = 0;
   for (std::size_t c = 0; c < 4; ++c)
-    strain_yy += rate_per_m_[c] * u_y_[c] * (c % 2 == 0 ? 1.0 : std::exp(-rate_per_m_[c] * height_m));
-  pressure_ = -(M * strain_yy + (M - 2 * G) * i_unit * k);
+    strain_yy += rate_per_m_[c] * u_y_[c] * (c % 2 == 0 ? 1.0 : std::exp(-rate_per_m_[c] * height_m_));
+  pressure_ = -(M * strain_yy + (M - 2 * G) * i_unit * k_per_m_ * edge_.x);
 }
 
 Complex WaveShape::sum(const std::array<Complex, 4>& amplitude, double y_m) const {
@@ -86,60 +99,123 @@ Complex Growth::rate_per_s() const {
   Complex numerator = 0;
   double denominator = 0;
   for (std::size_t j = 0; j < time_s.size(); ++j) {
-    numerator += (time_s[j] - t_mean) * log_u[j];
+    numerator += (time_s[j] - t_mean) * log_slip[j];
     denominator += (time_s[j] - t_mean) * (time_s[j] - t_mean);
   }
   return numerator / denominator;
 }
 
+namespace {
+
+/// A body with its mesh and its share of the wave; the one below is described upside down.
+struct Part {
+  const solid::Material& material;
+  double speed_m_per_s;
+  mesh::Mesh mesh;
+  WaveShape shape;
+};
+
+/// Displacements of the edges of half-spaces for a slip of 1.
+std::vector<Displacement> edges(const SlidingWave& w) {
+  if (!w.bodies.below) return {{1, 0}};
+  const auto c = stability::compliance(w.bodies, w.wavenumber_per_m, w.s_per_s);
+  const double unit = solid::shear_modulus_Pa(w.bodies.above) * w.wavenumber_per_m;
+  // Nothing opens: 0 = xy t + yy p.
+  const Complex t = unit * c.yy / c.determinant, p = -unit * c.xy / c.determinant;
+  const auto a = stability::compliance(w.bodies.above, w.wavenumber_per_m, w.s_per_s);
+  const Displacement above{(a.xx * t + a.xy * p) / (a.denominator * unit),
+                           (a.xy * t + a.yy * p) / (a.denominator * unit)};
+  return {above, {above.x - 1.0, -above.y}};
+}
+
+std::vector<Part> parts(const SlidingWave& w) {
+  const double k = w.wavenumber_per_m, length = 2 * std::numbers::pi / k, h = length / w.elements_per_wave;
+  const auto part = [&](const solid::Material& material, double speed_m_per_s, const Displacement& edge) {
+    const double c_L = solid::longitudinal_speed_m_per_s(material);
+    const int rows =
+        static_cast<int>(w.height_m > 0 ? std::round(w.height_m / h) : std::ceil(c_L * w.end_s / h) + 4);
+    return Part{material, speed_m_per_s,
+                mesh::make_plate({.width_m = length,
+                                  .height_m = rows * h,
+                                  .element_size_m = h,
+                                  .corner = mesh::Corner::none,
+                                  .sides = mesh::Sides::periodic}),
+                w.height_m > 0 ? WaveShape(material, k, w.s_per_s, rows * h)
+                               : WaveShape(material, k, w.s_per_s, edge)};
+  };
+  const auto edge = edges(w);
+  std::vector<Part> all;
+  all.push_back(part(w.bodies.above, w.speed_m_per_s, edge.front()));
+  if (w.bodies.below) all.push_back(part(*w.bodies.below, 0, edge.back()));
+  return all;
+}
+
+motion::Stepper make_stepper(const std::vector<Part>& parts, const interface::ContactModel& contact,
+                             const motion::TimeStepping& time) {
+  if (parts.size() == 1) return {parts[0].mesh, parts[0].material, contact, time};
+  return {motion::BodySource{parts[0].mesh, parts[0].material},
+          motion::BodySource{parts[1].mesh, parts[1].material}, contact, time};
+}
+
+}  // namespace
+
 Growth carry(const SlidingWave& w) {
   constexpr double amplitude_m = 1e-8;
-  const double k = w.wavenumber_per_m, length = 2 * std::numbers::pi / k, h = length / w.elements_per_wave;
-  const double c_L = solid::longitudinal_speed_m_per_s(w.material);
-  const int rows =
-      static_cast<int>(w.height_m > 0 ? std::round(w.height_m / h) : std::ceil(c_L * w.end_s / h) + 4);
-  const WaveShape shape(w.material, k, w.s_per_s, w.height_m > 0 ? rows * h : 0);
-  const auto mesh = mesh::make_plate({.width_m = length,
-                                      .height_m = rows * h,
-                                      .element_size_m = h,
-                                      .corner = mesh::Corner::none,
-                                      .sides = mesh::Sides::periodic});
+  const double k = w.wavenumber_per_m, length = 2 * std::numbers::pi / k;
+  const auto bodies = parts(w);
+  double c_L = 0;
+  for (const auto& body : bodies) c_L = std::max(c_L, solid::longitudinal_speed_m_per_s(body.material));
   // The same c_L dt/h on every mesh, and a whole number of steps: errors then follow powers of h.
-  const int n_steps = w.elements_per_wave * static_cast<int>(std::ceil(c_L * w.end_s / (0.9 * length)));
-  const double stable_s = motion::Stepper(mesh, w.material, w.contact, plain_stepping()).stable_step_s();
-  motion::Stepper stepper(mesh, w.material, w.contact, plain_stepping(w.end_s / (n_steps * stable_s)));
-  const auto phase = [&](mesh::Node n, double time) {
-    return amplitude_m * std::exp(i_unit * k * mesh.x_m[n] + w.s_per_s * time);
+  const auto trial = make_stepper(bodies, w.contact, plain_stepping());
+  const double substeps = trial.step_s() / trial.lowest_step_s();
+  const int n_steps =
+      w.elements_per_wave * static_cast<int>(std::ceil(c_L * w.end_s / (0.9 * length * substeps)));
+  auto stepper =
+      make_stepper(bodies, w.contact, plain_stepping(w.end_s / (n_steps * substeps * trial.stable_step_s())));
+  const auto phase = [&](double x_m, double time) {
+    return amplitude_m * std::exp(i_unit * k * x_m + w.s_per_s * time);
   };
+  const auto u_x = [&](const Part& part) {
+    return [&](mesh::Node n, double time) {
+      return part.speed_m_per_s * time +
+             (phase(part.mesh.x_m[n], time) * part.shape.u_x(part.mesh.y_m[n])).real();
+    };
+  };
+  const auto u_y = [&](const Part& part) {
+    return [&](mesh::Node n, double time) {
+      return (phase(part.mesh.x_m[n], time) * part.shape.u_y(part.mesh.y_m[n])).real();
+    };
+  };
+  const Part& above = bodies.front();
   const double mu = stability::uniform_sliding(w.contact.law, w.speed_m_per_s, w.pressure_Pa).mu;
-  auto state = start(stepper, mesh,
-                     {.u_x_m =
-                          [&](mesh::Node n, double time) {
-                            return w.speed_m_per_s * time + (phase(n, time) * shape.u_x(mesh.y_m[n])).real();
-                          },
-                      .u_y_m =
-                          [&](mesh::Node n, double time) {
-                            // On the plane to the last digit, so that no gap opens.
-                            return mesh.y_m[n] == 0 ? 0.0 : (phase(n, time) * shape.u_y(mesh.y_m[n])).real();
-                          },
-                      .contact = statics::Contact::slip,
-                      .t_Pa = mu * w.pressure_Pa,
-                      .p_Pa = w.pressure_Pa});
+  Start from{.u_x_m = u_x(above),
+             .u_y_m = u_y(above),
+             .contact = statics::Contact::slip,
+             .t_Pa = mu * w.pressure_Pa,
+             .p_Pa = w.pressure_Pa};
+  if (w.bodies.below) from.below = {&bodies[1].mesh, u_x(bodies[1]), u_y(bodies[1])};
+  auto state = start(stepper, above.mesh, from);
   // A delayed response has a part of the wave in its memory.
   if (w.contact.regularisation.relaxed != interface::Relaxed::none) {
     const double rate = interface::relaxation_rate_per_s(w.contact.regularisation, w.speed_m_per_s);
-    const Complex delayed = shape.pressure_Pa_per_m() * rate / (rate + w.s_per_s);
-    for (std::size_t i = 0; i < mesh.lower.size(); ++i)
-      state.tractions.p_s_Pa[i] += (phase(mesh.lower[i], 0) * delayed).real();
+    const Complex delayed = above.shape.pressure_Pa_per_m() * rate / (rate + w.s_per_s);
+    for (std::size_t i = 0; i < above.mesh.lower.size(); ++i)
+      state.tractions.p_s_Pa[i] += (phase(above.mesh.x_m[above.mesh.lower[i]], 0) * delayed).real();
     stepper.start(state, 1);
   }
-  stepper.set_prestress(std::vector<double>(mesh.lower.size(), mu * w.pressure_Pa),
-                        std::vector<double>(mesh.lower.size(), w.pressure_Pa));
+  const std::size_t n_lower = above.mesh.lower.size();
+  stepper.set_prestress(std::vector<double>(n_lower, mu * w.pressure_Pa),
+                        std::vector<double>(n_lower, w.pressure_Pa));
 
   const auto transform = [&] {
     Complex sum = 0;
-    for (const auto n : mesh.lower)
-      sum += (stepper.u_m().x[n] - w.speed_m_per_s * stepper.time_s()) * std::exp(-i_unit * k * mesh.x_m[n]);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const double moved_m = bodies[b].speed_m_per_s * stepper.time_s();
+      const auto& mesh = bodies[b].mesh;
+      for (const auto n : mesh.lower)
+        sum += (b == 0 ? 1.0 : -1.0) * (stepper.bodies()[b].u_m().x[n] - moved_m) *
+               std::exp(-i_unit * k * mesh.x_m[n]);
+    }
     return sum;
   };
   motion::Recorder recorder(state, mu, 0);
@@ -149,7 +225,7 @@ Growth carry(const SlidingWave& w) {
     stepper.advance(recorder);
     const Complex now = transform();
     growth.time_s.push_back(stepper.time_s());
-    growth.log_u.push_back(growth.log_u.back() + std::log(now / last));
+    growth.log_slip.push_back(growth.log_slip.back() + std::log(now / last));
     last = now;
   }
   return growth;

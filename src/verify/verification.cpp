@@ -32,6 +32,8 @@ std::span<const Verification> verifications() {
       Verification{"time_reversal", "Motion there and back", time_reversal},
       Verification{"symmetry", "Turned cells and mirrored plates", symmetry},
       Verification{"growing_modes", "Growth of waves on uniform sliding", growing_modes},
+      Verification{"growing_modes_of_two", "Growth of waves between two sliding bodies",
+                   growing_modes_of_two},
       Verification{"layer_spectrum", "Growth of waves on a sliding layer", layer_spectrum},
       Verification{"slip_patch", "Slip of a patch without strength", slip_patch},
       Verification{"impact", "Impact of a free body on the plane", impact},

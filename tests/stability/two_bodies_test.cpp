@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Uniform sliding of one half-space on another.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <utility>
+#include <vector>
+
+#include "pair_by_eigenvectors.hpp"
+#include "stability/modes.hpp"
+#include "stability/verdict.hpp"
+
+namespace slipfront::stability {
+namespace {
+
+using interface::Relaxed;
+
+solid::Material undamped(double youngs_modulus_Pa, double poissons_ratio, double density_kg_per_m3) {
+  return {.youngs_modulus_Pa = youngs_modulus_Pa,
+          .poissons_ratio = poissons_ratio,
+          .density_kg_per_m3 = density_kg_per_m3,
+          .stiffness_damping_s = 0};
+}
+
+const auto pmma = undamped(2.6e9, 0.37, 1200);
+const auto stiffer = undamped(5.0e9, 0.33, 1500);
+const auto steel = undamped(210e9, 0.3, 7800);
+const auto aluminium = undamped(70e9, 0.33, 2700);
+
+/// Slope of mu for which weakening is m times the pair's radiation damping at a pressure of 1 MPa.
+Sliding weakening(const Bodies& bodies, double mu, double m) {
+  return {.mu = mu, .slope_s_per_m = -m * radiation_damping_Pa_s_per_m(bodies) / 1e6, .pressure_Pa = 1e6};
+}
+
+TEST(GeneralisedRayleighSpeed, OfThePairInTheReference) {
+  const auto speed = generalised_rayleigh_speed_m_per_s(pmma, stiffer);
+  ASSERT_TRUE(speed);
+  EXPECT_NEAR(*speed, 888.04, 0.005);  // all digits given
+  EXPECT_DOUBLE_EQ(*generalised_rayleigh_speed_m_per_s(stiffer, pmma), *speed);
+  auto damped = pmma;
+  damped.stiffness_damping_s = 1e-6;
+  EXPECT_EQ(*generalised_rayleigh_speed_m_per_s(damped, stiffer), *speed);
+  // A neutral mode without friction, on the branch of a vanishing growth.
+  const double c_S = solid::shear_speed_m_per_s(pmma);
+  const auto f = [&](double c) {
+    return std::abs(pair_by_eigenvectors({pmma, stiffer}, {}, 100, {1e-13, -c / c_S}));
+  };
+  EXPECT_LT(f(*speed), 1e-6 * f(0.99 * *speed));
+}
+
+TEST(GeneralisedRayleighSpeed, OfEqualBodiesIsTheRayleighSpeed) {
+  for (const auto& m : {pmma, steel}) {
+    const auto speed = generalised_rayleigh_speed_m_per_s(m, m);
+    ASSERT_TRUE(speed);
+    EXPECT_NEAR(*speed, solid::rayleigh_speed_m_per_s(m), 1e-10 * *speed);
+  }
+}
+
+TEST(GeneralisedRayleighSpeed, DoesNotExistForBodiesThatDifferMuch) {
+  EXPECT_FALSE(generalised_rayleigh_speed_m_per_s(pmma, steel));
+  EXPECT_FALSE(generalised_rayleigh_speed_m_per_s(aluminium, pmma));
+}
+
+TEST(TwoHalfSpaces, ConstantCoefficientGrowsAsInTheReference) {
+  // Growth over k and phase speed, m/s, of a boundary integral code, to all digits given.
+  const struct {
+    double f, growth, growth_digit, speed;
+  } known[] = {{0.3, 8.085, 5e-4, 892.4}, {0.6, 22.68, 5e-3, 898.8}};
+  const double k = 314;
+  for (const auto& [f, growth, growth_digit, speed] : known) {
+    const auto mode = fastest_growing_mode({pmma, stiffer}, {.mu = f, .pressure_Pa = 5e6}, k);
+    ASSERT_TRUE(mode) << f;
+    EXPECT_NEAR(mode->growth_per_s() / k, growth, growth_digit);
+    EXPECT_NEAR(mode->velocity_m_per_s(k), speed, 0.05);
+  }
+}
+
+TEST(TwoHalfSpaces, BaseEverStifferAndDenserIsTheRigidPlane) {
+  for (const double mu : {1.3, 2.0})
+    for (const double m : {0.0, 0.5}) {
+      const auto sliding = weakening(pmma, mu, m);
+      const Complex rigid = fastest_growing_mode(pmma, sliding, 100)->s_per_s;
+      const auto error = [&](double factor) {
+        auto base = stiffer;
+        base.youngs_modulus_Pa *= factor;
+        base.density_kg_per_m3 *= factor;
+        return std::abs(fastest_growing_mode({pmma, base}, sliding, 100)->s_per_s / rigid - 1.0);
+      };
+      // In proportion to the base's compliance, but for terms of second order.
+      EXPECT_NEAR(error(1e4) / error(1e5), 10, 0.01);
+      EXPECT_LT(error(1e13), 1e-11);
+    }
+}
+
+TEST(TwoHalfSpaces, TurnedByHalfATurnAreTheSame) {
+  // The other body is then above and slides to +x, and waves run the other way.
+  std::size_t n_modes = 0;
+  for (const auto& [a, b] : {std::pair{pmma, stiffer}, {pmma, steel}, {stiffer, aluminium}})
+    for (const double mu : {0.3, 1.3})
+      for (const double m : {0.0, 0.5}) {
+        const auto sliding = weakening({a, b}, mu, m);
+        const auto modes = growing_modes({a, b}, sliding, 100), turned = growing_modes({b, a}, sliding, 100);
+        n_modes += modes.size();
+        ASSERT_EQ(modes.size(), turned.size());
+        for (std::size_t j = 0; j < modes.size(); ++j)
+          EXPECT_LT(std::abs(std::conj(turned[j].s_per_s) - modes[j].s_per_s),
+                    1e-9 * std::abs(modes[j].s_per_s));
+      }
+  EXPECT_GT(n_modes, 12u) << "the trials say little";
+}
+
+TEST(TwoHalfSpaces, OfOneKindLeaveThePressureUnchanged) {
+  for (const double mu : {0.1, 0.6, 1.0, 1.3, 3.0})
+    EXPECT_TRUE(growing_modes({pmma, pmma}, {.mu = mu, .pressure_Pa = 5e6}, 100).empty()) << mu;
+  // With weakening the coefficient itself has no effect, and neither direction is distinguished.
+  const auto low = growing_modes({pmma, pmma}, weakening({pmma, pmma}, 0.1, 0.5), 100);
+  const auto high = growing_modes({pmma, pmma}, weakening({pmma, pmma}, 1.3, 0.5), 100);
+  ASSERT_EQ(low.size(), 2u);
+  ASSERT_EQ(high.size(), 2u);
+  EXPECT_LT(std::abs(low[0].s_per_s - std::conj(low[1].s_per_s)), 1e-9 * std::abs(low[0].s_per_s));
+  for (const auto& mode : low)
+    EXPECT_LT(std::min(std::abs(high[0].s_per_s - mode.s_per_s), std::abs(high[1].s_per_s - mode.s_per_s)),
+              1e-9 * std::abs(mode.s_per_s));
+}
+
+TEST(TwoHalfSpaces, LongWavesFollowTheShearWaveImpedances) {
+  // As on the rigid plane: s = r (m - 1), with an error of second order in k c_S/r = 9e-4, c_S/r = 3e-3 for
+  // steel.
+  for (const auto& below : {stiffer, steel}) {
+    auto sliding = weakening({pmma, below}, 0, 3);
+    sliding.relaxed = Relaxed::strength;
+    sliding.relaxation_rate_per_s = 1e6;
+    EXPECT_NEAR(fastest_growing_mode({pmma, below}, sliding, 1)->s_per_s.real(), 2e6, 2e6 * 1e-5);
+  }
+}
+
+struct PairCase {
+  const char* name;
+  Bodies bodies;
+  double mu, m;  ///< m: weakening over radiation damping
+  Relaxed relaxed = Relaxed::none;
+  double damping = 0, slip_slope = 0;  ///< beta_R k c_S of both; minus d mu/d slip p0/(G k)
+};
+
+class SecondWay : public testing::TestWithParam<PairCase> {};
+
+TEST_P(SecondWay, HasTheSameModes) {
+  const auto& c = GetParam();
+  const double k = 200, rate_per_s = k * solid::shear_speed_m_per_s(c.bodies.above);
+  Bodies bodies = c.bodies;
+  bodies.above.stiffness_damping_s = bodies.below->stiffness_damping_s = c.damping / rate_per_s;
+  auto sliding = weakening(bodies, c.mu, c.m);
+  sliding.slip_slope_per_m = -c.slip_slope * solid::shear_modulus_Pa(bodies.above) * k / sliding.pressure_Pa;
+  sliding.relaxed = c.relaxed;
+  sliding.relaxation_rate_per_s = rate_per_s;
+  const auto other = [&](Complex p) { return pair_by_eigenvectors(bodies, sliding, k, p); };
+  // Next to the axis the eigenvectors that decay cannot be told from those that do not.
+  const double counted = 1e-3;
+  const auto expected =
+      zeros_by_argument_principle(other, {.min_modulus = 0.1, .max_modulus = 30, .min_growth = counted});
+  std::vector<Complex> modes;
+  for (const auto& mode : growing_modes(bodies, sliding, k)) {
+    const Complex p = mode.s_per_s / rate_per_s;
+    EXPECT_LT(std::abs(other(p)), 1e-9 * std::abs(other(1.01 * p))) << p;
+    if (p.real() > counted * std::abs(p)) modes.push_back(p);
+  }
+  ASSERT_EQ(modes.size(), expected.size());
+  EXPECT_FALSE(modes.empty());
+  for (std::size_t j = 0; j < modes.size(); ++j)
+    EXPECT_LT(std::abs(modes[j] - expected[j]), 1e-8 * std::abs(modes[j]));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Pairs, SecondWay,
+    testing::Values(PairCase{"alike_constant", {pmma, stiffer}, 0.3, 0},
+                    PairCase{"alike_high", {pmma, stiffer}, 1.3, 0},
+                    PairCase{"alike_weakening", {pmma, stiffer}, 0.3, 0.3},
+                    PairCase{"alike_drop", {pmma, stiffer}, 0.6, 2},
+                    PairCase{"alike_damped", {pmma, stiffer}, 1.3, 0.5, Relaxed::none, 0.02},
+                    PairCase{"alike_pressure", {pmma, stiffer}, 0.6, 0.5, Relaxed::pressure, 0.01},
+                    PairCase{"on_steel_constant", {pmma, steel}, 1.3, 0},
+                    PairCase{"on_steel_weakening", {pmma, steel}, 1.0, 0.3},
+                    PairCase{"on_steel_strength", {pmma, steel}, 1.3, 2, Relaxed::strength, 0.01},
+                    PairCase{"above_stiffer_constant", {aluminium, pmma}, 1.3, 0},
+                    PairCase{"above_stiffer_weakening", {aluminium, pmma}, 0.9, 0.3},
+                    PairCase{"above_stiffer_slip", {aluminium, pmma}, 0.6, 0, Relaxed::none, 0, 0.05}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST(TwoHalfSpaces, AreJudgedByTheRadiationDampingOfBoth) {
+  const interface::VelocityWeakening law { .mu_s = 0.9, .mu_k = 0.5 };
+  const double p_Pa = 5e6, h_m = 1e-3, width_m = 0.2;
+  const auto rigid = well_posedness(pmma, law, p_Pa, h_m, width_m);
+  const auto equal = well_posedness({pmma, pmma}, law, p_Pa, h_m, width_m);
+  EXPECT_NEAR(equal.weakening_over_radiation, 2 * rigid.weakening_over_radiation,
+              1e-12 * rigid.weakening_over_radiation);
+  // The wave's time across an element is that of the faster body; the damping that of the weaker.
+  auto damped = steel;
+  damped.stiffness_damping_s = 1e-7;
+  auto damped_pmma = pmma;
+  damped_pmma.stiffness_damping_s = 1e-7;
+  const auto w = well_posedness({damped_pmma, damped}, law, p_Pa, h_m, width_m);
+  EXPECT_FALSE(w.unbounded);
+  EXPECT_DOUBLE_EQ(w.damping_length_m, 1e-7 * solid::longitudinal_speed_m_per_s(pmma));
+  EXPECT_DOUBLE_EQ(w.growth_in_crossing,
+                   w.fastest_growth_per_s * h_m / solid::longitudinal_speed_m_per_s(steel));
+}
+
+TEST(TwoHalfSpaces, AtConstantFrictionAreIllPosedUnlessEqualOrDamped) {
+  const interface::Coulomb law { 0.3 };
+  const auto judged = [&](const Bodies& bodies) { return well_posedness(bodies, law, 5e6, 1e-3, 0.2); };
+  EXPECT_FALSE(judged(pmma).unbounded);
+  EXPECT_FALSE(judged({pmma, pmma}).unbounded);
+  const auto pair = judged({pmma, stiffer}), turned = judged({stiffer, pmma});
+  EXPECT_TRUE(pair.unbounded);
+  EXPECT_TRUE(turned.unbounded);
+  EXPECT_NEAR(pair.growth_at_grid_per_s, turned.growth_at_grid_per_s, 1e-9 * pair.growth_at_grid_per_s);
+  auto above = pmma, below = stiffer;
+  above.stiffness_damping_s = below.stiffness_damping_s = 1e-7;
+  const auto damped = judged({above, below});
+  EXPECT_FALSE(damped.unbounded);
+  EXPECT_GT(damped.fastest_growth_per_s, 0);
+  EXPECT_GT(damped.fastest_wavelength_m, 0);
+}
+
+TEST(TwoHalfSpaces, LimitsAgreeWithGrowthFollowedToShortWaves) {
+  for (const auto relaxed : {Relaxed::none, Relaxed::strength, Relaxed::pressure})
+    for (const auto& [beta_above, beta_below] :
+         {std::pair{0.0, 0.0}, {1e-7, 1e-7}, {1e-7, 3e-8}, {1e-7, 0.0}, {0.0, 1e-7}})
+      for (const double mu : {0.3, 1.3})
+        for (const double m : {0.0, 0.5, 2.0}) {
+          Bodies bodies{pmma, stiffer};
+          bodies.above.stiffness_damping_s = beta_above;
+          bodies.below->stiffness_damping_s = beta_below;
+          auto sliding = weakening(bodies, mu, m);
+          sliding.relaxed = relaxed;
+          sliding.relaxation_rate_per_s = 1e6;
+          const auto growth = [&](double k) {
+            const auto mode = fastest_growing_mode(bodies, sliding, k);
+            return mode ? mode->growth_per_s() : 0;
+          };
+          // Both ends lie far beyond the rates 1e6 and 1e7 per second, k c_S = 1e10 and 1e12. Unbounded
+          // growth rises in proportion to k at least; bounded growth does not rise tenfold over two decades.
+          EXPECT_EQ(growth_is_unbounded(bodies, sliding), growth(1e9) > 10 * growth(1e7))
+              << static_cast<int>(relaxed) << " beta " << beta_above << " and " << beta_below << " mu " << mu
+              << " m " << m << ": " << growth(1e7) << ", " << growth(1e9);
+        }
+}
+
+}  // namespace
+}  // namespace slipfront::stability
