@@ -39,6 +39,11 @@ void print_info(const CaseArguments& arguments) {
   if (info.base_speeds)
     line("base: c_L, c_S, c_R", fmt::format("{:.1f}, {:.1f}, {:.1f} m/s", info.base_speeds->c_L,
                                             info.base_speeds->c_S, info.base_speeds->c_R));
+  if (info.base_speeds)
+    line("generalised Rayleigh speed",
+         info.generalised_rayleigh_speed_m_per_s
+             ? fmt::format("{:.1f} m/s", *info.generalised_rayleigh_speed_m_per_s)
+             : "none: the two bodies differ too much");
   line("nodes", fmt::format("{} ({} on the interface, {} without a stencil)", info.n_nodes, info.n_interface,
                             info.n_irregular));
   line("cells", fmt::format("{}", info.n_cells));

@@ -19,6 +19,9 @@ double approximate_unknowns(const input::Case& config);
 /// Refuses a plate in motion that would not fit into the memory, before anything is built.
 void require_plate_fits(const input::Case& config);
 
+/// Refuses statics that would not fit into the memory, before anything is built.
+void require_statics_fit(const input::Case& config);
+
 /// Of the top edge where the plate is loaded by a ramp, and during the event.
 double top_speed_m_per_s(const input::Case& config);
 

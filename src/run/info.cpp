@@ -16,13 +16,19 @@ namespace slipfront::run {
 
 namespace {
 
+stability::Bodies bodies(const input::Case& config) {
+  stability::Bodies both = config.material;
+  if (input::has_base_body(config)) both.below = input::base_material(config);
+  return both;
+}
+
 stability::WellPosedness well_posedness(const input::Case& config, const mesh::Mesh& mesh) {
   double pressure_Pa = nominal_pressure_Pa(config);
   if (is_prestressed(config)) {
     const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
     pressure_Pa = std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
   }
-  return stability::well_posedness(config.material, config.friction, pressure_Pa, config.plate.element_size_m,
+  return stability::well_posedness(bodies(config), config.friction, pressure_Pa, config.plate.element_size_m,
                                    config.plate.width_m, config.regularisation);
 }
 
@@ -37,6 +43,8 @@ Info info(const input::Case& config) {
   info.n_cells = std::ssize(mesh.cells);
   if (meshes.base) {
     info.base_speeds = wave_speeds(input::base_material(config));
+    info.generalised_rayleigh_speed_m_per_s =
+        stability::generalised_rayleigh_speed_m_per_s(config.material, input::base_material(config));
     info.n_nodes += meshes.base->n_nodes();
     info.n_cells += std::ssize(meshes.base->cells);
   }

@@ -205,8 +205,7 @@ Needs needs(const input::Case& config, const Size& size) {
 
 void require_fit(const input::Case& config, const std::filesystem::path& folder) {
   require_plate_fits(config);
-  if (!is_prestressed(config))
-    statics::require_statics_memory(wanted_solver(config), approximate_unknowns(config));
+  if (!is_prestressed(config)) require_statics_fit(config);
   const Size size = estimated_size(config);
   const Needs n = needs(config, size);
   const bool energies = n.energy_rows * sizeof(record::Energies) > 0.5 * n.memory_bytes();

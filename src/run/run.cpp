@@ -168,6 +168,14 @@ WaveSpeeds wave_speeds(const solid::Material& m) {
           solid::rayleigh_speed_m_per_s(m)};
 }
 
+void require_statics_fit(const input::Case& config) {
+  const double n_plate = approximate_unknowns_of(config.plate);
+  if (input::has_base_body(config))
+    statics::require_statics_memory_of_pair(n_plate, approximate_unknowns_of(input::base_plate(config)));
+  else
+    statics::require_statics_memory(wanted_solver(config), n_plate);
+}
+
 std::string initial_state_key(const input::Case& config) {
   input::Case relevant;
   relevant.plate = config.plate;
@@ -246,7 +254,7 @@ Meshes check(const input::Case& config) {
   require_plate_fits(config);
   if (!is_prestressed(config)) {
     require_edges_to_tilt(config);
-    statics::require_statics_memory(wanted_solver(config), approximate_unknowns(config));
+    require_statics_fit(config);
   }
   require_free_sides_for_single(config);
   Meshes meshes{mesh::make_plate(config.plate), {}};

@@ -151,8 +151,9 @@ void write_status(const std::filesystem::path& dir, const input::Case& config, c
 
 /// Derived quantities of a case, found without solving anything.
 struct Info {
-  WaveSpeeds speeds;                      ///< of the plate
-  std::optional<WaveSpeeds> base_speeds;  ///< of the body below
+  WaveSpeeds speeds;                                         ///< of the plate
+  std::optional<WaveSpeeds> base_speeds;                     ///< of the body below
+  std::optional<double> generalised_rayleigh_speed_m_per_s;  ///< of the two, where it exists
   std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0, n_irregular = 0;
   double stable_step_s = 0, step_s = 0, substep_s = 0;
   std::vector<int> substeps_of_bodies;  ///< in a step of each, the plate first
