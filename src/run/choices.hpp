@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "input/case.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/plate.hpp"
 #include "motion/settings.hpp"
 #include "record/record.hpp"
@@ -27,5 +30,8 @@ bool is_prestressed(const input::Case& config);
 /// Given tractions at the nodes of the interface, from their file if there is one.
 /// @throws UserError
 record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh);
+
+/// Positions of the nodes of the interface.
+std::vector<double> interface_x_m(const mesh::Mesh& mesh);
 
 }  // namespace slipfront::run

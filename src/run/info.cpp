@@ -4,8 +4,12 @@
 #include <future>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "base/clock.hpp"
+#include "input/friction_along_x.hpp"
 #include "motion/stepper.hpp"
 #include "run/choices.hpp"
 #include "run/run.hpp"
@@ -16,15 +20,53 @@ namespace slipfront::run {
 
 namespace {
 
-stability::WellPosedness well_posedness(const input::Case& config, const mesh::Mesh& mesh) {
+double nominal_pressure_Pa(const input::Case& config, const mesh::Mesh& mesh) {
   const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
-  double pressure_Pa = stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m);
-  if (is_prestressed(config)) {
-    const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
-    pressure_Pa = std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
+  if (!is_prestressed(config))
+    return stability::nominal_pressure_Pa(config.material, compression_m, config.plate.height_m);
+  const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
+  return std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
+}
+
+/// Nodes where one of the three numbers by which friction enters the growth of waves is least or largest.
+std::set<std::size_t> extreme_nodes(const std::vector<interface::FrictionLaw>& laws, double pressure_Pa,
+                                    const interface::Regularisation& regularisation) {
+  std::vector<stability::Sliding> sliding;
+  for (const auto& law : laws)
+    sliding.push_back(stability::uniform_sliding(law, 0, pressure_Pa, regularisation));
+  std::set<std::size_t> nodes;
+  for (const auto member :
+       {&stability::Sliding::mu, &stability::Sliding::slope_s_per_m, &stability::Sliding::slip_slope_per_m}) {
+    const auto [least, largest] = std::ranges::minmax_element(sliding, {}, member);
+    for (const auto at : {least, largest}) nodes.insert(static_cast<std::size_t>(at - sliding.begin()));
   }
-  return stability::well_posedness(config.material, config.friction, pressure_Pa, config.plate.element_size_m,
-                                   config.plate.width_m, config.regularisation);
+  return nodes;
+}
+
+/// Of two verdicts the one with faster growth; where neither has a bound, by how far weakening is beyond it.
+bool is_worse(const stability::WellPosedness& a, const stability::WellPosedness& b) {
+  return std::pair(a.fastest_growth_per_s, a.weakening_over_radiation) >
+         std::pair(b.fastest_growth_per_s, b.weakening_over_radiation);
+}
+
+void add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info& info) {
+  const double pressure_Pa = nominal_pressure_Pa(config, mesh);
+  const auto of = [&](const interface::FrictionLaw& law) {
+    return stability::well_posedness(config.material, law, pressure_Pa, config.plate.element_size_m,
+                                     config.plate.width_m, config.regularisation);
+  };
+  const auto x_m = interface_x_m(mesh);
+  const auto laws = input::friction_at(config, x_m);
+  if (laws.empty()) {
+    info.well_posedness = of(config.friction);
+    return;
+  }
+  for (const auto node : extreme_nodes(laws, pressure_Pa, config.regularisation)) {
+    const auto here = of(laws[node]);
+    if (!std::isnan(info.well_posedness_x_m) && !is_worse(here, info.well_posedness)) continue;
+    info.well_posedness = here;
+    info.well_posedness_x_m = x_m[node];
+  }
 }
 
 }  // namespace
@@ -39,9 +81,10 @@ Info info(const input::Case& config) {
 
   // About as long as making the stepper.
   auto sliding =
-      std::async(std::launch::async | std::launch::deferred, [&] { return well_posedness(config, mesh); });
-  motion::Stepper stepper(mesh, config.material, input::contact_model(config), config.time);
-  info.well_posedness = sliding.get();
+      std::async(std::launch::async | std::launch::deferred, [&] { add_well_posedness(config, mesh, info); });
+  motion::Stepper stepper(mesh, config.material, input::contact_model(config, interface_x_m(mesh)),
+                          config.time);
+  sliding.get();
   info.n_irregular = static_cast<std::int64_t>(stepper.plate().whole.irregular.size() +
                                                stepper.plate().whole.general.size());
   info.stable_step_s = stepper.stable_step_s();
