@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/core.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "base/error.hpp"
@@ -80,6 +81,8 @@ void print_info(const CaseArguments& arguments) {
   line("damping length beta_R c_L",
        fmt::format("{:.3g} m, {:.3g} elements", w.damping_length_m, w.damping_length_over_h));
   line("uniform sliding", w.statement);
+  if (!std::isnan(info.well_posedness_x_m))
+    line("  with the friction at", fmt::format("x = {:.4g} m, the worst node", info.well_posedness_x_m));
   for (const auto& warning : run::warnings_of_case(config)) text += fmt::format("note: {}\n", warning);
   print_output(text);
 }

@@ -224,8 +224,9 @@ Front measure(const record::SlipRecord& record, const record::StaticState& state
       point.p_d_Pa = ahead.p_Pa;
       if (!std::isnan(ahead.t_Pa)) {
         point.U_s_J_per_m3 = energy_density_J_per_m3(ahead, options.elasticity);
-        point.U_r_J_per_m3 =
-            energy_density_J_per_m3({options.mu_s * at_onset.p_Pa, at_onset.p_Pa}, options.elasticity);
+        point.U_r_J_per_m3 = energy_density_J_per_m3(
+            {options.mu_s[static_cast<std::size_t>(node)] * at_onset.p_Pa, at_onset.p_Pa},
+            options.elasticity);
       }
     }
     if (run_m >= share_from_l_star * l_star_m) {

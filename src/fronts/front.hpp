@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/per_node.hpp"
 #include "fronts/speed_interval.hpp"
 #include "record/record.hpp"
 
@@ -38,7 +39,7 @@ struct FrontOptions {
       2e-3;                  ///< a shorter path, or a jump ahead no longer than this, is no front of its own
   double crack_share = 0.5;  ///< crack-like above this share of slipping length to distance run
   double pulse_share = 0.2;  ///< pulse-like below it
-  double mu_s = 0;           ///< static friction coefficient, for U_r = U(p_r, mu_s p_r)
+  PerNode mu_s = 0;          ///< static friction coefficient, for U_r = U(p_r, mu_s p_r)
   Elasticity elasticity;
   double exclude_left_m =
       -std::numeric_limits<double>::infinity();  ///< no t_d, p_d at x below it (trigger zone)

@@ -56,6 +56,35 @@ struct Prestress {
   PrestressTable table = {};  ///< read from it by input::read_case
 };
 
+/// A table of parameters of the friction law along the interface as it was read, see
+/// input/friction_along_x.hpp
+struct FrictionTable {
+  std::string text;                         ///< of the file
+  std::vector<double> x_m;                  ///< [rows]
+  std::vector<std::string> keys;            ///< of the parameters, without "friction."
+  std::vector<std::vector<double>> values;  ///< [keys][rows]
+};
+
+/// Values of a table at positions between its rows.
+enum class BetweenRows {
+  linear,
+  stepwise,  ///< those of the last row at or before the position
+};
+
+/// How the parameters of the friction law vary along the interface: by a table, by a random field f, or by
+/// both, which gives the table's value times 1 + random_share f(x).
+struct FrictionAlongX {
+  std::string file;          ///< CSV table; empty for none
+  FrictionTable table = {};  ///< read from it by input::read_case
+  BetweenRows between_rows = BetweenRows::linear;
+  std::string random_key = "none";  ///< the parameter that the field multiplies, without "friction."
+  double random_share = 0.1;        ///< standard deviation over the value
+  double random_correlation_length_m = 10e-3;
+  int random_seed = 1;
+
+  bool varies() const { return !file.empty() || random_key != "none"; }
+};
+
 /// What a run writes besides its fronts.
 struct Output {
   double history_interval_s = 0.5e-6;    ///< spacing of the rows of interface.h5
@@ -72,6 +101,7 @@ struct Case {
   statics::Loading loading;
   Prestress prestress;
   interface::FrictionLaw friction;
+  FrictionAlongX friction_along_x;
   interface::Regularisation regularisation;
   interface::ContactAlgorithm contact = interface::ContactAlgorithm::direct;
   interface::EventKind event = interface::EventKind::spontaneous;
@@ -100,10 +130,6 @@ inline solid::Material base_material(const Case& config) {
   auto material = config.base.material;
   material.plane = config.material.plane;
   return material;
-}
-
-inline interface::ContactModel contact_model(const Case& config) {
-  return {config.friction, config.regularisation, config.contact};
 }
 
 }  // namespace slipfront::input

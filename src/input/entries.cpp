@@ -171,6 +171,25 @@ Entry friction_law_entry() {
           }};
 }
 
+/// Keys of all laws' parameters, each once.
+std::vector<std::string> parameter_keys() {
+  std::vector<std::string> keys;
+  for (const LawEntries& law : friction_laws())
+    for (const Entry& entry : law.entries)
+      if (std::ranges::find(keys, leaf_of(entry.key)) == keys.end()) keys.push_back(leaf_of(entry.key));
+  return keys;
+}
+
+Entry random_key_entry() {
+  auto entry = text("friction.random_key", at(&Case::friction_along_x, &FrictionAlongX::random_key),
+                    "parameter of the law that is multiplied along x by 1 + random_share f(x), f a Gaussian "
+                    "random field of mean 0 and variance 1, see friction-along-x.md");
+  entry.kind = Kind::word;
+  entry.words = parameter_keys();
+  entry.words.insert(entry.words.begin(), "none");
+  return entry;
+}
+
 Entry only_with(Condition condition, Entry entry) {
   entry.only_with = std::move(condition);
   return entry;
@@ -215,6 +234,9 @@ std::vector<Entry> make_common_entries() {
                                [](const Case& c) { return c.event == EventKind::nucleation; }};
   const Condition pushed = {"event.trigger_form = added or raised",
                             [](const Case& c) { return c.trigger.form != TriggerForm::weakened; }};
+  const Condition tabled = {"friction.file", [](const Case& c) { return !c.friction_along_x.file.empty(); }};
+  const Condition random = {"friction.random_key other than none",
+                            [](const Case& c) { return c.friction_along_x.random_key != "none"; }};
   const Condition overstressed = {
       "event.kind = nucleation and nucleation.form = overstress", [](const Case& c) {
         return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
@@ -355,6 +377,24 @@ std::vector<Entry> make_common_entries() {
              at(&Case::regularisation, &Regularisation::slip_rate_m_per_s), at_least(0), "v* of that rate"),
       number("friction.relaxation_time_s", at(&Case::regularisation, &Regularisation::time_s),
              above_or_infinite(0), "t* of that rate"),
+      text("friction.file", at(&Case::friction_along_x, &FrictionAlongX::file),
+           "CSV table x_m and any of the law's parameters along the interface, from its first to its last "
+           "node, see friction-along-x.md; its path is relative to the case file"),
+      only_with(tabled,
+                word<BetweenRows>(
+                    "friction.between_rows", at(&Case::friction_along_x, &FrictionAlongX::between_rows),
+                    {{"linear", BetweenRows::linear}, {"stepwise", BetweenRows::stepwise}},
+                    "values between the table's rows: linear, or those of the last row at or before x")),
+      random_key_entry(),
+      only_with(random,
+                number("friction.random_share", at(&Case::friction_along_x, &FrictionAlongX::random_share),
+                       at_least(0), "standard deviation of the parameter over its value")),
+      only_with(random, number("friction.random_correlation_length_m",
+                               at(&Case::friction_along_x, &FrictionAlongX::random_correlation_length_m),
+                               above(0), "l of the field's correlation exp(-x^2/(2 l^2))")),
+      only_with(random,
+                integer("friction.random_seed", at(&Case::friction_along_x, &FrictionAlongX::random_seed),
+                        between(0, 1e9), "which field; another one for each seed")),
 
       word<ContactAlgorithm>("contact.algorithm", at(&Case::contact),
                              {{"direct", ContactAlgorithm::direct},

@@ -17,6 +17,7 @@
 #include "files/text.hpp"
 #include "input/document.hpp"
 #include "input/entries.hpp"
+#include "input/friction_along_x.hpp"
 #include "input/prestress.hpp"
 #include "solid/operator.hpp"
 #include "statics/plate_solver.hpp"
@@ -149,9 +150,9 @@ void apply(const std::vector<Override>& overrides, Document& document) {
 }
 
 /// Keys whose values decide which later ones of these, and which other keys, there are.
-constexpr std::array deciding_keys = {"plate.coarsenings",  "base.kind",      "base.coarsenings",
-                                      "loading.method",     "prestress.file", "event.kind",
-                                      "event.trigger_form", "nucleation.form"};
+constexpr std::array deciding_keys = {
+    "plate.coarsenings", "base.kind",           "base.coarsenings", "loading.method",     "prestress.file",
+    "friction.file",     "friction.random_key", "event.kind",       "event.trigger_form", "nucleation.form"};
 
 bool applies(const Entry& entry, const Case& config) {
   return !entry.only_with || entry.only_with->holds(config);
@@ -333,6 +334,21 @@ void check_friction(const Case& config, const Document& document, const std::str
 
 using Require = std::function<void(bool holds, const std::vector<std::string>& keys, const std::string&)>;
 
+void check_friction_along_x(const Case& config, const Require& require) {
+  const std::string& key = config.friction_along_x.random_key;
+  std::vector<std::string> keys;
+  for (const Entry& entry : law_of(config).entries) keys.push_back(leaf_of(entry.key));
+  require(key == "none" || contains_word(keys, key), {"friction.random_key", "friction.law"},
+          fmt::format("friction.random_key is {}; the friction law {} has {}", key, law_of(config).name,
+                      fmt::join(keys, ", ")));
+}
+
+/// Whether a weakened patch can do nothing, whatever the place; where friction varies, the nodes decide.
+bool never_weakens(const Case& config) {
+  return !config.friction_along_x.varies() &&
+         interface::kinetic_coefficient(config.friction) >= interface::static_coefficient(config.friction);
+}
+
 /// What a prescribed state, or the lack of one, asks of the other keys.
 void check_prestress(const Case& config, const Document& document, const Require& require) {
   using interface::EventKind;
@@ -381,8 +397,7 @@ void check_nucleation(const Case& config, const Require& require) {
                       "most half of plate.width_m, {} m",
                       n.half_length_m + n.taper_m, 0.5 * width_m));
   require(
-      n.form != interface::NucleationForm::weakened ||
-          interface::kinetic_coefficient(config.friction) < interface::static_coefficient(config.friction),
+      n.form != interface::NucleationForm::weakened || !never_weakens(config),
       {"nucleation.form", "event.kind", "friction.law"},
       "nucleation.form = weakened does nothing where the friction law does not weaken; choose overstress");
 }
@@ -390,8 +405,7 @@ void check_nucleation(const Case& config, const Require& require) {
 void check_trigger(const Case& config, const Require& require) {
   if (!interface::is_at_edge(config.event)) return;
   require(
-      config.trigger.form != interface::TriggerForm::weakened ||
-          interface::kinetic_coefficient(config.friction) < interface::static_coefficient(config.friction),
+      config.trigger.form != interface::TriggerForm::weakened || !never_weakens(config),
       {"event.trigger_form", "event.kind", "friction.law"},
       "event.trigger_form = weakened does nothing where the friction law does not weaken; choose added or "
       "raised");
@@ -447,6 +461,7 @@ void check_relations(const Case& config, const Document& document, const std::st
   check_base(config, require);
   check_trigger(config, require);
   check_nucleation(config, require);
+  check_friction_along_x(config, require);
   require(config.fronts.l_star_m < plate.width_m, {"fronts.l_star_m", "plate.width_m"},
           fmt::format("fronts.l_star_m is {} m; it must be less than plate.width_m, {} m",
                       config.fronts.l_star_m, plate.width_m));
@@ -574,20 +589,29 @@ Case case_of(Document document, const std::string& name) {
   return config;
 }
 
-/// Reads the table of tractions that a case names; its path counts from the folder of the case file.
-void read_table(const std::filesystem::path& folder, Prestress& prestress) {
-  if (prestress.file.empty()) return;
+/// The path of a table that a key names; it counts from the folder of the case file.
+std::string path_of_table(const std::filesystem::path& folder, const char* key, const std::string& file) {
   std::error_code error;
-  const auto path = std::filesystem::absolute(folder / prestress.file, error).lexically_normal();
+  const auto path = std::filesystem::absolute(folder / file, error).lexically_normal();
   if (error)
-    throw UserError("prestress.file: {}: the working folder cannot be found ({}); change to another one",
-                    files::one_line(prestress.file), error.message());
+    throw UserError("{}: {}: the working folder cannot be found ({}); change to another one", key,
+                    files::one_line(file), error.message());
   if (files::line_outside_utf8(path.native()) > 0)  // the path goes into files that are UTF-8
-    throw UserError(
-        "prestress.file: {}: its path holds bytes that are no utf-8; rename the folder or the file",
-        files::one_line(path.native()));
-  prestress.file = path.string();
-  prestress.table = read_prestress(path);
+    throw UserError("{}: {}: its path holds bytes that are no utf-8; rename the folder or the file", key,
+                    files::one_line(path.native()));
+  return path.string();
+}
+
+/// Reads the tables that a case names.
+void read_tables(const std::filesystem::path& folder, Case& config) {
+  if (auto& prestress = config.prestress; !prestress.file.empty()) {
+    prestress.file = path_of_table(folder, "prestress.file", prestress.file);
+    prestress.table = read_prestress(prestress.file);
+  }
+  if (auto& along_x = config.friction_along_x; !along_x.file.empty()) {
+    along_x.file = path_of_table(folder, "friction.file", along_x.file);
+    along_x.table = read_friction_table(along_x.file, config.friction);
+  }
 }
 
 }  // namespace
@@ -607,7 +631,7 @@ CaseFile::CaseFile(const std::filesystem::path& file, const std::vector<Override
   apply(overrides, document_);
   config_ = case_of(document_, name_);
   try {
-    read_table(file.parent_path(), config_.prestress);
+    read_tables(file.parent_path(), config_);
   } catch (const UserError& error) {
     throw UserError(with_place(error.what()));
   }

@@ -19,8 +19,8 @@ Override parse_override(const std::string& text);
 
 /// A case file, read once, since it may be a pipe, with the overrides of the command line. What it does not
 /// name keeps its default. Overrides win over the file, the last one over earlier ones. Where an override
-/// changes friction.law, the file's parameters of its own law do not count. The table of prestress.file is
-/// read as well.
+/// changes friction.law, the file's parameters of its own law do not count. The tables of
+/// prestress.file and friction.file are read as well.
 class CaseFile {
  public:
   /// @throws UserError with file, line and what to do: missing file, no key in it, syntax, unknown key (with

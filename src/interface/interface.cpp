@@ -99,15 +99,43 @@ void write_nodes(const Node<Lanes>& n, Interface& s, Place at) {
   }
 }
 
+/// The constants of a law that all nodes have.
+template <class Law>
+struct OneLaw {
+  using law_type = Law;
+  typename Law::template Evaluator<Lanes> mu;
+  double mu_at_rest, mu_k;
+  explicit OneLaw(const Law& law)
+      : mu(law.template evaluator<Lanes>()),
+        mu_at_rest(law.evaluator()(0, 0)),
+        mu_k(law.kinetic_coefficient()) {}
+  const OneLaw& at(std::size_t /*node*/) const { return *this; }
+};
+
+/// The constants of the laws of `lanes` nodes.
+template <class Law>
+struct LawsInLanes {
+  typename Law::template Evaluator<Lanes, Lanes> mu;
+  Lanes mu_at_rest, mu_k;
+};
+
+/// Those of each node.
+template <class Law>
+struct LawPerNode {
+  using law_type = Law;
+  const NodeLaws& laws;
+  LawsInLanes<Law> at(std::size_t node) const { return laws.constants<LawsInLanes<Law>>(node / lanes); }
+};
+
 // Flattened: the compiler would keep the nodes in memory between these functions.
-template <ContactAlgorithm algorithm, class Law, class Form>
-[[gnu::flatten]] bool update(const Law& law, const Form& form, double dt_s, Interface& s) {
-  const Update constants{law.template evaluator<Lanes>(), law.evaluator()(0, 0), law.kinetic_coefficient(),
-                         form, dt_s};
+template <ContactAlgorithm algorithm, class Laws, class Form>
+[[gnu::flatten]] bool update(const Laws& laws, const Form& form, double dt_s, Interface& s) {
   LanesMask changed{};
   const auto update_at = [&](auto at) {
+    const auto& law = laws.at(at.begin);
     auto nodes = read_nodes<algorithm, Form::remembers>(s, at);
-    changed |= update_node<algorithm, Law::memory>(constants, nodes);
+    changed |= update_node<algorithm, Laws::law_type::memory>(
+        Update{law.mu, law.mu_at_rest, law.mu_k, form, dt_s}, nodes);
     write_nodes<algorithm, Form::remembers>(nodes, s, at);
   };
   std::size_t i = 0;
@@ -119,11 +147,11 @@ template <ContactAlgorithm algorithm, class Law, class Form>
 }  // namespace
 
 void start_contact(const ContactModel& model, Interface& s) {
-  const double mu = static_coefficient(model.law), mu_k = kinetic_coefficient(model.law);
   s.begun = false;
   with_form(model.regularisation, 0, [&](const auto& form) {
     for (std::size_t i = 0; i < s.size(); ++i) {
-      const double mu_0 = weakened(mu, mu_k, s.intact[i]);
+      const FrictionLaw& law = model.law_at(i);
+      const double mu_0 = weakened(static_coefficient(law), kinetic_coefficient(law), s.intact[i]);
       s.strength_Pa[i] = mu_0 * s.p_Pa[i];
       const auto memory = form.initial(mu_0, s.p_Pa[i]);
       s.relaxed_Pa[i] = memory.relaxed_Pa;
@@ -139,11 +167,14 @@ bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
   const double since_last_s = state.begun ? dt_s : 0;
   state.begun = true;
   return std::visit(
-      [&](const auto& law) {
+      [&]<class Law>(const Law& law) {
         return with_form(model.regularisation, since_last_s, [&](const auto& form) {
-          return model.algorithm == ContactAlgorithm::direct
-                     ? update<ContactAlgorithm::direct>(law, form, dt_s, state)
-                     : update<ContactAlgorithm::predictor_corrector>(law, form, dt_s, state);
+          const auto with = [&](const auto& laws) {
+            return model.algorithm == ContactAlgorithm::direct
+                       ? update<ContactAlgorithm::direct>(laws, form, dt_s, state)
+                       : update<ContactAlgorithm::predictor_corrector>(laws, form, dt_s, state);
+          };
+          return model.of_nodes.empty() ? with(OneLaw<Law>(law)) : with(LawPerNode<Law>{model.of_nodes});
         });
       },
       model.law);

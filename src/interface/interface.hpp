@@ -7,6 +7,7 @@
 
 #include "base/state.hpp"
 #include "interface/friction/registry.hpp"
+#include "interface/node_laws.hpp"
 #include "interface/regularisation.hpp"
 
 namespace slipfront::interface {
@@ -27,6 +28,9 @@ struct ContactModel {
   FrictionLaw law;
   Regularisation regularisation = {};
   ContactAlgorithm algorithm = ContactAlgorithm::direct;
+  NodeLaws of_nodes = {};  ///< instead of `law`, and of its type; empty where all nodes have that one
+
+  const FrictionLaw& law_at(std::size_t node) const { return of_nodes.empty() ? law : of_nodes[node]; }
 };
 
 /// State of the interface nodes between two (sub-)steps, contiguous and component by component. All arrays

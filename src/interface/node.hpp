@@ -23,8 +23,8 @@ struct Node {
 };
 
 /// The coefficient of a node that may be weakened; exactly the law's where intact is 1.
-template <class V>
-SLIPFRONT_HOST_DEVICE inline V weakened(V mu, double mu_k, V intact) {
+template <class V, class Constant>
+SLIPFRONT_HOST_DEVICE inline V weakened(V mu, Constant mu_k, V intact) {
   return mu - (1 - intact) * (mu - mu_k);
 }
 
@@ -53,20 +53,23 @@ SLIPFRONT_HOST_DEVICE inline void press_locked(Node<V>& n, V impedance, double p
 /// second order, and the third is nearer the solution of the implicit equation where friction weakens fast.
 inline constexpr int rate_evaluations = 3;
 
-/// What is the same for all nodes: mu is the law's evaluator for V, form one of with_form's.
-template <class Coefficient, class Form>
+/// What decides besides the node's state: mu is the law's evaluator for V, form one of with_form's. Its
+/// constants are doubles where all nodes have one law, else of type V.
+template <class Coefficient, class Constant, class Form>
 struct Update {
   Coefficient mu;
-  double mu_at_rest, mu_k;
+  Constant mu_at_rest, mu_k;
   Form form;
   double dt_s;
 };
-template <class Coefficient, class Form>
-Update(Coefficient, double, double, Form, double) -> Update<Coefficient, Form>;
+template <class Coefficient, class Constant, class Form>
+Update(Coefficient, Constant, Constant, Form, double) -> Update<Coefficient, Constant, Form>;
 
 /// @return whether the node began or ceased to slip.
-template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Coefficient, class Form, class V>
-SLIPFRONT_HOST_DEVICE inline Mask<V> update_node(const Update<Coefficient, Form>& update, Node<V>& n) {
+template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Coefficient, class Constant, class Form,
+          class V>
+SLIPFRONT_HOST_DEVICE inline Mask<V> update_node(const Update<Coefficient, Constant, Form>& update,
+                                                 Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
   const auto& [mu, mu_at_rest, mu_k, form, dt_s] = update;

@@ -96,14 +96,14 @@ double trigger_traction_Pa(const interface::Trigger& trigger, double t_s_Pa, dou
 
 std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<const double> tributary_m,
                                    interface::EventKind kind, const interface::Trigger& trigger,
-                                   double mu_s) {
+                                   const PerNode& mu_s) {
   const auto& s = state.tractions;
   std::vector<double> force(s.x_m.size(), 0.0);
   if (trigger.form == interface::TriggerForm::weakened) return force;
   const auto zone = trigger_zone(state, kind, trigger.zone_m);
   const double direction = load_direction(state, tributary_m, zone);
   for (const auto k : zone)
-    force[k] = direction * trigger_traction_Pa(trigger, direction * s.t_s_Pa[k], mu_s * s.p_s_Pa[k]) *
+    force[k] = direction * trigger_traction_Pa(trigger, direction * s.t_s_Pa[k], mu_s[k] * s.p_s_Pa[k]) *
                tributary_m[k];
   return force;
 }
@@ -134,9 +134,9 @@ Snapshot take_snapshot(const Stepper& stepper) {
   return snapshot;
 }
 
-EventRun::EventRun(Stepper& stepper, const statics::Equilibrium& state, double mu_s, double c_L_m_per_s,
-                   const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
-                   int halo)
+EventRun::EventRun(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s,
+                   double c_L_m_per_s, const interface::Trigger& trigger, const TimeStepping& time,
+                   const Sampling& sampling, int halo)
     : stepper_(stepper),
       c_L_m_per_s_(c_L_m_per_s),
       time_(time),
@@ -242,7 +242,7 @@ Event EventRun::run(const Monitor& monitor, Sink* sink) {
   return std::move(event_);
 }
 
-Event run_event(Stepper& stepper, const statics::Equilibrium& state, double mu_s, double c_L_m_per_s,
+Event run_event(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, double c_L_m_per_s,
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
                 int halo, const Monitor& monitor, Sink* sink) {
   return EventRun(stepper, state, mu_s, c_L_m_per_s, trigger, time, sampling, halo).run(monitor, sink);

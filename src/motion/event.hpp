@@ -84,7 +84,8 @@ double load_direction(const statics::Equilibrium& state, std::span<const double>
 
 /// Forces on the interface nodes that the trigger adds, see TriggerForm, N per unit thickness. [lower]
 std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<const double> tributary_m,
-                                   interface::EventKind kind, const interface::Trigger& trigger, double mu_s);
+                                   interface::EventKind kind, const interface::Trigger& trigger,
+                                   const PerNode& mu_s);
 
 /// Halo of the slip record that t_d, p_d at a distance l_star_m ahead of the tip need.
 int halo_for(const mesh::Mesh& mesh, double l_star_m);
@@ -96,7 +97,7 @@ int halo_for(const mesh::Mesh& mesh, double l_star_m);
 class EventRun {
  public:
   /// @param state  tractions and contact before the event; its displacements are not needed
-  EventRun(Stepper& stepper, const statics::Equilibrium& state, double mu_s, double c_L_m_per_s,
+  EventRun(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, double c_L_m_per_s,
            const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling, int halo);
 
   /// To the end, or until the monitor interrupts it, which it may do for good.
@@ -143,7 +144,7 @@ class EventRun {
   std::int64_t n_samples_ = 0, n_energies_ = 1;
   std::size_t next_snapshot_ = 0;
 };
-Event run_event(Stepper& stepper, const statics::Equilibrium& state, double mu_s, double c_L_m_per_s,
+Event run_event(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, double c_L_m_per_s,
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
                 int halo, const Monitor& monitor, Sink* sink = nullptr);
 

@@ -24,11 +24,12 @@ bool any_slips_faster(double speed_m_per_s, const interface::Interface& s) {
 
 }  // namespace
 
-Recorder::Recorder(const statics::Equilibrium& before, double mu_s, int halo, double creep_m_per_s)
+Recorder::Recorder(const statics::Equilibrium& before, const PerNode& mu_s, int halo, double creep_m_per_s)
     : creep_m_per_s_(creep_m_per_s),
       previous_t_Pa_(before.tractions.t_s_Pa),
       previous_p_Pa_(before.tractions.p_s_Pa) {
-  for (const double p : previous_p_Pa_) previous_strength_Pa_.push_back(mu_s * p);
+  for (std::size_t i = 0; i < previous_p_Pa_.size(); ++i)
+    previous_strength_Pa_.push_back(mu_s[i] * previous_p_Pa_[i]);
   record_.x_m = before.tractions.x_m;
   record_.halo = halo;
   for (const auto contact : before.contact) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/per_node.hpp"
 #include "base/state.hpp"
 #include "interface/interface.hpp"
 #include "record/record.hpp"
@@ -24,7 +25,7 @@ class Recorder {
   /// @param mu_s    coefficient at rest in that state
   /// @param creep_m_per_s  slip no faster than this does not count in last_motion_s
   /// @param halo    nodes on each side whose tractions are kept at an onset
-  Recorder(const statics::Equilibrium& before, double mu_s, int halo, double creep_m_per_s = 0);
+  Recorder(const statics::Equilibrium& before, const PerNode& mu_s, int halo, double creep_m_per_s = 0);
 
   /// After a contact update whose tractions belong to time_s. `changed` is update_contact's answer.
   void observe(double time_s, const interface::Interface& state, bool changed);

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Begins every checkpoint. The number goes up when what follows changes.
-const std::string magic = "slipfront checkpoint 1";
+const std::string magic = "slipfront checkpoint 2";
 
 constexpr std::size_t n_kept = 2;
 constexpr std::string_view prefix = "checkpoint-", suffix = ".bin";
@@ -52,7 +52,8 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
   const auto fits = [&](const auto& states) {
     return statics::has_nodes(states.common, n) && statics::has_nodes(states.spontaneous, n);
   };
-  if (initial.tributary_m.size() != n || !fits(initial) ||
+  const bool varies = config.friction_along_x.varies();
+  if (initial.tributary_m.size() != n || initial.mu_s.size() != (varies ? n : 0) || !fits(initial) ||
       (initial.ramp && (!fits(*initial.ramp) || !record::is_consistent(initial.ramp->record))))
     throw UserError("the state before the event that was kept is of another plate");
   return initial;

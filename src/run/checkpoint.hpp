@@ -18,15 +18,15 @@ const std::string& program_identity();
 /// What a checkpoint says of itself before all else.
 struct CheckpointHead {
   std::string program = program_identity();
-  std::string case_text;  ///< case.resolved.toml
-  std::string table;      ///< of prescribed tractions, as it was read; empty without
-  bool in_event = false;  ///< else in the ramp
-  int sessions = 1;       ///< see Status
-  double wall_s = 0;      ///< spent in the event so far
+  std::string case_text;                        ///< case.resolved.toml
+  std::string prestress_table, friction_table;  ///< as they were read; empty without
+  bool in_event = false;                        ///< else in the ramp
+  int sessions = 1;                             ///< see Status
+  double wall_s = 0;                            ///< spent in the event so far
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(program, case_text, table, in_event, sessions, wall_s);
+    archive(program, case_text, prestress_table, friction_table, in_event, sessions, wall_s);
   }
 };
 

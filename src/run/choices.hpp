@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
@@ -38,6 +39,9 @@ bool is_prestressed(const input::Case& config);
 /// Given tractions at the nodes of the interface, from their file if there is one.
 /// @throws UserError
 record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh);
+
+/// Positions of the nodes of the interface.
+std::vector<double> interface_x_m(const mesh::Mesh& mesh);
 
 /// The bodies without their motion.
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,

@@ -29,6 +29,7 @@ InitialState at_interface(const InitialState& state) {
   light.common = at_interface(state.common);
   light.spontaneous = at_interface(state.spontaneous);
   light.prescribed = state.prescribed;
+  light.mu_s = state.mu_s;
   light.critical_shear_m = state.critical_shear_m;
   light.n_unknowns = state.n_unknowns;
   light.solver = state.solver;
@@ -43,7 +44,8 @@ InitialState at_interface(const InitialState& state) {
 }  // namespace
 
 std::string FinishedRuns::key_of(const input::Case& config) {
-  return files::sha256(program_identity() + "\n" + resolved_text(config) + config.prestress.table.text);
+  return files::sha256(program_identity() + "\n" + resolved_text(config) + config.prestress.table.text +
+                       config.friction_along_x.table.text);
 }
 
 std::filesystem::path FinishedRuns::file_of(const input::Case& config) const {

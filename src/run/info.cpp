@@ -4,8 +4,12 @@
 #include <future>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "base/clock.hpp"
+#include "input/friction_along_x.hpp"
 #include "motion/stepper.hpp"
 #include "run/choices.hpp"
 #include "run/run.hpp"
@@ -22,14 +26,51 @@ stability::Bodies bodies(const input::Case& config) {
   return both;
 }
 
-stability::WellPosedness well_posedness(const input::Case& config, const mesh::Mesh& mesh) {
-  double pressure_Pa = nominal_pressure_Pa(config);
-  if (is_prestressed(config)) {
-    const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
-    pressure_Pa = std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
+double mean_pressure_Pa(const input::Case& config, const mesh::Mesh& mesh) {
+  if (!is_prestressed(config)) return nominal_pressure_Pa(config);
+  const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
+  return std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
+}
+
+/// Nodes where one of the three numbers by which friction enters the growth of waves is least or largest.
+std::set<std::size_t> extreme_nodes(const std::vector<interface::FrictionLaw>& laws, double pressure_Pa,
+                                    const interface::Regularisation& regularisation) {
+  std::vector<stability::Sliding> sliding;
+  for (const auto& law : laws)
+    sliding.push_back(stability::uniform_sliding(law, 0, pressure_Pa, regularisation));
+  std::set<std::size_t> nodes;
+  for (const auto member :
+       {&stability::Sliding::mu, &stability::Sliding::slope_s_per_m, &stability::Sliding::slip_slope_per_m}) {
+    const auto [least, largest] = std::ranges::minmax_element(sliding, {}, member);
+    for (const auto at : {least, largest}) nodes.insert(static_cast<std::size_t>(at - sliding.begin()));
   }
-  return stability::well_posedness(bodies(config), config.friction, pressure_Pa, config.plate.element_size_m,
-                                   config.plate.width_m, config.regularisation);
+  return nodes;
+}
+
+/// Of two verdicts the one with faster growth; where neither has a bound, by how far weakening is beyond it.
+bool is_worse(const stability::WellPosedness& a, const stability::WellPosedness& b) {
+  return std::pair(a.fastest_growth_per_s, a.weakening_over_radiation) >
+         std::pair(b.fastest_growth_per_s, b.weakening_over_radiation);
+}
+
+void add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info& info) {
+  const double pressure_Pa = mean_pressure_Pa(config, mesh);
+  const auto of = [&](const interface::FrictionLaw& law) {
+    return stability::well_posedness(bodies(config), law, pressure_Pa, config.plate.element_size_m,
+                                     config.plate.width_m, config.regularisation);
+  };
+  const auto x_m = interface_x_m(mesh);
+  const auto laws = input::friction_at(config, x_m);
+  if (laws.empty()) {
+    info.well_posedness = of(config.friction);
+    return;
+  }
+  for (const auto node : extreme_nodes(laws, pressure_Pa, config.regularisation)) {
+    const auto here = of(laws[node]);
+    if (!std::isnan(info.well_posedness_x_m) && !is_worse(here, info.well_posedness)) continue;
+    info.well_posedness = here;
+    info.well_posedness_x_m = x_m[node];
+  }
 }
 
 }  // namespace
@@ -52,10 +93,10 @@ Info info(const input::Case& config) {
 
   // About as long as making the stepper.
   auto sliding =
-      std::async(std::launch::async | std::launch::deferred, [&] { return well_posedness(config, mesh); });
+      std::async(std::launch::async | std::launch::deferred, [&] { add_well_posedness(config, mesh, info); });
   const auto made = new_stepper(config, mesh, meshes.base);
   auto& stepper = *made;
-  info.well_posedness = sliding.get();
+  sliding.get();
   for (const auto& body : stepper.bodies()) {
     info.n_irregular +=
         static_cast<std::int64_t>(body.op().whole.irregular.size() + body.op().whole.general.size());

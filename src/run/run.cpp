@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -13,6 +14,8 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "base/per_node.hpp"
+#include "input/friction_along_x.hpp"
 #include "input/prestress.hpp"
 #include "input/schema.hpp"
 #include "interface/nucleation.hpp"
@@ -42,11 +45,28 @@ const statics::Equilibrium& event_state(const input::Case& config, const Initial
   return config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
 }
 
+PerNode static_coefficients(const input::Case& config, const std::vector<double>& of_nodes) {
+  return of_nodes.empty() ? PerNode(interface::static_coefficient(config.friction)) : PerNode(of_nodes);
+}
+
+/// Those of the nodes' laws; empty where they all have the case's.
+std::vector<double> static_coefficients(const std::vector<interface::FrictionLaw>& laws) {
+  std::vector<double> mu_s;
+  for (const auto& law : laws) mu_s.push_back(interface::static_coefficient(law));
+  return mu_s;
+}
+
+std::vector<double> at_all_nodes(const PerNode& values, const mesh::Mesh& mesh) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) all.push_back(values[k]);
+  return all;
+}
+
 /// Prescribed tractions beyond the static strength, said in one line; empty where there are none.
-std::string prestress_warning(const statics::Equilibrium& state, double mu_s) {
+std::string prestress_warning(const statics::Equilibrium& state, const PerNode& mu_s) {
   const auto& s = state.tractions;
   std::int64_t n = 0;
-  for (std::size_t k = 0; k < s.x_m.size(); ++k) n += std::abs(s.t_s_Pa[k]) > mu_s * s.p_s_Pa[k] ? 1 : 0;
+  for (std::size_t k = 0; k < s.x_m.size(); ++k) n += std::abs(s.t_s_Pa[k]) > mu_s[k] * s.p_s_Pa[k] ? 1 : 0;
   if (n == 0) return {};
   return fmt::format("the prestress is beyond mu_s p at {} of {} interface nodes: they slip at once", n,
                      s.x_m.size());
@@ -63,15 +83,14 @@ std::string contact_warning(const statics::Equilibrium& state) {
 }
 
 /// Why a trigger at an edge adds nothing, and which amount does.
-std::string idle_trigger(const input::Case& config, const statics::Equilibrium& state,
+std::string idle_trigger(const input::Case& config, const statics::Equilibrium& state, const PerNode& mu_s,
                          std::span<const double> tributary_m) {
   const auto& trigger = config.trigger;
   const auto zone = motion::trigger_zone(state, config.event, trigger.zone_m);
   const double direction = motion::load_direction(state, tributary_m, zone);
   double least = std::numeric_limits<double>::infinity();
   for (const auto k : zone)
-    least = std::min(least, direction * state.tractions.t_s_Pa[k] / state.tractions.p_s_Pa[k]);
-  least /= interface::static_coefficient(config.friction);
+    least = std::min(least, direction * state.tractions.t_s_Pa[k] / state.tractions.p_s_Pa[k] / mu_s[k]);
   const bool added = trigger.form == interface::TriggerForm::added;
   return fmt::format(
       "event.trigger_amount = {:g} adds no traction in the trigger zone, where t is at least {:.4g} mu_s p "
@@ -85,13 +104,50 @@ std::string idle_trigger(const input::Case& config, const statics::Equilibrium& 
 /// Forces of a trigger at an edge, none for other events.
 /// @throws UserError  where the trigger adds nothing
 std::vector<double> trigger_forces(const input::Case& config, const statics::Equilibrium& state,
-                                   std::span<const double> tributary_m) {
-  auto forces = motion::trigger_forces(state, tributary_m, config.event, config.trigger,
-                                       interface::static_coefficient(config.friction));
+                                   const PerNode& mu_s, std::span<const double> tributary_m) {
+  auto forces = motion::trigger_forces(state, tributary_m, config.event, config.trigger, mu_s);
   const bool pushes = is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened;
   if (pushes && std::ranges::all_of(forces, [](double force) { return force == 0; }))
-    throw UserError("{}", idle_trigger(config, state, tributary_m));
+    throw UserError("{}", idle_trigger(config, state, mu_s, tributary_m));
   return forces;
+}
+
+/// Interface::intact of an event that begins with a weakened patch or zone; empty for others.
+std::vector<double> intact_shares(const input::Case& config, const statics::Equilibrium& state,
+                                  const mesh::Mesh& mesh) {
+  const bool patched = config.event == interface::EventKind::nucleation &&
+                       config.nucleation.form == interface::NucleationForm::weakened;
+  if (patched) {
+    auto shares = patch(config.nucleation, mesh);
+    for (double& share : shares) share = 1 - share;
+    return shares;
+  }
+  if (!is_at_edge(config.event) || config.trigger.form != interface::TriggerForm::weakened) return {};
+  std::vector<double> shares(mesh.lower.size(), 1.0);
+  for (const auto k : motion::trigger_zone(state, config.event, config.trigger.zone_m)) shares[k] = 0;
+  return shares;
+}
+
+/// Refuses an event that begins with weakening at nodes whose friction does not weaken.
+void require_weakening(const input::Case& config, const std::vector<double>& intact,
+                       const std::vector<interface::FrictionLaw>& laws) {
+  if (intact.empty() || laws.empty()) return;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (intact[i] < 1 && interface::kinetic_coefficient(laws[i]) < interface::static_coefficient(laws[i]))
+      return;
+  throw UserError(
+      "{} = weakened does nothing where friction does not weaken at any node; choose another form",
+      is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form");
+}
+
+/// The ramp knows one coefficient for all nodes.
+void require_one_static_coefficient_of_ramp(const input::Case& config, const std::vector<double>& mu_s) {
+  if (config.loading.method == statics::LoadingMethod::ramp &&
+      std::ranges::adjacent_find(mu_s, std::not_equal_to<>()) != mu_s.end())
+    throw UserError(
+        "{} makes {} vary along x, which loading.method = ramp does not know; choose direct or prestress",
+        config.friction_along_x.file.empty() ? "friction.random_key" : "friction.file",
+        interface::static_coefficient_key(config.friction));
 }
 
 }  // namespace
@@ -156,11 +212,17 @@ bool is_prestressed(const input::Case& config) {
 
 record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh) {
   record::StaticState state;
-  for (const auto n : mesh.lower) state.x_m.push_back(mesh.x_m[n]);
+  state.x_m = interface_x_m(mesh);
   if (!prestress.file.empty()) return input::prestress_at(prestress, state.x_m);
   state.t_s_Pa.assign(state.x_m.size(), prestress.t_Pa);
   state.p_s_Pa.assign(state.x_m.size(), prestress.p_Pa);
   return state;
+}
+
+std::vector<double> interface_x_m(const mesh::Mesh& mesh) {
+  std::vector<double> x_m;
+  for (const auto n : mesh.lower) x_m.push_back(mesh.x_m[n]);
+  return x_m;
 }
 
 WaveSpeeds wave_speeds(const solid::Material& m) {
@@ -176,6 +238,19 @@ void require_statics_fit(const input::Case& config) {
     statics::require_statics_memory(wanted_solver(config), n_plate);
 }
 
+namespace {
+
+/// Empty where friction does not vary.
+std::string key_of_friction_along_x(const input::Case& config) {
+  if (!config.friction_along_x.varies()) return {};
+  input::Case relevant;
+  relevant.friction = config.friction;
+  relevant.friction_along_x = config.friction_along_x;
+  return input::to_toml(relevant) + config.friction_along_x.table.text;
+}
+
+}  // namespace
+
 std::string initial_state_key(const input::Case& config) {
   input::Case relevant;
   relevant.plate = config.plate;
@@ -184,7 +259,7 @@ std::string initial_state_key(const input::Case& config) {
     relevant.loading.method = config.loading.method;
     relevant.prestress = config.prestress;
     relevant.base.material = {};
-    return input::to_toml(relevant) + config.prestress.table.text;
+    return input::to_toml(relevant) + config.prestress.table.text + key_of_friction_along_x(config);
   }
   relevant.material = config.material;
   relevant.loading = config.loading;
@@ -201,7 +276,7 @@ std::string initial_state_key(const input::Case& config) {
     relevant.base.material.density_kg_per_m3 = relevant.material.density_kg_per_m3;
     relevant.base.material.stiffness_damping_s = relevant.material.stiffness_damping_s;
   }
-  return input::to_toml(relevant);
+  return input::to_toml(relevant) + key_of_friction_along_x(config);
 }
 
 namespace {
@@ -263,10 +338,15 @@ Meshes check(const input::Case& config) {
     meshes.base = make_base(config);
     motion::require_rows_fit(*meshes.base, config.time);
   }
-  if (is_prestressed(config))
-    trigger_forces(config,
-                   statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate)),
-                   mesh::tributary_lengths_m(meshes.plate));
+  const auto laws = input::friction_at(config, interface_x_m(meshes.plate));
+  const auto mu_s = static_coefficients(laws);
+  if (!is_prestressed(config)) {
+    require_one_static_coefficient_of_ramp(config, mu_s);
+    return meshes;
+  }
+  const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate));
+  trigger_forces(config, state, static_coefficients(config, mu_s), mesh::tributary_lengths_m(meshes.plate));
+  require_weakening(config, intact_shares(config, state, meshes.plate), laws);
   return meshes;
 }
 
@@ -289,7 +369,7 @@ mesh::Mesh joined(Meshes meshes) {
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,
                                              const motion::Execution& execution) {
-  const auto contact = input::contact_model(config);
+  const auto contact = input::contact_model(config, interface_x_m(plate));
   if (!base)
     return std::make_unique<motion::Stepper>(plate, config.material, contact, config.time, execution);
   const auto material = input::base_material(config);
@@ -312,7 +392,6 @@ double fastest_speed_m_per_s(const input::Case& config) {
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
                                 const motion::Execution& execution, const RampBegins& ramp_begins) {
   const auto start = Clock::now();
-  const double mu_s = interface::static_coefficient(config.friction);
   const double margin = config.loading.critical_margin;
   InitialState initial;
   auto meshes = check(config);
@@ -321,6 +400,8 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   initial.n_nodes = initial.mesh.n_nodes() + (initial.base ? initial.base->n_nodes() : 0);
   initial.n_cells = std::ssize(initial.mesh.cells) + (initial.base ? std::ssize(initial.base->cells) : 0);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
+  initial.mu_s = static_coefficients(input::friction_at(config, interface_x_m(initial.mesh)));
+  const double mu_s = static_coefficients(config, initial.mu_s)[0];
   if (is_prestressed(config)) {
     initial.prescribed = true;
     initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh),
@@ -334,7 +415,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   std::optional<statics::ElasticBody> base;
   if (initial.base) base.emplace(*initial.base, base_material);
   const statics::Statics statics({initial.mesh, config.material}, base, config.loading,
-                                 std::vector<double>(initial.mesh.lower.size(), mu_s),
+                                 at_all_nodes(static_coefficients(config, initial.mu_s), initial.mesh),
                                  interface::static_coefficient_key(config.friction),
                                  [&] { return monitor(0, 0); });
   initial.n_unknowns = statics.solver().n_unknowns();
@@ -371,7 +452,7 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
   o.min_length_m = config.fronts.min_length_m;
   o.crack_share = config.fronts.crack_share;
   o.pulse_share = config.fronts.pulse_share;
-  o.mu_s = interface::static_coefficient(config.friction);
+  o.mu_s = static_coefficients(config, initial.mu_s);
   o.elasticity = {config.material.youngs_modulus_Pa, config.material.poissons_ratio,
                   config.material.plane == solid::Plane::strain};
   const double margin = config.trigger.zone_m + config.fronts.trigger_margin_m;
@@ -407,25 +488,19 @@ namespace {
 std::unique_ptr<motion::Stepper> started_stepper(const input::Case& config, const InitialState& initial,
                                                  const motion::Execution& execution) {
   const auto& state = event_state(config, initial);
-  auto forces = trigger_forces(config, state, initial.tributary_m);
+  auto forces = trigger_forces(config, state, static_coefficients(config, initial.mu_s), initial.tributary_m);
+  auto intact = intact_shares(config, state, initial.mesh);
+  require_weakening(config, intact, input::friction_at(config, interface_x_m(initial.mesh)));
   auto stepper = new_stepper(config, initial.mesh, initial.base, execution);
   stepper->start(state, top_speed_m_per_s(config));
   if (initial.prescribed) stepper->set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
-  if (config.trigger.form == interface::TriggerForm::weakened && is_at_edge(config.event)) {
-    std::vector<double> intact(forces.size(), 1.0);
-    for (const auto k : motion::trigger_zone(state, config.event, config.trigger.zone_m)) intact[k] = 0;
-    stepper->set_intact(std::move(intact));
-  }
-  if (config.event == interface::EventKind::nucleation) {
-    auto B = patch(config.nucleation, initial.mesh);
-    if (config.nucleation.form == interface::NucleationForm::weakened) {
-      for (double& b : B) b = 1 - b;
-      stepper->set_intact(std::move(B));
-    } else {
-      for (std::size_t k = 0; k < B.size(); ++k)
-        if (state.contact[k] != statics::Contact::open)
-          forces[k] = config.nucleation.overstress_Pa * B[k] * initial.tributary_m[k];
-    }
+  if (!intact.empty()) stepper->set_intact(std::move(intact));
+  if (config.event == interface::EventKind::nucleation &&
+      config.nucleation.form == interface::NucleationForm::overstress) {
+    const auto B = patch(config.nucleation, initial.mesh);
+    for (std::size_t k = 0; k < B.size(); ++k)
+      if (state.contact[k] != statics::Contact::open)
+        forces[k] = config.nucleation.overstress_Pa * B[k] * initial.tributary_m[k];
   }
   stepper->set_trigger(config.trigger, std::move(forces));
   return stepper;
@@ -483,7 +558,7 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
        config.nucleation.form == interface::NucleationForm::overstress);
   return {stepper,
           event_state(config, initial),
-          interface::static_coefficient(config.friction),
+          static_coefficients(config, initial.mu_s),
           fastest_speed_m_per_s(config),
           triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
           config.time,
@@ -522,13 +597,13 @@ Result unmeasured(const input::Case& config, const motion::Stepper& stepper, mot
 void measure(Result& result, const InitialState& initial) {
   const auto& config = result.config;
   const auto& state = event_state(config, initial);
-  const double mu_s = interface::static_coefficient(config.friction);
   result.fronts =
       fronts::find_fronts(result.event.record, initial.common.tractions, front_options(config, initial));
   result.warnings = warnings_of_case(config);
   if (auto warning = contact_warning(initial.common); !warning.empty()) result.warnings.push_back(warning);
-  if (auto warning = initial.prescribed ? prestress_warning(state, mu_s) : ""; !warning.empty())
-    result.warnings.push_back(warning);
+  if (initial.prescribed)
+    if (auto warning = prestress_warning(state, static_coefficients(config, initial.mu_s)); !warning.empty())
+      result.warnings.push_back(warning);
   const auto& before = result.event.energies.front();
   const auto& after = result.event.energies.back();
   if (!initial.prescribed && after.trigger_work > 0.1 * before.strain)

@@ -28,7 +28,8 @@ struct InitialState {
   statics::Equilibrium common;            ///< at t/p = (1 - critical_margin) mu_s inside
   statics::Equilibrium spontaneous;       ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
   bool prescribed = false;                ///< loading.method is prestress: no statics, no critical shear
-  double critical_shear_m = 0;            ///< shear at t/p = mu_s inside, found directly
+  std::vector<double> mu_s;     ///< [lower] where friction varies along x; else none, and it is the case's
+  double critical_shear_m = 0;  ///< shear at t/p = mu_s inside, found directly
   std::int64_t n_unknowns = 0;
   statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                          ///< held by it
@@ -38,8 +39,8 @@ struct InitialState {
   /// All but the meshes.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, critical_shear_m, n_unknowns,
-            solver, solver_bytes, wall_s, ramp);
+    archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, mu_s, critical_shear_m,
+            n_unknowns, solver, solver_bytes, wall_s, ramp);
   }
 };
 
@@ -132,15 +133,18 @@ struct Status {
 Status status_of(const Result& result);
 
 inline constexpr const char* case_file = "case.resolved.toml";
-/// The table of prescribed tractions as it was read, where there is one.
-inline constexpr const char* table_file = "prestress.csv";
+/// The tables of prescribed tractions and of friction as they were read, where there are any.
+inline constexpr const char* prestress_file = "prestress.csv";
+inline constexpr const char* friction_file = "friction.csv";
 
-/// The case as case.resolved.toml has it: its table of tractions lies beside it.
+/// The case as case.resolved.toml has it: its tables lie beside it.
 std::string resolved_text(const input::Case& config);
-/// Writes both.
+/// Writes them all.
 void write_case(const std::filesystem::path& dir, const input::Case& config);
+/// static.csv: tractions of the common state and, where they vary, the parameters of friction.
+void write_static(const std::filesystem::path& dir, const input::Case& config, const InitialState& initial);
 
-/// Writes the run's folder, which is there: case.resolved.toml with its table, run.json, interface.h5,
+/// Writes the run's folder, which is there: case.resolved.toml with its tables, run.json, interface.h5,
 /// fronts.csv, static.csv, energy.csv, fields.vtkhdf where there are snapshots, and their checksums.
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
 /// run.json, fronts.csv and energy.csv of a result that may go on.
@@ -166,6 +170,8 @@ struct Info {
   double expected_s = 0;                    ///< at the kernel rate measured on the spot, statics estimated
   double node_updates_per_s = 0;            ///< measured on the spot
   stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure
+  /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
+  double well_posedness_x_m = fronts::undefined;
 };
 Info info(const input::Case& config);
 

@@ -31,7 +31,8 @@ class Session {
         checkpoints_(folder.state()),
         resumed_(resumed) {
     head_.case_text = resolved_text(config);
-    head_.table = config.prestress.table.text;
+    head_.prestress_table = config.prestress.table.text;
+    head_.friction_table = config.friction_along_x.table.text;
   }
 
   /// From a checkpoint, or from the beginning.
@@ -150,7 +151,7 @@ void Session::begin_event(Checkpoints::Kept* kept) {
     event_stepper_ = start_event(config_, initial_, options_.execution);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
   }
-  results::write_static(dir_ / "static.csv", initial_.common.tractions);
+  write_static(dir_, config_, initial_);
   began_ = true;
   stepper_ = event_stepper_.get();
   kept_time_s_ = stepper_->time_s();
@@ -227,7 +228,7 @@ void Session::write_results(const Finished& run) {
   status.sessions = head_.sessions;
   // As they are, whatever has happened to the files meanwhile.
   write_case(dir_, config_);
-  results::write_static(dir_ / "static.csv", run.initial.common.tractions);
+  write_static(dir_, config_, run.initial);
   // What takes no time first: the program may be given none after an interruption.
   write_so_far(dir_, run.result, run.initial, status);
   results::write_history(dir_ / "interface.h5", results::ResultStream::history_file(folder_.state()),
@@ -251,6 +252,11 @@ void require_same(const std::string& wanted, const std::string& kept, const std:
   if (wanted != kept)
     throw UserError("{}: is another case than the one that was begun, which has \"{}\"; begin anew", name,
                     first_difference(kept, wanted));
+}
+
+void require_unchanged(const std::string& table, const std::string& kept, const std::string& file) {
+  if (table != kept)
+    throw UserError("{}: was changed since the run was begun; put it back, or begin anew", file);
 }
 
 }  // namespace
@@ -281,9 +287,9 @@ Finished go_on(results::ResultFolder& folder, const input::Case* expected, const
       throw UserError("{}: was begun by {}, and this is {}; go on with that one, or begin anew",
                       folder.unfinished().string(), kept->head.program, program_identity());
     require_same(text, kept->head.case_text, file.string());
-    if (kept->head.table != config.prestress.table.text)
-      throw UserError("{}: was changed since the run was begun; put it back, or begin anew",
-                      config.prestress.file);
+    require_unchanged(config.prestress.table.text, kept->head.prestress_table, config.prestress.file);
+    require_unchanged(config.friction_along_x.table.text, kept->head.friction_table,
+                      config.friction_along_x.file);
   }
   files::write_text(file, text);  // as it was, however it was written meanwhile
   for (const char* name : {"interface.h5", "fields.vtkhdf"}) files::remove_file(folder.unfinished() / name);
@@ -294,6 +300,8 @@ void require_same_case(const input::Case& wanted, const std::filesystem::path& d
   const input::Case config = input::read_case(dir / case_file);
   require_same(resolved_text(wanted), resolved_text(config), "the case");
   require_same(wanted.prestress.table.text, config.prestress.table.text, "the table of its tractions");
+  require_same(wanted.friction_along_x.table.text, config.friction_along_x.table.text,
+               "the table of its friction");
 }
 
 bool is_complete(const std::filesystem::path& dir) {

@@ -9,25 +9,35 @@ namespace slipfront::run {
 namespace {
 
 /// A table that reaches beyond the plate may have its positions in another unit; empty where it does not.
-std::string table_warning(const input::Prestress& prestress, double width_m) {
-  const auto& x_m = prestress.table.rows.x_m;
+std::string table_warning(const char* key, const std::vector<double>& x_m, double width_m) {
   const double tolerance_m = 1e-6 * width_m;
   const auto is_beyond = [&](double x) { return x < -tolerance_m || x > width_m + tolerance_m; };
   const auto n_beyond = std::ranges::count_if(x_m, is_beyond);
   if (n_beyond == 0) return {};
   return fmt::format(
-      "the table of prestress.file reaches from x = {:.6g} to {:.6g} m, the plate from 0 to {:.6g} m: {} of "
+      "the table of {} reaches from x = {:.6g} to {:.6g} m, the plate from 0 to {:.6g} m: {} of "
       "its "
       "{} rows lie beyond it; are its positions in m?",
-      x_m.front(), x_m.back(), width_m, n_beyond, x_m.size());
+      key, x_m.front(), x_m.back(), width_m, n_beyond, x_m.size());
 }
 
 }  // namespace
 
 std::vector<std::string> warnings_of_case(const input::Case& config) {
   std::vector<std::string> warnings;
-  if (auto warning = table_warning(config.prestress, config.plate.width_m); !warning.empty())
-    warnings.push_back(std::move(warning));
+  const auto add_table_warning = [&](const char* key, const std::vector<double>& x_m) {
+    if (auto warning = table_warning(key, x_m, config.plate.width_m); !warning.empty())
+      warnings.push_back(std::move(warning));
+  };
+  add_table_warning("prestress.file", config.prestress.table.rows.x_m);
+  add_table_warning("friction.file", config.friction_along_x.table.x_m);
+  const auto& along_x = config.friction_along_x;
+  if (along_x.random_key != "none" && along_x.random_correlation_length_m < config.plate.element_size_m)
+    warnings.push_back(
+        fmt::format("friction.random_correlation_length_m = {:.4g} m is below the element size: the mesh "
+                    "does not resolve "
+                    "the field",
+                    along_x.random_correlation_length_m));
   if (config.fronts.l_star_m < 0.99 * config.plate.element_size_m)
     warnings.push_back(fmt::format(
         "fronts.l_star_m = {:.4g} m is below the element size: one element is used", config.fronts.l_star_m));

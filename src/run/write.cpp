@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "files/files.hpp"
+#include "input/friction_along_x.hpp"
 #include "input/schema.hpp"
 #include "results/folder.hpp"
 #include "results/history.hpp"
@@ -177,13 +178,30 @@ Status status_of(const Result& result) {
 
 std::string resolved_text(const input::Case& config) {
   auto resolved = config;
-  if (!resolved.prestress.file.empty()) resolved.prestress.file = table_file;
+  if (!resolved.prestress.file.empty()) resolved.prestress.file = prestress_file;
+  if (!resolved.friction_along_x.file.empty()) resolved.friction_along_x.file = friction_file;
   return input::to_toml(resolved);
 }
 
 void write_case(const std::filesystem::path& dir, const input::Case& config) {
   files::write_text(dir / case_file, resolved_text(config));
-  if (!config.prestress.file.empty()) files::write_text(dir / table_file, config.prestress.table.text);
+  if (!config.prestress.file.empty()) files::write_text(dir / prestress_file, config.prestress.table.text);
+  if (!config.friction_along_x.file.empty())
+    files::write_text(dir / friction_file, config.friction_along_x.table.text);
+}
+
+void write_static(const std::filesystem::path& dir, const input::Case& config, const InitialState& initial) {
+  const auto& tractions = initial.common.tractions;
+  std::vector<results::Column> columns;
+  for (auto& law : input::friction_at(config, tractions.x_m)) {
+    const auto parameters = parameters_of(law);
+    columns.resize(parameters.size());
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      columns[k].name = parameters[k].key;
+      columns[k].values.push_back(*parameters[k].value);
+    }
+  }
+  results::write_static(dir / "static.csv", tractions, columns);
 }
 
 void write_status(const std::filesystem::path& dir, const input::Case& config, const Status& status) {
@@ -200,7 +218,7 @@ void write_so_far(const std::filesystem::path& dir, const Result& result, const 
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial) {
   const auto& event = result.event;
   write_case(dir, result.config);
-  results::write_static(dir / "static.csv", initial.common.tractions);
+  write_static(dir, result.config, initial);
   results::write_history(dir / "interface.h5", event.history);
   if (!event.snapshots.empty())
     results::write_snapshots(dir / "fields.vtkhdf", joined({initial.mesh, initial.base}), event.snapshots);

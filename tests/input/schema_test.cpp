@@ -76,6 +76,11 @@ auto members(const Output& o) {
   return std::tuple(a, b, c);
 }
 
+auto members(const FrictionAlongX& f) {
+  const auto& [a, b, c, d, e, g, h] = f;
+  return std::tuple(a, b.text, c, d, e, g, h);
+}
+
 /// Members of a friction law, by its own list of parameters.
 std::vector<double> members(const interface::FrictionLaw& friction) {
   return std::visit(
@@ -88,8 +93,8 @@ std::vector<double> members(const interface::FrictionLaw& friction) {
 }
 
 void expect_equal(const Case& a, const Case& b) {
-  const auto& [title, plate, material, base, loading, prestress, friction, regularisation, contact, event,
-               trigger, nucleation, time, fronts, output] = b;
+  const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, regularisation,
+               contact, event, trigger, nucleation, time, fronts, output] = b;
   EXPECT_EQ(a.title, title);
   EXPECT_EQ(members(a.plate), members(plate));
   EXPECT_EQ(members(a.material), members(material));
@@ -98,6 +103,7 @@ void expect_equal(const Case& a, const Case& b) {
   EXPECT_EQ(members(a.prestress), members(prestress));
   EXPECT_EQ(a.friction.index(), friction.index());
   EXPECT_EQ(members(a.friction), members(friction));
+  EXPECT_EQ(members(a.friction_along_x), members(friction_along_x));
   EXPECT_EQ(members(a.regularisation), members(regularisation));
   EXPECT_EQ(a.contact, contact);
   EXPECT_EQ(a.event, event);
@@ -136,6 +142,7 @@ Case changed_case() {
       1e-4, 2e-4, statics::TopEdge::free, statics::LoadingMethod::ramp, statics::StaticSolver::direct, 1e-5,
       0,    1e-4};
   c.friction = interface::VelocityWeakening { 1.25, 0.75, 1.0 / 3 };
+  c.friction_along_x = {"table.csv", {}, BetweenRows::stepwise, "mu_k", 0.05, 1e-2 / 3, 7};
   c.regularisation = {interface::Relaxed::strength, 1e-5 / 3, 0.25, 2e-6};
   c.contact = interface::ContactAlgorithm::predictor_corrector;
   c.event = interface::EventKind::right;
@@ -150,6 +157,7 @@ Case changed_case() {
 /// A case of prescribed tractions in which no member that it can set has its default.
 Case changed_prestress() {
   Case c = changed_case();
+  c.friction_along_x = {};
   c.plate.corner = mesh::Corner::none;
   c.loading = {};
   c.loading.method = statics::LoadingMethod::prestress;

@@ -312,6 +312,18 @@ TEST(TriggerForces, FillTheZoneFromTheEdgeOfContact) {
   EXPECT_EQ(forces(EventKind::none).size(), 6);
 }
 
+TEST(TriggerForces, GoByTheStrengthOfEachNode) {
+  const std::vector<double> tributary = {0.5, 1, 1, 2, 1, 0.5};
+  const auto state = six_nodes();
+  const std::vector<double> of_each = {1, 1.1, 1.4, 1, 1, 1};
+  const auto forces =
+      trigger_forces(state, tributary, interface::EventKind::left,
+                     {.form = interface::TriggerForm::raised, .zone_m = 0.01, .amount = 2}, of_each);
+  for (const std::size_t k : {1, 2})
+    EXPECT_DOUBLE_EQ(forces[k],
+                     (2 * of_each[k] * state.tractions.p_s_Pa[k] - state.tractions.t_s_Pa[k]) * tributary[k]);
+}
+
 TEST(TriggerForces, RaiseToAMultipleOfTheStrengthOrLeaveItToTheFriction) {
   const std::vector<double> tributary = {0.5, 1, 1, 2, 1, 0.5};
   using interface::EventKind;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "input/friction_along_x.hpp"
 #include "run/run.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::test {
 
@@ -16,6 +18,15 @@ inline input::Case coarse_case(interface::EventKind event = interface::EventKind
 
 inline interface::VelocityWeakening& law(input::Case& config) {
   return std::get<interface::VelocityWeakening>(config.friction);
+}
+
+/// Gives a case a table of friction.
+inline void set_table(input::Case& config, const std::string& text) {
+  const TemporaryFolder folder;
+  const auto file = folder / "friction.csv";
+  write_file(file, text);
+  config.friction_along_x.file = file.string();
+  config.friction_along_x.table = input::read_friction_table(file, config.friction);
 }
 
 inline bool go_on(std::int64_t, std::int64_t) {

@@ -112,6 +112,14 @@ std::vector<std::pair<const char*, input::Case>> kinds() {
   add("slip weakening", prestressed_case(), [](input::Case& c) {
     c.friction = interface::SlipWeakening {};
   });
+  add("friction by a table", prestressed_case(), [](input::Case& c) {
+    test::set_table(c, "x_m,mu_k\n0,0.6\n0.1,0.5\n0.15,0.7\n0.2,0.7\n");
+    c.friction_along_x.between_rows = input::BetweenRows::stepwise;
+  });
+  add("random friction", prestressed_case(), [](input::Case& c) {
+    c.friction = interface::SlipWeakening {};
+    c.friction_along_x.random_key = "d_c_m";
+  });
   add("patch weakened", prestressed_case(),
       [](input::Case& c) { c.nucleation.form = interface::NucleationForm::weakened; });
   add("two bodies", prestressed_case(), [](input::Case& c) {
@@ -250,6 +258,20 @@ TEST_F(InterruptedRun, RefusesAnotherCase) {
   const auto file = folder_ / "unfinished/case.resolved.toml";
   test::write_file(file, input::to_toml(other));
   EXPECT_THAT(go_on_error(), StartsWith(file.string() + ": is another case"));
+}
+
+TEST(Session, RefusesAnotherTableOfFriction) {
+  const test::TemporaryFolder folder;
+  auto config = prestressed_case();
+  test::set_table(config, "x_m,mu_k\n0,0.6\n0.2,0.7\n");
+  results::ResultFolder held(folder.path(), run_work);
+  run_into(held, config, with_threads(1), stopping_at("event", 50));
+  const auto file = held.unfinished() / friction_file;
+  test::write_file(file, "x_m,mu_k\n0,0.6\n0.2,0.8\n");
+  EXPECT_EQ(error_of([&] { go_on(held, nullptr, with_threads(1), stopping_at("", -1)); }),
+            file.string() + ": was changed since the run was begun; put it back, or begin anew");
+  EXPECT_THAT(error_of([&] { require_same_case(config, held.unfinished()); }),
+              HasSubstr("the table of its friction: is another case"));
 }
 
 TEST_F(InterruptedRun, RefusesAnotherProgram) {

@@ -25,9 +25,9 @@ struct Coulomb {
   double static_coefficient() const { return mu; }
   double kinetic_coefficient() const { return mu; }
 
-  template <class V>
+  template <class V, class Constant = double>
   struct Evaluator {
-    double mu;
+    Constant mu;
     SLIPFRONT_HOST_DEVICE V operator()(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{} + mu; }
     /// d mu / d|v|
     SLIPFRONT_HOST_DEVICE V slope_s_per_m(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{}; }

@@ -35,9 +35,9 @@ struct LinearSlipWeakening {
   double static_coefficient() const { return mu_s; }
   double kinetic_coefficient() const { return mu_k; }
 
-  template <class V>
+  template <class V, class Constant = double>
   struct Evaluator {
-    double kinetic, drop, per_slip_per_m;
+    Constant kinetic, drop, per_slip_per_m;
     SLIPFRONT_HOST_DEVICE V operator()(V /*speed_m_per_s*/, V slip_m) const {
       return kinetic + drop * positive_part(1 - slip_m * per_slip_per_m);
     }

@@ -34,9 +34,9 @@ struct VelocityWeakening {
   double kinetic_coefficient() const { return mu_k; }
 
   /// The law with its constants folded, for the loop over nodes.
-  template <class V>
+  template <class V, class Constant = double>
   struct Evaluator {
-    double kinetic, drop, rate_s_per_m;
+    Constant kinetic, drop, rate_s_per_m;
     SLIPFRONT_HOST_DEVICE V operator()(V speed_m_per_s, V /*slip_m*/) const {
       return kinetic + drop * exp_minus(speed_m_per_s * rate_s_per_m);
     }

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/friction_along_x.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "base/error.hpp"
+#include "files/fields.hpp"
+#include "files/text.hpp"
+#include "input/entries.hpp"
+#include "input/random_field.hpp"
+#include "mesh/plate.hpp"
+
+namespace slipfront::input {
+
+namespace {
+
+using interface::FrictionLaw;
+using interface::ParameterValue;
+
+constexpr const char* x_column = "x_m";
+
+/// The key that names the file comes first, so that the message finds its place in the case file.
+std::string place(const std::filesystem::path& file) {
+  return "friction.file: " + files::one_line(file.native());
+}
+
+double& parameter(FrictionLaw& law, const std::string& key) {
+  const auto all = parameters_of(law);
+  const auto found = std::ranges::find(all, key, &ParameterValue::key);
+  SLIPFRONT_ASSERT(found != all.end(), "a parameter of another law");
+  return *found->value;
+}
+
+std::vector<std::string> keys_of(FrictionLaw law) {
+  std::vector<std::string> keys;
+  for (const auto& parameter : parameters_of(law)) keys.emplace_back(parameter.key);
+  return keys;
+}
+
+/// What is wrong with a parameter; empty where it is allowed.
+std::string problem_of(const std::string& key, double value, const Range& range) {
+  const Magnitudes& allowed = magnitudes_of(unit_of(key));
+  if (!contains(range, value)) return fmt::format("{} is {}; it must be {}", key, value, describe(range, ""));
+  const double size = std::abs(value);
+  if (value != 0 && (size < allowed.least || size > allowed.most))
+    return fmt::format("{} is {}; its magnitude must be at least {:g} and at most {:g}", key, value,
+                       allowed.least, allowed.most);
+  return {};
+}
+
+/// What is wrong with a law; empty where nothing is.
+std::string problem_of(FrictionLaw law) {
+  std::string values;
+  for (const auto& [key, value, min, max] : parameters_of(law)) {
+    if (auto problem = problem_of(key, *value, {min, max, false, false}); !problem.empty()) return problem;
+    values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", key, *value);
+  }
+  const std::string together = inconsistency(law);
+  return together.empty() ? "" : fmt::format("{} ({})", together, values);
+}
+
+void check_header(const std::vector<std::string_view>& fields, const FrictionLaw& law,
+                  const std::string& at) {
+  const auto keys = keys_of(law);
+  const auto wanted =
+      fmt::format("the first line must be the header {} and any of {}", x_column, fmt::join(keys, ", "));
+  if (fields.size() < 2 || fields.front() != x_column) throw UserError("{}: {}", at, wanted);
+  for (std::size_t k = 1; k < fields.size(); ++k) {
+    if (std::ranges::find(keys, fields[k]) == keys.end())
+      throw UserError("{}: has a column \"{}\"; {}", at, files::shortened(fields[k]), wanted);
+    if (std::find(fields.begin() + 1, fields.begin() + static_cast<std::ptrdiff_t>(k), fields[k]) !=
+        fields.begin() + static_cast<std::ptrdiff_t>(k))
+      throw UserError("{}: has the column {} twice; remove one", at, fields[k]);
+  }
+}
+
+double number_in(std::string_view field, std::string_view column, const std::string& at) {
+  const auto number = files::number_of(field);
+  if (!number)
+    throw UserError("{}: {} is \"{}\"; it must be a finite number", at, column, files::shortened(field));
+  return *number;
+}
+
+void append_row(const std::vector<std::string_view>& fields, const FrictionLaw& law, const std::string& at,
+                FrictionTable& table) {
+  if (fields.size() != table.keys.size() + 1)
+    throw UserError("{}: has {} columns; a row is {},{}", at, fields.size(), x_column,
+                    fmt::join(table.keys, ","));
+  const double x_m = number_in(fields.front(), x_column, at);
+  const double most_m = magnitudes_of("m").most;
+  if (std::abs(x_m) > most_m)
+    throw UserError("{}: x_m is {}; its magnitude must be at most {:g}", at, x_m, most_m);
+  if (!table.x_m.empty() && x_m <= table.x_m.back())
+    throw UserError("{}: x_m is {} after {}; write the rows with x ascending", at, x_m, table.x_m.back());
+  table.x_m.push_back(x_m);
+  FrictionLaw here = law;
+  for (std::size_t k = 0; k < table.keys.size(); ++k) {
+    const double value = number_in(fields[k + 1], table.keys[k], at);
+    table.values[k].push_back(value);
+    parameter(here, table.keys[k]) = value;
+  }
+  if (const auto problem = problem_of(here); !problem.empty()) throw UserError("{}: {}", at, problem);
+}
+
+/// Where a position lies among the rows of a table: between two, or at one.
+struct AmongRows {
+  std::size_t before, after;
+  double part;  ///< of the way from the one before to the one after
+  double value(const std::vector<double>& of_rows) const {
+    return of_rows[before] + part * (of_rows[after] - of_rows[before]);
+  }
+};
+
+AmongRows among_rows(const std::vector<double>& rows_x_m, double x_m, BetweenRows between,
+                     double tolerance_m) {
+  // Of two rows as near as rounding, the position is at the later one.
+  const auto beyond = std::ranges::upper_bound(rows_x_m, x_m + tolerance_m) - rows_x_m.begin();
+  const auto last = static_cast<std::size_t>(std::max<std::ptrdiff_t>(beyond - 1, 0));
+  if (between == BetweenRows::stepwise || last + 1 == rows_x_m.size() || x_m <= rows_x_m[last])
+    return {last, last, 0};
+  return {last, last + 1, (x_m - rows_x_m[last]) / (rows_x_m[last + 1] - rows_x_m[last])};
+}
+
+/// Gives each node the table's values.
+void apply_table(const FrictionAlongX& along_x, const std::vector<double>& x_m,
+                 std::vector<FrictionLaw>& laws) {
+  const FrictionTable& table = along_x.table;
+  SLIPFRONT_ASSERT(!table.x_m.empty(), "the table of friction.file has not been read");
+  // Positions in a table are written with few digits.
+  const double tolerance_m = 1e-6 * (x_m.back() - x_m.front());
+  if (table.x_m.front() > x_m.front() + tolerance_m || table.x_m.back() < x_m.back() - tolerance_m)
+    throw UserError(
+        "{}: covers x = {:.6g} to {:.6g} m, the interface reaches from {:.6g} to {:.6g} m; add rows",
+        place(along_x.file), table.x_m.front(), table.x_m.back(), x_m.front(), x_m.back());
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    const auto at = among_rows(table.x_m, x_m[i], along_x.between_rows, tolerance_m);
+    for (std::size_t k = 0; k < table.keys.size(); ++k)
+      parameter(laws[i], table.keys[k]) = at.value(table.values[k]);
+  }
+}
+
+/// Multiplies a parameter of each node.
+void apply_field(const Case& config, const std::vector<double>& x_m, std::vector<FrictionLaw>& laws) {
+  const FrictionAlongX& along_x = config.friction_along_x;
+  const double period_m = config.plate.sides == mesh::Sides::periodic ? config.plate.width_m : 0;
+  const RandomField field(along_x.random_correlation_length_m, period_m,
+                          static_cast<std::uint64_t>(along_x.random_seed));
+  for (std::size_t i = 0; i < x_m.size(); ++i)
+    parameter(laws[i], along_x.random_key) *= 1 + along_x.random_share * field(x_m[i]);
+}
+
+void require_allowed(const FrictionAlongX& along_x, const std::vector<double>& x_m,
+                     const std::vector<FrictionLaw>& laws) {
+  const bool random = along_x.random_key != "none";
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (const auto problem = problem_of(laws[i]); !problem.empty())
+      throw UserError("{}: at x = {:.6g} m {}{}", random ? "friction.random_share" : place(along_x.file),
+                      x_m[i], problem, random ? "; choose a smaller share" : "");
+}
+
+}  // namespace
+
+FrictionTable read_friction_table(const std::filesystem::path& file, const FrictionLaw& law) {
+  constexpr std::size_t most_bytes = std::size_t{1} << 30U;
+  FrictionTable table{files::read_text(file, place(file), "table", most_bytes), {}, {}, {}};
+  files::for_each_row(table.text, [&](int line, const std::vector<std::string_view>& fields) {
+    const std::string at = fmt::format("{}:{}", place(file), line);
+    if (!table.keys.empty()) return append_row(fields, law, at, table);
+    check_header(fields, law, at);
+    table.keys.assign(fields.begin() + 1, fields.end());
+    table.values.resize(table.keys.size());
+  });
+  if (table.x_m.empty())
+    throw UserError("{}: holds no rows; write the header {} and any of {}, and a row per position",
+                    place(file), x_column, fmt::join(keys_of(law), ", "));
+  return table;
+}
+
+std::vector<FrictionLaw> friction_at(const Case& config, const std::vector<double>& x_m) {
+  const FrictionAlongX& along_x = config.friction_along_x;
+  if (!along_x.varies()) return {};
+  std::vector<FrictionLaw> laws(x_m.size(), config.friction);
+  if (!along_x.file.empty()) apply_table(along_x, x_m, laws);
+  if (along_x.random_key != "none") apply_field(config, x_m, laws);
+  require_allowed(along_x, x_m, laws);
+  return laws;
+}
+
+interface::ContactModel contact_model(const Case& config, const std::vector<double>& x_m) {
+  interface::ContactModel model {
+    config.friction, config.regularisation, config.contact
+  };
+  if (auto laws = friction_at(config, x_m); !laws.empty())
+    model.of_nodes = interface::NodeLaws(std::move(laws));
+  return model;
+}
+
+}  // namespace slipfront::input

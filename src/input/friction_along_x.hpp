@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "input/case.hpp"
+
+namespace slipfront::input {
+
+/// Reads a CSV file with a header of x_m and any of the law's parameters, and a row per position, x
+/// ascending. Lines that are empty or begin with # are passed over. The file is read once: it may be a pipe.
+/// @param law  the case's; parameters without a column keep its values
+/// @throws UserError with file, line and what to do.
+FrictionTable read_friction_table(const std::filesystem::path& file, const interface::FrictionLaw& law);
+
+/// The law of each interface node at x_m; none where all have the case's.
+/// @throws UserError where the table does not reach from the first to the last of them, or a node's
+/// parameters are not allowed.
+std::vector<interface::FrictionLaw> friction_at(const Case& config, const std::vector<double>& x_m);
+
+/// Contact and friction of a case with interface nodes at x_m.
+/// @throws UserError as friction_at
+interface::ContactModel contact_model(const Case& config, const std::vector<double>& x_m);
+
+}  // namespace slipfront::input

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "interface/node_laws.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "interface/interface.hpp"
+#include "one_node.hpp"
+
+namespace slipfront::interface {
+namespace {
+
+using test::dt;
+
+template <class F>
+void for_each_model(F&& f) {
+  for (const FrictionLaw& law : {FrictionLaw(VelocityWeakening{}), FrictionLaw(Coulomb{}),
+                                 FrictionLaw(SlipWeakening{}), FrictionLaw(SlipWeakeningHealing{})})
+    for (const auto algorithm : {ContactAlgorithm::direct, ContactAlgorithm::predictor_corrector}) {
+      f(ContactModel{law, {}, algorithm});
+      for (const Relaxed relaxed : {Relaxed::strength, Relaxed::pressure})
+        for (const double length_m : {2e-6, std::numeric_limits<double>::infinity()})
+          f(ContactModel{law, {relaxed, length_m, 0.1, 2e-6}, algorithm});
+    }
+}
+
+/// All that an update writes of a node.
+std::vector<double> results_at(const Interface& s, std::size_t i) {
+  return {s.v_x_m_per_s[i],
+          s.v_y_m_per_s[i],
+          s.u_y_m[i],
+          s.t_Pa[i],
+          s.p_Pa[i],
+          s.demand_Pa[i],
+          s.strength_Pa[i],
+          s.slip_m[i],
+          s.slip_rate_m_per_s[i],
+          s.relaxed_Pa[i],
+          s.target_Pa[i],
+          s.acceleration_m_per_s2[i],
+          double(s.locked[i]),
+          double(s.slipping[i])};
+}
+
+/// A node of its own, in the state of one of many.
+Interface alone(const Interface& s, std::size_t i) {
+  Interface one(1);
+  const auto take = [i](auto& to, const auto& from) { to[0] = from[i]; };
+  take(one.mass_per_length_kg_m2, s.mass_per_length_kg_m2);
+  take(one.intact, s.intact);
+  take(one.p_Pa, s.p_Pa);
+  return one;
+}
+
+/// Laws of the model's type whose parameters lie between 0.5 and 1 of its own: mu_k stays below mu_s.
+std::vector<FrictionLaw> random_laws(const ContactModel& model, std::size_t n, std::mt19937_64& random) {
+  std::vector<FrictionLaw> laws(n, model.law);
+  std::uniform_real_distribution<double> share(0.5, 1);
+  for (auto& law : laws) do {
+      law = model.law;
+      for (const auto& parameter : parameters_of(law)) *parameter.value *= share(random);
+    } while (!inconsistency(law).empty());
+  return laws;
+}
+
+Interface nodes(std::size_t n) {
+  Interface s(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    s.mass_per_length_kg_m2[i] = test::mass * (1 + 0.01 * static_cast<double>(i));
+    s.intact[i] = i % 7 == 0 ? 0.5 : 1;
+    s.p_Pa[i] = i % 9 == 0 ? 0 : 0.5e6;
+  }
+  return s;
+}
+
+/// Trial motions that make nodes stick, slip, open, land and turn round, the same for all that take them.
+struct Motion {
+  double v_x, v_y, u_y;
+  static std::vector<Motion> of(std::size_t n, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> within(-1, 1);
+    std::vector<Motion> motions;
+    for (std::size_t i = 0; i < n; ++i)
+      motions.push_back({within(random), within(random) - 0.6, dt * (within(random) + 0.3)});
+    return motions;
+  }
+  void push(Interface& s, std::size_t i) const {
+    s.v_x_m_per_s[i] = 0.8 * s.slip_rate_m_per_s[i] + v_x;
+    s.v_y_m_per_s[i] = v_y;
+    s.u_y_m[i] += u_y;
+  }
+};
+
+TEST(NodeLaws, EqualLawsAreTheOneLawBitByBit) {
+  for_each_model([](const ContactModel& one) {
+    std::mt19937_64 random(2);
+    const std::size_t n = 5 * lanes + 3;
+    auto varying = one;
+    varying.of_nodes = NodeLaws(std::vector<FrictionLaw>(n, one.law));
+    auto a = nodes(n), b = nodes(n);
+    start_contact(one, a);
+    start_contact(varying, b);
+    for (int k = 0; k < 20; ++k) {
+      const auto motions = Motion::of(n, random);
+      for (std::size_t i = 0; i < n; ++i) {
+        motions[i].push(a, i);
+        motions[i].push(b, i);
+      }
+      EXPECT_EQ(update_contact(one, dt, a), update_contact(varying, dt, b));
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(results_at(a, i), results_at(b, i)) << "node " << i;
+    }
+  });
+}
+
+TEST(NodeLaws, EachNodeFollowsItsOwn) {
+  // All lanes, and every number of nodes left over.
+  for_each_model([](const ContactModel& model) {
+    std::mt19937_64 random(3);
+    for (std::size_t n = 1; n <= 2 * lanes + 1; ++n) {
+      const auto laws = random_laws(model, n, random);
+      auto varying = model;
+      varying.of_nodes = NodeLaws(laws);
+      auto together = nodes(n);
+      start_contact(varying, together);
+      std::vector<ContactModel> models(n, model);
+      std::vector<Interface> single;
+      for (std::size_t i = 0; i < n; ++i) {
+        models[i].law = laws[i];
+        single.push_back(alone(nodes(n), i));
+        start_contact(models[i], single[i]);
+        EXPECT_EQ(results_at(together, i), results_at(single[i], 0));
+      }
+      for (int k = 0; k < 10; ++k) {
+        const auto motions = Motion::of(n, random);
+        for (std::size_t i = 0; i < n; ++i) motions[i].push(together, i);
+        const bool changed = update_contact(varying, dt, together);
+        bool any_changed = false;
+        for (std::size_t i = 0; i < n; ++i) {
+          motions[i].push(single[i], 0);
+          any_changed = update_contact(models[i], dt, single[i]) || any_changed;
+          ASSERT_EQ(results_at(together, i), results_at(single[i], 0)) << "node " << i << " of " << n;
+        }
+        EXPECT_EQ(changed, any_changed);
+      }
+    }
+  });
+}
+
+TEST(NodeLaws, WeakenedNodesFallToTheirOwnKineticCoefficient) {
+  ContactModel model{SlipWeakening{}};
+  model.of_nodes = NodeLaws({SlipWeakening{0.6, 0.3, 1e-6}, SlipWeakening{0.6, 0.1, 1e-6}});
+  Interface s(2);
+  s.mass_per_length_kg_m2 = {test::mass, test::mass};
+  s.p_Pa = {1e6, 1e6};
+  start_contact(model, s);
+  s.intact = {0, 0};
+  s.v_x_m_per_s = {0.5e6 / test::impedance, 0.5e6 / test::impedance};
+  s.v_y_m_per_s = {-1e6 / test::impedance, -1e6 / test::impedance};
+  update_contact(model, dt, s);
+  EXPECT_NEAR(s.t_Pa[0], 0.3e6, test::rounding_Pa);
+  EXPECT_NEAR(s.t_Pa[1], 0.1e6, test::rounding_Pa);
+}
+
+}  // namespace
+}  // namespace slipfront::interface

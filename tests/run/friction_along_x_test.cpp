@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/friction_along_x.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "cases.hpp"
+#include "fronts/front.hpp"
+#include "support/files.hpp"
+
+namespace slipfront::run {
+namespace {
+
+using interface::EventKind;
+using interface::SlipWeakening;
+using test::error_of;
+using test::go_on;
+using ::testing::HasSubstr;
+
+/// A rupture from a patch at 0.05 m on a plate of 0.2 m without edges that reflect.
+input::Case rupture() {
+  auto c = test::coarse_case(EventKind::nucleation, 2e-3);
+  c.plate.corner = mesh::Corner::none;
+  c.plate.sides = mesh::Sides::absorbing;
+  c.plate.top = mesh::Top::absorbing;
+  c.plate.height_m = 0.05;
+  c.loading.method = statics::LoadingMethod::prestress;
+  c.prestress.t_Pa = 2.3e6;
+  c.prestress.p_Pa = 5e6;
+  c.friction = SlipWeakening{0.6, 0.3, 4e-6};
+  c.nucleation.x_m = 0.05;
+  c.nucleation.half_length_m = 0.02;
+  c.time.end_s = 150e-6;
+  return c;
+}
+
+Result run(const input::Case& config) {
+  return run_event(config, make_initial_state(config, go_on), go_on);
+}
+
+/// From the first to the last node that slipped.
+std::pair<double, double> slipped_m(const Result& result) {
+  const auto& record = result.event.record;
+  double from = record.x_m.back(), to = record.x_m.front();
+  for (const auto& onset : record.onsets) {
+    from = std::min(from, record.x_m[onset.node]);
+    to = std::max(to, record.x_m[onset.node]);
+  }
+  return {from, to};
+}
+
+TEST(FrictionAlongX, ABarrierStopsAFront) {
+  EXPECT_EQ(slipped_m(run(rupture())), std::pair(0.0, 0.2));
+  auto c = rupture();
+  test::set_table(c, "x_m,mu_s,mu_k\n0,0.6,0.3\n0.12,5,5\n0.2,5,5\n");
+  c.friction_along_x.between_rows = input::BetweenRows::stepwise;
+  const auto result = run(c);
+  EXPECT_EQ(slipped_m(result).first, 0);
+  EXPECT_NEAR(slipped_m(result).second, 0.118, 1e-9);
+  const auto stopped = std::ranges::find(result.fronts, 1, &fronts::Front::direction);
+  ASSERT_NE(stopped, result.fronts.end());
+  EXPECT_EQ(stopped->end, fronts::End::arrest);
+}
+
+TEST(FrictionAlongX, EqualRowsAreTheUniformLawBitByBit) {
+  const auto uniform = run(rupture());
+  auto c = rupture();
+  test::set_table(c, "x_m,mu_s,mu_k,d_c_m\n0,0.6,0.3,4e-6\n0.2,0.6,0.3,4e-6\n");
+  const auto varying = run(c);
+  EXPECT_EQ(varying.event.history.t_Pa, uniform.event.history.t_Pa);
+  EXPECT_EQ(varying.event.history.slip_rate_m_per_s, uniform.event.history.slip_rate_m_per_s);
+  ASSERT_EQ(varying.fronts.size(), uniform.fronts.size());
+  for (std::size_t f = 0; f < varying.fronts.size(); ++f)
+    for (std::size_t k = 0; k < varying.fronts[f].points.size(); ++k) {
+      const auto &a = varying.fronts[f].points[k], &b = uniform.fronts[f].points[k];
+      EXPECT_EQ(a.onset_s, b.onset_s);
+      EXPECT_TRUE(a.U_r_J_per_m3 == b.U_r_J_per_m3 || std::isnan(a.U_r_J_per_m3 + b.U_r_J_per_m3));
+    }
+}
+
+TEST(FrictionAlongX, FrontsAreMeasuredByEachNodesStrength) {
+  auto c = rupture();
+  test::set_table(c, "x_m,mu_s\n0,0.55\n0.2,0.65\n");
+  const auto initial = make_initial_state(c, go_on);
+  const auto result = run_event(c, initial, go_on);
+  const auto elasticity = front_options(c, initial).elasticity;
+  int n = 0;
+  for (const auto& front : result.fronts)
+    for (const auto& point : front.points) {
+      if (std::isnan(point.U_r_J_per_m3)) continue;
+      const double mu_s = 0.55 + 0.5 * point.x_m;
+      const double U_r = fronts::energy_density_J_per_m3({mu_s * point.p_r_Pa, point.p_r_Pa}, elasticity);
+      EXPECT_NEAR(point.U_r_J_per_m3, U_r, 1e-12 * U_r);
+      ++n;
+    }
+  EXPECT_GT(n, 20);
+}
+
+TEST(FrictionAlongX, OfAMeshIsThatOfAnother) {
+  auto coarse = rupture(), fine = rupture();
+  for (auto* c : {&coarse, &fine}) {
+    c->friction_along_x.random_key = "mu_s";
+    c->friction_along_x.random_share = 0.05;
+  }
+  fine.plate.element_size_m = 1e-3;
+  const auto mu_s = make_initial_state(coarse, go_on).mu_s;
+  const auto of_fine = make_initial_state(fine, go_on).mu_s;
+  ASSERT_EQ(of_fine.size(), 2 * mu_s.size() - 1);
+  for (std::size_t i = 0; i < mu_s.size(); ++i) EXPECT_NEAR(of_fine[2 * i], mu_s[i], 1e-12);
+}
+
+TEST(FrictionAlongX, StatesBeforeAreSharedByEqualFrictionOnly) {
+  auto a = rupture(), b = rupture();
+  EXPECT_TRUE(make_initial_state(a, go_on).mu_s.empty());
+  test::set_table(a, "x_m,mu_s\n0,0.6\n0.2,0.7\n");
+  EXPECT_NE(initial_state_key(a), initial_state_key(b));
+  b.friction_along_x = a.friction_along_x;
+  EXPECT_EQ(initial_state_key(a), initial_state_key(b));
+  b.friction_along_x.table.text += "\n";
+  EXPECT_NE(initial_state_key(a), initial_state_key(b));
+}
+
+TEST(FrictionAlongX, ATiltedPlateTakesOneStaticCoefficient) {
+  auto c = test::coarse_case();
+  c.friction_along_x.random_key = "mu_s";
+  EXPECT_THAT(error_of([&] { check(c); }), HasSubstr("only with loading.method = prestress"));
+  // What only the motion needs may vary.
+  c.friction_along_x.random_key = "mu_k";
+  c.friction_along_x.random_share = 0.05;
+  EXPECT_GT(run(c).event.record.n_onsets(), 0);
+}
+
+TEST(FrictionAlongX, AWeakenedPatchNeedsANodeThatWeakens) {
+  auto c = rupture();
+  test::set_table(c, "x_m,mu_k\n0,0.6\n0.09,0.6\n0.11,0.3\n0.2,0.3\n");
+  EXPECT_EQ(
+      error_of([&] { check(c); }),
+      "nucleation.form = weakened does nothing where friction does not weaken at any node; choose another "
+      "form");
+  c.nucleation.x_m = 0.12;
+  check(c);
+  c.event = EventKind::left;
+  c.trigger.form = interface::TriggerForm::weakened;
+  EXPECT_THAT(error_of([&] { check(c); }), HasSubstr("event.trigger_form = weakened does nothing"));
+}
+
+TEST(FrictionAlongX, WarningsAndTriggersGoByEachNode) {
+  auto c = rupture();
+  c.event = EventKind::none;
+  c.time.end_s = 1e-6;
+  test::set_table(c, "x_m,mu_s\n0,0.4\n0.05,0.6\n0.2,0.6\n");
+  c.friction_along_x.between_rows = input::BetweenRows::stepwise;
+  EXPECT_THAT(run(c).warnings, ::testing::Contains("the prestress is beyond mu_s p at 25 of 101 interface "
+                                                   "nodes: they slip at once"));
+  c.event = EventKind::right;
+  c.trigger.form = interface::TriggerForm::raised;
+  c.trigger.amount = 0.7;
+  EXPECT_THAT(error_of([&] { check(c); }), HasSubstr("where t is at least 0.7667 mu_s p"));
+  test::set_table(c, "x_m,mu_s\n0,0.4\n0.05,0.6\n0.1,0.8\n0.2,0.8\n");
+  check(c);
+}
+
+TEST(FrictionAlongX, InfoTellsTheWorstNode) {
+  auto c = rupture();
+  c.friction = interface::VelocityWeakening { 0.6, 0.3, 0.1 };
+  EXPECT_TRUE(std::isnan(info(c).well_posedness_x_m));
+  test::set_table(c, "x_m,mu_k\n0,0.5\n0.1,0.2\n0.2,0.4\n");
+  const auto varying = info(c);
+  EXPECT_NEAR(varying.well_posedness_x_m, 0.1, 1e-9);
+  c.friction_along_x = {};
+  c.friction = interface::VelocityWeakening { 0.6, 0.2, 0.1 };
+  EXPECT_DOUBLE_EQ(varying.well_posedness.growth_at_grid_per_s, info(c).well_posedness.growth_at_grid_per_s);
+}
+
+TEST(FrictionAlongX, ParametersOfNodesAreWritten) {
+  const test::TemporaryFolder folder;
+  auto c = rupture();
+  test::set_table(c, "x_m,mu_s\n0,0.6\n0.2,0.7\n");
+  write_static(folder.path(), c, make_initial_state(c, go_on));
+  const auto text = test::read_file(folder / "static.csv");
+  EXPECT_THAT(text,
+              ::testing::StartsWith("x_m,t_s_Pa,p_s_Pa,mu_s,mu_k,d_c_m\n0,2300000,5000000,0.6,0.3,4e-06\n"));
+  EXPECT_THAT(text, HasSubstr("\n0.05,2300000,5000000,0.625,0.3,4e-06\n"));
+}
+
+}  // namespace
+}  // namespace slipfront::run
