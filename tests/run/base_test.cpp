@@ -50,6 +50,25 @@ TEST(ProblemF, TheBooksClose) {
   EXPECT_LT(energies.back().friction_work, -0.1 * energies.back().prestress_work);
 }
 
+TEST(Tpv205, FinalSlipIsThatOfOtherCodes) {
+  // uguca at 50 m (cases/reference/data); 200 m and a lower domain leave 5 % (docs/two-bodies.md).
+  const auto result = run(input::read_case(
+      reference / "tpv205.toml",
+      {{"plate.element_size_m", "200"}, {"plate.height_m", "20e3"}, {"base.height_m", "20e3"}}));
+  const auto& h = result.event.history;
+  for (const auto& [x_m, slip_m] : {std::pair(-12e3, 4.29), std::pair(-4.5e3, 7.29), std::pair(0.0, 8.30),
+                                    std::pair(4.5e3, 6.45), std::pair(12e3, 3.66)}) {
+    const double x = x_m;
+    const auto at =
+        std::ranges::min_element(h.x_m, {}, [&](double other) { return std::abs(other - 40e3 - x); });
+    const auto place = static_cast<std::size_t>(at - h.x_m.begin());
+    EXPECT_NEAR(h.slip_m[h.slip_m.size() - h.x_m.size() + place], slip_m, 0.05 * slip_m) << x_m;
+  }
+  // The pressure does not change between equal bodies, and the barrier holds.
+  for (const double p : h.p_Pa) EXPECT_NEAR(p, 120e6, 1e-9 * 120e6);
+  EXPECT_EQ(h.slip_m[h.slip_m.size() - 1], 0);
+}
+
 TEST(Base, SnapshotsHoldBothBodies) {
   auto config = problem_f(2e-3);
   config.time.end_s = 40e-6;
