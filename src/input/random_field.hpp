@@ -17,10 +17,7 @@ class RandomField {
   double operator()(double x_m) const;
 
  private:
-  struct Cosine {
-    double wavenumber_per_m, phase;
-  };
-  std::vector<Cosine> cosines_;
+  std::vector<double> turns_per_m_, turns_;  ///< of each cosine: its wavenumber and phase over 2 pi
 };
 
 }  // namespace slipfront::input

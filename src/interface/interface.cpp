@@ -99,44 +99,50 @@ void write_nodes(const Node<Lanes>& n, Interface& s, Place at) {
   }
 }
 
-/// The constants of a law that all nodes have.
-template <class Law>
+/// What an update takes besides the nodes: of one law for all.
+template <class Law, class Form>
 struct OneLaw {
   using law_type = Law;
-  typename Law::template Evaluator<Lanes> mu;
-  double mu_at_rest, mu_k;
-  explicit OneLaw(const Law& law)
-      : mu(law.template evaluator<Lanes>()),
-        mu_at_rest(law.evaluator()(0, 0)),
-        mu_k(law.kinetic_coefficient()) {}
-  const OneLaw& at(std::size_t /*node*/) const { return *this; }
+  using form_type = Form;
+  Update<typename Law::template Evaluator<Lanes>, double, Form> constants;
+  OneLaw(const Law& law, const Form& form, double dt_s)
+      : constants{law.template evaluator<Lanes>(), law.evaluator()(0, 0), law.kinetic_coefficient(), form,
+                  dt_s} {}
+  const auto& at(std::size_t /*node*/) const { return constants; }
 };
 
-/// The constants of the laws of `lanes` nodes.
+/// The constants of the laws of `lanes` nodes, as NodeLaws has them.
 template <class Law>
 struct LawsInLanes {
   typename Law::template Evaluator<Lanes, Lanes> mu;
   Lanes mu_at_rest, mu_k;
 };
 
-/// Those of each node.
-template <class Law>
+/// Of a law for each node.
+template <class Law, class Form>
 struct LawPerNode {
   using law_type = Law;
+  using form_type = Form;
   const NodeLaws& laws;
-  LawsInLanes<Law> at(std::size_t node) const { return laws.constants<LawsInLanes<Law>>(node / lanes); }
+  Form form;
+  double dt_s;
+  auto at(std::size_t node) const {
+    const auto law = laws.constants<LawsInLanes<Law>>(node / lanes);
+    return Update{law.mu, law.mu_at_rest, law.mu_k, form, dt_s};
+  }
 };
 
-// Flattened: the compiler would keep the nodes in memory between these functions.
-template <ContactAlgorithm algorithm, class Laws, class Form>
-[[gnu::flatten]] bool update(const Laws& laws, const Form& form, double dt_s, Interface& s) {
+// Flattened: the compiler would keep the nodes in memory between these functions. The constants are copied:
+// what is written to the nodes cannot be theirs then, and they stay in registers.
+template <ContactAlgorithm algorithm, class Laws>
+[[gnu::flatten, gnu::noinline]] bool update(const Laws& given, Interface& s) {
+  const Laws laws = given;
+  constexpr bool remembers = Laws::form_type::remembers;
   LanesMask changed{};
   const auto update_at = [&](auto at) {
-    const auto& law = laws.at(at.begin);
-    auto nodes = read_nodes<algorithm, Form::remembers>(s, at);
-    changed |= update_node<algorithm, Laws::law_type::memory>(
-        Update{law.mu, law.mu_at_rest, law.mu_k, form, dt_s}, nodes);
-    write_nodes<algorithm, Form::remembers>(nodes, s, at);
+    auto nodes = read_nodes<algorithm, remembers>(s, at);
+    changed |= update_node<algorithm, Laws::law_type::memory>(laws.at(at.begin), nodes);
+    write_nodes<algorithm, remembers>(nodes, s, at);
   };
   std::size_t i = 0;
   for (; i + lanes <= s.size(); i += lanes) update_at(AllLanes{i});
@@ -168,13 +174,14 @@ bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
   state.begun = true;
   return std::visit(
       [&]<class Law>(const Law& law) {
-        return with_form(model.regularisation, since_last_s, [&](const auto& form) {
+        return with_form(model.regularisation, since_last_s, [&]<class Form>(const Form& form) {
           const auto with = [&](const auto& laws) {
             return model.algorithm == ContactAlgorithm::direct
-                       ? update<ContactAlgorithm::direct>(laws, form, dt_s, state)
-                       : update<ContactAlgorithm::predictor_corrector>(laws, form, dt_s, state);
+                       ? update<ContactAlgorithm::direct>(laws, state)
+                       : update<ContactAlgorithm::predictor_corrector>(laws, state);
           };
-          return model.of_nodes.empty() ? with(OneLaw<Law>(law)) : with(LawPerNode<Law>{model.of_nodes});
+          return model.of_nodes.empty() ? with(OneLaw<Law, Form>(law, form, dt_s))
+                                        : with(LawPerNode<Law, Form>{model.of_nodes, form, dt_s});
         });
       },
       model.law);

@@ -41,8 +41,9 @@ std::set<std::size_t> extreme_nodes(const std::vector<interface::FrictionLaw>& l
   std::set<std::size_t> nodes;
   for (const auto member :
        {&stability::Sliding::mu, &stability::Sliding::slope_s_per_m, &stability::Sliding::slip_slope_per_m}) {
-    const auto [least, largest] = std::ranges::minmax_element(sliding, {}, member);
-    for (const auto at : {least, largest}) nodes.insert(static_cast<std::size_t>(at - sliding.begin()));
+    for (const auto at :
+         {std::ranges::min_element(sliding, {}, member), std::ranges::max_element(sliding, {}, member)})
+      nodes.insert(static_cast<std::size_t>(at - sliding.begin()));
   }
   return nodes;
 }

@@ -490,7 +490,8 @@ std::unique_ptr<motion::Stepper> started_stepper(const input::Case& config, cons
   const auto& state = event_state(config, initial);
   auto forces = trigger_forces(config, state, static_coefficients(config, initial.mu_s), initial.tributary_m);
   auto intact = intact_shares(config, state, initial.mesh);
-  require_weakening(config, intact, input::friction_at(config, interface_x_m(initial.mesh)));
+  if (!intact.empty())
+    require_weakening(config, intact, input::friction_at(config, interface_x_m(initial.mesh)));
   auto stepper = new_stepper(config, initial.mesh, initial.base, execution);
   stepper->start(state, top_speed_m_per_s(config));
   if (initial.prescribed) stepper->set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);

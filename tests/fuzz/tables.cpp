@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables of tractions and of measured speeds: what is taken must hold what their readers promise.
+// Tables of tractions, of friction and of measured speeds: what is taken must hold what their readers
+// promise.
 #include <cmath>
 
 #include "fuzz.hpp"
 #include "input/experiment.hpp"
+#include "input/friction_along_x.hpp"
 #include "input/prestress.hpp"
 
 using namespace slipfront;
@@ -20,6 +22,16 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
                         std::isfinite(table.p_s_Pa[k]) && table.p_s_Pa[k] > 0 &&
                         (k == 0 || table.x_m[k] > table.x_m[k - 1]),
                     "a row that should be refused");
+  });
+  fuzz::takes([&] {
+    const auto table = input::read_friction_table(file, interface::SlipWeakening{});
+    fuzz::require(!table.x_m.empty() && !table.keys.empty() && table.values.size() == table.keys.size(),
+                  "columns that are missing");
+    for (const auto& values : table.values) {
+      fuzz::require(values.size() == table.x_m.size(), "columns differ in length");
+      for (const double value : values)
+        fuzz::require(value >= 0 && value <= 1e3, "a parameter that should be refused");
+    }
   });
   fuzz::takes([&] {
     constexpr double c_L_m_per_s = 2400;

@@ -157,20 +157,19 @@ def damages(dice, other):
 _UNIFORM = ("prestress.t_Pa", "prestress.p_Pa")
 
 
-def changed_table(bench):
-    """A table of tractions that is changed between a run's beginning and its end: the run has its own."""
+def changed_table(bench, name, text, changed):
+    """A table that is changed between a run's beginning and its end: the run has its own."""
     table = bench.folder().with_suffix(".csv")
     table.parent.mkdir(parents=True)
-    text = "x_m,t_Pa,p_Pa\n0,2.2e6,5e6\n0.1,2.2e6,5e6\n"
     table.write_text(text)
-    settings = long("prestressed_absorbing") | {"prestress.file": str(table)}
+    settings = long("prestressed_absorbing") | {f"{name}.file": str(table)}
     settings["time.end_s"] *= 8  # not to be over before it is stopped
-    case = bench.case({key: value for key, value in settings.items() if key not in _UNIFORM})
+    replaced = _UNIFORM if name == "prestress" else ()
+    case = bench.case({key: value for key, value in settings.items() if key not in replaced})
     expected = alone(bench.result(case))
     folder = interrupted(bench, case)
-    changed = text.replace("0,2.2e6", "0,2.1e6")
     table.write_text(changed)
-    own = folder / "unfinished/prestress.csv"
+    own = folder / f"unfinished/{name}.csv"
     require(own.read_text() == text, "the table is not kept")
     own.write_text(changed)
     process = bench.run("run", "--restart", folder, "-q")
@@ -252,4 +251,12 @@ def trials(bench, seed=1, kind="triggered", every=1):
             yield Trial(name, lambda damage=damage, may_be=may_be: setting.trial(damage, may_be))
     for name, how, may_be in meddlings():
         yield Trial(f"while it goes: {name}", lambda how=how, may_be=may_be: meddle(setting, how, may_be))
-    yield Trial("a changed table", lambda: changed_table(bench))
+    for table in (
+        (
+            "prestress",
+            "x_m,t_Pa,p_Pa\n0,2.2e6,5e6\n0.1,2.2e6,5e6\n",
+            "x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.1,2.2e6,5e6\n",
+        ),
+        ("friction", "x_m,d_c_m\n0,4e-6\n0.1,5e-6\n", "x_m,d_c_m\n0,4e-6\n0.1,6e-6\n"),
+    ):
+        yield Trial(f"a changed table of {table[0]}", lambda table=table: changed_table(bench, *table))
