@@ -21,5 +21,6 @@ Outcome crack(Effort effort);
 Outcome layer_spectrum(Effort effort);
 Outcome impact(Effort effort);
 Outcome block(Effort effort);
+Outcome bonded_waves(Effort effort);
 
 }  // namespace slipfront::verify

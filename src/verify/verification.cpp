@@ -23,6 +23,7 @@ bool Outcome::holds() const {
 std::span<const Verification> verifications() {
   static const std::array all = {
       Verification{"plane_waves", "Speed and dispersion of plane longitudinal and shear waves", plane_waves},
+      Verification{"bonded_waves", "Waves that fall at an angle onto the bond of two bodies", bonded_waves},
       Verification{"manufactured", "Convergence towards exact waves of a layer on its plane", manufactured},
       Verification{"subcycling", "Join between a sub-cycled layer and the other cells", subcycling},
       Verification{"rayleigh_wave", "Speed and shape of the Rayleigh wave on the free lower edge",

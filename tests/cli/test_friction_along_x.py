@@ -53,10 +53,12 @@ def test_a_barrier_from_a_table(program, case, tmp_path):
     run = program("run", case, "-o", "out", "-q")
     assert run.returncode == 0, run.stderr
     assert (tmp_path / "out/friction.csv").read_text() == TABLE
-    rows = list(csv.DictReader(open(tmp_path / "out/static.csv", newline="")))
+    with open(tmp_path / "out/static.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
     assert [float(row["mu_s"]) for row in rows] == [0.6] * 70 + [5] * 31
     assert {row["d_c_m"] for row in rows} == {"4e-06"}
-    reached = [float(row["x_m"]) for row in csv.DictReader(open(tmp_path / "out/fronts.csv", newline=""))]
+    with open(tmp_path / "out/fronts.csv", newline="") as file:
+        reached = [float(row["x_m"]) for row in csv.DictReader(file)]
     assert max(reached) == pytest.approx(0.069)
     again = program("run", "out/case.resolved.toml", "-o", "again", "-q")
     assert again.returncode == 0, again.stderr
@@ -112,11 +114,11 @@ def test_a_random_field_out_of_range_is_named_with_its_place(program, case):
     assert line.endswith("; choose a smaller share")
 
 
-def test_a_tilted_plate_takes_one_static_coefficient(program, coarse):
-    line = one_line(program("validate", coarse, "--set", "friction.random_key=mu_s"))
-    assert line == (
-        "--set friction.random_key=mu_s: friction.random_key makes friction.mu_s vary along x, which is possible only "
-        "with loading.method = prestress; choose that"
+def test_a_ramp_takes_one_static_coefficient(program, coarse):
+    ramp = ("--set", "loading.method=ramp", "--set", "friction.random_key=mu_s")
+    assert one_line(program("validate", coarse, *ramp)) == (
+        "--set friction.random_key=mu_s: friction.random_key makes friction.mu_s vary along x, which "
+        "loading.method = ramp does not know; choose direct or prestress"
     )
 
 

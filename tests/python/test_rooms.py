@@ -45,6 +45,13 @@ def test_rooms_include_what_they_are_named_and_nothing_else():
     }
 
 
+def test_the_readme_has_the_rooms_in_their_order():
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    block = text.split("## Structure of the code", 1)[1].split("```")[1]
+    named = [word for line in block.splitlines() for word in re.findall(r"\w+", line[12:50])]
+    assert named == list(built())
+
+
 def test_the_way_is_one_way():
     above: set[str] = set()
     for room, sees in built().items():

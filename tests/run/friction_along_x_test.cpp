@@ -125,14 +125,31 @@ TEST(FrictionAlongX, StatesBeforeAreSharedByEqualFrictionOnly) {
   EXPECT_NE(initial_state_key(a), initial_state_key(b));
 }
 
-TEST(FrictionAlongX, ATiltedPlateTakesOneStaticCoefficient) {
+TEST(FrictionAlongX, ARampTakesOneStaticCoefficient) {
   auto c = test::coarse_case();
+  c.loading.method = statics::LoadingMethod::ramp;
   c.friction_along_x.random_key = "mu_s";
-  EXPECT_THAT(error_of([&] { check(c); }), HasSubstr("only with loading.method = prestress"));
+  EXPECT_THAT(error_of([&] { check(c); }), HasSubstr("choose direct or prestress"));
   // What only the motion needs may vary.
+  c.loading.method = statics::LoadingMethod::direct;
   c.friction_along_x.random_key = "mu_k";
   c.friction_along_x.random_share = 0.05;
   EXPECT_GT(run(c).event.record.n_onsets(), 0);
+}
+
+TEST(FrictionAlongX, ATiltedPlateBeginsToSlipWhereItsStrengthIsReachedFirst) {
+  auto c = test::coarse_case();
+  const auto uniform = make_initial_state(c, go_on);
+  // A weak place away from the peak of t/p.
+  const double weak_m = 0.06;
+  test::set_table(c, "x_m,mu_s\n0,1.3\n0.055,1.3\n0.06,0.9\n0.065,1.3\n0.2,1.3\n");
+  const auto initial = make_initial_state(c, go_on);
+  EXPECT_LT(initial.critical_shear_m, uniform.critical_shear_m);
+  EXPECT_NEAR(initial.common.peak_x_m, weak_m, 1e-9);
+  EXPECT_NEAR(initial.common.peak_ratio, 0.9 * (1 - c.loading.critical_margin), 1e-6);
+  const auto result = run_event(c, initial, go_on);
+  const auto& first = result.event.record.onsets.front();
+  EXPECT_NEAR(result.event.record.x_m[first.node], weak_m, 1e-9);
 }
 
 TEST(FrictionAlongX, AWeakenedPatchNeedsANodeThatWeakens) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The paper's events on deformable bases: speeds at equal traction ratio and energy rise, pressure at the tip.
+"""The paper's events on deformable bases: speeds at equal traction ratio and energy rise, tip pressure.
 
 usage: python -m slipfront.figures.bases PICTURE DIR, output folder of `slipfront study base`"""
 
@@ -101,7 +101,7 @@ def write(picture: Path, folder: Path) -> list[str]:
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.figures.bases",
-        description="Draws the paper's events on deformable bases: what remains of direction and energy criterion.",
+        description="Draws what remains of the paper's direction and energy criterion on deformable bases.",
     )
     parser.add_argument("picture", metavar="PICTURE", type=Path, help="the file to write: .png, .pdf or .svg")
     parser.add_argument("folder", metavar="DIR", type=Path, help="output folder of `slipfront study base`")

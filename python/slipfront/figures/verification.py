@@ -28,6 +28,7 @@ MANY_POINTS = 60  # from here on a line shows more than points
 MANY_LABELS = 4  # more of them go below the panel
 LABEL_COLUMNS = 2
 LABEL_MM = 4.5
+CHARTS_IN_A_ROW = 3
 
 
 def draw_chart(ax: Axes, chart: dict[str, Any]) -> None:
@@ -77,15 +78,17 @@ def n_labels(chart: dict[str, Any]) -> int:
 
 
 def draw(file: Path) -> Drawing:
-    """One figure, a panel per chart."""
+    """One figure, a panel per chart, rows of at most CHARTS_IN_A_ROW."""
     results = read_json_table(result_file(file))
     try:
         charts = results["charts"]
         most = max((n_labels(chart) for chart in charts), default=0)
         below_mm = -(-most // LABEL_COLUMNS) * LABEL_MM if most > MANY_LABELS else 0
-        figure: Figure = new_figure(COLUMN_MM * max(1, len(charts)), 62 + below_mm)
+        columns = min(max(1, len(charts)), CHARTS_IN_A_ROW)
+        rows = max(1, -(-len(charts) // columns))
+        figure: Figure = new_figure(COLUMN_MM * columns, rows * (62 + below_mm))
         for k, chart in enumerate(charts):
-            draw_chart(figure.add_subplot(1, len(charts), k + 1), chart)
+            draw_chart(figure.add_subplot(rows, columns, k + 1), chart)
         name, title = results["name"], results["title"]
     except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
         raise DataError(f"{file}: not a file of `slipfront verify`: {error}") from None
