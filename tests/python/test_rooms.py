@@ -48,7 +48,8 @@ def test_rooms_include_what_they_are_named_and_nothing_else():
 def test_the_readme_has_the_rooms_in_their_order():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     block = text.split("## Structure of the code", 1)[1].split("```")[1]
-    named = [word for line in block.splitlines() for word in re.findall(r"\w+", line[12:50])]
+    columns = [re.split(r"  +", line) for line in block.strip().splitlines()]
+    named = [room for column in columns for room in column[1].split(", ")]
     assert named == list(built())
 
 

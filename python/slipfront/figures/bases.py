@@ -39,9 +39,16 @@ def draw_points(ax: Axes, points: dict[str, np.ndarray], x: str, y: str, base: s
     for direction, (_, colour) in DIRECTIONS.items():
         for tail, marker in ((0, "o"), (1, "x")):
             here = (points["direction"] == direction) & (points["in_tail"] == tail)
-            look = {"marker": marker, "markersize": 1.8, "linestyle": "none", "markerfacecolor": colour}
             gid = f"{base}:{x}:{direction}:{tail}"
-            ax.plot(points[x][here], points[y][here], color=colour, markeredgewidth=0.4, gid=gid, **look)
+            ax.plot(
+                points[x][here],
+                points[y][here],
+                marker,
+                color=colour,
+                markersize=1.8,
+                markeredgewidth=0.4,
+                gid=gid,
+            )
 
 
 def draw_paper(ax: Axes) -> None:

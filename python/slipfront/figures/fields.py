@@ -14,7 +14,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import PowerNorm
 from matplotlib.tri import Triangulation
 from PIL import Image
@@ -35,7 +35,8 @@ FRAME_DPI = 110
 def triangles(fields: Fields) -> Triangulation:
     """Every cell as two triangles; lengths in mm."""
     halves = np.concatenate([fields.cells[:, [0, 1, 2]], fields.cells[:, [0, 2, 3]]])
-    return Triangulation(*style.mm(fields.points_m).T, halves)
+    x_mm, y_mm = style.mm(fields.points_m).T
+    return Triangulation(x_mm, y_mm, halves)
 
 
 def largest_speed(fields: Fields, steps: list[int]) -> float:
@@ -43,7 +44,7 @@ def largest_speed(fields: Fields, steps: list[int]) -> float:
     return max(float(np.quantile(fields.speed_m_per_s(step), 0.999)) for step in steps)
 
 
-def draw_step(ax: Axes, grid: Triangulation, fields: Fields, step: int, norm: PowerNorm):
+def draw_step(ax: Axes, grid: Triangulation, fields: Fields, step: int, norm: PowerNorm) -> ScalarMappable:
     """One snapshot; the interface is a white line where a body lies below it; returns the picture."""
     picture = ax.tripcolor(
         grid,
@@ -119,10 +120,9 @@ def animate(folder: Path) -> bytes:
         bar = figure.colorbar(draw_step(ax, grid, fields, step, norm), ax=ax, shrink=0.8)
         bar.set_label("speed (m/s)")
         ax.set_xlabel("$x$ (mm)")
-        figure.set_dpi(FRAME_DPI)
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB"))
+        frame = BytesIO()
+        figure.savefig(frame, format="png", dpi=FRAME_DPI)
+        frames.append(Image.open(frame).convert("RGB"))
     stream = BytesIO()
     frames[0].save(stream, format="GIF", save_all=True, append_images=frames[1:], duration=FRAME_MS, loop=0)
     return stream.getvalue()
