@@ -143,8 +143,7 @@ class SlippingPlate {
     tractions.t_s_Pa.assign(mesh.lower.size(), 0.7e6);
     std::fill_n(tractions.t_s_Pa.begin(), mesh.lower.size() / 2, 1.4e6);
     const auto state = statics::prestressed(mesh, tractions);
-    stepper_.start(state, 0);
-    stepper_.set_prestress(tractions.t_s_Pa, tractions.p_s_Pa);
+    stepper_.start(state, 0, {tractions.t_s_Pa, tractions.p_s_Pa});
     return {state, interface::VelocityWeakening{}.mu_s, 1};
   }
 

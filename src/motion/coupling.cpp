@@ -73,7 +73,7 @@ double Coupling::relative_u_x_m(std::span<const Body> bodies, std::size_t i) con
   return bodies.size() == 1 ? above : above - bodies[1].u_m().x[bodies[1].lower()[i]];
 }
 
-void Coupling::start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium) {
+void Coupling::start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium, Loads loads) {
   const auto& above = bodies.front();
   for (std::size_t i = 0; i < face_.size(); ++i) {
     start_u_x_m_[i] = relative_u_x_m(bodies, i);
@@ -99,9 +99,15 @@ void Coupling::start(std::span<const Body> bodies, const statics::Equilibrium& e
   }
   std::ranges::fill(face_.intact, 1.0);
   start_contact(contact_, face_);
-  set_trigger({}, std::vector<double>(face_.size(), 0.0));
+  if (loads.trigger_force_N_per_m.empty()) loads.trigger_force_N_per_m.assign(face_.size(), 0.0);
+  set_trigger(loads.trigger, std::move(loads.trigger_force_N_per_m));
   prestress_t_Pa_.clear();
   prestress_p_Pa_.clear();
+  if (!loads.prestress_t_Pa.empty())
+    set_prestress(std::move(loads.prestress_t_Pa), std::move(loads.prestress_p_Pa));
+  // A patch that is weakened now loses its strength at the rate of the regularisation.
+  SLIPFRONT_ASSERT(loads.intact.empty() || loads.intact.size() == face_.size(), "intact of other nodes");
+  if (!loads.intact.empty()) face_.intact = std::move(loads.intact);
 }
 
 void Coupling::set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m) {
@@ -112,15 +118,10 @@ void Coupling::set_trigger(const interface::Trigger& trigger, std::vector<double
     if (trigger_force_N_[i] != 0) trigger_nodes_.push_back(i);
 }
 
-void Coupling::set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa) {
-  SLIPFRONT_ASSERT(t0_Pa.size() == face_.size() && p0_Pa.size() == face_.size(), "prestress of other nodes");
-  prestress_t_Pa_ = std::move(t0_Pa);
-  prestress_p_Pa_ = std::move(p0_Pa);
-}
-
-void Coupling::set_intact(std::vector<double> intact) {
-  SLIPFRONT_ASSERT(intact.size() == face_.size(), "intact of other nodes");
-  face_.intact = std::move(intact);
+void Coupling::set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa) {
+  SLIPFRONT_ASSERT(t_Pa.size() == face_.size() && p_Pa.size() == face_.size(), "prestress of other nodes");
+  prestress_t_Pa_ = std::move(t_Pa);
+  prestress_p_Pa_ = std::move(p_Pa);
 }
 
 void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, Recorder& recorder,

@@ -16,6 +16,18 @@
 
 namespace slipfront::motion {
 
+/// What acts on the interface of a state that begins to move, besides the state itself. All [lower], or empty
+/// for none.
+struct Loads {
+  /// External tractions: t drives the plate to +x, p presses it down; those on a body below are opposite.
+  std::vector<double> prestress_t_Pa = {}, prestress_p_Pa = {};
+  /// External forces along x, N per unit thickness, scaled in time by the trigger's ramp; those on a body
+  /// below are opposite.
+  std::vector<double> trigger_force_N_per_m = {};
+  interface::Trigger trigger = {};
+  std::vector<double> intact = {};  ///< weakens nodes for good, see Interface::intact
+};
+
 /// Contact and friction between a body and the rigid plane below it, or between two bodies whose interface
 /// nodes face each other.
 ///
@@ -28,11 +40,10 @@ class Coupling {
   /// @param bodies  the one above, and the one below where there is one, with as many interface nodes
   Coupling(const interface::ContactModel& contact, std::span<const Body> bodies);
 
-  /// Begins with the bodies' motion, and the tractions of an equilibrium.
-  void start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium);
-  void set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m);
-  void set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa);
-  void set_intact(std::vector<double> intact);
+  /// Begins with the bodies' motion, the tractions of an equilibrium, and the loads.
+  void start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium, Loads loads);
+  /// Changes the prescribed tractions between two steps.
+  void set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa);
 
   /// The sub-step of length dt_s that begins at time_s: finds the tractions and moves the interface nodes.
   /// @param sample  where to put the state at time_s, or null
@@ -69,6 +80,7 @@ class Coupling {
     std::vector<double> share_x, share_y;  ///< of the relative motion's change
   };
 
+  void set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m);
   double relative_u_x_m(std::span<const Body> bodies, std::size_t i) const;
   /// The trial motion of the interface nodes, all forces but the contact's included.
   void gather(const Body& body, double dt_s, double impulse_s);

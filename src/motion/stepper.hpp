@@ -82,23 +82,13 @@ class Stepper {
   /// Steps that a thread takes in one sweep through memory.
   int steps_per_sweep() const { return wavefront_->depth(); }
 
-  /// Puts the bodies into an equilibrium, moving with the shear at top_speed_m_per_s, at time 0.
-  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s);
+  /// Puts the bodies into an equilibrium, moving with the shear at top_speed_m_per_s, under loads, at time 0.
+  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {});
 
-  /// External forces along x on the interface nodes, scaled in time by the trigger's ramp; those on a body
-  /// below are opposite. [lower], N per unit thickness
-  void set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m) {
-    coupling_.set_trigger(trigger, std::move(force_N_per_m));
+  /// Changes the prescribed tractions of Loads between two steps.
+  void set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa) {
+    coupling_.set_prestress(std::move(t_Pa), std::move(p_Pa));
   }
-
-  /// External tractions on the interface nodes: t0 drives the plate to +x, p0 presses it down; those on a
-  /// body below are opposite. [lower]; after start.
-  void set_prestress(std::vector<double> t0_Pa, std::vector<double> p0_Pa) {
-    coupling_.set_prestress(std::move(t0_Pa), std::move(p0_Pa));
-  }
-
-  /// Weakens nodes for good, see Interface::intact; [lower], after start, which makes all of them intact.
-  void set_intact(std::vector<double> intact) { coupling_.set_intact(std::move(intact)); }
 
   /// Takes at most `most_steps` steps, several of them in one sweep through memory. Every contact update is
   /// shown to the recorder.

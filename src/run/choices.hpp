@@ -26,6 +26,9 @@ void require_statics_fit(const input::Case& config);
 /// Of the top edge where the plate is loaded by a ramp, and during the event.
 double top_speed_m_per_s(const input::Case& config);
 
+/// The largest that a slip rate can be by linear elasticity, see motion::Watch.
+double fastest_speed_m_per_s(const input::Case& config);
+
 /// What the plate's shape leaves of loading.solver.
 statics::StaticSolver wanted_solver(const input::Case& config);
 
@@ -42,10 +45,5 @@ record::StaticState prescribed_tractions(const input::Prestress& prestress, cons
 
 /// Positions of the nodes of the interface.
 std::vector<double> interface_x_m(const mesh::Mesh& mesh);
-
-/// The bodies without their motion.
-std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
-                                             const std::optional<mesh::Mesh>& base,
-                                             const motion::Execution& execution = {});
 
 }  // namespace slipfront::run

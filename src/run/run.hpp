@@ -11,62 +11,12 @@
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
+#include "run/initial_state.hpp"
 #include "run/needs.hpp"
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
 
 namespace slipfront::run {
-
-/// The loaded plate before any event: the same for all events of one plate, material, loading and mu_s, so
-/// that it is computed once and shared. Where the tractions are prescribed, common and spontaneous are that
-/// state.
-struct InitialState {
-  mesh::Mesh mesh;                        ///< of the plate
-  std::optional<mesh::Mesh> base;         ///< of the body below, upside down; none on the rigid plane
-  std::int64_t n_nodes = 0, n_cells = 0;  ///< of both
-  std::vector<double> tributary_m;        ///< [lower]
-  statics::Equilibrium common;            ///< at t/p = (1 - critical_margin) mu_s inside
-  statics::Equilibrium spontaneous;       ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
-  bool prescribed = false;                ///< loading.method is prestress: no statics, no critical shear
-  std::vector<double> mu_s;     ///< [lower] where friction varies along x; else none, and it is the case's
-  double critical_shear_m = 0;  ///< shear at t/p = mu_s inside, found directly
-  std::int64_t n_unknowns = 0;
-  statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
-  double solver_bytes = 0;                                          ///< held by it
-  double wall_s = 0;
-  std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
-
-  /// All but the meshes.
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, mu_s, critical_shear_m,
-            n_unknowns, solver, solver_bytes, wall_s, ramp);
-  }
-};
-
-/// The plate's mesh, and that of the body below where there is one, upside down.
-struct Meshes {
-  mesh::Mesh plate;
-  std::optional<mesh::Mesh> base;
-};
-
-/// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer.
-/// @throws UserError
-Meshes check(const input::Case& config);
-
-/// Both bodies in one mesh, for pictures: the nodes and cells of the body below follow those of the plate,
-/// its y turned downwards, as in motion::take_snapshot.
-mesh::Mesh joined(Meshes meshes);
-
-/// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.
-using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
-
-/// @throws UserError, BlowUp, Interrupted as its parts do.
-InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
-                                const motion::Execution& execution = {}, const RampBegins& ramp_begins = {});
-
-/// A text that is the same for two cases if and only if they share their initial state.
-std::string initial_state_key(const input::Case& config);
 
 /// Wave speeds in the plane chosen, m/s.
 struct WaveSpeeds {

@@ -35,7 +35,7 @@ statics::Equilibrium start(motion::Stepper& stepper, const mesh::Mesh& mesh, con
   for (const auto n : mesh.lower) state.tractions.x_m.push_back(mesh.x_m[n]);
   state.tractions.t_s_Pa.assign(mesh.lower.size(), start.t_Pa);
   state.tractions.p_s_Pa.assign(mesh.lower.size(), start.p_Pa);
-  stepper.start(state, 1);
+  stepper.start(state, 1, start.loads);
   return state;
 }
 

@@ -23,6 +23,7 @@ struct Start {
     const mesh::Mesh* mesh = nullptr;
     NodeMotion u_x_m, u_y_m;
   } below = {};
+  motion::Loads loads = {};
 };
 
 /// @return the state from which the stepper was started, as a recorder needs it.

@@ -286,8 +286,7 @@ Points scatter(const Packet& packet, double elements_per_wave, bool subcycled) {
   const std::array waves = {MeshWaves(bodies[0], h_m, step_s(stepper.bodies()[0])),
                             MeshWaves(bodies[1], h_m, step_s(stepper.bodies()[1]))};
   const auto state = bonded(meshes, motion_of(packet, meshes[0], waves[0]));
-  stepper.start(state, 1);
-  stepper.set_prestress(state.tractions.t_s_Pa, state.tractions.p_s_Pa);
+  stepper.start(state, 1, {state.tractions.t_s_Pa, state.tractions.p_s_Pa});
   motion::Recorder recorder(state, bonding_friction, 0);
   while (stepper.time_s() < packet.end_s()) stepper.advance(recorder);
 

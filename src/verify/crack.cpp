@@ -131,9 +131,9 @@ Run run(double ratio, int elements_per_zone) {
                    .height_m = std::ceil(0.5 * c_L() / c_S() * run_end * unit_m / h_m) * h_m,
                    .h_m = h_m,
                    .pressure_Pa = p_Pa,
-                   .law = law});
+                   .law = law,
+                   .intact = [&](double x) { return x < -0.25 * h_m ? 0.0 : 1.0; }});
   body.load([&](double) { return residual_Pa + drop_Pa; });
-  body.weaken([&](double x) { return x < -0.25 * h_m ? 0.0 : 1.0; });
   Run run{.zone = elements_per_zone * h_m / unit_m};
   while (body.time_s() < run_end * t_c) {
     body.advance();
@@ -175,8 +175,8 @@ Arrest grow_and_stop(double r_over_zone, double width_over_r) {
                    .height_m = 0.5 * width_over_r * r_m,
                    .h_m = h_m,
                    .pressure_Pa = p_Pa,
-                   .law = law});
-  body.weaken([&](double x) { return std::abs(x) < r_m - 0.5 * h_m ? 0.0 : 1.0; });
+                   .law = law,
+                   .intact = [&](double x) { return std::abs(x) < r_m - 0.5 * h_m ? 0.0 : 1.0; }});
   const double rise_s = 120 * r_m / c_S(), hold_s = 60 * r_m / c_S();
   Arrest arrest;
   const auto half_length = [&] { return slip_contour_m(body, 0.5 * law.d_c_m, r_m - 1.5 * h_m) / r_m; };

@@ -17,16 +17,25 @@ mesh::Mesh make_mesh(const LoadedPlane& plane) {
                            .top = mesh::Top::absorbing});
 }
 
+/// Of the interface nodes from its middle.
+std::vector<double> places_m(const mesh::Mesh& mesh, double width_m) {
+  std::vector<double> x_m;
+  for (const auto n : mesh.lower) x_m.push_back(mesh.x_m[n] - 0.5 * width_m);
+  return x_m;
+}
+
 }  // namespace
 
 LoadedBody::LoadedBody(const LoadedPlane& plane)
     : plane_(plane),
       mesh_(make_mesh(plane)),
+      x_m_(places_m(mesh_, plane.width_m)),
       stepper_(mesh_, plane.material, {plane.law, constant_pressure}, plain_stepping()),
-      recorder_(start(stepper_, mesh_, {.contact = statics::Contact::stick, .p_Pa = plane.pressure_Pa}),
-                plane.law.mu_s, 0) {
-  for (const auto n : mesh_.lower) x_m_.push_back(mesh_.x_m[n] - 0.5 * plane.width_m);
-}
+      recorder_(start(stepper_, mesh_,
+                      {.contact = statics::Contact::stick,
+                       .p_Pa = plane.pressure_Pa,
+                       .loads = {.intact = plane.intact ? at(plane.intact) : std::vector<double>{}}}),
+                plane.law.mu_s, 0) {}
 
 std::vector<double> LoadedBody::at(const std::function<double(double)>& f) const {
   std::vector<double> values;
@@ -36,10 +45,6 @@ std::vector<double> LoadedBody::at(const std::function<double(double)>& f) const
 
 void LoadedBody::load(const std::function<double(double)>& t0_Pa) {
   stepper_.set_prestress(at(t0_Pa), std::vector<double>(x_m_.size(), plane_.pressure_Pa));
-}
-
-void LoadedBody::weaken(const std::function<double(double)>& intact) {
-  stepper_.set_intact(at(intact));
 }
 
 double sliding_stiffness_Pa(const solid::Material& material) {

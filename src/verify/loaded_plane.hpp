@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "verify/body.hpp"
@@ -14,6 +15,7 @@ struct LoadedPlane {
   double width_m = 0, height_m = 0, h_m = 0;
   double pressure_Pa = 0;
   interface::SlipWeakening law;
+  std::function<double(double x_m)> intact;  ///< see interface::Interface; none: 1 everywhere
 };
 
 /// Its mesh, and a stepper that starts from rest. A place x is counted from the middle of the interface.
@@ -21,9 +23,8 @@ class LoadedBody {
  public:
   explicit LoadedBody(const LoadedPlane& plane);
 
-  /// Shear traction on the interface and the part of the full law that is left, by place.
+  /// Shear traction on the interface, by place.
   void load(const std::function<double(double x_m)>& t0_Pa);
-  void weaken(const std::function<double(double x_m)>& intact);
 
   void advance() { stepper_.advance(recorder_); }
   const motion::Stepper& stepper() const { return stepper_; }

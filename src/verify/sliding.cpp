@@ -194,18 +194,18 @@ Growth carry(const SlidingWave& w) {
              .t_Pa = mu * w.pressure_Pa,
              .p_Pa = w.pressure_Pa};
   if (w.bodies.below) from.below = {&bodies[1].mesh, u_x(bodies[1]), u_y(bodies[1])};
+  const std::size_t n_lower = above.mesh.lower.size();
+  from.loads = {std::vector<double>(n_lower, mu * w.pressure_Pa),
+                std::vector<double>(n_lower, w.pressure_Pa)};
   auto state = start(stepper, above.mesh, from);
   // A delayed response has a part of the wave in its memory.
   if (w.contact.regularisation.relaxed != interface::Relaxed::none) {
     const double rate = interface::relaxation_rate_per_s(w.contact.regularisation, w.speed_m_per_s);
     const Complex delayed = above.shape.pressure_Pa_per_m() * rate / (rate + w.s_per_s);
-    for (std::size_t i = 0; i < above.mesh.lower.size(); ++i)
+    for (std::size_t i = 0; i < n_lower; ++i)
       state.tractions.p_s_Pa[i] += (phase(above.mesh.x_m[above.mesh.lower[i]], 0) * delayed).real();
-    stepper.start(state, 1);
+    stepper.start(state, 1, from.loads);
   }
-  const std::size_t n_lower = above.mesh.lower.size();
-  stepper.set_prestress(std::vector<double>(n_lower, mu * w.pressure_Pa),
-                        std::vector<double>(n_lower, w.pressure_Pa));
 
   const auto transform = [&] {
     Complex sum = 0;

@@ -62,12 +62,11 @@ Run run(const mesh::Mesh& mesh, const solid::Material& material, bool mirrored, 
   Run run;
   run.state = statics.shear_by(sign * original.shear_to(0.95).shear_m);
   motion::Stepper stepper(mesh, material, model, {});
-  stepper.start(run.state, sign * 1e-6 * solid::longitudinal_speed_m_per_s(material));
-  const interface::Trigger trigger;
-  stepper.set_trigger(
-      trigger, motion::trigger_forces(run.state, mesh::tributary_lengths_m(mesh),
-                                      mirrored ? interface::EventKind::right : interface::EventKind::left,
-                                      trigger, mu_s));
+  motion::Loads loads;
+  loads.trigger_force_N_per_m = motion::trigger_forces(
+      run.state, mesh::tributary_lengths_m(mesh),
+      mirrored ? interface::EventKind::right : interface::EventKind::left, loads.trigger, mu_s);
+  stepper.start(run.state, sign * 1e-6 * solid::longitudinal_speed_m_per_s(material), loads);
   motion::Recorder recorder(run.state, mu_s, 0);
   while (stepper.time_s() < end_s) stepper.advance(recorder);
   run.onsets = recorder.take(end_s).onsets;

@@ -153,8 +153,7 @@ TEST(Prestress, ColumnSlidesAtTheRateOfItsImpedance) {
     e.contact.assign(n, statics::Contact::stick);
     e.tractions.t_s_Pa.assign(n, t0);
     e.tractions.p_s_Pa.assign(n, p0);
-    stepper.start(e, 0);
-    stepper.set_prestress(std::vector<double>(n, t0), std::vector<double>(n, p0));
+    stepper.start(e, 0, {std::vector<double>(n, t0), std::vector<double>(n, p0)});
     Recorder recorder(e, mu, 0);
     while (stepper.time_s() < 40e-6) stepper.advance(recorder);
     const double v = std::max(0.0, t0 - mu * p0) / rho_c;

@@ -55,12 +55,7 @@ class Books : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {
     const statics::Statics statics(mesh, material, loading, mu_s);
     const auto e = statics.shear_to(shear_ratio);
     Stepper stepper(mesh, material, law, stepping(rows(), substeps()));
-    stepper.start(e, top_speed);
-    if (triggered) {
-      const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
-      stepper.set_trigger(trigger, trigger_forces(e, mesh::tributary_lengths_m(mesh),
-                                                  interface::EventKind::left, trigger, mu_s));
-    }
+    stepper.start(e, top_speed, triggered ? support::left_trigger(e, mesh, mu_s) : Loads{});
     Recorder recorder(e, mu_s, 0);
     const record::Energies start = stepper.energies();
     Balance balance;

@@ -268,9 +268,9 @@ TEST_F(EventRun, TriggersNucleateAtTheirEdge) {
   time_.end_s = 40e-6;
   for (const auto kind : {interface::EventKind::left, interface::EventKind::right}) {
     Stepper stepper(mesh_, material_, support::paper_law, time_);
-    stepper.start(common_, 1e-6 * c_L_);
     const interface::Trigger trigger;
-    stepper.set_trigger(trigger, trigger_forces(common_, tributary, kind, trigger, mu_s));
+    stepper.start(common_, 1e-6 * c_L_,
+                  {.trigger_force_N_per_m = trigger_forces(common_, tributary, kind, trigger, mu_s)});
     const Event event = run_event(stepper, common_, mu_s, c_L_, trigger, time_, sampling_, 2,
                                   [](auto, auto) { return true; });
     EXPECT_EQ(event.end, EventEnd::end_time);

@@ -82,10 +82,7 @@ TEST_P(GradedPlate, TheBooksCloseWithEverythingOn) {
   for (const auto algorithm :
        {interface::ContactAlgorithm::direct, interface::ContactAlgorithm::predictor_corrector}) {
     Stepper stepper(mesh_, {}, support::with_algorithm(support::gentle_law, algorithm), time_);
-    stepper.start(e, 0.2);
-    const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
-    stepper.set_trigger(trigger, trigger_forces(e, mesh::tributary_lengths_m(mesh_),
-                                                interface::EventKind::left, trigger, mu_s));
+    stepper.start(e, 0.2, support::left_trigger(e, mesh_, mu_s));
     Recorder recorder(e, mu_s, 0);
     const record::Energies start = stepper.energies();
     double worst_J = 0, largest_J = 0;
@@ -151,10 +148,7 @@ TEST_P(GradedPlate, ThreadsAndStepsPerSweepDoNotMatter) {
   const auto e = statics::Statics(mesh, {}, loading, mu_s).shear_by(0.02e-3);
   const auto run = [&](const Execution& execution) {
     Stepper stepper(mesh, {}, support::gentle_law, time_, execution);
-    stepper.start(e, 0.2);
-    const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
-    stepper.set_trigger(trigger, trigger_forces(e, mesh::tributary_lengths_m(mesh),
-                                                interface::EventKind::left, trigger, mu_s));
+    stepper.start(e, 0.2, support::left_trigger(e, mesh, mu_s));
     Recorder recorder(e, mu_s, 0);
     EXPECT_EQ(stepper.advance(recorder, 60, {}), 60);
     return std::tuple(stepper.u_m().x, stepper.u_m().y, stepper.energies().stored(),
@@ -326,10 +320,7 @@ TEST(GeneralMesh, MovesAsThePlainPlate) {
   const auto run = [&](const mesh::Mesh& m, const statics::Equilibrium& state) {
     time.step_factor = 0.9 * stable_step_s / Stepper(m, {}, support::gentle_law, time).stable_step_s();
     Stepper stepper(m, {}, support::gentle_law, time);
-    stepper.start(state, 0.2);
-    const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
-    stepper.set_trigger(trigger, trigger_forces(state, mesh::tributary_lengths_m(m),
-                                                interface::EventKind::left, trigger, mu_s));
+    stepper.start(state, 0.2, support::left_trigger(state, m, mu_s));
     Recorder recorder(state, mu_s, 0);
     const record::Energies start = stepper.energies();
     for (int step = 0; step < 40; ++step) stepper.advance(recorder);

@@ -197,8 +197,7 @@ TEST(OneSubstep, IsTheLeapfrogScheme) {
     auto time = one_substep();
     time.interface_rows = rows;
     Stepper stepper(mesh, material, gentle_law, time);
-    stepper.start(e, 0);
-    stepper.set_trigger(trigger, force);
+    stepper.start(e, 0, {.trigger_force_N_per_m = force, .trigger = trigger});
     Recorder recorder(e, mu_s, 0);
 
     const solid::Operator plate = solid::make_operator(mesh, material);
@@ -386,7 +385,7 @@ TEST_P(Scheme, EqualsThePlainAlgorithm) {
   plain.trigger = {.zone_m = 3e-3, .ramp_s = 1e-6};
   plain.trigger_force =
       trigger_forces(e, mesh::tributary_lengths_m(mesh), interface::EventKind::left, plain.trigger, mu_s);
-  stepper.set_trigger(plain.trigger, plain.trigger_force);
+  stepper.start(e, 0.2, {.trigger_force_N_per_m = plain.trigger_force, .trigger = plain.trigger});
   Recorder recorder(e, mu_s, 0);
   double u_worst = 0, v_worst = 0;
   for (int step = 0; step < 40; ++step) {
@@ -530,12 +529,10 @@ TEST(Stepper, MirroredPlateMovesMirrored) {
   auto force = trigger_forces(e, mesh::tributary_lengths_m(mesh), interface::EventKind::right, trigger, mu_s);
   const TimeStepping time;
   Stepper one(mesh, material, paper_law, time), other(mesh, material, paper_law, time);
-  one.start(e, 1e-3);
-  other.start(m, 1e-3);
-  one.set_trigger(trigger, force);
+  one.start(e, 1e-3, {.trigger_force_N_per_m = force, .trigger = trigger});
   std::ranges::reverse(force);
   for (double& f : force) f = -f;
-  other.set_trigger(trigger, force);
+  other.start(m, 1e-3, {.trigger_force_N_per_m = force, .trigger = trigger});
   Recorder of_one(e, mu_s, 1), of_other(m, mu_s, 1);
   for (int step = 0; step < 60; ++step) {
     one.advance(of_one);
@@ -570,11 +567,10 @@ TEST(Stepper, TriggerWorkIsForceTimesPath) {
   solid::Field u(mesh.n_nodes());
   std::ranges::fill(u.y, 1e-3);
   const auto e = in_flight(mesh, u, solid::Field(mesh.n_nodes()));
-  stepper.start(e, 0);
   const interface::Trigger trigger { .ramp_s = 10e-6, .duration_s = 30e-6 };
   std::vector<double> force(mesh.lower.size());
   for (std::size_t k = 0; k < force.size(); ++k) force[k] = 100.0 * static_cast<double>(k + 1);
-  stepper.set_trigger(trigger, force);
+  stepper.start(e, 0, {.trigger_force_N_per_m = force, .trigger = trigger});
   Recorder recorder(e, mu_s, 0);
   double work = 0;
   while (stepper.time_s() < 40e-6) {
@@ -625,8 +621,9 @@ TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
   };
   const auto run = [&](const Execution& execution, int block) {
     Stepper stepper(mesh, {}, law, {.precision = precision, .interface_substeps = substeps}, execution);
-    stepper.start(e, 0);
-    stepper.set_trigger({.ramp_s = 1e-6}, std::vector<double>(mesh.lower.size(), 1.0));
+    stepper.start(
+        e, 0,
+        {.trigger_force_N_per_m = std::vector<double>(mesh.lower.size(), 1.0), .trigger = {.ramp_s = 1e-6}});
     Recorder recorder(e, mu_s, 1);
     record::History history;
     while (stepper.step() < n_steps) {

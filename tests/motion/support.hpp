@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "motion/event.hpp"
 #include "motion/stepper.hpp"
 #include "support/plate.hpp"
 
@@ -49,5 +50,13 @@ inline const interface::ContactModel gentle_law {
     .mu_s = 1.3, .mu_k = 1.0, .alpha_m2_per_s2 = 100
   }
 };
+
+/// A trigger at the left edge of the state.
+inline Loads left_trigger(const statics::Equilibrium& state, const mesh::Mesh& mesh, double mu_s) {
+  const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
+  return {.trigger_force_N_per_m = trigger_forces(state, mesh::tributary_lengths_m(mesh),
+                                                  interface::EventKind::left, trigger, mu_s),
+          .trigger = trigger};
+}
 
 }  // namespace slipfront::motion::support

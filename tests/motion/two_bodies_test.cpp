@@ -62,11 +62,10 @@ class Rupture {
     tractions.p_s_Pa.assign(n, p0_Pa);
     auto state = statics::prestressed(mesh_, tractions);
     state.below_u_m = state.below_u_per_shear = solid::Field(mesh_below_.n_nodes());
-    stepper_->start(state, 0);
-    stepper_->set_prestress(tractions.t_s_Pa, tractions.p_s_Pa);
-    std::vector<double> intact(n, 1.0);
-    for (std::size_t i = n / 3; i < n / 2; ++i) intact[i] = 0;
-    stepper_->set_intact(intact);
+    Loads loads{tractions.t_s_Pa, tractions.p_s_Pa};
+    loads.intact.assign(n, 1.0);
+    for (std::size_t i = n / 3; i < n / 2; ++i) loads.intact[i] = 0;
+    stepper_->start(state, 0, loads);
     recorder_ = std::make_unique<Recorder>(state, mu_s, 0);
   }
 
@@ -233,9 +232,8 @@ TEST_P(Pulse, IsReflectedAndTransmittedByTheImpedances) {
   state.contact.assign(mesh.lower.size(), statics::Contact::stick);
   state.tractions.p_s_Pa.assign(mesh.lower.size(), p0_Pa);
   state.below_u_m = state.below_u_per_shear = solid::Field(mesh.n_nodes());
-  stepper.start(state, 1);
-  stepper.set_prestress(std::vector<double>(mesh.lower.size(), 0.0),
-                        std::vector<double>(mesh.lower.size(), p0_Pa));
+  stepper.start(state, 1,
+                {std::vector<double>(mesh.lower.size(), 0.0), std::vector<double>(mesh.lower.size(), p0_Pa)});
   Recorder recorder(state, 100, 0);
   const double incident = momentum(stepper.bodies()[0], shear);
   // Until both have left the interface, and none has come to an end.

@@ -33,8 +33,7 @@ class Watched : public ::testing::Test {
       tractions.p_s_Pa.push_back(1e6);
     }
     const auto rest = statics::prestressed(mesh_, tractions);
-    stepper.start(rest, 0);
-    stepper.set_prestress(tractions.t_s_Pa, tractions.p_s_Pa);
+    stepper.start(rest, 0, {tractions.t_s_Pa, tractions.p_s_Pa});
     return stepper;
   }
 

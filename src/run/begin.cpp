@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/begin.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "base/error.hpp"
+#include "input/friction_along_x.hpp"
+#include "interface/nucleation.hpp"
+#include "motion/event.hpp"
+#include "run/choices.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+using interface::is_at_edge;
+
+/// B at the nodes of the interface. [lower]
+std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::Mesh& mesh) {
+  std::vector<double> B;
+  for (const auto n : mesh.lower)
+    B.push_back(interface::nucleation_profile(nucleation, mesh.x_m[n], mesh.period_m));
+  return B;
+}
+
+/// Why a trigger at an edge adds nothing, and which amount does.
+std::string idle_trigger(const input::Case& config, const statics::Equilibrium& state, const PerNode& mu_s,
+                         std::span<const double> tributary_m) {
+  const auto& trigger = config.trigger;
+  const auto zone = motion::trigger_zone(state, config.event, trigger.zone_m);
+  const double direction = motion::load_direction(state, tributary_m, zone);
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto k : zone)
+    least = std::min(least, direction * state.tractions.t_s_Pa[k] / state.tractions.p_s_Pa[k] / mu_s[k]);
+  const bool added = trigger.form == interface::TriggerForm::added;
+  return fmt::format(
+      "event.trigger_amount = {:g} adds no traction in the trigger zone, where t is at least {:.4g} mu_s p "
+      "before the event; choose more than {}",
+      trigger.amount, least,
+      !added      ? fmt::format("{:.4g}", least)
+      : least < 1 ? "0"
+                  : fmt::format("{:.4g} with event.trigger_form = raised", least));
+}
+
+/// Forces of a trigger at an edge, none for other events.
+/// @throws UserError  where the trigger adds nothing
+std::vector<double> trigger_forces(const input::Case& config, const statics::Equilibrium& state,
+                                   const PerNode& mu_s, std::span<const double> tributary_m) {
+  auto forces = motion::trigger_forces(state, tributary_m, config.event, config.trigger, mu_s);
+  const bool pushes = is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened;
+  if (pushes && std::ranges::all_of(forces, [](double force) { return force == 0; }))
+    throw UserError("{}", idle_trigger(config, state, mu_s, tributary_m));
+  return forces;
+}
+
+/// The same, and of a patch that is overstressed. [lower]
+std::vector<double> starting_forces_N_per_m(const input::Case& config, const statics::Equilibrium& state,
+                                            const PerNode& mu_s, const mesh::Mesh& mesh,
+                                            std::span<const double> tributary_m) {
+  auto forces = trigger_forces(config, state, mu_s, tributary_m);
+  if (config.event != interface::EventKind::nucleation ||
+      config.nucleation.form != interface::NucleationForm::overstress)
+    return forces;
+  const auto B = patch(config.nucleation, mesh);
+  for (std::size_t k = 0; k < B.size(); ++k)
+    if (state.contact[k] != statics::Contact::open)
+      forces[k] = config.nucleation.overstress_Pa * B[k] * tributary_m[k];
+  return forces;
+}
+
+/// Interface::intact of an event that begins with a weakened patch or zone; empty for others.
+std::vector<double> intact_shares(const input::Case& config, const statics::Equilibrium& state,
+                                  const mesh::Mesh& mesh) {
+  const bool patched = config.event == interface::EventKind::nucleation &&
+                       config.nucleation.form == interface::NucleationForm::weakened;
+  if (patched) {
+    auto shares = patch(config.nucleation, mesh);
+    for (double& share : shares) share = 1 - share;
+    return shares;
+  }
+  if (!is_at_edge(config.event) || config.trigger.form != interface::TriggerForm::weakened) return {};
+  std::vector<double> shares(mesh.lower.size(), 1.0);
+  for (const auto k : motion::trigger_zone(state, config.event, config.trigger.zone_m)) shares[k] = 0;
+  return shares;
+}
+
+/// Refuses an event that begins with weakening at nodes whose friction does not weaken.
+void require_weakening(const input::Case& config, const std::vector<double>& intact,
+                       const std::vector<interface::FrictionLaw>& laws) {
+  if (intact.empty() || laws.empty()) return;
+  for (std::size_t i = 0; i < laws.size(); ++i)
+    if (intact[i] < 1 && interface::kinetic_coefficient(laws[i]) < interface::static_coefficient(laws[i]))
+      return;
+  throw UserError(
+      "{} = weakened does nothing where friction does not weaken at any node; choose another form",
+      is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form");
+}
+
+}  // namespace
+
+PerNode static_coefficients(const input::Case& config, const std::vector<double>& of_nodes) {
+  return of_nodes.empty() ? PerNode(interface::static_coefficient(config.friction)) : PerNode(of_nodes);
+}
+
+std::vector<double> static_coefficients(const std::vector<interface::FrictionLaw>& laws) {
+  std::vector<double> mu_s;
+  for (const auto& law : laws) mu_s.push_back(interface::static_coefficient(law));
+  return mu_s;
+}
+
+motion::Loads starting_loads(const input::Case& config, const statics::Equilibrium& state, const mesh::Mesh& mesh,
+                             const std::vector<double>& of_nodes) {
+  motion::Loads loads;
+  if (is_prestressed(config)) {
+    loads.prestress_t_Pa = state.tractions.t_s_Pa;
+    loads.prestress_p_Pa = state.tractions.p_s_Pa;
+  }
+  loads.trigger = config.trigger;
+  loads.trigger_force_N_per_m = starting_forces_N_per_m(config, state, static_coefficients(config, of_nodes), mesh,
+                                                        mesh::tributary_lengths_m(mesh));
+  loads.intact = intact_shares(config, state, mesh);
+  if (!loads.intact.empty())
+    require_weakening(config, loads.intact, input::friction_at(config, interface_x_m(mesh)));
+  return loads;
+}
+
+}  // namespace slipfront::run

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/choices.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/memory.hpp"
+#include "input/prestress.hpp"
+#include "motion/event.hpp"
+#include "stability/verdict.hpp"
+#include "statics/plate_solver.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+double approximate_unknowns_of(const mesh::Plate& plate) {
+  double unknowns = 0, h = plate.element_size_m, height_m = plate.fine_height_m, rest_m = plate.height_m;
+  for (int k = 0; k <= std::max(0, plate.coarsenings) && rest_m > 0; ++k) {
+    const double of_block_m = k == plate.coarsenings ? rest_m : std::min(height_m, rest_m);
+    unknowns += 2 * (plate.width_m / h + 1) * (of_block_m / h + 1);
+    rest_m -= of_block_m;
+    height_m = plate.height_m - rest_m;  // a block is as high as everything below it
+    h *= 2;
+  }
+  return unknowns;
+}
+
+}  // namespace
+
+double approximate_unknowns(const input::Case& config) {
+  const double of_plate = approximate_unknowns_of(config.plate);
+  return input::has_base_body(config) ? of_plate + approximate_unknowns_of(input::base_plate(config))
+                                      : of_plate;
+}
+
+void require_plate_fits(const input::Case& config) {
+  const double n_nodes = 0.5 * approximate_unknowns(config);
+  require_memory(
+      motion::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
+      fmt::format("{} of {:.4g} nodes", input::has_base_body(config) ? "a plate and its base" : "a plate",
+                  n_nodes),
+      "choose a larger plate.element_size_m");
+}
+
+double top_speed_m_per_s(const input::Case& config) {
+  return config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
+}
+
+statics::StaticSolver wanted_solver(const input::Case& config) {
+  if (input::has_base_body(config)) return statics::StaticSolver::direct;  // the iterative one knows no base
+  const auto& plate = config.plate;
+  return statics::solver_for_shape(config.loading.solver, plate.coarsenings > 0,
+                                   std::round(plate.width_m / plate.element_size_m),
+                                   std::round(plate.height_m / plate.element_size_m));
+}
+
+double nominal_pressure_Pa(const input::Case& config) {
+  const double compression_m = 0.5 * (config.loading.tilt_left_m + config.loading.tilt_right_m);
+  double per_compression = stability::nominal_pressure_Pa(config.material, 1, config.plate.height_m);
+  if (input::has_base_body(config)) {
+    const double of_base =
+        stability::nominal_pressure_Pa(input::base_material(config), 1, config.base.plate.height_m);
+    per_compression *= of_base / (per_compression + of_base);
+  }
+  return compression_m * per_compression;
+}
+
+bool is_prestressed(const input::Case& config) {
+  return config.loading.method == statics::LoadingMethod::prestress;
+}
+
+record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh) {
+  record::StaticState state;
+  state.x_m = interface_x_m(mesh);
+  if (!prestress.file.empty()) return input::prestress_at(prestress, state.x_m);
+  state.t_s_Pa.assign(state.x_m.size(), prestress.t_Pa);
+  state.p_s_Pa.assign(state.x_m.size(), prestress.p_Pa);
+  return state;
+}
+
+std::vector<double> interface_x_m(const mesh::Mesh& mesh) {
+  std::vector<double> x_m;
+  for (const auto n : mesh.lower) x_m.push_back(mesh.x_m[n]);
+  return x_m;
+}
+
+double fastest_speed_m_per_s(const input::Case& config) {
+  const double of_plate = solid::longitudinal_speed_m_per_s(config.material);
+  if (!input::has_base_body(config)) return of_plate;
+  return std::max(of_plate, solid::longitudinal_speed_m_per_s(input::base_material(config)));
+}
+
+void require_statics_fit(const input::Case& config) {
+  const double n_plate = approximate_unknowns_of(config.plate);
+  if (input::has_base_body(config))
+    statics::require_statics_memory_of_pair(n_plate, approximate_unknowns_of(input::base_plate(config)));
+  else
+    statics::require_statics_memory(wanted_solver(config), n_plate);
+}
+
+}  // namespace slipfront::run

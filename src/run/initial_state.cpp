@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/initial_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "base/clock.hpp"
+#include "base/error.hpp"
+#include "fronts/front.hpp"
+#include "input/friction_along_x.hpp"
+#include "input/schema.hpp"
+#include "mesh/plate.hpp"
+#include "motion/stepper.hpp"
+#include "run/begin.hpp"
+#include "run/choices.hpp"
+#include "statics/plate_solver.hpp"
+#include "statics/prestress.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+std::vector<double> at_all_nodes(const PerNode& values, const mesh::Mesh& mesh) {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < mesh.lower.size(); ++k) all.push_back(values[k]);
+  return all;
+}
+
+/// The ramp knows one coefficient for all nodes.
+void require_one_static_coefficient_of_ramp(const input::Case& config, const std::vector<double>& mu_s) {
+  if (config.loading.method == statics::LoadingMethod::ramp &&
+      std::ranges::adjacent_find(mu_s, std::not_equal_to<>()) != mu_s.end())
+    throw UserError(
+        "{} makes {} vary along x, which loading.method = ramp does not know; choose direct or prestress",
+        config.friction_along_x.file.empty() ? "friction.random_key" : "friction.file",
+        interface::static_coefficient_key(config.friction));
+}
+
+}  // namespace
+
+namespace {
+
+/// Empty where friction does not vary.
+std::string key_of_friction_along_x(const input::Case& config) {
+  if (!config.friction_along_x.varies()) return {};
+  input::Case relevant;
+  relevant.friction = config.friction;
+  relevant.friction_along_x = config.friction_along_x;
+  return input::to_toml(relevant) + config.friction_along_x.table.text;
+}
+
+}  // namespace
+
+std::string initial_state_key(const input::Case& config) {
+  input::Case relevant;
+  relevant.plate = config.plate;
+  relevant.base = config.base;
+  if (is_prestressed(config)) {
+    relevant.loading.method = config.loading.method;
+    relevant.prestress = config.prestress;
+    relevant.base.material = {};
+    return input::to_toml(relevant) + config.prestress.table.text + key_of_friction_along_x(config);
+  }
+  relevant.material = config.material;
+  relevant.loading = config.loading;
+  relevant.friction = interface::Coulomb { interface::static_coefficient(config.friction) };
+  if (config.loading.method == statics::LoadingMethod::ramp) {
+    // Nodes at the edges slip during the ramp, by the law itself.
+    relevant.friction = config.friction;
+    relevant.regularisation = config.regularisation;
+    relevant.contact = config.contact;
+    relevant.time = config.time;
+  } else {
+    relevant.material.density_kg_per_m3 = input::Case{}.material.density_kg_per_m3;
+    relevant.material.stiffness_damping_s = input::Case{}.material.stiffness_damping_s;
+    relevant.base.material.density_kg_per_m3 = relevant.material.density_kg_per_m3;
+    relevant.base.material.stiffness_damping_s = relevant.material.stiffness_damping_s;
+  }
+  return input::to_toml(relevant) + key_of_friction_along_x(config);
+}
+
+namespace {
+
+/// Statics of a tilted plate need edges that hold.
+void require_edges_to_tilt(const input::Case& config) {
+  if (config.plate.sides == mesh::Sides::periodic)
+    throw UserError(
+        "plate.sides = periodic has no equilibrium under a tilted top edge; choose free or absorbing, or "
+        "loading.method = prestress");
+  if (config.plate.top != mesh::Top::loaded)
+    throw UserError(
+        "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
+        config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
+  if (input::has_base_body(config) && config.base.plate.top != mesh::Top::loaded)
+    throw UserError(
+        "base.bottom = {} does not hold the base under a tilted plate; choose held, or loading.method = "
+        "prestress",
+        config.base.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
+}
+
+void require_free_sides_for_single(const input::Case& config) {
+  if (config.time.precision != motion::Precision::single_precision) return;
+  const auto require = [](const mesh::Plate& plate, const char* table) {
+    if (plate.sides != mesh::Sides::free)
+      throw UserError(
+          "time.precision = single needs rows between free sides; choose {}.sides = free or double", table);
+  };
+  require(config.plate, "plate");
+  if (input::has_base_body(config)) require(config.base.plate, "base");
+}
+
+/// Of the body below, upside down.
+mesh::Mesh make_base(const input::Case& config) {
+  const auto plate = input::base_plate(config);
+  const double rows = plate.height_m / plate.element_size_m;
+  if (std::abs(rows - std::round(rows)) > 1e-6 * rows)
+    throw UserError(
+        "base.height_m = {:.8g} is no whole multiple of plate.element_size_m = {:.8g}, with which the nodes "
+        "of "
+        "the two bodies face each other; the nearest that fit are {:.8g} and {:.8g}",
+        plate.height_m, plate.element_size_m, std::floor(rows) * plate.element_size_m,
+        std::ceil(rows) * plate.element_size_m);
+  return mesh::make_plate(plate, "base");
+}
+
+}  // namespace
+
+Meshes check(const input::Case& config) {
+  require_plate_fits(config);
+  if (!is_prestressed(config)) {
+    require_edges_to_tilt(config);
+    require_statics_fit(config);
+  }
+  require_free_sides_for_single(config);
+  Meshes meshes{mesh::make_plate(config.plate), {}};
+  motion::require_rows_fit(meshes.plate, config.time);
+  if (input::has_base_body(config)) {
+    meshes.base = make_base(config);
+    motion::require_rows_fit(*meshes.base, config.time);
+  }
+  const auto mu_s = static_coefficients(input::friction_at(config, interface_x_m(meshes.plate)));
+  if (!is_prestressed(config)) {
+    require_one_static_coefficient_of_ramp(config, mu_s);
+    return meshes;
+  }
+  const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate));
+  starting_loads(config, state, meshes.plate, mu_s);
+  return meshes;
+}
+
+mesh::Mesh joined(Meshes meshes) {
+  auto mesh = std::move(meshes.plate);
+  if (!meshes.base) return mesh;
+  const auto& base = *meshes.base;
+  const auto first = mesh.n_nodes();
+  for (auto grid : mesh::blocks(base)) {
+    grid.first += first;
+    mesh.coarser.push_back(grid);
+  }
+  mesh.x_m.insert(mesh.x_m.end(), base.x_m.begin(), base.x_m.end());
+  for (const double y : base.y_m) mesh.y_m.push_back(-y);
+  for (const auto& [a, b, c, d] : base.cells)  // counterclockwise again
+    mesh.cells.push_back({first + d, first + c, first + b, first + a});
+  return mesh;
+}
+
+std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
+                                             const std::optional<mesh::Mesh>& base,
+                                             const motion::Execution& execution) {
+  const auto contact = input::contact_model(config, interface_x_m(plate));
+  if (!base)
+    return std::make_unique<motion::Stepper>(plate, config.material, contact, config.time, execution);
+  const auto material = input::base_material(config);
+  return std::make_unique<motion::Stepper>(motion::BodySource{plate, config.material},
+                                           motion::BodySource{*base, material}, contact, config.time,
+                                           execution);
+}
+
+InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
+                                const motion::Execution& execution, const RampBegins& ramp_begins) {
+  const auto start = Clock::now();
+  const double margin = config.loading.critical_margin;
+  InitialState initial;
+  auto meshes = check(config);
+  initial.mesh = std::move(meshes.plate);
+  initial.base = std::move(meshes.base);
+  initial.n_nodes = initial.mesh.n_nodes() + (initial.base ? initial.base->n_nodes() : 0);
+  initial.n_cells = std::ssize(initial.mesh.cells) + (initial.base ? std::ssize(initial.base->cells) : 0);
+  initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
+  initial.mu_s = static_coefficients(input::friction_at(config, interface_x_m(initial.mesh)));
+  const double mu_s = static_coefficients(config, initial.mu_s)[0];
+  if (is_prestressed(config)) {
+    initial.prescribed = true;
+    initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh),
+                                          initial.base ? &*initial.base : nullptr);
+    initial.spontaneous = initial.common;
+    initial.critical_shear_m = fronts::undefined;
+    initial.wall_s = seconds_since(start);
+    return initial;
+  }
+  const auto base_material = input::base_material(config);
+  std::optional<statics::ElasticBody> base;
+  if (initial.base) base.emplace(*initial.base, base_material);
+  const statics::Statics statics({initial.mesh, config.material}, base, config.loading,
+                                 at_all_nodes(static_coefficients(config, initial.mu_s), initial.mesh),
+                                 interface::static_coefficient_key(config.friction),
+                                 [&] { return monitor(0, 0); });
+  initial.n_unknowns = statics.solver().n_unknowns();
+  initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
+  initial.solver_bytes = statics.solver().bytes();
+  initial.critical_shear_m = statics.shear_to(1).shear_m;
+  if (config.loading.method == statics::LoadingMethod::direct) {
+    initial.common = statics.shear_to(1 - margin);
+    initial.spontaneous = statics.shear_to(1 + margin);
+  } else {
+    auto of_ramp = config;
+    of_ramp.time.interface_substeps = 1;
+    const auto with_ramp = new_stepper(of_ramp, initial.mesh, initial.base, execution);
+    auto& stepper = *with_ramp;
+    const auto tilted = statics.shear_by(0);
+    stepper.start(tilted, top_speed_m_per_s(config));
+    motion::RampRun ramp(stepper, tilted, config.loading, mu_s, top_speed_m_per_s(config),
+                         fastest_speed_m_per_s(config), initial.critical_shear_m);
+    if (ramp_begins) ramp_begins(stepper, ramp);
+    initial.ramp = ramp.run(monitor);
+    if (initial.ramp->interrupted) throw Interrupted("interrupted during the ramp, before the event");
+    initial.common = initial.ramp->common;
+    initial.spontaneous = initial.ramp->spontaneous;
+  }
+  initial.wall_s = seconds_since(start);
+  return initial;
+}
+
+}  // namespace slipfront::run
