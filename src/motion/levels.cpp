@@ -182,43 +182,161 @@ std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& m
   return multiples;
 }
 
-Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const Plate& plate,
-                   const TimeStepping& time, double step_s, std::span<const int> multiples) {
-  require_rows_fit(mesh, time);
-  const auto& op = plate.op;
-  // Levels by their steps, those of the blocks and that of the interface rows.
-  const bool layered = time.interface_substeps > 1;
+namespace {
+
+/// Whether rows next to the interface have a level of their own.
+bool is_layered(const TimeStepping& time) {
+  return time.interface_substeps > 1;
+}
+
+/// Sub-steps in a step of each level, the coarsest first: those of the blocks and, with sub-steps, that of
+/// the interface rows.
+std::vector<int> periods_of_levels(const TimeStepping& time, std::span<const int> multiples) {
   std::vector<int> periods;
   for (const int multiple : multiples)
     if (const int period = multiple * time.interface_substeps; periods.empty() || periods.back() != period)
       periods.push_back(period);
-  const int substeps = periods.back();
-  if (layered) periods.insert(periods.begin(), 1);
+  if (is_layered(time)) periods.insert(periods.begin(), 1);
   std::ranges::reverse(periods);
+  return periods;
+}
+
+std::vector<std::uint8_t> levels_of_cells(const mesh::Mesh& mesh, const TimeStepping& time,
+                                          std::span<const int> multiples, const std::vector<int>& periods) {
+  const auto block_of_cell = block_of_cells(mesh);
+  std::vector<std::uint8_t> level(mesh.cells.size(), 0);
+  for (std::size_t c = 0; c < level.size(); ++c) {
+    const int period = multiples[block_of_cell[c]] * time.interface_substeps;
+    level[c] = static_cast<std::uint8_t>(std::ranges::find(periods, period) - periods.begin());
+  }
+  if (!is_layered(time)) return level;
+  const auto near = cells_next_to_interface(mesh, time.interface_rows);
+  for (std::size_t c = 0; c < near.size(); ++c)
+    if (near[c]) level[c] = static_cast<std::uint8_t>(periods.size() - 1);
+  return level;
+}
+
+/// A node moves with the finest of its cells.
+std::vector<std::uint8_t> levels_of_nodes(const mesh::Mesh& mesh,
+                                          const std::vector<std::uint8_t>& level_of_cell) {
+  std::vector<std::uint8_t> level(mesh.n_nodes(), 0);
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    for (const auto n : mesh.cells[c]) level[n] = std::max(level[n], level_of_cell[c]);
+  return level;
+}
+
+std::vector<bool> marked(const std::vector<mesh::Node>& nodes, const mesh::Mesh& mesh) {
+  std::vector<bool> is_in(mesh.n_nodes(), false);
+  for (const auto n : nodes) is_in[n] = true;
+  return is_in;
+}
+
+/// Nodes of some cells.
+std::vector<bool> nodes_of(const mesh::Mesh& mesh, const std::vector<bool>& in_level) {
+  std::vector<bool> is_in(mesh.n_nodes(), false);
+  for (std::size_t c = 0; c < in_level.size(); ++c)
+    if (in_level[c])
+      for (const auto n : mesh.cells[c]) is_in[n] = true;
+  return is_in;
+}
+
+/// Rows without a stencil: block rows first, general ones after them.
+void set_irregular_rows(Level& level) {
+  auto& irregular = level.irregular;
+  irregular = level.part.irregular.node;
+  level.general.begin = static_cast<int>(irregular.size());
+  irregular.insert(irregular.end(), level.part.general.node().begin(), level.part.general.node().end());
+  level.general.end = static_cast<int>(irregular.size());
+  level.general_space = level.part.general.workspace();
+  level.a_x.resize(irregular.size());
+  level.a_y.resize(irregular.size());
+}
+
+/// Nodes of the level's cells that move with a finer one.
+void set_shared_nodes(Level& level, const std::vector<bool>& shared) {
+  std::vector<std::int32_t> irregular_row(shared.size(), -1);
+  for (std::size_t r = 0; r < level.irregular.size(); ++r)
+    irregular_row[level.irregular[r]] = static_cast<std::int32_t>(r);
+  auto& s = level.shared;
+  for (std::size_t n = 0; n < shared.size(); ++n) {
+    if (!shared[n]) continue;
+    s.node.push_back(static_cast<mesh::Node>(n));
+    s.irregular_row.push_back(irregular_row[n]);
+  }
+  s.runs = runs_of(s.node);
+  s.u_before_m = s.push_m_per_s = s.steady_m_per_s2 = solid::Field(s.node.size());
+}
+
+/// Nodes of the loaded edge that move with the level, and the rows of all in its cells.
+void set_loaded_edge(Level& level, std::size_t l, const mesh::Mesh& mesh, const solid::Material& material,
+                     const std::vector<std::uint8_t>& level_of_node, const std::vector<bool>& in_level,
+                     const std::vector<bool>& in_cells) {
+  std::vector<mesh::Node> top;
+  for (const auto n : mesh.top) {
+    if (level_of_node[n] == l) level.top.push_back(n);
+    if (in_cells[n]) top.push_back(n);
+  }
+  level.top_rows = solid::assemble_rows(mesh, material, top, {}, in_level);
+  level.top_force_N.resize(top.size());
+}
+
+/// Neighbouring general rows that are treated alike.
+void set_general_runs(Level& level) {
+  for (int r = level.general.begin; r < level.general.end; ++r) {
+    const bool goes_on = r > level.general.begin && level.irregular[r] == level.irregular[r - 1] + 1 &&
+                         level.takes_push[r] == level.takes_push[r - 1] &&
+                         level.moves[r] == level.moves[r - 1];
+    if (goes_on) {
+      ++level.general_runs.back().count;
+    } else {
+      level.general_runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1});
+    }
+  }
+}
+
+/// Last rows of the coarsest level's bands: the first one with all that the interface's part of a step needs,
+/// rows with irregular nodes alone.
+std::vector<int> last_rows_of_bands(const mesh::Mesh& mesh, const solid::Operator& op, const Levels& levels) {
+  const auto& level = levels.level.front();
+  // The work of landing nodes needs the places of their neighbours after the step.
+  const auto in_contact = marked(mesh.lower, mesh);
+  std::vector<bool> needed(mesh.n_nodes(), false);
+  for (const auto& cell : mesh.cells)
+    if (std::ranges::any_of(cell, [&](mesh::Node n) { return in_contact[n]; }))
+      for (const auto n : cell) needed[n] = true;
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
+    if (levels.level_of_node[n] > 0) needed[n] = true;
+  const int top_row = op.n_rows() - 1;
+  std::vector<bool> single(op.rows.size(), false);
+  single[top_row] = true;
+  for (const auto n : level.part.irregular.node) single[op.row_of(n)] = true;
+  const int most_rows = std::max(1, nodes_per_band / op.rows[top_row].count);
+  int row = last_row_of_first_band(level, op, needed);
+  std::vector<int> last_rows{row};
+  while (row < top_row) {
+    const int first = ++row;
+    while (row - first + 1 < most_rows && !single[row] && !single[row + 1]) ++row;
+    last_rows.push_back(row);
+  }
+  return last_rows;
+}
+
+}  // namespace
+
+Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const Plate& plate,
+                   const TimeStepping& time, double step_s, std::span<const int> multiples) {
+  require_rows_fit(mesh, time);
+  const auto& op = plate.op;
+  const auto periods = periods_of_levels(time, multiples);
+  const int substeps = periods.front();
+  const auto level_of_cell = levels_of_cells(mesh, time, multiples, periods);
   Levels levels;
   levels.level.resize(periods.size());
-  const std::size_t n_levels = levels.level.size();
-  const auto block_of_cell = block_of_cells(mesh);
-  std::vector<std::uint8_t> level_of_cell(mesh.cells.size(), 0);
-  for (std::size_t c = 0; c < level_of_cell.size(); ++c) {
-    const int period = multiples[block_of_cell[c]] * time.interface_substeps;
-    level_of_cell[c] = static_cast<std::uint8_t>(std::ranges::find(periods, period) - periods.begin());
-  }
-  if (layered) {
-    const auto near = cells_next_to_interface(mesh, time.interface_rows);
-    for (std::size_t c = 0; c < near.size(); ++c)
-      if (near[c]) level_of_cell[c] = static_cast<std::uint8_t>(n_levels - 1);
-  }
-  // A node moves with the finest of its cells.
-  auto& level_of_node = levels.level_of_node;
-  level_of_node.assign(mesh.n_nodes(), 0);
+  levels.level_of_node = levels_of_nodes(mesh, level_of_cell);
   levels.is_orphan = mesh::orphans(mesh);
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
-    for (const auto n : mesh.cells[c]) level_of_node[n] = std::max(level_of_node[n], level_of_cell[c]);
-  std::vector<bool> in_contact(mesh.n_nodes(), false), is_shared(mesh.n_nodes(), false);
-  for (const auto n : mesh.lower) in_contact[n] = true;
-
-  for (std::size_t l = 0; l < n_levels; ++l) {
+  const auto in_contact = marked(mesh.lower, mesh);
+  std::vector<bool> is_shared(mesh.n_nodes(), false);  // by a coarser level or this one
+  for (std::size_t l = 0; l < periods.size(); ++l) {
     auto& level = levels.level[l];
     level.period = periods[l];
     level.step_s = step_s * level.period / substeps;
@@ -226,94 +344,32 @@ Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, cons
                           material.density_kg_per_m3 * mesh.grid.spacing_m * mesh.grid.spacing_m};
     std::vector<bool> in_level(mesh.cells.size());
     for (std::size_t c = 0; c < in_level.size(); ++c) in_level[c] = level_of_cell[c] == l;
-    const int edge_row = layered ? time.interface_rows : 0;
-    level.part = n_levels > 1 ? solid::make_part(mesh, material, op, in_level, edge_row) : op.whole;
-    auto& irregular = level.irregular;
-    irregular = level.part.irregular.node;
-    level.general.begin = static_cast<int>(irregular.size());
-    irregular.insert(irregular.end(), level.part.general.node().begin(), level.part.general.node().end());
-    level.general.end = static_cast<int>(irregular.size());
-    level.general_space = level.part.general.workspace();
-    std::vector<std::int32_t> irregular_row(mesh.n_nodes(), -1);
-    for (std::size_t r = 0; r < irregular.size(); ++r)
-      irregular_row[irregular[r]] = static_cast<std::int32_t>(r);
-    std::vector<bool> shared(mesh.n_nodes(), false), in_cells(mesh.n_nodes(), false);
-    for (std::size_t c = 0; c < in_level.size(); ++c) {
-      if (!in_level[c]) continue;
-      for (const auto n : mesh.cells[c]) {
-        in_cells[n] = true;
-        if (level_of_node[n] > l && !op.is_top[n]) shared[n] = true;
-      }
-    }
-    std::vector<mesh::Node> top;
-    for (const auto n : mesh.top) {
-      if (level_of_node[n] == l) level.top.push_back(n);
-      if (in_cells[n]) top.push_back(n);
-    }
-    auto& s = level.shared;
+    const int edge_row = is_layered(time) ? time.interface_rows : 0;
+    level.part = periods.size() > 1 ? solid::make_part(mesh, material, op, in_level, edge_row) : op.whole;
+    set_irregular_rows(level);
+    const auto in_cells = nodes_of(mesh, in_level);
+    std::vector<bool> shared(mesh.n_nodes(), false);
     for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
-      if (!shared[n]) continue;
-      s.node.push_back(n);
-      s.irregular_row.push_back(irregular_row[n]);
-      is_shared[n] = true;
+      shared[n] = in_cells[n] && levels.level_of_node[n] > l && !op.is_top[n];
+      is_shared[n] = is_shared[n] || shared[n];
     }
-    s.runs = runs_of(s.node);
-    s.u_before_m = s.push_m_per_s = s.steady_m_per_s2 = solid::Field(s.node.size());
+    set_shared_nodes(level, shared);
     for (const auto& row : level.part.stencil)
       if (solid::is_horizontal_edge(row))
         level.edge_kick_m_per_s.emplace_back(2 * static_cast<std::size_t>(mesh.grid.stride()));
-    for (const auto n : irregular) {
+    for (const auto n : level.irregular) {
       level.takes_push.push_back(!shared[n]);
       level.moves.push_back(!in_contact[n] && !is_shared[n]);
     }
-    level.top_rows = solid::assemble_rows(mesh, material, top, {}, in_level);
-    level.top_force_N.resize(top.size());
-    level.a_x.resize(irregular.size());
-    level.a_y.resize(irregular.size());
+    set_loaded_edge(level, l, mesh, material, levels.level_of_node, in_level, in_cells);
   }
   set_dashpots(levels, mesh, material, plate);
-  for (auto& level : levels.level)
-    for (int r = level.general.begin; r < level.general.end; ++r) {
-      const bool goes_on = r > level.general.begin && level.irregular[r] == level.irregular[r - 1] + 1 &&
-                           level.takes_push[r] == level.takes_push[r - 1] &&
-                           level.moves[r] == level.moves[r - 1];
-      if (goes_on) {
-        ++level.general_runs.back().count;
-      } else {
-        level.general_runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1});
-      }
-    }
-
-  for (std::size_t l = 0; l < n_levels; ++l) {
-    auto& level = levels.level[l];
-    if (l > 0) {
-      set_bands(level, op, {op.n_rows() - 1});
-      continue;
-    }
-    // The work of landing nodes needs the places of their neighbours after the step.
-    std::vector<bool> marked(mesh.n_nodes(), false);
-    for (const auto& cell : mesh.cells)
-      if (std::ranges::any_of(cell, [&](mesh::Node n) { return in_contact[n]; }))
-        for (const auto n : cell) marked[n] = true;
-    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
-      if (level_of_node[n] > 0) marked[n] = true;
-    const int top_row = op.n_rows() - 1;
-    std::vector<bool> single(op.rows.size(), false);
-    single[top_row] = true;
-    for (const auto n : level.part.irregular.node) single[op.row_of(n)] = true;
-    const int most_rows = std::max(1, nodes_per_band / op.rows[top_row].count);
-    int row = last_row_of_first_band(level, op, marked);
-    std::vector<int> last_rows{row};
-    while (row < top_row) {
-      const int first = ++row;
-      while (row - first + 1 < most_rows && !single[row] && !single[row + 1]) ++row;
-      last_rows.push_back(row);
-    }
-    set_bands(level, op, last_rows);
-  }
+  for (auto& level : levels.level) set_general_runs(level);
+  set_bands(levels.level.front(), op, last_rows_of_bands(mesh, op, levels));
+  for (auto& level : std::span(levels.level).subspan(1)) set_bands(level, op, {op.n_rows() - 1});
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
     if (!levels.is_orphan[n] && !op.is_top[n])
-      levels.node_updates_per_step += substeps / levels.level[level_of_node[n]].period;
+      levels.node_updates_per_step += substeps / levels.level[levels.level_of_node[n]].period;
   return levels;
 }
 

@@ -111,16 +111,16 @@ std::vector<double> static_coefficients(const std::vector<interface::FrictionLaw
   return mu_s;
 }
 
-motion::Loads starting_loads(const input::Case& config, const statics::Equilibrium& state, const mesh::Mesh& mesh,
-                             const std::vector<double>& of_nodes) {
+motion::Loads starting_loads(const input::Case& config, const statics::Equilibrium& state,
+                             const mesh::Mesh& mesh, const std::vector<double>& of_nodes) {
   motion::Loads loads;
   if (is_prestressed(config)) {
     loads.prestress_t_Pa = state.tractions.t_s_Pa;
     loads.prestress_p_Pa = state.tractions.p_s_Pa;
   }
   loads.trigger = config.trigger;
-  loads.trigger_force_N_per_m = starting_forces_N_per_m(config, state, static_coefficients(config, of_nodes), mesh,
-                                                        mesh::tributary_lengths_m(mesh));
+  loads.trigger_force_N_per_m = starting_forces_N_per_m(config, state, static_coefficients(config, of_nodes),
+                                                        mesh, mesh::tributary_lengths_m(mesh));
   loads.intact = intact_shares(config, state, mesh);
   if (!loads.intact.empty())
     require_weakening(config, loads.intact, input::friction_at(config, interface_x_m(mesh)));

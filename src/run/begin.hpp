@@ -22,7 +22,7 @@ std::vector<double> static_coefficients(const std::vector<interface::FrictionLaw
 /// nodes.
 /// @param of_nodes  coefficients at rest of the nodes; none where they all have the case's
 /// @throws UserError  where a trigger adds nothing, or no node that is weakened has a law that weakens
-motion::Loads starting_loads(const input::Case& config, const statics::Equilibrium& state, const mesh::Mesh& mesh,
-                             const std::vector<double>& of_nodes);
+motion::Loads starting_loads(const input::Case& config, const statics::Equilibrium& state,
+                             const mesh::Mesh& mesh, const std::vector<double>& of_nodes);
 
 }  // namespace slipfront::run
