@@ -44,6 +44,17 @@ struct Condition {
   std::function<bool(const Case&)> holds;
 };
 
+/// The first part of a run that a key affects; a state before the event is shared between cases that agree in
+/// the keys it depends on.
+enum class Stage {
+  mesh,        ///< and all that follows; what a key affects that says nothing
+  statics,     ///< equilibria of the tilted plate
+  tractions,   ///< prescribed ones
+  motion,      ///< explicit steps, those of a ramp before the event included
+  event,       ///< how it starts
+  evaluation,  ///< fronts and files
+};
+
 /// A key of the case file: everything the program knows about it. Its default is the struct's own.
 struct Entry {
   std::string key;  ///< dotted
@@ -56,6 +67,7 @@ struct Entry {
   std::function<void(Case&, const Value&)> set;
   /// The setting without which the key does nothing, and may not be set.
   std::optional<Condition> only_with = {};
+  Stage stage = Stage::mesh;
 };
 
 /// The unit that a key ends with: "m" for plate.width_m, "kg/m3" for density_kg_per_m3; empty for a plain
@@ -81,6 +93,10 @@ const std::vector<Entry>& common_entries();
 
 /// All keys that a case can set, those of its friction law among them, in the order of the case file.
 std::vector<Entry> entries_of(const Case& config);
+
+/// What of a case its state before the event depends on: the keys of some stages with their values, and the
+/// contents of the tables that they name.
+std::string text_of_stages(const Case& config, const std::vector<Stage>& stages);
 
 /// The part before the last dot: "plate"; empty for a key outside all tables.
 std::string table_of(const std::string& key);

@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "fronts/front.hpp"
 #include "input/friction_along_x.hpp"
-#include "input/schema.hpp"
+#include "input/entries.hpp"
 #include "mesh/plate.hpp"
 #include "motion/stepper.hpp"
 #include "run/begin.hpp"
@@ -38,47 +38,29 @@ void require_one_static_coefficient_of_ramp(const input::Case& config, const std
         interface::static_coefficient_key(config.friction));
 }
 
-}  // namespace
-
-namespace {
-
-/// Empty where friction does not vary.
-std::string key_of_friction_along_x(const input::Case& config) {
-  if (!config.friction_along_x.varies()) return {};
-  input::Case relevant;
-  relevant.friction = config.friction;
-  relevant.friction_along_x = config.friction_along_x;
-  return input::to_toml(relevant) + config.friction_along_x.table.text;
+/// What an initial state without motion keeps of friction: the coefficients at rest.
+std::string strengths_text(const input::Case& config) {
+  auto at_rest = config;
+  if (!config.friction_along_x.varies()) at_rest.friction = interface::Coulomb {
+      interface::static_coefficient(config.friction)
+    };
+  std::string text;
+  for (const auto& entry : input::entries_of(at_rest))
+    if (input::table_of(entry.key) == "friction") text += input::toml_text(entry.get(at_rest)) + "\n";
+  return text + config.friction_along_x.table.text;
 }
 
 }  // namespace
 
 std::string initial_state_key(const input::Case& config) {
-  input::Case relevant;
-  relevant.plate = config.plate;
-  relevant.base = config.base;
-  if (is_prestressed(config)) {
-    relevant.loading.method = config.loading.method;
-    relevant.prestress = config.prestress;
-    relevant.base.material = {};
-    return input::to_toml(relevant) + config.prestress.table.text + key_of_friction_along_x(config);
-  }
-  relevant.material = config.material;
-  relevant.loading = config.loading;
-  relevant.friction = interface::Coulomb { interface::static_coefficient(config.friction) };
-  if (config.loading.method == statics::LoadingMethod::ramp) {
-    // Nodes at the edges slip during the ramp, by the law itself.
-    relevant.friction = config.friction;
-    relevant.regularisation = config.regularisation;
-    relevant.contact = config.contact;
-    relevant.time = config.time;
-  } else {
-    relevant.material.density_kg_per_m3 = input::Case{}.material.density_kg_per_m3;
-    relevant.material.stiffness_damping_s = input::Case{}.material.stiffness_damping_s;
-    relevant.base.material.density_kg_per_m3 = relevant.material.density_kg_per_m3;
-    relevant.base.material.stiffness_damping_s = relevant.material.stiffness_damping_s;
-  }
-  return input::to_toml(relevant) + key_of_friction_along_x(config);
+  using input::Stage;
+  if (is_prestressed(config))
+    return text_of_stages(config, {Stage::mesh, Stage::tractions}) +
+           (config.friction_along_x.varies() ? strengths_text(config) : "");
+  // Nodes at the edges slip during a ramp, by the law itself.
+  if (config.loading.method == statics::LoadingMethod::ramp)
+    return text_of_stages(config, {Stage::mesh, Stage::statics, Stage::motion});
+  return text_of_stages(config, {Stage::mesh, Stage::statics}) + strengths_text(config);
 }
 
 namespace {
