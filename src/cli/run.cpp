@@ -47,6 +47,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
       "updates/s\n",
       event.steps, result.step_s, std::lround(result.step_s / result.substep_s), result.stepping_wall_s,
       1e-6 * static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s);
+  print("ended: {}\n", run::end_of_event(result));
   for (const auto& front : result.fronts) {
     std::vector<double> speeds;
     for (const auto& point : front.points) speeds.push_back(point.v_tip_m_per_s / result.speeds.c_L);

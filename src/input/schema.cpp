@@ -372,11 +372,16 @@ void check_prestress(const Case& config, const Document& document, const Require
           "nucleation");
 }
 
-void check_base(const Case& config, const Require& require) {
+void check_base(const Case& config, const Document& document, const Require& require) {
   if (!has_base_body(config)) return;
   const bool repeats = config.plate.sides == mesh::Sides::periodic;
   require((config.base.plate.sides == mesh::Sides::periodic) == repeats, {"base.sides", "plate.sides"},
           "base.sides and plate.sides must both be periodic, or neither of them");
+  // The defaults are those of the paper's plate, which nobody means for a base.
+  for (const char* key : {"base.youngs_modulus_Pa", "base.poissons_ratio", "base.density_kg_per_m3",
+                          "base.stiffness_damping_s", "base.height_m"})
+    require(find_setting(document, key), {"base.kind"},
+            fmt::format("base.kind = body needs {}; set it", key));
   require(config.loading.method == statics::LoadingMethod::prestress ||
               config.loading.solver != statics::StaticSolver::iterative,
           {"loading.solver", "base.kind"},
@@ -458,7 +463,7 @@ void check_relations(const Case& config, const Document& document, const std::st
       fmt::format(
           "time.step_factor is {}, beyond the stable step; use at most 1, or set time.allow_unstable = true",
           config.time.step_factor));
-  check_base(config, require);
+  check_base(config, document, require);
   check_trigger(config, require);
   check_nucleation(config, require);
   check_friction_along_x(config, require);

@@ -14,10 +14,6 @@ namespace {
 
 constexpr std::int64_t monitor_interval = 50;
 
-/// Nodes at the edges creep along with the loading; slip that is no faster than this multiple of the top's
-/// speed does not keep an event going.
-constexpr double creep_over_top_speed = 10;
-
 /// Empties a history but for its places; the memory stays for the next rows.
 void clear_rows(record::History& history) {
   for (auto* column :

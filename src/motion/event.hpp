@@ -53,6 +53,10 @@ class Sink {
 double event_bytes(double n_nodes, double n_cells, bool with_snapshots,
                    Precision precision = Precision::double_precision);
 
+/// Nodes at the edges creep along with the loading; slip that is no faster than this multiple of the top's
+/// speed does not keep an event going.
+inline constexpr double creep_over_top_speed = 10;
+
 /// Why an event ended.
 enum class EventEnd { end_time, quiet, interrupted, blow_up };
 

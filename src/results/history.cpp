@@ -27,9 +27,10 @@ constexpr std::array<Column, 2> axes = {{
     {"x_m", &History::x_m, "m", "position along the interface from the left edge"},
 }};
 constexpr std::array<Column, 4> matrices = {{
-    {"slip_m", &History::slip_m, "m", "displacement of the plate along x since the start, [times, nodes]"},
+    {"slip_m", &History::slip_m, "m",
+     "displacement of the plate along x relative to its base, since the start, [times, nodes]"},
     {"slip_rate_m_per_s", &History::slip_rate_m_per_s, "m/s",
-     "velocity of the plate along x, [times, nodes]"},
+     "velocity of the plate along x relative to its base, [times, nodes]"},
     {"t_Pa", &History::t_Pa, "Pa", "tangential traction, positive against sliding to +x, [times, nodes]"},
     {"p_Pa", &History::p_Pa, "Pa", "contact pressure, positive in compression, [times, nodes]"},
 }};

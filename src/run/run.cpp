@@ -203,6 +203,27 @@ Result unmeasured(const input::Case& config, const motion::Stepper& stepper, mot
   return result;
 }
 
+std::string end_of_event(const Result& result) {
+  const auto& config = result.config;
+  switch (result.event.end) {
+    case motion::EventEnd::end_time:
+      return fmt::format("time.end_s = {:g} s was reached", config.time.end_s);
+    case motion::EventEnd::interrupted:
+      return fmt::format("interrupted at t = {:.4g} s", result.event.time_s);
+    case motion::EventEnd::blow_up:
+      return result.event.blow_up;
+    case motion::EventEnd::quiet:
+      break;
+  }
+  const bool loaded = config.plate.top == mesh::Top::loaded;
+  const double creep = loaded ? motion::creep_over_top_speed * top_speed_m_per_s(config) : 0;
+  const std::string slipped =
+      creep > 0 ? fmt::format("slipped faster than {:.3g} m/s, ten times the top edge's speed,", creep)
+                : "slipped";
+  return fmt::format("at t = {:.4g} s no node had {} for time.quiet_s = {:g} s", result.event.time_s, slipped,
+                     config.time.quiet_s);
+}
+
 void measure(Result& result, const InitialState& initial) {
   const auto& config = result.config;
   const auto& state = event_state(config, initial);
@@ -224,11 +245,17 @@ void measure(Result& result, const InitialState& initial) {
   for (const auto& note : snapshots.notes) result.warnings.push_back(note);
   const auto n_after =
       std::ranges::count_if(snapshots.times_s, [&](double time_s) { return time_s > result.event.time_s; });
-  if (result.event.end == motion::EventEnd::quiet && n_after > 0)
+  const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
+  const bool quiet = result.event.end == motion::EventEnd::quiet;
+  if (quiet && n_after > 0)
+    result.warnings.push_back(
+        fmt::format("{} of {} output.snapshot_times_s are after the end of the event: {}", n_after,
+                    config.output.snapshot_times_s.size(), end_of_event(result)));
+  if (quiet && n_running > 0)
     result.warnings.push_back(fmt::format(
-        "{} of {} output.snapshot_times_s are after the end of the event at t = {:.4g} s, where no node had "
-        "slipped for time.quiet_s = {:g}",
-        n_after, config.output.snapshot_times_s.size(), result.event.time_s, config.time.quiet_s));
+        "{} fronts may still have been under way when the event ended ({}); time.quiet_s = inf goes on "
+        "to time.end_s",
+        n_running, end_of_event(result)));
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
 }
 

@@ -70,6 +70,9 @@ Result run_event(const input::Case& config, const InitialState& initial, motion:
 Result run_event(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
                  const motion::Execution& execution = {});
 
+/// Why an event ended, in words.
+std::string end_of_event(const Result& result);
+
 /// How a case's fronts are measured.
 fronts::FrontOptions front_options(const input::Case& config, const InitialState& initial);
 

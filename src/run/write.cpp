@@ -100,6 +100,10 @@ Json speeds_json(const WaveSpeeds& speeds) {
   return {{"c_L_m_per_s", speeds.c_L}, {"c_S_m_per_s", speeds.c_S}, {"c_R_m_per_s", speeds.c_R}};
 }
 
+Json optional_json(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
+}
+
 Json fronts_json(const std::vector<fronts::Front>& fronts) {
   Json list = Json::array();
   for (const auto& front : fronts) {
@@ -158,7 +162,10 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
   if (input::has_base_body(result.config))
     json["base"] = {{"columns", initial.base->grid.columns},
                     {"rows", initial.base->grid.rows},
-                    {"wave_speeds", speeds_json(wave_speeds(input::base_material(result.config)))}};
+                    {"wave_speeds", speeds_json(wave_speeds(input::base_material(result.config)))},
+                    {"generalised_rayleigh_speed_m_per_s",
+                     optional_json(stability::generalised_rayleigh_speed_m_per_s(
+                         result.config.material, input::base_material(result.config)))}};
   return json;
 }
 

@@ -130,7 +130,8 @@ WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw&
   w.grid_wavelength_m = 2 * element_size_m;
   w.growth_at_grid_per_s = growth_at(bodies, w.sliding, pi / element_size_m);
   w.unbounded = growth_is_unbounded(bodies, w.sliding);
-  w.weakening_over_radiation = -w.sliding.slope_s_per_m * pressure_Pa / radiation_damping_Pa_s_per_m(bodies);
+  w.weakening_over_radiation =
+      0 - w.sliding.slope_s_per_m * pressure_Pa / radiation_damping_Pa_s_per_m(bodies);
   w.longest_wavelength_m = std::max(longest_wavelength_m, w.grid_wavelength_m);
   if (w.unbounded) {
     w.fastest_growth_per_s = std::numeric_limits<double>::infinity();

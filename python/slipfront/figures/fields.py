@@ -22,8 +22,9 @@ from PIL import Image
 from slipfront import command
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, guarded
-from slipfront.figures.picture import write_picture
+from slipfront.figures.picture import KINDS, write_picture
 from slipfront.files import DataError
+from slipfront.folder import belongs
 from slipfront.read import Fields, read_fields
 
 MOST_PANELS = 6
@@ -72,6 +73,8 @@ def chosen_steps(n_steps: int) -> list[int]:
 
 
 def read(folder: Path) -> Fields:
+    if not belongs(folder / "fields.vtkhdf"):
+        raise DataError(f"{folder}: holds no snapshots (fields.vtkhdf); run with output.snapshot_times_s")
     fields = read_fields(folder / "fields.vtkhdf")
     if len(fields.time_s) == 0:
         raise DataError(f"{fields.file}: holds no snapshot")
@@ -131,6 +134,8 @@ def animate(folder: Path) -> bytes:
 def write(picture: Path, folder: Path) -> list[str]:
     with matplotlib.rc_context(style.RC):
         if picture.suffix.lower() != ".gif":
+            if picture.suffix.lower() not in KINDS:
+                raise DataError(f"{picture}: the picture's name must end with {', '.join(KINDS)} or .gif")
             return write_picture(picture, lambda: guarded(folder, lambda: draw(folder)))
         command.replaceable(picture)
         image = guarded(folder, lambda: animate(folder))
