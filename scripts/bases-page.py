@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from shared import between_marks, expecting, read_result, renew, run
+from shared import DataError, between_marks, expecting, read_result, renew, run
 
 
 def number(value: float | None, factor: float = 1, digits: int = 2) -> str:
@@ -41,6 +41,9 @@ def write(results: Path, page: Path) -> None:
     study = read_result(file)
     with expecting("a study of bases", file):
         content = table(study)
+        quick = bool(study["quick"])
+    if quick:
+        raise DataError(f"{file}: of a quick study; renew the page with a full one")
     renew(page, lambda text: between_marks(page, text, "table", content))
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -22,6 +23,21 @@ from slipfront.folder import result_file
 def read_result(file: Path) -> Any:
     """A JSON file of a folder of results, refused where it is not as the folder's checksums say."""
     return read_json(result_file(file))
+
+
+def run_case(program: str, case: Path, folder: Path, *settings: str) -> None:
+    """Runs a case into a folder; whatever keeps it from that is one error."""
+    overrides = [part for setting in settings for part in ("--set", setting)]
+    command_line = [program, "run", str(case), "-o", str(folder), "--overwrite", "-q", *overrides]
+    try:
+        done = subprocess.run(command_line, stderr=subprocess.PIPE, text=True, check=False)
+    except OSError as error:
+        raise DataError(f"{program}: {error.strerror}") from None
+    if done.returncode != 0:
+        lines = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+        raise DataError(f"{case.name}, {', '.join(settings)}: {lines[-1]}")
+    if not result_file(folder / "run.json").is_file():
+        raise DataError(f"{program}: left no results in {folder}")
 
 
 @contextmanager

@@ -377,6 +377,8 @@ void check_base(const Case& config, const Document& document, const Require& req
   const bool repeats = config.plate.sides == mesh::Sides::periodic;
   require((config.base.plate.sides == mesh::Sides::periodic) == repeats, {"base.sides", "plate.sides"},
           "base.sides and plate.sides must both be periodic, or neither of them");
+  require(config.plate.corner != mesh::Corner::fillet, {"plate.corner", "base.kind"},
+          "plate.corner = fillet leaves nodes that face none of base.kind = body; choose none or relief");
   // The defaults are those of the paper's plate, which nobody means for a base.
   for (const char* key : {"base.youngs_modulus_Pa", "base.poissons_ratio", "base.density_kg_per_m3",
                           "base.stiffness_damping_s", "base.height_m"})

@@ -43,6 +43,8 @@ class Body {
   /// @param substeps    of the last level in a step of the lowest block
   void divide(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time,
               double step_s, int substeps);
+  /// Rows in single precision are stepped band by band alone; a body that does not lead keeps to double.
+  void keep_to_double() { single_ = {}; }
   void expect_steps_under_way(int n);
 
   const solid::Operator& op() const { return plate_.op; }

@@ -29,6 +29,10 @@ int useful_threads(int wanted, std::size_t n_bands, int steps_per_sweep) {
   return std::clamp(static_cast<int>(n_bands) / (steps_per_sweep + 1), 1, wanted);
 }
 
+/// Steps of the fastest body that a slower one takes at once: beyond this there is little left to save, and
+/// the common step would outgrow what is to be seen.
+constexpr double most_at_once = 16;
+
 /// Bodies as they are made, not yet divided.
 std::vector<Body> make_bodies(std::span<const BodySource> sources, const TimeStepping& time) {
   std::vector<Body> bodies;
@@ -44,7 +48,8 @@ double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, co
   const double lowest_s = time.step_factor * stable_s;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     // Steps of the fastest body that this one takes at once.
-    const int at_once = std::max(1, static_cast<int>(bodies[b].stable_step_s() / stable_s * (1 + 1e-9)));
+    const double allowed = bodies[b].stable_step_s() / stable_s * (1 + 1e-9);
+    const int at_once = static_cast<int>(std::clamp(allowed, 1.0, most_at_once));
     bodies[b].divide(sources[b].mesh, sources[b].material, time, lowest_s * (at_once * bodies[b].multiple()),
                      at_once * time.interface_substeps);
   }
@@ -81,6 +86,7 @@ Stepper::Stepper(std::span<const BodySource> sources, const interface::ContactMo
   wavefront_ = std::make_unique<threads::Wavefront>(
       useful_threads(execution.threads, static_cast<std::size_t>(n_bands_), depth), depth);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (!leads(bodies_[b])) bodies_[b].keep_to_double();
     bodies_[b].expect_steps_under_way(wavefront_->most_steps());
     if (contact.algorithm == interface::ContactAlgorithm::predictor_corrector)
       bodies_[b].expect_landings(sources[b].mesh, sources[b].material);

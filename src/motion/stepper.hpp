@@ -54,7 +54,7 @@ struct BodySource {
 /// step that its cells allow (step_multiples); a step of the stepper is that of the coarsest block.
 ///
 /// Two bodies share their sub-step, the one that the faster of them allows. The other one's cells away from
-/// the interface take steps longer by the whole number that they allow.
+/// the interface take steps longer by the whole number that they allow, up to 16.
 class Stepper {
  public:
   /// On the rigid plane.

@@ -184,7 +184,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   }
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
-  if (initial.base) base.emplace(*initial.base, base_material);
+  if (initial.base) base.emplace(statics::ElasticBody{*initial.base, base_material});
   const statics::Statics statics({initial.mesh, config.material}, base, config.loading,
                                  at_all_nodes(static_coefficients(config, initial.mu_s), initial.mesh),
                                  interface::static_coefficient_key(config.friction),

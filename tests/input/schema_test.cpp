@@ -123,7 +123,7 @@ Case changed_case() {
              1e-3 / 7,
              2,
              4e-3 / 3,
-             mesh::Corner::fillet,
+             mesh::Corner::none,
              4e-3,
              0.3e-3,
              8e-3,
@@ -272,6 +272,14 @@ TEST(Schema, ABodyBelowAsksForItsKeysOfThePlate) {
               StartsWith("c.toml:2: base.height_m applies only with base.kind"));
   EXPECT_THAT(parse_error("[base]\nkind = \"body\"\nsides = \"periodic\""),
               AllOf(StartsWith("c.toml:3: "), HasSubstr("both be periodic")));
+  const std::string steel =
+      "[base]\nkind = \"body\"\nheight_m = 0.1\nyoungs_modulus_Pa = 2.1e11\npoissons_ratio = 0.3\n"
+      "density_kg_per_m3 = 7850\n";
+  EXPECT_THAT(parse_error(steel),
+              AllOf(StartsWith("c.toml:2: "), HasSubstr("needs base.stiffness_damping_s; set it")));
+  EXPECT_THAT(parse_error(steel + "stiffness_damping_s = 0\n[plate]\ncorner = \"fillet\""),
+              AllOf(StartsWith("c.toml:9: "), HasSubstr("choose none or relief")));
+  EXPECT_EQ(parse_case(steel + "stiffness_damping_s = 0", "c.toml").base.material.density_kg_per_m3, 7850);
   const Case rigid = parse_case(to_toml(changed_prestress()), "c.toml", {{"base.kind", "rigid"}});
   EXPECT_EQ(members(rigid.base), members(Case{}.base));
 }

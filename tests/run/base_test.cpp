@@ -119,6 +119,39 @@ TEST(Base, InfoKnowsBothBodies) {
   EXPECT_THAT(run::info(slow).substeps_of_bodies, testing::ElementsAre(18, 36));
 }
 
+TEST(Base, SingleRowsAgreeWithDoubleOnesWhateverTheWaveSpeeds) {
+  for (const double E_Pa : {0.5e9, 5e9, 30e9}) {
+    auto config = problem_f(2e-3);
+    config.plate.sides = config.base.plate.sides = mesh::Sides::free;
+    config.base.material.youngs_modulus_Pa = E_Pa;
+    const auto in_double = run(config);
+    config.time.precision = motion::Precision::single_precision;
+    const auto in_single = run(config);
+    const auto &a = in_double.event.history, &b = in_single.event.history;
+    ASSERT_EQ(a.slip_m.size(), b.slip_m.size());
+    const double slip_m = std::ranges::max(a.slip_m);
+    EXPECT_GT(slip_m, 1e-6);
+    for (std::size_t k = 0; k < a.slip_m.size(); ++k) EXPECT_NEAR(b.slip_m[k], a.slip_m[k], 1e-4 * slip_m);
+  }
+}
+
+TEST(Base, ASoftBaseKeepsTheCommonStepShort) {
+  auto config = problem_f(2e-3);
+  config.base.material.youngs_modulus_Pa = 1e4;
+  config.base.material.density_kg_per_m3 = 1000;
+  const auto result = run(config);
+  EXPECT_EQ(result.step_s, 16 * info([&] {
+                                  auto rigid = config;
+                                  rigid.base.kind = input::BaseKind::rigid;
+                                  return rigid;
+                                }())
+                                    .step_s);
+  EXPECT_LT(result.event.time_s, config.time.end_s + 1.001 * result.step_s);
+  EXPECT_GT(result.event.history.time_s.size(), 8U);
+  config.base.material = {.youngs_modulus_Pa = 1e-6, .density_kg_per_m3 = 1e6, .stiffness_damping_s = 0};
+  EXPECT_GT(info(config).n_steps, 8);
+}
+
 TEST(Base, WhatDoesNotFitIsRefused) {
   auto config = problem_f(2e-3);
   config.base.plate.height_m = 0.151;

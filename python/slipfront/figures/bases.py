@@ -113,7 +113,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("picture", metavar="PICTURE", type=Path, help="the file to write: .png, .pdf or .svg")
     parser.add_argument("folder", metavar="DIR", type=Path, help="output folder of `slipfront study base`")
     options = parser.parse_args(arguments)
-    return command.run("slipfront.figures", lambda: write(options.picture, options.folder))
+    return command.run("slipfront.figures.bases", lambda: write(options.picture, options.folder))
 
 
 if __name__ == "__main__":
