@@ -26,7 +26,7 @@ using interface::ParameterValue;
 constexpr const char* x_column = "x_m";
 
 /// The key that names the file comes first, so that the message finds its place in the case file.
-std::string place(const std::filesystem::path& file) {
+std::string in_friction_file(const std::filesystem::path& file) {
   return "friction.file: " + files::one_line(file.native());
 }
 
@@ -137,7 +137,7 @@ void apply_table(const FrictionAlongX& along_x, const std::vector<double>& x_m,
   if (table.x_m.front() > x_m.front() + tolerance_m || table.x_m.back() < x_m.back() - tolerance_m)
     throw UserError(
         "{}: covers x = {:.6g} to {:.6g} m, the interface reaches from {:.6g} to {:.6g} m; add rows",
-        place(along_x.file), table.x_m.front(), table.x_m.back(), x_m.front(), x_m.back());
+        in_friction_file(along_x.file), table.x_m.front(), table.x_m.back(), x_m.front(), x_m.back());
   for (std::size_t i = 0; i < x_m.size(); ++i) {
     const auto at = among_rows(table.x_m, x_m[i], along_x.between_rows, tolerance_m);
     for (std::size_t k = 0; k < table.keys.size(); ++k)
@@ -160,17 +160,18 @@ void require_allowed(const FrictionAlongX& along_x, const std::vector<double>& x
   const bool random = along_x.random_key != "none";
   for (std::size_t i = 0; i < laws.size(); ++i)
     if (const auto problem = problem_of(laws[i]); !problem.empty())
-      throw UserError("{}: at x = {:.6g} m {}{}", random ? "friction.random_share" : place(along_x.file),
-                      x_m[i], problem, random ? "; choose a smaller share" : "");
+      throw UserError("{}: at x = {:.6g} m {}{}",
+                      random ? "friction.random_share" : in_friction_file(along_x.file), x_m[i], problem,
+                      random ? "; choose a smaller share" : "");
 }
 
 }  // namespace
 
 FrictionTable read_friction_table(const std::filesystem::path& file, const FrictionLaw& law) {
   constexpr std::size_t most_bytes = std::size_t{1} << 30U;
-  FrictionTable table{files::read_text(file, place(file), "table", most_bytes), {}, {}, {}};
+  FrictionTable table{files::read_text(file, in_friction_file(file), "table", most_bytes), {}, {}, {}};
   files::for_each_row(table.text, [&](int line, const std::vector<std::string_view>& fields) {
-    const std::string at = fmt::format("{}:{}", place(file), line);
+    const std::string at = fmt::format("{}:{}", in_friction_file(file), line);
     if (!table.keys.empty()) return append_row(fields, law, at, table);
     check_header(fields, law, at);
     table.keys.assign(fields.begin() + 1, fields.end());
@@ -178,7 +179,7 @@ FrictionTable read_friction_table(const std::filesystem::path& file, const Frict
   });
   if (table.x_m.empty())
     throw UserError("{}: holds no rows; write the header {} and any of {}, and a row per position",
-                    place(file), x_column, fmt::join(keys_of(law), ", "));
+                    in_friction_file(file), x_column, fmt::join(keys_of(law), ", "));
   return table;
 }
 

@@ -20,7 +20,7 @@ constexpr const char* header = "x_m,t_Pa,p_Pa";
 using Row = std::array<double, 3>;
 
 /// The key that names the file comes first, so that the message finds its place in the case file.
-std::string place(const std::filesystem::path& file) {
+std::string in_prestress_file(const std::filesystem::path& file) {
   return "prestress.file: " + files::one_line(file.native());
 }
 
@@ -58,17 +58,18 @@ void append(const Row& row, const std::string& at, record::StaticState& rows) {
 
 PrestressTable read_prestress(const std::filesystem::path& file) {
   constexpr std::size_t most_bytes = std::size_t{1} << 30U;
-  PrestressTable table{files::read_text(file, place(file), "table", most_bytes), {}};
+  PrestressTable table{files::read_text(file, in_prestress_file(file), "table", most_bytes), {}};
   bool have_header = false;
   files::for_each_row(table.text, [&](int line, const std::vector<std::string_view>& fields) {
-    const std::string at = fmt::format("{}:{}", place(file), line);
+    const std::string at = fmt::format("{}:{}", in_prestress_file(file), line);
     if (have_header) return append(row_of(fields, at), at, table.rows);
     have_header = true;
     if (!std::ranges::equal(fields, columns))
       throw UserError("{}: the first line must be the header {}", at, header);
   });
   if (table.rows.x_m.empty())
-    throw UserError("{}: holds no rows; write the header {} and a row per position", place(file), header);
+    throw UserError("{}: holds no rows; write the header {} and a row per position", in_prestress_file(file),
+                    header);
   return table;
 }
 
@@ -80,7 +81,7 @@ record::StaticState prestress_at(const Prestress& prestress, const std::vector<d
   if (rows.x_m.front() > x_m.front() + tolerance_m || rows.x_m.back() < x_m.back() - tolerance_m)
     throw UserError(
         "{}: covers x = {:.6g} to {:.6g} m, the interface reaches from {:.6g} to {:.6g} m; add rows",
-        place(prestress.file), rows.x_m.front(), rows.x_m.back(), x_m.front(), x_m.back());
+        in_prestress_file(prestress.file), rows.x_m.front(), rows.x_m.back(), x_m.front(), x_m.back());
   record::StaticState state;
   state.x_m = x_m;
   for (const double wanted : x_m) {

@@ -19,15 +19,15 @@ std::string field(double value) {
 }  // namespace
 
 void write_static(const std::filesystem::path& file, const record::StaticState& state,
-                  std::span<const Column> further) {
+                  std::span<const NamedColumn> further) {
   SLIPFRONT_ASSERT(state.t_s_Pa.size() == state.x_m.size() && state.p_s_Pa.size() == state.x_m.size(),
                    "columns of the static state differ in length");
   std::string text = "x_m,t_s_Pa,p_s_Pa";
-  for (const Column& column : further) text += fmt::format(",{}", column.name);
+  for (const NamedColumn& column : further) text += fmt::format(",{}", column.name);
   text += "\n";
   for (std::size_t i = 0; i < state.x_m.size(); ++i) {
     text += fmt::format("{},{},{}", field(state.x_m[i]), field(state.t_s_Pa[i]), field(state.p_s_Pa[i]));
-    for (const Column& column : further) text += fmt::format(",{}", field(column.values.at(i)));
+    for (const NamedColumn& column : further) text += fmt::format(",{}", field(column.values.at(i)));
     text += "\n";
   }
   files::write_text(file, text);

@@ -12,14 +12,14 @@
 
 namespace slipfront::results {
 
-struct Column {
+struct NamedColumn {
   std::string name;  ///< with its unit
   std::vector<double> values;
 };
 
 /// static.csv: x_m, t_s_Pa, p_s_Pa, and further columns of the same nodes.
 void write_static(const std::filesystem::path& file, const record::StaticState& state,
-                  std::span<const Column> further = {});
+                  std::span<const NamedColumn> further = {});
 
 /// fronts.csv: front_id, x_m, onset_s, direction, v_tip_m_per_s, t_s_Pa, p_s_Pa, t_d_Pa, p_d_Pa, t_r_Pa,
 /// p_r_Pa, U_s_J_per_m3, U_r_J_per_m3, a row per front and node in the order of travel; what is undefined is

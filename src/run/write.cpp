@@ -199,7 +199,7 @@ void write_case(const std::filesystem::path& dir, const input::Case& config) {
 
 void write_static(const std::filesystem::path& dir, const input::Case& config, const InitialState& initial) {
   const auto& tractions = initial.common.tractions;
-  std::vector<results::Column> columns;
+  std::vector<results::NamedColumn> columns;
   for (auto& law : input::friction_at(config, tractions.x_m)) {
     const auto parameters = parameters_of(law);
     columns.resize(parameters.size());
