@@ -14,6 +14,7 @@
 #include "files/text.hpp"
 #include "input/entries.hpp"
 #include "input/random_field.hpp"
+#include "input/table_along_x.hpp"
 #include "mesh/plate.hpp"
 
 namespace slipfront::input {
@@ -80,24 +81,14 @@ void check_header(const std::vector<std::string_view>& fields, const FrictionLaw
   }
 }
 
-double number_in(std::string_view field, std::string_view column, const std::string& at) {
-  const auto number = files::number_of(field);
-  if (!number)
-    throw UserError("{}: {} is \"{}\"; it must be a finite number", at, column, files::shortened(field));
-  return *number;
-}
-
 void append_row(const std::vector<std::string_view>& fields, const FrictionLaw& law, const std::string& at,
                 FrictionTable& table) {
   if (fields.size() != table.keys.size() + 1)
     throw UserError("{}: has {} columns; a row is {},{}", at, fields.size(), x_column,
                     fmt::join(table.keys, ","));
   const double x_m = number_in(fields.front(), x_column, at);
-  const double most_m = magnitudes_of("m").most;
-  if (std::abs(x_m) > most_m)
-    throw UserError("{}: x_m is {}; its magnitude must be at most {:g}", at, x_m, most_m);
-  if (!table.x_m.empty() && x_m <= table.x_m.back())
-    throw UserError("{}: x_m is {} after {}; write the rows with x ascending", at, x_m, table.x_m.back());
+  require_at_most(x_m, magnitudes_of("m").most, x_column, at);
+  require_ascending(x_m, table.x_m, at);
   table.x_m.push_back(x_m);
   FrictionLaw here = law;
   for (std::size_t k = 0; k < table.keys.size(); ++k) {
@@ -132,12 +123,8 @@ void apply_table(const FrictionAlongX& along_x, const std::vector<double>& x_m,
                  std::vector<FrictionLaw>& laws) {
   const FrictionTable& table = along_x.table;
   SLIPFRONT_ASSERT(!table.x_m.empty(), "the table of friction.file has not been read");
-  // Positions in a table are written with few digits.
-  const double tolerance_m = 1e-6 * (x_m.back() - x_m.front());
-  if (table.x_m.front() > x_m.front() + tolerance_m || table.x_m.back() < x_m.back() - tolerance_m)
-    throw UserError(
-        "{}: covers x = {:.6g} to {:.6g} m, the interface reaches from {:.6g} to {:.6g} m; add rows",
-        in_friction_file(along_x.file), table.x_m.front(), table.x_m.back(), x_m.front(), x_m.back());
+  require_covers(table.x_m, x_m, in_friction_file(along_x.file));
+  const double tolerance_m = position_tolerance * (x_m.back() - x_m.front());
   for (std::size_t i = 0; i < x_m.size(); ++i) {
     const auto at = among_rows(table.x_m, x_m[i], along_x.between_rows, tolerance_m);
     for (std::size_t k = 0; k < table.keys.size(); ++k)

@@ -10,6 +10,7 @@
 #include "files/fields.hpp"
 #include "files/text.hpp"
 #include "input/entries.hpp"
+#include "input/table_along_x.hpp"
 
 namespace slipfront::input {
 
@@ -29,22 +30,15 @@ Row row_of(const std::vector<std::string_view>& fields, const std::string& at) {
     throw UserError("{}: has {} columns; a row is {}", at, fields.size(), header);
   Row row{};
   for (std::size_t k = 0; k < row.size(); ++k) {
-    const auto number = files::number_of(fields[k]);
-    if (!number)
-      throw UserError("{}: {} is \"{}\"; it must be a finite number", at, columns[k],
-                      files::shortened(fields[k]));
-    const double most = magnitudes_of(unit_of(columns[k])).most;
-    if (std::abs(*number) > most)
-      throw UserError("{}: {} is {}; its magnitude must be at most {:g}", at, columns[k], *number, most);
-    row[k] = *number;
+    row[k] = number_in(fields[k], columns[k], at);
+    require_at_most(row[k], magnitudes_of(unit_of(columns[k])).most, columns[k], at);
   }
   return row;
 }
 
 void append(const Row& row, const std::string& at, record::StaticState& rows) {
   const auto [x_m, t_Pa, p_Pa] = row;
-  if (!rows.x_m.empty() && x_m <= rows.x_m.back())
-    throw UserError("{}: x_m is {} after {}; write the rows with x ascending", at, x_m, rows.x_m.back());
+  require_ascending(x_m, rows.x_m, at);
   if (p_Pa <= 0)
     throw UserError("{}: p_Pa is {}; it must be greater than 0, the interface starts in contact", at, p_Pa);
   const double least_Pa = magnitudes_of("Pa").least;
@@ -76,12 +70,7 @@ PrestressTable read_prestress(const std::filesystem::path& file) {
 record::StaticState prestress_at(const Prestress& prestress, const std::vector<double>& x_m) {
   const record::StaticState& rows = prestress.table.rows;
   SLIPFRONT_ASSERT(!rows.x_m.empty(), "the table of prestress.file has not been read");
-  // Positions in a table are written with few digits.
-  const double tolerance_m = 1e-6 * (x_m.back() - x_m.front());
-  if (rows.x_m.front() > x_m.front() + tolerance_m || rows.x_m.back() < x_m.back() - tolerance_m)
-    throw UserError(
-        "{}: covers x = {:.6g} to {:.6g} m, the interface reaches from {:.6g} to {:.6g} m; add rows",
-        in_prestress_file(prestress.file), rows.x_m.front(), rows.x_m.back(), x_m.front(), x_m.back());
+  require_covers(rows.x_m, x_m, in_prestress_file(prestress.file));
   record::StaticState state;
   state.x_m = x_m;
   for (const double wanted : x_m) {

@@ -6,17 +6,13 @@
 
 #include "files/files.hpp"
 #include "fronts/measures.hpp"
+#include "paper/undefined.hpp"
 
 namespace slipfront::paper {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// JSON has no NaN: null.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 Json estimate_json(const fronts::Estimate& e) {
   return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};

@@ -15,6 +15,7 @@
 #include "fronts/fit.hpp"
 #include "fronts/measures.hpp"
 #include "paper/main_fronts.hpp"
+#include "paper/undefined.hpp"
 #include "run/batch.hpp"
 
 namespace slipfront::paper {
@@ -61,15 +62,6 @@ PressureChange pressure_change(std::span<const Outcome> events) {
   return {median(along), median(against)};
 }
 
-Json or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-/// Empty where undefined.
-std::string text_or_empty(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
-}
-
 double fastest_over_c_L(const Outcome& o) {
   double most = fronts::undefined;
   for (const auto& front : o.fronts)
@@ -90,9 +82,9 @@ Json events_json(const OnBase& on) {
                           {"mode", fronts::name(front->mode)},
                           {"end", fronts::name(front->end)}});
     list.push_back({{"name", o.name},
-                    {"critical_shear_m", or_null(o.critical_shear_m)},
+                    {"critical_shear_m", number(o.critical_shear_m)},
                     {"peak_x_m", o.peak_x_m},
-                    {"fastest_over_c_L", or_null(fastest_over_c_L(o))},
+                    {"fastest_over_c_L", number(fastest_over_c_L(o))},
                     {"main_fronts", fronts}});
   }
   return list;
@@ -102,8 +94,8 @@ Json fit_json(const Collapse& c) {
   if (!c.fitted) return nullptr;
   Json json;
   for (const auto& [name, e] : {std::pair("a", c.fit.a), std::pair("b", c.fit.b), std::pair("c", c.fit.c)})
-    json[name] = {{"value", or_null(e.value)}, {"low", or_null(e.low)}, {"high", or_null(e.high)}};
-  json["rms_over_c_L"] = or_null(c.fit.rms);
+    json[name] = {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};
+  json["rms_over_c_L"] = number(c.fit.rms);
   return json;
 }
 
@@ -117,19 +109,19 @@ Json base_json(const OnBase& on) {
   json.update(
       {{"tilt_factor", on.tilt_factor},
        {"speed_ratio",
-        {{"median", or_null(on.speed_ratio.median)},
-         {"low", or_null(on.speed_ratio.low)},
-         {"high", or_null(on.speed_ratio.high)},
+        {{"median", number(on.speed_ratio.median)},
+         {"low", number(on.speed_ratio.low)},
+         {"high", number(on.speed_ratio.high)},
          {"n_bins", on.speed_ratio.n_bins}}},
        {"pressure_change",
-        {{"along", or_null(on.pressure_change.along)}, {"against", or_null(on.pressure_change.against)}}},
-       {"share_in_paper_band", or_null(on.main_fronts.share_in_paper_band)},
+        {{"along", number(on.pressure_change.along)}, {"against", number(on.pressure_change.against)}}},
+       {"share_in_paper_band", number(on.main_fronts.share_in_paper_band)},
        {"n_points", on.main_fronts.n_points},
        {"fit", fit_json(on.main_fronts)},
        {"spread",
-        {{"static_ratio", or_null(on.main_fronts.static_ratio.fronts.median_relative)},
-         {"dynamic_ratio", or_null(on.main_fronts.dynamic_ratio.fronts.median_relative)},
-         {"energy_rise", or_null(on.main_fronts.energy_rise.fronts.median_relative)}}},
+        {{"static_ratio", number(on.main_fronts.static_ratio.fronts.median_relative)},
+         {"dynamic_ratio", number(on.main_fronts.dynamic_ratio.fronts.median_relative)},
+         {"energy_rise", number(on.main_fronts.energy_rise.fronts.median_relative)}}},
        {"events", events_json(on)}});
   return json;
 }
@@ -140,11 +132,11 @@ std::string points_csv(const BasesResult& result) {
   for (const auto& on : result.bases)
     for (const auto& m : main_fronts_of(on.events, false))
       for (const auto& p : m.points)
-        fmt::format_to(
-            std::back_inserter(text), "{},{},{},{:.10g},{},{},{},{},{}\n", on.base.name, m.outcome->name,
-            m.front->direction, p.x_m, text_or_empty(p.v_tip_m_per_s / m.outcome->speeds.c_L),
-            text_or_empty(p.t_d_Pa / p.p_d_Pa), text_or_empty(criterion_value(p, Criterion::energy_rise)),
-            text_or_empty(p.p_r_Pa / p.p_s_Pa), in_tail(m, p) ? 1 : 0);
+        fmt::format_to(std::back_inserter(text), "{},{},{},{:.10g},{},{},{},{},{}\n", on.base.name,
+                       m.outcome->name, m.front->direction, p.x_m,
+                       cell(p.v_tip_m_per_s / m.outcome->speeds.c_L), cell(p.t_d_Pa / p.p_d_Pa),
+                       cell(criterion_value(p, Criterion::energy_rise)), cell(p.p_r_Pa / p.p_s_Pa),
+                       in_tail(m, p) ? 1 : 0);
   return text;
 }
 
@@ -157,12 +149,10 @@ std::string bases_csv(const BasesResult& result) {
     const auto& r = on.speed_ratio;
     const auto& m = on.main_fronts;
     fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", on.base.name,
-                   text_or_empty(on.tilt_factor), text_or_empty(r.median), text_or_empty(r.low),
-                   text_or_empty(r.high), r.n_bins, text_or_empty(on.pressure_change.along),
-                   text_or_empty(on.pressure_change.against), text_or_empty(m.share_in_paper_band),
-                   m.n_points, text_or_empty(m.static_ratio.fronts.median_relative),
-                   text_or_empty(m.dynamic_ratio.fronts.median_relative),
-                   text_or_empty(m.energy_rise.fronts.median_relative));
+                   cell(on.tilt_factor), cell(r.median), cell(r.low), cell(r.high), r.n_bins,
+                   cell(on.pressure_change.along), cell(on.pressure_change.against),
+                   cell(m.share_in_paper_band), m.n_points, cell(m.static_ratio.fronts.median_relative),
+                   cell(m.dynamic_ratio.fronts.median_relative), cell(m.energy_rise.fronts.median_relative));
   }
   return text;
 }

@@ -11,6 +11,7 @@
 #include "files/files.hpp"
 #include "files/text.hpp"
 #include "paper/open_choices.hpp"
+#include "paper/undefined.hpp"
 
 namespace slipfront::paper {
 
@@ -20,22 +21,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* summary_file = "open_choices.json";
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 /// Numbers as they are, infinity as in case files.
 Json value_json(const OpenChoice& choice, double value) {
   if (!choice.words.empty() || std::isinf(value)) return choice.text(value);
   return value;
 }
 
-/// Empty where undefined.
-std::string cell(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
-}
-
-std::string cell(std::optional<bool> holds) {
+std::string verdict_text(std::optional<bool> holds) {
   return holds ? (*holds ? "holds" : "does not") : "";
 }
 
@@ -59,7 +51,7 @@ std::string csv(const OpenChoicesResult& result) {
         text += fmt::format(",{}", o.fit ? cell(value) : "");
     text += fmt::format(",{},{},{},{}", o.fit ? cell(fit.rms) : "", cell(o.left_max), cell(o.spontaneous_max),
                         cell(o.right_max));
-    for (const auto holds : o.holds) text += fmt::format(",{}", cell(holds));
+    for (const auto holds : o.holds) text += fmt::format(",{}", verdict_text(holds));
     text += "\n";
   }
   return text;

@@ -100,8 +100,7 @@ mesh::Mesh make_base(const input::Case& config) {
   if (std::abs(rows - std::round(rows)) > 1e-6 * rows)
     throw UserError(
         "base.height_m = {:.8g} is no whole multiple of plate.element_size_m = {:.8g}, with which the nodes "
-        "of "
-        "the two bodies face each other; the nearest that fit are {:.8g} and {:.8g}",
+        "of the two bodies face each other; the nearest that fit are {:.8g} and {:.8g}",
         plate.height_m, plate.element_size_m, std::floor(rows) * plate.element_size_m,
         std::ceil(rows) * plate.element_size_m);
   return mesh::make_plate(plate, "base");
@@ -122,13 +121,13 @@ Meshes check(const input::Case& config) {
     meshes.base = make_base(config);
     motion::require_rows_fit(*meshes.base, config.time);
   }
-  const auto mu_s = static_coefficients(input::friction_at(config, interface_x_m(meshes.plate)));
+  meshes.mu_s = static_coefficients(input::friction_at(config, interface_x_m(meshes.plate)));
   if (!is_prestressed(config)) {
-    require_one_static_coefficient_of_ramp(config, mu_s);
+    require_one_static_coefficient_of_ramp(config, meshes.mu_s);
     return meshes;
   }
   const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate));
-  starting_loads(config, state, meshes.plate, mu_s);
+  starting_loads(config, state, meshes.plate, meshes.mu_s);  // refuses what does nothing
   return meshes;
 }
 
@@ -171,7 +170,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   initial.n_nodes = initial.mesh.n_nodes() + (initial.base ? initial.base->n_nodes() : 0);
   initial.n_cells = std::ssize(initial.mesh.cells) + (initial.base ? std::ssize(initial.base->cells) : 0);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
-  initial.mu_s = static_coefficients(input::friction_at(config, interface_x_m(initial.mesh)));
+  initial.mu_s = std::move(meshes.mu_s);
   const double mu_s = static_coefficients(config, initial.mu_s)[0];
   if (is_prestressed(config)) {
     initial.prescribed = true;

@@ -45,6 +45,7 @@ struct InitialState {
 struct Meshes {
   mesh::Mesh plate;
   std::optional<mesh::Mesh> base;
+  std::vector<double> mu_s = {};  ///< as in InitialState
 };
 
 /// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer.

@@ -119,8 +119,7 @@ void require_disk(const Needs& needs, const std::filesystem::path& folder) {
   const auto& largest = *std::ranges::max_element(parts, {}, &Part::bytes);
   throw UserError(
       "the run needs about {:.3g} GB on disk, {:.3g} GB of it for {}, and {} has {:.3g} GB free; choose {} "
-      "or "
-      "another folder",
+      "or another folder",
       needs.disk_bytes() * 1e-9, largest.bytes * 1e-9, largest.what, folder.string(),
       static_cast<double>(space.available) * 1e-9, largest.remedy);
 }

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <utility>
 
 #ifdef __GLIBC__  // known from the headers above
@@ -13,20 +11,12 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
-#include "base/memory.hpp"
 #include "base/per_node.hpp"
-#include "input/friction_along_x.hpp"
-#include "input/prestress.hpp"
-#include "input/schema.hpp"
-#include "interface/nucleation.hpp"
-#include "mesh/plate.hpp"
 #include "motion/stepper.hpp"
 #include "run/begin.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
 #include "run/warnings.hpp"
-#include "statics/plate_solver.hpp"
-#include "statics/prestress.hpp"
 
 namespace slipfront::run {
 

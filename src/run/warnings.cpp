@@ -16,8 +16,7 @@ std::string table_warning(const char* key, const std::vector<double>& x_m, doubl
   if (n_beyond == 0) return {};
   return fmt::format(
       "the table of {} reaches from x = {:.6g} to {:.6g} m, the plate from 0 to {:.6g} m: {} of "
-      "its "
-      "{} rows lie beyond it; are its positions in m?",
+      "its {} rows lie beyond it; are its positions in m?",
       key, x_m.front(), x_m.back(), width_m, n_beyond, x_m.size());
 }
 

@@ -14,18 +14,7 @@ namespace slipfront::interface {
 namespace {
 
 using test::dt;
-
-template <class F>
-void for_each_model(F&& f) {
-  for (const FrictionLaw& law : {FrictionLaw(VelocityWeakening{}), FrictionLaw(Coulomb{}),
-                                 FrictionLaw(SlipWeakening{}), FrictionLaw(SlipWeakeningHealing{})})
-    for (const auto algorithm : {ContactAlgorithm::direct, ContactAlgorithm::predictor_corrector}) {
-      f(ContactModel{law, {}, algorithm});
-      for (const Relaxed relaxed : {Relaxed::strength, Relaxed::pressure})
-        for (const double length_m : {2e-6, std::numeric_limits<double>::infinity()})
-          f(ContactModel{law, {relaxed, length_m, 0.1, 2e-6}, algorithm});
-    }
-}
+using test::for_each_model;
 
 /// All that an update writes of a node.
 std::vector<double> results_at(const Interface& s, std::size_t i) {

@@ -17,6 +17,7 @@ namespace slipfront::interface {
 namespace {
 
 using test::dt;
+using test::for_each_model;
 
 /// All arrays of the state that an update writes, flags as numbers.
 std::vector<std::vector<double>> arrays(const Interface& s) {
@@ -110,18 +111,6 @@ bool update_one_by_one(const ContactModel& model, double since_last_s, Interface
         });
       },
       model.law);
-}
-
-template <class F>
-void for_each_model(F&& f) {
-  for (const FrictionLaw& law : {FrictionLaw(VelocityWeakening{}), FrictionLaw(Coulomb{}),
-                                 FrictionLaw(SlipWeakening{}), FrictionLaw(SlipWeakeningHealing{})})
-    for (const auto algorithm : {ContactAlgorithm::direct, ContactAlgorithm::predictor_corrector}) {
-      f(ContactModel{law, {}, algorithm});
-      for (const Relaxed relaxed : {Relaxed::strength, Relaxed::pressure})
-        for (const double length_m : {2e-6, std::numeric_limits<double>::infinity()})
-          f(ContactModel{law, {relaxed, length_m, 0.1, 2e-6}, algorithm});
-    }
 }
 
 /// A motion that makes nodes stick, slip, open, land and turn round; every 50th is not a number.

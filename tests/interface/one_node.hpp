@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "interface/interface.hpp"
 
@@ -13,6 +14,19 @@ inline constexpr double impedance = mass / dt;  // Pa s/m
 
 inline constexpr double rounding_Pa = 1e-8;  // tractions of 1e6 Pa through a velocity and back
 inline const VelocityWeakening weakening{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1};
+
+/// All laws under both algorithms, without and with a delayed response.
+template <class F>
+void for_each_model(F&& f) {
+  for (const FrictionLaw& law : {FrictionLaw(VelocityWeakening{}), FrictionLaw(Coulomb{}),
+                                 FrictionLaw(SlipWeakening{}), FrictionLaw(SlipWeakeningHealing{})})
+    for (const auto algorithm : {ContactAlgorithm::direct, ContactAlgorithm::predictor_corrector}) {
+      f(ContactModel{law, {}, algorithm});
+      for (const Relaxed relaxed : {Relaxed::strength, Relaxed::pressure})
+        for (const double length_m : {2e-6, std::numeric_limits<double>::infinity()})
+          f(ContactModel{law, {relaxed, length_m, 0.1, 2e-6}, algorithm});
+    }
+}
 
 /// Trial motion that presses the node with p and drags it with t_stop.
 inline void pull(Interface& s, double t_stop_Pa, double p_Pa) {
