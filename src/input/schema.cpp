@@ -384,10 +384,10 @@ void check_base(const Case& config, const Document& document, const Require& req
                           "base.stiffness_damping_s", "base.height_m"})
     require(find_setting(document, key), {"base.kind"},
             fmt::format("base.kind = body needs {}; set it", key));
-  require(config.loading.method == statics::LoadingMethod::prestress ||
+  require(config.loading.method == statics::LoadingMethod::prestress || config.base.plate.coarsenings == 0 ||
               config.loading.solver != statics::StaticSolver::iterative,
-          {"loading.solver", "base.kind"},
-          "loading.solver = iterative knows no base.kind = body; choose auto or direct");
+          {"loading.solver", "base.coarsenings"},
+          "loading.solver = iterative knows no graded base; choose auto or direct, or base.coarsenings = 0");
 }
 
 void check_nucleation(const Case& config, const Require& require) {
@@ -456,7 +456,8 @@ void check_relations(const Case& config, const Document& document, const std::st
       {"loading.solver", "plate.coarsenings"},
       "loading.solver = iterative knows no graded plates; choose auto or direct, or plate.coarsenings = 0");
   require(!tilted || loading.solver != statics::StaticSolver::iterative ||
-              plate.height_m <= 2 * statics::most_iterative_slenderness * plate.width_m,
+              plate.height_m + (has_base_body(config) ? config.base.plate.height_m : 0) <=
+                  2 * statics::most_iterative_slenderness * plate.width_m,
           {"loading.solver", "plate.height_m", "plate.width_m"},
           "loading.solver = iterative does not converge on a plate so much higher than wide; choose auto or "
           "direct");

@@ -261,7 +261,7 @@ std::int64_t most_steps(const Stepper& stepper, double shear_m, double top_speed
 }  // namespace
 
 RampRun::RampRun(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading,
-                 double mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m)
+                 const PerNode& mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m)
     : stepper_(stepper),
       tilted_(tilted),
       loading_(loading),
@@ -311,33 +311,36 @@ statics::Equilibrium RampRun::state_now() const {
   e.inside_from_m = first + loading_.edge_margin_m;
   e.inside_to_m = last - loading_.edge_margin_m;
   e.peak_ratio = 0;
+  double mu_s_at_peak = mu_s_[0];
   for (std::size_t k = 0; k < s.size(); ++k) {
     const double x = e.tractions.x_m[k];
-    if (x < e.inside_from_m || x > e.inside_to_m || s.p_Pa[k] <= 0 || s.t_Pa[k] / s.p_Pa[k] <= e.peak_ratio)
-      continue;
-    e.peak_ratio = s.t_Pa[k] / s.p_Pa[k];
+    if (x < e.inside_from_m || x > e.inside_to_m || s.p_Pa[k] <= 0) continue;
+    const double ratio = s.t_Pa[k] / s.p_Pa[k];
+    if (!statics::is_nearer_to_slip(ratio, mu_s_[k], e.peak_ratio, mu_s_at_peak)) continue;
+    e.peak_ratio = ratio;
     e.peak_x_m = x;
+    mu_s_at_peak = mu_s_[k];
   }
   return e;
 }
 
-double RampRun::peak_now() const {
+bool RampRun::reaches(double share) const {
   const auto& s = stepper_.interface_state();
-  double peak = 0;
   for (std::size_t k = 0; k < s.size(); ++k) {
     const double x = tilted_.tractions.x_m[k];
-    if (x >= from_m_ && x <= to_m_ && s.p_Pa[k] > 0) peak = std::max(peak, s.t_Pa[k] / s.p_Pa[k]);
+    if (x >= from_m_ && x <= to_m_ && s.p_Pa[k] > 0 && s.t_Pa[k] / s.p_Pa[k] >= mu_s_[k] * share) return true;
   }
-  return peak;
+  return false;
 }
 
 Ramp RampRun::run(const Monitor& monitor) {
   constexpr std::int64_t renewal_interval = 1000;
-  double peak = 0;
+  bool reaches_common = false, reaches_handover = false;
   Between between;
   between.go_on = [&] {
-    peak = peak_now();
-    return watch_->look() && peak < mu_s_ * (1 - (have_common_ ? ramp_handover : loading_.critical_margin));
+    reaches_common = reaches(1 - loading_.critical_margin);
+    reaches_handover = reaches_common && reaches(1 - ramp_handover);
+    return watch_->look() && !(have_common_ ? reaches_handover : reaches_common);
   };
   for (;;) {
     if (stepper_.step() > most_steps_)
@@ -349,11 +352,11 @@ Ramp RampRun::run(const Monitor& monitor) {
                      between);
     if (auto trouble = watch_->trouble(nullptr); !trouble.empty())
       throw BlowUp(blow_up_message(stepper_, trouble));
-    if (!have_common_ && peak >= mu_s_ * (1 - loading_.critical_margin)) {
+    if (!have_common_ && reaches_common) {
       ramp_.common = state_now();
       have_common_ = true;
     }
-    if (peak >= mu_s_ * (1 - ramp_handover)) {
+    if (reaches_handover) {
       ramp_.spontaneous = state_now();
       break;
     }
@@ -373,7 +376,7 @@ Ramp RampRun::run(const Monitor& monitor) {
 }
 
 Ramp run_ramp(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading,
-              double mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m,
+              const PerNode& mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m,
               const Monitor& monitor) {
   stepper.start(tilted, top_speed_m_per_s);
   return RampRun(stepper, tilted, loading, mu_s, top_speed_m_per_s, c_L_m_per_s, expected_shear_m)

@@ -174,8 +174,9 @@ inline constexpr double ramp_handover = 1e-5;
 class RampRun {
  public:
   /// @param stepper  started from `tilted` at the top's speed
-  RampRun(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading, double mu_s,
-          double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m);
+  /// @param mu_s     of the interface nodes
+  RampRun(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading,
+          const PerNode& mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m);
 
   /// @throws BlowUp, and UserError where mu_s is not reached within twice the shear `expected_shear_m`.
   Ramp run(const Monitor& monitor);
@@ -198,12 +199,14 @@ class RampRun {
   /// Refuses counts that no ramp comes to, and a state of another plate.
   void require_possible(std::int64_t checked_step) const;
   statics::Equilibrium state_now() const;
-  double peak_now() const;
+  /// Whether t/p is so large a share of mu_s anywhere inside.
+  bool reaches(double share) const;
 
   Stepper& stepper_;
   const statics::Equilibrium& tilted_;
   const statics::Loading& loading_;
-  double mu_s_, top_speed_m_per_s_, c_L_m_per_s_, expected_shear_m_;
+  PerNode mu_s_;
+  double top_speed_m_per_s_, c_L_m_per_s_, expected_shear_m_;
   std::int64_t most_steps_;
   Recorder recorder_;
   std::optional<Watch> watch_;  ///< always there
@@ -213,7 +216,7 @@ class RampRun {
   double from_m_, to_m_;
 };
 Ramp run_ramp(Stepper& stepper, const statics::Equilibrium& tilted, const statics::Loading& loading,
-              double mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m,
+              const PerNode& mu_s, double top_speed_m_per_s, double c_L_m_per_s, double expected_shear_m,
               const Monitor& monitor);
 
 }  // namespace slipfront::motion

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/memory.hpp"
 #include "input/prestress.hpp"
@@ -50,11 +51,13 @@ double top_speed_m_per_s(const input::Case& config) {
 }
 
 statics::StaticSolver wanted_solver(const input::Case& config) {
-  if (input::has_base_body(config)) return statics::StaticSolver::direct;  // the iterative one knows no base
-  const auto& plate = config.plate;
-  return statics::solver_for_shape(config.loading.solver, plate.coarsenings > 0,
-                                   std::round(plate.width_m / plate.element_size_m),
-                                   std::round(plate.height_m / plate.element_size_m));
+  const auto shape = [](const mesh::Plate& plate) {
+    return statics::Shape{std::round(plate.width_m / plate.element_size_m),
+                          std::round(plate.height_m / plate.element_size_m), plate.coarsenings > 0};
+  };
+  std::optional<statics::Shape> base;
+  if (input::has_base_body(config)) base = shape(input::base_plate(config));
+  return statics::solver_for_shapes(config.loading.solver, shape(config.plate), base);
 }
 
 double nominal_pressure_Pa(const input::Case& config) {
@@ -96,7 +99,8 @@ double fastest_speed_m_per_s(const input::Case& config) {
 void require_statics_fit(const input::Case& config) {
   const double n_plate = approximate_unknowns_of(config.plate);
   if (input::has_base_body(config))
-    statics::require_statics_memory_of_pair(n_plate, approximate_unknowns_of(input::base_plate(config)));
+    statics::require_statics_memory_of_pair(wanted_solver(config), n_plate,
+                                            approximate_unknowns_of(input::base_plate(config)));
   else
     statics::require_statics_memory(wanted_solver(config), n_plate);
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "base/clock.hpp"
@@ -26,16 +25,6 @@ std::vector<double> at_all_nodes(const PerNode& values, const mesh::Mesh& mesh) 
   std::vector<double> all;
   for (std::size_t k = 0; k < mesh.lower.size(); ++k) all.push_back(values[k]);
   return all;
-}
-
-/// The ramp knows one coefficient for all nodes.
-void require_one_static_coefficient_of_ramp(const input::Case& config, const std::vector<double>& mu_s) {
-  if (config.loading.method == statics::LoadingMethod::ramp &&
-      std::ranges::adjacent_find(mu_s, std::not_equal_to<>()) != mu_s.end())
-    throw UserError(
-        "{} makes {} vary along x, which loading.method = ramp does not know; choose direct or prestress",
-        config.friction_along_x.file.empty() ? "friction.random_key" : "friction.file",
-        interface::static_coefficient_key(config.friction));
 }
 
 /// What an initial state without motion keeps of friction: the coefficients at rest.
@@ -122,10 +111,7 @@ Meshes check(const input::Case& config) {
     motion::require_rows_fit(*meshes.base, config.time);
   }
   meshes.mu_s = static_coefficients(input::friction_at(config, interface_x_m(meshes.plate)));
-  if (!is_prestressed(config)) {
-    require_one_static_coefficient_of_ramp(config, meshes.mu_s);
-    return meshes;
-  }
+  if (!is_prestressed(config)) return meshes;
   const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate));
   starting_loads(config, state, meshes.plate, meshes.mu_s);  // refuses what does nothing
   return meshes;
@@ -171,7 +157,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   initial.n_cells = std::ssize(initial.mesh.cells) + (initial.base ? std::ssize(initial.base->cells) : 0);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
   initial.mu_s = std::move(meshes.mu_s);
-  const double mu_s = static_coefficients(config, initial.mu_s)[0];
+  const auto mu_s = static_coefficients(config, initial.mu_s);
   if (is_prestressed(config)) {
     initial.prescribed = true;
     initial.common = statics::prestressed(initial.mesh, prescribed_tractions(config.prestress, initial.mesh),
@@ -184,10 +170,9 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
   if (initial.base) base.emplace(statics::ElasticBody{*initial.base, base_material});
-  const statics::Statics statics({initial.mesh, config.material}, base, config.loading,
-                                 at_all_nodes(static_coefficients(config, initial.mu_s), initial.mesh),
-                                 interface::static_coefficient_key(config.friction),
-                                 [&] { return monitor(0, 0); });
+  const statics::Statics statics(
+      {initial.mesh, config.material}, base, config.loading, at_all_nodes(mu_s, initial.mesh),
+      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); });
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <unordered_map>
 
 #include "base/error.hpp"
@@ -59,7 +60,7 @@ struct RowPlaces {
   }
 };
 
-Transfer1D make_transfer_1d(const std::vector<double>& fine) {
+Transfer1D make_transfer_1d(std::span<const double> fine) {
   const auto n = static_cast<std::int32_t>(fine.size()) - 1;
   const std::int32_t m = n / 2;
   Transfer1D t;
@@ -74,6 +75,20 @@ Transfer1D make_transfer_1d(const std::vector<double>& fine) {
   return t;
 }
 
+/// The interface row of two bodies stays, and each body is interpolated by itself, with the interface as the
+/// first row of the upper one.
+Transfer1D make_transfer_of_rows(const GridLevel& fine) {
+  if (fine.interface_row == 0) return make_transfer_1d(fine.y);
+  const std::span y(fine.y);
+  auto t = make_transfer_1d(y.first(fine.interface_row));
+  const auto n_coarse_below = static_cast<std::int32_t>(t.place.size());
+  const auto above = make_transfer_1d(y.subspan(fine.interface_row));
+  for (const auto left : above.left) t.left.push_back(n_coarse_below + left);
+  for (const auto place : above.place) t.place.push_back(fine.interface_row + place);
+  t.weight.insert(t.weight.end(), above.weight.begin(), above.weight.end());
+  return t;
+}
+
 /// Calls f(coarse column, coarse row, weight) for the up to four nodes that the bilinear interpolation takes.
 template <class F>
 void for_each_bilinear(const Transfer& t, int i, int j, F&& f) {
@@ -84,6 +99,29 @@ void for_each_bilinear(const Transfer& t, int i, int j, F&& f) {
       if (w != 0) f(t.x.left[i] + a, t.y.left[j] + b, w);
     }
 }
+
+/// Entries of one block row, gathered in any order.
+class BlockRow {
+ public:
+  void add(mesh::Node column, double factor, const Block& b) {
+    auto known = std::ranges::find(entries_, column, [](const auto& e) { return e.first; });
+    if (known == entries_.end()) known = entries_.insert(entries_.end(), {column, Block{}});
+    for (int k = 0; k < 4; ++k) known->second[k] += factor * b[k];
+  }
+  /// Appends the row in ascending order of its columns, and is empty again.
+  void move_to(solid::BlockRows& rows) {
+    std::ranges::sort(entries_, {}, [](const auto& e) { return e.first; });
+    for (const auto& [column, b] : entries_) {
+      rows.neighbour.push_back(column);
+      rows.block.push_back(b);
+    }
+    rows.first.push_back(static_cast<std::int32_t>(rows.neighbour.size()));
+    entries_.clear();
+  }
+
+ private:
+  std::vector<std::pair<mesh::Node, Block>> entries_;
+};
 
 void place_neighbours(GridLevel& level) {
   const auto& rows = level.block;
@@ -128,7 +166,8 @@ std::int32_t GridLevel::block_row(mesh::Node n) const {
   return place != end && *place == n ? static_cast<std::int32_t>(place - block.node.begin()) : -1;
 }
 
-GridLevel make_level(const mesh::Mesh& mesh, const solid::Material& material) {
+GridLevel make_level(const ElasticBody& plate) {
+  const auto& [mesh, material] = plate;
   SLIPFRONT_ASSERT(mesh.period_m == 0, "the logical grid of a periodic plate is not a rectangle");
   GridLevel level;
   level.columns = mesh.grid.columns;
@@ -160,8 +199,95 @@ GridLevel make_level(const mesh::Mesh& mesh, const solid::Material& material) {
   return level;
 }
 
+namespace {
+
+/// Rows of K of two bodies where each body's own level is known.
+class PairRows {
+ public:
+  PairRows(const GridLevel& above, const GridLevel& below, const GridLevel& pair)
+      : above_(above), below_(below), pair_(pair) {}
+
+  bool is_stencil(int i, int j) const {
+    if (j < pair_.interface_row) return below_.has_stencil(i, last_below() - j);
+    return j > pair_.interface_row + 1 && above_.has_stencil(i, j - pair_.interface_row);
+  }
+  void add_row(mesh::Node n, BlockRow& row) const {
+    const int i = n % pair_.stride(), j = n / pair_.stride();
+    if (j <= last_below()) add_row_below(below_.node(i, last_below() - j), row);
+    if (j >= last_below()) add_row_above(above_.node(i, std::max(0, j - pair_.interface_row)), row);
+  }
+
+ private:
+  int last_below() const { return pair_.interface_row - 1; }
+  void add_row_below(mesh::Node n, BlockRow& row) const {
+    for_each_block(below_, n, [&](mesh::Node m, const Block& b) {
+      const Block reflected = {b[0], -b[1], -b[2], b[3]};
+      row.add(pair_.node(m % pair_.stride(), last_below() - m / pair_.stride()), 1, reflected);
+    });
+  }
+  void add_row_above(mesh::Node n, BlockRow& row) const {
+    for_each_block(above_, n, [&](mesh::Node m, const Block& b) {
+      const auto on_grid = m + pair_.node(0, pair_.interface_row);
+      row.add(on_grid, 1, b);
+      if (m < pair_.stride()) row.add(on_grid - pair_.stride(), 1, b);
+    });
+  }
+
+  const GridLevel &above_, &below_, &pair_;
+};
+
+}  // namespace
+
+GridLevel make_level(const ElasticBody& upper, const ElasticBody& lower) {
+  const auto above = make_level(upper), below = make_level(lower);
+  SLIPFRONT_ASSERT(above.columns == below.columns, "bodies with different columns");
+  SLIPFRONT_ASSERT(above.unused.empty() && below.unused.empty(), "two bodies with unused grid numbers");
+  GridLevel pair;
+  pair.columns = above.columns;
+  pair.rows = below.rows + 1 + above.rows;
+  pair.interface_row = below.rows + 1;
+  pair.x = above.x;
+  pair.y = below.y;
+  for (const double y : above.y) pair.y.push_back(below.y.back() + y);
+  pair.stencil = above.stencil;
+  pair.stencil_below = below.stencil;
+
+  const PairRows rows(above, below, pair);
+  RowPlaces places(pair);
+  for (int j = 0; j <= pair.rows; ++j)
+    places.add_row(
+        j, [&](int i) { return rows.is_stencil(i, j); }, [](int) { return true; });
+  pair.block.node = std::move(places.block_nodes);
+  pair.block.first.push_back(0);
+  BlockRow row;
+  for (const auto n : pair.block.node) {
+    rows.add_row(n, row);
+    row.move_to(pair.block);
+  }
+  place_neighbours(pair);
+  return pair;
+}
+
+namespace {
+
+/// Between its interface and its first coarse row the upper body also moves with the lower one.
+void interpolate_from_both_bodies(const GridLevel& fine, Transfer& t) {
+  const int stride = coarse_stride(t), interface = t.y.left[fine.interface_row];
+  for (int j = fine.interface_row + 1; t.y.left[j] == interface && t.y.weight[j] < 1; ++j)
+    for (int i = 0; i <= fine.columns; ++i) {
+      auto& row = t.special[fine.node(i, j)];
+      for_each_bilinear(t, i, j, [&](int I, int J, float w) {
+        if (J == interface) row.push_back({(J - 1) * stride + I, w});
+        row.push_back({J * stride + I, w});
+      });
+    }
+}
+
+}  // namespace
+
 Transfer make_transfer(const GridLevel& fine) {
-  Transfer t{make_transfer_1d(fine.x), make_transfer_1d(fine.y), {}};
+  Transfer t{make_transfer_1d(fine.x), make_transfer_of_rows(fine), {}};
+  if (fine.interface_row > 0) interpolate_from_both_bodies(fine, t);
   if (fine.unused.empty()) return t;
   const auto is_unused = [&](mesh::Node n) { return std::ranges::binary_search(fine.unused, n); };
   const auto place = [&](int I, int J) { return fine.node(t.x.place[I], t.y.place[J]); };
@@ -204,7 +330,9 @@ GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
   GridLevel coarse;
   coarse.columns = static_cast<int>(t.x.place.size()) - 1;
   coarse.rows = static_cast<int>(t.y.place.size()) - 1;
+  coarse.interface_row = t.y.left[fine.interface_row];
   coarse.stencil = fine.stencil;
+  coarse.stencil_below = fine.stencil_below;
   for (const auto k : t.x.place) coarse.x.push_back(fine.x[k]);
   for (const auto k : t.y.place) coarse.y.push_back(fine.y[k]);
   const auto place = [&](mesh::Node n) {
@@ -215,15 +343,16 @@ GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
   // A node keeps the stencil where the finer nodes around it have it and all its cells are two by two finer
   // ones with their own interpolation.
   const int last_i = fine.columns % 2 == 0 ? coarse.columns - 1 : coarse.columns - 2;
-  const int last_j = fine.rows % 2 == 0 ? coarse.rows - 1 : coarse.rows - 2;
+  const auto is_two_rows = [&](int J) { return t.y.place[J + 1] - t.y.place[J] == 2; };
   const auto covers = [&](int j, int from, int to) {
     for (auto k = fine.first_span[j]; k < fine.first_span[j + 1]; ++k)
       if (from >= fine.span[k].begin && to < fine.span[k].end) return true;
     return false;
   };
+  const int first_special = t.special.empty() ? fine.rows + 3 : t.special.begin()->first / fine.stride();
   const int last_special = t.special.empty() ? -1 : t.special.rbegin()->first / fine.stride();
   const auto near_special = [&](int i, int j) {
-    if (j - 2 > last_special) return false;
+    if (j - 2 > last_special || j + 2 < first_special) return false;
     for (int dj = -2; dj <= 2; ++dj)
       for (int di = -2; di <= 2; ++di)
         if (t.special.contains(fine.node(i + di, j + dj))) return true;
@@ -235,7 +364,8 @@ GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
     places.add_row(
         J,
         [&](int I) {
-          if (I < 1 || J < 1 || I > last_i || J > last_j) return false;
+          if (I < 1 || I > last_i || J < 1 || J == coarse.rows || !is_two_rows(J - 1) || !is_two_rows(J))
+            return false;
           const int i = t.x.place[I];
           return covers(j - 1, i - 1, i + 1) && covers(j, i - 1, i + 1) && covers(j + 1, i - 1, i + 1) &&
                  !near_special(i, j);
@@ -260,16 +390,11 @@ GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
   auto& rows = coarse.block;
   rows.node = places.block_nodes;
   rows.first.push_back(0);
-  std::vector<std::pair<mesh::Node, Block>> row;
+  BlockRow row;
   for (const auto N : rows.node) {
-    row.clear();
     const auto add_finer = [&](mesh::Node n, double w) {
       for_each_block(fine, n, [&](mesh::Node neighbour, const Block& b) {
-        for_each_weight(fine, t, neighbour, [&](mesh::Node M, float w2) {
-          auto known = std::ranges::find(row, M, [](const auto& e) { return e.first; });
-          if (known == row.end()) known = row.insert(row.end(), {M, Block{}});
-          for (int k = 0; k < 4; ++k) known->second[k] += w * w2 * b[k];
-        });
+        for_each_weight(fine, t, neighbour, [&](mesh::Node M, float w2) { row.add(M, w * w2, b); });
       });
     };
     const int I = N % coarse.stride(), J = N / coarse.stride();
@@ -286,18 +411,15 @@ GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
       }
     if (const auto own = special_of.find(N); own != special_of.end())
       for (const auto& [n, w] : own->second) add_finer(n, w);
-    std::ranges::sort(row, {}, [](const auto& e) { return e.first; });
-    for (const auto& [M, b] : row) {
-      rows.neighbour.push_back(M);
-      rows.block.push_back(b);
-    }
-    rows.first.push_back(static_cast<std::int32_t>(rows.neighbour.size()));
+    row.move_to(rows);
   }
   place_neighbours(coarse);
   return coarse;
 }
 
-double largest_smoothed_eigenvalue(const solid::InteriorStencil& s) {
+namespace {
+
+double largest_smoothed_eigenvalue_of(const solid::InteriorStencil& s) {
   // The stencil's Fourier symbol is a symmetric 2 x 2 matrix; its largest eigenvalue over the wave numbers.
   constexpr int n = 64;
   double largest = 0;
@@ -311,6 +433,14 @@ double largest_smoothed_eigenvalue(const solid::InteriorStencil& s) {
       largest = std::max(largest, 0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy));
     }
   return largest / s.centre;
+}
+
+}  // namespace
+
+double largest_smoothed_eigenvalue(const GridLevel& level) {
+  const double above = largest_smoothed_eigenvalue_of(level.stencil);
+  return level.interface_row == 0 ? above
+                                  : std::max(above, largest_smoothed_eigenvalue_of(level.stencil_below));
 }
 
 }  // namespace slipfront::statics

@@ -270,7 +270,7 @@ template <class T, class In, class Inside, class Other>
 void for_row_products(const GridLevel& level, const std::vector<std::array<T, 4>>& blocks, const T* slip,
                       int j, const Rows<const In>& field, Inside&& inside, Other&& other) {
   for (auto k = level.first_span[j]; k < level.first_span[j + 1]; ++k)
-    for_stencil_products<T>(level.stencil, level.span[k], j, field, inside);
+    for_stencil_products<T>(level.stencil_of(j), level.span[k], j, field, inside);
   const auto& rows = level.block;
   for (auto r = level.first_block[j]; r < level.first_block[j + 1]; ++r) {
     T sum_x = 0, sum_y = 0;

@@ -29,18 +29,19 @@ mesh::Node finest_node(const Multigrid& multigrid, int level, mesh::Node n) {
   return n;
 }
 
-/// The level's nodes at places of mesh.lower, in their order, and these places.
+/// The level's nodes at places of the interface, in the order of mesh.lower, and these places.
 struct LowerNodes {
   std::vector<mesh::Node> node;
   std::vector<std::size_t> in_mesh_lower;
 };
-LowerNodes lower_nodes(const mesh::Mesh& mesh, const Multigrid& multigrid, int level) {
+LowerNodes lower_nodes(const BodiesOnGrid& bodies, const Multigrid& multigrid, int level) {
   const auto& grid = multigrid.grid(level);
   std::map<mesh::Node, mesh::Node> at;  // by the finest node
   for (const auto n : grid.block.node) at[finest_node(multigrid, level, n)] = n;
   LowerNodes lower;
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
-    const auto found = at.find(mesh.lower[k]);
+  const auto interface = bodies.interface();
+  for (std::size_t k = 0; k < interface.size(); ++k) {
+    const auto found = at.find(interface[k]);
     if (found == at.end()) continue;
     lower.node.push_back(found->second);
     lower.in_mesh_lower.push_back(k);
@@ -74,31 +75,26 @@ void interpolate(const GridLevel& fine, const GridLevel& coarse, const Transfer&
 
 class IterativeLoadCase : public LoadCase {
  public:
-  IterativeLoadCase(const mesh::Mesh& mesh, Multigrid& multigrid, threads::Team& team, int level,
-                    TopConstraint constraint, const TopDisplacement& top, bool sheared,
-                    const solid::Field* start)
-      : mesh_(mesh),
-        equations_(mesh, multigrid, team, level),
+  IterativeLoadCase(const BodiesOnGrid& bodies, const std::vector<double>& gap_m, Multigrid& multigrid,
+                    threads::Team& team, int level, TopConstraint constraint, const TopDisplacement& top,
+                    bool sheared, const DisplacementOfBodies* start)
+      : bodies_(bodies),
+        gap_m_(gap_m),
+        equations_(bodies, multigrid, team, level),
         constraint_(constraint),
         top_(top),
         sheared_(sheared) {
     const auto& grid = equations_.grid();
     u0_ = solid::Field(grid.n_nodes());
     u1_ = solid::Field(sheared ? grid.n_nodes() : 0);
-    // Uniform strain from the plane to the loaded edge.
-    const double height = mesh.y_m[mesh.top.front()];
-    for (int j = 0; j <= grid.rows; ++j)
-      for (int i = 0; i <= grid.columns; ++i) {
-        const auto n = grid.node(i, j);
-        const auto in_mesh = equations_.finest(n);
-        const int column = in_mesh % mesh.grid.stride();
-        const double share = mesh.y_m[in_mesh] / height;
-        u0_.y[n] = start != nullptr ? start->y[in_mesh] : share * top.u_y_m[column];
-        u0_.x[n] = start != nullptr                    ? start->x[in_mesh]
-                   : constraint == TopConstraint::both ? share * top.u_x_m[column]
-                                                       : 0;
-        if (sheared) u1_.x[n] = share;
-      }
+    for (mesh::Node n = 0; n < static_cast<mesh::Node>(grid.n_nodes()); ++n) {
+      const auto finest = equations_.finest(n);
+      const double share = bodies.share_of_height(finest);
+      const auto u = start != nullptr ? bodies.on_grid(*start, finest) : uniform_strain(finest, share);
+      u0_.x[n] = u.x;
+      u0_.y[n] = u.y;
+      if (sheared) u1_.x[n] = share;
+    }
     set_fixed();
   }
 
@@ -119,19 +115,19 @@ class IterativeLoadCase : public LoadCase {
     for (std::size_t k = 0; k < lower.size(); ++k) {
       const auto n = lower[k];
       if (support.contact[k] == Contact::open) continue;
-      u0_.y[n] = -mesh_.y_m[equations_.finest(n)];
+      u0_.y[n] = -gap_m_[equations_.in_mesh_lower()[k]];
       if (sheared_) u1_.y[n] = 0;
       if (support.contact[k] != Contact::stick) continue;
-      u0_.x[n] = support.anchor_x_m[k];
+      u0_.x[n] = bodies_.x_sign() * support.anchor_x_m[k];
       if (sheared_) u1_.x[n] = 0;
     }
     equations_.fix(constraint_, support);
     equations_.solve(accuracy, u0_);
-    u0 = at_interface(u0_);
+    u0 = equations_.at_interface(u0_);
     f0 = equations_.interface_forces(u0_);
     if (sheared_) {
       equations_.solve(accuracy, u1_);
-      u1 = at_interface(u1_);
+      u1 = equations_.at_interface(u1_);
       f1 = equations_.interface_forces(u1_);
     } else {
       u1 = f1 = Eigen::VectorXd::Zero(u0.size());
@@ -139,47 +135,50 @@ class IterativeLoadCase : public LoadCase {
   }
 
   Displacement displacement(double shear) const override {
-    Displacement u{u0_, {}};
-    if (!sheared_) return u;
-    for (std::size_t n = 0; n < u.above.size(); ++n) {
-      u.above.x[n] += shear * u1_.x[n];
-      u.above.y[n] += shear * u1_.y[n];
+    if (!sheared_) return bodies_.of_bodies(u0_);
+    auto u = u0_;
+    for (std::size_t n = 0; n < u.size(); ++n) {
+      u.x[n] += shear * u1_.x[n];
+      u.y[n] += shear * u1_.y[n];
     }
-    return u;
+    return bodies_.of_bodies(std::move(u));
   }
   Displacement displacement_per_shear() const override {
-    return {sheared_ ? u1_ : solid::Field(u0_.size()), {}};
+    return bodies_.of_bodies(sheared_ ? u1_ : solid::Field(u0_.size()));
   }
 
  private:
-  /// Exactly the loaded edge's displacements, and 0 at numbers without a node.
+  /// Column of the finest grid.
+  int column(mesh::Node finest) const { return finest % static_cast<int>(top_.u_y_m.size()); }
+
+  /// From the interface to the loaded edge.
+  BodiesOnGrid::Vector uniform_strain(mesh::Node finest, double share) const {
+    return {constraint_ == TopConstraint::both ? share * top_.u_x_m[column(finest)] : 0,
+            share * bodies_.y_sign() * top_.u_y_m[column(finest)]};
+  }
+
+  /// Exactly the loaded edge's displacements, and 0 at numbers without a node and where a base is held.
   void set_fixed() {
-    const auto& grid = equations_.grid();
-    for (int i = 0; i <= grid.columns; ++i) {
-      const auto n = grid.node(i, grid.rows);
-      const int column = equations_.finest(n) % mesh_.grid.stride();
-      if (constraint_ == TopConstraint::both) u0_.x[n] = top_.u_x_m[column];
-      u0_.y[n] = top_.u_y_m[column];
+    for (const auto n : equations_.loaded()) {
+      const int i = column(equations_.finest(n));
+      if (constraint_ == TopConstraint::both) u0_.x[n] = top_.u_x_m[i];
+      u0_.y[n] = bodies_.y_sign() * top_.u_y_m[i];
       if (sheared_) u1_.x[n] = 1;
       if (sheared_) u1_.y[n] = 0;
     }
-    for (const auto n : grid.unused) {
+    set_to_zero(equations_.held());
+    set_to_zero(equations_.grid().unused);
+  }
+
+  void set_to_zero(const std::vector<mesh::Node>& nodes) {
+    for (const auto n : nodes) {
       u0_.x[n] = u0_.y[n] = 0;
       if (sheared_) u1_.x[n] = u1_.y[n] = 0;
     }
   }
 
-  Eigen::VectorXd at_interface(const solid::Field& u) const {
-    const auto& lower = equations_.lower();
-    Eigen::VectorXd v(2 * lower.size());
-    for (std::size_t k = 0; k < lower.size(); ++k) {
-      v(2 * k) = u.x[lower[k]];
-      v(2 * k + 1) = u.y[lower[k]];
-    }
-    return v;
-  }
-
-  const mesh::Mesh& mesh_;
+  const BodiesOnGrid& bodies_;
+  const std::vector<double>& gap_m_;  ///< [lower]
   LevelEquations equations_;
   TopConstraint constraint_;
   TopDisplacement top_;
@@ -199,29 +198,34 @@ double iterative_bytes(double n_unknowns) {
   return n_unknowns * (single + 2 * single / 3 + twice + 3 * single + 2 * twice + 6 * twice + 16);
 }
 
-IterativeSolver::IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material)
-    : IterativeSolver(mesh, material, threads::Team::processors()) {}
-
-IterativeSolver::IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material, int threads)
-    : mesh_(mesh), team_(threads), multigrid_(mesh, material, team_) {
+IterativeSolver::IterativeSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base,
+                                 int threads)
+    : gap_m_(gaps_m(plate.mesh, base ? &base->mesh : nullptr)),
+      bodies_(plate, base),
+      team_(threads),
+      multigrid_(make_level_of_bodies(plate, base), team_) {
   const auto& grid = multigrid_.grid(0);
-  n_unknowns_ = 2 * static_cast<std::int64_t>(grid.n_nodes() - grid.unused.size() - mesh.top.size());
+  const auto n_prescribed = plate.mesh.top.size() + (base ? base->mesh.top.size() : 0);
+  n_unknowns_ = 2 * static_cast<std::int64_t>(grid.n_nodes() - grid.unused.size() - n_prescribed);
   while (n_levels_ < multigrid_.n_levels() && multigrid_.grid(n_levels_).columns >= least_interface_cells)
     ++n_levels_;
 }
 
 std::unique_ptr<LoadCase> IterativeSolver::load_case(TopConstraint constraint, const TopDisplacement& top,
-                                                     bool sheared, const solid::Field* start, int level) {
-  return std::make_unique<IterativeLoadCase>(mesh_, multigrid_, team_, level, constraint, top, sheared,
-                                             start);
+                                                     bool sheared, const DisplacementOfBodies* start,
+                                                     int level) {
+  return std::make_unique<IterativeLoadCase>(bodies_, gap_m_, multigrid_, team_, level, constraint, top,
+                                             sheared, start);
 }
 
 std::vector<std::size_t> IterativeSolver::interface_of(int level) const {
-  return lower_nodes(mesh_, multigrid_, level).in_mesh_lower;
+  return lower_nodes(bodies_, multigrid_, level).in_mesh_lower;
 }
 
-LevelEquations::LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, threads::Team& team, int level)
-    : multigrid_(multigrid),
+LevelEquations::LevelEquations(const BodiesOnGrid& bodies, Multigrid& multigrid, threads::Team& team,
+                               int level)
+    : bodies_(bodies),
+      multigrid_(multigrid),
       team_(team),
       level_(level),
       grid_(multigrid.grid(level)),
@@ -235,10 +239,16 @@ LevelEquations::LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, thr
       row_sum_(grid_.rows + 1),
       residual_(grid_.n_nodes()),
       direction_(grid_.n_nodes()) {
-  auto lower = lower_nodes(mesh, multigrid, level);
+  auto lower = lower_nodes(bodies, multigrid, level);
   lower_ = std::move(lower.node);
   in_mesh_lower_ = std::move(lower.in_mesh_lower);
-  for (int i = 0; i <= grid_.columns; ++i) top_.push_back(grid_.node(i, grid_.rows));
+  const auto edge = [&](bool is_last) {
+    std::vector<mesh::Node> nodes;
+    for (int i = 0; i <= grid_.columns; ++i) nodes.push_back(grid_.node(i, is_last ? grid_.rows : 0));
+    return nodes;
+  };
+  loaded_ = edge(bodies.loaded_edge_is_last());
+  if (bodies.has_base()) held_ = edge(!bodies.loaded_edge_is_last());
 }
 
 mesh::Node LevelEquations::finest(mesh::Node n) const {
@@ -248,14 +258,17 @@ mesh::Node LevelEquations::finest(mesh::Node n) const {
 void LevelEquations::fix(TopConstraint constraint, const Support& support) {
   SLIPFRONT_ASSERT(support.contact.size() == lower_.size(), "size of the interface");
   BoundaryNodes boundary;
-  boundary.fixed_y = top_;
-  if (constraint == TopConstraint::both) boundary.fixed_x = top_;
+  boundary.fixed_x = held_;
+  boundary.fixed_y = held_;
+  boundary.fixed_y.insert(boundary.fixed_y.end(), loaded_.begin(), loaded_.end());
+  if (constraint == TopConstraint::both)
+    boundary.fixed_x.insert(boundary.fixed_x.end(), loaded_.begin(), loaded_.end());
   for (std::size_t k = 0; k < lower_.size(); ++k) {
     const auto n = lower_[k];
     if (support.contact[k] == Contact::stick) boundary.fixed_x.push_back(n);
     if (support.contact[k] != Contact::open) boundary.fixed_y.push_back(n);
     if (support.contact[k] == Contact::slip)
-      boundary.slip.push_back({n, support.slip_sign[k] * support.mu_s[k]});
+      boundary.slip.push_back({n, bodies_.x_sign() * support.slip_sign[k] * support.mu_s[k]});
   }
   multigrid_.prescribe(boundary, level_);
   std::ranges::fill(fixed_, std::uint8_t{0});
@@ -505,6 +518,15 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
   throw UserError("the iterative static solution does not converge; set loading.solver = direct");
 }
 
+Eigen::VectorXd LevelEquations::at_interface(const solid::Field& u) const {
+  Eigen::VectorXd v(2 * lower_.size());
+  for (std::size_t k = 0; k < lower_.size(); ++k) {
+    v(2 * k) = bodies_.x_sign() * u.x[lower_[k]];
+    v(2 * k + 1) = u.y[lower_[k]];
+  }
+  return v;
+}
+
 Eigen::VectorXd LevelEquations::interface_forces(const solid::Field& u) const {
   const auto& rows = grid_.block;
   Eigen::VectorXd f(2 * lower_.size());
@@ -517,7 +539,7 @@ Eigen::VectorXd LevelEquations::interface_forces(const solid::Field& u) const {
       x += b[0] * w_x + b[1] * w_y;
       y += b[2] * w_x + b[3] * w_y;
     }
-    f(2 * k) = x;
+    f(2 * k) = bodies_.x_sign() * x;
     f(2 * k + 1) = y;
   }
   return f;

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "statics/bodies_on_grid.hpp"
 #include "statics/multigrid.hpp"
 #include "statics/plate_solver.hpp"
 
@@ -13,25 +15,31 @@ namespace slipfront::statics {
 /// Bytes of the iterative statics at their peak, the mesh and the equilibria included: 107 an unknown.
 double iterative_bytes(double n_unknowns);
 
-/// Equations of the plate on one level of the multigrid, without any matrix: conjugate gradients with one
-/// multigrid cycle as preconditioner; where nodes slip, whose friction makes the equations unsymmetric,
-/// BiCGStab (van der Vorst, SIAM J. Sci. Stat. Comput. 13, 631-644, 1992) with the same preconditioner.
+/// Equations of the plate, and of a base below it, on one level of the multigrid, without any matrix:
+/// conjugate gradients with one multigrid cycle as preconditioner; where nodes slip, whose friction makes the
+/// equations unsymmetric, BiCGStab (van der Vorst, SIAM J. Sci. Stat. Comput. 13, 631-644, 1992) with the
+/// same preconditioner.
 class LevelEquations {
  public:
-  LevelEquations(const mesh::Mesh& mesh, Multigrid& multigrid, threads::Team& team, int level);
+  LevelEquations(const BodiesOnGrid& bodies, Multigrid& multigrid, threads::Team& team, int level);
 
-  /// Fixes displacements: the loaded edge's, and those that the support does not leave free.
+  /// Fixes displacements: the loaded edge's, those that the support does not leave free, and the edge's that
+  /// holds a base.
   void fix(TopConstraint constraint, const Support& support);
   /// Improves u, whose fixed displacements are right, until the rest is in equilibrium.
   /// @throws UserError where that takes too many cycles.
   void solve(double accuracy, solid::Field& u);
-  /// Forces that u takes at the interface. [2 interface nodes of the level]
+  /// Relative displacement of the plate at the interface. [2 interface nodes of the level]
+  Eigen::VectorXd at_interface(const solid::Field& u) const;
+  /// Forces on the plate that u takes at the interface. [2 interface nodes of the level]
   Eigen::VectorXd interface_forces(const solid::Field& u) const;
 
   const GridLevel& grid() const { return grid_; }
   const Multigrid& multigrid() const { return multigrid_; }
   int level() const { return level_; }
-  mesh::Node finest(mesh::Node n) const;  ///< node of the mesh at the place of the level's node
+  mesh::Node finest(mesh::Node n) const;  ///< the finest grid's node at the place of the level's node
+  const std::vector<mesh::Node>& loaded() const { return loaded_; }  ///< nodes of the loaded edge
+  const std::vector<mesh::Node>& held() const { return held_; }      ///< nodes at which a base is held
   const std::vector<mesh::Node>& lower() const { return lower_; }
   const std::vector<std::size_t>& in_mesh_lower() const { return in_mesh_lower_; }
 
@@ -59,13 +67,14 @@ class LevelEquations {
     RowsBeside<float> beside;
   };
 
+  const BodiesOnGrid& bodies_;
   Multigrid& multigrid_;
   threads::Team& team_;
   int level_;
   const GridLevel& grid_;
   int parts_;
-  std::vector<mesh::Node> lower_, top_;     ///< the level's nodes
-  std::vector<std::size_t> in_mesh_lower_;  ///< [lower] places in mesh.lower
+  std::vector<mesh::Node> lower_, loaded_, held_;  ///< the level's nodes
+  std::vector<std::size_t> in_mesh_lower_;         ///< [lower] places in mesh.lower
   std::vector<std::array<float, 4>> blocks_f_;
   std::vector<std::uint8_t> fixed_;  ///< [block rows] bit 0: x, bit 1: y
   std::vector<double> slip_;         ///< [block rows] factor of f_y, 0 where the node does not slip
@@ -82,11 +91,11 @@ class LevelEquations {
 /// Equilibria by LevelEquations. Coarser levels with enough interface nodes give first guesses.
 class IterativeSolver : public PlateSolver {
  public:
-  IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material);
-  IterativeSolver(const mesh::Mesh& mesh, const solid::Material& material, int threads);
+  IterativeSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base,
+                  int threads = threads::Team::processors());
 
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
-                                      const solid::Field* start, int level) override;
+                                      const DisplacementOfBodies* start, int level) override;
   std::int64_t n_unknowns() const override { return n_unknowns_; }
   double bytes() const override { return iterative_bytes(static_cast<double>(n_unknowns_)); }
   bool iterates() const override { return true; }
@@ -94,11 +103,13 @@ class IterativeSolver : public PlateSolver {
   int n_levels() const override { return n_levels_; }
   std::vector<std::size_t> interface_of(int level) const override;
 
+  const BodiesOnGrid& bodies() const { return bodies_; }
   Multigrid& multigrid() { return multigrid_; }
   threads::Team& team() { return team_; }
 
  private:
-  const mesh::Mesh& mesh_;
+  std::vector<double> gap_m_;  ///< [lower]
+  BodiesOnGrid bodies_;
   threads::Team team_;
   Multigrid multigrid_;
   std::int64_t n_unknowns_ = 0;

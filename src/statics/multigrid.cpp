@@ -73,7 +73,7 @@ struct Multigrid::Level {
   /// times `gain`. i stands for several columns where a_x is a vector.
   template <class Step>
   void for_products(int j, const Rows<const float>& field, float gain, Step&& step) const {
-    const float inverse = gain / static_cast<float>(grid.stencil.centre);
+    const float inverse = gain / static_cast<float>(grid.stencil_of(j).centre);
     for_row_products<float>(
         grid, blocks, slip.data(), j, field,
         [&](int i, const auto& a_x, const auto& a_y) { step(i, a_x, a_y, inverse, inverse); },
@@ -132,11 +132,10 @@ struct Multigrid::Workspace {
 
 Multigrid::~Multigrid() = default;
 
-Multigrid::Multigrid(const mesh::Mesh& mesh, const solid::Material& material, threads::Team& team)
-    : team_(team) {
-  levels_.push_back(std::make_unique<Level>(make_level(mesh, material), true));
+Multigrid::Multigrid(GridLevel finest, threads::Team& team) : team_(team) {
+  levels_.push_back(std::make_unique<Level>(std::move(finest), true));
   const auto is_coarse = [](const GridLevel& g) {
-    return g.n_nodes() <= most_coarsest_nodes || std::min(g.columns, g.rows) < least_cells;
+    return g.n_nodes() <= most_coarsest_nodes || std::min(g.columns, g.least_rows()) < least_cells;
   };
   while (!is_coarse(levels_.back()->grid)) {
     auto& fine = *levels_.back();
@@ -151,8 +150,8 @@ Multigrid::Multigrid(const mesh::Mesh& mesh, const solid::Material& material, th
     estimate_largest_eigenvalue(*level);
     reach = std::max(reach, level->grid.reach);
   }
-  workspace_.assign(team.size(), Workspace(reach, mesh.grid.stride()));
-  row_sum_.resize(mesh.grid.rows + 1);
+  workspace_.assign(team.size(), Workspace(reach, grid(0).stride()));
+  row_sum_.resize(grid(0).rows + 1);
 }
 
 int Multigrid::parts(int level) const {
@@ -304,7 +303,7 @@ void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
     const auto first_step = [&](int j) {
       const B *b_x = b.x(j), *b_y = b.y(j);
       float* __restrict c_x = change.x(j), * __restrict c_y = change.y(j);
-      const float gain = gains.first / static_cast<float>(grid.stencil.centre);
+      const float gain = gains.first / static_cast<float>(grid.stencil_of(j).centre);
       for (int i = 0; i < grid.stride(); ++i) {
         c_x[i] = gain * static_cast<float>(b_x[i]);
         c_y[i] = gain * static_cast<float>(b_y[i]);
@@ -487,7 +486,7 @@ void Multigrid::damp_block_rows(Level& level) {
     largest = norm;  // of a vector of norm 1, but for the first
     for (std::size_t k = 0; k < u.size(); ++k) u[k] = product[k] / norm;
   }
-  level.damping = std::max(1.0, largest / largest_smoothed_eigenvalue(level.grid.stencil));
+  level.damping = std::max(1.0, largest / largest_smoothed_eigenvalue(level.grid));
   level.set_diagonal();
 }
 
@@ -523,7 +522,7 @@ void Multigrid::estimate_largest_eigenvalue(Level& level) {
     if (iteration + 1 == iterations) level.largest = std::sqrt(norm / norm_before);
     norm_before = norm;
   }
-  level.largest = std::max(level.largest, largest_smoothed_eigenvalue(grid.stencil));
+  level.largest = std::max(level.largest, largest_smoothed_eigenvalue(grid));
   std::ranges::fill(level.u.x, 0.0F);
   std::ranges::fill(level.u.y, 0.0F);
 }
@@ -552,7 +551,9 @@ void Multigrid::factorise_coarsest() {
   Eigen::SparseMatrix<double> K(n_unknowns, n_unknowns);
   K.setFromTriplets(entries.begin(), entries.end());
   // Where nothing sticks and the loaded edge may move along x, that motion costs nothing.
-  coarsest_.setShift(1e-9 * grid.stencil.centre);
+  const double softer = grid.interface_row == 0 ? grid.stencil.centre
+                                                : std::min(grid.stencil.centre, grid.stencil_below.centre);
+  coarsest_.setShift(1e-9 * softer);
   coarsest_.compute(K);
   SLIPFRONT_ASSERT(coarsest_.info() == Eigen::Success, "the coarsest level is not positive definite");
   coarsest_b_.resize(n_unknowns);

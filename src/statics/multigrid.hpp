@@ -22,8 +22,9 @@ struct BoundaryNodes {
   std::vector<Slip> slip;
 };
 
-/// One geometric multigrid cycle for the plate's stiffness with prescribed displacements, in single
-/// precision: an approximation of the inverse, symmetric and positive definite where no node slips.
+/// One geometric multigrid cycle for the stiffness of a plate, or of two bodies, with prescribed
+/// displacements, in single precision: an approximation of the inverse, symmetric and positive definite where
+/// no node slips.
 ///
 /// V-cycles with Chebyshev polynomials of the diagonally scaled stiffness as smoother (Adams, Brezina, Hu,
 /// Tuminaro, J. Comput. Phys. 188, 593-610, 2003) and a direct solution on the coarsest level. Each level's
@@ -33,7 +34,7 @@ struct BoundaryNodes {
 /// number of them.
 class Multigrid {
  public:
-  Multigrid(const mesh::Mesh& mesh, const solid::Material& material, threads::Team& team);
+  Multigrid(GridLevel finest, threads::Team& team);
   ~Multigrid();
   Multigrid(const Multigrid&) = delete;
   Multigrid& operator=(const Multigrid&) = delete;

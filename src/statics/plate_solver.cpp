@@ -102,7 +102,7 @@ class DirectSolver : public PlateSolver {
   }
 
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
-                                      const solid::Field*, int) override {
+                                      const DisplacementOfBodies*, int) override {
     auto interface = held_;
     if (constraint == TopConstraint::vertical)
       interface = std::make_shared<CondensedInterface>(
@@ -140,6 +140,10 @@ void require_base_fits(const mesh::Mesh& plate, const mesh::Mesh& base) {
                      "interface nodes that do not face each other");
 }
 
+Shape shape_of(const mesh::Mesh& mesh) {
+  return {static_cast<double>(mesh.grid.columns), static_cast<double>(mesh.grid.rows), !mesh.coarser.empty()};
+}
+
 }  // namespace
 
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base) {
@@ -154,11 +158,14 @@ StaticSolver choose_solver(StaticSolver wanted, double n_unknowns) {
   return n_unknowns <= most_direct_unknowns ? StaticSolver::direct : StaticSolver::iterative;
 }
 
-StaticSolver solver_for_shape(StaticSolver wanted, bool is_graded, double columns, double rows) {
-  if (is_graded) return StaticSolver::direct;
+StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate, const std::optional<Shape>& base) {
+  if (plate.is_graded || (base && base->is_graded)) return StaticSolver::direct;
   if (wanted != StaticSolver::automatic) return wanted;
-  if (rows > most_iterative_slenderness * columns) return StaticSolver::direct;
-  return columns > most_direct_columns ? StaticSolver::iterative : wanted;
+  const double rows = plate.rows + (base ? base->rows : 0);
+  if (rows > most_iterative_slenderness * plate.columns) return StaticSolver::direct;
+  if (plate.columns > most_direct_columns) return StaticSolver::iterative;
+  const auto [thinner, thicker] = std::minmax(plate.rows, base ? base->rows : plate.rows);
+  return thicker > most_iterative_height_ratio * thinner ? StaticSolver::direct : wanted;
 }
 
 std::string_view name_of(StaticSolver solver) {
@@ -182,32 +189,38 @@ void require_statics_memory(StaticSolver solver, double n_unknowns) {
   }
 }
 
-void require_statics_memory_of_pair(double n_unknowns_plate, double n_unknowns_base) {
+void require_statics_memory_of_pair(StaticSolver solver, double n_unknowns_plate, double n_unknowns_base) {
+  const double n_unknowns = n_unknowns_plate + n_unknowns_base;
+  if (choose_solver(solver, n_unknowns) == StaticSolver::iterative) {
+    require_statics_memory(StaticSolver::iterative, n_unknowns);
+    return;
+  }
   // The base is factorised while the plate's factor is there.
   const double plate_factor = estimated_factor_bytes(n_unknowns_plate);
   const double bytes =
       std::max(statics_bytes(n_unknowns_plate, plate_factor),
                plate_factor + statics_bytes(n_unknowns_base, estimated_factor_bytes(n_unknowns_base)));
   require_memory(bytes,
-                 fmt::format("the factorisation of {:.4g} static unknowns of plate and base",
-                             n_unknowns_plate + n_unknowns_base),
+                 fmt::format("the factorisation of {:.4g} static unknowns of plate and base", n_unknowns),
                  "choose a larger plate.element_size_m");
 }
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver, const std::optional<ElasticBody>& base) {
+  if (base) require_base_fits(mesh, base->mesh);
+  std::optional<Shape> shape_of_base;
+  if (base) shape_of_base = shape_of(base->mesh);
+  solver = solver_for_shapes(solver, shape_of(mesh), shape_of_base);
+  double n_unknowns = 2.0 * mesh.n_nodes();
   if (base) {
-    require_base_fits(mesh, base->mesh);
-    if (solver == StaticSolver::iterative)
-      throw UserError("loading.solver = iterative knows no elastic base; choose auto or direct");
-    require_statics_memory_of_pair(2.0 * mesh.n_nodes(), 2.0 * base->mesh.n_nodes());
-    return std::make_unique<DirectSolver>(mesh, material, base);
+    require_statics_memory_of_pair(solver, n_unknowns, 2.0 * base->mesh.n_nodes());
+    n_unknowns += 2.0 * base->mesh.n_nodes();
+  } else {
+    require_statics_memory(solver, n_unknowns);
   }
-  solver = solver_for_shape(solver, !mesh.coarser.empty(), mesh.grid.columns, mesh.grid.rows);
-  require_statics_memory(solver, 2.0 * mesh.n_nodes());
-  if (choose_solver(solver, 2.0 * mesh.n_nodes()) == StaticSolver::direct)
+  if (choose_solver(solver, n_unknowns) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
-  return std::make_unique<IterativeSolver>(mesh, material);
+  return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);
 }
 
 }  // namespace slipfront::statics

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
-#include "solid/material.hpp"
 #include "solid/operator.hpp"
+#include "statics/elastic_body.hpp"
 #include "statics/settings.hpp"
 
 namespace slipfront::statics {
@@ -36,18 +36,16 @@ struct Support {
   bool operator==(const Support&) const = default;
 };
 
-/// A plate, or a base below one. A base is described upside down: y points away from the interface into it,
-/// mesh.lower are its interface nodes at the places of the plate's along x, and mesh.top is its far edge,
-/// which is held still.
-struct ElasticBody {
-  const mesh::Mesh& mesh;
-  const solid::Material& material;
-};
-
 /// How far the interface of the undeformed bodies is open. [lower]
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base);
 
 class LoadCase;  // load_case.hpp
+
+/// Displacements of all nodes that are kept elsewhere: of the plate, and of the base where there is one.
+struct DisplacementOfBodies {
+  const solid::Field* above;
+  const solid::Field* below = nullptr;
+};
 
 /// Solves the linear equilibria of one plate on the rigid plane or on a base.
 class PlateSolver {
@@ -56,7 +54,7 @@ class PlateSolver {
   /// The loaded edge at `top`, and where `sheared` moved on along x by the shear. `start`: a guess of the
   /// displacement without shear on the finest level, or null.
   virtual std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top,
-                                              bool sheared, const solid::Field* start, int level) = 0;
+                                              bool sheared, const DisplacementOfBodies* start, int level) = 0;
   virtual int n_levels() const = 0;
   /// Interface nodes of a level, as places in mesh.lower.
   virtual std::vector<std::size_t> interface_of(int level) const = 0;
@@ -76,14 +74,23 @@ inline constexpr double most_direct_unknowns = 400e3;
 /// `wanted`, or what suits the number of unknowns.
 StaticSolver choose_solver(StaticSolver wanted, double n_unknowns);
 
-/// What a plate of so many columns and rows of elements leaves of `wanted`. Graded plates are solved
-/// directly. Multigrid cannot follow a plate far higher than wide; there a factorisation is cheap. On a long
-/// interface its dense part is not.
-StaticSolver solver_for_shape(StaticSolver wanted, bool is_graded, double columns, double rows);
+/// What matters of a body's mesh for the choice of a solver: elements along x, and along y where all are
+/// squares of one size.
+struct Shape {
+  double columns = 0, rows = 0;
+  bool is_graded = false;
+};
 
-/// Rows over columns up to which multigrid converges, and columns up to which automatic takes a
-/// factorisation.
-inline constexpr double most_iterative_slenderness = 10, most_direct_columns = 1500;
+/// What the shapes of a plate and of a base leave of `wanted`. Graded plates are solved directly. Multigrid
+/// cannot follow a plate far higher than wide, nor make two bodies coarser of which one is far thinner; there
+/// a factorisation is cheap. On a long interface its dense part is not.
+StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate,
+                               const std::optional<Shape>& base = std::nullopt);
+
+/// Rows over columns, and of one body over the other's, up to which automatic takes multigrid, and columns up
+/// to which it takes a factorisation.
+inline constexpr double most_iterative_slenderness = 10, most_iterative_height_ratio = 16,
+                        most_direct_columns = 1500;
 
 std::string_view name_of(StaticSolver solver);
 
@@ -94,12 +101,11 @@ double statics_bytes(StaticSolver solver, double n_unknowns);
 /// @throws UserError with the figures.
 void require_statics_memory(StaticSolver solver, double n_unknowns);
 
-/// Refuses two bodies, which are solved directly, where their statics would not fit into the memory at hand.
-/// @throws UserError with the figures.
-void require_statics_memory_of_pair(double n_unknowns_plate, double n_unknowns_base);
+/// The same of two bodies.
+void require_statics_memory_of_pair(StaticSolver solver, double n_unknowns_plate, double n_unknowns_base);
 
-/// By the solver that the plate's shape leaves of `solver`; on a base directly.
-/// @throws UserError for an iterative solution on a base.
+/// By the solver that the bodies' shapes leave of `solver`. @throws UserError where the memory does not
+/// suffice.
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver,
                                                const std::optional<ElasticBody>& base = std::nullopt);

@@ -16,6 +16,11 @@ bool has_nodes(const Equilibrium& state, std::size_t n_lower) {
          p_s_Pa.size() == n_lower;
 }
 
+bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double other_mu_s) {
+  if (mu_s == other_mu_s) return ratio > other_ratio;
+  return ratio * other_mu_s > other_ratio * mu_s;
+}
+
 namespace {
 
 /// The interface of one level of the solver. [nodes]
@@ -200,12 +205,6 @@ Inside inside_contact(const ContactProblem& problem, double margin_m) {
   return {first + margin_m, last - margin_m};
 }
 
-/// Whether a ratio t/p is a larger share of its mu_s than another one of its own.
-bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double other_mu_s) {
-  if (mu_s == other_mu_s) return ratio > other_ratio;
-  return ratio * other_mu_s > other_ratio * mu_s;
-}
-
 /// Interface nodes' displacement along x, relative to that of a base. [lower]
 std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Equilibrium& e) {
   std::vector<double> u_x_m;
@@ -342,7 +341,8 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
   if (is_free)
     for (std::size_t k = 0; k < mesh.top.size(); ++k) tilt.u_x_m[k] = tilted_.u_m.x[mesh.top[k]];
   tilted_top_ = tilt;
-  sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_.u_m, 0);
+  const DisplacementOfBodies tilted_u{&tilted_.u_m, &tilted_.below_u_m};
+  sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_u, 0);
 }
 
 Statics::~Statics() = default;
@@ -374,8 +374,9 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
     }
     if (solver_->iterates()) accuracy = first_accuracy;
     const auto start = states;
+    const DisplacementOfBodies tilted_u{&tilted_.u_m, &tilted_.below_u_m};
     const auto make_case = [&](int level) {
-      return solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_.u_m, level);
+      return solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_u, level);
     };
     const auto settle_coarse = [&](ContactProblem& coarse) {
       settle_problem(coarse, first_accuracy, guess_accuracy);

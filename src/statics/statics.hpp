@@ -47,6 +47,9 @@ struct Equilibrium {
 /// Whether an equilibrium has a contact and tractions at each of so many interface nodes.
 bool has_nodes(const Equilibrium& state, std::size_t n_lower);
 
+/// Whether a ratio t/p is a larger share of its mu_s than another one of its own.
+bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double other_mu_s);
+
 /// Loading of the plate at rest: tilt, then shear until t/p reaches a given share of mu_s somewhere inside
 /// the interface.
 ///

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "mesh/mesh.hpp"
+#include "solid/material.hpp"
+
+namespace slipfront::statics {
+
+/// A plate, or a base below one. A base is described upside down: y points away from the interface into it,
+/// mesh.lower are its interface nodes at the places of the plate's along x, and mesh.top is its far edge,
+/// which is held still.
+struct ElasticBody {
+  const mesh::Mesh& mesh;
+  const solid::Material& material;
+};
+
+}  // namespace slipfront::statics
