@@ -7,13 +7,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 
 #include "base/host_device.hpp"
 
-// Arithmetic that is written once for a value type V: a double, or the processor's vector of them, Lanes. The
-// operators are the compiler's; the functions here stand in for what they lack. Both branches of a select are
-// evaluated.
+// Arithmetic that is written once for a value type V: a number, or the processor's vector of them, Lanes of
+// doubles or LanesOf<float>. The operators are the compiler's; the functions here stand in for what they
+// lack. Both branches of a select are evaluated.
 namespace slipfront {
 
 SLIPFRONT_HOST_DEVICE inline double select(bool condition, double yes, double no) {
@@ -38,41 +41,60 @@ SLIPFRONT_HOST_DEVICE inline double from_bits(std::uint64_t bits) {
 #ifndef __CUDACC__
 
 #ifdef __AVX512F__
-inline constexpr int lanes = 8;
+inline constexpr int vector_bytes = 64;
 #else
-inline constexpr int lanes = 4;
+inline constexpr int vector_bytes = 32;
 #endif
 
-/// Consecutive values of an array.
-using Lanes = double __attribute__((vector_size(lanes * sizeof(double))));
-/// What a comparison of Lanes gives: all bits of a lane where it is true, none where not.
-using LanesMask = std::int64_t __attribute__((vector_size(lanes * sizeof(double))));
-using LanesBits = std::uint64_t __attribute__((vector_size(lanes * sizeof(double))));
-
-/// The same anywhere in memory: packed, so that no alignment is promised.
-struct __attribute__((packed, may_alias)) LanesInMemory {
-  Lanes values;
+template <class T, int n>
+struct VectorOf {
+  typedef T Type __attribute__((vector_size(n * sizeof(T))));
+  /// The same anywhere in memory: packed, so that no alignment is promised.
+  struct __attribute__((packed, may_alias)) InMemory {
+    Type values;
+  };
 };
-inline Lanes load(const double* from) {
-  return reinterpret_cast<const LanesInMemory*>(from)->values;
-}
-inline void store(double* to, Lanes values) {
-  reinterpret_cast<LanesInMemory*>(to)->values = values;
-}
+/// n numbers side by side.
+template <class T, int n>
+using Vector = typename VectorOf<T, n>::Type;
+template <class V>
+inline constexpr int length = sizeof(V) / sizeof(std::declval<V>()[0]);
 
-/// The same in single precision, twice as many of them.
-using FloatLanes = float __attribute__((vector_size(lanes * sizeof(double))));
-struct __attribute__((packed, may_alias)) FloatLanesInMemory {
-  FloatLanes values;
-};
-inline FloatLanes load(const float* from) {
-  return reinterpret_cast<const FloatLanesInMemory*>(from)->values;
-}
-inline void store(float* to, FloatLanes values) {
-  reinterpret_cast<FloatLanesInMemory*>(to)->values = values;
-}
+/// So many as the processor computes at a time.
 template <class Real>
-inline constexpr int lanes_of = lanes* static_cast<int>(sizeof(double) / sizeof(Real));
+inline constexpr int lanes_of = vector_bytes / static_cast<int>(sizeof(Real));
+template <class Real>
+using LanesOf = Vector<Real, lanes_of<Real>>;
+
+inline constexpr int lanes = lanes_of<double>;
+using Lanes = LanesOf<double>;
+/// What a comparison of Lanes gives: all bits of a lane where it is true, none where not.
+using LanesMask = Vector<std::int64_t, lanes>;
+using LanesBits = Vector<std::uint64_t, lanes>;
+
+/// Consecutive values of an array in the type V: a vector, or one number.
+template <class V, std::floating_point From>
+inline V load_as(const From* from) {
+  if constexpr (std::is_arithmetic_v<V>) {
+    return static_cast<V>(*from);
+  } else {
+    using InMemory = typename VectorOf<From, length<V>>::InMemory;
+    return __builtin_convertvector(reinterpret_cast<const InMemory*>(from)->values, V);
+  }
+}
+template <std::floating_point Real>
+inline LanesOf<Real> load(const Real* from) {
+  return load_as<LanesOf<Real>>(from);
+}
+template <std::floating_point To, class V>
+inline void store(To* to, const V& values) {
+  if constexpr (std::is_arithmetic_v<V>) {
+    *to = static_cast<To>(values);
+  } else {
+    using As = VectorOf<To, length<V>>;
+    reinterpret_cast<typename As::InMemory*>(to)->values = __builtin_convertvector(values, typename As::Type);
+  }
+}
 
 /// The first `count` values, 1 <= count < lanes, and their last one in the other lanes.
 inline Lanes load_part(const double* from, int count) {
@@ -146,6 +168,39 @@ inline Lanes absolute(Lanes a) {
 inline Lanes copy_sign(Lanes magnitude, Lanes sign) {
   constexpr std::uint64_t sign_bit = std::uint64_t{1} << 63;
   return from_bits((bits_of(magnitude) & ~sign_bit) | (bits_of(sign) & sign_bit));
+}
+
+/// Numbers [from, from + length) of two vectors one behind the other.
+template <int from, class V, int... k>
+inline V part_of(const V& first, const V& second, std::integer_sequence<int, k...>) {
+  return __builtin_shufflevector(first, second, (from + k)...);
+}
+/// The values one place to the left of `here`, where `left` stands before it, and one to the right; of single
+/// numbers the neighbours themselves.
+template <class V>
+inline V from_left(const V& left, const V& here) {
+  if constexpr (std::is_arithmetic_v<V>)
+    return left;
+  else
+    return part_of<length<V> - 1>(left, here, std::make_integer_sequence<int, length<V>>{});
+}
+template <class V>
+inline V from_right(const V& here, const V& right) {
+  if constexpr (std::is_arithmetic_v<V>)
+    return right;
+  else
+    return part_of<1>(here, right, std::make_integer_sequence<int, length<V>>{});
+}
+
+/// even[0], odd[0], even[1], odd[1] ... in two vectors.
+template <int from, class V, int... k>
+inline V interleaved_from(const V& even, const V& odd, std::integer_sequence<int, k...>) {
+  return __builtin_shufflevector(even, odd, ((from + k) / 2 + (k % 2) * length<V>)...);
+}
+template <class V>
+inline std::pair<V, V> interleaved(const V& even, const V& odd) {
+  constexpr auto all = std::make_integer_sequence<int, length<V>>{};
+  return {interleaved_from<0>(even, odd, all), interleaved_from<length<V>>(even, odd, all)};
 }
 
 #endif

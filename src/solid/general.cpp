@@ -7,82 +7,70 @@
 #include <unordered_map>
 
 #include "base/error.hpp"
+#include "base/lanes.hpp"
 #include "solid/element.hpp"
-#include "solid/kernels.hpp"
+#include "solid/operator.hpp"
 
 namespace slipfront::solid {
 
 namespace {
 
-using Two = double __attribute__((vector_size(2 * sizeof(double))));
-struct __attribute__((packed, may_alias)) TwoInMemory {
-  Two values;
-};
-inline Two load_two(const double* from) {
-  return reinterpret_cast<const TwoInMemory*>(from)->values;
+/// Two vectors in one.
+template <class V, int... k>
+inline auto joined(const V& first, const V& second, std::integer_sequence<int, k...>) {
+  return __builtin_shufflevector(first, second, k...);
 }
-inline void add_two(double* to, Two values) {
-  auto* at = reinterpret_cast<TwoInMemory*>(to);
-  at->values = at->values + values;
+/// The numbers of a vector from `from` on, half as many as it has.
+template <int from, class V, int... k>
+inline auto half_of(const V& whole, std::integer_sequence<int, k...>) {
+  return __builtin_shufflevector(whole, whole, (from + k)...);
+}
+/// even[c], odd[c], even[2 + c], odd[2 + c] ...
+template <int c, class V, int... k>
+inline V component_of_pairs(const V& even, const V& odd, std::integer_sequence<int, k...>) {
+  return __builtin_shufflevector(even, odd, (k - k % 2 + c + (k % 2) * length<V>)...);
+}
+template <int c, class V>
+inline V component_of_pairs(const V& even, const V& odd) {
+  return component_of_pairs<c>(even, odd, std::make_integer_sequence<int, length<V>>{});
 }
 
-/// x and y of one corner of each cell of a batch.
+/// Twice the places of one corner of each cell of a batch, and x and y there.
+using Places = std::array<std::int32_t, lanes>;
 struct LanePairs {
   Lanes x, y;
 };
 
-using Four = double __attribute__((vector_size(4 * sizeof(double))));
-inline Four join(Two a, Two b) {
-  return __builtin_shufflevector(a, b, 0, 1, 2, 3);
+/// x and y in turn at every second place from `lane` on.
+template <int n>
+inline Vector<double, n> gather_pairs(const double* w, const Places& at, int lane) {
+  if constexpr (n == 2) {
+    return load_as<Vector<double, 2>>(w + at[lane]);
+  } else {
+    return joined(gather_pairs<n / 2>(w, at, lane), gather_pairs<n / 2>(w, at, lane + n / 2),
+                  std::make_integer_sequence<int, n>{});
+  }
 }
-inline Two first_two(Four a) {
-  return __builtin_shufflevector(a, a, 0, 1);
-}
-inline Two last_two(Four a) {
-  return __builtin_shufflevector(a, a, 2, 3);
+inline LanePairs gather(const double* w, const Places& at) {
+  const Lanes even = gather_pairs<lanes>(w, at, 0), odd = gather_pairs<lanes>(w, at, 1);
+  return {component_of_pairs<0>(even, odd), component_of_pairs<1>(even, odd)};
 }
 
-#ifdef __AVX512F__
-inline LanePairs gather(const double* w, const std::array<std::int32_t, lanes>& at) {
-  const auto four = [&](int lane) { return join(load_two(w + at[lane]), load_two(w + at[lane + 2])); };
-  const auto all = [&](int lane) {
-    return __builtin_shufflevector(four(lane), four(lane + 4), 0, 1, 2, 3, 4, 5, 6, 7);
-  };
-  const Lanes even = all(0), odd = all(1);
-  return {__builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14),
-          __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15)};
+template <class V>
+inline void scatter_add_pairs(double* force, const Places& at, int lane, const V& even, const V& odd) {
+  constexpr int n = length<V>;
+  if constexpr (n == 2) {
+    store(force + at[lane], load_as<V>(force + at[lane]) + even);
+    store(force + at[lane + 1], load_as<V>(force + at[lane + 1]) + odd);
+  } else {
+    constexpr auto half = std::make_integer_sequence<int, n / 2>{};
+    scatter_add_pairs(force, at, lane, half_of<0>(even, half), half_of<0>(odd, half));
+    scatter_add_pairs(force, at, lane + n / 2, half_of<n / 2>(even, half), half_of<n / 2>(odd, half));
+  }
 }
-inline void scatter_add(double* force, const std::array<std::int32_t, lanes>& at, Lanes x, Lanes y) {
-  const Lanes even = __builtin_shufflevector(x, y, 0, 8, 2, 10, 4, 12, 6, 14);
-  const Lanes odd = __builtin_shufflevector(x, y, 1, 9, 3, 11, 5, 13, 7, 15);
-  const Four even_low = __builtin_shufflevector(even, even, 0, 1, 2, 3);
-  const Four odd_low = __builtin_shufflevector(odd, odd, 0, 1, 2, 3);
-  const Four even_high = __builtin_shufflevector(even, even, 4, 5, 6, 7);
-  const Four odd_high = __builtin_shufflevector(odd, odd, 4, 5, 6, 7);
-  add_two(force + at[0], first_two(even_low));
-  add_two(force + at[1], first_two(odd_low));
-  add_two(force + at[2], last_two(even_low));
-  add_two(force + at[3], last_two(odd_low));
-  add_two(force + at[4], first_two(even_high));
-  add_two(force + at[5], first_two(odd_high));
-  add_two(force + at[6], last_two(even_high));
-  add_two(force + at[7], last_two(odd_high));
+inline void scatter_add(double* force, const Places& at, Lanes x, Lanes y) {
+  scatter_add_pairs(force, at, 0, component_of_pairs<0>(x, y), component_of_pairs<1>(x, y));
 }
-#else
-inline LanePairs gather(const double* w, const std::array<std::int32_t, lanes>& at) {
-  const Lanes even = join(load_two(w + at[0]), load_two(w + at[2]));
-  const Lanes odd = join(load_two(w + at[1]), load_two(w + at[3]));
-  return {__builtin_shufflevector(even, odd, 0, 4, 2, 6), __builtin_shufflevector(even, odd, 1, 5, 3, 7)};
-}
-inline void scatter_add(double* force, const std::array<std::int32_t, lanes>& at, Lanes x, Lanes y) {
-  const Lanes even = __builtin_shufflevector(x, y, 0, 4, 2, 6);
-  const Lanes odd = __builtin_shufflevector(x, y, 1, 5, 3, 7);
-  add_two(force + at[0], first_two(even));
-  add_two(force + at[1], first_two(odd));
-  add_two(force + at[2], last_two(even));
-  add_two(force + at[3], last_two(odd));
-}
-#endif
 
 /// The cell's nodes, beginning with the lower left one, so that cells equal in shape are so in order.
 mesh::Cell in_order(const mesh::Mesh& mesh, const mesh::Cell& cell) {
@@ -154,8 +142,8 @@ struct alignas(64) LaneTriangles {
   std::array<std::array<double, lanes>, n_entries> entry;
 };
 
-/// Twice the places of the cells' nodes 0, 1, 2, 3, by corner and lane.
-using Corners = std::array<std::array<std::int32_t, lanes>, 4>;
+/// Those of the cells' nodes 0, 1, 2, 3.
+using Corners = std::array<Places, 4>;
 
 /// Batches [begin, end) of similar cells.
 struct SharedStiffness {

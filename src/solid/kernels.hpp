@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <type_traits>
 #include <vector>
 
 #include "base/host_device.hpp"
 #include "base/lanes.hpp"
 #include "solid/operator.hpp"
+#include "solid/stencil_product.hpp"
 
 // The explicit step over plain arrays: the kick of one node by functions for any processor, and loops over
 // them, one grid row at a time. Every pointer points to column 0 of its row; rows of w never alias the rows
@@ -72,76 +72,6 @@ inline void add_interior_row(const InteriorStencil& s, Span span, ConstRow south
   }
 }
 
-/// The values one column to the left of `here`, and one to the right.
-inline Lanes from_left(Lanes left, Lanes here) {
-#ifdef __AVX512F__
-  return __builtin_shufflevector(left, here, 7, 8, 9, 10, 11, 12, 13, 14);
-#else
-  return __builtin_shufflevector(left, here, 3, 4, 5, 6);
-#endif
-}
-inline Lanes from_right(Lanes here, Lanes right) {
-#ifdef __AVX512F__
-  return __builtin_shufflevector(here, right, 1, 2, 3, 4, 5, 6, 7, 8);
-#else
-  return __builtin_shufflevector(here, right, 1, 2, 3, 4);
-#endif
-}
-inline FloatLanes from_left(FloatLanes left, FloatLanes here) {
-#ifdef __AVX512F__
-  return __builtin_shufflevector(left, here, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30);
-#else
-  return __builtin_shufflevector(left, here, 7, 8, 9, 10, 11, 12, 13, 14);
-#endif
-}
-inline FloatLanes from_right(FloatLanes here, FloatLanes right) {
-#ifdef __AVX512F__
-  return __builtin_shufflevector(here, right, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16);
-#else
-  return __builtin_shufflevector(here, right, 1, 2, 3, 4, 5, 6, 7, 8);
-#endif
-}
-
-/// The interior stencil's terms by the column they come from, so that two vectors per component have to be
-/// shifted: unaligned loads of all neighbours cost more than the arithmetic.
-template <class V>
-struct StencilTerms {
-  V w_x, w_y;
-  V own_x, own_y;            ///< for the columns themselves
-  V to_right_x, to_right_y;  ///< for the columns to the right of them
-  V to_left_x, to_left_y;
-};
-/// The stencil in the precision of the rows.
-template <class Real>
-struct StencilOf {
-  Real centre, along, across, corner, twist;
-  explicit StencilOf(const InteriorStencil& s)
-      : centre(static_cast<Real>(s.centre)),
-        along(static_cast<Real>(s.along)),
-        across(static_cast<Real>(s.across)),
-        corner(static_cast<Real>(s.corner)),
-        twist(static_cast<Real>(s.twist)) {}
-};
-template <class Real>
-auto stencil_terms(const StencilOf<Real>& s, int i, ConstRowOf<Real> south, ConstRowOf<Real> middle,
-                   ConstRowOf<Real> north) {
-  const auto south_x = load(south.x + i), south_y = load(south.y + i);
-  const auto north_x = load(north.x + i), north_y = load(north.y + i);
-  const auto sum_x = south_x + north_x, twist_x = s.twist * (north_x - south_x);
-  const auto sum_y = south_y + north_y, twist_y = s.twist * (north_y - south_y);
-  const auto w_x = load(middle.x + i), w_y = load(middle.y + i);
-  const auto beside_x = s.along * w_x + s.corner * sum_x;
-  const auto beside_y = s.across * w_y + s.corner * sum_y;
-  return StencilTerms<std::remove_const_t<decltype(w_x)>>{w_x,
-                                                          w_y,
-                                                          s.centre * w_x + s.across * sum_x,
-                                                          s.centre * w_y + s.along * sum_y,
-                                                          beside_x - twist_y,
-                                                          beside_y - twist_x,
-                                                          beside_x + twist_y,
-                                                          beside_y + twist_x};
-}
-
 /// Sums over nodes of products with a kick d of the velocity: w d, v d with v before the kick, d d.
 struct KickSums {
   double w_d = 0, v_d = 0, d_d = 0;
@@ -154,50 +84,40 @@ void push_interior_row(const InteriorStencil& stencil, Span span, double time_st
                        ConstRowOf<Real> middle, ConstRowOf<Real> north, Real* __restrict v_x,
                        Real* __restrict v_y, Real* __restrict u_x, Real* __restrict u_y, KickSums& sums) {
   constexpr int n_lanes = lanes_of<Real>;
+  using V = LanesOf<Real>;
   const StencilOf<Real> s(stencil);
   const auto dt = static_cast<Real>(time_step_s);
-  using V = decltype(load(u_x));
+  const auto terms = [&](int i) { return stencil_terms<V>(s, i, south, middle, north); };
   V w_d{}, v_d{}, d_d{};
   int i = span.begin;
-  const auto before = stencil_terms(s, i - n_lanes, south, middle, north);
-  V left_x = before.to_right_x, left_y = before.to_right_y;
-  auto here = stencil_terms(s, i, south, middle, north);
+  auto left = terms(i - n_lanes), here = terms(i);
   for (; i + n_lanes <= span.end; i += n_lanes) {
-    const auto right = stencil_terms(s, i + n_lanes, south, middle, north);
-    const V d_x =
-        here.own_x + (from_left(left_x, here.to_right_x) + from_right(here.to_left_x, right.to_left_x));
-    const V d_y =
-        here.own_y + (from_left(left_y, here.to_right_y) + from_right(here.to_left_y, right.to_left_y));
+    const auto right = terms(i + n_lanes);
+    const auto d = stencil_product(left, here, right);
     const V before_x = load(v_x + i), before_y = load(v_y + i);
-    const V after_x = before_x + d_x, after_y = before_y + d_y;
+    const V after_x = before_x + d.x, after_y = before_y + d.y;
     store(v_x + i, after_x);
     store(v_y + i, after_y);
     store(u_x + i, load(u_x + i) + dt * after_x);
     store(u_y + i, load(u_y + i) + dt * after_y);
     if constexpr (with_sums) {
-      w_d += here.w_x * d_x + here.w_y * d_y;
-      v_d += before_x * d_x + before_y * d_y;
-      d_d += d_x * d_x + d_y * d_y;
+      w_d += here.w_x * d.x + here.w_y * d.y;
+      v_d += before_x * d.x + before_y * d.y;
+      d_d += d.x * d.x + d.y * d.y;
     }
-    left_x = here.to_right_x;
-    left_y = here.to_right_y;
+    left = here;
     here = right;
   }
   if (i < span.end) {
-    const auto right = stencil_terms(s, i + n_lanes, south, middle, north);
-    Real d_x[n_lanes], d_y[n_lanes];
-    store(d_x,
-          here.own_x + (from_left(left_x, here.to_right_x) + from_right(here.to_left_x, right.to_left_x)));
-    store(d_y,
-          here.own_y + (from_left(left_y, here.to_right_y) + from_right(here.to_left_y, right.to_left_y)));
+    const auto d = stencil_product(left, here, terms(i + n_lanes));
     for (int k = 0; i < span.end; ++i, ++k) {
       if constexpr (with_sums) {
-        sums.w_d += middle.x[i] * d_x[k] + middle.y[i] * d_y[k];
-        sums.v_d += v_x[i] * d_x[k] + v_y[i] * d_y[k];
-        sums.d_d += d_x[k] * d_x[k] + d_y[k] * d_y[k];
+        sums.w_d += middle.x[i] * d.x[k] + middle.y[i] * d.y[k];
+        sums.v_d += v_x[i] * d.x[k] + v_y[i] * d.y[k];
+        sums.d_d += d.x[k] * d.x[k] + d.y[k] * d.y[k];
       }
-      v_x[i] += d_x[k];
-      v_y[i] += d_y[k];
+      v_x[i] += d.x[k];
+      v_y[i] += d.y[k];
       u_x[i] += dt * v_x[i];
       u_y[i] += dt * v_y[i];
     }

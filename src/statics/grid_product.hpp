@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
+#include "base/lanes.hpp"
+#include "solid/stencil_product.hpp"
 #include "statics/grid_level.hpp"
 #include "threads/team.hpp"
 
@@ -31,6 +32,7 @@ struct Rows {
   int mask = -1;  ///< of a row's number: -1 for all rows, their number less 1 for a ring of 2^n rows
   T* x(int j) const { return x_begin + (j & mask) * stride; }
   T* y(int j) const { return y_begin + (j & mask) * stride; }
+  solid::ConstRowOf<std::remove_const_t<T>> row(int j) const { return {x(j), y(j)}; }
   Rows<const T> as_const() const { return {x_begin, y_begin, stride, mask}; }
 };
 
@@ -101,49 +103,6 @@ std::vector<std::array<T, 4>> blocks_as(const solid::BlockRows& rows) {
   return blocks;
 }
 
-#ifdef __AVX512F__
-inline constexpr int vector_bytes = 64;
-#else
-inline constexpr int vector_bytes = 32;
-#endif
-
-/// n consecutive numbers of a row.
-template <class T, int n>
-struct VectorOf {
-  typedef T Type __attribute__((vector_size(n * sizeof(T))));
-  /// The same anywhere in memory: packed, so that no alignment is promised.
-  struct __attribute__((packed, may_alias)) InMemory {
-    Type values;
-  };
-};
-/// So many as are computed at a time in the precision T.
-template <class T>
-inline constexpr int lanes = vector_bytes / sizeof(T);
-template <class T>
-using Lanes = typename VectorOf<T, lanes<T>>::Type;
-template <class V>
-inline constexpr int length = sizeof(V) / sizeof(std::declval<V>()[0]);
-
-/// Numbers from `from` on in the type V: a vector, or one number.
-template <class V, class In>
-inline V load(const In* from) {
-  if constexpr (std::is_arithmetic_v<V>) {
-    return static_cast<V>(*from);
-  } else {
-    return __builtin_convertvector(
-        reinterpret_cast<const typename VectorOf<In, length<V>>::InMemory*>(from)->values, V);
-  }
-}
-template <class V, class Out>
-inline void store(Out* to, const V& value) {
-  if constexpr (std::is_arithmetic_v<V>) {
-    *to = static_cast<Out>(value);
-  } else {
-    using To = VectorOf<Out, length<V>>;
-    reinterpret_cast<typename To::InMemory*>(to)->values = __builtin_convertvector(value, typename To::Type);
-  }
-}
-
 /// A sum in double precision of products computed in the precision T, in an order that only depends on the
 /// columns.
 template <class T>
@@ -160,104 +119,48 @@ class RowSum {
   }
   double value() const {
     double sum = one_;
-    for (int k = 0; k < lanes<T>; ++k) sum += several_[k];
+    for (int k = 0; k < lanes_of<T>; ++k) sum += several_[k];
     return sum;
   }
 
  private:
-  using Doubles = typename VectorOf<double, lanes<T>>::Type;
+  using Doubles = Vector<double, lanes_of<T>>;
   double one_ = 0;
   Doubles several_{};
 };
 
-/// What a column gives to the stencil's products at itself and at its neighbours, so that two vectors per
-/// component have to be shifted instead of loading all neighbours.
-template <class V>
-struct ColumnTerms {
-  V own_x, own_y, to_right_x, to_right_y, to_left_x, to_left_y;
-};
-
-/// A stencil in the precision T.
-template <class T>
-struct StencilAs {
-  T centre, along, across, corner, twist;
-  explicit StencilAs(const solid::InteriorStencil& s)
-      : centre(static_cast<T>(s.centre)),
-        along(static_cast<T>(s.along)),
-        across(static_cast<T>(s.across)),
-        corner(static_cast<T>(s.corner)),
-        twist(static_cast<T>(s.twist)) {}
-
-  template <class V, class In>
-  ColumnTerms<V> terms(const Rows<const In>& f, int j, int i) const {
-    const V south_x = load<V>(f.x(j - 1) + i), south_y = load<V>(f.y(j - 1) + i);
-    const V north_x = load<V>(f.x(j + 1) + i), north_y = load<V>(f.y(j + 1) + i);
-    const V w_x = load<V>(f.x(j) + i), w_y = load<V>(f.y(j) + i);
-    const V sum_x = south_x + north_x, twist_x = twist * (north_x - south_x);
-    const V sum_y = south_y + north_y, twist_y = twist * (north_y - south_y);
-    const V beside_x = along * w_x + corner * sum_x, beside_y = across * w_y + corner * sum_y;
-    return {centre * w_x + across * sum_x,
-            centre * w_y + along * sum_y,
-            beside_x - twist_y,
-            beside_y - twist_x,
-            beside_x + twist_y,
-            beside_y + twist_x};
-  }
-};
-
-/// The vector one column to the left of `here`, where `left` stands before it, and one to the right.
-template <int by, class V, int... k>
-inline V shifted(const V& first, const V& second, std::integer_sequence<int, k...>) {
-  return __builtin_shufflevector(first, second, (by + k)...);
-}
-template <class V>
-inline V from_left(const V& left, const V& here) {
-  return shifted<length<V> - 1>(left, here, std::make_integer_sequence<int, length<V>>{});
-}
-template <class V>
-inline V from_right(const V& here, const V& right) {
-  return shifted<1>(here, right, std::make_integer_sequence<int, length<V>>{});
-}
-
-/// even[0], odd[0], even[1], odd[1] ... in two vectors.
-template <int from, class V, int... k>
-inline V interleaved_from(const V& even, const V& odd, std::integer_sequence<int, k...>) {
-  return __builtin_shufflevector(even, odd, ((from + k) / 2 + (k % 2) * length<V>)...);
-}
-template <class V>
-inline std::pair<V, V> interleaved(const V& even, const V& odd) {
-  constexpr auto all = std::make_integer_sequence<int, length<V>>{};
-  return {interleaved_from<0>(even, odd, all), interleaved_from<length<V>>(even, odd, all)};
-}
-
-/// Calls f(i, a_x, a_y) with the stencil's products in columns [begin, end) of row j, of type Lanes<T> for
+/// Calls f(i, a_x, a_y) with the stencil's products in columns [begin, end) of row j, of type LanesOf<T> for
 /// the columns from i on, or T.
 template <class T, class In, class F>
 void for_stencil_products(const solid::InteriorStencil& stencil, solid::Span span, int j,
                           const Rows<const In>& field, F&& f) {
-  const StencilAs<T> s(stencil);
-  using V = Lanes<T>;
+  const solid::StencilOf<T> s(stencil);
+  const auto south = field.row(j - 1), middle = field.row(j), north = field.row(j + 1);
   int i = span.begin;
-  if (i + 2 * lanes<T> <= span.end + 1) {
-    const auto before = s.template terms<T>(field, j, i - 1);
-    V left_x{}, left_y{};
-    left_x[lanes<T> - 1] = before.to_right_x;
-    left_y[lanes<T> - 1] = before.to_right_y;
-    auto here = s.template terms<V>(field, j, i);
-    for (; i + 2 * lanes<T> <= span.end + 1; i += lanes<T>) {
-      const auto right = s.template terms<V>(field, j, i + lanes<T>);
-      f(i, V(here.own_x + (from_left(left_x, here.to_right_x) + from_right(here.to_left_x, right.to_left_x))),
-        V(here.own_y + (from_left(left_y, here.to_right_y) + from_right(here.to_left_y, right.to_left_y))));
-      left_x = here.to_right_x;
-      left_y = here.to_right_y;
+  // Nothing is read beyond the neighbours: that may be beyond the field.
+  constexpr int n_lanes = lanes_of<T>;
+  if (i + 2 * n_lanes <= span.end + 1) {
+    using V = LanesOf<T>;
+    const auto before = solid::stencil_terms<T>(s, i - 1, south, middle, north);
+    solid::StencilTerms<V> left{};
+    left.to_right_x[n_lanes - 1] = before.to_right_x;
+    left.to_right_y[n_lanes - 1] = before.to_right_y;
+    auto here = solid::stencil_terms<V>(s, i, south, middle, north);
+    for (; i + 2 * n_lanes <= span.end + 1; i += n_lanes) {
+      const auto right = solid::stencil_terms<V>(s, i + n_lanes, south, middle, north);
+      const auto a = solid::stencil_product(left, here, right);
+      f(i, a.x, a.y);
+      left = here;
       here = right;
     }
   }
   if (i == span.end) return;
-  auto left = s.template terms<T>(field, j, i - 1), here = s.template terms<T>(field, j, i);
+  auto left = solid::stencil_terms<T>(s, i - 1, south, middle, north);
+  auto here = solid::stencil_terms<T>(s, i, south, middle, north);
   for (; i < span.end; ++i) {
-    const auto right = s.template terms<T>(field, j, i + 1);
-    f(i, here.own_x + (left.to_right_x + right.to_left_x), here.own_y + (left.to_right_y + right.to_left_y));
+    const auto right = solid::stencil_terms<T>(s, i + 1, south, middle, north);
+    const auto a = solid::stencil_product(left, here, right);
+    f(i, a.x, a.y);
     left = here;
     here = right;
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/lanes.hpp"
 #include "statics/load_case.hpp"
 
 namespace slipfront::statics {
@@ -313,8 +314,8 @@ double LevelEquations::start_residual(const solid::Field& u) {
     double *r_x = r_rows.x(j), *r_y = r_rows.y(j);
     RowSum<double> sum;
     const auto inside = [&]<class V>(int i, const V& a_x, const V& a_y) {
-      sum.add(load<V>(u_x + i), a_x);
-      sum.add(load<V>(u_y + i), a_y);
+      sum.add(load_as<V>(u_x + i), a_x);
+      sum.add(load_as<V>(u_y + i), a_y);
       store(r_x + i, V(-a_x));
       store(r_y + i, V(-a_y));
     };
@@ -357,8 +358,8 @@ double LevelEquations::next_direction(double beta) {
       const float *n_x = next.x(k), *n_y = next.y(k);
       RowSum<float> sum;
       for_products<float>(k, next.as_const(), [&]<class V>(int i, const V& a_x, const V& a_y) {
-        sum.add(load<V>(n_x + i), a_x);
-        sum.add(load<V>(n_y + i), a_y);
+        sum.add(load_as<V>(n_x + i), a_x);
+        sum.add(load_as<V>(n_y + i), a_y);
       });
       row_sum_[k] = {sum.value(), 0};
     }
@@ -376,9 +377,9 @@ double LevelEquations::take_step(double step, const GridField<float>& z, solid::
     const float *z_x = z_rows.x(j), *z_y = z_rows.y(j);
     double *u_x = u_rows.x(j), *u_y = u_rows.y(j), *r_x = r_rows.x(j), *r_y = r_rows.y(j);
     for_products<double>(j, z_rows, [&]<class V>(int i, const V& a_x, const V& a_y) {
-      store(u_x + i, V(load<V>(u_x + i) + step * load<V>(z_x + i)));
-      store(u_y + i, V(load<V>(u_y + i) + step * load<V>(z_y + i)));
-      const V x = load<V>(r_x + i) - step * a_x, y = load<V>(r_y + i) - step * a_y;
+      store(u_x + i, V(load_as<V>(u_x + i) + step * load_as<V>(z_x + i)));
+      store(u_y + i, V(load_as<V>(u_y + i) + step * load_as<V>(z_y + i)));
+      const V x = load_as<V>(r_x + i) - step * a_x, y = load_as<V>(r_y + i) - step * a_y;
       store(r_x + i, x);
       store(r_y + i, y);
       and_sum(i, x, y);
@@ -396,8 +397,8 @@ double LevelEquations::take_step(double step, const GridField<float>& z, solid::
     const float* s_y = shadow_.y.data() + grid_.node(0, j);
     RowSum<double> sum;
     take(j, [&]<class V>(int i, const V& x, const V& y) {
-      sum.add(x, load<V>(s_x + i));
-      sum.add(y, load<V>(s_y + i));
+      sum.add(x, load_as<V>(s_x + i));
+      sum.add(y, load_as<V>(s_y + i));
     });
     return std::array<double, 2>{sum.value(), 0};
   })[0];
@@ -487,8 +488,8 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
       for_products<float>(j, z_rows, [&]<class V>(int i, const V& a_x, const V& a_y) {
         store(v_x + i, a_x);
         store(v_y + i, a_y);
-        sum.add(load<V>(s_x + i), a_x);
-        sum.add(load<V>(s_y + i), a_y);
+        sum.add(load_as<V>(s_x + i), a_x);
+        sum.add(load_as<V>(s_y + i), a_y);
       });
       return std::array<double, 2>{sum.value(), 0};
     })[0];
@@ -503,8 +504,8 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
       const double *r_x = r.x(j), *r_y = r.y(j);
       RowSum<float> sum_r, sum_t;
       for_products<float>(j, z_rows, [&]<class V>(int i, const V& t_x, const V& t_y) {
-        sum_r.add(t_x, load<V>(r_x + i));
-        sum_r.add(t_y, load<V>(r_y + i));
+        sum_r.add(t_x, load_as<V>(r_x + i));
+        sum_r.add(t_y, load_as<V>(r_y + i));
         sum_t.add(t_x, t_x);
         sum_t.add(t_y, t_y);
       });

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "base/lanes.hpp"
 
 namespace slipfront::statics {
 
@@ -240,13 +241,13 @@ void restrict_row(const Transfer1D& t, int columns, int coarse_columns, const fl
 void interpolate_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict c,
                      const float* __restrict start, float* __restrict u) {
   const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
-  using V = Lanes<float>;
+  using V = LanesOf<float>;
   int I = 0;
   for (; I + length<V> <= n_pairs; I += length<V>) {
-    const V here = load<V>(c + I), between = 0.5F * (here + load<V>(c + I + 1));
+    const V here = load_as<V>(c + I), between = 0.5F * (here + load_as<V>(c + I + 1));
     const auto [first, second] = interleaved(here, between);
-    store(u + 2 * I, V(load<V>(start + 2 * I) + first));
-    store(u + 2 * I + length<V>, V(load<V>(start + 2 * I + length<V>) + second));
+    store(u + 2 * I, V(load_as<V>(start + 2 * I) + first));
+    store(u + 2 * I + length<V>, V(load_as<V>(start + 2 * I + length<V>) + second));
   }
   for (; I < n_pairs; ++I) {
     u[2 * I] = start[2 * I] + c[I];
@@ -318,12 +319,13 @@ void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
       const B *b_x = b.x(j), *b_y = b.y(j);
       const float *c_x = change.x(j), *c_y = change.y(j);
       float *v_x = smoothed.x(j), *v_y = smoothed.y(j);
-      fine.for_products(j, change.as_const(), gains.second,
-                        [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-                          const float kept = 1 + gains.keep;
-                          store(v_x + i, V(kept * load<V>(c_x + i) + inverse_x * (load<V>(b_x + i) - a_x)));
-                          store(v_y + i, V(kept * load<V>(c_y + i) + inverse_y * (load<V>(b_y + i) - a_y)));
-                        });
+      fine.for_products(
+          j, change.as_const(), gains.second,
+          [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+            const float kept = 1 + gains.keep;
+            store(v_x + i, V(kept * load_as<V>(c_x + i) + inverse_x * (load_as<V>(b_x + i) - a_x)));
+            store(v_y + i, V(kept * load_as<V>(c_y + i) + inverse_y * (load_as<V>(b_y + i) - a_y)));
+          });
       fine.clear_fixed(j, v_x, v_y);
       if (j < u_begin || j >= end) return;
       std::copy_n(v_x, grid.stride(), u.x(j));
@@ -335,8 +337,8 @@ void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
       for_row_products<float>(
           grid, fine.blocks, fine.slip.data(), j, smoothed.as_const(),
           [&]<class V>(int i, const V& a_x, const V& a_y) {
-            store(r_x + i, V(load<V>(b_x + i) - a_x));
-            store(r_y + i, V(load<V>(b_y + i) - a_y));
+            store(r_x + i, V(load_as<V>(b_x + i) - a_x));
+            store(r_y + i, V(load_as<V>(b_y + i) - a_y));
           },
           [&](int i, std::int32_t, float a_x, float a_y) {
             r_x[i] = static_cast<float>(b_x[i]) - a_x;
@@ -424,12 +426,12 @@ double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
       float *c_x = change.x(j), *c_y = change.y(j), *v_x = smoothed.x(j), *v_y = smoothed.y(j);
       fine.for_products(j, start.as_const(), gains.first,
                         [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-                          const V x = inverse_x * (load<V>(b_x + i) - a_x),
-                                  y = inverse_y * (load<V>(b_y + i) - a_y);
+                          const V x = inverse_x * (load_as<V>(b_x + i) - a_x),
+                                  y = inverse_y * (load_as<V>(b_y + i) - a_y);
                           store(c_x + i, x);
                           store(c_y + i, y);
-                          store(v_x + i, V(load<V>(u_x + i) + x));
-                          store(v_y + i, V(load<V>(u_y + i) + y));
+                          store(v_x + i, V(load_as<V>(u_x + i) + x));
+                          store(v_y + i, V(load_as<V>(u_y + i) + y));
                         });
     };
     const auto second_step = [&](int j) {
@@ -440,9 +442,9 @@ double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
       fine.for_products(
           j, smoothed.as_const(), gains.second,
           [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-            const V r_x = load<V>(b_x + i), r_y = load<V>(b_y + i);
-            const V x = load<V>(v_x + i) + gains.keep * load<V>(c_x + i) + inverse_x * (r_x - a_x);
-            const V y = load<V>(v_y + i) + gains.keep * load<V>(c_y + i) + inverse_y * (r_y - a_y);
+            const V r_x = load_as<V>(b_x + i), r_y = load_as<V>(b_y + i);
+            const V x = load_as<V>(v_x + i) + gains.keep * load_as<V>(c_x + i) + inverse_x * (r_x - a_x);
+            const V y = load_as<V>(v_y + i) + gains.keep * load_as<V>(c_y + i) + inverse_y * (r_y - a_y);
             store(u_x + i, x);
             store(u_y + i, y);
             sum.add(r_x, x);  // of fixed displacements both are 0

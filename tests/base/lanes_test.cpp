@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -72,6 +73,54 @@ TEST(Lanes, AreLoadedAndStoredAnywhere) {
     store(&to[begin], load(&from[begin]));
     for (int i = 0; i < 3 * lanes; ++i) EXPECT_EQ(to[i], i >= begin && i < begin + lanes ? i + 1 : 0);
   }
+}
+
+/// 1, 2, 3 ... from `first` on.
+template <class V>
+V counting(int first) {
+  V values{};
+  for (int k = 0; k < length<V>; ++k) values[k] = static_cast<float>(first + k);
+  return values;
+}
+
+template <class Real>
+class LanesOfEach : public testing::Test {};
+using Precisions = testing::Types<float, double>;
+TYPED_TEST_SUITE(LanesOfEach, Precisions);
+
+TYPED_TEST(LanesOfEach, AreLoadedAndStoredInEitherPrecision) {
+  using V = LanesOf<TypeParam>;
+  constexpr int n = length<V>;
+  static_assert(n == lanes_of<TypeParam> && n * sizeof(TypeParam) == vector_bytes);
+  const auto check = [](auto number) {
+    std::vector<decltype(number)> from(3 * n), to(3 * n);
+    for (int i = 0; i < 3 * n; ++i) from[i] = static_cast<float>(i + 1);
+    for (int begin = 0; begin <= n; ++begin) {
+      std::ranges::fill(to, number);
+      store(&to[begin], load_as<V>(&from[begin]));
+      for (int i = 0; i < 3 * n; ++i) EXPECT_EQ(to[i], i >= begin && i < begin + n ? from[i] : number);
+    }
+    store(to.data(), load_as<TypeParam>(&from[1]));
+    EXPECT_EQ(to[0], from[1]);
+  };
+  check(-1.0F);
+  check(-1.0);
+}
+
+TYPED_TEST(LanesOfEach, AreShiftedAndInterleaved) {
+  using V = LanesOf<TypeParam>;
+  constexpr int n = length<V>;
+  const auto first = counting<V>(1), second = counting<V>(1 + n);
+  const auto left = from_left(first, second), right = from_right(first, second);
+  const auto [low, high] = interleaved(first, second);
+  for (int k = 0; k < n; ++k) {
+    EXPECT_EQ(left[k], n + k);
+    EXPECT_EQ(right[k], 2 + k);
+    EXPECT_EQ(low[k], k / 2 + 1 + (k % 2) * n);
+    EXPECT_EQ(high[k], (n + k) / 2 + 1 + (k % 2) * n);
+  }
+  EXPECT_EQ(from_left(TypeParam(1), TypeParam(2)), 1);
+  EXPECT_EQ(from_right(TypeParam(2), TypeParam(3)), 3);
 }
 
 TEST(Lanes, PartsRepeatTheirLastValueAndLeaveTheRestAlone) {
