@@ -27,7 +27,7 @@ void print_info(const CaseArguments& arguments) {
   try {
     info = run::info(config);
   } catch (const UserError& error) {
-    throw UserError(arguments.with_place(error.what()));
+    throw arguments.with_place(error);
   }
   std::string text;
   const auto line = [&](const char* what, const std::string& value) {

@@ -134,16 +134,13 @@ Entry word(std::string key, Ref ref, Words<Enum> words, std::string help) {
 
 template <class Law>
 LawEntries law_entries() {
-  LawEntries law{Law::name, Law::help, Law{}, {}, {}};
+  LawEntries law{Law::name, Law::help, Law{}, {}};
   for (const auto& parameter : Law::parameters())
     law.entries.push_back(number(
         std::string("friction.") + parameter.key,
         [member = parameter.member](auto& config) -> auto& { return std::get<Law>(config.friction).*member; },
         between(parameter.min, parameter.max), parameter.help));
   for (auto& entry : law.entries) entry.stage = Stage::motion;
-  law.inconsistency = [](const Case& config) {
-    return std::string(std::get<Law>(config.friction).inconsistency());
-  };
   return law;
 }
 
@@ -219,27 +216,31 @@ std::vector<Entry> make_common_entries() {
   using statics::StaticSolver;
   using statics::TopEdge;
 
-  const Condition tilted = {"loading.method = direct or ramp",
+  const Condition tilted = {Message("{} = direct or ramp", Key("loading.method")),
                             [](const Case& c) { return c.loading.method != LoadingMethod::prestress; }};
-  const Condition prestressed = {"loading.method = prestress",
+  const Condition prestressed = {Message("{} = prestress", Key("loading.method")),
                                  [](const Case& c) { return c.loading.method == LoadingMethod::prestress; }};
   const Condition uniform = {
-      "loading.method = prestress and no prestress.file",
+      Message("{} = prestress and no {}", Key("loading.method"), Key("prestress.file")),
       [](const Case& c) { return c.loading.method == LoadingMethod::prestress && c.prestress.file.empty(); }};
-  const Condition on_body = {"base.kind = body", [](const Case& c) { return has_base_body(c); }};
-  const Condition base_graded = {"base.kind = body and base.coarsenings > 0", [](const Case& c) {
-                                   return has_base_body(c) && c.base.plate.coarsenings > 0;
-                                 }};
-  const Condition graded = {"plate.coarsenings > 0", [](const Case& c) { return c.plate.coarsenings > 0; }};
-  const Condition nucleated = {"event.kind = nucleation",
+  const Condition on_body = {Message("{} = body", Key("base.kind")),
+                             [](const Case& c) { return has_base_body(c); }};
+  const Condition base_graded = {
+      Message("{} = body and {} > 0", Key("base.kind"), Key("base.coarsenings")),
+      [](const Case& c) { return has_base_body(c) && c.base.plate.coarsenings > 0; }};
+  const Condition graded = {Message("{} > 0", Key("plate.coarsenings")),
+                            [](const Case& c) { return c.plate.coarsenings > 0; }};
+  const Condition nucleated = {Message("{} = nucleation", Key("event.kind")),
                                [](const Case& c) { return c.event == EventKind::nucleation; }};
-  const Condition pushed = {"event.trigger_form = added or raised",
+  const Condition pushed = {Message("{} = added or raised", Key("event.trigger_form")),
                             [](const Case& c) { return c.trigger.form != TriggerForm::weakened; }};
-  const Condition tabled = {"friction.file", [](const Case& c) { return !c.friction_along_x.file.empty(); }};
-  const Condition random = {"friction.random_key other than none",
+  const Condition tabled = {Message("{}", Key("friction.file")),
+                            [](const Case& c) { return !c.friction_along_x.file.empty(); }};
+  const Condition random = {Message("{} other than none", Key("friction.random_key")),
                             [](const Case& c) { return c.friction_along_x.random_key != "none"; }};
   const Condition overstressed = {
-      "event.kind = nucleation and nucleation.form = overstress", [](const Case& c) {
+      Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
+      [](const Case& c) {
         return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
       }};
 
@@ -635,6 +636,10 @@ std::string text_of_stages(const Case& config, const std::vector<Stage>& stages)
   if (counts(Stage::tractions)) text += config.prestress.table.text;
   if (counts(Stage::motion)) text += config.friction_along_x.table.text;
   return text;
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+  return unit.empty() ? number : number + " " + unit;
 }
 
 std::string table_of(const std::string& key) {

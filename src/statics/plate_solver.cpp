@@ -178,7 +178,7 @@ void require_statics_memory(StaticSolver solver, double n_unknowns) {
   } else {
     require_memory(iterative_bytes(n_unknowns),
                    fmt::format("the iterative solution of {:.4g} static unknowns", n_unknowns),
-                   "choose a larger plate.element_size_m");
+                   Message("choose a larger {}", Key("plate.element_size_m")));
   }
 }
 
@@ -191,7 +191,7 @@ void require_statics_memory_of_pair(double n_unknowns_plate, double n_unknowns_b
   require_memory(bytes,
                  fmt::format("the factorisation of {:.4g} static unknowns of plate and base",
                              n_unknowns_plate + n_unknowns_base),
-                 "choose a larger plate.element_size_m");
+                 Message("choose a larger {}", Key("plate.element_size_m")));
 }
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
@@ -199,7 +199,7 @@ std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const sol
   if (base) {
     require_base_fits(mesh, base->mesh);
     if (solver == StaticSolver::iterative)
-      throw UserError("loading.solver = iterative knows no elastic base; choose auto or direct");
+      throw UserError("{} = iterative knows no elastic base; choose auto or direct", Key("loading.solver"));
     require_statics_memory_of_pair(2.0 * mesh.n_nodes(), 2.0 * base->mesh.n_nodes());
     return std::make_unique<DirectSolver>(mesh, material, base);
   }
