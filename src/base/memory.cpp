@@ -19,7 +19,7 @@ double available_memory_bytes() {
   return 8e9;  // not Linux: a modest machine
 }
 
-void require_memory(double bytes, std::string_view what, std::string_view remedy) {
+void require_memory(double bytes, std::string_view what, const Message& remedy) {
   const double available = available_memory_bytes();
   if (bytes > 0.9 * available)
     throw UserError("{} needs about {:.3g} GB of memory, {:.3g} GB are available; {}", what, bytes * 1e-9,

@@ -3,6 +3,8 @@
 
 #include <string_view>
 
+#include "base/message.hpp"
+
 namespace slipfront {
 
 /// Memory that can be allocated without swapping, bytes (Linux: MemAvailable).
@@ -10,6 +12,6 @@ double available_memory_bytes();
 
 /// Refuses work that needs more than nine tenths of the memory available, before anything is allocated.
 /// @throws UserError "<what> needs ... GB, ... GB are available; <remedy>".
-void require_memory(double bytes, std::string_view what, std::string_view remedy);
+void require_memory(double bytes, std::string_view what, const Message& remedy);
 
 }  // namespace slipfront

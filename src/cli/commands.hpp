@@ -30,7 +30,7 @@ class CaseArguments {
 
   const input::Case& read() const { return case_file().config(); }
   /// See input::CaseFile.
-  std::string with_place(const std::string& message) const { return case_file().with_place(message); }
+  UserError with_place(const UserError& error) const { return case_file().with_place(error); }
 
  private:
   const input::CaseFile& case_file() const;

@@ -21,70 +21,97 @@ std::string fastest_wavelength(const stability::WellPosedness& w) {
                      longest ? ", the longest on the interface" : "");
 }
 
+/// Lines of what is told, each a name and a value.
+struct Listing {
+  std::string text;
+  void add(const char* what, const std::string& value) { text += fmt::format("{:<32}{}\n", what, value); }
+};
+
+void add_wave_speeds(const run::Info& info, Listing& list) {
+  list.add("longitudinal wave speed c_L", fmt::format("{:.1f} m/s", info.speeds.c_L));
+  list.add("shear wave speed c_S", fmt::format("{:.1f} m/s", info.speeds.c_S));
+  list.add("Rayleigh wave speed c_R", fmt::format("{:.1f} m/s", info.speeds.c_R));
+  if (info.base_speeds)
+    list.add("base: c_L, c_S, c_R", fmt::format("{:.1f}, {:.1f}, {:.1f} m/s", info.base_speeds->c_L,
+                                                info.base_speeds->c_S, info.base_speeds->c_R));
+  if (info.base_speeds)
+    list.add("generalised Rayleigh speed",
+             info.generalised_rayleigh_speed_m_per_s
+                 ? fmt::format("{:.1f} m/s", *info.generalised_rayleigh_speed_m_per_s)
+                 : "none: the two bodies differ too much");
+}
+
+void add_size(const run::Info& info, Listing& list) {
+  list.add("nodes", fmt::format("{} ({} on the interface, {} without a stencil)", info.n_nodes,
+                                info.n_interface, info.n_irregular));
+  list.add("cells", fmt::format("{}", info.n_cells));
+}
+
+void add_steps(const input::Case& config, const run::Info& info, Listing& list) {
+  list.add("largest stable step", fmt::format("{:.4g} s", info.stable_step_s));
+  list.add("step", fmt::format("{:.4g} s ({:.4g} s at the interface, {} rows)", info.step_s, info.substep_s,
+                               config.time.interface_rows));
+  if (info.base_speeds)
+    list.add("sub-steps in a step",
+             fmt::format("{} of the plate, {} of the base, {} in a common one",
+                         info.substeps_of_bodies.front(), info.substeps_of_bodies.back(),
+                         std::lcm(info.substeps_of_bodies.front(), info.substeps_of_bodies.back())));
+  list.add("steps to the end", fmt::format("{}", info.n_steps));
+  if (info.needs.ramp_steps > 0)
+    list.add("steps of the ramp before",
+             fmt::format("about {:.3g}", static_cast<double>(info.needs.ramp_steps)));
+}
+
+void add_costs(const run::Info& info, Listing& list) {
+  const auto statics = info.solver_bytes > 0 ? fmt::format(" ({})", statics::name_of(info.solver)) : "";
+  list.add("memory", fmt::format("{:.3g} GB, of it {:.3g} GB for the statics{}", info.memory_bytes * 1e-9,
+                                 info.solver_bytes * 1e-9, statics));
+  const auto& n = info.needs;
+  list.add("disk",
+           fmt::format(
+               "{:.3g} GB while it runs: {} rows of history {:.3g}, {} snapshots {:.3g}, checkpoints {:.3g}",
+               n.disk_bytes() * 1e-9, n.history_rows, n.history_bytes * 1e-9, n.snapshots,
+               n.snapshot_bytes * 1e-9, n.checkpoint_bytes * 1e-9));
+  list.add("node updates",
+           fmt::format("{:.4g} at {:.3g} million/s here", info.node_updates, info.node_updates_per_s * 1e-6));
+  list.add("expected time", fmt::format("{:.2g} s", info.expected_s));
+}
+
+void add_stability_of_sliding(const run::Info& info, Listing& list) {
+  const auto& w = info.well_posedness;
+  list.add("nominal pressure", fmt::format("{:.4g} Pa", w.sliding.pressure_Pa));
+  list.add("weakening / radiation damping", fmt::format("{:.3g}", w.weakening_over_radiation));
+  list.add("growth at two elements",
+           fmt::format("{:.3g} /s at a wavelength of {:.3g} m", w.growth_at_grid_per_s, w.grid_wavelength_m));
+  if (w.fastest_growth_per_s > 0 && !w.unbounded)
+    list.add("fastest growth", fmt::format("{:.3g} /s at {}", w.fastest_growth_per_s, fastest_wavelength(w)));
+  list.add("damping length beta_R c_L",
+           fmt::format("{:.3g} m, {:.3g} elements", w.damping_length_m, w.damping_length_over_h));
+  list.add("uniform sliding", w.statement);
+  if (!std::isnan(info.well_posedness_x_m))
+    list.add("  with the friction at", fmt::format("x = {:.4g} m, the worst node", info.well_posedness_x_m));
+}
+
+run::Info info_of(const CaseArguments& arguments, const input::Case& config) {
+  try {
+    return run::info(config);
+  } catch (const UserError& error) {
+    throw arguments.with_place(error);
+  }
+}
+
 void print_info(const CaseArguments& arguments) {
   const input::Case& config = arguments.read();
-  run::Info info;
-  try {
-    info = run::info(config);
-  } catch (const UserError& error) {
-    throw UserError(arguments.with_place(error.what()));
-  }
-  std::string text;
-  const auto line = [&](const char* what, const std::string& value) {
-    text += fmt::format("{:<32}{}\n", what, value);
-  };
-  if (!config.title.empty()) line("title", files::one_line(config.title));
-  line("longitudinal wave speed c_L", fmt::format("{:.1f} m/s", info.speeds.c_L));
-  line("shear wave speed c_S", fmt::format("{:.1f} m/s", info.speeds.c_S));
-  line("Rayleigh wave speed c_R", fmt::format("{:.1f} m/s", info.speeds.c_R));
-  if (info.base_speeds)
-    line("base: c_L, c_S, c_R", fmt::format("{:.1f}, {:.1f}, {:.1f} m/s", info.base_speeds->c_L,
-                                            info.base_speeds->c_S, info.base_speeds->c_R));
-  if (info.base_speeds)
-    line("generalised Rayleigh speed",
-         info.generalised_rayleigh_speed_m_per_s
-             ? fmt::format("{:.1f} m/s", *info.generalised_rayleigh_speed_m_per_s)
-             : "none: the two bodies differ too much");
-  line("nodes", fmt::format("{} ({} on the interface, {} without a stencil)", info.n_nodes, info.n_interface,
-                            info.n_irregular));
-  line("cells", fmt::format("{}", info.n_cells));
-  line("largest stable step", fmt::format("{:.4g} s", info.stable_step_s));
-  line("step", fmt::format("{:.4g} s ({:.4g} s at the interface, {} rows)", info.step_s, info.substep_s,
-                           config.time.interface_rows));
-  if (info.base_speeds)
-    line("sub-steps in a step",
-         fmt::format("{} of the plate, {} of the base, {} in a common one", info.substeps_of_bodies.front(),
-                     info.substeps_of_bodies.back(),
-                     std::lcm(info.substeps_of_bodies.front(), info.substeps_of_bodies.back())));
-  line("steps to the end", fmt::format("{}", info.n_steps));
-  if (info.needs.ramp_steps > 0)
-    line("steps of the ramp before", fmt::format("about {:.3g}", static_cast<double>(info.needs.ramp_steps)));
-  const auto statics = info.solver_bytes > 0 ? fmt::format(" ({})", statics::name_of(info.solver)) : "";
-  line("memory", fmt::format("{:.3g} GB, of it {:.3g} GB for the statics{}", info.memory_bytes * 1e-9,
-                             info.solver_bytes * 1e-9, statics));
-  const auto& n = info.needs;
-  line("disk",
-       fmt::format(
-           "{:.3g} GB while it runs: {} rows of history {:.3g}, {} snapshots {:.3g}, checkpoints {:.3g}",
-           n.disk_bytes() * 1e-9, n.history_rows, n.history_bytes * 1e-9, n.snapshots,
-           n.snapshot_bytes * 1e-9, n.checkpoint_bytes * 1e-9));
-  line("node updates",
-       fmt::format("{:.4g} at {:.3g} million/s here", info.node_updates, info.node_updates_per_s * 1e-6));
-  line("expected time", fmt::format("{:.2g} s", info.expected_s));
-  const auto& w = info.well_posedness;
-  line("nominal pressure", fmt::format("{:.4g} Pa", w.sliding.pressure_Pa));
-  line("weakening / radiation damping", fmt::format("{:.3g}", w.weakening_over_radiation));
-  line("growth at two elements",
-       fmt::format("{:.3g} /s at a wavelength of {:.3g} m", w.growth_at_grid_per_s, w.grid_wavelength_m));
-  if (w.fastest_growth_per_s > 0 && !w.unbounded)
-    line("fastest growth", fmt::format("{:.3g} /s at {}", w.fastest_growth_per_s, fastest_wavelength(w)));
-  line("damping length beta_R c_L",
-       fmt::format("{:.3g} m, {:.3g} elements", w.damping_length_m, w.damping_length_over_h));
-  line("uniform sliding", w.statement);
-  if (!std::isnan(info.well_posedness_x_m))
-    line("  with the friction at", fmt::format("x = {:.4g} m, the worst node", info.well_posedness_x_m));
-  for (const auto& warning : run::warnings_of_case(config)) text += fmt::format("note: {}\n", warning);
-  print_output(text);
+  const auto info = info_of(arguments, config);
+  Listing list;
+  if (!config.title.empty()) list.add("title", files::one_line(config.title));
+  add_wave_speeds(info, list);
+  add_size(info, list);
+  add_steps(config, info, list);
+  add_costs(info, list);
+  add_stability_of_sliding(info, list);
+  for (const auto& warning : run::warnings_of_case(config)) list.text += fmt::format("note: {}\n", warning);
+  print_output(list.text);
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& o
   try {
     return run::run_into(folder, *config, options.session, hooks);
   } catch (const UserError& error) {
-    throw UserError(arguments.with_place(error.what()));
+    throw arguments.with_place(error);
   }
 }
 
@@ -114,7 +114,7 @@ void require_fit(const CaseArguments& arguments, const input::Case& config,
   try {
     run::require_fit(config, dir);
   } catch (const UserError& error) {
-    throw UserError(arguments.with_place(error.what()));
+    throw arguments.with_place(error);
   }
 }
 

@@ -65,7 +65,7 @@ void run_study(const std::string& name, const CaseArguments* arguments, const Ta
   } catch (const UserError& error) {
     folder.abandon();
     if (arguments == nullptr) throw;
-    throw UserError(arguments->with_place(error.what()));
+    throw arguments->with_place(error);
   }
 }
 

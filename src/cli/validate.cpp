@@ -18,7 +18,7 @@ void validate(const CaseArguments& arguments) {
   try {
     run::check(config);
   } catch (const UserError& error) {
-    throw UserError(arguments.with_place(error.what()));
+    throw arguments.with_place(error);
   }
   std::string text = fmt::format("{}: valid\n", arguments.file);
   auto notes = run::warnings_of_case(config);

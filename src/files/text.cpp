@@ -15,7 +15,7 @@
 namespace slipfront::files {
 namespace {
 
-[[noreturn]] void throw_unreadable(const std::string& shown, std::string_view what) {
+[[noreturn]] void throw_unreadable(const Message& shown, std::string_view what) {
   if (errno == EISDIR) throw UserError("{}: is a folder; name the {} in it", shown, what);
   throw UserError("{}: cannot be read ({}); check the path", shown, std::strerror(errno));
 }
@@ -45,7 +45,7 @@ std::size_t bytes_of_character(std::string_view text) {
 
 }  // namespace
 
-std::string read_text(const std::filesystem::path& file, const std::string& shown, std::string_view what,
+std::string read_text(const std::filesystem::path& file, const Message& shown, std::string_view what,
                       std::size_t most_bytes) {
   const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (!opened.valid()) throw_unreadable(shown, what);

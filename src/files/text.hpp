@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/message.hpp"
+
 namespace slipfront::files {
 
 /// Reads a file from its beginning to its end, once: it may be a pipe. A byte order mark is left out.
@@ -13,7 +15,7 @@ namespace slipfront::files {
 /// @param what        it is, for messages: "case file"
 /// @param most_bytes  larger files are refused
 /// @throws UserError
-std::string read_text(const std::filesystem::path& file, const std::string& shown, std::string_view what,
+std::string read_text(const std::filesystem::path& file, const Message& shown, std::string_view what,
                       std::size_t most_bytes);
 
 /// The line, from 1, of the first byte that is no UTF-8; 0 where all are.

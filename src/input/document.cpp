@@ -117,6 +117,11 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
+const Setting* Document::find(const std::string& key) const {
+  const auto found = std::ranges::find(settings, key, &Setting::key);
+  return found == settings.end() ? nullptr : &*found;
+}
+
 Document parse_document(const std::string& text, const std::string& name) {
   if (const int line = files::line_outside_utf8(text); line > 0)
     throw UserError("{}:{}: holds bytes that are no utf-8; save the file in that encoding", name, line);

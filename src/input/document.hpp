@@ -36,6 +36,9 @@ struct TableHeader {
 struct Document {
   std::vector<Setting> settings;
   std::vector<TableHeader> tables;
+
+  /// Null where nothing sets the key.
+  const Setting* find(const std::string& key) const;
 };
 
 /// Reads TOML; `name` stands for the file in places and messages. @throws UserError for a syntax error, bytes

@@ -134,16 +134,13 @@ Entry word(std::string key, Ref ref, Words<Enum> words, std::string help) {
 
 template <class Law>
 LawEntries law_entries() {
-  LawEntries law{Law::name, Law::help, Law{}, {}, {}};
+  LawEntries law{Law::name, Law::help, Law{}, {}};
   for (const auto& parameter : Law::parameters())
     law.entries.push_back(number(
         std::string("friction.") + parameter.key,
         [member = parameter.member](auto& config) -> auto& { return std::get<Law>(config.friction).*member; },
         between(parameter.min, parameter.max), parameter.help));
   for (auto& entry : law.entries) entry.stage = Stage::motion;
-  law.inconsistency = [](const Case& config) {
-    return std::string(std::get<Law>(config.friction).inconsistency());
-  };
   return law;
 }
 
@@ -196,64 +193,97 @@ Entry only_with(Condition condition, Entry entry) {
   return entry;
 }
 
-std::vector<Entry> make_common_entries() {
-  using fronts::SpeedInterval;
-  using interface::ContactAlgorithm;
-  using interface::EventKind;
-  using interface::Nucleation;
-  using interface::NucleationForm;
-  using interface::Regularisation;
-  using interface::Relaxed;
-  using interface::Trigger;
-  using interface::TriggerForm;
-  using mesh::Corner;
-  using mesh::Plate;
-  using mesh::Sides;
-  using mesh::Top;
-  using motion::Precision;
-  using motion::TimeStepping;
-  using solid::Material;
-  using solid::Plane;
-  using statics::Loading;
-  using statics::LoadingMethod;
-  using statics::StaticSolver;
-  using statics::TopEdge;
+using fronts::SpeedInterval;
+using interface::ContactAlgorithm;
+using interface::EventKind;
+using interface::Nucleation;
+using interface::NucleationForm;
+using interface::Regularisation;
+using interface::Relaxed;
+using interface::Trigger;
+using interface::TriggerForm;
+using mesh::Corner;
+using mesh::Plate;
+using mesh::Sides;
+using mesh::Top;
+using motion::Precision;
+using motion::TimeStepping;
+using solid::Material;
+using solid::Plane;
+using statics::Loading;
+using statics::LoadingMethod;
+using statics::StaticSolver;
+using statics::TopEdge;
 
-  const Condition tilted = {"loading.method = direct or ramp",
-                            [](const Case& c) { return c.loading.method != LoadingMethod::prestress; }};
-  const Condition prestressed = {"loading.method = prestress",
-                                 [](const Case& c) { return c.loading.method == LoadingMethod::prestress; }};
-  const Condition uniform = {
-      "loading.method = prestress and no prestress.file",
+// Settings on which keys depend.
+
+Condition tilted() {
+  return {Message("{} = direct or ramp", Key("loading.method")),
+          [](const Case& c) { return c.loading.method != LoadingMethod::prestress; }};
+}
+Condition prestressed() {
+  return {Message("{} = prestress", Key("loading.method")),
+          [](const Case& c) { return c.loading.method == LoadingMethod::prestress; }};
+}
+Condition uniform() {
+  return {
+      Message("{} = prestress and no {}", Key("loading.method"), Key("prestress.file")),
       [](const Case& c) { return c.loading.method == LoadingMethod::prestress && c.prestress.file.empty(); }};
-  const Condition on_body = {"base.kind = body", [](const Case& c) { return has_base_body(c); }};
-  const Condition base_graded = {"base.kind = body and base.coarsenings > 0", [](const Case& c) {
-                                   return has_base_body(c) && c.base.plate.coarsenings > 0;
-                                 }};
-  const Condition graded = {"plate.coarsenings > 0", [](const Case& c) { return c.plate.coarsenings > 0; }};
-  const Condition nucleated = {"event.kind = nucleation",
-                               [](const Case& c) { return c.event == EventKind::nucleation; }};
-  const Condition pushed = {"event.trigger_form = added or raised",
-                            [](const Case& c) { return c.trigger.form != TriggerForm::weakened; }};
-  const Condition tabled = {"friction.file", [](const Case& c) { return !c.friction_along_x.file.empty(); }};
-  const Condition random = {"friction.random_key other than none",
-                            [](const Case& c) { return c.friction_along_x.random_key != "none"; }};
-  const Condition overstressed = {
-      "event.kind = nucleation and nucleation.form = overstress", [](const Case& c) {
-        return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
-      }};
+}
+Condition on_body() {
+  return {Message("{} = body", Key("base.kind")), [](const Case& c) { return has_base_body(c); }};
+}
+Condition base_graded() {
+  return {Message("{} = body and {} > 0", Key("base.kind"), Key("base.coarsenings")),
+          [](const Case& c) { return has_base_body(c) && c.base.plate.coarsenings > 0; }};
+}
+Condition graded() {
+  return {Message("{} > 0", Key("plate.coarsenings")), [](const Case& c) { return c.plate.coarsenings > 0; }};
+}
+Condition nucleated() {
+  return {Message("{} = nucleation", Key("event.kind")),
+          [](const Case& c) { return c.event == EventKind::nucleation; }};
+}
+Condition pushed() {
+  return {Message("{} = added or raised", Key("event.trigger_form")),
+          [](const Case& c) { return c.trigger.form != TriggerForm::weakened; }};
+}
+Condition with_table() {
+  return {Message("{}", Key("friction.file")),
+          [](const Case& c) { return !c.friction_along_x.file.empty(); }};
+}
+Condition with_random_field() {
+  return {Message("{} other than none", Key("friction.random_key")),
+          [](const Case& c) { return c.friction_along_x.random_key != "none"; }};
+}
+Condition overstressed() {
+  return {Message("{} = nucleation and {} = overstress", Key("event.kind"), Key("nucleation.form")),
+          [](const Case& c) {
+            return c.event == EventKind::nucleation && c.nucleation.form == NucleationForm::overstress;
+          }};
+}
 
+/// The keys in the order of the case file.
+struct EntryList {
   std::vector<Entry> entries;
-  const auto add = [&](Stage stage, std::vector<Entry> some) {
+
+  void add(Stage stage, std::vector<Entry> some) {
     for (auto& entry : some) {
       entry.stage = stage;
       entries.push_back(std::move(entry));
     }
-  };
-  add(Stage::evaluation, {
-                             text("title", at(&Case::title), "title of figures and reports"),
-                         });
-  add(Stage::mesh,
+  }
+};
+
+void add_title(EntryList& list) {
+  list.add(Stage::evaluation, {
+                                  text("title", at(&Case::title), "title of figures and reports"),
+                              });
+}
+
+void add_plate(EntryList& list) {
+  list.add(
+      Stage::mesh,
       {
           number("plate.width_m", at(&Case::plate, &Plate::width_m), above(0), "along the interface"),
           number("plate.height_m", at(&Case::plate, &Plate::height_m), above(0), "away from the interface"),
@@ -261,8 +291,9 @@ std::vector<Entry> make_common_entries() {
                  "side of the square elements; width and height are whole multiples of it"),
           integer("plate.coarsenings", at(&Case::plate, &Plate::coarsenings), between(0, 20),
                   "how often the element size doubles on the way up from the interface, see graded.md"),
-          only_with(graded, number("plate.fine_height_m", at(&Case::plate, &Plate::fine_height_m), above(0),
-                                   "least height of the elements of element_size_m, next to the interface")),
+          only_with(graded(),
+                    number("plate.fine_height_m", at(&Case::plate, &Plate::fine_height_m), above(0),
+                           "least height of the elements of element_size_m, next to the interface")),
           word<Corner>("plate.corner", at(&Case::plate, &Plate::corner),
                        {{"none", Corner::none}, {"relief", Corner::relief}, {"fillet", Corner::fillet}},
                        "lower corners: right angles, a shallow arc tangent to the base, or a quarter circle"),
@@ -283,82 +314,94 @@ std::vector<Entry> make_common_entries() {
               {{"loaded", Top::loaded}, {"free", Top::free}, {"absorbing", Top::absorbing}},
               "upper edge: displacements prescribed, free of traction, or with dashpots that let waves out"),
       });
-  add(Stage::statics,
-      {
-          number("material.youngs_modulus_Pa", at(&Case::material, &Material::youngs_modulus_Pa), above(0),
-                 "Young's modulus E"),
-          number("material.poissons_ratio", at(&Case::material, &Material::poissons_ratio),
-                 strictly_between(-1, 0.5), "Poisson's ratio nu"),
-      });
-  add(Stage::motion, {
-                         number("material.density_kg_per_m3",
-                                at(&Case::material, &Material::density_kg_per_m3), above(0), "density rho"),
-                     });
-  add(Stage::statics, {
-                          word<Plane>("material.plane", at(&Case::material, &Material::plane),
-                                      {{"stress", Plane::stress}, {"strain", Plane::strain}},
-                                      "plane stress (thin plate) or plane strain"),
-                      });
-  add(Stage::motion,
-      {
-          number("material.stiffness_damping_s", at(&Case::material, &Material::stiffness_damping_s),
-                 at_least(0), "Rayleigh damping beta_R: the internal force is K (u + beta_R v)"),
-      });
-  add(Stage::mesh,
+}
+
+void add_material(EntryList& list) {
+  list.add(Stage::statics,
+           {
+               number("material.youngs_modulus_Pa", at(&Case::material, &Material::youngs_modulus_Pa),
+                      above(0), "Young's modulus E"),
+               number("material.poissons_ratio", at(&Case::material, &Material::poissons_ratio),
+                      strictly_between(-1, 0.5), "Poisson's ratio nu"),
+           });
+  list.add(Stage::motion,
+           {
+               number("material.density_kg_per_m3", at(&Case::material, &Material::density_kg_per_m3),
+                      above(0), "density rho"),
+           });
+  list.add(Stage::statics, {
+                               word<Plane>("material.plane", at(&Case::material, &Material::plane),
+                                           {{"stress", Plane::stress}, {"strain", Plane::strain}},
+                                           "plane stress (thin plate) or plane strain"),
+                           });
+  list.add(Stage::motion,
+           {
+               number("material.stiffness_damping_s", at(&Case::material, &Material::stiffness_damping_s),
+                      at_least(0), "Rayleigh damping beta_R: the internal force is K (u + beta_R v)"),
+           });
+}
+
+void add_base(EntryList& list) {
+  list.add(
+      Stage::mesh,
       {
           word<BaseKind>(
               "base.kind", at(&Case::base, &Base::kind),
               {{"rigid", BaseKind::rigid}, {"body", BaseKind::body}},
               "what the plate lies on: a rigid plane, or a second body of the plate's width and elements, "
               "see two-bodies.md"),
-          only_with(on_body,
+          only_with(on_body(),
                     number("base.height_m", at(&Case::base, &Base::plate, &Plate::height_m), above(0),
                            "depth of the body below, a whole multiple of plate.element_size_m")),
           only_with(
-              on_body,
+              on_body(),
               integer("base.coarsenings", at(&Case::base, &Base::plate, &Plate::coarsenings), between(0, 20),
                       "how often its element size doubles away from the interface, see graded.md")),
           only_with(
-              base_graded,
+              base_graded(),
               number("base.fine_height_m", at(&Case::base, &Base::plate, &Plate::fine_height_m), above(0),
                      "least height of its elements of plate.element_size_m, next to the interface")),
-          only_with(on_body, word<Sides>("base.sides", at(&Case::base, &Base::plate, &Plate::sides),
-                                         {{"free", Sides::free},
-                                          {"periodic", Sides::periodic},
-                                          {"absorbing", Sides::absorbing}},
-                                         "its vertical edges; periodic if and only if plate.sides is")),
-          only_with(on_body,
+          only_with(on_body(), word<Sides>("base.sides", at(&Case::base, &Base::plate, &Plate::sides),
+                                           {{"free", Sides::free},
+                                            {"periodic", Sides::periodic},
+                                            {"absorbing", Sides::absorbing}},
+                                           "its vertical edges; periodic if and only if plate.sides is")),
+          only_with(on_body(),
                     word<Top>("base.bottom", at(&Case::base, &Base::plate, &Plate::top),
                               {{"held", Top::loaded}, {"free", Top::free}, {"absorbing", Top::absorbing}},
                               "its lower edge: held still, free of traction, or with dashpots that let "
                               "waves out")),
       });
-  add(Stage::statics,
+  list.add(Stage::statics,
+           {
+               only_with(on_body(), number("base.youngs_modulus_Pa",
+                                           at(&Case::base, &Base::material, &Material::youngs_modulus_Pa),
+                                           above(0), "its Young's modulus; its plane is material.plane")),
+               only_with(on_body(), number("base.poissons_ratio",
+                                           at(&Case::base, &Base::material, &Material::poissons_ratio),
+                                           strictly_between(-1, 0.5), "its Poisson's ratio")),
+           });
+  list.add(Stage::motion,
+           {
+               only_with(on_body(), number("base.density_kg_per_m3",
+                                           at(&Case::base, &Base::material, &Material::density_kg_per_m3),
+                                           above(0), "its density")),
+               only_with(on_body(), number("base.stiffness_damping_s",
+                                           at(&Case::base, &Base::material, &Material::stiffness_damping_s),
+                                           at_least(0), "its Rayleigh damping")),
+           });
+}
+
+void add_loading(EntryList& list) {
+  list.add(
+      Stage::statics,
       {
-          only_with(on_body, number("base.youngs_modulus_Pa",
-                                    at(&Case::base, &Base::material, &Material::youngs_modulus_Pa), above(0),
-                                    "its Young's modulus; its plane is material.plane")),
-          only_with(on_body,
-                    number("base.poissons_ratio", at(&Case::base, &Base::material, &Material::poissons_ratio),
-                           strictly_between(-1, 0.5), "its Poisson's ratio")),
-      });
-  add(Stage::motion,
-      {
-          only_with(on_body, number("base.density_kg_per_m3",
-                                    at(&Case::base, &Base::material, &Material::density_kg_per_m3), above(0),
-                                    "its density")),
-          only_with(on_body, number("base.stiffness_damping_s",
-                                    at(&Case::base, &Base::material, &Material::stiffness_damping_s),
-                                    at_least(0), "its Rayleigh damping")),
-      });
-  add(Stage::statics,
-      {
-          only_with(tilted,
+          only_with(tilted(),
                     number("loading.tilt_left_m", at(&Case::loading, &Loading::tilt_left_m), at_least(0),
                            "downward displacement of the top edge at its left end, linear between the ends")),
-          only_with(tilted, number("loading.tilt_right_m", at(&Case::loading, &Loading::tilt_right_m),
-                                   at_least(0), "the same at its right end")),
-          only_with(tilted,
+          only_with(tilted(), number("loading.tilt_right_m", at(&Case::loading, &Loading::tilt_right_m),
+                                     at_least(0), "the same at its right end")),
+          only_with(tilted(),
                     word<TopEdge>("loading.top_during_tilt", at(&Case::loading, &Loading::top_during_tilt),
                                   {{"held", TopEdge::held}, {"free", TopEdge::free}},
                                   "whether the top edge may move along x while it is tilted")),
@@ -371,7 +414,7 @@ std::vector<Entry> make_common_entries() {
               "the same by explicit dynamics with the top moving, or given tractions of the "
               "interface with the plate undeformed at rest"),
           only_with(
-              tilted,
+              tilted(),
               word<StaticSolver>(
                   "loading.solver", at(&Case::loading, &Loading::solver),
                   {{"auto", StaticSolver::automatic},
@@ -380,37 +423,47 @@ std::vector<Entry> make_common_entries() {
                   "static equilibria by a sparse factorisation, by conjugate gradients with a multigrid "
                   "preconditioner, or by the one that suits the number of elements")),
       });
-  add(Stage::motion,
+  list.add(
+      Stage::motion,
       {
           number("loading.shear_speed_over_c_L", at(&Case::loading, &Loading::shear_speed_over_c_L),
                  {0, 1, false, true},
                  "speed of the top edge to +x over the longitudinal wave speed; 0, held still, only with "
                  "loading.method = prestress"),
       });
-  add(Stage::statics,
+  list.add(
+      Stage::statics,
       {
-          only_with(tilted,
+          only_with(tilted(),
                     number("loading.edge_margin_m", at(&Case::loading, &Loading::edge_margin_m), at_least(0),
                            "length at each end of the contact that does not count for the critical shear")),
           only_with(
-              tilted,
+              tilted(),
               number("loading.critical_margin", at(&Case::loading, &Loading::critical_margin),
                      strictly_between(0, 1),
                      "common state at t/p = (1 - margin) mu_s, spontaneous event at (1 + margin) mu_s")),
       });
-  add(Stage::tractions,
-      {
-          only_with(uniform, number("prestress.t_Pa", at(&Case::prestress, &Prestress::t_Pa), any(),
-                                    "uniform tangential traction, positive where it drives the plate to +x")),
-          only_with(uniform, number("prestress.p_Pa", at(&Case::prestress, &Prestress::p_Pa), above(0),
-                                    "uniform pressure")),
-          only_with(
-              prestressed,
-              text("prestress.file", at(&Case::prestress, &Prestress::file),
-                   "CSV table x_m,t_Pa,p_Pa of both instead, linear between its rows, from the first to "
-                   "the last node of the interface; its path is relative to the case file")),
-      });
-  add(Stage::motion,
+}
+
+void add_prestress(EntryList& list) {
+  list.add(Stage::tractions,
+           {
+               only_with(uniform(),
+                         number("prestress.t_Pa", at(&Case::prestress, &Prestress::t_Pa), any(),
+                                "uniform tangential traction, positive where it drives the plate to +x")),
+               only_with(uniform(), number("prestress.p_Pa", at(&Case::prestress, &Prestress::p_Pa), above(0),
+                                           "uniform pressure")),
+               only_with(
+                   prestressed(),
+                   text("prestress.file", at(&Case::prestress, &Prestress::file),
+                        "CSV table x_m,t_Pa,p_Pa of both instead, linear between its rows, from the first to "
+                        "the last node of the interface; its path is relative to the case file")),
+           });
+}
+
+void add_friction(EntryList& list) {
+  list.add(
+      Stage::motion,
       {
           friction_law_entry(),
           word<Relaxed>(
@@ -424,33 +477,52 @@ std::vector<Entry> make_common_entries() {
                  "v* of that rate"),
           number("friction.relaxation_time_s", at(&Case::regularisation, &Regularisation::time_s),
                  above_or_infinite(0), "t* of that rate"),
+      });
+}
+
+void add_friction_along_x(EntryList& list) {
+  list.add(
+      Stage::motion,
+      {
           text(
               "friction.file", at(&Case::friction_along_x, &FrictionAlongX::file),
               "CSV table x_m and any of the law's parameters along the interface, from its first to its last "
               "node, see friction-along-x.md; its path is relative to the case file"),
-          only_with(tabled,
+          only_with(with_table(),
                     word<BetweenRows>(
                         "friction.between_rows", at(&Case::friction_along_x, &FrictionAlongX::between_rows),
                         {{"linear", BetweenRows::linear}, {"stepwise", BetweenRows::stepwise}},
                         "values between the table's rows: linear, or those of the last row at or before x")),
           random_key_entry(),
-          only_with(random, number("friction.random_share",
-                                   at(&Case::friction_along_x, &FrictionAlongX::random_share), at_least(0),
-                                   "standard deviation of the parameter over its value")),
-          only_with(random, number("friction.random_correlation_length_m",
-                                   at(&Case::friction_along_x, &FrictionAlongX::random_correlation_length_m),
-                                   above(0), "l of the field's correlation exp(-x^2/(2 l^2))")),
-          only_with(random,
+          only_with(
+              with_random_field(),
+              number("friction.random_share", at(&Case::friction_along_x, &FrictionAlongX::random_share),
+                     at_least(0), "standard deviation of the parameter over its value")),
+          only_with(with_random_field(),
+                    number("friction.random_correlation_length_m",
+                           at(&Case::friction_along_x, &FrictionAlongX::random_correlation_length_m),
+                           above(0), "l of the field's correlation exp(-x^2/(2 l^2))")),
+          only_with(with_random_field(),
                     integer("friction.random_seed", at(&Case::friction_along_x, &FrictionAlongX::random_seed),
                             between(0, 1e9), "which field; another one for each seed")),
+      });
+}
 
+void add_contact(EntryList& list) {
+  list.add(
+      Stage::motion,
+      {
           word<ContactAlgorithm>("contact.algorithm", at(&Case::contact),
                                  {{"direct", ContactAlgorithm::direct},
                                   {"predictor_corrector", ContactAlgorithm::predictor_corrector}},
                                  "pressure that closes the gap within the step, or normal velocity locked in "
                                  "contact with friction on the predicted slip rate"),
       });
-  add(Stage::event,
+}
+
+void add_event(EntryList& list) {
+  list.add(
+      Stage::event,
       {
           word<EventKind>(
               "event.kind", at(&Case::event),
@@ -470,32 +542,43 @@ std::vector<Entry> make_common_entries() {
               "which the zone is loaded, or mu = mu_k from the start"),
           number("event.trigger_zone_m", at(&Case::trigger, &Trigger::zone_m), above(0),
                  "length of the trigger zone, inward from the outermost node in contact"),
-          only_with(pushed, number("event.trigger_amount", at(&Case::trigger, &Trigger::amount), at_least(0),
-                                   "added tangential traction over what is missing to mu_s p_s; raised: the "
-                                   "traction over mu_s p_s")),
+          only_with(pushed(),
+                    number("event.trigger_amount", at(&Case::trigger, &Trigger::amount), at_least(0),
+                           "added tangential traction over what is missing to mu_s p_s; raised: the "
+                           "traction over mu_s p_s")),
           number("event.trigger_ramp_s", at(&Case::trigger, &Trigger::ramp_s), at_least(0),
                  "time over which the trigger rises linearly"),
           number("event.trigger_duration_s", at(&Case::trigger, &Trigger::duration_s), above_or_infinite(0),
                  "the trigger is taken away this long after its start"),
+      });
+}
 
-          only_with(nucleated,
+void add_nucleation(EntryList& list) {
+  list.add(
+      Stage::event,
+      {
+          only_with(nucleated(),
                     word<NucleationForm>(
                         "nucleation.form", at(&Case::nucleation, &Nucleation::form),
                         {{"weakened", NucleationForm::weakened}, {"overstress", NucleationForm::overstress}},
                         "patch with a profile B(x): mu = mu_k + (1 - B) (mu of the law - mu_k), "
                         "or an added tangential traction, with the trigger's ramp and duration")),
-          only_with(nucleated, number("nucleation.x_m", at(&Case::nucleation, &Nucleation::x_m), any(),
-                                      "centre of the patch, from the plate's left edge")),
-          only_with(nucleated,
+          only_with(nucleated(), number("nucleation.x_m", at(&Case::nucleation, &Nucleation::x_m), any(),
+                                        "centre of the patch, from the plate's left edge")),
+          only_with(nucleated(),
                     number("nucleation.half_length_m", at(&Case::nucleation, &Nucleation::half_length_m),
                            at_least(0), "B = 1 within this distance of the centre")),
-          only_with(nucleated, number("nucleation.taper_m", at(&Case::nucleation, &Nucleation::taper_m),
-                                      at_least(0), "B falls to 0 over this length, as half a cosine wave")),
-          only_with(overstressed,
+          only_with(nucleated(), number("nucleation.taper_m", at(&Case::nucleation, &Nucleation::taper_m),
+                                        at_least(0), "B falls to 0 over this length, as half a cosine wave")),
+          only_with(overstressed(),
                     number("nucleation.overstress_Pa", at(&Case::nucleation, &Nucleation::overstress_Pa),
                            any(), "added tangential traction where B = 1")),
       });
-  add(Stage::motion,
+}
+
+void add_time(EntryList& list) {
+  list.add(
+      Stage::motion,
       {
           number("time.step_factor", at(&Case::time, &TimeStepping::step_factor), above(0),
                  "time step over the largest stable one; above 1 only with time.allow_unstable"),
@@ -509,13 +592,17 @@ std::vector<Entry> make_common_entries() {
                   "rows of cells next to the interface that are sub-cycled"),
           integer("time.interface_substeps", at(&Case::time, &TimeStepping::interface_substeps),
                   between(1, 1e6), "sub-steps per time step there; 1 for none"),
-          only_with(graded, flag("time.local_steps", at(&Case::time, &TimeStepping::local_steps),
-                                 "larger elements take larger time steps")),
+          only_with(graded(), flag("time.local_steps", at(&Case::time, &TimeStepping::local_steps),
+                                   "larger elements take larger time steps")),
           number("time.end_s", at(&Case::time, &TimeStepping::end_s), above(0), "end of the event"),
           number("time.quiet_s", at(&Case::time, &TimeStepping::quiet_s), above_or_infinite(0),
                  "the event ends earlier when no node has slipped for this long"),
       });
-  add(Stage::evaluation,
+}
+
+void add_fronts(EntryList& list) {
+  list.add(
+      Stage::evaluation,
       {
           number("fronts.l_star_m", at(&Case::fronts, &FrontSettings::l_star_m), above(0),
                  "length l* over which the front speed is taken; one element where that is longer"),
@@ -533,15 +620,38 @@ std::vector<Entry> make_common_entries() {
                  "pulse-like below it"),
           number("fronts.trigger_margin_m", at(&Case::fronts, &FrontSettings::trigger_margin_m), at_least(0),
                  "t_d and p_d are left out within the trigger zone or nucleation patch plus this"),
-
-          number("output.history_interval_s", at(&Case::output, &Output::history_interval_s), above(0),
-                 "spacing of the rows of interface.h5"),
-          numbers("output.snapshot_times_s", at(&Case::output, &Output::snapshot_times_s), at_least(0),
-                  "ascending times of the whole-plate fields in fields.vtkhdf"),
-          number("output.energy_interval_s", at(&Case::output, &Output::energy_interval_s), above(0),
-                 "spacing of the rows of energy.csv; one step where that is longer"),
       });
-  return entries;
+}
+
+void add_output(EntryList& list) {
+  list.add(Stage::evaluation,
+           {
+               number("output.history_interval_s", at(&Case::output, &Output::history_interval_s), above(0),
+                      "spacing of the rows of interface.h5"),
+               numbers("output.snapshot_times_s", at(&Case::output, &Output::snapshot_times_s), at_least(0),
+                       "ascending times of the whole-plate fields in fields.vtkhdf"),
+               number("output.energy_interval_s", at(&Case::output, &Output::energy_interval_s), above(0),
+                      "spacing of the rows of energy.csv; one step where that is longer"),
+           });
+}
+
+std::vector<Entry> make_common_entries() {
+  EntryList list;
+  add_title(list);
+  add_plate(list);
+  add_material(list);
+  add_base(list);
+  add_loading(list);
+  add_prestress(list);
+  add_friction(list);
+  add_friction_along_x(list);
+  add_contact(list);
+  add_event(list);
+  add_nucleation(list);
+  add_time(list);
+  add_fronts(list);
+  add_output(list);
+  return std::move(list.entries);
 }
 
 }  // namespace
@@ -635,6 +745,10 @@ std::string text_of_stages(const Case& config, const std::vector<Stage>& stages)
   if (counts(Stage::tractions)) text += config.prestress.table.text;
   if (counts(Stage::motion)) text += config.friction_along_x.table.text;
   return text;
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+  return unit.empty() ? number : number + " " + unit;
 }
 
 std::string table_of(const std::string& key) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/message.hpp"
 #include "input/case.hpp"
 #include "input/document.hpp"
 
@@ -40,7 +41,7 @@ const Magnitudes& magnitudes_of(std::string_view unit);
 
 /// A setting on which a key depends, e.g. "event.kind = nucleation".
 struct Condition {
-  std::string text;
+  Message setting;
   std::function<bool(const Case&)> holds;
 };
 
@@ -80,8 +81,6 @@ struct LawEntries {
   std::string help;
   interface::FrictionLaw defaults;
   std::vector<Entry> entries;
-  std::function<std::string(const Case&)>
-      inconsistency;  ///< empty, or what is wrong with the parameters together
 };
 const std::vector<LawEntries>& friction_laws();
 
@@ -97,6 +96,9 @@ std::vector<Entry> entries_of(const Case& config);
 /// What of a case its state before the event depends on: the keys of some stages with their values, and the
 /// contents of the tables that they name.
 std::string text_of_stages(const Case& config, const std::vector<Stage>& stages);
+
+/// "0.2 m", or the number alone.
+std::string with_unit(const std::string& number, const std::string& unit);
 
 /// The part before the last dot: "plate"; empty for a key outside all tables.
 std::string table_of(const std::string& key);

@@ -26,9 +26,8 @@ using interface::ParameterValue;
 
 constexpr const char* x_column = "x_m";
 
-/// The key that names the file comes first, so that the message finds its place in the case file.
-std::string in_friction_file(const std::filesystem::path& file) {
-  return "friction.file: " + files::one_line(file.native());
+Message in_friction_file(const std::filesystem::path& file) {
+  return Message("{}: {}", Key("friction.file"), files::one_line(file.native()));
 }
 
 double& parameter(FrictionLaw& law, const std::string& key) {
@@ -62,12 +61,11 @@ std::string problem_of(FrictionLaw law) {
     if (auto problem = problem_of(key, *value, {min, max, false, false}); !problem.empty()) return problem;
     values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", key, *value);
   }
-  const std::string together = inconsistency(law);
+  const std::string together = inconsistency(law).text;
   return together.empty() ? "" : fmt::format("{} ({})", together, values);
 }
 
-void check_header(const std::vector<std::string_view>& fields, const FrictionLaw& law,
-                  const std::string& at) {
+void check_header(const std::vector<std::string_view>& fields, const FrictionLaw& law, const Message& at) {
   const auto keys = keys_of(law);
   const auto wanted =
       fmt::format("the first line must be the header {} and any of {}", x_column, fmt::join(keys, ", "));
@@ -81,7 +79,7 @@ void check_header(const std::vector<std::string_view>& fields, const FrictionLaw
   }
 }
 
-void append_row(const std::vector<std::string_view>& fields, const FrictionLaw& law, const std::string& at,
+void append_row(const std::vector<std::string_view>& fields, const FrictionLaw& law, const Message& at,
                 FrictionTable& table) {
   if (fields.size() != table.keys.size() + 1)
     throw UserError("{}: has {} columns; a row is {},{}", at, fields.size(), x_column,
@@ -145,11 +143,15 @@ void apply_field(const Case& config, const std::vector<double>& x_m, std::vector
 void require_allowed(const FrictionAlongX& along_x, const std::vector<double>& x_m,
                      const std::vector<FrictionLaw>& laws) {
   const bool random = along_x.random_key != "none";
-  for (std::size_t i = 0; i < laws.size(); ++i)
-    if (const auto problem = problem_of(laws[i]); !problem.empty())
-      throw UserError("{}: at x = {:.6g} m {}{}",
-                      random ? "friction.random_share" : in_friction_file(along_x.file), x_m[i], problem,
-                      random ? "; choose a smaller share" : "");
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    const auto problem = problem_of(laws[i]);
+    if (problem.empty()) continue;
+    if (random)
+      throw UserError("{}: at x = {:.6g} m {}; choose a smaller share", Key("friction.random_share"), x_m[i],
+                      problem)
+          .about("friction.random_key");
+    throw UserError("{}: at x = {:.6g} m {}", in_friction_file(along_x.file), x_m[i], problem);
+  }
 }
 
 }  // namespace
@@ -158,7 +160,7 @@ FrictionTable read_friction_table(const std::filesystem::path& file, const Frict
   constexpr std::size_t most_bytes = std::size_t{1} << 30U;
   FrictionTable table{files::read_text(file, in_friction_file(file), "table", most_bytes), {}, {}, {}};
   files::for_each_row(table.text, [&](int line, const std::vector<std::string_view>& fields) {
-    const std::string at = fmt::format("{}:{}", in_friction_file(file), line);
+    const Message at("{}:{}", in_friction_file(file), line);
     if (!table.keys.empty()) return append_row(fields, law, at, table);
     check_header(fields, law, at);
     table.keys.assign(fields.begin() + 1, fields.end());

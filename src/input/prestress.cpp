@@ -20,12 +20,11 @@ constexpr std::array<const char*, 3> columns = {"x_m", "t_Pa", "p_Pa"};
 constexpr const char* header = "x_m,t_Pa,p_Pa";
 using Row = std::array<double, 3>;
 
-/// The key that names the file comes first, so that the message finds its place in the case file.
-std::string in_prestress_file(const std::filesystem::path& file) {
-  return "prestress.file: " + files::one_line(file.native());
+Message in_prestress_file(const std::filesystem::path& file) {
+  return Message("{}: {}", Key("prestress.file"), files::one_line(file.native()));
 }
 
-Row row_of(const std::vector<std::string_view>& fields, const std::string& at) {
+Row row_of(const std::vector<std::string_view>& fields, const Message& at) {
   if (fields.size() != columns.size())
     throw UserError("{}: has {} columns; a row is {}", at, fields.size(), header);
   Row row{};
@@ -36,7 +35,7 @@ Row row_of(const std::vector<std::string_view>& fields, const std::string& at) {
   return row;
 }
 
-void append(const Row& row, const std::string& at, record::StaticState& rows) {
+void append(const Row& row, const Message& at, record::StaticState& rows) {
   const auto [x_m, t_Pa, p_Pa] = row;
   require_ascending(x_m, rows.x_m, at);
   if (p_Pa <= 0)
@@ -55,7 +54,7 @@ PrestressTable read_prestress(const std::filesystem::path& file) {
   PrestressTable table{files::read_text(file, in_prestress_file(file), "table", most_bytes), {}};
   bool have_header = false;
   files::for_each_row(table.text, [&](int line, const std::vector<std::string_view>& fields) {
-    const std::string at = fmt::format("{}:{}", in_prestress_file(file), line);
+    const Message at("{}:{}", in_prestress_file(file), line);
     if (have_header) return append(row_of(fields, at), at, table.rows);
     have_header = true;
     if (!std::ranges::equal(fields, columns))

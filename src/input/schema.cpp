@@ -19,8 +19,7 @@
 #include "input/entries.hpp"
 #include "input/friction_along_x.hpp"
 #include "input/prestress.hpp"
-#include "solid/operator.hpp"
-#include "statics/plate_solver.hpp"
+#include "input/relations.hpp"
 
 namespace slipfront::input {
 namespace {
@@ -90,10 +89,6 @@ bool contains_word(const std::vector<std::string>& words, const std::string& wor
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-std::string with_unit(const std::string& number, const std::string& unit) {
-  return unit.empty() ? number : number + " " + unit;
-}
-
 std::string_view kind_name(Kind kind) {
   switch (kind) {
     case Kind::number:
@@ -133,12 +128,6 @@ Setting to_setting(const Override& override) {
   return {files::one_line(key), std::move(value), place_of(override), 0};
 }
 
-const Setting* find_setting(const Document& document, const std::string& key) {
-  const auto found = std::find_if(document.settings.begin(), document.settings.end(),
-                                  [&](const Setting& setting) { return setting.key == key; });
-  return found == document.settings.end() ? nullptr : &*found;
-}
-
 void apply(const std::vector<Override>& overrides, Document& document) {
   for (const Override& override : overrides) {
     auto& settings = document.settings;
@@ -162,8 +151,8 @@ bool applies(const Entry& entry, const Case& config) {
 void drop_keys_that_overrides_exclude(const Case& config, Document& document) {
   const auto overridden = [&](const Entry& entry) {
     return std::ranges::any_of(deciding_keys, [&](const char* key) {
-      const Setting* setting = find_setting(document, key);
-      return setting && setting->is_override() && entry.only_with->text.find(key) != std::string::npos;
+      const Setting* setting = document.find(key);
+      return setting && setting->is_override() && contains_word(entry.only_with->setting.keys, key);
     });
   };
   std::vector<std::string> dropped;
@@ -176,7 +165,7 @@ void drop_keys_that_overrides_exclude(const Case& config, Document& document) {
 
 /// Where an override names the law, what the file says of other laws is out of date rather than wrong.
 void drop_parameters_of_other_laws(const Case& config, Document& document) {
-  const Setting* law = find_setting(document, "friction.law");
+  const Setting* law = document.find("friction.law");
   if (!law || !law->is_override()) return;
   const LawEntries& current = law_of(config);
   auto& settings = document.settings;
@@ -203,12 +192,11 @@ void drop_parameters_of_other_laws(const Case& config, Document& document) {
                                     const Case& config) {
   const std::string& key = setting.key;
   if (const LawEntries* other = law_with(key, &law_of(config)))
-    throw UserError(
-        "{}: {} belongs to the friction law {}, but friction.law is {}; remove the key or set the law",
-        setting.place, key, other->name, law_of(config).name);
+    throw UserError("{}: {} belongs to the friction law {}, but {} is {}; remove the key or set the law",
+                    setting.place, key, other->name, Key("friction.law"), law_of(config).name);
   if (const Entry* entry = find_entry(common_entries(), key))
     throw UserError("{}: {} applies only with {}; remove the key or set that", setting.place, key,
-                    entry->only_with->text);
+                    entry->only_with->setting);
   std::vector<std::string> keys;
   for (const Entry& entry : entries) {
     // The right name in the wrong table is the likelier slip than any misspelling.
@@ -301,15 +289,15 @@ void check_tables(const Document& document, const std::vector<Entry>& entries) {
                       setting.key, setting.key);
 }
 
-// --- Keys together
-// -----------------------------------------------------------------------------------------------
+// --- Places
+// ----------------------------------------------------------------------------------------------------
 
 /// Place of the first of these keys that is set, an override before the file; `name` where none is.
 std::string place_of(const Document& document, const std::vector<std::string>& keys,
                      const std::string& name) {
   std::string place = name;
   for (const std::string& key : keys) {
-    const Setting* setting = find_setting(document, key);
+    const Setting* setting = document.find(key);
     if (!setting) continue;
     if (setting->is_override()) return setting->place;
     if (place == name) place = setting->place;
@@ -317,222 +305,8 @@ std::string place_of(const Document& document, const std::vector<std::string>& k
   return place;
 }
 
-void check_friction(const Case& config, const Document& document, const std::string& name) {
-  const LawEntries& law = law_of(config);
-  const std::string message = law.inconsistency(config);
-  if (message.empty()) return;
-  std::vector<std::string> keys;
-  for (const Entry& entry : law.entries)
-    if (message.find(leaf_of(entry.key)) != std::string::npos) keys.push_back(entry.key);
-  keys.push_back("friction.law");
-  std::string values;
-  for (const Entry& entry : law.entries)
-    values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", leaf_of(entry.key),
-                          toml_text(entry.get(config)));
-  throw UserError("{}: friction: {} ({})", place_of(document, keys, name), message, values);
-}
-
-using Require = std::function<void(bool holds, const std::vector<std::string>& keys, const std::string&)>;
-
-void check_friction_along_x(const Case& config, const Require& require) {
-  const std::string& key = config.friction_along_x.random_key;
-  std::vector<std::string> keys;
-  for (const Entry& entry : law_of(config).entries) keys.push_back(leaf_of(entry.key));
-  require(key == "none" || contains_word(keys, key), {"friction.random_key", "friction.law"},
-          fmt::format("friction.random_key is {}; the friction law {} has {}", key, law_of(config).name,
-                      fmt::join(keys, ", ")));
-}
-
-/// Whether a weakened patch can do nothing, whatever the place; where friction varies, the nodes decide.
-bool never_weakens(const Case& config) {
-  return !config.friction_along_x.varies() &&
-         interface::kinetic_coefficient(config.friction) >= interface::static_coefficient(config.friction);
-}
-
-/// What a prescribed state, or the lack of one, asks of the other keys.
-void check_prestress(const Case& config, const Document& document, const Require& require) {
-  using interface::EventKind;
-  if (config.loading.method != statics::LoadingMethod::prestress) {
-    require(config.loading.shear_speed_over_c_L > 0, {"loading.shear_speed_over_c_L"},
-            "loading.shear_speed_over_c_L is 0; that holds the top edge still, choose loading.method = "
-            "prestress or a speed greater than 0");
-    return;
-  }
-  const bool uniform = find_setting(document, "prestress.t_Pa") && find_setting(document, "prestress.p_Pa");
-  require(uniform || !config.prestress.file.empty(), {"loading.method"},
-          "loading.method = prestress needs prestress.t_Pa and prestress.p_Pa, or prestress.file");
-  require(config.plate.corner == mesh::Corner::none, {"plate.corner", "loading.method"},
-          "loading.method = prestress needs plate.corner = none: the whole lower edge starts in contact");
-  require(config.event != EventKind::spontaneous, {"event.kind", "loading.method"},
-          "event.kind = spontaneous raises the shear past the critical one, which loading.method = prestress "
-          "does not know; choose nucleation, left, right or none");
-  const bool at_edge = interface::is_at_edge(config.event);
-  require(!at_edge || config.plate.sides != mesh::Sides::periodic, {"event.kind", "plate.sides"},
-          "event.kind = left and right need an edge, which plate.sides = periodic does not have; choose "
-          "nucleation");
-}
-
-void check_base(const Case& config, const Document& document, const Require& require) {
-  if (!has_base_body(config)) return;
-  const bool repeats = config.plate.sides == mesh::Sides::periodic;
-  require((config.base.plate.sides == mesh::Sides::periodic) == repeats, {"base.sides", "plate.sides"},
-          "base.sides and plate.sides must both be periodic, or neither of them");
-  require(config.plate.corner != mesh::Corner::fillet, {"plate.corner", "base.kind"},
-          "plate.corner = fillet leaves nodes that face none of base.kind = body; choose none or relief");
-  // The defaults are those of the paper's plate, which nobody means for a base.
-  for (const char* key : {"base.youngs_modulus_Pa", "base.poissons_ratio", "base.density_kg_per_m3",
-                          "base.stiffness_damping_s", "base.height_m"})
-    require(find_setting(document, key), {"base.kind"},
-            fmt::format("base.kind = body needs {}; set it", key));
-  require(config.loading.method == statics::LoadingMethod::prestress || config.base.plate.coarsenings == 0 ||
-              config.loading.solver != statics::StaticSolver::iterative,
-          {"loading.solver", "base.coarsenings"},
-          "loading.solver = iterative knows no graded base; choose auto or direct, or base.coarsenings = 0");
-}
-
-void check_nucleation(const Case& config, const Require& require) {
-  if (config.event != interface::EventKind::nucleation) return;
-  const auto& n = config.nucleation;
-  const double width_m = config.plate.width_m;
-  require(n.x_m >= 0 && n.x_m <= width_m, {"nucleation.x_m", "plate.width_m"},
-          fmt::format("nucleation.x_m is {} m; it must be on the interface, at 0 to {} m", n.x_m, width_m));
-  require(n.half_length_m + n.taper_m > 0, {"nucleation.half_length_m", "nucleation.taper_m"},
-          "nucleation.half_length_m and nucleation.taper_m are both 0; give the patch a length");
-  require(config.plate.sides != mesh::Sides::periodic || 2 * (n.half_length_m + n.taper_m) <= width_m,
-          {"nucleation.half_length_m", "nucleation.taper_m", "plate.width_m"},
-          fmt::format("nucleation.half_length_m + taper_m is {} m; with plate.sides = periodic it must be at "
-                      "most half of plate.width_m, {} m",
-                      n.half_length_m + n.taper_m, 0.5 * width_m));
-  require(
-      n.form != interface::NucleationForm::weakened || !never_weakens(config),
-      {"nucleation.form", "event.kind", "friction.law"},
-      "nucleation.form = weakened does nothing where the friction law does not weaken; choose overstress");
-}
-
-void check_trigger(const Case& config, const Require& require) {
-  if (!interface::is_at_edge(config.event)) return;
-  require(
-      config.trigger.form != interface::TriggerForm::weakened || !never_weakens(config),
-      {"event.trigger_form", "event.kind", "friction.law"},
-      "event.trigger_form = weakened does nothing where the friction law does not weaken; choose added or "
-      "raised");
-}
-
-/// Relations between keys that need no mesh; mesh::make_plate checks the rest of the geometry.
-void check_relations(const Case& config, const Document& document, const std::string& name) {
-  const auto require = [&](bool holds, const std::vector<std::string>& keys, const std::string& message) {
-    if (!holds) throw UserError("{}: {}", place_of(document, keys, name), message);
-  };
-  const auto& plate = config.plate;
-  const auto& loading = config.loading;
-  constexpr double most_nodes = std::numeric_limits<mesh::Node>::max();
-  require(
-      (plate.width_m / plate.element_size_m + 1) * (plate.height_m / plate.element_size_m + 1) <= most_nodes,
-      {"plate.element_size_m", "plate.width_m", "plate.height_m"},
-      fmt::format("plate.element_size_m is {} m; that makes more than {:.3g} nodes, choose a larger one",
-                  plate.element_size_m, most_nodes));
-  const bool at_edge = interface::is_at_edge(config.event);
-  const double shorter_m = std::min(plate.width_m, plate.height_m);
-  require(plate.element_size_m <= shorter_m, {"plate.element_size_m", "plate.width_m", "plate.height_m"},
-          fmt::format("plate.element_size_m is {} m; it must be at most the plate's shorter side, {} m",
-                      plate.element_size_m, shorter_m));
-  check_prestress(config, document, require);
-  const bool tilted = loading.method != statics::LoadingMethod::prestress;
-  const double tilt_m = std::max(loading.tilt_left_m, loading.tilt_right_m);
-  require(
-      !tilted || tilt_m < plate.height_m, {"loading.tilt_left_m", "loading.tilt_right_m", "plate.height_m"},
-      fmt::format(
-          "loading.tilt_left_m and tilt_right_m go up to {} m; they must be less than plate.height_m, {} m",
-          tilt_m, plate.height_m));
-  require(!tilted || loading.edge_margin_m < 0.5 * plate.width_m, {"loading.edge_margin_m", "plate.width_m"},
-          fmt::format("loading.edge_margin_m is {} m; it must be less than half of plate.width_m, {} m",
-                      loading.edge_margin_m, 0.5 * plate.width_m));
-  require(!(tilted || at_edge) || config.trigger.zone_m <= plate.width_m,
-          {"event.trigger_zone_m", "plate.width_m"},
-          fmt::format("event.trigger_zone_m is {} m; it must be at most plate.width_m, {} m",
-                      config.trigger.zone_m, plate.width_m));
-  require(
-      plate.coarsenings == 0 || loading.solver != statics::StaticSolver::iterative,
-      {"loading.solver", "plate.coarsenings"},
-      "loading.solver = iterative knows no graded plates; choose auto or direct, or plate.coarsenings = 0");
-  require(!tilted || loading.solver != statics::StaticSolver::iterative ||
-              plate.height_m + (has_base_body(config) ? config.base.plate.height_m : 0) <=
-                  2 * statics::most_iterative_slenderness * plate.width_m,
-          {"loading.solver", "plate.height_m", "plate.width_m"},
-          "loading.solver = iterative does not converge on a plate so much higher than wide; choose auto or "
-          "direct");
-  require(
-      config.time.step_factor <= 1 || config.time.allow_unstable, {"time.step_factor", "time.allow_unstable"},
-      fmt::format(
-          "time.step_factor is {}, beyond the stable step; use at most 1, or set time.allow_unstable = true",
-          config.time.step_factor));
-  check_base(config, document, require);
-  check_trigger(config, require);
-  check_nucleation(config, require);
-  check_friction_along_x(config, require);
-  require(config.fronts.l_star_m < plate.width_m, {"fronts.l_star_m", "plate.width_m"},
-          fmt::format("fronts.l_star_m is {} m; it must be less than plate.width_m, {} m",
-                      config.fronts.l_star_m, plate.width_m));
-  require(config.fronts.pulse_share <= config.fronts.crack_share,
-          {"fronts.pulse_share", "fronts.crack_share"},
-          fmt::format("fronts.pulse_share is {}; it must be at most fronts.crack_share, {}",
-                      config.fronts.pulse_share, config.fronts.crack_share));
-  const auto& relaxation = config.regularisation;
-  if (relaxation.relaxed != interface::Relaxed::none) {
-    require(
-        std::isfinite(relaxation.length_m) || std::isfinite(relaxation.time_s), {"friction.regularisation"},
-        "friction.regularisation needs a finite friction.relaxation_length_m or relaxation_time_s; set one");
-    require(relaxation.slip_rate_m_per_s == 0 || std::isfinite(relaxation.length_m),
-            {"friction.relaxation_slip_rate_m_per_s"},
-            "friction.relaxation_slip_rate_m_per_s does nothing without a finite "
-            "friction.relaxation_length_m; set that, or remove it");
-  }
-  const auto& times = config.output.snapshot_times_s;
-  const auto fall = std::adjacent_find(times.begin(), times.end(), std::greater_equal<>());
-  if (fall != times.end())
-    require(false, {"output.snapshot_times_s"},
-            fmt::format("output.snapshot_times_s has {} s before {} s; write the times in ascending order",
-                        *fall, *std::next(fall)));
-}
-
-/// The values of a number or a list of them.
-std::vector<double> numbers_of(const Value& value) {
-  if (const auto* number = std::get_if<double>(&value)) return {*number};
-  if (const auto* list = std::get_if<std::vector<double>>(&value)) return *list;
-  return {};
-}
-
-/// Refuses numbers of which products or quotients could leave the range of doubles.
-void check_magnitudes(const Case& config, const Document& document, const std::string& name) {
-  for (const Entry& entry : entries_of(config))
-    for (const double number : numbers_of(entry.get(config))) {
-      const std::string unit = unit_of(entry.key);
-      const Magnitudes& magnitudes = magnitudes_of(unit);
-      const double size = std::abs(number);
-      if (size == 0 || std::isinf(size) || (size >= magnitudes.least && size <= magnitudes.most)) continue;
-      throw UserError("{}: {} is {}; its magnitude must be at least {:g} and at most {}",
-                      place_of(document, {entry.key}, name), entry.key,
-                      with_unit(fmt::format("{}", number), unit), magnitudes.least,
-                      with_unit(fmt::format("{:g}", magnitudes.most), unit));
-    }
-}
-
-/// Refuses more steps than can be taken or counted. The step is estimated from the time in which a wave
-/// crosses an element.
-void check_duration(const Case& config, const Document& document, const std::string& name) {
-  constexpr double most_steps = 1e12;
-  const auto stable_step_s = [&](const solid::Material& material) {
-    const double crossing_s = config.plate.element_size_m / solid::longitudinal_speed_m_per_s(material);
-    return solid::stable_step_s(2 / crossing_s, material.stiffness_damping_s);
-  };
-  double step_s = config.time.step_factor * stable_step_s(config.material);
-  if (has_base_body(config))
-    step_s = std::min(step_s, config.time.step_factor * stable_step_s(base_material(config)));
-  const double steps = config.time.end_s / step_s;
-  if (steps > most_steps)
-    throw UserError(
-        "{}: time.end_s = {:g} s takes about {:.3g} steps of {:.3g} s, more than {:g}; choose an earlier end",
-        place_of(document, {"time.end_s"}, name), config.time.end_s, steps, step_s, most_steps);
+UserError with_place(const UserError& error, const Document& document, const std::string& name) {
+  return error.at(place_of(document, error.keys(), name));
 }
 
 // --- Reference
@@ -549,7 +323,7 @@ std::string reference_row(const Entry& entry, const Case& defaults) {
     if (type.rfind(article, 0) == 0) type.erase(0, article.size());
   std::string help;
   for (const char c : entry.help) help += c == '|' ? std::string("\\|") : std::string(1, c);
-  if (entry.only_with) help += "; only with " + entry.only_with->text;
+  if (entry.only_with) help += "; only with " + entry.only_with->setting.text;
   return fmt::format("| `{}` | {} | {} | `{}` | {} | {} |\n", leaf_of(entry.key), type, unit_of(entry.key),
                      toml_text(entry.get(defaults)), allowed, help);
 }
@@ -575,12 +349,12 @@ Case case_of(Document document, const std::string& name) {
 
   Case config;
   // The law first: it decides which keys there are.
-  if (const Setting* law = find_setting(document, "friction.law"))
+  if (const Setting* law = document.find("friction.law"))
     assign(*find_entry(common_entries(), "friction.law"), *law, config);
   drop_parameters_of_other_laws(config, document);
   for (const char* key : deciding_keys) {
     const Entry& entry = *find_entry(common_entries(), key);
-    if (const Setting* setting = find_setting(document, key); setting && applies(entry, config))
+    if (const Setting* setting = document.find(key); setting && applies(entry, config))
       assign(entry, *setting, config);
   }
   drop_keys_that_overrides_exclude(config, document);
@@ -590,10 +364,11 @@ Case case_of(Document document, const std::string& name) {
     if (!entry) throw_unknown_key(setting, entries, config);
     if (entry->key != "friction.law") assign(*entry, setting, config);
   }
-  check_friction(config, document, name);
-  check_relations(config, document, name);
-  check_magnitudes(config, document, name);
-  check_duration(config, document, name);
+  try {
+    check_relations(config, document);
+  } catch (const UserError& error) {
+    throw with_place(error, document, name);
+  }
   return config;
 }
 
@@ -602,10 +377,10 @@ std::string path_of_table(const std::filesystem::path& folder, const char* key, 
   std::error_code error;
   const auto path = std::filesystem::absolute(folder / file, error).lexically_normal();
   if (error)
-    throw UserError("{}: {}: the working folder cannot be found ({}); change to another one", key,
+    throw UserError("{}: {}: the working folder cannot be found ({}); change to another one", Key(key),
                     files::one_line(file), error.message());
   if (files::line_outside_utf8(path.native()) > 0)  // the path goes into files that are UTF-8
-    throw UserError("{}: {}: its path holds bytes that are no utf-8; rename the folder or the file", key,
+    throw UserError("{}: {}: its path holds bytes that are no utf-8; rename the folder or the file", Key(key),
                     files::one_line(path.native()));
   return path.string();
 }
@@ -641,7 +416,7 @@ CaseFile::CaseFile(const std::filesystem::path& file, const std::vector<Override
   try {
     read_tables(file.parent_path(), config_);
   } catch (const UserError& error) {
-    throw UserError(with_place(error.what()));
+    throw with_place(error);
   }
 }
 
@@ -702,25 +477,8 @@ std::string CaseFile::place_of_key(const std::string& key) const {
   return place_of(document_, {key}, name_);
 }
 
-std::string CaseFile::with_place(const std::string& message) const {
-  std::string first_key;
-  std::size_t first = std::string::npos;
-  const auto consider = [&](const std::vector<Entry>& entries) {
-    for (const Entry& entry : entries) {
-      if (table_of(entry.key).empty()) continue;
-      const std::size_t position = message.find(entry.key);
-      if (position == std::string::npos) continue;
-      if (first_key.empty() || position < first ||
-          (position == first && entry.key.size() > first_key.size())) {
-        first = position;
-        first_key = entry.key;
-      }
-    }
-  };
-  consider(common_entries());
-  for (const LawEntries& law : friction_laws()) consider(law.entries);
-  const std::string place = first_key.empty() ? name_ : place_of_key(first_key);
-  return fmt::format("{}: {}", place, message);
+UserError CaseFile::with_place(const UserError& error) const {
+  return input::with_place(error, document_, name_);
 }
 
 }  // namespace slipfront::input

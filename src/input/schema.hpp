@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "input/case.hpp"
 #include "input/document.hpp"
 
@@ -33,8 +34,9 @@ class CaseFile {
   /// key, else "FILE:LINE" where the file does, else FILE alone.
   std::string place_of_key(const std::string& key) const;
 
-  /// Puts the place of the first key that `message` names before it: "FILE:LINE: message".
-  std::string with_place(const std::string& message) const;
+  /// The same error with its place: "FILE:LINE: message". Of the error's keys that counts which an override
+  /// sets, else the first that the file sets.
+  UserError with_place(const UserError& error) const;
 
  private:
   std::string name_;

@@ -9,24 +9,25 @@
 
 namespace slipfront::input {
 
-double number_in(std::string_view field, std::string_view column, const std::string& at) {
+double number_in(std::string_view field, std::string_view column, const Message& at) {
   const auto number = files::number_of(field);
   if (!number)
     throw UserError("{}: {} is \"{}\"; it must be a finite number", at, column, files::shortened(field));
   return *number;
 }
 
-void require_at_most(double value, double most, std::string_view column, const std::string& at) {
+void require_at_most(double value, double most, std::string_view column, const Message& at) {
   if (std::abs(value) > most)
     throw UserError("{}: {} is {}; its magnitude must be at most {:g}", at, column, value, most);
 }
 
-void require_ascending(double x_m, const std::vector<double>& rows_x_m, const std::string& at) {
+void require_ascending(double x_m, const std::vector<double>& rows_x_m, const Message& at) {
   if (!rows_x_m.empty() && x_m <= rows_x_m.back())
     throw UserError("{}: x_m is {} after {}; write the rows with x ascending", at, x_m, rows_x_m.back());
 }
 
-void require_covers(const std::vector<double>& rows_x_m, const std::vector<double>& x_m, const std::string& place) {
+void require_covers(const std::vector<double>& rows_x_m, const std::vector<double>& x_m,
+                    const Message& place) {
   const double tolerance_m = position_tolerance * (x_m.back() - x_m.front());
   if (rows_x_m.front() > x_m.front() + tolerance_m || rows_x_m.back() < x_m.back() - tolerance_m)
     throw UserError(

@@ -56,16 +56,20 @@ Fold choose_fold(const Mesh& mesh, double radius_m) {
   const int room = std::min(grid.columns / 2, grid.rows);
   const double largest = (room - min_margin_in_cells) * h;
   if (largest < smallest)
-    throw UserError(
-        "plate.element_size_m = {:g} is too large to round the corners of this plate; use a smaller size", h);
+    throw UserError("{} = {:g} is too large to round the corners of this plate; use a smaller size",
+                    Key("plate.element_size_m"), h);
   // The slack admits the limits as printed.
   if (!(radius_m >= (1 - 1e-6) * smallest))
-    throw UserError("plate.fillet_radius_m = {:g} is too small for these elements; make it at least {:.8g}",
-                    radius_m, smallest);
+    throw UserError("{} = {:g} is too small for these elements; make it at least {:.8g}",
+                    Key("plate.fillet_radius_m"), radius_m, smallest)
+        .about("plate.element_size_m");
   if (radius_m > (1 + 1e-6) * largest)
-    throw UserError("plate.fillet_radius_m = {:g} does not fit into the plate{}; make it at most {:.8g}",
-                    radius_m, mesh.coarser.empty() ? "" : "'s smallest elements (plate.fine_height_m)",
-                    largest);
+    throw UserError(
+        "{} = {:g} does not fit into the plate{}; make it at most {:.8g}", Key("plate.fillet_radius_m"),
+        radius_m,
+        mesh.coarser.empty() ? Message() : Message("'s smallest elements ({})", Key("plate.fine_height_m")),
+        largest)
+        .about("plate.width_m", "plate.height_m");
   Fold fold;
   fold.radius_m = radius_m;
   fold.spacing_m = h;

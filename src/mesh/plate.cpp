@@ -19,7 +19,7 @@ constexpr double whole_tolerance = 1e-6;  // relative, for "a whole multiple of 
 
 void require_positive(double value, const char* key) {
   if (!(value > 0) || !std::isfinite(value))
-    throw UserError("plate.{} must be a positive length, not {:g}", key, value);
+    throw UserError("{} must be a positive length, not {:g}", Key(key), value);
 }
 
 bool is_whole(double count) {
@@ -43,23 +43,22 @@ std::optional<double> size_that_fits(const Plate& plate, int step) {
   for (const int step : {+1, -1})
     if (const auto size = size_that_fits(plate, step))
       sizes += fmt::format("{}{:.8g}", sizes.empty() ? "" : " and ", *size);
-  const std::string advice = sizes.empty()
-                                 ? "no size near it fits both, change plate.width_m or plate.height_m"
-                                 : "the nearest that fit are " + sizes;
-  throw UserError(
-      "plate.element_size_m = {:.8g} does not divide the plate of {:.8g} m x {:.8g} m into whole elements; "
-      "{}",
-      plate.element_size_m, plate.width_m, plate.height_m, advice);
+  const Key width("plate.width_m"), height("plate.height_m");
+  throw UserError("{} = {:.8g} does not divide the plate of {:.8g} m x {:.8g} m into whole elements; {}",
+                  Key("plate.element_size_m"), plate.element_size_m, plate.width_m, plate.height_m,
+                  sizes.empty() ? Message("no size near it fits both, change {} or {}", width, height)
+                                : Message("the nearest that fit are " + sizes))
+      .about(width, height);
 }
 
 Grid make_grid(const Plate& plate) {
-  require_positive(plate.width_m, "width_m");
-  require_positive(plate.height_m, "height_m");
-  require_positive(plate.element_size_m, "element_size_m");
+  require_positive(plate.width_m, "plate.width_m");
+  require_positive(plate.height_m, "plate.height_m");
+  require_positive(plate.element_size_m, "plate.element_size_m");
   const double columns = plate.width_m / plate.element_size_m;
   const double rows = plate.height_m / plate.element_size_m;
   if ((columns + 1) * (rows + 1) > std::numeric_limits<Node>::max())
-    throw UserError("plate.element_size_m = {:.8g} makes more than {} nodes; use a larger size",
+    throw UserError("{} = {:.8g} makes more than {} nodes; use a larger size", Key("plate.element_size_m"),
                     plate.element_size_m, std::numeric_limits<Node>::max());
   if (!is_whole(columns) || !is_whole(rows)) throw_no_fit(plate);
   Grid grid;
@@ -87,9 +86,9 @@ Node inner_node(const Grid& below, int i) {
 /// Grids of the blocks of a plate whose rectangle has the grid `whole`, upwards.
 std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole, std::string_view table) {
   if (plate.coarsenings == 0) return {whole};
-  if (plate.coarsenings < 0)
-    throw UserError("{}.coarsenings = {} must not be negative", table, plate.coarsenings);
-  require_positive(plate.fine_height_m, "fine_height_m");
+  const Key coarsenings(fmt::format("{}.coarsenings", table));
+  if (plate.coarsenings < 0) throw UserError("{} = {} must not be negative", coarsenings, plate.coarsenings);
+  require_positive(plate.fine_height_m, "plate.fine_height_m");
   const bool periodic = plate.sides == Sides::periodic;
   const int divisor = periodic ? 4 : 2;
   std::vector<Grid> grids;
@@ -102,17 +101,16 @@ std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole, std::string
     } else {
       if (block.columns % divisor != 0)
         throw UserError(
-            "{}.coarsenings = {} needs a number of columns of elements that can be halved so often{}; {} "
-            "columns can {} times: choose fewer, or another plate.element_size_m",
-            table, plate.coarsenings, periodic ? " and stay even, the sides being periodic" : "",
-            whole.columns, k);
+            "{} = {} needs a number of columns of elements that can be halved so often{}; {} columns can {} "
+            "times: choose fewer, or another {}",
+            coarsenings, plate.coarsenings, periodic ? " and stay even, the sides being periodic" : "",
+            whole.columns, k, Key("plate.element_size_m"));
       const double least_m = k == 0 ? plate.fine_height_m : below_m;
       const double least = std::max(1.0, std::ceil(least_m / block.spacing_m - whole_tolerance));
       if (least + 4 > rows_left)
-        throw UserError(
-            "{0}.coarsenings = {1} leaves no room for the largest elements; choose fewer, or a "
-            "{0}.fine_height_m below {2:g}",
-            table, plate.coarsenings, plate.fine_height_m);
+        throw UserError("{} = {} leaves no room for the largest elements; choose fewer, or a {} below {:g}",
+                        coarsenings, plate.coarsenings, Key(fmt::format("{}.fine_height_m", table)),
+                        plate.fine_height_m);
       block.rows = static_cast<int>(least);
       block.rows += (rows_left - block.rows) % 2;
     }
@@ -163,11 +161,10 @@ Mesh make_rectangle(const Plate& plate, std::string_view table) {
   for (const Grid& grid : grids)
     n_nodes += static_cast<std::size_t>(grid.stride()) * (static_cast<std::size_t>(grid.rows) + 2);
   if (n_nodes > static_cast<std::size_t>(std::numeric_limits<Node>::max()))
-    throw UserError(
-        "plate.element_size_m = {:g} makes {} nodes, more than can be numbered; choose a larger one",
-        plate.element_size_m, n_nodes);
+    throw UserError("{} = {:g} makes {} nodes, more than can be numbered; choose a larger one",
+                    Key("plate.element_size_m"), plate.element_size_m, n_nodes);
   require_memory(bytes_per_node * static_cast<double>(n_nodes), fmt::format("a plate of {} nodes", n_nodes),
-                 "choose a larger plate.element_size_m");
+                 Message("choose a larger {}", Key("plate.element_size_m")));
   Mesh mesh;
   mesh.grid = grids.front();
   mesh.coarser.assign(grids.begin() + 1, grids.end());
@@ -202,29 +199,29 @@ Mesh make_rectangle(const Plate& plate, std::string_view table) {
 }
 
 void check_relief(const Plate& plate, const Grid& grid) {
-  require_positive(plate.relief_length_m, "relief_length_m");
-  require_positive(plate.relief_height_m, "relief_height_m");
-  require_positive(plate.relief_depth_m, "relief_depth_m");
+  const Key relief_length("plate.relief_length_m"), relief_height("plate.relief_height_m"),
+      relief_depth("plate.relief_depth_m");
+  require_positive(plate.relief_length_m, "plate.relief_length_m");
+  require_positive(plate.relief_height_m, "plate.relief_height_m");
+  require_positive(plate.relief_depth_m, "plate.relief_depth_m");
   if (plate.relief_length_m < (1 - whole_tolerance) * grid.spacing_m)
-    throw UserError("plate.relief_length_m = {:g} is shorter than an element; make it at least {:.8g}",
-                    plate.relief_length_m, grid.spacing_m);
+    throw UserError("{} = {:g} is shorter than an element; make it at least {:.8g}", relief_length,
+                    plate.relief_length_m, grid.spacing_m)
+        .about("plate.element_size_m");
   if (plate.relief_length_m >= 0.5 * plate.width_m)
-    throw UserError(
-        "plate.relief_length_m = {:g} leaves no flat base between the two reliefs; make it less than {:g}",
-        plate.relief_length_m, 0.5 * plate.width_m);
+    throw UserError("{} = {:g} leaves no flat base between the two reliefs; make it less than {:g}",
+                    relief_length, plate.relief_length_m, 0.5 * plate.width_m)
+        .about("plate.width_m");
   // The limits of one half keep every angle above 36 degrees and every cell at least half as high as it was.
   if (plate.relief_height_m > 0.5 * plate.relief_length_m)
-    throw UserError(
-        "plate.relief_height_m = {:g} is too steep; make it at most half of plate.relief_length_m = {:g}",
-        plate.relief_height_m, plate.relief_length_m);
+    throw UserError("{} = {:g} is too steep; make it at most half of {} = {:g}", relief_height,
+                    plate.relief_height_m, relief_length, plate.relief_length_m);
   if (plate.relief_depth_m > plate.height_m)
-    throw UserError(
-        "plate.relief_depth_m = {:g} does not fit into the plate; make it at most plate.height_m = {:g}",
-        plate.relief_depth_m, plate.height_m);
+    throw UserError("{} = {:g} does not fit into the plate; make it at most {} = {:g}", relief_depth,
+                    plate.relief_depth_m, Key("plate.height_m"), plate.height_m);
   if (plate.relief_height_m > 0.5 * plate.relief_depth_m)
-    throw UserError(
-        "plate.relief_depth_m = {:g} is too small; make it at least twice plate.relief_height_m = {:g}",
-        plate.relief_depth_m, plate.relief_height_m);
+    throw UserError("{} = {:g} is too small; make it at least twice {} = {:g}", relief_depth,
+                    plate.relief_depth_m, relief_height, plate.relief_height_m);
 }
 
 /// Moves the nodes above the two arcs up, and by the same amount at both ends.
@@ -260,7 +257,7 @@ void lift_corners(Mesh& mesh, const Plate& plate) {
 
 void join_sides(Mesh& mesh, const Plate& plate) {
   if (mesh.grid.columns < 3)
-    throw UserError("plate.sides = periodic needs three columns of elements or more, not {}",
+    throw UserError("{} = periodic needs three columns of elements or more, not {}", Key("plate.sides"),
                     mesh.grid.columns);
   mesh.period_m = plate.width_m;
   std::vector<Node> joined(mesh.x_m.size());
@@ -308,7 +305,8 @@ void absorb(Mesh& mesh, const Plate& plate) {
 Mesh make_plate(const Plate& plate, std::string_view table) {
   Mesh mesh = make_rectangle(plate, table);
   if (plate.sides != Sides::free && plate.corner != Corner::none)
-    throw UserError("plate.sides other than free needs right-angled corners; set plate.corner = \"none\"");
+    throw UserError("{} other than free needs right-angled corners; set {} = \"none\"", Key("plate.sides"),
+                    Key("plate.corner"));
   if (plate.sides == Sides::periodic) join_sides(mesh, plate);
   absorb(mesh, plate);
   switch (plate.corner) {
@@ -319,7 +317,7 @@ Mesh make_plate(const Plate& plate, std::string_view table) {
       lift_corners(mesh, plate);
       break;
     case Corner::fillet:
-      require_positive(plate.fillet_radius_m, "fillet_radius_m");
+      require_positive(plate.fillet_radius_m, "plate.fillet_radius_m");
       round_corners(mesh, plate.fillet_radius_m);
       break;
   }

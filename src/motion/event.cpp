@@ -144,8 +144,8 @@ EventRun::EventRun(Stepper& stepper, const statics::Equilibrium& state, const Pe
       watch_(std::in_place, stepper, c_L_m_per_s) {
   const double all_steps = std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12));
   if (all_steps > 1e12)
-    throw UserError("time.end_s = {:g} takes {:g} steps of {:.4g} s; choose an earlier end", time.end_s,
-                    all_steps, stepper.step_s());
+    throw UserError("{} = {:g} takes {:g} steps of {:.4g} s; choose an earlier end", Key("time.end_s"),
+                    time.end_s, all_steps, stepper.step_s());
   n_steps_ = static_cast<std::int64_t>(all_steps);
   event_.history.x_m = state.tractions.x_m;
   event_.energies.push_back(watch_->start());
@@ -251,10 +251,9 @@ std::int64_t most_steps(const Stepper& stepper, double shear_m, double top_speed
                         double c_L_m_per_s) {
   const double steps = 2 * shear_m / (top_speed_m_per_s * stepper.step_s());
   if (!(steps <= 2e12))
-    throw UserError(
-        "the ramp with loading.shear_speed_over_c_L = {:g} takes {:g} steps; choose a higher speed, or "
-        "loading.method = direct",
-        top_speed_m_per_s / c_L_m_per_s, 0.5 * steps);
+    throw UserError("the ramp with {} = {:g} takes {:g} steps; choose a higher speed, or {} = direct",
+                    Key("loading.shear_speed_over_c_L"), top_speed_m_per_s / c_L_m_per_s, 0.5 * steps,
+                    Key("loading.method"));
   return static_cast<std::int64_t>(steps);
 }
 

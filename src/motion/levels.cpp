@@ -150,12 +150,11 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time) {
   if (mesh.grid.columns == 0 || time.interface_rows < mesh.grid.rows) return;
   if (!mesh.coarser.empty())
     throw UserError(
-        "time.interface_rows = {} does not fit below the larger elements above {} rows; choose fewer, or a "
-        "larger plate.fine_height_m",
-        time.interface_rows, mesh.grid.rows);
-  throw UserError(
-      "time.interface_rows = {} does not fit below the loaded edge of a mesh of {} rows; choose fewer",
-      time.interface_rows, mesh.grid.rows);
+        "{} = {} does not fit below the larger elements above {} rows; choose fewer, or a larger {}",
+        Key("time.interface_rows"), time.interface_rows, mesh.grid.rows, Key("plate.fine_height_m"));
+  throw UserError("{} = {} does not fit below the loaded edge of a mesh of {} rows; choose fewer",
+                  Key("time.interface_rows"), time.interface_rows, mesh.grid.rows)
+      .about("plate.element_size_m");
 }
 
 std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,

@@ -89,9 +89,6 @@ struct SampleOutcome {
 /// paper's conclusions, C14 and C18 to C22, are none.
 const std::vector<std::string>& constraining_claims();
 
-/// Share of the points in the paper's band that C18 asks for.
-inline constexpr double wanted_share_in_band = 0.8;
-
 struct OpenChoicesResult {
   bool quick = false;
   std::vector<OpenChoice> choices;

@@ -145,66 +145,107 @@ std::string work(const ReproduceOptions& options) {
                      run::program_identity());
 }
 
-}  // namespace
-
-ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& monitor) {
-  SLIPFRONT_ASSERT(!(options.regularised && options.sensitivity), "no variations of the delayed friction");
+/// What a user gives besides the paper's cases.
+struct Given {
   std::optional<input::Experiment> experiment;
-  if (!options.experiment.empty())
-    experiment = input::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
   std::optional<TriggerSample> triggers;
+};
+
+Given read_given(const ReproduceOptions& options) {
+  Given given;
+  if (!options.experiment.empty())
+    given.experiment = input::read_experiment(options.experiment, run::wave_speeds(solid::Material{}).c_L);
   if (!options.open_choices.empty()) {
     std::error_code error;
     if (std::filesystem::equivalent(options.open_choices, options.dir, error))
       throw UserError("output folder {}: holds the study of the open choices; choose another",
                       options.dir.string());
-    triggers = read_trigger_sample(options.open_choices, options.quick);
+    given.triggers = read_trigger_sample(options.open_choices, options.quick);
   }
+  return given;
+}
+
+/// All that a reproduction runs.
+struct Plan {
+  std::vector<NamedCase> events;
+  std::vector<Study> studies;
+  std::vector<Variation> variations;
+
+  std::size_t n_runs() const {
+    std::size_t n = events.size() + list_cases(studies, "").size();
+    for (const auto& variation : variations) n += list_cases(variation).size();
+    return n;
+  }
+};
+
+Plan make_plan(const ReproduceOptions& options) {
+  return {paper_cases(options.quick), options.regularised ? regularised_studies() : studies(options.quick),
+          options.sensitivity ? variations(options.quick) : std::vector<Variation>{}};
+}
+
+/// The wall time of the parts of a reproduction, one after the other.
+class Laps {
+ public:
+  void end(const char* part) {
+    const auto now = Clock::now();
+    timings.push_back({part, seconds_between(last_, now)});
+    last_ = now;
+  }
+
+  std::vector<Timing> timings;
+
+ private:
+  Clock::time_point last_ = Clock::now();
+};
+
+/// The claims at the variation's values beside those of the paper's cases.
+void run_variation(const Variation& variation, const Given& given, Runner& runner,
+                   std::vector<Claim>& claims) {
+  auto all = runner.run(list_cases(variation));
+  const auto varied_studies = by_study(variation.studies, std::span(all).subspan(4));
+  add_variation(claims, variation,
+                // The triggers were not sampled on other meshes.
+                scorecard({all[0], all[1], all[2], all[3], varied_studies, given.experiment, {}}));
+}
+
+void write_timings(const std::filesystem::path& file, const std::vector<Timing>& timings) {
+  nlohmann::ordered_json json;
+  for (const auto& t : timings) json.push_back({{"part", t.part}, {"wall_s", t.wall_s}});
+  files::write_text(file, json.dump(2) + "\n");
+}
+
+}  // namespace
+
+ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& monitor) {
+  SLIPFRONT_ASSERT(!(options.regularised && options.sensitivity), "no variations of the delayed friction");
+  const Given given = read_given(options);
   results::ResultFolder folder(options.dir, work(options));
   folder.require_empty(options.overwrite, true);
   folder.begin_or_resume();
-  const auto events = paper_cases(options.quick);
-  const auto study_list = options.regularised ? regularised_studies() : studies(options.quick);
+  const Plan plan = make_plan(options);
+  Laps laps;
+  Runner runner(options, folder, monitor, plan.n_runs());
 
-  const auto study_cases = list_cases(study_list, "");
-  const auto variation_list = options.sensitivity ? variations(options.quick) : std::vector<Variation>{};
-  std::size_t n_runs = events.size() + study_cases.size();
-  for (const auto& variation : variation_list) n_runs += list_cases(variation).size();
-
-  ReproduceReport report;
-  auto last = Clock::now();
-  const auto lap = [&](const char* part) {
-    const auto now = Clock::now();
-    report.timings.push_back({part, seconds_between(last, now)});
-    last = now;
-  };
-  Runner runner(options, folder, monitor, n_runs);
-  auto four = runner.run(events);
-  Reproduction runs{four[0], four[1], four[2], four[3], {}, experiment, triggers};
-  lap("statics, four events and their files");
+  auto four = runner.run(plan.events);
+  Reproduction runs{four[0], four[1], four[2], four[3], {}, given.experiment, given.triggers};
+  laps.end("statics, four events and their files");
   const auto event_blow_ups = runner.blow_ups;
   scorecard(runs);
-  lap("analysis of the four events");
+  laps.end("analysis of the four events");
 
-  auto outcomes = runner.run(study_cases);
-  runs.studies = by_study(study_list, outcomes);
-  lap("studies");
+  auto outcomes = runner.run(list_cases(plan.studies, ""));
+  runs.studies = by_study(plan.studies, outcomes);
+  laps.end("studies");
+  ReproduceReport report;
   report.claims = scorecard(runs);
-  for (const auto& variation : variation_list) {
-    auto all = runner.run(list_cases(variation));
-    const auto varied_studies = by_study(variation.studies, std::span(all).subspan(4));
-    add_variation(report.claims, variation,
-                  // The triggers were not sampled on other meshes.
-                  scorecard({all[0], all[1], all[2], all[3], varied_studies, experiment, {}}));
-  }
-  if (!variation_list.empty()) lap("variations of mesh and step");
+  for (const auto& variation : plan.variations) run_variation(variation, given, runner, report.claims);
+  if (!plan.variations.empty()) laps.end("variations of mesh and step");
   write_scorecard(folder.unfinished() / "scorecard.json", report.claims);
   write_analysis(folder.unfinished() / "analysis.json", runs);
-  lap("analysis and scorecard");
+  laps.end("analysis and scorecard");
 
-  nlohmann::ordered_json timings;
-  for (const auto& t : report.timings) timings.push_back({{"part", t.part}, {"wall_s", t.wall_s}});
-  files::write_text(folder.unfinished() / "timings.json", timings.dump(2) + "\n");
+  report.timings = laps.timings;
+  write_timings(folder.unfinished() / "timings.json", report.timings);
   folder.publish();
   report.warnings = runner.blow_ups;
   if (!event_blow_ups.empty()) throw BlowUp(event_blow_ups.front());

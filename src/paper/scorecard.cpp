@@ -22,6 +22,8 @@ namespace {
 using fronts::Front;
 using fronts::FrontPoint;
 
+constexpr double least_spread = 0.2;  ///< of V_tip at equal t_s/p_s that leaves no unique one
+
 std::string share(double part, double whole) {
   return whole > 0 ? percent(part / whole) : "no share";
 }
@@ -112,17 +114,20 @@ class Scorecard {
   }
 
  private:
-  void add(const char* id, const char* claim, const char* paper, std::string measured,
-           std::vector<Figure> figures, std::optional<bool> holds, const char* how) {
-    claims_.push_back({id, claim, paper, std::move(measured), holds, how, std::move(figures), {}});
+  void add(const char* id, std::string claim, const char* paper, std::string measured,
+           std::vector<Figure> figures, std::optional<bool> holds, std::string how) {
+    claims_.push_back(
+        {id, std::move(claim), paper, std::move(measured), holds, std::move(how), std::move(figures), {}});
   }
 
   void wave_speeds() {
     const auto& s = r_.spontaneous.speeds;
-    add("C1", "c_L = 1584 m/s and c_S = 890 m/s follow from E, nu, rho in plane stress", "Table 1",
-        fmt::format("c_L = {:.1f} m/s, c_S = {:.1f} m/s", s.c_L, s.c_S),
+    constexpr double c_L = 1584, c_S = 890, within = 1;
+    add("C1", fmt::format("c_L = {} m/s and c_S = {} m/s follow from E, nu, rho in plane stress", c_L, c_S),
+        "Table 1", fmt::format("c_L = {:.1f} m/s, c_S = {:.1f} m/s", s.c_L, s.c_S),
         {{"c_L", s.c_L, "m/s"}, {"c_S", s.c_S, "m/s"}},
-        std::abs(s.c_L - 1584) <= 1 && std::abs(s.c_S - 890) <= 1, "each within 1 m/s");
+        std::abs(s.c_L - c_L) <= within && std::abs(s.c_S - c_S) <= within,
+        fmt::format("each within {} m/s", within));
   }
 
   void static_state() {
@@ -136,27 +141,46 @@ class Scorecard {
       most = std::max(most, ratio);
     }
     const double from_edge = std::min(o.peak_x_m, w - o.peak_x_m);
+    constexpr double far_over_w = 0.2, most_of_maximum = 0.6;
     add("C2", "t_s/p_s is nonuniform with its maximum far from the edges", "Set-up",
         fmt::format("maximum {:.1f} mm from the nearer edge, minimum inside {} of it", from_edge * mm,
                     percent(least / most)),
         {{"maximum", from_edge * mm, "mm"}, {"minimum", 100 * least / most, "%"}},
-        from_edge > 0.2 * w && least < 0.6 * most,
-        "maximum more than 0.2 w from both edges; minimum inside below 0.6 of it");
+        from_edge > far_over_w * w && least < most_of_maximum * most,
+        fmt::format("maximum more than {} w from both edges; minimum inside below {} of it", far_over_w,
+                    most_of_maximum));
+    nucleation_at_the_maximum(o);
+  }
+
+  void nucleation_at_the_maximum(const Outcome& o) {
+    constexpr double within_m = 2e-3;
     const double off = std::abs(o.first_onset_x_m - o.peak_x_m);
     add("C3", "slip nucleates spontaneously at that maximum", "Set-up",
-        fmt::format("first onset {:.2f} mm from it", off * mm), {{"distance", off * mm, "mm"}}, off <= 2e-3,
-        "first onset inside within 2 mm of it (of several at once, the farthest)");
+        fmt::format("first onset {:.2f} mm from it", off * mm), {{"distance", off * mm, "mm"}},
+        off <= within_m,
+        fmt::format("first onset inside within {:g} mm of it (of several at once, the farthest)",
+                    within_m * mm));
   }
 
   void mu_k_1() {
     const auto& o = r_.spontaneous_mu_k_1;
-    const auto* against = main_front(o, -1);
-    const auto* along = main_front(o, 1);
-    const double c_against = speed_ratio_correlation(o, against), c_along = speed_ratio_correlation(o, along);
+    correlation_at_mu_k_1(o);
+    asymmetry_at_mu_k_1(o);
+    arrest_at_mu_k_1(main_front(o, -1));
+  }
+
+  void correlation_at_mu_k_1(const Outcome& o) {
+    const double c_against = speed_ratio_correlation(o, main_front(o, -1)),
+                 c_along = speed_ratio_correlation(o, main_front(o, 1));
     add("C4", "mu_k = 1.0: V_tip grows with t_s/p_s", "Fig. 2",
         fmt::format("rank correlation {:.2f} against the shear, {:.2f} along", c_against, c_along),
-        {{"against", c_against, ""}, {"along", c_along, ""}}, c_against > 0.8 && c_along > 0.8,
-        "rank correlation above 0.8 for each direction");
+        {{"against", c_against, ""}, {"along", c_along, ""}},
+        c_against > least_correlation && c_along > least_correlation,
+        fmt::format("rank correlation above {} for each direction", least_correlation));
+  }
+
+  void asymmetry_at_mu_k_1(const Outcome& o) {
+    constexpr double slower = 0.9;
     const std::array<const Outcome*, 1> one = {&o};
     const auto series = [&](int direction) {
       return pick(one, Criterion::static_ratio,
@@ -166,46 +190,66 @@ class Scorecard {
     add("C5", "mu_k = 1.0: the front along the shear is considerably slower", "Fig. 2",
         fmt::format("V along / V against = {:.2f} ({:.2f} to {:.2f} over {} bins)", ratio.median, ratio.low,
                     ratio.high, ratio.n_bins),
-        {{"ratio", ratio.median, ""}}, ratio.median < 0.9,
-        "median over bins of t_s/p_s of V along / V against below 0.9");
+        {{"ratio", ratio.median, ""}}, ratio.median < slower,
+        fmt::format("median over bins of t_s/p_s of V along / V against below {}", slower));
+  }
+
+  void arrest_at_mu_k_1(const Front* against) {
+    constexpr double within_m = 50e-3, from_edge_m = 20e-3;
+    const char* claim = "mu_k = 1.0: the front against the shear arrests not far from the initiation zone";
+    const auto how = fmt::format("arrest within {:g} mm of nucleation, more than {:g} mm from the edge",
+                                 within_m * mm, from_edge_m * mm);
     if (against == nullptr) {
-      add("C6", "mu_k = 1.0: the front against the shear arrests not far from the initiation zone", "Results",
-          "no front against the shear", {}, false,
-          "arrest within 50 mm of nucleation, more than 20 mm from the edge");
+      add("C6", claim, "Results", "no front against the shear", {}, false, how);
       return;
     }
     const double run = fronts::length_m(*against), edge = against->points.back().x_m;
-    add("C6", "mu_k = 1.0: the front against the shear arrests not far from the initiation zone", "Results",
+    add("C6", claim, "Results",
         fmt::format("{} after {:.1f} mm, {:.1f} mm from the edge",
                     against->end == fronts::End::arrest ? "arrest" : name(against->end), run * mm, edge * mm),
         {{"length", run * mm, "mm"}, {"from the edge", edge * mm, "mm"}},
-        against->end == fronts::End::arrest && run < 50e-3 && edge > 20e-3,
-        "arrest within 50 mm of nucleation, more than 20 mm from the edge");
+        against->end == fronts::End::arrest && run < within_m && edge > from_edge_m, how);
   }
 
   void speeds_of_events() {
+    no_slow_fronts();
+    fast_toward_both_edges();
+    supersonic_fronts();
+    edge_triggered_fronts();
+    left_triggered_maximum();
+  }
+
+  void no_slow_fronts() {
+    constexpr double slow_over_c_L = 0.1, longest_m = 10e-3;
     double slow = 0;
     bool all_run = true;
     for (const auto* o : {&r_.spontaneous, &r_.left, &r_.right, &r_.spontaneous_mu_k_1}) {
       all_run = all_run && !o->fronts.empty();
       slow = std::max(slow, longest_stretch_m(*o, 0, [&](const FrontPoint& p) {
-                        return p.v_tip_m_per_s < 0.1 * o->speeds.c_L;
+                        return p.v_tip_m_per_s < slow_over_c_L * o->speeds.c_L;
                       }));
     }
     add("C7", "no slow fronts under this loading", "Results",
-        fmt::format("longest stretch below 0.1 c_L: {:.1f} mm{}", slow * mm,
+        fmt::format("longest stretch below {} c_L: {:.1f} mm{}", slow_over_c_L, slow * mm,
                     all_run ? "" : "; an event without a front"),
-        {{"stretch", slow * mm, "mm"}}, all_run && slow <= 10e-3,
-        "V_tip below 0.1 c_L nowhere over more than 10 mm, in all four events");
+        {{"stretch", slow * mm, "mm"}}, all_run && slow <= longest_m,
+        fmt::format("V_tip below {} c_L nowhere over more than {:g} mm, in all four events", slow_over_c_L,
+                    longest_m * mm));
+  }
 
+  void fast_toward_both_edges() {
     const auto& s = r_.spontaneous;
     const double against = speed_ratio_correlation(s, main_front(s, -1)),
                  along = speed_ratio_correlation(s, main_front(s, 1));
     add("C8", "mu_k = 0.6, spontaneous: fast toward both edges, slower as t_s/p_s falls", "Fig. 3d",
         fmt::format("rank correlation {:.2f} against the shear, {:.2f} along", against, along),
-        {{"against", against, ""}, {"along", along, ""}}, against > 0.8 && along > 0.8,
-        "rank correlation of V_tip and t_s/p_s above 0.8, both directions");
+        {{"against", against, ""}, {"along", along, ""}},
+        against > least_correlation && along > least_correlation,
+        fmt::format("rank correlation of V_tip and t_s/p_s above {}, both directions", least_correlation));
+  }
 
+  void supersonic_fronts() {
+    constexpr double shortest_m = 10e-3;
     double fast = 0;
     for (const auto* o : three_)
       fast = std::max(fast, longest_stretch_m(*o, near_nucleation_m, [&](const FrontPoint& p) {
@@ -213,8 +257,23 @@ class Scorecard {
                       }));
     add("C9", "supersonic fronts occur", "Results",
         fmt::format("longest stretch above c_L: {:.1f} mm", fast * mm), {{"stretch", fast * mm, "mm"}},
-        fast >= 10e-3, "V_tip above c_L over at least 10 mm, 5 mm next to spontaneous nucleation left out");
+        fast >= shortest_m,
+        fmt::format("V_tip above c_L over at least {:g} mm, {:g} mm next to spontaneous nucleation left out",
+                    shortest_m * mm, near_nucleation_m * mm));
+  }
 
+  /// Mean speed over c_L of the points within a length of one of a front's ends.
+  static double mean_near(const Outcome& o, std::span<const FrontPoint* const> points, double x_end_m,
+                          double length_m) {
+    double sum = 0;
+    int n = 0;
+    for (const auto* p : points)
+      if (std::abs(p->x_m - x_end_m) <= length_m) sum += p->v_tip_m_per_s / o.speeds.c_L, ++n;
+    return sum / n;
+  }
+
+  void edge_triggered_fronts() {
+    constexpr double within_m = 10e-3, end_m = 10e-3, slower = 0.9;
     std::string text;
     std::vector<Figure> figures;
     bool holds = true;
@@ -227,20 +286,14 @@ class Scorecard {
         continue;
       }
       const Peak peak = peak_speed(*o, front);
-      const auto end_mean = [&](double x_end) {
-        double sum = 0;
-        int n = 0;
-        for (const auto* p : points)
-          if (std::abs(p->x_m - x_end) <= 10e-3) sum += p->v_tip_m_per_s / o->speeds.c_L, ++n;
-        return sum / n;
-      };
-      const double first = end_mean(points.front()->x_m) / peak.v_over_c_L,
-                   last = end_mean(points.back()->x_m) / peak.v_over_c_L;
+      const double first = mean_near(*o, points, points.front()->x_m, end_m) / peak.v_over_c_L,
+                   last = mean_near(*o, points, points.back()->x_m, end_m) / peak.v_over_c_L;
       const double off = std::abs(peak.x_m - o->peak_x_m);
-      holds = holds && off <= 10e-3 && first < 0.9 && last < 0.9;
+      holds = holds && off <= within_m && first < slower && last < slower;
       text += fmt::format(
-          "{}{}: peak {:.2f} c_L {:.1f} mm from the maximum, first 10 mm at {} and last at {} of it",
-          text.empty() ? "" : "; ", o->name, peak.v_over_c_L, off * mm, percent(first), percent(last));
+          "{}{}: peak {:.2f} c_L {:.1f} mm from the maximum, first {:g} mm at {} and last at {} of it",
+          text.empty() ? "" : "; ", o->name, peak.v_over_c_L, off * mm, end_m * mm, percent(first),
+          percent(last));
       figures.insert(figures.end(), {{o->name + " peak", peak.v_over_c_L, "c_L"},
                                      {o->name + " from the maximum", off * mm, "mm"},
                                      {o->name + " first", 100 * first, "%"},
@@ -248,12 +301,18 @@ class Scorecard {
     }
     add("C10", "edge-triggered fronts start slowly, accelerate, peak at the maximal t_s/p_s, decelerate",
         "Fig. 3d", text, figures, holds,
-        "peak within 10 mm of the maximum; means of the first and last 10 mm below 0.9 of the peak; trigger "
-        "zone and margin left out");
+        fmt::format("peak within {:g} mm of the maximum; means of the first and last {:g} mm below {} of the "
+                    "peak; trigger zone and margin left out",
+                    within_m * mm, end_m * mm, slower));
+  }
 
+  void left_triggered_maximum() {
     const double left = max_speed(r_.left), spontaneous = max_speed(r_.spontaneous),
                  right = max_speed(r_.right);
-    add("C11", "the left-triggered maximum is at most 60 % of that of the other two", "Results",
+    add("C11",
+        fmt::format("the left-triggered maximum is at most {} of that of the other two",
+                    percent(most_left_over_others)),
+        "Results",
         fmt::format("left {:.2f}, spontaneous {:.2f}, right {:.2f} c_L: {} and {}", left, spontaneous, right,
                     share(left, spontaneous), share(left, right)),
         {{"left", left, "c_L"},
@@ -261,42 +320,53 @@ class Scorecard {
          {"right", right, "c_L"},
          {"left/spontaneous", spontaneous > 0 ? 100 * left / spontaneous : fronts::undefined, "%"},
          {"left/right", right > 0 ? 100 * left / right : fronts::undefined, "%"}},
-        left > 0 && left <= 0.6 * spontaneous && left <= 0.6 * right,
-        "ratio of maxima to each at most 0.6; 5 mm next to spontaneous nucleation, trigger zones and margins "
-        "left out");
+        left > 0 && left <= most_left_over_others * spontaneous && left <= most_left_over_others * right,
+        fmt::format("ratio of maxima to each at most {}; {:g} mm next to spontaneous nucleation, trigger "
+                    "zones and margins left out",
+                    most_left_over_others, near_nucleation_m * mm));
     claims_.back().used_to_choose = true;
   }
 
   void criteria() {
-    const auto spread_claims = [&](const char* c12, const char* c14, auto value, const char* how12,
-                                   const char* how14) {
-      const fronts::Spread of_static = value(collapse_.static_ratio),
-                           of_dynamic = value(collapse_.dynamic_ratio);
-      const double by_energy = value(collapse_.energy_rise).median_relative;
-      add(c12, "no unique V_tip for a given t_s/p_s", "Fig. 3d",
-          fmt::format("median relative spread {} over {} bins", percent(of_static.median_relative),
-                      of_static.n_bins),
-          {{"spread", 100 * of_static.median_relative, "%"}}, of_static.median_relative > 0.2, how12);
-      add(c14, "the spread of V_tip is smaller against t_d/p_d than against t_s/p_s", "Fig. 5",
-          fmt::format(
-              "median relative spread {} against t_d/p_d, {} against t_s/p_s ({} against the energy rise)",
-              percent(of_dynamic.median_relative), percent(of_static.median_relative), percent(by_energy)),
-          {{"t_d/p_d", 100 * of_dynamic.median_relative, "%"},
-           {"t_s/p_s", 100 * of_static.median_relative, "%"},
-           {"energy", 100 * by_energy, "%"}},
-          of_dynamic.median_relative < of_static.median_relative, how14);
-    };
     spread_claims(
         "C12", "C14", [](const Collapse::Spreads& s) { return s.cases; },
-        "spread at equal t_s/p_s over the three cases above 20 %: (largest - smallest median of a case) / "
-        "mean of the "
-        "medians, median over bins",
+        fmt::format("spread at equal t_s/p_s over the three cases above {}: (largest - smallest median of a "
+                    "case) / mean of the medians, median over bins",
+                    percent(least_spread)),
         "same measure as C12, smaller");
     spread_claims(
         "C12+", "C14+", [](const Collapse::Spreads& s) { return s.fronts; },
         "as C12 over all fronts of the three cases, each direction and each later front for itself",
         "same measure as C12+, smaller");
+    distance_of_dynamic_ratio();
+    faster_against_the_sliding();
+    faster_when_accelerating();
+    speed_falls_while_ratio_rises();
+  }
 
+  /// Spreads of V_tip at equal t_s/p_s (C12) and at equal t_d/p_d (C14).
+  template <class Value>
+  void spread_claims(const char* c12, const char* c14, Value value, std::string how12, const char* how14) {
+    const fronts::Spread of_static = value(collapse_.static_ratio),
+                         of_dynamic = value(collapse_.dynamic_ratio);
+    const double by_energy = value(collapse_.energy_rise).median_relative;
+    add(c12, "no unique V_tip for a given t_s/p_s", "Fig. 3d",
+        fmt::format("median relative spread {} over {} bins", percent(of_static.median_relative),
+                    of_static.n_bins),
+        {{"spread", 100 * of_static.median_relative, "%"}}, of_static.median_relative > least_spread,
+        std::move(how12));
+    add(c14, "the spread of V_tip is smaller against t_d/p_d than against t_s/p_s", "Fig. 5",
+        fmt::format(
+            "median relative spread {} against t_d/p_d, {} against t_s/p_s ({} against the energy rise)",
+            percent(of_dynamic.median_relative), percent(of_static.median_relative), percent(by_energy)),
+        {{"t_d/p_d", 100 * of_dynamic.median_relative, "%"},
+         {"t_s/p_s", 100 * of_static.median_relative, "%"},
+         {"energy", 100 * by_energy, "%"}},
+        of_dynamic.median_relative < of_static.median_relative, how14);
+  }
+
+  void distance_of_dynamic_ratio() {
+    constexpr double far_over_mu_s = 0.9, least_difference = 0.1;
     double difference = 0, n = 0, below = 0;
     for (const auto* o : three_) {
       const double mu_s = interface::static_coefficient(o->config.friction);
@@ -305,19 +375,22 @@ class Scorecard {
           if (!counts(*o, front, p) || !std::isfinite(p.t_d_Pa)) continue;
           const double s = p.t_s_Pa / p.p_s_Pa, d = p.t_d_Pa / p.p_d_Pa;
           difference += std::abs(d - s) / s;
-          below += d < 0.9 * mu_s ? 1 : 0;
+          below += d < far_over_mu_s * mu_s ? 1 : 0;
           n += 1;
         }
       }
     }
     add("C13", "t_d/p_d differs significantly from t_s/p_s and is far from mu_s over most of the path",
         "Fig. 4",
-        fmt::format("mean relative difference {}, below 0.9 mu_s over {} of the path",
-                    percent(difference / n), percent(below / n)),
+        fmt::format("mean relative difference {}, below {} mu_s over {} of the path", percent(difference / n),
+                    far_over_mu_s, percent(below / n)),
         {{"difference", 100 * difference / n, "%"}, {"below", 100 * below / n, "%"}},
-        difference / n > 0.1 && below / n > 0.5,
-        "mean relative difference above 10 %; below 0.9 mu_s over more than half the path");
+        difference / n > least_difference && below / n > 0.5,
+        fmt::format("mean relative difference above {}; below {} mu_s over more than half the path",
+                    percent(least_difference), far_over_mu_s));
+  }
 
+  void faster_against_the_sliding() {
     const auto by_direction = [&](int direction) {
       return pick(three_, Criterion::dynamic_ratio,
                   [direction](const Front& f, const FrontPoint&) { return f.direction == direction; });
@@ -328,7 +401,9 @@ class Scorecard {
                     ratio.high, ratio.n_bins),
         {{"ratio", ratio.median, ""}}, ratio.median > 1,
         "median over bins of t_d/p_d above 1, the three cases together");
+  }
 
+  void faster_when_accelerating() {
     std::string text;
     std::vector<Figure> figures;
     bool holds = true;
@@ -348,14 +423,17 @@ class Scorecard {
     }
     add("C16", "at equal t_d/p_d accelerating fronts are faster than decelerating ones", "Fig. 5", text,
         figures, holds, "V accelerating / V decelerating above 1 within each edge-triggered front");
+  }
 
+  void speed_falls_while_ratio_rises() {
+    const fronts::StretchOptions options;
     std::array<double, 2> length = {0, 0};  // against, along
     std::array<int, 2> count = {0, 0};
     for (const auto* o : three_) {
       for (const auto& front : o->fronts) {
         Front counted = front;
         std::erase_if(counted.points, [&](const FrontPoint& p) { return !counts(*o, front, p); });
-        for (const auto& stretch : fronts::speed_falls_ratio_rises(counted)) {
+        for (const auto& stretch : fronts::speed_falls_ratio_rises(counted, options)) {
           length[front.direction > 0] = std::max(length[front.direction > 0], stretch.length_m);
           ++count[front.direction > 0];
         }
@@ -369,27 +447,34 @@ class Scorecard {
          {"stretches along", static_cast<double>(count[1]), ""},
          {"longest along", length[1] * mm, "mm"}},
         count[0] > 0 && count[1] == 0,
-        "stretches of at least 5 mm: found against the sliding, none along it");
+        fmt::format("stretches of at least {:g} mm: found against the sliding, none along it",
+                    options.min_length_m * mm));
   }
 
-  void collapse_claim(const char* id, const Collapse& c, const char* how) {
+  void collapse_claim(const char* id, const Collapse& c, std::string how) {
     const char* claim = "all three cases collapse against (U_r-U_s)/U_s on a + b exp(-c sqrt(.))";
     if (!c.fitted) {
-      add(id, claim, "Fig. 6", "too few points for a fit", {}, std::nullopt, how);
+      add(id, claim, "Fig. 6", "too few points for a fit", {}, std::nullopt, std::move(how));
       return;
     }
     add(id, claim, "Fig. 6", describe(c), figures_of(c),
-        c.fit.rms <= PaperFit{}.band && c.share_in_paper_band >= 0.8, how);
+        c.fit.rms <= PaperFit{}.band && c.share_in_paper_band >= wanted_share_in_band, std::move(how));
   }
 
   void energy() {
+    const PaperFit paper;
     collapse_claim("C18", collapse_,
-                   "(a) rms about our own fit at most 0.07 c_L; (b) at least 80 % of the points within a = "
-                   "0.76 +- 0.07, "
-                   "b = 1.80, c = 3.05");
-    collapse_claim(
-        "C18+", collapse(three_, true),
-        "as C18 without the last 20 mm before a front's end, which the paper sees fall outside (C19)");
+                   fmt::format("(a) rms about our own fit at most {0} c_L; (b) at least {1} of the points "
+                               "within a = {2:.2f} +- {0}, b = {3:.2f}, c = {4:.2f}",
+                               paper.band, percent(wanted_share_in_band), paper.a, paper.b, paper.c));
+    collapse_claim("C18+", collapse(three_, true),
+                   fmt::format("as C18 without the last {:g} mm before a front's end, which the paper sees "
+                               "fall outside (C19)",
+                               tail_m * mm));
+    points_outside_the_band();
+  }
+
+  void points_outside_the_band() {
     int outside = 0, near_end = 0;
     for (const auto* o : three_) {
       for (const auto& front : o->fronts) {
@@ -402,7 +487,8 @@ class Scorecard {
       }
     }
     const char* claim = "points outside the band are fronts decelerating rapidly before arrest";
-    const char* how = "at least 70 % of them lie in the last 20 mm before arrest";
+    const auto how = fmt::format("at least {} of them lie in the last {:g} mm before arrest",
+                                 percent(wanted_share_near_end), tail_m * mm);
     if (collapse_.n_points == 0) {
       add("C19", claim, "Fig. 6", "no points", {}, std::nullopt, how);
       return;
@@ -412,7 +498,7 @@ class Scorecard {
             ? "no points outside"
             : fmt::format("{} of {} points outside the band", percent(double(near_end) / outside), outside),
         {{"share", outside > 0 ? 100.0 * near_end / outside : fronts::undefined, "%"}},
-        outside == 0 || near_end >= 0.7 * outside, how);
+        outside == 0 || near_end >= wanted_share_near_end * outside, how);
   }
 
   void crack_share_claim(const char* id, const StudyOutcome& mu_k, bool spontaneous_only, const char* how) {
@@ -459,34 +545,40 @@ class Scorecard {
   }
 
   void slip_modes() {
-    constexpr const char* how_share =
+    const char* how =
         "mu_k = 0.4 to 1.2, three events each: share of crack-like path falls at every step; each kind "
         "occurs";
-    constexpr const char* how_kind =
-        "over the mu_k study: at equal (U_r-U_s)/U_s the largest difference of the kinds' medians, median "
-        "over bins, below the "
-        "band's full width, 0.14 c_L";
-    constexpr const char* independent = "V_tip against the stress state does not depend on the type of slip";
     const auto* mu_k = find_study(r_, "mu_k");
     if (mu_k == nullptr) {
       add("C20", "larger mu_s - mu_k: crack-like; smaller: pulse-like; mixed modes exist", "Results",
-          "not tested: no studies", {}, std::nullopt, how_share);
-      add("C21", independent, "Results", "not tested: no studies", {}, std::nullopt, how_kind);
+          "not tested: no studies", {}, std::nullopt, how);
+    } else {
+      crack_share_claim("C20", *mu_k, false, how);
+      crack_share_claim("C20+", *mu_k, true,
+                        "as C20 for the spontaneous event alone: behind the right-hand trigger, which is "
+                        "held, the interface slips whatever mu_k");
+    }
+    independence_of_slip_mode(mu_k);
+  }
+
+  void independence_of_slip_mode(const StudyOutcome* mu_k) {
+    constexpr double most_over_c_L = 2 * PaperFit{}.band;
+    const char* independent = "V_tip against the stress state does not depend on the type of slip";
+    const auto how = fmt::format(
+        "over the mu_k study: at equal (U_r-U_s)/U_s the largest difference of the kinds' medians, median "
+        "over bins, below the band's full width, {:.2f} c_L",
+        most_over_c_L);
+    if (mu_k == nullptr) {
+      add("C21", independent, "Results", "not tested: no studies", {}, std::nullopt, how);
       return;
     }
-    crack_share_claim("C20", *mu_k, false, how_share);
-    crack_share_claim("C20+", *mu_k, true,
-                      "as C20 for the spontaneous event alone: behind the right-hand trigger, which is held, "
-                      "the interface slips "
-                      "whatever mu_k");
-
-    const auto verdict = [&](const char* id, double difference, std::string text, const char* how) {
+    const auto verdict = [&](const char* id, double difference, std::string text, std::string test) {
       const bool known = std::isfinite(difference);
       add(id, independent, "Results",
           known ? fmt::format("median difference between kinds {:.3f} c_L{}", difference, text)
                 : "only one kind of slip",
           {{"difference", difference, "c_L"}},
-          known ? std::optional(difference < 2 * PaperFit{}.band) : std::nullopt, how);
+          known ? std::optional(difference < most_over_c_L) : std::nullopt, std::move(test));
     };
     std::vector<const Outcome*> all;
     std::vector<double> differences;
@@ -505,7 +597,7 @@ class Scorecard {
     verdict("C21", median_difference(kinds),
             fmt::format(" ({} crack, {} pulse, {} mixed points)", kinds[0].x.size(), kinds[1].x.size(),
                         kinds[2].x.size()),
-            how_kind);
+            how);
     verdict("C21+", fronts::median(differences), each.empty() ? "" : each + ")",
             "as C21 at one mu_k at a time, median over mu_k: the relation itself changes with mu_k");
     claims_.back().second_test_of = "C21";
@@ -548,60 +640,77 @@ class Scorecard {
           "not tested: no studies", {}, std::nullopt, how);
       return;
     }
-    // Mean speed by fifths of the path, over both fronts of the spontaneous event.
     std::string text;
     std::vector<Figure> figures;
-    std::vector<std::array<double, 5>> fifths;
+    std::vector<Fifths> fifths;
     std::vector<double> means;
     for (std::size_t k = 0; k < alpha->outcomes.size(); ++k) {
-      std::array<double, 5> sum{}, n{};
-      for (const auto& o : alpha->outcomes[k]) {
-        if (o.config.event != interface::EventKind::spontaneous) continue;
-        for (const int direction : {-1, 1}) {
-          const auto* front = main_front(o, direction);
-          if (front == nullptr) continue;
-          for (const auto* p : speed_points(o, *front, near_nucleation_m)) {
-            const double s = std::abs(p->x_m - front->points.front().x_m) / fronts::length_m(*front);
-            const int fifth = std::min(4, static_cast<int>(5 * s));
-            sum[fifth] += p->v_tip_m_per_s / o.speeds.c_L;
-            n[fifth] += 1;
-          }
-        }
-      }
-      double total = 0, points = 0;
-      for (int j = 0; j < 5; ++j) total += sum[j], points += n[j], sum[j] /= n[j];
-      text += fmt::format("{}{}: {}", text.empty() ? "mean V_tip/c_L at alpha = " : ", ",
-                          alpha->study.points[k].value,
-                          points > 0 ? fmt::format("{:.2f}", total / points) : "no front");
-      if (points == 0) continue;
-      figures.push_back({alpha->study.points[k].value, total / points, "c_L"});
-      fifths.push_back(sum);
-      means.push_back(total / points);
+      const auto speeds = speeds_by_fifths(alpha->outcomes[k]);
+      const auto& value = alpha->study.points[k].value;
+      text += fmt::format("{}{}: {}", text.empty() ? "mean V_tip/c_L at alpha = " : ", ", value,
+                          speeds ? fmt::format("{:.2f}", speeds->mean) : "no front");
+      if (!speeds) continue;
+      figures.push_back({value, speeds->mean, "c_L"});
+      fifths.push_back(speeds->of_fifths);
+      means.push_back(speeds->mean);
     }
     bool falls = means.size() > 1;
     for (std::size_t k = 1; k < means.size(); ++k) falls = falls && means[k] < means[k - 1];
-    bool ends = false;
-    if (means.size() > 1) {
-      std::array<double, 5> drop{};
-      for (int j = 0; j < 5; ++j) drop[j] = 1 - fifths.back()[j] / fifths.front()[j];
-      const double middle = (drop[1] + drop[2] + drop[3]) / 3;
-      ends = drop[0] > middle && drop[4] > middle;
-      text += fmt::format("; relative drop in the first fifth {}, between {}, in the last {}",
-                          percent(drop[0]), percent(middle), percent(drop[4]));
-      figures.insert(figures.end(), {{"first fifth", 100 * drop[0], "%"},
-                                     {"between", 100 * middle, "%"},
-                                     {"last fifth", 100 * drop[4], "%"}});
-    }
+    const bool ends = means.size() > 1 && drops_at_ends(fifths.front(), fifths.back(), text, figures);
     add("C22", "higher alpha: slower, above all at initiation and arrest", "Results", text, figures,
         falls && ends, how);
   }
 
+  /// Mean speeds over c_L in fifths of the path.
+  using Fifths = std::array<double, 5>;
+  struct SpeedsByFifths {
+    Fifths of_fifths;
+    double mean;  ///< over all points
+  };
+
+  /// Over both fronts of the spontaneous event; none without points.
+  static std::optional<SpeedsByFifths> speeds_by_fifths(std::span<const Outcome> outcomes) {
+    Fifths sum{}, n{};
+    for (const auto& o : outcomes) {
+      if (o.config.event != interface::EventKind::spontaneous) continue;
+      for (const int direction : {-1, 1}) {
+        const auto* front = main_front(o, direction);
+        if (front == nullptr) continue;
+        for (const auto* p : speed_points(o, *front, near_nucleation_m)) {
+          const double s = std::abs(p->x_m - front->points.front().x_m) / fronts::length_m(*front);
+          const int fifth = std::min(4, static_cast<int>(5 * s));
+          sum[fifth] += p->v_tip_m_per_s / o.speeds.c_L;
+          n[fifth] += 1;
+        }
+      }
+    }
+    double total = 0, points = 0;
+    for (int j = 0; j < 5; ++j) total += sum[j], points += n[j], sum[j] /= n[j];
+    if (points == 0) return std::nullopt;
+    return SpeedsByFifths{sum, total / points};
+  }
+
+  /// Whether the speed drops more in the first and in the last fifth than between; says by how much.
+  static bool drops_at_ends(const Fifths& fast, const Fifths& slow, std::string& text,
+                            std::vector<Figure>& figures) {
+    Fifths drop{};
+    for (int j = 0; j < 5; ++j) drop[j] = 1 - slow[j] / fast[j];
+    const double middle = (drop[1] + drop[2] + drop[3]) / 3;
+    text += fmt::format("; relative drop in the first fifth {}, between {}, in the last {}", percent(drop[0]),
+                        percent(middle), percent(drop[4]));
+    figures.insert(figures.end(), {{"first fifth", 100 * drop[0], "%"},
+                                   {"between", 100 * middle, "%"},
+                                   {"last fifth", 100 * drop[4], "%"}});
+    return drop[0] > middle && drop[4] > middle;
+  }
+
   void experiment() {
     const char* claim = "mu_k = 1.0 agrees quantitatively with the experiments";
-    const char* how =
+    constexpr double most_deviation = 0.2, near_ratio = 0.02;
+    const auto how = fmt::format(
         "only with a user's file of points: median over the points of |V - V_measured| / V_measured at most "
-        "20 %, V the median "
-        "speed of the mu_k = 1.0 run within 0.02 of the point's t_s/p_s";
+        "{}, V the median speed of the mu_k = 1.0 run within {} of the point's t_s/p_s",
+        percent(most_deviation), near_ratio);
     if (!r_.experiment) {
       add("E1", claim, "Fig. 2", "not tested: no data", {}, std::nullopt, how);
       return;
@@ -613,7 +722,7 @@ class Scorecard {
     for (std::size_t k = 0; k < r_.experiment->static_ratio.size(); ++k) {
       std::vector<double> near;
       for (std::size_t j = 0; j < ours.x.size(); ++j)
-        if (std::abs(ours.x[j] - r_.experiment->static_ratio[k]) <= 0.02) near.push_back(ours.y[j]);
+        if (std::abs(ours.x[j] - r_.experiment->static_ratio[k]) <= near_ratio) near.push_back(ours.y[j]);
       if (!near.empty())
         deviations.push_back(std::abs(fronts::median(near) / r_.experiment->v_over_c_L[k] - 1));
     }
@@ -623,7 +732,7 @@ class Scorecard {
             "median relative deviation {} over the {} of {} points within the range of t_s/p_s of our fronts",
             percent(deviation), deviations.size(), r_.experiment->static_ratio.size()),
         {{"deviation", 100 * deviation, "%"}},
-        deviations.empty() ? std::nullopt : std::optional(deviation <= 0.2), how);
+        deviations.empty() ? std::nullopt : std::optional(deviation <= most_deviation), how);
   }
 
   void longitudinal_wave() {

@@ -45,6 +45,13 @@ struct Claim {
   bool counts = true;               ///< whether the verdict is the claim's, see choose_verdicts
 };
 
+// What tests of claims ask for where more than one test does.
+inline constexpr double least_correlation = 0.8;  ///< rank correlation that is a tendency
+inline constexpr double most_left_over_others =
+    0.6;  ///< C11: left-triggered maximum of speed over the others'
+inline constexpr double wanted_share_in_band = 0.8;   ///< C18: of the points, in the paper's band
+inline constexpr double wanted_share_near_end = 0.7;  ///< C19: of the points outside, before a front's end
+
 /// The runs of one study.
 struct StudyOutcome {
   Study study;

@@ -39,12 +39,12 @@ void append(std::string& text, const std::string& part) {
 }
 
 /// A second test that has not been done yet.
-Claim second_test(std::span<const Claim> first, const char* of, const char* why, const char* how) {
+Claim second_test(std::span<const Claim> first, const char* of, const char* why, std::string how) {
   Claim row = *std::ranges::find(first, of, &Claim::id);
   row.id = std::string(of) + "b";
   row.second_test_of = of;
   row.why = why;
-  row.how = how;
+  row.how = std::move(how);
   row.holds.reset();
   row.used_to_choose = false;
   row.figures.clear();
@@ -58,8 +58,9 @@ Claim trigger_choice(const std::optional<TriggerSample>& sample, std::span<const
       first, "C11",
       "the paper does not give its trigger, and the left-triggered maximum follows it: the first test judges "
       "our choice",
-      "of the triggers sampled within the stated ranges there is one for which the left-triggered maximum is "
-      "at most 60 % of the other two while C1 to C10 hold");
+      fmt::format("of the triggers sampled within the stated ranges there is one for which the "
+                  "left-triggered maximum is at most {} of the other two while C1 to C10 hold",
+                  percent(most_left_over_others)));
   row.measured = "not tested: no study of the open choices";
   if (!sample || sample->n_triggers == 0) return row;
   const double share = static_cast<double>(sample->n_holding) / sample->n_triggers;
@@ -74,8 +75,11 @@ Claim trigger_choice(const std::optional<TriggerSample>& sample, std::span<const
 Claim collapse_of_main_fronts(std::span<const MainFront> mains, std::span<const Claim> first) {
   Claim row = second_test(
       first, "C18", "its points are those of late fronts in the wake of others, too",
-      "main fronts without their last 20 mm: (a) and (b) as C18; (c) the median relative spread between the "
-      "fronts is smaller at equal (U_r-U_s)/U_s than at equal t_d/p_d and at equal t_s/p_s");
+      fmt::format(
+          "main fronts without their last {:g} mm: (a) and (b) as C18; (c) the median relative spread "
+          "between the fronts is smaller at equal (U_r-U_s)/U_s than at equal t_d/p_d and at equal "
+          "t_s/p_s",
+          tail_m * mm));
   const Collapse c = collapse_without_tails(mains);
   if (!c.fitted) {
     row.measured = "too few points for a fit";
@@ -93,8 +97,8 @@ Claim collapse_of_main_fronts(std::span<const MainFront> mains, std::span<const 
   row.figures.insert(row.figures.end(), {{"energy", 100 * by_energy, "%"},
                                          {"t_d/p_d", 100 * by_dynamic, "%"},
                                          {"t_s/p_s", 100 * by_static, "%"}});
-  row.holds = c.fit.rms <= paper.band && c.share_in_paper_band >= 0.8 && by_energy < by_dynamic &&
-              by_energy < by_static;
+  row.holds = c.fit.rms <= paper.band && c.share_in_paper_band >= wanted_share_in_band &&
+              by_energy < by_dynamic && by_energy < by_static;
   return row;
 }
 
@@ -116,8 +120,9 @@ std::vector<bool> where_speed_falls(std::span<const FrontPoint> points) {
 Claim points_outside_the_band(std::span<const MainFront> mains, std::span<const Claim> first) {
   Claim row = second_test(
       first, "C19", "rapid deceleration is a matter of speed, not of a fixed distance from the arrest",
-      "of the main fronts' points outside the band at least 70 % lie in the last 20 mm before a front's end, "
-      "or on a stretch of at most 5 mm along which V_tip falls by more than 10 %");
+      fmt::format("of the main fronts' points outside the band at least {} lie in the last {:g} mm before a "
+                  "front's end, or on a stretch of at most {:g} mm along which V_tip falls by more than {}",
+                  percent(wanted_share_near_end), tail_m * mm, fall_length_m * mm, percent(fall_share)));
   int all = 0, outside = 0, near_end = 0, falling = 0, explained = 0;
   for (const auto& m : mains) {
     const auto falls = where_speed_falls(m.points);
@@ -145,7 +150,7 @@ Claim points_outside_the_band(std::span<const MainFront> mains, std::span<const 
                  {"near an end", double(near_end), ""},
                  {"where V_tip falls", double(falling), ""}};
   if (outside > 0) row.figures.push_back({"share", 100.0 * explained / outside, "%"});
-  row.holds = explained >= 0.7 * outside;
+  row.holds = explained >= wanted_share_near_end * outside;
   return row;
 }
 
@@ -156,8 +161,10 @@ Claim trend_of_crack_share(const Reproduction& runs, std::span<const Claim> firs
       first, "C20",
       "the paper tells a tendency, which one step against it does not refute; and behind a trigger that is "
       "held the interface slips whatever mu_k",
-      "spontaneous events: rank correlation of mu_k with the share of crack-like path at most -0.8; each "
-      "kind occurs over the study");
+      fmt::format(
+          "spontaneous events: rank correlation of mu_k with the share of crack-like path at most {}; "
+          "each kind occurs over the study",
+          -least_correlation));
   const auto* study = find_study(runs, "mu_k");
   row.measured = "not tested: no studies";
   if (study == nullptr) return row;
@@ -192,7 +199,7 @@ Claim trend_of_crack_share(const Reproduction& runs, std::span<const Claim> firs
                                          {"crack", 100.0 * total[0] / sum, "%"},
                                          {"pulse", 100.0 * total[1] / sum, "%"},
                                          {"mixed", 100.0 * total[2] / sum, "%"}});
-  row.holds = trend <= -0.8 && std::ranges::min(total) > 0;
+  row.holds = trend <= -least_correlation && std::ranges::min(total) > 0;
   return row;
 }
 
@@ -270,10 +277,11 @@ Claim drops_with_alpha(const Reproduction& runs, std::span<const Claim> first) {
       first, "C22",
       "a slower front arrests earlier, so that the same fifth of two fronts' own paths lies at different "
       "stresses",
-      "spontaneous, from the least to the largest alpha, at equal x on the stretch that both fronts cover, "
-      "in "
-      "each direction: the median relative drop of V_tip is larger in the first 5 mm and in the last 10 mm "
-      "before the slower front's end than in the middle third; mean V_tip falls at every step of alpha");
+      fmt::format("spontaneous, from the least to the largest alpha, at equal x on the stretch that both "
+                  "fronts cover, in each direction: the median relative drop of V_tip is larger in the first "
+                  "{:g} mm and in the last {:g} mm before the slower front's end than in the middle third; "
+                  "mean V_tip falls at every step of alpha",
+                  initiation_m * mm, arrest_m * mm));
   const auto* alpha = find_study(runs, "alpha");
   row.measured = "not tested: no studies";
   if (alpha == nullptr) return row;
@@ -291,10 +299,11 @@ Claim drops_with_alpha(const Reproduction& runs, std::span<const Claim> first) {
     }
     const Drops drops = drops_at_equal_x(*fast, *slow);
     at_ends = at_ends && drops.initiation > drops.middle && drops.arrest > drops.middle;
-    append(
-        row.measured,
-        fmt::format("drop {} the shear: {} in the first 5 mm, {} in the middle third, {} in the last 10 mm",
-                    name, percent(drops.initiation), percent(drops.middle), percent(drops.arrest)));
+    append(row.measured,
+           fmt::format(
+               "drop {} the shear: {} in the first {:g} mm, {} in the middle third, {} in the last {:g} mm",
+               name, percent(drops.initiation), initiation_m * mm, percent(drops.middle),
+               percent(drops.arrest), arrest_m * mm));
     row.figures.insert(row.figures.end(), {{std::string(name) + " first", 100 * drops.initiation, "%"},
                                            {std::string(name) + " middle", 100 * drops.middle, "%"},
                                            {std::string(name) + " last", 100 * drops.arrest, "%"}});

@@ -27,8 +27,8 @@ std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::M
 }
 
 /// Why a trigger at an edge adds nothing, and which amount does.
-std::string idle_trigger(const input::Case& config, const statics::Equilibrium& state, const PerNode& mu_s,
-                         std::span<const double> tributary_m) {
+Message idle_trigger(const input::Case& config, const statics::Equilibrium& state, const PerNode& mu_s,
+                     std::span<const double> tributary_m) {
   const auto& trigger = config.trigger;
   const auto zone = motion::trigger_zone(state, config.event, trigger.zone_m);
   const double direction = motion::load_direction(state, tributary_m, zone);
@@ -36,13 +36,13 @@ std::string idle_trigger(const input::Case& config, const statics::Equilibrium& 
   for (const auto k : zone)
     least = std::min(least, direction * state.tractions.t_s_Pa[k] / state.tractions.p_s_Pa[k] / mu_s[k]);
   const bool added = trigger.form == interface::TriggerForm::added;
-  return fmt::format(
-      "event.trigger_amount = {:g} adds no traction in the trigger zone, where t is at least {:.4g} mu_s p "
-      "before the event; choose more than {}",
-      trigger.amount, least,
-      !added      ? fmt::format("{:.4g}", least)
-      : least < 1 ? "0"
-                  : fmt::format("{:.4g} with event.trigger_form = raised", least));
+  return Message(
+      "{} = {:g} adds no traction in the trigger zone, where t is at least {:.4g} mu_s p before the event; "
+      "choose more than {}",
+      Key("event.trigger_amount"), trigger.amount, least,
+      !added      ? Message("{:.4g}", least)
+      : least < 1 ? Message("0")
+                  : Message("{:.4g} with {} = raised", least, Key("event.trigger_form")));
 }
 
 /// Forces of a trigger at an edge, none for other events.
@@ -52,7 +52,7 @@ std::vector<double> trigger_forces(const input::Case& config, const statics::Equ
   auto forces = motion::trigger_forces(state, tributary_m, config.event, config.trigger, mu_s);
   const bool pushes = is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened;
   if (pushes && std::ranges::all_of(forces, [](double force) { return force == 0; }))
-    throw UserError("{}", idle_trigger(config, state, mu_s, tributary_m));
+    throw UserError(idle_trigger(config, state, mu_s, tributary_m)).about("event.trigger_form");
   return forces;
 }
 
@@ -96,7 +96,8 @@ void require_weakening(const input::Case& config, const std::vector<double>& int
       return;
   throw UserError(
       "{} = weakened does nothing where friction does not weaken at any node; choose another form",
-      is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form");
+      Key(is_at_edge(config.event) ? "event.trigger_form" : "nucleation.form"))
+      .about("event.kind");
 }
 
 }  // namespace

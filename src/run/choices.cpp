@@ -43,7 +43,7 @@ void require_plate_fits(const input::Case& config) {
       motion::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
       fmt::format("{} of {:.4g} nodes", input::has_base_body(config) ? "a plate and its base" : "a plate",
                   n_nodes),
-      "choose a larger plate.element_size_m");
+      Message("choose a larger {}", Key("plate.element_size_m")));
 }
 
 double top_speed_m_per_s(const input::Case& config) {

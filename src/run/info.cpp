@@ -74,30 +74,19 @@ void add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info&
   }
 }
 
-}  // namespace
+void add_sizes(const input::Case& config, const Meshes& meshes, Info& info) {
+  info.n_nodes = meshes.plate.n_nodes();
+  info.n_cells = std::ssize(meshes.plate.cells);
+  info.n_interface = std::ssize(meshes.plate.lower);
+  if (!meshes.base) return;
+  info.base_speeds = wave_speeds(input::base_material(config));
+  info.generalised_rayleigh_speed_m_per_s =
+      stability::generalised_rayleigh_speed_m_per_s(config.material, input::base_material(config));
+  info.n_nodes += meshes.base->n_nodes();
+  info.n_cells += std::ssize(meshes.base->cells);
+}
 
-Info info(const input::Case& config) {
-  Info info;
-  info.speeds = wave_speeds(config.material);
-  const auto meshes = check(config);
-  const auto& mesh = meshes.plate;
-  info.n_nodes = mesh.n_nodes();
-  info.n_cells = std::ssize(mesh.cells);
-  if (meshes.base) {
-    info.base_speeds = wave_speeds(input::base_material(config));
-    info.generalised_rayleigh_speed_m_per_s =
-        stability::generalised_rayleigh_speed_m_per_s(config.material, input::base_material(config));
-    info.n_nodes += meshes.base->n_nodes();
-    info.n_cells += std::ssize(meshes.base->cells);
-  }
-  info.n_interface = static_cast<std::int64_t>(mesh.lower.size());
-
-  // About as long as making the stepper.
-  auto sliding =
-      std::async(std::launch::async | std::launch::deferred, [&] { add_well_posedness(config, mesh, info); });
-  const auto made = new_stepper(config, mesh, meshes.base);
-  auto& stepper = *made;
-  sliding.get();
+void add_steps(const motion::Stepper& stepper, Info& info) {
   for (const auto& body : stepper.bodies()) {
     info.n_irregular +=
         static_cast<std::int64_t>(body.op().whole.irregular.size() + body.op().whole.general.size());
@@ -106,21 +95,30 @@ Info info(const input::Case& config) {
   info.stable_step_s = stepper.stable_step_s();
   info.step_s = stepper.step_s();
   info.substep_s = stepper.substep_s();
+}
+
+double n_unknowns_of(const Info& info) {
+  return 2.0 * static_cast<double>(info.n_nodes);
+}
+
+void add_needs(const input::Case& config, double node_updates_per_step, Info& info) {
   info.needs = needs(config, {static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
                               static_cast<double>(info.n_interface), info.step_s});
   info.n_steps = info.needs.steps;
-  info.node_updates = static_cast<double>(info.n_steps) * stepper.node_updates_per_step() +
+  info.node_updates = static_cast<double>(info.n_steps) * node_updates_per_step +
                       static_cast<double>(info.needs.ramp_steps) * static_cast<double>(info.n_nodes);
   info.memory_bytes = info.needs.memory_bytes();
   info.solver_bytes = info.needs.statics_bytes;
-  const double n_unknowns = 2.0 * static_cast<double>(info.n_nodes);
-  if (!is_prestressed(config)) info.solver = statics::choose_solver(wanted_solver(config), n_unknowns);
+  if (!is_prestressed(config))
+    info.solver = statics::choose_solver(wanted_solver(config), n_unknowns_of(info));
+}
 
-  // A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
+/// A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
+double measured_step_s(motion::Stepper& stepper, const Meshes& meshes) {
   record::StaticState no_tractions;
-  for (const auto n : mesh.lower) no_tractions.x_m.push_back(mesh.x_m[n]);
-  no_tractions.t_s_Pa = no_tractions.p_s_Pa = std::vector<double>(mesh.lower.size(), 0.0);
-  const auto rest = statics::prestressed(mesh, no_tractions, meshes.base ? &*meshes.base : nullptr);
+  for (const auto n : meshes.plate.lower) no_tractions.x_m.push_back(meshes.plate.x_m[n]);
+  no_tractions.t_s_Pa = no_tractions.p_s_Pa = std::vector<double>(meshes.plate.lower.size(), 0.0);
+  const auto rest = statics::prestressed(meshes.plate, no_tractions, meshes.base ? &*meshes.base : nullptr);
   stepper.start(rest, 0);
   motion::Recorder recorder(rest, 1, 0);
   const auto start = Clock::now();
@@ -130,14 +128,33 @@ Info info(const input::Case& config) {
     stepper.advance(recorder);
     fastest_s = std::min(fastest_s, seconds_since(step_start));
   } while (seconds_since(start) < 2e-3);
-  info.node_updates_per_s = stepper.node_updates_per_step() / fastest_s;
-  double statics_s = 0;
-  // The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
-  if (info.solver == statics::StaticSolver::direct)
-    statics_s = 1.5e-8 * std::pow(n_unknowns, 1.5) + 2e-6 * n_unknowns;
-  if (info.solver == statics::StaticSolver::iterative) statics_s = 2e-6 * n_unknowns;
-  info.expected_s = info.node_updates / info.node_updates_per_s + statics_s;
+  return fastest_s;
+}
 
+/// The factorisation costs about n^1.5 operations; its rate is that of a core's dense kernels.
+double expected_statics_s(const Info& info) {
+  const double n = n_unknowns_of(info);
+  if (info.solver == statics::StaticSolver::direct) return 1.5e-8 * std::pow(n, 1.5) + 2e-6 * n;
+  return info.solver == statics::StaticSolver::iterative ? 2e-6 * n : 0;
+}
+
+}  // namespace
+
+Info info(const input::Case& config) {
+  Info info;
+  info.speeds = wave_speeds(config.material);
+  const auto meshes = check(config);
+  add_sizes(config, meshes, info);
+
+  // About as long as making the stepper.
+  auto sliding = std::async(std::launch::async | std::launch::deferred,
+                            [&] { add_well_posedness(config, meshes.plate, info); });
+  const auto stepper = new_stepper(config, meshes.plate, meshes.base);
+  sliding.get();
+  add_steps(*stepper, info);
+  add_needs(config, stepper->node_updates_per_step(), info);
+  info.node_updates_per_s = stepper->node_updates_per_step() / measured_step_s(*stepper, meshes);
+  info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info);
   return info;
 }
 

@@ -58,28 +58,28 @@ namespace {
 void require_edges_to_tilt(const input::Case& config) {
   if (config.plate.sides == mesh::Sides::periodic)
     throw UserError(
-        "plate.sides = periodic has no equilibrium under a tilted top edge; choose free or absorbing, or "
-        "loading.method = prestress");
-  if (config.plate.top != mesh::Top::loaded)
-    throw UserError(
-        "plate.top = {} leaves no edge to tilt and shear; choose loaded, or loading.method = prestress",
-        config.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
-  if (input::has_base_body(config) && config.base.plate.top != mesh::Top::loaded)
-    throw UserError(
-        "base.bottom = {} does not hold the base under a tilted plate; choose held, or loading.method = "
+        "{} = periodic has no equilibrium under a tilted top edge; choose free or absorbing, or {} = "
         "prestress",
-        config.base.plate.top == mesh::Top::absorbing ? "absorbing" : "free");
+        Key("plate.sides"), Key("loading.method"));
+  if (config.plate.top != mesh::Top::loaded)
+    throw UserError("{} = {} leaves no edge to tilt and shear; choose loaded, or {} = prestress",
+                    Key("plate.top"), config.plate.top == mesh::Top::absorbing ? "absorbing" : "free",
+                    Key("loading.method"));
+  if (input::has_base_body(config) && config.base.plate.top != mesh::Top::loaded)
+    throw UserError("{} = {} does not hold the base under a tilted plate; choose held, or {} = prestress",
+                    Key("base.bottom"), config.base.plate.top == mesh::Top::absorbing ? "absorbing" : "free",
+                    Key("loading.method"));
 }
 
 void require_free_sides_for_single(const input::Case& config) {
   if (config.time.precision != motion::Precision::single_precision) return;
-  const auto require = [](const mesh::Plate& plate, const char* table) {
+  const auto require = [](const mesh::Plate& plate, const char* sides) {
     if (plate.sides != mesh::Sides::free)
-      throw UserError(
-          "time.precision = single needs rows between free sides; choose {}.sides = free or double", table);
+      throw UserError("{} = single needs rows between free sides; choose {} = free or double",
+                      Key("time.precision"), Key(sides));
   };
-  require(config.plate, "plate");
-  if (input::has_base_body(config)) require(config.base.plate, "base");
+  require(config.plate, "plate.sides");
+  if (input::has_base_body(config)) require(config.base.plate, "base.sides");
 }
 
 /// Of the body below, upside down.
@@ -88,10 +88,10 @@ mesh::Mesh make_base(const input::Case& config) {
   const double rows = plate.height_m / plate.element_size_m;
   if (std::abs(rows - std::round(rows)) > 1e-6 * rows)
     throw UserError(
-        "base.height_m = {:.8g} is no whole multiple of plate.element_size_m = {:.8g}, with which the nodes "
-        "of the two bodies face each other; the nearest that fit are {:.8g} and {:.8g}",
-        plate.height_m, plate.element_size_m, std::floor(rows) * plate.element_size_m,
-        std::ceil(rows) * plate.element_size_m);
+        "{} = {:.8g} is no whole multiple of {} = {:.8g}, with which the nodes of the two bodies face each "
+        "other; the nearest that fit are {:.8g} and {:.8g}",
+        Key("base.height_m"), plate.height_m, Key("plate.element_size_m"), plate.element_size_m,
+        std::floor(rows) * plate.element_size_m, std::ceil(rows) * plate.element_size_m);
   return mesh::make_plate(plate, "base");
 }
 

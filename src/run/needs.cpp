@@ -28,7 +28,7 @@ constexpr double most_columns = 100, least_columns = 30;
 /// A machine takes some 1e5 steps of the smallest plate in a second: these are four months.
 constexpr double most_steps = 1e12;
 
-std::int64_t countable(double steps, const std::string& what, const char* remedy) {
+std::int64_t countable(double steps, const Message& what, const Message& remedy) {
   if (!(steps <= most_steps)) throw UserError("{} takes {:g} steps; choose {}", what, steps, remedy);
   return static_cast<std::int64_t>(steps);
 }
@@ -108,13 +108,14 @@ void require_disk(const Needs& needs, const std::filesystem::path& folder) {
   if (error || needs.disk_bytes() <= static_cast<double>(space.available)) return;
   struct Part {
     double bytes;
-    const char *what, *remedy;
+    const char* what;
+    Message remedy;
   };
   const std::array<Part, 4> parts = {{
-      {needs.history_bytes, "the history", "a larger output.history_interval_s"},
-      {needs.snapshot_bytes, "snapshots", "fewer output.snapshot_times_s"},
-      {needs.checkpoint_bytes, "checkpoints", "a larger plate.element_size_m"},
-      {needs.energy_bytes, "energy.csv", "a larger output.energy_interval_s"},
+      {needs.history_bytes, "the history", Message("a larger {}", Key("output.history_interval_s"))},
+      {needs.snapshot_bytes, "snapshots", Message("fewer {}", Key("output.snapshot_times_s"))},
+      {needs.checkpoint_bytes, "checkpoints", Message("a larger {}", Key("plate.element_size_m"))},
+      {needs.energy_bytes, "energy.csv", Message("a larger {}", Key("output.energy_interval_s"))},
   }};
   const auto& largest = *std::ranges::max_element(parts, {}, &Part::bytes);
   throw UserError(
@@ -172,12 +173,13 @@ Size estimated_size(const input::Case& config) {
 Needs needs(const input::Case& config, const Size& size) {
   Needs n;
   n.steps = countable(std::ceil(config.time.end_s / size.step_s * (1 - 1e-12)),
-                      fmt::format("time.end_s = {:g}", config.time.end_s), "an earlier end");
+                      Message("{} = {:g}", Key("time.end_s"), config.time.end_s), "an earlier end");
   if (config.loading.method == statics::LoadingMethod::ramp)
-    n.ramp_steps = countable(
-        std::ceil(estimated_critical_shear_m(config) / (top_speed_m_per_s(config) * size.step_s)),
-        fmt::format("the ramp with loading.shear_speed_over_c_L = {:g}", config.loading.shear_speed_over_c_L),
-        "a higher speed, or loading.method = direct");
+    n.ramp_steps =
+        countable(std::ceil(estimated_critical_shear_m(config) / (top_speed_m_per_s(config) * size.step_s)),
+                  Message("the ramp with {} = {:g}", Key("loading.shear_speed_over_c_L"),
+                          config.loading.shear_speed_over_c_L),
+                  Message("a higher speed, or {} = direct", Key("loading.method")));
 
   n.history_rows = rows_of(config.time.end_s, config.output.history_interval_s, size.step_s);
   n.energy_rows = rows_of(config.time.end_s, config.output.energy_interval_s, size.step_s) + 1;
@@ -210,7 +212,7 @@ void require_fit(const input::Case& config, const std::filesystem::path& folder)
   const bool energies = n.energy_rows * sizeof(record::Energies) > 0.5 * n.memory_bytes();
   require_memory(
       n.memory_bytes(), fmt::format("the run on a plate of {:.4g} nodes", size.n_nodes),
-      energies ? "choose a larger output.energy_interval_s" : "choose a larger plate.element_size_m");
+      Message("choose a larger {}", Key(energies ? "output.energy_interval_s" : "plate.element_size_m")));
   require_disk(n, folder);
 }
 

@@ -28,7 +28,7 @@ void require_memory_of_pair(Eigen::Index n) {
   const auto size = static_cast<double>(n);
   require_memory(5 * sizeof(double) * size * size,
                  fmt::format("the condensed stiffness of {:.4g} interface nodes on a base", size / 2),
-                 "choose a larger plate.element_size_m");
+                 Message("choose a larger {}", Key("plate.element_size_m")));
 }
 
 }  // namespace

@@ -34,13 +34,15 @@ double statics_bytes(double n_unknowns, double factor_bytes) {
 void require_statics_memory(double n_unknowns, double factor_bytes) {
   require_memory(statics_bytes(n_unknowns, factor_bytes),
                  fmt::format("the factorisation of {:.4g} static unknowns", n_unknowns),
-                 "set loading.solver = iterative or choose a larger plate.element_size_m");
+                 Message("set {} = iterative or choose a larger {}", Key("loading.solver"),
+                         Key("plate.element_size_m")));
 }
 
 namespace {
 
 [[noreturn]] void throw_out_of_memory(const char* what) {
-  throw UserError("out of memory in the static solution ({}); choose a larger plate.element_size_m", what);
+  throw UserError("out of memory in the static solution ({}); choose a larger {}", what,
+                  Key("plate.element_size_m"));
 }
 
 /// OpenBLAS built without threads hands out its buffers without a lock: two threads inside it at once would
@@ -51,7 +53,8 @@ std::mutex blas_in_use;
 void require_memory_of_interface(double n_nodes) {
   const double dense = sizeof(double) * 4 * n_nodes * n_nodes;
   require_memory(4 * dense, fmt::format("the condensed stiffness of {:.4g} interface nodes", n_nodes),
-                 "set loading.solver = iterative or choose a larger plate.element_size_m");
+                 Message("set {} = iterative or choose a larger {}", Key("loading.solver"),
+                         Key("plate.element_size_m")));
 }
 
 /// OpenBLAS takes a buffer of 128 MB when it is first called, and where it gets none it tries for ever: the

@@ -435,7 +435,7 @@ void LevelEquations::conjugate_gradients(double accuracy, solid::Field& u) {
     error2_before = error2;
     take_step(error2 / curvature, direction_, u);
   }
-  throw UserError("the iterative static solution does not converge; set loading.solver = direct");
+  throw UserError("the iterative static solution does not converge; set {} = direct", Key("loading.solver"));
 }
 
 void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
@@ -516,7 +516,7 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
     beta = rho_next / rho * alpha / omega;
     rho = rho_next;
   }
-  throw UserError("the iterative static solution does not converge; set loading.solver = direct");
+  throw UserError("the iterative static solution does not converge; set {} = direct", Key("loading.solver"));
 }
 
 Eigen::VectorXd LevelEquations::at_interface(const solid::Field& u) const {

@@ -185,7 +185,7 @@ void require_statics_memory(StaticSolver solver, double n_unknowns) {
   } else {
     require_memory(iterative_bytes(n_unknowns),
                    fmt::format("the iterative solution of {:.4g} static unknowns", n_unknowns),
-                   "choose a larger plate.element_size_m");
+                   Message("choose a larger {}", Key("plate.element_size_m")));
   }
 }
 
@@ -202,7 +202,7 @@ void require_statics_memory_of_pair(StaticSolver solver, double n_unknowns_plate
                plate_factor + statics_bytes(n_unknowns_base, estimated_factor_bytes(n_unknowns_base)));
   require_memory(bytes,
                  fmt::format("the factorisation of {:.4g} static unknowns of plate and base", n_unknowns),
-                 "choose a larger plate.element_size_m");
+                 Message("choose a larger {}", Key("plate.element_size_m")));
 }
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,

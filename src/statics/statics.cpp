@@ -161,9 +161,8 @@ constexpr double guess_accuracy = 2e-4;
 constexpr double state_tolerance = 1e-9;
 
 [[noreturn]] void contact_does_not_settle() {
-  throw UserError(
-      "the static contact states do not settle; change loading.tilt_left_m, loading.tilt_right_m or "
-      "plate.corner");
+  throw UserError("the static contact states do not settle; change {}, {} or {}", Key("loading.tilt_left_m"),
+                  Key("loading.tilt_right_m"), Key("plate.corner"));
 }
 
 /// Solves and corrects the contact states until nothing changes; `find_shear()` is called after each
@@ -329,8 +328,8 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
   settle(problem, accuracy, final_accuracy, no_shear, may_slip, go_on_);
   tilted_ = make_equilibrium(problem, 0, loading.edge_margin_m);
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
-    throw UserError(
-        "the tilt leaves the plate without contact; increase loading.tilt_left_m or loading.tilt_right_m");
+    throw UserError("the tilt leaves the plate without contact; increase {} or {}",
+                    Key("loading.tilt_left_m"), Key("loading.tilt_right_m"));
   auto u = plate->displacement(0);
   plate.reset();
   tilted_.u_m = std::move(u.above);
@@ -417,7 +416,7 @@ Equilibrium Statics::shear_to(double share) const {
   if (tilted_.peak_ratio > ratio_at_peak(tilted_, share))
     throw UserError(
         "the tilt alone brings t/p inside the interface to {:.4g}, not below {}; raise {} or change the tilt",
-        tilted_.peak_ratio, name_of_ratio(share), mu_s_key_);
+        tilted_.peak_ratio, name_of_ratio(share), Key(mu_s_key_));
   bool reached = true;
   Equilibrium e = shear([&](const ContactProblem& problem, const Inside& inside) {
     // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a state
@@ -436,17 +435,15 @@ Equilibrium Statics::shear_to(double share) const {
     return reached ? shear : 0.0;
   });
   if (!reached)
-    throw UserError(
-        "no shear brings t/p inside the interface to {}; reduce {}, or change the tilt or "
-        "loading.edge_margin_m",
-        name_of_ratio(share), mu_s_key_);
+    throw UserError("no shear brings t/p inside the interface to {}; reduce {}, or change the tilt or {}",
+                    name_of_ratio(share), Key(mu_s_key_), Key("loading.edge_margin_m"));
   // Slip at mu_s p that has spread from an edge past the margin would itself count as the peak.
   const double ratio = ratio_at_peak(e, share);
   if (std::abs(e.peak_ratio - ratio) > 1e-6 * ratio)
     throw UserError(
         "slip spreads from an edge of contact before t/p inside reaches {}; reduce {}, or change the tilt or "
-        "loading.edge_margin_m",
-        name_of_ratio(share), mu_s_key_);
+        "{}",
+        name_of_ratio(share), Key(mu_s_key_), Key("loading.edge_margin_m"));
   return e;
 }
 

@@ -40,7 +40,8 @@ std::vector<double> element_sizes(const input::Case& config, const ConvergenceOp
   if (sizes.size() < 3) throw UserError("--element-sizes: give at least three different sizes in m");
   if (sizes.back() <= 0) throw UserError("--element-sizes: sizes must be above 0 m");
   if (std::none_of(sizes.begin(), sizes.end(), [&](double s) { return same(s, h); }))
-    throw UserError("--element-sizes: the case's own plate.element_size_m = {:.8g} must be among them", h);
+    throw UserError("--element-sizes: the case's own {} = {:.8g} must be among them",
+                    Key("plate.element_size_m"), h);
   return sizes;
 }
 

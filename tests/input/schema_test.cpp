@@ -770,13 +770,18 @@ TEST(CaseFile, PlacesOfLaterErrors) {
   const CaseFile plain(file);
   EXPECT_EQ(plain.place_of_key("plate.element_size_m"), file.string() + ":4");
   EXPECT_EQ(plain.place_of_key("plate.width_m"), file.string());
-  EXPECT_EQ(plain.with_place("no key in here"), file.string() + ": no key in here");
+  EXPECT_EQ(plain.with_place(UserError("no key in here")).what(), file.string() + ": no key in here");
   const CaseFile overridden(file, {{"plate.width_m", "3"}});
   std::filesystem::remove(file);  // what has been read is not read again
   EXPECT_EQ(overridden.place_of_key("plate.width_m"), "--set plate.width_m=3");
-  EXPECT_EQ(overridden.with_place("plate.element_size_m does not divide plate.width_m"),
+  const Key element_size("plate.element_size_m"), width("plate.width_m");
+  // The text is not searched for keys.
+  EXPECT_EQ(overridden.with_place(UserError("{} does not divide plate.width_m", element_size)).what(),
             file.string() + ":4: plate.element_size_m does not divide plate.width_m");
-  EXPECT_EQ(overridden.with_place("plate.width_m is odd"), "--set plate.width_m=3: plate.width_m is odd");
+  EXPECT_STREQ(overridden.with_place(UserError("{} is odd", width)).what(),
+               "--set plate.width_m=3: plate.width_m is odd");
+  EXPECT_STREQ(overridden.with_place(UserError("{} does not divide {}", element_size, width)).what(),
+               "--set plate.width_m=3: plate.element_size_m does not divide plate.width_m");
 }
 
 TEST(CaseFile, ThePapersRuns) {

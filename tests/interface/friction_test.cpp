@@ -34,7 +34,7 @@ TEST(Registry, EachLawIsUsableByDefault) {
   for_each_law([](const auto& law) {
     SCOPED_TRACE(law.name);
     EXPECT_STRNE(law.help, "");
-    EXPECT_STREQ(law.inconsistency(), "");
+    EXPECT_EQ(law.inconsistency().text, "");
     // Strength before slip is the static one; speed and slip never make it stronger, or weaker than the
     // kinetic one, which they reach.
     const auto mu = law.evaluator();
@@ -115,13 +115,13 @@ TEST(VelocityWeakening, SlopeAtRestIsTheSteepest) {
 
 TEST(VelocityWeakening, EqualCoefficientsAreCoulombs) {
   const VelocityWeakening law{.mu_s = 0.7, .mu_k = 0.7, .alpha_m2_per_s2 = 0.1};
-  EXPECT_STREQ(law.inconsistency(), "");
+  EXPECT_EQ(law.inconsistency().text, "");
   for (const double v : {0.0, 0.1, 10.0}) EXPECT_EQ(law.evaluator()(v, 0), 0.7);
 }
 
 TEST(VelocityWeakening, RefusesAKineticCoefficientAboveTheStaticOne) {
   const VelocityWeakening law{.mu_s = 0.7, .mu_k = 0.8, .alpha_m2_per_s2 = 0.1};
-  EXPECT_STREQ(law.inconsistency(), "mu_k must be at most mu_s");
+  EXPECT_EQ(law.inconsistency().text, "mu_k must be at most mu_s");
 }
 
 TEST(Coulomb, DoesNotKnowTheSpeed) {
@@ -138,7 +138,8 @@ TEST(SlipWeakening, FallsLinearlyOverTheCriticalSlip) {
   EXPECT_DOUBLE_EQ(mu(0, 3e-6), 0.375);
   EXPECT_DOUBLE_EQ(mu(0, 4e-6), 0.25);
   EXPECT_EQ(mu(0, 1), 0.25);
-  EXPECT_STREQ(SlipWeakeningHealing({.mu_s = 0.7, .mu_k = 0.8}).inconsistency(), "mu_k must be at most mu_s");
+  EXPECT_EQ(SlipWeakeningHealing({.mu_s = 0.7, .mu_k = 0.8}).inconsistency().text,
+            "mu_k must be at most mu_s");
 }
 
 }  // namespace

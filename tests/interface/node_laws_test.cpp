@@ -51,7 +51,7 @@ std::vector<FrictionLaw> random_laws(const ContactModel& model, std::size_t n, s
   for (auto& law : laws) do {
       law = model.law;
       for (const auto& parameter : parameters_of(law)) *parameter.value *= share(random);
-    } while (!inconsistency(law).empty());
+    } while (!inconsistency(law).text.empty());
   return laws;
 }
 

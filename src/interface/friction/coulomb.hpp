@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/host_device.hpp"
+#include "base/message.hpp"
 #include "interface/friction/parameter.hpp"
 
 namespace slipfront::interface {
@@ -20,7 +21,7 @@ struct Coulomb {
     return {{{"mu", &Coulomb::mu, 0, 100, "friction coefficient"}}};
   }
   /// Empty, or what is wrong with the parameters together.
-  const char* inconsistency() const { return ""; }
+  Message inconsistency() const { return {}; }
 
   double static_coefficient() const { return mu; }
   double kinetic_coefficient() const { return mu; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "base/message.hpp"
+
 namespace slipfront::interface {
 
 /// A friction law's parameter as the case file sees it; the schema, its checks and its help come from here.
@@ -12,6 +14,11 @@ struct Parameter {
   double max;  ///< largest value allowed
   const char* help;
 };
+
+/// What is wrong with a law whose coefficient is to fall from mu_s to mu_k, and rises.
+inline Message kinetic_above_static() {
+  return Message("{1:leaf} must be at most {0:leaf}", Key("friction.mu_s"), Key("friction.mu_k"));
+}
 
 /// What a friction law knows of the slip so far.
 enum class SlipMemory {

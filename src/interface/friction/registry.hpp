@@ -50,8 +50,8 @@ inline std::vector<ParameterValue> parameters_of(FrictionLaw& law) {
 }
 
 /// Empty, or what is wrong with the parameters together.
-inline std::string inconsistency(const FrictionLaw& law) {
-  return std::visit([](const auto& l) { return std::string(l.inconsistency()); }, law);
+inline Message inconsistency(const FrictionLaw& law) {
+  return std::visit([](const auto& l) { return l.inconsistency(); }, law);
 }
 
 /// The static coefficient's key in the case file: every law names its coefficient at rest first.

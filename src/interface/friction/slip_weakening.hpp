@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/lanes.hpp"
+#include "base/message.hpp"
 #include "interface/friction/parameter.hpp"
 
 namespace slipfront::interface {
@@ -30,7 +31,7 @@ struct LinearSlipWeakening {
              {"d_c_m", &L::d_c_m, 1e-15, 1e3, "slip over which friction weakens"}}};
   }
   /// Empty, or what is wrong with the parameters together.
-  const char* inconsistency() const { return mu_k > mu_s ? "mu_k must be at most mu_s" : ""; }
+  Message inconsistency() const { return mu_k > mu_s ? kinetic_above_static() : Message(); }
 
   double static_coefficient() const { return mu_s; }
   double kinetic_coefficient() const { return mu_k; }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/exponential.hpp"
+#include "base/message.hpp"
 #include "interface/friction/parameter.hpp"
 
 namespace slipfront::interface {
@@ -28,7 +29,7 @@ struct VelocityWeakening {
           "transition parameter alpha"}}};
   }
   /// Empty, or what is wrong with the parameters together.
-  const char* inconsistency() const { return mu_k > mu_s ? "mu_k must be at most mu_s" : ""; }
+  Message inconsistency() const { return mu_k > mu_s ? kinetic_above_static() : Message(); }
 
   double static_coefficient() const { return mu_s; }
   double kinetic_coefficient() const { return mu_k; }

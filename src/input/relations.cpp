@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/relations.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "input/entries.hpp"
+#include "solid/operator.hpp"
+#include "statics/plate_solver.hpp"
+
+namespace slipfront::input {
+namespace {
+
+using interface::EventKind;
+using mesh::Sides;
+using statics::LoadingMethod;
+using statics::StaticSolver;
+
+bool is_tilted(const Case& config) {
+  return config.loading.method != LoadingMethod::prestress;
+}
+
+void check_friction(const Case& config) {
+  const Message problem = interface::inconsistency(config.friction);
+  if (problem.text.empty()) return;
+  std::string values;
+  for (const Entry& entry : law_of(config).entries)
+    values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", leaf_of(entry.key),
+                          toml_text(entry.get(config)));
+  throw UserError("friction: {} ({})", problem, values).about("friction.law");
+}
+
+void check_element_size(const mesh::Plate& plate) {
+  constexpr double most_nodes = std::numeric_limits<mesh::Node>::max();
+  const Key element_size("plate.element_size_m");
+  const double h = plate.element_size_m;
+  if ((plate.width_m / h + 1) * (plate.height_m / h + 1) > most_nodes)
+    throw UserError("{} is {} m; that makes more than {:.3g} nodes, choose a larger one", element_size, h,
+                    most_nodes)
+        .about("plate.width_m", "plate.height_m");
+  const double shorter_m = std::min(plate.width_m, plate.height_m);
+  if (h > shorter_m)
+    throw UserError("{} is {} m; it must be at most the plate's shorter side, {} m", element_size, h,
+                    shorter_m)
+        .about("plate.width_m", "plate.height_m");
+}
+
+/// What a prescribed state, or the lack of one, asks of the other keys.
+void check_prestress(const Case& config, const Document& document) {
+  const Key method("loading.method"), kind("event.kind");
+  if (is_tilted(config)) {
+    if (config.loading.shear_speed_over_c_L > 0) return;
+    throw UserError("{} is 0; that holds the top edge still, choose {} = prestress or a speed greater than 0",
+                    Key("loading.shear_speed_over_c_L"), method);
+  }
+  const Key t("prestress.t_Pa"), p("prestress.p_Pa");
+  const bool uniform = document.find(t.name) && document.find(p.name);
+  if (!uniform && config.prestress.file.empty())
+    throw UserError("{} = prestress needs {} and {}, or {}", method, t, p, Key("prestress.file"));
+  if (config.plate.corner != mesh::Corner::none)
+    throw UserError("{1} = prestress needs {0} = none: the whole lower edge starts in contact",
+                    Key("plate.corner"), method);
+  if (config.event == EventKind::spontaneous)
+    throw UserError(
+        "{} = spontaneous raises the shear past the critical one, which {} = prestress does not know; choose "
+        "nucleation, left, right or none",
+        kind, method);
+  if (interface::is_at_edge(config.event) && config.plate.sides == Sides::periodic)
+    throw UserError("{} = left and right need an edge, which {} = periodic does not have; choose nucleation",
+                    kind, Key("plate.sides"));
+}
+
+void check_tilt(const Case& config) {
+  if (!is_tilted(config)) return;
+  const auto& loading = config.loading;
+  const auto& plate = config.plate;
+  const double tilt_m = std::max(loading.tilt_left_m, loading.tilt_right_m);
+  if (tilt_m >= plate.height_m)
+    throw UserError("{} and {:leaf} go up to {} m; they must be less than {}, {} m",
+                    Key("loading.tilt_left_m"), Key("loading.tilt_right_m"), tilt_m, Key("plate.height_m"),
+                    plate.height_m);
+  if (loading.edge_margin_m >= 0.5 * plate.width_m)
+    throw UserError("{} is {} m; it must be less than half of {}, {} m", Key("loading.edge_margin_m"),
+                    loading.edge_margin_m, Key("plate.width_m"), 0.5 * plate.width_m);
+}
+
+void check_trigger_zone(const Case& config) {
+  const bool counts = is_tilted(config) || interface::is_at_edge(config.event);
+  if (counts && config.trigger.zone_m > config.plate.width_m)
+    throw UserError("{} is {} m; it must be at most {}, {} m", Key("event.trigger_zone_m"),
+                    config.trigger.zone_m, Key("plate.width_m"), config.plate.width_m);
+}
+
+void check_solver(const Case& config) {
+  if (config.loading.solver != StaticSolver::iterative) return;
+  const Key solver("loading.solver");
+  const auto& plate = config.plate;
+  if (plate.coarsenings > 0)
+    throw UserError("{} = iterative knows no graded plates; choose auto or direct, or {} = 0", solver,
+                    Key("plate.coarsenings"));
+  const bool has_base = has_base_body(config);
+  if (has_base && config.base.plate.coarsenings > 0)
+    throw UserError("{} = iterative knows no graded base; choose auto or direct, or {} = 0", solver,
+                    Key("base.coarsenings"));
+  const double height_m = plate.height_m + (has_base ? config.base.plate.height_m : 0);
+  if (is_tilted(config) && height_m > 2 * statics::most_iterative_slenderness * plate.width_m)
+    throw UserError(
+        "{} = iterative does not converge on a plate so much higher than wide; choose auto or direct", solver)
+        .about("plate.height_m", "plate.width_m");
+}
+
+void check_step(const motion::TimeStepping& time) {
+  if (time.step_factor > 1 && !time.allow_unstable)
+    throw UserError("{} is {}, beyond the stable step; use at most 1, or set {} = true",
+                    Key("time.step_factor"), time.step_factor, Key("time.allow_unstable"));
+}
+
+void check_base(const Case& config, const Document& document) {
+  if (!has_base_body(config)) return;
+  const Key kind("base.kind");
+  if ((config.base.plate.sides == Sides::periodic) != (config.plate.sides == Sides::periodic))
+    throw UserError("{} and {} must both be periodic, or neither of them", Key("base.sides"),
+                    Key("plate.sides"));
+  if (config.plate.corner == mesh::Corner::fillet)
+    throw UserError("{} = fillet leaves nodes that face none of {} = body; choose none or relief",
+                    Key("plate.corner"), kind);
+  // The defaults are those of the paper's plate, which nobody means for a base.
+  for (const char* key : {"base.youngs_modulus_Pa", "base.poissons_ratio", "base.density_kg_per_m3",
+                          "base.stiffness_damping_s", "base.height_m"})
+    if (!document.find(key)) throw UserError("{} = body needs {}; set it", kind, Key(key));
+}
+
+/// Whether a weakened patch can do nothing, whatever the place; where friction varies, the nodes decide.
+bool never_weakens(const Case& config) {
+  return !config.friction_along_x.varies() &&
+         interface::kinetic_coefficient(config.friction) >= interface::static_coefficient(config.friction);
+}
+
+void check_trigger(const Case& config) {
+  if (!interface::is_at_edge(config.event)) return;
+  if (config.trigger.form == interface::TriggerForm::weakened && never_weakens(config))
+    throw UserError(
+        "{} = weakened does nothing where the friction law does not weaken; choose added or raised",
+        Key("event.trigger_form"))
+        .about("event.kind", "friction.law");
+}
+
+void check_nucleation(const Case& config) {
+  if (config.event != EventKind::nucleation) return;
+  const auto& n = config.nucleation;
+  const double width_m = config.plate.width_m, reach_m = n.half_length_m + n.taper_m;
+  const Key half_length("nucleation.half_length_m"), taper("nucleation.taper_m"), width("plate.width_m");
+  if (n.x_m < 0 || n.x_m > width_m)
+    throw UserError("{} is {} m; it must be on the interface, at 0 to {} m", Key("nucleation.x_m"), n.x_m,
+                    width_m)
+        .about(width);
+  if (reach_m <= 0) throw UserError("{} and {} are both 0; give the patch a length", half_length, taper);
+  if (config.plate.sides == Sides::periodic && 2 * reach_m > width_m)
+    throw UserError("{} + {:leaf} is {} m; with {} = periodic it must be at most half of {}, {} m",
+                    half_length, taper, reach_m, Key("plate.sides"), width, 0.5 * width_m);
+  if (n.form == interface::NucleationForm::weakened && never_weakens(config))
+    throw UserError("{} = weakened does nothing where the friction law does not weaken; choose overstress",
+                    Key("nucleation.form"))
+        .about("event.kind", "friction.law");
+}
+
+void check_friction_along_x(const Case& config) {
+  const std::string& chosen = config.friction_along_x.random_key;
+  if (chosen == "none") return;
+  std::vector<std::string> parameters;
+  for (const Entry& entry : law_of(config).entries) parameters.push_back(leaf_of(entry.key));
+  if (std::ranges::find(parameters, chosen) == parameters.end())
+    throw UserError("{} is {}; the friction law {} has {}", Key("friction.random_key"), chosen,
+                    law_of(config).name, fmt::join(parameters, ", "))
+        .about("friction.law");
+}
+
+void check_fronts(const FrontSettings& fronts, const mesh::Plate& plate) {
+  if (fronts.l_star_m >= plate.width_m)
+    throw UserError("{} is {} m; it must be less than {}, {} m", Key("fronts.l_star_m"), fronts.l_star_m,
+                    Key("plate.width_m"), plate.width_m);
+  if (fronts.pulse_share > fronts.crack_share)
+    throw UserError("{} is {}; it must be at most {}, {}", Key("fronts.pulse_share"), fronts.pulse_share,
+                    Key("fronts.crack_share"), fronts.crack_share);
+}
+
+void check_regularisation(const interface::Regularisation& relaxation) {
+  if (relaxation.relaxed == interface::Relaxed::none) return;
+  const Key length("friction.relaxation_length_m");
+  if (!std::isfinite(relaxation.length_m) && !std::isfinite(relaxation.time_s))
+    throw UserError("{} needs a finite {} or {:leaf}; set one", Key("friction.regularisation"), length,
+                    Key("friction.relaxation_time_s"));
+  if (relaxation.slip_rate_m_per_s != 0 && !std::isfinite(relaxation.length_m))
+    throw UserError("{} does nothing without a finite {}; set that, or remove it",
+                    Key("friction.relaxation_slip_rate_m_per_s"), length);
+}
+
+void check_snapshot_times(const std::vector<double>& times_s) {
+  const auto fall = std::adjacent_find(times_s.begin(), times_s.end(), std::greater_equal<>());
+  if (fall != times_s.end())
+    throw UserError("{} has {} s before {} s; write the times in ascending order",
+                    Key("output.snapshot_times_s"), *fall, *std::next(fall));
+}
+
+/// The values of a number or a list of them.
+std::vector<double> numbers_of(const Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return {*number};
+  if (const auto* list = std::get_if<std::vector<double>>(&value)) return *list;
+  return {};
+}
+
+/// Refuses numbers of which products or quotients could leave the range of doubles.
+void check_magnitudes(const Case& config) {
+  for (const Entry& entry : entries_of(config))
+    for (const double number : numbers_of(entry.get(config))) {
+      const std::string unit = unit_of(entry.key);
+      const Magnitudes& magnitudes = magnitudes_of(unit);
+      const double size = std::abs(number);
+      if (size == 0 || std::isinf(size) || (size >= magnitudes.least && size <= magnitudes.most)) continue;
+      throw UserError("{} is {}; its magnitude must be at least {:g} and at most {}", Key(entry.key),
+                      with_unit(fmt::format("{}", number), unit), magnitudes.least,
+                      with_unit(fmt::format("{:g}", magnitudes.most), unit));
+    }
+}
+
+/// Refuses more steps than can be taken or counted. The step is estimated from the time in which a wave
+/// crosses an element.
+void check_duration(const Case& config) {
+  constexpr double most_steps = 1e12;
+  const auto stable_step_s = [&](const solid::Material& material) {
+    const double crossing_s = config.plate.element_size_m / solid::longitudinal_speed_m_per_s(material);
+    return solid::stable_step_s(2 / crossing_s, material.stiffness_damping_s);
+  };
+  double step_s = config.time.step_factor * stable_step_s(config.material);
+  if (has_base_body(config))
+    step_s = std::min(step_s, config.time.step_factor * stable_step_s(base_material(config)));
+  const double steps = config.time.end_s / step_s;
+  if (steps > most_steps)
+    throw UserError("{} = {:g} s takes about {:.3g} steps of {:.3g} s, more than {:g}; choose an earlier end",
+                    Key("time.end_s"), config.time.end_s, steps, step_s, most_steps);
+}
+
+}  // namespace
+
+void check_relations(const Case& config, const Document& document) {
+  check_friction(config);
+  check_element_size(config.plate);
+  check_prestress(config, document);
+  check_tilt(config);
+  check_trigger_zone(config);
+  check_solver(config);
+  check_step(config.time);
+  check_base(config, document);
+  check_trigger(config);
+  check_nucleation(config);
+  check_friction_along_x(config);
+  check_fronts(config.fronts, config.plate);
+  check_regularisation(config.regularisation);
+  check_snapshot_times(config.output.snapshot_times_s);
+  check_magnitudes(config);
+  check_duration(config);
+}
+
+}  // namespace slipfront::input

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is found wrong after a case was read is told with the line of the key at fault."""
+
+import re
+from pathlib import Path
+
+import pytest
+from test_commands import one_line
+
+ROOT = Path(__file__).resolve().parents[2]
+
+COARSE = "[plate]\nelement_size_m = 5e-3\n"
+SQUARE = COARSE + 'corner = "none"\n'
+PRESSED = '[loading]\nmethod = "prestress"\n[prestress]\nt_Pa = 2.1e6\np_Pa = 5e6\n[event]\nkind = "none"\n'
+TABLED = PRESSED.replace("t_Pa = 2.1e6\np_Pa = 5e6\n", 'file = "table.csv" # here\n')
+WEAKENING = '[friction]\nlaw = "slip_weakening"\nmu_s = 0.6\nmu_k = 0.599\n'
+STEEL = (
+    '[base]\nkind = "body"\nyoungs_modulus_Pa = 2e11\npoissons_ratio = 0.3\ndensity_kg_per_m3 = 7800\n'
+    "stiffness_damping_s = 1e-7\n"
+)
+
+# The line to be named ends with "# here"; where none does, it is the override.
+CASES = {
+    "no_whole_elements": ("[plate]\nwidth_m = 0.2\nelement_size_m = 3e-3 # here\n", None),
+    "a_width_of_no_whole_elements": (COARSE, "plate.width_m=0.2001"),
+    "the_default_elements": ("[plate]\nheight_m = 0.1003 # here\n", None),
+    "too_fine": ("[plate]\nwidth_m = 0.2\nelement_size_m = 1e-5 # here\n", None),
+    "columns_not_halved": (COARSE + "coarsenings = 5 # here\nfine_height_m = 5e-3\n", None),
+    "no_room_above": (COARSE + "coarsenings = 1\nfine_height_m = 0.01\n", "plate.fine_height_m=0.09"),
+    "short_relief": (COARSE + "relief_length_m = 1e-3 # here\n", None),
+    "long_relief": (COARSE + "relief_length_m = 0.06\n", "plate.width_m=0.1"),
+    "steep_relief": (COARSE + "relief_height_m = 5e-3 # here\nrelief_length_m = 9e-3\n", None),
+    "steep_relief_by_its_length": (
+        COARSE + "relief_height_m = 5e-3\nrelief_length_m = 0.02\n",
+        "plate.relief_length_m=9e-3",
+    ),
+    "deep_relief": (COARSE + "relief_depth_m = 0.2 # here\n", None),
+    "shallow_relief": (COARSE + "relief_depth_m = 1e-4 # here\n", None),
+    "absorbing_with_relief": (COARSE + 'sides = "absorbing" # here\n', None),
+    "relief_of_absorbing": (SQUARE + 'sides = "absorbing"\n', "plate.corner=relief"),
+    "large_fillet": (COARSE + 'corner = "fillet"\nfillet_radius_m = 0.2 # here\n', None),
+    "coarse_fillet": ('[plate]\ncorner = "fillet"\nelement_size_m = 0.05 # here\n', None),
+    "ring_of_two_columns": (
+        '[plate]\nelement_size_m = 0.1\ncorner = "none"\nsides = "periodic" # here\n' + PRESSED,
+        None,
+    ),
+    "rows_of_substeps": (COARSE + "[time]\ninterface_rows = 30 # here\n", None),
+    "rows_of_substeps_overridden": (SQUARE + "[time]\ninterface_rows = 3\n", "time.interface_rows=30"),
+    "default_rows_of_a_coarse_plate": (
+        '[plate]\nwidth_m = 0.2\ncorner = "none"\nelement_size_m = 0.05 # here\n',
+        None,
+    ),
+    "default_relief_of_a_coarse_plate": ("[plate]\nelement_size_m = 0.05 # here\n", None),
+    "tilted_ring": (SQUARE + 'sides = "periodic" # here\n', None),
+    "tilted_free_top": (SQUARE + 'top = "free" # here\n', None),
+    "free_base": (COARSE + STEEL + 'height_m = 0.1\nbottom = "free" # here\n', None),
+    "base_of_no_whole_elements": (COARSE + STEEL + "height_m = 0.1001 # here\n", None),
+    "single_with_absorbing": (
+        SQUARE + 'sides = "absorbing"\n' + PRESSED + '[time]\nprecision = "single" # here\n',
+        None,
+    ),
+    "single_made_absorbing": (
+        SQUARE + PRESSED + '[time]\nprecision = "single"\n',
+        "plate.sides=absorbing",
+    ),
+    "table_too_short": (SQUARE + TABLED, None),
+    "table_that_is_not_there": (SQUARE + TABLED.replace(" # here", ""), "prestress.file=none.csv"),
+    "random_share": (COARSE + WEAKENING + 'random_key = "mu_k"\nrandom_share = 0.5 # here\n', None),
+    "random_share_by_default": (COARSE + WEAKENING + 'random_key = "mu_k" # here\n', None),
+    "random_key": (COARSE + WEAKENING, "friction.random_key=mu_k"),
+    "ramp_of_a_random_coefficient": (
+        COARSE + '[loading]\nmethod = "ramp"\n[friction]\nrandom_key = "mu_s" # here\n',
+        None,
+    ),
+    "random_coefficient_of_a_ramp": (COARSE + '[friction]\nrandom_key = "mu_s"\n', "loading.method=ramp"),
+}
+
+
+def place(case, text, override):
+    if override:
+        return f"--set {override}: "
+    (line,) = [k for k, line in enumerate(text.splitlines(), 1) if line.endswith("# here")]
+    return f"{case}:{line}: "
+
+
+@pytest.mark.parametrize("text, override", CASES.values(), ids=CASES.keys())
+@pytest.mark.parametrize("command", ["validate", "info"])
+def test_the_line_is_that_of_the_key_at_fault(program, write_case, tmp_path, command, text, override):
+    (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.1,2.1e6,5e6\n")
+    case = write_case(text)
+    told = one_line(program(command, case, *(["--set", override] if override else [])))
+    assert told.startswith(place(case, text, override))
+
+
+LATE = {
+    "trigger": (
+        'mu_s = 1.3\n[event]\nkind = "right"\ntrigger_form = "raised"\ntrigger_amount = 1e-3 # here\n',
+        None,
+    ),
+    "trigger_form": (
+        'mu_s = 1.3\n[event]\nkind = "right"\ntrigger_amount = 1e-3\n',
+        "event.trigger_form=raised",
+    ),
+    "strength": ("mu_s = 100 # here\n[loading]\nedge_margin_m = 5e-3\n", None),
+    "margin": ("mu_s = 1.2\n", "loading.edge_margin_m=0.0999"),
+    "margin_alone": ("law = 'velocity_weakening'\n[loading]\nedge_margin_m = 0.0999 # here\n", None),
+}
+
+
+@pytest.mark.parametrize("text, override", LATE.values(), ids=LATE.keys())
+def test_the_line_is_that_of_what_only_the_statics_find(program, write_case, tmp_path, text, override):
+    text = COARSE + "[friction]\n" + text
+    case = write_case(text)
+    told = one_line(program("run", case, "-o", "out", *(["--set", override] if override else [])))
+    assert told.startswith(place(case, text, override))
+    assert not (tmp_path / "out").exists()
+
+
+# --- Keys in the sources
+
+CARRIED = re.compile(r'(?:\bKey(?: \w+)?|\.about)\(((?:[^()"]|"[^"]*")*)\)')
+
+
+def keys_of(reference):
+    table = ""
+    for line in reference.splitlines():
+        if found := re.match(r"## \[(\w+)\]", line):
+            table = found[1] + "."
+        if found := re.match(r"\| `(\w+)` \|", line):
+            yield table + found[1]
+
+
+def test_keys_that_errors_carry_are_those_of_the_schema(program):
+    keys = set(keys_of(program("keys").stdout))
+    sources = [file.read_text(encoding="utf-8") for file in (ROOT / "src").glob("*/**/*.[ch]pp")]
+    carried = {
+        key for text in sources for call in CARRIED.findall(text) for key in re.findall(r'"([^"]*)"', call)
+    }
+    assert len(carried) > 40
+    assert carried <= keys | {"{}.coarsenings", "{}.fine_height_m"}  # of plate or base
+
+
+def thrown(text):
+    """What stands between the parentheses of each UserError that is thrown."""
+    for found in re.finditer(r"throw UserError\(", text):
+        depth, end = 1, found.end()
+        while depth:
+            if text[end] == '"':
+                end = re.compile(r'"(?:[^"\\]|\\.)*"').match(text, end).end()
+                continue
+            depth += {"(": 1, ")": -1}.get(text[end], 0)
+            end += 1
+        yield text[found.end() : end]
+
+
+def test_errors_carry_the_keys_that_they_name(program):
+    """A key that is written into the text of a message would not be looked up."""
+    keys = [key for key in keys_of(program("keys").stdout) if "." in key]
+    named = re.compile(r"(?<![\w.])(?<!--set )(" + "|".join(map(re.escape, keys)) + r")\b")
+    n = 0
+    for file in (ROOT / "src").glob("*/**/*.[ch]pp"):
+        for call in thrown(file.read_text(encoding="utf-8")):
+            n += 1
+            texts = re.findall(r'"((?:[^"\\]|\\.)*)"', CARRIED.sub("", call))
+            assert not named.search("".join(texts)), (file, call)
+    assert n > 150

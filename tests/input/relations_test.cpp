@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/relations.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "input/entries.hpp"
+#include "input/schema.hpp"
+
+namespace slipfront::input {
+namespace {
+
+using ::testing::StartsWith;
+
+/// A case whose keys do not fit together. The line to be named ends with "# here"; where none does, it is the
+/// last override.
+struct Wrong {
+  const char* name;
+  std::string text;
+  std::vector<Override> overrides = {};
+};
+void PrintTo(const Wrong& wrong, std::ostream* stream) {
+  *stream << wrong.text;
+}
+
+const std::string uniform = "[prestress]\nt_Pa = 1e6\np_Pa = 5e6\n[loading]\nmethod = \"prestress\"\n";
+const std::string at_rest = uniform + "[event]\nkind = \"none\"\n";
+const std::string patch = uniform + "[event]\nkind = \"nucleation\"\n[nucleation]\nx_m = 0.1\n";
+const std::string on_steel =
+    "[base]\nkind = \"body\"\nheight_m = 0.1\nyoungs_modulus_Pa = 2e11\npoissons_ratio = 0.3\n"
+    "density_kg_per_m3 = 7800\nstiffness_damping_s = 1e-7\n";
+const std::string square = "[plate]\ncorner = \"none\"\n";
+
+const Wrong wrong_cases[] = {
+    // Friction
+    {"Weakening", "[friction]\nmu_s = 0.5 # here\nmu_k = 0.6\n"},
+    {"WeakeningFromTheDefault", "[friction]\nalpha_m2_per_s2 = 0.2\nmu_k = 1.4 # here\n"},
+    {"WeakeningOverridden", "[friction]\nmu_s = 0.5\nmu_k = 0.4\n", {{"friction.mu_k", "0.7"}}},
+    {"RandomKey", "[friction]\nlaw = \"coulomb\"\nrandom_key = \"mu_k\" # here\n"},
+    {"RandomKeyOfAnotherLaw", "[friction]\nrandom_key = \"mu_k\"\n", {{"friction.law", "coulomb"}}},
+    {"RegularisationWithoutScale", "[friction]\nregularisation = \"strength\" # here\n"},
+    {"RegularisationWithoutItsScale",
+     "[friction]\nregularisation = \"strength\"\nrelaxation_time_s = 1e-6\n",
+     {{"friction.relaxation_time_s", "inf"}}},
+    {"SlipRateWithoutLength",
+     "[friction]\nregularisation = \"strength\"\nrelaxation_time_s = 1e-6\n"
+     "relaxation_slip_rate_m_per_s = 0.1 # here\n"},
+    // Plate
+    {"Nodes", "[plate]\nwidth_m = 0.2\nelement_size_m = 1e-7 # here\n"},
+    {"NodesOfAWidePlate", "[plate]\nelement_size_m = 1e-3\n", {{"plate.width_m", "1e6"}}},
+    {"NodesOfAHighPlate", "[plate]\nheight_m = 1e6 # here\n"},
+    {"Element", "[plate]\nwidth_m = 3\n\nelement_size_m = 0.2 # here\n"},
+    {"ElementOfALowerPlate", "[plate]\nelement_size_m = 1e-2\n", {{"plate.height_m", "1e-3"}}},
+    // Loading
+    {"TopHeld", "[loading]\nmethod = \"ramp\"\nshear_speed_over_c_L = 0 # here\n"},
+    {"TopHeldByTheMethod", uniform + "shear_speed_over_c_L = 0\n" + square, {{"loading.method", "direct"}}},
+    {"NoTractions", "[loading]\nmethod = \"prestress\" # here\n[prestress]\nt_Pa = 1e6\n"},
+    {"Relief", at_rest + "[plate]\ncorner = \"relief\" # here\n"},
+    {"ReliefByDefault", "[prestress]\nt_Pa = 1e6\np_Pa = 5e6\n[loading]\nmethod = \"prestress\" # here\n"},
+    {"SpontaneousEvent", uniform + "[event]\nkind = \"spontaneous\" # here\n" + square},
+    {"PeriodicEdge", uniform + "[event]\nkind = \"left\" # here\n" + square + "sides = \"periodic\"\n"},
+    {"EdgeMadePeriodic", uniform + "[event]\nkind = \"left\"\n" + square, {{"plate.sides", "periodic"}}},
+    {"Tilt", "[loading]\ntilt_left_m = 0.1 # here\n"},
+    {"TiltOfALowerPlate", "[plate]\nelement_size_m = 1e-4\nheight_m = 3e-4 # here\n"},
+    {"EdgeMargin", "[plate]\nwidth_m = 0.2\n[loading]\nedge_margin_m = 0.1 # here\n"},
+    {"EdgeMarginOfANarrowPlate", "[loading]\nedge_margin_m = 0.05\n", {{"plate.width_m", "0.1"}}},
+    {"TriggerZone", "[event]\ntrigger_zone_m = 0.3 # here\n"},
+    {"GradedIteratively", "[plate]\ncoarsenings = 1\n[loading]\nsolver = \"iterative\" # here\n"},
+    {"IterativelyGraded", "[loading]\nsolver = \"iterative\"\n", {{"plate.coarsenings", "1"}}},
+    {"SlenderIteratively",
+     "[plate]\nheight_m = 2\nwidth_m = 0.02\n[loading]\nsolver = \"iterative\" # here\nedge_margin_m = 1e-3\n"
+     "[event]\ntrigger_zone_m = 1e-3\n"},
+    // Base
+    {"PeriodicBase", on_steel + "sides = \"periodic\" # here\n"},
+    {"PeriodicPlate", on_steel + square, {{"plate.sides", "periodic"}}},
+    {"FilletOnABase", on_steel + "[plate]\ncorner = \"fillet\" # here\n"},
+    {"BaseWithoutItsMaterial", "[base]\nheight_m = 0.1\nkind = \"body\" # here\n"},
+    {"BaseIteratively", on_steel + "[loading]\nsolver = \"iterative\" # here\n"},
+    // Start of the event
+    {"TriggerOfCoulomb",
+     "[friction]\nlaw = \"coulomb\"\n[event]\nkind = \"left\"\ntrigger_form = \"weakened\" # here\n"},
+    {"TriggerWithoutWeakening",
+     "[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\n",
+     {{"friction.law", "coulomb"}}},
+    {"PatchOfCoulomb", "[friction]\nlaw = \"coulomb\"\n[event]\nkind = \"nucleation\" # here\n"},
+    {"PatchBeyondThePlate", "[event]\nkind = \"nucleation\"\n[nucleation]\nx_m = 0.3 # here\n"},
+    {"PlateBesideThePatch", patch + square, {{"plate.width_m", "0.09"}}},
+    {"PatchWithoutLength", patch + "taper_m = 0\nhalf_length_m = 0 # here\n" + square},
+    {"PatchOnARing", patch + "taper_m = 0.15 # here\n" + square + "sides = \"periodic\"\n"},
+    // Time, fronts, output
+    {"Step", "[time]\nstep_factor = 1.5 # here\n"},
+    {"StepNoLongerAllowed",
+     "[time]\nstep_factor = 1.5\nallow_unstable = true\n",
+     {{"time.allow_unstable", "false"}}},
+    {"Duration", "[time]\nend_s = 1e6 # here\n"},
+    {"FrontSpeed", "[plate]\nwidth_m = 0.2\n[fronts]\nl_star_m = 1 # here\n"},
+    {"PulseShare", "[fronts]\ncrack_share = 0.4\npulse_share = 0.9 # here\n"},
+    {"PulseShareAboveACrackShare", "[fronts]\npulse_share = 0.1\n", {{"fronts.crack_share", "0.05"}}},
+    {"SnapshotTimes", "[output]\nsnapshot_times_s = [2e-5, 1e-5] # here\n"},
+    {"Magnitude", "[material]\nyoungs_modulus_Pa = 1e150 # here\n"},
+    {"MagnitudeInAList", "[output]\nsnapshot_times_s = [1e-300] # here\n"},
+};
+
+class Relations : public ::testing::TestWithParam<Wrong> {};
+
+UserError error_of_case(const Wrong& wrong) {
+  try {
+    parse_case(wrong.text, "c.toml", wrong.overrides);
+  } catch (const UserError& error) {
+    return error;
+  }
+  ADD_FAILURE() << "the case was accepted";
+  return UserError("(nothing thrown)");
+}
+
+std::string place_in(const Wrong& wrong) {
+  const auto mark = wrong.text.find("# here");
+  if (mark != std::string::npos)
+    return fmt::format("c.toml:{}", 1 + std::count(wrong.text.begin(), wrong.text.begin() + mark, '\n'));
+  const auto& [key, value] = wrong.overrides.back();
+  return fmt::format("--set {}={}", key, value);
+}
+
+bool is_in_schema(const std::string& key) {
+  const auto among = [&](const std::vector<Entry>& entries) {
+    return std::ranges::count(entries, key, &Entry::key) > 0;
+  };
+  return among(common_entries()) ||
+         std::ranges::any_of(friction_laws(), [&](const LawEntries& law) { return among(law.entries); });
+}
+
+TEST_P(Relations, AreRefusedWithThePlaceOfTheKeyAtFault) {
+  EXPECT_THAT(error_of_case(GetParam()).what(), StartsWith(place_in(GetParam()) + ": "));
+}
+
+TEST_P(Relations, CarryKeysOfTheSchema) {
+  const UserError error = error_of_case(GetParam());
+  EXPECT_FALSE(error.keys().empty()) << error.what();
+  for (const auto& key : error.keys()) EXPECT_TRUE(is_in_schema(key)) << key;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Relations, ::testing::ValuesIn(wrong_cases),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace slipfront::input
