@@ -26,7 +26,8 @@ void require_ascending(double x_m, const std::vector<double>& rows_x_m, const st
     throw UserError("{}: x_m is {} after {}; write the rows with x ascending", at, x_m, rows_x_m.back());
 }
 
-void require_covers(const std::vector<double>& rows_x_m, const std::vector<double>& x_m, const std::string& place) {
+void require_covers(const std::vector<double>& rows_x_m, const std::vector<double>& x_m,
+                    const std::string& place) {
   const double tolerance_m = position_tolerance * (x_m.back() - x_m.front());
   if (rows_x_m.front() > x_m.front() + tolerance_m || rows_x_m.back() < x_m.back() - tolerance_m)
     throw UserError(

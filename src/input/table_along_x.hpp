@@ -23,6 +23,7 @@ void require_ascending(double x_m, const std::vector<double>& rows_x_m, const st
 
 /// Refuses rows that do not reach from the first to the last of the positions x_m, but for the tolerance.
 /// @throws UserError
-void require_covers(const std::vector<double>& rows_x_m, const std::vector<double>& x_m, const std::string& place);
+void require_covers(const std::vector<double>& rows_x_m, const std::vector<double>& x_m,
+                    const std::string& place);
 
 }  // namespace slipfront::input
