@@ -4,12 +4,11 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 from typing import Any
 
-from shared import DataError, between_marks, expecting, read_result, renew, run
+from shared import DataError, renew_page, renew_tables
 
 
 def number(value: float | None, factor: float = 1, digits: int = 2) -> str:
@@ -38,18 +37,15 @@ def table(study: dict[str, Any]) -> str:
 
 def write(results: Path, page: Path) -> None:
     file = results / "bases.json"
-    study = read_result(file)
-    with expecting("a study of bases", file):
+
+    def tables(study: dict[str, Any]) -> dict[str, str]:
         content = table(study)
-        quick = bool(study["quick"])
-    if quick:
-        raise DataError(f"{file}: of a quick study; renew the page with a full one")
-    renew(page, lambda text: between_marks(page, text, "table", content))
+        if study["quick"]:
+            raise DataError(f"{file}: of a quick study; renew the page with a full one")
+        return {"table": content}
+
+    renew_tables(file, page, "a study of bases", tables)
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", type=Path, help="output folder of `slipfront study base`")
-    parser.add_argument("page", type=Path, help="docs/bases.md")
-    options = parser.parse_args()
-    sys.exit(run(__file__, lambda: write(options.results, options.page)))
+    sys.exit(renew_page(__file__, __doc__, "slipfront study base", "docs/bases.md", write))

@@ -4,22 +4,29 @@
 codes: table and figure."""
 
 import argparse
-import csv
-import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import h5py
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from shared import DataError, checked, run_case, write_figure
+from reference_runs import (
+    CASES,
+    InterfaceRun,
+    Measured,
+    add_options,
+    draw_lateness,
+    magnitude_s,
+    picture_of,
+    read_columns,
+    run_comparison,
+    run_with,
+    verdict,
+)
+from shared import write_figure
 
-CASES = Path(__file__).resolve().parent.parent / "cases/reference"
-THRESHOLD_M_PER_S = 1e-3
 FROM_M, TO_M, END_S = 0.06, 0.14, 145e-6  # where and until when the problems' domains are free of reflections
 FIELDS = {"tau": "t_Pa", "p": "p_Pa", "v": "slip_rate_m_per_s", "slip": "slip_m"}
 LIMITS = {"tau": 0.03, "p": 0.03, "v": 0.03, "slip": 0.01}  # rms over range
@@ -47,30 +54,7 @@ PROBLEMS = {
 }
 
 
-class Run:
-    def __init__(self, folder: Path, centre_m: float) -> None:
-        with open(folder / "run.json") as file:
-            facts = json.load(file)
-        self.wall_s = facts["wall_s"]
-        with h5py.File(folder / "interface.h5") as file:
-            self.x_m = file["x_m"][:] - centre_m
-            self.t_s = file["time_s"][:]
-            self.fields = {name: file[key][:] for name, key in FIELDS.items()}
-        # Slip rates are those of half a sub-step later.
-        self.v_t_s = self.t_s + 0.5 * facts["interface_dt_s"]
-
-    def arrivals_s(self, x_m: np.ndarray) -> np.ndarray:
-        """First time that the slip rate passes the threshold, linear between steps and nodes."""
-        v = self.fields["v"]
-        after = np.argmax(v > THRESHOLD_M_PER_S, axis=0)
-        node = np.arange(len(self.x_m))
-        before = np.maximum(after - 1, 0)
-        rise = v[after, node] - v[before, node]
-        part = np.divide(THRESHOLD_M_PER_S - v[before, node], rise, out=np.zeros_like(rise), where=rise > 0)
-        t = self.v_t_s[before] + part * (self.v_t_s[after] - self.v_t_s[before])
-        t[v[after, node] <= THRESHOLD_M_PER_S] = np.nan
-        return np.interp(x_m, self.x_m, t)
-
+class Run(InterfaceRun):
     def field(self, name: str, t_s: np.ndarray, x_m: np.ndarray) -> np.ndarray:
         own_t_s = self.v_t_s if name == "v" else self.t_s
         at_times = np.array([np.interp(t_s, own_t_s, column) for column in self.fields[name].T]).T
@@ -79,14 +63,12 @@ class Run:
 
 class Reference:
     def __init__(self, name: str) -> None:
-        with open(CASES / f"data/{name}_arrivals.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
-        x = np.array([float(row["x_m"]) for row in rows])
-        here = (np.abs(x) > FROM_M - 1e-6) & (np.abs(x) < TO_M + 1e-6)
-        self.x_m = x[here]
-        column = {key: np.array([float(row[key]) for row in rows])[here] for key in rows[0] if key != "x_m"}
-        self.arrivals_s = column["t_slip_uguca_extrap_s"]
-        self.other_s = column["t_slip_sem2dpack_1mm_s"]
+        column = read_columns(f"{name}_arrivals.csv")
+        x_m = column["x_m"]
+        here = (np.abs(x_m) > FROM_M - 1e-6) & (np.abs(x_m) < TO_M + 1e-6)
+        self.x_m = x_m[here]
+        self.arrivals_s = column["t_slip_uguca_extrap_s"][here]
+        self.other_s = column["t_slip_sem2dpack_1mm_s"][here]
         fields = np.load(CASES / f"data/{name}_fields.npz")
         self.t_s = fields["t"][fields["t"] < END_S + 1e-9]
         inside = np.abs(fields["x"]) < TO_M + 1e-6
@@ -94,15 +76,13 @@ class Reference:
         self.fields = {name: fields[name][: len(self.t_s), inside] for name in FIELDS}
 
 
-Measured = dict[str, Any]  # of a run against the reference, by name
 Compared = tuple[float, Run, Measured]  # with the element size, mm
 
 
 def compare(run: Run, reference: Reference, limit_s: np.ndarray) -> Measured:
     late_s = run.arrivals_s(reference.x_m) - reference.arrivals_s
     measured: Measured = {"late_s": late_s}
-    # Where the front is too slow to arrive at all, it is late without bound.
-    size_s = np.where(np.isfinite(late_s), np.abs(late_s), np.inf)
+    size_s = magnitude_s(late_s)
     measured["largest_s"] = size_s.max()
     measured["beyond"] = int(np.sum(size_s > limit_s))
     outside = np.abs(reference.fields_x_m) > FROM_M - 1e-6
@@ -130,20 +110,13 @@ def table(results: list[Compared], n_points: int) -> str:
 
 def draw(results: list[Compared], reference: Reference, limit_s: np.ndarray, picture: Path) -> None:
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained", dpi=110)
-    sides = [reference.x_m < 0, reference.x_m > 0]  # a gap between them
-    limit_us = 1e6 * limit_s
-    for side in sides:
-        x_mm = 1e3 * reference.x_m[side]
-        left.fill_between(x_mm, -limit_us[side], limit_us[side], color="0.9", lw=0, label="limit")
-        other = 1e6 * (reference.other_s - reference.arrivals_s)
-        left.plot(x_mm, other[side], "k:", lw=1, label="SEM2DPACK, 1 mm")
-        for k, (h_mm, _, m) in enumerate(results):
-            left.plot(x_mm, 1e6 * m["late_s"][side], color=f"C{k}", lw=1, label=f"h = {h_mm:g} mm")
-    left.axhline(0, color="0.5", lw=0.5)
+    x_mm, limit_us = 1e3 * reference.x_m, 1e6 * limit_s
+    for side in (x_mm < 0, x_mm > 0):
+        left.fill_between(x_mm[side], -limit_us[side], limit_us[side], color="0.9", lw=0, label="limit")
+    other_us = 1e6 * (reference.other_s - reference.arrivals_s)
+    late_us = {f"h = {h_mm:g} mm": 1e6 * m["late_s"] for h_mm, _, m in results}
+    draw_lateness(left, x_mm, {"SEM2DPACK, 1 mm": other_us}, late_us)
     left.set(xlabel="x (mm)", ylabel="arrival less that of uguca, extrapolated (us)")
-    handles, labels = left.get_legend_handles_labels()
-    once = dict(zip(labels, handles, strict=True))
-    left.legend(once.values(), once.keys(), fontsize=7)
     for time_s in SNAPSHOTS_S:
         row = np.argmin(np.abs(reference.t_s - time_s))
         right.plot(1e3 * reference.fields_x_m, reference.fields["v"][row], "k--", lw=1.4, zorder=3)
@@ -168,30 +141,19 @@ def draw(results: list[Compared], reference: Reference, limit_s: np.ndarray, pic
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("problem", choices=PROBLEMS)
-    parser.add_argument("--program", default="build/release/slipfront")
-    parser.add_argument("--results", type=Path, default=Path("results-reference"))
-    parser.add_argument(
-        "--figure", type=Path, help="default: reference_PROBLEM.png in the folder of the results"
-    )
-    parser.add_argument("--h-mm", type=float, nargs="+", default=[2, 1, 0.5, 0.25])
-    options = parser.parse_args()
-    try:
-        return compare_all(options)
-    except DataError as error:
-        parser.error(str(error))
+    add_options(parser, "reference_PROBLEM.png", "--h-mm", [2, 1, 0.5, 0.25])
+    return run_comparison(parser, compare_all)
 
 
 def compare_all(options: argparse.Namespace) -> int:
     """Exit code: 0 where the finest mesh keeps the limits."""
     problem = PROBLEMS[options.problem]
-    picture = options.figure or options.results / f"reference_{options.problem}.png"
-    checked(picture)  # before the runs
+    picture = picture_of(options, f"reference_{options.problem}.png")
     reference = Reference(problem.name)
     results: list[Compared] = []
     for h_mm in options.h_mm:
-        folder = options.results / f"{problem.name}_h_{h_mm:g}_mm"
-        run_case(options.program, CASES / problem.case, folder, f"plate.element_size_m={h_mm * 1e-3!r}")
-        run = Run(folder, problem.centre_m)
+        folder = run_with(options, problem.case, f"{problem.name}_h_{h_mm:g}_mm", h_mm * 1e-3)
+        run = Run(folder, problem.centre_m, FIELDS)
         limit_s = problem.arrival_limit_s(reference.arrivals_s, h_mm == min(options.h_mm))
         results.append((h_mm, run, compare(run, reference, limit_s)))
     print(table(results, len(reference.x_m)))
@@ -202,8 +164,7 @@ def compare_all(options: argparse.Namespace) -> int:
     holds = finest["beyond"] == 0 and all(
         max(finest[name], finest[f"{name} outside"]) < limit for name, limit in LIMITS.items()
     )
-    print(f"At h = {results[-1][0]:g} mm the limits {'hold' if holds else 'DO NOT HOLD'}.")
-    return 0 if holds else 1
+    return verdict(f"h = {results[-1][0]:g} mm", holds)
 
 
 if __name__ == "__main__":

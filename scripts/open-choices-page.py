@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 import textwrap
 from pathlib import Path
 from typing import Any
 
-from shared import between_marks, expecting, read_result, renew, run
+from shared import renew_page, renew_tables
 
 PAGE_WIDTH = 120  # of the docs' lines
 
@@ -88,23 +87,13 @@ def outcomes(study: dict[str, Any]) -> str:
     return lines + "\n\n" + table(["", "a", "b", "c", "points in the paper's band", "constraints"], rows)
 
 
+def tables(study: dict[str, Any]) -> dict[str, str]:
+    return {"choices": choices(study), "outcomes": outcomes(study)}
+
+
 def write(results: Path, page: Path) -> None:
-    file = results / "open_choices.json"
-    study = read_result(file)
-    with expecting("a study of the open choices", file):
-        parts = {"choices": choices(study), "outcomes": outcomes(study)}
-
-    def change(text: str) -> str:
-        for mark, content in parts.items():
-            text = between_marks(page, text, mark, content)
-        return text
-
-    renew(page, change)
+    renew_tables(results / "open_choices.json", page, "a study of the open choices", tables)
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", type=Path, help="output folder of `slipfront study open-choices`")
-    parser.add_argument("page", type=Path, help="docs/open-choices.md")
-    options = parser.parse_args()
-    sys.exit(run(__file__, lambda: write(options.results, options.page)))
+    sys.exit(renew_page(__file__, __doc__, "slipfront study open-choices", "docs/open-choices.md", write))

@@ -6,12 +6,11 @@ are there where `slipfront reproduce --sensitivity` has written them."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 from typing import Any
 
-from shared import between_marks, expecting, read_result, renew, run
+from shared import renew_page, renew_tables
 
 VERDICTS = {True: "holds", False: "**does not hold**", None: "not tested"}
 
@@ -63,15 +62,8 @@ def table(scorecard: list[dict[str, Any]]) -> str:
 
 def write(results: Path, page: Path) -> None:
     file = results / "scorecard.json"
-    scorecard = read_result(file)
-    with expecting("a scorecard", file):
-        content = table(scorecard)
-    renew(page, lambda text: between_marks(page, text, "table", content))
+    renew_tables(file, page, "a scorecard", lambda scorecard: {"table": table(scorecard)})
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", type=Path, help="output folder of `slipfront reproduce`")
-    parser.add_argument("page", type=Path, help="docs/scorecard.md")
-    options = parser.parse_args()
-    sys.exit(run(__file__, lambda: write(options.results, options.page)))
+    sys.exit(renew_page(__file__, __doc__, "slipfront reproduce", "docs/scorecard.md", write))

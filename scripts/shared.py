@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -81,6 +82,20 @@ def renew(page: Path, change: Callable[[str], str]) -> None:
     write_pages(page.parent, {page.name: change(read_text(command.replaceable(page)))})
 
 
+def renew_tables(file: Path, page: Path, what: str, tables: Callable[[Any], dict[str, str]]) -> None:
+    """Writes a page with its tables, by their marks, made from a file of results."""
+    results = read_result(file)
+    with expecting(what, file):
+        contents = tables(results)
+
+    def change(text: str) -> str:
+        for mark, content in contents.items():
+            text = between_marks(page, text, mark, content)
+        return text
+
+    renew(page, change)
+
+
 def run(script: str, work: Callable[[], None]) -> int:
     """Exit code of a script; its error is one line."""
 
@@ -89,3 +104,14 @@ def run(script: str, work: Callable[[], None]) -> int:
         return []
 
     return command.run(Path(script).name, work_silently)
+
+
+def renew_page(
+    script: str, purpose: str | None, command_line: str, page: str, write: Callable[[Path, Path], None]
+) -> int:
+    """Exit code of a script that renews one page from the results of a command."""
+    parser = argparse.ArgumentParser(description=purpose)
+    parser.add_argument("results", type=Path, help=f"output folder of `{command_line}`")
+    parser.add_argument("page", type=Path, help=page)
+    options = parser.parse_args()
+    return run(script, lambda: write(options.results, options.page))

@@ -14,4 +14,7 @@ const char* commit();
 /// "slipfront 0.1.0 (commit)".
 std::string version_line();
 
+/// Compiler that made the program, "g++ 12.2.0".
+const char* compiler();
+
 }  // namespace slipfront

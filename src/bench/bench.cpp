@@ -154,7 +154,8 @@ class SlippingPlate {
 /// @param make_mesh  called when there is memory for so many columns of squares
 Rate measure_path(const std::string& path, int columns, const motion::TimeStepping& time,
                   const motion::Execution& execution, const std::function<mesh::Mesh()>& make_mesh) {
-  const double nodes = (columns + 1.0) * (columns / 2 + 1.0);
+  const int rows = columns / 2;
+  const double nodes = (columns + 1.0) * (rows + 1.0);
   require_memory(motion::event_bytes(nodes, nodes, false, time.precision),
                  fmt::format("a plate of {:.4g} nodes", nodes), "free some memory");
   const double before = resident_bytes();
@@ -214,7 +215,8 @@ PaperRun paper_run(int columns, int threads) {
 
 StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
   const auto plate = plate_of(columns);
-  const double n_unknowns = 2 * (columns + 1.0) * (columns / 2 + 1.0);
+  const int rows = columns / 2;
+  const double n_unknowns = 2 * (columns + 1.0) * (rows + 1.0);
   statics::require_statics_memory(solver, n_unknowns);
   const auto mesh = mesh::make_plate(plate);
   const auto start = Clock::now();

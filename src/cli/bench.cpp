@@ -46,7 +46,7 @@ void print_json(const bench::Results& results) {
       {"version", version()},
       {"commit", commit()},
       {"processor", processor()},
-      {"compiler", std::string("g++ ") + __VERSION__},
+      {"compiler", compiler()},
       {"bandwidth_bytes_per_s", results.bandwidth_bytes_per_s},
       {"bandwidth_all_threads_bytes_per_s", results.bandwidth_all_threads_bytes_per_s},
       {"stencil_alone_per_s", results.stencil_alone_per_s},
@@ -56,7 +56,7 @@ void print_json(const bench::Results& results) {
 }
 
 void print_table(const bench::Results& results) {
-  fmt::print("{}, {}, g++ {}\n\n", version_line(), processor(), __VERSION__);
+  fmt::print("{}, {}, {}\n\n", version_line(), processor(), compiler());
   fmt::print("bandwidth of u, v in and out: {:.1f} GB/s by one thread, {:.1f} GB/s by all\n",
              results.bandwidth_bytes_per_s * 1e-9, results.bandwidth_all_threads_bytes_per_s * 1e-9);
   fmt::print("the stencil alone, in the nearest cache: {:.0f} million node updates/s\n\n",

@@ -30,7 +30,8 @@ Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body>
   std::vector<std::vector<double>> mass_x, mass_y;
   for (const auto& body : bodies) {
     SLIPFRONT_ASSERT(body.lower().size() == face_.size(), "interfaces of different nodes");
-    auto x = body.lower_mass_kg(), y = x;
+    auto x = body.lower_mass_kg();
+    auto y = x;
     for (const auto& dashpot : body.contact_dashpots()) {
       x[dashpot.at] *= 1 + dashpot.d_x;
       y[dashpot.at] *= 1 + dashpot.d_y;

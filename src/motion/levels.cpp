@@ -70,7 +70,7 @@ int last_row_of_first_band(const Level& level, const solid::Operator& op, const 
 }
 
 /// Divides a level's lists, all of them in the order of rows, into bands that end after the rows given.
-void set_bands(Level& level, const solid::Operator& op, std::vector<int> last_rows) {
+void set_bands(Level& level, const solid::Operator& op, const std::vector<int>& last_rows) {
   std::size_t stencil = 0, edges = 0, irregular = 0, dashpots = 0;
   int first_row = 0;
   for (const int last_row : last_rows) {
@@ -367,8 +367,10 @@ Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, cons
   set_bands(levels.level.front(), op, last_rows_of_bands(mesh, op, levels));
   for (auto& level : std::span(levels.level).subspan(1)) set_bands(level, op, {op.n_rows() - 1});
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
-    if (!levels.is_orphan[n] && !op.is_top[n])
-      levels.node_updates_per_step += substeps / levels.level[levels.level_of_node[n]].period;
+    if (!levels.is_orphan[n] && !op.is_top[n]) {
+      const int updates = substeps / levels.level[levels.level_of_node[n]].period;
+      levels.node_updates_per_step += updates;
+    }
   return levels;
 }
 

@@ -76,7 +76,8 @@ Stepper::Stepper(std::span<const BodySource> sources, const interface::ContactMo
     stable_step_s_ = std::min(stable_step_s_, body.stable_step_s());
     substeps_ = std::lcm(substeps_, body.period());
   }
-  step_s_ = lowest_step_s_ * (substeps_ / time.interface_substeps);
+  const int lowest_steps = substeps_ / time.interface_substeps;
+  step_s_ = lowest_step_s_ * lowest_steps;
   for (const auto& body : bodies_)
     if (leads(body)) n_bands_ = std::max(n_bands_, static_cast<int>(body.n_bands()));
   const int depth =
@@ -95,7 +96,10 @@ Stepper::Stepper(std::span<const BodySource> sources, const interface::ContactMo
 
 double Stepper::node_updates_per_step() const {
   double sum = 0;
-  for (const auto& body : bodies_) sum += body.levels().node_updates_per_step * (substeps_ / body.period());
+  for (const auto& body : bodies_) {
+    const int steps = substeps_ / body.period();
+    sum += body.levels().node_updates_per_step * steps;
+  }
   return sum;
 }
 

@@ -39,8 +39,8 @@ using Change = std::function<void(input::Case&)>;
 
 /// The events of one study point: the paper's with one change, at a history spacing that keeps their files
 /// small.
-StudyPoint make_point(std::string value, double number, bool quick, std::vector<interface::EventKind> events,
-                      const Change& change) {
+StudyPoint make_point(std::string value, double number, bool quick,
+                      const std::vector<interface::EventKind>& events, const Change& change) {
   StudyPoint point{std::move(value), number, {}};
   for (const auto event : events) {
     input::Case c = base_case(event, quick);

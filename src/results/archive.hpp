@@ -26,7 +26,7 @@ class OutputArchive : public cereal::OutputArchive<OutputArchive, cereal::AllowE
  public:
   /// @throws WriteError, as every other function
   explicit OutputArchive(const std::filesystem::path& file);
-  ~OutputArchive();
+  ~OutputArchive() override;
   void save(const void* data, std::size_t bytes);
   /// Writes the checksum, waits until all is on the device and gives the file its name.
   void close();

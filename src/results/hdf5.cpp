@@ -286,7 +286,7 @@ std::string text_attribute(const File& file, const std::string& object, const st
   char* data = nullptr;
   if (H5Aread(attribute.get(), type.get(), &data) < 0 || data == nullptr)
     throw UserError("{}: cannot read the attribute {} of {}", file.path.string(), name, object);
-  const std::string text = data;
+  std::string text = data;
   H5free_memory(data);
   return text;
 }

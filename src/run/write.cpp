@@ -27,12 +27,6 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-#ifdef __clang__
-constexpr const char* compiler = "clang ";
-#else
-constexpr const char* compiler = "g++ ";
-#endif
-
 const char* name(motion::EventEnd end) {
   switch (end) {
     case motion::EventEnd::end_time:
@@ -121,14 +115,9 @@ Json fronts_json(const std::vector<fronts::Front>& fronts) {
 
 /// What every run.json begins with.
 Json about(const input::Case& config, const Status& status) {
-  Json json = {{"version", version()},
-               {"commit", commit()},
-               {"compiler", std::string(compiler) + __VERSION__},
-               {"host", host_name()},
-               {"title", config.title},
-               {"status", status.name},
-               {"reason", status.reason},
-               {"sessions", status.sessions}};
+  Json json = {{"version", version()},    {"commit", commit()},         {"compiler", compiler()},
+               {"host", host_name()},     {"title", config.title},      {"status", status.name},
+               {"reason", status.reason}, {"sessions", status.sessions}};
   if (status.name == "running") json["process"] = getpid();
   return json;
 }

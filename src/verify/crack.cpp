@@ -263,7 +263,8 @@ Outcome crack(Effort effort) {
   path.curves.push_back(std::move(place_theory));
   speed.curves.push_back(std::move(speed_theory));
   for (const auto& r : fine) {
-    Curve places{fmt::format("zone {:.2f} c_S t_c", r.zone), Curve::Kind::program, {}, {}}, speeds = places;
+    Curve places{fmt::format("zone {:.2f} c_S t_c", r.zone), Curve::Kind::program, {}, {}};
+    Curve speeds = places;
     for (double t = 0.3; t < run_end - half_window; t += 0.1) {
       places.x.push_back(t);
       places.y.push_back(r.place_at(t));

@@ -51,7 +51,8 @@ Outcome layer_spectrum(Effort effort) {
           stability::growing_layer_modes(material, sliding, k, H_m, 4 * c_S * std::max(k, 1 / H_m));
       return modes.empty() ? Complex{0} : modes.front().s_per_s;
     };
-    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}}, theory_speed = theory;
+    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}};
+    Curve theory_speed = theory;
     for (double kH = 0.25; kH < 7; kH += full ? 0.0625 : 0.25) {
       const Complex s = fastest(kH / H_m);
       theory.x.push_back(kH);
@@ -59,7 +60,8 @@ Outcome layer_spectrum(Effort effort) {
       theory_speed.x.push_back(kH);
       theory_speed.y.push_back(-s.imag() * H_m / (kH * c_S));
     }
-    Curve program{law.name, Curve::Kind::program, {}, {}}, program_speed = program;
+    Curve program{law.name, Curve::Kind::program, {}, {}};
+    Curve program_speed = program;
     // Wave over height such that meshes of every level fit.
     for (const double waves_in_H :
          full ? std::vector{0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0} : std::vector{0.3, 0.8}) {

@@ -532,7 +532,7 @@ def test_open_choices_are_judged_drawn_and_handed_to_the_scorecard(program, tmp_
         assert row["share_of_all"] == pytest.approx(verdicts.count("holds") / len(verdicts))
         assert row["holds"] == (rows[0][row["id"]] == "holds")
     picture = tmp_path / "picture.png"
-    assert open_choices.main(picture, tmp_path / "choices") == 0
+    assert open_choices.main([str(picture), str(tmp_path / "choices")]) == 0
     assert picture.stat().st_size > 10000
     result = program("reproduce", "--quick", "-o", "out", "--open-choices", "choices")
     assert result.returncode == 0, result.stderr

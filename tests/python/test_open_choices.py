@@ -183,10 +183,11 @@ def test_a_study_of_the_step_is_drawn_into_its_folder_too(tmp_path):
 def test_the_picture_is_written_where_it_is_wanted(study, tmp_path, capsys):
     for kind in ("png", "pdf", "svg"):
         picture = tmp_path / f"a/picture.{kind}"
-        assert open_choices.main(picture, study) == 0
+        assert open_choices.main([str(picture), str(study)]) == 0
         first = picture.read_bytes()
-        assert open_choices.main(picture, study) == 0  # a regular file is replaced, by the same bytes
+        # A regular file is replaced, by the same bytes.
+        assert open_choices.main([str(picture), str(study)]) == 0
         assert picture.read_bytes() == first and len(first) > 1000
     shutil.rmtree(study)
-    assert open_choices.main(tmp_path / "a/picture.png", study) == 2
+    assert open_choices.main([str(tmp_path / "a/picture.png"), str(study)]) == 2
     assert "No such file" in capsys.readouterr().err

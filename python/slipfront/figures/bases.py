@@ -5,19 +5,16 @@ usage: python -m slipfront.figures.bases PICTURE DIR, output folder of `slipfron
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 
-from slipfront import command
 from slipfront.figures import style
-from slipfront.figures.drawing import Drawing, guarded
-from slipfront.figures.picture import write_picture
+from slipfront.figures.drawing import Drawing
+from slipfront.figures.picture import command_to_draw, write_results
 from slipfront.files import Table, read_json_table, read_table
 from slipfront.folder import result_file
 
@@ -100,20 +97,17 @@ def draw(folder: Path) -> Drawing:
 
 
 def write(picture: Path, folder: Path) -> list[str]:
-    """Writes the picture; returns what to print."""
-    with matplotlib.rc_context(style.RC):
-        return write_picture(picture, lambda: guarded(folder, lambda: draw(folder)))
+    return write_results(picture, folder, draw)
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(
-        prog="python -m slipfront.figures.bases",
-        description="Draws what remains of the paper's direction and energy criterion on deformable bases.",
+    return command_to_draw(
+        "slipfront.figures.bases",
+        "Draws what remains of the paper's direction and energy criterion on deformable bases.",
+        "`slipfront study base`",
+        write,
+        arguments,
     )
-    parser.add_argument("picture", metavar="PICTURE", type=Path, help="the file to write: .png, .pdf or .svg")
-    parser.add_argument("folder", metavar="DIR", type=Path, help="output folder of `slipfront study base`")
-    options = parser.parse_args(arguments)
-    return command.run("slipfront.figures.bases", lambda: write(options.picture, options.folder))
 
 
 if __name__ == "__main__":

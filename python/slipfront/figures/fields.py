@@ -6,7 +6,6 @@ a PICTURE that ends with .gif is an animation of all of them"""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from io import BytesIO
 from pathlib import Path
@@ -22,7 +21,7 @@ from PIL import Image
 from slipfront import command
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, guarded
-from slipfront.figures.picture import KINDS, write_picture
+from slipfront.figures.picture import KINDS, command_to_draw, write_results
 from slipfront.files import DataError
 from slipfront.folder import belongs
 from slipfront.read import Fields, read_fields
@@ -132,29 +131,28 @@ def animate(folder: Path) -> bytes:
 
 
 def write(picture: Path, folder: Path) -> list[str]:
+    kind = picture.suffix.lower()
+    if kind in KINDS:
+        return write_results(picture, folder, draw)
+    if kind != ".gif":
+        raise DataError(f"{picture}: the picture's name must end with {', '.join(KINDS)} or .gif")
+    command.replaceable(picture)
     with matplotlib.rc_context(style.RC):
-        if picture.suffix.lower() != ".gif":
-            if picture.suffix.lower() not in KINDS:
-                raise DataError(f"{picture}: the picture's name must end with {', '.join(KINDS)} or .gif")
-            return write_picture(picture, lambda: guarded(folder, lambda: draw(folder)))
-        command.replaceable(picture)
         image = guarded(folder, lambda: animate(folder))
-        with command.publishing_into(picture.parent) as made:
-            (made / picture.name).write_bytes(image)
-        return [f"animation: {picture}"]
+    with command.publishing_into(picture.parent) as made:
+        (made / picture.name).write_bytes(image)
+    return [f"animation: {picture}"]
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(
-        prog="python -m slipfront.figures.fields",
-        description="Draws the speed of the particles in a run's snapshots; into a .gif as an animation.",
+    return command_to_draw(
+        "slipfront.figures.fields",
+        "Draws the speed of the particles in a run's snapshots; into a .gif as an animation.",
+        "`slipfront run` with snapshots",
+        write,
+        arguments,
+        kinds=".png, .pdf, .svg or .gif",
     )
-    parser.add_argument("picture", metavar="PICTURE", type=Path, help="png, pdf, svg or gif to write")
-    parser.add_argument(
-        "dir", metavar="DIR", type=Path, help="output folder of `slipfront run` with snapshots"
-    )
-    options = parser.parse_args(arguments)
-    return command.run("slipfront.figures.fields", lambda: write(options.picture, options.dir))
 
 
 if __name__ == "__main__":

@@ -6,21 +6,18 @@ DIR: output folder of `slipfront study open-choices`"""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from slipfront import command
-from slipfront.figures.drawing import Drawing, guarded
-from slipfront.figures.picture import write_picture
-from slipfront.figures.style import PAGE_MM, RC, Look, new_figure
+from slipfront.figures.drawing import Drawing
+from slipfront.figures.picture import command_to_draw, write_results
+from slipfront.figures.style import PAGE_MM, Look, new_figure
 from slipfront.files import DataError, Table, read_json_table, read_table
 from slipfront.folder import result_file
 
@@ -230,27 +227,18 @@ def draw(folder: Path) -> Drawing:
 
 
 def write(picture: Path, folder: Path) -> list[str]:
-    """Writes the picture; returns what to print."""
-    with matplotlib.rc_context(RC):
-        return write_picture(picture, lambda: guarded(folder, lambda: draw(folder)))
+    return write_results(picture, folder, draw)
 
 
-def main(picture: Path, folder: Path) -> int:
-    return command.run("slipfront.figures", lambda: write(picture, folder))
-
-
-def parsed() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="python -m slipfront.figures.open_choices",
-        description="Draws which statements of the paper depend on what it leaves open.",
+def main(arguments: list[str] | None = None) -> int:
+    return command_to_draw(
+        "slipfront.figures.open_choices",
+        "Draws which statements of the paper depend on what it leaves open.",
+        "`slipfront study open-choices`",
+        write,
+        arguments,
     )
-    parser.add_argument("picture", metavar="PICTURE", type=Path, help="the file to write: .png, .pdf or .svg")
-    parser.add_argument(
-        "folder", metavar="DIR", type=Path, help="output folder of `slipfront study open-choices`"
-    )
-    return parser.parse_args()
 
 
 if __name__ == "__main__":
-    options = parsed()
-    sys.exit(main(options.picture, options.folder))
+    sys.exit(main())

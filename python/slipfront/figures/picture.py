@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 
 from slipfront import command
 from slipfront.figures.drawing import Drawing, guarded
+from slipfront.figures.style import RC
 from slipfront.files import DataError
 
 #: Kinds of pictures, each with the entry without which the same figure gives the same file.
@@ -50,3 +52,25 @@ def write_picture(picture: Path, draw: Callable[[], Drawing]) -> list[str]:
     checked(picture)
     write_drawing(picture, draw())
     return [f"figure: {picture}"]
+
+
+def write_results(picture: Path, folder: Path, draw: Callable[[Path], Drawing]) -> list[str]:
+    """Draws a folder of results in the style of all figures; returns what to print."""
+    with matplotlib.rc_context(RC):
+        return write_picture(picture, lambda: guarded(folder, lambda: draw(folder)))
+
+
+def command_to_draw(
+    module: str,
+    purpose: str,
+    results: str,
+    write: Callable[[Path, Path], list[str]],
+    arguments: list[str] | None,
+    kinds: str = ".png, .pdf or .svg",
+) -> int:
+    """Exit code of a module that writes the picture of one folder of results."""
+    parser = argparse.ArgumentParser(prog=f"python -m {module}", description=purpose)
+    parser.add_argument("picture", metavar="PICTURE", type=Path, help=f"the file to write: {kinds}")
+    parser.add_argument("folder", metavar="DIR", type=Path, help=f"output folder of {results}")
+    options = parser.parse_args(arguments)
+    return command.run("slipfront.figures", lambda: write(options.picture, options.folder))
