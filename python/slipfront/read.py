@@ -43,6 +43,8 @@ FRONT_COLUMNS = (
     "U_s_J_per_m3",
     "U_r_J_per_m3",
 )
+# Per node and row of history.raw, in this order; data sets of interface.h5.
+HISTORY_FIELDS = ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")
 # Columns of energy.csv without their unit, J per m of thickness.
 ENERGY_TERMS = (
     "strain",
@@ -348,12 +350,14 @@ def read_history(file: Path, blew_up: bool = False) -> History:
 
 
 def read_raw_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
-    """history.raw: rows of time_s and slip, slip rate, t, p at the nodes; a cut row at the end is left."""
+    """history.raw: rows of time_s and HISTORY_FIELDS at the nodes; a cut row at the end is left."""
     data = read_bytes(result_file(file))
-    width, n = 1 + 4 * len(x_m), len(x_m)
+    n = len(x_m)
+    width = 1 + len(HISTORY_FIELDS) * n
     n_rows = len(data) // (8 * width)
     rows = np.frombuffer(data, dtype="<f8", count=n_rows * width).reshape(n_rows, width)
-    rate, p = (rows[:, 1 + k * n : 1 + (k + 1) * n] for k in (1, 3))
+    first = {name: 1 + k * n for k, name in enumerate(HISTORY_FIELDS)}
+    rate, p = (rows[:, first[name] : first[name] + n] for name in ("slip_rate_m_per_s", "p_Pa"))
     return checked_history(file, History(rows[:, 0], x_m, rate, p), blew_up)
 
 

@@ -154,7 +154,7 @@ void Body::push_later_band(BodyStep& step, std::size_t band) {
 }
 
 void Body::complete(const BodyStep& step) {
-  add_works(works_, step.works);
+  add_terms(works_, step.works);
 }
 
 record::Energies Body::energies() {

@@ -16,9 +16,8 @@ constexpr std::int64_t monitor_interval = 50;
 
 /// Empties a history but for its places; the memory stays for the next rows.
 void clear_rows(record::History& history) {
-  for (auto* column :
-       {&history.time_s, &history.slip_m, &history.slip_rate_m_per_s, &history.t_Pa, &history.p_Pa})
-    column->clear();
+  history.time_s.clear();
+  for (const auto& field : record::history_fields) (history.*field.member).clear();
 }
 
 /// Steps, at least one, until the stepper's time is at least time_s; a far time is beyond any run.

@@ -168,12 +168,7 @@ void Stepper::reverse(Recorder& recorder) {
 
 record::Energies Stepper::energies() {
   auto sum = bodies_.front().energies();
-  for (auto& body : std::span(bodies_).subspan(1)) {
-    const auto e = body.energies();
-    sum.kinetic += e.kinetic;
-    sum.strain += e.strain;
-    add_works(sum, e);
-  }
+  for (auto& body : std::span(bodies_).subspan(1)) add_terms(sum, body.energies());
   sum.time_s = time_s();
   return sum;
 }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "record/column.hpp"
 
 namespace slipfront::record {
 
@@ -71,13 +74,31 @@ bool is_consistent(const SlipRecord& record);
 
 /// Time history of an interface, from a run or from elsewhere. Matrices are row-major [times x nodes].
 struct History {
-  std::vector<double> time_s;             ///< [times], ascending
-  std::vector<double> x_m;                ///< [nodes], ascending
-  std::vector<double> slip_m;             ///< displacement of the plate along x since the start
-  std::vector<double> slip_rate_m_per_s;  ///< positive to +x
-  std::vector<double> t_Pa;
-  std::vector<double> p_Pa;
+  std::vector<double> time_s;  ///< [times], ascending
+  std::vector<double> x_m;     ///< [nodes], ascending
+  std::vector<double> slip_m, slip_rate_m_per_s, t_Pa, p_Pa;
 };
+
+using HistoryColumn = Column<History, std::vector<double>>;
+
+inline constexpr HistoryColumn history_time = {"time_s", "s", "time since the start of the event",
+                                               &History::time_s};
+inline constexpr HistoryColumn history_place = {"x_m", "m", "position along the interface from the left edge",
+                                                &History::x_m};
+/// The matrices, in the order of the files.
+inline constexpr std::array<HistoryColumn, 4> history_fields = {{
+    {"slip_m", "m", "displacement of the plate along x relative to its base, since the start, [times, nodes]",
+     &History::slip_m},
+    {"slip_rate_m_per_s", "m/s", "velocity of the plate along x relative to its base, [times, nodes]",
+     &History::slip_rate_m_per_s},
+    {"t_Pa", "Pa", "tangential traction, positive against sliding to +x, [times, nodes]", &History::t_Pa},
+    {"p_Pa", "Pa", "contact pressure, positive in compression, [times, nodes]", &History::p_Pa},
+}};
+
+/// Numbers of a row: the time, and each field at all nodes.
+inline std::size_t history_row_values(std::size_t n_nodes) {
+  return 1 + history_fields.size() * n_nodes;
+}
 
 /// Tractions before the event, at the nodes of the interface. [nodes]
 struct StaticState {

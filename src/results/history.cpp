@@ -2,7 +2,6 @@
 #include "results/history.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -12,44 +11,24 @@
 namespace slipfront::results {
 namespace {
 
-using record::History;
-
-/// A data set of interface.h5.
-struct Column {
-  const char* name;
-  std::vector<double> History::*values;
-  const char* unit;
-  const char* description;
-};
-
-constexpr std::array<Column, 2> axes = {{
-    {"time_s", &History::time_s, "s", "time since the start of the event"},
-    {"x_m", &History::x_m, "m", "position along the interface from the left edge"},
-}};
-constexpr std::array<Column, 4> matrices = {{
-    {"slip_m", &History::slip_m, "m",
-     "displacement of the plate along x relative to its base, since the start, [times, nodes]"},
-    {"slip_rate_m_per_s", &History::slip_rate_m_per_s, "m/s",
-     "velocity of the plate along x relative to its base, [times, nodes]"},
-    {"t_Pa", &History::t_Pa, "Pa", "tangential traction, positive against sliding to +x, [times, nodes]"},
-    {"p_Pa", &History::p_Pa, "Pa", "contact pressure, positive in compression, [times, nodes]"},
-}};
+using record::History, record::HistoryColumn, record::history_fields, record::history_place,
+    record::history_time;
 
 /// Bytes of a chunk of a matrix: few calls, and little left empty at the end of a short history.
 constexpr std::size_t chunk_bytes = 64 * 1024;
 constexpr hsize_t time_chunk_rows = 1024;
 
-void describe(const hdf5::File& file, const Column& column) {
+void describe(const hdf5::File& file, const HistoryColumn& column) {
   hdf5::set_attribute(file, column.name, "unit", std::string(column.unit));
   hdf5::set_attribute(file, column.name, "description", std::string(column.description));
 }
 
-void require_described(const hdf5::File& file, const Column& column) {
+void require_described(const hdf5::File& file, const HistoryColumn& column) {
   hdf5::require_text(file, column.name, "unit", column.unit);
   hdf5::require_text(file, column.name, "description", column.description);
 }
 
-std::vector<double> read_axis(const hdf5::File& file, const Column& column) {
+std::vector<double> read_axis(const hdf5::File& file, const HistoryColumn& column) {
   hdf5::Array array = hdf5::read(file, column.name);
   const std::string path = file.path.string();
   if (array.shape.size() != 1)
@@ -61,7 +40,8 @@ std::vector<double> read_axis(const hdf5::File& file, const Column& column) {
   return std::move(array.values);
 }
 
-std::vector<double> read_matrix(const hdf5::File& file, const Column& column, const hdf5::Shape& shape) {
+std::vector<double> read_matrix(const hdf5::File& file, const HistoryColumn& column,
+                                const hdf5::Shape& shape) {
   hdf5::Array array = hdf5::read(file, column.name);
   if (array.shape != shape) {
     std::string lengths;
@@ -81,34 +61,34 @@ std::size_t history_block_rows(std::size_t n_nodes) {
 
 HistoryFile::HistoryFile(const std::filesystem::path& path, std::span<const double> x_m)
     : file_(hdf5::create_file(path)), n_nodes_(x_m.size()) {
-  const auto& [time, place] = axes;
-  hdf5::create_growing(file_, time.name, {}, time_chunk_rows, hdf5::Chunks::checked);
-  describe(file_, time);
-  hdf5::create_growing(file_, place.name, {}, std::max<std::size_t>(n_nodes_, 1), hdf5::Chunks::checked);
-  hdf5::add_rows(file_, place.name, n_nodes_);
-  hdf5::write_rows(file_, place.name, 0, x_m);
-  describe(file_, place);
-  for (const Column& matrix : matrices) {
+  hdf5::create_growing(file_, history_time.name, {}, time_chunk_rows, hdf5::Chunks::checked);
+  describe(file_, history_time);
+  hdf5::create_growing(file_, history_place.name, {}, std::max<std::size_t>(n_nodes_, 1),
+                       hdf5::Chunks::checked);
+  hdf5::add_rows(file_, history_place.name, n_nodes_);
+  hdf5::write_rows(file_, history_place.name, 0, x_m);
+  describe(file_, history_place);
+  for (const HistoryColumn& field : history_fields) {
     if (n_nodes_ > 0)
-      hdf5::create_growing(file_, matrix.name, {n_nodes_}, history_block_rows(n_nodes_),
+      hdf5::create_growing(file_, field.name, {n_nodes_}, history_block_rows(n_nodes_),
                            hdf5::Chunks::checked);
     else
-      hdf5::create(file_, matrix.name, hdf5::Type::float64, {0, 0});
-    describe(file_, matrix);
+      hdf5::create(file_, field.name, hdf5::Type::float64, {0, 0});
+    describe(file_, field);
   }
 }
 
 void HistoryFile::append(const History& rows) {
   const std::size_t n = rows.time_s.size();
-  const auto append_column = [&](const Column& column, std::size_t length) {
-    const auto& values = rows.*column.values;
+  const auto append_column = [&](const HistoryColumn& column, std::size_t length) {
+    const auto& values = rows.*column.member;
     SLIPFRONT_ASSERT(values.size() == n * length, "columns of a history differ in length");
     if (values.empty()) return;
     hdf5::add_rows(file_, column.name, n);
     hdf5::write_rows(file_, column.name, n_rows_, values);
   };
-  append_column(axes[0], 1);
-  for (const Column& matrix : matrices) append_column(matrix, n_nodes_);
+  append_column(history_time, 1);
+  for (const HistoryColumn& field : history_fields) append_column(field, n_nodes_);
   n_rows_ += n;
 }
 
@@ -126,33 +106,33 @@ void write_history(const std::filesystem::path& path, const History& history) {
 }
 
 WrittenHistory::WrittenHistory(const std::filesystem::path& path) : file_(hdf5::open_written_file(path)) {
-  for (const auto* columns : {&axes[0], &axes[1], &matrices[0], &matrices[1], &matrices[2], &matrices[3]})
-    require_described(file_, *columns);
+  for (const HistoryColumn& axis : {history_time, history_place}) require_described(file_, axis);
+  for (const HistoryColumn& field : history_fields) require_described(file_, field);
 }
 
 void WrittenHistory::require(std::size_t row, const History& rows) const {
-  const auto& [time, place] = axes;
-  hdf5::require_rows(file_, time.name, row, rows.time_s);
-  hdf5::require_rows(file_, place.name, 0, rows.x_m);
+  hdf5::require_rows(file_, history_time.name, row, rows.time_s);
+  hdf5::require_rows(file_, history_place.name, 0, rows.x_m);
   if (rows.x_m.empty()) return;
-  for (const Column& matrix : matrices) hdf5::require_rows(file_, matrix.name, row, rows.*matrix.values);
+  for (const HistoryColumn& field : history_fields)
+    hdf5::require_rows(file_, field.name, row, rows.*field.member);
 }
 
 void WrittenHistory::require_lengths(std::size_t n_rows, std::size_t n_nodes) const {
-  const auto& [time, place] = axes;
-  hdf5::require_length(file_, time.name, n_rows);
-  hdf5::require_length(file_, place.name, n_nodes);
+  hdf5::require_length(file_, history_time.name, n_rows);
+  hdf5::require_length(file_, history_place.name, n_nodes);
   if (n_nodes == 0) return;
-  for (const Column& matrix : matrices) hdf5::require_length(file_, matrix.name, n_rows);
+  for (const HistoryColumn& field : history_fields) hdf5::require_length(file_, field.name, n_rows);
 }
 
 History read_history(const std::filesystem::path& path) {
   files::require_listed(path);
   const hdf5::File file = hdf5::open_file(path);
   History history;
-  for (const Column& axis : axes) history.*axis.values = read_axis(file, axis);
+  for (const HistoryColumn& axis : {history_time, history_place})
+    history.*axis.member = read_axis(file, axis);
   const hdf5::Shape shape = {history.time_s.size(), history.x_m.size()};
-  for (const Column& matrix : matrices) history.*matrix.values = read_matrix(file, matrix, shape);
+  for (const HistoryColumn& field : history_fields) history.*field.member = read_matrix(file, field, shape);
   return history;
 }
 

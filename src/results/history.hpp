@@ -13,8 +13,8 @@ namespace slipfront::results {
 /// Rows that make whole chunks of a history file: the best number to append at a time.
 std::size_t history_block_rows(std::size_t n_nodes);
 
-/// An interface.h5 that grows: time_s [nt], x_m [nx], slip_m, slip_rate_m_per_s, t_Pa, p_Pa [nt, nx], each
-/// with the attributes `unit` and `description`, all with checksums of HDF5's own. It can be read once it is
+/// An interface.h5 that grows: the times [nt], the places [nx] and record::history_fields [nt, nx], each with
+/// the attributes `unit` and `description`, all with checksums of HDF5's own. It can be read once it is
 /// closed. Every function throws WriteError where the file cannot be written.
 class HistoryFile {
  public:

@@ -34,16 +34,14 @@ void write_static(const std::filesystem::path& file, const record::StaticState& 
 }
 
 void write_energies(const std::filesystem::path& file, std::span<const record::Energies> energies) {
-  std::string text =
-      "time_s,strain_J_per_m,kinetic_J_per_m,top_work_J_per_m,trigger_work_J_per_m,prestress_work_J_per_m,"
-      "friction_work_J_per_m,contact_work_J_per_m,damping_work_J_per_m,boundary_work_J_per_m,"
-      "coupling_work_J_per_m,imbalance_J_per_m\n";
-  for (const auto& e : energies)
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", field(e.time_s), field(e.strain),
-                        field(e.kinetic), field(e.top_work), field(e.trigger_work), field(e.prestress_work),
-                        field(e.friction_work), field(e.contact_work), field(e.damping_work),
-                        field(e.boundary_work), field(e.coupling_work),
-                        field(record::imbalance_J_per_m(e, energies.front())));
+  std::string text = record::energy_time.name;
+  for (const auto& term : record::energy_terms) text += fmt::format(",{}", term.name);
+  text += fmt::format(",{}\n", record::imbalance_name);
+  for (const auto& e : energies) {
+    text += field(e.time_s);
+    for (const auto& term : record::energy_terms) text += fmt::format(",{}", field(e.*term.member));
+    text += fmt::format(",{}\n", field(record::imbalance_J_per_m(e, energies.front())));
+  }
   files::write_text(file, text);
 }
 

@@ -62,10 +62,11 @@ record::History read_rows(Records& records, std::size_t n, std::span<const doubl
   record::History rows;
   rows.x_m.assign(x_m.begin(), x_m.end());
   for (std::size_t k = 0; k < n; ++k) {
-    auto from = values.begin() + static_cast<std::ptrdiff_t>(k * (1 + 4 * nx));
+    auto from = values.begin() + static_cast<std::ptrdiff_t>(k * record::history_row_values(nx));
     rows.time_s.push_back(*from++);
-    for (auto* column : {&rows.slip_m, &rows.slip_rate_m_per_s, &rows.t_Pa, &rows.p_Pa}) {
-      column->insert(column->end(), from, from + static_cast<std::ptrdiff_t>(nx));
+    for (const auto& field : record::history_fields) {
+      auto& column = rows.*field.member;
+      column.insert(column.end(), from, from + static_cast<std::ptrdiff_t>(nx));
       from += static_cast<std::ptrdiff_t>(nx);
     }
   }
@@ -134,8 +135,8 @@ void ResultStream::require_unchanged(const std::filesystem::path& dir, const Ext
 }
 
 void ResultStream::sample(const record::History& row) {
-  for (const auto* column : {&row.time_s, &row.slip_m, &row.slip_rate_m_per_s, &row.t_Pa, &row.p_Pa})
-    append(block_, *column);
+  append(block_, row.time_s);
+  for (const auto& field : record::history_fields) append(block_, row.*field.member);
   if (block_.size() >= block_values) hand_over();
 }
 
@@ -167,7 +168,7 @@ ResultStream::Extents ResultStream::keep() {
 
 void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,
                    std::span<const double> x_m) {
-  Records records(raw, 1 + 4 * x_m.size());
+  Records records(raw, record::history_row_values(x_m.size()));
   const std::size_t block = history_block_rows(x_m.size());
   const auto for_each_block = [&](auto&& f) {
     records.rewind();

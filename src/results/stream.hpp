@@ -21,7 +21,7 @@ namespace slipfront::results {
 /// they can be read whenever the run ends, and cut to where a run that goes on begins; interface.h5 and
 /// fields.vtkhdf are made of them at the end.
 ///
-/// history.raw: per row time_s, slip_m [nodes], slip_rate_m_per_s [nodes], t_Pa [nodes], p_Pa [nodes];
+/// history.raw: per row time_s and each of record::history_fields [nodes];
 /// snapshots.raw: per snapshot time_s and u_x, u_y, v_x, v_y [nodes of the plate]; doubles as in memory.
 class ResultStream : public motion::Sink {
  public:

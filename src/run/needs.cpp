@@ -193,7 +193,7 @@ Needs needs(const input::Case& config, const Size& size) {
                   interface_bytes(config, size) + n.energy_rows * sizeof(record::Energies);
 
   constexpr double bytes_per_number_in_text = 20;
-  const double history = number * n.history_rows * (1 + 4 * size.n_interface);
+  const double history = number * n.history_rows * (1 + record::history_fields.size() * size.n_interface);
   const double field = 2 * number * size.n_nodes;
   const double mesh_of_fields = 3 * number * size.n_nodes + (5 * number + 1) * size.n_cells;
   const double snapshot_raw = 2 * field, snapshot_written = 6 * number * size.n_nodes;

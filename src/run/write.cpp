@@ -42,16 +42,9 @@ const char* name(motion::EventEnd end) {
 }
 
 Json energy_json(const record::Energies& e) {
-  return {{"strain_J_per_m", e.strain},
-          {"kinetic_J_per_m", e.kinetic},
-          {"top_work_J_per_m", e.top_work},
-          {"trigger_work_J_per_m", e.trigger_work},
-          {"prestress_work_J_per_m", e.prestress_work},
-          {"friction_work_J_per_m", e.friction_work},
-          {"contact_work_J_per_m", e.contact_work},
-          {"damping_work_J_per_m", e.damping_work},
-          {"boundary_work_J_per_m", e.boundary_work},
-          {"coupling_work_J_per_m", e.coupling_work}};
+  Json json;
+  for (const auto& term : record::energy_terms) json[term.name] = e.*term.member;
+  return json;
 }
 
 Json statics_json(const InitialState& initial) {

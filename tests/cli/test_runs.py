@@ -20,6 +20,7 @@ from conftest import ROOT
 from slipfront.figures import interface_step, open_choices
 from slipfront.figures.__main__ import main as figures
 from slipfront.figures.convergence import read_study
+from slipfront.read import ENERGY_TERMS, HISTORY_FIELDS
 
 SO_FAR = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
 FILES = SO_FAR | {"checksums.sha256"}
@@ -95,6 +96,9 @@ def test_energies_balance(program, coarse, tmp_path):
         "friction_work_J_per_m,contact_work_J_per_m,damping_work_J_per_m,boundary_work_J_per_m,"
         "coupling_work_J_per_m,imbalance_J_per_m"
     )
+    terms = [name.removesuffix("_J_per_m") for name in rows[0] if name.endswith("_J_per_m")]
+    assert terms == [*ENERGY_TERMS, "imbalance"]
+    assert list(summary(tmp_path / "out")["energy_at_end"]) == [f"{term}_J_per_m" for term in ENERGY_TERMS]
     assert len(rows) > 5
     assert float(rows[-1]["time_s"]) == summary(tmp_path / "out")["time_s"]
     largest = max(abs(float(row[name])) for row in rows for name in row if name.endswith("_J_per_m"))
@@ -110,7 +114,8 @@ def test_history_is_hdf5_with_units(program, coarse, tmp_path):
         time_s, x_m = file["time_s"][:], file["x_m"][:]
         assert np.all(np.diff(time_s) > 0)
         assert np.all(np.diff(x_m) > 0)
-        for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa"):
+        assert set(file) == {"time_s", "x_m", *HISTORY_FIELDS}
+        for name in HISTORY_FIELDS:
             assert file[name].shape == (len(time_s), len(x_m))
             assert np.all(np.isfinite(file[name][:]))
         assert np.all(file["p_Pa"][:] >= 0)
