@@ -90,7 +90,8 @@ Outcome growing_modes(Effort effort) {
            rate_unit_per_s();
   };
   for (const auto& response : responses) {
-    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}}, theory_speed = theory;
+    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}};
+    Curve theory_speed = theory;
     for (int j = 0; j <= 64; ++j) {
       const double mu = 0.4 + 0.025 * j;
       const Complex p = mode(response.contact(mu));
@@ -100,7 +101,8 @@ Outcome growing_modes(Effort effort) {
       theory_speed.x.push_back(mu);
       theory_speed.y.push_back(-p.imag());
     }
-    Curve program{response.name, Curve::Kind::program, {}, {}}, program_speed = program;
+    Curve program{response.name, Curve::Kind::program, {}, {}};
+    Curve program_speed = program;
     for (const double mu : full ? std::vector{0.6, 1.0, 1.1, 1.3, 1.6, 2.0} : std::vector{1.0, 1.3}) {
       const auto contact = response.contact(mu);
       const Complex p = mode(contact);
