@@ -82,7 +82,11 @@ const Wrong wrong_cases[] = {
     {"PeriodicPlate", on_steel + square, {{"plate.sides", "periodic"}}},
     {"FilletOnABase", on_steel + "[plate]\ncorner = \"fillet\" # here\n"},
     {"BaseWithoutItsMaterial", "[base]\nheight_m = 0.1\nkind = \"body\" # here\n"},
-    {"BaseIteratively", on_steel + "[loading]\nsolver = \"iterative\" # here\n"},
+    {"GradedBaseIteratively",
+     on_steel + "coarsenings = 1\nfine_height_m = 0.02\n[loading]\nsolver = \"iterative\" # here\n"},
+    {"HighBaseIteratively",
+     on_steel + "[plate]\nwidth_m = 0.009\nelement_size_m = 1e-3\n[loading]\nsolver = \"iterative\" # "
+                "here\nedge_margin_m = 1e-3\n[event]\ntrigger_zone_m = 1e-3\n"},
     // Start of the event
     {"TriggerOfCoulomb",
      "[friction]\nlaw = \"coulomb\"\n[event]\nkind = \"left\"\ntrigger_form = \"weakened\" # here\n"},
