@@ -14,10 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json estimate_json(const fronts::Estimate& e) {
-  return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};
-}
-
 /// A fitted curve with its interval; empty where there is no fit.
 Json curve_json(const std::vector<fronts::CurvePoint>& curve) {
   Json json = Json::array();
@@ -31,9 +27,9 @@ Json collapse_json(const Collapse& c) {
   Json json;
   json["fit"] = nullptr;
   if (c.fitted)
-    json["fit"] = {{"a", estimate_json(c.fit.a)},
-                   {"b", estimate_json(c.fit.b)},
-                   {"c", estimate_json(c.fit.c)},
+    json["fit"] = {{"a", number(c.fit.a)},
+                   {"b", number(c.fit.b)},
+                   {"c", number(c.fit.c)},
                    {"rms_over_c_L", c.fit.rms},
                    {"n_points", c.fit.n_points}};
   json["share_in_paper_band"] = number(c.share_in_paper_band);

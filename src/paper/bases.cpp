@@ -94,7 +94,7 @@ Json fit_json(const Collapse& c) {
   if (!c.fitted) return nullptr;
   Json json;
   for (const auto& [name, e] : {std::pair("a", c.fit.a), std::pair("b", c.fit.b), std::pair("c", c.fit.c)})
-    json[name] = {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};
+    json[name] = number(e);
   json["rms_over_c_L"] = number(c.fit.rms);
   return json;
 }

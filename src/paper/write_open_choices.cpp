@@ -131,10 +131,6 @@ Json matrix_json(const OpenChoicesResult& result) {
   return list;
 }
 
-Json estimate_json(const fronts::Estimate& e) {
-  return {{"value", number(e.value)}, {"low", number(e.low)}, {"high", number(e.high)}};
-}
-
 Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
   Json values;
   for (std::size_t k = 0; k < result.choices.size(); ++k)
@@ -147,9 +143,9 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
                {"extremity", number(o.extremity)},
                {"fit", nullptr}};
   if (o.fit)
-    json["fit"] = {{"a", estimate_json(o.fit->a)},
-                   {"b", estimate_json(o.fit->b)},
-                   {"c", estimate_json(o.fit->c)},
+    json["fit"] = {{"a", number(o.fit->a)},
+                   {"b", number(o.fit->b)},
+                   {"c", number(o.fit->c)},
                    {"rms_over_c_L", o.fit->rms}};
   return json;
 }
