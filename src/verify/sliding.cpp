@@ -93,6 +93,25 @@ Complex WaveShape::sum(const std::array<Complex, 4>& amplitude, double y_m) cons
   return total;
 }
 
+RateCurves::RateCurves(const std::string& label, Curve::Kind kind)
+    : growth{label, kind, {}, {}}, speed(growth) {}
+
+void RateCurves::add(double at, double growth_rate, double phase_speed) {
+  growth.x.push_back(at);
+  growth.y.push_back(growth_rate);
+  speed.x.push_back(at);
+  speed.y.push_back(phase_speed);
+}
+
+RateCharts::RateCharts(const char* x_label, const char* growth_label, const char* speed_label)
+    : growth{.x_label = x_label, .y_label = growth_label},
+      speed{.x_label = x_label, .y_label = speed_label} {}
+
+void RateCharts::add(const RateCurves& curves) {
+  growth.curves.push_back(curves.growth);
+  speed.curves.push_back(curves.speed);
+}
+
 Complex Growth::rate_per_s() const {
   const auto n = static_cast<double>(time_s.size());
   const double t_mean = std::accumulate(time_s.begin(), time_s.end(), 0.0) / n;
