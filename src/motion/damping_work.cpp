@@ -16,7 +16,7 @@ double DampingWork::add(const PushProducts& push) {
   begun_ = true;
   last_.v_K_v = (v_K_w - after_K_u) / (dt + beta);
   last_.u_K_u = u_K_w_now - beta * (after_K_u + dt * last_.v_K_v + push.shift_K_v);
-  last_.after_K_w = push.after_K_w - m_over_dt * (kicks.v_d + kicks.d_d);
+  last_.after_K_w = -m_over_dt * (kicks.v_d + kicks.d_d);
   return done;
 }
 

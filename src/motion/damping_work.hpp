@@ -9,7 +9,7 @@ namespace slipfront::motion {
 /// force -K w of some cells, w = u + beta_R v, with u and v the displacements and velocities before it; v'
 /// are the velocities after it.
 struct PushProducts {
-  double u_K_w = 0, v_K_w = 0, after_K_w = 0;  ///< without the nodes of `kicks`; after: v' K w
+  double u_K_w = 0, v_K_w = 0;  ///< without the nodes of `kicks`
   /// v' K w of the push before at the nodes that its `kicks` leave out, some of which got their v' only after
   /// it, from the contact or from a finer level.
   double late_K_w = 0;

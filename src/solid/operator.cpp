@@ -329,78 +329,127 @@ double top_force_x_N_per_m(const Operator& op, const Field& w) {
   return force;
 }
 
-double largest_frequency_rad_per_s(const Operator& op) {
-  // Lanczos on the symmetric M^-1/2 K M^-1/2 without reorthogonalisation: copies of converged Ritz values do
-  // not disturb the largest one. The start vector is a fixed pseudo-random sequence.
-  const std::size_t n = op.mass_kg.size();
-  std::vector<double> root_mass(n);
-  Field q(n), q_before(n), w(n), a(n);
-  std::uint64_t state = 1;
-  const auto random = [&state] {
-    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5;
-  };
-  double norm2 = 0;
-  for (std::size_t k = 0; k < n; ++k) {
-    root_mass[k] = std::sqrt(op.mass_kg[k]);
-    if (op.is_top[k] || op.mass_kg[k] == 0) continue;
-    q.x[k] = random();
-    q.y[k] = random();
-    norm2 += q.x[k] * q.x[k] + q.y[k] * q.y[k];
-  }
-  double beta = std::sqrt(norm2);
-  for (std::size_t k = 0; k < n; ++k) q.x[k] /= beta, q.y[k] /= beta;
-  beta = 0;
+namespace {
 
-  constexpr int max_iterations = 300;
-  constexpr double tolerance = 1e-3;
-  std::vector<double> diagonal, off_diagonal;
-  double largest = 0;
-  for (int iteration = 1; iteration <= max_iterations; ++iteration) {
-    for (std::size_t k = 0; k < n; ++k) {
-      const double scale = root_mass[k] > 0 ? 1 / root_mass[k] : 0;
-      w.x[k] = q.x[k] * scale;
-      w.y[k] = q.y[k] * scale;
+/// Lanczos' recurrence on the symmetric M^-1/2 K M^-1/2, from a fixed pseudo-random vector. Nothing is
+/// orthogonalised again: copies of converged Ritz values do not disturb the largest one.
+class Lanczos {
+ public:
+  explicit Lanczos(const Operator& op) : op_(op), n_(op.mass_kg.size()), root_mass_(n_), q_(n_) {
+    for (std::size_t k = 0; k < n_; ++k) root_mass_[k] = std::sqrt(op.mass_kg[k]);
+    q_before_ = w_ = a_ = Field(n_);
+    set_start();
+  }
+
+  /// Adds a row to the tridiagonal matrix.
+  void add_row() {
+    if (!diagonal_.empty()) next_vector();
+    multiply();
+    const double alpha = subtract_before();
+    diagonal_.push_back(alpha);
+    beta_ = std::sqrt(subtract_own(alpha));
+  }
+  /// Whether the rows so far span all that the start contains.
+  bool is_exhausted() const { return beta_ <= 1e-12 * std::abs(diagonal_.back()); }
+
+  /// The residual bounds the distance to the nearest eigenvalue.
+  struct RitzValue {
+    double value = 0, residual = 0;
+  };
+  RitzValue largest() const {
+    const auto size = static_cast<Eigen::Index>(diagonal_.size());
+    const Eigen::Map<const Eigen::VectorXd> d(diagonal_.data(), size);
+    const Eigen::Map<const Eigen::VectorXd> e(off_diagonal_.data(), size - 1);
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> tridiagonal;
+    tridiagonal.computeFromTridiagonal(d, e);
+    return {tridiagonal.eigenvalues()(size - 1),
+            beta_ * std::abs(tridiagonal.eigenvectors()(size - 1, size - 1))};
+  }
+
+ private:
+  void set_start() {
+    std::uint64_t state = 1;
+    const auto random = [&state] {
+      state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+      return static_cast<double>(state >> 11) / 9007199254740992.0 - 0.5;
+    };
+    double norm2 = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+      if (op_.is_top[k] || op_.mass_kg[k] == 0) continue;
+      q_.x[k] = random();
+      q_.y[k] = random();
+      norm2 += q_.x[k] * q_.x[k] + q_.y[k] * q_.y[k];
     }
-    apply(op, w, a);
-    double alpha = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      a.x[k] = a.x[k] * root_mass[k] - beta * q_before.x[k];
-      a.y[k] = a.y[k] * root_mass[k] - beta * q_before.y[k];
-      alpha += a.x[k] * q.x[k] + a.y[k] * q.y[k];
-    }
-    double next2 = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      a.x[k] -= alpha * q.x[k];
-      a.y[k] -= alpha * q.y[k];
-      next2 += a.x[k] * a.x[k] + a.y[k] * a.y[k];
-    }
-    diagonal.push_back(alpha);
-    beta = std::sqrt(next2);
-    const bool exhausted = beta <= 1e-12 * std::abs(alpha);
-    if (iteration % 10 == 0 || exhausted || iteration == max_iterations) {
-      const auto size = static_cast<Eigen::Index>(diagonal.size());
-      const Eigen::Map<const Eigen::VectorXd> d(diagonal.data(), size);
-      const Eigen::Map<const Eigen::VectorXd> e(off_diagonal.data(), size - 1);
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> tridiagonal;
-      tridiagonal.computeFromTridiagonal(d, e);
-      const double ritz = tridiagonal.eigenvalues()(size - 1);
-      // The residual bounds the distance to the nearest eigenvalue; added, it makes the estimate err on the
-      // safe side.
-      const double residual = beta * std::abs(tridiagonal.eigenvectors()(size - 1, size - 1));
-      largest = ritz + residual;
-      if (exhausted || residual < tolerance * ritz) break;
-    }
-    off_diagonal.push_back(beta);
-    for (std::size_t k = 0; k < n; ++k) {
-      q_before.x[k] = q.x[k];
-      q_before.y[k] = q.y[k];
-      q.x[k] = a.x[k] / beta;
-      q.y[k] = a.y[k] / beta;
+    const double norm = std::sqrt(norm2);
+    for (std::size_t k = 0; k < n_; ++k) {
+      q_.x[k] /= norm;
+      q_.y[k] /= norm;
     }
   }
-  SLIPFRONT_ASSERT(largest > 0 && std::isfinite(largest), "stiffness has no positive eigenvalue");
-  return std::sqrt(largest);
+  void next_vector() {
+    off_diagonal_.push_back(beta_);
+    for (std::size_t k = 0; k < n_; ++k) {
+      q_before_.x[k] = q_.x[k];
+      q_before_.y[k] = q_.y[k];
+      q_.x[k] = a_.x[k] / beta_;
+      q_.y[k] = a_.y[k] / beta_;
+    }
+  }
+  /// a = M^-1 K M^-1/2 q
+  void multiply() {
+    for (std::size_t k = 0; k < n_; ++k) {
+      const double scale = root_mass_[k] > 0 ? 1 / root_mass_[k] : 0;
+      w_.x[k] = q_.x[k] * scale;
+      w_.y[k] = q_.y[k] * scale;
+    }
+    apply(op_, w_, a_);
+  }
+  /// a = M^1/2 a - beta q_before; returns a . q.
+  double subtract_before() {
+    double alpha = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+      a_.x[k] = a_.x[k] * root_mass_[k] - beta_ * q_before_.x[k];
+      a_.y[k] = a_.y[k] * root_mass_[k] - beta_ * q_before_.y[k];
+      alpha += a_.x[k] * q_.x[k] + a_.y[k] * q_.y[k];
+    }
+    return alpha;
+  }
+  /// a -= alpha q; returns a . a.
+  double subtract_own(double alpha) {
+    double norm2 = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+      a_.x[k] -= alpha * q_.x[k];
+      a_.y[k] -= alpha * q_.y[k];
+      norm2 += a_.x[k] * a_.x[k] + a_.y[k] * a_.y[k];
+    }
+    return norm2;
+  }
+
+  const Operator& op_;
+  std::size_t n_;
+  std::vector<double> root_mass_;
+  Field q_, q_before_, w_, a_;
+  double beta_ = 0;
+  std::vector<double> diagonal_, off_diagonal_;
+};
+
+}  // namespace
+
+double largest_frequency_rad_per_s(const Operator& op) {
+  constexpr int most_rows = 300;
+  constexpr double tolerance = 1e-3;
+  Lanczos lanczos(op);
+  Lanczos::RitzValue largest;
+  for (int row = 1; row <= most_rows; ++row) {
+    lanczos.add_row();
+    if (row % 10 != 0 && row != most_rows && !lanczos.is_exhausted()) continue;
+    largest = lanczos.largest();
+    if (lanczos.is_exhausted() || largest.residual < tolerance * largest.value) break;
+  }
+  // Added, the residual makes the estimate err on the safe side.
+  const double square = largest.value + largest.residual;
+  SLIPFRONT_ASSERT(square > 0 && std::isfinite(square), "stiffness has no positive eigenvalue");
+  return std::sqrt(square);
 }
 
 double stable_step_s(double omega, double stiffness_damping_s) {

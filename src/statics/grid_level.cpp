@@ -326,7 +326,10 @@ Transfer make_transfer(const GridLevel& fine) {
   return t;
 }
 
-GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
+namespace {
+
+/// Every second column and row of nodes.
+GridLevel coarse_grid(const GridLevel& fine, const Transfer& t) {
   GridLevel coarse;
   coarse.columns = static_cast<int>(t.x.place.size()) - 1;
   coarse.rows = static_cast<int>(t.y.place.size()) - 1;
@@ -335,83 +338,131 @@ GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
   coarse.stencil_below = fine.stencil_below;
   for (const auto k : t.x.place) coarse.x.push_back(fine.x[k]);
   for (const auto k : t.y.place) coarse.y.push_back(fine.y[k]);
-  const auto place = [&](mesh::Node n) {
-    return fine.node(t.x.place[n % coarse.stride()], t.y.place[n / coarse.stride()]);
-  };
-  const auto is_unused = [&](mesh::Node n) { return std::ranges::binary_search(fine.unused, place(n)); };
+  return coarse;
+}
 
-  // A node keeps the stencil where the finer nodes around it have it and all its cells are two by two finer
-  // ones with their own interpolation.
-  const int last_i = fine.columns % 2 == 0 ? coarse.columns - 1 : coarse.columns - 2;
-  const auto is_two_rows = [&](int J) { return t.y.place[J + 1] - t.y.place[J] == 2; };
-  const auto covers = [&](int j, int from, int to) {
-    for (auto k = fine.first_span[j]; k < fine.first_span[j + 1]; ++k)
-      if (from >= fine.span[k].begin && to < fine.span[k].end) return true;
+/// Which coarse nodes keep the stencil: where the finer nodes around have it and all cells are two by two
+/// finer ones with their own interpolation.
+class StencilKeepers {
+ public:
+  StencilKeepers(const GridLevel& fine, const Transfer& t, const GridLevel& coarse)
+      : fine_(fine),
+        t_(t),
+        last_column_(fine.columns % 2 == 0 ? coarse.columns - 1 : coarse.columns - 2),
+        rows_(coarse.rows),
+        first_special_row_(t.special.empty() ? fine.rows + 3 : t.special.begin()->first / fine.stride()),
+        last_special_row_(t.special.empty() ? -1 : t.special.rbegin()->first / fine.stride()) {}
+
+  bool contain(int I, int J) const {
+    if (I < 1 || J < 1 || I > last_column_ || J == rows_) return false;
+    if (!is_two_rows(J - 1) || !is_two_rows(J)) return false;
+    const int i = t_.x.place[I], j = t_.y.place[J];
+    for (int dj = -1; dj <= 1; ++dj)
+      if (!have_stencil(j + dj, i - 1, i + 1)) return false;
+    return !near_special(i, j);
+  }
+
+ private:
+  bool is_two_rows(int J) const { return t_.y.place[J + 1] - t_.y.place[J] == 2; }
+  /// Finer nodes from column `from` to column `to`.
+  bool have_stencil(int j, int from, int to) const {
+    for (auto k = fine_.first_span[j]; k < fine_.first_span[j + 1]; ++k)
+      if (from >= fine_.span[k].begin && to < fine_.span[k].end) return true;
     return false;
-  };
-  const int first_special = t.special.empty() ? fine.rows + 3 : t.special.begin()->first / fine.stride();
-  const int last_special = t.special.empty() ? -1 : t.special.rbegin()->first / fine.stride();
-  const auto near_special = [&](int i, int j) {
-    if (j - 2 > last_special || j + 2 < first_special) return false;
+  }
+  bool near_special(int i, int j) const {
+    if (j - 2 > last_special_row_ || j + 2 < first_special_row_) return false;
     for (int dj = -2; dj <= 2; ++dj)
       for (int di = -2; di <= 2; ++di)
-        if (t.special.contains(fine.node(i + di, j + dj))) return true;
+        if (t_.special.contains(fine_.node(i + di, j + dj))) return true;
     return false;
-  };
+  }
+
+  const GridLevel& fine_;
+  const Transfer& t_;
+  int last_column_, rows_, first_special_row_, last_special_row_;
+};
+
+/// Sets what kind of node each is; returns those that need block rows.
+std::vector<mesh::Node> place_nodes(const GridLevel& fine, const Transfer& t, GridLevel& coarse) {
+  const StencilKeepers keepers(fine, t, coarse);
   RowPlaces places(coarse);
   for (int J = 0; J <= coarse.rows; ++J) {
-    const int j = t.y.place[J];
+    const auto is_used = [&](int I) {
+      return !std::ranges::binary_search(fine.unused, fine.node(t.x.place[I], t.y.place[J]));
+    };
     places.add_row(
-        J,
-        [&](int I) {
-          if (I < 1 || I > last_i || J < 1 || J == coarse.rows || !is_two_rows(J - 1) || !is_two_rows(J))
-            return false;
-          const int i = t.x.place[I];
-          return covers(j - 1, i - 1, i + 1) && covers(j, i - 1, i + 1) && covers(j + 1, i - 1, i + 1) &&
-                 !near_special(i, j);
-        },
-        [&](int I) { return fine.unused.empty() || !is_unused(coarse.node(I, J)); });
+        J, [&](int I) { return keepers.contain(I, J); }, is_used);
   }
-  for (const auto& [from, to] : fine.glued) {
-    const auto at = [&](mesh::Node n) -> mesh::Node {
-      const int i = n % fine.stride(), j = n / fine.stride();
-      const int I = t.x.weight[i] == 1 ? t.x.left[i] + 1 : t.x.left[i];
-      const int J = t.y.weight[j] == 1 ? t.y.left[j] + 1 : t.y.left[j];
-      return t.x.place[I] == i && t.y.place[J] == j ? coarse.node(I, J) : -1;
-    };
+  return std::move(places.block_nodes);
+}
+
+/// Glued numbers of the finer level where both ends are coarse nodes.
+void glue(const GridLevel& fine, const Transfer& t, GridLevel& coarse) {
+  const auto at = [&](mesh::Node n) -> mesh::Node {
+    const int i = n % fine.stride(), j = n / fine.stride();
+    const int I = t.x.weight[i] == 1 ? t.x.left[i] + 1 : t.x.left[i];
+    const int J = t.y.weight[j] == 1 ? t.y.left[j] + 1 : t.y.left[j];
+    return t.x.place[I] == i && t.y.place[J] == j ? coarse.node(I, J) : -1;
+  };
+  for (const auto& [from, to] : fine.glued)
     if (at(from) >= 0 && at(to) >= 0) coarse.glued[at(from)] = at(to);
+}
+
+/// Rows of the Galerkin product P^T K P, P the interpolation.
+class GalerkinRows {
+ public:
+  GalerkinRows(const GridLevel& fine, const Transfer& t, const GridLevel& coarse)
+      : fine_(fine), t_(t), coarse_(coarse) {
+    for (const auto& [n, row] : t.special)
+      for (const auto& e : row) special_of_[e.coarse].emplace_back(n, e.weight);
   }
 
-  // Finer nodes that interpolate from a coarse node by a row of their own.
-  std::unordered_map<mesh::Node, std::vector<std::pair<mesh::Node, float>>> special_of;
-  for (const auto& [n, row] : t.special)
-    for (const auto& e : row) special_of[e.coarse].emplace_back(n, e.weight);
-
-  auto& rows = coarse.block;
-  rows.node = places.block_nodes;
-  rows.first.push_back(0);
-  BlockRow row;
-  for (const auto N : rows.node) {
-    const auto add_finer = [&](mesh::Node n, double w) {
-      for_each_block(fine, n, [&](mesh::Node neighbour, const Block& b) {
-        for_each_weight(fine, t, neighbour, [&](mesh::Node M, float w2) { row.add(M, w * w2, b); });
-      });
-    };
-    const int I = N % coarse.stride(), J = N / coarse.stride();
-    const int i_from = I > 0 ? t.x.place[I - 1] + 1 : 0, j_from = J > 0 ? t.y.place[J - 1] + 1 : 0;
-    const int i_to = I < coarse.columns ? t.x.place[I + 1] - 1 : fine.columns;
-    const int j_to = J < coarse.rows ? t.y.place[J + 1] - 1 : fine.rows;
+  /// Adds the row of coarse node N.
+  void add_row(mesh::Node N, BlockRow& row) const {
+    const int I = N % coarse_.stride(), J = N / coarse_.stride();
+    const int i_from = I > 0 ? t_.x.place[I - 1] + 1 : 0, j_from = J > 0 ? t_.y.place[J - 1] + 1 : 0;
+    const int i_to = I < coarse_.columns ? t_.x.place[I + 1] - 1 : fine_.columns;
+    const int j_to = J < coarse_.rows ? t_.y.place[J + 1] - 1 : fine_.rows;
     for (int j = j_from; j <= j_to; ++j)
       for (int i = i_from; i <= i_to; ++i) {
-        const auto n = fine.node(i, j);
-        if (!t.special.empty() && t.special.contains(n)) continue;
-        for_each_bilinear(t, i, j, [&](int A, int B, float w) {
-          if (A == I && B == J) add_finer(n, w);
+        const auto n = fine_.node(i, j);
+        if (!t_.special.empty() && t_.special.contains(n)) continue;
+        for_each_bilinear(t_, i, j, [&](int A, int B, float w) {
+          if (A == I && B == J) add_finer(n, w, row);
         });
       }
-    if (const auto own = special_of.find(N); own != special_of.end())
-      for (const auto& [n, w] : own->second) add_finer(n, w);
-    row.move_to(rows);
+    if (const auto own = special_of_.find(N); own != special_of_.end())
+      for (const auto& [n, w] : own->second) add_finer(n, w, row);
+  }
+
+ private:
+  /// Adds w times the finer node's row of K P.
+  void add_finer(mesh::Node n, double w, BlockRow& row) const {
+    for_each_block(fine_, n, [&](mesh::Node neighbour, const Block& b) {
+      for_each_weight(fine_, t_, neighbour, [&](mesh::Node M, float w2) { row.add(M, w * w2, b); });
+    });
+  }
+
+  const GridLevel& fine_;
+  const Transfer& t_;
+  const GridLevel& coarse_;
+  /// Finer nodes that interpolate from a coarse node by a row of their own.
+  std::unordered_map<mesh::Node, std::vector<std::pair<mesh::Node, float>>> special_of_;
+};
+
+}  // namespace
+
+GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
+  GridLevel coarse = coarse_grid(fine, t);
+  coarse.block.node = place_nodes(fine, t, coarse);
+  glue(fine, t, coarse);
+  const GalerkinRows galerkin(fine, t, coarse);
+  coarse.block.first.push_back(0);
+  BlockRow row;
+  for (const auto N : coarse.block.node) {
+    galerkin.add_row(N, row);
+    row.move_to(coarse.block);
   }
   place_neighbours(coarse);
   return coarse;

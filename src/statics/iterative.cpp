@@ -438,83 +438,98 @@ void LevelEquations::conjugate_gradients(double accuracy, solid::Field& u) {
   throw UserError("the iterative static solution does not converge; set {} = direct", Key("loading.solver"));
 }
 
+double LevelEquations::start_shadow() {
+  if (shadow_.size() == 0) shadow_ = product_ = GridField<float>(residual_.size());
+  const auto r = all_rows(std::as_const(residual_), grid_);
+  const auto p = all_rows(direction_, grid_), s = all_rows(shadow_, grid_);
+  return sum_rows([&](int j) {
+    const double *r_x = r.x(j), *r_y = r.y(j);
+    float *p_x = p.x(j), *p_y = p.y(j), *s_x = s.x(j), *s_y = s.y(j);
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (int i = 0; i < grid_.stride(); ++i) {
+      s_x[i] = p_x[i] = static_cast<float>(r_x[i]);
+      s_y[i] = p_y[i] = static_cast<float>(r_y[i]);
+      sum += r_x[i] * static_cast<double>(s_x[i]) + r_y[i] * static_cast<double>(s_y[i]);
+    }
+    return std::array<double, 2>{sum, 0};
+  })[0];
+}
+
+void LevelEquations::next_direction(double beta, double omega) {
+  const auto r = all_rows(std::as_const(residual_), grid_);
+  const auto p = all_rows(direction_, grid_), v = all_rows(product_, grid_);
+  const auto b = static_cast<float>(beta), b_omega = static_cast<float>(beta * omega);
+  sum_rows([&](int j) {
+    const double *r_x = r.x(j), *r_y = r.y(j);
+    float *p_x = p.x(j), *p_y = p.y(j);
+    const float *v_x = v.x(j), *v_y = v.y(j);
+#pragma omp simd
+    for (int i = 0; i < grid_.stride(); ++i) {
+      p_x[i] = static_cast<float>(r_x[i]) + (b * p_x[i] - b_omega * v_x[i]);
+      p_y[i] = static_cast<float>(r_y[i]) + (b * p_y[i] - b_omega * v_y[i]);
+    }
+    return std::array<double, 2>{};
+  });
+}
+
+double LevelEquations::multiply_z() {
+  const auto z = all_rows(multigrid_.z(), grid_);
+  const auto s = all_rows(shadow_, grid_), v = all_rows(product_, grid_);
+  return sum_rows([&](int j) {
+    const float *s_x = s.x(j), *s_y = s.y(j);
+    float *v_x = v.x(j), *v_y = v.y(j);
+    RowSum<float> sum;
+    for_products<float>(j, z, [&]<class V>(int i, const V& a_x, const V& a_y) {
+      store(v_x + i, a_x);
+      store(v_y + i, a_y);
+      sum.add(load_as<V>(s_x + i), a_x);
+      sum.add(load_as<V>(s_y + i), a_y);
+    });
+    return std::array<double, 2>{sum.value(), 0};
+  })[0];
+}
+
+double LevelEquations::best_step_along_z() {
+  const auto z = all_rows(multigrid_.z(), grid_);
+  const auto r = all_rows(std::as_const(residual_), grid_);
+  const auto sums = sum_rows([&](int j) {
+    const double *r_x = r.x(j), *r_y = r.y(j);
+    RowSum<float> sum_r, sum_t;
+    for_products<float>(j, z, [&]<class V>(int i, const V& t_x, const V& t_y) {
+      sum_r.add(t_x, load_as<V>(r_x + i));
+      sum_r.add(t_y, load_as<V>(r_y + i));
+      sum_t.add(t_x, t_x);
+      sum_t.add(t_y, t_y);
+    });
+    return std::array<double, 2>{sum_r.value(), sum_t.value()};
+  });
+  return sums[0] / sums[1];
+}
+
 void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
-  if (shadow_.size() == 0) shadow_ = product_ = GridField<float>(u.size());
   const double scale = std::sqrt(std::abs(start_residual(u)));
   const auto is_small = [&](double error2) { return std::sqrt(std::abs(error2)) <= accuracy * scale; };
   const auto r = all_rows(std::as_const(residual_), grid_);
-  const auto p = all_rows(direction_, grid_), s = all_rows(shadow_, grid_), v = all_rows(product_, grid_);
+  const auto p = all_rows(std::as_const(direction_), grid_);
   const auto& z = multigrid_.z();
-  const auto z_rows = all_rows(z, grid_);
-  const int stride = grid_.stride();
-  double rho = 0, beta = 0, omega = 0;
+  double rho = start_shadow();
+  if (is_small(multigrid_.apply(p))) {
+    add_z(u);
+    return;
+  }
   for (int cycle = 1; cycle <= most_cycles; cycle += 2) {
-    // p = r + beta (p - omega v)
-    const double first_rho = sum_rows([&](int j) {
-      const double *r_x = r.x(j), *r_y = r.y(j);
-      float *p_x = p.x(j), *p_y = p.y(j), *s_x = s.x(j), *s_y = s.y(j);
-      const float *v_x = v.x(j), *v_y = v.y(j);
-      double sum = 0;
-      if (cycle == 1) {
-#pragma omp simd reduction(+ : sum)
-        for (int i = 0; i < stride; ++i) {
-          s_x[i] = p_x[i] = static_cast<float>(r_x[i]);
-          s_y[i] = p_y[i] = static_cast<float>(r_y[i]);
-          sum += r_x[i] * static_cast<double>(s_x[i]) + r_y[i] * static_cast<double>(s_y[i]);
-        }
-      } else {
-        const auto b = static_cast<float>(beta), b_omega = static_cast<float>(beta * omega);
-#pragma omp simd
-        for (int i = 0; i < stride; ++i) {
-          p_x[i] = static_cast<float>(r_x[i]) + (b * p_x[i] - b_omega * v_x[i]);
-          p_y[i] = static_cast<float>(r_y[i]) + (b * p_y[i] - b_omega * v_y[i]);
-        }
-      }
-      return std::array<double, 2>{sum, 0};
-    })[0];
-    const double p_z = multigrid_.apply(p.as_const());
-    if (cycle == 1) {
-      rho = first_rho;
-      if (is_small(p_z)) {
-        add_z(u);
-        return;
-      }
-    }
-    // v = A z
-    const double shadow_v = sum_rows([&](int j) {
-      const float *s_x = s.x(j), *s_y = s.y(j);
-      float *v_x = v.x(j), *v_y = v.y(j);
-      RowSum<float> sum;
-      for_products<float>(j, z_rows, [&]<class V>(int i, const V& a_x, const V& a_y) {
-        store(v_x + i, a_x);
-        store(v_y + i, a_y);
-        sum.add(load_as<V>(s_x + i), a_x);
-        sum.add(load_as<V>(s_y + i), a_y);
-      });
-      return std::array<double, 2>{sum.value(), 0};
-    })[0];
-    const double alpha = rho / shadow_v;
+    const double alpha = rho / multiply_z();
     take_step(alpha, z, u);
     if (is_small(multigrid_.apply(r))) {
       add_z(u);
       return;
     }
-    // t = A z
-    const auto [t_r, t_t] = sum_rows([&](int j) {
-      const double *r_x = r.x(j), *r_y = r.y(j);
-      RowSum<float> sum_r, sum_t;
-      for_products<float>(j, z_rows, [&]<class V>(int i, const V& t_x, const V& t_y) {
-        sum_r.add(t_x, load_as<V>(r_x + i));
-        sum_r.add(t_y, load_as<V>(r_y + i));
-        sum_t.add(t_x, t_x);
-        sum_t.add(t_y, t_y);
-      });
-      return std::array<double, 2>{sum_r.value(), sum_t.value()};
-    });
-    omega = t_r / t_t;
+    const double omega = best_step_along_z();
     const double rho_next = take_step(omega, z, u);
-    beta = rho_next / rho * alpha / omega;
+    next_direction(rho_next / rho * alpha / omega, omega);
     rho = rho_next;
+    multigrid_.apply(p);
   }
   throw UserError("the iterative static solution does not converge; set {} = direct", Key("loading.solver"));
 }

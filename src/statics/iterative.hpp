@@ -57,6 +57,15 @@ class LevelEquations {
   void add_z(solid::Field& u);
   void conjugate_gradients(double accuracy, solid::Field& u);
   void bicgstab(double accuracy, solid::Field& u);
+  // Of bicgstab, with v = product_:
+  /// direction = shadow = r; returns r . shadow.
+  double start_shadow();
+  /// direction = r + beta (direction - omega v).
+  void next_direction(double beta, double omega);
+  /// v = A z; returns v . shadow.
+  double multiply_z();
+  /// That for which r - step A z is smallest.
+  double best_step_along_z();
   /// Calls f(row) -> two terms for all rows and returns the sums of the terms.
   template <class F>
   std::array<double, 2> sum_rows(F&& f);

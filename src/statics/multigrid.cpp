@@ -102,8 +102,8 @@ struct Multigrid::Level {
       f(static_cast<std::size_t>(n - special.begin()), *n - grid.node(0, j));
   }
 
-  /// Gains of two Chebyshev steps: c1 = first D^-1 (b - K u), u1 = u + c1,
-  /// c2 = keep c1 + second D^-1 (b - K u1), u2 = u1 + c2.
+  /// Gains of two Chebyshev steps: c1 = first D^-1 (rhs - K u), u1 = u + c1,
+  /// c2 = keep c1 + second D^-1 (rhs - K u1), u2 = u1 + c2.
   struct Gains {
     float first, second, keep;
   };
@@ -114,7 +114,115 @@ struct Multigrid::Level {
     return {static_cast<float>(1 / theta), static_cast<float>(2 * rho / delta),
             static_cast<float>(rho / sigma)};
   }
+
+  /// c1 of row j where u = 0.
+  template <class B>
+  void begin_from_zero(int j, const Gains& gains, const Rows<const B>& rhs, const Rows<float>& c) const;
+  /// u2 of row j where u = 0, from c1.
+  template <class B>
+  void end_from_zero(int j, const Gains& gains, const Rows<const B>& rhs, const Rows<const float>& c,
+                     const Rows<float>& u2) const;
+  /// c1 and u1 of row j.
+  template <class B>
+  void begin_smoothing(int j, const Gains& gains, const Rows<const B>& rhs, const Rows<const float>& from,
+                       const Rows<float>& c, const Rows<float>& u1) const;
+  /// u2 of row j from c1 and u1; returns the row's part of rhs . u2.
+  template <class B>
+  double end_smoothing(int j, const Gains& gains, const Rows<const B>& rhs, const Rows<const float>& c,
+                       const Rows<const float>& u1, const Rows<float>& u2) const;
+  /// rhs - K v of row j.
+  template <class B>
+  void residual(int j, const Rows<const B>& rhs, const Rows<const float>& v, float* r_x, float* r_y) const;
 };
+
+template <class B>
+void Multigrid::Level::begin_from_zero(int j, const Gains& gains, const Rows<const B>& rhs,
+                                       const Rows<float>& c) const {
+  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+  float* __restrict c_x = c.x(j), * __restrict c_y = c.y(j);
+  const float gain = gains.first / static_cast<float>(grid.stencil_of(j).centre);
+  for (int i = 0; i < grid.stride(); ++i) {
+    c_x[i] = gain * static_cast<float>(b_x[i]);
+    c_y[i] = gain * static_cast<float>(b_y[i]);
+  }
+  for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) {
+    const auto i = grid.block.node[r] - j * grid.stride();
+    c_x[i] = gains.first * inverse_diagonal[2 * r] * static_cast<float>(b_x[i]);
+    c_y[i] = gains.first * inverse_diagonal[2 * r + 1] * static_cast<float>(b_y[i]);
+  }
+}
+
+template <class B>
+void Multigrid::Level::end_from_zero(int j, const Gains& gains, const Rows<const B>& rhs,
+                                     const Rows<const float>& c, const Rows<float>& u2) const {
+  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+  const float *c_x = c.x(j), *c_y = c.y(j);
+  float *u_x = u2.x(j), *u_y = u2.y(j);
+  for_products(j, c, gains.second,
+               [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                 const float kept = 1 + gains.keep;
+                 store(u_x + i, V(kept * load_as<V>(c_x + i) + inverse_x * (load_as<V>(b_x + i) - a_x)));
+                 store(u_y + i, V(kept * load_as<V>(c_y + i) + inverse_y * (load_as<V>(b_y + i) - a_y)));
+               });
+  clear_fixed(j, u_x, u_y);
+}
+
+template <class B>
+void Multigrid::Level::begin_smoothing(int j, const Gains& gains, const Rows<const B>& rhs,
+                                       const Rows<const float>& from, const Rows<float>& c,
+                                       const Rows<float>& u1) const {
+  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+  const float *from_x = from.x(j), *from_y = from.y(j);
+  float *c_x = c.x(j), *c_y = c.y(j), *u_x = u1.x(j), *u_y = u1.y(j);
+  for_products(j, from, gains.first,
+               [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                 const V x = inverse_x * (load_as<V>(b_x + i) - a_x),
+                         y = inverse_y * (load_as<V>(b_y + i) - a_y);
+                 store(c_x + i, x);
+                 store(c_y + i, y);
+                 store(u_x + i, V(load_as<V>(from_x + i) + x));
+                 store(u_y + i, V(load_as<V>(from_y + i) + y));
+               });
+}
+
+template <class B>
+double Multigrid::Level::end_smoothing(int j, const Gains& gains, const Rows<const B>& rhs,
+                                       const Rows<const float>& c, const Rows<const float>& u1,
+                                       const Rows<float>& u2) const {
+  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+  const float *c_x = c.x(j), *c_y = c.y(j), *v_x = u1.x(j), *v_y = u1.y(j);
+  float *u_x = u2.x(j), *u_y = u2.y(j);
+  RowSum<float> sum;
+  for_products(j, u1, gains.second,
+               [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
+                 const V r_x = load_as<V>(b_x + i), r_y = load_as<V>(b_y + i);
+                 const V x = load_as<V>(v_x + i) + gains.keep * load_as<V>(c_x + i) + inverse_x * (r_x - a_x);
+                 const V y = load_as<V>(v_y + i) + gains.keep * load_as<V>(c_y + i) + inverse_y * (r_y - a_y);
+                 store(u_x + i, x);
+                 store(u_y + i, y);
+                 sum.add(r_x, x);  // of fixed displacements both are 0
+                 sum.add(r_y, y);
+               });
+  clear_unused(grid, j, u_x, u_y);
+  return sum.value();
+}
+
+template <class B>
+void Multigrid::Level::residual(int j, const Rows<const B>& rhs, const Rows<const float>& v, float* r_x,
+                                float* r_y) const {
+  const B *b_x = rhs.x(j), *b_y = rhs.y(j);
+  for_row_products<float>(
+      grid, blocks, slip.data(), j, v,
+      [&]<class V>(int i, const V& a_x, const V& a_y) {
+        store(r_x + i, V(load_as<V>(b_x + i) - a_x));
+        store(r_y + i, V(load_as<V>(b_y + i) - a_y));
+      },
+      [&](int i, std::int32_t, float a_x, float a_y) {
+        r_x[i] = static_cast<float>(b_x[i]) - a_x;
+        r_y[i] = static_cast<float>(b_y[i]) - a_y;
+      });
+  clear_fixed(j, r_x, r_y);
+}
 
 /// What a thread needs for its sweeps.
 struct Multigrid::Workspace {
@@ -276,101 +384,28 @@ void sweep(const GridLevel& grid, int begin, int end, First&& first, Second&& se
 
 }  // namespace
 
-template <class B>
-void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
-  auto& fine = *levels_[l];
-  auto& coarse = *levels_[l + 1];
-  const auto& grid = fine.grid;
+void Multigrid::add_restricted(const Level& fine, int j, const float* r_x, const float* r_y,
+                               std::vector<float>& coarse_row, threads::PartOf rows, Level& coarse) {
   const auto& t = fine.transfer;
-  const int coarse_stride = coarse.grid.stride(), n_parts = parts(static_cast<int>(l));
-  const auto gains = fine.gains();
-  const auto u = fine.u_rows(), coarse_b = coarse.b_rows();
+  const float w = t.y.weight[j];
+  const int below = t.y.left[j];
+  const auto b = coarse.b_rows();
+  for (int component = 0; component < 2; ++component) {
+    float* __restrict c = coarse_row.data();
+    restrict_row(t.x, fine.grid.columns, coarse.grid.columns, component == 0 ? r_x : r_y, c);
+    const auto add = [&](int J, float weight) {
+      if (weight == 0 || J < rows.begin || J >= rows.end) return;
+      float* __restrict to = component == 0 ? b.x(J) : b.y(J);
+      for (int I = 0; I < coarse.grid.stride(); ++I) to[I] += weight * c[I];
+    };
+    add(below, 1 - w);
+    add(below + 1, w);
+  }
+}
 
-  team_.run(n_parts, [&](int part) {
-    auto& work = workspace_[part];
-    const auto change = work.change.on(grid), smoothed = work.smoothed.on(grid);
-    // Own coarse rows, the finer rows that lie on or above them, and those whose residual they take.
-    const threads::PartOf own(coarse.grid.rows + 1, part, n_parts);
-    const auto first_above = [&](int J) {
-      return static_cast<int>(std::ranges::lower_bound(t.y.left, J) - t.y.left.begin());
-    };
-    const int begin = first_above(own.begin - 1), u_begin = first_above(own.begin),
-              end = first_above(own.end);
-    for (int J = own.begin; J < own.end; ++J) {
-      std::fill_n(coarse_b.x(J), coarse_stride, 0.0F);
-      std::fill_n(coarse_b.y(J), coarse_stride, 0.0F);
-    }
-
-    const auto first_step = [&](int j) {
-      const B *b_x = b.x(j), *b_y = b.y(j);
-      float* __restrict c_x = change.x(j), * __restrict c_y = change.y(j);
-      const float gain = gains.first / static_cast<float>(grid.stencil_of(j).centre);
-      for (int i = 0; i < grid.stride(); ++i) {
-        c_x[i] = gain * static_cast<float>(b_x[i]);
-        c_y[i] = gain * static_cast<float>(b_y[i]);
-      }
-      for (auto r = grid.first_block[j]; r < grid.first_block[j + 1]; ++r) {
-        const auto i = grid.block.node[r] - j * grid.stride();
-        c_x[i] = gains.first * fine.inverse_diagonal[2 * r] * static_cast<float>(b_x[i]);
-        c_y[i] = gains.first * fine.inverse_diagonal[2 * r + 1] * static_cast<float>(b_y[i]);
-      }
-    };
-    const auto second_step = [&](int j) {
-      const B *b_x = b.x(j), *b_y = b.y(j);
-      const float *c_x = change.x(j), *c_y = change.y(j);
-      float *v_x = smoothed.x(j), *v_y = smoothed.y(j);
-      fine.for_products(
-          j, change.as_const(), gains.second,
-          [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-            const float kept = 1 + gains.keep;
-            store(v_x + i, V(kept * load_as<V>(c_x + i) + inverse_x * (load_as<V>(b_x + i) - a_x)));
-            store(v_y + i, V(kept * load_as<V>(c_y + i) + inverse_y * (load_as<V>(b_y + i) - a_y)));
-          });
-      fine.clear_fixed(j, v_x, v_y);
-      if (j < u_begin || j >= end) return;
-      std::copy_n(v_x, grid.stride(), u.x(j));
-      std::copy_n(v_y, grid.stride(), u.y(j));
-    };
-    const auto restrict_residual = [&](int j) {
-      const B *b_x = b.x(j), *b_y = b.y(j);
-      float *r_x = work.residual_x.data(), *r_y = work.residual_y.data();
-      for_row_products<float>(
-          grid, fine.blocks, fine.slip.data(), j, smoothed.as_const(),
-          [&]<class V>(int i, const V& a_x, const V& a_y) {
-            store(r_x + i, V(load_as<V>(b_x + i) - a_x));
-            store(r_y + i, V(load_as<V>(b_y + i) - a_y));
-          },
-          [&](int i, std::int32_t, float a_x, float a_y) {
-            r_x[i] = static_cast<float>(b_x[i]) - a_x;
-            r_y[i] = static_cast<float>(b_y[i]) - a_y;
-          });
-      fine.clear_fixed(j, r_x, r_y);
-      fine.for_special(j, [&](std::size_t k, int i) {
-        if (j >= u_begin && j < end) {
-          fine.special_residual.x[k] = r_x[i];
-          fine.special_residual.y[k] = r_y[i];
-        }
-        r_x[i] = r_y[i] = 0;
-      });
-      const float w = t.y.weight[j];
-      const int below = t.y.left[j];
-      for (int component = 0; component < 2; ++component) {
-        float* __restrict c = work.coarse_row.data();
-        restrict_row(t.x, grid.columns, coarse.grid.columns, component == 0 ? r_x : r_y, c);
-        const auto add = [&](int J, float weight) {
-          if (weight == 0 || J < own.begin || J >= own.end) return;
-          float* __restrict to = component == 0 ? coarse_b.x(J) : coarse_b.y(J);
-          for (int I = 0; I < coarse_stride; ++I) to[I] += weight * c[I];
-        };
-        add(below, 1 - w);
-        add(below + 1, w);
-      }
-    };
-    sweep(grid, begin, end, first_step, second_step, restrict_residual);
-  });
-
+void Multigrid::add_special_residuals(const Level& fine, Level& coarse) {
   std::size_t k = 0;
-  for (const auto& [n, entries] : t.special) {
+  for (const auto& [n, entries] : fine.transfer.special) {
     for (const auto& e : entries) {
       coarse.b.x[e.coarse] += e.weight * fine.special_residual.x[k];
       coarse.b.y[e.coarse] += e.weight * fine.special_residual.y[k];
@@ -380,80 +415,109 @@ void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
 }
 
 template <class B>
+void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
+  auto& fine = *levels_[l];
+  auto& coarse = *levels_[l + 1];
+  const auto& grid = fine.grid;
+  const int n_parts = parts(static_cast<int>(l));
+  const auto gains = fine.gains();
+  const auto u = fine.u_rows(), coarse_b = coarse.b_rows();
+
+  team_.run(n_parts, [&](int part) {
+    auto& work = workspace_[part];
+    const auto change = work.change.on(grid), smoothed = work.smoothed.on(grid);
+    // Own coarse rows, the finer rows that lie on or above them, and those whose residual they take.
+    const threads::PartOf own(coarse.grid.rows + 1, part, n_parts);
+    const auto first_above = [&](int J) {
+      const auto& left = fine.transfer.y.left;
+      return static_cast<int>(std::ranges::lower_bound(left, J) - left.begin());
+    };
+    const int begin = first_above(own.begin - 1), u_begin = first_above(own.begin),
+              end = first_above(own.end);
+    const auto is_own = [&](int j) { return j >= u_begin && j < end; };
+    for (int J = own.begin; J < own.end; ++J) {
+      std::fill_n(coarse_b.x(J), coarse.grid.stride(), 0.0F);
+      std::fill_n(coarse_b.y(J), coarse.grid.stride(), 0.0F);
+    }
+
+    const auto first_step = [&](int j) { fine.begin_from_zero(j, gains, b, change); };
+    const auto second_step = [&](int j) {
+      fine.end_from_zero(j, gains, b, change.as_const(), smoothed);
+      if (!is_own(j)) return;
+      std::copy_n(smoothed.x(j), grid.stride(), u.x(j));
+      std::copy_n(smoothed.y(j), grid.stride(), u.y(j));
+    };
+    const auto restrict_residual = [&](int j) {
+      float *r_x = work.residual_x.data(), *r_y = work.residual_y.data();
+      fine.residual(j, b, smoothed.as_const(), r_x, r_y);
+      fine.for_special(j, [&](std::size_t k, int i) {
+        if (is_own(j)) {
+          fine.special_residual.x[k] = r_x[i];
+          fine.special_residual.y[k] = r_y[i];
+        }
+        r_x[i] = r_y[i] = 0;
+      });
+      add_restricted(fine, j, r_x, r_y, work.coarse_row, own, coarse);
+    };
+    sweep(grid, begin, end, first_step, second_step, restrict_residual);
+  });
+  add_special_residuals(fine, coarse);
+}
+
+void Multigrid::prolong(const Level& fine, const float* u_x, const float* u_y, Level& coarse, int j,
+                        std::vector<float>& coarse_row, const Rows<float>& to) {
+  const auto& t = fine.transfer;
+  const auto coarse_u = coarse.u_rows();
+  const float w = t.y.weight[j];
+  const int below = t.y.left[j];
+  for (int component = 0; component < 2; ++component) {
+    const float* __restrict e0 = component == 0 ? coarse_u.x(below) : coarse_u.y(below);
+    const float* __restrict e1 = component == 0 ? coarse_u.x(below + 1) : coarse_u.y(below + 1);
+    float* __restrict c = coarse_row.data();
+    if (w != 0)
+      for (int I = 0; I < coarse.grid.stride(); ++I) c[I] = (1 - w) * e0[I] + w * e1[I];
+    interpolate_row(t.x, fine.grid.columns, coarse.grid.columns, w == 0 ? e0 : c, component == 0 ? u_x : u_y,
+                    component == 0 ? to.x(j) : to.y(j));
+  }
+  fine.for_special(j, [&](std::size_t k, int i) {
+    float x = u_x[i], y = u_y[i];
+    for (const auto& e : t.special.at(fine.special[k])) {
+      x += e.weight * coarse.u.x[e.coarse];
+      y += e.weight * coarse.u.y[e.coarse];
+    }
+    to.x(j)[i] = x;
+    to.y(j)[i] = y;
+  });
+  fine.clear_fixed(j, to.x(j), to.y(j));
+}
+
+template <class B>
 double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
   auto& fine = *levels_[l];
   auto& coarse = *levels_[l + 1];
   const auto& grid = fine.grid;
-  const auto& t = fine.transfer;
-  const int reach = grid.reach, coarse_stride = coarse.grid.stride(), n_parts = parts(static_cast<int>(l));
+  const int n_parts = parts(static_cast<int>(l));
   const auto gains = fine.gains();
-  const auto u = fine.u_rows(), coarse_u = coarse.u_rows();
+  const auto u = fine.u_rows();
 
   team_.run(n_parts, [&](int part) {
     auto& work = workspace_[part];
     const auto start = work.start.on(grid), change = work.change.on(grid), smoothed = work.smoothed.on(grid);
     const threads::PartOf own(grid.rows + 1, part, n_parts);
-    work.beside.copy(grid, u.as_const(), own, 2 * reach);
+    work.beside.copy(grid, u.as_const(), own, 2 * grid.reach);
     team_.meet(n_parts);
 
-    const auto prolong = [&](int j) {
-      const float *u_x = work.beside.x(u.as_const(), j), *u_y = work.beside.y(u.as_const(), j);
-      const float w = t.y.weight[j];
-      const int below = t.y.left[j];
-      for (int component = 0; component < 2; ++component) {
-        const float* __restrict e0 = component == 0 ? coarse_u.x(below) : coarse_u.y(below);
-        const float* __restrict e1 = component == 0 ? coarse_u.x(below + 1) : coarse_u.y(below + 1);
-        float* __restrict c = work.coarse_row.data();
-        if (w != 0)
-          for (int I = 0; I < coarse_stride; ++I) c[I] = (1 - w) * e0[I] + w * e1[I];
-        interpolate_row(t.x, grid.columns, coarse.grid.columns, w == 0 ? e0 : c, component == 0 ? u_x : u_y,
-                        component == 0 ? start.x(j) : start.y(j));
-      }
-      fine.for_special(j, [&](std::size_t k, int i) {
-        float x = u_x[i], y = u_y[i];
-        for (const auto& e : t.special.at(fine.special[k])) {
-          x += e.weight * coarse.u.x[e.coarse];
-          y += e.weight * coarse.u.y[e.coarse];
-        }
-        start.x(j)[i] = x;
-        start.y(j)[i] = y;
-      });
-      fine.clear_fixed(j, start.x(j), start.y(j));
+    const auto prolong_row = [&](int j) {
+      prolong(fine, work.beside.x(u.as_const(), j), work.beside.y(u.as_const(), j), coarse, j,
+              work.coarse_row, start);
     };
     const auto first_step = [&](int j) {
-      const B *b_x = b.x(j), *b_y = b.y(j);
-      const float *u_x = start.x(j), *u_y = start.y(j);
-      float *c_x = change.x(j), *c_y = change.y(j), *v_x = smoothed.x(j), *v_y = smoothed.y(j);
-      fine.for_products(j, start.as_const(), gains.first,
-                        [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-                          const V x = inverse_x * (load_as<V>(b_x + i) - a_x),
-                                  y = inverse_y * (load_as<V>(b_y + i) - a_y);
-                          store(c_x + i, x);
-                          store(c_y + i, y);
-                          store(v_x + i, V(load_as<V>(u_x + i) + x));
-                          store(v_y + i, V(load_as<V>(u_y + i) + y));
-                        });
+      fine.begin_smoothing(j, gains, b, start.as_const(), change, smoothed);
     };
     const auto second_step = [&](int j) {
-      const B *b_x = b.x(j), *b_y = b.y(j);
-      const float *c_x = change.x(j), *c_y = change.y(j), *v_x = smoothed.x(j), *v_y = smoothed.y(j);
-      float *u_x = u.x(j), *u_y = u.y(j);
-      RowSum<float> sum;
-      fine.for_products(
-          j, smoothed.as_const(), gains.second,
-          [&]<class V>(int i, const V& a_x, const V& a_y, float inverse_x, float inverse_y) {
-            const V r_x = load_as<V>(b_x + i), r_y = load_as<V>(b_y + i);
-            const V x = load_as<V>(v_x + i) + gains.keep * load_as<V>(c_x + i) + inverse_x * (r_x - a_x);
-            const V y = load_as<V>(v_y + i) + gains.keep * load_as<V>(c_y + i) + inverse_y * (r_y - a_y);
-            store(u_x + i, x);
-            store(u_y + i, y);
-            sum.add(r_x, x);  // of fixed displacements both are 0
-            sum.add(r_y, y);
-          });
-      clear_unused(grid, j, u_x, u_y);
-      row_sum_[j] = sum.value();
+      row_sum_[j] = fine.end_smoothing(j, gains, b, change.as_const(), smoothed.as_const(), u);
     };
-    sweep(grid, own.begin, own.end, prolong, first_step, second_step);
+    sweep(grid, own.begin, own.end, prolong_row, first_step, second_step);
   });
   return std::accumulate(row_sum_.begin(), row_sum_.begin() + grid.rows + 1, 0.0);
 }

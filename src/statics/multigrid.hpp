@@ -63,8 +63,15 @@ class Multigrid {
   double cycle(std::size_t l, const Rows<const B>& b);
   template <class B>
   void smooth_and_restrict(std::size_t l, const Rows<const B>& b);
+  /// Restricts row j of the residual r to the coarse right-hand side, to `rows` of it.
+  static void add_restricted(const Level& fine, int j, const float* r_x, const float* r_y,
+                             std::vector<float>& coarse_row, threads::PartOf rows, Level& coarse);
+  static void add_special_residuals(const Level& fine, Level& coarse);
   template <class B>
   double prolong_and_smooth(std::size_t l, const Rows<const B>& b);
+  /// Row j of u with the interpolation of the coarse level's.
+  static void prolong(const Level& fine, const float* u_x, const float* u_y, Level& coarse, int j,
+                      std::vector<float>& coarse_row, const Rows<float>& to);
   void damp_block_rows(Level& level);
   void estimate_largest_eigenvalue(Level& level);
   void factorise_coarsest();

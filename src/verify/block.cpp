@@ -116,18 +116,14 @@ double mean(const History& h, double from, double to) {
   return sum / n;
 }
 
-}  // namespace
-
-Outcome block(Effort effort) {
-  Outcome outcome;
-
-  // One event, the top all but at rest.
+/// One event, the top all but at rest.
+void single_event(Effort effort, Outcome& outcome) {
   const solid::Material material{.stiffness_damping_s = 0};
   const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
   const Drive slow{.top_speed = 1e-4, .first_traction = strength * (1 - 1e-6), .end = 3};
-  Chart single{.x_label = "time c_S / 2 H", .y_label = "traction / strength drop"};
+  Chart chart{.x_label = "time c_S / 2 H", .y_label = "traction / strength drop"};
   const auto exact = characteristics(slow);
-  single.curves.push_back({"theory", Curve::Kind::theory, exact.time, exact.traction});
+  chart.curves.push_back({"theory", Curve::Kind::theory, exact.time, exact.traction});
   for (const int rows :
        effort == Effort::full ? std::vector{50, 100, 200, 400, 800, 1600} : std::vector{50, 200}) {
     const auto h = program(slow, material, rows, 0.9);
@@ -145,55 +141,98 @@ Outcome block(Effort effort) {
                      rows),
          "", strength - mean(h, 1.5, 2.5), 2, 2 * (spread + courant / rows),
          "as for the slip, which sets the drop at rest"});
-    single.curves.push_back(points("h = H/200", h.time, h.traction));
+    chart.curves.push_back(points("h = H/200", h.time, h.traction));
   }
+  outcome.charts.push_back(std::move(chart));
+}
 
-  // Stick-slip. Damping that goes with h takes the ripples off the fronts, which would end a stick too early;
-  // in turn it spreads a front into a Gauss error function of standard deviation sqrt(beta t).
-  const int rows = effort == Effort::full ? 1000 : 250;
-  solid::Material damped = material;
-  damped.stiffness_damping_s = 0.3 * H_m / rows / c_S;
-  const Drive drive{.top_speed = 1 / 5.5, .first_traction = 0.9 * strength, .end = 24};
-  const auto theory = characteristics(drive);
-  const auto cycle = program(drive, damped, rows, 0.9);
-  const auto spread = [&](double time) { return std::sqrt(0.15 / rows * time); };  // in T
-  int n_events = 0;
-  double square = 0, allowed = 0;
-  int n_compared = 0;
-  for (double time = 1; time < drive.end - 1; time += 0.01) {
+/// Stick-slip by characteristics and by the program, whose damping goes with h and takes the ripples off the
+/// fronts, which would end a stick too early.
+struct StickSlip {
+  int rows;
+  Drive drive{.top_speed = 1 / 5.5, .first_traction = 0.9 * strength, .end = 24};
+  History theory, cycle;
+
+  explicit StickSlip(int rows_of_cells) : rows(rows_of_cells) {
+    solid::Material damped;
+    damped.stiffness_damping_s = 0.3 * H_m / rows / solid::shear_speed_m_per_s(damped);
+    theory = characteristics(drive);
+    cycle = program(drive, damped, rows, 0.9);
+  }
+  /// Damping spreads a front into a Gauss error function of standard deviation sqrt(beta t). [T]
+  double spread(double time) const { return std::sqrt(0.15 / rows * time); }
+  bool rests_from(double time) const {
     const double slip_before = value_at(theory, theory.slip, time - 0.01),
                  slip = value_at(theory, theory.slip, time);
-    const bool rests_from_here = slip == value_at(theory, theory.slip, time + 0.5) && slip_before < slip;
-    if (rests_from_here) {
-      ++n_events;
-      const double later = time + 0.5;
-      outcome.checks.push_back(
-          {fmt::format("slip after event {} over 2 H (t_s - t_k)/G, h = H/{}", n_events, rows), "",
-           value_at(cycle, cycle.slip, later), slip, 2 * spread(later),
-           "spread of the fronts that begin and end each event"});
-    }
+    return slip == value_at(theory, theory.slip, time + 0.5) && slip_before < slip;
+  }
+  bool is_away_from_fronts(double time) const {
     const double around = 3 * spread(time);
     const double jump =
         value_at(theory, theory.traction, time + around) - value_at(theory, theory.traction, time - around);
-    if (std::abs(jump) > 4 * drive.top_speed * around + 0.01) continue;
-    const double difference = value_at(cycle, cycle.traction, time) - value_at(theory, theory.traction, time);
+    return std::abs(jump) <= 4 * drive.top_speed * around + 0.01;
+  }
+  /// Times of the comparison.
+  std::vector<double> times() const {
+    std::vector<double> all;
+    for (double time = 1; time < drive.end - 1; time += 0.01) all.push_back(time);
+    return all;
+  }
+};
+
+void check_slips(const StickSlip& s, Outcome& outcome) {
+  int n_events = 0;
+  for (const double time : s.times()) {
+    if (!s.rests_from(time)) continue;
+    ++n_events;
+    const double later = time + 0.5;
+    outcome.checks.push_back(
+        {fmt::format("slip after event {} over 2 H (t_s - t_k)/G, h = H/{}", n_events, s.rows), "",
+         value_at(s.cycle, s.cycle.slip, later), value_at(s.theory, s.theory.slip, time), 2 * s.spread(later),
+         "spread of the fronts that begin and end each event"});
+  }
+}
+
+void check_traction(const StickSlip& s, Outcome& outcome) {
+  double square = 0, allowed = 0;
+  int n_compared = 0;
+  for (const double time : s.times()) {
+    if (!s.is_away_from_fronts(time)) continue;
+    const double difference =
+        value_at(s.cycle, s.cycle.traction, time) - value_at(s.theory, s.theory.traction, time);
     square += difference * difference;
     // The slope along a stick times the delay, and 2 per slip, the stiffness of the column.
-    const double tolerance = (2 * drive.top_speed + 2 * 2) * spread(time);
+    const double tolerance = (2 * s.drive.top_speed + 2 * 2) * s.spread(time);
     allowed += tolerance * tolerance;
     ++n_compared;
   }
   outcome.checks.push_back(
-      {fmt::format("traction over t_s - t_k away from fronts: rms deviation, h = H/{}", rows), "",
+      {fmt::format("traction over t_s - t_k away from fronts: rms deviation, h = H/{}", s.rows), "",
        std::sqrt(square / n_compared), 0, std::sqrt(allowed / n_compared),
        "delay of the fronts, and the stiffness of the column times the slips' tolerance"});
-  Chart history{.x_label = "time c_S / 2 H", .y_label = "traction / strength drop"};
-  history.curves = {{"theory", Curve::Kind::theory, theory.time, theory.traction},
-                    points("program", cycle.time, cycle.traction)};
-  Chart slips{.x_label = "time c_S / 2 H", .y_label = "slip G / (2 H strength drop)"};
-  slips.curves = {{"theory", Curve::Kind::theory, theory.time, theory.slip},
-                  points("program", cycle.time, cycle.slip)};
-  outcome.charts = {std::move(single), std::move(history), std::move(slips)};
+}
+
+void draw(const StickSlip& s, Outcome& outcome) {
+  const auto chart = [&](const char* y_label, const std::vector<double>& theory,
+                         const std::vector<double>& program) {
+    Chart both{.x_label = "time c_S / 2 H", .y_label = y_label};
+    both.curves = {{"theory", Curve::Kind::theory, s.theory.time, theory},
+                   points("program", s.cycle.time, program)};
+    return both;
+  };
+  outcome.charts.push_back(chart("traction / strength drop", s.theory.traction, s.cycle.traction));
+  outcome.charts.push_back(chart("slip G / (2 H strength drop)", s.theory.slip, s.cycle.slip));
+}
+
+}  // namespace
+
+Outcome block(Effort effort) {
+  Outcome outcome;
+  single_event(effort, outcome);
+  const StickSlip stick_slip(effort == Effort::full ? 1000 : 250);
+  check_slips(stick_slip, outcome);
+  check_traction(stick_slip, outcome);
+  draw(stick_slip, outcome);
   return outcome;
 }
 

@@ -201,70 +201,83 @@ Arrest grow_and_stop(double r_over_zone, double width_over_r) {
   return arrest;
 }
 
-}  // namespace
+constexpr double path_step = 0.01;   ///< of the theory, in t_c
+constexpr double half_window = 0.1;  ///< in t_c, for speeds
 
-Outcome crack(Effort effort) {
-  const bool full = effort == Effort::full;
-  Outcome outcome;
+/// Speeds in the middles of the steps, places at their ends.
+struct PathInTheory {
+  Curve place{"theory", Curve::Kind::theory, {}, {}}, speed{"theory", Curve::Kind::theory, {}, {}};
 
-  // Growth of a long crack.
-  Chart path{.x_label = "time / t_c", .y_label = "tip / (c_S t_c)"};
-  Chart speed{.x_label = "time / t_c", .y_label = "tip speed / c_S"};
-  Curve place_theory{"theory", Curve::Kind::theory, {}, {}}, speed_theory = place_theory;
-  constexpr double dt = 0.01;
-  double x = 0;
-  for (int j = 0; j < static_cast<int>(run_end / dt); ++j) {
-    const double v = speed_at(1 / ((j + 0.5) * dt)) / c_S();
-    speed_theory.x.push_back((j + 0.5) * dt);
-    speed_theory.y.push_back(v);
-    x += v * dt;
-    place_theory.x.push_back((j + 1) * dt);
-    place_theory.y.push_back(x);
-  }
-  const std::vector<double> ratios = full
-                                         ? std::vector{4.0, 4 * std::numbers::sqrt2, 8.0}
-                                         : std::vector{2 * std::numbers::sqrt2, 4.0, 4 * std::numbers::sqrt2};
-  std::vector<Run> coarse, fine;
-  for (const double ratio : ratios) {
-    coarse.push_back(run(ratio, 8));
-    fine.push_back(run(ratio, 16));
-  }
-  constexpr double half_window = 0.1;  // in t_c, for speeds
-  const auto check = [&](const std::string& quantity, const auto& get, double expected) {
-    std::array<double, 3> at;
-    double mesh_part = 0;
-    for (std::size_t z = 0; z < 3; ++z) {
-      mesh_part = (get(fine[z]) - get(coarse[z])) / 3;
-      at[z] = get(fine[z]) + mesh_part;
+  PathInTheory() {
+    double x = 0;
+    for (int j = 0; j < static_cast<int>(run_end / path_step); ++j) {
+      const double v = speed_at(1 / ((j + 0.5) * path_step)) / c_S();
+      speed.x.push_back((j + 0.5) * path_step);
+      speed.y.push_back(v);
+      x += v * path_step;
+      place.x.push_back((j + 1) * path_step);
+      place.y.push_back(x);
     }
-    const auto small_zone = limit(at[0], at[1], at[2], 1, 2);
-    outcome.checks.push_back({quantity + ", zone -> 0", "", small_zone.value, expected,
-                              small_zone.uncertainty + std::abs(mesh_part),
-                              fmt::format("changes when the shortest zone joins the extrapolation, from "
-                                          "zones of {:.2f}, {:.2f} and {:.2f} c_S t_c, "
-                                          "and of the extrapolation from 8 and 16 elements in each",
-                                          fine[0].zone, fine[1].zone, fine[2].zone)});
-  };
+  }
+  double place_at(double t) const {
+    return place.y[static_cast<std::size_t>(std::lround(t / path_step)) - 1];
+  }
+};
+
+/// Runs with three lengths of the zone, falling, on two meshes each.
+struct Runs {
+  std::vector<Run> coarse, fine;
+
+  explicit Runs(bool full) {
+    for (const double ratio : full ? std::vector{4.0, 4 * std::numbers::sqrt2, 8.0}
+                                   : std::vector{2 * std::numbers::sqrt2, 4.0, 4 * std::numbers::sqrt2}) {
+      coarse.push_back(run(ratio, 8));
+      fine.push_back(run(ratio, 16));
+    }
+  }
+};
+
+/// Of a number get(run), extrapolated to no zone.
+template <class Get>
+Check check_of_short_zone(const Runs& runs, const std::string& quantity, const Get& get, double expected) {
+  std::array<double, 3> at;
+  double mesh_part = 0;
+  for (std::size_t z = 0; z < 3; ++z) {
+    mesh_part = (get(runs.fine[z]) - get(runs.coarse[z])) / 3;
+    at[z] = get(runs.fine[z]) + mesh_part;
+  }
+  const auto small_zone = limit(at[0], at[1], at[2], 1, 2);
+  return {quantity + ", zone -> 0",
+          "",
+          small_zone.value,
+          expected,
+          small_zone.uncertainty + std::abs(mesh_part),
+          fmt::format("changes when the shortest zone joins the extrapolation, from "
+                      "zones of {:.2f}, {:.2f} and {:.2f} c_S t_c, "
+                      "and of the extrapolation from 8 and 16 elements in each",
+                      runs.fine[0].zone, runs.fine[1].zone, runs.fine[2].zone)};
+}
+
+void check_path(const Runs& runs, const PathInTheory& theory, Outcome& outcome) {
   for (const double t : {1.5, 2.0, 2.5}) {
-    check(
-        fmt::format("tip speed over c_S at {} t_c", t),
-        [&](const Run& r) { return r.speed_at(t, half_window); }, speed_at(1 / t) / c_S());
+    outcome.checks.push_back(check_of_short_zone(
+        runs, fmt::format("tip speed over c_S at {} t_c", t),
+        [&](const Run& r) { return r.speed_at(t, half_window); }, speed_at(1 / t) / c_S()));
     // The path before is left out: while the tip is slow the zone is not short.
     constexpr double from = 1.5;
-    if (t > from) {
-      const auto theory = [&](double time) {
-        return place_theory.y[static_cast<std::size_t>(std::lround(time / dt)) - 1];
-      };
-      check(
-          fmt::format("way of the tip over c_S t_c from {} to {} t_c", from, t),
-          [&](const Run& r) { return r.place_at(t) - r.place_at(from); }, theory(t) - theory(from));
-    }
+    if (t > from)
+      outcome.checks.push_back(check_of_short_zone(
+          runs, fmt::format("way of the tip over c_S t_c from {} to {} t_c", from, t),
+          [&](const Run& r) { return r.place_at(t) - r.place_at(from); },
+          theory.place_at(t) - theory.place_at(from)));
   }
-  path.curves.push_back(std::move(place_theory));
-  speed.curves.push_back(std::move(speed_theory));
-  for (const auto& r : fine) {
-    Curve places{fmt::format("zone {:.2f} c_S t_c", r.zone), Curve::Kind::program, {}, {}};
-    Curve speeds = places;
+}
+
+void draw_path(const Runs& runs, const PathInTheory& theory, Outcome& outcome) {
+  Chart path{.x_label = "time / t_c", .y_label = "tip / (c_S t_c)", .curves = {theory.place}};
+  Chart speed{.x_label = "time / t_c", .y_label = "tip speed / c_S", .curves = {theory.speed}};
+  for (const auto& r : runs.fine) {
+    Curve places{fmt::format("zone {:.2f} c_S t_c", r.zone), Curve::Kind::program, {}, {}}, speeds = places;
     for (double t = 0.3; t < run_end - half_window; t += 0.1) {
       places.x.push_back(t);
       places.y.push_back(r.place_at(t));
@@ -274,15 +287,40 @@ Outcome crack(Effort effort) {
     path.curves.push_back(std::move(places));
     speed.curves.push_back(std::move(speeds));
   }
+  outcome.charts.push_back(std::move(path));
+  outcome.charts.push_back(std::move(speed));
+}
 
-  // Slow growth and arrest.
-  Chart slow{.x_label = "stress drop / that of first growth", .y_label = "half-length / r"};
+void growth_of_a_long_crack(bool full, Outcome& outcome) {
+  const PathInTheory theory;
+  const Runs runs(full);
+  check_path(runs, theory, outcome);
+  draw_path(runs, theory, outcome);
+}
+
+Curve half_lengths_at_rest() {
   Curve rest{"theory", Curve::Kind::theory, {}, {}};
   for (double load = 1; load <= final_load + 1e-9; load += 0.02) {
     rest.x.push_back(load);
     rest.y.push_back(half_length_at_rest(load));
   }
-  slow.curves.push_back(std::move(rest));
+  return rest;
+}
+
+Curve half_lengths(const Arrest& arrest, double size) {
+  Curve points{fmt::format("zone r/{}", size), Curve::Kind::program, {}, {}};
+  const std::size_t every = arrest.load.size() / 40;
+  for (std::size_t k = every; k < arrest.load.size(); k += every) {
+    if (arrest.load[k] < 0.8) continue;
+    points.x.push_back(arrest.load[k]);
+    points.y.push_back(arrest.half_length[k]);
+  }
+  return points;
+}
+
+void slow_growth_and_arrest(bool full, Outcome& outcome) {
+  Chart slow{.x_label = "stress drop / that of first growth", .y_label = "half-length / r"};
+  slow.curves.push_back(half_lengths_at_rest());
   constexpr double width = 32;  // over r
   const std::vector<double> sizes = full ? std::vector{2.0, 4.0, 6.0} : std::vector{2.0, 3.0};
   const double narrower = grow_and_stop(sizes[0], 0.5 * width).half_length_at_end;
@@ -296,18 +334,20 @@ Outcome crack(Effort effort) {
          arrest.half_length_at_end, half_length_at_rest(final_load), 1 / size + std::abs(edges),
          fmt::format("the tip is somewhere in its zone; the edges' part, {:.2g}", edges)});
     last_growth = arrest.last_growth;
-    Curve points{fmt::format("zone r/{}", size), Curve::Kind::program, {}, {}};
-    const std::size_t every = arrest.load.size() / 40;
-    for (std::size_t k = every; k < arrest.load.size(); k += every) {
-      if (arrest.load[k] < 0.8) continue;
-      points.x.push_back(arrest.load[k]);
-      points.y.push_back(arrest.half_length[k]);
-    }
-    slow.curves.push_back(std::move(points));
+    slow.curves.push_back(half_lengths(arrest, size));
   }
   outcome.checks.push_back({"growth over r in the second half of the hold", "", last_growth, 0,
                             0.25 / sizes.back(), "one element"});
-  outcome.charts = {std::move(path), std::move(speed), std::move(slow)};
+  outcome.charts.push_back(std::move(slow));
+}
+
+}  // namespace
+
+Outcome crack(Effort effort) {
+  const bool full = effort == Effort::full;
+  Outcome outcome;
+  growth_of_a_long_crack(full, outcome);
+  slow_growth_and_arrest(full, outcome);
   return outcome;
 }
 

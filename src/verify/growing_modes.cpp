@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "stability/modes.hpp"
 #include "verify/extrapolation.hpp"
@@ -66,81 +67,83 @@ Complex mode(const interface::ContactModel& contact) {
   return fastest ? fastest->s_per_s / rate_unit_per_s() : Complex{std::nan(""), 0};
 }
 
+// Finer meshes carry shorter waves, whose growth would lift rounding up to the wave within the run: e-fold
+// pi elements (end k c_S) (growth/k c_S)/2 pi times, 22 at mu = 2 and 24 at mu = 1.3.
+constexpr int finest = 64, finest_for_order = 128;
+
+/// The rate with which the program carries a mode.
+Complex carried(const interface::ContactModel& contact, Complex p, int elements) {
+  return carry({.bodies = material(),
+                .contact = contact,
+                .pressure_Pa = p_Pa,
+                .speed_m_per_s = V_m_per_s,
+                .wavenumber_per_m = k_per_m,
+                .s_per_s = p * rate_unit_per_s(),
+                .elements_per_wave = elements,
+                .end_s = 2 / rate_unit_per_s()})
+             .rate_per_s() /
+         rate_unit_per_s();
+}
+
+RateCurves in_theory(const Response& response, const char* label) {
+  RateCurves rates(label, Curve::Kind::theory);
+  for (int j = 0; j <= 64; ++j) {
+    const double mu = 0.4 + 0.025 * j;
+    const Complex p = mode(response.contact(mu));
+    if (!std::isnan(p.real())) rates.add(mu, p.real(), -p.imag());
+  }
+  return rates;
+}
+
+RateCurves checked(const Response& response, bool full, Outcome& outcome) {
+  RateCurves rates(response.name, Curve::Kind::program);
+  for (const double mu : full ? std::vector{0.6, 1.0, 1.1, 1.3, 1.6, 2.0} : std::vector{1.0, 1.3}) {
+    const auto contact = response.contact(mu);
+    const Complex p = mode(contact);
+    if (std::isnan(p.real())) continue;
+    std::array<Complex, 3> at;
+    for (int level = 0; level < 3; ++level) at[level] = carried(contact, p, finest >> (2 - level));
+    const auto [rate, uncertainty] = limit(at, response.order, response.next_order);
+    rates.add(mu, rate.real(), -rate.imag());
+    const auto reason = fmt::format(
+        "change of the complex rate when the finest mesh joins the extrapolation: {}, {} and {} elements "
+        "per wave",
+        finest / 4, finest / 2, finest);
+    outcome.checks.push_back({fmt::format("growth rate over k c_S, {}, mu = {}", response.name, mu), "",
+                              rate.real(), p.real(), uncertainty, reason});
+    outcome.checks.push_back({fmt::format("phase speed over c_S, {}, mu = {}", response.name, mu), "",
+                              -rate.imag(), -p.imag(), uncertainty, reason});
+  }
+  return rates;
+}
+
+/// Errors over k h, their order checked.
+Curve errors(const Response& response, Outcome& outcome) {
+  Curve error{response.name, Curve::Kind::program, {}, {}};
+  const Complex p = mode(response.contact(1.3));
+  for (int elements = 16; elements <= finest_for_order; elements *= 2) {
+    error.x.push_back(2 * std::numbers::pi / elements);
+    error.y.push_back(std::abs(carried(response.contact(1.3), p, elements) - p));
+  }
+  const std::size_t n = error.y.size();
+  outcome.checks.push_back({fmt::format("order of the error in h, {}, mu = 1.3", response.name), "",
+                            std::log2(error.y[n - 2] / error.y[n - 1]), static_cast<double>(response.order),
+                            0.3, "terms of higher order on meshes this coarse"});
+  return error;
+}
+
 }  // namespace
 
 Outcome growing_modes(Effort effort) {
-  const bool full = effort == Effort::full;
-  // Finer meshes carry shorter waves, whose growth would lift rounding up to the wave within the run: e-fold
-  // pi elements (end k c_S) (growth/k c_S)/2 pi times, 22 at mu = 2 and 24 at mu = 1.3.
-  constexpr int finest = 64, finest_for_order = 128;
   Outcome outcome;
-  Chart growth{.x_label = "friction coefficient", .y_label = "growth rate / (k c_S)"};
-  Chart speed{.x_label = "friction coefficient", .y_label = "phase speed / c_S"};
-  Chart errors{.x_label = "k h", .y_label = "|s - theory| / (k c_S)", .log_x = true, .log_y = true};
-  const auto carried = [&](const interface::ContactModel& contact, Complex p, int elements) {
-    return carry({.bodies = material(),
-                  .contact = contact,
-                  .pressure_Pa = p_Pa,
-                  .speed_m_per_s = V_m_per_s,
-                  .wavenumber_per_m = k_per_m,
-                  .s_per_s = p * rate_unit_per_s(),
-                  .elements_per_wave = elements,
-                  .end_s = 2 / rate_unit_per_s()})
-               .rate_per_s() /
-           rate_unit_per_s();
-  };
+  RateCharts charts("friction coefficient", "growth rate / (k c_S)", "phase speed / c_S");
+  Chart error{.x_label = "k h", .y_label = "|s - theory| / (k c_S)", .log_x = true, .log_y = true};
   for (const auto& response : responses) {
-    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}};
-    Curve theory_speed = theory;
-    for (int j = 0; j <= 64; ++j) {
-      const double mu = 0.4 + 0.025 * j;
-      const Complex p = mode(response.contact(mu));
-      if (std::isnan(p.real())) continue;
-      theory.x.push_back(mu);
-      theory.y.push_back(p.real());
-      theory_speed.x.push_back(mu);
-      theory_speed.y.push_back(-p.imag());
-    }
-    Curve program{response.name, Curve::Kind::program, {}, {}};
-    Curve program_speed = program;
-    for (const double mu : full ? std::vector{0.6, 1.0, 1.1, 1.3, 1.6, 2.0} : std::vector{1.0, 1.3}) {
-      const auto contact = response.contact(mu);
-      const Complex p = mode(contact);
-      if (std::isnan(p.real())) continue;
-      std::array<Complex, 3> at;
-      for (int level = 0; level < 3; ++level) at[level] = carried(contact, p, finest >> (2 - level));
-      const auto [rate, uncertainty] = limit(at, response.order, response.next_order);
-      program.x.push_back(mu);
-      program.y.push_back(rate.real());
-      program_speed.x.push_back(mu);
-      program_speed.y.push_back(-rate.imag());
-      const auto reason = fmt::format(
-          "change of the complex rate when the finest mesh joins the extrapolation: {}, {} and {} elements "
-          "per wave",
-          finest / 4, finest / 2, finest);
-      outcome.checks.push_back({fmt::format("growth rate over k c_S, {}, mu = {}", response.name, mu), "",
-                                rate.real(), p.real(), uncertainty, reason});
-      outcome.checks.push_back({fmt::format("phase speed over c_S, {}, mu = {}", response.name, mu), "",
-                                -rate.imag(), -p.imag(), uncertainty, reason});
-    }
-    growth.curves.push_back(std::move(theory));
-    growth.curves.push_back(std::move(program));
-    speed.curves.push_back(std::move(theory_speed));
-    speed.curves.push_back(std::move(program_speed));
-
-    Curve error{response.name, Curve::Kind::program, {}, {}};
-    const Complex p = mode(response.contact(1.3));
-    for (int elements = 16; elements <= finest_for_order; elements *= 2) {
-      error.x.push_back(2 * std::numbers::pi / elements);
-      error.y.push_back(std::abs(carried(response.contact(1.3), p, elements) - p));
-    }
-    const std::size_t n = error.y.size();
-    outcome.checks.push_back({fmt::format("order of the error in h, {}, mu = 1.3", response.name), "",
-                              std::log2(error.y[n - 2] / error.y[n - 1]), static_cast<double>(response.order),
-                              0.3, "terms of higher order on meshes this coarse"});
-    errors.curves.push_back(std::move(error));
+    charts.add(in_theory(response, charts.theory_label()));
+    charts.add(checked(response, effort == Effort::full, outcome));
+    error.curves.push_back(errors(response, outcome));
   }
-  outcome.charts = {std::move(growth), std::move(speed), std::move(errors)};
+  outcome.charts = {std::move(charts.growth), std::move(charts.speed), std::move(error)};
   return outcome;
 }
 

@@ -78,74 +78,78 @@ Complex carried_per_s(const Pair& pair, const interface::ContactModel& contact, 
       .rate_per_s();
 }
 
+// Waves of a few elements grow out of rounding, see growing_modes.cpp.
+constexpr int finest = 64, finest_for_order = 128;
+
+RateCurves in_theory(const Pair& pair, const char* label) {
+  RateCurves rates(label, Curve::Kind::theory);
+  for (int j = 0; j <= 76; ++j) {
+    const double mu = 0.1 + 0.025 * j;
+    const Complex s = mode_per_s(pair, constant(mu)) / pair.rate_unit_per_s();
+    rates.add(mu, s.real(), -s.imag());
+  }
+  return rates;
+}
+
+/// Checks a rate, in k c_S, and returns it.
+Complex checked(const Pair& pair, const char* response, const interface::ContactModel& contact, double mu,
+                Outcome& outcome) {
+  const Complex s = mode_per_s(pair, contact);
+  std::array<Complex, 3> at;
+  for (int level = 0; level < 3; ++level)
+    at[level] = carried_per_s(pair, contact, s, finest >> (2 - level)) / pair.rate_unit_per_s();
+  const auto [rate, uncertainty] = limit(at, pair.order, pair.next_order);
+  const Complex expected = s / pair.rate_unit_per_s();
+  const auto reason = fmt::format(
+      "change of the complex rate when the finest mesh joins the extrapolation: {}, {} and {} elements "
+      "per wave",
+      finest / 4, finest / 2, finest);
+  outcome.checks.push_back({fmt::format("growth rate over k c_S, {}, {}, mu = {}", pair.name, response, mu),
+                            "", rate.real(), expected.real(), uncertainty, reason});
+  outcome.checks.push_back({fmt::format("phase speed over c_S, {}, {}, mu = {}", pair.name, response, mu), "",
+                            -rate.imag(), -expected.imag(), uncertainty, reason});
+  return rate;
+}
+
+RateCurves checked(const Pair& pair, bool full, Outcome& outcome) {
+  RateCurves rates(pair.name, Curve::Kind::program);
+  for (const double mu : full ? std::vector{0.3, 0.6, 1.0, 1.3, 2.0} : std::vector{0.6, 1.3}) {
+    const Complex rate = checked(pair, "constant mu", constant(mu), mu, outcome);
+    rates.add(mu, rate.real(), -rate.imag());
+  }
+  for (const double mu : full ? std::vector{1.0, 1.3} : std::vector{1.3})
+    checked(pair, "mu falls with speed", weakening(pair, mu), mu, outcome);
+  return rates;
+}
+
+/// Errors over k h, their order checked.
+Curve errors(const Pair& pair, Outcome& outcome) {
+  Curve error{pair.name, Curve::Kind::program, {}, {}};
+  const Complex s = mode_per_s(pair, constant(1.3));
+  for (int elements = 16; elements <= finest_for_order; elements *= 2) {
+    error.x.push_back(2 * std::numbers::pi / elements);
+    error.y.push_back(std::abs(carried_per_s(pair, constant(1.3), s, elements) - s) / pair.rate_unit_per_s());
+  }
+  const std::size_t n = error.y.size();
+  outcome.checks.push_back({fmt::format("order of the error in h, {}, constant mu = 1.3", pair.name), "",
+                            std::log2(error.y[n - 2] / error.y[n - 1]), static_cast<double>(pair.order), 0.3,
+                            "terms of higher order on meshes this coarse"});
+  return error;
+}
+
 }  // namespace
 
 Outcome growing_modes_of_two(Effort effort) {
-  const bool full = effort == Effort::full;
-  // Waves of a few elements grow out of rounding, see growing_modes.cpp.
-  constexpr int finest = 64, finest_for_order = 128;
   Outcome outcome;
-  Chart growth{.x_label = "friction coefficient", .y_label = "growth rate / (k c_S)", .log_y = true};
-  Chart speed{.x_label = "friction coefficient", .y_label = "phase speed / c_S"};
-  Chart errors{.x_label = "k h", .y_label = "|s - theory| / (k c_S)", .log_x = true, .log_y = true};
-  // Checks a rate, in k c_S, and returns it.
-  const auto checked = [&](const Pair& pair, const char* response, const interface::ContactModel& contact,
-                           double mu) {
-    const Complex s = mode_per_s(pair, contact);
-    std::array<Complex, 3> at;
-    for (int level = 0; level < 3; ++level)
-      at[level] = carried_per_s(pair, contact, s, finest >> (2 - level)) / pair.rate_unit_per_s();
-    const auto [rate, uncertainty] = limit(at, pair.order, pair.next_order);
-    const Complex expected = s / pair.rate_unit_per_s();
-    const auto reason = fmt::format(
-        "change of the complex rate when the finest mesh joins the extrapolation: {}, {} and {} elements "
-        "per wave",
-        finest / 4, finest / 2, finest);
-    outcome.checks.push_back({fmt::format("growth rate over k c_S, {}, {}, mu = {}", pair.name, response, mu),
-                              "", rate.real(), expected.real(), uncertainty, reason});
-    outcome.checks.push_back({fmt::format("phase speed over c_S, {}, {}, mu = {}", pair.name, response, mu),
-                              "", -rate.imag(), -expected.imag(), uncertainty, reason});
-    return rate;
-  };
+  RateCharts charts("friction coefficient", "growth rate / (k c_S)", "phase speed / c_S");
+  charts.growth.log_y = true;
+  Chart error{.x_label = "k h", .y_label = "|s - theory| / (k c_S)", .log_x = true, .log_y = true};
   for (const auto& pair : pairs()) {
-    const double unit = pair.rate_unit_per_s();
-    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}}, theory_speed = theory;
-    for (int j = 0; j <= 76; ++j) {
-      const double mu = 0.1 + 0.025 * j;
-      const Complex s = mode_per_s(pair, constant(mu)) / unit;
-      theory.x.push_back(mu);
-      theory.y.push_back(s.real());
-      theory_speed.x.push_back(mu);
-      theory_speed.y.push_back(-s.imag());
-    }
-    Curve program{pair.name, Curve::Kind::program, {}, {}}, program_speed = program;
-    for (const double mu : full ? std::vector{0.3, 0.6, 1.0, 1.3, 2.0} : std::vector{0.6, 1.3}) {
-      const Complex rate = checked(pair, "constant mu", constant(mu), mu);
-      program.x.push_back(mu);
-      program.y.push_back(rate.real());
-      program_speed.x.push_back(mu);
-      program_speed.y.push_back(-rate.imag());
-    }
-    for (const double mu : full ? std::vector{1.0, 1.3} : std::vector{1.3})
-      checked(pair, "mu falls with speed", weakening(pair, mu), mu);
-    growth.curves.push_back(std::move(theory));
-    growth.curves.push_back(std::move(program));
-    speed.curves.push_back(std::move(theory_speed));
-    speed.curves.push_back(std::move(program_speed));
-
-    Curve error{pair.name, Curve::Kind::program, {}, {}};
-    const Complex s = mode_per_s(pair, constant(1.3));
-    for (int elements = 16; elements <= finest_for_order; elements *= 2) {
-      error.x.push_back(2 * std::numbers::pi / elements);
-      error.y.push_back(std::abs(carried_per_s(pair, constant(1.3), s, elements) - s) / unit);
-    }
-    const std::size_t n = error.y.size();
-    outcome.checks.push_back({fmt::format("order of the error in h, {}, constant mu = 1.3", pair.name), "",
-                              std::log2(error.y[n - 2] / error.y[n - 1]), static_cast<double>(pair.order),
-                              0.3, "terms of higher order on meshes this coarse"});
-    errors.curves.push_back(std::move(error));
+    charts.add(in_theory(pair, charts.theory_label()));
+    charts.add(checked(pair, effort == Effort::full, outcome));
+    error.curves.push_back(errors(pair, outcome));
   }
-  outcome.charts = {std::move(growth), std::move(speed), std::move(errors)};
+  outcome.charts = {std::move(charts.growth), std::move(charts.speed), std::move(error)};
   return outcome;
 }
 

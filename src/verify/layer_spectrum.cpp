@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "stability/modes.hpp"
 #include "verify/extrapolation.hpp"
@@ -31,75 +33,83 @@ std::array<Law, 2> laws(double c_S) {
             2}}};
 }
 
+/// A layer that slides.
+struct Layer {
+  solid::Material material{.stiffness_damping_s = 0};
+  double c_S = solid::shear_speed_m_per_s(material), unit_per_s = c_S / H_m;
+
+  /// s of the fastest mode, 0 where none grows.
+  Complex fastest_per_s(const Law& law, double k) const {
+    const auto sliding =
+        stability::uniform_sliding(law.contact.law, V_m_per_s, p_Pa, law.contact.regularisation);
+    const auto modes =
+        stability::growing_layer_modes(material, sliding, k, H_m, 4 * c_S * std::max(k, 1 / H_m));
+    return modes.empty() ? Complex{0} : modes.front().s_per_s;
+  }
+  /// The rate with which the program carries a mode, extrapolated to no mesh.
+  ComplexLimit carried(const Law& law, double k, Complex s_per_s, double waves_in_H) const {
+    // Later, waves of a few elements, which grow out of rounding (34 e-folds on the finest mesh up to
+    // 2 H/c_S), would stop the sliding of single nodes.
+    const double end_s = 1.5 / unit_per_s;
+    std::array<Complex, 3> at;
+    for (int level = 0; level < 3; ++level)
+      at[level] =
+          carry({.bodies = material,
+                 .contact = law.contact,
+                 .pressure_Pa = p_Pa,
+                 .speed_m_per_s = V_m_per_s,
+                 .wavenumber_per_m = k,
+                 .s_per_s = s_per_s,
+                 .height_m = H_m,
+                 .elements_per_wave = static_cast<int>(std::lround(24 / waves_in_H * std::exp2(level))),
+                 .end_s = end_s})
+              .rate_per_s() /
+          unit_per_s;
+    return limit(at, law.order, law.next_order);
+  }
+};
+
+RateCurves in_theory(const Layer& layer, const Law& law, bool full, const char* label) {
+  RateCurves rates(label, Curve::Kind::theory);
+  for (double kH = 0.25; kH < 7; kH += full ? 0.0625 : 0.25) {
+    const Complex s = layer.fastest_per_s(law, kH / H_m);
+    rates.add(kH, s.real() / layer.unit_per_s, -s.imag() * H_m / (kH * layer.c_S));
+  }
+  return rates;
+}
+
+RateCurves checked(const Layer& layer, const Law& law, bool full, Outcome& outcome) {
+  RateCurves rates(law.name, Curve::Kind::program);
+  // Wave over height such that meshes of every level fit.
+  for (const double waves_in_H :
+       full ? std::vector{0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0} : std::vector{0.3, 0.8}) {
+    const double kH = 2 * std::numbers::pi * waves_in_H, k = kH / H_m;
+    const Complex s = layer.fastest_per_s(law, k);
+    const auto [rate, uncertainty] = layer.carried(law, k, s, waves_in_H);
+    rates.add(kH, rate.real(), -rate.imag() / kH);
+    const std::string reason =
+        "change of the complex rate when the finest mesh joins the extrapolation: 24, 48 and 96 elements "
+        "per height";
+    outcome.checks.push_back({fmt::format("growth rate H/c_S, {}, k H = {:.3g}", law.name, kH), "",
+                              rate.real(), s.real() / layer.unit_per_s, uncertainty, reason});
+    outcome.checks.push_back({fmt::format("frequency H/c_S, {}, k H = {:.3g}", law.name, kH), "", rate.imag(),
+                              s.imag() / layer.unit_per_s, uncertainty, reason});
+  }
+  return rates;
+}
+
 }  // namespace
 
 Outcome layer_spectrum(Effort effort) {
   const bool full = effort == Effort::full;
-  const solid::Material material{.stiffness_damping_s = 0};
-  const double c_S = solid::shear_speed_m_per_s(material), unit_per_s = c_S / H_m;
-  // Later, waves of a few elements, which grow out of rounding (34 e-folds on the finest mesh up to 2 H/c_S),
-  // would stop the sliding of single nodes.
-  const double end_s = 1.5 / unit_per_s;
   Outcome outcome;
-  Chart growth{.x_label = "k H", .y_label = "growth rate H / c_S"};
-  Chart speed{.x_label = "k H", .y_label = "phase speed / c_S"};
-  for (const auto& law : laws(c_S)) {
-    const auto sliding =
-        stability::uniform_sliding(law.contact.law, V_m_per_s, p_Pa, law.contact.regularisation);
-    const auto fastest = [&](double k) {
-      const auto modes =
-          stability::growing_layer_modes(material, sliding, k, H_m, 4 * c_S * std::max(k, 1 / H_m));
-      return modes.empty() ? Complex{0} : modes.front().s_per_s;
-    };
-    Curve theory{growth.curves.empty() ? "theory" : "", Curve::Kind::theory, {}, {}};
-    Curve theory_speed = theory;
-    for (double kH = 0.25; kH < 7; kH += full ? 0.0625 : 0.25) {
-      const Complex s = fastest(kH / H_m);
-      theory.x.push_back(kH);
-      theory.y.push_back(s.real() / unit_per_s);
-      theory_speed.x.push_back(kH);
-      theory_speed.y.push_back(-s.imag() * H_m / (kH * c_S));
-    }
-    Curve program{law.name, Curve::Kind::program, {}, {}};
-    Curve program_speed = program;
-    // Wave over height such that meshes of every level fit.
-    for (const double waves_in_H :
-         full ? std::vector{0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0} : std::vector{0.3, 0.8}) {
-      const double kH = 2 * std::numbers::pi * waves_in_H, k = kH / H_m;
-      const Complex s = fastest(k);
-      std::array<Complex, 3> at;
-      for (int level = 0; level < 3; ++level)
-        at[level] =
-            carry({.bodies = material,
-                   .contact = law.contact,
-                   .pressure_Pa = p_Pa,
-                   .speed_m_per_s = V_m_per_s,
-                   .wavenumber_per_m = k,
-                   .s_per_s = s,
-                   .height_m = H_m,
-                   .elements_per_wave = static_cast<int>(std::lround(24 / waves_in_H * std::exp2(level))),
-                   .end_s = end_s})
-                .rate_per_s() /
-            unit_per_s;
-      const auto [rate, uncertainty] = limit(at, law.order, law.next_order);
-      program.x.push_back(kH);
-      program.y.push_back(rate.real());
-      program_speed.x.push_back(kH);
-      program_speed.y.push_back(-rate.imag() / kH);
-      const std::string reason =
-          "change of the complex rate when the finest mesh joins the extrapolation: 24, 48 and 96 elements "
-          "per height";
-      outcome.checks.push_back({fmt::format("growth rate H/c_S, {}, k H = {:.3g}", law.name, kH), "",
-                                rate.real(), s.real() / unit_per_s, uncertainty, reason});
-      outcome.checks.push_back({fmt::format("frequency H/c_S, {}, k H = {:.3g}", law.name, kH), "",
-                                rate.imag(), s.imag() / unit_per_s, uncertainty, reason});
-    }
-    growth.curves.push_back(std::move(theory));
-    growth.curves.push_back(std::move(program));
-    speed.curves.push_back(std::move(theory_speed));
-    speed.curves.push_back(std::move(program_speed));
+  const Layer layer;
+  RateCharts charts("k H", "growth rate H / c_S", "phase speed / c_S");
+  for (const auto& law : laws(layer.c_S)) {
+    charts.add(in_theory(layer, law, full, charts.theory_label()));
+    charts.add(checked(layer, law, full, outcome));
   }
-  outcome.charts = {std::move(growth), std::move(speed)};
+  outcome.charts = {std::move(charts.growth), std::move(charts.speed)};
   return outcome;
 }
 

@@ -159,12 +159,26 @@ double relative_distance(const solid::Field& u, const solid::Field& v, const sol
   return std::sqrt(difference / norm);
 }
 
+mesh::Mesh layer_mesh(double h_m) {
+  return mesh::make_plate({.width_m = side_m,
+                           .height_m = side_m,
+                           .element_size_m = h_m,
+                           .corner = mesh::Corner::none,
+                           .sides = mesh::Sides::periodic});
+}
+
+/// In the L2 norm, of numbers one by one.
+struct RelativeError {
+  double difference = 0, exact = 0;
+  void add(double measured, double expected) {
+    difference += (measured - expected) * (measured - expected);
+    exact += expected * expected;
+  }
+  double value() const { return exact > 0 ? std::sqrt(difference / exact) : std::sqrt(difference); }
+};
+
 Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double coarsest_h_m, bool subcycled) {
-  const auto mesh = mesh::make_plate({.width_m = side_m,
-                                      .height_m = side_m,
-                                      .element_size_m = h_m,
-                                      .corner = mesh::Corner::none,
-                                      .sides = mesh::Sides::periodic});
+  const auto mesh = layer_mesh(h_m);
   const auto steps = steps_to(time_s, h_m, coarsest_h_m, wave.material);
   const double factor = factor_of_step(mesh, wave.material, steps.step_s);
   motion::TimeStepping stepping;  // 4 rows of cells, 18 sub-steps
@@ -189,14 +203,7 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
                                                                     : statics::Contact::stick,
                             .p_Pa = edge == Edge::free ? 0 : pressure_Pa});
   motion::Recorder recorder(state, 10, 0);
-  struct Norm {
-    double error = 0, exact = 0;
-    void add(double measured, double expected) {
-      error += (measured - expected) * (measured - expected);
-      exact += expected * expected;
-    }
-    double relative() const { return exact > 0 ? std::sqrt(error / exact) : std::sqrt(error); }
-  } u, v, t, p;
+  RelativeError u, v, t, p;
   const Eigen::Vector2d stress = wave.stress(0) * wave.coefficient;
   for (int step = 0; step < steps.n; ++step) {
     stepper.advance(recorder);
@@ -226,7 +233,7 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
       v.add(velocity.x[n], (u_x(n, after) - u_x(n, before)) / (after - before));
       v.add(velocity.y[n], (u_y(n, after) - u_y(n, before)) / (after - before));
     }
-  return {u.relative(), v.relative(), t.relative(), p.relative(), stepper.u_m(), at_rest};
+  return {u.value(), v.value(), t.value(), p.value(), stepper.u_m(), at_rest};
 }
 
 }  // namespace

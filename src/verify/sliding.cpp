@@ -93,6 +93,25 @@ Complex WaveShape::sum(const std::array<Complex, 4>& amplitude, double y_m) cons
   return total;
 }
 
+RateCurves::RateCurves(const std::string& label, Curve::Kind kind)
+    : growth{label, kind, {}, {}}, speed(growth) {}
+
+void RateCurves::add(double at, double growth_rate, double phase_speed) {
+  growth.x.push_back(at);
+  growth.y.push_back(growth_rate);
+  speed.x.push_back(at);
+  speed.y.push_back(phase_speed);
+}
+
+RateCharts::RateCharts(const char* x_label, const char* growth_label, const char* speed_label)
+    : growth{.x_label = x_label, .y_label = growth_label},
+      speed{.x_label = x_label, .y_label = speed_label} {}
+
+void RateCharts::add(const RateCurves& curves) {
+  growth.curves.push_back(curves.growth);
+  speed.curves.push_back(curves.speed);
+}
+
 Complex Growth::rate_per_s() const {
   const auto n = static_cast<double>(time_s.size());
   const double t_mean = std::accumulate(time_s.begin(), time_s.end(), 0.0) / n;
@@ -157,21 +176,26 @@ motion::Stepper make_stepper(const std::vector<Part>& parts, const interface::Co
           motion::BodySource{parts[1].mesh, parts[1].material}, contact, time};
 }
 
-}  // namespace
-
-Growth carry(const SlidingWave& w) {
-  constexpr double amplitude_m = 1e-8;
-  const double k = w.wavenumber_per_m, length = 2 * std::numbers::pi / k;
-  const auto bodies = parts(w);
+/// The same c_L dt/h on every mesh, and a whole number of steps: errors then follow powers of h.
+struct WholeSteps {
+  int n = 0;
+  double factor = 0;  ///< of the stable step
+};
+WholeSteps steps_of(const SlidingWave& w, const std::vector<Part>& bodies) {
   double c_L = 0;
   for (const auto& body : bodies) c_L = std::max(c_L, solid::longitudinal_speed_m_per_s(body.material));
-  // The same c_L dt/h on every mesh, and a whole number of steps: errors then follow powers of h.
+  const double length = 2 * std::numbers::pi / w.wavenumber_per_m;
   const auto trial = make_stepper(bodies, w.contact, plain_stepping());
   const double substeps = trial.step_s() / trial.lowest_step_s();
-  const int n_steps =
-      w.elements_per_wave * static_cast<int>(std::ceil(c_L * w.end_s / (0.9 * length * substeps)));
-  auto stepper =
-      make_stepper(bodies, w.contact, plain_stepping(w.end_s / (n_steps * substeps * trial.stable_step_s())));
+  const int n = w.elements_per_wave * static_cast<int>(std::ceil(c_L * w.end_s / (0.9 * length * substeps)));
+  return {n, w.end_s / (n * substeps * trial.stable_step_s())};
+}
+
+/// Starts the stepper from the wave on uniform sliding with the coefficient mu.
+statics::Equilibrium start_sliding(motion::Stepper& stepper, const SlidingWave& w,
+                                   const std::vector<Part>& bodies, double mu) {
+  constexpr double amplitude_m = 1e-8;
+  const double k = w.wavenumber_per_m;
   const auto phase = [&](double x_m, double time) {
     return amplitude_m * std::exp(i_unit * k * x_m + w.s_per_s * time);
   };
@@ -187,7 +211,6 @@ Growth carry(const SlidingWave& w) {
     };
   };
   const Part& above = bodies.front();
-  const double mu = stability::uniform_sliding(w.contact.law, w.speed_m_per_s, w.pressure_Pa).mu;
   Start from{.u_x_m = u_x(above),
              .u_y_m = u_y(above),
              .contact = statics::Contact::slip,
@@ -206,7 +229,17 @@ Growth carry(const SlidingWave& w) {
       state.tractions.p_s_Pa[i] += (phase(above.mesh.x_m[above.mesh.lower[i]], 0) * delayed).real();
     stepper.start(state, 1, from.loads);
   }
+  return state;
+}
 
+}  // namespace
+
+Growth carry(const SlidingWave& w) {
+  const auto bodies = parts(w);
+  const auto steps = steps_of(w, bodies);
+  auto stepper = make_stepper(bodies, w.contact, plain_stepping(steps.factor));
+  const double mu = stability::uniform_sliding(w.contact.law, w.speed_m_per_s, w.pressure_Pa).mu;
+  motion::Recorder recorder(start_sliding(stepper, w, bodies, mu), mu, 0);
   const auto transform = [&] {
     Complex sum = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -214,14 +247,13 @@ Growth carry(const SlidingWave& w) {
       const auto& mesh = bodies[b].mesh;
       for (const auto n : mesh.lower)
         sum += (b == 0 ? 1.0 : -1.0) * (stepper.bodies()[b].u_m().x[n] - moved_m) *
-               std::exp(-i_unit * k * mesh.x_m[n]);
+               std::exp(-i_unit * w.wavenumber_per_m * mesh.x_m[n]);
     }
     return sum;
   };
-  motion::Recorder recorder(state, mu, 0);
   Growth growth{{0}, {0}};
   Complex last = transform();
-  while (stepper.step() < n_steps) {
+  while (stepper.step() < steps.n) {
     stepper.advance(recorder);
     const Complex now = transform();
     growth.time_s.push_back(stepper.time_s());

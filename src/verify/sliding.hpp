@@ -3,11 +3,13 @@
 
 #include <array>
 #include <complex>
+#include <string>
 #include <vector>
 
 #include "interface/interface.hpp"
 #include "solid/material.hpp"
 #include "stability/compliance.hpp"
+#include "verify/verification.hpp"
 
 namespace slipfront::verify {
 
@@ -62,6 +64,20 @@ struct Growth {
   std::vector<double> time_s;
   std::vector<Complex> log_slip;
   Complex rate_per_s() const;  ///< slope of the line of least squares
+};
+
+/// Growth rates and phase speeds over what they depend on.
+struct RateCurves {
+  Curve growth, speed;
+  RateCurves(const std::string& label, Curve::Kind kind);
+  void add(double at, double growth_rate, double phase_speed);
+};
+struct RateCharts {
+  Chart growth, speed;
+  RateCharts(const char* x_label, const char* growth_label, const char* speed_label);
+  /// Of the next curves of theory: one legend stands for all.
+  const char* theory_label() const { return growth.curves.empty() ? "theory" : ""; }
+  void add(const RateCurves& curves);
 };
 
 /// Lets the program carry the wave. A half-space is as high as a longitudinal wave from its far edge needs to

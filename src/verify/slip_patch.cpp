@@ -56,54 +56,68 @@ Patch slip(double a_over_h, double width_over_a) {
   return patch;
 }
 
-}  // namespace
+double middle_in_theory_m() {
+  return drop_Pa / sliding_stiffness_Pa(solid::Material{}) * a_m;
+}
 
-Outcome slip_patch(Effort effort) {
-  const bool full = effort == Effort::full;
-  const solid::Material material;
-  const double middle_m = drop_Pa / sliding_stiffness_Pa(material) * a_m;
-  Outcome outcome;
+double ellipse(double x_over_a) {
+  return std::sqrt(std::max(0.0, 1 - std::pow(x_over_a, 2)));
+}
+
+Chart profile_in_theory() {
   Chart profile{.x_label = "x / a", .y_label = "slip Y0 / (a stress drop)"};
-  Curve ellipse{"theory", Curve::Kind::theory, {}, {}};
+  Curve theory{"theory", Curve::Kind::theory, {}, {}};
   for (int j = -100; j <= 100; ++j) {
-    ellipse.x.push_back(0.012 * j);
-    ellipse.y.push_back(std::sqrt(std::max(0.0, 1 - std::pow(0.012 * j, 2))));
+    theory.x.push_back(0.012 * j);
+    theory.y.push_back(ellipse(0.012 * j));
   }
-  profile.curves.push_back(std::move(ellipse));
-  const auto middle = [&](const Patch& patch) { return patch.middle_m / middle_m; };
+  profile.curves.push_back(std::move(theory));
+  return profile;
+}
 
-  // The edges' part: domains that grow, one mesh.
-  constexpr int coarse = 10;
-  std::vector<double> widths = {8, 16, 32}, at_width;
-  Curve edges{fmt::format("middle, h = a/{}", coarse), Curve::Kind::program, {}, {}};
-  for (const double width : widths) {
-    at_width.push_back(middle(slip(coarse, width)));
-    edges.x.push_back(1 / (width * width));
-    edges.y.push_back(at_width.back());
-  }
-  const auto edgeless = limit(at_width[0], at_width[1], at_width[2], 2, 4);
-  Curve edge_law{"a line through the two widest", Curve::Kind::theory, {}, {}};
-  for (const double inverse_square : {0.0, edges.x.front()}) {
-    const double slope = (at_width[1] - at_width[2]) / (edges.x[1] - edges.x[2]);
-    edge_law.x.push_back(inverse_square);
-    edge_law.y.push_back(at_width[2] + slope * (inverse_square - edges.x[2]));
-  }
-  const double edge_part = at_width[1] - edgeless.value;
-  outcome.checks.push_back({"edges' part of the slip: (8 a less 16 a) over (16 a less 32 a)", "",
-                            (at_width[0] - at_width[1]) / (at_width[1] - at_width[2]), 4, 1,
-                            "the next order, (a/width)^4, and what the dashpots leave of waves"});
+/// What the edges of a domain of 16 a add to the slip in the middle over theory: from domains that grow, on
+/// one mesh.
+struct EdgesPart {
+  static constexpr int a_over_h = 10;
+  double part = 0, uncertainty = 0;
+  Chart chart{.x_label = "(a / width)^2", .y_label = "slip in the middle over theory"};
 
-  // The mesh's part: one domain, its edges' part taken off.
+  explicit EdgesPart(Outcome& outcome) {
+    std::vector<double> at;
+    Curve edges{fmt::format("middle, h = a/{}", a_over_h), Curve::Kind::program, {}, {}};
+    for (const double width : {8.0, 16.0, 32.0}) {
+      at.push_back(slip(a_over_h, width).middle_m / middle_in_theory_m());
+      edges.x.push_back(1 / (width * width));
+      edges.y.push_back(at.back());
+    }
+    const auto edgeless = limit(at[0], at[1], at[2], 2, 4);
+    part = at[1] - edgeless.value;
+    uncertainty = edgeless.uncertainty;
+    Curve line{"a line through the two widest", Curve::Kind::theory, {}, {}};
+    for (const double inverse_square : {0.0, edges.x.front()}) {
+      const double slope = (at[1] - at[2]) / (edges.x[1] - edges.x[2]);
+      line.x.push_back(inverse_square);
+      line.y.push_back(at[2] + slope * (inverse_square - edges.x[2]));
+    }
+    chart.curves = {std::move(line), std::move(edges)};
+    outcome.checks.push_back({"edges' part of the slip: (8 a less 16 a) over (16 a less 32 a)", "",
+                              (at[0] - at[1]) / (at[1] - at[2]), 4, 1,
+                              "the next order, (a/width)^4, and what the dashpots leave of waves"});
+  }
+};
+
+/// The mesh's part: one domain, its edges' part taken off.
+struct MeshesPart {
   Curve against_h{"middle", Curve::Kind::program, {}, {}},
       rms{"rms over the patch", Curve::Kind::program, {}, {}};
-  std::vector<double> at_h;
-  double rest = 0;
-  const std::vector<int> meshes = full ? std::vector{10, 20, 40} : std::vector{5, 10, 20};
-  for (const int n : meshes) {
-    const auto patch = slip(n, 16);
+  std::vector<double> middle;  ///< over theory
+  double rest = 0;             ///< the largest, of Patch
+
+  void add(int a_over_h, double edges_part, Chart& profile) {
+    const auto patch = slip(a_over_h, 16);
     rest = std::max(rest, patch.rest);
-    const double scale = (1 - edge_part / middle(patch)) / middle_m;
-    Curve points{fmt::format("h = a/{}", n), Curve::Kind::program, {}, {}};
+    const double scale = (1 - edges_part / (patch.middle_m / middle_in_theory_m())) / middle_in_theory_m();
+    Curve points{fmt::format("h = a/{}", a_over_h), Curve::Kind::program, {}, {}};
     double square = 0;
     int inside = 0;
     for (std::size_t i = 0; i < patch.x_m.size(); ++i) {
@@ -111,36 +125,51 @@ Outcome slip_patch(Effort effort) {
       points.x.push_back(x);
       points.y.push_back(u);
       if (std::abs(x) > 1) continue;
-      square += std::pow(u - std::sqrt(std::max(0.0, 1 - x * x)), 2);
+      square += std::pow(u - ellipse(x), 2);
       ++inside;
     }
-    if (n <= 20) profile.curves.push_back(std::move(points));
-    at_h.push_back(patch.middle_m * scale);
-    against_h.x.push_back(1.0 / n);
-    against_h.y.push_back(std::abs(at_h.back() - 1));
-    rms.x.push_back(1.0 / n);
+    if (a_over_h <= 20) profile.curves.push_back(std::move(points));
+    middle.push_back(patch.middle_m * scale);
+    against_h.x.push_back(1.0 / a_over_h);
+    against_h.y.push_back(std::abs(middle.back() - 1));
+    rms.x.push_back(1.0 / a_over_h);
     rms.y.push_back(std::sqrt(square / inside));
-    outcome.checks.push_back(
-        {fmt::format("slip in the middle over theory, h = a/{}, edges' part taken off", n), "", at_h.back(),
-         1, 1.0 / n, "the patch ends between the last node that slips and the next: h/a"});
   }
-  const auto converged = limit(at_h[0], at_h[1], at_h[2], 1, 2);
+};
+
+void check_limit(const MeshesPart& meshes, const EdgesPart& edges, Outcome& outcome) {
+  const auto converged = limit(meshes.middle[0], meshes.middle[1], meshes.middle[2], 1, 2);
   outcome.checks.push_back(
       {"slip in the middle over theory, h -> 0, edges' part taken off", "", converged.value, 1,
-       converged.uncertainty + edgeless.uncertainty + std::abs(edge_part) / coarse,
+       converged.uncertainty + edges.uncertainty + std::abs(edges.part) / EdgesPart::a_over_h,
        fmt::format("changes when the finest mesh and the widest body join the extrapolations, and h/a of the "
                    "edges' part ({:.2g}), which is known on one mesh",
-                   edge_part)});
+                   edges.part)});
   outcome.checks.push_back({"order in h of the error in the middle", "",
-                            std::log2(against_h.y[1] / against_h.y[2]), 1, 0.3,
+                            std::log2(meshes.against_h.y[1] / meshes.against_h.y[2]), 1, 0.3,
                             "terms of higher order on meshes this coarse"});
-  outcome.checks.push_back({"fastest slip at the end over c_S slip/a", "", rest, 0, 1e-3,
+  outcome.checks.push_back({"fastest slip at the end over c_S slip/a", "", meshes.rest, 0, 1e-3,
                             "how far the slow rise is from rest: far below the errors above"});
+}
+
+}  // namespace
+
+Outcome slip_patch(Effort effort) {
+  Outcome outcome;
+  Chart profile = profile_in_theory();
+  EdgesPart edges(outcome);
+  MeshesPart meshes;
+  for (const int n : effort == Effort::full ? std::vector{10, 20, 40} : std::vector{5, 10, 20}) {
+    meshes.add(n, edges.part, profile);
+    outcome.checks.push_back(
+        {fmt::format("slip in the middle over theory, h = a/{}, edges' part taken off", n), "",
+         meshes.middle.back(), 1, 1.0 / n,
+         "the patch ends between the last node that slips and the next: h/a"});
+  }
+  check_limit(meshes, edges, outcome);
   Chart error{.x_label = "h / a", .y_label = "relative error", .log_x = true, .log_y = true};
-  error.curves = {std::move(against_h), std::move(rms)};
-  Chart width{.x_label = "(a / width)^2", .y_label = "slip in the middle over theory"};
-  width.curves = {std::move(edge_law), std::move(edges)};
-  outcome.charts = {std::move(profile), std::move(error), std::move(width)};
+  error.curves = {std::move(meshes.against_h), std::move(meshes.rms)};
+  outcome.charts = {std::move(profile), std::move(error), std::move(edges.chart)};
   return outcome;
 }
 
