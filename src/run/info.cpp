@@ -107,7 +107,8 @@ Info info(const input::Case& config) {
   info.step_s = stepper.step_s();
   info.substep_s = stepper.substep_s();
   info.needs = needs(config, {static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
-                              static_cast<double>(info.n_interface), info.step_s});
+                              static_cast<double>(info.n_interface), info.step_s,
+                              meshes.base ? static_cast<double>(meshes.base->n_nodes()) : 0});
   info.n_steps = info.needs.steps;
   info.node_updates = static_cast<double>(info.n_steps) * stepper.node_updates_per_step() +
                       static_cast<double>(info.needs.ramp_steps) * static_cast<double>(info.n_nodes);

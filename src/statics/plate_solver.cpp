@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "base/memory.hpp"
 #include "statics/condensed_interface.hpp"
 #include "statics/factorisation.hpp"
 #include "statics/iterative.hpp"
@@ -166,32 +165,73 @@ std::string_view name_of(StaticSolver solver) {
   return solver == StaticSolver::direct ? "direct" : "iterative";
 }
 
+namespace {
+
+StaticsBudget direct_budget(const StaticsSize& size) {
+  const double n = size.n_unknowns, n_interface = size.n_interface;
+  // Tilted, common and spontaneous, two displacements each; equations of nodes that slip or are open, and
+  // their factor.
+  const Budget states = {
+      {"equilibria", 6 * sizeof(double) * (n + size.n_unknowns_base), "a larger plate.element_size_m"},
+      {"the equations of the interface", 2 * sizeof(double) * dense_entries(n_interface),
+       "a larger plate.element_size_m"}};
+  const double factor = estimated_factor_bytes(n, n_interface);
+  Budget held = factor_budget(n, n_interface, factor);
+  std::vector<Budget> stages = {factorisation_budget(n, n_interface, factor)};
+  const auto add_held = [&](const Budget& making, const Budget& more) {
+    stages.push_back(held + making);
+    held = held + more;
+  };
+  const auto add_factorisation = [&](double n_unknowns) {
+    const double bytes = estimated_factor_bytes(n_unknowns, n_interface);
+    add_held(factorisation_budget(n_unknowns, n_interface, bytes),
+             factor_budget(n_unknowns, n_interface, bytes));
+  };
+  if (size.n_unknowns_base > 0) {
+    add_factorisation(size.n_unknowns_base);
+    add_held({}, pair_budget(n_interface));
+  }
+  if (size.top_free_in_tilt) {
+    add_factorisation(n);
+    if (size.n_unknowns_base > 0) add_held({}, pair_budget(n_interface));
+  }
+  held = held + states;
+  stages.push_back(held);
+  return {largest_of(stages), held};
+}
+
+StaticsSize twice_as_wide_as_high(StaticSolver solver, double n_unknowns) {
+  return {choose_solver(solver, n_unknowns), n_unknowns, std::sqrt(n_unknowns)};
+}
+
+}  // namespace
+
+StaticsBudget statics_budget(const StaticsSize& size) {
+  if (size.n_unknowns_base > 0 || choose_solver(size.solver, size.n_unknowns) == StaticSolver::direct)
+    return direct_budget(size);
+  const Budget iterative = {
+      {"the iterative solution", iterative_bytes(size.n_unknowns), "a larger plate.element_size_m"}};
+  return {iterative, iterative};
+}
+
 double statics_bytes(StaticSolver solver, double n_unknowns) {
-  if (choose_solver(solver, n_unknowns) == StaticSolver::direct)
-    return statics_bytes(n_unknowns, estimated_factor_bytes(n_unknowns));
-  return iterative_bytes(n_unknowns);
+  return total_bytes(statics_budget(twice_as_wide_as_high(solver, n_unknowns)).peak);
 }
 
 void require_statics_memory(StaticSolver solver, double n_unknowns) {
-  if (choose_solver(solver, n_unknowns) == StaticSolver::direct) {
-    require_statics_memory(n_unknowns, estimated_factor_bytes(n_unknowns));
-  } else {
-    require_memory(iterative_bytes(n_unknowns),
-                   fmt::format("the iterative solution of {:.4g} static unknowns", n_unknowns),
-                   "choose a larger plate.element_size_m");
-  }
+  const auto size = twice_as_wide_as_high(solver, n_unknowns);
+  require_memory(
+      statics_budget(size).peak,
+      fmt::format("the {} of {:.4g} static unknowns",
+                  size.solver == StaticSolver::direct ? "factorisation" : "iterative solution", n_unknowns));
 }
 
 void require_statics_memory_of_pair(double n_unknowns_plate, double n_unknowns_base) {
-  // The base is factorised while the plate's factor is there.
-  const double plate_factor = estimated_factor_bytes(n_unknowns_plate);
-  const double bytes =
-      std::max(statics_bytes(n_unknowns_plate, plate_factor),
-               plate_factor + statics_bytes(n_unknowns_base, estimated_factor_bytes(n_unknowns_base)));
-  require_memory(bytes,
+  auto size = twice_as_wide_as_high(StaticSolver::direct, n_unknowns_plate);
+  size.n_unknowns_base = n_unknowns_base;
+  require_memory(statics_budget(size).peak,
                  fmt::format("the factorisation of {:.4g} static unknowns of plate and base",
-                             n_unknowns_plate + n_unknowns_base),
-                 "choose a larger plate.element_size_m");
+                             n_unknowns_plate + n_unknowns_base));
 }
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
@@ -200,11 +240,9 @@ std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const sol
     require_base_fits(mesh, base->mesh);
     if (solver == StaticSolver::iterative)
       throw UserError("loading.solver = iterative knows no elastic base; choose auto or direct");
-    require_statics_memory_of_pair(2.0 * mesh.n_nodes(), 2.0 * base->mesh.n_nodes());
     return std::make_unique<DirectSolver>(mesh, material, base);
   }
   solver = solver_for_shape(solver, !mesh.coarser.empty(), mesh.grid.columns, mesh.grid.rows);
-  require_statics_memory(solver, 2.0 * mesh.n_nodes());
   if (choose_solver(solver, 2.0 * mesh.n_nodes()) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(mesh, material);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/budget.hpp"
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
@@ -87,15 +88,27 @@ inline constexpr double most_iterative_slenderness = 10, most_direct_columns = 1
 
 std::string_view name_of(StaticSolver solver);
 
-/// Bytes the statics need at their peak, the mesh and the equilibria found included.
+/// On what the memory of the statics depends.
+struct StaticsSize {
+  StaticSolver solver = StaticSolver::automatic;
+  double n_unknowns = 0, n_interface = 0;  ///< of the plate
+  double n_unknowns_base = 0;              ///< 0 on the rigid plane
+  bool top_free_in_tilt = false;           ///< the tilt then has a factorisation of its own
+};
+
+/// What the statics take at their peak, the meshes and the equilibria found included, and what they hold.
+struct StaticsBudget {
+  Budget peak, held;
+};
+StaticsBudget statics_budget(const StaticsSize& size);
+
+/// The peak of a plate twice as wide as high, in bytes.
 double statics_bytes(StaticSolver solver, double n_unknowns);
 
-/// Refuses statics that would not fit into the memory at hand.
+/// Refuse the statics of such plates, on the rigid plane or on a base, where they would not fit into the
+/// memory at hand.
 /// @throws UserError with the figures.
 void require_statics_memory(StaticSolver solver, double n_unknowns);
-
-/// Refuses two bodies, which are solved directly, where their statics would not fit into the memory at hand.
-/// @throws UserError with the figures.
 void require_statics_memory_of_pair(double n_unknowns_plate, double n_unknowns_base);
 
 /// By the solver that the plate's shape leaves of `solver`; on a base directly.
