@@ -4,8 +4,6 @@
 #include <fstream>
 #include <string>
 
-#include "base/error.hpp"
-
 namespace slipfront {
 
 double available_memory_bytes() {
@@ -17,13 +15,6 @@ double available_memory_bytes() {
     if (key == "MemAvailable:") return 1024 * kilobytes;
   }
   return 8e9;  // not Linux: a modest machine
-}
-
-void require_memory(double bytes, std::string_view what, const Message& remedy) {
-  const double available = available_memory_bytes();
-  if (bytes > 0.9 * available)
-    throw UserError("{} needs about {:.3g} GB of memory, {:.3g} GB are available; {}", what, bytes * 1e-9,
-                    available * 1e-9, remedy);
 }
 
 }  // namespace slipfront

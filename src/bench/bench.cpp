@@ -12,8 +12,8 @@
 #include <random>
 #include <thread>
 
+#include "base/budget.hpp"
 #include "base/clock.hpp"
-#include "base/memory.hpp"
 #include "fronts/fit.hpp"
 #include "input/case.hpp"
 #include "mesh/plate.hpp"
@@ -156,8 +156,9 @@ Rate measure_path(const std::string& path, int columns, const motion::TimeSteppi
                   const motion::Execution& execution, const std::function<mesh::Mesh()>& make_mesh) {
   const int rows = columns / 2;
   const double nodes = (columns + 1.0) * (rows + 1.0);
-  require_memory(motion::event_bytes(nodes, nodes, false, time.precision),
-                 fmt::format("a plate of {:.4g} nodes", nodes), "free some memory");
+  require_memory(
+      {{"its motion", motion::event_bytes(nodes, nodes, false, time.precision), "a machine with more"}},
+      fmt::format("a plate of {:.4g} nodes", nodes));
   const double before = resident_bytes();
   SlippingPlate plate(make_mesh(), time, execution);
   auto& stepper = plate.stepper();
@@ -217,7 +218,8 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
   const auto plate = plate_of(columns);
   const int rows = columns / 2;
   const double n_unknowns = 2 * (columns + 1.0) * (rows + 1.0);
-  statics::require_statics_memory(solver, n_unknowns);
+  const statics::StaticsSize size = {solver, n_unknowns, columns + 1.0};
+  statics::require_statics_memory(size);
   const auto mesh = mesh::make_plate(plate);
   const auto start = Clock::now();
   const auto processor_start = std::clock();
@@ -236,7 +238,7 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   result.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
-  result.expected_bytes = statics::statics_bytes(statics::choose_solver(solver, n_unknowns), n_unknowns);
+  result.expected_bytes = total_bytes(statics::statics_budget(size).peak);
   result.cycles = statics.solver().n_cycles();
   return result;
 }

@@ -91,11 +91,15 @@ void OutputFile::close() {
 }
 
 void write_text(const std::filesystem::path& file, std::string_view text) {
+  write_text(file, [&](OutputFile& output) { output.write(text); });
+}
+
+void write_text(const std::filesystem::path& file, const std::function<void(OutputFile&)>& write) {
   const std::filesystem::path fresh = file.string() + ".new";
   remove_file(fresh);
   try {
     OutputFile output = OutputFile::create(fresh);
-    output.write(text);
+    write(output);
     output.close();
     move_file(fresh, file);
   } catch (const WriteError&) {

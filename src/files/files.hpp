@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -57,6 +58,8 @@ class OutputFile {
 
 /// Writes a text file that is there completely, or not at all: under another name first.
 void write_text(const std::filesystem::path& file, std::string_view text);
+/// The same piece by piece.
+void write_text(const std::filesystem::path& file, const std::function<void(OutputFile&)>& write);
 
 /// Returns when what a file or a folder holds is on the device.
 void sync_file(const std::filesystem::path& file);

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/memory.hpp"
 #include "mesh/fillet.hpp"
 
 namespace slipfront::mesh {
@@ -67,9 +66,6 @@ Grid make_grid(const Plate& plate) {
   grid.spacing_m = plate.width_m / grid.columns;
   return grid;
 }
-
-/// Mesh, operator and motion of a plate, and what building them takes for a while.
-constexpr double bytes_per_node = 180;
 
 /// Column i of the transition's inner nodes stands i times the smaller spacing from the left; every fourth
 /// column has none.
@@ -163,8 +159,6 @@ Mesh make_rectangle(const Plate& plate, std::string_view table) {
   if (n_nodes > static_cast<std::size_t>(std::numeric_limits<Node>::max()))
     throw UserError("{} = {:g} makes {} nodes, more than can be numbered; choose a larger one",
                     Key("plate.element_size_m"), plate.element_size_m, n_nodes);
-  require_memory(bytes_per_node * static_cast<double>(n_nodes), fmt::format("a plate of {} nodes", n_nodes),
-                 Message("choose a larger {}", Key("plate.element_size_m")));
   Mesh mesh;
   mesh.grid = grids.front();
   mesh.coarser.assign(grids.begin() + 1, grids.end());

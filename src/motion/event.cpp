@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::int64_t monitor_interval = 50;
 
+/// More rows of energies than that, 9 GB of them, are no more than asked for.
+constexpr double most_rows_in_advance = 1e8;
+
 /// Empties a history but for its places; the memory stays for the next rows.
 void clear_rows(record::History& history) {
   history.time_s.clear();
@@ -112,12 +115,12 @@ double event_bytes(double n_nodes, double n_cells, bool with_snapshots, Precisio
   const double mesh = field * n_nodes + sizeof(mesh::Cell) * n_cells;
   const double state = 2 * field * n_nodes;  // u_m, u_per_shear
   const double single = precision == Precision::single_precision ? field * n_nodes : 0;
-  const double motion = (number + 2 * field) * n_nodes + single;  // mass, u, v
+  const double motion = (number + 2 * field) * n_nodes;  // mass, u, v
   // The largest frequency by iterations, or the cells around each node.
   const double building = (n_nodes < solid::many_nodes ? number + 4 * field : 28) * n_nodes;
   const double stepping = 2 * n_nodes;  // of the stepper besides: levels, orphans
   const double snapshot = with_snapshots ? 2 * field * n_nodes : 0;
-  return motion + std::max(mesh + state + building, stepping + snapshot);
+  return motion + std::max(mesh + state + std::max(building, single), single + stepping + snapshot);
 }
 
 Snapshot take_snapshot(const Stepper& stepper) {
@@ -147,6 +150,9 @@ EventRun::EventRun(Stepper& stepper, const statics::Equilibrium& state, const Pe
                     time.end_s, all_steps, stepper.step_s());
   n_steps_ = static_cast<std::int64_t>(all_steps);
   event_.history.x_m = state.tractions.x_m;
+  // All that may come at once: while it grew, the rows would be there twice.
+  event_.energies.reserve(
+      static_cast<std::size_t>(std::min(time.end_s / energy_interval_s_ + 3, most_rows_in_advance)));
   event_.energies.push_back(watch_->start());
 }
 

@@ -11,6 +11,9 @@
 namespace slipfront::results {
 namespace {
 
+/// Long tables are written in pieces of this size.
+constexpr std::size_t text_bytes_at_once = std::size_t{1} << 18U;
+
 /// A field of a CSV file; empty where the value is undefined.
 std::string field(double value) {
   return std::isnan(value) ? "" : fmt::format("{}", value);
@@ -37,12 +40,17 @@ void write_energies(const std::filesystem::path& file, std::span<const record::E
   std::string text = record::energy_time.name;
   for (const auto& term : record::energy_terms) text += fmt::format(",{}", term.name);
   text += fmt::format(",{}\n", record::imbalance_name);
-  for (const auto& e : energies) {
-    text += field(e.time_s);
-    for (const auto& term : record::energy_terms) text += fmt::format(",{}", field(e.*term.member));
-    text += fmt::format(",{}\n", field(record::imbalance_J_per_m(e, energies.front())));
-  }
-  files::write_text(file, text);
+  files::write_text(file, [&](files::OutputFile& output) {
+    for (const auto& e : energies) {
+      text += field(e.time_s);
+      for (const auto& term : record::energy_terms) text += fmt::format(",{}", field(e.*term.member));
+      text += fmt::format(",{}\n", field(record::imbalance_J_per_m(e, energies.front())));
+      if (text.size() < text_bytes_at_once) continue;
+      output.write(text);
+      text.clear();
+    }
+    output.write(text);
+  });
 }
 
 void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts) {

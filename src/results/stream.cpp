@@ -14,10 +14,6 @@
 namespace slipfront::results {
 namespace {
 
-/// What the writer may hold at a time of blocks and snapshots that are not in their files yet; before more is
-/// handed to it, the steps wait. A snapshot that is larger by itself is handed over when the writer has
-/// nothing else.
-constexpr std::size_t most_bytes_waiting = 16U << 20U;
 /// Rows of the history are collected and handed to the writer in blocks of at least so many numbers.
 constexpr std::size_t block_values = 32 * 1024;
 /// Files that a run goes on in are read in pieces of this size for their checksum.

@@ -7,9 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/memory.hpp"
 #include "input/prestress.hpp"
-#include "motion/event.hpp"
 #include "stability/verdict.hpp"
 #include "statics/plate_solver.hpp"
 
@@ -31,19 +29,9 @@ double approximate_unknowns_of(const mesh::Plate& plate) {
 
 }  // namespace
 
-double approximate_unknowns(const input::Case& config) {
-  const double of_plate = approximate_unknowns_of(config.plate);
-  return input::has_base_body(config) ? of_plate + approximate_unknowns_of(input::base_plate(config))
-                                      : of_plate;
-}
-
-void require_plate_fits(const input::Case& config) {
-  const double n_nodes = 0.5 * approximate_unknowns(config);
-  require_memory(
-      motion::event_bytes(n_nodes, n_nodes, !config.output.snapshot_times_s.empty(), config.time.precision),
-      fmt::format("{} of {:.4g} nodes", input::has_base_body(config) ? "a plate and its base" : "a plate",
-                  n_nodes),
-      Message("choose a larger {}", Key("plate.element_size_m")));
+Unknowns approximate_unknowns(const input::Case& config) {
+  return {approximate_unknowns_of(config.plate),
+          input::has_base_body(config) ? approximate_unknowns_of(input::base_plate(config)) : 0};
 }
 
 double top_speed_m_per_s(const input::Case& config) {
@@ -94,15 +82,6 @@ double fastest_speed_m_per_s(const input::Case& config) {
   const double of_plate = solid::longitudinal_speed_m_per_s(config.material);
   if (!input::has_base_body(config)) return of_plate;
   return std::max(of_plate, solid::longitudinal_speed_m_per_s(input::base_material(config)));
-}
-
-void require_statics_fit(const input::Case& config) {
-  const double n_plate = approximate_unknowns_of(config.plate);
-  if (input::has_base_body(config))
-    statics::require_statics_memory_of_pair(wanted_solver(config), n_plate,
-                                            approximate_unknowns_of(input::base_plate(config)));
-  else
-    statics::require_statics_memory(wanted_solver(config), n_plate);
 }
 
 }  // namespace slipfront::run

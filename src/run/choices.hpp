@@ -15,13 +15,10 @@
 namespace slipfront::run {
 
 /// Displacements of all nodes, from the bodies' measures alone: for refusals before anything is built.
-double approximate_unknowns(const input::Case& config);
-
-/// Refuses a plate in motion that would not fit into the memory, before anything is built.
-void require_plate_fits(const input::Case& config);
-
-/// Refuses statics that would not fit into the memory, before anything is built.
-void require_statics_fit(const input::Case& config);
+struct Unknowns {
+  double of_plate = 0, of_base = 0;
+};
+Unknowns approximate_unknowns(const input::Case& config);
 
 /// Of the top edge where the plate is loaded by a ramp, and during the event.
 double top_speed_m_per_s(const input::Case& config);

@@ -101,9 +101,10 @@ double n_unknowns_of(const Info& info) {
   return 2.0 * static_cast<double>(info.n_nodes);
 }
 
-void add_needs(const input::Case& config, double node_updates_per_step, Info& info) {
+void add_needs(const input::Case& config, const Meshes& meshes, double node_updates_per_step, Info& info) {
   info.needs = needs(config, {static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
-                              static_cast<double>(info.n_interface), info.step_s});
+                              static_cast<double>(info.n_interface), info.step_s,
+                              meshes.base ? static_cast<double>(meshes.base->n_nodes()) : 0});
   info.n_steps = info.needs.steps;
   info.node_updates = static_cast<double>(info.n_steps) * node_updates_per_step +
                       static_cast<double>(info.needs.ramp_steps) * static_cast<double>(info.n_nodes);
@@ -152,7 +153,7 @@ Info info(const input::Case& config) {
   const auto stepper = new_stepper(config, meshes.plate, meshes.base);
   sliding.get();
   add_steps(*stepper, info);
-  add_needs(config, stepper->node_updates_per_step(), info);
+  add_needs(config, meshes, stepper->node_updates_per_step(), info);
   info.node_updates_per_s = stepper->node_updates_per_step() / measured_step_s(*stepper, meshes);
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info);
   return info;

@@ -14,6 +14,7 @@
 #include "motion/stepper.hpp"
 #include "run/begin.hpp"
 #include "run/choices.hpp"
+#include "run/needs.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/prestress.hpp"
 
@@ -98,11 +99,8 @@ mesh::Mesh make_base(const input::Case& config) {
 }  // namespace
 
 Meshes check(const input::Case& config) {
-  require_plate_fits(config);
-  if (!is_prestressed(config)) {
-    require_edges_to_tilt(config);
-    require_statics_fit(config);
-  }
+  require_memory_fits(config);
+  if (!is_prestressed(config)) require_edges_to_tilt(config);
   require_free_sides_for_single(config);
   Meshes meshes{mesh::make_plate(config.plate), {}};
   motion::require_rows_fit(meshes.plate, config.time);

@@ -2,15 +2,14 @@
 #include "run/needs.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <system_error>
 
 #include "base/error.hpp"
-#include "base/memory.hpp"
 #include "interface/friction/registry.hpp"
 #include "mesh/plate.hpp"
 #include "motion/event.hpp"
+#include "results/stream.hpp"
 #include "run/choices.hpp"
 #include "solid/operator.hpp"
 #include "stability/verdict.hpp"
@@ -102,27 +101,103 @@ std::filesystem::path existing_parent(const std::filesystem::path& folder) {
   return path;
 }
 
+/// The program, its libraries and its threads, before it has a case.
+constexpr double program_bytes = 26e6;
+
+/// glibc keeps up to two freed arrays as long as the largest that it has taken from its heap, of 32 MB at
+/// most: beyond that it gives memory back.
+BudgetItem kept_by_allocator(double array_bytes) {
+  return {"freed memory that the allocator keeps", 2 * std::min(array_bytes, double{32U << 20U}),
+          larger_elements()};
+}
+
+BudgetItem energies_budget(double rows) {
+  return {"the rows of energies", rows * sizeof(record::Energies),
+          Message("a larger {}", Key("output.energy_interval_s"))};
+}
+
+double history_row_bytes(const Size& size) {
+  return number * (1 + static_cast<double>(record::history_fields.size()) * size.n_interface);
+}
+
+double node_bytes_of_mesh() {
+  return 2 * number + sizeof(mesh::Cell);
+}
+
+statics::StaticsBudget statics_budget(const input::Case& config, const Size& size) {
+  return statics::statics_budget({wanted_solver(config), 2 * (size.n_nodes - size.n_base_nodes),
+                                  size.n_interface, 2 * size.n_base_nodes,
+                                  config.loading.top_during_tilt == statics::TopEdge::free});
+}
+
+/// The event while it is built and goes, with what is recorded of it and waits to be written.
+Budget event_budget(const input::Case& config, const Size& size, double n_snapshots, double energy_rows) {
+  return {{fmt::format("the motion of {:.4g} nodes", size.n_nodes),
+           motion::event_bytes(size.n_nodes, size.n_cells, n_snapshots > 0, config.time.precision),
+           larger_elements()},
+          {"the interface and the record of its slip", interface_bytes(config, size), larger_elements()},
+          energies_budget(energy_rows)};
+}
+
+/// fields.vtkhdf is made of one raw snapshot at a time, beside its mesh.
+Budget snapshot_budget(const Size& size) {
+  const double raw = 4 * number * size.n_nodes;
+  return {{"a snapshot and its mesh", 2 * raw + node_bytes_of_mesh() * size.n_nodes, larger_elements()}};
+}
+
+/// What every stage has besides. @param array_bytes  of the arrays that are freed in it
+Budget with_program(const Budget& stage, double array_bytes) {
+  return Budget{{"the program", program_bytes, larger_elements()}, kept_by_allocator(array_bytes)} + stage;
+}
+
+std::vector<Budget> memory_stages(const input::Case& config, const Size& size, double n_snapshots,
+                                  double history_rows, double energy_rows) {
+  const double field = number * size.n_nodes;
+  std::vector<Budget> stages;
+  if (!is_prestressed(config)) {
+    const auto statics = statics_budget(config, size);
+    // Of a sparse matrix its values or its indices: 9.5 for each of two unknowns a node.
+    const double matrix = 9.5 * 2 * field;
+    const bool direct =
+        statics::choose_solver(wanted_solver(config), 2 * size.n_nodes) == statics::StaticSolver::direct;
+    stages.push_back(with_program(statics.peak, direct ? matrix : field));
+    if (config.loading.method == statics::LoadingMethod::ramp) {
+      // The tilted plate that the ramp begins from, common and spontaneous state under way, and the last one.
+      const Budget states = {{"states of the ramp", 4 * 4 * field, larger_elements()}};
+      stages.push_back(with_program(statics.held + event_budget(config, size, 0, 0) + states, field));
+    }
+  }
+  const double most_waiting = history_rows > 0 ? results::ResultStream::most_bytes_waiting : 0;
+  const Budget waiting = {{"rows of history that wait to be written",
+                           std::min(history_rows * history_row_bytes(size), most_waiting),
+                           larger_elements()}};
+  stages.push_back(with_program(event_budget(config, size, n_snapshots, energy_rows) + waiting, field));
+  if (n_snapshots > 0)
+    stages.push_back(with_program(snapshot_budget(size) + Budget{energies_budget(energy_rows)}, field));
+  return stages;
+}
+
 void require_disk(const Needs& needs, const std::filesystem::path& folder) {
   std::error_code error;
   const auto space = std::filesystem::space(existing_parent(folder), error);
-  if (error || needs.disk_bytes() <= static_cast<double>(space.available)) return;
-  struct Part {
-    double bytes;
-    const char* what;
-    Message remedy;
-  };
-  const std::array<Part, 4> parts = {{
-      {needs.history_bytes, "the history", Message("a larger {}", Key("output.history_interval_s"))},
-      {needs.snapshot_bytes, "snapshots", Message("fewer {}", Key("output.snapshot_times_s"))},
-      {needs.checkpoint_bytes, "checkpoints", Message("a larger {}", Key("plate.element_size_m"))},
-      {needs.energy_bytes, "energy.csv", Message("a larger {}", Key("output.energy_interval_s"))},
-  }};
-  const auto& largest = *std::ranges::max_element(parts, {}, &Part::bytes);
-  throw UserError(
-      "the run needs about {:.3g} GB on disk, {:.3g} GB of it for {}, and {} has {:.3g} GB free; choose {} "
-      "or another folder",
-      needs.disk_bytes() * 1e-9, largest.bytes * 1e-9, largest.what, folder.string(),
-      static_cast<double>(space.available) * 1e-9, largest.remedy);
+  if (error) return;
+  const auto available = static_cast<double>(space.available);
+  require_room(needs.disk(), available, "the run", "on disk",
+               fmt::format("{} has {:.3g} GB free", folder.string(), available * 1e-9), " or another folder");
+}
+
+/// All of a case's size but for the step.
+Size estimated_mesh_size(const input::Case& config) {
+  const auto unknowns = approximate_unknowns(config);
+  Size size;
+  size.n_base_nodes = 0.5 * unknowns.of_base;
+  size.n_nodes = size.n_cells = 0.5 * unknowns.of_plate + size.n_base_nodes;
+  size.n_interface = config.plate.width_m / config.plate.element_size_m + 1;
+  return size;
+}
+
+std::string work_of(const Size& size) {
+  return fmt::format("the run with {:.4g} nodes", size.n_nodes);
 }
 
 }  // namespace
@@ -156,10 +231,8 @@ SnapshotPlan snapshot_plan(const input::Case& config, double step_s) {
 }
 
 Size estimated_size(const input::Case& config) {
-  Size size;
-  size.n_nodes = size.n_cells = 0.5 * approximate_unknowns(config);
+  Size size = estimated_mesh_size(config);
   const double h = config.plate.element_size_m;
-  size.n_interface = config.plate.width_m / h + 1;
   const auto stable_step_s = [&](const solid::Material& material) {
     return solid::stable_step_s(frequency_of_squares_rad_per_s(h, material), material.stiffness_damping_s);
   };
@@ -185,15 +258,11 @@ Needs needs(const input::Case& config, const Size& size) {
   n.energy_rows = rows_of(config.time.end_s, config.output.energy_interval_s, size.step_s) + 1;
   n.snapshots = static_cast<double>(snapshot_plan(config, size.step_s).times_s.size());
 
-  const double n_unknowns = 2 * size.n_nodes;
-  if (!is_prestressed(config))
-    n.statics_bytes =
-        statics::statics_bytes(statics::choose_solver(wanted_solver(config), n_unknowns), n_unknowns);
-  n.event_bytes = motion::event_bytes(size.n_nodes, size.n_cells, n.snapshots > 0, config.time.precision) +
-                  interface_bytes(config, size) + n.energy_rows * sizeof(record::Energies);
+  if (!is_prestressed(config)) n.statics_bytes = total_bytes(statics_budget(config, size).peak);
+  n.memory = memory_stages(config, size, n.snapshots, n.history_rows, n.energy_rows);
 
   constexpr double bytes_per_number_in_text = 20;
-  const double history = number * n.history_rows * (1 + record::history_fields.size() * size.n_interface);
+  const double history = n.history_rows * history_row_bytes(size);
   const double field = 2 * number * size.n_nodes;
   const double mesh_of_fields = 3 * number * size.n_nodes + (5 * number + 1) * size.n_cells;
   const double snapshot_raw = 2 * field, snapshot_written = 6 * number * size.n_nodes;
@@ -204,15 +273,24 @@ Needs needs(const input::Case& config, const Size& size) {
   return n;
 }
 
+Budget Needs::disk() const {
+  return {{"the history", history_bytes, Message("a larger {}", Key("output.history_interval_s"))},
+          {"snapshots", snapshot_bytes, Message("fewer {}", Key("output.snapshot_times_s"))},
+          {"checkpoints", checkpoint_bytes, larger_elements()},
+          {"energy.csv", energy_bytes, Message("a larger {}", Key("output.energy_interval_s"))}};
+}
+
+void require_memory_fits(const input::Case& config) {
+  const Size size = estimated_mesh_size(config);
+  const auto n_snapshots = static_cast<double>(config.output.snapshot_times_s.size());
+  require_memory(largest_of(memory_stages(config, size, n_snapshots, 0, 0)), work_of(size));
+}
+
 void require_fit(const input::Case& config, const std::filesystem::path& folder) {
-  require_plate_fits(config);
-  if (!is_prestressed(config)) require_statics_fit(config);
+  require_memory_fits(config);  // before the coarse statics that count a ramp's steps
   const Size size = estimated_size(config);
   const Needs n = needs(config, size);
-  const bool energies = n.energy_rows * sizeof(record::Energies) > 0.5 * n.memory_bytes();
-  require_memory(
-      n.memory_bytes(), fmt::format("the run on a plate of {:.4g} nodes", size.n_nodes),
-      Message("choose a larger {}", Key(energies ? "output.energy_interval_s" : "plate.element_size_m")));
+  require_memory(largest_of(n.memory), work_of(size));
   require_disk(n, folder);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/budget.hpp"
 #include "input/case.hpp"
 
 namespace slipfront::run {
@@ -23,6 +24,7 @@ SnapshotPlan snapshot_plan(const input::Case& config, double step_s);
 struct Size {
   double n_nodes = 0, n_cells = 0, n_interface = 0;
   double step_s = 0;
+  double n_base_nodes = 0;  ///< of n_nodes those of a base
 };
 
 /// The same from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,
@@ -35,15 +37,22 @@ struct Needs {
   std::int64_t steps = 0;       ///< to time.end_s
   std::int64_t ramp_steps = 0;  ///< where loading.method is ramp, from the critical shear of a coarse mesh
   double history_rows = 0, energy_rows = 0, snapshots = 0;
-  double statics_bytes = 0, event_bytes = 0;
+  std::vector<Budget> memory;  ///< of the stages of a run, one after the other
+  double statics_bytes = 0;    ///< of it the peak of the statics
   double history_bytes = 0, snapshot_bytes = 0, checkpoint_bytes = 0, energy_bytes = 0;
 
-  double memory_bytes() const { return statics_bytes > event_bytes ? statics_bytes : event_bytes; }
-  double disk_bytes() const { return history_bytes + snapshot_bytes + checkpoint_bytes + energy_bytes; }
+  double memory_bytes() const { return total_bytes(largest_of(memory)); }
+  Budget disk() const;
+  double disk_bytes() const { return total_bytes(disk()); }
 };
 
 /// @throws UserError where more steps are asked for than any machine takes.
 Needs needs(const input::Case& config, const Size& size);
+
+/// Refuses a case that would not fit into the memory, before anything is built; what grows with its steps is
+/// left out.
+/// @throws UserError naming what to change.
+void require_memory_fits(const input::Case& config);
 
 /// Refuses a case whose run would not fit into the memory or onto the disk of `folder`, which need not exist
 /// yet.

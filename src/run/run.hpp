@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -100,8 +101,10 @@ void write_static(const std::filesystem::path& dir, const input::Case& config, c
 /// Writes the run's folder, which is there: case.resolved.toml with its tables, run.json, interface.h5,
 /// fronts.csv, static.csv, energy.csv, fields.vtkhdf where there are snapshots, and their checksums.
 void write(const std::filesystem::path& dir, const Result& result, const InitialState& initial);
-/// run.json, fronts.csv and energy.csv of a result that may go on.
-void write_so_far(const std::filesystem::path& dir, const Result& result, const InitialState& initial,
+/// run.json, fronts.csv and energy.csv of a result that may go on. It needs no more than the first and the
+/// last of the energies, which may be many.
+void write_so_far(const std::filesystem::path& dir, const Result& result,
+                  std::span<const record::Energies> energies, const InitialState& initial,
                   const Status& status);
 /// run.json of a run without an event yet, or that has come to none.
 void write_status(const std::filesystem::path& dir, const input::Case& config, const Status& status);

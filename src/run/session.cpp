@@ -199,12 +199,13 @@ void Session::tell() {
   motion::Event so_far;
   so_far.steps = stepper_->step();
   so_far.time_s = stepper_->time_s();
-  so_far.energies = event_->energies();
+  const auto& energies = event_->energies();
+  so_far.energies = {energies.front(), energies.back()};
   so_far.record = event_->record();
   auto result = unmeasured(config_, *stepper_, std::move(so_far));
   result.stepping_wall_s = wall_s();
   measure(result, initial_);
-  write_so_far(dir_, result, initial_, {"running", "", head_.sessions});
+  write_so_far(dir_, result, energies, initial_, {"running", "", head_.sessions});
   told_ = Clock::now();
   tell_interval_s_ = std::max(least_tell_interval_s, seconds_since(start) / tell_share);
 }
@@ -230,7 +231,7 @@ void Session::write_results(const Finished& run) {
   write_case(dir_, config_);
   write_static(dir_, config_, run.initial);
   // What takes no time first: the program may be given none after an interruption.
-  write_so_far(dir_, run.result, run.initial, status);
+  write_so_far(dir_, run.result, run.result.event.energies, run.initial, status);
   results::write_history(dir_ / "interface.h5", results::ResultStream::history_file(folder_.state()),
                          run.initial.common.tractions.x_m);
   if (!config_.output.snapshot_times_s.empty())

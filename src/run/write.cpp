@@ -197,10 +197,11 @@ void write_status(const std::filesystem::path& dir, const input::Case& config, c
   write_json(dir, about(config, status));
 }
 
-void write_so_far(const std::filesystem::path& dir, const Result& result, const InitialState& initial,
+void write_so_far(const std::filesystem::path& dir, const Result& result,
+                  std::span<const record::Energies> energies, const InitialState& initial,
                   const Status& status) {
   results::write_fronts(dir / "fronts.csv", result.fronts);
-  results::write_energies(dir / "energy.csv", result.event.energies);
+  results::write_energies(dir / "energy.csv", energies);
   write_json(dir, run_json(result, initial, status));
 }
 
@@ -211,7 +212,7 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   results::write_history(dir / "interface.h5", event.history);
   if (!event.snapshots.empty())
     results::write_snapshots(dir / "fields.vtkhdf", joined({initial.mesh, initial.base}), event.snapshots);
-  write_so_far(dir, result, initial, status_of(result));
+  write_so_far(dir, result, event.energies, initial, status_of(result));
   results::seal(dir);
 }
 

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/memory.hpp"
 
 namespace slipfront::statics {
 
@@ -23,22 +22,18 @@ Eigen::MatrixXd mirrored(Eigen::MatrixXd S) {
   return S;
 }
 
-/// P, M's factor, M^-1 P, S and the product it is made of.
-void require_memory_of_pair(Eigen::Index n) {
-  const auto size = static_cast<double>(n);
-  require_memory(5 * sizeof(double) * size * size,
-                 fmt::format("the condensed stiffness of {:.4g} interface nodes on a base", size / 2),
-                 Message("choose a larger {}", Key("plate.element_size_m")));
-}
-
 }  // namespace
+
+Budget pair_budget(double n_interface) {
+  return {{"the condensed stiffness of plate and base", 5 * sizeof(double) * dense_entries(n_interface),
+           larger_elements()}};
+}
 
 CondensedInterface::CondensedInterface(std::shared_ptr<const Factorisation> plate,
                                        std::shared_ptr<const Factorisation> base)
     : plate_(std::move(plate)), base_(std::move(base)) {
   if (!base_) return;
   const auto& S_a = plate_->condensed_stiffness();
-  require_memory_of_pair(S_a.rows());
   const Eigen::MatrixXd P = mirrored(base_->condensed_stiffness());
   M_.compute(S_a + P);
   SLIPFRONT_ASSERT(M_.info() == Eigen::Success, "the stiffness of plate and base is not positive definite");

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/budget.hpp"
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
@@ -14,16 +15,17 @@
 
 namespace slipfront::statics {
 
-/// Bytes a factorisation of this plate needs, estimated from the number of unknowns alone (nested dissection
-/// of a plane grid).
-double estimated_factor_bytes(double n_unknowns);
+/// Entries of a dense square matrix of the displacements of the interface's nodes.
+inline double dense_entries(double n_interface) {
+  return 4 * n_interface * n_interface;
+}
 
-/// Bytes the statics need at their peak: assembly, or matrix and factor.
-double statics_bytes(double n_unknowns, double factor_bytes);
+/// Of a factor that is not known yet.
+double estimated_factor_bytes(double n_unknowns, double n_interface);
 
-/// Refuses statics that would not fit into the memory at hand.
-/// @throws UserError with the figures.
-void require_statics_memory(double n_unknowns, double factor_bytes);
+/// What making a Factorisation takes at its peak, the plate's mesh included, and what it holds.
+Budget factorisation_budget(double n_unknowns, double n_interface, double factor_bytes);
+Budget factor_budget(double n_unknowns, double n_interface, double factor_bytes);
 
 /// The plate's stiffness factorised once, with the interface condensed.
 ///

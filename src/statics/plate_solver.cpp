@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "base/memory.hpp"
 #include "statics/condensed_interface.hpp"
 #include "statics/factorisation.hpp"
 #include "statics/iterative.hpp"
@@ -173,36 +172,58 @@ std::string_view name_of(StaticSolver solver) {
   return solver == StaticSolver::direct ? "direct" : "iterative";
 }
 
-double statics_bytes(StaticSolver solver, double n_unknowns) {
-  if (choose_solver(solver, n_unknowns) == StaticSolver::direct)
-    return statics_bytes(n_unknowns, estimated_factor_bytes(n_unknowns));
-  return iterative_bytes(n_unknowns);
+namespace {
+
+StaticsBudget direct_budget(const StaticsSize& size) {
+  const double n = size.n_unknowns, n_interface = size.n_interface;
+  // Tilted, common and spontaneous, two displacements each; equations of nodes that slip or are open, and
+  // their factor.
+  const Budget states = {
+      {"equilibria", 6 * sizeof(double) * (n + size.n_unknowns_base), larger_elements()},
+      {"the equations of the interface", 2 * sizeof(double) * dense_entries(n_interface), larger_elements()}};
+  const double factor = estimated_factor_bytes(n, n_interface);
+  Budget held = factor_budget(n, n_interface, factor);
+  std::vector<Budget> stages = {factorisation_budget(n, n_interface, factor)};
+  const auto add_held = [&](const Budget& making, const Budget& more) {
+    stages.push_back(held + making);
+    held = held + more;
+  };
+  const auto add_factorisation = [&](double n_unknowns) {
+    const double bytes = estimated_factor_bytes(n_unknowns, n_interface);
+    add_held(factorisation_budget(n_unknowns, n_interface, bytes),
+             factor_budget(n_unknowns, n_interface, bytes));
+  };
+  if (size.n_unknowns_base > 0) {
+    add_factorisation(size.n_unknowns_base);
+    add_held({}, pair_budget(n_interface));
+  }
+  if (size.top_free_in_tilt) {
+    add_factorisation(n);
+    if (size.n_unknowns_base > 0) add_held({}, pair_budget(n_interface));
+  }
+  held = held + states;
+  stages.push_back(held);
+  return {largest_of(stages), held};
 }
 
-void require_statics_memory(StaticSolver solver, double n_unknowns) {
-  if (choose_solver(solver, n_unknowns) == StaticSolver::direct) {
-    require_statics_memory(n_unknowns, estimated_factor_bytes(n_unknowns));
-  } else {
-    require_memory(iterative_bytes(n_unknowns),
-                   fmt::format("the iterative solution of {:.4g} static unknowns", n_unknowns),
-                   Message("choose a larger {}", Key("plate.element_size_m")));
-  }
+bool is_direct(const StaticsSize& size) {
+  return choose_solver(size.solver, size.n_unknowns + size.n_unknowns_base) == StaticSolver::direct;
 }
 
-void require_statics_memory_of_pair(StaticSolver solver, double n_unknowns_plate, double n_unknowns_base) {
-  const double n_unknowns = n_unknowns_plate + n_unknowns_base;
-  if (choose_solver(solver, n_unknowns) == StaticSolver::iterative) {
-    require_statics_memory(StaticSolver::iterative, n_unknowns);
-    return;
-  }
-  // The base is factorised while the plate's factor is there.
-  const double plate_factor = estimated_factor_bytes(n_unknowns_plate);
-  const double bytes =
-      std::max(statics_bytes(n_unknowns_plate, plate_factor),
-               plate_factor + statics_bytes(n_unknowns_base, estimated_factor_bytes(n_unknowns_base)));
-  require_memory(bytes,
-                 fmt::format("the factorisation of {:.4g} static unknowns of plate and base", n_unknowns),
-                 Message("choose a larger {}", Key("plate.element_size_m")));
+}  // namespace
+
+StaticsBudget statics_budget(const StaticsSize& size) {
+  if (is_direct(size)) return direct_budget(size);
+  const Budget iterative = {
+      {"the iterative solution", iterative_bytes(size.n_unknowns + size.n_unknowns_base), larger_elements()}};
+  return {iterative, iterative};
+}
+
+void require_statics_memory(const StaticsSize& size) {
+  require_memory(statics_budget(size).peak,
+                 fmt::format("the {} of {:.4g} static unknowns",
+                             is_direct(size) ? "factorisation" : "iterative solution",
+                             size.n_unknowns + size.n_unknowns_base));
 }
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
@@ -212,12 +233,7 @@ std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const sol
   if (base) shape_of_base = shape_of(base->mesh);
   solver = solver_for_shapes(solver, shape_of(mesh), shape_of_base);
   double n_unknowns = 2.0 * mesh.n_nodes();
-  if (base) {
-    require_statics_memory_of_pair(solver, n_unknowns, 2.0 * base->mesh.n_nodes());
-    n_unknowns += 2.0 * base->mesh.n_nodes();
-  } else {
-    require_statics_memory(solver, n_unknowns);
-  }
+  if (base) n_unknowns += 2.0 * base->mesh.n_nodes();
   if (choose_solver(solver, n_unknowns) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);

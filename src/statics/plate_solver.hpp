@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/budget.hpp"
 #include "mesh/mesh.hpp"
 #include "solid/operator.hpp"
 #include "statics/elastic_body.hpp"
@@ -94,18 +95,26 @@ inline constexpr double most_iterative_slenderness = 10, most_iterative_height_r
 
 std::string_view name_of(StaticSolver solver);
 
-/// Bytes the statics need at their peak, the mesh and the equilibria found included.
-double statics_bytes(StaticSolver solver, double n_unknowns);
+/// On what the memory of the statics depends.
+struct StaticsSize {
+  StaticSolver solver = StaticSolver::automatic;
+  double n_unknowns = 0, n_interface = 0;  ///< of the plate
+  double n_unknowns_base = 0;              ///< 0 on the rigid plane
+  bool top_free_in_tilt = false;           ///< the tilt then has a factorisation of its own
+};
+
+/// What the statics take at their peak, the meshes and the equilibria found included, and what they hold.
+struct StaticsBudget {
+  Budget peak, held;
+};
+StaticsBudget statics_budget(const StaticsSize& size);
 
 /// Refuses statics that would not fit into the memory at hand.
 /// @throws UserError with the figures.
-void require_statics_memory(StaticSolver solver, double n_unknowns);
+void require_statics_memory(const StaticsSize& size);
 
-/// The same of two bodies.
-void require_statics_memory_of_pair(StaticSolver solver, double n_unknowns_plate, double n_unknowns_base);
-
-/// By the solver that the bodies' shapes leave of `solver`. @throws UserError where the memory does not
-/// suffice.
+/// By the solver that the bodies' shapes leave of `solver`. Before it makes anything, see
+/// require_statics_memory.
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver,
                                                const std::optional<ElasticBody>& base = std::nullopt);

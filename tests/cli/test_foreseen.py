@@ -2,6 +2,8 @@
 """What a case asks for is foretold, and refused where it cannot be; legal cases do not blow up."""
 
 import json
+import math
+import os
 import random
 import re
 
@@ -180,3 +182,52 @@ def test_random_legal_cases_do_not_blow_up(program, write_case):
         assert result.returncode in (0, 2), f"{result.stderr}{' '.join(sets)}"
         n_run += result.returncode == 0
     assert n_run > 45
+
+
+# Of 0.2 to 0.4 GB each: the factorisation of a plate, of one on a base, motion without statics, energies.
+PRESTRESSED = {
+    "plate.corner": "none",
+    "loading.method": "prestress",
+    "prestress.t_Pa": 4e6,
+    "prestress.p_Pa": 5e6,
+    "event.kind": "nucleation",
+    "nucleation.x_m": 0.1,
+}
+BASE = {
+    "base.kind": "body",
+    "base.height_m": 0.1,
+    "base.youngs_modulus_Pa": 2.6e9,
+    "base.poissons_ratio": 0.37,
+    "base.density_kg_per_m3": 1200.0,
+    "base.stiffness_damping_s": 1e-7,
+}
+SHORT = {"time.end_s": 2e-7, "output.snapshot_times_s": [0.0]}
+SIZED = {
+    "direct": {"plate.element_size_m": 4e-4, **SHORT},
+    "base": {"plate.element_size_m": 5e-4, **BASE, **SHORT},
+    "moving": {"plate.element_size_m": 1.25e-4, **PRESTRESSED, **SHORT},
+    "energies": {
+        "plate.element_size_m": 1e-2,
+        **PRESTRESSED,
+        "time.end_s": 10.0,
+        "time.quiet_s": math.inf,
+        "output.energy_interval_s": 4e-6,
+        "output.history_interval_s": 1.0,
+    },
+}
+
+
+@pytest.mark.parametrize("name", SIZED)
+def test_memory_is_foretold(program, coarse, tmp_path, name):
+    """What is announced bounds what the process takes, by no more than 25 %: a fifth in the estimates, and
+    freed arrays that the allocator may keep or not."""
+    sets = settings(SIZED[name])
+    told = program("info", coarse, *sets).stdout
+    announced = 1e9 * float(re.search(r"^memory +(\S+) GB", told, re.MULTILINE)[1])
+    run = program.start("run", coarse, "-o", "out", "-q", *sets)
+    _, status, usage = os.wait4(run.pid, 0)
+    run.returncode = os.waitstatus_to_exitcode(status)
+    assert run.returncode == 0
+    peak = 1024 * usage.ru_maxrss
+    assert peak > 0.15e9, "too small a case to tell"
+    assert peak <= announced <= 1.25 * peak

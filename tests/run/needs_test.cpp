@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.hpp"
 #include "cases.hpp"
 #include "support/files.hpp"
@@ -109,6 +112,64 @@ TEST(Needs, EstimatesAgreeWithTheMesh) {
         EXPECT_LT(ratio, coarsenings > 0 ? 4.1 : 1.05);
       }
     }
+}
+
+/// Bytes that a stage of the run takes for this; 0 where it has no such item.
+double bytes_of(const Needs& needs, const std::string& what) {
+  double most = 0;
+  for (const auto& stage : needs.memory)
+    for (const auto& item : stage)
+      if (item.what == what) most = std::max(most, item.bytes);
+  return most;
+}
+
+TEST(Needs, CountBothBodies) {
+  auto config = coarse_case(interface::EventKind::spontaneous, 1e-3);
+  const Needs alone = needs_of(config);
+  config.base.kind = input::BaseKind::body;
+  config.base.plate.height_m = config.plate.height_m;
+  const Needs both = needs_of(config);
+  // While the base is factorised, the plate's factor is held.
+  const double n_unknowns = 2 * estimated_size(config).n_base_nodes;
+  EXPECT_NEAR(n_unknowns, 2 * 201 * 101, 1);
+  EXPECT_GT(both.statics_bytes, alone.statics_bytes + bytes_of(alone, "the factor of the stiffness"));
+  EXPECT_GT(both.memory_bytes(), alone.memory_bytes());
+  EXPECT_EQ(bytes_of(both, "the rows of energies"), bytes_of(alone, "the rows of energies"));
+  // On a long interface its dense equations are the largest part: five matrices of the two bodies.
+  config.plate.width_m = 5;
+  config.plate.height_m = config.base.plate.height_m = 0.01;
+  config.loading.solver = statics::StaticSolver::direct;
+  const Needs of_long = needs_of(config);
+  const double entries = 4 * std::pow(estimated_size(config).n_interface, 2);
+  EXPECT_DOUBLE_EQ(bytes_of(of_long, "the condensed stiffness of plate and base"), 5 * 8 * entries);
+}
+
+TEST(Needs, CountTheSecondFactorisationOfAFreeTop) {
+  auto config = coarse_case(interface::EventKind::spontaneous, 1e-3);
+  const double held = needs_of(config).statics_bytes;
+  config.loading.top_during_tilt = statics::TopEdge::free;
+  EXPECT_GT(needs_of(config).statics_bytes, 1.5 * held);
+}
+
+TEST(Needs, CountWhatWaitsToBeWritten) {
+  auto config = coarse_case();
+  config.output.history_interval_s = 1e-7;
+  config.time.end_s = 1;
+  EXPECT_EQ(bytes_of(needs_of(config), "rows of history that wait to be written"), double{16U << 20U});
+  config.output.history_interval_s = config.time.end_s = 1e-4;
+  const double rows = bytes_of(needs_of(config), "rows of history that wait to be written");
+  EXPECT_NEAR(rows, 2 * 8 * (1 + 4 * 51), 1);  // two rows of 51 nodes
+}
+
+TEST(Needs, CountTheStaticsThatARampIsHeldBeside) {
+  auto config = coarse_case(interface::EventKind::left, 1e-3);
+  const double direct = needs_of(config).memory_bytes();
+  config.loading.method = statics::LoadingMethod::ramp;
+  const Needs with_ramp = needs_of(config);
+  EXPECT_EQ(with_ramp.memory.size(), 3U);
+  EXPECT_GE(with_ramp.memory_bytes(), direct);
+  EXPECT_GT(total_bytes(with_ramp.memory[1]),
+            bytes_of(with_ramp, "the factor of the stiffness") + bytes_of(with_ramp, "states of the ramp"));
 }
 
 TEST(Needs, CountTheStepsOfTheRamp) {

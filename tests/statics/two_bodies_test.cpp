@@ -342,8 +342,10 @@ TEST(TwoBodies, NeedABaseThatIsHeldAndFacesThePlate) {
 }
 
 TEST(TwoBodies, SayHowMuchMemoryTheyWouldNeed) {
-  EXPECT_THAT(test::error_of([] { require_statics_memory_of_pair(StaticSolver::direct, 1e11, 3e11); }),
-              testing::HasSubstr("4e+11 static unknowns of plate and base needs about"));
+  EXPECT_THAT(test::error_of([] {
+                require_statics_memory({StaticSolver::direct, 1e11, 1e5, 3e11});
+              }),
+              testing::HasSubstr("the factorisation of 4e+11 static unknowns needs about"));
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/budget.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+
+namespace slipfront {
+namespace {
+
+const Budget two = {{"the mesh", 2e9, "a larger size"}, {"the rows", 3e9, "a larger interval"}};
+
+std::string refusal(const Budget& budget, double available) {
+  try {
+    require_room(budget, available, "the run", "on disk", "out has 4 GB free", " or another folder");
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Budget, IsRefusedByItsLargestItemAndThatOnesRemedy) {
+  EXPECT_EQ(refusal(two, 5e9), "");
+  EXPECT_EQ(
+      refusal(two, 4.999e9),
+      "the run needs about 5 GB on disk, 3 GB of it for the rows, and out has 4 GB free; choose a larger "
+      "interval or another folder");
+  EXPECT_EQ(refusal({}, 0), "");
+}
+
+TEST(Budget, OfStagesIsThatOfTheLargest) {
+  const Budget one = {{"the factor", 4e9, "fewer unknowns"}};
+  EXPECT_EQ(total_bytes(two), 5e9);
+  EXPECT_EQ(total_bytes(two + one), 9e9);
+  EXPECT_EQ(largest_of({one, two, one}).size(), 2U);
+}
+
+TEST(Budget, OfMemoryIsComparedWithWhatThereIs) {
+  require_memory({{"a page", 4096, "less"}}, "the test");
+  EXPECT_THROW(require_memory({{"all of it", 1e18, "less"}}, "the test"), UserError);
+}
+
+}  // namespace
+}  // namespace slipfront
