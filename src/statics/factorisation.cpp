@@ -2,6 +2,7 @@
 #include "statics/factorisation.hpp"
 
 #include <cholmod.h>
+#include <malloc.h>
 #include <omp.h>
 #include <sys/mman.h>
 
@@ -74,6 +75,13 @@ namespace {
 [[noreturn]] void throw_out_of_memory(const char* what) {
   throw UserError("out of memory in the static solution ({}); choose a larger {}", what,
                   Key("plate.element_size_m"));
+}
+
+/// To the system, before as much is taken again; glibc would keep arrays of up to 32 MB.
+void return_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 /// OpenBLAS built without threads hands out its buffers without a lock: two threads inside it at once would
@@ -176,6 +184,7 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
   cholmod_sparse* matrix = cholmod_l_triplet_to_sparse(triplets, triplets->nnz, common);
   cholmod_l_free_triplet(&triplets, common);
   cholmod_->check("assembly");
+  return_freed_memory();
 
   std::vector<std::int64_t> identity(n_unknowns_);
   for (std::int64_t k = 0; k < n_unknowns_; ++k) identity[k] = k;
@@ -197,6 +206,7 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
   }
   cholmod_l_free_sparse(&matrix, common);
   cholmod_->check("factorisation");
+  return_freed_memory();
   SLIPFRONT_ASSERT(cholmod_->factor->minor == cholmod_->factor->n, "stiffness is not positive definite");
 
   // The interface's columns are the last ones of the factor, whatever the postordering of the others.

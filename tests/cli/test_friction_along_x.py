@@ -114,14 +114,6 @@ def test_a_random_field_out_of_range_is_named_with_its_place(program, case):
     assert line.endswith("; choose a smaller share")
 
 
-def test_a_ramp_takes_one_static_coefficient(program, coarse):
-    ramp = ("--set", "loading.method=ramp", "--set", "friction.random_key=mu_s")
-    assert one_line(program("validate", coarse, *ramp)) == (
-        "--set friction.random_key=mu_s: friction.random_key makes friction.mu_s vary along x, which "
-        "loading.method = ramp does not know; choose direct or prestress"
-    )
-
-
 def test_what_is_hardly_meant_is_told(program, case, tmp_path):
     (tmp_path / "friction.csv").write_text("x_m,mu_s\n0,0.6\n100,0.6\n")
     settings = ("--set", "friction.random_key=mu_s", "--set", "friction.random_correlation_length_m=1e-5")

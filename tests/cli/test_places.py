@@ -68,11 +68,14 @@ CASES = {
     "random_share": (COARSE + WEAKENING + 'random_key = "mu_k"\nrandom_share = 0.5 # here\n', None),
     "random_share_by_default": (COARSE + WEAKENING + 'random_key = "mu_k" # here\n', None),
     "random_key": (COARSE + WEAKENING, "friction.random_key=mu_k"),
-    "ramp_of_a_random_coefficient": (
-        COARSE + '[loading]\nmethod = "ramp"\n[friction]\nrandom_key = "mu_s" # here\n',
+    "iteration_on_a_graded_base": (
+        COARSE + '[loading]\nsolver = "iterative" # here\n' + STEEL + "coarsenings = 1\n",
         None,
     ),
-    "random_coefficient_of_a_ramp": (COARSE + '[friction]\nrandom_key = "mu_s"\n', "loading.method=ramp"),
+    "graded_base_of_an_iteration": (
+        COARSE + '[loading]\nsolver = "iterative"\n' + STEEL,
+        "base.coarsenings=1",
+    ),
 }
 
 

@@ -175,8 +175,9 @@ def test_a_damaged_study_of_the_interface_step_is_drawn_or_refused(tmp_path):
 
 def test_a_damaged_study_of_the_open_choices_is_drawn_or_refused(tmp_path):
     folder, picture = write_open_choices(tmp_path / "choices"), tmp_path / "picture.png"
-    assert open_choices.main(picture, folder) == 0
-    fuzz(folder, done_or_refused(lambda: open_choices.main(picture, folder)), FUZZ_S / 4)
+    arguments = [str(picture), str(folder)]
+    assert open_choices.main(arguments) == 0
+    fuzz(folder, done_or_refused(lambda: open_choices.main(arguments)), FUZZ_S / 4)
 
 
 def test_no_change_to_a_file_with_a_checksum_is_accepted(output):
