@@ -205,7 +205,7 @@ PaperRun paper_run(int columns, int threads) {
   const auto initial = run::make_initial_state(config, monitor);
   result.statics_s = seconds_since(start);
   start = Clock::now();
-  const auto event = run::run_event(config, initial, monitor, {.threads = threads});
+  const auto event = run::run_from(config, initial, monitor, {.threads = threads});
   result.event_s = seconds_since(start);
   result.node_updates_per_s =
       static_cast<double>(event.event.steps) * event.node_updates_per_step / event.stepping_wall_s;

@@ -18,17 +18,17 @@ int rolling_columns(const solid::Operator& op) {
 }  // namespace
 
 Body::Body(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time)
-    : plate_{solid::make_operator(mesh, material), material.stiffness_damping_s, solid::Field(mesh.n_nodes()),
-             solid::Field(mesh.n_nodes())},
-      stable_step_s_(solid::stable_step_s(solid::largest_frequency_rad_per_s(mesh, material, plate_.op),
+    : motion_{solid::make_operator(mesh, material), material.stiffness_damping_s,
+              solid::Field(mesh.n_nodes()), solid::Field(mesh.n_nodes())},
+      stable_step_s_(solid::stable_step_s(solid::largest_frequency_rad_per_s(mesh, material, motion_.op),
                                           material.stiffness_damping_s)),
       multiples_(step_multiples(mesh, material, time, stable_step_s_)),
-      finer_w_(rolling_columns(plate_.op)),
+      finer_w_(rolling_columns(motion_.op)),
       lower_(mesh.lower),
       lower_runs_(runs_of(mesh.lower)),
       tributary_m_(mesh::tributary_lengths_m(mesh)) {
   for (const auto n : lower_) {
-    lower_mass_kg_.push_back(plate_.op.mass_kg[n]);
+    lower_mass_kg_.push_back(motion_.op.mass_kg[n]);
     lower_y_m_.push_back(mesh.y_m[n]);
   }
 }
@@ -37,13 +37,13 @@ void Body::divide(const mesh::Mesh& mesh, const solid::Material& material, const
                   double step_s, int substeps) {
   auto stepping = time;
   stepping.interface_substeps = substeps;
-  levels_ = make_levels(mesh, material, plate_, stepping, step_s, multiples_);
+  levels_ = make_levels(mesh, material, motion_, stepping, step_s, multiples_);
   if (time.precision == Precision::single_precision)
-    single_ = make_single_rows(levels_.level.front(), plate_.op);
+    single_ = make_single_rows(levels_.level.front(), motion_.op);
 }
 
 void Body::expect_steps_under_way(int n) {
-  const int columns = rolling_columns(plate_.op);
+  const int columns = rolling_columns(motion_.op);
   const bool has_single = single_.bands.begin < single_.bands.end;
   for (int k = 0; k < n; ++k)
     under_way_.push_back(
@@ -55,25 +55,25 @@ double Body::step_s(mesh::Node n) const {
 }
 
 void Body::start(const solid::Field& u_m, const solid::Field& u_per_shear, double top_speed_m_per_s) {
-  plate_.u_m = u_m;
-  for (std::size_t n = 0; n < plate_.v_m_per_s.size(); ++n) {
-    plate_.v_m_per_s.x[n] = top_speed_m_per_s * u_per_shear.x[n];
-    plate_.v_m_per_s.y[n] = top_speed_m_per_s * u_per_shear.y[n];
+  motion_.u_m = u_m;
+  for (std::size_t n = 0; n < motion_.v_m_per_s.size(); ++n) {
+    motion_.v_m_per_s.x[n] = top_speed_m_per_s * u_per_shear.x[n];
+    motion_.v_m_per_s.y[n] = top_speed_m_per_s * u_per_shear.y[n];
   }
   for (auto& level : levels_.level)
     if (!level.shared.node.empty()) find_steady_force(level);
-  to_single(plate_, single_);
+  to_single(motion_, single_);
   works_ = {};
-  if (plate_.damping_s > 0) begin_damping_work();
+  if (motion_.damping_s > 0) begin_damping_work();
 }
 
-void Body::find_steady_force(Level& level) {
+void Body::find_steady_force(StepLevel& level) {
   // A push that is taken back: its kicks on the shared nodes are the level's force on them.
-  auto& u = plate_.u_m;
-  auto& v = plate_.v_m_per_s;
+  auto& u = motion_.u_m;
+  auto& v = motion_.v_m_per_s;
   auto& shared = level.shared;
   const auto& band = level.bands.front();
-  const auto& last = plate_.op.rows[band.last_row];
+  const auto& last = motion_.op.rows[band.last_row];
   const std::size_t n = last.first + last.count;
   const auto first_nodes = [&](const std::vector<double>& field) {
     return std::vector<double>(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(n));
@@ -83,12 +83,12 @@ void Body::find_steady_force(Level& level) {
   const auto zero = solid::Field(shared.node.size());
   shared.steady_m_per_s2 = shared.v_last_m_per_s = shared.v_mean_before_m_per_s = zero;
   shared.a_m_per_s2 = zero;
-  set_motion_before(level, plate_);
+  set_motion_before(level, motion_);
   PushProducts products;
   record::Energies works;
-  begin_push(level, plate_, works);
-  push_band(level, band, plate_, finer_w_, products, works);
-  end_push(level, plate_);
+  begin_push(level, motion_, works);
+  push_band(level, band, motion_, finer_w_, products, works);
+  end_push(level, motion_);
   for (std::size_t k = 0; k < shared.node.size(); ++k) {
     shared.steady_m_per_s2.x[k] = shared.push_m_per_s.x[k] / level.step_s;
     shared.steady_m_per_s2.y[k] = shared.push_m_per_s.y[k] / level.step_s;
@@ -98,40 +98,40 @@ void Body::find_steady_force(Level& level) {
   std::ranges::copy(before[2], v.x.begin());
   std::ranges::copy(before[3], v.y.begin());
   shared.push_m_per_s = shared.a_m_per_s2 = zero;
-  set_motion_before(level, plate_);
+  set_motion_before(level, motion_);
 }
 
 void Body::begin_damping_work() {
   landing_.clear();
   for (auto& level : levels_.level)
-    level.damping_work.begin(stiffness_product_before(level, plate_, level.step_s));
+    level.damping_work.begin(stiffness_product_before(level, motion_, level.step_s));
 }
 
-void Body::take_landing(const Level& level, PushProducts& products) {
+void Body::take_landing(const StepLevel& level, PushProducts& products) {
   if (&level != &levels_.level.back()) return;
   landing_.add_to(products);
   landing_.clear();
 }
 
-void Body::push(Level& level, record::Energies& works) {
+void Body::push(StepLevel& level, record::Energies& works) {
   PushProducts products;
   take_landing(level, products);
-  begin_push(level, plate_, works);
-  for (const auto& band : level.bands) push_band(level, band, plate_, finer_w_, products, works);
-  end_push(level, plate_);
-  if (plate_.damping_s > 0) works.damping_work += level.damping_work.add(products);
+  begin_push(level, motion_, works);
+  for (const auto& band : level.bands) push_band(level, band, motion_, finer_w_, products, works);
+  end_push(level, motion_);
+  if (motion_.damping_s > 0) works.damping_work += level.damping_work.add(products);
 }
 
 void Body::push_due(BodyStep& step, int k, bool leads) {
   auto& levels = levels_.level;
   auto& coarsest = levels.front();
-  const auto is_due = [&](const Level& level) { return k % level.period == 0; };
+  const auto is_due = [&](const StepLevel& level) { return k % level.period == 0; };
   if (is_due(coarsest)) {
     if (leads) {
       take_landing(coarsest, step.products);
-      begin_push(coarsest, plate_, step.works);
-      push_band(coarsest, coarsest.bands.front(), plate_, step.w, step.products, step.works);
-      end_push(coarsest, plate_);
+      begin_push(coarsest, motion_, step.works);
+      push_band(coarsest, coarsest.bands.front(), motion_, step.w, step.products, step.works);
+      end_push(coarsest, motion_);
     } else {
       push(coarsest, step.works);
     }
@@ -139,17 +139,17 @@ void Body::push_due(BodyStep& step, int k, bool leads) {
   for (std::size_t l = 1; l < levels.size(); ++l)
     if (is_due(levels[l])) push(levels[l], step.works);
   for (std::size_t l = 1; l < levels.size(); ++l)
-    if (is_due(levels[l])) move_shared(levels[l - 1], plate_, levels[l].step_s, step.works);
+    if (is_due(levels[l])) move_shared(levels[l - 1], motion_, levels[l].step_s, step.works);
 }
 
 void Body::push_later_band(BodyStep& step, std::size_t band) {
   auto& coarsest = levels_.level.front();
   const auto& rows = coarsest.bands[band];
   if (static_cast<int>(band) >= single_.bands.begin && static_cast<int>(band) < single_.bands.end)
-    push_band(coarsest, rows, plate_, single_, step.w, step.w_single, step.products);
+    push_band(coarsest, rows, motion_, single_, step.w, step.w_single, step.products);
   else if (band > 0)
-    push_band(coarsest, rows, plate_, step.w, step.products, step.works);
-  if (band + 1 == coarsest.bands.size() && plate_.damping_s > 0)
+    push_band(coarsest, rows, motion_, step.w, step.products, step.works);
+  if (band + 1 == coarsest.bands.size() && motion_.damping_s > 0)
     step.works.damping_work += coarsest.damping_work.add(step.products);
 }
 
@@ -161,54 +161,54 @@ record::Energies Body::energies() {
   record::Energies e = works_;
   e.kinetic = kinetic_energy_J_per_m();
   for (const auto& level : levels_.level) {
-    exchange_velocities(level, plate_);
-    const auto [u_K_u, v_K_u] = stiffness_products(level, plate_);
+    exchange_velocities(level, motion_);
+    const auto [u_K_u, v_K_u] = stiffness_products(level, motion_);
     e.strain += 0.5 * (u_K_u - level.step_s * v_K_u);  // 1/2 u K u' between the level's last two places
-    e.coupling_work += coupling_work(level, plate_);
-    if (plate_.damping_s > 0) {
+    e.coupling_work += coupling_work(level, motion_);
+    if (motion_.damping_s > 0) {
       PushProducts since_last;
-      for (const auto& band : level.bands) since_last.late_K_w += late_product(level, band, plate_);
+      for (const auto& band : level.bands) since_last.late_K_w += late_product(level, band, motion_);
       if (&level == &levels_.level.back()) landing_.add_to(since_last);
       e.damping_work += level.damping_work.of_last_push(since_last, u_K_u, v_K_u);
     }
-    restore_velocities(level, plate_);
+    restore_velocities(level, motion_);
   }
   return e;
 }
 
 void Body::reverse(const solid::Field& u_m, double time_s) {
-  plate_.u_m = u_m;
-  for (auto* values : {&plate_.v_m_per_s.x, &plate_.v_m_per_s.y})
+  motion_.u_m = u_m;
+  for (auto* values : {&motion_.v_m_per_s.x, &motion_.v_m_per_s.y})
     for (double& value : *values) value = -value;
   for (auto& level : levels_.level) {
-    set_motion_before(level, plate_);
+    set_motion_before(level, motion_);
     level.shared.a_m_per_s2 = solid::Field(level.shared.node.size());
   }
-  to_single(plate_, single_);
+  to_single(motion_, single_);
   works_ = {};
   works_.time_s = time_s;
-  if (plate_.damping_s > 0) begin_damping_work();
+  if (motion_.damping_s > 0) begin_damping_work();
 }
 
 solid::Field Body::mean_velocity_m_per_s() const {
-  solid::Field v = plate_.v_m_per_s;
+  solid::Field v = motion_.v_m_per_s;
   for (const auto& level : levels_.level) {
     const auto& s = level.shared;
     for (std::size_t k = 0; k < s.node.size(); ++k) {
       const auto n = s.node[k];
-      v.x[n] = (plate_.u_m.x[n] - s.u_before_m.x[k]) / level.step_s;
-      v.y[n] = (plate_.u_m.y[n] - s.u_before_m.y[k]) / level.step_s;
+      v.x[n] = (motion_.u_m.x[n] - s.u_before_m.x[k]) / level.step_s;
+      v.y[n] = (motion_.u_m.y[n] - s.u_before_m.y[k]) / level.step_s;
     }
   }
   return v;
 }
 
 double Body::kinetic_energy_J_per_m() const {
-  return solid::kinetic_energy_J_per_m(plate_.op, plate_.v_m_per_s);
+  return solid::kinetic_energy_J_per_m(motion_.op, motion_.v_m_per_s);
 }
 
 double Body::strain_energy_J_per_m() const {
-  return solid::strain_energy_J_per_m(plate_.op, plate_.u_m);
+  return solid::strain_energy_J_per_m(motion_.op, motion_.u_m);
 }
 
 }  // namespace slipfront::motion

@@ -47,11 +47,11 @@ class Body {
   void keep_to_double() { single_ = {}; }
   void expect_steps_under_way(int n);
 
-  const solid::Operator& op() const { return plate_.op; }
-  const solid::Field& u_m() const { return plate_.u_m; }
-  const solid::Field& v_m_per_s() const { return plate_.v_m_per_s; }
-  double damping_s() const { return plate_.damping_s; }
-  const Levels& levels() const { return levels_; }
+  const solid::Operator& op() const { return motion_.op; }
+  const solid::Field& u_m() const { return motion_.u_m; }
+  const solid::Field& v_m_per_s() const { return motion_.v_m_per_s; }
+  double damping_s() const { return motion_.damping_s; }
+  const StepLevels& levels() const { return levels_; }
   std::size_t n_bands() const { return levels_.level.front().bands.size(); }
   /// Sub-steps in a step of the coarsest level.
   int period() const { return levels_.level.front().period; }
@@ -74,7 +74,7 @@ class Body {
   /// Adds the works of a step that is done to the body's.
   void complete(const BodyStep& step);
   /// Makes u_m and v_m_per_s those after the last step in all rows: before anyone looks at them.
-  void settle() { to_double(single_, plate_); }
+  void settle() { to_double(single_, motion_); }
 
   /// Interface nodes, and what the contact has to know of them. [lower]
   const std::vector<mesh::Node>& lower() const { return lower_; }
@@ -84,8 +84,8 @@ class Body {
   const std::vector<double>& tributary_m() const { return tributary_m_; }
   const std::vector<Dashpot>& contact_dashpots() const { return levels_.contact_dashpots; }
   /// Motion of the interface nodes, which the contact moves.
-  solid::Field& u_m() { return plate_.u_m; }
-  solid::Field& v_m_per_s() { return plate_.v_m_per_s; }
+  solid::Field& u_m() { return motion_.u_m; }
+  solid::Field& v_m_per_s() { return motion_.v_m_per_s; }
   /// Work of shifts that the contact has made, see Landing.
   void expect_landings(const mesh::Mesh& mesh, const solid::Material& material) {
     landing_ = Landing(mesh, material, lower_);
@@ -103,24 +103,24 @@ class Body {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive_field(archive, plate_.u_m, plate_.u_m.size());
-    archive_field(archive, plate_.v_m_per_s, plate_.v_m_per_s.size());
+    archive_field(archive, motion_.u_m, motion_.u_m.size());
+    archive_field(archive, motion_.v_m_per_s, motion_.v_m_per_s.size());
     for (auto& level : levels_.level) archive(level);
     archive(landing_, works_);
-    if constexpr (Archive::is_loading::value) to_single(plate_, single_);
+    if constexpr (Archive::is_loading::value) to_single(motion_, single_);
   }
 
  private:
-  void push(Level& level, record::Energies& works);
+  void push(StepLevel& level, record::Energies& works);
   /// Products of the landings since the last push of a level, if it is the last one.
-  void take_landing(const Level& level, PushProducts& products);
+  void take_landing(const StepLevel& level, PushProducts& products);
   void begin_damping_work();
-  void find_steady_force(Level& level);
+  void find_steady_force(StepLevel& level);
 
-  Plate plate_;
+  BodyMotion motion_;
   double stable_step_s_ = 0;
   std::vector<int> multiples_;
-  Levels levels_;
+  StepLevels levels_;
   SingleRows single_;           ///< none unless time.precision is single
   solid::RollingRows finer_w_;  ///< of u + beta_R v, of the other levels' sweeps
   std::vector<BodyStep> under_way_;

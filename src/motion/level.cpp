@@ -7,8 +7,8 @@ namespace slipfront::motion {
 
 namespace {
 
-std::ptrdiff_t row_start(const Plate& plate, int row) {
-  return plate.op.rows[row].first;
+std::ptrdiff_t row_start(const BodyMotion& body, int row) {
+  return body.op.rows[row].first;
 }
 
 /// Rows that the stencil of `row` reads.
@@ -24,18 +24,18 @@ solid::ConstRow row_of(solid::RollingRows& w, int row) {
 /// Fills rows of w = u + beta_R v just before the first row that reads them moves.
 class Filler {
  public:
-  Filler(const Plate& plate, solid::RollingRows& w, int first) : plate_(plate), w_(w), next_(first) {}
+  Filler(const BodyMotion& body, solid::RollingRows& w, int first) : body_(body), w_(w), next_(first) {}
 
   void fill(solid::Span rows) {
     for (next_ = std::max(next_, rows.begin); next_ < rows.end; ++next_) {
-      const auto o = row_start(plate_, next_);
-      solid::combine_row(plate_.op.rows[next_].count, plate_.damping_s, &plate_.u_m.x[o], &plate_.u_m.y[o],
-                         &plate_.v_m_per_s.x[o], &plate_.v_m_per_s.y[o], w_.x(next_), w_.y(next_));
+      const auto o = row_start(body_, next_);
+      solid::combine_row(body_.op.rows[next_].count, body_.damping_s, &body_.u_m.x[o], &body_.u_m.y[o],
+                         &body_.v_m_per_s.x[o], &body_.v_m_per_s.y[o], w_.x(next_), w_.y(next_));
     }
   }
 
  private:
-  const Plate& plate_;
+  const BodyMotion& body_;
   solid::RollingRows& w_;
   int next_;
 };
@@ -62,12 +62,12 @@ class RowsAround {
 };
 
 /// Sum of m (x . a) over the general rows.
-double general_product(const Level& level, const Plate& plate, const solid::Field& x) {
+double general_product(const StepLevel& level, const BodyMotion& body, const solid::Field& x) {
   double sum = 0;
   for (const auto& run : level.general_runs) {
     const auto at = run.at, count = run.count;
     const auto first = run.first;
-    const double* mass = &plate.op.mass_kg[first];
+    const double* mass = &body.op.mass_kg[first];
     const double* x_x = &x.x[first];
     const double* x_y = &x.y[first];
     const double* a_x = &level.a_x[at];
@@ -79,15 +79,15 @@ double general_product(const Level& level, const Plate& plate, const solid::Fiel
 }
 
 /// Kicks and moves the nodes of the general rows.
-void move_general(const Level& level, Plate& plate) {
+void move_general(const StepLevel& level, BodyMotion& body) {
   const double dt = level.step_s;
   for (const auto& [at, first, count] : level.general_runs) {
     const double* a_x = &level.a_x[at];
     const double* a_y = &level.a_y[at];
-    double* __restrict u_x = &plate.u_m.x[first];
-    double* __restrict u_y = &plate.u_m.y[first];
-    double* __restrict v_x = &plate.v_m_per_s.x[first];
-    double* __restrict v_y = &plate.v_m_per_s.y[first];
+    double* __restrict u_x = &body.u_m.x[first];
+    double* __restrict u_y = &body.u_m.y[first];
+    double* __restrict v_x = &body.v_m_per_s.x[first];
+    double* __restrict v_y = &body.v_m_per_s.y[first];
     // Runs end where these change.
     if (!level.takes_push[at]) continue;
     const double moving_s = level.moves[at] ? dt : 0;
@@ -101,8 +101,9 @@ void move_general(const Level& level, Plate& plate) {
 }
 
 template <class W>
-void compute_irregular(Level& level, const Band& band, const Plate& plate, W&& w, record::Energies& works) {
-  solid::for_each_row_product(level.part.irregular, band.irregular, w,
+void compute_irregular(StepLevel& level, const Band& band, const BodyMotion& body, W&& w,
+                       record::Energies& works) {
+  solid::for_each_row_product(level.stiffness.irregular, band.irregular, w,
                               [&](std::size_t r, double x, double y) {
                                 level.a_x[r] = x;
                                 level.a_y[r] = y;
@@ -111,7 +112,7 @@ void compute_irregular(Level& level, const Band& band, const Plate& plate, W&& w
   const solid::Span all{0, static_cast<int>(level.top_rows.size())};
   solid::for_each_row_product(level.top_rows, all, w, [&](std::size_t r, double x, double y) {
     level.top_force_N[r] = {x, y};
-    works.top_work += level.step_s * x * plate.v_m_per_s.x[level.top_rows.node[r]];
+    works.top_work += level.step_s * x * body.v_m_per_s.x[level.top_rows.node[r]];
   });
 }
 
@@ -121,27 +122,27 @@ void add_kicks(solid::KickSums& to, const solid::KickSums& kicks, double mass) {
   to.d_d += mass * kicks.d_d;
 }
 
-void sweep(Level& level, const Band& band, Plate& plate, Filler& filler, solid::RollingRows& w,
+void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler, solid::RollingRows& w,
            PushProducts& products) {
-  const int stride = plate.op.grid.stride();
+  const int stride = body.op.grid.stride();
   const double dt = level.step_s;
-  const bool with_products = plate.damping_s > 0;
+  const bool with_products = body.damping_s > 0;
   const auto push_interior =
       with_products ? solid::push_interior_row<true, double> : solid::push_interior_row<false, double>;
-  const auto right = solid::scaled(plate.op.edge, -dt);
+  const auto right = solid::scaled(body.op.edge, -dt);
   // Sums over kicks of nodes with one mass, which is 1/kick_scale of that amid the smallest squares.
   solid::KickSums kicks = products.kicks;
   products.kicks = {};
   double kick_scale = 1;
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
-    const auto& row = level.part.stencil[k];
+    const auto& row = level.stiffness.stencil[k];
     const auto& [j, squares, scale, spans] = row;
-    const auto o = row_start(plate, j);
-    double* u_x = &plate.u_m.x[o];
-    double* u_y = &plate.u_m.y[o];
-    double* v_x = &plate.v_m_per_s.x[o];
-    double* v_y = &plate.v_m_per_s.y[o];
+    const auto o = row_start(body, j);
+    double* u_x = &body.u_m.x[o];
+    double* u_y = &body.u_m.y[o];
+    double* v_x = &body.v_m_per_s.x[o];
+    double* v_y = &body.v_m_per_s.y[o];
     filler.fill(rows_read(row));
     if (scale != kick_scale && !solid::is_horizontal_edge(row)) {
       add_kicks(products.kicks, kicks, 1 / kick_scale);
@@ -158,13 +159,13 @@ void sweep(Level& level, const Band& band, Plate& plate, Filler& filler, solid::
       continue;
     }
     if (squares == solid::Squares::all) {
-      const auto interior = solid::scaled(plate.op.interior, -dt * scale);
+      const auto interior = solid::scaled(body.op.interior, -dt * scale);
       for (const auto span : spans)
         push_interior(interior, span, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1), v_x, v_y, u_x,
                       u_y, kicks);
       continue;
     }
-    const auto above = solid::scaled(plate.op.edge, -dt * scale);
+    const auto above = solid::scaled(body.op.edge, -dt * scale);
     const auto stencil = squares == solid::Squares::above ? above : solid::mirrored(above);
     const auto inner = row_of(w, squares == solid::Squares::above ? j + 1 : j - 1);
     auto& kick = level.edge_kick_m_per_s[edge++];
@@ -174,7 +175,7 @@ void sweep(Level& level, const Band& band, Plate& plate, Filler& filler, solid::
       const auto [u_d, v_d] =
           solid::kick_edge_row(stencil, span, row_of(w, j), inner, {u_x, u_y}, {v_x, v_y}, kick_x, kick_y);
       // The nodes of an edge with a stencil have one mass.
-      const double mass = plate.op.mass_kg[o + span.begin];
+      const double mass = body.op.mass_kg[o + span.begin];
       products.u_K_w -= mass / dt * u_d;
       products.v_K_w -= mass / dt * v_d;
     }
@@ -187,18 +188,18 @@ void sweep(Level& level, const Band& band, Plate& plate, Filler& filler, solid::
 }
 
 /// Products over a band's block rows and loaded edge.
-void add_irregular_products(const Level& level, const Band& band, const Plate& plate,
+void add_irregular_products(const StepLevel& level, const Band& band, const BodyMotion& body,
                             PushProducts& products) {
-  const auto& u = plate.u_m;
-  const auto& v = plate.v_m_per_s;
+  const auto& u = body.u_m;
+  const auto& v = body.v_m_per_s;
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
     const auto n = level.irregular[r];
-    products.u_K_w += plate.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
-    products.v_K_w += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
+    products.u_K_w += body.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
+    products.v_K_w += body.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
   }
   if (&band == &level.bands.front()) {
-    products.u_K_w += general_product(level, plate, u);
-    products.v_K_w += general_product(level, plate, v);
+    products.u_K_w += general_product(level, body, u);
+    products.v_K_w += general_product(level, body, v);
   }
   if (!band.has_top) return;
   for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
@@ -208,15 +209,15 @@ void add_irregular_products(const Level& level, const Band& band, const Plate& p
   }
 }
 
-void move_irregular(const Level& level, const Band& band, Plate& plate, record::Energies& works) {
-  auto& u = plate.u_m;
-  auto& v = plate.v_m_per_s;
+void move_irregular(const StepLevel& level, const Band& band, BodyMotion& body, record::Energies& works) {
+  auto& u = body.u_m;
+  auto& v = body.v_m_per_s;
   const double dt = level.step_s;
   for (int k = band.dashpots.begin; k < band.dashpots.end; ++k) {
     const auto& dashpot = level.dashpots[k];
     const auto n = dashpot.node;
     const solid::Pair trial{v.x[n] - dt * level.a_x[dashpot.at], v.y[n] - dt * level.a_y[dashpot.at]};
-    const auto after = damp(dashpot, plate.op.mass_kg[n], {v.x[n], v.y[n]}, trial, works);
+    const auto after = damp(dashpot, body.op.mass_kg[n], {v.x[n], v.y[n]}, trial, works);
     v.x[n] = after.x;
     v.y[n] = after.y;
     u.x[n] += dt * after.x;
@@ -231,29 +232,29 @@ void move_irregular(const Level& level, const Band& band, Plate& plate, record::
     u.x[n] += dt * v.x[n];
     u.y[n] += dt * v.y[n];
   }
-  if (&band == &level.bands.front()) move_general(level, plate);
+  if (&band == &level.bands.front()) move_general(level, body);
   if (band.has_top)
     for (const auto n : level.top) u.x[n] += dt * v.x[n];
 }
 
 /// Sums of m (K w/m) . w and m (K w/m) . v over a level's nodes, w given for each node.
 template <class W>
-StiffnessProducts products_with(const Level& level, const Plate& plate, const W& w_of) {
-  const auto& v = plate.v_m_per_s;
-  const auto& mass = plate.op.mass_kg;
-  const int widest = plate.op.widest_row();
+StiffnessProducts products_with(const StepLevel& level, const BodyMotion& body, const W& w_of) {
+  const auto& v = body.v_m_per_s;
+  const auto& mass = body.op.mass_kg;
+  const int widest = body.op.widest_row();
   solid::RollingRows w(widest);
   std::vector<double> a_x(widest), a_y(widest);
   StiffnessProducts sums;
   int next = 0;
-  for (const auto& row : level.part.stencil) {
-    const auto o = row_start(plate, row.row);
+  for (const auto& row : level.stiffness.stencil) {
+    const auto o = row_start(body, row.row);
     const auto read = rows_read(row);
     for (next = std::max(next, read.begin); next < read.end; ++next) {
       double* w_x = w.x(next);
       double* w_y = w.y(next);
-      const auto first = static_cast<mesh::Node>(row_start(plate, next));
-      for (int i = 0; i < plate.op.rows[next].count; ++i) {
+      const auto first = static_cast<mesh::Node>(row_start(body, next));
+      for (int i = 0; i < body.op.rows[next].count; ++i) {
         const solid::Pair at = w_of(first + i);
         w_x[i] = at.x;
         w_y[i] = at.y;
@@ -261,7 +262,7 @@ StiffnessProducts products_with(const Level& level, const Plate& plate, const W&
     }
     std::ranges::fill(a_x, 0.0);
     std::ranges::fill(a_y, 0.0);
-    solid::add_stencil_row(plate.op, row, row_of(w, row.row + 2), row_of(w, row.row), row_of(w, row.row + 1),
+    solid::add_stencil_row(body.op, row, row_of(w, row.row + 2), row_of(w, row.row), row_of(w, row.row + 1),
                            a_x.data(), a_y.data());
     const solid::ConstRow a{a_x.data(), a_y.data()};
     for (const auto span : row.spans) {
@@ -275,11 +276,11 @@ StiffnessProducts products_with(const Level& level, const Plate& plate, const W&
     sums.v_K_u += m * (v.x[n] * x + v.y[n] * y);
   };
   const auto all = [](const solid::BlockRows& rows) { return solid::Span{0, static_cast<int>(rows.size())}; };
-  const auto& irregular = level.part.irregular;
+  const auto& irregular = level.stiffness.irregular;
   solid::for_each_row_product(irregular, all(irregular), w_of, [&](std::size_t r, double x, double y) {
     add(irregular.node[r], mass[irregular.node[r]], x, y);
   });
-  if (const auto& general = level.part.general; general.size() > 0) {
+  if (const auto& general = level.stiffness.general; general.size() > 0) {
     solid::Field w_field(mass.size()), a(general.size());
     for (std::size_t n = 0; n < mass.size(); ++n) {
       const solid::Pair at = w_of(static_cast<mesh::Node>(n));
@@ -307,54 +308,54 @@ solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, sol
   return {trial.x - 2 * dashpot.d_x * mean_x, trial.y - 2 * dashpot.d_y * mean_y};
 }
 
-void set_motion_before(Level& level, const Plate& plate) {
+void set_motion_before(StepLevel& level, const BodyMotion& body) {
   auto& s = level.shared;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto n = s.node[k];
-    s.u_before_m.x[k] = plate.u_m.x[n] - level.step_s * plate.v_m_per_s.x[n];
-    s.u_before_m.y[k] = plate.u_m.y[n] - level.step_s * plate.v_m_per_s.y[n];
-    s.v_last_m_per_s.x[k] = plate.v_m_per_s.x[n];
-    s.v_last_m_per_s.y[k] = plate.v_m_per_s.y[n];
+    s.u_before_m.x[k] = body.u_m.x[n] - level.step_s * body.v_m_per_s.x[n];
+    s.u_before_m.y[k] = body.u_m.y[n] - level.step_s * body.v_m_per_s.y[n];
+    s.v_last_m_per_s.x[k] = body.v_m_per_s.x[n];
+    s.v_last_m_per_s.y[k] = body.v_m_per_s.y[n];
   }
 }
 
-void begin_push(Level& level, Plate& plate, record::Energies& works) {
+void begin_push(StepLevel& level, BodyMotion& body, record::Energies& works) {
   auto& s = level.shared;
-  exchange_velocities(level, plate);
-  works.coupling_work += coupling_work(level, plate);
+  exchange_velocities(level, body);
+  works.coupling_work += coupling_work(level, body);
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto n = s.node[k];
-    s.v_mean_before_m_per_s.x[k] = plate.v_m_per_s.x[n];
-    s.v_mean_before_m_per_s.y[k] = plate.v_m_per_s.y[n];
-    s.u_before_m.x[k] = plate.u_m.x[n];
-    s.u_before_m.y[k] = plate.u_m.y[n];
+    s.v_mean_before_m_per_s.x[k] = body.v_m_per_s.x[n];
+    s.v_mean_before_m_per_s.y[k] = body.v_m_per_s.y[n];
+    s.u_before_m.x[k] = body.u_m.x[n];
+    s.u_before_m.y[k] = body.u_m.y[n];
   }
 }
 
-void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows& w, PushProducts& products,
-               record::Energies& works) {
+void push_band(StepLevel& level, const Band& band, BodyMotion& body, solid::RollingRows& w,
+               PushProducts& products, record::Energies& works) {
   const bool is_first = &band == &level.bands.front(), is_last = &band == &level.bands.back();
-  if (plate.damping_s > 0) products.late_K_w += late_product(level, band, plate);
+  if (body.damping_s > 0) products.late_K_w += late_product(level, band, body);
   if (is_first) {
     const auto w_now = [&](mesh::Node n) {
-      return solid::Pair{plate.u_m.x[n] + plate.damping_s * plate.v_m_per_s.x[n],
-                         plate.u_m.y[n] + plate.damping_s * plate.v_m_per_s.y[n]};
+      return solid::Pair{body.u_m.x[n] + body.damping_s * body.v_m_per_s.x[n],
+                         body.u_m.y[n] + body.damping_s * body.v_m_per_s.y[n]};
     };
-    compute_irregular(level, band, plate, w_now, works);
-    level.part.general.multiply(plate.u_m, plate.damping_s, plate.v_m_per_s, level.general_space,
-                                level.a_x.data() + level.general.begin,
-                                level.a_y.data() + level.general.begin);
+    compute_irregular(level, band, body, w_now, works);
+    level.stiffness.general.multiply(body.u_m, body.damping_s, body.v_m_per_s, level.general_space,
+                                     level.a_x.data() + level.general.begin,
+                                     level.a_y.data() + level.general.begin);
   }
   // The rows below a later band have moved already, and of its own row w is filled.
-  Filler filler(plate, w, is_first ? band.first_row : band.first_row + 1);
-  sweep(level, band, plate, filler, w, products);
+  Filler filler(body, w, is_first ? band.first_row : band.first_row + 1);
+  sweep(level, band, body, filler, w, products);
   if (!is_last) filler.fill({band.last_row, band.last_row + 2});
-  if (!is_first) compute_irregular(level, band, plate, RowsAround(w, plate.op, band.first_row), works);
-  if (plate.damping_s > 0) add_irregular_products(level, band, plate, products);
-  move_irregular(level, band, plate, works);
+  if (!is_first) compute_irregular(level, band, body, RowsAround(w, body.op, band.first_row), works);
+  if (body.damping_s > 0) add_irregular_products(level, band, body, products);
+  move_irregular(level, band, body, works);
 }
 
-SingleRows make_single_rows(const Level& coarsest, const solid::Operator& op) {
+SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op) {
   SingleRows single;
   const auto& bands = coarsest.bands;
   const auto has_block_rows = [](const Band& band) {
@@ -376,13 +377,13 @@ SingleRows make_single_rows(const Level& coarsest, const solid::Operator& op) {
   return single;
 }
 
-void to_single(const Plate& plate, SingleRows& single) {
-  const auto o = row_start(plate, single.first_row);
+void to_single(const BodyMotion& body, SingleRows& single) {
+  const auto o = row_start(body, single.first_row);
   const auto n = static_cast<int>(single.u_x_m.size());
-  solid::convert_row(n, plate.u_m.x.data() + o, single.u_x_m.data());
-  solid::convert_row(n, plate.u_m.y.data() + o, single.u_y_m.data());
-  solid::convert_row(n, plate.v_m_per_s.x.data() + o, single.v_x_m_per_s.data());
-  solid::convert_row(n, plate.v_m_per_s.y.data() + o, single.v_y_m_per_s.data());
+  solid::convert_row(n, body.u_m.x.data() + o, single.u_x_m.data());
+  solid::convert_row(n, body.u_m.y.data() + o, single.u_y_m.data());
+  solid::convert_row(n, body.v_m_per_s.x.data() + o, single.v_x_m_per_s.data());
+  solid::convert_row(n, body.v_m_per_s.y.data() + o, single.v_y_m_per_s.data());
 }
 
 namespace {
@@ -395,23 +396,23 @@ void convert_w(int count, int row, From& from, To& to) {
 }
 
 /// The first n of these nodes' motion.
-void to_double(const SingleRows& single, int n, Plate& plate) {
-  const auto o = row_start(plate, single.first_row);
-  solid::convert_row(n, single.u_x_m.data(), plate.u_m.x.data() + o);
-  solid::convert_row(n, single.u_y_m.data(), plate.u_m.y.data() + o);
-  solid::convert_row(n, single.v_x_m_per_s.data(), plate.v_m_per_s.x.data() + o);
-  solid::convert_row(n, single.v_y_m_per_s.data(), plate.v_m_per_s.y.data() + o);
+void to_double(const SingleRows& single, int n, BodyMotion& body) {
+  const auto o = row_start(body, single.first_row);
+  solid::convert_row(n, single.u_x_m.data(), body.u_m.x.data() + o);
+  solid::convert_row(n, single.u_y_m.data(), body.u_m.y.data() + o);
+  solid::convert_row(n, single.v_x_m_per_s.data(), body.v_m_per_s.x.data() + o);
+  solid::convert_row(n, single.v_y_m_per_s.data(), body.v_m_per_s.y.data() + o);
 }
 
 }  // namespace
 
-void to_double(const SingleRows& single, Plate& plate) {
-  to_double(single, static_cast<int>(single.u_x_m.size()), plate);
+void to_double(const SingleRows& single, BodyMotion& body) {
+  to_double(single, static_cast<int>(single.u_x_m.size()), body);
 }
 
-void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& single, solid::RollingRows& w,
-               solid::RollingRowsOf<float>& w_single, PushProducts& products) {
-  const auto& rows = plate.op.rows;
+void push_band(const StepLevel& level, const Band& band, BodyMotion& body, SingleRows& single,
+               solid::RollingRows& w, solid::RollingRowsOf<float>& w_single, PushProducts& products) {
+  const auto& rows = body.op.rows;
   const int count = rows[band.first_row].count;
   const double dt = level.step_s;
   const bool is_first = band.first_row == single.first_row, is_last = band.last_row == single.last_row;
@@ -421,7 +422,7 @@ void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& s
   };
   const auto fill = [&](int j) {
     const auto o = start_of(j);
-    solid::combine_row(count, plate.damping_s, &single.u_x_m[o], &single.u_y_m[o], &single.v_x_m_per_s[o],
+    solid::combine_row(count, body.damping_s, &single.u_x_m[o], &single.u_y_m[o], &single.v_x_m_per_s[o],
                        &single.v_y_m_per_s[o], w_single.x(j), w_single.y(j));
   };
   if (is_first) {
@@ -430,15 +431,15 @@ void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& s
     fill(band.first_row);
   }
   // All these rows lie in one block of squares.
-  const double scale = level.part.stencil[band.stencil.begin].scale;
-  const auto interior = solid::scaled(plate.op.interior, -dt * scale);
-  const auto right = solid::scaled(plate.op.edge, -dt * scale);
+  const double scale = level.stiffness.stencil[band.stencil.begin].scale;
+  const auto interior = solid::scaled(body.op.interior, -dt * scale);
+  const auto right = solid::scaled(body.op.edge, -dt * scale);
   const auto push_interior =
-      plate.damping_s > 0 ? solid::push_interior_row<true, float> : solid::push_interior_row<false, float>;
+      body.damping_s > 0 ? solid::push_interior_row<true, float> : solid::push_interior_row<false, float>;
   solid::KickSums kicks;
   int filled = band.first_row;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
-    const auto& row_of_stencil = level.part.stencil[k];
+    const auto& row_of_stencil = level.stiffness.stencil[k];
     const int j = row_of_stencil.row;
     const auto squares = row_of_stencil.squares;
     const auto o = start_of(j);
@@ -451,7 +452,7 @@ void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& s
       if (j < single.last_row) {
         fill(j + 1);
       } else {
-        Filler(plate, w, j + 1).fill({j + 1, j + 2});
+        Filler(body, w, j + 1).fill({j + 1, j + 2});
         convert_w(count, j + 1, w, w_single);
       }
     }
@@ -472,11 +473,11 @@ void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& s
     convert_w(count, band.last_row, w_single, w);
   }
   // The next step's first band needs the first row's new place.
-  if (is_first) to_double(single, count, plate);
+  if (is_first) to_double(single, count, body);
 }
 
-void end_push(Level& level, Plate& plate) {
-  const int stride = plate.op.grid.stride();
+void end_push(StepLevel& level, BodyMotion& body) {
+  const int stride = body.op.grid.stride();
   auto& s = level.shared;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto r = s.irregular_row[k];
@@ -488,20 +489,20 @@ void end_push(Level& level, Plate& plate) {
     s.push_m_per_s.x[k] = x - level.step_s * s.steady_m_per_s2.x[k];
     s.push_m_per_s.y[k] = y - level.step_s * s.steady_m_per_s2.y[k];
   }
-  restore_velocities(level, plate);
+  restore_velocities(level, body);
 }
 
-void move_shared(Level& coarser, Plate& plate, double dt, record::Energies& works) {
+void move_shared(StepLevel& coarser, BodyMotion& body, double dt, record::Energies& works) {
   auto& s = coarser.shared;
-  auto& u = plate.u_m;
-  auto& v = plate.v_m_per_s;
+  auto& u = body.u_m;
+  auto& v = body.v_m_per_s;
   for (const auto& dashpot : s.dashpots) {
     const auto k = dashpot.at;
     const auto n = dashpot.node;
     const double kick_x = dt * s.steady_m_per_s2.x[k] + s.push_m_per_s.x[k];
     const double kick_y = dt * s.steady_m_per_s2.y[k] + s.push_m_per_s.y[k];
     const solid::Pair before{s.v_last_m_per_s.x[k], s.v_last_m_per_s.y[k]};
-    const auto after = damp(dashpot, plate.op.mass_kg[n], before, {v.x[n] + kick_x, v.y[n] + kick_y}, works);
+    const auto after = damp(dashpot, body.op.mass_kg[n], before, {v.x[n] + kick_x, v.y[n] + kick_y}, works);
     v.x[n] = after.x - kick_x;
     v.y[n] = after.y - kick_y;
   }
@@ -518,7 +519,7 @@ void move_shared(Level& coarser, Plate& plate, double dt, record::Energies& work
     double* __restrict push_y = &s.push_m_per_s.y[at];
     const double* steady_x = &s.steady_m_per_s2.x[at];
     const double* steady_y = &s.steady_m_per_s2.y[at];
-    const double* mass = &plate.op.mass_kg[first];
+    const double* mass = &body.op.mass_kg[first];
     double work = 0;
 #pragma omp simd reduction(+ : work)
     for (std::size_t k = 0; k < count; ++k) {
@@ -537,53 +538,53 @@ void move_shared(Level& coarser, Plate& plate, double dt, record::Energies& work
   }
 }
 
-void exchange_velocities(const Level& level, Plate& plate) {
+void exchange_velocities(const StepLevel& level, BodyMotion& body) {
   const auto& s = level.shared;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto n = s.node[k];
-    plate.v_m_per_s.x[n] = (plate.u_m.x[n] - s.u_before_m.x[k]) / level.step_s;
-    plate.v_m_per_s.y[n] = (plate.u_m.y[n] - s.u_before_m.y[k]) / level.step_s;
+    body.v_m_per_s.x[n] = (body.u_m.x[n] - s.u_before_m.x[k]) / level.step_s;
+    body.v_m_per_s.y[n] = (body.u_m.y[n] - s.u_before_m.y[k]) / level.step_s;
   }
 }
 
-void restore_velocities(const Level& level, Plate& plate) {
+void restore_velocities(const StepLevel& level, BodyMotion& body) {
   const auto& s = level.shared;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
-    plate.v_m_per_s.x[s.node[k]] = s.v_last_m_per_s.x[k];
-    plate.v_m_per_s.y[s.node[k]] = s.v_last_m_per_s.y[k];
+    body.v_m_per_s.x[s.node[k]] = s.v_last_m_per_s.x[k];
+    body.v_m_per_s.y[s.node[k]] = s.v_last_m_per_s.y[k];
   }
 }
 
-double coupling_work(const Level& level, const Plate& plate) {
+double coupling_work(const StepLevel& level, const BodyMotion& body) {
   const auto& s = level.shared;
-  const auto& v = plate.v_m_per_s;
+  const auto& v = body.v_m_per_s;
   double work = 0;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto n = s.node[k];
-    const double impulse = 0.5 * level.step_s * plate.op.mass_kg[n];
+    const double impulse = 0.5 * level.step_s * body.op.mass_kg[n];
     work += impulse * (s.a_m_per_s2.x[k] * (s.v_mean_before_m_per_s.x[k] + v.x[n]) +
                        s.a_m_per_s2.y[k] * (s.v_mean_before_m_per_s.y[k] + v.y[n]));
   }
   return work;
 }
 
-double late_product(const Level& level, const Band& band, const Plate& plate) {
-  const auto& v = plate.v_m_per_s;
+double late_product(const StepLevel& level, const Band& band, const BodyMotion& body) {
+  const auto& v = body.v_m_per_s;
   double sum = 0;
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
     const auto n = level.irregular[r];
-    sum += plate.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
+    sum += body.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
   }
-  if (&band == &level.bands.front()) sum += general_product(level, plate, v);
+  if (&band == &level.bands.front()) sum += general_product(level, body, v);
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
-    const auto& row = level.part.stencil[k];
+    const auto& row = level.stiffness.stencil[k];
     if (!solid::is_horizontal_edge(row)) continue;
-    const auto o = row_start(plate, row.row);
+    const auto o = row_start(body, row.row);
     const double* kick_x = level.edge_kick_m_per_s[edge++].data();
-    const solid::ConstRow kick{kick_x, kick_x + plate.op.grid.stride()};
+    const solid::ConstRow kick{kick_x, kick_x + body.op.grid.stride()};
     for (const auto span : row.spans)
-      sum -= solid::row_product(span, &plate.op.mass_kg[o], kick, {&v.x[o], &v.y[o]}) / level.step_s;
+      sum -= solid::row_product(span, &body.op.mass_kg[o], kick, {&v.x[o], &v.y[o]}) / level.step_s;
   }
   if (band.has_top)
     for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
@@ -593,17 +594,15 @@ double late_product(const Level& level, const Band& band, const Plate& plate) {
   return sum;
 }
 
-StiffnessProducts stiffness_products(const Level& level, const Plate& plate) {
-  return products_with(level, plate, [&](mesh::Node n) {
-    return solid::Pair{plate.u_m.x[n], plate.u_m.y[n]};
-  });
+StiffnessProducts stiffness_products(const StepLevel& level, const BodyMotion& body) {
+  return products_with(level, body, [&](mesh::Node n) { return solid::Pair{body.u_m.x[n], body.u_m.y[n]}; });
 }
 
-double stiffness_product_before(const Level& level, const Plate& plate, double back_s) {
-  return products_with(level, plate,
+double stiffness_product_before(const StepLevel& level, const BodyMotion& body, double back_s) {
+  return products_with(level, body,
                        [&](mesh::Node n) {
-                         return solid::Pair{plate.u_m.x[n] - back_s * plate.v_m_per_s.x[n],
-                                            plate.u_m.y[n] - back_s * plate.v_m_per_s.y[n]};
+                         return solid::Pair{body.u_m.x[n] - back_s * body.v_m_per_s.x[n],
+                                            body.u_m.y[n] - back_s * body.v_m_per_s.y[n]};
                        })
       .u_K_u;
 }

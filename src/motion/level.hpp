@@ -16,8 +16,8 @@
 
 namespace slipfront::motion {
 
-/// The plate and its motion: displacements at whole steps, velocities at half steps.
-struct Plate {
+/// A body's stiffness and its motion: displacements at whole steps, velocities at half steps.
+struct BodyMotion {
   solid::Operator op;
   double damping_s = 0;
   solid::Field u_m, v_m_per_s;
@@ -78,8 +78,8 @@ struct Band {
   bool has_top = false;
 };
 
-/// Motion of rows of the coarsest level in single precision. While steps are taken these rows of Plate are
-/// out of date; to_double brings them up to date afterwards.
+/// Motion of rows of the coarsest level in single precision. While steps are taken these rows of BodyMotion
+/// are out of date; to_double brings them up to date afterwards.
 struct SingleRows {
   solid::Span bands;  ///< of the level: above the first one, without block rows
   int first_row = 0, last_row = -1;
@@ -89,10 +89,10 @@ struct SingleRows {
 /// All cells that take the same time step, what they do to their nodes, and the nodes that move with this
 /// step. Each level's step is a whole multiple of the next one's. The last level, the finest, has the
 /// interface.
-struct Level {
+struct StepLevel {
   double step_s = 0;
   int period = 1;  ///< in steps of the last level
-  solid::Part part;
+  solid::PartialStiffness stiffness;
   std::vector<mesh::Node> irregular;  ///< nodes of the block rows, then of the general rows
   solid::Span general;                ///< the latter, all of them in the first band
   solid::GeneralRows::Workspace general_space;
@@ -121,9 +121,9 @@ struct Level {
   }
 };
 
-/// The plate's cells, divided into levels.
-struct Levels {
-  std::vector<Level> level;                 ///< coarsest first
+/// A body's cells, divided into levels.
+struct StepLevels {
+  std::vector<StepLevel> level;             ///< coarsest first
   std::vector<std::uint8_t> level_of_node;  ///< [nodes]; orphans count to the first
   std::vector<bool> is_orphan;
   std::vector<Dashpot> contact_dashpots;  ///< of interface nodes
@@ -136,14 +136,14 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time);
 
 /// For each block of the mesh, its step over that of the lowest one: the largest power of two that its cells
 /// allow, twice, four times ... as long for squares.
-/// @param stable_step_s  of the whole plate
+/// @param stable_step_s  of the whole body
 std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
                                 const TimeStepping& time, double stable_step_s);
 
 /// @param step_s  of the coarsest level
 /// @param multiples  of step_multiples
-Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const Plate& plate,
-                   const TimeStepping& time, double step_s, std::span<const int> multiples);
+StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
+                       const TimeStepping& time, double step_s, std::span<const int> multiples);
 
 /// Velocity of a dashpot's node after a kick that alone would lead from `before` to `trial`; its work is
 /// added to `works`.
@@ -151,51 +151,51 @@ solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, sol
                  record::Energies& works);
 
 /// Sets what a level keeps of its shared nodes' motion before now, as if their velocities had been constant.
-void set_motion_before(Level& level, const Plate& plate);
+void set_motion_before(StepLevel& level, const BodyMotion& body);
 
 /// Begins a push. At shared nodes the level's cells see the mean velocity since their last push; it replaces
 /// that of the finer steps until end_push.
-void begin_push(Level& level, Plate& plate, record::Energies& works);
+void begin_push(StepLevel& level, BodyMotion& body, record::Energies& works);
 /// Kicks the nodes of one band by the forces of the level's cells, and moves those that move with the level.
 /// Bands go from the first to the last, with the same `w`, which keeps w = u + beta_R v from before the push
 /// of rows that have moved already.
-void push_band(Level& level, const Band& band, Plate& plate, solid::RollingRows& w, PushProducts& products,
-               record::Energies& works);
+void push_band(StepLevel& level, const Band& band, BodyMotion& body, solid::RollingRows& w,
+               PushProducts& products, record::Energies& works);
 /// Longest run of bands that can be pushed in single precision; none where all have block rows.
-SingleRows make_single_rows(const Level& coarsest, const solid::Operator& op);
-void to_single(const Plate& plate, SingleRows& single);
-void to_double(const SingleRows& single, Plate& plate);
+SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op);
+void to_single(const BodyMotion& body, SingleRows& single);
+void to_double(const SingleRows& single, BodyMotion& body);
 /// The same as push_band for one of these bands.
 /// @param w  holds the row below at the first of these bands, and after the last one its last row and the
 /// next
-void push_band(const Level& level, const Band& band, Plate& plate, SingleRows& single, solid::RollingRows& w,
-               solid::RollingRowsOf<float>& w_single, PushProducts& products);
+void push_band(const StepLevel& level, const Band& band, BodyMotion& body, SingleRows& single,
+               solid::RollingRows& w, solid::RollingRowsOf<float>& w_single, PushProducts& products);
 
 /// Puts the level's force on its shared nodes, less the constant load, into Shared::push_m_per_s. After the
 /// first band, which has all shared nodes.
-void end_push(Level& level, Plate& plate);
+void end_push(StepLevel& level, BodyMotion& body);
 
 /// Kicks the shared nodes of a coarser level by its constant load and by the push that waits, if any, and
 /// moves them by a step dt_s of the finer level.
-void move_shared(Level& coarser, Plate& plate, double dt_s, record::Energies& works);
+void move_shared(StepLevel& coarser, BodyMotion& body, double dt_s, record::Energies& works);
 
 // For the energies. Between exchange and restore, velocities of shared nodes are the mean ones that the level
 // sees, as between begin_push and end_push; the two functions after them need these.
-void exchange_velocities(const Level& level, Plate& plate);
-void restore_velocities(const Level& level, Plate& plate);
+void exchange_velocities(const StepLevel& level, BodyMotion& body);
+void restore_velocities(const StepLevel& level, BodyMotion& body);
 /// Less the work of the level's last force on its shared nodes through the mean velocities before and after
 /// it: that much the level's own cells account for. The coupling's work is this and the work that load and
 /// pushes do through the velocities of the finer steps, which move_shared sums.
-double coupling_work(const Level& level, const Plate& plate);
+double coupling_work(const StepLevel& level, const BodyMotion& body);
 /// PushProducts::late_K_w of a band, once all velocities after the last push are known.
-double late_product(const Level& level, const Band& band, const Plate& plate);
+double late_product(const StepLevel& level, const Band& band, const BodyMotion& body);
 
 /// Of the displacements u and the velocities v, K the stiffness of a level's cells.
 struct StiffnessProducts {
   double u_K_u = 0, v_K_u = 0;
 };
-StiffnessProducts stiffness_products(const Level& level, const Plate& plate);
+StiffnessProducts stiffness_products(const StepLevel& level, const BodyMotion& body);
 /// u K u of the displacements `back_s` earlier, had the velocity been the present one.
-double stiffness_product_before(const Level& level, const Plate& plate, double back_s);
+double stiffness_product_before(const StepLevel& level, const BodyMotion& body, double back_s);
 
 }  // namespace slipfront::motion

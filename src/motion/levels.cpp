@@ -55,12 +55,13 @@ std::optional<std::size_t> place(const std::vector<mesh::Node>& nodes, mesh::Nod
 
 /// The last row of the first band: with the nodes marked, and with those whose neighbours are not all in the
 /// rows beside their own.
-int last_row_of_first_band(const Level& level, const solid::Operator& op, const std::vector<bool>& marked) {
+int last_row_of_first_band(const StepLevel& level, const solid::Operator& op,
+                           const std::vector<bool>& marked) {
   int last = 0;
   for (std::size_t n = 0; n < marked.size(); ++n)
     if (marked[n]) last = std::max(last, op.row_of(static_cast<mesh::Node>(n)));
-  for (const auto n : level.part.general.node()) last = std::max(last, op.row_of(n));
-  const auto& irregular = level.part.irregular;
+  for (const auto n : level.stiffness.general.node()) last = std::max(last, op.row_of(n));
+  const auto& irregular = level.stiffness.irregular;
   for (std::size_t r = 0; r < irregular.size(); ++r)
     for (auto k = irregular.first[r]; k < irregular.first[r + 1]; ++k) {
       const int row = op.row_of(irregular.node[r]), other = op.row_of(irregular.neighbour[k]);
@@ -70,7 +71,7 @@ int last_row_of_first_band(const Level& level, const solid::Operator& op, const 
 }
 
 /// Divides a level's lists, all of them in the order of rows, into bands that end after the rows given.
-void set_bands(Level& level, const solid::Operator& op, const std::vector<int>& last_rows) {
+void set_bands(StepLevel& level, const solid::Operator& op, const std::vector<int>& last_rows) {
   std::size_t stencil = 0, edges = 0, irregular = 0, dashpots = 0;
   int first_row = 0;
   for (const int last_row : last_rows) {
@@ -82,13 +83,13 @@ void set_bands(Level& level, const solid::Operator& op, const std::vector<int>& 
       while (next < n && row_of(next) <= last_row) ++next;
       return solid::Span{static_cast<int>(begin), static_cast<int>(next)};
     };
-    band.stencil =
-        take(stencil, level.part.stencil.size(), [&](std::size_t k) { return level.part.stencil[k].row; });
+    band.stencil = take(stencil, level.stiffness.stencil.size(),
+                        [&](std::size_t k) { return level.stiffness.stencil[k].row; });
     band.edges.begin = static_cast<int>(edges);
     for (int k = band.stencil.begin; k < band.stencil.end; ++k)
-      if (solid::is_horizontal_edge(level.part.stencil[k])) ++edges;
+      if (solid::is_horizontal_edge(level.stiffness.stencil[k])) ++edges;
     band.edges.end = static_cast<int>(edges);
-    const auto& node = level.part.irregular.node;
+    const auto& node = level.stiffness.irregular.node;
     const auto row_of_irregular = [&](std::size_t r) { return op.row_of(node[r]); };
     band.irregular = take(irregular, node.size(), row_of_irregular);
     band.dashpots = take(dashpots, level.dashpots.size(), [&](std::size_t k) {
@@ -102,13 +103,13 @@ void set_bands(Level& level, const solid::Operator& op, const std::vector<int>& 
 
 /// Gives each absorbing node a dashpot where it moves: with the interface, with a coarser level's shared
 /// nodes, or with its level.
-void set_dashpots(Levels& levels, const mesh::Mesh& mesh, const solid::Material& material,
-                  const Plate& plate) {
+void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Material& material,
+                  const BodyMotion& body) {
   const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
   for (const auto& [n, side_m, top_m] : mesh.absorbing) {
     const std::size_t l = levels.level_of_node[n];
     auto& level = levels.level[l];
-    const double factor = 0.5 * level.step_s * material.density_kg_per_m3 / plate.op.mass_kg[n];
+    const double factor = 0.5 * level.step_s * material.density_kg_per_m3 / body.op.mass_kg[n];
     Dashpot dashpot{0, n, factor * (c_L * side_m + c_S * top_m), factor * (c_S * side_m + c_L * top_m)};
     if (const auto i = place(mesh.lower, n)) {
       dashpot.at = *i;
@@ -127,8 +128,8 @@ void set_dashpots(Levels& levels, const mesh::Mesh& mesh, const solid::Material&
   // Those of general rows, all in the first band, come first; the others in the order of rows.
   for (auto& level : levels.level)
     std::ranges::sort(level.dashpots, {}, [&](const Dashpot& d) {
-      return d.at < level.part.irregular.size() ? static_cast<std::ptrdiff_t>(d.at)
-                                                : -static_cast<std::ptrdiff_t>(d.at);
+      return d.at < level.stiffness.irregular.size() ? static_cast<std::ptrdiff_t>(d.at)
+                                                     : -static_cast<std::ptrdiff_t>(d.at);
     });
 }
 
@@ -240,19 +241,20 @@ std::vector<bool> nodes_of(const mesh::Mesh& mesh, const std::vector<bool>& in_l
 }
 
 /// Rows without a stencil: block rows first, general ones after them.
-void set_irregular_rows(Level& level) {
+void set_irregular_rows(StepLevel& level) {
   auto& irregular = level.irregular;
-  irregular = level.part.irregular.node;
+  irregular = level.stiffness.irregular.node;
   level.general.begin = static_cast<int>(irregular.size());
-  irregular.insert(irregular.end(), level.part.general.node().begin(), level.part.general.node().end());
+  irregular.insert(irregular.end(), level.stiffness.general.node().begin(),
+                   level.stiffness.general.node().end());
   level.general.end = static_cast<int>(irregular.size());
-  level.general_space = level.part.general.workspace();
+  level.general_space = level.stiffness.general.workspace();
   level.a_x.resize(irregular.size());
   level.a_y.resize(irregular.size());
 }
 
 /// Nodes of the level's cells that move with a finer one.
-void set_shared_nodes(Level& level, const std::vector<bool>& shared) {
+void set_shared_nodes(StepLevel& level, const std::vector<bool>& shared) {
   std::vector<std::int32_t> irregular_row(shared.size(), -1);
   for (std::size_t r = 0; r < level.irregular.size(); ++r)
     irregular_row[level.irregular[r]] = static_cast<std::int32_t>(r);
@@ -267,7 +269,7 @@ void set_shared_nodes(Level& level, const std::vector<bool>& shared) {
 }
 
 /// Nodes of the loaded edge that move with the level, and the rows of all in its cells.
-void set_loaded_edge(Level& level, std::size_t l, const mesh::Mesh& mesh, const solid::Material& material,
+void set_loaded_edge(StepLevel& level, std::size_t l, const mesh::Mesh& mesh, const solid::Material& material,
                      const std::vector<std::uint8_t>& level_of_node, const std::vector<bool>& in_level,
                      const std::vector<bool>& in_cells) {
   std::vector<mesh::Node> top;
@@ -280,7 +282,7 @@ void set_loaded_edge(Level& level, std::size_t l, const mesh::Mesh& mesh, const 
 }
 
 /// Neighbouring general rows that are treated alike.
-void set_general_runs(Level& level) {
+void set_general_runs(StepLevel& level) {
   for (int r = level.general.begin; r < level.general.end; ++r) {
     const bool goes_on = r > level.general.begin && level.irregular[r] == level.irregular[r - 1] + 1 &&
                          level.takes_push[r] == level.takes_push[r - 1] &&
@@ -295,7 +297,8 @@ void set_general_runs(Level& level) {
 
 /// Last rows of the coarsest level's bands: the first one with all that the interface's part of a step needs,
 /// rows with irregular nodes alone.
-std::vector<int> last_rows_of_bands(const mesh::Mesh& mesh, const solid::Operator& op, const Levels& levels) {
+std::vector<int> last_rows_of_bands(const mesh::Mesh& mesh, const solid::Operator& op,
+                                    const StepLevels& levels) {
   const auto& level = levels.level.front();
   // The work of landing nodes needs the places of their neighbours after the step.
   const auto in_contact = marked(mesh.lower, mesh);
@@ -308,7 +311,7 @@ std::vector<int> last_rows_of_bands(const mesh::Mesh& mesh, const solid::Operato
   const int top_row = op.n_rows() - 1;
   std::vector<bool> single(op.rows.size(), false);
   single[top_row] = true;
-  for (const auto n : level.part.irregular.node) single[op.row_of(n)] = true;
+  for (const auto n : level.stiffness.irregular.node) single[op.row_of(n)] = true;
   const int most_rows = std::max(1, nodes_per_band / op.rows[top_row].count);
   int row = last_row_of_first_band(level, op, needed);
   std::vector<int> last_rows{row};
@@ -322,14 +325,14 @@ std::vector<int> last_rows_of_bands(const mesh::Mesh& mesh, const solid::Operato
 
 }  // namespace
 
-Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const Plate& plate,
-                   const TimeStepping& time, double step_s, std::span<const int> multiples) {
+StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
+                       const TimeStepping& time, double step_s, std::span<const int> multiples) {
   require_rows_fit(mesh, time);
-  const auto& op = plate.op;
+  const auto& op = body.op;
   const auto periods = periods_of_levels(time, multiples);
   const int substeps = periods.front();
   const auto level_of_cell = levels_of_cells(mesh, time, multiples, periods);
-  Levels levels;
+  StepLevels levels;
   levels.level.resize(periods.size());
   levels.level_of_node = levels_of_nodes(mesh, level_of_cell);
   levels.is_orphan = mesh::orphans(mesh);
@@ -339,12 +342,13 @@ Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, cons
     auto& level = levels.level[l];
     level.period = periods[l];
     level.step_s = step_s * level.period / substeps;
-    level.damping_work = {level.step_s, plate.damping_s,
+    level.damping_work = {level.step_s, body.damping_s,
                           material.density_kg_per_m3 * mesh.grid.spacing_m * mesh.grid.spacing_m};
     std::vector<bool> in_level(mesh.cells.size());
     for (std::size_t c = 0; c < in_level.size(); ++c) in_level[c] = level_of_cell[c] == l;
     const int edge_row = is_layered(time) ? time.interface_rows : 0;
-    level.part = periods.size() > 1 ? solid::make_part(mesh, material, op, in_level, edge_row) : op.whole;
+    level.stiffness =
+        periods.size() > 1 ? solid::make_partial_stiffness(mesh, material, op, in_level, edge_row) : op.whole;
     set_irregular_rows(level);
     const auto in_cells = nodes_of(mesh, in_level);
     std::vector<bool> shared(mesh.n_nodes(), false);
@@ -353,7 +357,7 @@ Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, cons
       is_shared[n] = is_shared[n] || shared[n];
     }
     set_shared_nodes(level, shared);
-    for (const auto& row : level.part.stencil)
+    for (const auto& row : level.stiffness.stencil)
       if (solid::is_horizontal_edge(row))
         level.edge_kick_m_per_s.emplace_back(2 * static_cast<std::size_t>(mesh.grid.stride()));
     for (const auto n : level.irregular) {
@@ -362,7 +366,7 @@ Levels make_levels(const mesh::Mesh& mesh, const solid::Material& material, cons
     }
     set_loaded_edge(level, l, mesh, material, levels.level_of_node, in_level, in_cells);
   }
-  set_dashpots(levels, mesh, material, plate);
+  set_dashpots(levels, mesh, material, body);
   for (auto& level : levels.level) set_general_runs(level);
   set_bands(levels.level.front(), op, last_rows_of_bands(mesh, op, levels));
   for (auto& level : std::span(levels.level).subspan(1)) set_bands(level, op, {op.n_rows() - 1});

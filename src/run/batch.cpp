@@ -69,7 +69,7 @@ void Batch::run(std::span<const input::Case> cases, const Done& done, const Usab
   in_parallel(threads_, missing.size(), [&](std::size_t m) {
     const std::size_t k = missing[m];
     const auto& initial = states_.at(initial_state_key(cases[k]));
-    const auto result = run_event(cases[k], initial, monitor());
+    const auto result = run_from(cases[k], initial, monitor());
     if (result.event.end == motion::EventEnd::interrupted) throw Interrupted(interruption_);
     done(k, result, initial, false);
     if (kept_) {

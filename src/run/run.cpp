@@ -166,14 +166,14 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
           motion::halo_for(initial.mesh, config.fronts.l_star_m)};
 }
 
-Result run_event(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
-                 const motion::Execution& execution) {
+Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
+                const motion::Execution& execution) {
   const auto stepper = started_stepper(config, initial, execution);
-  return run_event(config, initial, *stepper, monitor);
+  return run_from(config, initial, *stepper, monitor);
 }
 
-Result run_event(const input::Case& config, const InitialState& initial, motion::Stepper& stepper,
-                 const motion::Monitor& monitor, motion::Sink* sink) {
+Result run_from(const input::Case& config, const InitialState& initial, motion::Stepper& stepper,
+                const motion::Monitor& monitor, motion::Sink* sink) {
   const auto start = Clock::now();
   auto result = unmeasured(config, stepper, begin_event(config, initial, stepper).run(monitor, sink));
   result.stepping_wall_s = seconds_since(start);

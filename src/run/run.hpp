@@ -65,11 +65,11 @@ void measure(Result& result, const InitialState& initial);
 /// ends the event early and is told by event.end.
 /// @param started  by start_event
 /// @param sink     takes samples and snapshots; without one the event keeps them
-Result run_event(const input::Case& config, const InitialState& initial, motion::Stepper& started,
-                 const motion::Monitor& monitor, motion::Sink* sink = nullptr);
+Result run_from(const input::Case& config, const InitialState& initial, motion::Stepper& started,
+                const motion::Monitor& monitor, motion::Sink* sink = nullptr);
 /// Starts the event as well, and leaves the initial state as it is.
-Result run_event(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
-                 const motion::Execution& execution = {});
+Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
+                const motion::Execution& execution = {});
 
 /// Why an event ended, in words.
 std::string end_of_event(const Result& result);

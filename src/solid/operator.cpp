@@ -164,20 +164,20 @@ Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   op.is_top.assign(mesh.n_nodes(), false);
   for (const auto n : mesh.top) op.is_top[n] = true;
   if (!op.blocks.empty()) set_stencils(op, material);
-  op.whole = make_part(mesh, material, op, std::vector<bool>(mesh.cells.size(), true), 0);
+  op.whole = make_partial_stiffness(mesh, material, op, std::vector<bool>(mesh.cells.size(), true), 0);
   op.top = assemble_rows(mesh, material, mesh.top);
   return op;
 }
 
-Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator& plate,
-               const std::vector<bool>& in_part, int edge_row) {
-  const auto block_of = block_of_nodes(mesh, plate.blocks);
+PartialStiffness make_partial_stiffness(const mesh::Mesh& mesh, const Material& material, const Operator& op,
+                                        const std::vector<bool>& in_part, int edge_row) {
+  const auto block_of = block_of_nodes(mesh, op.blocks);
   std::vector<bool> regular_cell(mesh.cells.size()), general_node(mesh.n_nodes(), false);
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
     const auto& cell = mesh.cells[c];
     const int block = block_of[cell[0]];
     if (block >= 0 && std::ranges::all_of(cell, [&](mesh::Node n) { return block_of[n] == block; })) {
-      regular_cell[c] = is_regular(mesh, plate.blocks[block], cell);
+      regular_cell[c] = is_regular(mesh, op.blocks[block], cell);
     } else {
       for (const auto n : cell) general_node[n] = true;
     }
@@ -213,17 +213,17 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
     return false;
   };
 
-  Part part;
+  PartialStiffness part;
   std::vector<mesh::Node> irregular, general;
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
-    if (general_node[n] && !plate.is_top[n] && touches_part(n)) general.push_back(n);
-  for (std::size_t k = 0; k < plate.blocks.size(); ++k) {
-    const auto& grid = plate.blocks[k];
+    if (general_node[n] && !op.is_top[n] && touches_part(n)) general.push_back(n);
+  for (std::size_t k = 0; k < op.blocks.size(); ++k) {
+    const auto& grid = op.blocks[k];
     for (int j = 0; j <= grid.rows; ++j) {
       std::array<StencilRow, 5> of_row;
       for (int i = 0; i <= grid.columns; ++i) {
         const mesh::Node n = grid.node(i, j);
-        if (plate.is_top[n] || general_node[n] || !touches_part(n)) continue;
+        if (op.is_top[n] || general_node[n] || !touches_part(n)) continue;
         const auto squares = squares_around(n, static_cast<int>(k), j);
         if (!squares) {
           irregular.push_back(n);
@@ -240,18 +240,18 @@ Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator&
            {Squares::all, Squares::above, Squares::below, Squares::right, Squares::left}) {
         auto& row = of_row[static_cast<int>(squares)];
         if (row.spans.empty()) continue;
-        row.row = plate.row_of(grid.node(0, j));
+        row.row = op.row_of(grid.node(0, j));
         row.squares = squares;
         const mesh::Node first = grid.node(row.spans.front().begin, j);
         const bool full_mass = around.first[first + 1] - around.first[first] == 4;
-        const double ratio = plate.grid.spacing_m / grid.spacing_m;
+        const double ratio = op.grid.spacing_m / grid.spacing_m;
         row.scale = is_horizontal_edge(row) ? (full_mass ? 0.5 : 1) : ratio * ratio;
         part.stencil.push_back(std::move(row));
       }
     }
   }
-  part.irregular = assemble_rows(mesh, material, irregular, plate.mass_kg, in_part);
-  part.general = GeneralRows(mesh, material, std::move(general), plate.mass_kg, in_part);
+  part.irregular = assemble_rows(mesh, material, irregular, op.mass_kg, in_part);
+  part.general = GeneralRows(mesh, material, std::move(general), op.mass_kg, in_part);
   return part;
 }
 
@@ -276,7 +276,7 @@ void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, 
   }
 }
 
-void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
+void add_partial_product(const Operator& op, const PartialStiffness& part, const Field& w, Field& a) {
   const auto row = [&](int j) {
     const auto first = op.rows[std::clamp(j, 0, op.n_rows() - 1)].first;
     return ConstRow{w.x.data() + first, w.y.data() + first};
@@ -303,7 +303,7 @@ void add_part(const Operator& op, const Part& part, const Field& w, Field& a) {
 void apply(const Operator& op, const Field& w, Field& a) {
   std::ranges::fill(a.x, 0.0);
   std::ranges::fill(a.y, 0.0);
-  add_part(op, op.whole, w, a);
+  add_partial_product(op, op.whole, w, a);
 }
 
 double strain_energy_J_per_m(const Operator& op, const Field& u) {

@@ -115,16 +115,16 @@ inline bool is_horizontal_edge(const StencilRow& row) {
   return row.squares == Squares::above || row.squares == Squares::below;
 }
 
-/// What some cells of the plate contribute to M^-1 K of the nodes that may move: stencils where the cells are
+/// What some cells of a body contribute to M^-1 K of the nodes that may move: stencils where the cells are
 /// equal squares, block rows at a block's sides and corners; products cell by cell at the transitions between
 /// blocks, both ends included, and on meshes that know no grid.
-struct Part {
+struct PartialStiffness {
   std::vector<StencilRow> stencil;  ///< rows ascending
   BlockRows irregular;
   GeneralRows general;
 };
 
-/// The plate's stiffness over its lumped mass, as the explicit scheme needs it.
+/// A body's stiffness over its lumped mass, as the explicit scheme needs it.
 struct Operator {
   mesh::Grid grid;                 ///< of the lowest block
   std::vector<mesh::Grid> blocks;  ///< upwards, the lowest one first; none where the mesh knows no grid
@@ -135,19 +135,19 @@ struct Operator {
   std::vector<double> mass_kg;  ///< [nodes], per unit thickness; 0 for orphans
   InteriorStencil interior{};   ///< of the lowest block
   EdgeStencil edge{};           ///< over the mass of a node on a straight edge
-  Part whole;                   ///< all cells
+  PartialStiffness whole;       ///< all cells
   BlockRows top;                ///< K (no mass) of the loaded edge's nodes, N/m
   std::vector<bool> is_top;     ///< [nodes]
 };
 
 Operator make_operator(const mesh::Mesh& mesh, const Material& material);
 
-/// Part of the operator that the cells marked contribute. Stencils for nodes that have squares of the part
+/// What the cells marked contribute. Stencils for nodes that have squares of the part
 /// above or below only are used in row 0 and in `edge_row`, rows of the lowest block; for nodes that have
 /// them to the right or left only, where no other cell and neither contact nor an absorbing boundary touches
 /// them.
-Part make_part(const mesh::Mesh& mesh, const Material& material, const Operator& plate,
-               const std::vector<bool>& in_part, int edge_row);
+PartialStiffness make_partial_stiffness(const mesh::Mesh& mesh, const Material& material, const Operator& op,
+                                        const std::vector<bool>& in_part, int edge_row);
 
 /// Block rows of K, or of M^-1 K where `mass_kg` is given, for the nodes listed; of all cells, or of those
 /// marked.
@@ -166,8 +166,8 @@ using ConstRow = ConstRowOf<double>;
 void add_stencil_row(const Operator& op, const StencilRow& row, ConstRow south, ConstRow middle,
                      ConstRow north, double* a_x, double* a_y);
 
-/// Adds a part's M^-1 K w to a.
-void add_part(const Operator& op, const Part& part, const Field& w, Field& a);
+/// Adds the partial M^-1 K w to a.
+void add_partial_product(const Operator& op, const PartialStiffness& part, const Field& w, Field& a);
 
 /// a = M^-1 K w for all nodes that may move; 0 for the loaded edge and orphans.
 void apply(const Operator& op, const Field& w, Field& a);

@@ -277,7 +277,8 @@ void draw_path(const Runs& runs, const PathInTheory& theory, Outcome& outcome) {
   Chart path{.x_label = "time / t_c", .y_label = "tip / (c_S t_c)", .curves = {theory.place}};
   Chart speed{.x_label = "time / t_c", .y_label = "tip speed / c_S", .curves = {theory.speed}};
   for (const auto& r : runs.fine) {
-    Curve places{fmt::format("zone {:.2f} c_S t_c", r.zone), Curve::Kind::program, {}, {}}, speeds = places;
+    Curve places{fmt::format("zone {:.2f} c_S t_c", r.zone), Curve::Kind::program, {}, {}};
+    Curve speeds = places;
     for (double t = 0.3; t < run_end - half_window; t += 0.1) {
       places.x.push_back(t);
       places.y.push_back(r.place_at(t));

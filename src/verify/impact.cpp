@@ -74,9 +74,10 @@ class Fall {
 
  private:
   statics::Equilibrium fall() {
-    const double gap_m = (3 + share_left) * speed_m_per_s * stepper_.step_s();
-    return verify::start(stepper_, mesh_,
-                         {.u_y_m = [=](mesh::Node, double time) { return gap_m - speed_m_per_s * time; }});
+    return verify::start(stepper_, mesh_, {.u_y_m = [this](mesh::Node, double time) {
+                           const double gap_m = (3 + share_left) * speed_m_per_s * step_s();
+                           return gap_m - speed_m_per_s * time;
+                         }});
   }
 
   double h_m_;

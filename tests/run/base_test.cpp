@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 const std::filesystem::path reference = std::filesystem::path(SLIPFRONT_SOURCE_DIR) / "cases/reference";
 
 Result run(const input::Case& config) {
-  return run_event(config, make_initial_state(config, go_on), go_on);
+  return run_from(config, make_initial_state(config, go_on), go_on);
 }
 
 input::Case problem_f(double element_size_m) {
@@ -74,7 +74,7 @@ TEST(Base, SnapshotsHoldBothBodies) {
   config.time.end_s = 40e-6;
   config.output.snapshot_times_s = {40e-6};
   const auto initial = make_initial_state(config, go_on);
-  const auto snapshots = run_event(config, initial, go_on).event.snapshots;
+  const auto snapshots = run_from(config, initial, go_on).event.snapshots;
   ASSERT_EQ(snapshots.size(), 1U);
   const auto mesh = joined({initial.mesh, initial.base});
   ASSERT_EQ(snapshots.front().u_m.size(), mesh.x_m.size());
@@ -102,7 +102,7 @@ TEST(Base, InfoKnowsBothBodies) {
   const auto config = problem_f(2e-3);
   const auto info = run::info(config);
   const auto initial = make_initial_state(config, go_on);
-  const auto result = run_event(config, initial, go_on);
+  const auto result = run_from(config, initial, go_on);
   EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes() + initial.base->n_nodes());
   EXPECT_EQ(info.step_s, result.step_s);
   EXPECT_EQ(info.n_steps, result.event.steps);

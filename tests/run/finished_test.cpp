@@ -20,7 +20,7 @@ class KeptRuns : public testing::Test {
   void SetUp() override {
     for (const auto& config : cases_) {
       const auto initial = make_initial_state(config, test::go_on);
-      finished_.keep(run_event(config, initial, test::go_on), initial);
+      finished_.keep(run_from(config, initial, test::go_on), initial);
     }
     for (const auto& entry : fs::directory_iterator(folder_ / "runs")) files_.push_back(entry.path());
     ASSERT_EQ(files_.size(), 2U);

@@ -40,7 +40,7 @@ input::Case rupture() {
 }
 
 Result run(const input::Case& config) {
-  return run_event(config, make_initial_state(config, go_on), go_on);
+  return run_from(config, make_initial_state(config, go_on), go_on);
 }
 
 /// From the first to the last node that slipped.
@@ -87,7 +87,7 @@ TEST(FrictionAlongX, FrontsAreMeasuredByEachNodesStrength) {
   auto c = rupture();
   test::set_table(c, "x_m,mu_s\n0,0.55\n0.2,0.65\n");
   const auto initial = make_initial_state(c, go_on);
-  const auto result = run_event(c, initial, go_on);
+  const auto result = run_from(c, initial, go_on);
   const auto elasticity = front_options(c, initial).elasticity;
   int n = 0;
   for (const auto& front : result.fronts)
@@ -161,7 +161,7 @@ TEST(FrictionAlongX, ATiltedPlateBeginsToSlipWhereItsStrengthIsReachedFirst) {
   EXPECT_LT(initial.critical_shear_m, uniform.critical_shear_m);
   EXPECT_NEAR(initial.common.peak_x_m, weak_m, 1e-9);
   EXPECT_NEAR(initial.common.peak_ratio, weak * (1 - c.loading.critical_margin), 1e-6);
-  const auto result = run_event(c, initial, go_on);
+  const auto result = run_from(c, initial, go_on);
   const auto& first = result.event.record.onsets.front();
   EXPECT_NEAR(result.event.record.x_m[first.node], weak_m, 1e-9);
 }

@@ -53,7 +53,7 @@ TEST(SnapshotPlan, IsWhatARunTakesAndTells) {
   auto config = coarse_case();
   config.time.quiet_s = 1;
   config.output.snapshot_times_s = {0, 10e-6, 10.001e-6, 30e-6, 1};
-  const auto result = run_event(config, make_initial_state(config, go_on), go_on);
+  const auto result = run_from(config, make_initial_state(config, go_on), go_on);
   const auto plan = snapshot_plan(config, result.step_s);
   EXPECT_THAT(plan.notes, testing::SizeIs(2));
   EXPECT_EQ(result.event.snapshots.size(), 3U);
@@ -64,7 +64,7 @@ TEST(SnapshotPlan, TellsWhatAQuietEndLeavesOut) {
   auto config = coarse_case();
   config.time.end_s = 1;
   config.output.snapshot_times_s = {0, 10e-6, 0.5, 1};
-  const auto result = run_event(config, make_initial_state(config, go_on), go_on);
+  const auto result = run_from(config, make_initial_state(config, go_on), go_on);
   ASSERT_EQ(result.event.end, motion::EventEnd::quiet);
   EXPECT_EQ(result.event.snapshots.size(), 2U);
   EXPECT_THAT(result.warnings,
@@ -80,7 +80,7 @@ TEST(Needs, DiskIsWhatTheFilesTake) {
   config.output.snapshot_times_s = {0, 10e-6, 20e-6, 30e-6, 40e-6};
   const test::TemporaryFolder folder;
   const auto initial = make_initial_state(config, go_on);
-  const auto result = run_event(config, initial, go_on);
+  const auto result = run_from(config, initial, go_on);
   write(folder.path(), result, initial);
   const auto size_of = [&](const char* name) {
     return static_cast<double>(std::filesystem::file_size(folder / name));

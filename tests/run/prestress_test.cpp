@@ -31,7 +31,7 @@ using test::go_on;
 const std::filesystem::path reference = std::filesystem::path(SLIPFRONT_SOURCE_DIR) / "cases/reference";
 
 Result run(const input::Case& config) {
-  return run_event(config, make_initial_state(config, go_on), go_on);
+  return run_from(config, make_initial_state(config, go_on), go_on);
 }
 
 /// A column of four periodic elements on a frictional plane.
@@ -216,11 +216,11 @@ TEST(Nucleation, StartsAnEventOfTheTiltedPlateToo) {
   auto c = test::coarse_case(EventKind::nucleation);
   c.nucleation = {.x_m = 0.1, .half_length_m = 5e-3, .taper_m = 5e-3};
   const auto initial = make_initial_state(c, go_on);
-  const auto result = run_event(c, initial, go_on);
+  const auto result = run_from(c, initial, go_on);
   EXPECT_FALSE(result.event.record.onsets.empty());
   c.event = EventKind::none;
   c.time.end_s = result.event.time_s;
-  const auto nothing = run_event(c, initial, go_on);
+  const auto nothing = run_from(c, initial, go_on);
   EXPECT_LT(nothing.event.record.onsets.size(), result.event.record.onsets.size());
 }
 

@@ -36,7 +36,7 @@ const InitialState& coarse_state() {
 }
 
 Result run(const input::Case& config) {
-  return run_event(config, coarse_state(), go_on);
+  return run_from(config, coarse_state(), go_on);
 }
 
 /// The same bits, so that an undefined value equals itself.
@@ -177,7 +177,7 @@ TEST(InitialStateKey, EqualKeysMeanEqualStates) {
 TEST(Event, SpontaneousFrontsRunBothWaysFromThePeak) {
   const auto config = coarse_case(EventKind::spontaneous, 2e-3);
   const auto initial = make_initial_state(config, go_on);
-  const auto result = run_event(config, initial, go_on);
+  const auto result = run_from(config, initial, go_on);
   ASSERT_FALSE(result.event.record.onsets.empty());
   const auto& state = initial.spontaneous;
   for (const int direction : {-1, 1}) {
@@ -243,7 +243,7 @@ TEST(Event, TwoRunsAreBitwiseEqual) {
     const auto config = coarse_case(event);
     const auto again = make_initial_state(config, go_on);
     EXPECT_TRUE(same_bits(again.common.u_m, coarse_state().common.u_m));
-    const auto a = run(config), b = run_event(config, again, go_on);
+    const auto a = run(config), b = run_from(config, again, go_on);
     EXPECT_EQ(a.event.steps, b.event.steps);
     EXPECT_TRUE(same_bits(a.event.history.time_s, b.event.history.time_s));
     EXPECT_TRUE(same_bits(a.event.history.slip_m, b.event.history.slip_m));
@@ -320,7 +320,7 @@ TEST(Event, InterruptionKeepsWhatThereIs) {
   auto config = coarse_case();
   config.time.quiet_s = std::numeric_limits<double>::infinity();
   std::int64_t last = 0;
-  const auto result = run_event(config, coarse_state(), [&](std::int64_t step, std::int64_t total) {
+  const auto result = run_from(config, coarse_state(), [&](std::int64_t step, std::int64_t total) {
     EXPECT_GT(total, step);
     last = step;
     return step < 100;
@@ -371,7 +371,7 @@ TEST(Trigger, AWeakenedZoneSlipsByItself) {
   config.trigger.form = interface::TriggerForm::weakened;
   config.time.end_s = 20e-6;
   const auto initial = make_initial_state(config, go_on);
-  const auto result = run_event(config, initial, go_on);
+  const auto result = run_from(config, initial, go_on);
   const auto zone = motion::trigger_zone(initial.common, EventKind::right, config.trigger.zone_m);
   ASSERT_FALSE(zone.empty());
   const auto& s = initial.common.tractions;
@@ -396,7 +396,7 @@ TEST(Info, AgreesWithTheRun) {
     config.time.quiet_s = std::numeric_limits<double>::infinity();  // to the end
     const auto info = run::info(config);
     const auto initial = make_initial_state(config, go_on);
-    const auto result = run_event(config, initial, go_on);
+    const auto result = run_from(config, initial, go_on);
     EXPECT_EQ(result.event.end, motion::EventEnd::end_time);
     EXPECT_EQ(info.n_nodes, initial.mesh.n_nodes());
     EXPECT_EQ(info.n_cells, std::ssize(initial.mesh.cells));
@@ -460,7 +460,7 @@ TEST(Record, RebuiltFromTheHistoryGivesTheSameFronts) {
   auto config = coarse_case(EventKind::spontaneous, 2e-3);
   config.output.history_interval_s = 1e-12;  // a row at every step
   const auto initial = make_initial_state(config, go_on);
-  const auto result = run_event(config, initial, go_on);
+  const auto result = run_from(config, initial, go_on);
   // A sticking node rests exactly; a slipping one moves at about 1 m/s.
   const auto record = fronts::record_from_history(result.event.history, 1e-3, result.event.record.halo);
   const auto rebuilt = fronts::find_fronts(record, initial.common.tractions, front_options(config, initial));
@@ -506,7 +506,7 @@ TEST(Ramp, ReachesTheDirectCriticalShear) {
   EXPECT_LT(initial.common.peak_ratio, 1.3);
   EXPECT_GE(initial.spontaneous.peak_ratio, (1 - motion::ramp_handover) * 1.3);
 
-  const auto result = run_event(config, initial, go_on);
+  const auto result = run_from(config, initial, go_on);
   const auto direct_config = coarse_case(EventKind::spontaneous, 5e-3);
   const auto direct = make_initial_state(direct_config, go_on);
   EXPECT_EQ(direct.critical_shear_m, initial.critical_shear_m);

@@ -36,7 +36,7 @@ class WrittenRun : public testing::Test {
       config.title = "a \"written\" run";
       config.output.snapshot_times_s = {0, 10e-6, 30e-6};
       initial = make_initial_state(config, go_on);
-      result = run_event(config, initial, go_on);
+      result = run_from(config, initial, go_on);
       write(folder.path(), result, initial);
     }
   };
@@ -275,7 +275,7 @@ std::filesystem::path run_streamed(const input::Case& config, const std::filesys
 void run_in_memory(const input::Case& config, const std::filesystem::path& dir,
                    const motion::Monitor& monitor) {
   const auto initial = make_initial_state(config, go_on);
-  write(dir, run_event(config, initial, monitor), initial);
+  write(dir, run_from(config, initial, monitor), initial);
 }
 
 /// Names of a run's files, but of what tells apart one that is complete.
@@ -357,7 +357,7 @@ TEST(Write, OfARampTellsBothWays) {
   config.loading.method = statics::LoadingMethod::ramp;
   const auto initial = make_initial_state(config, go_on);
   const test::TemporaryFolder folder;
-  write(folder.path(), run_event(config, initial, go_on), initial);
+  write(folder.path(), run_from(config, initial, go_on), initial);
   const json ramp = json::parse(test::read_file(folder / "run.json"))["statics"]["ramp"];
   EXPECT_EQ(ramp["critical_shear_m"], initial.ramp->spontaneous.shear_m);
   EXPECT_DOUBLE_EQ(ramp["relative_to_direct"],

@@ -161,11 +161,11 @@ TEST_P(OnPlate, PartsAddUpToTheWhole) {
     Field sum(n_);
     int n_edges = 0;
     for (const auto& in_part : {first, second}) {
-      const Part part = make_part(mesh_, material_, op_, in_part, edge_row);
+      const PartialStiffness part = make_partial_stiffness(mesh_, material_, op_, in_part, edge_row);
       for (const auto& row : part.stencil) n_edges += row.row == edge_row && row.squares != Squares::all;
       Field one(n_);
-      add_part(op_, part, w, one);
-      add_part(op_, part, w, sum);
+      add_partial_product(op_, part, w, one);
+      add_partial_product(op_, part, w, sum);
       EXPECT_GT(reference::max_abs(flat(one)), 0.1 * reference::max_abs(flat(whole)));
     }
     EXPECT_EQ(n_edges >= 2, along_a_row && GetParam() < Form::shuffled);
