@@ -191,87 +191,119 @@ struct GeneralRows::Cells {
   std::vector<LaneTriangles> own;                    ///< [batches]
 };
 
-GeneralRows::GeneralRows(const mesh::Mesh& mesh, const Material& material, std::vector<mesh::Node> nodes,
-                         std::span<const double> mass_kg, const std::vector<bool>& in_part)
-    : node_(std::move(nodes)) {
-  if (node_.empty()) return;
-  auto result = std::make_shared<Cells>();
-  std::vector<std::int32_t> place(mesh.n_nodes(), -1);
-  const auto append = [&](mesh::Node n) {
-    place[n] = static_cast<std::int32_t>(result->n_places++);
-    if (!result->runs.empty() && result->runs.back().node + result->runs.back().count == n) {
-      ++result->runs.back().count;
-    } else {
-      result->runs.push_back({n, place[n], 1});
+/// Makes Cells.
+class GeneralRows::Builder {
+ public:
+  Builder(const mesh::Mesh& mesh, const Material& material)
+      : mesh_(mesh), material_(material), place_(mesh.n_nodes(), -1) {}
+
+  std::shared_ptr<Cells> build(std::span<const mesh::Node> rows, std::span<const double> mass_kg,
+                               const std::vector<bool>& in_part) {
+    for (const auto n : rows) {
+      append(n);
+      result_->per_mass.push_back(1 / mass_kg[n]);
     }
-  };
-  for (const auto n : node_) {
-    append(n);
-    result->per_mass.push_back(1 / mass_kg[n]);
+    find_cells(in_part);
+    add_batches();
+    return std::move(result_);
   }
-  std::vector<mesh::Cell> cells;
-  std::vector<mesh::Node> others;
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    if (!in_part[c] || std::ranges::none_of(mesh.cells[c], [&](mesh::Node n) {
-          return place[n] >= 0 && place[n] < static_cast<std::int32_t>(node_.size());
-        }))
-      continue;
-    cells.push_back(in_order(mesh, mesh.cells[c]));
-    for (const auto n : mesh.cells[c])
-      if (place[n] < 0) others.push_back(n);
+
+ private:
+  void append(mesh::Node n) {
+    place_[n] = static_cast<std::int32_t>(result_->n_places++);
+    auto& runs = result_->runs;
+    if (!runs.empty() && runs.back().node + runs.back().count == n) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({n, place_[n], 1});
+    }
   }
-  result->n_cells = cells.size();
-  std::ranges::sort(others);
-  others.erase(std::unique(others.begin(), others.end()), others.end());
-  for (const auto n : others) append(n);
 
-  // In the order of their nodes, so that successive cells find them in cache.
-  std::ranges::sort(cells, {}, [&](const mesh::Cell& cell) {
-    std::array<std::int32_t, 4> at;
-    for (int a = 0; a < 4; ++a) at[a] = place[cell[a]];
-    std::ranges::sort(at);
-    return at;
-  });
-  Shapes shapes;
-  std::vector<std::size_t> shape(cells.size());
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    shape[c] = shapes.class_of(shape_of(cell_coordinates(mesh, cells[c])));
-  std::vector<std::vector<std::size_t>> of_shape(shapes.size());
-  for (std::size_t c = 0; c < cells.size(); ++c) of_shape[shape[c]].push_back(c);
+  /// Those marked that have a node among the rows.
+  void find_cells(const std::vector<bool>& in_part) {
+    const auto n_rows = static_cast<std::int32_t>(result_->n_places);
+    const auto has_row = [&](mesh::Node n) { return place_[n] >= 0 && place_[n] < n_rows; };
+    std::vector<mesh::Node> others;
+    for (std::size_t c = 0; c < mesh_.cells.size(); ++c) {
+      if (!in_part[c] || std::ranges::none_of(mesh_.cells[c], has_row)) continue;
+      cells_.push_back(in_order(mesh_, mesh_.cells[c]));
+      for (const auto n : mesh_.cells[c])
+        if (place_[n] < 0) others.push_back(n);
+    }
+    result_->n_cells = cells_.size();
+    std::ranges::sort(others);
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    for (const auto n : others) append(n);
+    // In the order of their nodes, so that successive cells find them in cache.
+    std::ranges::sort(cells_, {}, [&](const mesh::Cell& cell) {
+      std::array<std::int32_t, 4> at;
+      for (int a = 0; a < 4; ++a) at[a] = place_[cell[a]];
+      std::ranges::sort(at);
+      return at;
+    });
+  }
 
-  const auto corners_of = [&](std::span<const std::size_t> batch) {
+  std::vector<std::vector<std::size_t>> cells_by_shape() const {
+    Shapes shapes;
+    std::vector<std::size_t> shape(cells_.size());
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+      shape[c] = shapes.class_of(shape_of(cell_coordinates(mesh_, cells_[c])));
+    std::vector<std::vector<std::size_t>> of_shape(shapes.size());
+    for (std::size_t c = 0; c < cells_.size(); ++c) of_shape[shape[c]].push_back(c);
+    return of_shape;
+  }
+
+  Corners corners_of(std::span<const std::size_t> batch) const {
     Corners corners{};
     for (std::size_t lane = 0; lane < batch.size(); ++lane)
-      for (int a = 0; a < 4; ++a) corners[a][lane] = 2 * place[cells[batch[lane]][a]];
+      for (int a = 0; a < 4; ++a) corners[a][lane] = 2 * place_[cells_[batch[lane]][a]];
     return corners;
-  };
-  const auto stiffness_of = [&](std::size_t c) {
-    return triangle(cell_stiffness(cell_coordinates(mesh, cells[c]), material));
-  };
-  std::vector<std::size_t> single;
-  for (const auto& list : of_shape) {
-    const std::size_t n_batches = list.size() / lanes;
-    if (n_batches > 0) {
-      const std::size_t begin = result->shared_corners.size();
-      for (std::size_t b = 0; b < n_batches; ++b)
-        result->shared_corners.push_back(corners_of(std::span(list).subspan(b * lanes, lanes)));
-      result->shared.push_back({stiffness_of(list.front()), begin, result->shared_corners.size()});
-    }
-    single.insert(single.end(), list.begin() + static_cast<std::ptrdiff_t>(n_batches * lanes), list.end());
   }
-  std::ranges::sort(single);
-  for (std::size_t first = 0; first < single.size(); first += lanes) {
-    // Lanes without a cell have no stiffness.
-    const auto batch = std::span(single).subspan(first, std::min<std::size_t>(lanes, single.size() - first));
-    result->own_corners.push_back(corners_of(batch));
+
+  auto stiffness_of(std::size_t c) const {
+    return triangle(cell_stiffness(cell_coordinates(mesh_, cells_[c]), material_));
+  }
+
+  /// Full batches of one shape share its stiffness; in the others each lane has its own.
+  void add_batches() {
+    std::vector<std::size_t> single;
+    for (const auto& list : cells_by_shape()) {
+      const std::size_t n_batches = list.size() / lanes;
+      if (n_batches > 0) {
+        const std::size_t begin = result_->shared_corners.size();
+        for (std::size_t b = 0; b < n_batches; ++b)
+          result_->shared_corners.push_back(corners_of(std::span(list).subspan(b * lanes, lanes)));
+        result_->shared.push_back({stiffness_of(list.front()), begin, result_->shared_corners.size()});
+      }
+      single.insert(single.end(), list.begin() + static_cast<std::ptrdiff_t>(n_batches * lanes), list.end());
+    }
+    std::ranges::sort(single);
+    for (std::size_t first = 0; first < single.size(); first += lanes)
+      add_batch_of_own(std::span(single).subspan(first, std::min<std::size_t>(lanes, single.size() - first)));
+  }
+
+  /// Lanes without a cell have no stiffness.
+  void add_batch_of_own(std::span<const std::size_t> batch) {
+    result_->own_corners.push_back(corners_of(batch));
     LaneTriangles own{};
     for (std::size_t lane = 0; lane < batch.size(); ++lane) {
       const auto K = stiffness_of(batch[lane]);
       for (int k = 0; k < n_entries; ++k) own.entry[k][lane] = K[k];
     }
-    result->own.push_back(own);
+    result_->own.push_back(own);
   }
-  cells_ = std::move(result);
+
+  const mesh::Mesh& mesh_;
+  const Material& material_;
+  std::vector<std::int32_t> place_;  ///< [nodes], -1 where they are not needed
+  std::vector<mesh::Cell> cells_;
+  std::shared_ptr<Cells> result_ = std::make_shared<Cells>();
+};
+
+GeneralRows::GeneralRows(const mesh::Mesh& mesh, const Material& material, std::vector<mesh::Node> nodes,
+                         std::span<const double> mass_kg, const std::vector<bool>& in_part)
+    : node_(std::move(nodes)) {
+  if (!node_.empty()) cells_ = Builder(mesh, material).build(node_, mass_kg, in_part);
 }
 
 std::size_t GeneralRows::n_cells() const {

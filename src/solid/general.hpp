@@ -46,6 +46,7 @@ class GeneralRows {
 
  private:
   struct Cells;
+  class Builder;
   std::vector<mesh::Node> node_;
   std::shared_ptr<const Cells> cells_;  ///< null without rows
 };

@@ -169,87 +169,120 @@ Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   return op;
 }
 
-PartialStiffness make_partial_stiffness(const mesh::Mesh& mesh, const Material& material, const Operator& op,
-                                        const std::vector<bool>& in_part, int edge_row) {
-  const auto block_of = block_of_nodes(mesh, op.blocks);
-  std::vector<bool> regular_cell(mesh.cells.size()), general_node(mesh.n_nodes(), false);
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    const auto& cell = mesh.cells[c];
-    const int block = block_of[cell[0]];
-    if (block >= 0 && std::ranges::all_of(cell, [&](mesh::Node n) { return block_of[n] == block; })) {
-      regular_cell[c] = is_regular(mesh, op.blocks[block], cell);
-    } else {
-      for (const auto n : cell) general_node[n] = true;
-    }
-  }
-  const CellsOfNodes around = cells_of_nodes(mesh);
-  std::vector<bool> is_boundary(mesh.n_nodes(), false);
-  for (const auto n : mesh.lower) is_boundary[n] = true;
-  for (const auto& absorbing : mesh.absorbing) is_boundary[absorbing.node] = true;
+namespace {
 
-  // The squares of the part around a node with a stencil; nothing for a node that needs a block row.
-  const auto squares_around = [&](mesh::Node n, int block, int j) -> std::optional<Squares> {
+/// Which kind of row each node takes of what the cells marked contribute.
+class RowKinds {
+ public:
+  /// @param edge_row  see make_partial_stiffness
+  RowKinds(const mesh::Mesh& mesh, const Operator& op, const std::vector<bool>& in_part, int edge_row)
+      : mesh_(mesh),
+        op_(op),
+        in_part_(in_part),
+        edge_row_(edge_row),
+        regular_cell_(mesh.cells.size()),
+        is_general_(mesh.n_nodes(), false),
+        is_boundary_(mesh.n_nodes(), false),
+        around_(cells_of_nodes(mesh)) {
+    const auto block_of = block_of_nodes(mesh, op.blocks);
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+      const auto& cell = mesh.cells[c];
+      const int block = block_of[cell[0]];
+      if (block >= 0 && std::ranges::all_of(cell, [&](mesh::Node n) { return block_of[n] == block; })) {
+        regular_cell_[c] = is_regular(mesh, op.blocks[block], cell);
+      } else {
+        for (const auto n : cell) is_general_[n] = true;
+      }
+    }
+    for (const auto n : mesh.lower) is_boundary_[n] = true;
+    for (const auto& absorbing : mesh.absorbing) is_boundary_[absorbing.node] = true;
+  }
+
+  bool is_general(mesh::Node n) const { return is_general_[n] && !op_.is_top[n] && touches_part(n); }
+  bool is_on_grid(mesh::Node n) const { return !is_general_[n] && !op_.is_top[n] && touches_part(n); }
+  bool has_four_cells(mesh::Node n) const { return n_cells(n) == 4; }
+
+  /// The squares of the part around a node with a stencil; nothing for a node that needs a block row.
+  std::optional<Squares> squares_around(mesh::Node n, std::size_t block, int j) const {
     int above = 0, below = 0, right = 0, left = 0;
-    for (auto k = around.first[n]; k < around.first[n + 1]; ++k) {
-      const auto c = around.cell[k];
-      if (!regular_cell[c]) return std::nullopt;
-      if (!in_part[c]) continue;
-      (mesh.cells[c][0] == n || mesh.cells[c][1] == n ? above : below) += 1;
-      (mesh.cells[c][0] == n || mesh.cells[c][3] == n ? right : left) += 1;
+    for (auto k = around_.first[n]; k < around_.first[n + 1]; ++k) {
+      const auto c = around_.cell[k];
+      if (!regular_cell_[c]) return std::nullopt;
+      if (!in_part_[c]) continue;
+      const auto& cell = mesh_.cells[c];
+      (cell[0] == n || cell[1] == n ? above : below) += 1;
+      (cell[0] == n || cell[3] == n ? right : left) += 1;
     }
     if (above == 2 && below == 2) return Squares::all;
-    if (around.first[n + 1] - around.first[n] == 2 && !is_boundary[n]) {
+    if (n_cells(n) == 2 && !is_boundary_[n]) {
       if (right == 2) return Squares::right;
       if (left == 2) return Squares::left;
     }
-    if (block != 0 || (j != 0 && j != edge_row)) return std::nullopt;
+    if (block != 0 || (j != 0 && j != edge_row_)) return std::nullopt;
     if (above == 2 && below == 0) return Squares::above;
     if (above == 0 && below == 2) return Squares::below;
     return std::nullopt;
-  };
-  const auto touches_part = [&](mesh::Node n) {
-    for (auto k = around.first[n]; k < around.first[n + 1]; ++k)
-      if (in_part[around.cell[k]]) return true;
-    return false;
-  };
+  }
 
+ private:
+  int n_cells(mesh::Node n) const { return static_cast<int>(around_.first[n + 1] - around_.first[n]); }
+  bool touches_part(mesh::Node n) const {
+    for (auto k = around_.first[n]; k < around_.first[n + 1]; ++k)
+      if (in_part_[around_.cell[k]]) return true;
+    return false;
+  }
+
+  const mesh::Mesh& mesh_;
+  const Operator& op_;
+  const std::vector<bool>& in_part_;
+  int edge_row_;
+  std::vector<bool> regular_cell_, is_general_, is_boundary_;
+  CellsOfNodes around_;
+};
+
+/// Appends the stencil rows of grid row j of a block, and its nodes that need block rows.
+void append_row(const Operator& op, const RowKinds& kinds, std::size_t block, int j,
+                std::vector<StencilRow>& stencil, std::vector<mesh::Node>& irregular) {
+  const auto& grid = op.blocks[block];
+  std::array<StencilRow, 5> of_row;
+  for (int i = 0; i <= grid.columns; ++i) {
+    const mesh::Node n = grid.node(i, j);
+    if (!kinds.is_on_grid(n)) continue;
+    const auto squares = kinds.squares_around(n, block, j);
+    if (!squares) {
+      irregular.push_back(n);
+      continue;
+    }
+    auto& spans = of_row[static_cast<int>(*squares)].spans;
+    if (!spans.empty() && spans.back().end == i) {
+      ++spans.back().end;
+    } else {
+      spans.push_back({i, i + 1});
+    }
+  }
+  for (const auto squares : {Squares::all, Squares::above, Squares::below, Squares::right, Squares::left}) {
+    auto& row = of_row[static_cast<int>(squares)];
+    if (row.spans.empty()) continue;
+    row.row = op.row_of(grid.node(0, j));
+    row.squares = squares;
+    const bool full_mass = kinds.has_four_cells(grid.node(row.spans.front().begin, j));
+    const double ratio = op.grid.spacing_m / grid.spacing_m;
+    row.scale = is_horizontal_edge(row) ? (full_mass ? 0.5 : 1) : ratio * ratio;
+    stencil.push_back(std::move(row));
+  }
+}
+
+}  // namespace
+
+PartialStiffness make_partial_stiffness(const mesh::Mesh& mesh, const Material& material, const Operator& op,
+                                        const std::vector<bool>& in_part, int edge_row) {
+  const RowKinds kinds(mesh, op, in_part, edge_row);
   PartialStiffness part;
   std::vector<mesh::Node> irregular, general;
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
-    if (general_node[n] && !op.is_top[n] && touches_part(n)) general.push_back(n);
-  for (std::size_t k = 0; k < op.blocks.size(); ++k) {
-    const auto& grid = op.blocks[k];
-    for (int j = 0; j <= grid.rows; ++j) {
-      std::array<StencilRow, 5> of_row;
-      for (int i = 0; i <= grid.columns; ++i) {
-        const mesh::Node n = grid.node(i, j);
-        if (op.is_top[n] || general_node[n] || !touches_part(n)) continue;
-        const auto squares = squares_around(n, static_cast<int>(k), j);
-        if (!squares) {
-          irregular.push_back(n);
-          continue;
-        }
-        auto& spans = of_row[static_cast<int>(*squares)].spans;
-        if (!spans.empty() && spans.back().end == i) {
-          ++spans.back().end;
-        } else {
-          spans.push_back({i, i + 1});
-        }
-      }
-      for (const auto squares :
-           {Squares::all, Squares::above, Squares::below, Squares::right, Squares::left}) {
-        auto& row = of_row[static_cast<int>(squares)];
-        if (row.spans.empty()) continue;
-        row.row = op.row_of(grid.node(0, j));
-        row.squares = squares;
-        const mesh::Node first = grid.node(row.spans.front().begin, j);
-        const bool full_mass = around.first[first + 1] - around.first[first] == 4;
-        const double ratio = op.grid.spacing_m / grid.spacing_m;
-        row.scale = is_horizontal_edge(row) ? (full_mass ? 0.5 : 1) : ratio * ratio;
-        part.stencil.push_back(std::move(row));
-      }
-    }
-  }
+    if (kinds.is_general(n)) general.push_back(n);
+  for (std::size_t block = 0; block < op.blocks.size(); ++block)
+    for (int j = 0; j <= op.blocks[block].rows; ++j) append_row(op, kinds, block, j, part.stencil, irregular);
   part.irregular = assemble_rows(mesh, material, irregular, op.mass_kg, in_part);
   part.general = GeneralRows(mesh, material, std::move(general), op.mass_kg, in_part);
   return part;

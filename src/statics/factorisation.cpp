@@ -9,8 +9,10 @@
 extern "C" void openblas_set_num_threads(int n_threads);
 extern "C" int openblas_get_num_threads();
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "solid/element.hpp"
@@ -101,6 +103,32 @@ void require_memory_with_blas(const cholmod_factor& factor, const cholmod_sparse
   ::munmap(memory, bytes);
 }
 
+struct FreeSparse {
+  cholmod_common* common;
+  void operator()(cholmod_sparse* matrix) const { cholmod_l_free_sparse(&matrix, common); }
+};
+using Sparse = std::unique_ptr<cholmod_sparse, FreeSparse>;
+
+/// [nodes] Whether they belong to the loaded edge.
+std::vector<bool> is_top(const mesh::Mesh& mesh) {
+  std::vector<bool> is(mesh.n_nodes(), false);
+  for (const auto n : mesh.top) is[n] = true;
+  return is;
+}
+
+/// Those whose rows of K feel the loaded edge: its own nodes and their neighbours.
+std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh) {
+  const auto is_loaded = is_top(mesh);
+  std::vector<bool> feels(mesh.n_nodes(), false);
+  for (const auto& cell : mesh.cells)
+    if (std::ranges::any_of(cell, [&](mesh::Node n) { return is_loaded[n]; }))
+      for (const auto n : cell) feels[n] = true;
+  std::vector<mesh::Node> near;
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
+    if (feels[n]) near.push_back(n);
+  return near;
+}
+
 }  // namespace
 
 struct Factorisation::Cholmod {
@@ -135,30 +163,39 @@ Factorisation::~Factorisation() = default;
 Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& material, TopConstraint top)
     : cholmod_(std::make_unique<Cholmod>()), mesh_(mesh), top_(top) {
   if (top == TopConstraint::vertical) spring_ = material.youngs_modulus_Pa;
+  number_unknowns();
+  factorise(material);
+  condense();
+  near_top_ = solid::assemble_rows(mesh, material, nodes_near_top(mesh));
+}
 
-  // Numbering: dissection order, interface last, prescribed displacements left out.
-  const auto order = dissect(mesh, mesh.lower);
-  std::vector<bool> is_top(mesh.n_nodes(), false);
-  for (const auto n : mesh.top) is_top[n] = true;
-  unknown_.assign(2 * static_cast<std::size_t>(mesh.n_nodes()), -1);
-  for (const auto n : order) {
-    if (!is_top[n] || top == TopConstraint::vertical) unknown_[2 * n] = n_unknowns_++;
-    if (!is_top[n]) unknown_[2 * n + 1] = n_unknowns_++;
+void Factorisation::number_unknowns() {
+  const auto is_loaded = is_top(mesh_);
+  unknown_.assign(2 * static_cast<std::size_t>(mesh_.n_nodes()), -1);
+  for (const auto n : dissect(mesh_, mesh_.lower)) {
+    if (!is_loaded[n] || top_ == TopConstraint::vertical) unknown_[2 * n] = n_unknowns_++;
+    if (!is_loaded[n]) unknown_[2 * n + 1] = n_unknowns_++;
   }
+}
 
-  // Upper triangle of K as triplets, cell by cell.
-  auto* common = &cholmod_->common;
-  const std::size_t most = 36 * mesh.cells.size() + mesh.lower.size();
+cholmod_triplet* Factorisation::triplets(const solid::Material& material) const {
+  const std::size_t most = 36 * mesh_.cells.size() + mesh_.lower.size();
   cholmod_triplet* triplets =
-      cholmod_l_allocate_triplet(n_unknowns_, n_unknowns_, most, 1, CHOLMOD_REAL, common);
+      cholmod_l_allocate_triplet(n_unknowns_, n_unknowns_, most, 1, CHOLMOD_REAL, &cholmod_->common);
   cholmod_->check("triplets");
   auto* row = static_cast<std::int64_t*>(triplets->i);
   auto* column = static_cast<std::int64_t*>(triplets->j);
   auto* value = static_cast<double*>(triplets->x);
+  const auto add = [&](std::int64_t i, std::int64_t j, double K_ij) {
+    row[triplets->nnz] = i;
+    column[triplets->nnz] = j;
+    value[triplets->nnz] = K_ij;
+    ++triplets->nnz;
+  };
   solid::CellStiffness K{};
   solid::CellCoordinates shape_of_K{};
-  for (const auto& cell : mesh.cells) {
-    auto c = solid::cell_coordinates(mesh, cell);
+  for (const auto& cell : mesh_.cells) {
+    auto c = solid::cell_coordinates(mesh_, cell);
     for (int k = 7; k >= 0; --k) c[k] -= c[k % 2];
     if (c != shape_of_K) {
       K = solid::cell_stiffness(c, material);
@@ -168,47 +205,42 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
       const auto i = unknown_[2 * cell[a / 2] + a % 2];
       for (int b = 0; b < 8; ++b) {
         const auto j = unknown_[2 * cell[b / 2] + b % 2];
-        if (i < 0 || j < i) continue;
-        row[triplets->nnz] = i;
-        column[triplets->nnz] = j;
-        value[triplets->nnz] = K[8 * a + b];
-        ++triplets->nnz;
+        if (i >= 0 && j >= i) add(i, j, K[8 * a + b]);
       }
     }
   }
-  for (const auto n : mesh.lower) {
-    row[triplets->nnz] = column[triplets->nnz] = unknown_[2 * n];
-    value[triplets->nnz] = spring_;
-    ++triplets->nnz;
-  }
-  cholmod_sparse* matrix = cholmod_l_triplet_to_sparse(triplets, triplets->nnz, common);
-  cholmod_l_free_triplet(&triplets, common);
+  for (const auto n : mesh_.lower) add(unknown_[2 * n], unknown_[2 * n], spring_);
+  return triplets;
+}
+
+void Factorisation::factorise(const solid::Material& material) {
+  auto* common = &cholmod_->common;
+  cholmod_triplet* entries = triplets(material);
+  Sparse matrix(cholmod_l_triplet_to_sparse(entries, entries->nnz, common), {common});
+  cholmod_l_free_triplet(&entries, common);
   cholmod_->check("assembly");
   return_freed_memory();
 
   std::vector<std::int64_t> identity(n_unknowns_);
-  for (std::int64_t k = 0; k < n_unknowns_; ++k) identity[k] = k;
-  cholmod_->factor = cholmod_l_analyze_p(matrix, identity.data(), nullptr, 0, common);
+  std::iota(identity.begin(), identity.end(), std::int64_t{0});
+  cholmod_->factor = cholmod_l_analyze_p(matrix.get(), identity.data(), nullptr, 0, common);
   cholmod_->check("analysis");
   factor_bytes_ = 8.0 * static_cast<double>(cholmod_->factor->xsize);
-  try {
-    require_memory(factorisation_budget(static_cast<double>(n_unknowns_),
-                                        static_cast<double>(mesh.lower.size()), factor_bytes_),
-                   fmt::format("the factorisation of {} static unknowns", n_unknowns_));
-    require_memory_with_blas(*cholmod_->factor, *matrix);
-  } catch (...) {
-    cholmod_l_free_sparse(&matrix, common);
-    throw;
-  }
+  require_memory(factorisation_budget(static_cast<double>(n_unknowns_),
+                                      static_cast<double>(mesh_.lower.size()), factor_bytes_),
+                 fmt::format("the factorisation of {} static unknowns", n_unknowns_));
+  require_memory_with_blas(*cholmod_->factor, *matrix);
   {
     const std::lock_guard alone(blas_in_use);
-    cholmod_l_factorize(matrix, cholmod_->factor, common);
+    cholmod_l_factorize(matrix.get(), cholmod_->factor, common);
   }
-  cholmod_l_free_sparse(&matrix, common);
+  matrix.reset();
   cholmod_->check("factorisation");
   return_freed_memory();
   SLIPFRONT_ASSERT(cholmod_->factor->minor == cholmod_->factor->n, "stiffness is not positive definite");
+}
 
+void Factorisation::condense() {
   // The interface's columns are the last ones of the factor, whatever the postordering of the others.
   const auto* L = cholmod_->factor;
   const auto* super = static_cast<const std::int64_t*>(L->super);
@@ -217,7 +249,7 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
   const auto* s = static_cast<const std::int64_t*>(L->s);
   const auto* x = static_cast<const double*>(L->x);
   const auto* permutation = static_cast<const std::int64_t*>(L->Perm);
-  const auto n_interface = static_cast<std::int64_t>(2 * mesh.lower.size());
+  const auto n_interface = static_cast<std::int64_t>(2 * mesh_.lower.size());
   const std::int64_t first = n_unknowns_ - n_interface;
   for (std::int64_t k = first; k < n_unknowns_; ++k)
     SLIPFRONT_ASSERT(permutation[k] == k, "the interface is not last in the factor");
@@ -234,21 +266,7 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
   condensed_.setZero(n_interface, n_interface);
   condensed_.selfadjointView<Eigen::Lower>().rankUpdate(L_ii);
   condensed_.triangularView<Eigen::StrictlyUpper>() = condensed_.transpose();
-
   for (std::int64_t k = 0; k < n_interface; k += 2) condensed_(k, k) -= spring_;
-
-  // Rows of K that feel the loaded edge: its own nodes and their neighbours.
-  std::vector<bool> feels(mesh.n_nodes(), false);
-  for (const auto& cell : mesh.cells) {
-    bool touches = false;
-    for (const auto n : cell) touches = touches || is_top[n];
-    if (touches)
-      for (const auto n : cell) feels[n] = true;
-  }
-  std::vector<mesh::Node> near_top;
-  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
-    if (feels[n]) near_top.push_back(n);
-  near_top_ = solid::assemble_rows(mesh, material, near_top);
 }
 
 Eigen::VectorXd Factorisation::at_interface(const solid::Field& u) const {

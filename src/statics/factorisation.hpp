@@ -13,6 +13,8 @@
 #include "solid/operator.hpp"
 #include "statics/plate_solver.hpp"
 
+struct cholmod_triplet_struct;
+
 namespace slipfront::statics {
 
 /// Entries of a dense square matrix of the displacements of the interface's nodes.
@@ -65,6 +67,12 @@ class Factorisation {
 
  private:
   struct Cholmod;
+  /// In the order of dissection, the interface last.
+  void number_unknowns();
+  /// Upper triangle of K, cell by cell; to be freed.
+  cholmod_triplet_struct* triplets(const solid::Material& material) const;
+  void factorise(const solid::Material& material);
+  void condense();
   solid::Field solve(const Top& top, const Eigen::VectorXd& interface_force) const;
   Eigen::VectorXd at_interface(const solid::Field& u) const;
 

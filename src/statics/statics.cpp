@@ -273,6 +273,29 @@ bool begin_on_coarse_levels(const mesh::Mesh& mesh, const mesh::Mesh* base, cons
   return true;
 }
 
+TopDisplacement tilt_of(const mesh::Mesh& mesh, const Loading& loading) {
+  TopDisplacement tilt{std::vector<double>(mesh.top.size(), 0.0), {}};
+  const double x0 = mesh.x_m[mesh.top.front()], width = mesh.x_m[mesh.top.back()] - x0;
+  for (const auto n : mesh.top) {
+    const double s = (mesh.x_m[n] - x0) / width;
+    tilt.u_y_m.push_back(-((1 - s) * loading.tilt_left_m + s * loading.tilt_right_m));
+  }
+  return tilt;
+}
+
+/// Nodes without a gap stick where they are.
+ContactStates states_before(const std::vector<double>& gap_m, const std::vector<double>& mu_s) {
+  const std::size_t n = gap_m.size();
+  ContactStates states{{std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 0.0),
+                        std::vector<double>(n, 0.0), mu_s},
+                       std::vector<std::uint8_t>(n, 0)};
+  for (std::size_t k = 0; k < n; ++k) {
+    states.support.contact[k] = gap_m[k] > 0 ? Contact::open : Contact::stick;
+    states.has_touched[k] = states.support.contact[k] == Contact::stick;
+  }
+  return states;
+}
+
 }  // namespace
 
 Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
@@ -292,12 +315,7 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
   SLIPFRONT_ASSERT(mu_s_.size() == mesh.lower.size(), "mu_s of another interface");
   solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base);
 
-  TopDisplacement tilt{std::vector<double>(mesh.top.size(), 0.0), {}};
-  const double x0 = mesh.x_m[mesh.top.front()], width = mesh.x_m[mesh.top.back()] - x0;
-  for (const auto n : mesh.top) {
-    const double s = (mesh.x_m[n] - x0) / width;
-    tilt.u_y_m.push_back(-((1 - s) * loading.tilt_left_m + s * loading.tilt_right_m));
-  }
+  auto tilt = tilt_of(mesh, loading);
   const bool is_free = loading.top_during_tilt == TopEdge::free;
   const auto make_case = [&](int level) {
     return solver_->load_case(is_free ? TopConstraint::vertical : TopConstraint::both, tilt, false, nullptr,
@@ -305,15 +323,7 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
   };
   auto plate = make_case(0);
 
-  const std::size_t n = mesh.lower.size();
-  ContactStates start{{std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 0.0),
-                       std::vector<double>(n, 0.0), mu_s_},
-                      std::vector<std::uint8_t>(n, 0)};
-  const auto gap_m = gaps_m(mesh, base_mesh_);
-  for (std::size_t k = 0; k < n; ++k) {
-    start.support.contact[k] = gap_m[k] > 0 ? Contact::open : Contact::stick;
-    start.has_touched[k] = start.support.contact[k] == Contact::stick;
-  }
+  const auto start = states_before(gaps_m(mesh, base_mesh_), mu_s_);
   const auto no_shear = [] { return 0.0; };
   const auto may_slip = [](std::size_t) { return true; };
   double accuracy = solver_->iterates() ? first_accuracy : final_accuracy;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
@@ -49,16 +50,12 @@ const char* name(Stepping::Kind kind) {
   return "";
 }
 
-}  // namespace
+constexpr std::size_t first_compared = reference_divisors.size();  ///< of the cases, the plain ones first
 
-InterfaceStep study_interface_step(const input::Case& config, const InterfaceStepOptions& options,
-                                   const StudyMonitor& monitor) {
-  InterfaceStep result;
-  result.options = options;
-  const input::Case base = for_study(config);
-  const double factor = base.time.step_factor;
-
+/// All cases, those of the reference first, smallest step first; what is compared goes to result.all.
+std::vector<input::Case> cases_of(const input::Case& base, InterfaceStep& result) {
   std::vector<input::Case> cases;
+  const double factor = base.time.step_factor;
   const auto add = [&](double step_factor, int rows, int substeps) {
     auto& c = cases.emplace_back(base);
     c.time.step_factor = step_factor;
@@ -66,25 +63,26 @@ InterfaceStep study_interface_step(const input::Case& config, const InterfaceSte
     c.time.interface_substeps = substeps;
   };
   for (auto it = reference_divisors.rbegin(); it != reference_divisors.rend(); ++it) add(factor / *it, 1, 1);
-  const std::size_t first_compared = cases.size();
   for (const int divisor : plain_divisors) {
     add(factor / divisor, 1, 1);
     result.all.push_back({.kind = Stepping::Kind::plain, .step_factor = factor / divisor});
   }
   const double height_rows = base.plate.height_m / base.plate.element_size_m;
-  for (const int rows : options.rows)
-    for (const int substeps : options.substeps) {
+  for (const int rows : result.options.rows)
+    for (const int substeps : result.options.substeps) {
       if (rows >= height_rows) continue;
       add(factor, rows, substeps);
       result.all.push_back(
           {.kind = Stepping::Kind::layer, .step_factor = factor, .rows = rows, .substeps = substeps});
     }
-  result.n_runs = cases.size();
-  const auto runs = run_cases(cases, options.threads, monitor, options.kept);
+  return cases;
+}
 
+/// Stations and the speeds there at the limit of small steps.
+void find_limits(std::span<const Run> runs, InterfaceStep& result) {
   std::array<double, 3> q{}, f{};
   std::vector<double> orders;
-  for (const auto& place : stations(runs[0].main, options.station_spacing_m)) {
+  for (const auto& place : stations(runs[0].main, result.options.station_spacing_m)) {
     for (std::size_t k = 0; k < 3; ++k) {
       q[k] = 1.0 / reference_divisors[k];
       f[k] = speed_at(runs[2 - k].main, place);
@@ -99,18 +97,22 @@ InterfaceStep study_interface_step(const input::Case& config, const InterfaceSte
   if (result.stations.size() < static_cast<std::size_t>(fewest_stations))
     result.warnings.push_back(
         fmt::format("only {} stations have a speed with a limit at small steps", result.stations.size()));
+}
 
-  // Runs end at different times: cost per simulated time.
-  const double plain_updates = runs[first_compared].node_updates_per_s;
-  const std::size_t n_run = result.all.size();
-  for (std::size_t k = 0; k < n_run; ++k) {
+void compare(std::span<const Run> compared, InterfaceStep& result) {
+  for (std::size_t k = 0; k < compared.size(); ++k) {
     auto& s = result.all[k];
-    const std::size_t r = first_compared + k;
-    s.cost = runs[r].node_updates_per_s / plain_updates;
-    s.time_s = runs[r].stepping_wall_s;
-    for (const auto& place : result.stations) s.v_tip_m_per_s.push_back(speed_at(runs[r].main, place));
+    // Runs end at different times: cost per simulated time.
+    s.cost = compared[k].node_updates_per_s / compared.front().node_updates_per_s;
+    s.time_s = compared[k].stepping_wall_s;
+    for (const auto& place : result.stations) s.v_tip_m_per_s.push_back(speed_at(compared[k].main, place));
     set_errors(s, result.v_tip_m_per_s);
   }
+}
+
+/// Of each two layers of which one has twice the sub-steps.
+void add_extrapolated(InterfaceStep& result) {
+  const std::size_t n_run = result.all.size();
   for (std::size_t a = 0; a < n_run; ++a)
     for (std::size_t b = 0; b < n_run; ++b) {
       const auto &coarse = result.all[a], &fine = result.all[b];
@@ -118,7 +120,7 @@ InterfaceStep study_interface_step(const input::Case& config, const InterfaceSte
           fine.substeps != 2 * coarse.substeps)
         continue;
       Stepping s{.kind = Stepping::Kind::extrapolated,
-                 .step_factor = factor,
+                 .step_factor = coarse.step_factor,
                  .rows = coarse.rows,
                  .substeps = fine.substeps,
                  .cost = coarse.cost + fine.cost,
@@ -128,13 +130,34 @@ InterfaceStep study_interface_step(const input::Case& config, const InterfaceSte
       set_errors(s, result.v_tip_m_per_s);
       result.all.push_back(std::move(s));
     }
+}
+
+/// The cheapest that is within the tolerance at nine tenths of the stations or more; -1: none.
+int cheapest(const InterfaceStep& result) {
+  int chosen = -1;
   const auto within = [&](const Stepping& s) {
-    return s.kind != Stepping::Kind::extrapolated && s.p90_error <= options.tolerance &&
+    return s.kind != Stepping::Kind::extrapolated && s.p90_error <= result.options.tolerance &&
            10 * static_cast<std::size_t>(s.n_stations) >= 9 * result.stations.size();
   };
   for (std::size_t k = 0; k < result.all.size(); ++k)
-    if (within(result.all[k]) && (result.chosen < 0 || result.all[k].cost < result.all[result.chosen].cost))
-      result.chosen = static_cast<int>(k);
+    if (within(result.all[k]) && (chosen < 0 || result.all[k].cost < result.all[chosen].cost))
+      chosen = static_cast<int>(k);
+  return chosen;
+}
+
+}  // namespace
+
+InterfaceStep study_interface_step(const input::Case& config, const InterfaceStepOptions& options,
+                                   const StudyMonitor& monitor) {
+  InterfaceStep result;
+  result.options = options;
+  const auto cases = cases_of(for_study(config), result);
+  result.n_runs = cases.size();
+  const auto runs = run_cases(cases, options.threads, monitor, options.kept);
+  find_limits(runs, result);
+  compare(std::span(runs).subspan(first_compared), result);
+  add_extrapolated(result);
+  result.chosen = cheapest(result);
   for (std::size_t k = 0; k < cases.size(); ++k)
     if (!runs[k].blow_up.empty())
       result.warnings.push_back(fmt::format("step_factor {:.3g}, {} rows, {} sub-steps: {}",
