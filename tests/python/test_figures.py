@@ -18,6 +18,7 @@ from slipfront.figures.__main__ import draw_all, main
 from slipfront.figures.main_fronts import drawn_fronts, main_fronts
 from slipfront.figures.results import read_results
 from slipfront.figures.statements import STATEMENTS
+from slipfront.figures.study import Study, StudyPoint
 from slipfront.figures.style import EVENT_STYLES, RC
 from synthetic import (
     CONTACT_FROM_M,
@@ -1055,3 +1056,13 @@ def test_folder_without_snapshots_gives_one_line(output, capsys):
     assert main([str(output)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and "right/fields.vtkhdf: no snapshots" in error
+
+
+def test_small_lengths_are_shown_in_micrometres():
+    def shown(*values_m):
+        points = [StudyPoint(f"{v}", v, {}, {}, None, None, {}) for v in values_m]
+        study = Study("relaxation_length", "friction.relaxation_length_m", "", points)
+        return study.unit[0], [study.shown(point) for point in points]
+
+    assert shown(1e-8, 3e-6) == ("µm", ["0.01", "3"])
+    assert shown(1e-8, 3e-3) == ("mm", ["1e-05", "3"])

@@ -45,6 +45,12 @@ NAMES = {
     "trigger_duration": "duration of the trigger",
     "l_star": "length $l^*$",
     "loading_method": "way to the critical state",
+    "element_size_strength": "element size, strength relaxed",
+    "element_size_pressure": "element size, pressure relaxed",
+    "element_size_undamped": "element size, also undamped",
+    "relaxation_time_strength": "relaxation time of the strength",
+    "relaxation_time_pressure": "relaxation time of the pressure",
+    "relaxation_length_strength": "relaxation length of the strength",
 }
 
 # The main fronts followed: event, direction, and the shift of its markers over the width of the panel,

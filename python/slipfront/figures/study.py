@@ -10,6 +10,7 @@ from typing import Any
 from slipfront.files import DataError, is_number
 
 SPREADS = ("t_s_over_p_s", "t_d_over_p_d", "energy")
+SMALL_LENGTH_M = 1e-4  # where all values are below it, they are shown in µm
 
 
 @dataclass(frozen=True)
@@ -47,9 +48,10 @@ class Study:
     @property
     def unit(self) -> tuple[str, float]:
         """Unit that the parameter is shown in, and the factor to it from SI."""
+        is_small = all(point.number is not None and point.number < SMALL_LENGTH_M for point in self.points)
         for ending, unit in (
             ("_m2_per_s2", ("m²/s²", 1.0)),
-            ("_m", ("mm", 1e3)),
+            ("_m", ("µm", 1e6) if is_small else ("mm", 1e3)),
             ("_s", ("µs", 1e6)),
         ):
             if self.parameter.endswith(ending):
