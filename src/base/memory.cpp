@@ -1,12 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/memory.hpp"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <fstream>
+#include <limits>
 #include <string>
 
 namespace slipfront {
 
-double available_memory_bytes() {
+namespace {
+
+/// What a limit on the process's addresses, `ulimit -v`, leaves.
+double left_by_limit_bytes() {
+  constexpr double without_limit = std::numeric_limits<double>::infinity();
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return without_limit;
+  std::ifstream file("/proc/self/statm");
+  double pages = 0;
+  if (!(file >> pages)) return without_limit;
+  const double taken = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return std::max(static_cast<double>(limit.rlim_cur) - taken, 0.0);
+}
+
+double free_memory_bytes() {
   std::ifstream file("/proc/meminfo");
   std::string key, unit;
   double kilobytes = 0;
@@ -15,6 +34,12 @@ double available_memory_bytes() {
     if (key == "MemAvailable:") return 1024 * kilobytes;
   }
   return 8e9;  // not Linux: a modest machine
+}
+
+}  // namespace
+
+double available_memory_bytes() {
+  return std::min(free_memory_bytes(), left_by_limit_bytes());
 }
 
 }  // namespace slipfront

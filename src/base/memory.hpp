@@ -3,7 +3,8 @@
 
 namespace slipfront {
 
-/// Memory that can be allocated without swapping, bytes (Linux: MemAvailable).
+/// Memory that can be allocated without swapping and within the process's limit, bytes (Linux: MemAvailable,
+/// RLIMIT_AS).
 double available_memory_bytes();
 
 }  // namespace slipfront

@@ -44,13 +44,27 @@ Option* Option::range(int from, int to) {
   return this;
 }
 
+/// Not a number where the text is none.
+static double number_in(const std::string& text) {
+  double value = 0;
+  return CLI::detail::lexical_cast(text, value) ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
 Option* Option::positive() {
-  option_.check(CLI::PositiveNumber);
+  option_.check(CLI::Validator(
+      [](const std::string& text) {
+        return number_in(text) > 0 ? std::string() : text + " is not a number greater than 0";
+      },
+      "POSITIVE"));
   return this;
 }
 
 Option* Option::non_negative() {
-  option_.check(CLI::NonNegativeNumber);
+  option_.check(CLI::Validator(
+      [](const std::string& text) {
+        return number_in(text) >= 0 ? std::string() : text + " is not a number of at least 0";
+      },
+      "NONNEGATIVE"));
   return this;
 }
 
@@ -81,6 +95,7 @@ Option* Command::add_option(const char* names, Value& value, const char* descrip
   return keep(*app_.add_option(names, value, description));
 }
 template Option* Command::add_option(const char*, int&, const char*);
+template Option* Command::add_option(const char*, std::optional<int>&, const char*);
 template Option* Command::add_option(const char*, double&, const char*);
 template Option* Command::add_option(const char*, std::string&, const char*);
 template Option* Command::add_option(const char*, std::optional<std::string>&, const char*);

@@ -29,19 +29,27 @@ struct RunArguments {
   const std::string& folder() const { return restart ? *restart : *dir; }
 };
 
+void print_ramp(const motion::Ramp& ramp, double direct_shear_m) {
+  const double shear_m = ramp.spontaneous.shear_m;
+  const auto n_inside = ramp.n_onsets_inside();
+  print(
+      "the ramp brings t/p inside to mu_s at x = {:.4g} m, at a shear of {:.5g} m, {:+.3f} % of the {:.5g} m "
+      "found directly\n",
+      ramp.common.peak_x_m, shear_m, 100 * (shear_m / direct_shear_m - 1), direct_shear_m);
+  print("beginnings of slip during the ramp: {} at the edges, {} inside, in the last step\n",
+        ramp.record.n_onsets() - static_cast<std::uint64_t>(n_inside), n_inside);
+}
+
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
   if (initial.prescribed)
     print("prescribed tractions, t/p up to {:.4g} at x = {:.4g} m\n", initial.common.peak_ratio,
           initial.common.peak_x_m);
+  else if (initial.ramp)
+    print_ramp(*initial.ramp, initial.critical_shear_m);
   else
     print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
           initial.critical_shear_m);
-  if (initial.ramp)
-    print("by the ramp at {:.5g} m ({:+.3f} %), after {} beginnings of slip at the edges\n",
-          initial.ramp->spontaneous.shear_m,
-          100 * (initial.ramp->spontaneous.shear_m / initial.critical_shear_m - 1),
-          initial.ramp->record.n_onsets());
   print(
       "{} steps of {:.4g} s ({} sub-steps at the interface), {:.3g} s of wall time, {:.0f} million node "
       "updates/s\n",
@@ -126,8 +134,6 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
     throw UserError(
         "slipfront: run takes CASE and --output DIR, or --restart DIR, perhaps with CASE to compare; see "
         "slipfront run --help");
-  if (std::isnan(options.session.keep_every_wall_s) || std::isnan(options.session.keep_every_s))
-    throw UserError("slipfront: --checkpoint-every must be a number of seconds, is nan");
   results::ResultFolder folder(options.folder(), run::run_work);
   if (options.restart && !folder.has_unfinished() && run::is_complete(folder.dir())) {
     if (config) run::require_same_case(*config, folder.dir());
@@ -166,17 +172,12 @@ void add_run(Command& app) {
                    "Go on with the run that was left unfinished in this folder, as if it had never stopped")
       ->type_name("DIR");
   command->add_flag("--overwrite", options->overwrite, "Replace the results that the folder already holds");
-  // More pay on large meshes only.
-  constexpr unsigned most_threads_by_default = 4;
   auto& session = options->session;
-  session.execution.threads =
-      static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, most_threads_by_default));
   command
-      ->add_option("--threads", session.execution.threads,
+      ->add_option("--threads", session.threads,
                    "Threads of the run; the results do not depend on them. They wait for each other: give no "
-                   "more than are idle")
-      ->range(1, 1024)
-      ->capture_default_str();
+                   "more than are idle. By default one for every 20,000 nodes, up to 4 and the processors")
+      ->range(1, 1024);
   command
       ->add_option("--checkpoint-every", session.keep_every_wall_s,
                    "Wall time between checkpoints, s; the signal USR1 asks for one at once")

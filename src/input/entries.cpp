@@ -352,7 +352,7 @@ void add_base(EntryList& list) {
               "see two-bodies.md"),
           only_with(on_body(),
                     number("base.height_m", at(&Case::base, &Base::plate, &Plate::height_m), above(0),
-                           "depth of the body below, a whole multiple of plate.element_size_m")),
+                           "depth of the body below, a whole multiple of plate.element_size_m; to be set")),
           only_with(
               on_body(),
               integer("base.coarsenings", at(&Case::base, &Base::plate, &Plate::coarsenings), between(0, 20),
@@ -374,21 +374,22 @@ void add_base(EntryList& list) {
       });
   list.add(Stage::statics,
            {
-               only_with(on_body(), number("base.youngs_modulus_Pa",
-                                           at(&Case::base, &Base::material, &Material::youngs_modulus_Pa),
-                                           above(0), "its Young's modulus; its plane is material.plane")),
+               only_with(on_body(),
+                         number("base.youngs_modulus_Pa",
+                                at(&Case::base, &Base::material, &Material::youngs_modulus_Pa), above(0),
+                                "its Young's modulus; its plane is material.plane; to be set")),
                only_with(on_body(), number("base.poissons_ratio",
                                            at(&Case::base, &Base::material, &Material::poissons_ratio),
-                                           strictly_between(-1, 0.5), "its Poisson's ratio")),
+                                           strictly_between(-1, 0.5), "its Poisson's ratio; to be set")),
            });
   list.add(Stage::motion,
            {
                only_with(on_body(), number("base.density_kg_per_m3",
                                            at(&Case::base, &Base::material, &Material::density_kg_per_m3),
-                                           above(0), "its density")),
+                                           above(0), "its density; to be set")),
                only_with(on_body(), number("base.stiffness_damping_s",
                                            at(&Case::base, &Base::material, &Material::stiffness_damping_s),
-                                           at_least(0), "its Rayleigh damping")),
+                                           at_least(0), "its Rayleigh damping; to be set")),
            });
 }
 

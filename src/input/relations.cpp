@@ -83,6 +83,11 @@ void check_tilt(const Case& config) {
   const auto& loading = config.loading;
   const auto& plate = config.plate;
   const double tilt_m = std::max(loading.tilt_left_m, loading.tilt_right_m);
+  if (tilt_m == 0)
+    throw UserError(
+        "{} and {:leaf} are both 0: that leaves the plate without contact; increase one of them, or set {} "
+        "= prestress",
+        Key("loading.tilt_left_m"), Key("loading.tilt_right_m"), Key("loading.method"));
   if (tilt_m >= plate.height_m)
     throw UserError("{} and {:leaf} go up to {} m; they must be less than {}, {} m",
                     Key("loading.tilt_left_m"), Key("loading.tilt_right_m"), tilt_m, Key("plate.height_m"),

@@ -328,11 +328,20 @@ statics::Equilibrium RampRun::state_now() const {
   return e;
 }
 
+std::int64_t Ramp::n_onsets_inside() const {
+  return std::ranges::count_if(record.onsets, [&](const record::Onset& onset) {
+    const double x = record.x_m[onset.node];
+    return x >= spontaneous.inside_from_m && x <= spontaneous.inside_to_m;
+  });
+}
+
 bool RampRun::reaches(double share) const {
   const auto& s = stepper_.interface_state();
   for (std::size_t k = 0; k < s.size(); ++k) {
     const double x = tilted_.tractions.x_m[k];
-    if (x >= from_m_ && x <= to_m_ && s.p_Pa[k] > 0 && s.t_Pa[k] / s.p_Pa[k] >= mu_s_[k] * share) return true;
+    if (x < from_m_ || x > to_m_ || s.p_Pa[k] <= 0) continue;
+    // A node that began to slip within the step has weakened since.
+    if (s.slipping[k] != 0 || s.t_Pa[k] / s.p_Pa[k] >= mu_s_[k] * share) return true;
   }
   return false;
 }
@@ -348,8 +357,11 @@ Ramp RampRun::run(const Monitor& monitor) {
   };
   for (;;) {
     if (stepper_.step() > most_steps_)
-      throw UserError("the ramp does not bring t/p inside the interface to mu_s within a shear of {:.4g} m",
-                      2 * expected_shear_m_);
+      throw UserError(
+          "the ramp does not bring t/p inside the interface to mu_s within a shear of {:.4g} m, twice the "
+          "one "
+          "found directly; choose another {}, or {} = direct",
+          2 * expected_shear_m_, Key("loading.shear_speed_over_c_L"), Key("loading.method"));
     stepper_.advance(recorder_,
                      std::min({renewal_interval - stepper_.step() % renewal_interval,
                                watch_->steps_to_check(), most_steps_ + 1 - stepper_.step()}),

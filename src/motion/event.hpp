@@ -160,6 +160,11 @@ struct Ramp {
   std::int64_t steps = 0;
   bool interrupted = false;
 
+  /// Beginnings of slip inside: where it came within a step before t/p was seen near mu_s.
+  std::int64_t n_onsets_inside() const;
+  /// Whether t/p passed from less than (1 - critical_margin) mu_s to slip within a step.
+  bool passed_margin_in_a_step() const { return common.shear_m == spontaneous.shear_m; }
+
   template <class Archive>
   void serialize(Archive& archive) {
     archive(common, spontaneous, record, steps, interrupted);
@@ -199,7 +204,7 @@ class RampRun {
   /// Refuses counts that no ramp comes to, and a state of another plate.
   void require_possible(std::int64_t checked_step) const;
   statics::Equilibrium state_now() const;
-  /// Whether t/p is so large a share of mu_s anywhere inside.
+  /// Whether t/p is so large a share of mu_s anywhere inside, or a node there slips.
   bool reaches(double share) const;
 
   Stepper& stepper_;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "base/state.hpp"
@@ -132,7 +133,8 @@ struct StepLevels {
 };
 
 /// @throws UserError where the interface rows do not fit into the mesh.
-void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time);
+/// @param table  of the case file that describes the body
+void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::string_view table = "plate");
 
 /// For each block of the mesh, its step over that of the lowest one: the largest power of two that its cells
 /// allow, twice, four times ... as long for squares.

@@ -147,14 +147,14 @@ std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes) {
   return runs;
 }
 
-void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time) {
+void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::string_view table) {
   if (mesh.grid.columns == 0 || time.interface_rows < mesh.grid.rows) return;
-  if (!mesh.coarser.empty())
-    throw UserError(
-        "{} = {} does not fit below the larger elements above {} rows; choose fewer, or a larger {}",
-        Key("time.interface_rows"), time.interface_rows, mesh.grid.rows, Key("plate.fine_height_m"));
-  throw UserError("{} = {} does not fit below the loaded edge of a mesh of {} rows; choose fewer",
-                  Key("time.interface_rows"), time.interface_rows, mesh.grid.rows)
+  const bool is_graded = !mesh.coarser.empty();
+  throw UserError("{} = {} needs {} rows of {}elements at the interface, the {} has {}; choose {}a larger {}",
+                  Key("time.interface_rows"), time.interface_rows, time.interface_rows + 1,
+                  is_graded ? "the smallest " : "", table, mesh.grid.rows,
+                  time.interface_rows > 1 ? "fewer, or " : "",
+                  Key(fmt::format("{}.{}", table, is_graded ? "fine_height_m" : "height_m")))
       .about("plate.element_size_m");
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <thread>
 
 #include "input/prestress.hpp"
 #include "stability/verdict.hpp"
@@ -32,6 +33,15 @@ double approximate_unknowns_of(const mesh::Plate& plate) {
 Unknowns approximate_unknowns(const input::Case& config) {
   return {approximate_unknowns_of(config.plate),
           input::has_base_body(config) ? approximate_unknowns_of(input::base_plate(config)) : 0};
+}
+
+int suitable_threads(const input::Case& config) {
+  constexpr double nodes_per_thread = 20'000;
+  constexpr unsigned most_threads = 4;
+  const auto unknowns = approximate_unknowns(config);
+  const double useful = 0.5 * (unknowns.of_plate + unknowns.of_base) / nodes_per_thread;
+  const double most = std::clamp(std::thread::hardware_concurrency(), 1U, most_threads);
+  return static_cast<int>(std::clamp(useful, 1.0, most));
 }
 
 double top_speed_m_per_s(const input::Case& config) {

@@ -20,6 +20,10 @@ struct Unknowns {
 };
 Unknowns approximate_unknowns(const input::Case& config);
 
+/// Threads of one run: one for so many nodes that a step takes longer than waking a thread does, few enough
+/// to leave most of a large machine to others, and no more than processors.
+int suitable_threads(const input::Case& config);
+
 /// Of the top edge where the plate is loaded by a ramp, and during the event.
 double top_speed_m_per_s(const input::Case& config);
 

@@ -106,7 +106,7 @@ Meshes check(const input::Case& config) {
   motion::require_rows_fit(meshes.plate, config.time);
   if (input::has_base_body(config)) {
     meshes.base = make_base(config);
-    motion::require_rows_fit(*meshes.base, config.time);
+    motion::require_rows_fit(*meshes.base, config.time, "base");
   }
   meshes.mu_s = static_coefficients(input::friction_at(config, interface_x_m(meshes.plate)));
   if (!is_prestressed(config)) return meshes;

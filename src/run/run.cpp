@@ -43,9 +43,23 @@ std::string contact_warning(const statics::Equilibrium& state) {
   const auto n_slip = std::ranges::count(state.contact, statics::Contact::slip);
   const auto n_open = std::ranges::count(state.contact, statics::Contact::open);
   if (n_slip + n_open == 0) return {};
+  std::int64_t n_inside = 0;
+  for (std::size_t k = 0; k < state.contact.size(); ++k) {
+    const double x = state.tractions.x_m[k];
+    const bool is_inside = x >= state.inside_from_m && x <= state.inside_to_m;
+    n_inside += is_inside && state.contact[k] != statics::Contact::stick ? 1 : 0;
+  }
   return fmt::format(
-      "before the event {} interface nodes are open and {} slip at mu_s p, all outside {:.4g} to {:.4g} m",
-      n_open, n_slip, state.inside_from_m, state.inside_to_m);
+      "before the event {} interface nodes are open and {} slip at mu_s p, {} {:.4g} to {:.4g} m", n_open,
+      n_slip, n_inside == 0 ? "all outside" : fmt::format("{} of them within", n_inside), state.inside_from_m,
+      state.inside_to_m);
+}
+
+/// Empty where a ramp resolves the margin, or there is none.
+std::string ramp_warning(const std::optional<motion::Ramp>& ramp) {
+  if (!ramp || !ramp->passed_margin_in_a_step()) return {};
+  return "the ramp brings t/p from below (1 - loading.critical_margin) mu_s to slip within a step: the state "
+         "in which triggered events begin is the critical one; choose a lower loading.shear_speed_over_c_L";
 }
 
 }  // namespace
@@ -221,6 +235,7 @@ void measure(Result& result, const InitialState& initial) {
       fronts::find_fronts(result.event.record, initial.common.tractions, front_options(config, initial));
   result.warnings = warnings_of_case(config);
   if (auto warning = contact_warning(initial.common); !warning.empty()) result.warnings.push_back(warning);
+  if (auto warning = ramp_warning(initial.ramp); !warning.empty()) result.warnings.push_back(warning);
   if (initial.prescribed)
     if (auto warning = prestress_warning(state, static_coefficients(config, initial.mu_s)); !warning.empty())
       result.warnings.push_back(warning);

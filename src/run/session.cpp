@@ -11,6 +11,7 @@
 #include "results/results.hpp"
 #include "results/stream.hpp"
 #include "run/checkpoint.hpp"
+#include "run/choices.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -28,6 +29,7 @@ class Session {
         config_(config),
         options_(options),
         hooks_(hooks),
+        execution_{.threads = options.threads.value_or(suitable_threads(config))},
         checkpoints_(folder.state()),
         resumed_(resumed) {
     head_.case_text = resolved_text(config);
@@ -58,6 +60,7 @@ class Session {
   const input::Case& config_;
   const SessionOptions& options_;
   const SessionHooks& hooks_;
+  motion::Execution execution_;
   Checkpoints checkpoints_;
   CheckpointHead head_;
   Clock::time_point event_began_ = Clock::now(), kept_ = Clock::now(), told_ = Clock::now();
@@ -88,7 +91,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
           [&](std::int64_t step, std::int64_t total) {
             return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
           },
-          options_.execution,
+          execution_,
           [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept.get(), stepper, ramp); });
       ramp_ = nullptr;
       stepper_ = nullptr;
@@ -137,7 +140,7 @@ void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, moti
 void Session::begin_event(Checkpoints::Kept* kept) {
   if (kept != nullptr) {
     initial_ = read_initial_state(kept->rest, config_);
-    event_stepper_ = make_stepper(config_, initial_, options_.execution);
+    event_stepper_ = make_stepper(config_, initial_, execution_);
     kept->rest(*event_stepper_);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
     results::ResultStream::Extents extents;
@@ -148,7 +151,7 @@ void Session::begin_event(Checkpoints::Kept* kept) {
     files::remove_file(results::ResultStream::history_file(folder_.state()));
     files::remove_file(results::ResultStream::snapshot_file(folder_.state()));
     stream_.emplace(folder_.state());
-    event_stepper_ = start_event(config_, initial_, options_.execution);
+    event_stepper_ = start_event(config_, initial_, execution_);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
   }
   write_static(dir_, config_, initial_);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "results/folder.hpp"
@@ -19,7 +20,7 @@ enum class Request {
 };
 
 struct SessionOptions {
-  motion::Execution execution;
+  std::optional<int> threads;                                     ///< by default suitable_threads
   double keep_every_wall_s = 300;                                 ///< wall time between checkpoints
   double keep_every_s = std::numeric_limits<double>::infinity();  ///< simulated time between them
 };

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "run/choices.hpp"
+
 namespace slipfront::run {
 namespace {
 
@@ -19,6 +21,8 @@ std::string table_warning(const char* key, const std::vector<double>& x_m, doubl
       "its {} rows lie beyond it; are its positions in m?",
       key, x_m.front(), x_m.back(), width_m, n_beyond, x_m.size());
 }
+
+constexpr double most_strain = 0.03;  ///< of linear elasticity
 
 }  // namespace
 
@@ -37,6 +41,14 @@ std::vector<std::string> warnings_of_case(const input::Case& config) {
                     "does not resolve "
                     "the field",
                     along_x.random_correlation_length_m));
+  if (!is_prestressed(config)) {
+    const double strain = nominal_pressure_Pa(config) / config.material.youngs_modulus_Pa;
+    if (strain > most_strain)
+      warnings.push_back(
+          fmt::format("the tilt presses the plate by {:.3g} of Young's modulus, beyond small strains: are "
+                      "loading.tilt_left_m and loading.tilt_right_m in m?",
+                      strain));
+  }
   if (config.fronts.l_star_m < 0.99 * config.plate.element_size_m)
     warnings.push_back(fmt::format(
         "fronts.l_star_m = {:.4g} m is below the element size: one element is used", config.fronts.l_star_m));

@@ -61,7 +61,7 @@ Json statics_json(const InitialState& initial) {
                {"inside_to_m", initial.common.inside_to_m},
                {"unknowns", initial.n_unknowns},
                {"solver", statics::name_of(initial.solver)},
-               {"solver_bytes", initial.solver_bytes},
+               {"solver_bytes", std::llround(initial.solver_bytes)},
                {"wall_s", initial.wall_s}};
   if (initial.ramp) {
     const auto& ramp = *initial.ramp;
@@ -78,6 +78,7 @@ Json statics_json(const InitialState& initial) {
                     {"relative_to_direct", ramp.spontaneous.shear_m / initial.critical_shear_m - 1},
                     {"steps", ramp.steps},
                     {"onsets_before_critical", ramp.record.n_onsets()},
+                    {"onsets_inside", ramp.n_onsets_inside()},
                     {"slip_before_critical", slip}};
   }
   return json;

@@ -193,10 +193,9 @@ class IterativeLoadCase : public LoadCase {
 
 double iterative_bytes(double n_unknowns) {
   // Of each unknown: the cycle's z, on coarser levels with a right-hand side; residual; direction, and two
-  // more where nodes slip; two displacements of the load case; six of the equilibria at hand; half the
-  // coordinates and numbers of a node.
+  // more where nodes slip; two displacements of the load case; half the coordinates and numbers of a node.
   constexpr double single = 4, twice = 8;
-  return n_unknowns * (single + 2 * single / 3 + twice + 3 * single + 2 * twice + 6 * twice + 16);
+  return n_unknowns * (single + 2 * single / 3 + twice + 3 * single + 2 * twice + 16);
 }
 
 IterativeSolver::IterativeSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base,

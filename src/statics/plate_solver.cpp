@@ -174,12 +174,16 @@ std::string_view name_of(StaticSolver solver) {
 
 namespace {
 
+/// Two displacements each.
+BudgetItem equilibria(double n_unknowns, int n) {
+  return {"equilibria", 2 * n * sizeof(double) * n_unknowns, larger_elements()};
+}
+constexpr int all_equilibria = 3;  ///< tilted, common and spontaneous
+
 StaticsBudget direct_budget(const StaticsSize& size) {
-  const double n = size.n_unknowns, n_interface = size.n_interface;
-  // Tilted, common and spontaneous, two displacements each; equations of nodes that slip or are open, and
-  // their factor.
-  const Budget states = {
-      {"equilibria", 6 * sizeof(double) * (n + size.n_unknowns_base), larger_elements()},
+  const double n = size.n_unknowns, n_all = n + size.n_unknowns_base, n_interface = size.n_interface;
+  // Equations of nodes that slip or are open, and their factor.
+  const Budget contact = {
       {"the equations of the interface", 2 * sizeof(double) * dense_entries(n_interface), larger_elements()}};
   const double factor = estimated_factor_bytes(n, n_interface);
   Budget held = factor_budget(n, n_interface, factor);
@@ -201,9 +205,9 @@ StaticsBudget direct_budget(const StaticsSize& size) {
     add_factorisation(n);
     if (size.n_unknowns_base > 0) add_held({}, pair_budget(n_interface));
   }
-  held = held + states;
-  stages.push_back(held);
-  return {largest_of(stages), held};
+  held = held + contact;
+  stages.push_back(held + Budget{equilibria(n_all, all_equilibria)});
+  return {largest_of(stages), held + Budget{equilibria(n_all, 1)}};
 }
 
 bool is_direct(const StaticsSize& size) {
@@ -214,9 +218,12 @@ bool is_direct(const StaticsSize& size) {
 
 StaticsBudget statics_budget(const StaticsSize& size) {
   if (is_direct(size)) return direct_budget(size);
-  const Budget iterative = {
-      {"the iterative solution", iterative_bytes(size.n_unknowns + size.n_unknowns_base), larger_elements()}};
-  return {iterative, iterative};
+  const double n = size.n_unknowns + size.n_unknowns_base;
+  Budget iterative = {{"the iterative solution", iterative_bytes(n), larger_elements()}};
+  if (size.n_unknowns_base > 0)
+    iterative.push_back(
+        {"a displacement on its way from the grid to the two bodies", sizeof(double) * n, larger_elements()});
+  return {iterative + Budget{equilibria(n, all_equilibria)}, iterative + Budget{equilibria(n, 1)}};
 }
 
 void require_statics_memory(const StaticsSize& size) {

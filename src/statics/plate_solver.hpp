@@ -103,7 +103,8 @@ struct StaticsSize {
   bool top_free_in_tilt = false;           ///< the tilt then has a factorisation of its own
 };
 
-/// What the statics take at their peak, the meshes and the equilibria found included, and what they hold.
+/// What the statics take at their peak, the meshes and the equilibria found included, and what they hold of
+/// it after the tilt.
 struct StaticsBudget {
   Budget peak, held;
 };

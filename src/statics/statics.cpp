@@ -419,14 +419,15 @@ double Statics::ratio_at_peak(const Equilibrium& state, double share) const {
 
 std::string Statics::name_of_ratio(double share) const {
   const bool uniform = std::ranges::count(mu_s_, mu_s_.front()) == std::ssize(mu_s_);
-  return uniform ? fmt::format("{:.4g}", share * mu_s_.front()) : fmt::format("{:.4g} mu_s", share);
+  return uniform ? fmt::format("{:.6g}", share * mu_s_.front()) : fmt::format("{:.6g} mu_s", share);
 }
 
 Equilibrium Statics::shear_to(double share) const {
   if (tilted_.peak_ratio > ratio_at_peak(tilted_, share))
     throw UserError(
-        "the tilt alone brings t/p inside the interface to {:.4g}, not below {}; raise {} or change the tilt",
-        tilted_.peak_ratio, name_of_ratio(share), Key(mu_s_key_));
+        "the tilt alone brings t/p inside the interface to {:.6g} at x = {:.4g} m, not below {}; raise {} or "
+        "change the tilt",
+        tilted_.peak_ratio, tilted_.peak_x_m, name_of_ratio(share), Key(mu_s_key_));
   bool reached = true;
   Equilibrium e = shear([&](const ContactProblem& problem, const Inside& inside) {
     // With the contact states as they are, t - ratio p grows linearly with the shear at every node; a state

@@ -71,6 +71,8 @@ def test_version(program):
         (["keys", "plate"], "plate"),
         (["reproduce", "--threads", "0", "-o", "out"], "--threads"),
         (["reproduce", "--threads", "two", "-o", "out"], "--threads"),
+        (["run", "--checkpoint-every", "-1", "-o", "out"], "--checkpoint-every: -1 is not"),
+        (["run", "--checkpoint-every-simulated", "nan"], "--checkpoint-every-simulated: nan is not"),
         (["reproduce", "coarse.toml", "-o", "out"], "coarse.toml"),
     ],
 )

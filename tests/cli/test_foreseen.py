@@ -205,6 +205,13 @@ SHORT = {"time.end_s": 2e-7, "output.snapshot_times_s": [0.0]}
 SIZED = {
     "direct": {"plate.element_size_m": 4e-4, **SHORT},
     "base": {"plate.element_size_m": 5e-4, **BASE, **SHORT},
+    "iterative": {"plate.element_size_m": 2.5e-4, **BASE, **SHORT},
+    "ramp": {
+        "plate.element_size_m": 4e-4,
+        "loading.method": "ramp",
+        "loading.shear_speed_over_c_L": 1e-3,
+        **SHORT,
+    },
     "moving": {"plate.element_size_m": 1.25e-4, **PRESTRESSED, **SHORT},
     "energies": {
         "plate.element_size_m": 1e-2,
@@ -215,6 +222,15 @@ SIZED = {
         "output.history_interval_s": 1.0,
     },
 }
+
+
+def test_a_limit_of_the_process_counts(program, coarse):
+    """`ulimit -v`."""
+    sets = settings(SIZED["direct"])
+    told = one_line(program("run", coarse, "-o", "out", *sets, memory_bytes=400_000_000), 2)
+    assert "needs about" in told
+    available = re.search(r"(\S+) GB are available", told)
+    assert 0.1 < float(available[1]) < 0.4
 
 
 @pytest.mark.parametrize("name", SIZED)

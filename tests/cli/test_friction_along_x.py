@@ -122,5 +122,11 @@ def test_what_is_hardly_meant_is_told(program, case, tmp_path):
     assert "random_correlation_length_m = 1e-05 m is below the element size" in told
 
 
+def test_a_tilt_beyond_small_strains_is_told(program, coarse):
+    told = program("validate", coarse, "--set", "loading.tilt_left_m=0.03").stdout
+    assert "presses the plate by 0.15 of Young's modulus, beyond small strains" in told
+    assert "small strains" not in program("validate", coarse).stdout
+
+
 def test_info_names_the_worst_node(program, case):
     assert "with the friction at          x = 0.07 m, the worst node" in program("info", case).stdout

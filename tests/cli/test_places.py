@@ -51,6 +51,8 @@ CASES = {
         None,
     ),
     "default_relief_of_a_coarse_plate": ("[plate]\nelement_size_m = 0.05 # here\n", None),
+    "untilted": (COARSE + "[loading]\ntilt_left_m = 0.0 # here\ntilt_right_m = 0.0\n", None),
+    "base_of_one_row": (COARSE + "[time]\ninterface_rows = 1 # here\n" + STEEL + "height_m = 5e-3\n", None),
     "tilted_ring": (SQUARE + 'sides = "periodic" # here\n', None),
     "tilted_free_top": (SQUARE + 'top = "free" # here\n', None),
     "free_base": (COARSE + STEEL + 'height_m = 0.1\nbottom = "free" # here\n', None),

@@ -21,6 +21,7 @@ from slipfront.figures import interface_step, open_choices
 from slipfront.figures.__main__ import main as figures
 from slipfront.figures.convergence import read_study
 from slipfront.read import ENERGY_TERMS, HISTORY_FIELDS
+from test_foreseen import settings
 
 SO_FAR = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
 FILES = SO_FAR | {"checksums.sha256"}
@@ -195,7 +196,29 @@ def test_ramp_agrees_with_the_direct_way(program, coarse, tmp_path):
     assert result.returncode == 0, result.stderr
     ramp = summary(tmp_path / "out")["statics"]["ramp"]
     assert abs(ramp["relative_to_direct"]) < 0.005
-    assert "by the ramp at" in result.stdout
+    assert "the ramp brings t/p inside to mu_s at" in result.stdout
+
+
+# Of one step of the ramp over the critical shear: how far it may go beyond.
+@pytest.mark.parametrize(("speed", "beyond"), [(1e-3, 0.02), (1e-4, 0.002), (1e-5, 0.0002)])
+def test_a_fast_ramp_ends_where_slip_begins_inside(program, coarse, tmp_path, speed, beyond):
+    """In a step the node nearest to slip passes from below mu_s p to slip, and weakens at once."""
+    sets = settings(
+        {
+            "plate.element_size_m": 4e-3,
+            "loading.method": "ramp",
+            "loading.shear_speed_over_c_L": speed,
+            "event.kind": "spontaneous",
+        }
+    )
+    result = program("run", coarse, "-o", "out", *sets)
+    assert result.returncode == 0, result.stderr
+    ramp = summary(tmp_path / "out")["statics"]["ramp"]
+    assert 0 <= ramp["relative_to_direct"] < beyond
+    assert ramp["onsets_inside"] == 1
+    assert f"{ramp['onsets_before_critical'] - 1} at the edges, 1 inside" in result.stdout
+    assert ("choose a lower loading.shear_speed_over_c_L" in result.stdout) == (speed == 1e-3)
+    assert ("slip at mu_s p, 1 of them within" in result.stdout) == (speed == 1e-3)
 
 
 def test_blow_up_keeps_what_there_is(program, coarse, tmp_path):

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "base/error.hpp"
 #include "cases.hpp"
+#include "run/choices.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::run {
@@ -170,6 +172,13 @@ TEST(Needs, CountTheStaticsThatARampIsHeldBeside) {
   EXPECT_GE(with_ramp.memory_bytes(), direct);
   EXPECT_GT(total_bytes(with_ramp.memory[1]),
             bytes_of(with_ramp, "the factor of the stiffness") + bytes_of(with_ramp, "states of the ramp"));
+}
+
+TEST(SuitableThreads, AreOneForSmallPlates) {
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  EXPECT_EQ(suitable_threads(coarse_case(interface::EventKind::left, 1e-3)), 1);
+  EXPECT_EQ(suitable_threads(coarse_case(interface::EventKind::left, 2.0 / 3e3)), std::min(2, processors));
+  EXPECT_EQ(suitable_threads(coarse_case(interface::EventKind::left, 1e-4)), std::min(4, processors));
 }
 
 TEST(Needs, CountTheStepsOfTheRamp) {

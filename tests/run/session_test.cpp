@@ -55,7 +55,7 @@ SessionHooks stopping_at(const std::string& part, std::int64_t stop_at) {
 
 SessionOptions with_threads(int threads) {
   SessionOptions options;
-  options.execution.threads = threads;
+  options.threads = threads;
   return options;
 }
 
