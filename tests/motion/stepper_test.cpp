@@ -420,7 +420,9 @@ TEST(Stepper, RefusesALayerAsHighAsThePlate) {
     Stepper(mesh, {}, paper_law, time);
     FAIL() << "no error";
   } catch (const UserError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("time.interface_rows = 10 does not fit"));
+    EXPECT_THAT(error.what(),
+                ::testing::HasSubstr(
+                    "time.interface_rows = 10 needs 11 rows of elements at the interface, the plate has 10"));
   }
 }
 
