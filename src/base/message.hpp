@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -55,8 +57,8 @@ struct fmt::formatter<slipfront::Key> {
   }
   template <class Context>
   auto format(const slipfront::Key& key, Context& context) const {
-    const std::string_view name = key.name;
-    return fmt::format_to(context.out(), "{}", leaf_alone_ ? name.substr(name.rfind('.') + 1) : name);
+    const auto from = leaf_alone_ ? key.name.rfind('.') + 1 : 0;
+    return std::copy(key.name.begin() + static_cast<std::ptrdiff_t>(from), key.name.end(), context.out());
   }
 
  private:
@@ -68,6 +70,6 @@ struct fmt::formatter<slipfront::Message> {
   constexpr auto parse(fmt::format_parse_context& context) { return context.begin(); }
   template <class Context>
   auto format(const slipfront::Message& message, Context& context) const {
-    return fmt::format_to(context.out(), "{}", message.text);
+    return std::copy(message.text.begin(), message.text.end(), context.out());
   }
 };
