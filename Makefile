@@ -4,14 +4,18 @@ SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
 
-APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv \
+APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv python3-dev \
   libfmt-dev libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev \
-  libhdf5-dev libboost-dev libcereal-dev libssl-dev libsuitesparse-dev libopenblas-serial-dev libgtest-dev libgmock-dev
+  libhdf5-dev libboost-dev libcereal-dev libssl-dev libgtest-dev libgmock-dev
+SLURM_PACKAGES := slurm-wlm munge
 LINT_PACKAGES := clang-format-14 clang-tidy-14
-SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev libomp-14-dev
+SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev
 FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
+PACKAGING_PACKAGES := dpkg-dev lintian file
+TRIAL_PACKAGES := debootstrap
 FUZZ_SECONDS ?= 60
 COVERAGE_PACKAGES := gcovr
+BROWSER_PACKAGES := chromium chromium-driver fonts-dejavu-core
 RESULTS ?= results
 EXPERIMENT ?=
 VENV := .venv
@@ -19,7 +23,7 @@ PYTHON := $(VENV)/bin/python
 PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup program build test reproduce sensitivity quick regularised convergence interface-step open-choices bases reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile fuzz sanitize coverage clean
+.PHONY: help setup program build module stubs wheel-trial test examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -33,16 +37,23 @@ packages:
 $(VENV)/.installed: pyproject.toml | packages
 	@echo "== Python environment $(VENV)"
 	python3 -m venv $(VENV)
-	$(PYTHON) scripts/python-requirements.py test | $(PIP_INSTALL)
+	$(PYTHON) scripts/python-requirements.py test build sweep | $(PIP_INSTALL)
+	@touch $@
+
+$(VENV)/.installed-browser: $(VENV)/.installed
+	$(PYTHON) scripts/python-requirements.py browser | $(PIP_INSTALL)
 	@touch $@
 
 $(VENV)/.installed-lint: $(VENV)/.installed
 	$(PYTHON) scripts/python-requirements.py lint | $(PIP_INSTALL)
 	@touch $@
 
+# The Python module stays configured once it is, unless the environment that it is built with has gone.
+CONFIGURE = cmake --preset release $(if $(wildcard $(VENV)/.installed),,-D SLIPFRONT_PYTHON=OFF)
+
 program: packages  ## build the program alone: build/release/slipfront
 	@echo "== Building $(PROGRAM)"
-	cmake --preset release
+	$(CONFIGURE)
 	cmake --build --preset release --target slipfront
 
 # What the targets below need, the downloads beside the compilation.
@@ -52,11 +63,25 @@ ready: packages
 
 ready-to-test: packages
 	@$(MAKE) --no-print-directory -j2 build $(VENV)/.installed
+	@$(MAKE) --no-print-directory module
 
 build: packages  ## build the program and all tests
 	@echo "== Building everything"
-	cmake --preset release
+	$(CONFIGURE)
 	cmake --build --preset release
+
+module: program $(VENV)/.installed  ## build the Python module as well: python/slipfront/_core
+	cmake --preset release -D SLIPFRONT_PYTHON=ON -D Python_EXECUTABLE=$(abspath $(PYTHON))
+	cmake --build --preset release --target slipfront_core
+
+stubs: module  ## renew the types of the module, python/slipfront/_core.pyi
+	PYTHONPATH=python $(PYTHON) -m nanobind.stubgen -q -m slipfront._core -o python/slipfront/_core.pyi
+
+# What is built serves for the wheel, too.
+wheel-trial: module  ## make the wheel of this machine, build/slipfront-*.whl, and try it in an empty environment
+	rm -rf build/slipfront-*.whl build/wheel-trial
+	$(PYTHON) -m pip wheel --quiet --no-deps --no-build-isolation -C build-dir=build/release -w build .
+	scripts/try-wheel build/slipfront-*.whl build/wheel-trial
 
 test: ready-to-test  ## all tests, C++ and Python
 	@scripts/run-tests build/release $(PYTHON)
@@ -131,10 +156,35 @@ bases: ready  ## the paper's events on deformable bases: renews docs/bases.md an
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.bases docs/figures/bases.png $(RESULTS)-bases
 	$(PYTHON) scripts/bases-page.py $(RESULTS)-bases docs/bases.md
 
+sweep: ready  ## 400 runs over the friction law's parameters, and their map, into results-sweep/ and docs/figures
+	$(PROGRAM) sweep examples/sweeps/mu_k_alpha.toml -o $(RESULTS)-sweep
+	PYTHONPATH=python $(PYTHON) -m slipfront.sweep.maps docs/figures/sweep_mu_k_alpha.png $(RESULTS)-sweep
+
+slurm-trial: ready  ## sweeps by job arrays and workers of a Slurm cluster of this machine alone; as root
+	@scripts/install-packages $(SLURM_PACKAGES)
+	$(PYTHON) scripts/python-requirements.py sweep cluster | $(PIP_INSTALL)
+	scripts/slurm-trial $(PROGRAM) $(PYTHON)
+
 reference: ready  ## problems that other codes have solved, on several meshes each, into results-reference/
 	$(PYTHON) scripts/compare-reference.py a --program $(PROGRAM) --results $(RESULTS)-reference
 	$(PYTHON) scripts/compare-reference.py f --program $(PROGRAM) --results $(RESULTS)-reference
 	$(PYTHON) scripts/compare-tpv205.py --program $(PROGRAM) --results $(RESULTS)-reference
+
+examples: ready  ## the worked cases of examples/, into results-examples/, and their pictures in docs/figures
+	PYTHONPATH=python $(PYTHON) scripts/run-examples.py $(PROGRAM) $(RESULTS)-examples docs/figures
+
+$(VENV)/.installed-docs: $(VENV)/.installed
+	$(PYTHON) scripts/python-requirements.py docs | $(PIP_INSTALL)
+	@touch $@
+
+# `make docs` renews pages of the sources; this makes a site of them.
+SPHINX = $(VENV)/bin/sphinx-build -c docs -q -W --keep-going
+site: $(VENV)/.installed-docs  ## the documentation as a site, build/site/index.html; any warning fails
+	$(SPHINX) -b html . build/site
+	@echo "site: build/site/index.html"
+
+site-links: $(VENV)/.installed-docs  ## fail where a link of the documentation to elsewhere leads nowhere; needs the network
+	$(SPHINX) -b linkcheck . build/site-links
 
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
@@ -170,6 +220,10 @@ tidy: packages lint-packages  ## clang-tidy over src, or TIDY=src/ROOM alone; fa
 hostile: ready-to-test  ## runs that are killed, damaged, signalled, or fail at any call: results are right or refused
 	PYTHONPATH=tests $(PYTHON) -m hostile $(PROGRAM)
 
+report-trial: ready $(VENV)/.installed-browser  ## pages of `slipfront report` in a real browser, with screenshots in results-browser/
+	@scripts/install-packages $(BROWSER_PACKAGES)
+	SLIPFRONT=$(CURDIR)/$(PROGRAM) SLIPFRONT_SCREENSHOTS=$(RESULTS)-browser $(PYTHON) -m pytest -q tests/browser
+
 sanitize: packages  ## the C++ tests and coarse runs under the address, undefined-behaviour and thread sanitizers
 	@scripts/install-packages $(SANITIZER_PACKAGES)
 	cmake --preset asan
@@ -189,6 +243,29 @@ coverage: packages  ## lines of the numerical core that the C++ tests run: table
 	cmake --preset coverage
 	cmake --build --preset coverage
 	@scripts/run-coverage build/coverage
+
+package: packages  ## the program and libslipfront for any x86-64 processor, to be installed: build/package
+	cmake --preset package
+	cmake --build --preset package
+
+install-trial: package  ## install it into build/install-trial and use program and library from there
+	@scripts/install-trial build/package build/install-trial
+
+.PHONY: package install-trial deb deb-trial source-archive
+deb: package  ## a Debian package: build/package/slipfront_VERSION_amd64.deb, looked over by lintian
+	@scripts/install-packages $(PACKAGING_PACKAGES)
+	cd build/package && rm -f slipfront_*.deb && cpack -G DEB
+	lintian --fail-on error,warning build/package/slipfront_*.deb
+
+deb-trial: deb  ## install, run and remove it on a bare Debian 12; as root
+	@scripts/install-packages $(TRIAL_PACKAGES)
+	@scripts/deb-trial build/package/slipfront_*.deb build/deb-trial
+
+VERSION = $(shell sed -nE 's/^project.slipfront VERSION ([0-9.]+).*/\1/p' CMakeLists.txt)
+
+source-archive:  ## the sources of the last commit: build/slipfront-VERSION.tar.gz
+	@mkdir -p build
+	git archive --format=tar.gz --prefix=slipfront-$(VERSION)/ -o build/slipfront-$(VERSION).tar.gz HEAD
 
 clean:  ## remove build, venv and results
 	rm -rf build .cache $(VENV) $(RESULTS) $(RESULTS)-*

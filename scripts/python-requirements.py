@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints what pyproject.toml requires: the package's dependencies and those of the extras named.
+"""Prints what pyproject.toml requires: the package's dependencies and those of the extras named; "build"
+stands for what building it takes.
 
 usage: python-requirements.py [EXTRA]..."""
 
@@ -7,8 +8,9 @@ import pathlib
 import sys
 import tomllib
 
-project = tomllib.loads((pathlib.Path(__file__).parent.parent / "pyproject.toml").read_text())["project"]
-requirements = project["dependencies"]
+file = tomllib.loads((pathlib.Path(__file__).parent.parent / "pyproject.toml").read_text())
+extras = {**file["project"]["optional-dependencies"], "build": file["build-system"]["requires"]}
+requirements = file["project"]["dependencies"]
 for extra in sys.argv[1:]:
-    requirements += project["optional-dependencies"][extra]
+    requirements += extras[extra]
 print("\n".join(requirements))

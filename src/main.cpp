@@ -11,9 +11,9 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/version.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/python_command.hpp"
 
 namespace {
 
@@ -46,8 +46,9 @@ int report(int code, const std::string& message) {
 }
 
 int run(int argc, char** argv) {
+  slipfront::cli::become_python_command(argc, argv);
   slipfront::cli::Program program("slipfront", "Slip fronts at frictional interfaces",
-                                  slipfront::version_line());
+                                  slipfront::cli::version_text());
   auto& command = program.command();
   slipfront::cli::add_run(command);
   slipfront::cli::add_reproduce(command);
@@ -57,6 +58,8 @@ int run(int argc, char** argv) {
   slipfront::cli::add_bench(command);
   slipfront::cli::add_validate(command);
   slipfront::cli::add_keys(command);
+  slipfront::cli::add_python_commands(command);
+  slipfront::cli::add_page(command, program);
   program.run(argc, argv);
   return done;
 }

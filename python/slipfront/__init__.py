@@ -1,2 +1,87 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reading and drawing the results of slipfront. Nothing is computed here that the program does not write."""
+"""Slip fronts at frictional interfaces: cases run, results opened, a user's own data measured. docs/python.md
+
+Nothing is imported before it is used: figures and readers need neither xarray nor the compiled module."""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from slipfront._core import Claim as Claim
+    from slipfront._core import Collapse as Collapse
+    from slipfront._core import ExponentialFit as ExponentialFit
+    from slipfront._core import Info as Info
+    from slipfront._core import Outcome as Outcome
+    from slipfront._core import WaveSpeeds as WaveSpeeds
+    from slipfront._core import WellPosedness as WellPosedness
+    from slipfront.claims import collapse as collapse
+    from slipfront.claims import outcome as outcome
+    from slipfront.claims import scorecard as scorecard
+    from slipfront.errors import BlowUpError as BlowUpError
+    from slipfront.errors import CaseError as CaseError
+    from slipfront.errors import Error as Error
+    from slipfront.errors import WriteError as WriteError
+    from slipfront.files import DataError as DataError
+    from slipfront.material import stable_step_s as stable_step_s
+    from slipfront.material import wave_speeds as wave_speeds
+    from slipfront.material import well_posedness as well_posedness
+    from slipfront.measures import FrontSettings as FrontSettings
+    from slipfront.measures import criteria as criteria
+    from slipfront.measures import find_fronts as find_fronts
+    from slipfront.measures import find_fronts_in_history as find_fronts_in_history
+    from slipfront.measures import fit_exponential as fit_exponential
+    from slipfront.measures import rank_correlation as rank_correlation
+    from slipfront.measures import spread_at_equal_x as spread_at_equal_x
+    from slipfront.opened import OpenRun as OpenRun
+    from slipfront.opened import open as open
+    from slipfront.running import info as info
+    from slipfront.running import resume as resume
+    from slipfront.running import run as run
+    from slipfront.running import run_with_law as run_with_law
+
+# The module of each name.
+_PLACES = {
+    "Claim": "_core",
+    "Collapse": "_core",
+    "ExponentialFit": "_core",
+    "Info": "_core",
+    "Outcome": "_core",
+    "WaveSpeeds": "_core",
+    "WellPosedness": "_core",
+    "collapse": "claims",
+    "outcome": "claims",
+    "scorecard": "claims",
+    "BlowUpError": "errors",
+    "CaseError": "errors",
+    "Error": "errors",
+    "WriteError": "errors",
+    "DataError": "files",
+    "stable_step_s": "material",
+    "wave_speeds": "material",
+    "well_posedness": "material",
+    "FrontSettings": "measures",
+    "criteria": "measures",
+    "find_fronts": "measures",
+    "find_fronts_in_history": "measures",
+    "fit_exponential": "measures",
+    "rank_correlation": "measures",
+    "spread_at_equal_x": "measures",
+    "OpenRun": "opened",
+    "open": "opened",
+    "info": "running",
+    "resume": "running",
+    "run": "running",
+    "run_with_law": "running",
+}
+
+__all__ = tuple(_PLACES)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PLACES:
+        raise AttributeError(f"module 'slipfront' has no attribute '{name}'")
+    return getattr(import_module(f"slipfront.{_PLACES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_PLACES})

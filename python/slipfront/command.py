@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 import sys
@@ -13,9 +14,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TextIO
 
-from slipfront.files import DataError, one_line
+from slipfront.files import DataError, NoRoom, one_line, open_file
 
-DONE, REFUSED, INTERRUPTED = 0, 2, 130
+DONE, NOT_WRITTEN, REFUSED, INTERRUPTED = 0, 1, 2, 130
 
 
 def write_line(stream: TextIO | None, text: str) -> None:
@@ -47,7 +48,7 @@ def run(name: str, work: Callable[[], list[str]]) -> int:
             lines = work()
     except DataError as error:
         report_error(name, str(error))
-        return REFUSED
+        return NOT_WRITTEN if isinstance(error, NoRoom) else REFUSED
     except KeyboardInterrupt:
         report_error(name, "interrupted")
         return INTERRUPTED
@@ -59,6 +60,11 @@ def run(name: str, work: Callable[[], list[str]]) -> int:
         report_error(name, f"standard output: {error.strerror}")
         return REFUSED
     return DONE
+
+
+def not_written(path: Path, error: OSError) -> DataError:
+    kind = NoRoom if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EFBIG) else DataError
+    return kind(f"{path}: cannot be written: {error.strerror or error}")
 
 
 def replaceable(file: Path) -> Path:
@@ -74,6 +80,15 @@ def replaceable(file: Path) -> Path:
     return file
 
 
+def require_own(file: Path, mark: bytes, what: str) -> None:
+    """Refuses a path where anything but a file of ours is: one that begins with the mark."""
+    if replaceable(file).exists():
+        with open_file(file) as stream:
+            beginning = stream.read(len(mark))
+        if beginning != mark:
+            raise DataError(f"{file}: is there and not {what}: not replaced; give another name with -o")
+
+
 @contextmanager
 def publishing_into(folder: Path) -> Iterator[Path]:
     """A folder to write into, inside `folder`. At the end its files go there; after an error none does."""
@@ -85,7 +100,7 @@ def publishing_into(folder: Path) -> Iterator[Path]:
             for file in sorted(Path(made).iterdir()):
                 os.replace(file, folder / file.name)
     except OSError as error:
-        raise DataError(f"{folder}: cannot be written: {error.strerror or error}") from None
+        raise not_written(folder, error) from None
     finally:
         if is_new:
             with suppress(OSError):

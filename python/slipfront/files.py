@@ -20,12 +20,18 @@ from typing import Any
 import h5py
 import numpy as np
 
+from slipfront.errors import Error
+
 LARGEST_TEXT_BYTES = 2**30
 LARGEST_PACKING = 1032  # of deflate: no data set unpacks to more than so many times its bytes in the file
 
 
-class DataError(Exception):
+class DataError(Error):
     """A file is missing or not as expected; the message is one line that names it."""
+
+
+class NoRoom(DataError):
+    """The system does not write: a full disk, a quota, a broken device. Exit code 1."""
 
 
 def one_line(text: str) -> str:

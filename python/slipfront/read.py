@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ import numpy as np
 from slipfront import command
 from slipfront.files import (
     DataError,
+    Table,
     dataset,
     is_folder,
     number,
@@ -43,8 +45,25 @@ FRONT_COLUMNS = (
     "U_s_J_per_m3",
     "U_r_J_per_m3",
 )
+# What the time says that a tip takes at a row of fronts.csv; there is a speed with the first alone.
+SPEED_KINDS = ("front", "triggered", "simultaneous", "path_end")
 # Per node and row of history.raw, in this order; data sets of interface.h5.
 HISTORY_FIELDS = ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa")
+# Data sets of probes.h5, [times, probes].
+PROBE_FIELDS = (
+    "u_x_m",
+    "u_y_m",
+    "v_x_m_per_s",
+    "v_y_m_per_s",
+    "strain_xx",
+    "strain_yy",
+    "strain_zz",
+    "strain_xy",
+    "stress_xx_Pa",
+    "stress_yy_Pa",
+    "stress_zz_Pa",
+    "stress_xy_Pa",
+)
 # Columns of energy.csv without their unit, J per m of thickness.
 ENERGY_TERMS = (
     "strain",
@@ -88,7 +107,8 @@ class Front:
     direction: int  # +1 or -1 along x; the imposed shear is to +1
     x_m: np.ndarray
     onset_s: np.ndarray
-    v_tip_m_per_s: np.ndarray
+    v_tip_m_per_s: np.ndarray  # NaN where nothing travels
+    speed_kind: np.ndarray  # one of SPEED_KINDS; empty texts of a program that did not tell them apart
     static_ratio: np.ndarray  # t_s / p_s
     dynamic_ratio: np.ndarray  # t_d / p_d
     energy_rise: np.ndarray  # (U_r - U_s) / U_s
@@ -136,6 +156,17 @@ class History:
     x_m: np.ndarray  # [nodes]
     slip_rate_m_per_s: np.ndarray  # [times, nodes]
     p_Pa: np.ndarray  # [times, nodes]; zero where the contact is open
+
+
+@dataclass(frozen=True)
+class Probes:
+    """What strain gauges record, from probes.h5."""
+
+    names: tuple[str, ...]  # [probes]
+    x_m: np.ndarray  # [probes]
+    y_m: np.ndarray  # [probes]; below 0 in the base
+    time_s: np.ndarray  # [times]
+    fields: dict[str, np.ndarray]  # by the names of PROBE_FIELDS. [times, probes]
 
 
 @dataclass(frozen=True)
@@ -225,7 +256,13 @@ class Run:
     @property
     def remarks(self) -> list[str]:
         """Lines to print beside the figures."""
-        return self.place.remarks(self.history.time_s[-1])
+        lines = self.place.remarks(self.history.time_s[-1])
+        if any((front.speed_kind == "").any() for front in self.fronts):
+            lines.append(
+                f"{self.place.folder / 'fronts.csv'}: of a program that did not tell nodes released by the "
+                "trigger or at once from a front: the fastest speeds may be of such"
+            )
+        return lines
 
     def parameter(self, key: str) -> float:
         """Number of a dotted key of the case file."""
@@ -293,8 +330,19 @@ def read_static(file: Path) -> dict[str, np.ndarray]:
     return columns
 
 
+def speed_kinds(table: Table) -> np.ndarray:
+    """Column speed_kind of fronts.csv; empty texts in files of before there was one. [rows]"""
+    if "speed_kind" not in table.header:
+        return np.full(len(table.rows), "")
+    kinds = np.array(table.texts("speed_kind"), dtype=str)
+    require(np.isin(kinds, SPEED_KINDS), table.file, "a value of column 'speed_kind' is none of its words")
+    return kinds
+
+
 def read_fronts(file: Path, growing: bool = False) -> list[Front]:
-    columns = read_columns(file, FRONT_COLUMNS, growing)
+    table = read_table(result_file(file), growing=growing)
+    columns = {name: table.numbers(name) for name in FRONT_COLUMNS}
+    kinds = speed_kinds(table)
     for name in ("front_id", "x_m", "onset_s", "direction"):
         require(~np.isnan(columns[name]), file, f"empty cell in column '{name}'")
     ids = columns["front_id"]
@@ -315,6 +363,7 @@ def read_fronts(file: Path, growing: bool = False) -> list[Front]:
                 x_m=c["x_m"],
                 onset_s=c["onset_s"],
                 v_tip_m_per_s=c["v_tip_m_per_s"],
+                speed_kind=kinds[ids == front_id],
                 static_ratio=ratio(c["t_s_Pa"], c["p_s_Pa"]),
                 dynamic_ratio=ratio(c["t_d_Pa"], c["p_d_Pa"]),
                 energy_rise=ratio(c["U_r_J_per_m3"] - c["U_s_J_per_m3"], c["U_s_J_per_m3"]),
@@ -349,16 +398,35 @@ def read_history(file: Path, blew_up: bool = False) -> History:
     return checked_history(file, History(time_s, x_m, rate, p), blew_up)
 
 
-def read_raw_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
-    """history.raw: rows of time_s and HISTORY_FIELDS at the nodes; a cut row at the end is left."""
+def raw_history(file: Path, x_m: np.ndarray) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """history.raw: times and, by their names, HISTORY_FIELDS [times, nodes]; a cut row at the end is left."""
     data = read_bytes(result_file(file))
     n = len(x_m)
     width = 1 + len(HISTORY_FIELDS) * n
     n_rows = len(data) // (8 * width)
     rows = np.frombuffer(data, dtype="<f8", count=n_rows * width).reshape(n_rows, width)
-    first = {name: 1 + k * n for k, name in enumerate(HISTORY_FIELDS)}
-    rate, p = (rows[:, first[name] : first[name] + n] for name in ("slip_rate_m_per_s", "p_Pa"))
-    return checked_history(file, History(rows[:, 0], x_m, rate, p), blew_up)
+    fields = {name: rows[:, 1 + k * n : 1 + (k + 1) * n] for k, name in enumerate(HISTORY_FIELDS)}
+    return rows[:, 0], fields
+
+
+def read_raw_history(file: Path, x_m: np.ndarray, blew_up: bool = False) -> History:
+    time_s, fields = raw_history(file, x_m)
+    return checked_history(file, History(time_s, x_m, fields["slip_rate_m_per_s"], fields["p_Pa"]), blew_up)
+
+
+def read_probes(file: Path) -> Probes:
+    file = result_file(file)
+    with open_hdf5(file) as hdf5:
+        if "name" not in hdf5:
+            raise DataError(f"{file}: no data set 'name'")
+        names = tuple(str(name) for name in hdf5["name"].asstr()[()])
+        x_m, y_m, time_s = (dataset(hdf5, name, 1)[()] for name in ("x_m", "y_m", "time_s"))
+        fields = {name: dataset(hdf5, name, 2)[()] for name in PROBE_FIELDS}
+    shape = len(time_s), len(names)
+    require(len(x_m) == len(y_m) == shape[1], file, "names and places differ in number")
+    for name, values in fields.items():
+        require(values.shape == shape, file, f"{name} is {values.shape}; it must be {shape}")
+    return Probes(names, x_m, y_m, time_s, fields)
 
 
 def read_fields(file: Path) -> Fields:
@@ -440,21 +508,37 @@ def read_place(folder: Path) -> Place:
     return Place(folder.name or folder.resolve().name, place, info, status, reason, tuple(notes))
 
 
-def read_run(folder: Path) -> Run:
+def read_history_of(place: Place, x_m: np.ndarray) -> History:
+    """The history of a run whose nodes are at `x_m`, from the file that has it."""
+    file = history_file(place)
+    blew_up = place.status == BLEW_UP
+    is_raw = file.suffix == ".raw"
+    history = read_raw_history(file, x_m, blew_up) if is_raw else read_history(file, blew_up)
+    require_same_nodes(file, history.x_m, x_m)
+    return history
+
+
+def history_file(place: Place) -> Path:
+    """interface.h5 or, of a run that has not come to its end, state/history.raw."""
+    raw, finished = place.folder / "state/history.raw", place.folder / "interface.h5"
+    return raw if belongs(raw) and (place.growing or not belongs(finished)) else finished
+
+
+def require_same_nodes(file: Path, x_m: np.ndarray, static_x_m: np.ndarray) -> None:
+    same = len(x_m) == len(static_x_m) and np.allclose(x_m, static_x_m)
+    require(same, file, "its nodes are not those of static.csv: the files are of two runs")
+
+
+#: Reads the history of a run, given where it is and the positions of its nodes.
+HistoryReader = Callable[[Place, np.ndarray], History]
+
+
+def read_run(folder: Path, read_its_history: HistoryReader = read_history_of) -> Run:
     place = read_place(folder)
     folder, growing = place.folder, place.growing
     static = read_static(folder / "static.csv")
     blew_up = place.status == BLEW_UP
-    has_raw = belongs(folder / "state/history.raw")
-    if has_raw and (growing or not belongs(folder / "interface.h5")):
-        history = read_raw_history(folder / "state/history.raw", static["x_m"], blew_up)
-    else:
-        history = read_history(folder / "interface.h5", blew_up)
-    require(
-        len(history.x_m) == len(static["x_m"]) and np.allclose(history.x_m, static["x_m"]),
-        folder / "interface.h5",
-        "its nodes are not those of static.csv: the files are of two runs",
-    )
+    history = read_its_history(place, static["x_m"])
     has_fields = not growing and belongs(folder / "fields.vtkhdf")
     return Run(
         place=place,

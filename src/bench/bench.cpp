@@ -16,6 +16,7 @@
 #include "base/clock.hpp"
 #include "fronts/fit.hpp"
 #include "input/case.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "mesh/plate.hpp"
 #include "mesh/reorder.hpp"
 #include "motion/stepper.hpp"

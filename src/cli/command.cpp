@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command.hpp"
 
+#include <fmt/core.h>
+
 #include <CLI/CLI.hpp>
 #include <optional>
 
@@ -44,27 +46,23 @@ Option* Option::range(int from, int to) {
   return this;
 }
 
-/// Not a number where the text is none.
-static double number_in(const std::string& text) {
-  double value = 0;
-  return CLI::detail::lexical_cast(text, value) ? value : std::numeric_limits<double>::quiet_NaN();
+/// Of CLI11's own checks the messages name the largest double, and nan passes.
+static CLI::Validator number_that(bool (*fits)(double), const char* words, const char* name) {
+  return {[=](const std::string& text) {
+            double value = 0;
+            const bool is_right = CLI::detail::lexical_cast(text, value) && fits(value);
+            return is_right ? std::string() : fmt::format("{} is not a number {}", text, words);
+          },
+          name};
 }
 
 Option* Option::positive() {
-  option_.check(CLI::Validator(
-      [](const std::string& text) {
-        return number_in(text) > 0 ? std::string() : text + " is not a number greater than 0";
-      },
-      "POSITIVE"));
+  option_.check(number_that([](double value) { return value > 0; }, "greater than 0", "POSITIVE"));
   return this;
 }
 
 Option* Option::non_negative() {
-  option_.check(CLI::Validator(
-      [](const std::string& text) {
-        return number_in(text) >= 0 ? std::string() : text + " is not a number of at least 0";
-      },
-      "NONNEGATIVE"));
+  option_.check(number_that([](double value) { return value >= 0; }, "of at least 0", "NONNEGATIVE"));
   return this;
 }
 
@@ -88,6 +86,10 @@ Command* Command::add_subcommand(const char* name, const char* description) {
 
 void Command::require_subcommand() {
   app_.require_subcommand(1);
+}
+
+void Command::hide() {
+  app_.group("");
 }
 
 template <class Value>
@@ -126,6 +128,40 @@ Program::Program(const char* name, const char* description, const std::string& v
 }
 
 Program::~Program() = default;
+
+/// CLI11 has the choices in the name of the type: "TEXT:{auto,direct}".
+static std::vector<std::string> choices_in(const std::string& type) {
+  const auto from = type.find('{'), to = type.find('}');
+  if (from == std::string::npos || to == std::string::npos) return {};
+  return CLI::detail::split(type.substr(from + 1, to - from - 1), ',');
+}
+
+static OptionDescription described(const CLI::Option& option) {
+  OptionDescription described;
+  described.positional = option.get_positional();
+  for (const auto& name : option.get_snames()) described.names.push_back("-" + name);
+  for (const auto& name : option.get_lnames()) described.names.push_back("--" + name);
+  if (described.positional) described.names = {option.get_name(true)};
+  const std::string type = option.get_type_name();
+  if (!described.positional && option.get_items_expected_max() > 0)
+    described.value = type.substr(0, type.find(':'));
+  described.help = option.get_description();
+  described.preset = option.get_default_str();
+  described.choices = choices_in(type);
+  return described;
+}
+
+static CommandDescription described(const CLI::App& app) {
+  CommandDescription described_app{app.get_name(), app.get_description(), {}, {}};
+  for (const auto* option : app.get_options()) described_app.options.push_back(described(*option));
+  for (const auto* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (!sub->get_group().empty()) described_app.subcommands.push_back(described(*sub));
+  return described_app;
+}
+
+CommandDescription Program::description() const {
+  return described(*app_);
+}
 
 void Program::run(int argc, char** argv) {
   try {

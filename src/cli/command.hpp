@@ -15,6 +15,23 @@ class Option;
 /// compile than all the rest of a subcommand.
 namespace slipfront::cli {
 
+/// An option as its declaration has it.
+struct OptionDescription {
+  std::vector<std::string> names;  ///< "-o", "--output"; a positional's own
+  std::string value;               ///< what the help calls it; empty for a flag
+  std::string help;
+  std::string preset;                ///< its default, where the help tells it
+  std::vector<std::string> choices;  ///< the only values, where they are named
+  bool positional = false;
+};
+
+/// The program or a subcommand, those below it included that are not hidden.
+struct CommandDescription {
+  std::string name, help;
+  std::vector<OptionDescription> options;
+  std::vector<CommandDescription> subcommands;
+};
+
 /// An option; each function adds to it and returns it.
 class Option {
  public:
@@ -53,6 +70,8 @@ class Command {
 
   Command* add_subcommand(const char* name, const char* description);
   void require_subcommand();
+  /// From the help.
+  void hide();
   /// @param value  filled when the command line is parsed; command.cpp lists the types
   template <class Value>
   Option* add_option(const char* names, Value& value, const char* description);
@@ -74,6 +93,7 @@ class Program {
   ~Program();
 
   Command& command() { return command_; }
+  CommandDescription description() const;
   /// Parses the command line and does the subcommand's work, or prints the help or version it asks for.
   /// @throws UserError where it cannot be understood
   void run(int argc, char** argv);

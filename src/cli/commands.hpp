@@ -21,6 +21,11 @@ void add_info(Command& app);
 void add_bench(Command& app);
 void add_validate(Command& app);
 void add_keys(Command& app);
+/// Hidden: prints what the installation takes from the program. @param program  with all its subcommands
+void add_page(Command& app, const Program& program);
+
+/// What --version prints: the version line and how the program was built.
+std::string version_text();
 
 /// The arguments of every subcommand that works on a case: CASE.toml [--set key=value]...
 class CaseArguments {
@@ -30,6 +35,7 @@ class CaseArguments {
 
   const input::Case& read() const { return case_file().config(); }
   /// See input::CaseFile.
+  const std::vector<std::string>& notes() const { return case_file().notes(); }
   UserError with_place(const UserError& error) const { return case_file().with_place(error); }
 
  private:

@@ -77,6 +77,43 @@ void add_costs(const run::Info& info, Listing& list) {
   list.add("expected time", fmt::format("{:.2g} s", info.expected_s));
 }
 
+std::string text_of(double number) {
+  return std::isfinite(number) ? fmt::format("{:.3g}", number) : "unbounded";
+}
+
+std::string text_of(const stability::Spread& spread) {
+  return fmt::format("{}, {}, {}", text_of(spread.least), text_of(spread.median), text_of(spread.largest));
+}
+
+/// What a law that weakens over a slip lets expect.
+void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
+  const auto& o = rupture.of_nodes;
+  if (!o.nucleation_length_m) {
+    list.add("nucleation length", "none: friction does not weaken over a slip, the mesh decides");
+    return;
+  }
+  const auto trigger = rupture.trigger_length_m
+                           ? fmt::format("; the trigger has {:.3g} m", *rupture.trigger_length_m)
+                           : std::string();
+  list.add("nucleation length", fmt::format("{:.3g} m (Uenishi, Rice 2003)", *o.nucleation_length_m));
+  if (o.griffith_half_length_m)
+    list.add("critical crack length",
+             fmt::format("{:.3g} m (Griffith; Andrews 1976){}", 2 * *o.griffith_half_length_m, trigger));
+  list.add("process zone at rest", fmt::format("{:.3g} m, {:.3g} elements (Palmer, Rice 1973)",
+                                               *o.process_zone_m, *rupture.process_zone_elements));
+}
+
+void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {
+  if (rupture.nominal) {
+    list.add("rupture", "at t = mu_s p under the nominal pressure; `run` tells S along the interface");
+  } else {
+    list.add("strength excess S", text_of(rupture.of_nodes.S) + " (least, median, largest)");
+    list.add("seismic ratio 1/(1 + S)", text_of(rupture.of_nodes.drop_ratio));
+    list.add("expected regime", rupture.of_nodes.regime);
+  }
+  add_lengths(rupture, list);
+}
+
 void add_stability_of_sliding(const run::Info& info, Listing& list) {
   const auto& w = info.well_posedness;
   list.add("nominal pressure", fmt::format("{:.4g} Pa", w.sliding.pressure_Pa));
@@ -110,6 +147,9 @@ void print_info(const CaseArguments& arguments) {
   add_steps(config, info, list);
   add_costs(info, list);
   add_stability_of_sliding(info, list);
+  add_rupture(info.rupture, list);
+  for (const auto& note : arguments.notes()) list.text += fmt::format("note: {}\n", note);
+  for (const auto& doubt : info.rupture.doubts) list.text += fmt::format("note: {}\n", doubt);
   for (const auto& warning : run::warnings_of_case(config)) list.text += fmt::format("note: {}\n", warning);
   print_output(list.text);
 }

@@ -37,14 +37,20 @@ void print_ramp(const motion::Ramp& ramp, double direct_shear_m) {
       "found directly\n",
       ramp.common.peak_x_m, shear_m, 100 * (shear_m / direct_shear_m - 1), direct_shear_m);
   print("beginnings of slip during the ramp: {} at the edges, {} inside, in the last step\n",
-        ramp.record.n_onsets() - static_cast<std::uint64_t>(n_inside), n_inside);
+        ramp.record.n_onsets() - n_inside, n_inside);
+}
+
+void print_rupture(const stability::Outlook& o) {
+  print("S before the event, inside: {:.3g} to {:.3g}, median {:.3g}; expected: {}\n", o.S.least, o.S.largest,
+        o.S.median, o.regime);
 }
 
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
   const auto& event = result.event;
   if (initial.prescribed)
-    print("prescribed tractions, t/p up to {:.4g} at x = {:.4g} m\n", initial.common.peak_ratio,
-          initial.common.peak_x_m);
+    print(
+        "prescribed tractions, t/p up to {:.4g}{}\n", initial.common.peak_ratio,
+        result.config.prestress.file.empty() ? "" : fmt::format(" at x = {:.4g} m", initial.common.peak_x_m));
   else if (initial.ramp)
     print_ramp(*initial.ramp, initial.critical_shear_m);
   else
@@ -66,6 +72,7 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
           std::isfinite(speed) ? fmt::format("median speed {:.2f} c_L", speed) : "speed undefined",
           fronts::name(front.mode), fronts::name(front.end));
   }
+  print_rupture(run::rupture_outlook(result.config, initial).of_nodes);
   for (const auto& warning : result.warnings) print("note: {}\n", warning);
   print("results: {}\n", dir);
 }
@@ -93,16 +100,6 @@ run::SessionHooks hooks(bool quiet) {
     shown->progress->note("note: " + note);
   };
   return hooks;
-}
-
-/// What to say of a run that has not come to its end.
-std::string what_was_kept(const results::ResultFolder& folder) {
-  return fmt::format("what there is was kept in {}", folder.unfinished().string());
-}
-
-std::string how_to_go_on(const results::ResultFolder& folder) {
-  return fmt::format("{}; slipfront run --restart {} goes on with it", what_was_kept(folder),
-                     folder.dir().string());
 }
 
 run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& options,
@@ -147,15 +144,14 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
   catch_interrupts();
   try {
     const auto [result, initial] = run_or_go_on(arguments, options, folder, config);
-    if (result.event.end == motion::EventEnd::blow_up)
-      throw BlowUp(result.event.blow_up + "; " + what_was_kept(folder));
-    if (result.event.end == motion::EventEnd::interrupted)
-      throw Interrupted(
-          fmt::format("interrupted at t = {:.4g} s; {}", result.event.time_s, how_to_go_on(folder)));
-    if (!options.quiet) print_summary(result, initial, folder.dir().string());
+    run::require_came_to_end(result, folder);
+    if (options.quiet) return;
+    if (config)
+      for (const auto& note : arguments.notes()) print("note: {}\n", note);
+    print_summary(result, initial, folder.dir().string());
   } catch (const WriteError& error) {
     if (!folder.has_unfinished()) throw;
-    throw WriteError("{}; {}", error.what(), how_to_go_on(folder));
+    throw WriteError("{}; {}", error.what(), run::how_to_go_on(folder));
   }
 }
 
@@ -189,6 +185,13 @@ void add_run(Command& app) {
                    "Simulated time between checkpoints, s; by default only wall time counts")
       ->positive()
       ->type_name("S");
+  command
+      ->add_option(
+          "--state-dir", session.shared_states,
+          "Folder in which runs share the state before the event: taken from there where a run of the "
+          "same plate, loading and strength at rest has kept it, else solved and kept")
+      ->type_name("DIR")
+      ->not_empty();
   command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
   command->callback([arguments, options] { run_case(*arguments, *options); });
 }

@@ -15,13 +15,16 @@ namespace {
 
 void validate(const CaseArguments& arguments) {
   const input::Case& config = arguments.read();
+  run::RuptureOutlook rupture;
   try {
-    run::check(config);
+    rupture = run::rupture_outlook(config, run::check(config));
   } catch (const UserError& error) {
     throw arguments.with_place(error);
   }
   std::string text = fmt::format("{}: valid\n", arguments.file);
-  auto notes = run::warnings_of_case(config);
+  auto notes = arguments.notes();
+  for (auto& note : run::warnings_of_case(config)) notes.push_back(std::move(note));
+  for (auto& doubt : rupture.doubts) notes.push_back(std::move(doubt));
   for (auto& note : run::snapshot_plan(config, run::estimated_size(config).step_s).notes)
     notes.push_back(std::move(note));
   for (const auto& note : notes) text += fmt::format("note: {}\n", note);

@@ -128,19 +128,50 @@ double time_at(const Passage& tip, const Bracket& at) {
   return interpolate(tip.time_s[at.behind], tip.time_s[at.ahead], at.fraction);
 }
 
-double tip_speed_m_per_s(const Passage& tip, double run_m, double l_star_m, SpeedInterval interval,
-                         double resolution_s) {
-  const bool is_centred = interval == SpeedInterval::centred;
+/// The first and the last point of a path that a length of it lies between.
+struct Points {
+  std::size_t first = 0, last = 0;
+};
+
+/// A tip near to a node is at the node.
+Points points_around(const Bracket& from, const Bracket& to) {
+  return {from.fraction > 1.0 - position_tolerance ? from.ahead : from.behind,
+          to.fraction < position_tolerance ? to.behind : to.ahead};
+}
+
+bool is_any_driven(const record::SlipRecord& record, const Path& path, const Points& points,
+                   const FrontOptions& options) {
+  const auto begin = path.nodes.begin();
+  return std::any_of(begin + static_cast<std::ptrdiff_t>(points.first),
+                     begin + static_cast<std::ptrdiff_t>(points.last) + 1,
+                     [&](int node) { return is_driven(options, record.x_m[node]); });
+}
+
+/// Time in which information passes from one point to the other at the earliest.
+double least_time_s(const record::SlipRecord& record, const Path& path, const Points& points) {
+  const int n_elements = std::abs(path.nodes[points.last] - path.nodes[points.first]);
+  return std::max(n_elements - 1, 1) * record.resolution_s;
+}
+
+/// Sets v_tip and its kind at a point of a path.
+void set_speed(FrontPoint& point, const record::SlipRecord& record, const Path& path, const Passage& tip,
+               double run_m, double l_star_m, const FrontOptions& options) {
+  const bool is_centred = options.speed_interval == SpeedInterval::centred;
   const double from_m = run_m - (is_centred ? 0.5 : 1.0) * l_star_m;
   const double to_m = is_centred ? run_m + 0.5 * l_star_m : run_m;
-  if (from_m < 0.0 || to_m > tip.run_m.back()) return undefined;
+  point.speed_kind = is_driven(options, point.x_m) ? SpeedKind::triggered : SpeedKind::path_end;
+  if (from_m < 0.0 || to_m > tip.run_m.back()) return;
   const Bracket from = bracket(tip, from_m), to = bracket(tip, to_m);
-  // The nodes that the length lies between; a tip near to a node is at the node.
-  const std::size_t first = from.fraction > 1.0 - position_tolerance ? from.ahead : from.behind;
-  const std::size_t last = to.fraction < position_tolerance ? to.behind : to.ahead;
-  if (tip.time_s[last] - tip.time_s[first] < resolution_s) return undefined;
+  const Points points = points_around(from, to);
+  if (is_any_driven(record, path, points, options)) {
+    point.speed_kind = SpeedKind::triggered;
+    return;
+  }
   const double time_s = time_at(tip, to) - time_at(tip, from);
-  return time_s > 0.0 ? l_star_m / time_s : undefined;
+  const bool is_resolved =
+      tip.time_s[points.last] - tip.time_s[points.first] >= least_time_s(record, path, points);
+  point.speed_kind = is_resolved && time_s > 0.0 ? SpeedKind::front : SpeedKind::simultaneous;
+  if (point.speed_kind == SpeedKind::front) point.v_tip_m_per_s = l_star_m / time_s;
 }
 
 /// Tractions of a node at an onset; undefined beyond the halo.
@@ -209,9 +240,7 @@ Front measure(const record::SlipRecord& record, const record::StaticState& state
     point.node = node;
     point.x_m = record.x_m[node];
     point.onset_s = first.time_s[node];
-    if (!is_driven(options, point.x_m))
-      point.v_tip_m_per_s =
-          tip_speed_m_per_s(tip, run_m, l_star_m, options.speed_interval, record.resolution_s);
+    set_speed(point, record, path, tip, run_m, l_star_m, options);
     point.t_s_Pa = state.t_s_Pa[node];
     point.p_s_Pa = state.p_s_Pa[node];
     const record::Traction at_onset = traction_at(record, first.index[node], node);
@@ -281,6 +310,20 @@ std::string_view name(SlipMode mode) {
       return "pulse";
     case SlipMode::mixed:
       return "mixed";
+  }
+  return "unknown";
+}
+
+std::string_view name(SpeedKind kind) {
+  switch (kind) {
+    case SpeedKind::front:
+      return "front";
+    case SpeedKind::triggered:
+      return "triggered";
+    case SpeedKind::simultaneous:
+      return "simultaneous";
+    case SpeedKind::path_end:
+      return "path_end";
   }
   return "unknown";
 }

@@ -73,6 +73,15 @@ std::string_view name(End end);
 enum class SlipMode { crack, pulse, mixed };
 std::string_view name(SlipMode mode);
 
+/// What the time says that a tip takes for the length l* at a node.
+enum class SpeedKind {
+  front,         ///< v_tip: slip may have been passed on from node to node
+  triggered,     ///< no v_tip: one of the nodes that the length lies between is in a zone of `driven`
+  simultaneous,  ///< no v_tip: these nodes begin to slip faster than the computation passes anything on
+  path_end,      ///< no v_tip: the length leaves the path
+};
+std::string_view name(SpeedKind kind);
+
 /// A front's passage over one node. What is undefined there is NaN.
 struct FrontPoint {
   std::int32_t node = 0;
@@ -86,6 +95,7 @@ struct FrontPoint {
   double U_r_J_per_m3 = undefined;                ///< U(p_r, mu_s p_r)
   double slipping_share = undefined;              ///< slipping length behind the tip over the distance run
   bool accelerating = false;                      ///< v_tip rises along the path, see find_fronts
+  SpeedKind speed_kind = SpeedKind::path_end;     ///< v_tip is defined where it is `front`, nowhere else
 };
 
 /// A path of onsets, continuous in x, in one direction.
@@ -109,10 +119,12 @@ struct Front {
 ///
 /// Measures. The tip passes x when the first node at or beyond x on the path slips; between nodes the time
 /// is linear in x. l* at a node is the longest of l_star_m and the elements beside the node.
-/// - v_tip: l* over the time that the tip needs for it, see SpeedInterval. Undefined where that leaves the
-/// path; in the trigger
-///   zone and the nucleation patch, whose nodes slip when the trigger makes them; and where the time is not
-///   resolved: where the nodes on either side of that length begin to slip less than resolution_s apart.
+/// - v_tip: l* over the time that the tip needs for it, see SpeedInterval. Undefined, for the reason that
+///   speed_kind has, where that leaves the path; where it lies between nodes of which one is in the trigger
+///   zone or the nucleation patch, where nodes slip when the trigger makes them; and where nothing can have
+///   travelled: a computation passes information by one node per resolution_s, and an onset lies anywhere
+///   within that time, so that slip passed on over n elements takes more than (n - 1) resolution_s. Nodes n
+///   elements apart that begin to slip within max(n - 1, 1) resolution_s are simultaneous.
 /// - t_d, p_d: linear in tip position between the two nodes that bracket the tip (a tip within 2 % of their
 ///   distance from a node is at that node). Undefined, with U_s and U_r, within l* of the start, in the
 ///   zones of exclude_*, where the tip jumps over x - l* and x at once, and where the halo is too small:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "mesh/plate.hpp"
 #include "motion/settings.hpp"
 #include "record/energies.hpp"
+#include "record/probes.hpp"
 #include "record/record.hpp"
 #include "solid/material.hpp"
 #include "statics/settings.hpp"
@@ -89,7 +91,17 @@ struct FrictionAlongX {
 struct Output {
   double history_interval_s = 0.5e-6;    ///< spacing of the rows of interface.h5
   std::vector<double> snapshot_times_s;  ///< whole-plate fields, written to fields.vtkhdf
-  double energy_interval_s = 20e-6;      ///< spacing of the rows of energy.csv
+  /// Further ones at its multiples, from time 0 on.
+  double snapshot_interval_s = std::numeric_limits<double>::infinity();
+  bool snapshot_stress = true;       ///< strain and stress of the cells with them
+  double energy_interval_s = 20e-6;  ///< spacing of the rows of energy.csv
+};
+
+/// Places at which motion, strain and stress are recorded in probes.h5.
+struct Probes {
+  std::vector<double> x_m, y_m;    ///< [probes] y < 0 lies in the base
+  std::vector<std::string> names;  ///< [probes] or none: their numbers, from 1
+  double interval_s = 0.5e-6;      ///< spacing of the rows
 };
 
 /// One run, completely. Every member is an entry of the schema (input/schema.hpp).
@@ -110,6 +122,7 @@ struct Case {
   motion::TimeStepping time;
   FrontSettings fronts;
   Output output;
+  Probes probes;
 };
 
 inline bool has_base_body(const Case& config) {
@@ -124,6 +137,15 @@ inline mesh::Plate base_plate(const Case& config) {
   plate.element_size_m = config.plate.element_size_m;
   plate.corner = mesh::Corner::none;
   return plate;
+}
+
+/// The probes of a case with their names.
+inline std::vector<record::ProbePlace> probe_places(const Case& config) {
+  const auto& [x_m, y_m, names, interval_s] = config.probes;
+  std::vector<record::ProbePlace> places;
+  for (std::size_t k = 0; k < x_m.size(); ++k)
+    places.push_back({names.empty() ? std::to_string(k + 1) : names[k], x_m[k], y_m[k]});
+  return places;
 }
 
 inline solid::Material base_material(const Case& config) {

@@ -67,11 +67,18 @@ std::optional<std::ptrdiff_t> line_nested_too_deeply(std::string_view text) {
 
 Value list_value(const toml::array& array) {
   std::vector<double> numbers;
+  std::vector<std::string> texts;
   for (const toml::node& element : array) {
-    if (!element.is_number()) return Unsupported{"a list with something else than numbers in it"};
-    numbers.push_back(*element.value<double>());
+    if (element.is_number())
+      numbers.push_back(*element.value<double>());
+    else if (element.is_string())
+      texts.push_back(*element.value<std::string>());
+    else
+      return Unsupported{"a list with something else than numbers in it"};
   }
-  return numbers;
+  if (texts.empty()) return numbers;
+  if (!numbers.empty()) return Unsupported{"a list with something else than numbers in it"};
+  return texts;
 }
 
 Value to_value(const toml::node& node) {
@@ -161,6 +168,7 @@ std::string type_name(const Value& value) {
     std::string operator()(double) const { return "a number"; }
     std::string operator()(const std::string&) const { return "a string"; }
     std::string operator()(const std::vector<double>&) const { return "a list of numbers"; }
+    std::string operator()(const std::vector<std::string>&) const { return "a list of strings"; }
     std::string operator()(const Unsupported& other) const { return other.type; }
   };
   return std::visit(Namer{}, value);
@@ -174,6 +182,11 @@ std::string toml_text(const Value& value) {
     std::string operator()(const std::string& text) const { return quoted(text); }
     std::string operator()(const std::vector<double>& list) const {
       return fmt::format("[{}]", fmt::join(list, ", "));
+    }
+    std::string operator()(const std::vector<std::string>& list) const {
+      std::vector<std::string> in_quotes;
+      for (const auto& text : list) in_quotes.push_back(quoted(text));
+      return fmt::format("[{}]", fmt::join(in_quotes, ", "));
     }
     std::string operator()(const Unsupported& other) const { return other.type; }
   };

@@ -14,7 +14,8 @@ struct Unsupported {
 };
 
 /// A value of a case file. Integers and numbers are told apart as they were written.
-using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, Unsupported>;
+using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>,
+                           std::vector<std::string>, Unsupported>;
 
 /// One key of a case file, or one override.
 struct Setting {

@@ -105,6 +105,11 @@ Entry numbers(std::string key, Ref ref, Range range, std::string help) {
   return plain<std::vector<double>>(Kind::numbers, std::move(key), ref, range, std::move(help));
 }
 
+template <class Ref>
+Entry texts(std::string key, Ref ref, std::string help) {
+  return plain<std::vector<std::string>>(Kind::texts, std::move(key), ref, any(), std::move(help));
+}
+
 template <class Enum>
 using Words = std::vector<std::pair<std::string, Enum>>;
 
@@ -132,22 +137,25 @@ Entry word(std::string key, Ref ref, Words<Enum> words, std::string help) {
           }};
 }
 
-template <class Law>
-LawEntries law_entries() {
-  LawEntries law{Law::name, Law::help, Law{}, {}};
-  for (const auto& parameter : Law::parameters())
-    law.entries.push_back(number(
-        std::string("friction.") + parameter.key,
-        [member = parameter.member](auto& config) -> auto& { return std::get<Law>(config.friction).*member; },
-        between(parameter.min, parameter.max), parameter.help));
-  for (auto& entry : law.entries) entry.stage = Stage::motion;
-  return law;
-}
-
-/// One description per alternative of the registry.
-template <class... Laws>
-std::vector<LawEntries> law_entries_of(std::type_identity<std::variant<Laws...>>) {
-  return {law_entries<Laws>()...};
+LawEntries law_entries(const interface::LawDescription& law) {
+  LawEntries entries{law.name, law.help, law.defaults, {}};
+  const auto full_key = [](const char* key) { return std::string("friction.") + key; };
+  for (const auto& [key, min, max, help] : law.parameters)
+    entries.entries.push_back(number(
+        full_key(key), [key = key](auto& config) -> decltype(auto) { return config.friction.parameter(key); },
+        between(min, max), help));
+  for (const auto& [key, min, max, help] : law.lists)
+    entries.entries.push_back({full_key(key),
+                               Kind::numbers,
+                               between(min, max),
+                               {},
+                               help,
+                               [key = key](const Case& config) -> Value { return config.friction.list(key); },
+                               [key = key](Case& config, const Value& value) {
+                                 config.friction.set_list(key, std::get<std::vector<double>>(value));
+                               }});
+  for (auto& entry : entries.entries) entry.stage = Stage::motion;
+  return entries;
 }
 
 Entry friction_law_entry() {
@@ -631,8 +639,28 @@ void add_output(EntryList& list) {
                       "spacing of the rows of interface.h5"),
                numbers("output.snapshot_times_s", at(&Case::output, &Output::snapshot_times_s), at_least(0),
                        "ascending times of the whole-plate fields in fields.vtkhdf"),
+               number("output.snapshot_interval_s", at(&Case::output, &Output::snapshot_interval_s),
+                      above_or_infinite(0),
+                      "further ones at its multiples, from time 0 on; one step where that is longer"),
+               flag("output.snapshot_stress", at(&Case::output, &Output::snapshot_stress),
+                    "strain and stress at the cells' centres with them, which doubles the file"),
                number("output.energy_interval_s", at(&Case::output, &Output::energy_interval_s), above(0),
                       "spacing of the rows of energy.csv; one step where that is longer"),
+           });
+}
+
+void add_probes(EntryList& list) {
+  list.add(Stage::evaluation,
+           {
+               numbers("probes.x_m", at(&Case::probes, &Probes::x_m), any(),
+                       "places at which motion, strain and stress are recorded in probes.h5, see files.md: "
+                       "along the interface, from the plate's left edge"),
+               numbers("probes.y_m", at(&Case::probes, &Probes::y_m), any(),
+                       "of the same places: above the interface, below 0 in the base"),
+               texts("probes.names", at(&Case::probes, &Probes::names),
+                     "of the same places, all different; without them their numbers, from 1"),
+               number("probes.interval_s", at(&Case::probes, &Probes::interval_s), above(0),
+                      "spacing of the rows of probes.h5; one step where that is longer"),
            });
 }
 
@@ -652,6 +680,7 @@ std::vector<Entry> make_common_entries() {
   add_time(list);
   add_fronts(list);
   add_output(list);
+  add_probes(list);
   return std::move(list.entries);
 }
 
@@ -713,12 +742,16 @@ std::string unit_of(std::string_view key) {
 }
 
 const std::vector<LawEntries>& friction_laws() {
-  static const std::vector<LawEntries> laws = law_entries_of(std::type_identity<interface::FrictionLaw>{});
+  static const std::vector<LawEntries> laws = [] {
+    std::vector<LawEntries> all;
+    for (const auto& law : interface::law_descriptions()) all.push_back(law_entries(law));
+    return all;
+  }();
   return laws;
 }
 
 const LawEntries& law_of(const Case& config) {
-  return friction_laws()[config.friction.index()];
+  return *std::ranges::find(friction_laws(), config.friction.name(), &LawEntries::name);
 }
 
 const std::vector<Entry>& common_entries() {

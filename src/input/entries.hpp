@@ -15,7 +15,7 @@
 namespace slipfront::input {
 
 /// What a key takes.
-enum class Kind { number, integer, flag, text, word, numbers };
+enum class Kind { number, integer, flag, text, word, numbers, texts };
 
 /// Interval of allowed numbers; an open end at infinity asks for a finite value.
 struct Range {

@@ -22,7 +22,6 @@ namespace slipfront::input {
 namespace {
 
 using interface::FrictionLaw;
-using interface::ParameterValue;
 
 constexpr const char* x_column = "x_m";
 
@@ -30,16 +29,9 @@ Message in_friction_file(const std::filesystem::path& file) {
   return Message("{}: {}", Key("friction.file"), files::one_line(file.native()));
 }
 
-double& parameter(FrictionLaw& law, const std::string& key) {
-  const auto all = parameters_of(law);
-  const auto found = std::ranges::find(all, key, &ParameterValue::key);
-  SLIPFRONT_ASSERT(found != all.end(), "a parameter of another law");
-  return *found->value;
-}
-
-std::vector<std::string> keys_of(FrictionLaw law) {
+std::vector<std::string> keys_of(const FrictionLaw& law) {
   std::vector<std::string> keys;
-  for (const auto& parameter : parameters_of(law)) keys.emplace_back(parameter.key);
+  for (const auto& parameter : description_of(law).parameters) keys.emplace_back(parameter.key);
   return keys;
 }
 
@@ -55,11 +47,12 @@ std::string problem_of(const std::string& key, double value, const Range& range)
 }
 
 /// What is wrong with a law; empty where nothing is.
-std::string problem_of(FrictionLaw law) {
+std::string problem_of(const FrictionLaw& law) {
   std::string values;
-  for (const auto& [key, value, min, max] : parameters_of(law)) {
-    if (auto problem = problem_of(key, *value, {min, max, false, false}); !problem.empty()) return problem;
-    values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", key, *value);
+  for (const auto& [key, min, max, help] : description_of(law).parameters) {
+    const double value = law.parameter(key);
+    if (auto problem = problem_of(key, value, {min, max, false, false}); !problem.empty()) return problem;
+    values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", key, value);
   }
   const std::string together = inconsistency(law).text;
   return together.empty() ? "" : fmt::format("{} ({})", together, values);
@@ -92,7 +85,7 @@ void append_row(const std::vector<std::string_view>& fields, const FrictionLaw& 
   for (std::size_t k = 0; k < table.keys.size(); ++k) {
     const double value = number_in(fields[k + 1], table.keys[k], at);
     table.values[k].push_back(value);
-    parameter(here, table.keys[k]) = value;
+    here.parameter(table.keys[k]) = value;
   }
   if (const auto problem = problem_of(here); !problem.empty()) throw UserError("{}: {}", at, problem);
 }
@@ -126,7 +119,7 @@ void apply_table(const FrictionAlongX& along_x, const std::vector<double>& x_m,
   for (std::size_t i = 0; i < x_m.size(); ++i) {
     const auto at = among_rows(table.x_m, x_m[i], along_x.between_rows, tolerance_m);
     for (std::size_t k = 0; k < table.keys.size(); ++k)
-      parameter(laws[i], table.keys[k]) = at.value(table.values[k]);
+      laws[i].parameter(table.keys[k]) = at.value(table.values[k]);
   }
 }
 
@@ -137,7 +130,7 @@ void apply_field(const Case& config, const std::vector<double>& x_m, std::vector
   const RandomField field(along_x.random_correlation_length_m, period_m,
                           static_cast<std::uint64_t>(along_x.random_seed));
   for (std::size_t i = 0; i < x_m.size(); ++i)
-    parameter(laws[i], along_x.random_key) *= 1 + along_x.random_share * field(x_m[i]);
+    laws[i].parameter(along_x.random_key) *= 1 + along_x.random_share * field(x_m[i]);
 }
 
 void require_allowed(const FrictionAlongX& along_x, const std::vector<double>& x_m,

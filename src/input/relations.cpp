@@ -33,8 +33,9 @@ void check_friction(const Case& config) {
   if (problem.text.empty()) return;
   std::string values;
   for (const Entry& entry : law_of(config).entries)
-    values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", leaf_of(entry.key),
-                          toml_text(entry.get(config)));
+    if (entry.kind == Kind::number)
+      values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", leaf_of(entry.key),
+                            toml_text(entry.get(config)));
   throw UserError("friction: {} ({})", problem, values).about("friction.law");
 }
 
@@ -181,7 +182,8 @@ void check_friction_along_x(const Case& config) {
   const std::string& chosen = config.friction_along_x.random_key;
   if (chosen == "none") return;
   std::vector<std::string> parameters;
-  for (const Entry& entry : law_of(config).entries) parameters.push_back(leaf_of(entry.key));
+  for (const Entry& entry : law_of(config).entries)
+    if (entry.kind == Kind::number) parameters.push_back(leaf_of(entry.key));
   if (std::ranges::find(parameters, chosen) == parameters.end())
     throw UserError("{} is {}; the friction law {} has {}", Key("friction.random_key"), chosen,
                     law_of(config).name, fmt::join(parameters, ", "))
@@ -213,6 +215,30 @@ void check_snapshot_times(const std::vector<double>& times_s) {
   if (fall != times_s.end())
     throw UserError("{} has {} s before {} s; write the times in ascending order",
                     Key("output.snapshot_times_s"), *fall, *std::next(fall));
+}
+
+/// Rounded corners and the like are checked where there is a mesh.
+void check_probes(const Case& config) {
+  const auto& [x_m, y_m, names, interval_s] = config.probes;
+  const Key x("probes.x_m"), y("probes.y_m"), name("probes.names");
+  if (x_m.size() != y_m.size())
+    throw UserError("{} has {} places and {} has {}; write as many of both", x, x_m.size(), y, y_m.size());
+  if (!names.empty() && names.size() != x_m.size())
+    throw UserError("{} has {} names for {} places; write as many, or none", name, names.size(), x_m.size());
+  for (auto at = names.begin(); at != names.end(); ++at)
+    if (at->empty() || std::find(names.begin(), at, *at) != at)
+      throw UserError("{} has the name \"{}\" {}; give each place a name of its own", name, *at,
+                      at->empty() ? "" : "twice");
+  const double from_m = has_base_body(config) ? -config.base.plate.height_m : 0;
+  for (std::size_t k = 0; k < x_m.size(); ++k) {
+    if (x_m[k] < 0 || x_m[k] > config.plate.width_m)
+      throw UserError("{} has {} m; it must be in the plate, at 0 to {} m", x, x_m[k], config.plate.width_m)
+          .about("plate.width_m");
+    if (y_m[k] < from_m || y_m[k] > config.plate.height_m)
+      throw UserError("{} has {} m; it must be in the {}, at {} to {} m", y, y_m[k],
+                      from_m < 0 ? "two bodies" : "plate", from_m, config.plate.height_m)
+          .about("plate.height_m", "base.height_m");
+  }
 }
 
 /// The values of a number or a list of them.
@@ -270,6 +296,7 @@ void check_relations(const Case& config, const Document& document) {
   check_fronts(config.fronts, config.plate);
   check_regularisation(config.regularisation);
   check_snapshot_times(config.output.snapshot_times_s);
+  check_probes(config);
   check_magnitudes(config);
   check_duration(config);
 }

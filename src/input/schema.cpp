@@ -15,6 +15,7 @@
 
 #include "base/error.hpp"
 #include "files/text.hpp"
+#include "input/default_rules.hpp"
 #include "input/document.hpp"
 #include "input/entries.hpp"
 #include "input/friction_along_x.hpp"
@@ -103,6 +104,8 @@ std::string_view kind_name(Kind kind) {
       return "a word in quotes";
     case Kind::numbers:
       return "a list of numbers";
+    case Kind::texts:
+      return "a list of strings";
   }
   return "";
 }
@@ -147,35 +150,50 @@ bool applies(const Entry& entry, const Case& config) {
   return !entry.only_with || entry.only_with->holds(config);
 }
 
+/// Removes keys of the file. @return a note of it, empty where there are none
+std::string drop(const std::function<bool(const Setting&)>& is_dropped, const std::string& why,
+                 Document& document) {
+  std::vector<std::string> keys;
+  std::erase_if(document.settings, [&](const Setting& setting) {
+    if (setting.is_override() || !is_dropped(setting)) return false;
+    keys.push_back(setting.key);
+    return true;
+  });
+  if (keys.empty()) return {};
+  return fmt::format("{} of the case file {} not apply with {} and {} left out", fmt::join(keys, ", "),
+                     keys.size() == 1 ? "does" : "do", why, keys.size() == 1 ? "is" : "are");
+}
+
 /// Where an override decides that a key of the file does not apply, that is out of date rather than wrong.
-void drop_keys_that_overrides_exclude(const Case& config, Document& document) {
+std::string drop_keys_that_overrides_exclude(const Case& config, Document& document) {
+  std::vector<std::string> why;
   const auto overridden = [&](const Entry& entry) {
     return std::ranges::any_of(deciding_keys, [&](const char* key) {
       const Setting* setting = document.find(key);
-      return setting && setting->is_override() && contains_word(entry.only_with->setting.keys, key);
+      if (!setting || !setting->is_override() || !contains_word(entry.only_with->setting.keys, key))
+        return false;
+      if (!contains_word(why, setting->place)) why.push_back(setting->place);
+      return true;
     });
   };
   std::vector<std::string> dropped;
   for (const Entry& entry : common_entries())
     if (!applies(entry, config) && overridden(entry)) dropped.push_back(entry.key);
-  std::erase_if(document.settings, [&](const Setting& setting) {
-    return !setting.is_override() && contains_word(dropped, setting.key);
-  });
+  return drop([&](const Setting& setting) { return contains_word(dropped, setting.key); },
+              fmt::format("{}", fmt::join(why, ", ")), document);
 }
 
 /// Where an override names the law, what the file says of other laws is out of date rather than wrong.
-void drop_parameters_of_other_laws(const Case& config, Document& document) {
+std::string drop_parameters_of_other_laws(const Case& config, Document& document) {
   const Setting* law = document.find("friction.law");
-  if (!law || !law->is_override()) return;
+  if (!law || !law->is_override()) return {};
   const LawEntries& current = law_of(config);
-  auto& settings = document.settings;
-  settings.erase(std::remove_if(settings.begin(), settings.end(),
-                                [&](const Setting& setting) {
-                                  return !setting.is_override() &&
-                                         !find_entry(current.entries, setting.key) &&
-                                         law_with(setting.key, &current);
-                                }),
-                 settings.end());
+  const std::string why = law->place;
+  return drop(
+      [&](const Setting& setting) {
+        return !find_entry(current.entries, setting.key) && law_with(setting.key, &current) != nullptr;
+      },
+      why, document);
 }
 
 // --- Single keys
@@ -188,6 +206,27 @@ void drop_parameters_of_other_laws(const Case& config, Document& document) {
                   fmt::join(tables, ", "));
 }
 
+/// Symbols and short names that stand for a key's last part.
+constexpr std::array<std::pair<const char*, const char*>, 9> short_names = {
+    {{"E", "youngs_modulus_Pa"},
+     {"youngs_modulus", "youngs_modulus_Pa"},
+     {"nu", "poissons_ratio"},
+     {"rho", "density_kg_per_m3"},
+     {"density", "density_kg_per_m3"},
+     {"beta", "stiffness_damping_s"},
+     {"beta_R", "stiffness_damping_s"},
+     {"damping", "stiffness_damping_s"},
+     {"h", "element_size_m"}}};
+
+/// The key of the same table that a short name stands for.
+std::optional<std::string> key_of_short_name(const std::string& key) {
+  for (const auto& [name, leaf] : short_names)
+    if (const auto meant = table_of(key) + "." + leaf;
+        leaf_of(key) == name && find_entry(common_entries(), meant))
+      return meant;
+  return std::nullopt;
+}
+
 [[noreturn]] void throw_unknown_key(const Setting& setting, const std::vector<Entry>& entries,
                                     const Case& config) {
   const std::string& key = setting.key;
@@ -197,6 +236,8 @@ void drop_parameters_of_other_laws(const Case& config, Document& document) {
   if (const Entry* entry = find_entry(common_entries(), key))
     throw UserError("{}: {} applies only with {}; remove the key or set that", setting.place, key,
                     entry->only_with->setting);
+  if (const auto meant = key_of_short_name(key))
+    throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, *meant);
   std::vector<std::string> keys;
   for (const Entry& entry : entries) {
     // The right name in the wrong table is the likelier slip than any misspelling.
@@ -213,7 +254,9 @@ void drop_parameters_of_other_laws(const Case& config, Document& document) {
 
 [[noreturn]] void throw_wrong_type(const Entry& entry, const Setting& setting, const Value& default_value) {
   const std::string& key = entry.key;
-  const std::string value = entry.kind == Kind::numbers ? "[1e-5, 2e-5]" : toml_text(default_value);
+  const std::string value = entry.kind == Kind::numbers ? "[1e-5, 2e-5]"
+                            : entry.kind == Kind::texts ? "[\"left\", \"right\"]"
+                                                        : toml_text(default_value);
   const std::string example = setting.is_override() ? fmt::format("--set {}={}", key, value)
                                                     : fmt::format("{} = {}", leaf_of(key), value);
   throw UserError("{}: {} must be {}, is {}; write for example {}", setting.place, key, kind_name(entry.kind),
@@ -228,6 +271,12 @@ void require_in_range(const Entry& entry, const Setting& setting, double value) 
     allowed = "a finite number" + (allowed.empty() ? "" : " " + allowed);
   throw UserError("{}: {} is {}; it must be {}", setting.place, entry.key,
                   with_unit(fmt::format("{}", value), unit), allowed);
+}
+
+/// A byte 0 ends a text for the files that it goes into.
+void require_text(const Entry& entry, const Setting& setting, const std::string& text) {
+  if (text.find('\0') != std::string::npos)
+    throw UserError("{}: {} holds the character U+0000; remove it", setting.place, entry.key);
 }
 
 /// The setting's value in the type that the entry takes; an integer does for a number.
@@ -248,9 +297,12 @@ Value checked(const Entry& entry, const Setting& setting, const Value& default_v
     case Kind::flag:
       if (!std::holds_alternative<bool>(value)) break;
       return value;
-    case Kind::text:
-      if (!std::holds_alternative<std::string>(value)) break;
+    case Kind::text: {
+      const auto* text = std::get_if<std::string>(&value);
+      if (!text) break;
+      require_text(entry, setting, *text);
       return value;
+    }
     case Kind::word: {
       const auto* word = std::get_if<std::string>(&value);
       if (!word) break;
@@ -264,6 +316,14 @@ Value checked(const Entry& entry, const Setting& setting, const Value& default_v
       const auto* list = std::get_if<std::vector<double>>(&value);
       if (!list) break;
       for (const double number : *list) require_in_range(entry, setting, number);
+      return value;
+    }
+    case Kind::texts: {
+      const auto* none = std::get_if<std::vector<double>>(&value);
+      if (none && none->empty()) return std::vector<std::string>{};
+      const auto* texts = std::get_if<std::vector<std::string>>(&value);
+      if (!texts) break;
+      for (const auto& text : *texts) require_text(entry, setting, text);
       return value;
     }
   }
@@ -324,8 +384,9 @@ std::string reference_row(const Entry& entry, const Case& defaults) {
   std::string help;
   for (const char c : entry.help) help += c == '|' ? std::string("\\|") : std::string(1, c);
   if (entry.only_with) help += "; only with " + entry.only_with->setting.text;
-  return fmt::format("| `{}` | {} | {} | `{}` | {} | {} |\n", leaf_of(entry.key), type, unit_of(entry.key),
-                     toml_text(entry.get(defaults)), allowed, help);
+  const DefaultRule* rule = default_rule_of(entry.key);
+  return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", leaf_of(entry.key), type, unit_of(entry.key),
+                     rule ? rule->text : fmt::format("`{}`", toml_text(entry.get(defaults))), allowed, help);
 }
 
 constexpr std::string_view reference_head =
@@ -344,26 +405,28 @@ Override parse_override(const std::string& text) {
 
 namespace {
 
-Case case_of(Document document, const std::string& name) {
+Case case_of(Document document, const std::string& name, std::vector<std::string>& notes) {
   check_tables(document, common_entries());
 
   Case config;
   // The law first: it decides which keys there are.
   if (const Setting* law = document.find("friction.law"))
     assign(*find_entry(common_entries(), "friction.law"), *law, config);
-  drop_parameters_of_other_laws(config, document);
+  notes.push_back(drop_parameters_of_other_laws(config, document));
   for (const char* key : deciding_keys) {
     const Entry& entry = *find_entry(common_entries(), key);
     if (const Setting* setting = document.find(key); setting && applies(entry, config))
       assign(entry, *setting, config);
   }
-  drop_keys_that_overrides_exclude(config, document);
+  notes.push_back(drop_keys_that_overrides_exclude(config, document));
+  std::erase(notes, "");
   const std::vector<Entry> entries = entries_of(config);
   for (const Setting& setting : document.settings) {
     const Entry* entry = find_entry(entries, setting.key);
     if (!entry) throw_unknown_key(setting, entries, config);
     if (entry->key != "friction.law") assign(*entry, setting, config);
   }
+  set_defaults_by_rule(document, config);
   try {
     check_relations(config, document);
   } catch (const UserError& error) {
@@ -402,19 +465,34 @@ void read_tables(const std::filesystem::path& folder, Case& config) {
 Case parse_case(const std::string& text, const std::string& name, const std::vector<Override>& overrides) {
   Document document = parse_document(text, name);
   apply(overrides, document);
-  return case_of(std::move(document), name);
+  std::vector<std::string> notes;
+  return case_of(std::move(document), name, notes);
 }
 
 CaseFile::CaseFile(const std::filesystem::path& file, const std::vector<Override>& overrides)
     : name_(file.empty() ? "CASE" : files::one_line(file.native())) {
   constexpr std::size_t most_bytes = std::size_t{64} << 20U;
   document_ = parse_document(files::read_text(file, name_, "case file", most_bytes), name_);
+  require_a_key();
+  read(file.parent_path(), overrides);
+}
+
+CaseFile::CaseFile(const CaseText& text, const std::vector<Override>& overrides)
+    : name_(files::one_line(text.name)), document_(parse_document(text.text, name_)) {
+  if (overrides.empty()) require_a_key();
+  read(text.folder, overrides);
+}
+
+void CaseFile::require_a_key() const {
   if (document_.settings.empty())
     throw UserError("{}: sets no key; write at least one, `slipfront keys` lists them", name_);
+}
+
+void CaseFile::read(const std::filesystem::path& folder, const std::vector<Override>& overrides) {
   apply(overrides, document_);
-  config_ = case_of(document_, name_);
+  config_ = case_of(document_, name_, notes_);
   try {
-    read_tables(file.parent_path(), config_);
+    read_tables(folder, config_);
   } catch (const UserError& error) {
     throw with_place(error);
   }
@@ -448,7 +526,14 @@ std::string schema_reference() {
       "| unit | at least | at most |\n|---|---|---|\n";
   for (const auto& [unit, least, most] : all_magnitudes())
     text += fmt::format("| {} | {:g} | {:g} |\n", unit.empty() ? "others" : unit, least, most);
-  text += "\n";
+  text +=
+      "\nDefaults that are lengths or times are multiples of `plate.width_m`, of `plate.height_m` or of the "
+      "time width_m / c_S\nin which a shear wave crosses the plate (of two bodies with the slower one's "
+      "c_S). "
+      "The factors give the paper's plate,\nwidth 0.2 m and c_S 889 m/s, the values chosen for it: an end at "
+      "250 us, a quiet time of 30 us, l* = 0.67 mm and so on.\n`case.resolved.toml` beside the results has "
+      "the "
+      "values.\n\n";
   text += reference_head;
   const Case defaults;
   std::string open_table;

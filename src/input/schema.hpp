@@ -18,6 +18,13 @@ using Override = std::pair<std::string, std::string>;
 /// Splits "key=value". @throws UserError where there is no "=" or no key.
 Override parse_override(const std::string& text);
 
+/// A case as a text that is in no file.
+struct CaseText {
+  std::string text;
+  std::string name;              ///< stands for the file in messages
+  std::filesystem::path folder;  ///< from which the paths of its tables count
+};
+
 /// A case file, read once, since it may be a pipe, with the overrides of the command line. What it does not
 /// name keeps its default. Overrides win over the file, the last one over earlier ones. Where an override
 /// changes friction.law, the file's parameters of its own law do not count. The tables of
@@ -27,8 +34,12 @@ class CaseFile {
   /// @throws UserError with file, line and what to do: missing file, no key in it, syntax, unknown key (with
   /// the nearest known one), wrong type, value out of range, parameters that do not fit together, table.
   explicit CaseFile(const std::filesystem::path& file, const std::vector<Override>& overrides = {});
+  /// The same of a text, which may set no key if there are overrides.
+  explicit CaseFile(const CaseText& text, const std::vector<Override>& overrides = {});
 
   const Case& config() const { return config_; }
+  /// Keys of the file that overrides leave without effect, a line for each reason.
+  const std::vector<std::string>& notes() const { return notes_; }
 
   /// For an error found after reading (geometry, step): "--set key=value" where an override sets the dotted
   /// key, else "FILE:LINE" where the file does, else FILE alone.
@@ -39,9 +50,14 @@ class CaseFile {
   UserError with_place(const UserError& error) const;
 
  private:
+  void require_a_key() const;
+  /// Makes the case of the document.
+  void read(const std::filesystem::path& folder, const std::vector<Override>& overrides);
+
   std::string name_;
   Document document_;  ///< overrides included
   Case config_;
+  std::vector<std::string> notes_;
 };
 
 /// The case alone.

@@ -2,7 +2,10 @@
 #include "interface/interface.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
+#include "interface/friction/registry.hpp"
 #include "interface/node.hpp"
 
 namespace slipfront::interface {
@@ -132,6 +135,48 @@ struct LawPerNode {
   }
 };
 
+/// Coefficients that an ArrayLaw has given, evaluation by evaluation, and what is asked for beyond them.
+/// Arrays are as long as all lanes are.
+struct Answers {
+  std::vector<std::vector<double>> mu;        ///< [evaluations][nodes]
+  std::vector<double> speed_m_per_s, slip_m;  ///< of the evaluation that is asked for [nodes]
+  bool asked = false;
+};
+
+/// The evaluator of one block of lanes: its k-th call takes the k-th answer, or asks.
+struct AskedInLanes {
+  Answers* answers;
+  std::size_t node;
+  std::size_t* calls;  ///< of this block so far
+  Lanes operator()(Lanes speed_m_per_s, Lanes slip_m) const {
+    const std::size_t k = (*calls)++;
+    if (k < answers->mu.size()) return load(answers->mu[k].data() + node);
+    if (k == answers->mu.size()) {
+      store(answers->speed_m_per_s.data() + node, speed_m_per_s);
+      store(answers->slip_m.data() + node, slip_m);
+      answers->asked = true;
+    }
+    return Lanes{};
+  }
+};
+
+template <class Form>
+struct LawOverArrays {
+  struct law_type {
+    static constexpr SlipMemory memory = SlipMemory::lasting;  // the strength at rest is asked for as well
+  };
+  using form_type = Form;
+  Answers* answers;
+  std::size_t* calls;
+  double mu_k;
+  Form form;
+  double dt_s;
+  auto at(std::size_t node) const {
+    *calls = 0;
+    return Update{AskedInLanes{answers, node, calls}, mu_k, mu_k, form, dt_s};
+  }
+};
+
 // Flattened: the compiler would keep the nodes in memory between these functions. The constants are copied:
 // what is written to the nodes cannot be theirs then, and they stay in registers.
 template <ContactAlgorithm algorithm, class Laws>
@@ -148,6 +193,30 @@ template <ContactAlgorithm algorithm, class Laws>
   for (; i + lanes <= s.size(); i += lanes) update_at(AllLanes{i});
   if (i < s.size()) update_at(SomeLanes{i, static_cast<int>(s.size() - i)});
   return any(changed);
+}
+
+/// The update by a law over arrays: again and again from the same state, each time with one more answer,
+/// until nothing is left to ask.
+template <ContactAlgorithm algorithm, class Form>
+bool update_by(const ArrayLaw& law, double mu_k, const Form& form, double dt_s, Interface& state) {
+  const std::size_t padded = (state.size() + lanes - 1) / lanes * lanes;
+  Answers answers;
+  std::size_t calls = 0;
+  while (true) {
+    answers.asked = false;
+    answers.speed_m_per_s.assign(padded, 0);
+    answers.slip_m.assign(padded, 0);
+    Interface trial = state;
+    const bool changed = update<algorithm>(LawOverArrays<Form>{&answers, &calls, mu_k, form, dt_s}, trial);
+    if (!answers.asked) {
+      state = std::move(trial);
+      return changed;
+    }
+    auto& mu = answers.mu.emplace_back(padded);
+    law({answers.speed_m_per_s.data(), state.size()}, {answers.slip_m.data(), state.size()},
+        {mu.data(), state.size()});
+    std::fill(mu.begin() + std::ssize(state.t_Pa), mu.end(), mu[state.size() - 1]);
+  }
 }
 
 }  // namespace
@@ -172,19 +241,24 @@ void start_contact(const ContactModel& model, Interface& s) {
 bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
   const double since_last_s = state.begun ? dt_s : 0;
   state.begun = true;
-  return std::visit(
-      [&]<class Law>(const Law& law) {
-        return with_form(model.regularisation, since_last_s, [&]<class Form>(const Form& form) {
-          const auto with = [&](const auto& laws) {
-            return model.algorithm == ContactAlgorithm::direct
-                       ? update<ContactAlgorithm::direct>(laws, state)
-                       : update<ContactAlgorithm::predictor_corrector>(laws, state);
-          };
-          return model.of_nodes.empty() ? with(OneLaw<Law, Form>(law, form, dt_s))
-                                        : with(LawPerNode<Law, Form>{model.of_nodes, form, dt_s});
-        });
-      },
-      model.law);
+  if (const ArrayLaw* law = model.law.function())
+    return with_form(model.regularisation, since_last_s, [&](const auto& form) {
+      const double mu_k = kinetic_coefficient(model.law);
+      return model.algorithm == ContactAlgorithm::direct
+                 ? update_by<ContactAlgorithm::direct>(*law, mu_k, form, dt_s, state)
+                 : update_by<ContactAlgorithm::predictor_corrector>(*law, mu_k, form, dt_s, state);
+    });
+  return visit(model.law, [&]<class Law>(const Law& law) {
+    return with_form(model.regularisation, since_last_s, [&]<class Form>(const Form& form) {
+      const auto with = [&](const auto& laws) {
+        return model.algorithm == ContactAlgorithm::direct
+                   ? update<ContactAlgorithm::direct>(laws, state)
+                   : update<ContactAlgorithm::predictor_corrector>(laws, state);
+      };
+      return model.of_nodes.empty() ? with(OneLaw<Law, Form>(law, form, dt_s))
+                                    : with(LawPerNode<Law, Form>{model.of_nodes, form, dt_s});
+    });
+  });
 }
 
 }  // namespace slipfront::interface

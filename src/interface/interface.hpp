@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/state.hpp"
-#include "interface/friction/registry.hpp"
+#include "interface/friction.hpp"
 #include "interface/node_laws.hpp"
 #include "interface/regularisation.hpp"
 

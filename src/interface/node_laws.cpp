@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <utility>
-#include <variant>
 
 #include "base/error.hpp"
+#include "interface/friction/registry.hpp"
 
 namespace slipfront::interface {
 namespace {
@@ -23,7 +23,7 @@ std::vector<double> constants_of(const Law& law) {
 }
 
 std::vector<double> constants_of(const FrictionLaw& law) {
-  return std::visit([](const auto& l) { return constants_of(l); }, law);
+  return visit(law, [](const auto& l) { return constants_of(l); });
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ NodeLaws::NodeLaws(std::vector<FrictionLaw> laws) : laws_(std::move(laws)) {
   const std::size_t n_blocks = (laws_.size() + lanes - 1) / lanes;
   for (std::size_t node = 0; node < n_blocks * lanes; ++node) {
     const FrictionLaw& law = laws_[std::min(node, laws_.size() - 1)];
-    SLIPFRONT_ASSERT(law.index() == laws_.front().index(), "laws of one type along the interface");
+    SLIPFRONT_ASSERT(law.name() == laws_.front().name(), "laws of one type along the interface");
     const auto values = constants_of(law);
     constants_.resize(n_blocks * values.size() * lanes);
     double* to = constants_.data() + node / lanes * values.size() * lanes + node % lanes;

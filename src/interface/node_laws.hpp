@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/lanes.hpp"
-#include "interface/friction/registry.hpp"
+#include "interface/friction.hpp"
 
 namespace slipfront::interface {
 

@@ -16,6 +16,12 @@ std::vector<Grid> blocks(const Mesh& mesh) {
   return all;
 }
 
+std::vector<bool> marked(const Mesh& mesh, const std::vector<Node>& nodes) {
+  std::vector<bool> is_in(mesh.n_nodes(), false);
+  for (const Node n : nodes) is_in[n] = true;
+  return is_in;
+}
+
 std::vector<bool> orphans(const Mesh& mesh) {
   std::vector<bool> orphan(mesh.x_m.size(), true);
   for (const Cell& cell : mesh.cells)

@@ -58,6 +58,9 @@ struct Mesh {
 /// The grids of all blocks, upwards.
 std::vector<Grid> blocks(const Mesh& mesh);
 
+/// For each node, whether it is among `nodes`.
+std::vector<bool> marked(const Mesh& mesh, const std::vector<Node>& nodes);
+
 /// For each node, whether no cell uses it. Orphans carry no mass and take no part in anything.
 std::vector<bool> orphans(const Mesh& mesh);
 

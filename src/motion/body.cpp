@@ -50,6 +50,21 @@ void Body::expect_steps_under_way(int n) {
         {solid::RollingRows(columns), solid::RollingRowsOf<float>(has_single ? columns : 0), {}, {}});
 }
 
+std::size_t Body::band_of(mesh::Node n) const {
+  const auto& bands = levels_.level.front().bands;
+  const auto band = std::ranges::lower_bound(bands, motion_.op.row_of(n), {}, &Band::last_row);
+  SLIPFRONT_ASSERT(band != bands.end(), "a node's row is in a band");
+  return static_cast<std::size_t>(band - bands.begin());
+}
+
+solid::Pair Body::u_under_way_m(mesh::Node n) const {
+  if (!single_.u_x_m.empty()) {
+    const auto at = n - motion_.op.rows[single_.first_row].first;
+    if (at >= 0 && at < std::ssize(single_.u_x_m)) return {single_.u_x_m[at], single_.u_y_m[at]};
+  }
+  return {motion_.u_m.x[n], motion_.u_m.y[n]};
+}
+
 double Body::step_s(mesh::Node n) const {
   return levels_.is_orphan[n] ? 0 : levels_.level[levels_.level_of_node[n]].step_s;
 }

@@ -53,6 +53,11 @@ class Body {
   double damping_s() const { return motion_.damping_s; }
   const StepLevels& levels() const { return levels_; }
   std::size_t n_bands() const { return levels_.level.front().bands.size(); }
+  /// The band of the coarsest level with which a node moves; all that moves with finer levels or the
+  /// interface does so with the first one.
+  std::size_t band_of(mesh::Node n) const;
+  /// Displacement of a node while steps are taken, after its band.
+  solid::Pair u_under_way_m(mesh::Node n) const;
   /// Sub-steps in a step of the coarsest level.
   int period() const { return levels_.level.front().period; }
   /// With which a node moves.

@@ -44,10 +44,19 @@ void append_upright(solid::Field& field, const solid::Field& below) {
   for (const double y : below.y) field.y.push_back(-y);
 }
 
-/// Of the loaded edge, which keeps it; 0 without one.
-double top_speed_m_per_s(const Stepper& stepper) {
-  const auto& top = stepper.plate().top.node;
-  return top.empty() ? 0 : stepper.v_m_per_s().x[top.front()];
+/// Of a stepper about to begin: the velocity has been the present one.
+ProbeRecorder probe_recorder(const Stepper& stepper, double interval_s) {
+  const auto now_m = stepper.probed_u_m();
+  auto before_m = now_m;
+  const auto v_m_per_s = stepper.probed_v_m_per_s();
+  for (std::size_t k = 0; k < before_m.size(); ++k) before_m[k] -= stepper.step_s() * v_m_per_s[k];
+  return {stepper.probes(), stepper.step_s(), interval_s, before_m, now_m};
+}
+
+/// When a trigger's loads last change: the end of its ramp, or its removal.
+double last_change_s(const interface::Trigger& trigger) {
+  const double ramp_s = std::isfinite(trigger.ramp_s) ? trigger.ramp_s : 0;
+  return std::isfinite(trigger.duration_s) ? std::max(ramp_s, trigger.duration_s) : ramp_s;
 }
 
 }  // namespace
@@ -133,23 +142,25 @@ Snapshot take_snapshot(const Stepper& stepper) {
 }
 
 EventRun::EventRun(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s,
-                   double c_L_m_per_s, const interface::Trigger& trigger, const TimeStepping& time,
+                   const Waves& waves, const interface::Trigger& trigger, const TimeStepping& time,
                    const Sampling& sampling, int halo)
     : stepper_(stepper),
-      c_L_m_per_s_(c_L_m_per_s),
+      waves_(waves),
       time_(time),
       snapshot_times_s_(sampling.snapshot_times_s),
       sample_interval_s_(std::max(sampling.history_interval_s, stepper.step_s())),
       energy_interval_s_(std::max(sampling.energy_interval_s, stepper.step_s())),
-      quiet_from_s_(std::isfinite(trigger.ramp_s) ? trigger.ramp_s : 0),
-      recorder_(state, mu_s, halo, creep_over_top_speed * top_speed_m_per_s(stepper)),
-      watch_(std::in_place, stepper, c_L_m_per_s) {
+      recorder_(state, mu_s, halo, quiet_part * slip_rate_scale_m_per_s(state, mu_s, waves)),
+      quiet_(stepper, slip_rate_scale_m_per_s(state, mu_s, waves), last_change_s(trigger)),
+      watch_(std::in_place, stepper, waves.c_L_m_per_s) {
   const double all_steps = std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12));
   if (all_steps > 1e12)
     throw UserError("{} = {:g} takes {:g} steps of {:.4g} s; choose an earlier end", Key("time.end_s"),
                     time.end_s, all_steps, stepper.step_s());
   n_steps_ = static_cast<std::int64_t>(all_steps);
+  event_.quiet_slip_rate_m_per_s = quiet_part * slip_rate_scale_m_per_s(state, mu_s, waves);
   event_.history.x_m = state.tractions.x_m;
+  if (!stepper.probes().empty()) probes_.emplace(probe_recorder(stepper, sampling.probe_interval_s));
   // All that may come at once: while it grew, the rows would be there twice.
   event_.energies.reserve(
       static_cast<std::size_t>(std::min(time.end_s / energy_interval_s_ + 3, most_rows_in_advance)));
@@ -175,8 +186,25 @@ void EventRun::take_snapshots(Sink* sink) {
   }
 }
 
+void EventRun::take_probe_rows(Sink* sink) {
+  if (!probes_) return;
+  if (sink == nullptr) return probes_->take_rows(stepper_.step(), event_.probes);
+  record::ProbeRecord rows;
+  probes_->take_rows(stepper_.step(), rows);
+  if (!rows.time_s.empty()) sink->probe(rows);
+}
+
 bool EventRun::is_quiet() const {
-  return stepper_.time_s() - std::max(recorder_.last_motion_s(), quiet_from_s_) > time_.quiet_s;
+  const double since_s = std::max({quiet_.since_s(), recorder_.last_motion_s(), recorder_.last_onset_s()});
+  return stepper_.time_s() - since_s > time_.quiet_s;
+}
+
+bool EventRun::is_quiet_all_over() {
+  if (watch_->checked_step() == stepper_.step() && watch_->last())
+    quiet_.see_kinetic_energy(stepper_.time_s(), watch_->last()->kinetic);
+  else if (is_quiet())
+    quiet_.see_kinetic_energy(stepper_.time_s(), stepper_.kinetic_energy_J_per_m());
+  return is_quiet();
 }
 
 double EventRun::energy_time_s() const {
@@ -190,12 +218,15 @@ Between EventRun::between(Sink* sink, record::History& row) {
     n_samples_ = next_row(n_samples_, stepper_.time_s(), sample_interval_s_);
     return sink != nullptr ? &row : &event_.history;
   };
+  if (probes_) between.displacements = [this](std::int64_t step) { return probes_->room_for(step); };
   between.go_on = [this, sink, &row] {
     if (!row.time_s.empty()) {
       sink->sample(row);
       clear_rows(row);
     }
-    return watch_->look() && !is_quiet();
+    const bool physical = watch_->look();
+    quiet_.see_slip_rate(stepper_.time_s(), watch_->fastest_slip_m_per_s());
+    return physical && !is_quiet();
   };
   return between;
 }
@@ -219,8 +250,9 @@ bool EventRun::look() {
     event_.blow_up = blow_up_message(stepper_, trouble);
     return false;
   }
-  if (is_quiet()) event_.end = EventEnd::quiet;
-  return !is_quiet();
+  if (!is_quiet_all_over()) return true;
+  event_.end = EventEnd::quiet;
+  return false;
 }
 
 Event EventRun::run(const Monitor& monitor, Sink* sink) {
@@ -228,7 +260,10 @@ Event EventRun::run(const Monitor& monitor, Sink* sink) {
   const auto samples = between(sink, row);
   while (stepper_.step() < n_steps_) {
     take_snapshots(sink);
-    stepper_.advance(recorder_, steps_to_next_look(), samples);
+    const auto most_steps = steps_to_next_look();
+    if (probes_) probes_->expect(stepper_.step(), most_steps);
+    stepper_.advance(recorder_, most_steps, samples);
+    take_probe_rows(sink);
     if (!look()) break;
     if (stepper_.step() % monitor_interval == 0 && !monitor(stepper_.step(), n_steps_)) {
       event_.end = EventEnd::interrupted;
@@ -243,10 +278,10 @@ Event EventRun::run(const Monitor& monitor, Sink* sink) {
   return std::move(event_);
 }
 
-Event run_event(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, double c_L_m_per_s,
+Event run_event(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, const Waves& waves,
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
                 int halo, const Monitor& monitor, Sink* sink) {
-  return EventRun(stepper, state, mu_s, c_L_m_per_s, trigger, time, sampling, halo).run(monitor, sink);
+  return EventRun(stepper, state, mu_s, waves, trigger, time, sampling, halo).run(monitor, sink);
 }
 
 namespace {
@@ -318,7 +353,7 @@ statics::Equilibrium RampRun::state_now() const {
   double mu_s_at_peak = mu_s_[0];
   for (std::size_t k = 0; k < s.size(); ++k) {
     const double x = e.tractions.x_m[k];
-    if (x < e.inside_from_m || x > e.inside_to_m || s.p_Pa[k] <= 0) continue;
+    if (!e.is_inside(x) || s.p_Pa[k] <= 0) continue;
     const double ratio = s.t_Pa[k] / s.p_Pa[k];
     if (!statics::is_nearer_to_slip(ratio, mu_s_[k], e.peak_ratio, mu_s_at_peak)) continue;
     e.peak_ratio = ratio;
@@ -328,11 +363,10 @@ statics::Equilibrium RampRun::state_now() const {
   return e;
 }
 
-std::int64_t Ramp::n_onsets_inside() const {
-  return std::ranges::count_if(record.onsets, [&](const record::Onset& onset) {
-    const double x = record.x_m[onset.node];
-    return x >= spontaneous.inside_from_m && x <= spontaneous.inside_to_m;
-  });
+std::uint64_t Ramp::n_onsets_inside() const {
+  return static_cast<std::uint64_t>(std::ranges::count_if(record.onsets, [&](const record::Onset& onset) {
+    return spontaneous.is_inside(record.x_m[onset.node]);
+  }));
 }
 
 bool RampRun::reaches(double share) const {
@@ -359,8 +393,7 @@ Ramp RampRun::run(const Monitor& monitor) {
     if (stepper_.step() > most_steps_)
       throw UserError(
           "the ramp does not bring t/p inside the interface to mu_s within a shear of {:.4g} m, twice the "
-          "one "
-          "found directly; choose another {}, or {} = direct",
+          "one found directly; choose another {}, or {} = direct",
           2 * expected_shear_m_, Key("loading.shear_speed_over_c_L"), Key("loading.method"));
     stepper_.advance(recorder_,
                      std::min({renewal_interval - stepper_.step() % renewal_interval,

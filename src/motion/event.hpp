@@ -9,6 +9,7 @@
 
 #include "interface/trigger.hpp"
 #include "mesh/mesh.hpp"
+#include "motion/quiet.hpp"
 #include "motion/recorder.hpp"
 #include "motion/stepper.hpp"
 #include "motion/watch.hpp"
@@ -26,6 +27,7 @@ struct Sampling {
   double history_interval_s = 0.5e-6;
   double energy_interval_s = 20e-6;
   std::vector<double> snapshot_times_s;  ///< ascending
+  double probe_interval_s = 0.5e-6;      ///< of the stepper's probes; one step where that is longer
 };
 
 /// Motion of all nodes at one instant, those of a body below after those of the plate, with u_y and v_y up.
@@ -45,6 +47,8 @@ class Sink {
   virtual void sample(const record::History& row) = 0;
   /// It is time for a snapshot.
   virtual void snapshot(const Stepper& stepper) = 0;
+  /// Rows of what the stepper's probes record; not asked without probes.
+  virtual void probe(const record::ProbeRecord& rows) = 0;
 };
 
 /// Bytes of a plate in motion: the larger of what its stepper takes while it is built, the mesh and the state
@@ -52,10 +56,6 @@ class Sink {
 /// the interface, the irregular nodes and the program itself.
 double event_bytes(double n_nodes, double n_cells, bool with_snapshots,
                    Precision precision = Precision::double_precision);
-
-/// Nodes at the edges creep along with the loading; slip that is no faster than this multiple of the top's
-/// speed does not keep an event going.
-inline constexpr double creep_over_top_speed = 10;
 
 /// Why an event ended.
 enum class EventEnd { end_time, quiet, interrupted, blow_up };
@@ -66,15 +66,17 @@ struct Event {
   std::string blow_up;  ///< which step, and why
   std::int64_t steps = 0;
   double time_s = 0;
+  double quiet_slip_rate_m_per_s = 0;  ///< slower slip that does not grow counts as none, see Quiet
   record::SlipRecord record;
   record::History history;                 ///< without a sink
   std::vector<Snapshot> snapshots;         ///< without a sink
+  record::ProbeRecord probes;              ///< without a sink
   std::vector<record::Energies> energies;  ///< at the start, at the given interval, and at the end
 
   /// Without what a sink would take.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(end, blow_up, steps, time_s, record, energies);
+    archive(end, blow_up, steps, time_s, quiet_slip_rate_m_per_s, record, energies);
   }
 };
 
@@ -94,14 +96,14 @@ std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<
 /// Halo of the slip record that t_d, p_d at a distance l_star_m ahead of the tip need.
 int halo_for(const mesh::Mesh& mesh, double l_star_m);
 
-/// An event under way: steps a started stepper until the end time, or until no node has slipped for
-/// time.quiet_s after the trigger's ramp. The motion is checked: in every step numbers finite and slip rates
-/// below c_L, with each of the energies and at least every 100 steps energy not above what there was at the
-/// start plus what the loaded edge and the trigger have added, by more than 1 %.
+/// An event under way: steps a started stepper until the end time, or until nothing has moved for
+/// time.quiet_s (see Quiet) after the trigger's loads last changed. The motion is checked: in every step
+/// numbers finite and slip rates below c_L, with each of the energies and at least every 100 steps energy not
+/// above what there was at the start plus what the loaded edge and the trigger have added, by more than 1 %.
 class EventRun {
  public:
   /// @param state  tractions and contact before the event; its displacements are not needed
-  EventRun(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, double c_L_m_per_s,
+  EventRun(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, const Waves& waves,
            const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling, int halo);
 
   /// To the end, or until the monitor interrupts it, which it may do for good.
@@ -118,10 +120,11 @@ class EventRun {
   void serialize(Archive& archive) {
     auto start = watch_->start();
     auto checked_step = watch_->checked_step();
-    archive(recorder_, start, checked_step, event_.energies, n_samples_, n_energies_, next_snapshot_);
+    archive(recorder_, quiet_, start, checked_step, event_.energies, n_samples_, n_energies_, next_snapshot_);
+    if (probes_) archive(*probes_);
     if constexpr (Archive::is_loading::value) {
       require_possible(checked_step);
-      watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+      watch_.emplace(stepper_, waves_.c_L_m_per_s, start, checked_step);
     }
   }
 
@@ -129,7 +132,11 @@ class EventRun {
   /// Refuses counts that no event of this length comes to.
   void require_possible(std::int64_t checked_step) const;
   void take_snapshots(Sink* sink);
+  void take_probe_rows(Sink* sink);
+  /// As far as the interface tells.
   bool is_quiet() const;
+  /// As far as the energies that are known tell as well; where they are not, they are computed.
+  bool is_quiet_all_over();
   Between between(Sink* sink, record::History& row);
   std::int64_t steps_to_next_look() const;
   double energy_time_s() const;
@@ -137,18 +144,20 @@ class EventRun {
   bool look();
 
   Stepper& stepper_;
-  double c_L_m_per_s_;
+  Waves waves_;
   TimeStepping time_;
   std::vector<double> snapshot_times_s_;
-  double sample_interval_s_, energy_interval_s_, quiet_from_s_;
+  double sample_interval_s_, energy_interval_s_;
   std::int64_t n_steps_ = 0;
   Recorder recorder_;
+  Quiet quiet_;
   std::optional<Watch> watch_;  ///< always there
+  std::optional<ProbeRecorder> probes_;
   Event event_;
   std::int64_t n_samples_ = 0, n_energies_ = 1;
   std::size_t next_snapshot_ = 0;
 };
-Event run_event(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, double c_L_m_per_s,
+Event run_event(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, const Waves& waves,
                 const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
                 int halo, const Monitor& monitor, Sink* sink = nullptr);
 
@@ -161,7 +170,7 @@ struct Ramp {
   bool interrupted = false;
 
   /// Beginnings of slip inside: where it came within a step before t/p was seen near mu_s.
-  std::int64_t n_onsets_inside() const;
+  std::uint64_t n_onsets_inside() const;
   /// Whether t/p passed from less than (1 - critical_margin) mu_s to slip within a step.
   bool passed_margin_in_a_step() const { return common.shear_m == spontaneous.shear_m; }
 

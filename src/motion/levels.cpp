@@ -225,12 +225,6 @@ std::vector<std::uint8_t> levels_of_nodes(const mesh::Mesh& mesh,
   return level;
 }
 
-std::vector<bool> marked(const std::vector<mesh::Node>& nodes, const mesh::Mesh& mesh) {
-  std::vector<bool> is_in(mesh.n_nodes(), false);
-  for (const auto n : nodes) is_in[n] = true;
-  return is_in;
-}
-
 /// Nodes of some cells.
 std::vector<bool> nodes_of(const mesh::Mesh& mesh, const std::vector<bool>& in_level) {
   std::vector<bool> is_in(mesh.n_nodes(), false);
@@ -301,7 +295,7 @@ std::vector<int> last_rows_of_bands(const mesh::Mesh& mesh, const solid::Operato
                                     const StepLevels& levels) {
   const auto& level = levels.level.front();
   // The work of landing nodes needs the places of their neighbours after the step.
-  const auto in_contact = marked(mesh.lower, mesh);
+  const auto in_contact = mesh::marked(mesh, mesh.lower);
   std::vector<bool> needed(mesh.n_nodes(), false);
   for (const auto& cell : mesh.cells)
     if (std::ranges::any_of(cell, [&](mesh::Node n) { return in_contact[n]; }))
@@ -336,7 +330,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
   levels.level.resize(periods.size());
   levels.level_of_node = levels_of_nodes(mesh, level_of_cell);
   levels.is_orphan = mesh::orphans(mesh);
-  const auto in_contact = marked(mesh.lower, mesh);
+  const auto in_contact = mesh::marked(mesh, mesh.lower);
   std::vector<bool> is_shared(mesh.n_nodes(), false);  // by a coarser level or this one
   for (std::size_t l = 0; l < periods.size(); ++l) {
     auto& level = levels.level[l];

@@ -62,6 +62,7 @@ void Recorder::take_changes(double time_s, const interface::Interface& state) {
     record_.onsets.push_back({static_cast<std::int32_t>(i), onset_s});
     record_.around.insert(record_.around.end(), around.begin(), around.end());
     last_first_onset_s_ = std::max(last_first_onset_s_, onset_s);
+    last_onset_s_ = time_s;
     has_slipped_[i] = 1;
     previous_slipping_[i] = 1;
     ++n_slipping_;
@@ -69,6 +70,7 @@ void Recorder::take_changes(double time_s, const interface::Interface& state) {
   for (std::size_t i = 0; i < state.size(); ++i) {
     if (state.slipping[i] == previous_slipping_[i]) continue;
     if (state.slipping[i] != 0) {
+      last_onset_s_ = time_s;
       take_change(i, {locate_onset(i, time_s, state, around), onset}, around);
       ++n_slipping_;
     } else {

@@ -33,6 +33,8 @@ class Recorder {
   std::size_t n_slipping() const { return n_slipping_; }
   /// Last time at which a node slipped faster than creep; 0 before that.
   double last_motion_s() const { return last_motion_s_; }
+  /// Last contact update in which a node began to slip, whether for the first time or not; 0 before that.
+  double last_onset_s() const { return last_onset_s_; }
 
   /// Without the last change of each node, which may yet be left out.
   const record::SlipRecord& record() const { return record_; }
@@ -45,7 +47,7 @@ class Recorder {
   void serialize(Archive& archive) {
     const std::size_t n_nodes = record_.x_m.size();
     const int halo = record_.halo;
-    archive(last_motion_s_, record_, previous_time_s_, n_slipping_, last_first_onset_s_);
+    archive(last_motion_s_, last_onset_s_, record_, previous_time_s_, n_slipping_, last_first_onset_s_);
     if (Archive::is_loading::value &&
         (record_.x_m.size() != n_nodes || record_.halo != halo || !record::is_consistent(record_)))
       throw UserError("the state that was kept has a record of another interface");
@@ -80,7 +82,7 @@ class Recorder {
   std::size_t n_around() const { return 2 * static_cast<std::size_t>(record_.halo) + 1; }
 
   double creep_m_per_s_;
-  double last_motion_s_ = 0;
+  double last_motion_s_ = 0, last_onset_s_ = 0;
   record::SlipRecord record_;
   double previous_time_s_ = 0;
   std::vector<double> previous_t_Pa_, previous_p_Pa_, previous_strength_Pa_;

@@ -135,10 +135,55 @@ void Stepper::advance_band(std::int64_t step, std::size_t band) {
   }
 }
 
+void Stepper::watch(std::vector<Probe> probes) {
+  probes_ = std::move(probes);
+  watched_.clear();
+  if (probes_.empty()) return;
+  watched_.resize(static_cast<std::size_t>(n_bands_));
+  for (std::size_t p = 0; p < probes_.size(); ++p)
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto b = probes_[p].body;
+      const auto node = probes_[p].node[a];
+      watched_[leads(bodies_[b]) ? bodies_[b].band_of(node) : 0].push_back({b, node, 8 * p + 2 * a});
+    }
+}
+
+void Stepper::show_watched(std::int64_t step, std::size_t band, const Between& between) const {
+  if (watched_[band].empty()) return;
+  double* to = between.displacements(step);
+  if (to == nullptr) return;
+  for (const auto& [body, node, at] : watched_[band]) {
+    const auto u_m = bodies_[body].u_under_way_m(node);
+    to[at] = u_m.x;
+    to[at + 1] = u_m.y;
+  }
+}
+
+std::vector<double> Stepper::probed_u_m() const {
+  std::vector<double> values;
+  for (const auto& probe : probes_)
+    for (const auto n : probe.node) {
+      const auto& u_m = bodies_[probe.body].u_m();
+      values.insert(values.end(), {u_m.x[n], u_m.y[n]});
+    }
+  return values;
+}
+
+std::vector<double> Stepper::probed_v_m_per_s() const {
+  std::vector<double> values;
+  for (const auto& probe : probes_)
+    for (const auto n : probe.node) {
+      const auto& v = bodies_[probe.body].v_m_per_s();
+      values.insert(values.end(), {v.x[n], v.y[n]});
+    }
+  return values;
+}
+
 std::int64_t Stepper::advance(Recorder& recorder, std::int64_t most_steps, const Between& between) {
   const auto unit = [&](std::int64_t number, int band) {
     if (band == 0) advance_interface(number, substeps_, recorder, between.sample());
     advance_band(number, static_cast<std::size_t>(band));
+    if (!watched_.empty()) show_watched(number + 1, static_cast<std::size_t>(band), between);
     if (band > 0) return true;
     ++step_;
     return between.go_on();

@@ -10,6 +10,7 @@
 #include "mesh/mesh.hpp"
 #include "motion/body.hpp"
 #include "motion/coupling.hpp"
+#include "motion/probes.hpp"
 #include "motion/recorder.hpp"
 #include "motion/settings.hpp"
 #include "record/energies.hpp"
@@ -34,12 +35,9 @@ struct Between {
   std::function<record::History*()> sample = [] { return nullptr; };
   /// After the interface's part of a step: whether another one may follow.
   std::function<bool()> go_on = [] { return true; };
-};
-
-/// What a stepper makes a body of.
-struct BodySource {
-  const mesh::Mesh& mesh;
-  const solid::Material& material;
+  /// Where to put the displacements of the nodes of the stepper's probes at a step, see displacement_values;
+  /// null for nowhere. Asked for in each part of the step, from the thread that takes it.
+  std::function<double*(std::int64_t step)> displacements = [](std::int64_t) { return nullptr; };
 };
 
 /// Explicit motion of a plate on a rigid plane, or on another body: Newmark with beta = 0, gamma = 1/2
@@ -90,6 +88,13 @@ class Stepper {
     coupling_.set_prestress(std::move(t_Pa), std::move(p_Pa));
   }
 
+  /// Looks at the nodes of these probes from now on.
+  void watch(std::vector<Probe> probes);
+  const std::vector<Probe>& probes() const { return probes_; }
+  /// Displacements and velocities of the probes' nodes between two steps, see displacement_values.
+  std::vector<double> probed_u_m() const;
+  std::vector<double> probed_v_m_per_s() const;
+
   /// Takes at most `most_steps` steps, several of them in one sweep through memory. Every contact update is
   /// shown to the recorder.
   /// @return the number of steps taken
@@ -138,6 +143,8 @@ class Stepper {
   /// The part of a step that concerns the interface: all that is due in its sub-steps, or in the first
   /// n_substeps of them.
   void advance_interface(std::int64_t step, int n_substeps, Recorder& recorder, record::History* sample);
+  /// Copies the displacements of the watched nodes that the bands `band` have moved to where a step ends.
+  void show_watched(std::int64_t step, std::size_t band, const Between& between) const;
   /// One band of the bodies' coarsest levels.
   void advance_band(std::int64_t step, std::size_t band);
 
@@ -148,6 +155,14 @@ class Stepper {
   int substeps_ = 1;  ///< in a step
   int n_bands_ = 1;   ///< of the bodies that lead
   std::unique_ptr<threads::Wavefront> wavefront_;
+  std::vector<Probe> probes_;
+  /// A node of a probe, and where its displacement goes.
+  struct Watched {
+    std::size_t body = 0;
+    mesh::Node node = 0;
+    std::size_t at = 0;
+  };
+  std::vector<std::vector<Watched>> watched_;  ///< by the band with which they move; none without probes
   std::int64_t step_ = 0;
 };
 

@@ -69,11 +69,15 @@ Watch::Watch(Stepper& stepper, double c_L_m_per_s, const record::Energies& start
     : stepper_(stepper), c_L_m_per_s_(c_L_m_per_s), start_(start), checked_step_(checked_step) {}
 
 bool Watch::look() {
+  const auto& face = stepper_.interface_state();
   double fastest = 0;
   bool finite = true;
-  for (const double v : stepper_.interface_state().slip_rate_m_per_s) {
+  fastest_slip_m_per_s_ = 0;
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    const double v = std::abs(face.slip_rate_m_per_s[i]);
     finite &= std::isfinite(v);
-    fastest = std::max(fastest, std::abs(v));
+    fastest = std::max(fastest, v);
+    if (face.slipping[i] != 0) fastest_slip_m_per_s_ = std::max(fastest_slip_m_per_s_, v);
   }
   if (!finite) {
     trouble_ = "the slip rate is not a number";
@@ -90,10 +94,10 @@ std::int64_t Watch::steps_to_check() const {
 std::string Watch::trouble(const record::Energies* known) {
   if (trouble_.empty() && known == nullptr && steps_to_check() > 0) return {};
   checked_step_ = stepper_.step();
-  const record::Energies now = known != nullptr ? *known : stepper_.energies();
-  if (trouble_.empty()) trouble_ = energy_trouble(now);
+  last_ = known != nullptr ? *known : stepper_.energies();
+  if (trouble_.empty()) trouble_ = energy_trouble(*last_);
   if (trouble_.empty()) return {};
-  return trouble_ + "; " + remedy(now);
+  return trouble_ + "; " + remedy(*last_);
 }
 
 std::string Watch::energy_trouble(const record::Energies& now) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "motion/stepper.hpp"
@@ -19,6 +20,10 @@ class Watch {
   const record::Energies& start() const { return start_; }
   /// Step of the last look at the energy.
   std::int64_t checked_step() const { return checked_step_; }
+  /// What it was then, if it was looked at since this watch began.
+  const std::optional<record::Energies>& last() const { return last_; }
+  /// Largest slip rate of nodes that slip, in the last look at the interface.
+  double fastest_slip_m_per_s() const { return fastest_slip_m_per_s_; }
 
   /// Looks at the interface after a step. @return whether its motion is physical
   bool look();
@@ -40,6 +45,8 @@ class Watch {
   double c_L_m_per_s_;
   record::Energies start_;
   std::int64_t checked_step_ = 0;
+  std::optional<record::Energies> last_;
+  double fastest_slip_m_per_s_ = 0;
   std::string trouble_;  ///< found at the interface
 };
 

@@ -31,10 +31,6 @@ input::Case base_case(interface::EventKind event, bool quick) {
   return c;
 }
 
-interface::VelocityWeakening& law(input::Case& c) {
-  return std::get<interface::VelocityWeakening>(c.friction);
-}
-
 using Change = std::function<void(input::Case&)>;
 
 /// The events of one study point: the paper's with one change, at a history spacing that keeps their files
@@ -63,7 +59,7 @@ std::vector<NamedCase> paper_cases(bool quick) {
                                   {"left", base_case(left, quick)},
                                   {"right", base_case(right, quick)},
                                   {"spontaneous_mu_k_1.0", base_case(spontaneous, quick)}};
-  law(cases[3].config).mu_k = 1.0;
+  cases[3].config.friction.parameter("mu_k") = 1.0;
   const std::vector<std::string> titles = {"spontaneous, mu_k = 0.6", "triggered on the left, mu_k = 0.6",
                                            "triggered on the right, mu_k = 0.6", "spontaneous, mu_k = 1.0"};
   for (std::size_t k = 0; k < cases.size(); ++k) {
@@ -117,16 +113,17 @@ Study make_mesh_study(const char* name, const char* why, const std::vector<int>&
 }
 
 std::vector<Study> friction_studies(bool quick) {
-  const std::vector<Sweep> sweeps = {{"mu_k",
-                                      "friction.mu_k",
-                                      "kind of slip (C20, C21)",
-                                      {0.4, 0.6, 0.8, 1.0, 1.1, 1.2},
-                                      [](input::Case& c, double v) { law(c).mu_k = v; }},
-                                     {"alpha",
-                                      "friction.alpha_m2_per_s2",
-                                      "speed of fronts (C22)",
-                                      {0.01, 0.03, 0.1, 0.3, 1},
-                                      [](input::Case& c, double v) { law(c).alpha_m2_per_s2 = v; }}};
+  const std::vector<Sweep> sweeps = {
+      {"mu_k",
+       "friction.mu_k",
+       "kind of slip (C20, C21)",
+       {0.4, 0.6, 0.8, 1.0, 1.1, 1.2},
+       [](input::Case& c, double v) { c.friction.parameter("mu_k") = v; }},
+      {"alpha",
+       "friction.alpha_m2_per_s2",
+       "speed of fronts (C22)",
+       {0.01, 0.03, 0.1, 0.3, 1},
+       [](input::Case& c, double v) { c.friction.parameter("alpha_m2_per_s2") = v; }}};
   return make_studies(sweeps, all_events, quick);
 }
 

@@ -31,6 +31,8 @@ struct ReproduceReport {
   std::vector<Claim> claims;
   std::vector<Timing> timings;
   std::vector<std::string> warnings;
+  std::size_t n_runs = 0;
+  std::size_t n_quiet = 0;  ///< of them those that ended before time.end_s since nothing moved
 };
 
 /// Told of every run that is done; returns false to interrupt the reproduction.

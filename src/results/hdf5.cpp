@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/version.hpp"
 
 namespace slipfront::results::hdf5 {
 namespace {
@@ -273,6 +274,67 @@ void set_attribute(const File& file, const std::string& object, const std::strin
   Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
   if (length == 1) space = Handle(H5Screate(H5S_SCALAR), H5Sclose);
   write_attribute(file, object, name, H5T_NATIVE_INT64, space, values.data());
+}
+
+namespace {
+
+std::vector<std::pair<const char*, std::string>> attributes_of(const Origin& origin) {
+  std::vector<std::pair<const char*, std::string>> attributes = {
+      {"program", "slipfront"},
+      {"version", version()},
+      {"units", "SI; names end with the unit, and data sets have it as the attribute unit"}};
+  if (!origin.title.empty()) attributes.emplace_back("title", origin.title);
+  if (!origin.case_text.empty()) attributes.emplace_back("case", origin.case_text);
+  return attributes;
+}
+
+/// Fixed-length text that holds the longest of these, and their bytes.
+struct FixedTexts {
+  Handle type;
+  std::string bytes;
+};
+
+FixedTexts fixed(const std::vector<std::string>& texts) {
+  std::size_t longest = 1;
+  for (const auto& text : texts) longest = std::max(longest, text.size());
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), longest);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  std::string bytes;
+  for (const auto& text : texts) bytes += text + std::string(longest - text.size(), '\0');
+  return {std::move(type), std::move(bytes)};
+}
+
+}  // namespace
+
+void describe_root(const File& file, const Origin& origin) {
+  for (const auto& [name, text] : attributes_of(origin)) set_attribute(file, "/", name, text);
+}
+
+void require_root_described(const File& file, const Origin& origin) {
+  for (const auto& [name, text] : attributes_of(origin)) require_text(file, "/", name, text);
+}
+
+void write_texts(const File& file, const std::string& name, const std::vector<std::string>& texts) {
+  const auto [type, bytes] = fixed(texts);
+  Handle dataset = new_dataset(file, name, type.get(), {texts.size()});
+  if (!texts.empty() && H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0)
+    throw_write(file, name);
+  finish(std::move(dataset), file, name);
+}
+
+void require_texts(const File& file, const std::string& name, const std::vector<std::string>& texts) {
+  const auto [type, bytes] = fixed(texts);
+  const Handle dataset(H5Dopen2(file.handle.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Handle space(dataset.valid() ? H5Dget_space(dataset.get()) : -1, H5Sclose);
+  if (!space.valid() || H5Sget_simple_extent_npoints(space.get()) != std::ssize(texts))
+    throw_write(file, name);
+  std::string written(bytes.size(), '\0');
+  if (!texts.empty() &&
+      (H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, written.data()) < 0 ||
+       written != bytes))
+    throw_write(file, name);
 }
 
 std::string text_attribute(const File& file, const std::string& object, const std::string& name) {

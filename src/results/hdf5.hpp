@@ -98,6 +98,22 @@ void set_ascii_attribute(const File& file, const std::string& object, const std:
 void set_attribute(const File& file, const std::string& object, const std::string& name,
                    std::span<const std::int64_t> values);
 
+/// What the root of every file of results says of where it comes from.
+struct Origin {
+  std::string title;
+  std::string case_text;  ///< case.resolved.toml
+};
+/// Sets the attributes `program`, `version` and `units` of the root and, unless they are empty, `title` and
+/// `case`.
+void describe_root(const File& file, const Origin& origin);
+/// Looks for them in a file that was written just now.
+void require_root_described(const File& file, const Origin& origin);
+
+/// Writes texts, each filled up to the longest one by zeros.
+void write_texts(const File& file, const std::string& name, const std::vector<std::string>& texts);
+/// Compares them. @throws WriteError
+void require_texts(const File& file, const std::string& name, const std::vector<std::string>& texts);
+
 /// Text attribute of variable length, of a file that is known to be whole: HDF5 keeps these texts in a heap
 /// without checksums, and does not come back from some damage of it.
 std::string text_attribute(const File& file, const std::string& object, const std::string& name);

@@ -59,8 +59,10 @@ std::size_t history_block_rows(std::size_t n_nodes) {
   return std::max<std::size_t>(chunk_bytes / (sizeof(double) * std::max<std::size_t>(n_nodes, 1)), 1);
 }
 
-HistoryFile::HistoryFile(const std::filesystem::path& path, std::span<const double> x_m)
+HistoryFile::HistoryFile(const std::filesystem::path& path, std::span<const double> x_m,
+                         const hdf5::Origin& origin)
     : file_(hdf5::create_file(path)), n_nodes_(x_m.size()) {
+  hdf5::describe_root(file_, origin);
   hdf5::create_growing(file_, history_time.name, {}, time_chunk_rows, hdf5::Chunks::checked);
   describe(file_, history_time);
   hdf5::create_growing(file_, history_place.name, {}, std::max<std::size_t>(n_nodes_, 1),
@@ -96,16 +98,18 @@ void HistoryFile::close() {
   hdf5::close(std::move(file_));
 }
 
-void write_history(const std::filesystem::path& path, const History& history) {
-  HistoryFile file(path, history.x_m);
+void write_history(const std::filesystem::path& path, const History& history, const hdf5::Origin& origin) {
+  HistoryFile file(path, history.x_m, origin);
   file.append(history);
   file.close();
-  const WrittenHistory written(path);
+  const WrittenHistory written(path, origin);
   written.require(0, history);
   written.require_lengths(history.time_s.size(), history.x_m.size());
 }
 
-WrittenHistory::WrittenHistory(const std::filesystem::path& path) : file_(hdf5::open_written_file(path)) {
+WrittenHistory::WrittenHistory(const std::filesystem::path& path, const hdf5::Origin& origin)
+    : file_(hdf5::open_written_file(path)) {
+  hdf5::require_root_described(file_, origin);
   for (const HistoryColumn& axis : {history_time, history_place}) require_described(file_, axis);
   for (const HistoryColumn& field : history_fields) require_described(file_, field);
 }

@@ -56,14 +56,14 @@ void write_energies(const std::filesystem::path& file, std::span<const record::E
 void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts) {
   std::string text =
       "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"
-      "U_s_J_per_m3,U_r_J_per_m3\n";
+      "U_s_J_per_m3,U_r_J_per_m3,speed_kind\n";
   for (const fronts::Front& front : fronts)
     for (const fronts::FrontPoint& point : front.points)
-      text +=
-          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", front.id, field(point.x_m),
-                      field(point.onset_s), front.direction, field(point.v_tip_m_per_s), field(point.t_s_Pa),
-                      field(point.p_s_Pa), field(point.t_d_Pa), field(point.p_d_Pa), field(point.t_r_Pa),
-                      field(point.p_r_Pa), field(point.U_s_J_per_m3), field(point.U_r_J_per_m3));
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", front.id, field(point.x_m),
+                          field(point.onset_s), front.direction, field(point.v_tip_m_per_s),
+                          field(point.t_s_Pa), field(point.p_s_Pa), field(point.t_d_Pa), field(point.p_d_Pa),
+                          field(point.t_r_Pa), field(point.p_r_Pa), field(point.U_s_J_per_m3),
+                          field(point.U_r_J_per_m3), fronts::name(point.speed_kind));
   files::write_text(file, text);
 }
 

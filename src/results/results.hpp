@@ -22,8 +22,8 @@ void write_static(const std::filesystem::path& file, const record::StaticState& 
                   std::span<const NamedColumn> further = {});
 
 /// fronts.csv: front_id, x_m, onset_s, direction, v_tip_m_per_s, t_s_Pa, p_s_Pa, t_d_Pa, p_d_Pa, t_r_Pa,
-/// p_r_Pa, U_s_J_per_m3, U_r_J_per_m3, a row per front and node in the order of travel; what is undefined is
-/// left empty.
+/// p_r_Pa, U_s_J_per_m3, U_r_J_per_m3, speed_kind (fronts::SpeedKind), a row per front and node in the order
+/// of travel; what is undefined is left empty.
 void write_fronts(const std::filesystem::path& file, std::span<const fronts::Front> fronts);
 
 /// energy.csv: time_s, the terms of record::Energies with their unit, and imbalance_J_per_m, a row per

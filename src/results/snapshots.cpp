@@ -18,6 +18,14 @@ constexpr std::size_t piece_rows = 32 * 1024;
 /// Most rows of a chunk; HDF5 takes chunks below 4 GiB.
 constexpr std::size_t most_chunk_rows = 1U << 26U;
 
+constexpr const char* displacement = "displacement_m";
+constexpr const char* velocity = "velocity_m_per_s";
+constexpr const char* displacement_text = "displacement of the points, x, y and 0";
+constexpr const char* velocity_text =
+    "velocity of the points, x, y and 0, half a step before the snapshot's time, in the interface layer half "
+    "a "
+    "sub-step";
+
 /// Nodes of the left edge of a periodic plate and of the right one, which have the same motion.
 std::vector<std::pair<mesh::Node, mesh::Node>> seam(const mesh::Mesh& mesh) {
   std::vector<std::pair<mesh::Node, mesh::Node>> pairs;
@@ -100,6 +108,71 @@ void for_field_pieces(const solid::Field& field, std::span<const std::size_t> so
   }
 }
 
+/// A component of strain or stress, a data set of its own.
+struct TensorComponent {
+  const char* name;
+  const char* unit;
+  const char* description;
+  bool is_stress;
+  double solid::PlaneTensor::*member;
+};
+
+using TensorComponents = std::array<TensorComponent, tensor_values_per_cell>;
+
+/// Those that are not 0 by the plane state, which both bodies share.
+TensorComponents components(solid::Plane plane) {
+  using T = solid::PlaneTensor;
+  constexpr TensorComponent strain_zz = {"strain_zz", "1", "strain across the plane, at the cell's centre",
+                                         false, &T::zz};
+  constexpr TensorComponent stress_zz = {
+      "stress_zz_Pa", "Pa", "elastic stress across the plane, at the cell's centre", true, &T::zz};
+  return {{{"strain_xx", "1", "strain along x, at the cell's centre", false, &T::xx},
+           {"strain_yy", "1", "strain along y, at the cell's centre", false, &T::yy},
+           {"strain_xy", "1", "shear strain of the tensor, half the engineering one, at the cell's centre",
+            false, &T::xy},
+           {"stress_xx_Pa", "Pa", "elastic stress along x, positive in tension, at the cell's centre", true,
+            &T::xx},
+           {"stress_yy_Pa", "Pa", "elastic stress along y, at the cell's centre", true, &T::yy},
+           {"stress_xy_Pa", "Pa", "elastic shear stress, at the cell's centre", true, &T::xy},
+           plane == solid::Plane::stress ? strain_zz : stress_zz}};
+}
+
+struct StrainAndStress {
+  solid::PlaneTensor strain, stress_Pa;
+};
+
+StrainAndStress at_centre(const mesh::Mesh& mesh, const mesh::Cell& cell, const solid::Field& u_m,
+                          const solid::Material& material) {
+  std::array<double, 8> of_nodes{};
+  for (std::size_t a = 0; a < 4; ++a) {
+    of_nodes[2 * a] = u_m.x[cell[a]];
+    of_nodes[2 * a + 1] = u_m.y[cell[a]];
+  }
+  const auto shape = solid::cell_shape(solid::cell_coordinates(mesh, cell), 0, 0);
+  const auto strain = solid::strain(shape, of_nodes, material);
+  return {strain, solid::stress_Pa(strain, material)};
+}
+
+/// Calls f(component, first cell, values) for strain and stress of the cells, piece by piece.
+template <class F>
+void for_tensor_pieces(const mesh::Mesh& mesh, std::span<const CellsOfBody> bodies, const solid::Field& u_m,
+                       F&& f) {
+  if (bodies.empty()) return;
+  const auto all = components(bodies.front().material.plane);
+  std::array<std::vector<double>, tensor_values_per_cell> values;
+  std::size_t body = 0;
+  for (std::size_t from = 0; from < mesh.cells.size(); from += piece_rows) {
+    for (auto& column : values) column.clear();
+    for (std::size_t c = from; c < std::min(from + piece_rows, mesh.cells.size()); ++c) {
+      while (c >= bodies[body].end) ++body;
+      const auto at = at_centre(mesh, mesh.cells[c], u_m, bodies[body].material);
+      for (std::size_t k = 0; k < all.size(); ++k)
+        values[k].push_back((all[k].is_stress ? at.stress_Pa : at.strain).*all[k].member);
+    }
+    for (std::size_t k = 0; k < all.size(); ++k) f(all[k], from, values[k]);
+  }
+}
+
 constexpr std::uint8_t vtk_quad = 9;
 
 void write_mesh(const hdf5::File& file, const mesh::Mesh& mesh) {
@@ -128,13 +201,22 @@ void write_mesh(const hdf5::File& file, const mesh::Mesh& mesh) {
 
 }  // namespace
 
-SnapshotFile::SnapshotFile(const std::filesystem::path& path, const mesh::Mesh& mesh)
-    : file_(hdf5::create_file(path)), n_points_(mesh.x_m.size()), source_(sources(mesh)) {
+SnapshotFile::SnapshotFile(const std::filesystem::path& path, const mesh::Mesh& mesh,
+                           SnapshotContents contents)
+    : file_(hdf5::create_file(path)),
+      mesh_(mesh),
+      contents_(std::move(contents)),
+      n_points_(mesh.x_m.size()),
+      source_(sources(mesh)) {
+  SLIPFRONT_ASSERT(contents_.bodies.empty() || contents_.bodies.back().end == mesh.cells.size(),
+                   "the bodies have all cells");
+  hdf5::describe_root(file_, contents_.origin);
   hdf5::create_group(file_, "/VTKHDF");
   hdf5::set_attribute(file_, "/VTKHDF", "Version", std::array<std::int64_t, 2>{2, 0});
   hdf5::set_ascii_attribute(file_, "/VTKHDF", "Type", "UnstructuredGrid");
   write_mesh(file_, mesh);
   hdf5::create_group(file_, "/VTKHDF/PointData");
+  if (!contents_.bodies.empty()) hdf5::create_group(file_, "/VTKHDF/CellData");
 }
 
 void SnapshotFile::append_field(const std::string& name, const solid::Field& field) {
@@ -143,15 +225,37 @@ void SnapshotFile::append_field(const std::string& name, const solid::Field& fie
   if (time_s_.empty())
     hdf5::create_growing(file_, dataset, {3}, std::clamp<std::size_t>(n_points_, 1, most_chunk_rows),
                          n_points_ <= most_chunk_rows ? hdf5::Chunks::whole : hdf5::Chunks::any);
+  if (time_s_.empty()) {
+    hdf5::set_attribute(file_, dataset, "unit", std::string(name == velocity ? "m/s" : "m"));
+    hdf5::set_attribute(file_, dataset, "description",
+                        std::string(name == velocity ? velocity_text : displacement_text));
+  }
   hdf5::add_rows(file_, dataset, n_points_);
   for_field_pieces(field, source_, [&](std::size_t row, std::span<const double> values) {
     hdf5::write_rows(file_, dataset, time_s_.size() * n_points_ + row, values);
   });
 }
 
+void SnapshotFile::append_tensors(const solid::Field& u_m) {
+  const std::size_t n_cells = mesh_.cells.size();
+  for_tensor_pieces(
+      mesh_, contents_.bodies, u_m,
+      [&](const TensorComponent& component, std::size_t first, std::span<const double> values) {
+        const std::string dataset = std::string("/VTKHDF/CellData/") + component.name;
+        if (time_s_.empty() && first == 0) {
+          hdf5::create_growing(file_, dataset, {}, std::clamp<std::size_t>(n_cells, 1, most_chunk_rows));
+          hdf5::set_attribute(file_, dataset, "unit", std::string(component.unit));
+          hdf5::set_attribute(file_, dataset, "description", std::string(component.description));
+        }
+        if (first == 0) hdf5::add_rows(file_, dataset, n_cells);
+        hdf5::write_rows(file_, dataset, time_s_.size() * n_cells + first, values);
+      });
+}
+
 void SnapshotFile::append(const motion::Snapshot& snapshot) {
-  append_field("displacement_m", snapshot.u_m);
-  append_field("velocity_m_per_s", snapshot.v_m_per_s);
+  append_field(displacement, snapshot.u_m);
+  append_field(velocity, snapshot.v_m_per_s);
+  append_tensors(snapshot.u_m);
   time_s_.push_back(snapshot.time_s);
 }
 
@@ -173,24 +277,39 @@ void SnapshotFile::close() {
   hdf5::write(file_, "/VTKHDF/Steps/CellOffsets", zeros, {n_steps, 1});
   hdf5::write(file_, "/VTKHDF/Steps/ConnectivityIdOffsets", zeros, {n_steps, 1});
   hdf5::create_group(file_, "/VTKHDF/Steps/PointDataOffsets");
-  for (const char* name : {"displacement_m", "velocity_m_per_s"})
+  for (const char* name : {displacement, velocity})
     hdf5::write(file_, std::string("/VTKHDF/Steps/PointDataOffsets/") + name, data_offsets, {n_steps});
+  if (!contents_.bodies.empty()) {
+    std::vector<std::int64_t> cell_offsets;
+    for (std::size_t k = 0; k < n_steps; ++k)
+      cell_offsets.push_back(static_cast<std::int64_t>(k * mesh_.cells.size()));
+    hdf5::create_group(file_, "/VTKHDF/Steps/CellDataOffsets");
+    for (const auto& component : components(contents_.bodies.front().material.plane))
+      hdf5::write(file_, std::string("/VTKHDF/Steps/CellDataOffsets/") + component.name, cell_offsets,
+                  {n_steps});
+  }
   hdf5::close(std::move(file_));
 }
 
 void write_snapshots(const std::filesystem::path& path, const mesh::Mesh& mesh,
-                     std::span<const motion::Snapshot> snapshots) {
-  SnapshotFile file(path, mesh);
+                     std::span<const motion::Snapshot> snapshots, const SnapshotContents& contents) {
+  SnapshotFile file(path, mesh, contents);
   for (const auto& snapshot : snapshots) file.append(snapshot);
   file.close();
   if (snapshots.empty()) return;
-  const WrittenSnapshots written(path, mesh);
+  const WrittenSnapshots written(path, mesh, contents);
   for (std::size_t k = 0; k < snapshots.size(); ++k) written.require(k, snapshots[k]);
   written.require_steps(snapshots.size());
 }
 
-WrittenSnapshots::WrittenSnapshots(const std::filesystem::path& path, const mesh::Mesh& mesh)
-    : file_(hdf5::open_written_file(path)), n_points_(mesh.x_m.size()), source_(sources(mesh)) {
+WrittenSnapshots::WrittenSnapshots(const std::filesystem::path& path, const mesh::Mesh& mesh,
+                                   SnapshotContents contents)
+    : file_(hdf5::open_written_file(path)),
+      mesh_(mesh),
+      contents_(std::move(contents)),
+      n_points_(mesh.x_m.size()),
+      source_(sources(mesh)) {
+  hdf5::require_root_described(file_, contents_.origin);
   for_point_pieces(mesh, [&](std::size_t row, std::span<const double> values) {
     hdf5::require_rows(file_, "/VTKHDF/Points", row, values);
   });
@@ -214,6 +333,11 @@ void WrittenSnapshots::require(std::size_t step, const motion::Snapshot& snapsho
   };
   require_field("/VTKHDF/PointData/displacement_m", snapshot.u_m);
   require_field("/VTKHDF/PointData/velocity_m_per_s", snapshot.v_m_per_s);
+  for_tensor_pieces(mesh_, contents_.bodies, snapshot.u_m,
+                    [&](const TensorComponent& component, std::size_t first, std::span<const double> values) {
+                      hdf5::require_rows(file_, std::string("/VTKHDF/CellData/") + component.name,
+                                         step * mesh_.cells.size() + first, values);
+                    });
 }
 
 void WrittenSnapshots::require_steps(std::size_t n) const {

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "results/history.hpp"
+#include "results/probes.hpp"
 #include "results/snapshots.hpp"
 
 namespace slipfront::results {
@@ -69,6 +70,22 @@ record::History read_rows(Records& records, std::size_t n, std::span<const doubl
   return rows;
 }
 
+/// The next n rows of what probes record.
+record::ProbeRecord read_probe_rows(Records& records, std::size_t n, std::size_t n_probes) {
+  const auto values = records.read(n);
+  record::ProbeRecord rows;
+  auto from = values.begin();
+  for (std::size_t k = 0; k < n; ++k) {
+    rows.time_s.push_back(*from++);
+    for (const auto& field : record::probe_fields) {
+      auto& column = rows.*field.member;
+      column.insert(column.end(), from, from + static_cast<std::ptrdiff_t>(n_probes));
+      from += static_cast<std::ptrdiff_t>(n_probes);
+    }
+  }
+  return rows;
+}
+
 motion::Snapshot read_snapshot(Records& records, std::size_t n_nodes) {
   const auto values = records.read(1);
   motion::Snapshot snapshot{values[0], solid::Field(n_nodes), solid::Field(n_nodes)};
@@ -88,6 +105,10 @@ std::filesystem::path ResultStream::history_file(const std::filesystem::path& di
 
 std::filesystem::path ResultStream::snapshot_file(const std::filesystem::path& dir) {
   return dir / "snapshots.raw";
+}
+
+std::filesystem::path ResultStream::probe_file(const std::filesystem::path& dir) {
+  return dir / "probes.raw";
 }
 
 ResultStream::Summed::Summed(const std::filesystem::path& path, const Extent& extent)
@@ -114,17 +135,23 @@ ResultStream::Extent ResultStream::Summed::sync() {
   return {file.length(), sum.digest()};
 }
 
-ResultStream::ResultStream(const std::filesystem::path& dir)
-    : history_(history_file(dir)), snapshots_(snapshot_file(dir)), writer_(most_bytes_waiting) {}
+ResultStream::ResultStream(const std::filesystem::path& dir, bool with_probes)
+    : history_(history_file(dir)), snapshots_(snapshot_file(dir)), writer_(most_bytes_waiting) {
+  if (with_probes) probes_.emplace(probe_file(dir));
+}
 
-ResultStream::ResultStream(const std::filesystem::path& dir, const Extents& extents)
+ResultStream::ResultStream(const std::filesystem::path& dir, const Extents& extents, bool with_probes)
     : history_(history_file(dir), extents.history),
       snapshots_(snapshot_file(dir), extents.snapshots),
-      writer_(most_bytes_waiting) {}
+      writer_(most_bytes_waiting) {
+  if (with_probes) probes_.emplace(probe_file(dir), extents.probes);
+}
 
 void ResultStream::require_unchanged(const std::filesystem::path& dir, const Extents& extents) {
-  for (const auto& [file, extent] :
-       {std::pair(history_file(dir), &extents.history), std::pair(snapshot_file(dir), &extents.snapshots)})
+  std::vector<std::pair<std::filesystem::path, const Extent*>> expected = {
+      {history_file(dir), &extents.history}, {snapshot_file(dir), &extents.snapshots}};
+  if (!extents.probes.checksum.empty()) expected.emplace_back(probe_file(dir), &extents.probes);
+  for (const auto& [file, extent] : expected)
     if (!files::is_there(file) || files::sha256_of_file(file) != extent->checksum)
       throw WriteError("{}: is not what was written: it was changed, damaged or removed meanwhile",
                        file.string());
@@ -136,10 +163,27 @@ void ResultStream::sample(const record::History& row) {
   if (block_.size() >= block_values) hand_over();
 }
 
+void ResultStream::probe(const record::ProbeRecord& rows) {
+  SLIPFRONT_ASSERT(probes_, "rows of probes in a stream without them");
+  const std::size_t n_probes = rows.u_x_m.size() / rows.time_s.size();
+  for (std::size_t k = 0; k < rows.time_s.size(); ++k) {
+    probe_block_.push_back(rows.time_s[k]);
+    for (const auto& field : record::probe_fields) {
+      const auto first = (rows.*field.member).begin() + static_cast<std::ptrdiff_t>(k * n_probes);
+      probe_block_.insert(probe_block_.end(), first, first + static_cast<std::ptrdiff_t>(n_probes));
+    }
+  }
+  if (probe_block_.size() >= block_values) hand_over();
+}
+
 void ResultStream::hand_over() {
-  if (block_.empty()) return;
-  const auto block = std::make_shared<const std::vector<double>>(std::exchange(block_, {}));
-  writer_.put(sizeof(double) * block->size(), [this, block] { history_.write(*block); });
+  const auto put = [this](std::vector<double>& rows, Summed& file) {
+    if (rows.empty()) return;
+    const auto block = std::make_shared<const std::vector<double>>(std::exchange(rows, {}));
+    writer_.put(sizeof(double) * block->size(), [&file, block] { file.write(*block); });
+  };
+  put(block_, history_);
+  if (probes_) put(probe_block_, *probes_);
 }
 
 void ResultStream::snapshot(const motion::Stepper& stepper) {
@@ -157,13 +201,16 @@ void ResultStream::snapshot(const motion::Stepper& stepper) {
 ResultStream::Extents ResultStream::keep() {
   hand_over();
   Extents extents;
-  writer_.put(0, [&] { extents = {history_.sync(), snapshots_.sync()}; });
+  writer_.put(0, [&] {
+    extents = {history_.sync(), snapshots_.sync(), {}};
+    if (probes_) extents.probes = probes_->sync();
+  });
   writer_.finish();
   return extents;
 }
 
 void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,
-                   std::span<const double> x_m) {
+                   std::span<const double> x_m, const hdf5::Origin& origin) {
   Records records(raw, record::history_row_values(x_m.size()));
   const std::size_t block = history_block_rows(x_m.size());
   const auto for_each_block = [&](auto&& f) {
@@ -171,24 +218,41 @@ void write_history(const std::filesystem::path& file, const std::filesystem::pat
     for (std::size_t row = 0; row < records.count(); row += block)
       f(row, read_rows(records, std::min(block, records.count() - row), x_m));
   };
-  HistoryFile output(file, x_m);
+  HistoryFile output(file, x_m, origin);
   for_each_block([&](std::size_t, const record::History& rows) { output.append(rows); });
   output.close();
-  const WrittenHistory written(file);
+  const WrittenHistory written(file, origin);
   for_each_block([&](std::size_t row, const record::History& rows) { written.require(row, rows); });
   written.require_lengths(records.count(), x_m.size());
 }
 
+void write_probes(const std::filesystem::path& file, const std::filesystem::path& raw,
+                  std::span<const record::ProbePlace> places, const hdf5::Origin& origin) {
+  Records records(raw, record::probe_row_values(places.size()));
+  const std::size_t block = probe_block_rows(places.size());
+  const auto for_each_block = [&](auto&& f) {
+    records.rewind();
+    for (std::size_t row = 0; row < records.count(); row += block)
+      f(row, read_probe_rows(records, std::min(block, records.count() - row), places.size()));
+  };
+  ProbeFile output(file, places, origin);
+  for_each_block([&](std::size_t, const record::ProbeRecord& rows) { output.append(rows); });
+  output.close();
+  const WrittenProbes written(file, places, origin);
+  for_each_block([&](std::size_t row, const record::ProbeRecord& rows) { written.require(row, rows); });
+  written.require_length(records.count());
+}
+
 std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
-                            const mesh::Mesh& mesh) {
+                            const mesh::Mesh& mesh, const SnapshotContents& contents) {
   const std::size_t n_nodes = mesh.x_m.size();
   Records records(raw, 1 + 4 * n_nodes);
   if (records.count() == 0) return 0;
-  SnapshotFile output(file, mesh);
+  SnapshotFile output(file, mesh, contents);
   for (std::size_t k = 0; k < records.count(); ++k) output.append(read_snapshot(records, n_nodes));
   output.close();
   records.rewind();
-  const WrittenSnapshots written(file, mesh);
+  const WrittenSnapshots written(file, mesh, contents);
   for (std::size_t k = 0; k < records.count(); ++k) written.require(k, read_snapshot(records, n_nodes));
   written.require_steps(records.count());
   return records.count();

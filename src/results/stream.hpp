@@ -11,6 +11,9 @@
 #include "files/checksum.hpp"
 #include "files/files.hpp"
 #include "motion/event.hpp"
+#include "record/probes.hpp"
+#include "results/hdf5.hpp"
+#include "results/snapshots.hpp"
 #include "threads/writer.hpp"
 
 namespace slipfront::results {
@@ -22,7 +25,8 @@ namespace slipfront::results {
 /// fields.vtkhdf are made of them at the end.
 ///
 /// history.raw: per row time_s and each of record::history_fields [nodes];
-/// snapshots.raw: per snapshot time_s and u_x, u_y, v_x, v_y [nodes of the plate]; doubles as in memory.
+/// snapshots.raw: per snapshot time_s and u_x, u_y, v_x, v_y [nodes of the plate]; probes.raw, where there
+/// are probes: per row time_s and each of record::probe_fields [probes]; doubles as in memory.
 class ResultStream : public motion::Sink {
  public:
   /// What the writer may hold at a time of blocks and snapshots that are not in their files yet; before more
@@ -40,23 +44,24 @@ class ResultStream : public motion::Sink {
     }
   };
   struct Extents {
-    Extent history, snapshots;
+    Extent history, snapshots, probes;  ///< the last one empty without probes
     template <class Archive>
     void serialize(Archive& archive) {
-      archive(history, snapshots);
+      archive(history, snapshots, probes);
     }
   };
 
   /// Makes the files.
-  explicit ResultStream(const std::filesystem::path& dir);
+  explicit ResultStream(const std::filesystem::path& dir, bool with_probes = false);
   /// Goes on in files that hold at least so much; what they hold beyond is cut off.
   /// @throws UserError where one is missing, shorter, or another
-  ResultStream(const std::filesystem::path& dir, const Extents& extents);
+  ResultStream(const std::filesystem::path& dir, const Extents& extents, bool with_probes = false);
 
   // Each throws WriteError where a file could not be written, perhaps long before.
   void sample(const record::History& row) override;
   /// Waits until there is room for a copy of the motion, then takes it.
   void snapshot(const motion::Stepper& stepper) override;
+  void probe(const record::ProbeRecord& rows) override;
   /// Hands rows that are not yet a whole block to the writer, for those who look into the files.
   void hand_over();
   /// Waits until all that was given is on the device.
@@ -67,6 +72,7 @@ class ResultStream : public motion::Sink {
 
   static std::filesystem::path history_file(const std::filesystem::path& dir);
   static std::filesystem::path snapshot_file(const std::filesystem::path& dir);
+  static std::filesystem::path probe_file(const std::filesystem::path& dir);
 
  private:
   /// A file and the checksum of what was written to it.
@@ -82,19 +88,24 @@ class ResultStream : public motion::Sink {
     Extent sync();
   };
 
-  Summed history_, snapshots_;  ///< the writer's
-  std::vector<double> block_;   ///< rows that the writer does not have yet
+  Summed history_, snapshots_;               ///< the writer's
+  std::optional<Summed> probes_;             ///< the writer's
+  std::vector<double> block_, probe_block_;  ///< rows that the writer does not have yet
   threads::Writer writer_;
 };
 
 /// Makes interface.h5 of a stream's file. A record that was cut off at its end is left out.
 /// @throws WriteError, UserError where the file is missing
 void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,
-                   std::span<const double> x_m);
+                   std::span<const double> x_m, const hdf5::Origin& origin = {});
+
+/// Makes probes.h5 of a stream's file. @throws as write_history
+void write_probes(const std::filesystem::path& file, const std::filesystem::path& raw,
+                  std::span<const record::ProbePlace> places, const hdf5::Origin& origin);
 
 /// Makes fields.vtkhdf of a stream's file.
 /// @return the number of snapshots; without any no file is made
 std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
-                            const mesh::Mesh& mesh);
+                            const mesh::Mesh& mesh, const SnapshotContents& contents = {});
 
 }  // namespace slipfront::results

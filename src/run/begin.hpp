@@ -5,7 +5,7 @@
 
 #include "base/per_node.hpp"
 #include "input/case.hpp"
-#include "interface/friction/registry.hpp"
+#include "interface/friction.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/coupling.hpp"
 #include "statics/statics.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/checkpoint.hpp"
 
+#include <dlfcn.h>
+
 #include <charconv>
 #include <map>
 #include <system_error>
@@ -36,9 +38,17 @@ std::map<std::int64_t, fs::path> numbered(const fs::path& dir) {
 
 }  // namespace
 
+/// The file that this code was loaded from: the program, or the shared library for this processor.
+static std::string own_file() {
+  Dl_info info{};
+  const bool is_found = ::dladdr(reinterpret_cast<const void*>(&program_identity), &info) != 0;
+  const std::string file = is_found ? info.dli_fname : "";
+  return file.find(".so") != std::string::npos ? file : "/proc/self/exe";
+}
+
 const std::string& program_identity() {
   static const std::string identity =
-      fmt::format("{}, build {}", version_line(), files::sha256_of_file("/proc/self/exe").substr(0, 16));
+      fmt::format("{}, build {}", version_line(), files::sha256_of_file(own_file()).substr(0, 16));
   return identity;
 }
 

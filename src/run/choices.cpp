@@ -48,6 +48,12 @@ double top_speed_m_per_s(const input::Case& config) {
   return config.loading.shear_speed_over_c_L * solid::longitudinal_speed_m_per_s(config.material);
 }
 
+stability::Bodies bodies_of(const input::Case& config) {
+  stability::Bodies both = config.material;
+  if (input::has_base_body(config)) both.below = input::base_material(config);
+  return both;
+}
+
 statics::StaticSolver wanted_solver(const input::Case& config) {
   const auto shape = [](const mesh::Plate& plate) {
     return statics::Shape{std::round(plate.width_m / plate.element_size_m),

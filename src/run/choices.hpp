@@ -10,6 +10,7 @@
 #include "motion/settings.hpp"
 #include "motion/stepper.hpp"
 #include "record/record.hpp"
+#include "stability/modes.hpp"
 #include "statics/settings.hpp"
 
 namespace slipfront::run {
@@ -29,6 +30,9 @@ double top_speed_m_per_s(const input::Case& config);
 
 /// The largest that a slip rate can be by linear elasticity, see motion::Watch.
 double fastest_speed_m_per_s(const input::Case& config);
+
+/// The materials on both sides of the interface.
+stability::Bodies bodies_of(const input::Case& config);
 
 /// What the plate's shape leaves of loading.solver.
 statics::StaticSolver wanted_solver(const input::Case& config);

@@ -20,12 +20,6 @@ namespace slipfront::run {
 
 namespace {
 
-stability::Bodies bodies(const input::Case& config) {
-  stability::Bodies both = config.material;
-  if (input::has_base_body(config)) both.below = input::base_material(config);
-  return both;
-}
-
 double mean_pressure_Pa(const input::Case& config, const mesh::Mesh& mesh) {
   if (!is_prestressed(config)) return nominal_pressure_Pa(config);
   const auto p = prescribed_tractions(config.prestress, mesh).p_s_Pa;
@@ -57,7 +51,7 @@ bool is_worse(const stability::WellPosedness& a, const stability::WellPosedness&
 void add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info& info) {
   const double pressure_Pa = mean_pressure_Pa(config, mesh);
   const auto of = [&](const interface::FrictionLaw& law) {
-    return stability::well_posedness(bodies(config), law, pressure_Pa, config.plate.element_size_m,
+    return stability::well_posedness(bodies_of(config), law, pressure_Pa, config.plate.element_size_m,
                                      config.plate.width_m, config.regularisation);
   };
   const auto x_m = interface_x_m(mesh);
@@ -146,6 +140,7 @@ Info info(const input::Case& config) {
   info.speeds = wave_speeds(config.material);
   const auto meshes = check(config);
   add_sizes(config, meshes, info);
+  info.rupture = rupture_outlook(config, meshes);
 
   // About as long as making the stepper.
   auto sliding = std::async(std::launch::async | std::launch::deferred,

@@ -10,6 +10,7 @@
 #include "fronts/front.hpp"
 #include "input/entries.hpp"
 #include "input/friction_along_x.hpp"
+#include "interface/friction/coulomb.hpp"
 #include "mesh/plate.hpp"
 #include "motion/stepper.hpp"
 #include "run/begin.hpp"
@@ -98,6 +99,15 @@ mesh::Mesh make_base(const input::Case& config) {
 
 }  // namespace
 
+std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh& plate,
+                                     const std::optional<mesh::Mesh>& base) {
+  if (config.probes.x_m.empty()) return {};
+  const auto base_material = input::base_material(config);
+  std::vector<motion::BodySource> bodies = {{plate, config.material}};
+  if (base) bodies.push_back({*base, base_material});
+  return motion::locate_probes(input::probe_places(config), bodies);
+}
+
 Meshes check(const input::Case& config) {
   require_memory_fits(config);
   if (!is_prestressed(config)) require_edges_to_tilt(config);
@@ -108,6 +118,7 @@ Meshes check(const input::Case& config) {
     meshes.base = make_base(config);
     motion::require_rows_fit(*meshes.base, config.time, "base");
   }
+  probes_of(config, meshes.plate, meshes.base);  // refuses what lies outside
   meshes.mu_s = static_coefficients(input::friction_at(config, interface_x_m(meshes.plate)));
   if (!is_prestressed(config)) return meshes;
   const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate));

@@ -66,6 +66,11 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
 /// A text that is the same for two cases if and only if they share their initial state.
 std::string initial_state_key(const input::Case& config);
 
+/// Where a case's probes lie in its bodies.
+/// @throws UserError where one lies outside
+std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh& plate,
+                                     const std::optional<mesh::Mesh>& base);
+
 /// The bodies without their motion.
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,

@@ -6,9 +6,10 @@
 #include <system_error>
 
 #include "base/error.hpp"
-#include "interface/friction/registry.hpp"
+#include "interface/friction.hpp"
 #include "mesh/plate.hpp"
 #include "motion/event.hpp"
+#include "results/snapshots.hpp"
 #include "results/stream.hpp"
 #include "run/choices.hpp"
 #include "solid/operator.hpp"
@@ -156,11 +157,7 @@ std::vector<Budget> memory_stages(const input::Case& config, const Size& size, d
   std::vector<Budget> stages;
   if (!is_prestressed(config)) {
     const auto statics = statics_budget(config, size);
-    // Of a sparse matrix its values or its indices: 9.5 for each of two unknowns a node.
-    const double matrix = 9.5 * 2 * field;
-    const bool direct =
-        statics::choose_solver(wanted_solver(config), 2 * size.n_nodes) == statics::StaticSolver::direct;
-    stages.push_back(with_program(statics.peak, direct ? matrix : field));
+    stages.push_back(with_program(statics.peak, field));
     if (config.loading.method == statics::LoadingMethod::ramp) {
       // The tilted plate that the ramp begins from, common and spontaneous state under way, and the last one.
       const Budget states = {{"states of the ramp", 4 * 4 * field, larger_elements()}};
@@ -202,17 +199,44 @@ std::string work_of(const Size& size) {
 
 }  // namespace
 
+namespace {
+
+/// A time at which a snapshot is asked for, by the list or by the interval.
+struct Asked {
+  double time_s = 0;
+  bool is_listed = true;
+};
+
+/// All of them, ascending.
+std::vector<Asked> asked_snapshots(const input::Case& config, double step_s) {
+  constexpr double most_snapshots = 1e7;
+  std::vector<Asked> asked;
+  for (const double time_s : config.output.snapshot_times_s) asked.push_back({time_s, true});
+  const double interval_s = std::max(config.output.snapshot_interval_s, step_s);
+  if (std::isinf(interval_s)) return asked;
+  const double n = std::floor(config.time.end_s / interval_s * (1 + 1e-12));
+  if (n > most_snapshots)
+    throw UserError("{} = {:g} s gives {:.3g} snapshots until {} = {:g} s; choose a longer one",
+                    Key("output.snapshot_interval_s"), config.output.snapshot_interval_s, n,
+                    Key("time.end_s"), config.time.end_s);
+  for (double k = 0; k <= n; ++k) asked.push_back({std::min(k * interval_s, config.time.end_s), false});
+  std::ranges::stable_sort(asked, {}, &Asked::time_s);
+  return asked;
+}
+
+}  // namespace
+
 SnapshotPlan snapshot_plan(const input::Case& config, double step_s) {
   SnapshotPlan plan;
-  const auto& asked_s = config.output.snapshot_times_s;
+  const auto n_listed = config.output.snapshot_times_s.size();
   std::int64_t n_late = 0, n_near = 0;
   double last_step = -1;
-  for (const double time_s : asked_s) {
+  for (const auto& [time_s, is_listed] : asked_snapshots(config, step_s)) {
     const double step = std::ceil(time_s / step_s * (1 - 1e-12));
     if (time_s > config.time.end_s) {
       ++n_late;
     } else if (step == last_step) {
-      ++n_near;
+      n_near += is_listed ? 1 : 0;
     } else {
       plan.times_s.push_back(time_s);
       last_step = step;
@@ -221,13 +245,20 @@ SnapshotPlan snapshot_plan(const input::Case& config, double step_s) {
   if (n_late > 0)
     plan.notes.push_back(
         fmt::format("{} of {} output.snapshot_times_s are left out: they are after time.end_s = {:g}", n_late,
-                    asked_s.size(), config.time.end_s));
+                    n_listed, config.time.end_s));
   if (n_near > 0)
     plan.notes.push_back(
         fmt::format("{} of {} output.snapshot_times_s are left out: they fall into the step of {:.4g} s of "
                     "the time before",
-                    n_near, asked_s.size(), step_s));
+                    n_near, n_listed, step_s));
   return plan;
+}
+
+std::vector<double> snapshots_after(const input::Case& config, double time_s) {
+  std::vector<double> after_s;
+  for (const double listed_s : config.output.snapshot_times_s)
+    if (listed_s > time_s) after_s.push_back(listed_s);
+  return after_s;
 }
 
 Size estimated_size(const input::Case& config) {
@@ -267,7 +298,13 @@ Needs needs(const input::Case& config, const Size& size) {
   const double mesh_of_fields = 3 * number * size.n_nodes + (5 * number + 1) * size.n_cells;
   const double snapshot_raw = 2 * field, snapshot_written = 6 * number * size.n_nodes;
   n.history_bytes = 2 * history;
-  if (n.snapshots > 0) n.snapshot_bytes = mesh_of_fields + n.snapshots * (snapshot_raw + snapshot_written);
+  const double tensors =
+      config.output.snapshot_stress ? results::tensor_values_per_cell * number * size.n_cells : 0;
+  if (n.snapshots > 0)
+    n.snapshot_bytes = mesh_of_fields + n.snapshots * (snapshot_raw + snapshot_written + tensors);
+  if (const auto n_probes = config.probes.x_m.size(); n_probes > 0)
+    n.probe_bytes = 2 * rows_of(config.time.end_s, config.probes.interval_s, size.step_s) * number *
+                    static_cast<double>(record::probe_row_values(n_probes));
   n.checkpoint_bytes = 2 * (2 * field + interface_bytes(config, size));
   n.energy_bytes = n.energy_rows * bytes_per_number_in_text * sizeof(record::Energies) / number;
   return n;
@@ -275,14 +312,20 @@ Needs needs(const input::Case& config, const Size& size) {
 
 Budget Needs::disk() const {
   return {{"the history", history_bytes, Message("a larger {}", Key("output.history_interval_s"))},
-          {"snapshots", snapshot_bytes, Message("fewer {}", Key("output.snapshot_times_s"))},
+          {"snapshots", snapshot_bytes,
+           Message("fewer {}, a longer {:leaf}, {:leaf} = false", Key("output.snapshot_times_s"),
+                   Key("output.snapshot_interval_s"), Key("output.snapshot_stress"))},
           {"checkpoints", checkpoint_bytes, larger_elements()},
+          {"probes", probe_bytes,
+           Message("fewer {}, or a larger {:leaf}", Key("probes.x_m"), Key("probes.interval_s"))},
           {"energy.csv", energy_bytes, Message("a larger {}", Key("output.energy_interval_s"))}};
 }
 
 void require_memory_fits(const input::Case& config) {
   const Size size = estimated_mesh_size(config);
-  const auto n_snapshots = static_cast<double>(config.output.snapshot_times_s.size());
+  const bool with_snapshots =
+      !config.output.snapshot_times_s.empty() || std::isfinite(config.output.snapshot_interval_s);
+  const double n_snapshots = with_snapshots ? 1 : 0;
   require_memory(largest_of(memory_stages(config, size, n_snapshots, 0, 0)), work_of(size));
 }
 

@@ -17,8 +17,13 @@ struct SnapshotPlan {
   std::vector<std::string> notes;  ///< which times are left out, and why
 };
 
-/// Leaves out the times that a run does not reach, and those that fall into the step of an earlier one.
+/// The times of output.snapshot_times_s and the multiples of output.snapshot_interval_s. Leaves out those
+/// that a run does not reach, and those that fall into the step of an earlier one.
+/// @throws UserError where the interval gives more than any disk holds
 SnapshotPlan snapshot_plan(const input::Case& config, double step_s);
+
+/// Listed times of snapshots after a time.
+std::vector<double> snapshots_after(const input::Case& config, double time_s);
 
 /// Sizes on which the needs of a run depend.
 struct Size {
@@ -39,7 +44,7 @@ struct Needs {
   double history_rows = 0, energy_rows = 0, snapshots = 0;
   std::vector<Budget> memory;  ///< of the stages of a run, one after the other
   double statics_bytes = 0;    ///< of it the peak of the statics
-  double history_bytes = 0, snapshot_bytes = 0, checkpoint_bytes = 0, energy_bytes = 0;
+  double history_bytes = 0, snapshot_bytes = 0, checkpoint_bytes = 0, energy_bytes = 0, probe_bytes = 0;
 
   double memory_bytes() const { return total_bytes(largest_of(memory)); }
   Budget disk() const;

@@ -45,8 +45,7 @@ std::string contact_warning(const statics::Equilibrium& state) {
   if (n_slip + n_open == 0) return {};
   std::int64_t n_inside = 0;
   for (std::size_t k = 0; k < state.contact.size(); ++k) {
-    const double x = state.tractions.x_m[k];
-    const bool is_inside = x >= state.inside_from_m && x <= state.inside_to_m;
+    const bool is_inside = state.is_inside(state.tractions.x_m[k]);
     n_inside += is_inside && state.contact[k] != statics::Contact::stick ? 1 : 0;
   }
   return fmt::format(
@@ -115,6 +114,7 @@ std::unique_ptr<motion::Stepper> started_stepper(const input::Case& config, cons
   const auto& state = event_state(config, initial);
   auto loads = starting_loads(config, state, initial.mesh, initial.mu_s);
   auto stepper = new_stepper(config, initial.mesh, initial.base, execution);
+  stepper->watch(probes_of(config, initial.mesh, initial.base));
   stepper->start(state, top_speed_m_per_s(config), std::move(loads));
   return stepper;
 }
@@ -158,6 +158,7 @@ std::unique_ptr<motion::Stepper> start_event(const input::Case& config, InitialS
 std::unique_ptr<motion::Stepper> make_stepper(const input::Case& config, InitialState& initial,
                                               const motion::Execution& execution) {
   auto stepper = new_stepper(config, initial.mesh, initial.base, execution);
+  stepper->watch(probes_of(config, initial.mesh, initial.base));
   release_nodes(initial.mesh);
   if (initial.base) release_nodes(*initial.base);
   return stepper;
@@ -172,11 +173,11 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
   return {stepper,
           event_state(config, initial),
           static_coefficients(config, initial.mu_s),
-          fastest_speed_m_per_s(config),
+          {fastest_speed_m_per_s(config), stability::radiation_damping_Pa_s_per_m(bodies_of(config))},
           triggered ? config.trigger : interface::Trigger{.ramp_s = 0},
           config.time,
           {config.output.history_interval_s, config.output.energy_interval_s,
-           snapshot_plan(config, stepper.step_s()).times_s},
+           snapshot_plan(config, stepper.step_s()).times_s, config.probes.interval_s},
           motion::halo_for(initial.mesh, config.fronts.l_star_m)};
 }
 
@@ -219,13 +220,10 @@ std::string end_of_event(const Result& result) {
     case motion::EventEnd::quiet:
       break;
   }
-  const bool loaded = config.plate.top == mesh::Top::loaded;
-  const double creep = loaded ? motion::creep_over_top_speed * top_speed_m_per_s(config) : 0;
-  const std::string slipped =
-      creep > 0 ? fmt::format("slipped faster than {:.3g} m/s, ten times the top edge's speed,", creep)
-                : "slipped";
-  return fmt::format("at t = {:.4g} s no node had {} for time.quiet_s = {:g} s", result.event.time_s, slipped,
-                     config.time.quiet_s);
+  return fmt::format(
+      "at t = {:.4g} s nothing had moved for time.quiet_s = {:g} s: no slip began, none grew or was faster "
+      "than {:.3g} m/s, and no waves were left",
+      result.event.time_s, config.time.quiet_s, result.event.quiet_slip_rate_m_per_s);
 }
 
 void measure(Result& result, const InitialState& initial) {
@@ -248,11 +246,12 @@ void measure(Result& result, const InitialState& initial) {
                     after.trigger_work, 100 * after.trigger_work / before.strain));
   const auto snapshots = snapshot_plan(config, result.step_s);
   for (const auto& note : snapshots.notes) result.warnings.push_back(note);
-  const auto n_after =
-      std::ranges::count_if(snapshots.times_s, [&](double time_s) { return time_s > result.event.time_s; });
+  const auto n_after = snapshots_after(config, result.event.time_s).size();
   const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
   const bool quiet = result.event.end == motion::EventEnd::quiet;
-  if (quiet && n_after > 0)
+  const bool ended_early = quiet || result.event.end == motion::EventEnd::blow_up ||
+                           result.event.end == motion::EventEnd::interrupted;
+  if (ended_early && n_after > 0)
     result.warnings.push_back(
         fmt::format("{} of {} output.snapshot_times_s are after the end of the event: {}", n_after,
                     config.output.snapshot_times_s.size(), end_of_event(result)));
@@ -261,7 +260,14 @@ void measure(Result& result, const InitialState& initial) {
         "{} fronts may still have been under way when the event ended ({}); time.quiet_s = inf goes on "
         "to time.end_s",
         n_running, end_of_event(result)));
+  if (result.event.end == motion::EventEnd::end_time && n_running > 0)
+    result.warnings.push_back(
+        fmt::format("{} fronts may still be under way at time.end_s = {:g} s; choose a later end to see more",
+                    n_running, config.time.end_s));
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
+  if (result.fronts.empty())
+    for (const auto& doubt : rupture_outlook(config, initial).doubts)
+      result.warnings.push_back("no rupture: " + doubt);
 }
 
 }  // namespace slipfront::run

@@ -12,8 +12,10 @@
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
+#include "results/snapshots.hpp"
 #include "run/initial_state.hpp"
 #include "run/needs.hpp"
+#include "run/outlook.hpp"
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
 
@@ -93,6 +95,12 @@ inline constexpr const char* friction_file = "friction.csv";
 
 /// The case as case.resolved.toml has it: its tables lie beside it.
 std::string resolved_text(const input::Case& config);
+/// What a run's HDF5 files say of where they come from.
+results::hdf5::Origin origin_of(const input::Case& config);
+/// What a case's fields.vtkhdf holds. @param n_plate_cells  cells of the plate; those of the base follow
+results::SnapshotContents snapshot_contents(const input::Case& config, std::size_t n_plate_cells,
+                                            std::size_t n_cells);
+
 /// Writes them all.
 void write_case(const std::filesystem::path& dir, const input::Case& config);
 /// static.csv: tractions of the common state and, where they vary, the parameters of friction.
@@ -123,8 +131,9 @@ struct Info {
   double memory_bytes = 0;                                          ///< the largest of statics and event
   statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                          ///< of the statics, estimated
-  double expected_s = 0;                    ///< at the kernel rate measured on the spot, statics estimated
-  double node_updates_per_s = 0;            ///< measured on the spot
+  double expected_s = 0;          ///< at the kernel rate measured on the spot, statics estimated
+  double node_updates_per_s = 0;  ///< measured on the spot
+  RuptureOutlook rupture;
   stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure
   /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
   double well_posedness_x_m = fronts::undefined;

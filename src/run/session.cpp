@@ -12,6 +12,7 @@
 #include "results/stream.hpp"
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
+#include "run/shared_states.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -41,6 +42,8 @@ class Session {
   Finished run(std::unique_ptr<Checkpoints::Kept> kept);
 
  private:
+  /// Solved, or taken from the shared ones.
+  InitialState initial_state(Checkpoints::Kept* kept);
   void begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, motion::RampRun& ramp);
   void begin_event(Checkpoints::Kept* kept);
   /// Between linear solutions. @return whether the run goes on
@@ -86,13 +89,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
     if (kept && kept->head.in_event) {
       begin_event(kept.get());
     } else {
-      initial_ = make_initial_state(
-          config_,
-          [&](std::int64_t step, std::int64_t total) {
-            return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
-          },
-          execution_,
-          [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept.get(), stepper, ramp); });
+      initial_ = initial_state(kept.get());
       ramp_ = nullptr;
       stepper_ = nullptr;
       if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
@@ -126,6 +123,21 @@ void Session::fail(const char* status, const std::string& reason) noexcept {
   }
 }
 
+InitialState Session::initial_state(Checkpoints::Kept* kept) {
+  std::optional<SharedStates> shared;
+  if (options_.shared_states) shared.emplace(*options_.shared_states);
+  if (shared)
+    if (auto taken = shared->take(config_, hooks_.note)) return std::move(*taken);
+  auto initial = make_initial_state(
+      config_,
+      [&](std::int64_t step, std::int64_t total) {
+        return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
+      },
+      execution_, [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept, stepper, ramp); });
+  if (shared) shared->keep(config_, initial);
+  return initial;
+}
+
 void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
   if (kept != nullptr) {
     kept->rest(stepper, ramp);
@@ -146,11 +158,12 @@ void Session::begin_event(Checkpoints::Kept* kept) {
     results::ResultStream::Extents extents;
     kept->rest(*event_, extents);
     kept->rest.close();
-    stream_.emplace(folder_.state(), extents);
+    stream_.emplace(folder_.state(), extents, !config_.probes.x_m.empty());
   } else {
     files::remove_file(results::ResultStream::history_file(folder_.state()));
     files::remove_file(results::ResultStream::snapshot_file(folder_.state()));
-    stream_.emplace(folder_.state());
+    files::remove_file(results::ResultStream::probe_file(folder_.state()));
+    stream_.emplace(folder_.state(), !config_.probes.x_m.empty());
     event_stepper_ = start_event(config_, initial_, execution_);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
   }
@@ -236,10 +249,17 @@ void Session::write_results(const Finished& run) {
   // What takes no time first: the program may be given none after an interruption.
   write_so_far(dir_, run.result, run.result.event.energies, run.initial, status);
   results::write_history(dir_ / "interface.h5", results::ResultStream::history_file(folder_.state()),
-                         run.initial.common.tractions.x_m);
-  if (!config_.output.snapshot_times_s.empty())
+                         run.initial.common.tractions.x_m, origin_of(config_));
+  if (const auto places = input::probe_places(config_); !places.empty())
+    results::write_probes(dir_ / "probes.h5", results::ResultStream::probe_file(folder_.state()), places,
+                          origin_of(config_));
+  if (!snapshot_plan(config_, run.result.step_s).times_s.empty()) {
+    auto meshes = check(config_);
+    const auto n_plate_cells = meshes.plate.cells.size();
+    const auto mesh = joined(std::move(meshes));
     results::write_snapshots(dir_ / "fields.vtkhdf", results::ResultStream::snapshot_file(folder_.state()),
-                             joined(check(config_)));
+                             mesh, snapshot_contents(config_, n_plate_cells, mesh.cells.size()));
+  }
   if (status.name == "complete") folder_.publish();
 }
 
@@ -296,8 +316,25 @@ Finished go_on(results::ResultFolder& folder, const input::Case* expected, const
                       config.friction_along_x.file);
   }
   files::write_text(file, text);  // as it was, however it was written meanwhile
-  for (const char* name : {"interface.h5", "fields.vtkhdf"}) files::remove_file(folder.unfinished() / name);
+  for (const char* name : {"interface.h5", "fields.vtkhdf", "probes.h5"})
+    files::remove_file(folder.unfinished() / name);
   return Session(folder, config, options, hooks, true).run(std::move(kept));
+}
+
+std::string what_was_kept(const results::ResultFolder& folder) {
+  return fmt::format("what there is was kept in {}", folder.unfinished().string());
+}
+
+std::string how_to_go_on(const results::ResultFolder& folder) {
+  return fmt::format("{}; slipfront run --restart {} goes on with it", what_was_kept(folder),
+                     folder.dir().string());
+}
+
+void require_came_to_end(const Result& result, const results::ResultFolder& folder) {
+  const auto& event = result.event;
+  if (event.end == motion::EventEnd::blow_up) throw BlowUp(event.blow_up + "; " + what_was_kept(folder));
+  if (event.end == motion::EventEnd::interrupted)
+    throw Interrupted(fmt::format("interrupted at t = {:.4g} s; {}", event.time_s, how_to_go_on(folder)));
 }
 
 void require_same_case(const input::Case& wanted, const std::filesystem::path& dir) {

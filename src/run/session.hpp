@@ -23,6 +23,7 @@ struct SessionOptions {
   std::optional<int> threads;                                     ///< by default suitable_threads
   double keep_every_wall_s = 300;                                 ///< wall time between checkpoints
   double keep_every_s = std::numeric_limits<double>::infinity();  ///< simulated time between them
+  std::optional<std::string> shared_states;                       ///< folder of SharedStates, see there
 };
 
 /// All three are called by the thread that steps.
@@ -56,6 +57,12 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
 /// @throws UserError where there is none, or it is one of another program or case
 Finished go_on(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
                const SessionHooks& hooks);
+
+/// What to tell of a run that has not come to its end, and how to go on with it.
+std::string what_was_kept(const results::ResultFolder& folder);
+std::string how_to_go_on(const results::ResultFolder& folder);
+/// @throws BlowUp, Interrupted where the event ended so, with what was kept.
+void require_came_to_end(const Result& result, const results::ResultFolder& folder);
 
 /// @throws UserError where a folder has the results or the unfinished work of another case.
 void require_same_case(const input::Case& wanted, const std::filesystem::path& dir);

@@ -12,6 +12,7 @@
 #include "input/schema.hpp"
 #include "results/folder.hpp"
 #include "results/history.hpp"
+#include "results/probes.hpp"
 #include "results/results.hpp"
 #include "results/snapshots.hpp"
 #include "run/run.hpp"
@@ -107,6 +108,29 @@ Json fronts_json(const std::vector<fronts::Front>& fronts) {
   return list;
 }
 
+Json spread_json(const stability::Spread& spread) {
+  return {{"min", spread.least}, {"median", spread.median}, {"max", spread.largest}};
+}
+
+/// What the tractions before the event let expect; infinite numbers become null.
+Json rupture_json(const RuptureOutlook& rupture) {
+  const auto& o = rupture.of_nodes;
+  return {{"nodes_inside", o.n_nodes},
+          {"nodes_that_weaken", o.n_weakening},
+          {"nodes_above_residual_strength", o.n_driven},
+          {"nodes_of_S_above_10", o.n_barriers},
+          {"strength_excess_S", spread_json(o.S)},
+          {"seismic_ratio", spread_json(o.drop_ratio)},
+          {"nucleation_length_m", optional_json(o.nucleation_length_m)},
+          {"griffith_half_length_m", optional_json(o.griffith_half_length_m)},
+          {"supershear_half_length_m", optional_json(o.supershear_half_length_m)},
+          {"process_zone_m", optional_json(o.process_zone_m)},
+          {"process_zone_elements", optional_json(rupture.process_zone_elements)},
+          {"trigger_length_m", optional_json(rupture.trigger_length_m)},
+          {"regime", o.regime},
+          {"doubts", rupture.doubts}};
+}
+
 /// What every run.json begins with.
 Json about(const input::Case& config, const Status& status) {
   Json json = {{"version", version()},    {"commit", commit()},         {"compiler", compiler()},
@@ -121,7 +145,9 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
   auto warnings = result.warnings;
   if (!event.blow_up.empty()) warnings.push_back(event.blow_up);
   Json json = about(result.config, status);
-  json["end"] = status.name == "running" ? Json() : Json(name(event.end));
+  const bool ended = status.name != "running";
+  json["end"] = ended ? Json(name(event.end)) : Json();
+  json["end_reason"] = ended ? Json(end_of_event(result)) : Json();
   json.update({{"mesh",
                 {{"columns", initial.mesh.grid.columns},
                  {"rows", initial.mesh.grid.rows},
@@ -137,11 +163,15 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                {"node_updates_per_s",
                 static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s},
                {"statics", statics_json(initial)},
+               {"rupture", rupture_json(rupture_outlook(result.config, initial))},
                {"energy_at_start", energy_json(event.energies.front())},
                {"energy_at_end", energy_json(event.energies.back())},
                {"onsets", event.record.n_onsets()},
+               {"snapshot_times_after_the_event_s",
+                status.name == "running" ? Json() : Json(snapshots_after(result.config, event.time_s))},
                {"fronts", fronts_json(result.fronts)},
                {"warnings", warnings}});
+  if (input::has_base_body(result.config)) json["mesh"]["base_rows"] = initial.base->grid.rows;
   if (input::has_base_body(result.config))
     json["base"] = {{"columns", initial.base->grid.columns},
                     {"rows", initial.base->grid.rows},
@@ -173,6 +203,19 @@ std::string resolved_text(const input::Case& config) {
   return input::to_toml(resolved);
 }
 
+results::hdf5::Origin origin_of(const input::Case& config) {
+  return {config.title, resolved_text(config)};
+}
+
+results::SnapshotContents snapshot_contents(const input::Case& config, std::size_t n_plate_cells,
+                                            std::size_t n_cells) {
+  results::SnapshotContents contents{{}, origin_of(config)};
+  if (!config.output.snapshot_stress) return contents;
+  contents.bodies.push_back({n_plate_cells, config.material});
+  if (input::has_base_body(config)) contents.bodies.push_back({n_cells, input::base_material(config)});
+  return contents;
+}
+
 void write_case(const std::filesystem::path& dir, const input::Case& config) {
   files::write_text(dir / case_file, resolved_text(config));
   if (!config.prestress.file.empty()) files::write_text(dir / prestress_file, config.prestress.table.text);
@@ -183,14 +226,13 @@ void write_case(const std::filesystem::path& dir, const input::Case& config) {
 void write_static(const std::filesystem::path& dir, const input::Case& config, const InitialState& initial) {
   const auto& tractions = initial.common.tractions;
   std::vector<results::NamedColumn> columns;
-  for (auto& law : input::friction_at(config, tractions.x_m)) {
-    const auto parameters = parameters_of(law);
-    columns.resize(parameters.size());
+  const auto& parameters = description_of(config.friction).parameters;
+  if (config.friction_along_x.varies()) columns.resize(parameters.size());
+  for (const auto& law : input::friction_at(config, tractions.x_m))
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       columns[k].name = parameters[k].key;
-      columns[k].values.push_back(*parameters[k].value);
+      columns[k].values.push_back(law.parameter(parameters[k].key));
     }
-  }
   results::write_static(dir / "static.csv", tractions, columns);
 }
 
@@ -210,9 +252,15 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   const auto& event = result.event;
   write_case(dir, result.config);
   write_static(dir, result.config, initial);
-  results::write_history(dir / "interface.h5", event.history);
-  if (!event.snapshots.empty())
-    results::write_snapshots(dir / "fields.vtkhdf", joined({initial.mesh, initial.base}), event.snapshots);
+  results::write_history(dir / "interface.h5", event.history, origin_of(result.config));
+  if (!event.snapshots.empty()) {
+    const auto n_plate_cells = initial.mesh.cells.size();
+    const auto mesh = joined({initial.mesh, initial.base});
+    results::write_snapshots(dir / "fields.vtkhdf", mesh, event.snapshots,
+                             snapshot_contents(result.config, n_plate_cells, mesh.cells.size()));
+  }
+  if (const auto places = input::probe_places(result.config); !places.empty())
+    results::write_probes(dir / "probes.h5", places, event.probes, origin_of(result.config));
   write_so_far(dir, result, event.energies, initial, status_of(result));
   results::seal(dir);
 }

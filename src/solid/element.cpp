@@ -17,13 +17,10 @@ constexpr std::array<std::array<double, 2>, 4> gauss_points = {
 constexpr std::array<double, 4> xi_of_node = {-1, 1, 1, -1};
 constexpr std::array<double, 4> eta_of_node = {-1, -1, 1, 1};
 
-struct ShapeAtPoint {
-  std::array<double, 4> value, d_dx, d_dy;
-  double jacobian;
-};
+}  // namespace
 
-ShapeAtPoint shape_at(const CellCoordinates& c, double xi, double eta) {
-  ShapeAtPoint s{};
+CellShape cell_shape(const CellCoordinates& c, double xi, double eta) {
+  CellShape s;
   std::array<double, 4> d_dxi{}, d_deta{};
   double x_xi = 0, x_eta = 0, y_xi = 0, y_eta = 0;
   for (int a = 0; a < 4; ++a) {
@@ -44,7 +41,50 @@ ShapeAtPoint shape_at(const CellCoordinates& c, double xi, double eta) {
   return s;
 }
 
-}  // namespace
+std::optional<CellShape> cell_shape_at(const CellCoordinates& c, double x_m, double y_m) {
+  constexpr int most_iterations = 30;
+  constexpr double converged = 1e-14, tolerance = 1e-9, far = 2;
+  double xi = 0, eta = 0;
+  for (int k = 0; k < most_iterations; ++k) {
+    std::array<double, 4> value{}, d_dxi{}, d_deta{};
+    double x = -x_m, y = -y_m, x_xi = 0, x_eta = 0, y_xi = 0, y_eta = 0;
+    for (int a = 0; a < 4; ++a) {
+      value[a] = 0.25 * (1 + xi_of_node[a] * xi) * (1 + eta_of_node[a] * eta);
+      d_dxi[a] = 0.25 * xi_of_node[a] * (1 + eta_of_node[a] * eta);
+      d_deta[a] = 0.25 * eta_of_node[a] * (1 + xi_of_node[a] * xi);
+      x += value[a] * c[2 * a], y += value[a] * c[2 * a + 1];
+      x_xi += d_dxi[a] * c[2 * a], y_xi += d_dxi[a] * c[2 * a + 1];
+      x_eta += d_deta[a] * c[2 * a], y_eta += d_deta[a] * c[2 * a + 1];
+    }
+    const double jacobian = x_xi * y_eta - x_eta * y_xi;
+    if (!(jacobian > 0)) return std::nullopt;
+    const double by_xi = (y_eta * x - x_eta * y) / jacobian, by_eta = (x_xi * y - y_xi * x) / jacobian;
+    xi = std::clamp(xi - by_xi, -far, far);
+    eta = std::clamp(eta - by_eta, -far, far);
+    if (std::max(std::abs(by_xi), std::abs(by_eta)) < converged) break;
+  }
+  if (std::max(std::abs(xi), std::abs(eta)) > 1 + tolerance) return std::nullopt;
+  return cell_shape(c, xi, eta);
+}
+
+PlaneTensor strain(const CellShape& shape, const std::array<double, 8>& u_m, const Material& material) {
+  PlaneTensor e;
+  for (int a = 0; a < 4; ++a) {
+    e.xx += shape.d_dx[a] * u_m[2 * a];
+    e.yy += shape.d_dy[a] * u_m[2 * a + 1];
+    e.xy += 0.5 * (shape.d_dy[a] * u_m[2 * a] + shape.d_dx[a] * u_m[2 * a + 1]);
+  }
+  const double nu = material.poissons_ratio;
+  if (material.plane == Plane::stress) e.zz = -nu / (1 - nu) * (e.xx + e.yy);
+  return e;
+}
+
+PlaneTensor stress_Pa(const PlaneTensor& e, const Material& material) {
+  const auto D = elasticity_Pa(material);
+  PlaneTensor s{D[0] * e.xx + D[1] * e.yy, D[3] * e.xx + D[4] * e.yy, 0, 2 * D[8] * e.xy};
+  if (material.plane == Plane::strain) s.zz = material.poissons_ratio * (s.xx + s.yy);
+  return s;
+}
 
 CellCoordinates cell_coordinates(const mesh::Mesh& mesh, const mesh::Cell& cell) {
   CellCoordinates c{};
@@ -60,7 +100,7 @@ CellStiffness cell_stiffness(const CellCoordinates& coordinates, const Material&
   const double P = D[0], coupling = D[1], G = D[8];
   CellStiffness K{};
   for (const auto& [xi, eta] : gauss_points) {
-    const ShapeAtPoint s = shape_at(coordinates, xi, eta);
+    const CellShape s = cell_shape(coordinates, xi, eta);
     for (int a = 0; a < 4; ++a) {
       for (int b = 0; b < 4; ++b) {
         const double xx = s.d_dx[a] * s.d_dx[b], xy = s.d_dx[a] * s.d_dy[b];
@@ -78,7 +118,7 @@ CellStiffness cell_stiffness(const CellCoordinates& coordinates, const Material&
 std::array<double, 4> cell_mass(const CellCoordinates& coordinates, const Material& material) {
   std::array<double, 4> m{};
   for (const auto& [xi, eta] : gauss_points) {
-    const ShapeAtPoint s = shape_at(coordinates, xi, eta);
+    const CellShape s = cell_shape(coordinates, xi, eta);
     for (int a = 0; a < 4; ++a) m[a] += material.density_kg_per_m3 * s.value[a] * s.jacobian;
   }
   return m;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
@@ -14,6 +15,31 @@ using CellCoordinates = std::array<double, 8>;
 using CellStiffness = std::array<double, 64>;
 
 CellCoordinates cell_coordinates(const mesh::Mesh& mesh, const mesh::Cell& cell);
+
+/// Shape functions of a cell at a place in it, and their gradients, 1/m.
+struct CellShape {
+  std::array<double, 4> value{}, d_dx{}, d_dy{};
+  double jacobian = 0;  ///< m2: of (x, y) by the local coordinates (xi, eta), each -1 to 1
+};
+/// @pre the cell is convex and counterclockwise.
+CellShape cell_shape(const CellCoordinates& coordinates, double xi, double eta);
+
+/// The shape functions at a place, by Newton's method on the bilinear map; none where it lies outside the
+/// cell by more than 1e-9 of its sides.
+std::optional<CellShape> cell_shape_at(const CellCoordinates& coordinates, double x_m, double y_m);
+
+/// A symmetric tensor of the plane with its component across the plane; xy is the tensor's, half the
+/// engineering shear strain.
+struct PlaneTensor {
+  double xx = 0, yy = 0, zz = 0, xy = 0;
+};
+
+/// Small strain of the displacements of a cell's nodes, x0, y0, x1, y1, ...; zz is -nu/(1 - nu) (xx + yy) in
+/// plane stress and 0 in plane strain.
+PlaneTensor strain(const CellShape& shape, const std::array<double, 8>& u_m, const Material& material);
+
+/// Elastic stress of a strain, Pa, positive in tension; zz is 0 in plane stress.
+PlaneTensor stress_Pa(const PlaneTensor& strain, const Material& material);
 
 /// Stiffness of the bilinear four-node element with 2 x 2 Gauss points.
 /// @pre the cell is convex and counterclockwise.

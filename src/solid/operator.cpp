@@ -106,11 +106,28 @@ void set_stencils(Operator& op, const Material& material) {
 
 }  // namespace
 
+void BlockRow::add(mesh::Node neighbour, double factor, const std::array<double, 4>& block) {
+  auto known = std::ranges::find(entries_, neighbour, [](const auto& entry) { return entry.first; });
+  if (known == entries_.end()) known = entries_.insert(entries_.end(), {neighbour, {}});
+  for (int k = 0; k < 4; ++k) known->second[k] += factor * block[k];
+}
+
+void BlockRow::move_to(BlockRows& rows, double scale) {
+  std::ranges::sort(entries_, {}, [](const auto& entry) { return entry.first; });
+  for (auto& [neighbour, block] : entries_) {
+    for (double& value : block) value *= scale;
+    rows.neighbour.push_back(neighbour);
+    rows.block.push_back(block);
+  }
+  rows.first.push_back(static_cast<std::int32_t>(rows.neighbour.size()));
+  entries_.clear();
+}
+
 BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::span<const mesh::Node> nodes,
                         std::span<const double> mass_kg, const std::vector<bool>& in_part) {
   std::vector<std::int32_t> row_of(mesh.n_nodes(), -1);
   for (std::size_t r = 0; r < nodes.size(); ++r) row_of[nodes[r]] = static_cast<std::int32_t>(r);
-  std::vector<std::vector<std::pair<mesh::Node, std::array<double, 4>>>> rows(nodes.size());
+  std::vector<BlockRow> rows(nodes.size());
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
     const auto& cell = mesh.cells[c];
     if (!in_part.empty() && !in_part[c]) continue;
@@ -118,31 +135,14 @@ BlockRows assemble_rows(const mesh::Mesh& mesh, const Material& material, std::s
     const auto K = cell_stiffness(cell_coordinates(mesh, cell), material);
     for (int a = 0; a < 4; ++a) {
       if (row_of[cell[a]] < 0) continue;
-      auto& row = rows[row_of[cell[a]]];
-      for (int b = 0; b < 4; ++b) {
-        const auto block = block_of(K, a, b);
-        const auto known = std::ranges::find(row, cell[b], [](const auto& entry) { return entry.first; });
-        if (known == row.end()) {
-          row.emplace_back(cell[b], block);
-        } else {
-          for (int k = 0; k < 4; ++k) known->second[k] += block[k];
-        }
-      }
+      for (int b = 0; b < 4; ++b) rows[row_of[cell[a]]].add(cell[b], 1, block_of(K, a, b));
     }
   }
   BlockRows result;
   result.node.assign(nodes.begin(), nodes.end());
   result.first.push_back(0);
-  for (std::size_t r = 0; r < nodes.size(); ++r) {
-    std::ranges::sort(rows[r], {}, [](const auto& entry) { return entry.first; });
-    const double scale = mass_kg.empty() ? 1.0 : 1.0 / mass_kg[nodes[r]];
-    for (auto& [neighbour, block] : rows[r]) {
-      for (double& value : block) value *= scale;
-      result.neighbour.push_back(neighbour);
-      result.block.push_back(block);
-    }
-    result.first.push_back(static_cast<std::int32_t>(result.neighbour.size()));
-  }
+  for (std::size_t r = 0; r < nodes.size(); ++r)
+    rows[r].move_to(result, mass_kg.empty() ? 1.0 : 1.0 / mass_kg[nodes[r]]);
   return result;
 }
 
@@ -161,8 +161,7 @@ Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   op.blocks = grids_of(mesh);
   op.rows = rows_of(mesh, op.blocks);
   op.mass_kg = lumped_mass(mesh, material);
-  op.is_top.assign(mesh.n_nodes(), false);
-  for (const auto n : mesh.top) op.is_top[n] = true;
+  op.is_top = mesh::marked(mesh, mesh.top);
   if (!op.blocks.empty()) set_stencils(op, material);
   op.whole = make_partial_stiffness(mesh, material, op, std::vector<bool>(mesh.cells.size(), true), 0);
   op.top = assemble_rows(mesh, material, mesh.top);
@@ -182,7 +181,7 @@ class RowKinds {
         edge_row_(edge_row),
         regular_cell_(mesh.cells.size()),
         is_general_(mesh.n_nodes(), false),
-        is_boundary_(mesh.n_nodes(), false),
+        is_boundary_(mesh::marked(mesh, mesh.lower)),
         around_(cells_of_nodes(mesh)) {
     const auto block_of = block_of_nodes(mesh, op.blocks);
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -194,7 +193,6 @@ class RowKinds {
         for (const auto n : cell) is_general_[n] = true;
       }
     }
-    for (const auto n : mesh.lower) is_boundary_[n] = true;
     for (const auto& absorbing : mesh.absorbing) is_boundary_[absorbing.node] = true;
   }
 

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -56,6 +57,17 @@ struct BlockRows {
   std::vector<mesh::Node> neighbour;
   std::vector<std::array<double, 4>> block;  ///< xx, xy, yx, yy
   std::size_t size() const { return node.size(); }
+};
+
+/// Entries of one block row, gathered in any order.
+class BlockRow {
+ public:
+  void add(mesh::Node neighbour, double factor, const std::array<double, 4>& block);
+  /// Appends the row times `scale`, its neighbours ascending, and is empty again.
+  void move_to(BlockRows& rows, double scale = 1);
+
+ private:
+  std::vector<std::pair<mesh::Node, std::array<double, 4>>> entries_;
 };
 
 /// A vector of the plane.

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "interface/friction/registry.hpp"
+#include "interface/friction.hpp"
 #include "interface/regularisation.hpp"
 #include "solid/material.hpp"
 #include "stability/compliance.hpp"

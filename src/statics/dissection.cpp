@@ -9,6 +9,11 @@ namespace slipfront::statics {
 
 namespace {
 
+void append_block(NodeOrder& order, std::span<const mesh::Node> nodes) {
+  order.nodes.insert(order.nodes.end(), nodes.begin(), nodes.end());
+  order.block_ends.push_back(order.nodes.size());
+}
+
 class Dissection {
  public:
   explicit Dissection(const mesh::Mesh& mesh) : mesh_(mesh), part_(mesh.n_nodes(), 0) {
@@ -24,10 +29,10 @@ class Dissection {
 
   /// Appends the nodes to `order`: one half, the other half, then the nodes of the first that touch the
   /// second.
-  void order_nodes(std::span<mesh::Node> nodes, std::vector<mesh::Node>& order) {
-    constexpr std::size_t leaf = 32;
+  void order_nodes(std::span<mesh::Node> nodes, NodeOrder& order) {
+    constexpr std::size_t leaf = 16;
     if (nodes.size() <= leaf) {
-      order.insert(order.end(), nodes.begin(), nodes.end());
+      append_block(order, nodes);
       return;
     }
     const auto& along = longer_extent(nodes);
@@ -50,7 +55,7 @@ class Dissection {
     std::vector<mesh::Node> between(separator, low.end());
     order_nodes({low.begin(), separator}, order);
     order_nodes(high, order);
-    order.insert(order.end(), between.begin(), between.end());
+    append_block(order, between);
   }
 
  private:
@@ -70,16 +75,16 @@ class Dissection {
 
 }  // namespace
 
-std::vector<mesh::Node> dissect(const mesh::Mesh& mesh, const std::vector<mesh::Node>& last) {
+NodeOrder dissect(const mesh::Mesh& mesh, const std::vector<mesh::Node>& last) {
   std::vector<bool> left_out = mesh::orphans(mesh);
   for (const auto n : last) left_out[n] = true;
   std::vector<mesh::Node> nodes;
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
     if (!left_out[n]) nodes.push_back(n);
-  std::vector<mesh::Node> order;
-  order.reserve(nodes.size() + last.size());
+  NodeOrder order;
+  order.nodes.reserve(nodes.size() + last.size());
   Dissection(mesh).order_nodes(nodes, order);
-  order.insert(order.end(), last.begin(), last.end());
+  append_block(order, last);
   return order;
 }
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,9 +11,8 @@
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
+#include "statics/frontal_cholesky.hpp"
 #include "statics/plate_solver.hpp"
-
-struct cholmod_triplet_struct;
 
 namespace slipfront::statics {
 
@@ -32,8 +31,8 @@ Budget factor_budget(double n_unknowns, double n_interface, double factor_bytes)
 /// The plate's stiffness factorised once, with the interface condensed.
 ///
 /// The unknowns are all displacements that are not prescribed on the loaded edge; the interface is free. They
-/// are numbered by nested dissection with the interface last, so that the last diagonal block L_ii of the
-/// Cholesky factor gives the interface's condensed stiffness S = L_ii L_ii^T. The forces of the plane on the
+/// are numbered by nested dissection with the interface last: what the elimination of all others leaves of
+/// its block is its condensed stiffness S. The forces of the plane on the
 /// interface nodes are then f = S u_i - g, with u_i their displacements and g the load that the loaded edge
 /// sends to the interface. Contact states change on this small dense system without another factorisation.
 ///
@@ -42,7 +41,6 @@ class Factorisation {
  public:
   /// @throws UserError where the factor does not fit into the memory at hand, with the figures.
   Factorisation(const mesh::Mesh& mesh, const solid::Material& material, TopConstraint top);
-  ~Factorisation();
   Factorisation(const Factorisation&) = delete;
   Factorisation& operator=(const Factorisation&) = delete;
 
@@ -63,30 +61,25 @@ class Factorisation {
   solid::Field displacement(const Eigen::VectorXd& interface_force_N) const;
 
   std::int64_t n_unknowns() const { return n_unknowns_; }
-  double factor_bytes() const { return factor_bytes_; }
+  double factor_bytes() const { return factor_->factor_bytes(); }
 
  private:
-  struct Cholmod;
-  /// In the order of dissection, the interface last.
-  void number_unknowns();
-  /// Upper triangle of K, cell by cell; to be freed.
-  cholmod_triplet_struct* triplets(const solid::Material& material) const;
+  /// In the order of dissection, the interface last. @return the number behind the last unknown of each block
+  std::vector<std::int32_t> number_unknowns();
   void factorise(const solid::Material& material);
-  void condense();
   solid::Field solve(const Top& top, const Eigen::VectorXd& interface_force) const;
   Eigen::VectorXd at_interface(const solid::Field& u) const;
 
-  std::unique_ptr<Cholmod> cholmod_;
   const mesh::Mesh& mesh_;
   TopConstraint top_;
   /// Springs along x under the interface nodes, N/m, that keep the factorised matrix definite where nothing
-  /// else holds the plate along x. They add exactly to S and are taken off again.
+  /// else holds the plate along x. S is without them.
   double spring_ = 0;
   solid::BlockRows near_top_;          ///< K rows of the loaded edge's nodes and their neighbours
-  std::vector<std::int64_t> unknown_;  ///< [2 nodes] index of the unknown, -1 where prescribed or an orphan
+  std::vector<std::int32_t> unknown_;  ///< [2 nodes] index of the unknown, -1 where prescribed or an orphan
   Eigen::MatrixXd condensed_;
-  std::int64_t n_unknowns_ = 0;
-  double factor_bytes_ = 0;
+  std::int32_t n_unknowns_ = 0;
+  std::optional<FrontalCholesky> factor_;
 };
 
 }  // namespace slipfront::statics

@@ -100,28 +100,7 @@ void for_each_bilinear(const Transfer& t, int i, int j, F&& f) {
     }
 }
 
-/// Entries of one block row, gathered in any order.
-class BlockRow {
- public:
-  void add(mesh::Node column, double factor, const Block& b) {
-    auto known = std::ranges::find(entries_, column, [](const auto& e) { return e.first; });
-    if (known == entries_.end()) known = entries_.insert(entries_.end(), {column, Block{}});
-    for (int k = 0; k < 4; ++k) known->second[k] += factor * b[k];
-  }
-  /// Appends the row in ascending order of its columns, and is empty again.
-  void move_to(solid::BlockRows& rows) {
-    std::ranges::sort(entries_, {}, [](const auto& e) { return e.first; });
-    for (const auto& [column, b] : entries_) {
-      rows.neighbour.push_back(column);
-      rows.block.push_back(b);
-    }
-    rows.first.push_back(static_cast<std::int32_t>(rows.neighbour.size()));
-    entries_.clear();
-  }
-
- private:
-  std::vector<std::pair<mesh::Node, Block>> entries_;
-};
+using solid::BlockRow;
 
 void place_neighbours(GridLevel& level) {
   const auto& rows = level.block;
@@ -132,6 +111,20 @@ void place_neighbours(GridLevel& level) {
       level.neighbour_column.push_back(rows.neighbour[k] % level.stride());
       level.reach = std::max(level.reach, std::abs(j - rows.node[r] / level.stride()));
     }
+}
+
+/// Gathers the block rows of `nodes`; add_row(node, row) adds one.
+template <class AddRow>
+void set_block_rows(GridLevel& level, std::vector<mesh::Node> nodes, AddRow&& add_row) {
+  auto& rows = level.block;
+  rows.node = std::move(nodes);
+  rows.first.push_back(0);
+  BlockRow row;
+  for (const auto n : rows.node) {
+    add_row(n, row);
+    row.move_to(rows);
+  }
+  place_neighbours(level);
 }
 
 int coarse_stride(const Transfer& t) {
@@ -257,14 +250,8 @@ GridLevel make_level(const ElasticBody& upper, const ElasticBody& lower) {
   for (int j = 0; j <= pair.rows; ++j)
     places.add_row(
         j, [&](int i) { return rows.is_stencil(i, j); }, [](int) { return true; });
-  pair.block.node = std::move(places.block_nodes);
-  pair.block.first.push_back(0);
-  BlockRow row;
-  for (const auto n : pair.block.node) {
-    rows.add_row(n, row);
-    row.move_to(pair.block);
-  }
-  place_neighbours(pair);
+  set_block_rows(pair, std::move(places.block_nodes),
+                 [&](mesh::Node n, BlockRow& row) { rows.add_row(n, row); });
   return pair;
 }
 
@@ -455,16 +442,11 @@ class GalerkinRows {
 
 GridLevel make_coarse_level(const GridLevel& fine, const Transfer& t) {
   GridLevel coarse = coarse_grid(fine, t);
-  coarse.block.node = place_nodes(fine, t, coarse);
+  auto block_nodes = place_nodes(fine, t, coarse);
   glue(fine, t, coarse);
   const GalerkinRows galerkin(fine, t, coarse);
-  coarse.block.first.push_back(0);
-  BlockRow row;
-  for (const auto N : coarse.block.node) {
-    galerkin.add_row(N, row);
-    row.move_to(coarse.block);
-  }
-  place_neighbours(coarse);
+  set_block_rows(coarse, std::move(block_nodes),
+                 [&](mesh::Node N, BlockRow& row) { galerkin.add_row(N, row); });
   return coarse;
 }
 

@@ -36,6 +36,7 @@ struct Equilibrium {
   double peak_ratio = 0;                      ///< t/p where t/(mu_s p) is largest inside
   double peak_x_m = 0;                        ///< where that is
   double inside_from_m = 0, inside_to_m = 0;  ///< the part of the contact that counts as inside
+  bool is_inside(double x_m) const { return x_m >= inside_from_m && x_m <= inside_to_m; }
 
   template <class Archive>
   void serialize(Archive& archive) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "interface/friction/slip_weakening.hpp"
 #include "verify/body.hpp"
 #include "verify/problems.hpp"
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "interface/friction/coulomb.hpp"
 #include "statics/prestress.hpp"
 #include "verify/body.hpp"
 #include "verify/join.hpp"

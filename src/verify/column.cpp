@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "interface/friction/velocity_weakening.hpp"
 #include "verify/body.hpp"
 #include "verify/problems.hpp"
 

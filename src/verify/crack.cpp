@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "interface/friction/slip_weakening.hpp"
 #include "verify/extrapolation.hpp"
 #include "verify/loaded_plane.hpp"
 #include "verify/problems.hpp"

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "interface/friction/coulomb.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "stability/modes.hpp"
 #include "verify/extrapolation.hpp"
 #include "verify/problems.hpp"

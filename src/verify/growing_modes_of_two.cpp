@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "interface/friction/coulomb.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "stability/modes.hpp"
 #include "stability/verdict.hpp"
 #include "verify/extrapolation.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "interface/friction/coulomb.hpp"
 #include "verify/body.hpp"
 #include "verify/problems.hpp"
 

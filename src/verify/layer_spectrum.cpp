@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "interface/friction/coulomb.hpp"
 #include "stability/modes.hpp"
 #include "verify/extrapolation.hpp"
 #include "verify/problems.hpp"

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "interface/friction/slip_weakening.hpp"
 #include "verify/body.hpp"
 
 namespace slipfront::verify {

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "interface/friction/coulomb.hpp"
 #include "verify/body.hpp"
 #include "verify/join.hpp"
 #include "verify/orders.hpp"

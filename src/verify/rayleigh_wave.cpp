@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 
+#include "interface/friction/coulomb.hpp"
 #include "verify/body.hpp"
 #include "verify/orders.hpp"
 #include "verify/problems.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "interface/friction/coulomb.hpp"
 #include "verify/body.hpp"
 #include "verify/join.hpp"
 #include "verify/problems.hpp"

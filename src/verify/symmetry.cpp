@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "interface/friction/slip_weakening.hpp"
 #include "motion/event.hpp"
 #include "solid/element.hpp"
 #include "verify/body.hpp"

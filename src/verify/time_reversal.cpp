@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "interface/friction/coulomb.hpp"
 #include "verify/body.hpp"
 #include "verify/problems.hpp"
 

@@ -8,6 +8,7 @@ import pytest
 from conftest import ROOT
 
 COMMANDS = ["run", "reproduce", "study", "verify", "info", "bench", "validate", "keys"]
+PYTHON_COMMANDS = ["report", "fronts", "sweep"]
 CASES = sorted((ROOT / "cases/kammer2012").glob("*.toml"))
 
 
@@ -25,7 +26,7 @@ def test_help_lists_every_command(program):
     assert result.returncode == 0
     assert result.stderr == ""
     listed = re.findall(r"^  (\w+) {2,}\S", result.stdout.split("Subcommands:")[1], re.MULTILINE)
-    assert sorted(listed) == sorted(COMMANDS)
+    assert sorted(listed) == sorted(COMMANDS + PYTHON_COMMANDS)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -50,7 +51,13 @@ def test_version(program):
     result = program("--version")
     assert result.returncode == 0
     version = re.search(r"project\(slipfront VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
-    assert re.fullmatch(rf"slipfront {re.escape(version)} \(\S+\)\n", result.stdout)
+    first, *options = result.stdout.splitlines()
+    assert re.fullmatch(rf"slipfront {re.escape(version)} \(\S+\)", first)
+    told = dict(line.split(": ", 1) for line in options)
+    assert list(told) == ["compiler", "processor", "precision", "statics"]
+    assert re.search(r"\d+\.\d+", told["compiler"])
+    assert re.fullmatch(r".+, vectors of (32|64) bytes", told["processor"])
+    assert re.search(r"Eigen 3\.\d", told["statics"])
 
 
 @pytest.mark.parametrize(

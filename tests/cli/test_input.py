@@ -206,6 +206,13 @@ def test_little_memory(program, write_case, megabytes):
         assert len(result.stderr.splitlines()) == (0 if result.returncode == 0 else 1)
 
 
+def test_a_byte_0_in_a_text_is_refused(program, write_case):
+    case = write_case('title = "a\\u0000b"\n')
+    assert one_line(program("validate", case)).startswith(f"{case}:1: title holds the character U+0000")
+    case = write_case('[probes]\nx_m = [0.1]\ny_m = [0.01]\nnames = ["a\\u0000b"]\n')
+    assert one_line(program("validate", case)).startswith(f"{case}:4: probes.names holds the character")
+
+
 # --- Slender plates
 
 

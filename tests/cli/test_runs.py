@@ -78,11 +78,13 @@ def test_fronts_file_has_its_columns(program, coarse, tmp_path):
         rows = list(csv.DictReader(file))
     assert ",".join(rows[0]) == (
         "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"
-        "U_s_J_per_m3,U_r_J_per_m3"
+        "U_s_J_per_m3,U_r_J_per_m3,speed_kind"
     )
     assert {row["front_id"] for row in rows} == {str(f["id"]) for f in summary(tmp_path / "out")["fronts"]}
     for row in rows:
         assert row["direction"] in ("1", "-1")
+        assert row["speed_kind"] in ("front", "triggered", "simultaneous", "path_end")
+        assert (row["v_tip_m_per_s"] != "") == (row["speed_kind"] == "front")
         if row["t_r_Pa"] and row["p_r_Pa"]:  # at the onset t = mu_s p
             assert abs(float(row["t_r_Pa"])) == pytest.approx(1.3 * float(row["p_r_Pa"]), rel=1e-12)
 

@@ -152,16 +152,55 @@ TEST(TipSpeed, IsUndefinedWhereTheTimeIsNotResolved) {
   EXPECT_TRUE(std::isnan(speeds()[50].v_tip_m_per_s));
 }
 
+TEST(TipSpeed, IsUndefinedWhereNothingIsPassedOn) {
+  // Slip passed on over n elements, one in a resolution's time, takes more than n - 1 of these times.
+  const auto x = nodes(301, h);
+  FrontOptions options = make_options();
+  for (const int n : {4, 10}) {
+    options.l_star_m = n * h;
+    auto record = make_record(x, bilateral(x, 0.0, V));
+    record.resolution_s = 0.999 * n / (n - 1) * h / V;
+    const auto kind_at_50 = [&] { return find(record, options).at(0).points[50].speed_kind; };
+    EXPECT_EQ(kind_at_50(), SpeedKind::front) << n;
+    record.resolution_s = 1.001 * n / (n - 1) * h / V;
+    EXPECT_EQ(kind_at_50(), SpeedKind::simultaneous) << n;
+  }
+}
+
+TEST(TipSpeed, HasItsKind) {
+  const auto x = nodes(301, h);
+  auto tau = bilateral(x, 0.0, V);
+  tau[201] = tau[202] = tau[200];
+  auto record = make_record(x, tau);
+  record.resolution_s = 1e-9;
+  FrontOptions options = make_options();
+  options.l_star_m = h;
+  options.driven = {{x[0], x[20]}};
+  const auto points = find(record, options).at(0).points;
+  EXPECT_EQ(points[0].speed_kind, SpeedKind::triggered);
+  EXPECT_EQ(points[21].speed_kind, SpeedKind::triggered);  // its length begins behind node 20
+  EXPECT_EQ(points[22].speed_kind, SpeedKind::front);
+  EXPECT_EQ(points[201].speed_kind, SpeedKind::simultaneous);
+  EXPECT_EQ(points[300].speed_kind, SpeedKind::path_end);
+  for (const auto& point : points)
+    EXPECT_EQ(std::isnan(point.v_tip_m_per_s), point.speed_kind != SpeedKind::front) << point.node;
+  options.speed_interval = SpeedInterval::approach;
+  const auto behind = find(record, options).at(0).points;
+  EXPECT_EQ(behind[21].speed_kind, SpeedKind::triggered);
+  EXPECT_EQ(behind[22].speed_kind, SpeedKind::front);
+  EXPECT_EQ(behind[300].speed_kind, SpeedKind::front);
+}
+
 TEST(TipSpeed, IsUndefinedWhereTheTriggerDrives) {
   const auto x = nodes(301, h);
   const auto record = make_record(x, bilateral(x, 0.0, V));
   FrontOptions options = make_options();
   const auto before = find(record, options).at(0);
-  // Zones whose ends are nodes, which belong to them.
+  // Zones whose ends are nodes, which belong to them; the length at the nodes beside them begins within.
   options.driven = {{x[10], x[30]}, {x[100], x[110]}};
   const auto after = find(record, options).at(0);
   for (int k = 0; k < 301; ++k) {
-    const bool inside = (k >= 10 && k <= 30) || (k >= 100 && k <= 110);
+    const bool inside = (k >= 9 && k <= 31) || (k >= 99 && k <= 111);
     const double v = after.points[k].v_tip_m_per_s, v_before = before.points[k].v_tip_m_per_s;
     EXPECT_TRUE(inside || std::isnan(v_before) ? std::isnan(v) : v == v_before) << k;
   }

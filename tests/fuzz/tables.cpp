@@ -7,6 +7,7 @@
 #include "input/experiment.hpp"
 #include "input/friction_along_x.hpp"
 #include "input/prestress.hpp"
+#include "interface/friction/slip_weakening.hpp"
 
 using namespace slipfront;
 

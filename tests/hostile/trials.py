@@ -56,7 +56,7 @@ class Bench:
         return path
 
     def start(self, *arguments, disturbance=None, **options):
-        environment = dict(os.environ, OPENBLAS_NUM_THREADS="1")
+        environment = dict(os.environ)
         if disturbance:
             environment |= disturbance | {"LD_PRELOAD": str(self.shim)}
         options = {

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "input/schema.hpp"
+#include "interface/friction/slip_weakening.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::input {
@@ -38,7 +40,7 @@ Case with_table(const test::TemporaryFolder& folder, const std::string& text, Be
 
 std::vector<double> mu_k_at(const Case& config, const std::vector<double>& x_m) {
   std::vector<double> values;
-  for (const auto& l : friction_at(config, x_m)) values.push_back(std::get<VelocityWeakening>(l).mu_k);
+  for (const auto& l : friction_at(config, x_m)) values.push_back(l.as<VelocityWeakening>().mu_k);
   return values;
 }
 
@@ -59,9 +61,9 @@ TEST(FrictionTable, OtherParametersKeepTheCasesValues) {
   const auto laws =
       friction_at(with_table(folder, "x_m,alpha_m2_per_s2,mu_s\n0,0.2,1.4\n1,0.2,1.4\n"), {0, 1});
   for (const auto& l : laws) {
-    EXPECT_EQ(std::get<VelocityWeakening>(l).mu_s, 1.4);
-    EXPECT_EQ(std::get<VelocityWeakening>(l).mu_k, 0.6);
-    EXPECT_EQ(std::get<VelocityWeakening>(l).alpha_m2_per_s2, 0.2);
+    EXPECT_EQ(l.as<VelocityWeakening>().mu_s, 1.4);
+    EXPECT_EQ(l.as<VelocityWeakening>().mu_k, 0.6);
+    EXPECT_EQ(l.as<VelocityWeakening>().alpha_m2_per_s2, 0.2);
   }
 }
 

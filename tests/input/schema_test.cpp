@@ -11,6 +11,8 @@
 #include <tuple>
 
 #include "input/entries.hpp"
+#include "interface/friction/registry.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::input {
@@ -72,8 +74,12 @@ auto members(const FrontSettings& s) {
   return std::tuple(a, b, c, d, e, f, g);
 }
 auto members(const Output& o) {
-  const auto& [a, b, c] = o;
-  return std::tuple(a, b, c);
+  const auto& [a, b, c, d, e] = o;
+  return std::tuple(a, b, c, d, e);
+}
+auto members(const Probes& p) {
+  const auto& [a, b, c, d] = p;
+  return std::tuple(a, b, c, d);
 }
 
 auto members(const FrictionAlongX& f) {
@@ -83,25 +89,26 @@ auto members(const FrictionAlongX& f) {
 
 /// Members of a friction law, by its own list of parameters.
 std::vector<double> members(const interface::FrictionLaw& friction) {
-  return std::visit(
-      [](const auto& law) {
-        std::vector<double> values;
-        for (const auto& parameter : law.parameters()) values.push_back(law.*parameter.member);
-        return values;
-      },
-      friction);
+  return interface::visit(friction, [](const auto& law) {
+    std::vector<double> values;
+    for (const auto& parameter : law.parameters()) values.push_back(law.*parameter.member);
+    if constexpr (requires { law.lists(); })
+      for (const auto& list : law.lists())
+        values.insert(values.end(), (law.*list.member).begin(), (law.*list.member).end());
+    return values;
+  });
 }
 
 void expect_equal(const Case& a, const Case& b) {
   const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, regularisation,
-               contact, event, trigger, nucleation, time, fronts, output] = b;
+               contact, event, trigger, nucleation, time, fronts, output, probes] = b;
   EXPECT_EQ(a.title, title);
   EXPECT_EQ(members(a.plate), members(plate));
   EXPECT_EQ(members(a.material), members(material));
   EXPECT_EQ(members(a.base), members(base));
   EXPECT_EQ(members(a.loading), members(loading));
   EXPECT_EQ(members(a.prestress), members(prestress));
-  EXPECT_EQ(a.friction.index(), friction.index());
+  EXPECT_EQ(a.friction.name(), friction.name());
   EXPECT_EQ(members(a.friction), members(friction));
   EXPECT_EQ(members(a.friction_along_x), members(friction_along_x));
   EXPECT_EQ(members(a.regularisation), members(regularisation));
@@ -112,6 +119,7 @@ void expect_equal(const Case& a, const Case& b) {
   EXPECT_EQ(members(a.time), members(time));
   EXPECT_EQ(members(a.fronts), members(fronts));
   EXPECT_EQ(members(a.output), members(output));
+  EXPECT_EQ(members(a.probes), members(probes));
 }
 
 /// A case in which no member has its default.
@@ -150,7 +158,8 @@ Case changed_case() {
   c.time = {1.5,   true, motion::Precision::single_precision,    7, 11,
             false, 1e-4, std::numeric_limits<double>::infinity()};
   c.fronts = {1e-3, fronts::SpeedInterval::approach, 1e-5, 3e-3, 0.625, 0.25, 5e-3};
-  c.output = {1e-7, {0, 1e-5, 1.0 / 3 * 1e-4}, 3e-5};
+  c.output = {1e-7, {0, 1e-5, 1.0 / 3 * 1e-4}, 1e-4 / 3, false, 3e-5};
+  c.probes = {{0.01, 0.02}, {0.03, 0.05 / 3}, {"left", "right"}, 1e-6 / 3};
   return c;
 }
 
@@ -230,6 +239,7 @@ overstress_Pa = 3e6
   expected.plate.corner = mesh::Corner::none;
   expected.plate.sides = mesh::Sides::periodic;
   expected.loading.method = statics::LoadingMethod::prestress;
+  expected.loading.shear_speed_over_c_L = 0;  // no load but the tractions
   expected.prestress = {2e6, 5e6, ""};
   expected.event = interface::EventKind::nucleation;
   expected.nucleation = {interface::NucleationForm::overstress, 0.12, 0.02, 0.01, 3e6};
@@ -400,6 +410,13 @@ speed_interval = "approach"
 history_interval_s = 1e-6
 energy_interval_s = 1e-5
 snapshot_times_s = [1e-5, 2e-5]
+snapshot_interval_s = 3e-5
+snapshot_stress = false
+[probes]
+x_m = [0.1, 0.2]
+y_m = [0.3, 0.4]
+names = ["a", "b \\"]
+interval_s = 2e-6
 )",
                             "c.toml");
   Case expected;
@@ -417,35 +434,34 @@ snapshot_times_s = [1e-5, 2e-5]
   expected.trigger = {interface::TriggerForm::raised, 0.03, 4, 6e-6, std::numeric_limits<double>::infinity()};
   expected.time = {0.5, true, motion::Precision::single_precision, 3, 9, false, 1e-4, 2e-5};
   expected.fronts = {2e-3, fronts::SpeedInterval::approach, 3e-5, 4e-3, 0.6, 0.1, 5e-3};
-  expected.output = {1e-6, {1e-5, 2e-5}, 1e-5};
+  expected.output = {1e-6, {1e-5, 2e-5}, 3e-5, false, 1e-5};
+  expected.probes = {{0.1, 0.2}, {0.3, 0.4}, {"a", "b \\"}, 2e-6};
   expect_equal(c, expected);
 }
 
 TEST(Schema, EveryLawOfTheRegistryIsReadByItsName) {
-  ASSERT_EQ(friction_laws().size(), std::variant_size_v<interface::FrictionLaw>);
+  ASSERT_EQ(friction_laws().size(), interface::law_descriptions().size());
   std::set<std::string> names;
   for (const LawEntries& law : friction_laws()) {
     SCOPED_TRACE(law.name);
     EXPECT_TRUE(names.insert(law.name).second) << "two laws of one name";
     const Case plain = parse_case("friction.law = \"" + law.name + "\"", "c.toml");
-    EXPECT_EQ(plain.friction.index(), law.defaults.index());
+    EXPECT_EQ(plain.friction.name(), law.defaults.name());
     EXPECT_EQ(members(plain.friction), members(law.defaults));
 
     // A common factor keeps relations between parameters, e.g. mu_k <= mu_s.
     Case scaled;
     scaled.friction = law.defaults;
-    std::visit(
-        [](auto& friction) {
-          for (const auto& parameter : friction.parameters()) friction.*parameter.member *= 0.75;
-        },
-        scaled.friction);
+    for (const auto& parameter : interface::description_of(scaled.friction).parameters)
+      scaled.friction.parameter(parameter.key) *= 0.75;
     EXPECT_NE(members(scaled.friction), members(law.defaults));
     expect_equal(parse_case(to_toml(scaled), "c.toml"), scaled);
 
     for (const Entry& entry : law.entries) {
-      std::string too_small = toml_text(Value(entry.range.min - 1));
+      const std::string too_small = toml_text(Value(entry.range.min - 1));
+      const std::string written = entry.kind == Kind::numbers ? "[" + too_small + "]" : too_small;
       EXPECT_THAT(
-          parse_error("friction.law = \"" + law.name + "\"\n" + entry.key + " = " + too_small),
+          parse_error("friction.law = \"" + law.name + "\"\n" + entry.key + " = " + written),
           AllOf(StartsWith("c.toml:2: " + entry.key + " is " + too_small), HasSubstr("it must be at least")));
     }
   }
@@ -493,7 +509,7 @@ TEST(Schema, UnknownTables) {
             "c.toml:2: unknown table [contacts]; did you mean [contact]?");
   EXPECT_EQ(parse_error("title = \"\"\n[boundaries]"),
             "c.toml:2: unknown table [boundaries]; tables are plate, material, base, loading, prestress, "
-            "friction, contact, event, nucleation, time, fronts, output");
+            "friction, contact, event, nucleation, time, fronts, output, probes");
   EXPECT_THAT(parse_error("[plate.inner]\nwidth_m = 1"), StartsWith("c.toml:1: unknown table [plate.inner]"));
 }
 
@@ -574,7 +590,8 @@ TEST(Schema, OnlyOpenEndedTimesMayBeInfinite) {
     if (entry.kind == Kind::number && parse_error(entry.key + " = inf") == "(nothing thrown)")
       infinite.push_back(entry.key);
   EXPECT_THAT(infinite, ::testing::ElementsAre("friction.relaxation_length_m", "friction.relaxation_time_s",
-                                               "event.trigger_duration_s", "time.quiet_s"));
+                                               "event.trigger_duration_s", "time.quiet_s",
+                                               "output.snapshot_interval_s"));
 }
 
 TEST(Schema, RelationsBetweenKeys) {
@@ -693,8 +710,8 @@ TEST(Overrides, ErrorsNameTheOverride) {
 TEST(Overrides, ChangeTheFrictionLaw) {
   const std::string file = "[friction]\nlaw = \"velocity_weakening\"\nmu_s = 1.3\nmu_k = 0.6";
   const Case c = parse_case(file, "c.toml", {{"friction.mu", "0.75"}, {"friction.law", "coulomb"}});
-  ASSERT_TRUE(std::holds_alternative<interface::Coulomb>(c.friction));
-  EXPECT_EQ(std::get<interface::Coulomb>(c.friction).mu, 0.75);
+  ASSERT_TRUE(c.friction.name() == "coulomb");
+  EXPECT_EQ(c.friction.as<interface::Coulomb>().mu, 0.75);
 
   EXPECT_THAT(
       parse_error(file, {{"friction.law", "coulomb"}, {"friction.mu_k", "1"}}),
@@ -804,7 +821,7 @@ TEST(CaseFile, ThePapersRuns) {
     EXPECT_EQ(c.loading.tilt_left_m, 0.37e-3);
     EXPECT_EQ(c.loading.tilt_right_m, 0.037e-3);
     EXPECT_EQ(c.loading.shear_speed_over_c_L, 1e-6);
-    const auto& friction = std::get<interface::VelocityWeakening>(c.friction);
+    const auto friction = c.friction.as<interface::VelocityWeakening>();
     EXPECT_EQ(friction.mu_s, 1.3);
     EXPECT_EQ(friction.alpha_m2_per_s2, 0.1);
     const std::string stem = file.path().stem().string();

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <type_traits>
-#include <variant>
+#include <vector>
 
 #include "interface/friction/registry.hpp"
 
@@ -14,20 +17,21 @@ namespace slipfront::interface {
 namespace {
 
 /// Calls f(law) with a default-constructed law of each type in the registry.
-template <std::size_t k = 0, class F>
+template <class F, class... Laws>
+void for_each_law(F&& f, LawList<Laws...>) {
+  (f(Laws{}), ...);
+}
+template <class F>
 void for_each_law(F&& f) {
-  if constexpr (k < std::variant_size_v<FrictionLaw>) {
-    f(std::variant_alternative_t<k, FrictionLaw>{});
-    for_each_law<k + 1>(f);
-  }
+  for_each_law(f, Registry{});
 }
 
 TEST(Registry, HoldsTheLawsTheCaseFileNames) {
   std::set<std::string> names;
   for_each_law([&](const auto& law) { names.insert(law.name); });
   EXPECT_EQ(names, (std::set<std::string>{"velocity_weakening", "coulomb", "slip_weakening",
-                                          "slip_weakening_healing"}));
-  EXPECT_EQ(names.size(), std::variant_size_v<FrictionLaw>);
+                                          "slip_weakening_healing", "slip_table", "slip_rate_table"}));
+  EXPECT_EQ(names.size(), law_descriptions().size());
 }
 
 TEST(Registry, EachLawIsUsableByDefault) {
@@ -87,7 +91,9 @@ TEST(Registry, ParametersReachTheirMembers) {
       EXPECT_EQ(law.*p.member, value) << p.key;
       value += 0.125;
     }
-    EXPECT_EQ(sizeof(Law), sizeof(double) * Law::parameters().size());
+    std::size_t lists = 0;
+    if constexpr (requires { Law::lists(); }) lists = sizeof(std::span<double>) * Law::lists().size();
+    EXPECT_EQ(sizeof(Law), sizeof(double) * Law::parameters().size() + lists);
   });
 }
 
@@ -140,6 +146,66 @@ TEST(SlipWeakening, FallsLinearlyOverTheCriticalSlip) {
   EXPECT_EQ(mu(0, 1), 0.25);
   EXPECT_EQ(SlipWeakeningHealing({.mu_s = 0.7, .mu_k = 0.8}).inconsistency().text,
             "mu_k must be at most mu_s");
+}
+
+TEST(FrictionTable, IsLinearBetweenRowsAndConstantAfterTheLast) {
+  const std::array<double, 4> slip_m{0, 1e-6, 4e-6, 20e-6}, mu{0.62, 0.50, 0.26, 0.34};
+  SlipTable law;
+  law.at = slip_m;
+  law.mu = mu;
+  EXPECT_EQ(law.inconsistency().text, "");
+  EXPECT_EQ(law.static_coefficient(), 0.62);
+  EXPECT_EQ(law.kinetic_coefficient(), 0.26);
+  const auto value = law.evaluator();
+  EXPECT_EQ(value(7, 0), 0.62);
+  EXPECT_DOUBLE_EQ(value(0, 0.25e-6), 0.59);
+  EXPECT_DOUBLE_EQ(value(0, 1e-6), 0.50);
+  EXPECT_DOUBLE_EQ(value(0, 2e-6), 0.42);
+  EXPECT_DOUBLE_EQ(value(0, 4e-6), 0.26);
+  EXPECT_DOUBLE_EQ(value(0, 12e-6), 0.30);
+  EXPECT_DOUBLE_EQ(value(0, 1), 0.34);
+  law.mu_factor = 0.5;
+  EXPECT_DOUBLE_EQ(law.evaluator()(0, 2e-6), 0.21);
+  EXPECT_EQ(law.kinetic_coefficient(), 0.13);
+
+  // 0.12/2 + 0.24 over 1 um, 0.24/2 over 3 um, 0.08/2 over 16 um above 0.26, through a drop of 0.36.
+  EXPECT_DOUBLE_EQ(law.weakening_slip_m(), 2 * (0.30 * 1e-6 + 0.12 * 3e-6 + 0.04 * 16e-6) / 0.36);
+  EXPECT_EQ(weakening_slip_m(SlipWeakening{.mu_s = 0.6, .mu_k = 0.3, .d_c_m = 3e-6}), 3e-6);
+  EXPECT_EQ(weakening_slip_m(VelocityWeakening{}), std::nullopt);
+
+  // The copy that the rest of the program holds has the lists of its own.
+  const FrictionLaw held = law;
+  EXPECT_EQ(friction_coefficient(held, 0, 2e-6), law.evaluator()(0, 2e-6));
+  EXPECT_EQ(held.list("table_mu"), std::vector<double>(mu.begin(), mu.end()));
+}
+
+TEST(FrictionTable, OfSlipRatesHasTheSlopesOfItsRows) {
+  const SlipRateTable law;
+  const auto mu = law.evaluator();
+  EXPECT_DOUBLE_EQ(mu(0.05, 3), 0.5);
+  EXPECT_DOUBLE_EQ(mu.slope_s_per_m(0, 0), -2);
+  EXPECT_DOUBLE_EQ(mu.slope_s_per_m(0.05, 0), -2);
+  EXPECT_NEAR(mu.slope_s_per_m(0.5, 0), -0.1 / 0.9, 1e-15);
+  EXPECT_EQ(mu.slope_s_per_m(1.5, 0), 0);
+}
+
+TEST(FrictionTable, RefusesWhatIsNoTable) {
+  const auto problem = [](const std::vector<double>& at, const std::vector<double>& mu) {
+    SlipTable law;
+    law.at = at;
+    law.mu = mu;
+    return law.inconsistency().text;
+  };
+  const std::string length =
+      "friction.table_slip_m and friction.table_mu must be of one length, 2 to 32 numbers";
+  EXPECT_EQ(problem({0, 1}, {0.6, 0.3}), "");
+  EXPECT_EQ(problem({}, {}), length);
+  EXPECT_EQ(problem({0}, {0.6}), length);
+  EXPECT_EQ(problem({0, 1, 2}, {0.6, 0.3}), length);
+  EXPECT_EQ(problem(std::vector<double>(33), std::vector<double>(33)), length);
+  EXPECT_EQ(problem({1e-6, 1}, {0.6, 0.3}), "friction.table_slip_m must begin with 0 and ascend");
+  EXPECT_EQ(problem({0, 1, 1}, {0.6, 0.3, 0.2}), "friction.table_slip_m must begin with 0 and ascend");
+  EXPECT_EQ(problem({0, 1}, {0.3, 0.6}), "friction.table_mu must be largest in its first row, at rest");
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "interface/friction/slip_weakening.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "one_node.hpp"
 
 namespace slipfront::interface {

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "interface/friction/slip_weakening.hpp"
 #include "interface/interface.hpp"
 #include "one_node.hpp"
 
@@ -50,7 +51,8 @@ std::vector<FrictionLaw> random_laws(const ContactModel& model, std::size_t n, s
   std::uniform_real_distribution<double> share(0.5, 1);
   for (auto& law : laws) do {
       law = model.law;
-      for (const auto& parameter : parameters_of(law)) *parameter.value *= share(random);
+      for (const auto& parameter : description_of(law).parameters)
+        law.parameter(parameter.key) *= share(random);
     } while (!inconsistency(law).text.empty());
   return laws;
 }

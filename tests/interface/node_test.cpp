@@ -102,15 +102,13 @@ bool update_one_by_one(const Law& law, const Form& form, Interface& s) {
 }
 
 bool update_one_by_one(const ContactModel& model, double since_last_s, Interface& s) {
-  return std::visit(
-      [&](const auto& law) {
-        return with_form(model.regularisation, since_last_s, [&](const auto& form) {
-          return model.algorithm == ContactAlgorithm::direct
-                     ? update_one_by_one<ContactAlgorithm::direct>(law, form, s)
-                     : update_one_by_one<ContactAlgorithm::predictor_corrector>(law, form, s);
-        });
-      },
-      model.law);
+  return visit(model.law, [&](const auto& law) {
+    return with_form(model.regularisation, since_last_s, [&](const auto& form) {
+      return model.algorithm == ContactAlgorithm::direct
+                 ? update_one_by_one<ContactAlgorithm::direct>(law, form, s)
+                 : update_one_by_one<ContactAlgorithm::predictor_corrector>(law, form, s);
+    });
+  });
 }
 
 /// A motion that makes nodes stick, slip, open, land and turn round; every 50th is not a number.

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "interface/friction/coulomb.hpp"
+#include "interface/friction/slip_weakening.hpp"
+#include "interface/friction/table.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "interface/interface.hpp"
 
 namespace slipfront::interface::test {
@@ -18,8 +22,9 @@ inline const VelocityWeakening weakening{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per
 /// All laws under both algorithms, without and with a delayed response.
 template <class F>
 void for_each_model(F&& f) {
-  for (const FrictionLaw& law : {FrictionLaw(VelocityWeakening{}), FrictionLaw(Coulomb{}),
-                                 FrictionLaw(SlipWeakening{}), FrictionLaw(SlipWeakeningHealing{})})
+  for (const FrictionLaw& law :
+       {FrictionLaw(VelocityWeakening{}), FrictionLaw(Coulomb{}), FrictionLaw(SlipWeakening{}),
+        FrictionLaw(SlipWeakeningHealing{}), FrictionLaw(SlipTable{}), FrictionLaw(SlipRateTable{})})
     for (const auto algorithm : {ContactAlgorithm::direct, ContactAlgorithm::predictor_corrector}) {
       f(ContactModel{law, {}, algorithm});
       for (const Relaxed relaxed : {Relaxed::strength, Relaxed::pressure})

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "interface/friction/slip_weakening.hpp"
 #include "one_node.hpp"
 
 namespace slipfront::interface {
@@ -126,9 +127,7 @@ TEST(PredictorCorrector, WorksWithEachLawAndForm) {
         const double mu_s = static_coefficient(law);
         pull(s, (mu_s + 0.1) * 1e6, 1e6);
         EXPECT_TRUE(update_contact(model, dt, s));
-        const auto mu = [&](double v) {
-          return std::visit([&](const auto& l) { return l.evaluator()(v, 0); }, law);
-        };
+        const auto mu = [&](double v) { return friction_coefficient(law, v, 0); };
         const bool at_once = algorithm == ContactAlgorithm::direct && relaxed != Relaxed::strength;
         const double strength =
             at_once ? test::strength_under_way(mu, 0, (mu_s + 0.1) * 1e6, 1e6) : mu_s * 1e6;

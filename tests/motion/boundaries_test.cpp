@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interface/friction/coulomb.hpp"
 #include "motion/stepper.hpp"
 #include "motion/support.hpp"
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "interface/friction/coulomb.hpp"
 #include "motion/event.hpp"
 #include "motion/stepper.hpp"
 #include "motion/support.hpp"

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "interface/friction/coulomb.hpp"
 #include "motion/support.hpp"
 
 namespace slipfront::motion {
@@ -29,6 +30,7 @@ class EventRun : public ::testing::Test {
   statics::Equilibrium common_ = statics_.shear_to(0.999);
   statics::Equilibrium calm_ = statics_.shear_to(0.5);
   double c_L_ = solid::longitudinal_speed_m_per_s(material_);
+  Waves waves_{c_L_, solid::shear_modulus_Pa(material_) / solid::shear_speed_m_per_s(material_)};
   TimeStepping time_{.interface_substeps = 4, .end_s = 60e-6, .quiet_s = 1};
   Sampling sampling_;
   interface::Trigger none_;
@@ -38,7 +40,7 @@ class EventRun : public ::testing::Test {
       Sink* sink = nullptr) {
     Stepper stepper(mesh_, material_, support::paper_law, time_);
     stepper.start(state, 1e-6 * c_L_);
-    return run_event(stepper, state, mu_s, c_L_, none_, time_, sampling_, 2, monitor, sink);
+    return run_event(stepper, state, mu_s, waves_, none_, time_, sampling_, 2, monitor, sink);
   }
   double step_s() { return Stepper(mesh_, material_, support::paper_law, time_).step_s(); }
 };
@@ -89,7 +91,8 @@ TEST_F(EventRun, EndsWhenNothingMoves) {
 
 TEST_F(EventRun, SlippingKeepsItGoing) {
   time_.quiet_s = 20e-6;
-  time_.end_s = 1e-3;
+  time_.end_s = 1;
+  material_.stiffness_damping_s = 1e-5;  // waves die within milliseconds
   none_.ramp_s = 0;
   const Event event = run(statics_.shear_to(1.001));
   EXPECT_EQ(event.end, EventEnd::quiet);
@@ -102,6 +105,28 @@ TEST_F(EventRun, SlippingKeepsItGoing) {
       last_s = event.history.time_s[k / event.history.x_m.size()];
   EXPECT_GT(last_s, 1e-6);
   EXPECT_GT(event.time_s, last_s + 20e-6 - sampling_.history_interval_s - step_s());
+}
+
+TEST_F(EventRun, WavesKeepItGoing) {
+  // Slip pauses for longer than the quiet time while the plate rings, and begins again.
+  time_.quiet_s = 20e-6;
+  time_.end_s = 600e-6;
+  none_.ramp_s = 0;
+  const Event event = run(statics_.shear_to(1.001));
+  EXPECT_EQ(event.end, EventEnd::end_time);
+  const auto& onsets = event.record.onsets;
+  double longest_pause_s = 0;
+  for (std::size_t k = 1; k < onsets.size(); ++k)
+    longest_pause_s = std::max(longest_pause_s, onsets[k].time_s - onsets[k - 1].time_s);
+  EXPECT_GT(longest_pause_s, time_.quiet_s);
+}
+
+TEST_F(EventRun, ATriggerYetToBeRemovedKeepsItGoing) {
+  time_.quiet_s = 10e-6;
+  none_ = {.ramp_s = 0, .duration_s = 40e-6};
+  const Event event = run(calm_);
+  EXPECT_EQ(event.end, EventEnd::quiet);
+  EXPECT_GT(event.time_s, 50e-6);
 }
 
 TEST_F(EventRun, EndsWhenTheMonitorSaysSo) {
@@ -195,6 +220,7 @@ class KeepingSink : public Sink {
     append(history_.p_Pa, row.p_Pa);
   }
   void snapshot(const Stepper& stepper) override { snapshots_.push_back(take_snapshot(stepper)); }
+  void probe(const record::ProbeRecord&) override { FAIL() << "without probes"; }
 
   record::History history_;
   std::vector<Snapshot> snapshots_;
@@ -271,7 +297,7 @@ TEST_F(EventRun, TriggersNucleateAtTheirEdge) {
     const interface::Trigger trigger;
     stepper.start(common_, 1e-6 * c_L_,
                   {.trigger_force_N_per_m = trigger_forces(common_, tributary, kind, trigger, mu_s)});
-    const Event event = run_event(stepper, common_, mu_s, c_L_, trigger, time_, sampling_, 2,
+    const Event event = run_event(stepper, common_, mu_s, waves_, trigger, time_, sampling_, 2,
                                   [](auto, auto) { return true; });
     EXPECT_EQ(event.end, EventEnd::end_time);
     ASSERT_FALSE(event.record.onsets.empty());

@@ -323,7 +323,7 @@ class PlainScheme {
 
  private:
   void touch(double dt, double now) {
-    const auto mu = std::get<interface::VelocityWeakening>(gentle_law.law).evaluator();
+    const auto mu = gentle_law.law.as<interface::VelocityWeakening>().evaluator();
     for (std::size_t i = 0; i < mesh_.lower.size(); ++i) {
       const auto n = mesh_.lower[i];
       const double m = mass_[n], B = tributary_[i];

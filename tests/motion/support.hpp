@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "interface/friction/velocity_weakening.hpp"
 #include "motion/event.hpp"
 #include "motion/stepper.hpp"
 #include "support/plate.hpp"

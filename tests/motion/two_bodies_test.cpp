@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "interface/friction/coulomb.hpp"
 #include "motion/recorder.hpp"
 #include "motion/stepper.hpp"
 #include "motion/support.hpp"

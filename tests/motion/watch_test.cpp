@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "interface/friction/coulomb.hpp"
 #include "motion/support.hpp"
 #include "statics/prestress.hpp"
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "input/schema.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 
 namespace slipfront::paper {
 namespace {
@@ -64,7 +65,7 @@ TEST(PaperCases, HaveTable1) {
     EXPECT_EQ(c.loading.tilt_right_m, 0.037e-3);
     EXPECT_EQ(c.loading.shear_speed_over_c_L, 1e-6);
     EXPECT_EQ(c.fronts.l_star_m, 0.67e-3);
-    const auto& law = std::get<interface::VelocityWeakening>(c.friction);
+    const auto law = c.friction.as<interface::VelocityWeakening>();
     EXPECT_EQ(law.mu_s, 1.3);
     EXPECT_EQ(law.mu_k, name == "spontaneous_mu_k_1.0" ? 1.0 : 0.6);
     EXPECT_EQ(law.alpha_m2_per_s2, 0.1);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "interface/friction/velocity_weakening.hpp"
 #include "paper/scorecard.hpp"
 
 // Events made by formula instead of by computation: the speed, the static and dynamic stress ratio and the
@@ -90,7 +91,7 @@ inline Outcome make_event(const std::string& name, EventKind kind, double mu_k =
   Outcome o;
   o.name = name;
   o.config.event = kind;
-  std::get<interface::VelocityWeakening>(o.config.friction).mu_k = mu_k;
+  o.config.friction.parameter("mu_k") = mu_k;
   o.speeds = run::wave_speeds(o.config.material);
   for (int k = 0; k <= 200; ++k) {
     const double x = k * spacing_m;

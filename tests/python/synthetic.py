@@ -31,6 +31,7 @@ FRONTS_HEADER = [
     "p_r_Pa",
     "U_s_J_per_m3",
     "U_r_J_per_m3",
+    "speed_kind",
 ]
 
 
@@ -116,7 +117,8 @@ def make_front(
         dynamic = (
             ["", "", "", "", "", ""] if undefined else [t_d[k], p_d[k], MU_S * p_r[k], p_r[k], u_s[k], u_r[k]]
         )
-        rows.append([front_id, path[k], onset[k], direction, speed, t_s[k], p_s[k], *dynamic])
+        kind = "path_end" if speed == "" else "front"
+        rows.append([front_id, path[k], onset[k], direction, speed, t_s[k], p_s[k], *dynamic, kind])
     return rows
 
 

@@ -57,6 +57,12 @@ def test_a_long_line_is_found():
     ) == [long, f"- {long}"]
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_nothing_is_taken_for_a_comment(page):
+    """MyST leaves out lines that begin with a per cent sign."""
+    assert re.findall(r"^\s*%.*$", page.read_text(encoding="utf-8"), re.MULTILINE) == []
+
+
 def test_files_that_are_named_are_there():
     contributing = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     named = [ROOT / name for name in re.findall(r"`((?:src|tests|python|docs)/[\w./]+)`", contributing)]
@@ -65,6 +71,42 @@ def test_files_that_are_named_are_there():
     named += [ROOT / "src" / name for place in places for name in re.findall(r"`([\w./]+)`", place)]
     assert len(named) > 100
     assert [path for path in named if not path.exists()] == []
+
+
+def test_every_law_has_its_page_its_row_and_its_place():
+    """slip_table and slip_rate_table share a page, table.md."""
+    laws = re.findall(r'^With `law = "(\w+)"`', (ROOT / "docs/case-reference.md").read_text(), re.MULTILINE)
+    table = (ROOT / "docs/friction/README.md").read_text(encoding="utf-8")
+    contents = (ROOT / "docs/_toc.yml").read_text(encoding="utf-8")
+    assert len(laws) >= 6
+    for law in laws:
+        page = "table" if law.endswith("_table") else law
+        assert f"`{law}`" in table and f"({page}.md)" in table
+        assert f"docs/friction/{page}\n" in contents
+        assert f"`{law}`" in (ROOT / f"docs/friction/{page}.md").read_text(encoding="utf-8")
+
+
+def test_the_lines_of_cases_shown_are_in_their_files():
+    pages = sorted((ROOT / "docs/examples").glob("*.md"))
+    assert len(pages) == 11
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        if page.stem == "README":
+            continue
+        shown = "".join(re.findall(r"^```toml\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)).splitlines()
+        case = (ROOT / "examples" / page.stem / "case.toml").read_text(encoding="utf-8").splitlines()
+        settings = [line.partition("  #")[0] for line in case]
+        assert len(shown) > 2 and [line for line in shown if line not in settings] == [], page
+        assert f"figures/example_{page.stem.replace('-', '_')}.png" in text
+
+
+def test_numbers_of_claims_agree():
+    scorecard = (ROOT / "docs/scorecard.md").read_text(encoding="utf-8")
+    claims = re.findall(r"^\| C(\d+) \|", scorecard, re.MULTILINE)
+    assert claims == [str(k + 1) for k in range(len(claims))]
+    assert f"The {len(claims)} claims of Kammer" in scorecard and f"of the {len(claims)} claims" in scorecard
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"Of the paper's {len(claims)} claims" in readme
 
 
 def test_a_broken_link_is_found(tmp_path):

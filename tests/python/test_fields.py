@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import sys
+
 import h5py
+import imageio_ffmpeg
 import numpy as np
 import pytest
 from PIL import Image
@@ -55,3 +58,22 @@ def test_a_run_without_snapshots_is_refused(run, tmp_path, capsys):
     assert fields.main([str(tmp_path / "f.png"), str(run)]) == 2
     error = capsys.readouterr().err
     assert "fields.vtkhdf" in error and error.count("\n") == 1
+
+
+def test_a_film_has_every_frame(run, tmp_path, monkeypatch):
+    pictures = [Image.new("RGB", (65, 48), (80 * k, 0, 0)) for k in range(4)]
+    monkeypatch.setattr(fields, "frames", lambda folder: pictures)
+    for name in ("a.mp4", "b.mp4"):
+        assert fields.main([str(tmp_path / name), str(run)]) == 0
+    n_frames, seconds = imageio_ffmpeg.count_frames_and_secs(str(tmp_path / "a.mp4"))
+    assert n_frames == len(pictures)
+    assert seconds == pytest.approx(len(pictures) * fields.FRAME_MS / 1000, rel=0.02)
+    assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()
+
+
+def test_without_an_encoder_a_film_is_refused(run, tmp_path, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    assert fields.main([str(tmp_path / "a.mp4"), str(run)]) == 2
+    error = capsys.readouterr().err
+    assert "pip install imageio-ffmpeg" in error and error.count("\n") == 1
+    assert not (tmp_path / "a.mp4").exists()

@@ -78,7 +78,8 @@ def front_rows(folder, run: str, front_id: int) -> dict[str, np.ndarray]:
     """Columns of one front in fronts.csv, read here without the package."""
     with open(folder / run / "fronts.csv", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if int(row["front_id"]) == front_id]
-    return {name: np.array([float(row[name]) if row[name] else np.nan for row in rows]) for name in rows[0]}
+    names = [name for name in rows[0] if name != "speed_kind"]
+    return {name: np.array([float(row[name]) if row[name] else np.nan for row in rows]) for name in names}
 
 
 def shown(run: str, rows: dict[str, np.ndarray]) -> np.ndarray:
@@ -150,6 +151,22 @@ def test_command_writes_figures_and_report(output, capsys):
     assert "slipfront 0.1.0, commit abc1234" in html
     timings = html.split(">Timings</h2>")[1]
     assert "<td>events</td><td>1.2</td>" in timings and "<td>21.8</td>" in timings
+
+
+@pytest.mark.parametrize("kinds", [["svg"], ["png"]])
+def test_kinds_of_pictures_are_chosen(output, kinds):
+    assert main([str(output), *(word for kind in kinds for word in ("--format", kind))]) == 0
+    made = {file.name for file in (output / "figures").iterdir()}
+    assert made - {"index.html"} == {f"{name}.{kind}" for name in FIGURES for kind in kinds}
+    assert ("index.html" in made) == ("png" in kinds)
+    if "index.html" in made:
+        assert ".pdf" not in (output / "figures/index.html").read_text(encoding="utf-8")
+
+
+def test_an_unknown_kind_of_picture_is_refused(output):
+    with pytest.raises(SystemExit) as refused:
+        main([str(output), "--format", "bmp"])
+    assert refused.value.code == 2 and not (output / "figures").exists()
 
 
 def test_report_lists_the_studies(output):

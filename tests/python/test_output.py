@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that cannot be read or written as usual: one line, exit code 2, no half-written picture."""
+"""Files that cannot be read or written as usual: one line, exit code 2 or, of a full disk, 1; no half-written
+picture."""
 
 from __future__ import annotations
 
+import errno
 import os
 import resource
 import subprocess
@@ -11,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import slipfront.command
 from slipfront.figures import interface_step, verification
 from slipfront.figures.__main__ import main
 from slipfront.figures.style import RC
@@ -42,8 +45,8 @@ def command(*arguments, module="slipfront.figures", **options) -> subprocess.Com
     )
 
 
-def refused(done: subprocess.CompletedProcess, *says: str) -> None:
-    assert done.returncode == 2, done.stderr
+def refused(done: subprocess.CompletedProcess, *says: str, code: int = 2) -> None:
+    assert done.returncode == code, done.stderr
     assert done.stderr.count("\n") == 1 and done.stderr.startswith("slipfront.figures: error: "), done.stderr
     for part in says:
         assert part in done.stderr
@@ -262,12 +265,12 @@ def test_a_full_disk_leaves_the_pictures_of_before(run):
     assert main([str(run)]) == 0
     before = {f.name: f.read_bytes() for f in (run / "figures").iterdir()}
     write_csv(run / "energy.csv", ENERGY_HEADER, energy_rows(12))
-    refused(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large")
+    refused(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large", code=1)
     assert {f.name: f.read_bytes() for f in (run / "figures").iterdir()} == before
 
 
 def test_a_full_disk_leaves_no_folder(run):
-    refused(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large")
+    refused(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large", code=1)
     assert not (run / "figures").exists()
 
 
@@ -298,3 +301,13 @@ def test_without_arguments_the_usage_is_told():
     for module in ("slipfront.figures", "slipfront.figures.verification", *PICTURES):
         done = command(module=module)
         assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_a_full_disk_is_no_mistake_of_the_users(tmp_path, capsys):
+    def work():
+        with slipfront.command.publishing_into(tmp_path / "out"):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    assert slipfront.command.run("name", work) == 1
+    assert "No space left on device" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

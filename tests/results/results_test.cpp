@@ -239,7 +239,7 @@ TEST(FrontsFile, HasARowPerFrontAndNodeWithUndefinedValuesEmpty) {
   fronts::FrontPoint first, second;
   first.x_m = 0.1;
   first.onset_s = 1e-6;
-  second = {7, 0.2, 2e-6, 1584.5, 1, 2, 3, 4, 5, 6, 7, 8, 0.5, true};
+  second = {7, 0.2, 2e-6, 1584.5, 1, 2, 3, 4, 5, 6, 7, 8, 0.5, true, fronts::SpeedKind::front};
   fronts::Front left, right;
   left.id = 0;
   left.direction = -1;
@@ -251,10 +251,10 @@ TEST(FrontsFile, HasARowPerFrontAndNodeWithUndefinedValuesEmpty) {
   EXPECT_EQ(
       test::read_file(folder / "fronts.csv"),
       "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,U_s_J_per_m3,"
-      "U_r_J_per_m3\n"
-      "0,0.1,1e-06,-1,,,,,,,,,\n"
-      "1,0.1,1e-06,1,,,,,,,,,\n"
-      "1,0.2,2e-06,1,1584.5,1,2,3,4,5,6,7,8\n");
+      "U_r_J_per_m3,speed_kind\n"
+      "0,0.1,1e-06,-1,,,,,,,,,,path_end\n"
+      "1,0.1,1e-06,1,,,,,,,,,,path_end\n"
+      "1,0.2,2e-06,1,1584.5,1,2,3,4,5,6,7,8,front\n");
 }
 
 /// Two cells side by side and an orphan, node 6.

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "files/checksum.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "mesh/plate.hpp"
 #include "results/hdf5.hpp"
 #include "results/history.hpp"
@@ -131,12 +132,12 @@ TEST_F(Stream, GoesOnWhereItWasKept) {
 TEST_F(Stream, GoesOnInNoFileThatIsTooShort) {
   { ResultStream(folder_.path()).keep(); }
   EXPECT_THAT(error_of([&] {
-                ResultStream(folder_.path(), {{8, ""}, {0, ""}});
+                ResultStream(folder_.path(), {{8, ""}, {0, ""}, {}});
               }),
               HasSubstr("is shorter than when"));
   std::filesystem::remove(ResultStream::history_file(folder_.path()));
   EXPECT_THAT(error_of([&] {
-                ResultStream(folder_.path(), {{0, files::sha256("")}, {0, files::sha256("")}});
+                ResultStream(folder_.path(), {{0, files::sha256("")}, {0, files::sha256("")}, {}});
               }),
               HasSubstr("is missing"));
 }

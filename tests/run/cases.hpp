@@ -2,6 +2,7 @@
 #pragma once
 
 #include "input/friction_along_x.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "run/run.hpp"
 #include "support/files.hpp"
 
@@ -16,8 +17,13 @@ inline input::Case coarse_case(interface::EventKind event = interface::EventKind
   return config;
 }
 
-inline interface::VelocityWeakening& law(input::Case& config) {
-  return std::get<interface::VelocityWeakening>(config.friction);
+/// Parameters of a case's velocity weakening.
+struct LawOfCase {
+  double &mu_s, &mu_k, &alpha_m2_per_s2;
+};
+inline LawOfCase law(input::Case& config) {
+  auto& friction = config.friction;
+  return {friction.parameter("mu_s"), friction.parameter("mu_k"), friction.parameter("alpha_m2_per_s2")};
 }
 
 /// Gives a case a table of friction.

@@ -11,6 +11,8 @@
 
 #include "cases.hpp"
 #include "fronts/front.hpp"
+#include "interface/friction/slip_weakening.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::run {

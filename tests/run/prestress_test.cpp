@@ -19,6 +19,9 @@
 #include "base/error.hpp"
 #include "cases.hpp"
 #include "input/schema.hpp"
+#include "interface/friction/coulomb.hpp"
+#include "interface/friction/slip_weakening.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "reference.hpp"
 
 namespace slipfront::run {

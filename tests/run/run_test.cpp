@@ -18,6 +18,7 @@
 #include "cases.hpp"
 #include "fronts/from_history.hpp"
 #include "fronts/measures.hpp"
+#include "interface/friction/coulomb.hpp"
 
 namespace slipfront::run {
 namespace {

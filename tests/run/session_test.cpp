@@ -10,6 +10,8 @@
 #include "cases.hpp"
 #include "files/checksum.hpp"
 #include "input/schema.hpp"
+#include "interface/friction/slip_weakening.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "run/checkpoint.hpp"
 #include "support/files.hpp"
 
@@ -84,7 +86,11 @@ std::vector<std::pair<const char*, input::Case>> kinds() {
   const auto add = [&](const char* name, input::Case config, auto&& change) {
     change(config);
     config.output.snapshot_times_s = {0, 20e-6, 90e-6};
+    config.output.snapshot_interval_s = 35e-6;
     config.output.energy_interval_s = 7e-6;
+    config.probes.x_m = {0.1013, 0.0507, 0.15, 0.033};
+    config.probes.y_m = {0, 0.0123, 0.1, has_base_body(config) ? -0.02 : 0.07};
+    config.probes.interval_s = 1.7e-6;
     list.emplace_back(name, config);
   };
   using interface::EventKind;

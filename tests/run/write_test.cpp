@@ -188,13 +188,14 @@ TEST_F(WrittenRun, FrontsByColumn) {
   const auto csv = text("fronts.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"
-            "U_s_J_per_m3,U_r_J_per_m3");
+            "U_s_J_per_m3,U_r_J_per_m3,speed_kind");
   const auto rows = rows_of(csv);
   std::size_t row = 1;
   for (const auto& front : s.result.fronts) {
     for (const auto& p : front.points) {
       ASSERT_LT(row, rows.size());
-      ASSERT_EQ(rows[row].size(), 13U);
+      ASSERT_EQ(rows[row].size(), 14U);
+      EXPECT_EQ(rows[row][13], fronts::name(p.speed_kind));
       const std::array<double, 13> values = {static_cast<double>(front.id),
                                              p.x_m,
                                              p.onset_s,

@@ -96,6 +96,45 @@ TEST(Element, LinearFieldsGiveTheExactForcesAndEnergy) {
   }
 }
 
+TEST(Element, APlaceIsFoundByItsShapeFunctions) {
+  const CellCoordinates c = {0, 0, 1.2, 0.1, 1.4, 0.9, -0.1, 1.1};
+  for (const double xi : {-1.0, -0.3, 0.0, 0.8, 1.0})
+    for (const double eta : {-1.0, -0.7, 0.2, 1.0}) {
+      const auto shape = cell_shape(c, xi, eta);
+      double x = 0, y = 0;
+      for (int a = 0; a < 4; ++a) x += shape.value[a] * c[2 * a], y += shape.value[a] * c[2 * a + 1];
+      const auto found = cell_shape_at(c, x, y);
+      ASSERT_TRUE(found) << xi << " " << eta;
+      for (int a = 0; a < 4; ++a) {
+        EXPECT_NEAR(found->value[a], shape.value[a], 1e-12);
+        EXPECT_NEAR(found->d_dx[a], shape.d_dx[a], 1e-11);
+        EXPECT_NEAR(found->d_dy[a], shape.d_dy[a], 1e-11);
+      }
+    }
+  for (const auto& [x, y] : {std::pair(-0.2, 0.5), {1.5, 0.5}, {0.6, -0.01}, {0.6, 1.2}, {1e6, -1e6}})
+    EXPECT_FALSE(cell_shape_at(c, x, y)) << x << " " << y;
+}
+
+TEST(Element, StressFollowsHookesLaw) {
+  CellShape shape = cell_shape({0, 0, 1, 0, 1, 1, 0, 1}, 0.1, -0.2);
+  // u_x = 3 x + y, u_y = 5 x - 2 y
+  const std::array<double, 8> u_m = {0, 0, 3, 5, 4, 3, 1, -2};
+  for (const auto plane : {Plane::stress, Plane::strain}) {
+    const Material m{.plane = plane};
+    const double E = m.youngs_modulus_Pa, nu = m.poissons_ratio;
+    const auto e = strain(shape, u_m, m);
+    EXPECT_NEAR(e.xx, 3, 1e-14);
+    EXPECT_NEAR(e.yy, -2, 1e-14);
+    EXPECT_NEAR(e.xy, 3, 1e-14);
+    const auto s = stress_Pa(e, m);
+    EXPECT_NEAR((s.xx - nu * (s.yy + s.zz)) / E, e.xx, 1e-13);
+    EXPECT_NEAR((s.yy - nu * (s.xx + s.zz)) / E, e.yy, 1e-13);
+    EXPECT_NEAR((s.zz - nu * (s.xx + s.yy)) / E, e.zz, 1e-13);
+    EXPECT_NEAR(s.xy * (1 + nu) / E, e.xy, 1e-13);
+    EXPECT_EQ(plane == Plane::stress ? s.zz : e.zz, 0);
+  }
+}
+
 TEST(Element, LumpedMassIsTheRowSumAndWeighsTheCell) {
   const Material m;
   for (const auto& cell : {square, parallelogram, distorted}) {

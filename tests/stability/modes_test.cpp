@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "interface/friction/coulomb.hpp"
 #include "layer_by_elements.hpp"
 
 namespace slipfront::stability {

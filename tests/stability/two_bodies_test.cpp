@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "interface/friction/coulomb.hpp"
+#include "interface/friction/velocity_weakening.hpp"
 #include "pair_by_eigenvectors.hpp"
 #include "stability/modes.hpp"
 #include "stability/verdict.hpp"

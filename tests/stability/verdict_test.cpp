@@ -7,6 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "interface/friction/coulomb.hpp"
+#include "interface/friction/velocity_weakening.hpp"
+
 namespace slipfront::stability {
 namespace {
 

@@ -224,18 +224,30 @@ TEST_P(Levels, CycleIsASymmetricPositiveInverse) {
   for (const auto n : mesh.top) EXPECT_EQ(cycle.z().x[n], 0);
 }
 
-class Corners : public ::testing::TestWithParam<Corner> {};
-INSTANTIATE_TEST_SUITE_P(AllOfThem, Corners, ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
-                         [](const auto& corner) { return test::name_of(corner.param); });
-
-TEST_P(Corners, EquilibriumIsThatOfTheFactorisation) {
-  const auto mesh = test::make_plate(0.2, 0.1, 2e-3, GetParam());
+TopDisplacement uneven_top(const mesh::Mesh& mesh) {
   test::Random random(5);
   TopDisplacement top;
   for (std::size_t k = 0; k < mesh.top.size(); ++k) {
     top.u_x_m.push_back(1e-4 * random());
     top.u_y_m.push_back(-1e-3 + 1e-4 * random());
   }
+  return top;
+}
+
+void expect_same_interface(const LoadCase& a, const LoadCase& b, double tolerance) {
+  EXPECT_LE(max_abs(a.u0 - b.u0), tolerance * max_abs(a.u0));
+  EXPECT_LE(max_abs(a.f0 - b.f0), tolerance * max_abs(a.f0));
+  EXPECT_LE(max_abs(a.u1 - b.u1), tolerance);
+  EXPECT_LE(max_abs(a.f1 - b.f1), tolerance * max_abs(a.f1));
+}
+
+class Corners : public ::testing::TestWithParam<Corner> {};
+INSTANTIATE_TEST_SUITE_P(AllOfThem, Corners, ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+                         [](const auto& corner) { return test::name_of(corner.param); });
+
+TEST_P(Corners, EquilibriumIsThatOfTheFactorisation) {
+  const auto mesh = test::make_plate(0.2, 0.1, 2e-3, GetParam());
+  const auto top = uneven_top(mesh);
   const auto direct = make_plate_solver(mesh, {}, StaticSolver::direct);
   const auto iterative = make_plate_solver(mesh, {}, StaticSolver::iterative);
   EXPECT_EQ(direct->n_unknowns(), iterative->n_unknowns());
@@ -248,10 +260,7 @@ TEST_P(Corners, EquilibriumIsThatOfTheFactorisation) {
       b->solve(mixed_support(mesh, slip), 1e-11);
       // The energy norm bounds the error of a node's displacement and force only up to the number of nodes.
       const double tolerance = 1e-9;
-      EXPECT_LE(max_abs(a->u0 - b->u0), tolerance * max_abs(a->u0));
-      EXPECT_LE(max_abs(a->f0 - b->f0), tolerance * max_abs(a->f0));
-      EXPECT_LE(max_abs(a->u1 - b->u1), tolerance);
-      EXPECT_LE(max_abs(a->f1 - b->f1), tolerance * max_abs(a->f1));
+      expect_same_interface(*a, *b, tolerance);
       const double shear = sheared ? 1e-3 : 0;
       const Eigen::VectorXd u = flat(a->displacement(shear).above);
       EXPECT_LE(max_abs(u - flat(b->displacement(shear).above)), tolerance * max_abs(u));
@@ -353,12 +362,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(OnABaseByMultigrid, EquilibriumIsThatOfTheFactorisation) {
   const auto mesh = test::make_plate(0.2, 0.1, 2e-3, Corner::relief), base_mesh = base_of(2e-3);
   const ElasticBody base{base_mesh, GetParam().material};
-  test::Random random(5);
-  TopDisplacement top;
-  for (std::size_t k = 0; k < mesh.top.size(); ++k) {
-    top.u_x_m.push_back(1e-4 * random());
-    top.u_y_m.push_back(-1e-3 + 1e-4 * random());
-  }
+  const auto top = uneven_top(mesh);
   const auto direct = make_plate_solver(mesh, pmma, StaticSolver::direct, base);
   const auto iterative = make_plate_solver(mesh, pmma, StaticSolver::iterative, base);
   EXPECT_TRUE(iterative->iterates());
@@ -372,10 +376,7 @@ TEST_P(OnABaseByMultigrid, EquilibriumIsThatOfTheFactorisation) {
       a->solve(mixed_support(mesh, slip), 0);
       b->solve(mixed_support(mesh, slip), 1e-11);
       const double tolerance = 1e-8;
-      EXPECT_LE(max_abs(a->u0 - b->u0), tolerance * max_abs(a->u0));
-      EXPECT_LE(max_abs(a->f0 - b->f0), tolerance * max_abs(a->f0));
-      EXPECT_LE(max_abs(a->u1 - b->u1), tolerance);
-      EXPECT_LE(max_abs(a->f1 - b->f1), tolerance * max_abs(a->f1));
+      expect_same_interface(*a, *b, tolerance);
       const double shear = sheared ? 1e-3 : 0;
       const auto u = a->displacement(shear), v = b->displacement(shear);
       expect_same_body(u.above, v.above, tolerance * max_abs(flat(u.above)));

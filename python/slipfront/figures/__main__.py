@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`python -m slipfront.figures DIR [--experiment CSV]`"""
+"""`python -m slipfront.figures DIR [--format KIND] [--experiment CSV]`"""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import matplotlib
@@ -22,11 +22,14 @@ from slipfront.figures import (
     space_time,
     studies,
 )
-from slipfront.figures.drawing import Drawing, guarded
+from slipfront.figures.drawing import WITHOUT_DATE, Drawing, guarded
+from slipfront.figures.picture import FIXED_NAMES
 from slipfront.figures.report import write_report
 from slipfront.figures.results import Results, read_results
 from slipfront.figures.style import RC
 from slipfront.folder import UNFINISHED, belongs
+
+BOTH = ("png", "pdf")
 
 
 def draw_all(results: Results) -> list[Drawing]:
@@ -49,48 +52,56 @@ def is_single_run(folder: Path) -> bool:
     return belongs(folder / "energy.csv") or belongs(folder / UNFINISHED / "run.json")
 
 
-def write_single(folder: Path, draw: Callable[[], tuple[Drawing, list[str]]]) -> list[str]:
+def list_of(kinds: Sequence[str]) -> str:
+    return " and ".join(kind.upper() for kind in kinds)
+
+
+def write_single(
+    folder: Path, kinds: Sequence[str], draw: Callable[[], tuple[Drawing, list[str]]]
+) -> list[str]:
     """The one figure of a run or a study; returns what to print."""
     drawing, remarks = guarded(folder, draw)
     with command.publishing_into(folder / "figures") as made:
-        drawing.save(made)
-    lines = [f"figure: {folder / 'figures' / drawing.name}.png (and PDF)"]
+        drawing.save(made, kinds)
+    others = f" (and {list_of(kinds[1:])})" if len(kinds) > 1 else ""
+    lines = [f"figure: {folder / 'figures' / drawing.name}.{kinds[0]}{others}"]
     return lines + [f"note: {remark}" for remark in remarks]
 
 
-def write_reproduction(folder: Path, experiment: Path | None) -> list[str]:
-    """All figures of a reproduction and the report; returns what to print."""
+def write_reproduction(folder: Path, kinds: Sequence[str], experiment: Path | None) -> list[str]:
+    """All figures of a reproduction and, with PNG among them, the report; returns what to print."""
     results = read_results(folder, experiment)
     drawings = guarded(folder, lambda: draw_all(results))
     with command.publishing_into(folder / "figures") as made:
         for drawing in drawings:
-            drawing.save(made)
-        guarded(folder, lambda: write_report(results, drawings, made))
+            drawing.save(made, kinds)
+        if "png" in kinds:
+            guarded(folder, lambda: write_report(results, drawings, made))
     return [
-        f"figures: {folder / 'figures'} ({len(drawings)}, each as PNG and PDF)",
-        f"report:  {folder / 'figures' / 'index.html'}",
+        f"figures: {folder / 'figures'} ({len(drawings)}, each as {list_of(kinds)})",
+        *([f"report:  {folder / 'figures' / 'index.html'}"] if "png" in kinds else []),
         *(f"note: {remark}" for remark in results.remarks),
     ]
 
 
-def write_figures(folder: Path, experiment: Path | None) -> list[str]:
+def write_figures(folder: Path, experiment: Path | None, kinds: Sequence[str] = BOTH) -> list[str]:
     """What a folder's files allow, told by a file of its own; returns what to print."""
-    with matplotlib.rc_context(RC):
+    with matplotlib.rc_context({**RC, **FIXED_NAMES}):
         if belongs(folder / "convergence.json"):
-            return write_single(folder, lambda: (convergence.convergence(folder), []))
+            return write_single(folder, kinds, lambda: (convergence.convergence(folder), []))
         if belongs(folder / interface_step.SUMMARY):
-            return write_single(folder, lambda: (interface_step.draw([folder]), []))
+            return write_single(folder, kinds, lambda: (interface_step.draw([folder]), []))
         if belongs(folder / open_choices.SUMMARY):
-            return write_single(folder, lambda: (open_choices.draw(folder), []))
+            return write_single(folder, kinds, lambda: (open_choices.draw(folder), []))
         if is_single_run(folder):
-            return write_single(folder, lambda: balance.balance_of_run(folder))
-        return write_reproduction(folder, experiment)
+            return write_single(folder, kinds, lambda: balance.balance_of_run(folder))
+        return write_reproduction(folder, kinds, experiment)
 
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.figures",
-        description="Draws the figures (PNG, PDF) and the report (HTML) of a reproduction, the figure of a "
+        description="Draws the figures and the report (HTML) of a reproduction, the figure of a "
         "study, or the energy balance of a single run, into DIR/figures.",
     )
     parser.add_argument(
@@ -100,13 +111,20 @@ def main(arguments: list[str] | None = None) -> int:
         help="output folder of `slipfront reproduce`, `slipfront study` or `slipfront run`",
     )
     parser.add_argument(
+        "--format",
+        choices=WITHOUT_DATE,
+        action="append",
+        help="kind of the pictures, may be given more than once (default: png and pdf); the report has PNG",
+    )
+    parser.add_argument(
         "--experiment",
         metavar="CSV",
         type=Path,
         help="measured points to draw into figure 2: columns static_ratio and v_over_c_L or v_m_per_s",
     )
     options = parser.parse_args(arguments)
-    return command.run("slipfront.figures", lambda: write_figures(options.dir, options.experiment))
+    kinds = tuple(dict.fromkeys(options.format or BOTH))
+    return command.run("slipfront.figures", lambda: write_figures(options.dir, options.experiment, kinds))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.patches import Patch
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
@@ -48,16 +50,20 @@ def draw_points(ax: Axes, points: dict[str, np.ndarray], x: str, y: str, base: s
             )
 
 
-def draw_paper(ax: Axes) -> None:
+def draw_paper(ax: Axes) -> tuple[Artist, ...]:
+    """The paper's curve in its band; returns parts of a legend entry."""
     a, b, c, band = PAPER
     rise = np.linspace(0, 2, 200)
     curve = a + b * np.exp(-c * np.sqrt(rise))
     ax.fill_between(rise, curve - band, curve + band, color="0.85", linewidth=0)
-    ax.plot(rise, curve, color="0.3", linewidth=0.7)
+    (line,) = ax.plot(rise, curve, color="0.3", linewidth=0.7, label="the paper's fit and band")
+    return Patch(facecolor="0.85"), line
 
 
 def words(value: float | None, digits: int = 2) -> str:
-    return "-" if value is None else f"{value:.{digits}f}"
+    if value is None:
+        return "-"
+    return f"{round(value, digits) + 0.0:.{digits}f}"  # no -0
 
 
 def draw(folder: Path) -> Drawing:
@@ -69,7 +75,7 @@ def draw(folder: Path) -> Drawing:
     for row, base in zip(axes, bases, strict=True):
         points = points_of(table, base["name"])
         draw_points(row[0], points, "t_d_over_p_d", "v_tip_over_c_L", base["name"])
-        draw_paper(row[1])
+        paper = draw_paper(row[1])
         draw_points(row[1], points, "energy_rise", "v_tip_over_c_L", base["name"])
         points["x_mm"] = style.mm(points["x_m"])
         draw_points(row[2], points, "x_mm", "p_r_over_p_s", base["name"])
@@ -92,7 +98,7 @@ def draw(folder: Path) -> Drawing:
         for name, colour in DIRECTIONS.values()
     ]
     tails = axes[0, 0].plot([], [], "x", color="0.4", markersize=2.5, label="last 20 mm before a front's end")
-    figure.legend(handles=handles + tails, loc="outside lower center", ncols=3)
+    style.legend_below(figure, [*handles, *tails, paper], 4)
     return Drawing("bases", figure, "")
 
 

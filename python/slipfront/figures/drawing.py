@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
@@ -15,6 +16,12 @@ from slipfront.files import DataError, one_line
 
 MARK_COLOUR = "#b2182b"
 Drawn = TypeVar("Drawn")
+#: Kinds of pictures, each with the entry without which the same figure gives the same file.
+WITHOUT_DATE: dict[str, dict[str, str | None]] = {
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None},
+    "svg": {"Date": None},
+}
 
 
 @dataclass(frozen=True)
@@ -41,13 +48,15 @@ class Drawing:
         self.figure.savefig(stream, format=kind, metadata=metadata, bbox_inches=tight)
         return stream.getvalue()
 
-    def save(self, folder: Path) -> None:
-        # Without the date, the same results give the same files.
-        png = guarded(folder / f"{self.name}.png", lambda: self.rendered("png", Software=None))
-        self.figure.set_layout_engine("none")  # the layout is found; once is enough
-        pdf = guarded(folder / f"{self.name}.pdf", lambda: self.rendered("pdf", CreationDate=None))
-        (folder / f"{self.name}.png").write_bytes(png)
-        (folder / f"{self.name}.pdf").write_bytes(pdf)
+    def save(self, folder: Path, kinds: Sequence[str] = ("png", "pdf")) -> None:
+        """Writes a file of each kind, all or none."""
+        pictures = {}
+        for kind in kinds:
+            file = folder / f"{self.name}.{kind}"
+            pictures[file] = guarded(file, partial(self.rendered, kind, **WITHOUT_DATE[kind]))
+            self.figure.set_layout_engine("none")  # the layout is found; once is enough
+        for file, picture in pictures.items():
+            file.write_bytes(picture)
 
 
 def plain(text: str) -> str:

@@ -2,13 +2,14 @@
 """Speed of the particles in a run's snapshots, of both bodies where there are two.
 
 usage: python -m slipfront.figures.fields PICTURE DIR, output folder of `slipfront run` with snapshots;
-a PICTURE that ends with .gif is an animation of all of them"""
+a PICTURE that ends with .gif or .mp4 is an animation of all of them"""
 
 from __future__ import annotations
 
 import sys
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -109,49 +110,89 @@ def draw(folder: Path) -> Drawing:
     )
 
 
-def animate(folder: Path) -> bytes:
-    """A GIF with a frame per snapshot."""
+def frames(folder: Path) -> list[Image.Image]:
+    """A picture per snapshot, all of one size."""
     fields = read(folder)
     steps = list(range(len(fields.time_s)))
     norm = PowerNorm(0.5, 0, largest_speed(fields, steps) or 1.0)
     grid = triangles(fields)
-    frames = []
+    pictures = []
     for step in steps:
         figure = style.new_figure(style.TEXT_MM, panel_height_mm(fields, 0.75 * style.TEXT_MM) + 10)
         ax = figure.subplots()
         bar = figure.colorbar(draw_step(ax, grid, fields, step, norm), ax=ax, shrink=0.8)
         bar.set_label("speed (m/s)")
         ax.set_xlabel("$x$ (mm)")
-        frame = BytesIO()
-        figure.savefig(frame, format="png", dpi=FRAME_DPI)
-        frames.append(Image.open(frame).convert("RGB"))
-    stream = BytesIO()
-    frames[0].save(stream, format="GIF", save_all=True, append_images=frames[1:], duration=FRAME_MS, loop=0)
-    return stream.getvalue()
+        picture = BytesIO()
+        figure.savefig(picture, format="png", dpi=FRAME_DPI)
+        pictures.append(Image.open(picture).convert("RGB"))
+    return pictures
+
+
+def as_gif(pictures: list[Image.Image], file: Path) -> None:
+    pictures[0].save(file, format="GIF", save_all=True, append_images=pictures[1:], duration=FRAME_MS, loop=0)
+
+
+def encoder() -> Any:
+    """The package that brings ffmpeg."""
+    try:
+        import imageio_ffmpeg
+    except ModuleNotFoundError:
+        raise DataError(
+            "an MP4 needs the Python package imageio-ffmpeg: install it with "
+            f"'{sys.executable} -m pip install imageio-ffmpeg', or write a .gif"
+        ) from None
+    return imageio_ffmpeg
+
+
+def as_mp4(pictures: list[Image.Image], file: Path) -> None:
+    """H.264 with colours that every player knows, which takes even numbers of pixels."""
+    width, height = (n - n % 2 for n in pictures[0].size)
+    # Without the encoder's name the same snapshots give the same file.
+    out = encoder().write_frames(
+        str(file),
+        (width, height),
+        fps=1000 / FRAME_MS,
+        codec="libx264",
+        quality=8,
+        macro_block_size=2,
+        output_params=["-fflags", "+bitexact", "-flags:v", "+bitexact", "-movflags", "+faststart"],
+    )
+    out.send(None)
+    for picture in pictures:
+        out.send(picture.crop((0, 0, width, height)).tobytes())
+    out.close()
+    if not file.is_file() or file.stat().st_size == 0:
+        raise DataError("ffmpeg has written no film")
+
+
+ANIMATIONS = {".gif": as_gif, ".mp4": as_mp4}
 
 
 def write(picture: Path, folder: Path) -> list[str]:
     kind = picture.suffix.lower()
     if kind in KINDS:
         return write_results(picture, folder, draw)
-    if kind != ".gif":
-        raise DataError(f"{picture}: the picture's name must end with {', '.join(KINDS)} or .gif")
+    if kind not in ANIMATIONS:
+        raise DataError(f"{picture}: the picture's name must end with {', '.join(KINDS)}, .gif or .mp4")
     command.replaceable(picture)
+    if kind == ".mp4":
+        encoder()  # what lacks is told before the drawing
     with matplotlib.rc_context(style.RC):
-        image = guarded(folder, lambda: animate(folder))
+        pictures = guarded(folder, lambda: frames(folder))
     with command.publishing_into(picture.parent) as made:
-        (made / picture.name).write_bytes(image)
+        guarded(folder, lambda: ANIMATIONS[kind](pictures, made / picture.name))
     return [f"animation: {picture}"]
 
 
 def main(arguments: list[str] | None = None) -> int:
     return command_to_draw(
         "slipfront.figures.fields",
-        "Draws the speed of the particles in a run's snapshots; into a .gif as an animation.",
+        "Draws the speed of the particles in a run's snapshots; into a .gif or .mp4 as an animation.",
         "`slipfront run` with snapshots",
         write,
         arguments,
-        kinds=".png, .pdf, .svg or .gif",
+        kinds=".png, .pdf, .svg, .gif or .mp4",
     )
 
 

@@ -16,7 +16,7 @@ import matplotlib
 from slipfront import command
 from slipfront.figures.drawing import Drawing, guarded, plain
 from slipfront.figures.picture import write_picture
-from slipfront.figures.style import COLUMN_MM, RC, new_figure
+from slipfront.figures.style import COLUMN_MM, RC, V_NAME, new_figure
 from slipfront.files import DataError, number, read_json_table, read_table
 from slipfront.folder import result_file
 
@@ -62,7 +62,8 @@ def draw(folders: list[Path]) -> Drawing:
             )
             ax.plot(cost, [100 * r["p90_error"] for r in points], "-o", color=colour, label=label)
             ax.plot(cost, [100 * r["median_error"] for r in points], ".", color=colour, markersize=2)
-        ax.axhline(100 * number(file, summary, "tolerance"), color="0.5", linewidth=0.5)
+        tolerance = number(file, summary, "tolerance")
+        ax.axhline(100 * tolerance, color="0.5", linewidth=0.5, label=f"tolerance, {100 * tolerance:g} %")
         ax.set(
             xscale="log",
             yscale="log",
@@ -72,9 +73,9 @@ def draw(folders: list[Path]) -> Drawing:
         ax.set_xticks([1, 2, 4, 8], labels=["1", "2", "4", "8"])
         ax.minorticks_off()
         if k == 0:
-            ax.set_ylabel("error of V_tip (%)")
+            ax.set_ylabel(f"error of {V_NAME} (%)")
             ax.legend(
-                title="lines: 90 % of stations within; dots: median", title_fontsize=6, loc="lower left"
+                title="lines: 90 % of stations within; dots: median", title_fontsize=7, loc="lower left"
             )
             ax.set_ylim(bottom=ax.get_ylim()[0] / 200)
     return Drawing("interface_step", figure, "")

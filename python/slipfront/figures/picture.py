@@ -12,16 +12,12 @@ import matplotlib
 from matplotlib.figure import Figure
 
 from slipfront import command
-from slipfront.figures.drawing import Drawing, guarded
+from slipfront.figures.drawing import WITHOUT_DATE, Drawing, guarded
 from slipfront.figures.style import RC
 from slipfront.files import DataError
 
-#: Kinds of pictures, each with the entry without which the same figure gives the same file.
-KINDS = {
-    ".png": {"Software": None},
-    ".pdf": {"CreationDate": None},
-    ".svg": {"Date": None},
-}
+#: By the ending of a picture's name.
+KINDS = {f".{kind}": without for kind, without in WITHOUT_DATE.items()}
 FIXED_NAMES: dict[Any, Any] = {
     "svg.hashsalt": "slipfront"
 }  # of the parts of an SVG, which are random otherwise

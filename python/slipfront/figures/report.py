@@ -328,20 +328,28 @@ def figure_kind(drawing: Drawing) -> str:
     return "column" if width_mm <= COLUMN_MM + 1 else "text" if width_mm <= TEXT_MM + 1 else "page"
 
 
-def figure_html(drawing: Drawing, results: Results, folder: Path) -> str:
-    image = base64.b64encode((folder / f"{drawing.name}.png").read_bytes()).decode()
+def figure_html(drawing: Drawing, results: Results, png: bytes, pdf: str = "") -> str:
+    """A figure with its caption and what the paper says of it; `pdf` is a file to link to."""
+    image = base64.b64encode(png).decode()
     title = escape(drawing.name)
     number = re.match(r"fig(\d+)_", drawing.name)
     label = f"<b>Figure {number[1]} of the paper.</b> " if number else ""
     mark = (
         f'<span class="mark">{escape(drawing.mark.replace(chr(10), "; "))}.</span> ' if drawing.mark else ""
     )
+    link = f' <a href="{escape(pdf)}">PDF</a>' if pdf else ""
     return (
         f'<figure id="{title}" class="{figure_kind(drawing)}">'
         f'<img alt="{title}" src="data:image/png;base64,{image}">\n'
-        f'<figcaption>{mark}{label}{drawing.caption} <a href="{title}.pdf">PDF</a>'
+        f"<figcaption>{mark}{label}{drawing.caption}{link}"
         f"{statements_table(drawing, results)}</figcaption></figure>"
     )
+
+
+def figure_with_files(drawing: Drawing, results: Results, folder: Path) -> str:
+    """A figure whose files are in the folder."""
+    png, pdf = (folder / f"{drawing.name}.{kind}" for kind in ("png", "pdf"))
+    return figure_html(drawing, results, png.read_bytes(), pdf.name if pdf.exists() else "")
 
 
 def study_section(results: Results) -> list[str]:
@@ -388,7 +396,7 @@ def write_report(results: Results, drawings: list[Drawing], folder: Path) -> Pat
         f"<p>{scorecard_summary(results.scorecard)}</p>",
         scorecard_table(results.scorecard),
         '<h2 id="figures">Figures</h2>',
-        *(figure_html(drawing, results, folder) for drawing in drawings),
+        *(figure_with_files(drawing, results, folder) for drawing in drawings),
         '<h2 id="fit">Fit of the energy criterion</h2>',
         "<p>V<sub>tip</sub>/c<sub>L</sub> = a + b exp(−c √r), r = (U<sub>r</sub> − "
         "U<sub>s</sub>)/U<sub>s</sub></p>",

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -151,10 +152,13 @@ def read_timings(file: Path) -> list[tuple[str, float]]:
     return [(str(row["part"]), number(file, row, "wall_s")) for row in rows]
 
 
-def read_results(folder: Path, experiment: Path | None = None) -> Results:
+def read_results(
+    folder: Path, experiment: Path | None = None, read: Callable[[Path], Run] = read_run
+) -> Results:
+    """A folder of `slipfront reproduce`; `read` reads one of its runs."""
     if not is_folder(folder):
         raise DataError(f"{folder}: no such folder; DIR is the output folder of `slipfront reproduce`")
-    runs = {name: read_run(located(folder / name)) for name in (*EVENTS, HIGH_MU_K)}
+    runs = {name: read(located(folder / name)) for name in (*EVENTS, HIGH_MU_K)}
     file = folder / "analysis.json"
     analysis = read_json_table(result_file(file))
     if not isinstance(analysis.get("fit", 0), dict | None):

@@ -22,7 +22,7 @@ from slipfront.figures.study import Study, StudyPoint
 from slipfront.read import Run
 
 COLUMNS = 3
-CELL_MM = 48.0  # height of a pair of panels
+CELL_MM = 45.0
 LEGEND_MM = 16.0  # above the panels, where they leave no room for it
 BESIDE_MARKERS_PT = 12.0  # from a value to a number written beside its markers
 NUMBER_PT = 7.5  # width of such a number
@@ -142,7 +142,6 @@ def draw_values(
             ha="center",
             va="top",
             color=look["color"],
-            fontsize=6.5,
             rotation=90,
             path_effects=style.outlined("white", 2.0),
             zorder=5,
@@ -250,7 +249,7 @@ def small_multiples(
             place = (left / style.PAGE_MM, (bottom + y) / height_mm, 48.5 / style.PAGE_MM, h / height_mm)
             return figure.add_axes(place)
 
-        pair = axes(25, 17), axes(9, 13)
+        pair = axes(23, 17), axes(7.5, 13)
         for ax, draw, label in zip(pair, (upper, lower), labels, strict=True):
             draw(ax, results, study)
             ax.set_xlim(-0.5, len(study.points) - 0.5)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <span>
+
 #include "base/message.hpp"
 
 namespace slipfront::interface {
@@ -12,6 +14,16 @@ struct Parameter {
   double Law::*member;
   double min;  ///< smallest value allowed
   double max;  ///< largest value allowed
+  const char* help;
+};
+
+/// The same of a list of numbers.
+template <class Law>
+struct ListParameter {
+  const char* key;
+  std::span<const double> Law::*member;
+  double min;
+  double max;
   const char* help;
 };
 

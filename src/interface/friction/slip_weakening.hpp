@@ -28,13 +28,14 @@ struct LinearSlipWeakening {
     using L = LinearSlipWeakening;
     return {{{"mu_s", &L::mu_s, 0, 100, "friction coefficient before slip"},
              {"mu_k", &L::mu_k, 0, 100, "friction coefficient after the slip d_c, at most mu_s"},
-             {"d_c_m", &L::d_c_m, 1e-15, 1e3, "slip over which friction weakens"}}};
+             {"d_c_m", &L::d_c_m, 1e-12, 1e3, "slip over which friction weakens"}}};
   }
   /// Empty, or what is wrong with the parameters together.
   Message inconsistency() const { return mu_k > mu_s ? kinetic_above_static() : Message(); }
 
   double static_coefficient() const { return mu_s; }
   double kinetic_coefficient() const { return mu_k; }
+  double weakening_slip_m() const { return d_c_m; }
 
   template <class V, class Constant = double>
   struct Evaluator {

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`python -m slipfront COMMAND ARGS`, which `slipfront COMMAND ARGS` runs for the commands in Python."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+
+from slipfront.command import DONE, REFUSED, report_error, write_line
+from slipfront.errors import Error
+from slipfront.program import program
+
+#: By name, the module whose `main(arguments)` returns the exit code. It is imported when it is wanted.
+COMMANDS = {
+    "fronts": "slipfront.fronts_command",
+    "report": "slipfront.report.command",
+    "sweep": "slipfront.sweep.command",
+}
+USAGE = f"usage: python -m slipfront {{{','.join(COMMANDS)}}} ARGS; each tells its own with --help"
+
+
+def missing(name: str, package: str) -> str:
+    """What to install for a command that needs a package; of our own, only the version can be wrong."""
+    if package == "slipfront":
+        return (
+            f"{name}: is not part of this version of the Python package slipfront: install the program's own"
+        )
+    how = f"{sys.executable} -m pip install {package}"
+    return f"{name}: needs the Python package {package}: install it with '{how}'"
+
+
+def main(arguments: list[str]) -> int:
+    """Exit code of the command that the first argument names."""
+    if arguments[:1] in (["--help"], ["-h"]):
+        write_line(sys.stdout, USAGE)
+        return DONE
+    name = arguments[0] if arguments else ""
+    if name not in COMMANDS:
+        report_error("slipfront", f"no Python command '{name}'; {USAGE}" if name else USAGE)
+        return REFUSED
+    try:
+        module = importlib.import_module(COMMANDS[name])
+    except ModuleNotFoundError as error:
+        report_error("slipfront", missing(name, (error.name or "").split(".")[0]))
+        return REFUSED
+    except ImportError as error:
+        if not (error.msg or "").startswith("cannot import name '_core'"):
+            raise
+        how = "in the sources, 'make module' builds it; elsewhere 'pip install .' does"
+        report_error("slipfront", f"{name}: needs the compiled module of the Python package: {how}")
+        return REFUSED
+    code: int = module.main(arguments[1:])
+    return code
+
+
+def console() -> int:
+    """The console script. Commands in Python are called, all others go to the compiled program.
+
+    It takes the place of this process, so that signals and streams are its own.
+    """
+    arguments = sys.argv[1:]
+    if arguments and arguments[0] in COMMANDS:
+        return main(arguments)
+    try:
+        file = program()
+        os.execv(file, [str(file), *arguments])
+    except (Error, OSError) as error:
+        report_error("slipfront", str(error))
+        return REFUSED
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

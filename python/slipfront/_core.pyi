@@ -1,0 +1,518 @@
+"""
+The compiled part of slipfront; use the package slipfront, which explains it.
+"""
+
+from collections.abc import Callable, Sequence
+import enum
+import os
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+
+def version() -> str:
+    """Version and commit that the module was built from."""
+
+class WaveSpeeds:
+    @property
+    def c_L_m_per_s(self) -> float:
+        """longitudinal, in the plane chosen"""
+
+    @property
+    def c_S_m_per_s(self) -> float:
+        """shear"""
+
+    @property
+    def c_R_m_per_s(self) -> float:
+        """Rayleigh, on a free surface"""
+
+class WellPosedness:
+    @property
+    def statement(self) -> str:
+        """the verdict, one plain line"""
+
+    @property
+    def unbounded(self) -> bool:
+        """growth has no bound as the wavelength goes to zero: ill-posed"""
+
+    @property
+    def grid_wavelength_m(self) -> float:
+        """2 h, the shortest that the mesh carries"""
+
+    @property
+    def growth_at_grid_per_s(self) -> float:
+        """of the fastest mode there, 0 where none grows"""
+
+    @property
+    def weakening_over_radiation(self) -> float:
+        """
+        -mu'(0) p over the radiation damping; above 1 strength drops at once on slip
+        """
+
+    @property
+    def fastest_growth_per_s(self) -> float:
+        """infinite where unbounded, 0 where none grows"""
+
+    @property
+    def fastest_wavelength_m(self) -> float:
+        """0 where growth rises at ever shorter waves"""
+
+    @property
+    def longest_wavelength_m(self) -> float:
+        """of the search"""
+
+    @property
+    def growth_in_crossing(self) -> float:
+        """fastest growth times h/c_L; above 1 no step follows it"""
+
+    @property
+    def damping_length_m(self) -> float:
+        """beta_R c_L: much shorter waves are overdamped"""
+
+    @property
+    def damping_length_over_h(self) -> float: ...
+
+class Info:
+    @property
+    def speeds(self) -> WaveSpeeds:
+        """of the plate"""
+
+    @property
+    def base_speeds(self) -> WaveSpeeds | None:
+        """of the body below; None on the rigid plane"""
+
+    @property
+    def generalised_rayleigh_speed_m_per_s(self) -> float | None:
+        """of the two bodies, where it exists"""
+
+    @property
+    def n_nodes(self) -> int: ...
+
+    @property
+    def n_cells(self) -> int: ...
+
+    @property
+    def n_interface(self) -> int: ...
+
+    @property
+    def stable_step_s(self) -> float: ...
+
+    @property
+    def step_s(self) -> float: ...
+
+    @property
+    def substep_s(self) -> float: ...
+
+    @property
+    def n_steps(self) -> int:
+        """of the event, to time.end_s"""
+
+    @property
+    def node_updates(self) -> float:
+        """of the event and of the ramp"""
+
+    @property
+    def memory_bytes(self) -> float:
+        """the larger of statics and event"""
+
+    @property
+    def disk_bytes(self) -> float: ...
+
+    @property
+    def expected_s(self) -> float:
+        """wall time, at the rate measured on the spot"""
+
+    @property
+    def node_updates_per_s(self) -> float:
+        """measured on the spot"""
+
+    @property
+    def well_posedness(self) -> WellPosedness:
+        """of slow uniform sliding at the plate's nominal pressure"""
+
+class Case:
+    """A case with its changes, checked."""
+
+    def __init__(self, file: str | os.PathLike, changes: Sequence[tuple[str, str]]) -> None:
+        """Of a case file; changes are pairs of dotted key and TOML text."""
+
+    @staticmethod
+    def from_text(text: str, name: str, folder: str | os.PathLike, changes: Sequence[tuple[str, str]]) -> Case:
+        """
+        Of a text, which `name` stands for in messages; paths of its tables count from `folder`.
+        """
+
+    @property
+    def toml(self) -> str:
+        """every key with its value, as case.resolved.toml has it"""
+
+    @property
+    def wave_speeds(self) -> WaveSpeeds:
+        """of the plate"""
+
+    @property
+    def static_coefficient(self) -> float: ...
+
+    @property
+    def warnings(self) -> list[str]: ...
+
+    def info(self) -> Info:
+        """What follows from the case without solving anything."""
+
+    def stable_step_s(self, element_size_m: float) -> float:
+        """Largest stable step of the case's material in square elements, s."""
+
+    def well_posedness(self, pressure_Pa: float, element_size_m: float, longest_wavelength_m: float) -> WellPosedness:
+        """Of slow uniform sliding of the case's materials under its friction."""
+
+    def run(self, dir: str | os.PathLike, overwrite: bool, threads: int | None, checkpoint_every_s: float, progress: object | None) -> None:
+        """
+        Runs the case into a folder; progress(part, step, total) is called at times.
+        """
+
+def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, progress: object | None) -> None:
+    """
+    Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes].
+    """
+
+def go_on(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: float, progress: object | None) -> None:
+    """
+    Goes on with the unfinished run of a folder; does nothing where it is complete.
+    """
+
+class Front:
+    """A path of onsets, continuous in x, in one direction. Arrays: [points]"""
+
+    @property
+    def id(self) -> int: ...
+
+    @property
+    def direction(self) -> int:
+        """+1 or -1 along x"""
+
+    @property
+    def end(self) -> str:
+        """why it ends"""
+
+    @property
+    def mode(self) -> str:
+        """crack, pulse or mixed"""
+
+    @property
+    def length_m(self) -> float: ...
+
+    @property
+    def node(self) -> Annotated[NDArray[numpy.int32], dict(shape=(None,), writable=False)]:
+        """indices along the interface"""
+
+    @property
+    def x_m(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def onset_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def v_tip_m_per_s(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def t_s_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def p_s_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def t_d_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def p_d_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def t_r_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def p_r_Pa(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def U_s_J_per_m3(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def U_r_J_per_m3(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def slipping_share(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]: ...
+
+    @property
+    def accelerating(self) -> Annotated[NDArray[numpy.bool_], dict(shape=(None,), writable=False)]: ...
+
+class SpeedInterval(enum.Enum):
+    """Where l* lies against the node at x."""
+
+    centred = 0
+
+    approach = 1
+
+class FrontOptions:
+    """How fronts are found and measured; lengths in m, times in s."""
+
+    def __init__(self) -> None: ...
+
+    @property
+    def l_star_m(self) -> float: ...
+
+    @l_star_m.setter
+    def l_star_m(self, arg: float, /) -> None: ...
+
+    @property
+    def speed_interval(self) -> SpeedInterval: ...
+
+    @speed_interval.setter
+    def speed_interval(self, arg: SpeedInterval, /) -> None: ...
+
+    @property
+    def arrest_time_s(self) -> float: ...
+
+    @arrest_time_s.setter
+    def arrest_time_s(self, arg: float, /) -> None: ...
+
+    @property
+    def min_length_m(self) -> float: ...
+
+    @min_length_m.setter
+    def min_length_m(self, arg: float, /) -> None: ...
+
+    @property
+    def crack_share(self) -> float: ...
+
+    @crack_share.setter
+    def crack_share(self, arg: float, /) -> None: ...
+
+    @property
+    def pulse_share(self) -> float: ...
+
+    @pulse_share.setter
+    def pulse_share(self, arg: float, /) -> None: ...
+
+    @property
+    def mode_fraction(self) -> float: ...
+
+    @mode_fraction.setter
+    def mode_fraction(self, arg: float, /) -> None: ...
+
+    @property
+    def mu_s(self) -> float: ...
+
+    @mu_s.setter
+    def mu_s(self, arg: float, /) -> None: ...
+
+    @property
+    def youngs_modulus_Pa(self) -> float: ...
+
+    @youngs_modulus_Pa.setter
+    def youngs_modulus_Pa(self, arg: float, /) -> None: ...
+
+    @property
+    def poissons_ratio(self) -> float: ...
+
+    @poissons_ratio.setter
+    def poissons_ratio(self, arg: float, /) -> None: ...
+
+    @property
+    def plane_strain(self) -> bool: ...
+
+    @plane_strain.setter
+    def plane_strain(self, arg: bool, /) -> None: ...
+
+def find_fronts(x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], onset_s: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], end_time_s: float, resolution_s: float, options: FrontOptions) -> list[Front]:
+    """Fronts in first onsets at x_m [nodes], infinite where none is."""
+
+def find_fronts_in_history(time_s: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], slip_rate_m_per_s: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], threshold_m_per_s: float, options: FrontOptions) -> list[Front]:
+    """Fronts in a history of the interface, matrices [times, nodes]."""
+
+def energy_density_J_per_m3(t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], youngs_modulus_Pa: float, poissons_ratio: float, plane_strain: bool) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+    """Kammer et al. 2012, Eq. 2."""
+
+class Estimate:
+    """A value with a two-sided confidence interval."""
+
+    @property
+    def value(self) -> float: ...
+
+    @property
+    def low(self) -> float: ...
+
+    @property
+    def high(self) -> float: ...
+
+class ExponentialFit:
+    """y = a + b exp(-c sqrt(x)), Kammer et al. 2012, Eq. 3."""
+
+    @property
+    def a(self) -> Estimate: ...
+
+    @property
+    def b(self) -> Estimate: ...
+
+    @property
+    def c(self) -> Estimate: ...
+
+    @property
+    def rms(self) -> float:
+        """of the residuals"""
+
+    @property
+    def n_points(self) -> int: ...
+
+    def curve(self) -> tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]]:
+        """The fitted curve: x, y and its interval low and high, [points]."""
+
+    def __call__(self, x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+        """y at x [points]"""
+
+class Spread:
+    """Spread of y over the series at equal x."""
+
+    @property
+    def median_relative(self) -> float:
+        """median over the bins; NaN where no bin has two series"""
+
+    @property
+    def rms_relative(self) -> float:
+        """of all points of a bin about their mean"""
+
+    @property
+    def n_bins(self) -> int:
+        """bins with at least two series"""
+
+def fit_exponential(series: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], resamples: int, block_points: int, confidence: float, seed: int) -> ExponentialFit:
+    """Least squares over all points of all series (x, y)."""
+
+def spread_at_equal_x(series: Sequence[tuple[Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]]], bins: int) -> Spread: ...
+
+def rank_correlation(x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], y: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> float:
+    """Spearman's."""
+
+class Criterion(enum.Enum):
+    static_ratio = 0
+
+    dynamic_ratio = 1
+
+    energy_rise = 2
+
+def criterion(which: Criterion, t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], t_d_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_d_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], U_s_J_per_m3: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], U_r_J_per_m3: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> Annotated[NDArray[numpy.float64], dict(shape=(None,), writable=False)]:
+    """A criterion at points of fronts [points]."""
+
+class Outcome:
+    """An event, as the claims look at it."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def fronts(self) -> list[Front]:
+        """those of at least 10 mm"""
+
+    @property
+    def peak_x_m(self) -> float:
+        """of t_s/p_s inside"""
+
+    @property
+    def first_onset_x_m(self) -> float:
+        """inside; NaN: none"""
+
+def outcome(name: str, case: Case, time_s: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], x_m: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], slip_rate_m_per_s: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], p_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], t_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p_s_Pa: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], threshold_m_per_s: float, critical_shear_m: float) -> Outcome:
+    """An event from a history of its interface and the tractions before it."""
+
+class Spreads:
+    """Of V_tip/c_L at equal criterion."""
+
+    @property
+    def cases(self) -> Spread:
+        """between the events"""
+
+    @property
+    def fronts(self) -> Spread:
+        """between all their fronts"""
+
+class Collapse:
+    """How well each criterion orders the speeds of a set of events."""
+
+    @property
+    def static_ratio(self) -> Spreads:
+        """against t_s/p_s"""
+
+    @property
+    def dynamic_ratio(self) -> Spreads:
+        """against t_d/p_d"""
+
+    @property
+    def energy_rise(self) -> Spreads:
+        """against (U_r - U_s)/U_s"""
+
+    @property
+    def fit(self) -> ExponentialFit | None:
+        """of V_tip/c_L against the energy rise; None below 10 points"""
+
+    @property
+    def share_in_paper_band(self) -> float: ...
+
+    @property
+    def n_points(self) -> int: ...
+
+class Figure:
+    """A number that a claim states."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def value(self) -> float:
+        """in the unit given; NaN where undefined"""
+
+    @property
+    def unit(self) -> str: ...
+
+class Claim:
+    """A claim of Kammer et al. 2012, tested."""
+
+    @property
+    def id(self) -> str: ...
+
+    @property
+    def claim(self) -> str: ...
+
+    @property
+    def paper(self) -> str:
+        """where it stands"""
+
+    @property
+    def measured(self) -> str: ...
+
+    @property
+    def holds(self) -> bool | None:
+        """None where it is not tested"""
+
+    @property
+    def how(self) -> str:
+        """the test"""
+
+    @property
+    def figures(self) -> list[Figure]:
+        """the numbers of `measured`"""
+
+    @property
+    def counts(self) -> bool:
+        """whether the verdict is the claim's"""
+
+    @property
+    def second_test_of(self) -> str:
+        """id of the row whose test this one corrects"""
+
+    @property
+    def why(self) -> str:
+        """that row's test misjudges the claim"""
+
+def collapse(outcomes: Sequence[Outcome], without_tails: bool) -> Collapse: ...
+
+def scorecard(spontaneous: Outcome, left: Outcome, right: Outcome, spontaneous_mu_k_1: Outcome, experiment: tuple[Sequence[float], Sequence[float]] | None) -> list[Claim]:
+    """Every claim against four events; what needs studies is not tested."""

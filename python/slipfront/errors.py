@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the package raises; the text of each is one line, the one that the program prints."""
+
+
+class Error(Exception):
+    """Whatever is refused or cannot be done."""
+
+
+class CaseError(Error, ValueError):
+    """A case, or what else was asked for, cannot be used; the text says where and what to do."""
+
+
+class BlowUpError(Error, ArithmeticError):
+    """The computed motion is no longer physical."""
+
+
+class WriteError(Error, OSError):
+    """The system refuses to write or keep a file."""

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A run at a glance: slip rate along the interface over time, and the speed of its fronts.
+
+usage: python -m slipfront.figures.rupture PICTURE DIR, output folder of `slipfront run`"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import LogNorm
+from matplotlib.image import AxesImage
+
+from slipfront.figures import style
+from slipfront.figures.drawing import Drawing
+from slipfront.figures.picture import command_to_draw, write_results
+from slipfront.figures.space_time import FRONT_COLOUR, OPEN_COLOUR, cell_edges
+from slipfront.read import Run, read_run
+
+DECADES = 3.0  # of slip rate below the highest that are told apart
+WAVES = {"c_L": "-", "c_S": "--", "c_R": ":"}
+
+
+def unit(largest: float, name: str) -> tuple[float, str]:
+    """Factor and unit in which numbers up to the largest have few digits."""
+    for power, prefix in ((0, ""), (3, "m"), (6, "µ")):
+        if largest * 10**power >= 0.3:
+            return 10.0**power, prefix + name
+    return 1e9, "n" + name
+
+
+def draw_slip_rate(ax: Axes, run: Run) -> AxesImage | QuadMesh:
+    history = run.history
+    rate = np.abs(history.slip_rate_m_per_s)
+    highest = float(np.max(rate)) or 1.0
+    lowest = highest / 10**DECADES
+    to_x, x_unit = unit(run.parameter("plate.width_m"), "m")
+    to_t, t_unit = unit(float(history.time_s[-1]), "s")
+    image = ax.pcolorfast(
+        to_x * cell_edges(history.x_m),
+        to_t * cell_edges(history.time_s),
+        # A floor below the range: the logarithm of zero would be drawn as open.
+        np.ma.masked_where(history.p_Pa <= 0, np.maximum(rate, 0.1 * lowest)),
+        cmap=colormaps["YlGnBu"].with_extremes(under="white", bad=OPEN_COLOUR),
+        norm=LogNorm(lowest, highest),
+        gid="rate",
+    )
+    for front in run.fronts:
+        ax.plot(
+            to_x * front.x_m, to_t * front.onset_s, color=FRONT_COLOUR, linewidth=0.9, gid=f"front:{front.id}"
+        )
+    ax.set(
+        xlabel=f"$x$ ({x_unit})",
+        ylabel=f"$t$ ({t_unit})",
+        xlim=(0, to_x * run.parameter("plate.width_m")),
+        ylim=(0, to_t * history.time_s[-1]),
+    )
+    return image
+
+
+def draw_speeds(ax: Axes, run: Run) -> None:
+    """Front speeds over c_S, with the plate's wave speeds; points far above c_L are cut off."""
+    c_S = run.fact("wave_speeds.c_S_m_per_s")
+    to_x, x_unit = unit(run.parameter("plate.width_m"), "m")
+    for front in run.fronts:
+        ax.plot(to_x * front.x_m, front.v_tip_m_per_s / c_S, color=FRONT_COLOUR, gid=f"speed:{front.id}")
+    for wave, line in WAVES.items():
+        level = run.fact(f"wave_speeds.{wave}_m_per_s") / c_S
+        ax.axhline(level, color="0.45", linewidth=0.5, linestyle=line, zorder=0.5, gid=wave)
+        style.name_level(ax, level, rf"$c_\mathrm{{{wave[-1]}}}$", below=wave == "c_R")
+    ax.set(
+        xlabel=f"$x$ ({x_unit})",
+        ylabel=r"$V_\mathrm{tip} / c_\mathrm{S}$",
+        xlim=(0, to_x * run.parameter("plate.width_m")),
+        ylim=(0, 1.3 * run.c_L_m_per_s / c_S),
+    )
+
+
+def rupture(run: Run) -> Drawing:
+    figure = style.new_figure(style.PAGE_MM, 72)
+    left, right = figure.subplots(1, 2)
+    figure.colorbar(draw_slip_rate(left, run), ax=left, label="slip rate $|v|$ (m/s)", pad=0.02, aspect=30)
+    draw_speeds(right, run)
+    caption = (
+        "Left: slip rate along the interface over time, on a logarithmic scale, white a thousand times below "
+        "its largest value, grey where the contact is open; red: onsets of the fronts. Right: their speed "
+        "over c<sub>S</sub> of the plate, with its wave speeds."
+    )
+    return Drawing("rupture", figure, caption)
+
+
+def write(picture: Path, folder: Path) -> list[str]:
+    def draw(results: Path) -> Drawing:
+        run = read_run(results)
+        return rupture(run).marked(run.mark)
+
+    return write_results(picture, folder, draw)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    return command_to_draw(
+        "slipfront.figures.rupture",
+        "Draws slip rate and front speeds of a run.",
+        "slipfront run",
+        write,
+        arguments,
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A run's results as xarray's data sets, with units in the attributes, read when they are used."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import weakref
+from collections.abc import Callable
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import xarray as xr
+from xarray.backends import BackendArray
+from xarray.core import indexing
+
+from slipfront.files import DataError, Table, dataset, open_hdf5, read_table, read_toml
+from slipfront.folder import belongs, result_file
+from slipfront.read import (
+    BLEW_UP,
+    HISTORY_FIELDS,
+    Place,
+    n_finite,
+    raw_history,
+    read_fields,
+    read_place,
+    read_probes,
+    read_static,
+    require,
+    require_ascending,
+)
+
+# Endings of names, the longest first.
+UNITS = {
+    "_J_per_m3": "J/m3",
+    "_m2_per_s2": "m2/s2",
+    "_J_per_m": "J/m",
+    "_m_per_s": "m/s",
+    "_Pa": "Pa",
+    "_s": "s",
+    "_m": "m",
+}
+
+
+def unit_of(name: str) -> str:
+    """The unit that the name of a quantity ends with; "1" for a number without one."""
+    if name in ("mu_s", "mu_k"):  # static and kinetic
+        return "1"
+    return next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "1")
+
+
+class Kept:
+    """A folder that goes when nothing refers to this any more."""
+
+    def __init__(self, folder: Path) -> None:
+        self.remove = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+
+
+def state_of(file: Path) -> tuple[int, int, int] | None:
+    """What changes where a file is replaced or written to; None where there is none."""
+    try:
+        status = os.stat(file)
+    except OSError:
+        return None
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
+class StoredArray(BackendArray):
+    """Numbers in an HDF5 file that stay there until they are asked for."""
+
+    def __init__(
+        self,
+        file: Path,
+        shape: tuple[int, ...],
+        dtype: np.dtype,
+        read: Callable[[h5py.File, Any], np.ndarray],
+        kept: Any,
+    ) -> None:
+        self.file, self.shape, self.dtype, self.read, self.kept = file, shape, dtype, read, kept
+        self.state = state_of(file)
+
+    def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
+        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.BASIC, self.at)
+
+    def at(self, key: tuple[Any, ...]) -> np.ndarray:
+        if state_of(self.file) != self.state:
+            raise DataError(f"{self.file}: was changed since the run was opened; open it again")
+        with open_hdf5(self.file) as hdf5:
+            return self.read(hdf5, key)
+
+
+def stored(
+    dims: tuple[str, ...], array: StoredArray, name: str, attributes: dict[str, str] | None = None
+) -> xr.Variable:
+    return xr.Variable(dims, indexing.LazilyIndexedArray(array), attributes or {"unit": unit_of(name)})
+
+
+def text(value: Any) -> str:
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def attributes_of(found: h5py.Dataset, name: str) -> dict[str, str]:
+    attributes = {key: text(found.attrs[key]) for key in ("unit", "description") if key in found.attrs}
+    return {"unit": unit_of(name), **attributes}
+
+
+def table_variables(table: Table, dim: str, finite: bool = True) -> dict[str, xr.Variable]:
+    """The columns of a table: numbers, or texts where a column holds any."""
+    variables = {}
+    for name in table.header:
+        try:
+            values: Any = table.numbers(name, finite)
+        except DataError:
+            if not any(cell and cell[0].isalpha() for cell in table.texts(name)):
+                raise
+            values = np.array(table.texts(name), dtype=np.str_)
+            variables[name] = xr.Variable((dim,), values)
+            continue
+        variables[name] = xr.Variable((dim,), values, {"unit": unit_of(name)})
+    return variables
+
+
+class OpenRun:
+    """The results of a run. Undefined numbers are NaN; a file is read, and compared with its checksum, when
+    what it holds is first asked for. Raises DataError where a file is missing, damaged or of another
+    run."""
+
+    def __init__(self, place: Place, kept: Kept | None = None) -> None:
+        self._place = place
+        self._kept = kept
+
+    def __repr__(self) -> str:
+        title = self.case.get("title") or self._place.name
+        return f"<slipfront run '{title}', {self.status}: {self.folder}>"
+
+    @property
+    def folder(self) -> Path:
+        """Where the files are: the run's folder, or its unfinished/."""
+        return self._place.folder
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """run.json: version, mesh, wave speeds, steps, statics, energies, fronts, warnings."""
+        return self._place.info
+
+    @property
+    def status(self) -> str:
+        """How the run ended: complete, interrupted, blew_up, failed, or running."""
+        return self._place.status
+
+    @cached_property
+    def case(self) -> dict[str, Any]:
+        """Every key of the case, as nested dictionaries; `slipfront.run` takes it."""
+        return read_toml(result_file(self.folder / "case.resolved.toml"))
+
+    @cached_property
+    def tractions(self) -> xr.Dataset:
+        """static.csv: t_s_Pa and p_s_Pa before the event over x_m, and what varies of friction."""
+        file = self.folder / "static.csv"
+        read_static(file)  # for its checks
+        return self._from_table(file, "x_m")
+
+    @cached_property
+    def history(self) -> xr.Dataset:
+        """interface.h5: slip_m, slip_rate_m_per_s, t_Pa and p_Pa over time_s and x_m. The slip rate belongs
+        to half a (sub-)step later than the time. Of a run that is not over: what there is of it."""
+        raw = self.folder / "state/history.raw"
+        if belongs(raw) and (self._place.growing or not belongs(self.folder / "interface.h5")):
+            return self._raw_history(raw)
+        file = result_file(self.folder / "interface.h5")
+        with open_hdf5(file) as hdf5:
+            coordinates = {
+                name: xr.Variable((name,), dataset(hdf5, name, 1)[()], attributes_of(hdf5[name], name))
+                for name in ("time_s", "x_m")
+            }
+            for name, values in coordinates.items():
+                require_ascending(file, name, values.to_numpy())
+            shape = len(coordinates["time_s"]), len(coordinates["x_m"])
+            fields = {
+                name: self._stored_field(file, hdf5, name)
+                for name, found in hdf5.items()
+                if isinstance(found, h5py.Dataset) and found.shape == shape
+            }
+        require(all(name in fields for name in HISTORY_FIELDS), file, f"not all of its fields are {shape}")
+        return xr.Dataset(fields, coordinates, self._attributes())
+
+    @property
+    def interface(self) -> xr.Dataset:
+        """The history, by the name of its file."""
+        return self.history
+
+    @cached_property
+    def fronts(self) -> xr.Dataset:
+        """fronts.csv over `point`, a front's points in the order of travel: front_id, x_m, onset_s,
+        v_tip_m_per_s, tractions (_s before the event, _d at l* ahead of the tip, _r at the onset), energy
+        densities U. Over `front`: direction, end and mode of each, by its id."""
+        file = self.folder / "fronts.csv"
+        if self._place.growing and not belongs(file):
+            return xr.Dataset(attrs=self._attributes())
+        table = read_table(result_file(file), growing=self._place.growing)
+        points = table_variables(table, "point")
+        require(~np.isnan(points["front_id"].to_numpy()), file, "empty cell in column 'front_id'")
+        points["front_id"] = points["front_id"].astype(np.int64)
+        whole = self.info.get("fronts", [])
+        coordinates = {name: points.pop(name) for name in ("front_id", "x_m", "onset_s")}
+        coordinates["front"] = xr.Variable(("front",), [f.get("id") for f in whole])
+        points["direction_of_point"] = points.pop("direction")
+        for name in ("direction", "end", "mode"):
+            points[name] = xr.Variable(("front",), [f.get(name) for f in whole])
+        return xr.Dataset(points, coordinates, self._attributes())
+
+    @cached_property
+    def energies(self) -> xr.Dataset:
+        """energy.csv over time_s: energies, works since the start and what they leave open, J/m of
+        thickness."""
+        blew_up = self.status == BLEW_UP
+        energies = self._from_table(self.folder / "energy.csv", "time_s", finite=not blew_up)
+        if blew_up:
+            n = n_finite(*(energies[name].to_numpy() for name in energies.variables))
+            energies = energies.isel(time_s=slice(n))
+        return energies
+
+    @cached_property
+    def snapshots(self) -> xr.Dataset | None:
+        """fields.vtkhdf over time_s, node and component (x, y): displacement_m, velocity_m_per_s; x_m and
+        y_m of the nodes, and cell_nodes, four of each cell counterclockwise. None of a run without
+        snapshots."""
+        if self._place.growing or not belongs(self.folder / "fields.vtkhdf"):
+            return None
+        mesh = read_fields(self.folder / "fields.vtkhdf")
+        n_nodes = len(mesh.points_m)
+        coordinates = {
+            "time_s": xr.Variable(("time_s",), mesh.time_s, {"unit": "s"}),
+            "x_m": xr.Variable(("node",), mesh.points_m[:, 0], {"unit": "m"}),
+            "y_m": xr.Variable(("node",), mesh.points_m[:, 1], {"unit": "m"}),
+            "component": xr.Variable(("component",), ["x", "y"]),
+        }
+        variables = {"cell_nodes": xr.Variable(("cell", "corner"), mesh.cells)}
+        with open_hdf5(mesh.file) as hdf5:
+            for name in hdf5["VTKHDF/Steps/PointDataOffsets"]:
+                variables[name] = self._stored_snapshots(mesh.file, hdf5, name, len(mesh.time_s), n_nodes)
+        return xr.Dataset(variables, coordinates, self._attributes())
+
+    @cached_property
+    def probes(self) -> xr.Dataset | None:
+        """probes.h5 over time_s and probe, by its name, with the places x_m and y_m: displacement, velocity,
+        strain, stress. None of a run without probes."""
+        file = self.folder / "probes.h5"
+        if self._place.growing or not belongs(file):
+            return None
+        probes = read_probes(file)
+        coordinates = {
+            "time_s": xr.Variable(("time_s",), probes.time_s, {"unit": "s"}),
+            "probe": xr.Variable(("probe",), list(probes.names)),
+            "x_m": xr.Variable(("probe",), probes.x_m, {"unit": "m"}),
+            "y_m": xr.Variable(("probe",), probes.y_m, {"unit": "m"}),
+        }
+        variables = {
+            name: xr.Variable(("time_s", "probe"), values, {"unit": unit_of(name)})
+            for name, values in probes.fields.items()
+        }
+        return xr.Dataset(variables, coordinates, self._attributes())
+
+    def _attributes(self) -> dict[str, str]:
+        return {"title": str(self.case.get("title", "")), "status": self.status, "folder": str(self.folder)}
+
+    def _from_table(self, file: Path, dim: str, finite: bool = True) -> xr.Dataset:
+        table = read_table(result_file(file), growing=self._place.growing)
+        variables = table_variables(table, dim, finite)
+        require(dim in variables, file, f"no column '{dim}'")
+        return xr.Dataset(variables, attrs=self._attributes())
+
+    def _stored_field(self, file: Path, hdf5: h5py.File, name: str) -> xr.Variable:
+        found = dataset(hdf5, name, 2)
+        array = StoredArray(file, found.shape, found.dtype, lambda h, key: h[name][key], self._kept)
+        return stored(("time_s", "x_m"), array, name, attributes_of(found, name))
+
+    def _stored_snapshots(
+        self, file: Path, hdf5: h5py.File, name: str, n_times: int, n_nodes: int
+    ) -> xr.Variable:
+        starts = dataset(hdf5, f"VTKHDF/Steps/PointDataOffsets/{name}", 1)[()]
+        path = f"VTKHDF/PointData/{name}"
+        found = hdf5[path]
+        is_vector = found.ndim == 2
+        dataset(hdf5, path, found.ndim)
+        inside = (starts >= 0) & (starts <= len(found) - n_nodes)
+        require(len(starts) == n_times and inside.all(), file, f"a snapshot's {name} is not in the file")
+
+        def read(h: h5py.File, key: tuple[Any, ...]) -> np.ndarray:
+            at, rest = key[0], key[1:]
+            first = starts[at]
+            if np.ndim(first) == 0:
+                return snapshot(h, int(first), rest)
+            return np.stack([snapshot(h, int(s), rest) for s in first])
+
+        def snapshot(h: h5py.File, first: int, rest: tuple[Any, ...]) -> np.ndarray:
+            rows = h[path][first : first + n_nodes]
+            return (rows[:, :2] if is_vector else rows)[rest]
+
+        shape = (n_times, n_nodes, 2) if is_vector else (n_times, n_nodes)
+        dims = ("time_s", "node", "component")[: len(shape)]
+        array = StoredArray(file, shape, found.dtype, read, self._kept)
+        return stored(dims, array, name, attributes_of(found, name))
+
+    def _raw_history(self, file: Path) -> xr.Dataset:
+        x_m = self.tractions["x_m"].to_numpy()
+        time_s, fields = raw_history(file, x_m)
+        n = n_finite(time_s, *fields.values()) if self.status == BLEW_UP else len(time_s)
+        variables = {
+            name: xr.Variable(("time_s", "x_m"), values[:n], {"unit": unit_of(name)})
+            for name, values in fields.items()
+        }
+        coordinates = {
+            "time_s": xr.Variable(("time_s",), time_s[:n], {"unit": "s"}),
+            "x_m": self.tractions["x_m"].variable,
+        }
+        return xr.Dataset(variables, coordinates, self._attributes())
+
+
+def open(folder: str | os.PathLike[str]) -> OpenRun:
+    """Opens the results of a run, whoever has made them; where there is an unfinished run and
+    no complete one, that. Raises DataError where there is none."""
+    return OpenRun(read_place(Path(folder)))

@@ -1,0 +1,131 @@
+// Front speed against position and three criteria. A node that is pointed at is marked wherever it is drawn.
+
+const PANELS = [
+  {measure: 'x', axis: '', label: (run) => `x (${run.units.x})`},
+  {measure: 'static', axis: '2', label: () => 'static ratio t<sub>s</sub>/p<sub>s</sub>'},
+  {measure: 'dynamic', axis: '3', label: () => 'dynamic ratio t<sub>d</sub>/p<sub>d</sub>'},
+  {measure: 'rise', axis: '4', label: () => 'energy rise (U<sub>r</sub> − U<sub>s</sub>)/U<sub>s</sub>'},
+];
+const PALE = 0.22;
+let pinned = false;
+
+/** All fronts of the page, of all its runs, main fronts last, so that they are on top. */
+const everyFront = data.runs.flatMap((run) => run.fronts.map((_, front) => ({run, front})))
+  .sort((a, b) => a.run.fronts[a.front].main - b.run.fronts[b.front].main);
+
+function pointsOf({run, front}, panel, isFirst) {
+  const f = run.fronts[front];
+  return {
+    type: 'scatter', mode: 'markers', name: run.name ? `${run.name}: ${f.label}` : f.label, x: f[panel.measure], y: f.v,
+    xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, legendgroup: `${run.name}:${f.id}`, showlegend: isFirst,
+    marker: {color: f.colour, symbol: f.symbol, size: f.main ? 5 : 4, opacity: f.counts.map((c) => (c ? 0.9 : PALE))},
+    selected: {marker: {opacity: 1, size: 9}}, unselected: {marker: {opacity: 0.08}},
+    hoverinfo: 'none', meta: {run: data.runs.indexOf(run), front},
+  };
+}
+
+function waveLevels(run, panel, isFirst) {
+  return run.waves.map((wave) => ({
+    type: 'scatter', mode: 'lines', name: waveName(wave.name), x: [-1e6, 1e6], y: [wave.over_c_L, wave.over_c_L],
+    xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, legendgroup: wave.name, showlegend: isFirst, hoverinfo: 'skip',
+    line: {color: '#555', width: 1, dash: WAVE_DASHES[wave.name]},
+  }));
+}
+
+/** The paper's law and others of its form, where the page has them: V/c_L = a + b exp(-c sqrt(rise)). */
+function fitCurves(panel) {
+  if (panel.measure !== 'rise') return [];
+  const r = Array.from({length: 200}, (_, k) => 5 * (k / 199) ** 2);
+  return (data.fits ?? []).map(({name, a, b, c, colour, dash}) => ({
+    type: 'scatter', mode: 'lines', name, x: r, y: r.map((v) => a + b * Math.exp(-c * Math.sqrt(v))),
+    xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, line: {color: colour, dash, width: 2}, hoverinfo: 'skip',
+  }));
+}
+
+function panelMark(panel) {
+  return {...mark, xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, meta: {mark: panel.measure}};
+}
+
+const countedValues = (measure) => everyFront.flatMap(({run, front}) => {
+  const f = run.fronts[front];
+  return f[measure].filter((v, k) => v !== null && f.v[k] !== null && (f.counts[k] || !f.main));
+});
+const most = (values, fallback) => values.reduce((a, b) => Math.max(a, b), -Infinity) || fallback;
+
+function criteriaLayout() {
+  const run = data.runs[0];
+  const v = most(countedValues('v'), 1);
+  const top = Math.min(Math.max(1.15, 1.08 * (Number.isFinite(v) ? v : 1)), run.highest_v);
+  const ranges = {x: [run.static.x[0], run.static.x.at(-1)]};
+  for (const measure of ['static', 'dynamic', 'rise']) {
+    const right = most(countedValues(measure), 1);
+    ranges[measure] = [0, Math.min(Number.isFinite(right) ? 1.05 * right : 1, measure === 'rise' ? run.largest_rise : 1e9)];
+  }
+  const layout = layoutWith({grid: {rows: 2, columns: 2, pattern: 'independent', xgap: 0.12, ygap: 0.3},
+    legend: {orientation: 'h', y: -0.17}, dragmode: 'zoom', hovermode: 'closest'});
+  for (const panel of PANELS) {
+    layout[`xaxis${panel.axis}`] = axis(panel.label(run), {range: ranges[panel.measure]});
+    layout[`yaxis${panel.axis}`] = axis('V<sub>tip</sub> / c<sub>L</sub>', {range: [0, top], ...(panel.axis && {matches: 'y'})});
+  }
+  return layout;
+}
+
+function drawCriteria() {
+  const traces = PANELS.flatMap((panel, k) => [
+    ...waveLevels(data.runs[0], panel, k === 0), ...fitCurves(panel),
+    ...everyFront.map((which) => pointsOf(which, panel, k === 0)), panelMark(panel)]);
+  const config = {...CONFIG, modeBarButtonsToAdd: ['select2d', 'lasso2d']};
+  return Plotly.react('criteria-plot', traces, criteriaLayout(), config);
+}
+
+function pointWords(run, front, point) {
+  const f = run.fronts[front];
+  const speed = f.v[point];
+  const inMetres = speed === null ? '–' : `${shown(speed * run.waves[0].m_per_s)} m/s = ${shown(speed)} c_L`;
+  return `${run.name ? `${run.name}, ` : ''}${f.label}: x = ${shown(f.x[point])} ${run.units.x} at ` +
+    `t = ${shown(f.time[point])} ${run.units.time}; V_tip = ${inMetres}; t_s/p_s = ${shown(f.static[point])}, ` +
+    `t_d/p_d = ${shown(f.dynamic[point])}, (U_r − U_s)/U_s = ${shown(f.rise[point])}`;
+}
+
+/** Marks a node of a front in every panel and in the diagram over space and time. */
+function highlight(run, front, point) {
+  const plot = byId('criteria-plot');
+  if (!plot?.data || pinned) return;
+  const f = run.fronts[front];
+  const marks = plot.data.map((trace, k) => [trace.meta?.mark, k]).filter(([measure]) => measure);
+  const places = marks.map(([measure]) => (f[measure][point] === null || f.v[point] === null ? null : f[measure][point]));
+  Plotly.restyle(plot, {x: places.map((x) => (x === null ? [] : [x])), y: places.map((x) => (x === null ? [] : [f.v[point]]))},
+    marks.map(([, k]) => k));
+  byId('criteria-point').textContent = pointWords(run, front, point);
+  markSpaceTime(run, front, point);
+}
+
+/** The points that were selected in one panel are selected in all; null: none is. */
+function selectEverywhere(points) {
+  const plot = byId('criteria-plot');
+  const chosen = {};
+  for (const {data: {meta}, pointNumber} of points ?? []) if (meta?.front !== undefined) (chosen[`${meta.run}:${meta.front}`] ??= []).push(pointNumber);
+  const drawn = plot.data.map((trace, k) => [trace.meta, k]).filter(([meta]) => meta?.front !== undefined);
+  const selected = drawn.map(([meta]) => (points ? chosen[`${meta.run}:${meta.front}`] ?? [] : null));
+  Plotly.restyle(plot, {selectedpoints: selected}, drawn.map(([, k]) => k));
+}
+
+function startCriteria() {
+  const drawn = drawCriteria();
+  const plot = byId('criteria-plot');
+  const ofFront = (points) => points.find((point) => point.data.meta?.front !== undefined);
+  plot.on('plotly_hover', ({points}) => {
+    const point = ofFront(points);
+    if (point) highlight(data.runs[point.data.meta.run], point.data.meta.front, point.pointNumber);
+  });
+  plot.on('plotly_click', ({points}) => {
+    const point = ofFront(points);
+    pinned = false;
+    if (point) highlight(data.runs[point.data.meta.run], point.data.meta.front, point.pointNumber);
+    pinned = Boolean(point);
+  });
+  plot.on('plotly_doubleclick', () => { pinned = false; });
+  plot.on('plotly_selected', (event) => selectEverywhere(event?.points ?? null));
+  plot.on('plotly_deselect', () => selectEverywhere(null));
+  return drawn;
+}

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page of a reproduction of the paper: verdicts, its four runs to look into, figures and tables."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+from slipfront.figures import report as tables
+from slipfront.figures.__main__ import draw_all
+from slipfront.figures.criteria import FIT_COLOUR
+from slipfront.figures.results import Fit, Results, read_results
+from slipfront.figures.style import EVENT_STYLES
+from slipfront.folder import belongs
+from slipfront.read import Front, Run
+from slipfront.report import run as single
+from slipfront.report.page import Page, section, warnings_list, words
+from slipfront.report.run_data import FrontLook, has_snapshots, history_of, run_data
+
+MOST_TIMES, MOST_NODES = 220, 220  # of each run, so that the page stays small
+FIGURE_DPI = 160  # as wide as the page
+SYMBOLS = {
+    "left": "square",
+    "spontaneous": "circle",
+    "right": "triangle-up",
+    "spontaneous_mu_k_1.0": "diamond",
+}
+PLACES = [
+    ("scorecard", "Scorecard"),
+    ("criteria", "Criteria"),
+    ("runs", "Runs"),
+    ("space-time", "Space-time"),
+    ("profiles", "t/p at a time"),
+    ("energy", "Energy"),
+    ("snapshots", "Snapshots"),
+    ("figures", "Figures"),
+    ("fit", "Fit"),
+    ("fronts", "Fronts"),
+]
+INTRODUCTION = (
+    "<p>Reproduction of Kammer, Yastrebov, Spijker, Molinari, <i>On the propagation of slip fronts at "
+    "frictional "
+    "interfaces</i>, Tribology Letters 48, 27–32 (2012).</p>"
+)
+
+
+def is_kind(folder: Path) -> bool:
+    return belongs(folder / "scorecard.json")
+
+
+def label(name: str) -> str:
+    """An event's name without formulas."""
+    return EVENT_STYLES[name].label.replace("$\\mu_k = 1.0$", "μ_k = 1.0")
+
+
+def look(run: Run, front: Front) -> FrontLook:
+    """The event's colour; filled symbols are fronts against the imposed shear, open ones those along it."""
+    against = front.direction < 0
+    way = "to −x, against the shear" if against else "to +x, along the shear"
+    symbol = SYMBOLS[run.name] + ("" if against else "-open")
+    return FrontLook(f"front {front.id} {way}", EVENT_STYLES[run.name].colour, symbol)
+
+
+def fit_curves(results: Results) -> list[dict[str, Any]]:
+    """The curves of Fig. 6."""
+
+    def curve(name: str, fit: Fit, colour: str, dash: str) -> dict[str, Any]:
+        return {"name": name, "a": fit.a, "b": fit.b, "c": fit.c, "colour": colour, "dash": dash}
+
+    found = [curve("the paper's fit", results.paper_fit, "#888888", "solid")]
+    if results.fit is not None:
+        found.append(curve("fit to all points", results.fit, FIT_COLOUR, "dot"))
+    if results.judging_fit is not None:
+        judging = results.judging_fit
+        found.append(curve(f"fit to main fronts ({judging.id})", judging.fit, FIT_COLOUR, "solid"))
+    return found
+
+
+def runs_table(results: Results) -> str:
+    """A row for each run, and where the page of it alone comes from."""
+    rows = []
+    for name, run in results.runs.items():
+        told = run.info.get("warnings", [])
+        folder = words(results.folder / name)
+        rows.append(
+            [
+                words(label(name)),
+                words(run.info.get("title", "")),
+                single.ending(run),
+                str(len(run.fronts)),
+                str(len(told) if isinstance(told, list) else 0),
+                f"<code>slipfront report {folder}</code>",
+            ]
+        )
+    return tables.table(["Run", "Case", "End", "Fronts", "Warnings", "A page of its own"], rows)
+
+
+def run_list() -> str:
+    label_and_list = '<label for="run">The diagrams below show the run</label> <select id="run"></select>'
+    return f'<p class="runs">{label_and_list}</p>'
+
+
+def figures(results: Results) -> list[str]:
+    with matplotlib.rc_context({"savefig.dpi": FIGURE_DPI}):
+        drawings = draw_all(results)
+        return [tables.figure_html(d, results, d.rendered("png", Software=None)) for d in drawings]
+
+
+def runs_parts(results: Results) -> list[str]:
+    """The diagrams of one run at a time."""
+    every = list(results.runs.values())
+    all_have_snapshots = all(has_snapshots(run) for run in every)
+    return [
+        section("runs", "Runs", runs_table(results)),
+        run_list(),
+        single.space_time_section(single.thinning(history_of(every[0]))),
+        single.profiles_section(),
+        single.energy_section(),
+        single.snapshots_section(all_have_snapshots),
+    ]
+
+
+def page(folder: Path) -> Page:
+    results = read_results(folder, read=lambda place: single.thin_run(place, (MOST_TIMES, MOST_NODES)))
+    runs = [run_data(run, look, label(name)) for name, run in results.runs.items()]
+    scorecard = section(
+        "scorecard",
+        "Scorecard",
+        f"<p>{tables.scorecard_summary(results.scorecard)}</p>",
+        tables.scorecard_table(results.scorecard),
+    )
+    return Page(
+        title="Slip fronts at a frictional interface: reproduction",
+        parts=[
+            INTRODUCTION,
+            f"<p>Runs by {tables.origin(results)}.</p>",
+            warnings_list(results.remarks, "mark"),
+            single.navigation(PLACES),
+            scorecard,
+            single.criteria_section("Fronts of all four runs; a click on a name hides them."),
+            *runs_parts(results),
+            section("figures", "Figures", *figures(results)),
+            section(
+                "fit", "Fit of the energy criterion", tables.fit_table(results), tables.spread_table(results)
+            ),
+            *tables.study_section(results),
+            section("fronts", "Fronts", tables.front_table(results)),
+            *tables.timing_section(results),
+        ],
+        data={"runs": runs, "fits": fit_curves(results)},
+        notes=results.remarks,
+    )

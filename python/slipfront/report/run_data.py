@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a page's plots of a run are drawn from, as values of JSON, in the units of `units_of`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from slipfront.figures.balance import TERMS
+from slipfront.figures.criteria import HIGHEST_V, LARGEST_RISE
+from slipfront.figures.main_fronts import away_from_trigger, counted, drawn_fronts, main_fronts, start
+from slipfront.files import is_number, read_table
+from slipfront.folder import result_file
+from slipfront.read import Balance, Fields, Front, Run, entry, ratio
+from slipfront.report.history import ThinHistory
+from slipfront.report.numbers import Unit, listed, packed, packed_bytes, unit
+from slipfront.report.picture_grid import codes, pixel_grid
+
+WAVES = ("c_L", "c_S", "c_R")
+MOST_FRAMES = 40
+STRIPED = (
+    "damping_work",
+    "contact_work",
+    "boundary_work",
+    "coupling_work",
+)  # beside a plain term of similar colour
+WORDS = {"strain": "strain energy (its loss)"}  # of the terms that a ledger shows with another sign
+
+
+@dataclass(frozen=True)
+class FrontLook:
+    """How a front is named and drawn; symbols are Plotly's."""
+
+    label: str
+    colour: str
+    symbol: str
+
+
+Look = Callable[[Run, Front], FrontLook]
+Units = dict[str, Unit]
+
+
+def look_by_direction(run: Run, front: Front) -> FrontLook:
+    """Filled markers are fronts to -x, open ones those to +x, as in all figures."""
+    if front.direction < 0:
+        return FrontLook(f"front {front.id}, to −x", "#d55e00", "circle")
+    return FrontLook(f"front {front.id}, to +x", "#0072b2", "square-open")
+
+
+def history_of(run: Run) -> ThinHistory:
+    assert isinstance(run.history, ThinHistory)
+    return run.history
+
+
+def units_of(run: Run) -> Units:
+    history = history_of(run)
+    return {
+        "x": unit("length", np.ptp(history.x_m)),
+        "time": unit("time", history.time_s),
+        "slip": unit("slip", history.slip_m),
+        "traction": unit("traction", np.concatenate([history.t_Pa, history.p_Pa])),
+        "speed": unit("speed", 0.0),
+    }
+
+
+def history_data(history: ThinHistory, units: Units) -> dict[str, Any]:
+    return {
+        "x": listed(history.x_m, units["x"].factor),
+        "time": listed(history.time_s, units["time"].factor),
+        "slip_rate": packed(history.slip_rate_m_per_s),
+        "slip": packed(units["slip"].factor * history.slip_m),
+        "t": packed(units["traction"].factor * history.t_Pa),
+        "p": packed(units["traction"].factor * history.p_Pa),
+    }
+
+
+def coefficients(run: Run, units: Units) -> list[dict[str, Any]]:
+    """mu_s and mu_k along x, where the law has them: of the nodes where they vary, else of the case."""
+    file = run.place.folder / "static.csv"
+    table = read_table(result_file(file))
+    found = []
+    for key in ("mu_s", "mu_k"):
+        constant = entry(run.case, "friction", key)
+        if key in table.header:
+            x, values = run.static_x_m, table.numbers(key)
+        elif is_number(constant):
+            x, values = run.static_x_m[[0, -1]], np.full(2, float(constant))
+        else:
+            continue
+        found.append({"name": key, "x": listed(x, units["x"].factor), "values": listed(values)})
+    return found
+
+
+def front_data(run: Run, front: Front, units: Units, look: Look) -> dict[str, Any]:
+    """Points in the order of travel; what belongs to no criterion next to a trigger is null."""
+    shown = away_from_trigger(run, front.x_m)
+    drawn = look(run, front)
+    is_main = front in main_fronts(run)
+    count = counted(run, front) & shown if is_main else np.full(len(front.x_m), False)
+
+    def beyond(values: np.ndarray) -> list[float | None]:
+        return listed(np.where(shown, values, np.nan))
+
+    return {
+        "id": front.id,
+        "label": drawn.label,
+        "colour": drawn.colour,
+        "symbol": drawn.symbol,
+        "direction": front.direction,
+        "main": is_main,
+        "counts": [int(c) for c in count],
+        "x": listed(front.x_m, units["x"].factor),
+        "time": listed(front.onset_s, units["time"].factor),
+        "v": beyond(front.v_tip_m_per_s / run.c_L_m_per_s),
+        "static": beyond(front.static_ratio),
+        "dynamic": beyond(front.dynamic_ratio),
+        "rise": beyond(front.energy_rise),
+    }
+
+
+def wave_data(run: Run, units: Units) -> list[dict[str, Any]]:
+    """Speeds over c_L, and in the units of the space-time diagram."""
+    per_unit = units["x"].factor / units["time"].factor
+    speeds = {wave: run.fact(f"wave_speeds.{wave}_m_per_s") for wave in WAVES}
+    return [
+        {"name": wave, "over_c_L": speed / run.c_L_m_per_s, "slope": speed * per_unit, "m_per_s": speed}
+        for wave, speed in speeds.items()
+    ]
+
+
+def given_to_the_rest(balance: Balance) -> dict[str, np.ndarray]:
+    """What each term gives to all others since the start, J/m; the sum is minus the imbalance."""
+    stored = ("strain", "kinetic")
+    return {term: -values if term in stored else values for term, values in balance.terms.items()}
+
+
+def energy_data(balance: Balance, units: Units) -> dict[str, Any]:
+    largest = balance.largest_J_per_m or 1.0
+    given = {term: values for term, values in given_to_the_rest(balance).items() if values.any()}
+    return {
+        "time": listed(balance.time_s, units["time"].factor),
+        "largest": largest,
+        "terms": [
+            {
+                "label": WORDS.get(term, TERMS[term][0]),
+                "colour": TERMS[term][1],
+                "striped": term in STRIPED,
+                "values": listed(values),
+            }
+            for term, values in given.items()
+        ],
+        "imbalance": listed(np.abs(balance.imbalance_J_per_m) / largest),
+        "coupling": listed(np.abs(balance.terms["coupling_work"]) / largest),
+    }
+
+
+def evenly(n: int, most: int) -> list[int]:
+    """At most so many of n, the first and the last among them."""
+    return sorted({round(k) for k in np.linspace(0, n - 1, min(n, most))})
+
+
+def tips_at(run: Run, time_s: float, units: Units, look: Look) -> list[dict[str, Any]]:
+    found = []
+    for front in drawn_fronts(run):
+        tip_m = front.tip_m(time_s)
+        if tip_m is not None:
+            label = look(run, front).label
+            found.append({"x": tip_m * units["x"].factor, "direction": front.direction, "label": label})
+    return found
+
+
+def snapshot_data(run: Run, fields: Fields, units: Units, look: Look) -> dict[str, Any]:
+    """Speed of the particles in every snapshot, or in MOST_FRAMES of them."""
+    grid = pixel_grid(fields)
+    steps = evenly(len(fields.time_s), MOST_FRAMES)
+    pictures = [grid.means(fields.speed_m_per_s(step)) for step in steps]
+    # The scale leaves out the fastest thousandth, of the pixels of the fastest picture.
+    largest = max(float(np.nanquantile(picture, 0.999)) for picture in pictures) or 1.0
+    return {
+        "x": listed(grid.x_m, units["x"].factor),
+        "y": listed(grid.y_m, units["x"].factor),
+        "two_bodies": bool(grid.y_m[0] < 0),
+        "largest": largest,
+        "of": len(fields.time_s),
+        "frames": [
+            {
+                "time": fields.time_s[step] * units["time"].factor,
+                "codes": packed_bytes(codes(picture, largest)),
+                "tips": tips_at(run, fields.time_s[step], units, look),
+            }
+            for step, picture in zip(steps, pictures, strict=True)
+        ],
+    }
+
+
+def ratio_limit(run: Run) -> float:
+    """End of the axis of t/p: it goes to infinity where the contact opens."""
+    mu_s = entry(run.case, "friction", "mu_s")
+    static = run.static_ratio[np.isfinite(run.static_ratio)]
+    history = history_of(run)
+    moving = ratio(history.t_Pa, history.p_Pa)
+    quantiles = np.nanquantile(np.abs(moving), 0.99) if np.isfinite(moving).any() else 0.0
+    known = (
+        [1.15 * mu_s] if is_number(mu_s) else [float(np.max(np.abs(static), initial=0.0)), float(quantiles)]
+    )
+    return max(known) or 1.0
+
+
+def has_snapshots(run: Run) -> bool:
+    return run.fields is not None and len(run.fields.time_s) > 0
+
+
+def run_data(run: Run, look: Look = look_by_direction, name: str = "") -> dict[str, Any]:
+    """All that a run's plots show; `name` is what a page with several runs calls it."""
+    units, began = units_of(run), start(run)
+    origin = None if began is None else [began[0] * units["x"].factor, began[1] * units["time"].factor]
+    snapshots = run.fields if has_snapshots(run) else None
+    return {
+        "name": name,
+        "units": {quantity: unit.name for quantity, unit in units.items()},
+        "history": history_data(history_of(run), units),
+        "static": {
+            "x": listed(run.static_x_m, units["x"].factor),
+            "ratio": listed(run.static_ratio),
+            "coefficients": coefficients(run, units),
+        },
+        "ratio_limit": ratio_limit(run),
+        "waves": wave_data(run, units),
+        "origin": origin,
+        "highest_v": HIGHEST_V,
+        "largest_rise": LARGEST_RISE,
+        "fronts": [front_data(run, front, units, look) for front in drawn_fronts(run)],
+        "energy": energy_data(run.balance, units),
+        "snapshots": snapshot_data(run, snapshots, units, look) if snapshots is not None else None,
+    }

@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Cases run from Python."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import shutil
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from slipfront import _core
+from slipfront.errors import BlowUpError
+from slipfront.measures import doubles
+from slipfront.opened import Kept, OpenRun
+from slipfront.read import read_place
+
+# A path, the text of a case file, or its tables as dictionaries.
+CaseLike = str | os.PathLike[str] | Mapping[str, Any]
+# Called at times with the part ("ramp" or "event"), the steps done and their total.
+Progress = Callable[[str, int, int], None]
+
+WORDS_OF_TOML = ("true", "false", "inf", "nan")
+CHECKPOINT_EVERY_S = 300.0
+
+
+def toml_text(value: Any) -> str:
+    """A value as TOML; a word stays without quotes, as on the command line."""
+    if hasattr(value, "tolist"):  # NumPy's numbers and arrays
+        value = value.tolist()
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str | os.PathLike):
+        text = os.fspath(value)
+        is_word = re.fullmatch(r"[A-Za-z_]\w*", text, re.ASCII) and text not in WORDS_OF_TOML
+        return text if is_word else json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(map(toml_text, value)) + "]"
+    raise TypeError(f"{value!r}: no value of a case file: give a number, text, True, False or a list")
+
+
+def flattened(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:
+    """Pairs of dotted key and TOML text."""
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from flattened(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", toml_text(value)
+
+
+def make_case(case: CaseLike, changes: Mapping[str, Any] | None, tables: Mapping[str, Any]) -> _core.Case:
+    """The case with its changes, checked."""
+    pairs = [*flattened(changes or {}), *flattened(tables)]
+    if isinstance(case, Mapping):
+        return _core.Case.from_text("", "case", Path.cwd(), [*flattened(case), *pairs])
+    text = os.fspath(case)
+    if isinstance(case, str) and "\n" in text:
+        return _core.Case.from_text(text, "case", Path.cwd(), pairs)
+    return _core.Case(Path(text), pairs)
+
+
+class Bar:
+    """Progress on a terminal or in a notebook; nothing elsewhere, or where tqdm is not installed."""
+
+    def __init__(self) -> None:
+        self.bar: Any = None
+        self.part = ""
+
+    def __call__(self, part: str, step: int, total: int) -> None:
+        if part != self.part:
+            self.close()
+            self.part = part
+            self.bar = self.make(part, total)
+        if self.bar is not None:
+            self.bar.update(step - self.bar.n)
+
+    @staticmethod
+    def make(part: str, total: int) -> Any:
+        if "ipykernel" not in sys.modules and not (sys.stderr and sys.stderr.isatty()):
+            return None
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            return None
+        return tqdm(total=total, desc=part, unit="step", leave=False)
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.close()
+            self.bar = None
+
+
+def compute(work: Callable[[Progress | None], None], progress: bool | Progress) -> None:
+    """Does work that tells its progress."""
+    if callable(progress):
+        work(progress)
+        return
+    if not progress:
+        work(None)
+        return
+    bar = Bar()
+    try:
+        work(bar)
+    finally:
+        bar.close()
+
+
+def run(
+    case: CaseLike,
+    changes: Mapping[str, Any] | None = None,
+    /,
+    *,
+    output: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
+    threads: int | None = None,
+    checkpoint_every_s: float = CHECKPOINT_EVERY_S,
+    progress: bool | Progress = True,
+    **tables: Any,
+) -> OpenRun:
+    """Runs a case: statics, event, fronts. The results are those of `slipfront run`, bit for bit.
+
+    case: path of a case file, text of one (of more than one line), or a dictionary of its tables.
+    changes, tables: keys to set as with --set, {"friction.mu_k": 0.8} or friction={"mu_k": 0.8}; SI units.
+    Keys of the table [output] are given dotted.
+    output: folder for the results. Without one they are kept until the returned object and all that was
+    read from it are gone; an interrupted or blown-up run stays where its message says.
+    overwrite: replace results that the folder already holds.
+    threads: of this run; the results do not depend on them.
+    checkpoint_every_s: wall time between checkpoints, s.
+    progress: a bar on terminals and in notebooks, or a function that is called with part ("ramp" or "event"),
+    steps done and their total; what it raises ends the run.
+
+    Other Python threads go on meanwhile. Ctrl-C ends the run within a few steps with a KeyboardInterrupt; its
+    checkpoint is kept, and `resume` goes on from there.
+
+    Raises CaseError (a ValueError), BlowUpError, WriteError, MemoryError."""
+    if isinstance(output, Mapping):
+        raise TypeError(
+            'output is the folder; give keys of [output] dotted, as {"output.snapshot_times_s": [...]}'
+        )
+    prepared = make_case(case, changes, tables)
+    if output is not None:
+        folder = Path(output)
+        compute(lambda show: prepared.run(folder, overwrite, threads, checkpoint_every_s, show), progress)
+        return OpenRun(read_place(folder))
+    folder = Path(mkdtemp(prefix="slipfront-"))
+    try:
+        compute(lambda show: prepared.run(folder, overwrite, threads, checkpoint_every_s, show), progress)
+        return OpenRun(read_place(folder), Kept(folder))
+    except (KeyboardInterrupt, BlowUpError):
+        raise  # the message names the folder
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+def resume(
+    output: str | os.PathLike[str],
+    *,
+    threads: int | None = None,
+    checkpoint_every_s: float = CHECKPOINT_EVERY_S,
+    progress: bool | Progress = True,
+) -> OpenRun:
+    """Goes on with a run that was left unfinished in a folder, as if it had never stopped: bit for bit.
+
+    A run that is complete is opened. Raises as `run` does."""
+    folder = Path(output)
+    compute(lambda show: _core.go_on(folder, threads, checkpoint_every_s, show), progress)
+    return OpenRun(read_place(folder))
+
+
+def run_with_law(
+    case: CaseLike,
+    mu: Callable[[np.ndarray, np.ndarray], ArrayLike],
+    changes: Mapping[str, Any] | None = None,
+    /,
+    *,
+    progress: bool | Progress = True,
+    **tables: Any,
+) -> OpenRun:
+    """Runs a case with a friction law in Python, to try laws out: slow, and right.
+
+    mu: called with slip rates |v|, m/s, and slip paths, m, both [nodes]; returns the friction coefficient
+    [nodes]. Called up to five times for each (sub-)step, since the rate at its end depends on mu.
+
+    The case's own law still gives the coefficient before slip, which statics and fronts take: mu(0, 0) must
+    be equal to it; and that of weakened nodes. Case and changes as for `run`. The run takes one thread. Its
+    files name the case's own law, so that they cannot be kept in a folder or gone on with: they go with the
+    returned object. Raises what `mu` raises, ValueError where it gives no number or one below 0, and as `run`
+    does."""
+    prepared = make_case(case, changes, tables)
+
+    def of_arrays(speed_m_per_s: np.ndarray, slip_m: np.ndarray) -> np.ndarray:
+        values = np.broadcast_to(doubles(mu(speed_m_per_s, slip_m)), slip_m.shape)
+        return np.ascontiguousarray(values)
+
+    at_rest = float(of_arrays(np.zeros(1), np.zeros(1))[0])
+    expected = prepared.static_coefficient
+    if not math.isclose(at_rest, expected, rel_tol=1e-12):
+        raise ValueError(f"mu(0, 0) is {at_rest}, the case's coefficient at rest {expected}; make them equal")
+    folder = Path(mkdtemp(prefix="slipfront-"))
+    try:
+        compute(lambda show: _core.run_by_law(prepared, folder, of_arrays, show), progress)
+        return OpenRun(read_place(folder), Kept(folder))
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+def info(case: CaseLike, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> _core.Info:
+    """What follows from a case without running it: wave speeds, steps, size, memory, expected time,
+    stability of uniform sliding. Case and changes as for `run`; raises CaseError."""
+    return make_case(case, changes, tables).info()

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A sweep's folder: sweep.json says what the sweep is, points/NAME holds a run's results, points/NAME.error
+the line that says why there are none.
+
+Points are known by their name, their resolved case and their checksums."""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import json
+import math
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from slipfront import command
+from slipfront.files import (
+    DataError,
+    exists,
+    is_folder,
+    one_line,
+    read_bytes,
+    read_json_table,
+    read_text,
+    read_toml,
+)
+from slipfront.folder import LIST, UNFINISHED, problem, read_list, sha256
+from slipfront.sweep.definition import Sweep, flattened
+from slipfront.sweep.points import Point
+from slipfront.sweep.program import version_of
+from slipfront.sweep.values import Value, text_of, value_of
+
+DEFINITION = "sweep.json"
+POINTS = "points"
+STATES = "states"
+LOCK = ".sweep.lock"
+CASE = "case.resolved.toml"
+LEFT_OUT = ("interface.h5", "fields.vtkhdf")  # with keep = "tables"
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What points of one folder have in common; those of another case or program do not belong to it."""
+
+    program: str
+    program_sha256: str
+    case_sha256: str  # of the case file and the tables that it names
+    set: list[str]
+
+
+def named_files(case: Path, values: list[Any]) -> list[Path]:
+    """Files beside the case that texts in it name."""
+    texts = [v for v in values if isinstance(v, str) and v]
+    found = [case.parent / text for text in texts if "\0" not in text and len(text) < 4096]
+    return sorted({file for file in found if file.is_file()})
+
+
+def identity_of(sweep: Sweep, program: Path) -> Identity:
+    case = flattened(read_toml(sweep.case))
+    varied = [value for point in sweep.points() for value in point.values.values()]
+    sums = hashlib.sha256(read_bytes(sweep.case))
+    for file in named_files(sweep.case, [*case.values(), *sweep.set.values(), *varied]):
+        sums.update(sha256(file).encode())
+    return Identity(version_of(program), sha256(program), sums.hexdigest(), sweep.settings())
+
+
+@contextmanager
+def held(folder: Path, shared: bool = False) -> Iterator[None]:
+    """A sweep's folder, made where it is missing; refused where another sweep works in it.
+
+    Those that take shares of one sweep hold it together."""
+    made = not exists(folder)
+    try:
+        (folder / POINTS).mkdir(parents=True, exist_ok=True)
+        (folder / STATES).mkdir(exist_ok=True)
+        lock = open(folder / LOCK, "a")  # noqa: SIM115
+    except OSError as error:
+        raise DataError(f"{folder}: cannot be written: {error.strerror}") from None
+    with lock:
+        try:
+            fcntl.flock(lock, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+        except OSError:
+            raise DataError(f"{folder}: another sweep is at work in it") from None
+        try:
+            yield
+        finally:
+            if made:
+                remove_if_empty(folder)
+
+
+def remove_if_empty(folder: Path) -> None:
+    """A folder that nothing came into goes again."""
+    if exists(folder / DEFINITION) or any((folder / POINTS).iterdir()):
+        return
+    with suppress(OSError):
+        (folder / LOCK).unlink(missing_ok=True)
+        for name in (POINTS, STATES):
+            (folder / name).rmdir()
+        folder.rmdir()
+
+
+def require_usable(folder: Path, sweep: Sweep, identity: Identity) -> None:
+    """Refuses a folder of something else, or of a sweep whose points are other runs.
+
+    Also one with points that this sweep has not: its tables would lose them.
+    """
+    file = folder / DEFINITION
+    if not exists(file):
+        if is_folder(folder) and any(entry.name not in (POINTS, STATES, LOCK) for entry in folder.iterdir()):
+            raise DataError(f"{folder}: holds something, and no sweep; choose another folder")
+        return
+    found = read_json_table(file).get("identity")
+    if not isinstance(found, dict):
+        raise DataError(f"{file}: no entry 'identity'")
+    words = {
+        "program": "begun by another program",
+        "program_sha256": "begun by another build of the program",
+        "case_sha256": "of another case file, or its tables have changed",
+        "set": "of other settings in [set] or --set",
+    }
+    for name, wanted in asdict(identity).items():
+        if found.get(name) != wanted:
+            raise DataError(f"{folder}: holds a sweep {words[name]}; choose another folder")
+    names = {point.name for point in sweep.points()}
+    for point in read_definition(folder).points():
+        if point.name not in names:
+            lost = f"holds a sweep with the point {point.name}, which this one has not"
+            raise DataError(f"{folder}: {lost}; choose another folder")
+
+
+def write_whole(file: Path, text: str) -> None:
+    """A file that is there completely, or not at all."""
+    fresh = command.replaceable(file).with_name(f".{file.name}.{os.getpid()}")
+    try:
+        fresh.write_text(text, encoding="utf-8")
+        os.replace(fresh, file)
+    except OSError as error:
+        with suppress(OSError):
+            fresh.unlink(missing_ok=True)
+        raise command.not_written(file, error) from None
+
+
+def as_json(value: Any) -> Any:
+    """JSON has no infinity: its text, which the program takes as well."""
+    if isinstance(value, dict):
+        return {key: as_json(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [as_json(inner) for inner in value]
+    return text_of(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def write_definition(folder: Path, sweep: Sweep, identity: Identity) -> None:
+    entries = as_json(asdict(sweep) | {"case": str(sweep.case.resolve()), "identity": asdict(identity)})
+    write_whole(folder / DEFINITION, json.dumps(entries, indent=2, allow_nan=False) + "\n")
+
+
+def read_definition(folder: Path) -> Sweep:
+    file = folder / DEFINITION
+    if not exists(file):
+        raise DataError(f"{folder}: holds no sweep")
+    entries = read_json_table(file)
+    entries.pop("identity", None)
+    try:
+        return Sweep(**entries | {"case": Path(entries["case"])})
+    except (KeyError, TypeError):
+        raise DataError(f"{file}: not the definition of a sweep, or of another version") from None
+
+
+def stop_file(folder: Path, share: tuple[int, int] | None) -> Path:
+    """What asks the runs of a sweep, or of one share of it, to stop."""
+    return folder / ("stop" if share is None else f"stop-{share[0]}-of-{share[1]}")
+
+
+def place_of(folder: Path, point: Point) -> Path:
+    return folder / POINTS / point.name
+
+
+def error_file(folder: Path, point: Point) -> Path:
+    return folder / POINTS / f"{point.name}.error"
+
+
+def compared(value: Any) -> Any:
+    """A value in the form in which 1 is 1.0 and `inf` is a number."""
+    if isinstance(value, list):
+        return [compared(part) for part in value]
+    plain: Any = value_of(value) if isinstance(value, str) else value
+    return plain if isinstance(plain, bool | str) else float(plain)
+
+
+def has_value(case: dict[str, Any], key: str, value: Value) -> bool:
+    """Whether a resolved case has a key's value."""
+    return key in case and bool(compared(case[key]) == compared(value))
+
+
+def what_is_wrong(place: Path, point: Point) -> str | None:
+    """Why a folder does not hold a point's complete results, in one line; None where it does."""
+    sums = read_list(place) if is_folder(place) else None
+    if sums is None:
+        return "no results"
+    for name, expected in sums.items():
+        if wrong := problem(place, name, expected):
+            return wrong
+    case = flattened(read_toml(place / CASE))
+    for key, value in point.values.items():
+        if not has_value(case, key, value):
+            return f"{place / CASE}: {key} is not {text_of(value)}: results of another point"
+    return None
+
+
+def is_done(folder: Path, point: Point) -> bool:
+    try:
+        return what_is_wrong(place_of(folder, point), point) is None
+    except DataError:
+        return False
+
+
+def thin_out(place: Path) -> None:
+    """Takes histories and snapshots out of a point's results; its list is shortened first."""
+    sums = read_list(place) or {}
+    kept = {name: value for name, value in sums.items() if name not in LEFT_OUT}
+    if kept != sums:
+        write_whole(place / LIST, "".join(f"{value}  {name}\n" for name, value in kept.items()))
+    for name in LEFT_OUT:
+        (place / name).unlink(missing_ok=True)
+
+
+def failure_of(folder: Path, point: Point) -> str | None:
+    """Why a point has failed, in one line; None where it has not, or not yet."""
+    file = error_file(folder, point)
+    return one_line(read_text(file).strip()) if exists(file) else None
+
+
+def blew_up(place: Path) -> str | None:
+    """The reason of a run that blew up, and would do so again."""
+    file = place / UNFINISHED / "run.json"
+    if not exists(file):
+        return None
+    try:
+        info = read_json_table(file)
+    except DataError:
+        return None
+    return str(info.get("reason")) if info.get("status") == "blew_up" else None

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/python_command.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace slipfront::cli {
+namespace {
+
+struct PythonCommand {
+  const char* name;
+  const char* description;
+};
+
+constexpr std::array python_commands = {
+    PythonCommand{"report", "Write a page (HTML) to look at a run, a study or a reproduction in a browser"},
+    PythonCommand{"fronts", "Find fronts in a history of slip along an interface, from any source"},
+    PythonCommand{"sweep", "Run a case over values of its keys, and compare"}};
+
+/// Tells in one line what is missing. The folder that the program is called in is no place for packages.
+constexpr const char* start_of_package = R"(import sys
+sys.path = [place for place in sys.path if place]
+def refuse(what):
+    print(f"slipfront: error: {sys.argv[1]} needs {what}", file=sys.stderr)
+    sys.exit(2)
+if sys.version_info < (3, 11):
+    refuse(f"Python 3.11 or later, which {sys.executable} is not: set SLIPFRONT_PYTHON to one")
+try:
+    from slipfront.__main__ import main
+except ModuleNotFoundError as error:
+    package = error.name.split(".")[0]
+    how = f"{sys.executable} -m pip install {'.' if package == 'slipfront' else package}"
+    where = "' in the source tree of slipfront" if package == "slipfront" else "'"
+    refuse(f"the Python package {package}, which {sys.executable} does not have: install it with '{how}{where}, "
+           "or set SLIPFRONT_PYTHON to an interpreter that has it")
+sys.exit(main(sys.argv[1:])))";
+
+namespace fs = std::filesystem;
+
+/// The source tree of a program build/PRESET/slipfront; empty for one that is elsewhere.
+fs::path source_tree() {
+  std::error_code unknown;
+  const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
+  const fs::path build = program.parent_path().parent_path();
+  const bool is_in_tree =
+      build.filename() == "build" && fs::is_directory(build.parent_path() / "python" / "slipfront", unknown);
+  return is_in_tree ? build.parent_path() : fs::path();
+}
+
+std::string interpreter(const fs::path& tree) {
+  if (const char* named = std::getenv("SLIPFRONT_PYTHON"); named != nullptr && *named != '\0') return named;
+  const fs::path own = tree / ".venv" / "bin" / "python";
+  return !tree.empty() && ::access(own.c_str(), X_OK) == 0 ? own.string() : "python3";
+}
+
+void put_first_on_python_path(const fs::path& folder) {
+  const char* others = std::getenv("PYTHONPATH");
+  const bool alone = others == nullptr || *others == '\0';
+  ::setenv("PYTHONPATH", (folder.string() + (alone ? "" : ":" + std::string(others))).c_str(), 1);
+}
+
+}  // namespace
+
+void add_python_commands(Command& app) {
+  for (const PythonCommand& command : python_commands) app.add_subcommand(command.name, command.description);
+}
+
+void become_python_command(int argc, char** argv) {
+  const auto names = [&](const PythonCommand& command) { return std::string_view(argv[1]) == command.name; };
+  if (argc < 2 || std::none_of(python_commands.begin(), python_commands.end(), names)) return;
+  const fs::path tree = source_tree();
+  if (!tree.empty()) put_first_on_python_path(tree / "python");
+  std::error_code unknown;
+  const fs::path self = fs::read_symlink("/proc/self/exe", unknown);
+  if (!unknown) ::setenv("SLIPFRONT_PROGRAM", self.c_str(), 0);  // what a sweep runs
+  std::string python = interpreter(tree);
+  std::vector<std::string> start = {python, "-c", start_of_package};
+  std::vector<char*> arguments;
+  for (std::string& argument : start) arguments.push_back(argument.data());
+  arguments.insert(arguments.end(), argv + 1, argv + argc);
+  arguments.push_back(nullptr);
+  ::execvp(python.c_str(), arguments.data());
+  throw UserError(
+      "slipfront: {} is a Python program, and {} cannot be started: {}; install python3, or set "
+      "SLIPFRONT_PYTHON to an interpreter",
+      argv[1], python, std::strerror(errno));
+}
+
+}  // namespace slipfront::cli

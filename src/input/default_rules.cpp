@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/default_rules.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <utility>
+
+#include "base/error.hpp"
+#include "input/entries.hpp"
+
+namespace slipfront::input {
+namespace {
+
+/// What a default is a multiple of.
+struct Scale {
+  std::string name;
+  std::function<double(const Case&)> of;
+};
+
+const Entry& entry_of(const std::string& key) {
+  const auto found = std::ranges::find(common_entries(), key, &Entry::key);
+  SLIPFRONT_ASSERT(found != common_entries().end(), "a default's rule has no key");
+  return *found;
+}
+
+/// The multiple is what the member's own default is of the paper's plate, which itself has that default.
+DefaultRule multiple_of(const Scale& scale, const std::string& key) {
+  const Case paper;
+  const double of_paper = std::get<double>(entry_of(key).get(paper));
+  const double paper_scale = scale.of(paper);
+  return {key, fmt::format("{:.4g} {}", of_paper / paper_scale, scale.name), [=](const Case& config) {
+            const double of_case = scale.of(config);
+            return of_case == paper_scale ? of_paper : of_paper * of_case / paper_scale;
+          }};
+}
+
+/// Of two bodies the slower one's, whose waves take longest.
+double c_S_m_per_s(const Case& config) {
+  const double of_plate = solid::shear_speed_m_per_s(config.material);
+  if (!has_base_body(config)) return of_plate;
+  return std::min(of_plate, solid::shear_speed_m_per_s(base_material(config)));
+}
+
+/// Prescribed tractions are all the load there is.
+DefaultRule shear_speed_rule() {
+  return {"loading.shear_speed_over_c_L", "`1e-06`; `0` with loading.method = prestress", [](const Case& c) {
+            return c.loading.method == statics::LoadingMethod::prestress
+                       ? 0
+                       : Case{}.loading.shear_speed_over_c_L;
+          }};
+}
+
+DefaultRule element_size_rule(const Scale& width) {
+  auto rule = multiple_of(width, "plate.element_size_m");
+  rule.text = "width_m / 300";
+  return rule;
+}
+
+/// An element where that is longer: no speed is taken over less.
+DefaultRule l_star_rule(const Scale& width) {
+  auto rule = multiple_of(width, "fronts.l_star_m");
+  rule.text += ", or element_size_m where that is larger";
+  rule.value = [share = rule.value](const Case& c) { return std::max(share(c), c.plate.element_size_m); };
+  return rule;
+}
+
+std::vector<DefaultRule> make_default_rules() {
+  const Scale width = {"width_m", [](const Case& c) { return c.plate.width_m; }};
+  const Scale height = {"height_m", [](const Case& c) { return c.plate.height_m; }};
+  const Scale base_height = {"base.height_m", [](const Case& c) { return c.base.plate.height_m; }};
+  const Scale crossing = {"width_m / c_S", [](const Case& c) { return c.plate.width_m / c_S_m_per_s(c); }};
+  std::vector<DefaultRule> rules = {element_size_rule(width), shear_speed_rule()};
+  const auto add = [&](const Scale& scale, std::initializer_list<const char*> keys) {
+    for (const char* key : keys) rules.push_back(multiple_of(scale, key));
+  };
+  add(width,
+      {"plate.relief_length_m", "plate.relief_height_m", "plate.fillet_radius_m", "loading.edge_margin_m",
+       "friction.random_correlation_length_m", "event.trigger_zone_m", "nucleation.x_m",
+       "nucleation.half_length_m", "nucleation.taper_m", "fronts.min_length_m", "fronts.trigger_margin_m"});
+  add(height, {"plate.fine_height_m", "plate.relief_depth_m"});
+  add(base_height, {"base.fine_height_m"});
+  add(crossing, {"material.stiffness_damping_s", "event.trigger_ramp_s", "time.end_s", "time.quiet_s",
+                 "fronts.arrest_time_s", "output.history_interval_s", "output.energy_interval_s"});
+  rules.push_back(l_star_rule(width));
+  return rules;
+}
+
+}  // namespace
+
+const std::vector<DefaultRule>& default_rules() {
+  static const std::vector<DefaultRule> rules = make_default_rules();
+  return rules;
+}
+
+const DefaultRule* default_rule_of(const std::string& key) {
+  const auto found = std::ranges::find(default_rules(), key, &DefaultRule::key);
+  return found == default_rules().end() ? nullptr : &*found;
+}
+
+void set_defaults_by_rule(const Document& document, Case& config) {
+  for (const auto& rule : default_rules()) {
+    const Entry& entry = entry_of(rule.key);
+    const bool applies = !entry.only_with || entry.only_with->holds(config);
+    if (applies && !document.find(rule.key)) entry.set(config, rule.value(config));
+  }
+}
+
+}  // namespace slipfront::input

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "interface/friction.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "interface/friction/registry.hpp"
+
+namespace slipfront::interface {
+namespace {
+
+template <class Law>
+LawDescription describe_law() {
+  LawDescription description{Law::name, Law::help, Law{}, {}, {}};
+  for (const auto& p : Law::parameters()) description.parameters.push_back({p.key, p.min, p.max, p.help});
+  if constexpr (requires { Law::lists(); })
+    for (const auto& list : Law::lists())
+      description.lists.push_back({list.key, list.min, list.max, list.help});
+  return description;
+}
+
+template <class... Laws>
+std::vector<LawDescription> describe_laws(LawList<Laws...>) {
+  return {describe_law<Laws>()...};
+}
+
+std::size_t place_of(std::string_view key, const std::vector<LawDescription::Key>& keys) {
+  const auto found = std::ranges::find(keys, key, &LawDescription::Key::key);
+  SLIPFRONT_ASSERT(found != keys.end(), "a parameter of another friction law");
+  return static_cast<std::size_t>(found - keys.begin());
+}
+
+}  // namespace
+
+FrictionLaw::FrictionLaw() : FrictionLaw(FirstLaw{}) {}
+
+double& FrictionLaw::parameter(std::string_view key) {
+  return values_[place_of(key, description_of(*this).parameters)];
+}
+
+double FrictionLaw::parameter(std::string_view key) const {
+  return values_[place_of(key, description_of(*this).parameters)];
+}
+
+const std::vector<double>& FrictionLaw::list(std::string_view key) const {
+  return (*lists_)[place_of(key, description_of(*this).lists)];
+}
+
+void FrictionLaw::set_list(std::string_view key, std::vector<double> numbers) {
+  Lists lists = *lists_;
+  lists[place_of(key, description_of(*this).lists)] = std::move(numbers);
+  lists_ = std::make_shared<const Lists>(std::move(lists));
+}
+
+const std::vector<LawDescription>& law_descriptions() {
+  static const std::vector<LawDescription> all = describe_laws(Registry{});
+  return all;
+}
+
+const LawDescription& description_of(const FrictionLaw& law) {
+  return *std::ranges::find(law_descriptions(), law.name(), &LawDescription::name);
+}
+
+double static_coefficient(const FrictionLaw& law) {
+  return visit(law, [](const auto& l) { return l.static_coefficient(); });
+}
+
+double kinetic_coefficient(const FrictionLaw& law) {
+  return visit(law, [](const auto& l) { return l.kinetic_coefficient(); });
+}
+
+double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
+  return visit(law, [&](const auto& l) { return l.evaluator()(speed_m_per_s, slip_m); });
+}
+
+double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m) {
+  return visit(law, [&](const auto& l) { return l.evaluator().slope_s_per_m(speed_m_per_s, slip_m); });
+}
+
+std::optional<double> weakening_slip_m(const FrictionLaw& law) {
+  return visit(law, [](const auto& l) -> std::optional<double> {
+    if constexpr (requires { l.weakening_slip_m(); }) return l.weakening_slip_m();
+    return {};
+  });
+}
+
+Message inconsistency(const FrictionLaw& law) {
+  return visit(law, [](const auto& l) { return l.inconsistency(); });
+}
+
+std::string static_coefficient_key(const FrictionLaw& law) {
+  return std::string("friction.") + description_of(law).parameters.front().key;
+}
+
+}  // namespace slipfront::interface

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/message.hpp"
+
+// Friction laws as the rest of the program sees them. What each of them is, interface/friction/registry.hpp
+// alone knows, so that a further law leaves what includes this file as it is.
+namespace slipfront::interface {
+
+/// mu as a function over all nodes at once, to try laws without compiling them: fills in mu for slip rates
+/// |v| and slip paths. Several times slower than a law of the registry. [nodes]
+using ArrayLaw = std::function<void(std::span<const double> speed_m_per_s, std::span<const double> slip_m,
+                                    std::span<double> mu)>;
+
+/// A law of the registry: its name in the case file, its parameters and its lists of numbers.
+class FrictionLaw {
+ public:
+  static constexpr std::size_t most_parameters = 4;
+  using Lists = std::vector<std::vector<double>>;
+
+  /// The registry's first law with its defaults.
+  FrictionLaw();
+  /// A law's struct, such as VelocityWeakening.
+  template <class Law>
+  requires requires { Law::parameters(); }
+  FrictionLaw(const Law& law) : name_(Law::name) {
+    static_assert(Law::parameters().size() <= most_parameters);
+    auto value = values_.begin();
+    for (const auto& p : Law::parameters()) *value++ = law.*p.member;
+    if constexpr (requires { Law::lists(); }) {
+      Lists lists;
+      for (const auto& list : Law::lists())
+        lists.emplace_back((law.*list.member).begin(), (law.*list.member).end());
+      lists_ = std::make_shared<const Lists>(std::move(lists));
+    }
+  }
+
+  std::string_view name() const { return name_; }
+
+  /// The struct again; its lists are those of this law, which must outlive it.
+  /// @pre it is this law's
+  template <class Law>
+  Law as() const {
+    SLIPFRONT_ASSERT(name_ == Law::name, "the struct of another friction law");
+    Law law;
+    auto value = values_.begin();
+    for (const auto& p : Law::parameters()) law.*p.member = *value++;
+    if constexpr (requires { Law::lists(); }) {
+      auto numbers = lists_->begin();
+      for (const auto& list : Law::lists()) law.*list.member = *numbers++;
+    }
+    return law;
+  }
+
+  /// @pre the law has this parameter, named as in the table [friction]
+  double& parameter(std::string_view key);
+  double parameter(std::string_view key) const;
+  const std::vector<double>& list(std::string_view key) const;
+  void set_list(std::string_view key, std::vector<double> numbers);
+
+  /// Contact updates take mu from the function instead; the initial state and weakened nodes keep the
+  /// coefficients at rest and in motion of this law.
+  void set_function(ArrayLaw function) { function_ = std::make_shared<const ArrayLaw>(std::move(function)); }
+  /// Null where there is none.
+  const ArrayLaw* function() const { return function_.get(); }
+
+ private:
+  std::string_view name_;
+  std::array<double, most_parameters> values_{};  ///< in the order of the law's parameters
+  std::shared_ptr<const Lists> lists_;            ///< in the order of the law's lists; null where it has none
+  std::shared_ptr<const ArrayLaw> function_;
+};
+
+/// What a law is to the case file.
+struct LawDescription {
+  /// A parameter, or a list of numbers.
+  struct Key {
+    const char* key;  ///< in the table [friction], with its unit
+    double min, max;  ///< allowed
+    const char* help;
+  };
+  const char* name;
+  const char* help;
+  FrictionLaw defaults;
+  std::vector<Key> parameters;  ///< the coefficient at rest, or what it is proportional to, first
+  std::vector<Key> lists;
+};
+/// Those of all laws, in the order of the registry.
+const std::vector<LawDescription>& law_descriptions();
+const LawDescription& description_of(const FrictionLaw& law);
+
+double static_coefficient(const FrictionLaw& law);
+/// The coefficient that a weakening law falls to.
+double kinetic_coefficient(const FrictionLaw& law);
+/// mu after a slip path and at a slip rate |v|.
+double friction_coefficient(const FrictionLaw& law, double speed_m_per_s, double slip_m);
+/// d mu / d|v| there; negative where friction weakens with the slip rate.
+double friction_slope_s_per_m(const FrictionLaw& law, double speed_m_per_s, double slip_m);
+/// Of a law that weakens with slip, the d_c of linear slip weakening with its coefficients and fracture
+/// energy.
+std::optional<double> weakening_slip_m(const FrictionLaw& law);
+/// Empty, or what is wrong with the parameters together.
+Message inconsistency(const FrictionLaw& law);
+/// The key in the case file of the parameter that decides on the coefficient at rest.
+std::string static_coefficient_key(const FrictionLaw& law);
+
+}  // namespace slipfront::interface

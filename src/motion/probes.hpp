@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/state.hpp"
+#include "mesh/mesh.hpp"
+#include "record/probes.hpp"
+#include "solid/element.hpp"
+#include "solid/material.hpp"
+
+namespace slipfront::motion {
+
+/// What a stepper makes a body of.
+struct BodySource {
+  const mesh::Mesh& mesh;
+  const solid::Material& material;
+};
+
+/// A place within a cell of a body, at which its motion, strain and stress are recorded.
+struct Probe {
+  std::size_t body = 0;  ///< 0 above, 1 below
+  mesh::Cell node{};
+  solid::CellShape shape;  ///< in the body's own axes: those of a body below are upside down
+  solid::Material material;
+};
+
+/// Finds the cells in which places lie: with y >= 0 in the first of the bodies, with y < 0 in the second,
+/// which is described upside down. On a side between cells the cell with the lowest number has it.
+/// @throws UserError naming the probe that lies in no body
+std::vector<Probe> locate_probes(std::span<const record::ProbePlace> places,
+                                 std::span<const BodySource> bodies);
+
+/// Numbers of the displacements of all probes' nodes, x and y: eight to a probe.
+inline std::size_t displacement_values(std::span<const Probe> probes) {
+  return 8 * probes.size();
+}
+
+/// Makes rows of a record of the displacements of the probes' nodes at successive steps. A row needs those of
+/// its step and of the ones before and after: its velocity is the central difference, which belongs to the
+/// row's time and, as the displacement, to the same time at all nodes, however often they move in a step.
+class ProbeRecorder {
+ public:
+  /// @param before_m, now_m  displacements a step before the first one and at it, see displacement_values
+  ProbeRecorder(std::vector<Probe> probes, double step_s, double interval_s, std::vector<double> before_m,
+                std::vector<double> now_m);
+
+  /// Makes room for the steps from `first` + 1 to `first` + n.
+  void expect(std::int64_t first, std::int64_t n);
+  /// Where the displacements at a step belong; null where it is not needed. For one of these steps, from any
+  /// thread.
+  double* room_for(std::int64_t step);
+  /// Appends the rows that are complete when the steps up to `last` are done.
+  void take_rows(std::int64_t last, record::ProbeRecord& rows);
+
+  /// All that changes between two calls of expect.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive_vector(archive, before_m_);
+    archive_vector(archive, now_m_);
+  }
+
+ private:
+  bool is_sampled(std::int64_t step) const;
+  void append_row(double time_s, std::span<const double> after_m, record::ProbeRecord& rows) const;
+
+  std::vector<Probe> probes_;
+  double step_s_, interval_s_;
+  std::vector<double> before_m_, now_m_;  ///< of the last two steps that were needed
+  std::int64_t first_ = 0;
+  std::vector<std::ptrdiff_t> place_;  ///< of the steps expected, in kept_m_; negative: not needed
+  std::vector<double> kept_m_;
+};
+
+}  // namespace slipfront::motion

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/quiet.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace slipfront::motion {
+
+namespace {
+
+double mass_kg_per_m(const Stepper& stepper) {
+  double mass = 0;
+  for (const auto& body : stepper.bodies())
+    mass = std::reduce(body.op().mass_kg.begin(), body.op().mass_kg.end(), mass);
+  return mass;
+}
+
+}  // namespace
+
+double slip_rate_scale_m_per_s(const statics::Equilibrium& state, const PerNode& mu_s, const Waves& waves) {
+  const auto& p_Pa = state.tractions.p_s_Pa;
+  double strength_Pa = 0;
+  for (std::size_t k = 0; k < p_Pa.size(); ++k) strength_Pa += mu_s[k] * std::max(0.0, p_Pa[k]);
+  return strength_Pa / static_cast<double>(p_Pa.size()) / waves.radiation_damping_Pa_s_per_m;
+}
+
+Quiet::Quiet(const Stepper& stepper, double slip_rate_scale_m_per_s, double from_s) : since_s_(from_s) {
+  const double v = quiet_part * slip_rate_scale_m_per_s;
+  negligible_kinetic_J_per_m_ = 0.5 * mass_kg_per_m(stepper) * v * v;
+}
+
+void Quiet::see_slip_rate(double time_s, double fastest_m_per_s) {
+  if (fastest_m_per_s > (1 + quiet_growth) * slowest_m_per_s_) {
+    since_s_ = std::max(since_s_, time_s);
+    slowest_m_per_s_ = fastest_m_per_s;
+  }
+  slowest_m_per_s_ = std::min(slowest_m_per_s_, fastest_m_per_s);
+}
+
+void Quiet::see_kinetic_energy(double time_s, double kinetic_J_per_m) {
+  largest_kinetic_J_per_m_ = std::max(largest_kinetic_J_per_m_, kinetic_J_per_m);
+  const double counts =
+      std::max(negligible_kinetic_J_per_m_, quiet_part_of_kinetic * largest_kinetic_J_per_m_);
+  if (kinetic_J_per_m > counts) since_s_ = std::max(since_s_, time_s);
+}
+
+}  // namespace slipfront::motion

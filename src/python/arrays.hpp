@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/ndarray.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace slipfront::python {
+
+namespace nb = nanobind;
+
+/// Arrays that Python hands in: doubles side by side.
+using Values = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+/// NumPy arrays that Python gets.
+using Array = nb::ndarray<nb::numpy, const double, nb::ndim<1>>;
+
+inline std::span<const double> view(const Values& values) {
+  return {values.data(), values.size()};
+}
+
+inline std::vector<double> to_vector(const Values& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+inline std::vector<double> to_vector(const Rows& rows) {
+  return {rows.data(), rows.data() + rows.size()};
+}
+
+/// A NumPy array that owns the vector's memory.
+inline Array to_array(std::vector<double> values) {
+  auto* kept = new std::vector<double>(std::move(values));
+  const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return Array(kept->data(), {kept->size()}, owner);
+}
+
+/// Becomes a ValueError.
+inline void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument(what);
+}
+
+inline void require_ascending(std::span<const double> values, const char* name) {
+  // Not its contrary: nothing compares with what is no number.
+  for (std::size_t k = 1; k < values.size(); ++k)
+    require(values[k] > values[k - 1], std::string(name) + " must ascend strictly");
+}
+
+inline void require_length(const Values& values, std::size_t n, const char* name) {
+  require(values.size() == n,
+          std::string(name) + " has " + std::to_string(values.size()) + " values, not " + std::to_string(n));
+}
+
+}  // namespace slipfront::python

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+/// The Python module slipfront._core, a function for each part. It gives the functions of the other rooms to
+/// Python as they are; what makes them convenient there is in python/slipfront.
+namespace slipfront::python {
+
+void bind_errors(nanobind::module_& module);
+void bind_cases(nanobind::module_& module);
+void bind_fronts(nanobind::module_& module);
+void bind_fits(nanobind::module_& module);
+void bind_paper(nanobind::module_& module);
+
+}  // namespace slipfront::python

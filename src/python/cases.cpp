@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <filesystem>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "input/schema.hpp"
+#include "interface/friction.hpp"
+#include "mesh/plate.hpp"
+#include "python/arrays.hpp"
+#include "python/bindings.hpp"
+#include "python/watcher.hpp"
+#include "results/folder.hpp"
+#include "run/needs.hpp"
+#include "run/session.hpp"
+#include "run/warnings.hpp"
+#include "solid/operator.hpp"
+#include "stability/verdict.hpp"
+
+namespace slipfront::python {
+namespace {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+namespace fs = std::filesystem;
+
+/// What work on a case throws, with the place in the case that it is about.
+template <class Work>
+auto at_its_place(const input::CaseFile& given, const Work& work) {
+  try {
+    return work();
+  } catch (const UserError& error) {
+    throw given.with_place(error);
+  }
+}
+
+/// A folder that a run of this process works in: the lock of the folder keeps out other processes alone.
+class FolderInUse {
+ public:
+  explicit FolderInUse(const fs::path& dir) : dir_(fs::weakly_canonical(dir)) {
+    const std::lock_guard held(mutex);
+    if (!all.insert(dir_).second)
+      throw UserError(
+          "output folder {}: is in use by another run of this process; wait for it or choose another folder",
+          dir.string());
+  }
+  ~FolderInUse() {
+    const std::lock_guard held(mutex);
+    all.erase(dir_);
+  }
+  FolderInUse(const FolderInUse&) = delete;
+  FolderInUse& operator=(const FolderInUse&) = delete;
+
+ private:
+  inline static std::mutex mutex;
+  inline static std::set<fs::path> all;
+  fs::path dir_;
+};
+
+/// Runs into a folder, or goes on in it.
+struct Session {
+  FolderInUse in_use;
+  results::ResultFolder folder;
+  run::SessionOptions options;
+  Watcher watcher;
+
+  Session(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress)
+      : in_use(dir), folder(dir, run::run_work), watcher(std::move(progress)) {
+    if (threads && *threads < 1) throw UserError("threads is {}; it must be at least 1", *threads);
+    options.threads = threads;
+    options.keep_every_wall_s = checkpoint_every_s;
+  }
+
+  template <class Work>
+  void complete(const Work& work) {
+    try {
+      const nb::gil_scoped_release unlocked;
+      const run::Finished finished = work();
+      watcher.rethrow();
+      run::require_came_to_end(finished.result, folder);
+    } catch (const Interrupted&) {
+      watcher.rethrow();
+      throw;
+    } catch (const WriteError& error) {
+      if (!folder.has_unfinished()) throw;
+      throw WriteError("{}; {}", error.what(), run::how_to_go_on(folder));
+    }
+  }
+};
+
+/// @param config  the case that was given, or that with another friction law
+void run_config(const input::CaseFile& given, const input::Case& config, const fs::path& dir, bool overwrite,
+                std::optional<int> threads, double checkpoint_every_s, nb::object progress) {
+  Session session(dir, threads, checkpoint_every_s, std::move(progress));
+  session.folder.require_empty(overwrite);
+  session.complete([&] {
+    return at_its_place(given, [&] {
+      run::require_fit(config, session.folder.dir());
+      return run::run_into(session.folder, config, session.options, session.watcher.hooks());
+    });
+  });
+}
+
+void run_case(const input::CaseFile& given, const fs::path& dir, bool overwrite, std::optional<int> threads,
+              double checkpoint_every_s, nb::object progress) {
+  run_config(given, given.config(), dir, overwrite, threads, checkpoint_every_s, std::move(progress));
+}
+
+/// A function of Python as a law over arrays. It is called without Python's lock.
+interface::ArrayLaw law_of(const nb::callable& mu_of) {
+  using Given = nb::ndarray<nb::numpy, const double, nb::ndim<1>>;
+  return
+      [&mu_of](std::span<const double> speed_m_per_s, std::span<const double> slip_m, std::span<double> mu) {
+        const nb::gil_scoped_acquire locked;
+        const std::size_t shape[] = {mu.size()};
+        // Copies: the caller may keep them.
+        const auto speed = nb::cast(Given(speed_m_per_s.data(), 1, shape), nb::rv_policy::copy);
+        const auto slip = nb::cast(Given(slip_m.data(), 1, shape), nb::rv_policy::copy);
+        const auto values = nb::cast<Values>(mu_of(speed, slip));
+        require_length(values, mu.size(), "mu");
+        for (std::size_t k = 0; k < mu.size(); ++k) {
+          require(values(k) >= 0, "mu must be at least 0 and a number");
+          mu[k] = values(k);
+        }
+      };
+}
+
+/// The event by a law in Python. One thread: all of them would wait for Python's lock.
+void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::callable& mu_of,
+                nb::object progress) {
+  input::Case config = given.config();
+  config.friction.set_function(law_of(mu_of));
+  run_config(given, config, dir, false, 1, std::numeric_limits<double>::infinity(), std::move(progress));
+}
+
+void go_on(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress) {
+  Session session(dir, threads, checkpoint_every_s, std::move(progress));
+  if (!session.folder.has_unfinished() && run::is_complete(session.folder.dir())) return;
+  session.complete(
+      [&] { return run::go_on(session.folder, nullptr, session.options, session.watcher.hooks()); });
+}
+
+stability::Bodies bodies_of(const input::Case& config) {
+  stability::Bodies bodies = config.material;
+  if (input::has_base_body(config)) bodies.below = input::base_material(config);
+  return bodies;
+}
+
+stability::WellPosedness well_posedness(const input::CaseFile& given, double pressure_Pa,
+                                        double element_size_m, double longest_wavelength_m) {
+  const auto& config = given.config();
+  return stability::well_posedness(bodies_of(config), config.friction, pressure_Pa, element_size_m,
+                                   longest_wavelength_m, config.regularisation);
+}
+
+/// Of the case's material in squares, without its geometry.
+double stable_step_s(const input::CaseFile& given, double element_size_m) {
+  constexpr int squares_on_a_side = 2;  // enough for a mesh; the frequency is that of a block of its own
+  mesh::Plate plate;
+  plate.corner = mesh::Corner::none;
+  plate.element_size_m = element_size_m;
+  plate.width_m = plate.height_m = squares_on_a_side * element_size_m;
+  const auto& material = given.config().material;
+  return solid::stable_step_s(solid::frequency_bound_rad_per_s(mesh::make_plate(plate), material),
+                              material.stiffness_damping_s);
+}
+
+void bind_speeds(nb::module_& module) {
+  nb::class_<run::WaveSpeeds>(module, "WaveSpeeds")
+      .def_ro("c_L_m_per_s", &run::WaveSpeeds::c_L, "longitudinal, in the plane chosen")
+      .def_ro("c_S_m_per_s", &run::WaveSpeeds::c_S, "shear")
+      .def_ro("c_R_m_per_s", &run::WaveSpeeds::c_R, "Rayleigh, on a free surface");
+}
+
+void bind_verdict(nb::module_& module) {
+  using W = stability::WellPosedness;
+  nb::class_<W>(module, "WellPosedness")
+      .def_ro("statement", &W::statement, "the verdict, one plain line")
+      .def_ro("unbounded", &W::unbounded, "growth has no bound as the wavelength goes to zero: ill-posed")
+      .def_ro("grid_wavelength_m", &W::grid_wavelength_m, "2 h, the shortest that the mesh carries")
+      .def_ro("growth_at_grid_per_s", &W::growth_at_grid_per_s,
+              "of the fastest mode there, 0 where none grows")
+      .def_ro("weakening_over_radiation", &W::weakening_over_radiation,
+              "-mu'(0) p over the radiation damping; above 1 strength drops at once on slip")
+      .def_ro("fastest_growth_per_s", &W::fastest_growth_per_s,
+              "infinite where unbounded, 0 where none grows")
+      .def_ro("fastest_wavelength_m", &W::fastest_wavelength_m, "0 where growth rises at ever shorter waves")
+      .def_ro("longest_wavelength_m", &W::longest_wavelength_m, "of the search")
+      .def_ro("growth_in_crossing", &W::growth_in_crossing,
+              "fastest growth times h/c_L; above 1 no step follows it")
+      .def_ro("damping_length_m", &W::damping_length_m, "beta_R c_L: much shorter waves are overdamped")
+      .def_ro("damping_length_over_h", &W::damping_length_over_h);
+}
+
+void bind_info(nb::module_& module) {
+  using I = run::Info;
+  nb::class_<I>(module, "Info")
+      .def_ro("speeds", &I::speeds, "of the plate")
+      .def_ro("base_speeds", &I::base_speeds, "of the body below; None on the rigid plane")
+      .def_ro("generalised_rayleigh_speed_m_per_s", &I::generalised_rayleigh_speed_m_per_s,
+              "of the two bodies, where it exists")
+      .def_ro("n_nodes", &I::n_nodes)
+      .def_ro("n_cells", &I::n_cells)
+      .def_ro("n_interface", &I::n_interface)
+      .def_ro("stable_step_s", &I::stable_step_s)
+      .def_ro("step_s", &I::step_s)
+      .def_ro("substep_s", &I::substep_s)
+      .def_ro("n_steps", &I::n_steps, "of the event, to time.end_s")
+      .def_ro("node_updates", &I::node_updates, "of the event and of the ramp")
+      .def_ro("memory_bytes", &I::memory_bytes, "the larger of statics and event")
+      .def_prop_ro("disk_bytes", [](const I& info) { return info.needs.disk_bytes(); })
+      .def_ro("expected_s", &I::expected_s, "wall time, at the rate measured on the spot")
+      .def_ro("node_updates_per_s", &I::node_updates_per_s, "measured on the spot")
+      .def_ro("well_posedness", &I::well_posedness,
+              "of slow uniform sliding at the plate's nominal pressure");
+}
+
+}  // namespace
+
+void bind_cases(nb::module_& module) {
+  using C = input::CaseFile;
+  using Overrides = std::vector<input::Override>;
+  bind_speeds(module);
+  bind_verdict(module);
+  bind_info(module);
+  nb::class_<C>(module, "Case", "A case with its changes, checked.")
+      .def(nb::init<const fs::path&, const Overrides&>(), "file"_a, "changes"_a,
+           "Of a case file; changes are pairs of dotted key and TOML text.")
+      .def_static(
+          "from_text",
+          [](const std::string& text, const std::string& name, const fs::path& folder,
+             const Overrides& changes) {
+            return C(input::CaseText{text, name, folder}, changes);
+          },
+          "text"_a, "name"_a, "folder"_a, "changes"_a,
+          "Of a text, which `name` stands for in messages; paths of its tables count from `folder`.")
+      .def_prop_ro(
+          "toml", [](const C& c) { return run::resolved_text(c.config()); },
+          "every key with its value, as case.resolved.toml has it")
+      .def_prop_ro(
+          "wave_speeds", [](const C& c) { return run::wave_speeds(c.config().material); }, "of the plate")
+      .def_prop_ro("static_coefficient",
+                   [](const C& c) { return interface::static_coefficient(c.config().friction); })
+      .def_prop_ro("warnings", [](const C& c) { return run::warnings_of_case(c.config()); })
+      .def(
+          "info", [](const C& c) { return at_its_place(c, [&] { return run::info(c.config()); }); },
+          nb::call_guard<nb::gil_scoped_release>(), "What follows from the case without solving anything.")
+      .def("stable_step_s", &stable_step_s, "element_size_m"_a,
+           "Largest stable step of the case's material in square elements, s.")
+      .def("well_posedness", &well_posedness, "pressure_Pa"_a, "element_size_m"_a, "longest_wavelength_m"_a,
+           nb::call_guard<nb::gil_scoped_release>(),
+           "Of slow uniform sliding of the case's materials under its friction.")
+      .def("run", &run_case, "dir"_a, "overwrite"_a, "threads"_a.none(), "checkpoint_every_s"_a,
+           "progress"_a.none(),
+           "Runs the case into a folder; progress(part, step, total) is called at times.");
+  module.def("run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "progress"_a.none(),
+             "Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes].");
+  module.def("go_on", &go_on, "dir"_a, "threads"_a.none(), "checkpoint_every_s"_a, "progress"_a.none(),
+             "Goes on with the unfinished run of a folder; does nothing where it is complete.");
+}
+
+}  // namespace slipfront::python

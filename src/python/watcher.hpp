@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <cstdint>
+#include <exception>
+
+#include "base/clock.hpp"
+#include "run/session.hpp"
+
+namespace slipfront::python {
+
+/// Looks after Python while a run goes without its lock: signals such as Ctrl-C, and the progress shown.
+class Watcher {
+ public:
+  /// @param progress  called with part, step and total; or None
+  explicit Watcher(nanobind::object progress) : progress_(std::move(progress)) {}
+
+  run::SessionHooks hooks();
+  /// Raises what Python code has raised meanwhile, but for Ctrl-C: it becomes the run's own interruption,
+  /// which says what was kept.
+  void rethrow() const;
+
+ private:
+  run::Request ask_python();
+
+  nanobind::object progress_;
+  const char* part_ = nullptr;  ///< "ramp" or "event", of static storage
+  std::int64_t step_ = 0, total_ = 0;
+  Clock::time_point asked_ = {};
+  bool stopped_ = false;
+  std::exception_ptr raised_;
+};
+
+}  // namespace slipfront::python

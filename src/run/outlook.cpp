@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/outlook.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "input/friction_along_x.hpp"
+#include "run/choices.hpp"
+#include "statics/prestress.hpp"
+
+namespace slipfront::run {
+namespace {
+
+using interface::EventKind;
+using interface::NucleationForm;
+using interface::TriggerForm;
+
+stability::NodeBefore node_before(const interface::FrictionLaw& law, double t_Pa, double p_Pa) {
+  return {t_Pa, interface::static_coefficient(law) * p_Pa, interface::kinetic_coefficient(law) * p_Pa,
+          interface::weakening_slip_m(law)};
+}
+
+/// A node with its place.
+struct Placed {
+  double x_m;
+  stability::NodeBefore node;
+};
+
+/// Nodes in contact inside, t in the direction of the load.
+std::vector<Placed> nodes_inside(const input::Case& config, const statics::Equilibrium& state) {
+  const auto& s = state.tractions;
+  const auto laws = input::friction_at(config, s.x_m);
+  double load_Pa = 0;
+  for (const double t : s.t_s_Pa) load_Pa += t;
+  const double direction = load_Pa < 0 ? -1 : 1;
+  std::vector<Placed> nodes;
+  for (std::size_t k = 0; k < s.x_m.size(); ++k)
+    if (state.is_inside(s.x_m[k]) && s.p_s_Pa[k] > 0)
+      nodes.push_back({s.x_m[k], node_before(laws.empty() ? config.friction : laws[k],
+                                             direction * s.t_s_Pa[k], s.p_s_Pa[k])});
+  return nodes;
+}
+
+std::optional<double> trigger_length_m(const input::Case& config) {
+  const auto& n = config.nucleation;
+  if (interface::is_at_edge(config.event)) return config.trigger.zone_m;
+  // The taper counts half.
+  if (config.event == EventKind::nucleation) return 2 * n.half_length_m + n.taper_m;
+  return {};
+}
+
+/// The largest share of the strength that the patch's overstress brings t to.
+double overstressed_share(const input::Case& config, const std::vector<Placed>& nodes) {
+  const double period_m = config.plate.sides == mesh::Sides::periodic ? config.plate.width_m : 0;
+  double most = 0;
+  for (const auto& [x_m, node] : nodes) {
+    const double added_Pa =
+        config.nucleation.overstress_Pa * interface::nucleation_profile(config.nucleation, x_m, period_m);
+    most = std::max(most, std::abs(node.t_Pa + added_Pa) / node.strength_Pa);
+  }
+  return most;
+}
+
+/// Empty, or why the event does not begin.
+std::string doubt_of_beginning(const input::Case& config, const std::vector<Placed>& nodes) {
+  const auto beyond = [](const Placed& placed) { return placed.node.t_Pa > placed.node.strength_Pa; };
+  const auto n_beyond = std::ranges::count_if(nodes, beyond);
+  if (2 * n_beyond > std::ssize(nodes))
+    return fmt::format("t is beyond mu_s p at {} of {} nodes inside: they slip at once, without a front",
+                       n_beyond, nodes.size());
+  if (nodes.empty() || n_beyond > 0) return {};
+  if (config.event == EventKind::none) return "event.kind = none, and t is below mu_s p at all nodes inside";
+  const bool pushes = config.trigger.form != TriggerForm::weakened;
+  if (interface::is_at_edge(config.event) && pushes && config.trigger.amount < 1)
+    return fmt::format("event.trigger_amount = {:g} leaves the traction of the trigger zone below mu_s p",
+                       config.trigger.amount);
+  if (config.event != EventKind::nucleation || config.nucleation.form != NucleationForm::overstress)
+    return {};
+  const double share = overstressed_share(config, nodes);
+  if (share >= 1) return {};
+  return fmt::format("nucleation.overstress_Pa = {:g} brings t to no more than {:.3g} of mu_s p",
+                     config.nucleation.overstress_Pa, share);
+}
+
+/// Empty, or why slip that has begun stops.
+std::string doubt_of_growth(const input::Case& config, const RuptureOutlook& o) {
+  const auto& of = o.of_nodes;
+  if (of.n_weakening == 0) return "friction does not weaken at any node: no rupture feeds itself";
+  if (of.n_driven == 0)
+    return "the residual strength mu_k p is nowhere below t: a rupture finds no energy beyond its trigger";
+  if (of.n_barriers == of.n_nodes) return "S is beyond 10 at all nodes: no front breaks such strength";
+  if (!of.griffith_half_length_m) return {};
+  const double critical_m = 2 * *of.griffith_half_length_m;
+  // At a free edge half a crack does.
+  const double least_m = interface::is_at_edge(config.event) ? 0.5 * critical_m : critical_m;
+  if (o.trigger_length_m && *o.trigger_length_m < least_m)
+    return fmt::format(
+        "the trigger's {:.3g} m are less than the {:.3g} m from which a crack runs (Griffith): slip may stop "
+        "near them",
+        *o.trigger_length_m, least_m);
+  if (critical_m > config.plate.width_m)
+    return fmt::format("a crack runs from {:.3g} m on (Griffith), longer than the interface", critical_m);
+  return {};
+}
+
+RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& placed) {
+  std::vector<stability::NodeBefore> nodes;
+  for (const auto& p : placed) nodes.push_back(p.node);
+  RuptureOutlook o;
+  o.of_nodes = stability::outlook(bodies_of(config), nodes);
+  o.trigger_length_m = trigger_length_m(config);
+  if (o.of_nodes.process_zone_m)
+    o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
+  return o;
+}
+
+void add_doubts(const input::Case& config, const std::vector<Placed>& placed, RuptureOutlook& o) {
+  for (auto doubt : {doubt_of_beginning(config, placed), doubt_of_growth(config, o)})
+    if (!doubt.empty()) o.doubts.push_back(std::move(doubt));
+}
+
+RuptureOutlook outlook_of_state(const input::Case& config, const statics::Equilibrium& state) {
+  const auto placed = nodes_inside(config, state);
+  auto o = outlook_of(config, placed);
+  add_doubts(config, placed, o);
+  return o;
+}
+
+}  // namespace
+
+RuptureOutlook rupture_outlook(const input::Case& config, const InitialState& initial) {
+  return outlook_of_state(config, initial.common);
+}
+
+RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) {
+  if (is_prestressed(config))
+    return outlook_of_state(
+        config, statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate)));
+  const double p_Pa = nominal_pressure_Pa(config);
+  const double strength_Pa = interface::static_coefficient(config.friction) * p_Pa;
+  auto o = outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}});
+  o.nominal = true;
+  if (auto doubt = doubt_of_growth(config, o); !doubt.empty()) o.doubts.push_back(std::move(doubt));
+  return o;
+}
+
+}  // namespace slipfront::run

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/shared_states.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include "base/error.hpp"
+#include "results/archive.hpp"
+#include "run/checkpoint.hpp"
+
+namespace slipfront::run {
+namespace {
+
+std::string state_key(const input::Case& config) {
+  return files::sha256(program_identity() + "\n" + initial_state_key(config));
+}
+
+/// Another process may make it at the same time.
+void make_shared_folder(const std::filesystem::path& dir) {
+  try {
+    if (!files::is_folder(dir)) files::make_folder(dir);
+  } catch (const WriteError&) {
+    if (!files::is_folder(dir)) throw;
+  }
+}
+
+}  // namespace
+
+std::filesystem::path SharedStates::file_of(const std::string& key) const {
+  return dir_ / ("state-" + key.substr(0, 32) + ".bin");
+}
+
+std::optional<InitialState> SharedStates::take(const input::Case& config,
+                                               const std::function<void(const std::string&)>& note) const {
+  const auto wanted = state_key(config);
+  const auto file = file_of(wanted);
+  if (!files::is_there(file)) return {};
+  try {
+    results::InputArchive archive(file);
+    std::string key;
+    archive(key);
+    if (key != wanted) throw UserError("{}: is the state of another case", file.string());
+    auto initial = read_initial_state(archive, config);
+    archive.close();
+    return initial;
+  } catch (const UserError& error) {
+    note(fmt::format("{}; the state before the event is solved again", error.what()));
+    return {};
+  }
+}
+
+void SharedStates::keep(const input::Case& config, InitialState& initial) const {
+  make_shared_folder(dir_);
+  const auto key = state_key(config);
+  // Under a name of its own until it is complete: others may be writing the same state.
+  char host[256] = {};
+  ::gethostname(host, sizeof(host) - 1);
+  const auto own = dir_ / fmt::format("writing-{}-{}-{}.bin", key.substr(0, 8), host, ::getpid());
+  results::OutputArchive archive(own);
+  archive(key, initial);
+  archive.close();
+  files::move_file(own, file_of(key));
+}
+
+}  // namespace slipfront::run

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stability/rupture.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace slipfront::stability {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// mu* of two bodies of this material.
+double modulus_of_equals_Pa(const solid::Material& material) {
+  const double nu = material.poissons_ratio;
+  const double G = solid::shear_modulus_Pa(material);
+  return material.plane == solid::Plane::strain ? G / (1 - nu) : G * (1 + nu);
+}
+
+double drop_ratio_of(const NodeBefore& node) {
+  return (node.t_Pa - node.residual_Pa) / (node.strength_Pa - node.residual_Pa);
+}
+
+bool weakens(const NodeBefore& node) {
+  return node.residual_Pa < node.strength_Pa;
+}
+bool is_driven(const NodeBefore& node) {
+  return node.residual_Pa < node.t_Pa;
+}
+
+/// Medians of a length over the nodes that weaken by slip.
+template <class Length>
+std::optional<double> median_length_m(const std::vector<NodeBefore>& nodes, Length length_m) {
+  std::vector<double> lengths_m;
+  for (const auto& node : nodes)
+    if (weakens(node) && node.d_c_m) lengths_m.push_back(length_m(node));
+  if (lengths_m.empty()) return {};
+  const double median = spread_of(lengths_m).median;
+  return std::isfinite(median) ? std::optional(median) : std::nullopt;
+}
+
+std::string regime_of(const Outlook& o, bool on_rigid_plane) {
+  if (o.n_weakening == 0) return "none: friction does not weaken at any node";
+  if (o.n_driven == 0)
+    return "none: the residual strength is nowhere below t, a front would release no energy";
+  if (o.n_barriers == o.n_nodes) return "none: S is beyond 10 at all nodes, no front breaks such strength";
+  if (o.S.median < 0) return "none: t is beyond the strength at most nodes, they slip at once";
+  if (!o.nucleation_length_m)
+    return o.S.median < supershear_S
+               ? "S < 1.77, as for fronts above c_S; without a length in the law no transition can be "
+                 "foretold"
+               : "S > 1.77, as for fronts below the Rayleigh speed; the law has no length";
+  if (o.S.median >= supershear_S) return "sub-Rayleigh: S > 1.77";
+  return fmt::format("S < 1.77: fronts above c_S can form, {}{:.3g} m from the nucleation on{}",
+                     on_rigid_plane ? "between equal bodies " : "",
+                     o.supershear_half_length_m.value_or(infinity),
+                     on_rigid_plane ? "; on a rigid plane much earlier" : "");
+}
+
+}  // namespace
+
+double modulus_Pa(const Bodies& bodies) {
+  const double below_per_Pa = bodies.below ? 1 / modulus_of_equals_Pa(*bodies.below) : 0;
+  return 2 / (1 / modulus_of_equals_Pa(bodies.above) + below_per_Pa);
+}
+
+double nucleation_length_m(double modulus_Pa, double strength_drop_Pa, double d_c_m) {
+  return 1.158 * modulus_Pa * d_c_m / strength_drop_Pa;
+}
+
+double griffith_half_length_m(double modulus_Pa, double strength_drop_Pa, double d_c_m,
+                              double stress_drop_Pa) {
+  if (stress_drop_Pa <= 0) return infinity;
+  return modulus_Pa * strength_drop_Pa * d_c_m / (std::numbers::pi * stress_drop_Pa * stress_drop_Pa);
+}
+
+double process_zone_m(double modulus_Pa, double strength_drop_Pa, double d_c_m) {
+  return 9 * std::numbers::pi / 32 * modulus_Pa * d_c_m / strength_drop_Pa;
+}
+
+double supershear_half_length_m(double griffith_half_length_m, double S) {
+  if (S >= supershear_S) return infinity;
+  return 9.8 * std::pow(supershear_S - S, -3) * griffith_half_length_m;
+}
+
+double strength_excess(const NodeBefore& node) {
+  if (!is_driven(node)) return infinity;
+  return (node.strength_Pa - node.t_Pa) / (node.t_Pa - node.residual_Pa);
+}
+
+Spread spread_of(std::vector<double> values) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  if (values.empty()) return {nan, nan, nan};
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  const double low = values[(n - 1) / 2], high = values[n / 2];
+  return {values.front(), low == high ? low : 0.5 * (low + high), values.back()};
+}
+
+Outlook outlook(const Bodies& bodies, const std::vector<NodeBefore>& all) {
+  Outlook o;
+  o.n_nodes = all.size();
+  o.n_weakening = static_cast<std::size_t>(std::ranges::count_if(all, weakens));
+  o.n_driven = static_cast<std::size_t>(std::ranges::count_if(all, is_driven));
+  auto nodes = all;
+  std::erase_if(nodes, [](const NodeBefore& node) { return strength_excess(node) > barrier_S; });
+  o.n_barriers = all.size() - nodes.size();
+  if (nodes.empty()) nodes = all;
+  std::vector<double> S, ratio;
+  for (const auto& node : nodes) {
+    S.push_back(strength_excess(node));
+    if (weakens(node)) ratio.push_back(drop_ratio_of(node));
+  }
+  o.S = spread_of(S);
+  o.drop_ratio = spread_of(ratio);
+  o.modulus_Pa = modulus_Pa(bodies);
+  const auto drop_Pa = [](const NodeBefore& node) { return node.strength_Pa - node.residual_Pa; };
+  o.nucleation_length_m = median_length_m(nodes, [&](const NodeBefore& node) {
+    return nucleation_length_m(o.modulus_Pa, drop_Pa(node), *node.d_c_m);
+  });
+  o.process_zone_m = median_length_m(nodes, [&](const NodeBefore& node) {
+    return process_zone_m(o.modulus_Pa, drop_Pa(node), *node.d_c_m);
+  });
+  o.griffith_half_length_m = median_length_m(nodes, [&](const NodeBefore& node) {
+    return griffith_half_length_m(o.modulus_Pa, drop_Pa(node), *node.d_c_m, node.t_Pa - node.residual_Pa);
+  });
+  if (o.griffith_half_length_m && o.S.median < supershear_S)
+    o.supershear_half_length_m = supershear_half_length_m(*o.griffith_half_length_m, o.S.median);
+  o.regime = regime_of(o, !bodies.below);
+  return o;
+}
+
+}  // namespace slipfront::stability

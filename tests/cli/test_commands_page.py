@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""docs/commands.md names every command and option; commands of other pages run."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs/commands.md").read_text(encoding="utf-8")
+
+
+def subcommands(text: str) -> list[str]:
+    _, _, listed = text.partition("Subcommands:\n")
+    return re.findall(r"^  ([\w-]+) ", listed, re.MULTILINE)
+
+
+def helps(program, words=()) -> dict[str, str]:
+    done = program(*words, "--help")
+    assert done.returncode == 0
+    found = {" ".join(words): done.stdout}
+    for name in subcommands(done.stdout):
+        found |= helps(program, (*words, name))
+    return found
+
+
+def test_every_command_and_option_is_named(program):
+    every = helps(program)
+    assert len(every) > 10
+    for name, text in every.items():
+        if name and not subcommands(text):
+            assert f"| `{name}" in PAGE, name
+        options = re.findall(r"^ +(?:-\w,)?(--[\w-]+)", text, re.MULTILINE)
+        assert [o for o in options if o not in ("--help", "--version") and f"`{o}" not in PAGE] == [], name
+
+
+def commands(page: str) -> list[str]:
+    """Lines of the page's shell blocks, continued ones joined."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    blocks = re.findall(r"^```sh\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+    return [line for block in blocks for line in block.replace("\\\n", " ").splitlines()]
+
+
+@pytest.mark.parametrize("page", ["docs/which-loading.md", "docs/paraview.md"])
+def test_commands_on_the_tutorials_case_run(program, tmp_path, page):
+    tutorial = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
+    (tmp_path / "my.toml").write_text(
+        re.search(r"^```toml\n(.*?)^```$", tutorial, re.MULTILINE | re.DOTALL)[1]
+    )
+    lines = commands(page)
+    assert lines
+    for line in lines:
+        words = line.replace("'", "").replace(", ", ",").split()
+        assert words[0] == "slipfront"
+        done = program(*words[1:])
+        assert done.returncode == 0, done.stderr
+
+
+def test_vtk_opens_the_fields(program, tmp_path):
+    """VTK's reader of these files is ParaView's."""
+    vtk = pytest.importorskip("vtk")
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    tutorial = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
+    (tmp_path / "my.toml").write_text(
+        re.search(r"^```toml\n(.*?)^```$", tutorial, re.MULTILINE | re.DOTALL)[1]
+    )
+    words = commands("docs/paraview.md")[0].replace("'", "").replace(", ", ",").split()
+    assert program(*words[1:]).returncode == 0
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(tmp_path / "movie/fields.vtkhdf"))
+    reader.UpdateInformation()
+    times = reader.GetOutputInformation(0).Get(vtk.vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+    assert times == pytest.approx([20e-6, 40e-6, 60e-6], abs=4e-7)
+    speeds = []
+    for step in range(3):
+        reader.SetStep(step)
+        reader.Update()
+        grid = reader.GetOutputDataObject(0)
+        assert (grid.GetNumberOfPoints(), grid.GetNumberOfCells()) == (12261, 12000)
+        speeds.append(abs(vtk_to_numpy(grid.GetPointData().GetArray("velocity_m_per_s"))).max())
+        assert grid.GetPointData().GetArray("displacement_m").GetNumberOfComponents() == 3
+    assert all(0.05 < speed < 5 for speed in speeds)

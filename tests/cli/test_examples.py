@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The worked cases of examples/ on coarser meshes: they run to their end and show what their pages say."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from slipfront.read import Front, Run, read_run
+
+ROOT = Path(__file__).resolve().parents[2]
+EXAMPLES = ROOT / "examples"
+
+# Twice to four times the case's own; with the base's, which follows.
+COARSE_M = {
+    "granite": 20e-3,
+    "steel": 2e-3,
+    "gel": 1e-3,
+    "pmma": 1e-3,
+    "supershear": 0.5e-3,
+    "pulse": 0.5e-3,
+    "arrest": 1e-3,
+    "barrier": 1e-3,
+    "two-bodies": 0.5e-3,
+    "experiment": 1e-3,
+}
+
+
+def c_S(run: Run) -> float:
+    return run.fact("wave_speeds.c_S_m_per_s")
+
+
+def longest(run: Run, direction: int) -> Front:
+    return max((f for f in run.fronts if f.direction == direction), key=lambda front: front.length_m)
+
+
+def speed_at(front: Front, x_m: float) -> float:
+    """Mean speed over 10 mm around a place."""
+    near = np.abs(front.x_m - x_m) < 5e-3
+    return float(np.nanmean(front.v_tip_m_per_s[near]))
+
+
+def onset_s(run: Run, x_m: float) -> float:
+    return min(
+        float(np.interp(x_m, f.x_m[:: f.direction], f.onset_s[:: f.direction], left=np.inf, right=np.inf))
+        for f in run.fronts
+    )
+
+
+def modes(run: Run) -> set[str]:
+    return {front["mode"] for front in run.info["fronts"]}
+
+
+@pytest.fixture
+def run(program, tmp_path):
+    def go(name: str, *changes: str) -> Run:
+        words = [word for change in changes for word in ("--set", change)]
+        size = f"plate.element_size_m={COARSE_M[name]}"
+        done = program(
+            "run", EXAMPLES / name / "case.toml", "-o", tmp_path / name, "--overwrite", "--set", size, *words
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stderr.count("\nwarning") == 0, done.stderr
+        return read_run(tmp_path / name)
+
+    return go
+
+
+def test_every_example_is_here():
+    assert sorted(COARSE_M) == sorted(path.parent.name for path in EXAMPLES.glob("*/case.toml"))
+
+
+def test_granite_breaks_both_ways_below_the_rayleigh_speed(run):
+    fault = run("granite")
+    for direction in (-1, 1):
+        front = longest(fault, direction)
+        assert front.length_m > 0.95
+        assert 0.7 * c_S(fault) < speed_at(front, 1 + 0.8 * direction) < 0.92 * c_S(fault)
+
+
+def test_steel_slips_by_itself_far_from_the_edges_and_stops(run):
+    block = run("steel")
+    first = min(block.fronts, key=lambda front: front.onset_s[0])
+    assert 0.1 < first.x_m[0] < 0.17
+    assert "arrest" in {front["end"] for front in block.info["fronts"]}
+
+
+def test_gel_on_a_rigid_base_passes_the_shear_wave_speed(run):
+    gel = run("gel")
+    assert 2 < c_S(gel) < 2.5
+    front = longest(gel, 1)
+    assert speed_at(front, 0.025) < c_S(gel) < speed_at(front, 0.065)
+
+
+def test_pmma_a_second_front_starts_ahead_of_the_first(run):
+    blocks = run("pmma")
+    early, late = (onset_s(blocks, x) for x in (0.03, 0.08))
+    assert 0.6 < (0.08 - 0.03) / (late - early) / c_S(blocks) < 1
+    assert speed_at(longest(blocks, 1), 0.15) > 1.2 * c_S(blocks)
+
+
+def test_supershear_both_ways(run):
+    fault = run("supershear")
+    for direction in (-1, 1):
+        front = longest(fault, direction)
+        assert speed_at(front, 0.075 + 0.065 * direction) > 1.41 * c_S(fault)
+
+
+def test_pulse_leaves_locked_interface_behind(run):
+    strip = run("pulse")
+    assert "pulse" in modes(strip)
+    rate = np.abs(strip.history.slip_rate_m_per_s)
+    row = np.searchsorted(strip.history.time_s, 110e-6)
+    assert np.count_nonzero(rate[row] > 1e-2 * rate[row].max()) < 0.3 * rate.shape[1]
+
+
+def test_arrest_lies_beyond_the_static_length_and_moves_with_d_c(run):
+    half_m = longest(run("arrest"), 1).length_m
+    assert 0.070 < half_m < 0.090
+    shorter_m = longest(run("arrest", "friction.d_c_m=3.4e-6"), 1).length_m
+    longer_m = longest(run("arrest", "friction.d_c_m=1.0e-6"), 1).length_m
+    assert shorter_m < half_m < longer_m
+
+
+def test_barrier_holds_the_front_back(run):
+    blocks = run("barrier")
+    before, behind = onset_s(blocks, 0.26), onset_s(blocks, 0.28)
+    assert 0.02 / (behind - before) < 0.4 * c_S(blocks)
+    assert onset_s(blocks, 0.38) < np.inf
+
+
+def test_two_bodies_prefer_a_direction(run):
+    pair = run("two-bodies")
+    assert 0.9 < speed_at(longest(pair, 1), 0.12) / c_S(pair) < 1.05
+    assert speed_at(longest(pair, -1), 0.02) > 1.3 * c_S(pair)
+
+
+def test_the_record_tells_d_c(program, tmp_path):
+    command = [sys.executable, EXAMPLES / "experiment/compare.py", tmp_path, "--program", program.path]
+    coarse = ["--set", f"plate.element_size_m={COARSE_M['experiment']}"]
+    done = subprocess.run(command + coarse, capture_output=True, text=True, timeout=300, check=True)
+    rows = [tuple(map(float, line.split())) for line in done.stdout.splitlines()[1:]]
+    nearest = min(rows, key=lambda row: row[1])
+    assert len(rows) == 5 and nearest[0] in (1.2, 1.45) and nearest[1] < 0.6
+
+
+def test_balances_close(run):
+    folder = run("supershear").place.folder
+    summary = json.loads((folder / "run.json").read_text())
+    assert summary["status"] == "complete"
+    balance = read_run(folder).balance
+    assert np.max(np.abs(balance.imbalance_J_per_m)) < 1e-9 * balance.largest_J_per_m

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Probes, snapshots at an interval with strain and stress, and what HDF5 files say of themselves."""
+
+import json
+
+import h5py
+import numpy as np
+import pytest
+from slipfront.read import PROBE_FIELDS, read_probes
+
+PROBES = '[probes]\nx_m = [0.1, 0.05]\ny_m = [0.01, 0.0]\nnames = ["SG 1", "Kante ä"]\ninterval_s = 2e-6\n'
+
+
+@pytest.fixture
+def probed(coarse, tmp_path):
+    file = tmp_path / "probed.toml"
+    file.write_text((tmp_path / coarse).read_text() + "\n" + PROBES, encoding="utf-8")
+    return file
+
+
+def test_probes_have_names_places_units_and_rows(program, probed, tmp_path):
+    assert program("run", probed, "-o", "out", "-q").returncode == 0
+    probes = read_probes(tmp_path / "out/probes.h5")
+    assert probes.names == ("SG 1", "Kante ä")
+    assert probes.x_m.tolist() == [0.1, 0.05] and probes.y_m.tolist() == [0.01, 0]
+    assert probes.time_s[0] == 0 and np.all(np.diff(probes.time_s) > 1e-6)
+    end_s = json.loads((tmp_path / "out/run.json").read_text())["time_s"]
+    assert end_s - 4e-6 < probes.time_s[-1] < end_s
+    assert set(probes.fields) == set(PROBE_FIELDS)
+    with h5py.File(tmp_path / "out/probes.h5") as file:
+        units = {name: file[name].attrs["unit"] for name in file if name != "name"}
+        assert all(file[name].attrs["description"] for name in file)
+    assert units.pop("time_s") == "s" and set(units) == {"x_m", "y_m", *PROBE_FIELDS}
+    for name, unit in units.items():
+        endings = {"Pa": "_Pa", "m/s": "_m_per_s", "m": "_m", "1": ("_xx", "_yy", "_zz", "_xy")}
+        assert name.endswith(endings[unit])
+    # At the interface t = -stress_xy where the plate slides to +x: the traction before the event.
+    with h5py.File(tmp_path / "out/interface.h5") as file:
+        node = int(np.argmin(np.abs(file["x_m"][:] - 0.05)))
+        assert np.sign(probes.fields["stress_xy_Pa"][0, 1]) == np.sign(file["t_Pa"][0, node])
+        assert probes.fields["stress_yy_Pa"][0, 1] == pytest.approx(-file["p_Pa"][0, node], rel=0.2)
+
+
+def test_every_hdf5_file_says_where_it_comes_from(program, probed, tmp_path):
+    keys = ("--set", "output.snapshot_interval_s=20e-6")
+    assert program("run", probed, "-o", "out", "-q", *keys).returncode == 0
+    case = (tmp_path / "out/case.resolved.toml").read_text(encoding="utf-8")
+    version = json.loads((tmp_path / "out/run.json").read_text())["version"]
+    for name in ("interface.h5", "probes.h5", "fields.vtkhdf"):
+        with h5py.File(tmp_path / "out" / name) as file:
+            assert file.attrs["program"] == "slipfront" and file.attrs["version"] == version
+            assert file.attrs["case"] == case and file.attrs["title"] == "coarse"
+            assert file.attrs["units"].startswith("SI")
+
+
+@pytest.mark.parametrize("plane", ["stress", "strain"])
+def test_snapshots_have_strain_and_stress_of_the_cells(program, coarse, tmp_path, plane):
+    keys = ("--set", "output.snapshot_interval_s=20e-6", "--set", f"material.plane={plane}")
+    assert program("run", coarse, "-o", "out", "-q", *keys).returncode == 0
+    with h5py.File(tmp_path / "out/fields.vtkhdf") as file:
+        group = file["VTKHDF"]
+        times = group["Steps/Values"][:]
+        assert times[:3] == pytest.approx([0, 20e-6, 40e-6], abs=5e-6)
+        n_points, n_cells = int(group["NumberOfPoints"][0]), int(group["NumberOfCells"][0])
+        cells = group["Connectivity"][:].reshape(-1, 4)
+        xy, step = group["Points"][:, :2][cells], 1
+        u = group["PointData/displacement_m"][step * n_points : (step + 1) * n_points, :2][cells]
+        data = {
+            name: values[step * n_cells : (step + 1) * n_cells] for name, values in group["CellData"].items()
+        }
+        for name in data:
+            assert group["Steps/CellDataOffsets"][name][:].tolist() == [
+                k * n_cells for k in range(len(times))
+            ]
+    # The mean gradient over a parallelogram is that of the centre; all cells here are ones or nearly so.
+    diagonals = np.stack([xy[:, 2] - xy[:, 0], xy[:, 3] - xy[:, 1]], axis=1)
+    gradient = np.linalg.solve(diagonals, np.stack([u[:, 2] - u[:, 0], u[:, 3] - u[:, 1]], axis=1))
+    assert data["strain_xx"] == pytest.approx(gradient[:, 0, 0], abs=1e-12)
+    assert data["strain_yy"] == pytest.approx(gradient[:, 1, 1], abs=1e-12)
+    assert data["strain_xy"] == pytest.approx(0.5 * (gradient[:, 0, 1] + gradient[:, 1, 0]), abs=1e-12)
+    nu, young = 0.37, 2.6e9
+    s_xx, s_yy, s_zz = data["stress_xx_Pa"], data["stress_yy_Pa"], data.get("stress_zz_Pa", 0)
+    e_zz = data.get("strain_zz", 0)
+    assert ("strain_zz" in data) == (plane == "stress") != ("stress_zz_Pa" in data)
+    largest = np.abs(data["strain_yy"]).max()
+    assert data["strain_xx"] == pytest.approx((s_xx - nu * (s_yy + s_zz)) / young, abs=1e-9 * largest)
+    assert data["strain_yy"] == pytest.approx((s_yy - nu * (s_xx + s_zz)) / young, abs=1e-9 * largest)
+    assert np.abs(e_zz - (s_zz - nu * (s_xx + s_yy)) / young).max() < 1e-9 * largest
+    assert data["stress_xy_Pa"] * (1 + nu) / young == pytest.approx(data["strain_xy"], abs=1e-9 * largest)
+
+
+def test_strain_and_stress_can_be_left_out(program, coarse, tmp_path):
+    keys = ("--set", "output.snapshot_interval_s=50e-6", "--set", "output.snapshot_stress=false")
+    assert program("run", coarse, "-o", "out", "-q", *keys).returncode == 0
+    with h5py.File(tmp_path / "out/fields.vtkhdf") as file:
+        assert "CellData" not in file["VTKHDF"]
+
+
+def test_times_after_the_end_are_told(program, coarse, tmp_path):
+    # Tractions below the strength under a still edge: the event ends at once.
+    keys = (
+        *("plate.corner=none", "loading.method=prestress", "prestress.t_Pa=1e6", "prestress.p_Pa=5e6"),
+        *("event.kind=none", "time.end_s=1", "output.snapshot_times_s=[1e-5, 0.7, 0.9]"),
+    )
+    done = program("run", coarse, "-o", "out", *(word for key in keys for word in ("--set", key)))
+    assert done.returncode == 0
+    assert "2 of 3 output.snapshot_times_s are after the end of the event" in done.stdout
+    run = json.loads((tmp_path / "out/run.json").read_text())
+    assert run["snapshot_times_after_the_event_s"] == [0.7, 0.9]
+    assert any("2 of 3 output.snapshot_times_s" in warning for warning in run["warnings"])
+
+
+@pytest.mark.parametrize(
+    ("table", "line", "says"),
+    [
+        ("x_m = [0.1, 0.3]\ny_m = [0.01, 0.0]", 1, "probes.x_m has 0.3 m; it must be in the plate"),
+        ("x_m = [0.1]\ny_m = [-0.01]", 2, "probes.y_m has -0.01 m; it must be in the plate"),
+        ("x_m = [0.1]\ny_m = [0.01, 0.0]", 1, "write as many of both"),
+        ('x_m = [0.1]\ny_m = [0.0]\nnames = ["a", "b"]', 3, "has 2 names for 1 places"),
+        ('x_m = [0, 0.1]\ny_m = [0.1, 0]\nnames = ["a", "a"]', 3, 'has the name "a" twice'),
+        ("x_m = [0.1]\ny_m = [0.0]\nnames = [1]", 3, "must be a list of strings, is a list of numbers"),
+    ],
+)
+def test_wrong_probes_are_refused_with_their_line(program, coarse, tmp_path, table, line, says):
+    text = (tmp_path / coarse).read_text() + "\n[probes]\n"
+    file = tmp_path / "wrong.toml"
+    file.write_text(text + table + "\n")
+    done = program("run", file, "-o", "out")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert f"wrong.toml:{text.count(chr(10)) + line}: " in done.stderr and says in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_probe_beyond_a_rounded_corner_is_refused_with_its_line(program, coarse, tmp_path):
+    text = (tmp_path / coarse).read_text() + "\n[probes]\n"
+    file = tmp_path / "wrong.toml"
+    file.write_text(text + "x_m = [1e-4]\ny_m = [1e-5]\n")
+    keys = ("--set", "plate.corner=relief")
+    for command in (("run", file, "-o", "out"), ("validate", file)):
+        done = program(*command, *keys)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1
+        assert f"wrong.toml:{text.count(chr(10)) + 1}: " in done.stderr
+        assert "the probe 1 at (0.0001, 1e-05) m lies outside the plate; move it inside" in done.stderr

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Subcommands that are Python modules: the interpreter that is chosen, and what it gets and gives."""
+
+import os
+import shutil
+import signal
+import sys
+
+import pytest
+from conftest import ROOT
+from test_commands import PYTHON_COMMANDS, one_line
+
+ECHO = '#!/bin/sh\nshift 2\nprintf "%s|" "$@"\nprintf "%s" "$PYTHONPATH"\n'
+
+
+@pytest.fixture
+def interpreter(tmp_path, monkeypatch):
+    """Makes a script the interpreter."""
+
+    def make(text):
+        script = tmp_path / "interpreter"
+        script.write_text(text)
+        script.chmod(0o755)
+        monkeypatch.setenv("SLIPFRONT_PYTHON", str(script))
+        return script
+
+    return make
+
+
+@pytest.fixture
+def elsewhere(program, tmp_path):
+    """The program outside its source tree."""
+    program.path = shutil.copy(program.path, tmp_path / "slipfront")
+    return program
+
+
+def in_tree(program):
+    """Whether the program under test lies where a build puts it."""
+    return program.path.parents[1].name == "build" and (program.path.parents[2] / "python/slipfront").is_dir()
+
+
+@pytest.mark.parametrize("command", PYTHON_COMMANDS)
+def test_arguments_are_passed_on_as_they_are(program, interpreter, monkeypatch, command):
+    interpreter(ECHO)
+    monkeypatch.setenv("PYTHONPATH", "/mine")
+    arguments = ["--help", "a b", "-o", "", "--", "--set", "*", "ä"]
+    result = program(command, *arguments)
+    assert result.returncode == 0
+    *passed, path = result.stdout.split("|")
+    assert passed == [command, *arguments]
+    first = f"{program.path.parents[2] / 'python'}:" if in_tree(program) else ""
+    assert path == first + "/mine"
+
+
+def test_outside_its_tree_the_program_leaves_the_path_alone(elsewhere, interpreter, monkeypatch):
+    interpreter(ECHO)
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+    assert elsewhere("report", "DIR").stdout == "report|DIR|"
+
+
+def test_without_a_name_python3_of_the_path_is_taken(elsewhere, tmp_path, monkeypatch):
+    monkeypatch.delenv("SLIPFRONT_PYTHON", raising=False)
+    (tmp_path / "bin").mkdir()
+    python = tmp_path / "bin/python3"
+    python.write_text("#!/bin/sh\necho mine\n")
+    python.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:{os.environ['PATH']}")
+    assert elsewhere("report", "DIR").stdout == "mine\n"
+
+
+@pytest.mark.parametrize("code", [0, 1, 2, 77])
+def test_exit_codes_are_the_modules(program, interpreter, code):
+    interpreter(f"#!/bin/sh\nexit {code}\n")
+    assert program("report", "DIR").returncode == code
+
+
+def test_signals_are_the_modules(program, interpreter):
+    interpreter("#!/bin/sh\nkill -TERM $$\n")
+    assert program("report", "DIR").returncode == -signal.SIGTERM
+
+
+def test_an_interpreter_that_is_not_there_is_told(program, monkeypatch):
+    monkeypatch.setenv("SLIPFRONT_PYTHON", "/nonexistent/python")
+    line = one_line(program("report", "DIR"))
+    assert "/nonexistent/python cannot be started: No such file" in line and "SLIPFRONT_PYTHON" in line
+
+
+def test_a_missing_package_is_told(elsewhere, interpreter, tmp_path, monkeypatch):
+    interpreter(f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n')  # without installed packages
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+    elsewhere.folder = tmp_path / "here"
+    (elsewhere.folder / "slipfront").mkdir(parents=True)  # results of that name are no package
+    line = one_line(elsewhere("report", "DIR"))
+    assert "report needs the Python package slipfront" in line and "-m pip install ." in line
+
+
+def test_a_page_is_written(program, coarse, monkeypatch):
+    monkeypatch.setenv("SLIPFRONT_PYTHON", sys.executable)
+    monkeypatch.setenv("PYTHONPATH", str(ROOT / "python"))
+    assert program("run", "coarse.toml", "-o", "out").returncode == 0
+    result = program("report", "out", "-o", "page.html")
+    assert (result.returncode, result.stderr) == (0, "")
+    assert (program.folder / "page.html").read_text(encoding="utf-8").count("<section") >= 6
+    assert "no such folder" in one_line(program("report", "nothing"))

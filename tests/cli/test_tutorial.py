@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The commands and files of docs/tutorial.md, as a reader enters them."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from slipfront.read import read_run
+
+ROOT = Path(__file__).resolve().parents[2]
+TUTORIAL = ROOT / "docs/tutorial.md"
+HEADER = "src/interface/friction/slip_exponential.hpp"
+
+CHECK = """\
+#include "interface/friction/slip_exponential.hpp"
+#include <cmath>
+int main() {
+  const slipfront::interface::SlipExponential law;
+  const auto mu = law.evaluator();
+  const bool right = mu(0., 0.) == law.mu_s && std::abs(mu(1., 4e-6) - (0.3 + 0.3 * std::exp(-1))) < 1e-15;
+  return right ? 0 : 1;
+}
+"""
+
+
+@dataclass(frozen=True)
+class Block:
+    language: str
+    text: str
+    file: str  # what the text before it saves it as; empty for none
+    left_out: bool
+
+
+def blocks() -> list[Block]:
+    page = TUTORIAL.read_text(encoding="utf-8")
+    found = []
+    position = 0
+    for match in re.finditer(r"^```(\w+)\n(.*?)^```$", page, re.MULTILINE | re.DOTALL):
+        before = page[position : match.start()]
+        position = match.end()
+        named = re.findall(r"[sS]ave\w*\s+(?:this\s+one\s+|this\s+|it\s+)?as\s+`([^`]+)`", before)
+        left_out = before.rstrip().split("\n")[-1].startswith("<!-- not run:")
+        found.append(Block(match[1], match[2], named[-1] if named else "", left_out))
+    return found
+
+
+def test_every_block_is_known():
+    kinds = [b.language for b in blocks()]
+    assert set(kinds) == {"sh", "toml", "python", "cpp", "text"}
+    assert [b.file for b in blocks() if b.language in ("toml", "python", "cpp")] == [
+        "my.toml",
+        "picture.py",
+        "tail.toml",
+        HEADER,
+    ]
+    assert sum(b.left_out for b in blocks()) == 3 < kinds.count("sh") - 3
+
+
+@pytest.fixture
+def shell(program, tmp_path):
+    """Runs commands with the names that the tutorial uses."""
+    names = tmp_path / "bin"
+    names.mkdir()
+    (names / "slipfront").symlink_to(program.path)
+    (names / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
+    (names / "python").chmod(0o755)
+    work = tmp_path / "work"
+    work.mkdir()
+    environment = {
+        **os.environ,
+        "PATH": f"{names}:{os.environ['PATH']}",
+        "PYTHONPATH": str(ROOT / "python"),
+        "MPLBACKEND": "agg",
+    }
+
+    def run(text: str) -> subprocess.CompletedProcess:
+        return subprocess.run(
+            ["bash", "-euo", "pipefail", "-c", text],
+            cwd=work,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=120,
+        )
+
+    run.folder = work
+    return run
+
+
+def test_all_of_it_runs(shell):
+    for block in blocks():
+        if block.language in ("toml", "python"):
+            (shell.folder / block.file).write_text(block.text)
+        elif block.language == "sh" and not block.left_out:
+            done = shell(block.text)
+            assert done.returncode == 0, block.text + done.stderr
+    for picture in (
+        "first.png",
+        "picture.png",
+        "aluminium.png",
+        "tail.png",
+        "fine/figures/energy_balance.png",
+    ):
+        assert (shell.folder / picture).stat().st_size > 10_000
+    reached = {
+        name: read_run(shell.folder / name) for name in ("first", "aluminium", "stuck", "tail", "fine")
+    }
+    for name, run in reached.items():
+        ends_m = [f.x_m[-1] for f in run.fronts]
+        assert (max(ends_m) > 0.19 and min(ends_m) < 0.01) == (name != "stuck"), name
+    arrivals_s = [
+        next(f.onset_s[-1] for f in reached[name].fronts if f.direction < 0) for name in ("first", "tail")
+    ]
+    assert round(1e6 * (arrivals_s[0] - arrivals_s[1])) == 9
+    first, fine = (next(f for f in reached[n].fronts if f.direction > 0) for n in ("first", "fine"))
+    assert abs(first.onset_s[-1] / fine.onset_s[-1] - 1) < 0.05
+
+
+def test_the_output_shown_is_that_of_the_run(shell):
+    files = {b.file: b.text for b in blocks() if b.language == "toml"}
+    (shell.folder / "my.toml").write_text(files["my.toml"])
+    printed = shell("slipfront run my.toml -o first").stdout.splitlines()
+    shown = next(b.text for b in blocks() if "results: first" in b.text and b.language == "text").splitlines()
+    without_times = [line for line in shown if "wall time" not in line]
+    assert [line for line in without_times if line not in printed] == []
+    (shell.folder / "my.toml").write_text(files["my.toml"].replace("width_m", "widht_m"))
+    error = next(b.text for b in blocks() if "widht_m" in b.text)
+    assert shell("slipfront validate my.toml").stderr == error
+
+
+@pytest.mark.skipif(shutil.which("g++") is None, reason="no g++")
+def test_the_law_in_cpp_compiles(tmp_path):
+    law = next(b for b in blocks() if b.language == "cpp")
+    header = tmp_path / law.file
+    header.parent.mkdir(parents=True)
+    header.write_text(law.text)
+    (tmp_path / "check.cpp").write_text(CHECK)
+    command = [
+        "g++",
+        "-std=c++20",
+        "-Wall",
+        "-Werror",
+        "-Wno-psabi",
+        f"-I{tmp_path}/src",
+        f"-I{ROOT}/src",
+        tmp_path / "check.cpp",
+    ]
+    done = subprocess.run([*command, "-o", tmp_path / "check"], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert subprocess.run([tmp_path / "check"], timeout=60).returncode == 0

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The console script, `slipfront fronts`, the types of the compiled module, the page of the package."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from package_cases import ROOT, write_case
+from slipfront import fronts_command
+from slipfront.__main__ import main
+from slipfront.read import read_experiment
+
+ONSETS = "# camera 3\nx_m,time_s\n" + "".join(f"{k * 2e-3},{abs(k - 20) * 2e-6}\n" for k in range(51))
+
+
+@pytest.fixture
+def onsets(tmp_path):
+    file = tmp_path / "onsets.csv"
+    file.write_text(ONSETS)
+    return file
+
+
+def rows(file):
+    with open(file, newline="") as stream:
+        return list(csv.DictReader(line for line in stream if not line.startswith("#")))
+
+
+def test_fronts_of_an_experiment(onsets, tmp_path, capsys):
+    out = tmp_path / "fronts.csv"
+    assert main(["fronts", str(onsets), "-o", str(out), "--c-l-m-per-s", "2000"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    speed = "median speed 1000 m/s (0.50 c_L)"
+    assert lines == [
+        f"front 0: x = 0.0400 to 0.0000 m, 0.0 to 40.0 us, {speed}, ends: contact_end",
+        f"front 1: x = 0.0400 to 0.1000 m, 0.0 to 60.0 us, {speed}, ends: contact_end",
+    ]
+    found = rows(out)
+    assert list(found[0]) == ["front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s", "v_over_c_L"]
+    speeds = [float(r["v_over_c_L"]) for r in found if r["v_over_c_L"]]
+    assert len(speeds) > 40
+    assert np.allclose(speeds, 0.5, rtol=1e-9)
+
+
+def test_only_its_own_table_is_replaced(onsets, tmp_path, capsys):
+    out, other = tmp_path / "fronts.csv", tmp_path / "other.html"
+    other.write_text("mine")
+    for _ in range(2):
+        assert fronts_command.main([str(onsets), "-o", str(out)]) == 0
+    capsys.readouterr()
+    before = onsets.read_text()
+    for file in (onsets, other):
+        assert fronts_command.main([str(onsets), "-o", str(file)]) == 2
+        assert "is there and not a table of slipfront fronts: not replaced" in capsys.readouterr().err
+    assert (onsets.read_text(), other.read_text()) == (before, "mine")
+
+
+def test_a_material_and_tractions_make_an_experiment_for_the_scorecard(onsets, tmp_path):
+    lines = onsets.read_text().splitlines()
+    text = "\n".join([lines[1] + ",t_s_Pa,p_s_Pa", *(f"{line},3e6,4e6" for line in lines[2:])]) + "\n"
+    onsets.write_text(text)
+    out = tmp_path / "fronts.csv"
+    material = ["--youngs-modulus-pa", "2.6e9", "--poissons-ratio", "0.37", "--density-kg-per-m3", "1200"]
+    assert fronts_command.main([str(onsets), "-o", str(out), *material]) == 0
+    ratio, speed = read_experiment(out, 1.0)
+    assert np.allclose(ratio, 0.75)
+    assert np.nanmax(np.abs(speed - 1000 / 1584.4024039000517)) < 1e-9
+
+
+@pytest.mark.parametrize(
+    "text, options, message",
+    [
+        ("x_m,time_s\n0,0\n", [], "fewer than two rows"),
+        ("x_m,time_s\n0,0\n0,1\n", [], "x_m does not ascend"),
+        ("x_m,time_s\n0,\n1,\n", [], "no row has a time: nothing slips"),
+        ("x_m,onset\n0,0\n1,1\n", [], "no column 'time_s'"),
+        ("x_m,time_s\n0,0\n1,later\n", [], ":3: 'later' in column 'time_s' is not a number"),
+        (
+            ONSETS,
+            ["--poissons-ratio", "0.3"],
+            "a material needs --youngs-modulus-pa, --density-kg-per-m3 as well",
+        ),
+        (ONSETS, ["--c-l-m-per-s", "-1"], "--c-l-m-per-s is -1.0; it must be above 0 and finite"),
+        (ONSETS, ["--l-star-m", "0"], "l_star_m is 0.0; it must be above 0"),
+    ],
+)
+def test_mistakes_are_one_line(onsets, capsys, text, options, message):
+    onsets.write_text(text)
+    assert fronts_command.main([str(onsets), *options]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("slipfront fronts: error: ")
+    assert message in error
+    assert error.count("\n") == 1
+
+
+def test_other_commands_are_the_programs(tmp_path):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "from slipfront.__main__ import console; exit(console())",
+            "validate",
+            "nowhere.toml",
+        ],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("nowhere.toml: ")
+
+
+def test_the_stubs_are_the_modules(tmp_path):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
+    stub = tmp_path / "_core.pyi"
+    subprocess.run(
+        [sys.executable, "-m", "nanobind.stubgen", "-q", "-m", "slipfront._core", "-o", stub],
+        env=environment,
+        check=True,
+    )
+    assert stub.read_text() == (ROOT / "python/slipfront/_core.pyi").read_text(), "make stubs renews it"
+
+
+def test_figures_need_neither_xarray_nor_the_module():
+    code = (
+        "import sys; import slipfront.figures.__main__, slipfront.read; "
+        "sys.exit(any(name in sys.modules for name in ('xarray', 'slipfront._core')))"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
+    assert subprocess.run([sys.executable, "-c", code], env=environment).returncode == 0
+
+
+def test_the_names_of_the_package_are_all_there():
+    import slipfront
+
+    text = (ROOT / "python/slipfront/__init__.py").read_text()
+    typed = re.findall(r"import \w+ as (\w+)", text)
+    assert sorted(typed) == sorted(slipfront.__all__)
+    for name in slipfront.__all__:
+        assert getattr(slipfront, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'fly'"):
+        _ = slipfront.fly
+
+
+def test_the_page_runs(tmp_path, monkeypatch, capsys):
+    """The code of docs/python.md, in its order, and what its comments promise."""
+    text = (ROOT / "docs/python.md").read_text(encoding="utf-8")
+    write_case(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    names: dict = {}
+    for block in re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        exec(block, names)
+    assert names["run"].case["friction"]["mu_k"] == 0.8
+    assert names["run"].history.slip_m.attrs["unit"] == "m"
+    assert list(names["found"].direction.values) == [-1, 1]
+    assert np.nanmax(np.abs(names["found"].v_tip_m_per_s - 900)) < 1e-6
+    assert names["fit"].n_points > 4
+    assert len(capsys.readouterr().out.splitlines()) == names["run"].fronts.sizes["front"]

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Friction laws in Python against the built-in ones that they copy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import slipfront
+from package_cases import CASE
+
+SHORT = {"time.end_s": 60e-6, "output.snapshot_times_s": []}
+COULOMB = {**SHORT, "friction.law": "coulomb", "friction.mu": 1.3}
+SLIP_WEAKENING = {
+    **SHORT,
+    "friction.law": "slip_weakening",
+    "friction.mu_s": 1.3,
+    "friction.mu_k": 0.6,
+    "friction.d_c_m": 20e-6,
+}
+
+
+def weakening(slip_rate_m_per_s, slip_m):
+    return 0.6 + (1.3 - 0.6) * np.maximum(0, 1 - slip_m * (1 / 20e-6))
+
+
+@pytest.mark.parametrize("algorithm", ["direct", "predictor_corrector"])
+def test_a_constant_coefficient_is_coulombs_bit_for_bit(algorithm):
+    changes = {**COULOMB, "contact.algorithm": algorithm}
+    theirs = slipfront.run(CASE, changes)
+    ours = slipfront.run_with_law(CASE, lambda rate, slip: 1.3, changes)
+    assert float(theirs.history.slip_m.max()) > 0
+    for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa"):
+        assert np.array_equal(ours.history[name], theirs.history[name]), name
+    assert np.array_equal(ours.fronts.onset_s, theirs.fronts.onset_s)
+
+
+@pytest.mark.parametrize("relaxed", ["none", "strength"])
+def test_a_copy_of_slip_weakening_differs_by_rounding(relaxed):
+    regularisation = {"friction.regularisation": relaxed}
+    if relaxed != "none":
+        regularisation["friction.relaxation_time_s"] = 1e-6
+    changes = {**SLIP_WEAKENING, **regularisation}
+    theirs = slipfront.run(CASE, changes)
+    ours = slipfront.run_with_law(CASE, weakening, changes)
+    scale = float(theirs.history.slip_m.max())
+    assert scale > 20e-6
+    # A last digit of mu that is rounded otherwise grows while nodes slip.
+    assert np.abs(ours.history.slip_m - theirs.history.slip_m).max() < 1e-9 * scale
+
+
+def test_velocity_weakening_is_copied_as_long_as_rounding_has_not_grown():
+    changes = {**SHORT, "time.end_s": 10e-6}
+    rate = np.sqrt((1.3 - 0.6) / 0.1)
+    theirs = slipfront.run(CASE, changes)
+    ours = slipfront.run_with_law(CASE, lambda v, slip: 0.6 + (1.3 - 0.6) * np.exp(-v * rate), changes)
+    scale = float(theirs.history.slip_m.max())
+    assert scale > 0
+    assert np.abs(ours.history.slip_m - theirs.history.slip_m).max() < 1e-9 * scale
+
+
+def test_the_arguments_are_arrays_over_the_nodes():
+    seen = []
+
+    def mu(slip_rate_m_per_s, slip_m):
+        seen.append((slip_rate_m_per_s, slip_m))
+        return np.full(slip_m.shape, 1.3)
+
+    run = slipfront.run_with_law(CASE, mu, {**COULOMB, "time.end_s": 5e-6})
+    n = run.history.sizes["x_m"]
+    assert all(rate.shape == slip.shape == (n,) for rate, slip in seen[1:])
+    assert max(slip.max() for _, slip in seen) > 0
+    assert all((rate >= 0).all() and (slip >= 0).all() for rate, slip in seen)
+
+
+def test_mistakes_of_a_law():
+    with pytest.raises(ValueError, match=r"mu\(0, 0\) is 1.0, the case's coefficient at rest 1.3"):
+        slipfront.run_with_law(CASE, lambda rate, slip: 1.0, COULOMB)
+
+    def breaks(rate, slip):
+        if len(slip) > 1:
+            raise ZeroDivisionError("in the law")
+        return 1.3
+
+    with pytest.raises(ZeroDivisionError, match="in the law"):
+        slipfront.run_with_law(CASE, breaks, COULOMB)
+    with pytest.raises(ValueError, match="mu must be at least 0 and a number"):
+        slipfront.run_with_law(CASE, lambda rate, slip: np.where(slip > 0, np.nan, 1.3), COULOMB)
+    with pytest.raises(TypeError, match="complex numbers"):
+        slipfront.run_with_law(CASE, lambda rate, slip: 1.3 + 0j * slip, COULOMB)

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Results opened with xarray: all fields, their units, lazily; damage is refused."""
+
+from __future__ import annotations
+
+import csv
+
+import h5py
+import numpy as np
+import pytest
+import slipfront
+from package_cases import CASE, program, write_case
+from slipfront.opened import unit_of
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    place = tmp_path_factory.mktemp("opened")
+    assert program("run", write_case(place), "-q", "-o", "out", cwd=place).returncode == 0
+    return place / "out"
+
+
+def columns(file):
+    with open(file, newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    texts = {"speed_kind"} & rows[0].keys()
+    found = {name: np.array([r[name] for r in rows]) for name in texts}
+    return found | {
+        name: np.array([float(r[name] or "nan") for r in rows]) for name in rows[0].keys() - texts
+    }
+
+
+def test_the_history_is_the_files_and_read_when_used(folder):
+    history = slipfront.open(folder).history
+    with h5py.File(folder / "interface.h5") as file:
+        for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa"):
+            assert not history[name].variable._in_memory
+            assert history[name].dims == ("time_s", "x_m")
+            assert history[name].attrs["unit"] == file[name].attrs["unit"]
+            assert history[name].attrs["description"]
+            part = history[name][3:20:4, ::-2]
+            assert np.array_equal(part, file[name][3:20:4][:, ::-2])
+            assert not history[name].variable._in_memory
+            assert np.array_equal(history[name], file[name])
+        assert np.array_equal(history.time_s, file["time_s"])
+        assert np.array_equal(history.x_m, file["x_m"])
+    picked = history.slip_m.sel(x_m=[0.1, 0.05], method="nearest").isel(time_s=[5, 2, 2])
+    assert np.array_equal(picked, history.slip_m.values[[5, 2, 2]][:, [20, 10]])
+
+
+def test_tables_are_the_files(folder):
+    run = slipfront.open(folder)
+    for found, name, dim in (
+        (run.tractions, "static.csv", "x_m"),
+        (run.energies, "energy.csv", "time_s"),
+    ):
+        expected = columns(folder / name)
+        assert set(found.variables) == set(expected)
+        for column, values in expected.items():
+            assert found[column].dims == (dim,)
+            assert found[column].attrs["unit"] == unit_of(column)
+            assert np.array_equal(found[column], values, equal_nan=True)
+
+
+def test_fronts_are_the_files(folder):
+    run = slipfront.open(folder)
+    expected = columns(folder / "fronts.csv")
+    for column, values in expected.items():
+        name = "direction_of_point" if column == "direction" else column
+        assert np.array_equal(run.fronts[name], values, equal_nan=values.dtype.kind == "f")
+    assert run.fronts.v_tip_m_per_s.attrs["unit"] == "m/s"
+    assert [str(end) for end in run.fronts.end.values] == [f["end"] for f in run.info["fronts"]]
+    assert list(run.fronts.front) == [f["id"] for f in run.info["fronts"]]
+
+
+def test_snapshots(folder):
+    snapshots = slipfront.open(folder).snapshots
+    with h5py.File(folder / "fields.vtkhdf") as file:
+        group = file["VTKHDF"]
+        n = snapshots.sizes["node"]
+        velocity = group["PointData/velocity_m_per_s"][()].reshape(2, n, 3)[:, :, :2]
+        points = group["Points"][()]
+    assert not snapshots.velocity_m_per_s.variable._in_memory
+    assert np.array_equal(snapshots.velocity_m_per_s[1, 10:20], velocity[1, 10:20])
+    assert np.array_equal(snapshots.velocity_m_per_s.sel(component="x"), velocity[:, :, 0])
+    assert np.array_equal(snapshots.velocity_m_per_s, velocity)
+    assert np.array_equal(snapshots.y_m, points[:n, 1])
+    assert snapshots.displacement_m.attrs["unit"] == "m"
+    assert snapshots.cell_nodes.sizes == {"cell": 40 * 20, "corner": 4}
+
+
+def test_a_run_without_snapshots(tmp_path):
+    run = slipfront.run(CASE.replace("[20e-6, 60e-6]", "[]"), output=tmp_path / "out")
+    assert run.snapshots is None
+    assert float(run.history.slip_m.max()) > 0
+
+
+def test_friction_that_varies_is_there(tmp_path):
+    (tmp_path / "friction.csv").write_text("x_m,mu_s\n0,1.2\n0.2,1.4\n")
+    run = slipfront.run(write_case(tmp_path), {"friction.file": "friction.csv"})
+    assert run.tractions.mu_s.attrs["unit"] == "1"
+    assert np.interp(0.1, run.tractions.x_m, run.tractions.mu_s) == pytest.approx(1.3, rel=1e-12)
+
+
+def test_damage_is_refused_when_the_file_is_used(tmp_path):
+    run = slipfront.run(write_case(tmp_path), output=tmp_path / "out")
+    file = tmp_path / "out/energy.csv"
+    file.write_text(file.read_text().replace("0", "1", 1))
+    again = slipfront.open(run.folder)
+    assert again.history.sizes["x_m"] == 41
+    with pytest.raises(slipfront.DataError, match=r"energy.csv: does not match checksums.sha256"):
+        _ = again.energies
+    with pytest.raises(slipfront.DataError, match="no such folder"):
+        slipfront.open(tmp_path / "nowhere")
+
+
+def test_units_of_names():
+    assert [
+        unit_of(n) for n in ("U_s_J_per_m3", "friction_work_J_per_m", "v_m_per_s", "t_Pa", "d_c_m", "mu_s")
+    ] == [
+        "J/m3",
+        "J/m",
+        "m/s",
+        "Pa",
+        "m",
+        "1",
+    ]
+
+
+def test_probes(tmp_path):
+    case = CASE + '\n[probes]\nx_m = [0.05, 0.1]\ny_m = [0.01, 0.02]\nnames = ["left", "middle"]\n'
+    assert program("run", write_case(tmp_path, case), "-q", "-o", "out", cwd=tmp_path).returncode == 0
+    probes = slipfront.open(tmp_path / "out").probes
+    assert list(probes.probe.values) == ["left", "middle"]
+    assert probes.x_m.values.tolist() == [0.05, 0.1]
+    with h5py.File(tmp_path / "out/probes.h5") as file:
+        assert np.array_equal(probes.stress_xy_Pa, file["stress_xy_Pa"])
+        assert np.array_equal(probes.time_s, file["time_s"])
+    assert probes.stress_xy_Pa.sel(probe="middle").attrs["unit"] == "Pa"
+
+
+def test_without_probes_there_are_none(folder):
+    assert slipfront.open(folder).probes is None

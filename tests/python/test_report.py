@@ -1,0 +1,366 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pages of HTML: what they hold, what they refuse to replace, and what of the results they are drawn from."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from slipfront import __main__ as package
+from slipfront.files import DataError
+from slipfront.read import Fields, read_balance
+from slipfront.report import history, picture_grid, run_data
+from slipfront.report.command import main
+from slipfront.report.numbers import listed, packed, unit
+from slipfront.report.page import MARK, POLICY
+from slipfront.report.run import thin_run
+from synthetic import write_checksums, write_output, write_run
+from synthetic_study import write_interface_step, write_open_choices, write_study
+
+HOSTILE = '</script><script>alert(1)</script><b>"&\u202e'
+
+
+@pytest.fixture
+def run(tmp_path):
+    write_run(tmp_path / "left", "left", 0.6, 20, 10, 30, 3)
+    return tmp_path / "left"
+
+
+def page_of(folder: Path, file: Path | None = None) -> str:
+    """The page of a folder, without the library in it."""
+    assert main([str(folder), *(["-o", str(file)] if file else [])]) == 0
+    text = (file or folder / "report.html").read_text(encoding="utf-8")
+    return re.sub(r"<script>[\s\S]*?</script>", "<script></script>", text)
+
+
+def data_of(text: str) -> dict:
+    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text)[1])
+
+
+def unpacked(field: dict) -> np.ndarray:
+    shares = np.frombuffer(base64.b64decode(field["f2"]), "<f2").reshape(field["shape"])
+    return field["largest"] * shares.astype(float)
+
+
+def refusal(capsys, *arguments) -> str:
+    """The one line on standard error of a call that is refused."""
+    assert main([str(a) for a in arguments]) == 2
+    out, error = capsys.readouterr()
+    assert out == "" and error.count("\n") == 1
+    return error
+
+
+# The page of a run
+
+
+def test_a_page_holds_the_record(run):
+    data = data_of(page_of(run))["runs"][0]
+    with h5py.File(run / "interface.h5") as file:
+        rate, p, x, time = (file[name][()] for name in ("slip_rate_m_per_s", "p_Pa", "x_m", "time_s"))
+    assert (data["units"]["x"], data["units"]["time"], data["units"]["traction"]) == ("mm", "µs", "MPa")
+    np.testing.assert_allclose(data["history"]["x"], 1e3 * x, rtol=1e-4)
+    np.testing.assert_allclose(data["history"]["time"], 1e6 * time, rtol=1e-4)
+    np.testing.assert_allclose(unpacked(data["history"]["slip_rate"]), rate, rtol=1e-3, atol=1e-6)
+    np.testing.assert_allclose(unpacked(data["history"]["p"]), 1e-6 * p, rtol=1e-3)
+    assert data["static"]["coefficients"][0]["values"] == [1.3, 1.3]
+    assert len(data["snapshots"]["frames"]) == data["snapshots"]["of"] == 3
+
+
+def test_a_page_holds_the_fronts_in_full(run):
+    fronts = data_of(page_of(run))["runs"][0]["fronts"]
+    read = thin_run(run).fronts
+    assert [f["id"] for f in fronts] == [f.id for f in read] == [1]
+    c_L = 1584.0
+    v = np.array([np.nan if v is None else v for v in fronts[0]["v"]])
+    far = read[0].x_m > 0.03  # beyond the trigger zone and its margin
+    np.testing.assert_allclose(v[far], read[0].v_tip_m_per_s[far] / c_L, rtol=1e-4)
+    assert np.isnan(v[read[0].x_m < 0.024]).all()
+    assert fronts[0]["main"] and sum(fronts[0]["counts"]) > 10 and fronts[0]["symbol"] == "square-open"
+
+
+def test_a_page_needs_no_network(run):
+    text = page_of(run)
+    assert text.startswith(MARK) and f'content="{POLICY}"' in text
+    assert not re.search(r'(?:src|href)="(?!#|data:)', text)
+    # The plots that the script looks for, and controls that it wires.
+    script = "".join(f.read_text() for f in Path(history.__file__).parent.glob("page/*.js"))
+    wanted = set(re.findall(r"byId\('([\w-]+)'\)", script)) - {"data", "run"}
+    assert wanted and all(f'id="{name}"' in text for name in wanted)
+
+
+def test_facts_and_warnings_are_told(run):
+    info = json.loads((run / "run.json").read_text())
+    info |= {"title": "my case", "end": "quiet", "steps": 1234, "warnings": ["mind this"]}
+    info["rupture"] = {"strength_excess_S": {"min": 0.5, "median": 1.25, "max": 4}, "regime": "sub-Rayleigh"}
+    info["rupture"] |= {"nucleation_length_m": 0.0125, "process_zone_m": None}
+    (run / "run.json").write_text(json.dumps(info))
+    text = page_of(run)
+    for part in (
+        "my case",
+        "abc1234",
+        "1,234 steps",
+        "nothing had slipped",
+        "S 0.5 to 4, median 1.25; nucleation length 12.5 mm; sub-Rayleigh",
+        '<p class="warning">mind this</p>',
+    ):
+        assert part in text
+
+
+def test_text_of_the_case_is_escaped(run):
+    info = json.loads((run / "run.json").read_text())
+    info |= {
+        "title": HOSTILE,
+        "warnings": [HOSTILE],
+        "compiler": HOSTILE,
+        "status": "failed",
+        "reason": HOSTILE,
+    }
+    (run / "run.json").write_text(json.dumps(info))
+    text = page_of(run)
+    assert "alert(1)" in text and "<script>alert" not in text and "<b>&quot;" not in text
+    assert "\u202e" not in text  # it would turn what follows
+
+
+def test_json_ends_no_script(run):
+    data_of(page_of(run))
+    odd = run.rename(run.parent / "<!--<script>")
+    text = page_of(odd)
+    assert "&lt;!--&lt;script&gt;" in text and text.count("<!--") == 1
+
+
+def test_a_run_without_snapshots_and_fronts_has_a_page(run):
+    (run / "fields.vtkhdf").unlink()
+    header = (run / "fronts.csv").read_text().splitlines()[0]
+    (run / "fronts.csv").write_text(header + "\n")
+    text = page_of(run)
+    data = data_of(text)["runs"][0]
+    assert data["snapshots"] is None and data["fronts"] == [] and data["origin"] is None
+    assert "has no snapshots" in text and 'id="snapshots-plot"' not in text
+
+
+def test_an_interrupted_run_is_marked(run, capsys):
+    info = json.loads((run / "run.json").read_text()) | {"status": "interrupted", "reason": "signal 15"}
+    (run / "run.json").write_text(json.dumps(info))
+    text = page_of(run)
+    assert "interrupted at t = 250 µs" in text and "signal 15" in text
+    assert "note: " in capsys.readouterr().out
+
+
+# What is refused, and what is replaced
+
+
+def test_a_page_is_replaced_and_nothing_else(run, tmp_path, capsys):
+    file = tmp_path / "page.html"
+    page_of(run, file)
+    page_of(run, file)
+    file.write_text("<!DOCTYPE html>mine")
+    capsys.readouterr()
+    assert "not a report: not replaced" in refusal(capsys, run, "-o", file)
+    assert file.read_text() == "<!DOCTYPE html>mine"
+    link = tmp_path / "link.html"
+    link.symlink_to(file)
+    assert "not a regular file" in refusal(capsys, run, "-o", link)
+
+
+@pytest.mark.parametrize("name", ["interface.h5", "fronts.csv", "energy.csv", "static.csv", "fields.vtkhdf"])
+def test_a_damaged_folder_is_refused(run, capsys, name):
+    write_checksums(run)
+    data = bytearray((run / name).read_bytes())
+    data[len(data) // 2] ^= 1
+    (run / name).write_bytes(data)
+    assert f"{run / name}: does not match checksums.sha256" in refusal(capsys, run)
+    assert not (run / "report.html").exists()
+
+
+def test_what_holds_no_results_is_refused(tmp_path, capsys):
+    assert "no such folder" in refusal(capsys, tmp_path / "none")
+    assert "holds no results" in refusal(capsys, tmp_path)
+
+
+def test_a_place_that_cannot_be_written_is_told(run, capsys):
+    (run.parent / "file").write_text("")
+    assert "cannot be written" in refusal(capsys, run, "-o", run.parent / "file" / "page.html")
+
+
+def test_wrong_shapes_are_refused(run, capsys):
+    with h5py.File(run / "interface.h5", "r+") as file:
+        slip = file["slip_m"][:, 1:]
+        del file["slip_m"]
+        file["slip_m"] = slip
+    assert "slip_m is (30, 20), not (30, 21)" in refusal(capsys, run)
+
+
+# Other kinds of folders
+
+
+def test_the_page_of_a_reproduction(tmp_path):
+    write_output(tmp_path / "out", columns=20, rows=10, n_times=8, snapshots=2)
+    text = page_of(tmp_path / "out")
+    data = data_of(text)
+    assert [run["name"] for run in data["runs"]] == [
+        "left-triggered",
+        "spontaneous",
+        "right-triggered",
+        "spontaneous, μ_k = 1.0",
+    ]
+    assert data["fits"][0] | {"name": ""} == {
+        "name": "",
+        "a": 0.76,
+        "b": 1.8,
+        "c": 3.05,
+        "colour": "#888888",
+        "dash": "solid",
+    }
+    assert "Of 3 statements 1 hold (✓)" in text and "c_L &lt; 1600 m/s &amp; more" in text
+    assert text.count("<img ") == 13 and text.count("slipfront report ") == 4 + 1  # and the mark
+    assert 'id="run"' in text
+
+
+@pytest.mark.parametrize(
+    "write, says, n_tables",
+    [
+        (write_study, "no limit", 2),
+        (write_interface_step, "No choice is within the tolerance of 1 %", 1),
+        (write_open_choices, "left_added = 5.0", 2),
+    ],
+)
+def test_the_pages_of_studies(tmp_path, write, says, n_tables):
+    folder = write(tmp_path / "study")
+    text = page_of(folder)
+    assert says in text and text.count("<img ") == 1 and text.count("<table") == n_tables
+    assert "<script" not in text
+
+
+def test_a_study_with_other_entries_is_refused(tmp_path, capsys):
+    folder = write_study(tmp_path / "study")
+    (folder / "convergence.json").write_text('{"sequences": 1, "tolerance": 0.1}')
+    assert "convergence.json: not" in refusal(capsys, folder)
+
+
+# What a page is drawn from
+
+
+def test_thinning_keeps_the_fastest_of_each_block():
+    values = np.zeros((7, 5))
+    values[0, 1], values[1, 0], values[3, 4], values[6, 2] = 2, -3, 5, -1
+    thin = history.largest_of_blocks(values, 2, 2)
+    expected = np.zeros((4, 3))
+    expected[0, 0], expected[1, 2], expected[3, 1] = -3, 5, -1
+    np.testing.assert_array_equal(thin, expected)
+
+
+@pytest.mark.parametrize("at_once", [1, 10, 2**22])
+def test_thinning_does_not_depend_on_the_rows_read_at_once(monkeypatch, at_once):
+    monkeypatch.setattr(history, "ROWS_AT_ONCE", at_once)
+    rng = np.random.default_rng(1)
+    fields = {name: rng.normal(size=(23, 11)) for name in history.HISTORY_FIELDS}
+    time_s, x_m = np.arange(23.0), np.arange(11.0)
+    thin = history.thinned(time_s, x_m, fields, (8, 4))
+    assert (thin.times_in_block, thin.nodes_in_block) == (3, 3)
+    np.testing.assert_array_equal(thin.time_s, [1, 4, 7, 10, 13, 16, 19, 21])
+    np.testing.assert_array_equal(thin.x_m, [1, 4, 7, 9])
+    np.testing.assert_array_equal(thin.t_Pa, fields["t_Pa"][np.ix_(thin.time_s.astype(int), [1, 4, 7, 9])])
+    expected = history.largest_of_blocks(fields["slip_rate_m_per_s"], 3, 3)
+    np.testing.assert_array_equal(thin.slip_rate_m_per_s, expected)
+
+
+def test_a_long_record_is_thinned_and_the_page_says_so(tmp_path):
+    write_run(tmp_path / "left", "left", 0.6, 20, 10, 900, 1)
+    text = page_of(tmp_path / "left")
+    assert "one in 3 of 900 times" in text
+    assert data_of(text)["runs"][0]["history"]["p"]["shape"] == [300, 21]
+
+
+def grid_of(points: np.ndarray, cells: list) -> picture_grid.PixelGrid:
+    return picture_grid.pixel_grid(
+        Fields(Path("none"), np.array(points, float), np.array(cells), np.zeros(1))
+    )
+
+
+def test_a_linear_field_is_itself_in_every_pixel():
+    """Cells of different sizes: one of 2 x 1, two of 1 x 0.5 above each half of it."""
+    points = [(0, 0), (2, 0), (2, 1), (0, 1), (1, 1), (1, 1.5), (0, 1.5), (2, 1.5)]
+    grid = grid_of(points, [[0, 1, 2, 3], [3, 4, 5, 6], [4, 2, 7, 5]])
+    x, y = np.array(points).T
+    expected = grid.x_m[None, :] + 3 * grid.y_m[:, None]
+    side = grid.x_m[1] - grid.x_m[0]
+    assert (grid.n_points > 0).all()
+    np.testing.assert_allclose(grid.means(x + 3 * y), expected, atol=4 * side)
+
+
+def test_two_bodies_do_not_mix_in_a_pixel():
+    points = [(0, 0), (3, 0), (3, 1), (0, 1), (0, -1), (3, -1), (3, 0), (0, 0)]
+    grid = grid_of(points, [[0, 1, 2, 3], [4, 5, 6, 7]])
+    picture = grid.means(np.array([1.0, 1, 1, 1, 2, 2, 2, 2]))
+    np.testing.assert_allclose(picture, np.where(grid.y_m[:, None] > 0, 1.0, 2.0) + 0 * grid.x_m)
+
+
+def test_pixels_without_material_are_empty():
+    grid = grid_of(
+        [(0, 0), (1, 0), (1, 1), (0, 1), (2, 0), (3, 0), (3, 1), (2, 1)], [[0, 1, 2, 3], [4, 5, 6, 7]]
+    )
+    codes = picture_grid.codes(grid.means(np.ones(8)), 4.0)
+    gap = (grid.x_m > 1) & (grid.x_m < 2)
+    assert (codes[:, gap] == picture_grid.EMPTY).all()
+    assert (codes[:, ~gap] == picture_grid.WHITE // 2).all()  # the root of a quarter
+
+
+def test_what_the_terms_give_adds_up_to_the_imbalance(run):
+    balance = read_balance(run / "energy.csv")
+    total = sum(run_data.given_to_the_rest(balance).values())
+    stored = balance.terms["strain"] + balance.terms["kinetic"]
+    works = sum(v for term, v in balance.terms.items() if term not in ("strain", "kinetic"))
+    np.testing.assert_allclose(total, works - stored, atol=1e-12)
+    assert total[-1] == pytest.approx(-(stored - works)[-1]) and abs(stored[-1]) > 1
+
+
+def test_numbers_are_short_and_units_suit_them():
+    assert listed([1 / 3, np.nan, np.inf, 0]) == [0.33333, None, None, 0.0]
+    values = np.array([[1e-3, -2.5], [0.0, 7.0]])
+    np.testing.assert_allclose(unpacked(packed(values)), values, rtol=1e-3)
+    assert unit("length", [0.2]).name == "mm" and unit("length", [30e3]).name == "km"
+    assert unit("time", [160e-6]).name == "µs" and unit("time", [12.0]).name == "s"
+    assert unit("traction", [5e6]).name == "MPa" and unit("slip", []).name == "µm"
+
+
+# The package's commands
+
+
+def test_a_command_is_found_by_its_name(run, capsys):
+    assert package.main(["report", str(run)]) == 0
+    assert "report: " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("arguments, told", [([], "usage"), (["frobnicate"], "frobnicate"), (["-x"], "-x")])
+def test_an_unknown_command_is_refused(capsys, arguments, told):
+    assert package.main(arguments) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and told in error and "report" in error
+
+
+def test_help_lists_the_commands(capsys):
+    assert package.main(["--help"]) == 0
+    assert "report" in capsys.readouterr().out
+
+
+def test_a_missing_package_is_named(run):
+    without = "import sys; sys.modules['plotly'] = None; from slipfront.__main__ import main; "
+    script = without + "sys.exit(main(['report', 'x']))"
+    python = Path(__file__).parents[2] / "python"
+    done = subprocess.run(
+        [sys.executable, "-c", script], env={"PYTHONPATH": str(python)}, capture_output=True, text=True
+    )
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert f"report: needs the Python package plotly: install it with '{sys.executable} -m pip" in done.stderr
+
+
+def test_errors_of_a_page_are_the_folders():
+    with pytest.raises(DataError, match="no such folder"):
+        thin_run(Path("/nonexistent"))

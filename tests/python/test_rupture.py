@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The picture of a run at a glance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from slipfront.figures.rupture import main, rupture, unit
+from slipfront.read import read_run
+from synthetic import write_output
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    results = tmp_path_factory.mktemp("results")
+    write_output(results)
+    return results / "left"
+
+
+def test_fronts_and_speeds_are_those_of_the_run(folder):
+    run = read_run(folder)
+    left, right, *_ = rupture(run).figure.axes
+    onsets = {line.get_gid(): line for line in left.lines}
+    speeds = {line.get_gid(): line for line in right.lines}
+    c_S = run.fact("wave_speeds.c_S_m_per_s")
+    assert run.fronts
+    for front in run.fronts:
+        np.testing.assert_allclose(onsets[f"front:{front.id}"].get_xdata(), 1e3 * front.x_m)
+        np.testing.assert_allclose(onsets[f"front:{front.id}"].get_ydata(), 1e6 * front.onset_s)
+        np.testing.assert_allclose(speeds[f"speed:{front.id}"].get_ydata(), front.v_tip_m_per_s / c_S)
+    assert speeds["c_S"].get_ydata()[0] == 1
+    assert speeds["c_L"].get_ydata()[0] == pytest.approx(run.c_L_m_per_s / c_S)
+
+
+@pytest.mark.parametrize(
+    "largest, expected",
+    [(2.0, (1, "m")), (0.2, (1e3, "mm")), (0.12, (1e3, "mm")), (2e-4, (1e6, "µm")), (1e-8, (1e9, "nm"))],
+)
+def test_units_have_few_digits(largest, expected):
+    assert unit(largest, "m") == expected
+
+
+def test_the_picture_is_written_and_a_missing_run_refused(folder, tmp_path, capsys):
+    assert main([str(tmp_path / "a.png"), str(folder)]) == 0
+    assert (tmp_path / "a.png").stat().st_size > 10_000
+    assert main([str(tmp_path / "b.png"), str(tmp_path / "nowhere")]) == 2
+    assert capsys.readouterr().err.count("\n") == 1 and not (tmp_path / "b.png").exists()

@@ -1,0 +1,519 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""`slipfront sweep`: points, refusals, and sweeps of a coarse case with the built program."""
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from slipfront.files import DataError
+from slipfront.folder import verify_checksums
+from slipfront.sweep import engine, maps, notebook, report
+from slipfront.sweep.command import main, share_of
+from slipfront.sweep.definition import Sweep, read_sweep
+from slipfront.sweep.folder import as_json, has_value
+from slipfront.sweep.needs import Needs, matters, require_disk, require_memory
+from slipfront.sweep.outcome import read_outcome
+from slipfront.sweep.points import folder_name, grid, sample, zipped
+from slipfront.sweep.reading import read_results
+from slipfront.sweep.values import Range, range_of, values_of
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# Elements of 5 mm: a run takes a few hundredths of a second.
+COARSE = """\
+title = "coarse"
+
+[plate]
+element_size_m = 5e-3
+
+[friction]
+law = "velocity_weakening"
+mu_s = 1.3
+mu_k = 0.6
+"""
+TWO_BY_TWO = {"friction.mu_k": [0.5, 0.7], "friction.alpha_m2_per_s2": [0.05, 0.1]}
+VARY = ["--vary", "friction.mu_k=0.5,0.7", "--vary", "friction.alpha_m2_per_s2=0.05,0.1"]
+
+
+@pytest.fixture
+def case(tmp_path, monkeypatch):
+    """A coarse case in a folder of its own, and the program to run it."""
+    path = Path(os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")).resolve()
+    if not path.is_file():
+        pytest.fail(f"{path} is no program: build it, or set SLIPFRONT to its path", pytrace=False)
+    monkeypatch.setenv("SLIPFRONT_PROGRAM", str(path))
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "coarse.toml"
+    file.write_text(COARSE)
+    return file
+
+
+@pytest.fixture
+def in_this_process(monkeypatch):
+    """Without Dask, whose workers take seconds to start."""
+    monkeypatch.setattr(engine, "outcomes", lambda tasks, scheduler, workers: engine.one_by_one(tasks))
+
+
+def rows_of(folder):
+    with open(folder / "sweep.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def states_of(folder):
+    """Each file of the points with the time of its last change."""
+    return {
+        path: path.stat().st_mtime_ns for path in sorted((folder / "points").rglob("*")) if path.is_file()
+    }
+
+
+# --- Values and points
+
+
+def test_values_are_lists_steps_or_logarithmic_steps():
+    assert values_of("k", "0.4:1.2:9") == [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2]
+    assert values_of("k", "0.01:1:3:log") == [0.01, 0.1, 1.0]
+    assert values_of("k", "1:4:4") == [1, 2, 3, 4]
+    assert values_of("k", "left, right") == ["left", "right"]
+    assert values_of("k", [1e-3, 2]) == [1e-3, 2]
+
+
+@pytest.mark.parametrize(
+    ("spec", "said"),
+    [
+        ("1:2", "FROM:TO:COUNT"),
+        ("1:2:1", "from 2 on"),
+        ("1:1:3", "equal"),
+        ("0:1:3:log", "greater than 0"),
+        ("a:b:3", "numbers"),
+        ("1,,2", "missing"),
+        ("1,2,1", "twice"),
+        ("1:2:1000000000", "1000000000 values are more than 1000000"),
+        ([], "missing"),
+    ],
+)
+def test_values_that_make_no_sense_are_refused(spec, said):
+    with pytest.raises(DataError, match=said):
+        values_of("friction.mu_k", spec)
+
+
+def test_a_grid_has_all_combinations_and_names_them():
+    points = grid({"friction.mu_k": [0.5, 0.7], "event.kind": ["left", "right"]})
+    assert [point.name for point in points] == [
+        "mu_k=0.5,kind=left",
+        "mu_k=0.5,kind=right",
+        "mu_k=0.7,kind=left",
+        "mu_k=0.7,kind=right",
+    ]
+    assert points[1].settings() == ["friction.mu_k=0.5", "event.kind=right"]
+
+
+def test_names_of_folders_hold_no_path_and_are_unlike_for_unlike_values():
+    names = {folder_name({"friction.file": value}) for value in ("../a.csv", "b/c", "x" * 300)}
+    assert len(names) == 3
+    assert all("/" not in name and len(name) <= 120 for name in names)
+    assert (
+        folder_name({"plate.height_m": 0.1, "base.height_m": 0.2}) == "plate.height_m=0.1,base.height_m=0.2"
+    )
+
+
+def test_zipped_lists_go_together():
+    assert [p.values for p in zipped({"a.x": [1, 2], "b.y": [3, 4]})] == [
+        {"a.x": 1, "b.y": 3},
+        {"a.x": 2, "b.y": 4},
+    ]
+    with pytest.raises(DataError, match=r"a.x has 2, b.y has 1"):
+        zipped({"a.x": [1, 2], "b.y": [3]})
+
+
+def test_a_latin_hypercube_meets_each_part_of_each_range_once():
+    ranges = {"a.x": Range(0.0, 10.0, False), "b.y": range_of("b.y", "0.01:100:log")}
+    points = sample(ranges, 10, seed=3)
+    assert sorted(int(point.values["a.x"]) for point in points) == list(range(10))
+    assert sorted(int((np.log10(point.values["b.y"]) + 2) / 0.4) for point in points) == list(range(10))
+    assert [p.values for p in sample(ranges, 10, seed=3)] == [p.values for p in points]
+    assert [p.values for p in sample(ranges, 10, seed=4)] != [p.values for p in points]
+
+
+def test_a_file_says_what_the_command_line_says(tmp_path):
+    file = tmp_path / "sweep.toml"
+    file.write_text(
+        'case = "a/case.toml"\nkeep = "tables"\nstop_after_failures = 3\n'
+        "[set]\noutput.snapshot_times_s = []\n"
+        '[vary]\nfriction.mu_k = "0.4:1.2:9"\n"event.kind" = ["left", "right"]\n'
+    )
+    sweep = read_sweep(file)
+    assert sweep == Sweep(
+        case=tmp_path / "a/case.toml",
+        vary={"friction.mu_k": "0.4:1.2:9", "event.kind": ["left", "right"]},
+        set={"output.snapshot_times_s": []},
+        keep="tables",
+        stop_after_failures=3,
+    )
+    assert len(sweep.points()) == 18
+    assert sweep.settings() == ["output.snapshot_times_s=[]"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[vary]\na.b = [1]", "case names the case file"),
+        ('case = "c"\nvaries = 1', "unknown entry 'varies'"),
+        ('case = "c"\n[sample]\nseed = 1', "needs count"),
+        ('case = "c"\n[sample]\nnumber = 1', "unknown entry 'number' in .sample."),
+        ('case = "c"\ncombine = "zip"\n[sample]\ncount = 1', "exclude each other"),
+        ('case = "c"\nstop_after_failures = "one"', "is a whole number"),
+    ],
+)
+def test_a_file_that_makes_no_sense_is_refused(tmp_path, text, said):
+    file = tmp_path / "sweep.toml"
+    file.write_text(text)
+    with pytest.raises(DataError, match=said):
+        read_sweep(file)
+
+
+@pytest.mark.parametrize("text", ["0/4", "5/4", "1", "a/b"])
+def test_shares_are_from_1_to_n(text):
+    with pytest.raises(DataError, match="K from 1 to N"):
+        share_of(text)
+
+
+def test_infinity_and_lists_are_values_like_others():
+    case = {"a.x": np.inf, "a.y": [1e-5, 2e-5], "a.z": 2.0, "a.word": "left"}
+    assert has_value(case, "a.x", "inf") and has_value(case, "a.x", np.inf)
+    assert has_value(case, "a.y", [1e-5, 2e-5]) and not has_value(case, "a.y", [1e-5])
+    assert has_value(case, "a.z", 2) and not has_value(case, "a.z", 2.5)
+    assert has_value(case, "a.word", "left") and not has_value(case, "a.none", 1)
+    assert as_json({"a": [np.inf, 1.0]}) == {"a": ["inf", 1.0]}
+
+
+# --- Needs
+
+
+def test_runs_that_do_not_fit_are_refused(tmp_path):
+    needs = Needs(n_points=8, memory_bytes=1e15, disk_bytes=1e18, expected_s=10)
+    with pytest.raises(DataError, match="2 runs at a time need 2e.06 GB of memory"):
+        require_memory(needs, 2)
+    with pytest.raises(DataError, match=r"may need 1e.09 GB"):
+        require_disk(needs, tmp_path / "not/there/yet")
+
+
+def test_only_keys_that_leave_size_and_steps_alone_are_cheap():
+    assert not any(map(matters, ["friction.mu_k", "event.kind", "title", "loading.tilt_left_m"]))
+    assert all(
+        map(matters, ["plate.element_size_m", "material.density_kg_per_m3", "loading.method", "time.end_s"])
+    )
+
+
+# --- Sweeps
+
+
+def refused(capsys, *arguments):
+    """The one line that a refused sweep prints."""
+    assert main([str(a) for a in arguments]) == 2
+    lines = [line for line in capsys.readouterr().err.splitlines() if not line.startswith("checked:")]
+    assert len(lines) == 1
+    return lines[0]
+
+
+def test_a_bad_point_is_named_before_anything_is_run(case, capsys):
+    line = refused(capsys, case, "--vary", "friction.mu_k=0.6,1.4", "-o", "out")
+    assert "point friction.mu_k = 1.4: " in line and "friction.mu_k" in line.split(": ", 3)[-1]
+    assert not Path("out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--vary", "friction.mk=0.6"], "friction.mk"),
+        (["--vary", "friction.mu_k=0.6,0.7", "--set", "friction.mu_k=1"], "both varies and is set"),
+        (["--vary", "friction.mu_k"], "is not KEY=VALUE"),
+        (["--vary", "friction.mu_k=0.6", "--vary", "friction.mu_k=0.7"], "is there twice"),
+        ([], "nothing varies"),
+        (["--vary", "friction.mu_k=0.6", "--zip", "--sample", "3"], "exclude each other"),
+        (["--vary", "friction.mu_k=0.6,0.7", "--sample", "3"], "a sample takes ranges"),
+        (["--vary", "friction.mu_k=0.6:0.7", "--sample", "3", "--seed", "-1"], "seed is a whole number"),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_line(case, capsys, arguments, said):
+    assert said in refused(capsys, case, *arguments, "-o", "out")
+    assert not Path("out").exists()
+
+
+def test_a_folder_of_something_else_is_left_alone(case, capsys):
+    Path("out").mkdir()
+    Path("out/mine.txt").write_text("mine")
+    assert "holds something" in refused(capsys, case, *VARY, "-o", "out")
+    assert [p.name for p in Path("out").iterdir()] == ["mine.txt"]
+
+
+def test_a_sweep_by_dask_and_its_tables(case, tmp_path):
+    """2 x 2 points by local workers; the numbers are those of the runs."""
+    data = notebook.run(case, TWO_BY_TWO, "out", workers=2, quiet=True)
+    out = tmp_path / "out"
+    assert verify_checksums(out) == []
+    assert dict(data.sizes) == {"mu_k": 2, "alpha_m2_per_s2": 2}
+    assert data.mu_k.attrs["key"] == "friction.mu_k"
+    assert data.alpha_m2_per_s2.attrs["units"] == "m2/s2"
+    assert (data.status == "done").all()
+    for row in rows_of(out):
+        assert row["status"] == "done"
+        found = read_outcome(out / row["folder"])
+        at = data.sel(
+            mu_k=float(row["friction.mu_k"]), alpha_m2_per_s2=float(row["friction.alpha_m2_per_s2"])
+        )
+        assert (
+            float(row["friction_work_J_per_m"])
+            == found["friction_work_J_per_m"]
+            == float(at.friction_work_J_per_m)
+        )
+        assert row["longest_front_slip"] == str(at.longest_front_slip.item())
+    # Friction takes the more the lower mu_k is: fronts run farther, and slip is larger.
+    assert (data.friction_work_J_per_m.sel(mu_k=0.5) < data.friction_work_J_per_m.sel(mu_k=0.7)).all()
+    assert not (out / "states").exists()
+
+
+def test_points_are_the_runs_of_the_program(case, tmp_path, in_this_process):
+    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
+    settings = ["--set", "friction.mu_k=0.5", "--set", "friction.alpha_m2_per_s2=0.1"]
+    program = os.environ["SLIPFRONT_PROGRAM"]
+    subprocess.run([program, "run", case, *settings, "-o", "alone", "-q"], check=True)
+    place = tmp_path / "out/points/mu_k=0.5,alpha_m2_per_s2=0.1"
+    for name in ("case.resolved.toml", "fronts.csv", "energy.csv", "interface.h5", "static.csv"):
+        assert (place / name).read_bytes() == (tmp_path / "alone" / name).read_bytes()
+
+
+def test_a_sweep_that_is_done_runs_nothing_again_and_more_values_only_theirs(case, tmp_path, in_this_process):
+    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
+    before = states_of(tmp_path / "out")
+    assert main(["--restart", "out", "-q"]) == 0
+    assert states_of(tmp_path / "out") == before
+    more = ["--vary", "friction.mu_k=0.5,0.6,0.7", "--vary", "friction.alpha_m2_per_s2=0.05,0.1"]
+    assert main([str(case), *more, "-o", "out", "-q"]) == 0
+    after = states_of(tmp_path / "out")
+    assert {path: after[path] for path in before} == before
+    assert len(rows_of(tmp_path / "out")) == 6
+
+
+@pytest.mark.parametrize(
+    "other", [["--vary", "friction.alpha_m2_per_s2=0.2,0.3"], ["--vary", "friction.mu_k=0.5"]]
+)
+def test_a_sweep_that_would_lose_points_is_refused(case, tmp_path, capsys, in_this_process, other):
+    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
+    table = (tmp_path / "out/sweep.csv").read_bytes()
+    assert "which this one has not" in refused(capsys, case, *other, "-o", "out")
+    assert (tmp_path / "out/sweep.csv").read_bytes() == table
+
+
+def test_damaged_results_are_run_again(case, tmp_path, in_this_process):
+    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
+    file = tmp_path / "out/points/mu_k=0.5,alpha_m2_per_s2=0.1/fronts.csv"
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-10])
+    assert verify_checksums(tmp_path / "out") != []
+    assert main(["--restart", "out", "-q"]) == 0
+    assert file.read_bytes() == whole
+    assert verify_checksums(tmp_path / "out") == []
+
+
+def test_another_case_is_refused_a_sweeps_folder(case, tmp_path, capsys, in_this_process):
+    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
+    assert "of other settings" in refused(capsys, case, *VARY, "--set", "time.end_s=1e-4", "-o", "out")
+    case.write_text(COARSE.replace("mu_s = 1.3", "mu_s = 1.2"))
+    assert "of another case file" in refused(capsys, case, *VARY, "-o", "out")
+
+
+def test_one_point_that_fails_leaves_the_others(case, tmp_path, capsys, in_this_process):
+    """A step far above the stable one blows up."""
+    vary = ["--vary", "time.step_factor=0.9,1.5", "--set", "time.allow_unstable=true"]
+    assert main([str(case), *vary, "-o", "out"]) == 1
+    assert "failed: time.step_factor = 1.5: " in capsys.readouterr().out
+    good, bad = rows_of(tmp_path / "out")
+    assert good["status"] == "done" and float(good["n_fronts"]) >= 1 and good["message"] == ""
+    assert bad["status"] == "failed" and bad["n_fronts"] == "" and "energy" in bad["message"]
+    data = notebook.open_sweep("out")
+    assert np.isnan(data.n_fronts.sel(step_factor=1.5)) and data.n_fronts.sel(step_factor=0.9) >= 1
+    assert verify_checksums(tmp_path / "out") == []
+    # It would blow up again: told, not run.
+    before = states_of(tmp_path / "out")
+    assert main(["--restart", "out", "-q"]) == 1
+    assert {p: t for p, t in states_of(tmp_path / "out").items() if p.suffix != ".error"} == {
+        p: t for p, t in before.items() if p.suffix != ".error"
+    }
+
+
+def test_no_point_is_begun_after_so_many_failures(case, tmp_path, capsys, in_this_process):
+    vary = ["--vary", "time.step_factor=1.5,1.6,0.8,0.9", "--set", "time.allow_unstable=true"]
+    assert main([str(case), *vary, "--stop-after-failures", "1", "-o", "out"]) == 1
+    assert "3 points were not begun after 1 failures" in capsys.readouterr().out
+    assert [row["status"] for row in rows_of(tmp_path / "out")] == ["failed", "missing", "missing", "missing"]
+
+
+def test_kept_tables_are_what_is_kept(case, tmp_path, in_this_process):
+    assert main([str(case), *VARY, "-o", "out", "-q", "--keep", "tables"]) == 0
+    out = tmp_path / "out"
+    assert not list(out.rglob("interface.h5"))
+    assert len(list(out.rglob("fronts.csv"))) == 4
+    assert verify_checksums(out) == []
+    before = states_of(out)
+    assert main(["--restart", "out", "-q"]) == 0
+    assert states_of(out) == before
+
+
+def test_shares_make_a_whole(case, tmp_path):
+    for k in (1, 2, 3):
+        assert main([str(case), *VARY, "-o", "out", "-q", "--share", f"{k}/3"]) == 0
+    out = tmp_path / "out"
+    assert not (out / "sweep.csv").exists()
+    before = states_of(out)
+    assert len(list(out.rglob("run.json"))) == 4
+    assert main(["--restart", "out", "-q"]) == 0  # makes the tables
+    assert states_of(out) == before
+    assert [row["status"] for row in rows_of(out)] == ["done"] * 4
+
+
+# --- Interruptions
+
+LONG = ["--vary", "friction.mu_k=0.5,0.7", "--set", "time.end_s=10", "--set", "time.quiet_s=inf",
+        "--set", "output.history_interval_s=1e-3", "--set", "output.energy_interval_s=1e-3"]  # fmt: skip
+
+
+def started(case, *arguments):
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "python")}
+    return subprocess.Popen(
+        [sys.executable, "-m", "slipfront.sweep", *map(str, arguments)],
+        env=environment,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+
+
+def wait_until(condition, timeout_s=120):
+    end = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.02)
+
+
+def runs_under_way(out):
+    """run.json of each run that has come to its event."""
+    return [p.with_name("run.json") for p in out.glob("points/*/unfinished/energy.csv")]
+
+
+def test_an_interrupted_sweep_goes_on_with_its_checkpoints(case, tmp_path):
+    """Ctrl-C as a terminal sends it, to the whole group; points half done are kept and gone on with."""
+    process = started(case, case, *LONG, "-o", "out", "--workers", "2")
+    out = tmp_path / "out"
+    wait_until(lambda: len(runs_under_way(out)) == 2)
+    os.killpg(process.pid, signal.SIGINT)
+    errors = process.communicate(timeout=60)[1]
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == (
+        "slipfront sweep: error: interrupted, 2 points are left; slipfront sweep --restart out"
+    )
+    assert "Traceback" not in errors
+    assert not (out / "sweep.csv").exists()
+    assert len(list(out.glob("points/*/unfinished/state/checkpoint-*.bin"))) == 2
+
+    process = started(case, "--restart", "out", "--workers", "2")
+    wait_until(lambda: all('"sessions": 2' in p.read_text() for p in runs_under_way(out)))
+    assert process.poll() is None
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.wait(timeout=60) == 130
+
+
+def test_runs_end_when_their_sweep_is_killed(case, tmp_path):
+    """A kill leaves no run behind, and the folder can be gone on with at once."""
+    process = started(case, case, *LONG, "-o", "out", "--share", "1/2")
+    out = tmp_path / "out"
+    wait_until(lambda: len(runs_under_way(out)) == 1)
+    process.kill()
+    process.communicate()
+    (place,) = (out / "points").iterdir()
+    wait_until(lambda: '"interrupted"' in (place / "unfinished/run.json").read_text())
+    assert list(place.glob("unfinished/state/checkpoint-*.bin"))
+
+
+# --- Maps and page
+
+
+@pytest.fixture
+def done(case, in_this_process):
+    """A sweep of a number and a word, one point of which fails."""
+    vary = ["--vary", "time.step_factor=0.8,1.5", "--vary", "event.kind=left,spontaneous"]
+    assert main([str(case), *vary, "--set", "time.allow_unstable=true", "-o", "out", "-q"]) == 1
+    return Path("out")
+
+
+def test_a_map_has_the_numbers_of_the_table(done):
+    results = read_results(done)
+    quantity = next(q for q in results.quantities if q.name == "friction_work_J_per_m")
+    cells = maps.grid_of(results, quantity, "event.kind", "time.step_factor")
+    rows = {(float(r["time.step_factor"]), r["event.kind"]): r for r in rows_of(done)}
+    assert list(results.axis("event.kind")) == ["left", "spontaneous"]
+    for i, factor in enumerate((0.8, 1.5)):
+        for j, kind in enumerate(("left", "spontaneous")):
+            text = rows[factor, kind]["friction_work_J_per_m"]
+            assert cells[i, j] == float(text) if text else np.isnan(cells[i, j])
+    assert np.isfinite(cells[0]).all() and np.isnan(cells[1]).all()
+
+
+def test_a_map_is_drawn_into_a_picture(done, capsys):
+    assert maps.main(["map.png", str(done)]) == 0
+    assert Path("map.png").read_bytes().startswith(b"\x89PNG")
+    drawing = maps.draw(done)
+    names = {c.get_gid() for ax in drawing.figure.axes for c in ax.collections}
+    assert set(maps.SHOWN) <= names
+
+
+@pytest.mark.parametrize(
+    ("values", "logarithmic"),
+    [
+        ([2e-6, 4e-6, 8e-6], True),
+        ([0.01, 0.03, 0.1], True),
+        ([0.4, 0.6, 0.8, 1.0], False),
+        ([-1.0, 1.0, 3.0], False),
+        ([0.5, 1.0], False),
+        ([0.01, 1.0], True),
+    ],
+)
+def test_an_axis_is_logarithmic_where_values_are_more_even_there(values, logarithmic):
+    assert maps.is_logarithmic(np.array(values)) == logarithmic
+
+
+def test_edges_lie_half_way_between_centres():
+    assert maps.edges(np.array([1.0, 2.0, 4.0]), False).tolist() == [0.5, 1.5, 3.0, 5.0]
+    assert np.allclose(maps.edges(np.array([1.0, 100.0]), True), [0.1, 10, 1000])
+
+
+def test_a_page_has_the_table_and_what_failed(done):
+    data = report.sweep_data(read_results(done))
+    assert [key["axis"] for key in data["keys"]] == [[0.8, 1.5], ["left", "spontaneous"]]
+    by_values = {tuple(point["values"].values()): point for point in data["points"]}
+    for row in rows_of(done):
+        point = by_values[float(row["time.step_factor"]), row["event.kind"]]
+        text = row["v_tip_largest_over_c_L"]
+        assert point["cells"]["v_tip_largest_over_c_L"] == (float(text) if text else None)
+        assert point["status"] == row["status"]
+    html = report.sweep_section(done, with_plotly=False)
+    assert "2 runs, 2 without results" in html
+    assert html.count("<script") == 2 and "src=" not in html
+    assert report.is_kind(done) and not report.is_kind(done / "points")
+
+
+def test_no_text_of_a_case_ends_a_script():
+    assert "</script>" not in report.embedded({"message": "</script><script>"})
+
+
+def test_a_sweep_that_is_not_done_has_no_map(case, capsys):
+    assert main([str(case), *VARY, "-o", "out", "-q", "--share", "1/2"]) == 0
+    assert maps.main(["map.png", "out"]) == 2
+    assert "the sweep is not done; slipfront sweep --restart out" in capsys.readouterr().err
