@@ -58,7 +58,7 @@ def run(name: str, work: Callable[[], list[str]]) -> int:
     except OSError as error:
         abandon(sys.stdout)
         report_error(name, f"standard output: {error.strerror}")
-        return REFUSED
+        return NOT_WRITTEN
     return DONE
 
 

@@ -5,6 +5,7 @@ import os
 import resource
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,13 @@ element_size_m = 5e-3
 law = "velocity_weakening"
 mu_s = 1.3
 mu_k = 0.6
+"""
+
+# A command's peak; Linux gives kB.
+PEAK_BYTES = """\
+import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True)
+print(1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """
 
 
@@ -57,6 +65,19 @@ class Program:
         return subprocess.Popen(
             [self.path, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL, **options
         )
+
+    def peak_bytes(self, *arguments) -> int:
+        """Resident memory of a run at its peak. A process counts what its parent held when it was forked as its
+        own: a small one between this one and the program keeps that out."""
+        told = subprocess.run(
+            [sys.executable, "-c", PEAK_BYTES, self.path, *map(str, arguments)],
+            cwd=self.folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
+        )
+        return int(told.stdout.splitlines()[-1])
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 
 import json
 import math
-import os
 import random
 import re
 
@@ -240,10 +239,6 @@ def test_memory_is_foretold(program, coarse, tmp_path, name):
     sets = settings(SIZED[name])
     told = program("info", coarse, *sets).stdout
     announced = 1e9 * float(re.search(r"^memory +(\S+) GB", told, re.MULTILINE)[1])
-    run = program.start("run", coarse, "-o", "out", "-q", *sets)
-    _, status, usage = os.wait4(run.pid, 0)
-    run.returncode = os.waitstatus_to_exitcode(status)
-    assert run.returncode == 0
-    peak = 1024 * usage.ru_maxrss
+    peak = program.peak_bytes("run", coarse, "-o", "out", "-q", *sets)
     assert peak > 0.15e9, "too small a case to tell"
     assert peak <= announced <= 1.25 * peak

@@ -276,7 +276,7 @@ def test_a_full_disk_leaves_no_folder(run):
 
 def test_a_full_standard_output_is_told(run):
     with open("/dev/full", "w") as full:
-        refused(command(run, stdout=full), "standard output", "No space left")
+        refused(command(run, stdout=full), "standard output", "No space left", code=1)
     assert (run / "figures/energy_balance.png").is_file()
 
 
@@ -284,7 +284,7 @@ def test_a_closed_pipe_is_told(run):
     read_end, write_end = os.pipe()
     os.close(read_end)
     try:
-        refused(command(run, stdout=write_end), "standard output", "Broken pipe")
+        refused(command(run, stdout=write_end), "standard output", "Broken pipe", code=1)
     finally:
         os.close(write_end)
 

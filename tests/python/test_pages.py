@@ -35,10 +35,10 @@ class Pages:
         command = [sys.executable, SCRIPTS / self.script, self.results, self.target]
         return subprocess.run(command, capture_output=True, text=True, timeout=120, **options)
 
-    def refused(self, *says: str, **options) -> None:
+    def refused(self, *says: str, code: int = 2, **options) -> None:
         before = self.page.read_bytes()
         done = self.run(**options)
-        assert done.returncode == 2 and done.stdout == ""
+        assert done.returncode == code and done.stdout == ""
         assert done.stderr.count("\n") == 1 and done.stderr.startswith(f"{self.script}: error: "), done.stderr
         for part in says:
             assert part in done.stderr
@@ -152,6 +152,7 @@ def test_a_page_that_is_no_file_is_refused(pages):
 def test_a_full_disk_leaves_the_page_as_it_was(pages):
     pages.refused(
         "File too large",
+        code=1,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
         env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
     )
