@@ -31,6 +31,12 @@ install(FILES ${CMAKE_BINARY_DIR}/pages/man.gz RENAME slipfront.1.gz
 install(FILES ${CMAKE_BINARY_DIR}/pages/bash RENAME slipfront
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
 
+# A wheel holds, beside the files in Python, the module and an installation without what describes it.
+if(SLIPFRONT_PYTHON)
+  install(TARGETS slipfront_core LIBRARY DESTINATION slipfront COMPONENT python EXCLUDE_FROM_ALL)
+  install(TARGETS slipfront RUNTIME DESTINATION slipfront/bin COMPONENT python EXCLUDE_FROM_ALL)
+endif()
+
 if(NOT SLIPFRONT_SHARED)
   return()
 endif()
@@ -42,6 +48,16 @@ foreach(processor IN LISTS SLIPFRONT_PROCESSORS)
   install(TARGETS libslipfront-${processor} LIBRARY DESTINATION ${library_folder}/glibc-hwcaps/${processor}
           COMPONENT runtime NAMELINK_SKIP)
 endforeach()
+if(SLIPFRONT_PYTHON)
+  set_target_properties(slipfront_core PROPERTIES INSTALL_RPATH "$ORIGIN/${library_folder}")
+  set(wheel_folder slipfront/${library_folder})
+  install(TARGETS libslipfront LIBRARY DESTINATION ${wheel_folder}
+          COMPONENT python NAMELINK_SKIP EXCLUDE_FROM_ALL)
+  foreach(processor IN LISTS SLIPFRONT_PROCESSORS)
+    install(TARGETS libslipfront-${processor} LIBRARY DESTINATION ${wheel_folder}/glibc-hwcaps/${processor}
+            COMPONENT python NAMELINK_SKIP EXCLUDE_FROM_ALL)
+  endforeach()
+endif()
 
 foreach(room base files record mesh solid interface stability fronts threads statics motion input results run)
   install(DIRECTORY src/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipfront COMPONENT development

@@ -23,7 +23,7 @@ foreach(kind IN LISTS kinds)
   string(REPLACE "slipfront" "" folder ${folder})
   set_target_properties(lib${kind} PROPERTIES
     OUTPUT_NAME slipfront EXPORT_NAME slipfront LINK_DEPENDS ${symbols}
-    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/${folder})
 endforeach()
 add_library(slipfront::slipfront ALIAS libslipfront)

@@ -29,8 +29,7 @@ void print_report(const paper::ReproduceReport& report, const std::string& dir) 
   }
   print("\n{}\n\n", paper::summary(report.claims));
   for (const auto& t : report.timings) print("{:8.2f} s  {}\n", t.wall_s, t.part);
-  print("{} runs, {} of which ended before time.end_s since nothing moved; end_reason in run.json\n",
-        report.n_runs, report.n_quiet);
+  print_ends(report.counts);
   for (const auto& warning : report.warnings) print("warning: {}\n", warning);
   print("results: {}\n", dir);
 }

@@ -80,9 +80,10 @@ void print_row(const std::string& parameter, const char* fronts, const study::Su
 }
 
 void print_table(const study::Convergence& result, const std::string& dir) {
-  print("V_tip over {:.4g} m at stations every {:.4g} m; tolerance {:g} %; {} runs\n\n", result.l_star_m,
-        result.options.station_spacing_m, 100 * result.options.tolerance, result.n_runs);
-  print("{:<30}{:<7}{:>9}  {:>7}  {:>7}  {:>8}  {}\n", "parameter", "fronts", "error", "order", "growth",
+  print("V_tip over {:.4g} m at stations every {:.4g} m; tolerance {:g} %\n", result.l_star_m,
+        result.options.station_spacing_m, 100 * result.options.tolerance);
+  print_ends(result.counts);
+  print("\n{:<30}{:<7}{:>9}  {:>7}  {:>7}  {:>8}  {}\n", "parameter", "fronts", "error", "order", "growth",
         "stations", "verdict");
   for (const auto& s : result.sequences) {
     print_row(s.plan.parameter, "both", s.both);
@@ -114,9 +115,10 @@ void study_convergence(const CaseArguments& arguments, const StudyArguments& stu
 }
 
 void print_table(const study::InterfaceStep& result, const std::string& dir) {
-  print("V_tip at {} stations against the limit of small steps (observed order {}); {} runs\n\n",
-        result.stations.size(), number(result.median_order), result.n_runs);
-  print("{:<34}{:>8}{:>10}{:>12}{:>12}\n", "stepping", "cost", "time", "median", "90 % within");
+  print("V_tip at {} stations against the limit of small steps (observed order {})\n", result.stations.size(),
+        number(result.median_order));
+  print_ends(result.counts);
+  print("\n{:<34}{:>8}{:>10}{:>12}{:>12}\n", "stepping", "cost", "time", "median", "90 % within");
   for (const auto& s : result.all) {
     using Kind = study::Stepping::Kind;
     const std::string what =
@@ -171,7 +173,8 @@ void print_outcome(const paper::OpenChoicesResult& result, const paper::SampleOu
 
 void print_table(const paper::OpenChoicesResult& result, const std::string& dir) {
   const auto& standard = result.outcomes.front();
-  print("{} samples of {} choices, {} runs\n", result.outcomes.size(), result.choices.size(), result.n_runs);
+  print("{} samples of {} choices\n", result.outcomes.size(), result.choices.size());
+  print_ends(result.counts);
   print("standard choices\n");
   print_outcome(result, standard);
   print("C1 to C11 hold for {} of {} triggers\n", result.triggers.n_holding, result.triggers.n_triggers);
@@ -233,6 +236,7 @@ void print_table(const paper::BasesResult& result, const std::string& dir) {
           fmt::format("{}, {}", number(m.dynamic_ratio.fronts.median_relative),
                       number(m.energy_rise.fronts.median_relative)));
   }
+  print_ends(result.counts);
   for (const auto& warning : result.warnings) print("note: {}\n", warning);
   print("results: {}\n", dir);
 }

@@ -214,6 +214,7 @@ BasesResult study_bases(const BasesOptions& options, const BasesMonitor& monitor
       result.warnings.push_back(cases[k].config.title + ": " + run.event.blow_up);
     monitor(++done, cases.size());
   });
+  result.counts = batch.counts();
   auto next = std::make_move_iterator(outcomes.begin());
   const auto n_events = static_cast<std::ptrdiff_t>(cases.size() / result.bases.size());
   for (auto& on : result.bases) {
@@ -227,7 +228,11 @@ BasesResult study_bases(const BasesOptions& options, const BasesMonitor& monitor
 }
 
 void write_bases(const std::filesystem::path& dir, const BasesResult& result) {
-  Json json = {{"version", version_line()}, {"quick", result.quick}, {"warnings", result.warnings}};
+  Json json = {{"version", version_line()},
+               {"quick", result.quick},
+               {"n_runs", result.counts.n_runs},
+               {"n_quiet", result.counts.n_quiet},
+               {"warnings", result.warnings}};
   for (const auto& on : result.bases) json["bases"].push_back(base_json(on));
   files::write_text(dir / "bases.csv", bases_csv(result));
   files::write_text(dir / "bases_points.csv", points_csv(result));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "paper/outcome.hpp"
+#include "run/batch.hpp"
 
 namespace slipfront::paper {
 
@@ -50,6 +51,7 @@ struct BasesOptions {
 struct BasesResult {
   bool quick = false;
   std::vector<OnBase> bases;
+  run::Counts counts;
   std::vector<std::string> warnings;  ///< runs that blew up
 };
 

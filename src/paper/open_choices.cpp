@@ -501,7 +501,7 @@ OpenChoicesResult study_open_choices(
     run_and_judge(samples_about(result.choices, Sample::Set::about_chosen,
                                 result.outcomes[result.chosen].sample.values));
   find_region(result);
-  result.n_runs = outcomes.size();
+  result.counts = batch.counts();
   return result;
 }
 

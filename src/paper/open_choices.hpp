@@ -10,6 +10,7 @@
 #include "fronts/fit.hpp"
 #include "input/case.hpp"
 #include "paper/scorecard.hpp"
+#include "run/batch.hpp"
 
 namespace slipfront::paper {
 
@@ -100,7 +101,7 @@ struct OpenChoicesResult {
   /// C11b: of the trigger samples, those for which C1 to C11 hold.
   TriggerSample triggers;
   std::size_t n_impossible = 0;  ///< samples left out: fillets too small for their elements
-  std::size_t n_runs = 0;
+  run::Counts counts;
 };
 
 /// Runs the four events of every sample (equal ones once) and judges them.

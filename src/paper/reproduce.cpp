@@ -50,8 +50,6 @@ class Runner {
             if (!was_kept) write(dir_ / name, result, initial);
             if (result.event.end == motion::EventEnd::blow_up)
               blow_ups.push_back(name + ": " + result.event.blow_up);
-            ++n_runs;
-            n_quiet += result.event.end == motion::EventEnd::quiet ? 1 : 0;
           }
           outcomes[k] = make_outcome(config_name(name), result, initial);
           wanted(name);
@@ -60,8 +58,9 @@ class Runner {
     return outcomes;
   }
 
+  const run::Counts& counts() const { return batch_.counts(); }
+
   std::vector<std::string> blow_ups;
-  std::size_t n_runs = 0, n_quiet = 0;
 
  private:
   /// Tells the monitor, with the name of a run that is done.
@@ -251,8 +250,7 @@ ReproduceReport reproduce(const ReproduceOptions& options, const RunMonitor& mon
   write_timings(folder.unfinished() / "timings.json", report.timings);
   folder.publish();
   report.warnings = runner.blow_ups;
-  report.n_runs = runner.n_runs;
-  report.n_quiet = runner.n_quiet;
+  report.counts = runner.counts();
   if (!event_blow_ups.empty()) throw BlowUp(event_blow_ups.front());
   return report;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "paper/scorecard.hpp"
+#include "run/batch.hpp"
 
 namespace slipfront::paper {
 
@@ -31,8 +32,7 @@ struct ReproduceReport {
   std::vector<Claim> claims;
   std::vector<Timing> timings;
   std::vector<std::string> warnings;
-  std::size_t n_runs = 0;
-  std::size_t n_quiet = 0;  ///< of them those that ended before time.end_s since nothing moved
+  run::Counts counts;
 };
 
 /// Told of every run that is done; returns false to interrupt the reproduction.

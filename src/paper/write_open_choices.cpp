@@ -176,7 +176,8 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
   const auto count = [&](auto&& condition) { return std::ranges::count_if(result.outcomes, condition); };
   Json json = {{"version", version_line()},
                {"quick", result.quick},
-               {"n_runs", result.n_runs},
+               {"n_runs", result.counts.n_runs},
+               {"n_quiet", result.counts.n_quiet},
                {"n_samples", result.outcomes.size()},
                {"n_impossible", result.n_impossible},
                {"constraints", constraining_claims()},

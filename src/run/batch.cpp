@@ -60,6 +60,7 @@ void Batch::run(std::span<const input::Case> cases, const Done& done, const Usab
     InitialState initial;
     if (kept_ && kept_->has(cases[k]) && (!usable || usable(k)) && kept_->take(cases[k], result, initial)) {
       done(k, result, initial, true);
+      counts_.add(result.event.end);
       continue;
     }
     missing.push_back(k);
@@ -72,9 +73,10 @@ void Batch::run(std::span<const input::Case> cases, const Done& done, const Usab
     const auto result = run_from(cases[k], initial, monitor());
     if (result.event.end == motion::EventEnd::interrupted) throw Interrupted(interruption_);
     done(k, result, initial, false);
-    if (kept_) {
+    {
       const std::lock_guard lock(mutex_);
-      kept_->keep(result, initial);
+      counts_.add(result.event.end);
+      if (kept_) kept_->keep(result, initial);
     }
     if (!wanted()) throw Interrupted(interruption_);
   });

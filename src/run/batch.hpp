@@ -14,6 +14,15 @@
 
 namespace slipfront::run {
 
+/// Runs that were done, and those of them that ended before time.end_s since nothing moved.
+struct Counts {
+  std::size_t n_runs = 0, n_quiet = 0;
+  void add(motion::EventEnd end) {
+    ++n_runs;
+    if (end == motion::EventEnd::quiet) ++n_quiet;
+  }
+};
+
 /// Runs cases side by side, sharing the initial states of those with the same initial_state_key. Results do
 /// not depend on the number of threads.
 class Batch {
@@ -36,6 +45,9 @@ class Batch {
   /// @throws Interrupted, and what a run or `done` throws first.
   void run(std::span<const input::Case> cases, const Done& done, const Usable& usable = {});
 
+  /// Of all calls.
+  const Counts& counts() const { return counts_; }
+
  private:
   void compute_initial_states(std::span<const input::Case* const> cases);
   bool wanted();
@@ -45,6 +57,7 @@ class Batch {
   std::function<bool()> go_on_;
   std::string interruption_;
   bool interrupted_ = false;
+  Counts counts_;
   std::mutex mutex_;
   std::map<std::string, InitialState> states_;
   std::optional<FinishedRuns> kept_;

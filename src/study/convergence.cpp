@@ -158,8 +158,8 @@ Convergence study_convergence(const input::Case& config, const ConvergenceOption
   Convergence result;
   result.options = options;
   result.l_star_m = cases.front().fronts.l_star_m;
-  result.n_runs = cases.size();
   const auto runs = run_cases(cases, options.threads, monitor, options.kept);
+  result.counts = counts_of(runs);
   for (const auto& plan : plans) {
     for (const auto& member : plan.members)
       if (const auto& what = runs[member.run].blow_up; !what.empty())

@@ -67,7 +67,7 @@ struct Convergence {
   double l_star_m = 0;
   std::vector<Sequence> sequences;
   std::vector<std::string> warnings;
-  std::size_t n_runs = 0;
+  run::Counts counts;
 };
 
 /// Runs all sequences and compares V_tip of the main fronts, the longest in each direction, at stations x.

@@ -152,8 +152,8 @@ InterfaceStep study_interface_step(const input::Case& config, const InterfaceSte
   InterfaceStep result;
   result.options = options;
   const auto cases = cases_of(for_study(config), result);
-  result.n_runs = cases.size();
   const auto runs = run_cases(cases, options.threads, monitor, options.kept);
+  result.counts = counts_of(runs);
   find_limits(runs, result);
   compare(std::span(runs).subspan(first_compared), result);
   add_extrapolated(result);
@@ -186,7 +186,8 @@ void write_interface_step(const std::filesystem::path& dir, const input::Case& c
                           {"station_spacing_m", result.options.station_spacing_m},
                           {"n_stations", result.stations.size()},
                           {"median_order_of_reference", number(result.median_order)},
-                          {"n_runs", result.n_runs},
+                          {"n_runs", result.counts.n_runs},
+                          {"n_quiet", result.counts.n_quiet},
                           {"warnings", result.warnings},
                           {"chosen", nullptr}};
   files::remove_file(dir / "chosen.toml");  // of an earlier study

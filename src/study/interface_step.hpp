@@ -45,7 +45,7 @@ struct InterfaceStep {
   std::vector<Stepping> all;
   int chosen = -1;  ///< the cheapest within the tolerance, without extrapolation; -1: none
   std::vector<std::string> warnings;
-  std::size_t n_runs = 0;
+  run::Counts counts;
 };
 
 /// The reference is the whole plate with the case's step_factor over 16, 32 and 64, extrapolated to 0 at each

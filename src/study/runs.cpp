@@ -3,8 +3,6 @@
 
 #include <atomic>
 
-#include "run/batch.hpp"
-
 namespace slipfront::study {
 
 input::Case for_study(input::Case config) {
@@ -24,7 +22,8 @@ std::vector<Run> run_cases(std::span<const input::Case> cases, int threads, cons
   batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
     auto& run = runs[k];
     run.main.options = run::front_options(cases[k], initial);
-    if (r.event.end == motion::EventEnd::blow_up)
+    run.end = r.event.end;
+    if (run.end == motion::EventEnd::blow_up)
       run.blow_up = r.event.blow_up;
     else
       run.main.fronts = main_fronts(r.fronts);
@@ -33,6 +32,12 @@ std::vector<Run> run_cases(std::span<const input::Case> cases, int threads, cons
     ++done;
   });
   return runs;
+}
+
+run::Counts counts_of(std::span<const Run> runs) {
+  run::Counts counts;
+  for (const auto& run : runs) counts.add(run.end);
+  return counts;
 }
 
 }  // namespace slipfront::study

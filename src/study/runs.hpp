@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "input/case.hpp"
+#include "run/batch.hpp"
 #include "study/speeds.hpp"
 
 namespace slipfront::study {
@@ -20,6 +21,7 @@ struct Run {
   MainFronts main;
   double node_updates_per_s = 0;  ///< per simulated time
   double stepping_wall_s = 0;
+  motion::EventEnd end = motion::EventEnd::end_time;
   std::string blow_up;  ///< empty, or what happened
 };
 
@@ -31,5 +33,7 @@ input::Case for_study(input::Case config);
 /// @throws UserError, Interrupted
 std::vector<Run> run_cases(std::span<const input::Case> cases, int threads, const StudyMonitor& monitor,
                            const std::filesystem::path& kept = {});
+
+run::Counts counts_of(std::span<const Run> runs);
 
 }  // namespace slipfront::study

@@ -71,7 +71,8 @@ void write_convergence(const std::filesystem::path& dir, const input::Case& conf
                                 {"station_spacing_m", result.options.station_spacing_m},
                                 {"l_star_m", result.l_star_m},
                                 {"c_L_m_per_s", run::wave_speeds(config.material).c_L},
-                                {"n_runs", result.n_runs},
+                                {"n_runs", result.counts.n_runs},
+                                {"n_quiet", result.counts.n_quiet},
                                 {"sequences", sequences},
                                 {"warnings", result.warnings}};
   files::write_text(dir / "convergence.csv", csv(result));

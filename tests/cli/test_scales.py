@@ -118,6 +118,10 @@ def test_odd_numbers_are_asked_about(program, write_case):
         "event.kind=left", "event.trigger_zone_m=4e-3"
     )
     assert "time.end_s = 0.0001 s is before a shear wave has crossed" in notes("time.end_s=1e-4")
+    # From a patch 0.15 m from the farther end, at 889 m/s.
+    patch = ("event.kind=nucleation", "nucleation.x_m=0.05", "nucleation.half_length_m=0.02")
+    assert "is before a shear wave from the patch has reached both ends" in notes(*patch, "time.end_s=168e-6")
+    assert "shear wave" not in notes(*patch, "time.end_s=169e-6")
     assert notes() == f"{case}: valid\n"
 
 

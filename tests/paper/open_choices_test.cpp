@@ -118,7 +118,7 @@ TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) 
   const auto once = study_open_choices({.quick = true, .threads = 1, .kept = {}}, go_on);
   const auto again = study_open_choices({.quick = true, .threads = 2, .kept = {}}, go_on);
   ASSERT_EQ(once.outcomes.size() + once.n_impossible, 9U);
-  EXPECT_EQ(once.n_runs, again.n_runs);
+  EXPECT_EQ(once.counts.n_runs, again.counts.n_runs);
   EXPECT_EQ(once.triggers.n_triggers, 4);
   EXPECT_EQ(once.triggers.n_holding, again.triggers.n_holding);
   const TemporaryFolder a, b;
@@ -137,7 +137,7 @@ TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) 
     EXPECT_GE(once.outcomes[place].extremity, once.outcomes[static_cast<std::size_t>(once.chosen)].extremity);
   }
   const auto json = nlohmann::json::parse(test::read_file(a / "open_choices.json"));
-  EXPECT_EQ(json["n_runs"], once.n_runs);
+  EXPECT_EQ(json["n_runs"], once.counts.n_runs);
   EXPECT_EQ(json["choices"].size(), once.choices.size());
   std::istringstream csv(test::read_file(a / "open_choices.csv"));
   std::string line;

@@ -82,7 +82,7 @@ TEST(ConvergenceStudy, IsTheSameForAnyNumberOfThreads) {
     options.threads = threads;
     const auto config = coarse_case();
     const auto result = study_convergence(config, options, [](std::size_t, std::size_t) { return true; });
-    EXPECT_EQ(result.n_runs, 9U);  // 3 + 4 + 4, the case itself in all three
+    EXPECT_EQ(result.counts.n_runs, 9U);  // 3 + 4 + 4, the case itself in all three
     EXPECT_FALSE(result.sequences[0].stations.empty());
     write_convergence(dir, config, result);
   }

@@ -52,7 +52,7 @@ TEST_F(CoarseStudy, TriesThePlainSchemeThePairsThatFitAndTheirExtrapolation) {
   EXPECT_EQ(of(Kind::plain).size(), 4U);
   EXPECT_EQ(of(Kind::layer).size(), 4U);
   EXPECT_EQ(of(Kind::extrapolated).size(), 2U);
-  EXPECT_EQ(study().n_runs, 3U + 4U + 4U);
+  EXPECT_EQ(study().counts.n_runs, 3U + 4U + 4U);
   EXPECT_GE(study().stations.size(), 10U);
   EXPECT_EQ(study().stations.size(), study().v_tip_m_per_s.size());
 }
