@@ -33,9 +33,10 @@ std::string duration_text(double seconds) {
   return fmt::format("{}:{:02}", minutes, whole % 60);
 }
 
-Progress::Progress(std::string label, std::int64_t total_steps, bool quiet)
+Progress::Progress(std::string label, std::int64_t total, bool quiet, std::string unit)
     : label_(std::move(label)),
-      total_(std::max<std::int64_t>(total_steps, 1)),
+      unit_(std::move(unit)),
+      total_(std::max<std::int64_t>(total, 1)),
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
       start_(Clock::now()),
@@ -48,10 +49,10 @@ Progress::~Progress() {
 
 std::string Progress::state(Clock::time_point now) const {
   const double elapsed_s = std::max(seconds_between(start_, now), 1e-9);
-  const double steps_per_s = static_cast<double>(step_) / elapsed_s;
-  std::string text = fmt::format("{}: {} %, {:.3g} steps/s", label_, 100 * step_ / total_, steps_per_s);
+  const double per_s = static_cast<double>(step_) / elapsed_s;
+  std::string text = fmt::format("{}: {} %, {:.3g} {}/s", label_, 100 * step_ / total_, per_s, unit_);
   if (step_ > 0)
-    text += fmt::format(", {} to go", duration_text(static_cast<double>(total_ - step_) / steps_per_s));
+    text += fmt::format(", {} to go", duration_text(static_cast<double>(total_ - step_) / per_s));
   return text;
 }
 
@@ -77,7 +78,7 @@ void Progress::note(const std::string& line) {
 void Progress::finish() {
   if (quiet_ || finished_) return;
   finished_ = true;
-  show(fmt::format("{}{}: {} steps in {}\n", terminal_ ? clear_line : "", label_, step_,
+  show(fmt::format("{}{}: {} {} in {}\n", terminal_ ? clear_line : "", label_, step_, unit_,
                    duration_text(seconds_between(start_, Clock::now()))));
   line_open_ = false;
 }

@@ -8,12 +8,12 @@
 
 namespace slipfront::cli {
 
-/// Progress of a known number of steps on standard error: on a terminal one line that is redrawn with
-/// percentage, steps/s and time to go; otherwise a plain line every 10 %. Draws at most 10 times a second;
-/// silent where `quiet`.
+/// Progress of a known number of steps, or of what else `unit` names, on standard error: on a terminal one
+/// line that is redrawn with percentage, rate and time to go; otherwise a plain line every 10 %. Draws at
+/// most 10 times a second; silent where `quiet`.
 class Progress {
  public:
-  Progress(std::string label, std::int64_t total_steps, bool quiet = false);
+  Progress(std::string label, std::int64_t total, bool quiet = false, std::string unit = "steps");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -28,7 +28,7 @@ class Progress {
  private:
   std::string state(Clock::time_point now) const;
 
-  std::string label_;
+  std::string label_, unit_;
   std::int64_t total_, step_ = 0;
   bool quiet_, terminal_, finished_ = false;
   bool line_open_ = false;  ///< the terminal's line waits to be redrawn

@@ -78,7 +78,7 @@ void add_reproduce(Command& app) {
     std::optional<cli::Progress> progress;
     const auto report =
         paper::reproduce(*options, [&](std::size_t done, std::size_t total, const std::string&) {
-          if (!progress) progress.emplace("runs", static_cast<std::int64_t>(total));
+          if (!progress) progress.emplace("reproduce", static_cast<std::int64_t>(total), false, "runs");
           progress->update(static_cast<std::int64_t>(done));
           return !interrupt_wanted();
         });

@@ -55,7 +55,7 @@ void run_study(const std::string& name, const CaseArguments* arguments, const Ta
   catch_interrupts();
   std::optional<cli::Progress> progress;
   const study::StudyMonitor monitor = [&](std::size_t done, std::size_t n) {
-    if (!progress) progress.emplace("runs", static_cast<std::int64_t>(n), target.quiet);
+    if (!progress) progress.emplace("study", static_cast<std::int64_t>(n), target.quiet, "runs");
     progress->update(static_cast<std::int64_t>(done));
     return !interrupt_wanted();
   };

@@ -126,8 +126,8 @@ double measured_step_s(motion::Stepper& stepper, const Meshes& meshes) {
   return fastest_s;
 }
 
-/// Of the factorisation n^1.5 operations are those of large fronts, the rest of its assembly and small ones; rates
-/// measured with two threads over 2e4 to 8e5 unknowns.
+/// Of the factorisation n^1.5 operations are those of large fronts, the rest of its assembly and small ones;
+/// rates measured with two threads over 2e4 to 8e5 unknowns.
 double expected_statics_s(const Info& info) {
   const double n = n_unknowns_of(info);
   if (info.solver == statics::StaticSolver::direct) return 1.6e-9 * std::pow(n, 1.5) + 2.8e-6 * n;

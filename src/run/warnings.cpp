@@ -74,17 +74,17 @@ void add_lengths(const input::Case& config, Warnings& warnings) {
 
 /// Times that do not suit the plate.
 void add_times(const input::Case& config, Warnings& warnings) {
-  // From a patch to the end of the interface that is farther off; where else an event begins only its run tells.
+  // From a patch to the end of the interface that is farther off; where else an event begins only its run
+  // tells.
   const double width_m = config.plate.width_m, x_m = config.nucleation.x_m;
   const double way_m =
       config.event == interface::EventKind::nucleation ? std::max(x_m, width_m - x_m) : width_m;
   const double arrival_s = way_m / solid::shear_speed_m_per_s(config.material);
   if (config.time.end_s < arrival_s)
-    warnings.push_back(
-        fmt::format("time.end_s = {:.4g} s is before a shear wave {}, at {:.4g} s", config.time.end_s,
-                    way_m < width_m ? "from the patch has reached both ends of the interface"
-                                    : "has crossed the plate",
-                    arrival_s));
+    warnings.push_back(fmt::format(
+        "time.end_s = {:.4g} s is before a shear wave {}, at {:.4g} s", config.time.end_s,
+        way_m < width_m ? "from the patch has reached both ends of the interface" : "has crossed the plate",
+        arrival_s));
   const bool ramps = interface::is_at_edge(config.event) || config.event == interface::EventKind::nucleation;
   if (ramps && config.trigger.ramp_s > config.time.end_s)
     warnings.push_back(fmt::format("event.trigger_ramp_s = {:.4g} s is longer than the event, {:.4g} s",

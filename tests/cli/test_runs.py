@@ -481,6 +481,17 @@ def test_convergence_study_and_its_figure_agree(program, coarse, tmp_path):
     assert (tmp_path / "out/figures/convergence.png").is_file()
 
 
+@pytest.mark.parametrize("event, n_quiet", [("left", 0), ("none", 9)])
+def test_a_study_tells_how_many_runs_ended_early(program, coarse, tmp_path, event, n_quiet):
+    sizes = "5e-3,2.5e-3,2e-3"
+    result = program(
+        "study", "convergence", coarse, "--set", f"event.kind={event}", "-o", "out", "--element-sizes", sizes
+    )
+    assert f"\n9 runs, {n_quiet} of which ended before time.end_s since nothing moved\n" in result.stdout
+    told = json.loads((tmp_path / "out/convergence.json").read_text())
+    assert (told["n_runs"], told["n_quiet"]) == (9, n_quiet)
+
+
 def test_reproduce_tells_how_far_the_scorecard_moves(program, tmp_path):
     result = program("reproduce", "--quick", "--sensitivity", "-o", "out", "--threads", "2")
     assert result.returncode == 0
