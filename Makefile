@@ -13,6 +13,7 @@ SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev
 FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
 PACKAGING_PACKAGES := dpkg-dev lintian file
 TRIAL_PACKAGES := debootstrap
+EMULATOR_PACKAGES := qemu-user
 FUZZ_SECONDS ?= 60
 COVERAGE_PACKAGES := gcovr
 BROWSER_PACKAGES := chromium chromium-driver fonts-dejavu-core
@@ -23,7 +24,7 @@ PYTHON := $(VENV)/bin/python
 PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup program build module stubs wheel-trial test examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
+.PHONY: help setup program build module stubs wheel wheel-trial test examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -77,11 +78,14 @@ module: program $(VENV)/.installed  ## build the Python module as well: python/s
 stubs: module  ## renew the types of the module, python/slipfront/_core.pyi
 	PYTHONPATH=python $(PYTHON) -m nanobind.stubgen -q -m slipfront._core -o python/slipfront/_core.pyi
 
-# What is built serves for the wheel, too.
-wheel-trial: module  ## make the wheel of this machine, build/slipfront-*.whl, and try it in an empty environment
-	rm -rf build/slipfront-*.whl build/wheel-trial
-	$(PYTHON) -m pip wheel --quiet --no-deps --no-build-isolation -C build-dir=build/release -w build .
-	scripts/try-wheel build/slipfront-*.whl build/wheel-trial
+wheel: $(VENV)/.installed  ## the Python package for any x86-64 processor, build/slipfront-*.whl
+	rm -f build/slipfront-*.whl
+	$(PYTHON) -m pip wheel --quiet --no-deps --no-build-isolation -w build .
+
+wheel-trial: wheel program  ## try it in an empty environment, and on an old processor that is emulated
+	@scripts/install-packages $(EMULATOR_PACKAGES)
+	rm -rf build/wheel-trial
+	scripts/try-wheel build/slipfront-*.whl build/wheel-trial $(PROGRAM)
 
 test: ready-to-test  ## all tests, C++ and Python
 	@scripts/run-tests build/release $(PYTHON)

@@ -31,6 +31,24 @@ int code_of(int signal) {
   return first + (signal != 0 ? signal : SIGINT);
 }
 
+#if defined(__AVX2__)
+/// Ends a program that was compiled for another processor before the first instruction that this one lacks,
+/// which could be in the initialisation of any static object.
+[[gnu::constructor(101)]] void require_processor() {
+  __builtin_cpu_init();
+#ifdef __AVX512F__
+  const bool is_there = __builtin_cpu_supports("avx512f") != 0;
+#else
+  const bool is_there = __builtin_cpu_supports("avx2") != 0;
+#endif
+  if (is_there) return;
+  static constexpr char text[] =
+      "slipfront: compiled for another processor than this one; compile it here, or install a package\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
+  ::_exit(user_error);
+}
+#endif
+
 /// Files that are opened take the lowest free number: one of a closed standard stream would get what is
 /// printed. Writing to these stand-ins fails, as to a closed stream.
 void hold_standard_streams() {

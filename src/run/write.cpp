@@ -133,9 +133,9 @@ Json rupture_json(const RuptureOutlook& rupture) {
 
 /// What every run.json begins with.
 Json about(const input::Case& config, const Status& status) {
-  Json json = {{"version", version()},    {"commit", commit()},         {"compiler", compiler()},
-               {"host", host_name()},     {"title", config.title},      {"status", status.name},
-               {"reason", status.reason}, {"sessions", status.sessions}};
+  Json json = {{"version", version()},     {"commit", commit()},      {"compiler", compiler()},
+               {"processor", processor()}, {"host", host_name()},     {"title", config.title},
+               {"status", status.name},    {"reason", status.reason}, {"sessions", status.sessions}};
   if (status.name == "running") json["process"] = getpid();
   return json;
 }

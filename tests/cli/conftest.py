@@ -67,8 +67,8 @@ class Program:
         )
 
     def peak_bytes(self, *arguments) -> int:
-        """Resident memory of a run at its peak. A process counts what its parent held when it was forked as its
-        own: a small one between this one and the program keeps that out."""
+        """Resident memory of a run at its peak. A process counts what its parent held when it was forked as
+        its own: a small one between this one and the program keeps that out."""
         told = subprocess.run(
             [sys.executable, "-c", PEAK_BYTES, self.path, *map(str, arguments)],
             cwd=self.folder,

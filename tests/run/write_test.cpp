@@ -131,6 +131,7 @@ TEST_F(WrittenRun, SummaryTellsTheRun) {
     EXPECT_TRUE(run.contains(key)) << key;
   EXPECT_EQ(run["version"], version());
   EXPECT_EQ(run["compiler"], compiler());
+  EXPECT_EQ(run["processor"], processor());
   EXPECT_EQ(run["title"], s.config.title);
   EXPECT_EQ(run["end"], s.result.event.end == motion::EventEnd::quiet ? "quiet" : "end_time");
   EXPECT_EQ(run["mesh"]["nodes"], s.initial.mesh.n_nodes());
