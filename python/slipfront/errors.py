@@ -7,7 +7,7 @@ class Error(Exception):
 
 
 class CaseError(Error, ValueError):
-    """A case, or what else was asked for, cannot be used; the text says where and what to do."""
+    """A case, an array or what else was given cannot be used; the text says where and what to do."""
 
 
 class BlowUpError(Error, ArithmeticError):

@@ -10,7 +10,7 @@ import os
 import re
 import stat
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BufferedReader
@@ -96,13 +96,24 @@ def read_text(file: Path) -> str:
         ) from None
 
 
-def read_toml(file: Path) -> dict[str, Any]:
+def parse_toml(file: Path, text: str, parse_float: Callable[[str], Any] = float) -> dict[str, Any]:
+    """The tables of a file's text; a mistake is told with its line."""
     try:
-        return tomllib.loads(read_text(file).replace("\r\n", "\n"))
+        return tomllib.loads(text, parse_float=parse_float)
     except RecursionError:
         raise DataError(f"{file}: not TOML: nested too deeply") from None
     except ValueError as error:
-        raise DataError(f"{file}: not TOML: {error}") from None
+        told = one_line(str(error))
+        found = re.fullmatch(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", told)
+        if not found:
+            raise DataError(f"{file}: not TOML: {told}") from None
+        line = found[2] or text.rstrip("\n").count("\n") + 1
+        where = f"column {found[3]}" if found[3] else "the end of the file"
+        raise DataError(f"{file}:{line}: not TOML: {found[1]} at {where}; correct it there") from None
+
+
+def read_toml(file: Path) -> dict[str, Any]:
+    return parse_toml(file, read_text(file).replace("\r\n", "\n"))
 
 
 def refuse_constant(name: str) -> None:

@@ -85,7 +85,10 @@ def sweep_of(options: argparse.Namespace) -> Sweep:
     sweep = read_sweep(options.file) if is_sweep_file(options.file) else Sweep(options.file, {})
     vary = once_each(options.vary, "--vary")
     common = {key: value_of(text) for key, text in once_each(options.set, "--set").items()}
-    sweep = combination(options, replace(sweep, vary=sweep.vary | vary, set=sweep.set | common))
+    said = {*(f"vary.{key}" for key in vary), *(f"set.{key}" for key in common)}
+    lines = {entry: line for entry, line in sweep.lines.items() if entry not in said}
+    sweep = replace(sweep, vary=sweep.vary | vary, set=sweep.set | common, lines=lines)
+    sweep = combination(options, sweep)
     if options.keep:
         sweep = replace(sweep, keep=options.keep)
     if options.stop_after_failures is not None:
