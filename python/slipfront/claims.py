@@ -33,9 +33,9 @@ def outcome(
     t_s, p_s = (column(tractions, "tractions", key) for key in ("t_s_Pa", "p_s_Pa"))
     threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
     shear_m = number(critical_shear_m, "critical_shear_m")
-    given = make_case(case, None, tables)
+    given = text(name, "name"), make_case(case, None, tables), *history_arrays(history)
     with refusing():
-        return _core.outcome(text(name, "name"), given, *history_arrays(history), t_s, p_s, threshold, shear_m)
+        return _core.outcome(*given, t_s, p_s, threshold, shear_m)
 
 
 def collapse(outcomes: Iterable[_core.Outcome], *, without_tails: bool = False) -> _core.Collapse:
@@ -70,4 +70,4 @@ def scorecard(
     for name, event in events.items():
         instance(event, _core.Outcome, name)
     with refusing():
-        return _core.scorecard(*events.values(), points)
+        return _core.scorecard(**events, experiment=points)

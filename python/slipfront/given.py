@@ -44,7 +44,7 @@ def text(value: Any, name: str) -> str:
     try:
         value.encode()
     except UnicodeEncodeError:
-        raise CaseError(f"{name} is {shown(value)}: a sign of it, half a surrogate pair, is in no text") from None
+        raise CaseError(f"{name} is {shown(value)}: half a surrogate pair is no sign of a text") from None
     return value
 
 

@@ -208,9 +208,8 @@ def energy_density_J_per_m3(
     """Heuristic energy density of tractions, J/m3: Kammer et al. 2012, Eq. 2. Shape of t_Pa and p_Pa
     together."""
     t, p = np.broadcast_arrays(np.asarray(t_Pa, np.float64), np.asarray(p_Pa, np.float64))
-    density = _core.energy_density_J_per_m3(
-        array(t.ravel(), "t_Pa"), array(p.ravel(), "p_Pa"), youngs_modulus_Pa, poissons_ratio, plane == "strain"
-    )
+    pair = array(t.ravel(), "t_Pa"), array(p.ravel(), "p_Pa")
+    density = _core.energy_density_J_per_m3(*pair, youngs_modulus_Pa, poissons_ratio, plane == "strain")
     return density.reshape(t.shape)
 
 

@@ -49,7 +49,8 @@ class Sweep:
     seed: int = 0
     keep: str = "all"
     stop_after_failures: int | None = None
-    lines: dict[str, str] = field(default_factory=dict, compare=False, repr=False)  # FILE:LINE by dotted entry
+    #: FILE:LINE by dotted entry, of what a file says.
+    lines: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
 
     def place(self, entry: str) -> str:
         """Where an entry is said, for messages."""
@@ -86,7 +87,8 @@ def require_sound(sweep: Sweep) -> Sweep:
     if not sweep.vary:
         raise DataError(f"{at('vary')}: nothing varies: name at least one key with its values")
     if sweep.combine not in COMBINATIONS:
-        raise DataError(f"{at('combine')}: combine is one of {', '.join(COMBINATIONS)}, not '{sweep.combine}'")
+        words = ", ".join(COMBINATIONS)
+        raise DataError(f"{at('combine')}: combine is one of {words}, not '{sweep.combine}'")
     if sweep.keep not in KEEPS:
         raise DataError(f"{at('keep')}: keep is one of {', '.join(KEEPS)}, not '{sweep.keep}'")
     if sweep.stop_after_failures is not None and sweep.stop_after_failures < 1:
@@ -101,7 +103,10 @@ def require_sound(sweep: Sweep) -> Sweep:
         raise DataError(f"{place}{sweep.case}: No such file or directory")
     for key, spec in sweep.vary.items():
         with told_at(at(f"vary.{key}")):
-            range_of(key, str(spec)) if sweep.combine == "sample" else values_of(key, spec)
+            if sweep.combine == "sample":
+                range_of(key, str(spec))
+            else:
+                values_of(key, spec)
     with told_at(at("sample" if sweep.combine == "sample" else "vary")):
         sweep.points()
     return sweep
