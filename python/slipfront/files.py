@@ -21,6 +21,7 @@ import h5py
 import numpy as np
 
 from slipfront.errors import Error
+from slipfront.errors import one_line as one_line
 
 LARGEST_TEXT_BYTES = 2**30
 LARGEST_PACKING = 1032  # of deflate: no data set unpacks to more than so many times its bytes in the file
@@ -32,11 +33,6 @@ class DataError(Error):
 
 class NoRoom(DataError):
     """The system does not write: a full disk, a quota, a broken device. Exit code 1."""
-
-
-def one_line(text: str) -> str:
-    """The text without line breaks, control characters and bytes that no encoding prints."""
-    return "".join(c if c.isprintable() else "?" for c in text)
 
 
 def is_folder(path: Path) -> bool:

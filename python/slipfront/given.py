@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from slipfront.errors import CaseError, Error
-from slipfront.files import one_line
 
 LARGEST_INT = 2**31 - 1  # of the compiled module
 
@@ -22,7 +21,7 @@ LARGEST_INT = 2**31 - 1  # of the compiled module
 def shown(value: Any) -> str:
     """A value in a message: short, in one line."""
     try:
-        return one_line(" ".join(reprlib.repr(value).split()))
+        return " ".join(reprlib.repr(value).split())
     except ValueError:  # a number of more digits than Python writes
         return f"of type {type(value).__name__}"
 
@@ -35,7 +34,7 @@ def refusing() -> Iterator[None]:
     except Error:
         raise
     except ValueError as error:
-        raise CaseError(one_line(str(error))) from None
+        raise CaseError(str(error)) from None
 
 
 def text(value: Any, name: str) -> str:
@@ -53,7 +52,7 @@ def path(value: Any, name: str) -> Path:
     if not isinstance(value, str | os.PathLike) or not isinstance(os.fspath(value), str):
         raise CaseError(f"{name} is {shown(value)}; it must be a path")
     try:
-        os.lstat(value)
+        os.stat(value)
     except (FileNotFoundError, NotADirectoryError):
         pass
     except OSError as error:
@@ -125,7 +124,7 @@ def array(values: Any, name: str, *, dims: int = 1, finite: bool = False) -> np.
     except CaseError:
         raise
     except (TypeError, ValueError, OverflowError) as error:
-        raise CaseError(f"{name} is not an array of numbers: {one_line(str(error))}") from None
+        raise CaseError(f"{name} is not an array of numbers: {error}") from None
     if made.ndim != dims:
         raise CaseError(f"{name} has {made.ndim} dimensions; it must have {dims}")
     if finite and not np.isfinite(made).all():

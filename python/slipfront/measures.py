@@ -214,6 +214,17 @@ def energy_density_J_per_m3(
 
 
 Series = tuple[ArrayLike, ArrayLike]
+evaluate = _core.ExponentialFit.__call__
+
+
+def fitted(fit: _core.ExponentialFit, x: ArrayLike) -> Any:
+    """y of a fit at a number or an array of any shape."""
+    if np.ndim(x) == 0:
+        return float(evaluate(fit, array(number(x, "x"), "x"))[0])
+    return evaluate(fit, array(np.ravel(x), "x")).reshape(np.shape(x))
+
+
+_core.ExponentialFit.__call__ = fitted  # type: ignore[method-assign, assignment]
 
 
 def given_in_order(values: Any, name: str, what: str) -> list[Any]:

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 import slipfront.printed  # noqa: F401
 from slipfront import _core
-from slipfront.errors import BlowUpError, CaseError
+from slipfront.errors import BlowUpError, CaseError, WriteError
 from slipfront.given import array, flag, number, path, shown, table, text, whole
 from slipfront.opened import Kept, OpenRun
 from slipfront.read import read_place
@@ -63,6 +63,21 @@ def flattened(given: Mapping[str, Any], before: str = "") -> Iterator[tuple[str,
             yield key, toml_text(value, key)
 
 
+def working_folder() -> Path:
+    """Paths in a case that is no file count from it."""
+    try:
+        return Path.cwd()
+    except OSError as error:
+        raise CaseError(f"case: the working folder is gone ({error.strerror})") from None
+
+
+def temporary_folder() -> Path:
+    try:
+        return Path(mkdtemp(prefix="slipfront-"))
+    except OSError as error:
+        raise WriteError(f"temporary folder: {error.strerror}; name a folder by `output`") from None
+
+
 def make_case(case: CaseLike, changes: Mapping[str, Any] | None, tables: Mapping[str, Any]) -> _core.Case:
     """The case with its changes, checked."""
     try:
@@ -71,9 +86,12 @@ def make_case(case: CaseLike, changes: Mapping[str, Any] | None, tables: Mapping
     except RecursionError:
         raise CaseError("case: nested too deeply") from None
     if isinstance(case, Mapping):
-        return _core.Case.from_text("", "case", Path.cwd(), keys)
+        return _core.Case.from_text("", "case", working_folder(), keys)
     if isinstance(case, str) and "\n" in case:
-        return _core.Case.from_text(text(case, "case"), "case", Path.cwd(), pairs)
+        return _core.Case.from_text(text(case, "case"), "case", working_folder(), pairs)
+    if not isinstance(case, str | os.PathLike):
+        what = "a path, the text of a case file or a dictionary of its tables"
+        raise CaseError(f"case is {shown(case)}; it must be {what}")
     return _core.Case(path(case, "case"), pairs)
 
 
@@ -171,7 +189,7 @@ def run(
         folder = path(output, "output")
         work(folder)
         return OpenRun(read_place(folder))
-    folder = Path(mkdtemp(prefix="slipfront-"))
+    folder = temporary_folder()
     try:
         work(folder)
         return OpenRun(read_place(folder), Kept(folder))
@@ -233,7 +251,7 @@ def run_with_law(
     expected = prepared.static_coefficient
     if not math.isclose(at_rest, expected, rel_tol=1e-12):
         raise CaseError(f"mu(0, 0) is {at_rest}, the case's coefficient at rest {expected}; make them equal")
-    folder = Path(mkdtemp(prefix="slipfront-"))
+    folder = temporary_folder()
     try:
         compute(lambda show: _core.run_by_law(prepared, folder, of_arrays, show), progress)
         return OpenRun(read_place(folder), Kept(folder))

@@ -224,6 +224,39 @@ def test_fronts_without_a_column(tmp_path, column):
     assert f"no column '{column}'" in refusal(lambda: slipfront.open(run.folder).fronts)
 
 
+def test_bytes_of_a_name_that_are_no_text_are_told(tmp_path):
+    """A name of a file system's own bytes may be used, and is told with signs that can be printed."""
+    said = refusal(lambda: slipfront.open(tmp_path / "a\udc80b"))
+    assert said == f"{tmp_path}/a?b: no such folder; name the output folder of a run"
+    run = slipfront.run(CASE, output=tmp_path / "c\udc80d")
+    assert slipfront.open(run.folder).status == "complete"
+    (run.folder / "energy.csv").unlink()
+    assert "c?d/energy.csv: missing" in refusal(lambda: slipfront.open(run.folder).energies)
+
+
+def test_a_working_folder_that_is_gone(tmp_path, monkeypatch):
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    assert refusal(lambda: slipfront.run(CASE)).startswith("case: the working folder is gone")
+
+
+def test_no_room_for_a_temporary_folder(monkeypatch):
+    monkeypatch.setattr("tempfile.tempdir", "/nonexistent")
+    with pytest.raises(slipfront.WriteError, match="temporary folder: No such file or directory; name"):
+        slipfront.run(CASE)
+
+
+def test_a_fit_is_a_function_of_numbers_and_arrays():
+    x = np.linspace(0.05, 3, 60)
+    fit = slipfront.fit_exponential([(x, 0.7 + 1.9 * np.exp(-2.5 * np.sqrt(x)))], resamples=0)
+    assert fit(1) == pytest.approx(0.7 + 1.9 * np.exp(-2.5), rel=1e-6)
+    assert isinstance(fit(1), float)
+    assert np.array_equal(fit([[1, 2], [1, 1]]), [[fit(1), fit(2)], [fit(1), fit(1)]])
+    for given in ("a", None, 1j):
+        assert "x " in refusal(lambda given=given: fit(given))
+
+
 # --- Printed
 
 

@@ -467,6 +467,13 @@ def test_a_sweep_that_would_lose_points_is_refused(case, tmp_path, capsys, in_th
     assert (tmp_path / "out/sweep.csv").read_bytes() == table
 
 
+def test_points_of_one_name_and_two_values_are_two(case, tmp_path, capsys, in_this_process):
+    """The third of a range and its digits written out: one would take the place of the other."""
+    assert main([str(case), "--vary", "friction.mu_k=0.5:0.6:4", "-o", "out", "-q", "--share", "1/4"]) == 0
+    written = "friction.mu_k=0.5,0.533333,0.566667,0.6"
+    assert "mu_k=0.533333, which this one has not" in refused(capsys, case, "--vary", written, "-o", "out")
+
+
 def test_damaged_results_are_run_again(case, tmp_path, in_this_process):
     assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
     file = tmp_path / "out/points/mu_k=0.5,alpha_m2_per_s2=0.1/fronts.csv"

@@ -125,9 +125,9 @@ def require_usable(folder: Path, sweep: Sweep, identity: Identity) -> None:
     for name, wanted in asdict(identity).items():
         if found.get(name) != wanted:
             raise DataError(f"{folder}: holds a sweep {words[name]}; choose another folder")
-    names = {point.name for point in sweep.points()}
+    points = {point.name: point for point in sweep.points()}
     for point in read_definition(folder).points():
-        if point.name not in names:
+        if point.name not in points or points[point.name].numbers() != point.numbers():
             lost = f"holds a sweep with the point {point.name}, which this one has not"
             raise DataError(f"{folder}: {lost}; choose another folder")
 

@@ -28,6 +28,10 @@ class Point:
         """Its values, to tell it by."""
         return ", ".join(f"{key} = {text_of(value)}" for key, value in self.values.items())
 
+    def numbers(self) -> dict[str, str]:
+        """Equal for points with equal values."""
+        return {key: same(value) for key, value in self.values.items()}
+
     def settings(self) -> list[str]:
         return [f"{key}={text_of(value)}" for key, value in self.values.items()]
 
@@ -76,12 +80,10 @@ def zipped(vary: Mapping[str, list[Value]]) -> list[Point]:
         told = ", ".join(f"{key} has {n}" for key, n in lengths.items())
         raise DataError(f"lists that go together have as many values each: {told}")
     points = made(list(vary), list(zip(*vary.values(), strict=True)))
-    seen: set[tuple[str, ...]] = set()
+    n_of = Counter(tuple(point.numbers().values()) for point in points)
     for point in points:
-        values = tuple(map(same, point.values.values()))
-        if values in seen:
+        if n_of[tuple(point.numbers().values())] > 1:
             raise DataError(f"the point {point.words} is there twice")
-        seen.add(values)
     return points
 
 
