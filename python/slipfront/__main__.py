@@ -7,7 +7,7 @@ import importlib
 import os
 import sys
 
-from slipfront.command import DONE, REFUSED, report_error, write_line
+from slipfront.command import REFUSED, report_error, run
 from slipfront.errors import Error
 from slipfront.program import program
 
@@ -33,8 +33,7 @@ def missing(name: str, package: str) -> str:
 def main(arguments: list[str]) -> int:
     """Exit code of the command that the first argument names."""
     if arguments[:1] in (["--help"], ["-h"]):
-        write_line(sys.stdout, USAGE)
-        return DONE
+        return run("slipfront", lambda: [USAGE])
     name = arguments[0] if arguments else ""
     if name not in COMMANDS:
         report_error("slipfront", f"no Python command '{name}'; {USAGE}" if name else USAGE)

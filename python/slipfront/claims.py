@@ -9,7 +9,8 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from slipfront import _core
-from slipfront.measures import Arrays, doubles, history_arrays
+from slipfront.given import column, flag, instance, number, refusing, text
+from slipfront.measures import Arrays, given_in_order, history_arrays
 from slipfront.running import CaseLike, make_case
 
 
@@ -28,11 +29,13 @@ def outcome(
     case: material, friction, event.kind with its trigger zone, and how fronts are measured; as for `run`.
     history: time_s [times], x_m [nodes], slip_rate_m_per_s, t_Pa and p_Pa [times, nodes]. tractions: t_s_Pa
     and p_s_Pa [nodes] before the event. Contact is where p_s is above 0, its inside loading.edge_margin_m
-    from the ends. Raises ValueError where arrays do not fit each other, CaseError where the case cannot be
-    used."""
-    t_s, p_s = doubles(tractions["t_s_Pa"]), doubles(tractions["p_s_Pa"])
-    given = make_case(case, None, tables)
-    return _core.outcome(name, given, *history_arrays(history), t_s, p_s, threshold_m_per_s, critical_shear_m)
+    from the ends. Raises CaseError where arrays do not fit each other or the case cannot be used."""
+    t_s, p_s = (column(tractions, "tractions", key) for key in ("t_s_Pa", "p_s_Pa"))
+    threshold = number(threshold_m_per_s, "threshold_m_per_s", above=0)
+    shear_m = number(critical_shear_m, "critical_shear_m")
+    given = text(name, "name"), make_case(case, None, tables), *history_arrays(history)
+    with refusing():
+        return _core.outcome(*given, t_s, p_s, threshold, shear_m)
 
 
 def collapse(outcomes: Iterable[_core.Outcome], *, without_tails: bool = False) -> _core.Collapse:
@@ -40,7 +43,10 @@ def collapse(outcomes: Iterable[_core.Outcome], *, without_tails: bool = False) 
     V_tip/c_L over the energy rise, and the share of points in the paper's band.
 
     without_tails: without the last 20 mm of fronts that arrest or run out of contact."""
-    return _core.collapse(list(outcomes), without_tails)
+    events = given_in_order(outcomes, "outcomes", "a list of slipfront.Outcome")
+    for event in events:
+        instance(event, _core.Outcome, "one of outcomes")
+    return _core.collapse(events, flag(without_tails, "without_tails"))
 
 
 def scorecard(
@@ -57,5 +63,11 @@ def scorecard(
     tested: their `holds` is None."""
     points = None
     if experiment is not None:
-        points = (list(doubles(experiment["static_ratio"])), list(doubles(experiment["v_over_c_L"])))
-    return _core.scorecard(spontaneous, left, right, spontaneous_mu_k_1, points)
+        ratio, speed = (column(experiment, "experiment", key) for key in ("static_ratio", "v_over_c_L"))
+        points = ratio.tolist(), speed.tolist()
+    events = {"spontaneous": spontaneous, "left": left, "right": right}
+    events["spontaneous_mu_k_1"] = spontaneous_mu_k_1
+    for name, event in events.items():
+        instance(event, _core.Outcome, name)
+    with refusing():
+        return _core.scorecard(**events, experiment=points)

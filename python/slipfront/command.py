@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import errno
 import os
 import stat
@@ -12,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TextIO
+from typing import Any, TextIO
 
 from slipfront.files import DataError, NoRoom, one_line, open_file
 
@@ -40,8 +41,40 @@ def report_error(name: str, text: str) -> None:
         abandon(sys.stderr)
 
 
-def run(name: str, work: Callable[[], list[str]]) -> int:
-    """Exit code of a command. Prints the lines that `work` returns, or its error as one line."""
+class Output:
+    """Lines on standard output. One that cannot be written costs no results: `problem` is told at the end."""
+
+    problem: str | None = None
+
+    def say(self, line: str) -> None:
+        self.write(lambda: write_line(sys.stdout, line))
+
+    def write(self, work: Callable[[], None]) -> None:
+        if self.problem is not None:
+            return
+        try:
+            work()
+        except OSError as error:
+            abandon(sys.stdout)
+            self.problem = f"standard output: {error.strerror}"
+
+
+class Parser(argparse.ArgumentParser):
+    """Ends with exit code 1 where its help cannot be written."""
+
+    def print_help(self, file: Any = None) -> None:
+        output = Output()
+        output.write(lambda: print(self.format_help(), end="", file=file, flush=True))
+        if output.problem is not None:
+            report_error(self.prog, output.problem)
+            sys.exit(NOT_WRITTEN)
+
+
+def run(name: str, work: Callable[[], list[str]], output: Output | None = None) -> int:
+    """Exit code of a command. Prints the lines that `work` returns, or its error as one line.
+
+    output: what `work` prints with meanwhile."""
+    output = output or Output()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of Matplotlib on odd numbers: errors are told below
@@ -52,12 +85,10 @@ def run(name: str, work: Callable[[], list[str]]) -> int:
     except KeyboardInterrupt:
         report_error(name, "interrupted")
         return INTERRUPTED
-    try:
-        for line in lines:
-            write_line(sys.stdout, line)
-    except OSError as error:
-        abandon(sys.stdout)
-        report_error(name, f"standard output: {error.strerror}")
+    for line in lines:
+        output.say(line)
+    if output.problem is not None:
+        report_error(name, output.problem)
         return NOT_WRITTEN
     return DONE
 

@@ -2,12 +2,20 @@
 """What the package raises; the text of each is one line, the one that the program prints."""
 
 
+def one_line(text: str) -> str:
+    """The text without line breaks, control characters and bytes that no encoding prints."""
+    return "".join(c if c.isprintable() else "?" for c in text)
+
+
 class Error(Exception):
     """Whatever is refused or cannot be done."""
 
+    def __str__(self) -> str:
+        return one_line(super().__str__())
+
 
 class CaseError(Error, ValueError):
-    """A case, or what else was asked for, cannot be used; the text says where and what to do."""
+    """A case, an array or what else was given cannot be used; the text says where and what to do."""
 
 
 class BlowUpError(Error, ArithmeticError):

@@ -10,7 +10,7 @@ import os
 import re
 import stat
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BufferedReader
@@ -21,6 +21,7 @@ import h5py
 import numpy as np
 
 from slipfront.errors import Error
+from slipfront.errors import one_line as one_line
 
 LARGEST_TEXT_BYTES = 2**30
 LARGEST_PACKING = 1032  # of deflate: no data set unpacks to more than so many times its bytes in the file
@@ -32,11 +33,6 @@ class DataError(Error):
 
 class NoRoom(DataError):
     """The system does not write: a full disk, a quota, a broken device. Exit code 1."""
-
-
-def one_line(text: str) -> str:
-    """The text without line breaks, control characters and bytes that no encoding prints."""
-    return "".join(c if c.isprintable() else "?" for c in text)
 
 
 def is_folder(path: Path) -> bool:
@@ -96,13 +92,24 @@ def read_text(file: Path) -> str:
         ) from None
 
 
-def read_toml(file: Path) -> dict[str, Any]:
+def parse_toml(file: Path, text: str, parse_float: Callable[[str], Any] = float) -> dict[str, Any]:
+    """The tables of a file's text; a mistake is told with its line."""
     try:
-        return tomllib.loads(read_text(file).replace("\r\n", "\n"))
+        return tomllib.loads(text, parse_float=parse_float)
     except RecursionError:
         raise DataError(f"{file}: not TOML: nested too deeply") from None
     except ValueError as error:
-        raise DataError(f"{file}: not TOML: {error}") from None
+        told = one_line(str(error))
+        found = re.fullmatch(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", told)
+        if not found:
+            raise DataError(f"{file}: not TOML: {told}") from None
+        line = found[2] or text.rstrip("\n").count("\n") + 1
+        where = f"column {found[3]}" if found[3] else "the end of the file"
+        raise DataError(f"{file}:{line}: not TOML: {found[1]} at {where}; correct it there") from None
+
+
+def read_toml(file: Path) -> dict[str, Any]:
+    return parse_toml(file, read_text(file).replace("\r\n", "\n"))
 
 
 def refuse_constant(name: str) -> None:

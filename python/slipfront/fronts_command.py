@@ -25,7 +25,7 @@ MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
 
 def parse(arguments: list[str]) -> argparse.Namespace:
     settings = FrontSettings()
-    parser = argparse.ArgumentParser(
+    parser = command.Parser(
         prog="slipfront fronts",
         description="Finds the fronts in the times at which slip begins along an interface: speeds, ends. "
         "ONSETS.csv has the columns x_m and time_s, empty where a place never slips, perhaps t_s_Pa and "

@@ -8,16 +8,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from slipfront import _core
-from slipfront.errors import CaseError
+from slipfront.given import number, table
 from slipfront.running import make_case
 
 Table = Mapping[str, Any]
 DEFAULT = {"plane": "stress"}  # a case sets at least one key
-
-
-def require_positive(name: str, value: float) -> None:
-    if not 0 < value < float("inf"):
-        raise CaseError(f"{name} is {value}; it must be above 0 and finite")
 
 
 def wave_speeds(**material: Any) -> _core.WaveSpeeds:
@@ -32,8 +27,8 @@ def stable_step_s(element_size_m: float, **material: Any) -> float:
     """Largest stable time step of the explicit scheme in square elements, s; with the material's damping.
 
     The step of a plate may be smaller by what its corners ask for: `info` tells it."""
-    require_positive("element_size_m", element_size_m)
-    return make_case({"material": {**DEFAULT, **material}}, None, {}).stable_step_s(element_size_m)
+    size_m = number(element_size_m, "element_size_m", above=0, finite=True)
+    return make_case({"material": {**DEFAULT, **material}}, None, {}).stable_step_s(size_m)
 
 
 def well_posedness(
@@ -50,11 +45,9 @@ def well_posedness(
     friction, material, base: tables of a case file, base={"kind": "body", ...} for a second half-space.
     pressure_Pa: uniform, positive in compression. longest_wavelength_m: such as the length of the interface.
     Theory: docs/stability.md."""
-    for name, value in (
-        ("pressure_Pa", pressure_Pa),
-        ("element_size_m", element_size_m),
-        ("longest_wavelength_m", longest_wavelength_m),
-    ):
-        require_positive(name, value)
-    tables = {"friction": friction, "material": material or {}, "base": base or {}}
-    return make_case(tables, None, {}).well_posedness(pressure_Pa, element_size_m, longest_wavelength_m)
+    p_Pa = number(pressure_Pa, "pressure_Pa", above=0, finite=True)
+    size_m = number(element_size_m, "element_size_m", above=0, finite=True)
+    wavelength_m = number(longest_wavelength_m, "longest_wavelength_m", above=0, finite=True)
+    given = {"friction": friction, "material": material, "base": base}
+    tables = {name: table(value, name) for name, value in given.items() if value is not None}
+    return make_case(tables, None, {}).well_posedness(p_Pa, size_m, wavelength_m)

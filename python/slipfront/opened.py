@@ -19,6 +19,7 @@ from xarray.core import indexing
 
 from slipfront.files import DataError, Table, dataset, open_hdf5, read_table, read_toml
 from slipfront.folder import belongs, result_file
+from slipfront.given import path
 from slipfront.read import (
     BLEW_UP,
     HISTORY_FIELDS,
@@ -26,6 +27,7 @@ from slipfront.read import (
     n_finite,
     raw_history,
     read_fields,
+    read_fronts,
     read_place,
     read_probes,
     read_static,
@@ -39,6 +41,8 @@ UNITS = {
     "_m2_per_s2": "m2/s2",
     "_J_per_m": "J/m",
     "_m_per_s": "m/s",
+    "_per_s": "1/s",
+    "_bytes": "bytes",
     "_Pa": "Pa",
     "_s": "s",
     "_m": "m",
@@ -200,11 +204,14 @@ class OpenRun:
         file = self.folder / "fronts.csv"
         if self._place.growing and not belongs(file):
             return xr.Dataset(attrs=self._attributes())
+        read_fronts(file, self._place.growing)  # for its checks
         table = read_table(result_file(file), growing=self._place.growing)
         points = table_variables(table, "point")
-        require(~np.isnan(points["front_id"].to_numpy()), file, "empty cell in column 'front_id'")
         points["front_id"] = points["front_id"].astype(np.int64)
         whole = self.info.get("fronts", [])
+        told = [f.get(name) for f in whole for name in ("id", "direction", "end", "mode")]
+        plain = all(cell is None or isinstance(cell, int | str) for cell in told)
+        require(plain, self.folder / "run.json", "an entry of 'fronts' is neither a number nor a text")
         coordinates = {name: points.pop(name) for name in ("front_id", "x_m", "onset_s")}
         coordinates["front"] = xr.Variable(("front",), [f.get("id") for f in whole])
         points["direction_of_point"] = points.pop("direction")
@@ -323,4 +330,4 @@ class OpenRun:
 def open(folder: str | os.PathLike[str]) -> OpenRun:
     """Opens the results of a run, whoever has made them; where there is an unfinished run and
     no complete one, that. Raises DataError where there is none."""
-    return OpenRun(read_place(Path(folder)))
+    return OpenRun(read_place(path(folder, "folder")))

@@ -484,7 +484,7 @@ def read_balance(file: Path, growing: bool = False, blew_up: bool = False) -> Ba
 def read_place(folder: Path) -> Place:
     """The complete results in a run's folder or, where there are none, those in its unfinished/."""
     if not is_folder(folder):
-        raise DataError(f"{folder}: no such folder; DIR is the output folder of `slipfront reproduce`")
+        raise DataError(f"{folder}: no such folder; name the output folder of a run")
     place, notes = folder, []
     if is_folder(folder / UNFINISHED):
         if belongs(folder / "run.json"):

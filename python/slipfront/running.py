@@ -17,9 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+import slipfront.printed  # noqa: F401
 from slipfront import _core
-from slipfront.errors import BlowUpError
-from slipfront.measures import doubles
+from slipfront.errors import BlowUpError, CaseError, WriteError
+from slipfront.given import array, flag, number, path, shown, table, text, whole
 from slipfront.opened import Kept, OpenRun
 from slipfront.read import read_place
 
@@ -29,44 +30,69 @@ CaseLike = str | os.PathLike[str] | Mapping[str, Any]
 Progress = Callable[[str, int, int], None]
 
 WORDS_OF_TOML = ("true", "false", "inf", "nan")
+LARGEST_INTEGER = 2**63  # of TOML
+MOST_THREADS = 1024
 CHECKPOINT_EVERY_S = 300.0
 
 
-def toml_text(value: Any) -> str:
+def toml_text(value: Any, key: str = "value") -> str:
     """A value as TOML; a word stays without quotes, as on the command line."""
-    if hasattr(value, "tolist"):  # NumPy's numbers and arrays
-        value = value.tolist()
+    if hasattr(value, "__array__"):  # NumPy's numbers and arrays, and what becomes one
+        value = np.asarray(value).tolist()
     if isinstance(value, bool):
         return str(value).lower()
-    if isinstance(value, int | float):
+    if isinstance(value, float) or isinstance(value, int) and abs(value) < LARGEST_INTEGER:
         return repr(value)
     if isinstance(value, str | os.PathLike):
-        text = os.fspath(value)
-        is_word = re.fullmatch(r"[A-Za-z_]\w*", text, re.ASCII) and text not in WORDS_OF_TOML
-        return text if is_word else json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+        words = text(os.fsdecode(value), key)
+        is_word = re.fullmatch(r"[A-Za-z_]\w*", words, re.ASCII) and words not in WORDS_OF_TOML
+        return words if is_word else json.dumps(words, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(map(toml_text, value)) + "]"
-    raise TypeError(f"{value!r}: no value of a case file: give a number, text, True, False or a list")
+        return "[" + ", ".join(toml_text(each, key) for each in value) + "]"
+    what = "no value of a case file: give a number, text, True, False or a list"
+    raise CaseError(f"{key} is {shown(value)}: {what}")
 
 
-def flattened(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:
+def flattened(given: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:
     """Pairs of dotted key and TOML text."""
-    for key, value in table.items():
+    for name, value in given.items():
+        key = before + text(name, "a key")
         if isinstance(value, Mapping):
-            yield from flattened(value, f"{before}{key}.")
+            yield from flattened(value, f"{key}.")
         else:
-            yield f"{before}{key}", toml_text(value)
+            yield key, toml_text(value, key)
+
+
+def working_folder() -> Path:
+    """Paths in a case that is no file count from it."""
+    try:
+        return Path.cwd()
+    except OSError as error:
+        raise CaseError(f"case: the working folder is gone ({error.strerror})") from None
+
+
+def temporary_folder() -> Path:
+    try:
+        return Path(mkdtemp(prefix="slipfront-"))
+    except OSError as error:
+        raise WriteError(f"temporary folder: {error.strerror}; name a folder by `output`") from None
 
 
 def make_case(case: CaseLike, changes: Mapping[str, Any] | None, tables: Mapping[str, Any]) -> _core.Case:
     """The case with its changes, checked."""
-    pairs = [*flattened(changes or {}), *flattened(tables)]
+    try:
+        pairs = [*flattened({} if changes is None else table(changes, "changes")), *flattened(tables)]
+        keys = [*flattened(case), *pairs] if isinstance(case, Mapping) else []
+    except RecursionError:
+        raise CaseError("case: nested too deeply") from None
     if isinstance(case, Mapping):
-        return _core.Case.from_text("", "case", Path.cwd(), [*flattened(case), *pairs])
-    text = os.fspath(case)
-    if isinstance(case, str) and "\n" in text:
-        return _core.Case.from_text(text, "case", Path.cwd(), pairs)
-    return _core.Case(Path(text), pairs)
+        return _core.Case.from_text("", "case", working_folder(), keys)
+    if isinstance(case, str) and "\n" in case:
+        return _core.Case.from_text(text(case, "case"), "case", working_folder(), pairs)
+    if not isinstance(case, str | os.PathLike):
+        what = "a path, the text of a case file or a dictionary of its tables"
+        raise CaseError(f"case is {shown(case)}; it must be {what}")
+    return _core.Case(path(case, "case"), pairs)
 
 
 class Bar:
@@ -105,7 +131,7 @@ def compute(work: Callable[[Progress | None], None], progress: bool | Progress) 
     if callable(progress):
         work(progress)
         return
-    if not progress:
+    if not flag(progress, "progress"):
         work(None)
         return
     bar = Bar()
@@ -113,6 +139,10 @@ def compute(work: Callable[[Progress | None], None], progress: bool | Progress) 
         work(bar)
     finally:
         bar.close()
+
+
+def threads_of(threads: int | None) -> int | None:
+    return None if threads is None else whole(threads, "threads", least=1, most=MOST_THREADS)
 
 
 def run(
@@ -145,17 +175,23 @@ def run(
 
     Raises CaseError (a ValueError), BlowUpError, WriteError, MemoryError."""
     if isinstance(output, Mapping):
-        raise TypeError(
+        raise CaseError(
             'output is the folder; give keys of [output] dotted, as {"output.snapshot_times_s": [...]}'
         )
     prepared = make_case(case, changes, tables)
+    replace, n_threads = flag(overwrite, "overwrite"), threads_of(threads)
+    every_s = number(checkpoint_every_s, "checkpoint_every_s", least=0)
+
+    def work(folder: Path) -> None:
+        compute(lambda show: prepared.run(folder, replace, n_threads, every_s, show), progress)
+
     if output is not None:
-        folder = Path(output)
-        compute(lambda show: prepared.run(folder, overwrite, threads, checkpoint_every_s, show), progress)
+        folder = path(output, "output")
+        work(folder)
         return OpenRun(read_place(folder))
-    folder = Path(mkdtemp(prefix="slipfront-"))
+    folder = temporary_folder()
     try:
-        compute(lambda show: prepared.run(folder, overwrite, threads, checkpoint_every_s, show), progress)
+        work(folder)
         return OpenRun(read_place(folder), Kept(folder))
     except (KeyboardInterrupt, BlowUpError):
         raise  # the message names the folder
@@ -174,8 +210,9 @@ def resume(
     """Goes on with a run that was left unfinished in a folder, as if it had never stopped: bit for bit.
 
     A run that is complete is opened. Raises as `run` does."""
-    folder = Path(output)
-    compute(lambda show: _core.go_on(folder, threads, checkpoint_every_s, show), progress)
+    folder, n_threads = path(output, "output"), threads_of(threads)
+    every_s = number(checkpoint_every_s, "checkpoint_every_s", least=0)
+    compute(lambda show: _core.go_on(folder, n_threads, every_s, show), progress)
     return OpenRun(read_place(folder))
 
 
@@ -196,19 +233,25 @@ def run_with_law(
     The case's own law still gives the coefficient before slip, which statics and fronts take: mu(0, 0) must
     be equal to it; and that of weakened nodes. Case and changes as for `run`. The run takes one thread. Its
     files name the case's own law, so that they cannot be kept in a folder or gone on with: they go with the
-    returned object. Raises what `mu` raises, ValueError where it gives no number or one below 0, and as `run`
+    returned object. Raises what `mu` raises, CaseError where it gives no number or one below 0, and as `run`
     does."""
     prepared = make_case(case, changes, tables)
+    if not callable(mu):
+        raise CaseError(f"mu is {shown(mu)}; it must be a function of slip rates and slip paths")
 
     def of_arrays(speed_m_per_s: np.ndarray, slip_m: np.ndarray) -> np.ndarray:
-        values = np.broadcast_to(doubles(mu(speed_m_per_s, slip_m)), slip_m.shape)
-        return np.ascontiguousarray(values)
+        values = array(mu(speed_m_per_s, slip_m), "mu")
+        if len(values) not in (1, len(slip_m)):
+            raise CaseError(f"mu has {len(values)} values, not {len(slip_m)}")
+        if not (values >= 0).all():
+            raise CaseError("mu must be at least 0 and a number")
+        return np.ascontiguousarray(np.broadcast_to(values, slip_m.shape))
 
     at_rest = float(of_arrays(np.zeros(1), np.zeros(1))[0])
     expected = prepared.static_coefficient
     if not math.isclose(at_rest, expected, rel_tol=1e-12):
-        raise ValueError(f"mu(0, 0) is {at_rest}, the case's coefficient at rest {expected}; make them equal")
-    folder = Path(mkdtemp(prefix="slipfront-"))
+        raise CaseError(f"mu(0, 0) is {at_rest}, the case's coefficient at rest {expected}; make them equal")
+    folder = temporary_folder()
     try:
         compute(lambda show: _core.run_by_law(prepared, folder, of_arrays, show), progress)
         return OpenRun(read_place(folder), Kept(folder))

@@ -2,8 +2,10 @@
 """Subcommands that are Python modules: the interpreter that is chosen, and what it gets and gives."""
 
 import os
+import re
 import shutil
 import signal
+import subprocess
 import sys
 
 import pytest
@@ -92,6 +94,42 @@ def test_a_missing_package_is_told(elsewhere, interpreter, tmp_path, monkeypatch
     (elsewhere.folder / "slipfront").mkdir(parents=True)  # results of that name are no package
     line = one_line(elsewhere("report", "DIR"))
     assert "report needs the Python package slipfront" in line and "-m pip install ." in line
+
+
+ONSETS = "x_m,time_s\n0,0\n1e-2,1e-5\n2e-2,2e-5\n"
+SWEEP = ["sweep", "coarse.toml", "--vary", "friction.mu_k=0.5,0.6", "--share", "1/1", "-o", "sweep"]
+TELLING = [["fronts", "onsets.csv"], ["report", "out"], SWEEP, ["sweep", "--restart", "done"]]
+TELLING += [[command, "--help"] for command in PYTHON_COMMANDS]
+
+
+@pytest.fixture
+def telling(program, coarse, monkeypatch):
+    """The program among what its commands in Python work on."""
+    monkeypatch.setenv("SLIPFRONT_PYTHON", sys.executable)
+    monkeypatch.setenv("PYTHONPATH", str(ROOT / "python"))
+    (program.folder / "onsets.csv").write_text(ONSETS)
+    assert program("run", "coarse.toml", "-o", "out").returncode == 0
+    assert program(*SWEEP[:-1], "done").returncode == 0
+    return program
+
+
+@pytest.mark.parametrize("is_closed", [False, True], ids=["full", "closed"])
+def test_standard_output_that_cannot_be_written(telling, is_closed):
+    """Exit code 1 and one line, for whatever is printed; what a command writes into files is there."""
+    for arguments in TELLING:
+        reading, writing = os.pipe() if is_closed else (-1, os.open("/dev/full", os.O_WRONLY))
+        if is_closed:
+            os.close(reading)
+        command = telling.start(*arguments, stdout=writing, stderr=subprocess.PIPE, text=True)
+        os.close(writing)
+        *progress, last = command.communicate(timeout=120)[1].splitlines()
+        assert command.returncode == 1, arguments
+        why = "Broken pipe" if is_closed else "No space left on device"
+        assert last == f"slipfront {arguments[0]}: error: standard output: {why}"
+        assert all(re.match(r"(checked|done): \d+ of \d+", line) for line in progress)
+    assert (telling.folder / "out/report.html").is_file()
+    assert (telling.folder / "done/sweep.csv").is_file()
+    assert len(list(telling.folder.glob("sweep/points/*/run.json"))) == 2
 
 
 def test_a_page_is_written(program, coarse, monkeypatch):

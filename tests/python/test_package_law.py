@@ -73,7 +73,7 @@ def test_the_arguments_are_arrays_over_the_nodes():
 
 
 def test_mistakes_of_a_law():
-    with pytest.raises(ValueError, match=r"mu\(0, 0\) is 1.0, the case's coefficient at rest 1.3"):
+    with pytest.raises(slipfront.CaseError, match=r"mu\(0, 0\) is 1.0, the case's coefficient at rest 1.3"):
         slipfront.run_with_law(CASE, lambda rate, slip: 1.0, COULOMB)
 
     def breaks(rate, slip):
@@ -83,7 +83,11 @@ def test_mistakes_of_a_law():
 
     with pytest.raises(ZeroDivisionError, match="in the law"):
         slipfront.run_with_law(CASE, breaks, COULOMB)
-    with pytest.raises(ValueError, match="mu must be at least 0 and a number"):
+    with pytest.raises(slipfront.CaseError, match="mu must be at least 0 and a number"):
         slipfront.run_with_law(CASE, lambda rate, slip: np.where(slip > 0, np.nan, 1.3), COULOMB)
-    with pytest.raises(TypeError, match="complex numbers"):
+    with pytest.raises(slipfront.CaseError, match="complex numbers"):
         slipfront.run_with_law(CASE, lambda rate, slip: 1.3 + 0j * slip, COULOMB)
+    with pytest.raises(slipfront.CaseError, match="mu has 3 values, not 1"):
+        slipfront.run_with_law(CASE, lambda rate, slip: np.ones(3), COULOMB)
+    with pytest.raises(slipfront.CaseError, match="mu is 1.3; it must be a function"):
+        slipfront.run_with_law(CASE, 1.3, COULOMB)

@@ -63,7 +63,7 @@ def test_no_slip_no_fronts():
     ],
 )
 def test_arrays_that_do_not_fit(arguments, message):
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(slipfront.CaseError, match=message):
         slipfront.find_fronts(*arguments)
 
 
@@ -248,5 +248,5 @@ def test_datasets_of_others_do():
         slipfront.find_fronts_in_history(
             {**history, "time_s": history.time_s, "x_m": history.x_m, "t_Pa": np.ones((3, 4))}, tractions
         )
-    with pytest.raises(ValueError, match="threshold_m_per_s must be above 0"):
+    with pytest.raises(ValueError, match="threshold_m_per_s is 0; it must be above 0"):
         slipfront.find_fronts_in_history(history, threshold_m_per_s=0)

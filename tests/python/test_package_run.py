@@ -104,9 +104,9 @@ def test_errors_in_files_and_folders(tmp_path):
         slipfront.run(case.read_text())
     with pytest.raises(slipfront.CaseError, match="^case: sets no key"):
         slipfront.run({})
-    with pytest.raises(TypeError, match="no value of a case file"):
+    with pytest.raises(slipfront.CaseError, match="plate.width_m is None: no value of a case file"):
         slipfront.run({"plate.width_m": None})
-    with pytest.raises(TypeError, match=r"keys of \[output\] dotted"):
+    with pytest.raises(slipfront.CaseError, match=r"keys of \[output\] dotted"):
         slipfront.run(CASE, output={"history_interval_s": 1e-6})
 
 

@@ -2,7 +2,9 @@
 """`slipfront sweep`: points, refusals, and sweeps of a coarse case with the built program."""
 
 import csv
+import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -15,8 +17,9 @@ from slipfront.files import DataError
 from slipfront.folder import verify_checksums
 from slipfront.sweep import engine, maps, notebook, report
 from slipfront.sweep.command import main, share_of
-from slipfront.sweep.definition import Sweep, read_sweep
+from slipfront.sweep.definition import Sweep, read_sweep, require_sound
 from slipfront.sweep.folder import as_json, has_value
+from slipfront.sweep.lines import lines_of
 from slipfront.sweep.needs import Needs, matters, require_disk, require_memory
 from slipfront.sweep.outcome import read_outcome
 from slipfront.sweep.points import folder_name, grid, sample, zipped
@@ -122,6 +125,39 @@ def test_names_of_folders_hold_no_path_and_are_unlike_for_unlike_values():
     )
 
 
+@pytest.mark.parametrize(
+    ("spec", "names"),
+    [
+        ("0.1,1e-3,0.50,300", ["0.1", "1e-3", "0.50", "300"]),
+        ("1e-05,2E3", ["1e-5", "2E3"]),
+        ("0:1:4", ["0", "0.333333", "0.666667", "1"]),
+        ("1e-3:1e-1:3:log", ["1e-3", "0.01", "1e-1"]),
+        ([0.1, 1e-05, 2, "7e-1", "left"], ["0.1", "1e-5", "2", "7e-1", "left"]),
+    ],
+)
+def test_names_of_points_have_numbers_as_they_were_written(spec, names):
+    points = grid({"friction.mu_k": values_of("friction.mu_k", spec)})
+    assert [point.name for point in points] == [f"mu_k={name}" for name in names]
+    # One text for one number wherever it is compared, however it was written.
+    numbers = [text.partition("=")[2] for point in points for text in point.settings()]
+    assert all(text == "left" or repr(float(text)) == text or text.isdigit() for text in numbers)
+
+
+def test_names_have_all_digits_where_short_ones_would_be_the_same():
+    close = values_of("a.x", "1:1.000001:3")
+    assert [point.name for point in grid({"a.x": close})] == ["x=1", "x=1.0000005", "x=1.000001"]
+    names = [point.name for point in sample({"a.x": Range(1.0, 1.0 + 1e-7, False)}, 50, seed=1)]
+    assert len(set(names)) == 50
+
+
+def test_numbers_that_are_equal_are_one_value():
+    for spec in ("1e-3,0.001", [1, 1.0], "0.5,0.50"):
+        with pytest.raises(DataError, match="is there twice"):
+            values_of("a.x", spec)
+    with pytest.raises(DataError, match="the point a.x = 0.5, b.y = 1 is there twice"):
+        zipped({"a.x": values_of("a.x", "0.5")[:1] * 2, "b.y": [1, 1]})
+
+
 def test_zipped_lists_go_together():
     assert [p.values for p in zipped({"a.x": [1, 2], "b.y": [3, 4]})] == [
         {"a.x": 1, "b.y": 3},
@@ -177,6 +213,90 @@ def test_a_file_that_makes_no_sense_is_refused(tmp_path, text, said):
         read_sweep(file)
 
 
+FILE = """\
+# runs of a case
+case = "case.toml"
+keep = "tables"
+
+[set]
+time.end_s = 1e-4
+output.snapshot_times_s = [
+    1e-5,
+    2e-5,
+]
+
+[vary]
+friction.mu_k = "0.4:1.2:9"
+"event.kind" = [  # words
+    "left",
+    "right",
+]
+"""
+
+
+def test_lines_of_a_file_are_those_of_its_keys():
+    assert lines_of(FILE) == {
+        "case": 2,
+        "keep": 3,
+        "set": 5,
+        "set.time": 6,
+        "set.time.end_s": 6,
+        "set.output": 7,
+        "set.output.snapshot_times_s": 7,
+        "vary": 12,
+        "vary.friction": 13,
+        "vary.friction.mu_k": 13,
+        "vary.event.kind": 14,
+    }
+    assert lines_of('a = {b = 1}\nt = """\nb = 2\n[c]\n"""\n[[d.e]]\nf = 3') == {
+        "a": 1,
+        "a.b": 1,
+        "t": 2,
+        "d": 6,
+        "d.e": 6,
+        "d.e.f": 7,
+    }
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "said"),
+    [
+        ("[vary]", "[vary", 12, "not TOML: Expected ']'"),
+        ('keep = "tables"', "keep = ", 3, "not TOML: Invalid value"),
+        ('    "right",\n]', '    "right",\n', 16, "not TOML: Invalid value at the end of the file"),
+        ("keep =", "kep =", 3, "unknown entry 'kep'"),
+        ('"tables"', '"some"', 3, "keep is one of all, tables, not 'some'"),
+        ('"tables"', "5", 3, "keep is a text"),
+        ('"case.toml"', '"none.toml"', 2, "none.toml: No such file or directory"),
+        ('"case.toml"', "5", 2, "case is a text"),
+        ('keep = "tables"', "stop_after_failures = 0", 3, "stop_after_failures is a whole number from 1 on"),
+        ('keep = "tables"', "vary = 5\n[x]", 3, "[vary] is a table"),
+        ('"0.4:1.2:9"', '"0.4:1.2"', 13, "values are A,B,C or FROM:TO:COUNT"),
+        ('"0.4:1.2:9"', "[0.5, 0.50]", 13, "the value 0.5 is there twice"),
+        ("friction.mu_k", "time.end_s", 6, "time.end_s both varies and is set"),
+        ("[vary]", "[sample]\nseed = 1\n[vary]", 12, "[sample] needs count"),
+        ("[vary]", "[sample]\ncount = 2\nsed = 1\n[vary]", 14, "unknown entry 'sed' in [sample]"),
+        ("[vary]", "[sample]\ncount = 2\n[vary]", 15, "a sample takes ranges"),
+        ('keep = "tables"', 'combine = "zip"', 12, "lists that go together have as many values each"),
+    ],
+)
+def test_mistakes_of_a_file_are_told_with_their_line(tmp_path, old, new, line, said):
+    (tmp_path / "case.toml").write_text(COARSE)
+    file = tmp_path / "sweep.toml"
+    assert old in FILE
+    text = FILE.replace(old, new, 1)
+    if new == "vary = 5\n[x]":
+        text = text[: text.index("[x]")]
+    file.write_text(text)
+    with pytest.raises(DataError) as error:
+        require_sound(read_sweep(file))
+    assert str(error.value).startswith(f"{file}:{line}: ")
+    assert said in str(error.value)
+    file.write_bytes(text.replace("\n", "\r\n").encode())  # of other systems
+    with pytest.raises(DataError, match=f"^{re.escape(str(file))}:{line}: "):
+        require_sound(read_sweep(file))
+
+
 @pytest.mark.parametrize("text", ["0/4", "5/4", "1", "a/b"])
 def test_shares_are_from_1_to_n(text):
     with pytest.raises(DataError, match="K from 1 to N"):
@@ -225,6 +345,28 @@ def test_a_bad_point_is_named_before_anything_is_run(case, capsys):
     line = refused(capsys, case, "--vary", "friction.mu_k=0.6,1.4", "-o", "out")
     assert "point friction.mu_k = 1.4: " in line and "friction.mu_k" in line.split(": ", 3)[-1]
     assert not Path("out").exists()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "said"),
+    [
+        ("friction.mu_k", "friction.mk", 6, "unknown key friction.mk; did you mean friction.mu_k?"),
+        ("0.7", "1.4", 6, "mu_k must be at most mu_s"),
+        ("time.end_s", "time.end", 3, "unknown key time.end"),
+    ],
+)
+def test_what_the_program_has_against_a_file_is_told_with_its_line(case, capsys, old, new, line, said):
+    file = case.with_name("sweep.toml")
+    text = 'case = "coarse.toml"\n[set]\ntime.end_s = 1e-4\n\n[vary]\nfriction.mu_k = [0.5, 0.7]\n'
+    file.write_text(text.replace(old, new))
+    told = refused(capsys, "sweep.toml", "-o", "out")
+    assert told.startswith(f"slipfront sweep: error: sweep.toml:{line}: point friction.m") and said in told
+
+
+def test_what_the_command_line_says_is_not_the_files(case, capsys):
+    case.with_name("sweep.toml").write_text('case = "coarse.toml"\n[vary]\nfriction.mu_k = [0.5, 0.7]\n')
+    told = refused(capsys, "sweep.toml", "--vary", "friction.mu_k=9", "-o", "out")
+    assert told.startswith("slipfront sweep: error: point friction.mu_k = 9: --set friction.mu_k=9: ")
 
 
 @pytest.mark.parametrize(
@@ -300,6 +442,21 @@ def test_a_sweep_that_is_done_runs_nothing_again_and_more_values_only_theirs(cas
     assert len(rows_of(tmp_path / "out")) == 6
 
 
+def test_a_sweep_goes_on_by_the_names_of_its_points(case, tmp_path, in_this_process):
+    file = tmp_path / "sweep.toml"
+    file.write_text('case = "coarse.toml"\nkeep = "tables"\n[vary]\nfriction.mu_k = [0.50, 7e-1]\n')
+    assert main(["sweep.toml", "-o", "out", "-q"]) == 0
+    names = ["mu_k=0.50", "mu_k=7e-1"]
+    assert sorted(p.name for p in (tmp_path / "out/points").iterdir()) == names
+    before = states_of(tmp_path / "out")
+    for again in (["--restart", "out"], ["sweep.toml", "-o", "out"]):
+        assert main([*again, "-q"]) == 0
+        assert states_of(tmp_path / "out") == before
+    assert [row["folder"] for row in rows_of(tmp_path / "out")] == [f"points/{name}" for name in names]
+    assert [row["friction.mu_k"] for row in rows_of(tmp_path / "out")] == ["0.5", "0.7"]
+    assert list(notebook.open_sweep("out").mu_k) == [0.5, 0.7]
+
+
 @pytest.mark.parametrize(
     "other", [["--vary", "friction.alpha_m2_per_s2=0.2,0.3"], ["--vary", "friction.mu_k=0.5"]]
 )
@@ -308,6 +465,13 @@ def test_a_sweep_that_would_lose_points_is_refused(case, tmp_path, capsys, in_th
     table = (tmp_path / "out/sweep.csv").read_bytes()
     assert "which this one has not" in refused(capsys, case, *other, "-o", "out")
     assert (tmp_path / "out/sweep.csv").read_bytes() == table
+
+
+def test_points_of_one_name_and_two_values_are_two(case, tmp_path, capsys, in_this_process):
+    """The third of a range and its digits written out: one would take the place of the other."""
+    assert main([str(case), "--vary", "friction.mu_k=0.5:0.6:4", "-o", "out", "-q", "--share", "1/4"]) == 0
+    written = "friction.mu_k=0.5,0.533333,0.566667,0.6"
+    assert "mu_k=0.533333, which this one has not" in refused(capsys, case, "--vary", written, "-o", "out")
 
 
 def test_damaged_results_are_run_again(case, tmp_path, in_this_process):
@@ -375,6 +539,112 @@ def test_shares_make_a_whole(case, tmp_path):
     assert main(["--restart", "out", "-q"]) == 0  # makes the tables
     assert states_of(out) == before
     assert [row["status"] for row in rows_of(out)] == ["done"] * 4
+
+
+# --- Results of a run
+
+FRONT_HEADER = "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,"
+FRONT_HEADER += "U_s_J_per_m3,U_r_J_per_m3,speed_kind\n"
+C_L = 1000.0
+
+
+def write_results(place, case, fronts):
+    """A run with nodes every 10 mm, in contact from 0.1 to 0.9 m. fronts: rows (x, speed, kind) of each."""
+    place.mkdir()
+    told, rows = [], []
+    for k, points in enumerate(fronts):
+        direction = 1 if points[-1][0] > points[0][0] else -1
+        told.append({"id": k, "direction": direction, "end": "contact_end", "mode": "crack"})
+        rows += [
+            f"{k},{x:.17g},{1e-5 * n},{direction},{v or ''},1,1,,,1,1,,,{kind}\n"
+            for n, (x, v, kind) in enumerate(points)
+        ]
+    text = FRONT_HEADER + "".join(rows)
+    if not any(kind for points in fronts for _, _, kind in points):  # of an older program
+        text = re.sub(r",\w*$", "", text, flags=re.MULTILINE)
+    (place / "fronts.csv").write_text(text)
+    x_m = np.arange(101) / 100
+    pressed = (x_m > 0.095) & (x_m < 0.905)
+    static = [f"{x},1,{p:d}\n" for x, p in zip(x_m, pressed, strict=True)]
+    (place / "static.csv").write_text("x_m,t_s_Pa,p_s_Pa\n" + "".join(static))
+    (place / "case.resolved.toml").write_text("[fronts]\nl_star_m = 0.02\n" + case)
+    energies = dict.fromkeys(
+        [
+            f"{name}_J_per_m"
+            for name in ("strain", "kinetic", "friction_work", "trigger_work", "damping_work")
+        ],
+        0.0,
+    )
+    info = {"wave_speeds": {"c_L_m_per_s": C_L}, "fronts": told, "time_s": 1e-3, "end": "quiet"}
+    info |= {"energy_at_start": energies, "energy_at_end": energies}
+    (place / "run.json").write_text(json.dumps(info))
+    return read_outcome(place)
+
+
+def path(from_cm, to_cm, v=500.0, kind="front"):
+    """Nodes every 10 mm."""
+    step = 1 if to_cm > from_cm else -1
+    return [(k / 100, v, kind) for k in range(from_cm, to_cm + step, step)]
+
+
+def test_a_trigger_zone_is_no_part_of_a_front(tmp_path):
+    """A front that leaves the zone, and one to the edge that the trigger makes all by itself."""
+    zone = '[event]\nkind = "left"\ntrigger_zone_m = 0.1\n[plate]\nsides = "free"\n'
+    right = [*path(15, 20, None, "triggered"), *path(21, 70)]
+    left = path(14, 9, None, "triggered")
+    found = write_results(tmp_path / "left", zone, [left, right])
+    assert found["n_fronts"] == 1
+    assert found["longest_front_direction"] == 1
+    assert found["longest_front_length_m"] == pytest.approx(0.5)
+    assert found["slipped_length_m"] == pytest.approx(0.5)
+    assert found["slipped_share"] == pytest.approx(0.5 / 0.7)
+    assert found["reached_ends"] == "right"
+    # Without a trigger both are fronts.
+    found = write_results(tmp_path / "free", '[event]\nkind = "spontaneous"\n', [left, right])
+    assert found["n_fronts"] == 2
+    assert found["slipped_length_m"] == pytest.approx(0.6 - 0.01)
+    assert found["slipped_share"] == pytest.approx(0.59 / 0.8)
+    assert found["reached_ends"] == "both"
+    # Of an event in which nothing leaves the zone there is no front.
+    found = write_results(tmp_path / "none", zone, [left])
+    assert (found["n_fronts"], found["longest_front_end"], found["slipped_share"]) == (0, "none", 0)
+
+
+@pytest.mark.parametrize("x_m", [0.5, 0.12])
+def test_a_nucleation_patch_is_no_part_of_the_fronts(tmp_path, x_m):
+    """Of a periodic plate it may go on at the other edge."""
+    patch = f"[nucleation]\nx_m = {x_m}\nhalf_length_m = 0.1\ntaper_m = 0.05\n"
+    case = f'[event]\nkind = "nucleation"\n{patch}[plate]\nsides = "periodic"\nwidth_m = 1.0\n'
+    middle = round(100 * x_m)
+    found = write_results(tmp_path / "run", case, [path(middle, 80), path(middle, 10)])
+    whole_m = 0.8 - 0.3 if x_m == 0.5 else 0.9 - 0.27
+    ahead_m = 0.8 - x_m - 0.15
+    behind_m = 0.25 if x_m == 0.5 else 0.0
+    assert found["n_fronts"] == (2 if behind_m else 1)
+    assert found["longest_front_length_m"] == pytest.approx(max(ahead_m, behind_m))
+    assert found["slipped_share"] == pytest.approx((ahead_m + behind_m) / whole_m)
+
+
+def test_only_speeds_are_taken_for_speeds(tmp_path):
+    """Not what another kind of row may hold, and not next to an absorbing edge."""
+    front = [
+        *path(10, 20, 9e3, "simultaneous"),
+        *path(21, 98, 500.0),
+        (0.99, 4e3, "front"),
+        (1, 5e3, "path_end"),
+    ]
+    for sides, largest in (("free", 4.0), ("absorbing", 0.5)):
+        case = f'[event]\nkind = "spontaneous"\n[plate]\nsides = "{sides}"\n'
+        found = write_results(tmp_path / sides, case, [front])
+        assert found["v_tip_largest_over_c_L"] == largest
+        assert found["longest_front_v_tip_largest_over_c_L"] == largest
+        assert found["longest_front_v_tip_median_over_c_L"] == 0.5
+    base = '[event]\nkind = "spontaneous"\n[base]\nsides = "absorbing"\n'
+    assert write_results(tmp_path / "base", base, [front])["v_tip_largest_over_c_L"] == 0.5
+    # An older program did not tell them apart.
+    older = [(x, v, "") for x, v, _ in front]
+    case = '[event]\nkind = "spontaneous"\n'
+    assert write_results(tmp_path / "older", case, [older])["v_tip_largest_over_c_L"] == 9.0
 
 
 # --- Interruptions

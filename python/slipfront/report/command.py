@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from types import ModuleType
 
@@ -36,7 +35,7 @@ def write_report(folder: Path, file: Path) -> list[str]:
 
 
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(
+    parser = command.Parser(
         prog="slipfront report",
         description="Writes one page of HTML to look at results in a browser: diagrams to zoom into and to "
         "point at, "

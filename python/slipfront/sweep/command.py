@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import argparse
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,8 +26,8 @@ CODES = (
 )
 
 
-def make_parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog=NAME, description=f"{DESCRIPTION} {VALUES} {CODES}")
+def make_parser() -> command.Parser:
+    parser = command.Parser(prog=NAME, description=f"{DESCRIPTION} {VALUES} {CODES}")
     add = parser.add_argument
     add("file", metavar="FILE", type=Path, nargs="?", help="a sweep (TOML), or a case with --vary")
     add("-o", "--output", metavar="DIR", type=Path, help="folder of the sweep; one that was begun goes on")
@@ -85,7 +84,10 @@ def sweep_of(options: argparse.Namespace) -> Sweep:
     sweep = read_sweep(options.file) if is_sweep_file(options.file) else Sweep(options.file, {})
     vary = once_each(options.vary, "--vary")
     common = {key: value_of(text) for key, text in once_each(options.set, "--set").items()}
-    sweep = combination(options, replace(sweep, vary=sweep.vary | vary, set=sweep.set | common))
+    said = {*(f"vary.{key}" for key in vary), *(f"set.{key}" for key in common)}
+    lines = {entry: line for entry, line in sweep.lines.items() if entry not in said}
+    sweep = replace(sweep, vary=sweep.vary | vary, set=sweep.set | common, lines=lines)
+    sweep = combination(options, sweep)
     if options.keep:
         sweep = replace(sweep, keep=options.keep)
     if options.stop_after_failures is not None:
@@ -110,7 +112,7 @@ def asked_for(options: argparse.Namespace) -> tuple[Sweep, Path]:
     return sweep_of(options), options.output
 
 
-def how_of(options: argparse.Namespace) -> How:
+def how_of(options: argparse.Namespace, output: command.Output) -> How:
     if options.workers is not None and options.workers < 1:
         raise DataError("--workers is a whole number from 1 on")
     return How(
@@ -118,7 +120,7 @@ def how_of(options: argparse.Namespace) -> How:
         scheduler=options.scheduler,
         share=share_of(options.share) if options.share else None,
         quiet=options.quiet,
-        say=lambda line: command.write_line(sys.stdout, line),
+        say=output.say,
     )
 
 
@@ -131,12 +133,13 @@ def exit_code(finished: Finished) -> int:
 def main(arguments: list[str] | None = None) -> int:
     options = make_parser().parse_args(arguments)
     codes = [command.DONE]
+    output = command.Output()
 
     def work() -> list[str]:
         sweep, folder = asked_for(options)
         if options.slurm is not None:
             return array_script(sweep, folder, options.slurm)
-        finished = carry_out(sweep, folder, how_of(options))
+        finished = carry_out(sweep, folder, how_of(options, output))
         codes[0] = exit_code(finished)
         if finished.is_interrupted:
             raise_interrupted(finished)
@@ -147,7 +150,7 @@ def main(arguments: list[str] | None = None) -> int:
             NAME, f"interrupted, {finished.n_left} points are left; {NAME} --restart {folder_of(finished)}"
         )
 
-    return command.run(NAME, work) or codes[0]
+    return command.run(NAME, work, output) or codes[0]
 
 
 def folder_of(finished: Finished) -> Path:

@@ -20,13 +20,16 @@ seed = 1
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
-from slipfront.files import DataError, exists, read_toml
+from slipfront.files import DataError, exists, parse_toml, read_text, read_toml
+from slipfront.sweep.lines import lines_of
 from slipfront.sweep.points import Point, grid, sample, zipped
-from slipfront.sweep.values import Value, range_of, text_of, values_of
+from slipfront.sweep.values import Value, Written, range_of, text_of, values_of
 
 COMBINATIONS = ("grid", "zip", "sample")
 KEEPS = ("all", "tables")
@@ -46,6 +49,12 @@ class Sweep:
     seed: int = 0
     keep: str = "all"
     stop_after_failures: int | None = None
+    #: FILE:LINE by dotted entry, of what a file says.
+    lines: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
+
+    def place(self, entry: str) -> str:
+        """Where an entry is said, for messages."""
+        return self.lines.get(entry, "sweep")
 
     @property
     def keys(self) -> list[str]:
@@ -63,27 +72,43 @@ class Sweep:
         return zipped(values) if self.combine == "zip" else grid(values)
 
 
-def require_sound(sweep: Sweep, place: str) -> Sweep:
-    """Refuses what contradicts itself, before anything is run; keys and values are the program's to judge."""
-    if not sweep.vary:
-        raise DataError(f"{place}: nothing varies: name at least one key with its values")
-    if sweep.combine not in COMBINATIONS:
-        raise DataError(f"{place}: combine is one of {', '.join(COMBINATIONS)}, not '{sweep.combine}'")
-    if sweep.keep not in KEEPS:
-        raise DataError(f"{place}: keep is one of {', '.join(KEEPS)}, not '{sweep.keep}'")
-    if sweep.stop_after_failures is not None and sweep.stop_after_failures < 1:
-        raise DataError(f"{place}: stop_after_failures is a whole number from 1 on")
-    if sweep.seed < 0:
-        raise DataError(f"{place}: seed is a whole number from 0 on")
-    for key in sweep.vary:
-        if key in sweep.set:
-            raise DataError(f"{place}: {key} both varies and is set")
-    if not exists(sweep.case):
-        raise DataError(f"{sweep.case}: No such file or directory")
+@contextmanager
+def told_at(place: str) -> Iterator[None]:
+    """Puts a place before what is refused meanwhile."""
     try:
-        sweep.points()
+        yield
     except DataError as error:
         raise DataError(f"{place}: {error}") from None
+
+
+def require_sound(sweep: Sweep) -> Sweep:
+    """Refuses what contradicts itself, before anything is run; keys and values are the program's to judge."""
+    at = sweep.place
+    if not sweep.vary:
+        raise DataError(f"{at('vary')}: nothing varies: name at least one key with its values")
+    if sweep.combine not in COMBINATIONS:
+        words = ", ".join(COMBINATIONS)
+        raise DataError(f"{at('combine')}: combine is one of {words}, not '{sweep.combine}'")
+    if sweep.keep not in KEEPS:
+        raise DataError(f"{at('keep')}: keep is one of {', '.join(KEEPS)}, not '{sweep.keep}'")
+    if sweep.stop_after_failures is not None and sweep.stop_after_failures < 1:
+        raise DataError(f"{at('stop_after_failures')}: stop_after_failures is a whole number from 1 on")
+    if sweep.seed < 0:
+        raise DataError(f"{at('sample.seed')}: seed is a whole number from 0 on")
+    for key in sweep.vary:
+        if key in sweep.set:
+            raise DataError(f"{at(f'set.{key}')}: {key} both varies and is set")
+    if not exists(sweep.case):
+        place = f"{at('case')}: " if "case" in sweep.lines else ""
+        raise DataError(f"{place}{sweep.case}: No such file or directory")
+    for key, spec in sweep.vary.items():
+        with told_at(at(f"vary.{key}")):
+            if sweep.combine == "sample":
+                range_of(key, str(spec))
+            else:
+                values_of(key, spec)
+    with told_at(at("sample" if sweep.combine == "sample" else "vary")):
+        sweep.points()
     return sweep
 
 
@@ -98,24 +123,42 @@ def flattened(table: dict[str, Any], before: str = "") -> dict[str, Any]:
     return flat
 
 
-def require_entries(file: Path, table: dict[str, Any], known: tuple[str, ...], where: str) -> None:
-    for name in table:
-        if name not in known:
-            raise DataError(f"{file}: unknown entry '{name}'{where}; known are {', '.join(known)}")
+@dataclass(frozen=True)
+class Entries:
+    """A table of a file, whose mistakes are told with their lines."""
 
+    file: Path
+    lines: dict[str, str]  # FILE:LINE by dotted entry
+    table: dict[str, Any]
+    name: str = ""  # of a table in the file
 
-def inner_table(file: Path, table: dict[str, Any], name: str) -> dict[str, Any]:
-    inner = table.get(name, {})
-    if not isinstance(inner, dict):
-        raise DataError(f"{file}: [{name}] is a table")
-    return inner
+    def refuse(self, entry: str, what: str) -> NoReturn:
+        whole = f"{self.name}.{entry}" if self.name else entry
+        raise DataError(f"{self.lines.get(whole, self.lines.get(self.name, str(self.file)))}: {what}")
 
+    def require_known(self, known: tuple[str, ...]) -> None:
+        where = f" in [{self.name}]" if self.name else ""
+        for entry in self.table:
+            if entry not in known:
+                self.refuse(entry, f"unknown entry '{entry}'{where}; known are {', '.join(known)}")
 
-def whole_number(file: Path, table: dict[str, Any], name: str, default: int | None) -> int | None:
-    value = table.get(name, default)
-    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
-        raise DataError(f"{file}: {name} is a whole number")
-    return value
+    def inner(self, name: str) -> Entries:
+        table = self.table.get(name, {})
+        if not isinstance(table, dict):
+            self.refuse(name, f"[{name}] is a table")
+        return Entries(self.file, self.lines, table, name)
+
+    def text(self, entry: str, default: str) -> str:
+        value = self.table.get(entry, default)
+        if not isinstance(value, str) or not value:
+            self.refuse(entry, f"{entry} is a text")
+        return value
+
+    def whole_number(self, entry: str, default: int | None) -> int | None:
+        value = self.table.get(entry, default)
+        if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+            self.refuse(entry, f"{entry} is a whole number")
+        return value
 
 
 def is_sweep_file(file: Path) -> bool:
@@ -125,27 +168,31 @@ def is_sweep_file(file: Path) -> bool:
 
 
 def read_sweep(file: Path) -> Sweep:
-    table = read_toml(file)
-    require_entries(file, table, ENTRIES, "")
-    of_sample = inner_table(file, table, "sample")
-    require_entries(file, of_sample, SAMPLE_ENTRIES, " in [sample]")
-    case = table.get("case")
-    if not isinstance(case, str) or not case:
-        raise DataError(f"{file}: case names the case file, relative to this one")
-    if of_sample and "combine" in table and table["combine"] != "sample":
-        raise DataError(f"{file}: combine = '{table['combine']}' and [sample] exclude each other")
-    count = whole_number(file, of_sample, "count", 0)
-    if of_sample and not count:
-        raise DataError(f"{file}: [sample] needs count, the number of points")
+    text = read_text(file).replace("\r\n", "\n")
+    table = parse_toml(file, text)
+    entries = Entries(file, {entry: f"{file}:{line}" for entry, line in lines_of(text).items()}, table)
+    entries.require_known(ENTRIES)
+    of_sample, common = entries.inner("sample"), entries.inner("set")
+    entries.inner("vary")
+    of_sample.require_known(SAMPLE_ENTRIES)
+    if "case" not in table:
+        entries.refuse("case", "case names the case file, relative to this one")
+    if of_sample.table and table.get("combine", "sample") != "sample":
+        entries.refuse("combine", f"combine = '{table['combine']}' and [sample] exclude each other")
+    count = of_sample.whole_number("count", 0)
+    if "sample" in table and not count:
+        of_sample.refuse("count", "[sample] needs count, the number of points")
+    as_written = parse_toml(file, text, Written).get("vary", {})
     return Sweep(
-        case=file.parent / case,
-        vary=flattened(inner_table(file, table, "vary")),
-        set=flattened(inner_table(file, table, "set")),
-        combine="sample" if of_sample else str(table.get("combine", "grid")),
+        case=file.parent / entries.text("case", ""),
+        vary=flattened(as_written),
+        set=flattened(common.table),
+        combine="sample" if of_sample.table else entries.text("combine", "grid"),
         count=count or 0,
-        seed=whole_number(file, of_sample, "seed", 0) or 0,
-        keep=str(table.get("keep", "all")),
-        stop_after_failures=whole_number(file, table, "stop_after_failures", None),
+        seed=of_sample.whole_number("seed", 0) or 0,
+        keep=entries.text("keep", "all"),
+        stop_after_failures=entries.whole_number("stop_after_failures", None),
+        lines=entries.lines,
     )
 
 

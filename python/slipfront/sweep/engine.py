@@ -12,7 +12,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-from slipfront.files import DataError
+from slipfront.files import DataError, one_line
 from slipfront.sweep.work import DONE, FAILED, STOPPED, Outcome, Task, run_point
 
 ANSWER_S = 30  # of a scheduler elsewhere
@@ -85,6 +85,9 @@ def client_of(scheduler: str | None, workers: int) -> Iterator[Any]:
         except (OSError, TimeoutError, ValueError) as error:
             where = scheduler or "local workers"
             raise DataError(f"{where}: no Dask scheduler answers: {error}") from None
+        except RuntimeError as error:  # a worker begins by importing the script that started it
+            hint = "a script calls a sweep under `if __name__ == '__main__':`"
+            raise DataError(f"local workers do not start ({one_line(str(error))}); {hint}") from None
         yield client
 
 

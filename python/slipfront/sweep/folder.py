@@ -32,7 +32,7 @@ from slipfront.folder import LIST, UNFINISHED, problem, read_list, sha256
 from slipfront.sweep.definition import Sweep, flattened
 from slipfront.sweep.points import Point
 from slipfront.sweep.program import version_of
-from slipfront.sweep.values import Value, text_of, value_of
+from slipfront.sweep.values import Value, Written, text_of, value_of
 
 DEFINITION = "sweep.json"
 POINTS = "points"
@@ -125,9 +125,9 @@ def require_usable(folder: Path, sweep: Sweep, identity: Identity) -> None:
     for name, wanted in asdict(identity).items():
         if found.get(name) != wanted:
             raise DataError(f"{folder}: holds a sweep {words[name]}; choose another folder")
-    names = {point.name for point in sweep.points()}
+    points = {point.name: point for point in sweep.points()}
     for point in read_definition(folder).points():
-        if point.name not in names:
+        if point.name not in points or points[point.name].numbers() != point.numbers():
             lost = f"holds a sweep with the point {point.name}, which this one has not"
             raise DataError(f"{folder}: {lost}; choose another folder")
 
@@ -145,16 +145,19 @@ def write_whole(file: Path, text: str) -> None:
 
 
 def as_json(value: Any) -> Any:
-    """JSON has no infinity: its text, which the program takes as well."""
+    """JSON has no infinity, and no second way to write a number: their texts."""
     if isinstance(value, dict):
         return {key: as_json(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
         return [as_json(inner) for inner in value]
+    if isinstance(value, Written):
+        return value.text
     return text_of(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def write_definition(folder: Path, sweep: Sweep, identity: Identity) -> None:
-    entries = as_json(asdict(sweep) | {"case": str(sweep.case.resolve()), "identity": asdict(identity)})
+    own = {name: value for name, value in asdict(sweep).items() if name != "lines"}
+    entries = as_json(own | {"case": str(sweep.case.resolve()), "identity": asdict(identity)})
     write_whole(folder / DEFINITION, json.dumps(entries, indent=2, allow_nan=False) + "\n")
 
 

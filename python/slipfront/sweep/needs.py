@@ -79,8 +79,18 @@ def first_problem(
 def require_valid(sweep: Sweep, program: Path, points: list[Point], tell: Callable[[int], None]) -> None:
     found = first_problem(sweep, program, points, tell)
     if found is not None:
-        point, problem = found
-        raise DataError(f"point {point.words}: {problem}")
+        raise DataError(told_of(sweep, *found))
+
+
+def told_of(sweep: Sweep, point: Point, problem: str) -> str:
+    """What the program has against a point, with the line of the sweep's file that says so."""
+    for table, settings in (("set", sweep.settings()), ("vary", point.settings())):
+        for setting in settings:
+            line = sweep.lines.get(f"{table}.{setting.split('=', 1)[0]}")
+            before = f"--set {setting}: "
+            if line and problem.startswith(before):
+                return f"{line}: point {point.words}: {problem.removeprefix(before)}"
+    return f"point {point.words}: {problem}"
 
 
 def costs(sweep: Sweep, program: Path, points: Iterable[Point]) -> list[Cost]:

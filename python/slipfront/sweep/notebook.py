@@ -7,8 +7,32 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from slipfront.errors import CaseError
+from slipfront.given import flag, path, shown, table, text, whole
+
 if TYPE_CHECKING:
     import xarray as xr
+
+
+def plain(value: Any, key: str) -> Any:
+    """A value, or a list of them, as a file of TOML could have it."""
+    if hasattr(value, "__array__"):
+        value = np.asarray(value).tolist()
+    if isinstance(value, str):
+        return text(value, key)
+    if isinstance(value, Path):
+        return text(str(value), key)
+    if isinstance(value, list | tuple | range):
+        return [plain(each, key) for each in value]
+    if isinstance(value, bool | int | float):
+        return value
+    raise CaseError(f"{key} is {shown(value)}: give numbers, texts, True, False, or a list of them")
+
+
+def plain_table(given: Any, name: str) -> dict[str, Any]:
+    return {text(key, f"a key of {name}"): plain(value, key) for key, value in table(given, name).items()}
 
 
 def run(
@@ -33,28 +57,31 @@ def run(
     workers: runs at a time (default: processors); scheduler: address of a Dask scheduler instead.
     Points that fail have a `message` and no numbers. SI units; attributes `units` and `long_name`.
 
-    Raises DataError where the sweep is refused, KeyboardInterrupt where it was interrupted: the same call
-    goes on.
+    Raises DataError where the sweep is refused, CaseError where an argument is none, KeyboardInterrupt where
+    it was interrupted: the same call goes on.
     """
     from slipfront.sweep.definition import Sweep
     from slipfront.sweep.engine import default_workers
     from slipfront.sweep.sweeping import How, carry_out, told
 
     sweep = Sweep(
-        case=Path(case),
-        vary={
-            key: list(v) if not isinstance(v, str) and hasattr(v, "__iter__") else v
-            for key, v in vary.items()
-        },
-        set=dict(set or {}),
-        combine="sample" if samples else combine,
+        case=path(case, "case"),
+        vary=plain_table(vary, "vary"),
+        set=plain_table({} if set is None else set, "set"),
+        combine="sample" if whole(samples, "samples", least=0) else text(combine, "combine"),
         count=samples,
-        seed=seed,
-        keep=keep,
-        stop_after_failures=stop_after_failures,
+        seed=whole(seed, "seed", least=0),
+        keep=text(keep, "keep"),
+        stop_after_failures=None
+        if stop_after_failures is None
+        else whole(stop_after_failures, "stop_after_failures", least=1),
     )
-    how = How(workers=workers or default_workers(), scheduler=scheduler, quiet=quiet)
-    finished = carry_out(sweep, Path(output), how)
+    how = How(
+        workers=default_workers() if workers is None else whole(workers, "workers", least=1),
+        scheduler=None if scheduler is None else text(scheduler, "scheduler"),
+        quiet=flag(quiet, "quiet"),
+    )
+    finished = carry_out(sweep, path(output, "output"), how)
     if finished.is_interrupted:
         raise KeyboardInterrupt
     for line in told(finished):
@@ -66,4 +93,4 @@ def open_sweep(folder: str | Path) -> xr.Dataset:
     """The table of a sweep that is done, compared with its checksum. Raises DataError."""
     from slipfront.sweep.tables import read_dataset
 
-    return read_dataset(Path(folder))
+    return read_dataset(path(folder, "folder"))

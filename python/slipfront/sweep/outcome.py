@@ -1,22 +1,45 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is read off one run for the table: from run.json, fronts.csv, energy.csv and static.csv, by the
-definitions of docs/theory.md."""
+"""What is read off one run for the table: from run.json, fronts.csv, static.csv and the resolved case, by the
+definitions of docs/theory.md. Fronts count from where they leave the trigger zone or the nucleation patch."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from slipfront.files import DataError, number, read_json_table
+from slipfront.files import DataError, number, read_json_table, read_toml
 from slipfront.folder import result_file
-from slipfront.read import Front, read_fronts, read_static
+from slipfront.read import SPEED_KINDS, Front, entry, read_fronts, read_static
 
 Cell = float | int | str
+Interval = tuple[float, float]
 BOTH, NONE = "both", "none"
+ROUNDING = 1e-9  # of positions, over the length in contact
+
+
+def without(path: Interval, zones: list[Interval]) -> list[Interval]:
+    """Parts of a path outside zones, in ascending order."""
+    parts, start = [], path[0]
+    for from_m, to_m in sorted(zones):
+        if from_m > start:
+            parts.append((start, min(from_m, path[1])))
+        start = max(start, to_m)
+    parts.append((start, path[1]))
+    return [(a, b) for a, b in parts if b > a]
+
+
+def length_of(parts: list[Interval]) -> float:
+    """Length of the union."""
+    covered, reached = 0.0, -np.inf
+    for from_m, to_m in sorted(parts):
+        covered += max(0.0, to_m - max(from_m, reached))
+        reached = max(reached, to_m)
+    return covered
 
 
 @dataclass(frozen=True)
@@ -25,8 +48,10 @@ class Run:
 
     info: dict[str, Any]
     file: Path  # run.json
-    fronts: list[Front]
-    contact_m: tuple[float, float]  # outermost nodes under pressure before the event
+    all_fronts: list[Front]
+    contact_m: Interval  # outermost nodes under pressure before the event
+    driven_m: list[Interval]  # where the event's trigger makes the nodes slip
+    heard_m: list[Interval]  # next to absorbing edges, where these change the onsets
 
     def fact(self, key: str) -> float:
         return number(self.file, self.info, key)
@@ -35,9 +60,32 @@ class Run:
     def c_L_m_per_s(self) -> float:
         return self.fact("wave_speeds.c_L_m_per_s")
 
+    def path(self, front: Front) -> list[Interval]:
+        """What a front has run over by itself, of what was in contact."""
+        from_m, to_m = self.contact_m
+        path_m = max(float(front.x_m.min()), from_m), min(float(front.x_m.max()), to_m)
+        return without(path_m, self.driven_m)
+
+    def length_m(self, front: Front) -> float:
+        return length_of(self.path(front))
+
+    @cached_property
+    def fronts(self) -> list[Front]:
+        """Those that leave the zone in which the trigger makes the nodes slip."""
+        least_m = ROUNDING * (self.contact_m[1] - self.contact_m[0])
+        return [front for front in self.all_fronts if self.length_m(front) > least_m]
+
+    def speeds(self, front: Front) -> np.ndarray:
+        """V_tip/c_L where something travels: where `speed_kind` says so, away from absorbing edges."""
+        is_speed = np.isin(front.speed_kind, (SPEED_KINDS[0], ""))  # empty in older files
+        for from_m, to_m in self.heard_m:
+            is_speed &= (front.x_m < from_m) | (front.x_m > to_m)
+        found = front.v_tip_m_per_s[is_speed] / self.c_L_m_per_s
+        return found[~np.isnan(found)]
+
     @property
     def longest(self) -> Front | None:
-        return max(self.fronts, key=lambda front: front.length_m, default=None)
+        return max(self.fronts, key=self.length_m, default=None)
 
     def told(self, front: Front, entry: str) -> str:
         """What run.json says of a front in words."""
@@ -59,40 +107,34 @@ class Quantity:
 
 
 def largest(values: np.ndarray) -> float:
-    defined = values[~np.isnan(values)]
-    return float(defined.max()) if len(defined) else np.nan
+    return float(values.max()) if len(values) else np.nan
 
 
 def median(values: np.ndarray) -> float:
-    defined = values[~np.isnan(values)]
-    return float(np.median(defined)) if len(defined) else np.nan
+    return float(np.median(values)) if len(values) else np.nan
 
 
-def of_longest(measure: Callable[[Run, Front], Cell], without: Cell) -> Callable[[Run], Cell]:
-    """A measure of the longest front; `without` where there is none."""
+def of_longest(measure: Callable[[Run, Front], Cell], otherwise: Cell) -> Callable[[Run], Cell]:
+    """A measure of the longest front; `otherwise` where there is none."""
 
     def value(run: Run) -> Cell:
         front = run.longest
-        return without if front is None else measure(run, front)
+        return otherwise if front is None else measure(run, front)
 
     return value
 
 
 def largest_of_all(run: Run) -> float:
-    return largest(np.concatenate([[np.nan], *(f.v_tip_m_per_s for f in run.fronts)])) / run.c_L_m_per_s
+    return largest(np.concatenate([np.empty(0), *map(run.speeds, run.fronts)]))
 
 
 def slipped_length_m(run: Run) -> float:
-    """Length of the union of the fronts' paths."""
-    covered, reached = 0.0, -np.inf
-    for from_m, to_m in sorted((float(f.x_m.min()), float(f.x_m.max())) for f in run.fronts):
-        covered += max(0.0, to_m - max(from_m, reached))
-        reached = max(reached, to_m)
-    return covered
+    return length_of([part for front in run.fronts for part in run.path(front)])
 
 
 def slipped_share(run: Run) -> float:
-    return slipped_length_m(run) / (run.contact_m[1] - run.contact_m[0])
+    whole_m = length_of(without(run.contact_m, run.driven_m))
+    return slipped_length_m(run) / whole_m if whole_m > 0 else np.nan
 
 
 def reached_ends(run: Run) -> str:
@@ -124,25 +166,26 @@ MODES = ("crack", "pulse", "mixed", NONE)
 ENDS = ("arrest", "meets_front", "contact_end", "record_end", NONE)
 
 QUANTITIES = (
-    Quantity("n_fronts", "1", "fronts found", lambda run: len(run.fronts)),
+    Quantity("n_fronts", "1", "fronts that run beyond the trigger zone", lambda run: len(run.fronts)),
     Quantity("n_arrested", "1", "fronts that end by arrest", n_that("end", "arrest")),
     Quantity("v_tip_largest_over_c_L", "1", "largest V_tip/c_L at any node of any front", largest_of_all),
     Quantity("longest_front_v_tip_largest_over_c_L", "1", "largest V_tip/c_L of the longest front",
-             of_longest(lambda run, f: largest(f.v_tip_m_per_s) / run.c_L_m_per_s, np.nan)),
+             of_longest(lambda run, f: largest(run.speeds(f)), np.nan)),
     Quantity("longest_front_v_tip_median_over_c_L", "1", "median V_tip/c_L of the longest front's nodes",
-             of_longest(lambda run, f: median(f.v_tip_m_per_s) / run.c_L_m_per_s, np.nan)),
+             of_longest(lambda run, f: median(run.speeds(f)), np.nan)),
     Quantity("longest_front_slip", "", "kind of slip of the longest front",
              of_longest(lambda run, f: run.told(f, "mode"), NONE), MODES),
     Quantity("longest_front_end", "", "how the longest front ends",
              of_longest(lambda run, f: run.told(f, "end"), NONE), ENDS),
-    Quantity("longest_front_length_m", "m", "length of the longest front's path",
-             of_longest(lambda run, f: f.length_m, 0.0)),
+    Quantity("longest_front_length_m", "m", "length of the longest front's path beyond the trigger zone",
+             of_longest(lambda run, f: run.length_m(f), 0.0)),
     Quantity("longest_front_direction", "1", "direction of the longest front along x, +1 or -1",
              of_longest(lambda run, f: f.direction, np.nan)),
     Quantity("longest_front_start_x_m", "m", "where the longest front starts",
              of_longest(lambda run, f: float(f.x_m[0]), np.nan)),
-    Quantity("slipped_length_m", "m", "length of interface that fronts have run over", slipped_length_m),
-    Quantity("slipped_share", "1", "slipped length over the length in contact before", slipped_share),
+    Quantity("slipped_length_m", "m", "length beyond the trigger zone that fronts have run over",
+             slipped_length_m),
+    Quantity("slipped_share", "1", "slipped share beyond the trigger zone", slipped_share),
     Quantity("reached_ends", "", "ends of the contact that a front has reached", reached_ends,
              ("left", "right", BOTH, NONE)),
     Quantity("strain_energy_change_J_per_m", "J m-1", "strain energy at the end less that at the start",
@@ -164,12 +207,44 @@ def contact_of(columns: dict[str, np.ndarray], file: Path) -> tuple[float, float
     return float(pressed[0]), float(pressed[-1])
 
 
+def driven_zones(case: dict[str, Any], file: Path, contact_m: Interval) -> list[Interval]:
+    """The trigger zone, or the nucleation patch, which a periodic plate may continue at the other edge."""
+    kind = entry(case, "event", "kind")
+    if kind in ("left", "right"):
+        zone_m = number(file, case, "event.trigger_zone_m")
+        from_m, to_m = contact_m
+        return [(from_m, from_m + zone_m) if kind == "left" else (to_m - zone_m, to_m)]
+    if kind != "nucleation":
+        return []
+    names = ("x_m", "half_length_m", "taper_m")
+    x_m, half_m, taper_m = (number(file, case, f"nucleation.{name}") for name in names)
+    is_periodic = entry(case, "plate", "sides") == "periodic"
+    period_m = number(file, case, "plate.width_m") if is_periodic else 0.0
+    reach_m = half_m + taper_m
+    return [(x_m + shift - reach_m, x_m + shift + reach_m) for shift in {0.0, -period_m, period_m}]
+
+
+def heard_zones(case: dict[str, Any], file: Path, static: dict[str, np.ndarray]) -> list[Interval]:
+    """Within l* of absorbing edges, whose dashpots take part in the onsets of the last nodes."""
+    if "absorbing" not in (entry(case, "plate", "sides"), entry(case, "base", "sides")):
+        return []
+    x_m = static["x_m"]
+    reach_m = max(number(file, case, "fronts.l_star_m"), float(np.diff(x_m).max()))
+    reach_m += ROUNDING * float(x_m[-1] - x_m[0])
+    return [(float(x_m[0]), float(x_m[0]) + reach_m), (float(x_m[-1]) - reach_m, float(x_m[-1]))]
+
+
 def read_outcome(place: Path) -> dict[str, Cell]:
     """By the names of QUANTITIES."""
+    file = place / "case.resolved.toml"
+    case, static = read_toml(result_file(file)), read_static(place / "static.csv")
+    contact_m = contact_of(static, place / "static.csv")
     run = Run(
         info=read_json_table(result_file(place / "run.json")),
         file=place / "run.json",
-        fronts=read_fronts(place / "fronts.csv"),
-        contact_m=contact_of(read_static(place / "static.csv"), place / "static.csv"),
+        all_fronts=read_fronts(place / "fronts.csv"),
+        contact_m=contact_m,
+        driven_m=driven_zones(case, file, contact_m),
+        heard_m=heard_zones(case, file, static),
     )
     return {quantity.name: quantity.of(run) for quantity in QUANTITIES}

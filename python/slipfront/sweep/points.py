@@ -6,11 +6,12 @@ from __future__ import annotations
 import hashlib
 import itertools
 import re
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from slipfront.files import DataError
-from slipfront.sweep.values import MOST_POINTS, Range, Value, text_of
+from slipfront.sweep.values import MOST_POINTS, Range, Value, name_text, same, text_of
 
 LONGEST_NAME = 120
 
@@ -27,6 +28,10 @@ class Point:
         """Its values, to tell it by."""
         return ", ".join(f"{key} = {text_of(value)}" for key, value in self.values.items())
 
+    def numbers(self) -> dict[str, str]:
+        """Equal for points with equal values."""
+        return {key: same(value) for key, value in self.values.items()}
+
     def settings(self) -> list[str]:
         return [f"{key}={text_of(value)}" for key, value in self.values.items()]
 
@@ -37,10 +42,10 @@ def short_names(keys: list[str]) -> dict[str, str]:
     return {key: leaf if leaves.count(leaf) == 1 else key for key, leaf in zip(keys, leaves, strict=True)}
 
 
-def folder_name(values: Mapping[str, Value]) -> str:
-    """`mu_k=0.6,alpha_m2_per_s2=0.1`; of what no folder's name should hold, or long, a checksum."""
+def folder_name(values: Mapping[str, Value], text: Callable[[Value], str] = name_text) -> str:
+    """`mu_k=0.6,alpha_m2_per_s2=1e-3`; of what no folder's name should hold, or long, a checksum."""
     short = short_names(list(values))
-    name = ",".join(f"{short[key]}={text_of(value)}" for key, value in values.items())
+    name = ",".join(f"{short[key]}={text(value)}" for key, value in values.items())
     if len(name) <= LONGEST_NAME and re.fullmatch(r"[\w.,=+-]+", name, re.ASCII) and not name.startswith("."):
         return name
     whole = "\n".join(f"{key}={text_of(value)}" for key, value in values.items())
@@ -48,11 +53,14 @@ def folder_name(values: Mapping[str, Value]) -> str:
 
 
 def made(keys: list[str], rows: list[tuple[Value, ...]]) -> list[Point]:
-    points = []
-    for row in rows:
-        values = dict(zip(keys, row, strict=True))
-        points.append(Point(folder_name(values), values))
-    return points
+    """Points with short names, and with all digits where short ones would be the same."""
+    all_values = [dict(zip(keys, row, strict=True)) for row in rows]
+    names = [folder_name(values) for values in all_values]
+    n_of = Counter(names)
+    return [
+        Point(name if n_of[name] == 1 else folder_name(values, text_of), values)
+        for name, values in zip(names, all_values, strict=True)
+    ]
 
 
 def grid(vary: Mapping[str, list[Value]]) -> list[Point]:
@@ -72,9 +80,9 @@ def zipped(vary: Mapping[str, list[Value]]) -> list[Point]:
         told = ", ".join(f"{key} has {n}" for key, n in lengths.items())
         raise DataError(f"lists that go together have as many values each: {told}")
     points = made(list(vary), list(zip(*vary.values(), strict=True)))
-    names = [point.name for point in points]
+    n_of = Counter(tuple(point.numbers().values()) for point in points)
     for point in points:
-        if names.count(point.name) > 1:
+        if n_of[tuple(point.numbers().values())] > 1:
             raise DataError(f"the point {point.words} is there twice")
     return points
 

@@ -41,7 +41,7 @@ exec {share}
 
 def array_script(sweep: Sweep, folder: Path, script: Path) -> list[str]:
     """Checks all points, writes the folder's definition and the script; returns what to print."""
-    require_sound(sweep, "sweep")
+    require_sound(sweep)
     program = find_program()
     identity = places.identity_of(sweep, program)
     places.require_usable(folder, sweep, identity)

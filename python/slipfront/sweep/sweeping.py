@@ -101,7 +101,7 @@ def carry_out(sweep: Sweep, folder: Path, how: How) -> Finished:
     """Runs what is missing, and makes the tables where nothing is left to be run.
 
     Raises DataError for what is refused; points that fail are told by the result."""
-    require_sound(sweep, "sweep")
+    require_sound(sweep)
     program = find_program()
     identity = places.identity_of(sweep, program)
     places.require_usable(folder, sweep, identity)

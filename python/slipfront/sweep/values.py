@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import json
 import math
+import re
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +17,7 @@ from slipfront.files import DataError, is_number
 MOST_POINTS = 1_000_000
 
 DIGITS = 12  # of values between the ends of a range: 0.6, not 0.6000000000000001
+NAME_DIGITS = 6  # of these in names, where that tells them apart
 LOG = "log"
 
 #: What a key of a case file may be set to: a number, a word, a flag, or a list of numbers.
@@ -29,15 +32,26 @@ class Range:
     to: float
     is_log: bool
 
-    def at(self, share: float) -> float:
+    def at(self, share: float) -> Written:
         """The value at a share in [0, 1] of the way."""
         if self.is_log:
             return rounded(math.exp(math.log(self.from_) + share * math.log(self.to / self.from_)))
         return rounded(self.from_ + share * (self.to - self.from_))
 
 
-def rounded(value: float) -> float:
-    return float(f"{value:.{DIGITS}g}")
+class Written(float):
+    """A number and how it is written in names: as the user did, or short."""
+
+    text: str
+
+    def __new__(cls, value: float | str, text: str | None = None) -> Written:
+        made = super().__new__(cls, value)
+        made.text = str(value).strip() if text is None else text
+        return made
+
+
+def rounded(value: float) -> Written:
+    return Written(f"{value:.{DIGITS}g}", f"{value:.{NAME_DIGITS}g}")
 
 
 def value_of(text: str) -> Value:
@@ -55,13 +69,30 @@ def value_of(text: str) -> Value:
         return text
 
 
+def as_written(text: str) -> Value:
+    """The same, a number with its text."""
+    value = value_of(text)
+    return Written(text) if isinstance(value, float) and math.isfinite(value) else value
+
+
 def text_of(value: Value) -> str:
-    """A value as the right side of `--set KEY=VALUE`."""
+    """A value as the right side of `--set KEY=VALUE`; one text for one number, however it was written."""
     if isinstance(value, str):
         return value
     if isinstance(value, float):
-        return repr(value)
+        return float.__repr__(value)
     return json.dumps(value)
+
+
+def name_text(value: Value) -> str:
+    """A value as it is in the name of a point: 1e-5, not 1e-05."""
+    text = value.text if isinstance(value, Written) else text_of(value)
+    return re.sub(r"(?<=\d)e([+-]?)0*(?=\d)", r"e\1", text) if isinstance(value, float) else text
+
+
+def same(value: Value) -> str:
+    """Equal for equal values, such as 1 and 1.0."""
+    return text_of(float(value)) if is_number(value) else text_of(value)  # type: ignore[arg-type]
 
 
 def bounds(key: str, text: str, parts: list[str]) -> tuple[float, float, bool]:
@@ -96,29 +127,28 @@ def steps_of(key: str, text: str) -> list[Value]:
     if n > MOST_POINTS:
         raise DataError(f"{key}={text}: {n} values are more than {MOST_POINTS}")
     whole = Range(*bounds(key, text, parts))
-    ends = [value_of(part) for part in parts[:2]]
+    ends = [as_written(part) for part in parts[:2]]
     inside: list[Value] = [whole.at(k / (n - 1)) for k in range(1, n - 1)]
-    values: list[Value] = [ends[0], *inside, ends[1]]
+    values = [ends[0], *inside, ends[1]]
     if not whole.is_log and all(isinstance(end, int) for end in ends):
         values = [int(v) if isinstance(v, float) and v.is_integer() else v for v in values]
-    return values if all(isinstance(v, int) for v in values) else [float(v) for v in values]  # type: ignore
+    return values
 
 
 def values_of(key: str, spec: Any) -> list[Value]:
     """The values that a text or a list of TOML stands for, in its order; none twice."""
     if isinstance(spec, list):
-        values = list(spec)
+        values = [as_written(value) if isinstance(value, str) else value for value in spec]
     elif isinstance(spec, str) and ":" in spec:
         values = steps_of(key, spec)
     elif isinstance(spec, str):
-        values = [value_of(part) for part in spec.split(",")]
+        values = [as_written(part) for part in spec.split(",")]
     else:
         values = [spec]
     if not values or any(value == "" for value in values):
         raise DataError(f"{key}: a value is missing")
-    texts = [text_of(value) for value in values]
-    for text in texts:
-        if texts.count(text) > 1:
+    for text, n in Counter(map(same, values)).items():
+        if n > 1:
             raise DataError(f"{key}: the value {text} is there twice")
     return values
 

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How results of the compiled module are printed: the name, value, unit and meaning of each attribute. To
+import this module is enough."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from slipfront import _core
+from slipfront.opened import unit_of
+
+LISTED = (
+    _core.Collapse,
+    _core.ExponentialFit,
+    _core.Info,
+    _core.Spread,
+    _core.Spreads,
+    _core.WaveSpeeds,
+    _core.WellPosedness,
+)
+INDENT = "  "
+
+
+def attributes(value: Any) -> dict[str, property]:
+    """Those of a result, in the order in which they are defined."""
+    return {name: found for name, found in vars(type(value)).items() if isinstance(found, property)}
+
+
+def meaning_of(attribute: property) -> str:
+    """Of one without a text the module gives its signature."""
+    told = (attribute.__doc__ or "").strip()
+    return "" if told.startswith("(self") else told
+
+
+def words(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def rows(value: Any, indent: str) -> Iterator[tuple[str, str, str]]:
+    """Name, value with its unit, and meaning; those of a result inside one come below it."""
+    for name, attribute in attributes(value).items():
+        inner = getattr(value, name)
+        meaning = "" if isinstance(inner, str) else meaning_of(attribute)
+        if isinstance(inner, LISTED):
+            yield indent + name, "", meaning
+            yield from rows(inner, indent + INDENT)
+            continue
+        unit = unit_of(name) if isinstance(inner, float) else "1"
+        yield indent + name, words(inner) + ("" if unit == "1" else f" {unit}"), meaning
+
+
+def listing(value: Any) -> str:
+    lines = list(rows(value, INDENT))
+    wide, wider = (max(len(line[k]) for line in lines) for k in (0, 1))
+    wider = min(wider, 24)  # a sentence has no column beside it
+    told = [f"{name:<{wide}}  {cell:<{wider}}  {meaning}".rstrip() for name, cell, meaning in lines]
+    return "\n".join([type(value).__name__, *told])
+
+
+def estimate(value: _core.Estimate) -> str:
+    return f"{value.value:.6g} ({value.low:.6g} to {value.high:.6g})"
+
+
+def figure(value: _core.Figure) -> str:
+    unit = "" if value.unit in ("", "1") else f" {value.unit}"
+    return f"{value.name} = {value.value:.6g}{unit}"
+
+
+def claim(value: _core.Claim) -> str:
+    verdict = {True: "holds", False: "does not hold", None: "not tested"}[value.holds]
+    measured = f" ({value.measured})" if value.measured else ""
+    return f"<{value.id} {verdict}: {value.claim}{measured}>"
+
+
+def front(value: _core.Front) -> str:
+    x, way = value.x_m, "+x" if value.direction > 0 else "-x"
+    path = f"{x[0]:.6g} to {x[-1]:.6g} m" if len(x) else "no points"
+    return f"<front {value.id} to {way}: {path}, {len(x)} points, {value.mode}, ends: {value.end}>"
+
+
+def outcome(value: _core.Outcome) -> str:
+    n = len(value.fronts)
+    places = f"t_s/p_s largest at {value.peak_x_m:.6g} m, first onset at {value.first_onset_x_m:.6g} m"
+    return f"<event '{value.name}': {n} fronts of at least 10 mm, {places}>"
+
+
+PRINTED: dict[type, Callable[[Any], str]] = {
+    **dict.fromkeys(LISTED, listing),
+    _core.Estimate: estimate,
+    _core.Figure: figure,
+    _core.Claim: claim,
+    _core.Front: front,
+    _core.Outcome: outcome,
+}
+for kind, shown in PRINTED.items():
+    kind.__repr__ = shown  # type: ignore[method-assign, assignment]
