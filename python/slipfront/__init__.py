@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from slipfront._core import ExponentialFit as ExponentialFit
     from slipfront._core import Info as Info
     from slipfront._core import Outcome as Outcome
+    from slipfront._core import Rupture as Rupture
     from slipfront._core import WaveSpeeds as WaveSpeeds
     from slipfront._core import WellPosedness as WellPosedness
     from slipfront.claims import collapse as collapse
@@ -46,6 +47,7 @@ _PLACES = {
     "ExponentialFit": "_core",
     "Info": "_core",
     "Outcome": "_core",
+    "Rupture": "_core",
     "WaveSpeeds": "_core",
     "WellPosedness": "_core",
     "collapse": "claims",

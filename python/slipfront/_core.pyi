@@ -73,6 +73,77 @@ class WellPosedness:
     @property
     def damping_length_over_h(self) -> float: ...
 
+class NodeSpread:
+    """Over the nodes; NaN where there are none."""
+
+    @property
+    def min(self) -> float: ...
+
+    @property
+    def median(self) -> float: ...
+
+    @property
+    def max(self) -> float: ...
+
+class Rupture:
+    """What is to be expected of a case's rupture: docs/stability.md."""
+
+    @property
+    def nominal(self) -> bool:
+        """
+        whether tractions are not known yet: one node at t = mu_s p under the nominal pressure
+        """
+
+    @property
+    def nodes_inside(self) -> int: ...
+
+    @property
+    def nodes_that_weaken(self) -> int: ...
+
+    @property
+    def nodes_above_residual_strength(self) -> int: ...
+
+    @property
+    def nodes_of_S_above_10(self) -> int: ...
+
+    @property
+    def strength_excess_S(self) -> NodeSpread:
+        """(mu_s p - t)/(t - mu_k p)"""
+
+    @property
+    def seismic_ratio(self) -> NodeSpread:
+        """1/(1 + S)"""
+
+    @property
+    def nucleation_length_m(self) -> float | None:
+        """Uenishi, Rice 2003; None where friction does not weaken over a slip"""
+
+    @property
+    def griffith_half_length_m(self) -> float | None:
+        """half the critical crack length, Andrews 1976"""
+
+    @property
+    def supershear_half_length_m(self) -> float | None:
+        """half the crack from which on fronts above c_S can form, Andrews 1985"""
+
+    @property
+    def process_zone_m(self) -> float | None:
+        """at rest, Palmer, Rice 1973"""
+
+    @property
+    def process_zone_elements(self) -> float | None: ...
+
+    @property
+    def trigger_length_m(self) -> float | None:
+        """of the zone at an edge, or of the patch"""
+
+    @property
+    def regime(self) -> str: ...
+
+    @property
+    def doubts(self) -> list[str]:
+        """why nothing may rupture, a line each"""
+
 class Info:
     @property
     def speeds(self) -> WaveSpeeds:
@@ -126,6 +197,10 @@ class Info:
     @property
     def node_updates_per_s(self) -> float:
         """measured on the spot"""
+
+    @property
+    def rupture(self) -> Rupture:
+        """what is to be expected of it"""
 
     @property
     def well_posedness(self) -> WellPosedness:

@@ -14,6 +14,8 @@ LISTED = (
     _core.Collapse,
     _core.ExponentialFit,
     _core.Info,
+    _core.NodeSpread,
+    _core.Rupture,
     _core.Spread,
     _core.Spreads,
     _core.WaveSpeeds,

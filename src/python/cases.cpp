@@ -24,9 +24,11 @@
 #include "python/watcher.hpp"
 #include "results/folder.hpp"
 #include "run/needs.hpp"
+#include "run/outlook.hpp"
 #include "run/session.hpp"
 #include "run/warnings.hpp"
 #include "solid/operator.hpp"
+#include "stability/rupture.hpp"
 #include "stability/verdict.hpp"
 
 namespace slipfront::python {
@@ -204,6 +206,43 @@ void bind_verdict(nb::module_& module) {
       .def_ro("damping_length_over_h", &W::damping_length_over_h);
 }
 
+/// What run.json has under `rupture`, by the same names.
+void bind_rupture(nb::module_& module) {
+  using R = run::RuptureOutlook;
+  using S = stability::Spread;
+  nb::class_<S>(module, "NodeSpread", "Over the nodes; NaN where there are none.")
+      .def_ro("min", &S::least)
+      .def_ro("median", &S::median)
+      .def_ro("max", &S::largest);
+  nb::class_<R>(module, "Rupture", "What is to be expected of a case's rupture: docs/stability.md.")
+      .def_ro("nominal", &R::nominal,
+              "whether tractions are not known yet: one node at t = mu_s p under the nominal pressure")
+      .def_prop_ro("nodes_inside", [](const R& r) { return r.of_nodes.n_nodes; })
+      .def_prop_ro("nodes_that_weaken", [](const R& r) { return r.of_nodes.n_weakening; })
+      .def_prop_ro("nodes_above_residual_strength", [](const R& r) { return r.of_nodes.n_driven; })
+      .def_prop_ro("nodes_of_S_above_10", [](const R& r) { return r.of_nodes.n_barriers; })
+      .def_prop_ro(
+          "strength_excess_S", [](const R& r) { return r.of_nodes.S; }, "(mu_s p - t)/(t - mu_k p)")
+      .def_prop_ro(
+          "seismic_ratio", [](const R& r) { return r.of_nodes.drop_ratio; }, "1/(1 + S)")
+      .def_prop_ro(
+          "nucleation_length_m", [](const R& r) { return r.of_nodes.nucleation_length_m; },
+          "Uenishi, Rice 2003; None where friction does not weaken over a slip")
+      .def_prop_ro(
+          "griffith_half_length_m", [](const R& r) { return r.of_nodes.griffith_half_length_m; },
+          "half the critical crack length, Andrews 1976")
+      .def_prop_ro(
+          "supershear_half_length_m", [](const R& r) { return r.of_nodes.supershear_half_length_m; },
+          "half the crack from which on fronts above c_S can form, Andrews 1985")
+      .def_prop_ro(
+          "process_zone_m", [](const R& r) { return r.of_nodes.process_zone_m; },
+          "at rest, Palmer, Rice 1973")
+      .def_ro("process_zone_elements", &R::process_zone_elements)
+      .def_ro("trigger_length_m", &R::trigger_length_m, "of the zone at an edge, or of the patch")
+      .def_prop_ro("regime", [](const R& r) { return r.of_nodes.regime; })
+      .def_ro("doubts", &R::doubts, "why nothing may rupture, a line each");
+}
+
 void bind_info(nb::module_& module) {
   using I = run::Info;
   nb::class_<I>(module, "Info")
@@ -223,6 +262,7 @@ void bind_info(nb::module_& module) {
       .def_prop_ro("disk_bytes", [](const I& info) { return info.needs.disk_bytes(); })
       .def_ro("expected_s", &I::expected_s, "wall time, at the rate measured on the spot")
       .def_ro("node_updates_per_s", &I::node_updates_per_s, "measured on the spot")
+      .def_ro("rupture", &I::rupture, "what is to be expected of it")
       .def_ro("well_posedness", &I::well_posedness,
               "of slow uniform sliding at the plate's nominal pressure");
 }
@@ -234,6 +274,7 @@ void bind_cases(nb::module_& module) {
   using Overrides = std::vector<input::Override>;
   bind_speeds(module);
   bind_verdict(module);
+  bind_rupture(module);
   bind_info(module);
   nb::class_<C>(module, "Case", "A case with its changes, checked.")
       .def(nb::init<const fs::path&, const Overrides&>(), "file"_a, "changes"_a,

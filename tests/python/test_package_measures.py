@@ -232,6 +232,25 @@ def test_well_posedness_is_that_of_the_case():
     assert stable.statement != verdict.statement
 
 
+def test_outlook_of_a_case_is_that_of_its_run():
+    """Tractions are given: nothing is found out in the run."""
+    case = {
+        "plate": {"element_size_m": 5e-3, "corner": "none"},
+        "loading": {"method": "prestress"},
+        "prestress": {"t_Pa": 1.9e6, "p_Pa": 5e6},
+        "friction": {"law": "slip_weakening", "mu_s": 0.5, "mu_k": 0.3, "d_c_m": 1.5e-6},
+        "event": {"kind": "nucleation"},
+    }
+    rupture = slipfront.info(case).rupture
+    told = slipfront.run(case, progress=False).info["rupture"]
+    assert told["strength_excess_S"]["median"] == pytest.approx(1.5)
+    for name, value in told.items():
+        ours = getattr(rupture, name)
+        if isinstance(value, dict):
+            ours = {key: getattr(ours, key) for key in value}
+        assert ours == pytest.approx(value), name
+
+
 def test_datasets_of_others_do():
     history = xr.Dataset(
         {
