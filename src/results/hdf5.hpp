@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "results/contents.hpp"
+
 /// The little of HDF5 that the results need. Every function that writes throws WriteError, every one that
 /// reads UserError, naming the file, where HDF5 fails; HDF5's own error print is silenced. Objects are named
 /// by their path in the file, e.g.
@@ -98,11 +100,6 @@ void set_ascii_attribute(const File& file, const std::string& object, const std:
 void set_attribute(const File& file, const std::string& object, const std::string& name,
                    std::span<const std::int64_t> values);
 
-/// What the root of every file of results says of where it comes from.
-struct Origin {
-  std::string title;
-  std::string case_text;  ///< case.resolved.toml
-};
 /// Sets the attributes `program`, `version` and `units` of the root and, unless they are empty, `title` and
 /// `case`.
 void describe_root(const File& file, const Origin& origin);

@@ -59,8 +59,7 @@ std::size_t history_block_rows(std::size_t n_nodes) {
   return std::max<std::size_t>(chunk_bytes / (sizeof(double) * std::max<std::size_t>(n_nodes, 1)), 1);
 }
 
-HistoryFile::HistoryFile(const std::filesystem::path& path, std::span<const double> x_m,
-                         const hdf5::Origin& origin)
+HistoryFile::HistoryFile(const std::filesystem::path& path, std::span<const double> x_m, const Origin& origin)
     : file_(hdf5::create_file(path)), n_nodes_(x_m.size()) {
   hdf5::describe_root(file_, origin);
   hdf5::create_growing(file_, history_time.name, {}, time_chunk_rows, hdf5::Chunks::checked);
@@ -98,7 +97,7 @@ void HistoryFile::close() {
   hdf5::close(std::move(file_));
 }
 
-void write_history(const std::filesystem::path& path, const History& history, const hdf5::Origin& origin) {
+void write_history(const std::filesystem::path& path, const History& history, const Origin& origin) {
   HistoryFile file(path, history.x_m, origin);
   file.append(history);
   file.close();
@@ -107,7 +106,7 @@ void write_history(const std::filesystem::path& path, const History& history, co
   written.require_lengths(history.time_s.size(), history.x_m.size());
 }
 
-WrittenHistory::WrittenHistory(const std::filesystem::path& path, const hdf5::Origin& origin)
+WrittenHistory::WrittenHistory(const std::filesystem::path& path, const Origin& origin)
     : file_(hdf5::open_written_file(path)) {
   hdf5::require_root_described(file_, origin);
   for (const HistoryColumn& axis : {history_time, history_place}) require_described(file_, axis);

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "record/record.hpp"
+#include "results/contents.hpp"
 #include "results/hdf5.hpp"
 
 namespace slipfront::results {
@@ -18,8 +19,7 @@ std::size_t history_block_rows(std::size_t n_nodes);
 /// closed. Every function throws WriteError where the file cannot be written.
 class HistoryFile {
  public:
-  HistoryFile(const std::filesystem::path& path, std::span<const double> x_m,
-              const hdf5::Origin& origin = {});
+  HistoryFile(const std::filesystem::path& path, std::span<const double> x_m, const Origin& origin = {});
   /// Appends rows; their x_m is not looked at.
   void append(const record::History& rows);
   /// Without it a full disk would go unnoticed. The last call.
@@ -34,7 +34,7 @@ class HistoryFile {
 /// full disk has refused without a word. Every function throws WriteError where it holds something else.
 class WrittenHistory {
  public:
-  explicit WrittenHistory(const std::filesystem::path& path, const hdf5::Origin& origin = {});
+  explicit WrittenHistory(const std::filesystem::path& path, const Origin& origin = {});
   /// Compares rows from `row` on, and the places.
   void require(std::size_t row, const record::History& rows) const;
   /// Compares the numbers of rows and of places.
@@ -46,7 +46,7 @@ class WrittenHistory {
 
 /// Writes a whole history and compares it. @throws WriteError
 void write_history(const std::filesystem::path& file, const record::History& history,
-                   const hdf5::Origin& origin = {});
+                   const Origin& origin = {});
 
 /// Reads a file that was written so, or by another program with the same names and units in the format of
 /// HDF5 1.10. Where its folder has a list of checksums the file must be as it says before HDF5 sees it;

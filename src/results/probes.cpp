@@ -62,7 +62,7 @@ std::size_t probe_block_rows(std::size_t n_probes) {
 }
 
 ProbeFile::ProbeFile(const std::filesystem::path& path, std::span<const ProbePlace> places,
-                     const hdf5::Origin& origin)
+                     const Origin& origin)
     : file_(hdf5::create_file(path)), n_probes_(places.size()) {
   SLIPFRONT_ASSERT(n_probes_ > 0, "a file of no probes");
   hdf5::describe_root(file_, origin);
@@ -96,7 +96,7 @@ void ProbeFile::close() {
 }
 
 WrittenProbes::WrittenProbes(const std::filesystem::path& path, std::span<const ProbePlace> places,
-                             const hdf5::Origin& origin)
+                             const Origin& origin)
     : file_(hdf5::open_written_file(path)) {
   hdf5::require_root_described(file_, origin);
   hdf5::require_texts(file_, "name", names_of(places));
@@ -120,7 +120,7 @@ void WrittenProbes::require_length(std::size_t n_rows) const {
 }
 
 void write_probes(const std::filesystem::path& path, std::span<const ProbePlace> places,
-                  const ProbeRecord& record, const hdf5::Origin& origin) {
+                  const ProbeRecord& record, const Origin& origin) {
   ProbeFile file(path, places, origin);
   file.append(record);
   file.close();

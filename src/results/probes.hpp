@@ -6,6 +6,7 @@
 #include <span>
 
 #include "record/probes.hpp"
+#include "results/contents.hpp"
 #include "results/hdf5.hpp"
 
 namespace slipfront::results {
@@ -16,7 +17,7 @@ namespace slipfront::results {
 class ProbeFile {
  public:
   ProbeFile(const std::filesystem::path& path, std::span<const record::ProbePlace> places,
-            const hdf5::Origin& origin);
+            const Origin& origin);
   void append(const record::ProbeRecord& rows);
   void close();
 
@@ -29,7 +30,7 @@ class ProbeFile {
 class WrittenProbes {
  public:
   WrittenProbes(const std::filesystem::path& path, std::span<const record::ProbePlace> places,
-                const hdf5::Origin& origin);
+                const Origin& origin);
   void require(std::size_t row, const record::ProbeRecord& rows) const;
   void require_length(std::size_t n_rows) const;
 
@@ -42,6 +43,6 @@ std::size_t probe_block_rows(std::size_t n_probes);
 
 /// Writes a whole file and compares it. @throws WriteError
 void write_probes(const std::filesystem::path& file, std::span<const record::ProbePlace> places,
-                  const record::ProbeRecord& record, const hdf5::Origin& origin);
+                  const record::ProbeRecord& record, const Origin& origin);
 
 }  // namespace slipfront::results

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "solid/element.hpp"
 
 namespace slipfront::results {
 namespace {

@@ -8,23 +8,10 @@
 
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
+#include "results/contents.hpp"
 #include "results/hdf5.hpp"
-#include "solid/element.hpp"
-#include "solid/material.hpp"
 
 namespace slipfront::results {
-
-/// Cells of one body in a mesh that may join two.
-struct CellsOfBody {
-  std::size_t end = 0;  ///< one past the last; they begin where those of the body before end
-  solid::Material material;
-};
-
-/// What a fields.vtkhdf holds besides displacement and velocity.
-struct SnapshotContents {
-  std::vector<CellsOfBody> bodies;  ///< whose strain and stress are written; none for neither
-  hdf5::Origin origin = {};
-};
 
 /// A fields.vtkhdf that grows: VTKHDF (version 2.0) unstructured grid, mesh written once, a step per
 /// snapshot, point data `displacement_m` and `velocity_m_per_s`, and where they are asked for the cell data

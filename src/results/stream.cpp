@@ -210,7 +210,7 @@ ResultStream::Extents ResultStream::keep() {
 }
 
 void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,
-                   std::span<const double> x_m, const hdf5::Origin& origin) {
+                   std::span<const double> x_m, const Origin& origin) {
   Records records(raw, record::history_row_values(x_m.size()));
   const std::size_t block = history_block_rows(x_m.size());
   const auto for_each_block = [&](auto&& f) {
@@ -227,7 +227,7 @@ void write_history(const std::filesystem::path& file, const std::filesystem::pat
 }
 
 void write_probes(const std::filesystem::path& file, const std::filesystem::path& raw,
-                  std::span<const record::ProbePlace> places, const hdf5::Origin& origin) {
+                  std::span<const record::ProbePlace> places, const Origin& origin) {
   Records records(raw, record::probe_row_values(places.size()));
   const std::size_t block = probe_block_rows(places.size());
   const auto for_each_block = [&](auto&& f) {

@@ -12,6 +12,7 @@
 #include "files/files.hpp"
 #include "motion/event.hpp"
 #include "record/probes.hpp"
+#include "results/contents.hpp"
 #include "results/hdf5.hpp"
 #include "results/snapshots.hpp"
 #include "threads/writer.hpp"
@@ -97,11 +98,11 @@ class ResultStream : public motion::Sink {
 /// Makes interface.h5 of a stream's file. A record that was cut off at its end is left out.
 /// @throws WriteError, UserError where the file is missing
 void write_history(const std::filesystem::path& file, const std::filesystem::path& raw,
-                   std::span<const double> x_m, const hdf5::Origin& origin = {});
+                   std::span<const double> x_m, const Origin& origin = {});
 
 /// Makes probes.h5 of a stream's file. @throws as write_history
 void write_probes(const std::filesystem::path& file, const std::filesystem::path& raw,
-                  std::span<const record::ProbePlace> places, const hdf5::Origin& origin);
+                  std::span<const record::ProbePlace> places, const Origin& origin);
 
 /// Makes fields.vtkhdf of a stream's file.
 /// @return the number of snapshots; without any no file is made

@@ -12,7 +12,7 @@
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
-#include "results/snapshots.hpp"
+#include "results/contents.hpp"
 #include "run/initial_state.hpp"
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
@@ -96,7 +96,7 @@ inline constexpr const char* friction_file = "friction.csv";
 /// The case as case.resolved.toml has it: its tables lie beside it.
 std::string resolved_text(const input::Case& config);
 /// What a run's HDF5 files say of where they come from.
-results::hdf5::Origin origin_of(const input::Case& config);
+results::Origin origin_of(const input::Case& config);
 /// What a case's fields.vtkhdf holds. @param n_plate_cells  cells of the plate; those of the base follow
 results::SnapshotContents snapshot_contents(const input::Case& config, std::size_t n_plate_cells,
                                             std::size_t n_cells);

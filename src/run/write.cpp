@@ -203,7 +203,7 @@ std::string resolved_text(const input::Case& config) {
   return input::to_toml(resolved);
 }
 
-results::hdf5::Origin origin_of(const input::Case& config) {
+results::Origin origin_of(const input::Case& config) {
   return {config.title, resolved_text(config)};
 }
 

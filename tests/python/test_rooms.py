@@ -58,3 +58,28 @@ def test_the_way_is_one_way():
     for room, sees in built().items():
         assert sees <= above, room
         above.add(room)
+
+
+# For use from outside, by docs/installing.md, and what their headers need where they are installed.
+OUTSIDE = ["base", "mesh", "solid/material.hpp", "fronts", "record", "input", "run/run.hpp"]
+INSTALLED_WITH = {"fmt", "unistd.h", "immintrin.h"}
+
+
+def test_headers_for_programs_outside_need_no_library_but_fmt():
+    src = ROOT / "src"
+    named = [src / name for name in OUTSIDE]
+    headers = [h for place in named for h in ([place] if place.is_file() else place.rglob("*.hpp"))]
+    libraries: dict[str, Path] = {}
+    seen: set[Path] = set()
+    while headers:
+        header = headers.pop()
+        if header in seen:
+            continue
+        seen.add(header)
+        text = header.read_text(encoding="utf-8")
+        headers += [src / name for name in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE)]
+        for name in re.findall(r"^#include <([^>]+)>", text, re.MULTILINE):
+            if "." in name or "/" in name:
+                libraries[name.split("/")[0]] = header
+    assert src / "motion/event.hpp" in seen
+    assert set(libraries) <= INSTALLED_WITH, libraries
