@@ -25,7 +25,7 @@ TERMS: dict[str, tuple[str, str, style.Line]] = {
     "trigger_work": ("trigger", "#882255", (0, (1, 1.2))),
     "top_work": ("top edge", "#e69f00", (0, (1, 1.2))),
     "prestress_work": ("prescribed tractions", "#56b4e9", (0, (1, 1.2))),
-    "contact_work": ("landings", "#aa4499", (0, (6, 1.5, 1, 1.5))),
+    "contact_work": ("closing gaps", "#aa4499", (0, (6, 1.5, 1, 1.5))),
     "boundary_work": ("absorbing edges", "#56b4e9", (0, (6, 1.5, 1, 1.5))),
     "coupling_work": ("coupling of the layer", "#e69f00", "-"),
 }

@@ -159,10 +159,10 @@ def is_another(results: Results, point: StudyPoint, event: str, direction: int) 
 def front_look(event: str, direction: int) -> dict[str, Any]:
     look = style.EVENT_STYLES[event]
     return {
-        "color": look.colour,
-        "linestyle": look.line if direction < 0 or event != "spontaneous" else (0, (1, 1)),
+        "color": look.front(direction).colour,
+        "linestyle": look.front(direction).line,
         "marker": look.marker,
-        "markerfacecolor": look.colour if direction < 0 else "white",
+        "markerfacecolor": style.fill(look, direction),
         "linewidth": 0.8,
     }
 

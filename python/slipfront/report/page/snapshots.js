@@ -25,7 +25,7 @@ function tipTrace(snapshots, index) {
   const {tips} = snapshots.frames[index];
   return {type: 'scatter', mode: 'markers', x: tips.map((tip) => tip.x), y: tips.map(() => 0), text: tips.map((tip) => tip.label),
     hovertemplate: '%{text}<extra></extra>', cliponaxis: false,
-    marker: {symbol: tips.map((tip) => triangle(tip.direction)), size: 15, color: '#fff', line: {color: '#111', width: 2}}};
+    marker: {symbol: tips.map((tip) => triangle(tip.direction)), size: 15, color: tips.map((tip) => tip.colour), line: {color: '#fff', width: 2}}};
 }
 
 function drawSnapshot() {
@@ -68,17 +68,11 @@ function play() {
   player = setInterval(() => showFrame((frame + 1) % current.snapshots.frames.length), FRAME_MS);
 }
 
-/** The first frame in which something moves fast. */
-function firstFrame(snapshots) {
-  const index = snapshots.frames.findIndex(({tips}) => tips.length > 0);
-  return Math.max(0, index);
-}
-
 function resetSnapshots() {
   if (!byId('snapshots-plot')) return null;
   if (player) stop();
   byId('snapshots-time').max = current.snapshots.frames.length - 1;
-  return showFrame(firstFrame(current.snapshots));
+  return showFrame(current.snapshots.opening);
 }
 
 function startSnapshots() {
