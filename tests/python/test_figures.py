@@ -848,8 +848,8 @@ def test_studies_show_speeds_and_changes(results):
 
 def test_legends_of_studies_tell_lines_and_bands(results):
     for drawing, wanted in (
-        (studies.speeds(results), {r"$c_\mathrm{L}$; no change", "band across: change within 1 %"}),
-        (studies.criteria(results), {"band across: half width of the paper's"}),
+        (studies.speeds(results), {r"$c_\mathrm{L}$; no change", "band: change within 1 %"}),
+        (studies.criteria(results), {"band: half width of the paper's"}),
     ):
         told = {text.get_text() for text in drawing.figure.legends[0].get_texts()}
         assert wanted | {"value of the paper's runs"} <= told

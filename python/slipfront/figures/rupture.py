@@ -92,7 +92,8 @@ def handles_of(run: Run) -> list[Artist]:
     colours = {way: style.DIRECTION_COLOURS[way] for way in sorted({f.direction for f in run.fronts})}
     names = {way: f"fronts {words}" for way, words in style.DIRECTION_WORDS.items()}
     fronts = [Line2D([], [], color=colours[way], linewidth=1.2, label=names[way]) for way in colours]
-    return [*fronts, Patch(facecolor=OPEN_COLOUR, label="contact open")]
+    has_open = bool((run.history.p_Pa <= 0).any())
+    return [*fronts, *([Patch(facecolor=OPEN_COLOUR, label="contact open")] if has_open else [])]
 
 
 def rupture(run: Run) -> Drawing:
@@ -102,7 +103,8 @@ def rupture(run: Run) -> Drawing:
     figure.colorbar(draw_slip_rate(left, run), ax=left, **bar)
     draw_speeds(right, run)
     handles = handles_of(run)
-    style.legend_below(figure, handles, len(handles))
+    if handles:
+        style.legend_below(figure, handles, len(handles))
     caption = (
         "Left: slip rate along the interface over time, on a logarithmic scale, white a thousand times below "
         "its largest value, grey where the contact is open; outlined: onsets of the fronts. Right: their "

@@ -308,7 +308,7 @@ def speeds(results: Results) -> Drawing:
     handles.append(handle("mean", marker="_", markersize=5.0, **grey))
     handles.append(handle("maximum, other front", marker="x", markersize=3.0, **grey))
     handles.append(handle(r"$c_\mathrm{L}$; no change", **style.REFERENCE))
-    handles.append(Patch(facecolor="0.9", label="band across: change within 1 %"))
+    handles.append(Patch(facecolor="0.9", label="band: change within 1 %"))
     labels = (style.V_LABEL, "change (%)")
     return Drawing(
         "studies",
@@ -327,7 +327,7 @@ def criteria(results: Results) -> Drawing:
     ]
     for _, label, colour, marker in SPREADS:
         handles.append(handle(f"spread, {label}", color=colour, linestyle="-", marker=marker, markersize=3.0))
-    handles.append(Patch(facecolor="0.9", label="band across: half width of the paper's"))
+    handles.append(Patch(facecolor="0.9", label="band: half width of the paper's"))
     labels = (r"rms / $c_\mathrm{L}$", "spread")
     return Drawing(
         "studies_criteria",
