@@ -43,7 +43,7 @@ function drawSnapshot() {
     xaxis: axis(`x (${units.x})`, {range: [snapshots.x[0] - side, snapshots.x.at(-1) + side], constrain: 'domain', showgrid: false}),
     yaxis: axis(`y (${units.x})`, {range: [snapshots.y[0] - side, snapshots.y.at(-1) + side], scaleanchor: 'x', constrain: 'domain', showgrid: false}),
     shapes: snapshots.two_bodies ? [{type: 'line', xref: 'paper', x0: 0, x1: 1, y0: 0, y1: 0, line: {color: '#fff', width: 1}}] : [],
-    margin: {l: 80, r: 20, t: 20, b: 60}, uirevision: 'same', showlegend: false,
+    margin: {l: 80, r: 20, t: 40, b: 60}, uirevision: 'same', showlegend: false,
   });
   return Plotly.react('snapshots-plot', [picture, tipTrace(snapshots, frame)], layout, CONFIG);
 }
