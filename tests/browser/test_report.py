@@ -17,6 +17,7 @@ from selenium.webdriver.common.by import By
 ROOT = Path(__file__).parents[2]
 PROGRAM = os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")
 CASES = {
+    "probes": ("cases/reference/gauges.toml", []),
     "one body": (
         "cases/kammer2012/left.toml",
         ["plate.element_size_m=2e-3", "fronts.l_star_m=2e-3"],
@@ -222,6 +223,45 @@ def test_the_snapshots_play_and_show_both_bodies(opened):
     wait(browser, lambda: now.text != before, 5)
     browser.execute_script("arguments[0].click()", button)
     assert button.text == "play"
+
+
+def test_the_records_of_probes_are_chosen(opened):
+    browser = opened("probes")
+    title = "return document.getElementById('probes-plot').layout.yaxis.title.text"
+    first = (
+        "return document.getElementById('probes-plot').data.filter(t => t.meta.panel === 0).map(t => t.y[0])"
+    )
+    assert "v<sub>x</sub> (m/s)" in browser.execute_script(title)
+    button = browser.find_element(By.CSS_SELECTOR, "[data-probes=stress]")
+    browser.execute_script("arguments[0].click()", button)
+    wait(browser, lambda: "σ<sub>xx</sub> (MPa)" in browser.execute_script(title))
+    assert button.get_attribute("aria-pressed") == "true"
+    before = browser.execute_script(first)
+    assert len(before) == 5 and all(abs(value) > 0.1 for value in before)
+    browser.execute_script("document.getElementById('probes-change').click()")
+    wait(browser, lambda: browser.execute_script(first) == [0] * 5)
+    assert browser.get_log("browser") == []
+
+
+def test_the_snapshots_open_where_something_moves(opened):
+    browser = opened("probes")
+    slowest, fastest = browser.execute_script(
+        "const z = document.getElementById('snapshots-plot').data[0].z.flat().filter(v => v !== null);"
+        "return [Math.min(...z), Math.max(...z)]"
+    )
+    assert fastest > 120 > slowest
+    assert int(browser.find_element(By.ID, "snapshots-time").get_attribute("value")) > 0
+
+
+def test_a_front_has_one_colour_in_all_plots(opened):
+    browser = opened("two bodies")
+    colours = (
+        "const d = document.getElementById(arguments[0]).data.filter(t => t.meta?.front !== undefined);"
+        "return Object.fromEntries(d.map(t => [t.meta.front, t[arguments[1]].color]))"
+    )
+    lines = browser.execute_script(colours, "space-time-plot", "line")
+    assert len(set(lines.values())) == 2  # one for each direction
+    assert lines == browser.execute_script(colours, "criteria-plot", "marker")
 
 
 def test_another_run_of_a_reproduction_is_shown(opened):

@@ -19,7 +19,7 @@ from slipfront.figures.main_fronts import drawn_fronts, main_fronts
 from slipfront.figures.results import read_results
 from slipfront.figures.statements import STATEMENTS
 from slipfront.figures.study import Study, StudyPoint
-from slipfront.figures.style import EVENT_STYLES, RC
+from slipfront.figures.style import DIRECTION_COLOURS, EVENT_STYLES, RC
 from synthetic import (
     CONTACT_FROM_M,
     CONTACT_TO_M,
@@ -484,6 +484,43 @@ def test_space_time_shows_onsets_and_slopes_of_the_wave_speeds(pristine, results
     assert "c_L:1" not in gids(figure)  # it starts next to the right edge
 
 
+def test_fronts_have_the_same_colours_in_all_figures(results):
+    looks = EVENT_STYLES["spontaneous"].fronts
+    for drawing, panel in (
+        (space_time.space_time(results, "spontaneous"), 0),
+        (events.three_events(results), 4),
+        (criteria.dynamic_ratio_along_x(results), 0),
+        (criteria.dynamic_criterion(results), 0),
+        (criteria.energy(results), 0),
+    ):
+        for front_id, way in ((1, -1), (2, 1)):
+            assert artist(drawing.figure, f"spontaneous:{front_id}", panel).get_color() == looks[way].colour
+    figure = space_time.space_time(results, "spontaneous").figure
+    handles = figure.legends[0].legend_handles
+    told = {text.get_text(): h for h, text in zip(handles, figure.legends[0].get_texts(), strict=True)}
+    assert told["front to $-x$"].get_color() == looks[-1].colour
+    assert told["front to $+x$"].get_color() == looks[1].colour
+    assert "contact open" in told and r"$c_\mathrm{R}$" in told
+
+
+def test_legends_are_inside_the_figures(results):
+    with matplotlib.rc_context(RC):
+        for drawing in (
+            events.three_events(results),
+            criteria.static_ratio_mu_k(results),
+            criteria.dynamic_ratio_along_x(results),
+            criteria.dynamic_criterion(results),
+            criteria.energy(results),
+            space_time.space_time(results, "spontaneous"),
+        ):
+            figure = drawing.figure
+            figure.draw_without_rendering()
+            for legend in (*figure.legends, *(ax.get_legend() for ax in figure.axes if ax.get_legend())):
+                box = legend.get_window_extent()
+                assert box.x0 >= 0 and box.x1 <= figure.bbox.x1, drawing.name
+                assert box.y0 >= 0 and box.y1 <= figure.bbox.y1, drawing.name
+
+
 def test_space_time_masks_open_contact(results):
     history = results.runs["left"].history
     drawn = artist(space_time.space_time(results, "left").figure, "rate").get_array()
@@ -756,6 +793,18 @@ def lab(colour: str, blindness: str) -> np.ndarray:
     return np.array([116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])])
 
 
+def distance(colour: str, other: str, blindness: str) -> float:
+    return float(np.linalg.norm(lab(colour, blindness) - lab(other, blindness)))
+
+
+@pytest.mark.parametrize("blindness", BLINDNESS)
+def test_fronts_of_an_event_differ_for_the_colour_blind(blindness):
+    for name in ("spontaneous", "spontaneous_mu_k_1.0"):
+        against, along = (EVENT_STYLES[name].front(way).colour for way in (-1, 1))
+        assert distance(against, along, blindness) > 24
+    assert distance(*DIRECTION_COLOURS.values(), blindness) > 50
+
+
 @pytest.mark.parametrize("blindness", BLINDNESS)
 def test_terms_of_the_balance_differ_for_the_colour_blind(blindness):
     looks = list(balance.TERMS.values())
@@ -795,6 +844,15 @@ def test_studies_show_speeds_and_changes(results):
     np.testing.assert_allclose(artist(figure, "change:spontaneous", lower).get_ydata(), [9, 0, np.nan])
     assert [label.get_text() for label in figure.axes[lower].get_xticklabels()] == ["0.4", "0.6", "1.2"]
     assert artist(figure, "max:spontaneous:-1", upper).get_linestyle() == "-"
+
+
+def test_legends_of_studies_tell_lines_and_bands(results):
+    for drawing, wanted in (
+        (studies.speeds(results), {r"$c_\mathrm{L}$; no change", "band: change within 1 %"}),
+        (studies.criteria(results), {"band: half width of the paper's"}),
+    ):
+        told = {text.get_text() for text in drawing.figure.legends[0].get_texts()}
+        assert wanted | {"value of the paper's runs"} <= told
 
 
 def test_studies_of_words_have_no_lines(results):

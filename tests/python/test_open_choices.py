@@ -10,9 +10,10 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from matplotlib.text import Text
 from slipfront.figures import open_choices
 from slipfront.figures.__main__ import main
-from slipfront.figures.style import RC
+from slipfront.figures.style import PAGE_MM, RC
 from slipfront.files import DataError
 from synthetic import write_checksums
 from synthetic_study import write_interface_step, write_open_choices
@@ -127,6 +128,7 @@ def test_the_legend_names_the_chosen_trigger_and_hides_no_point(study):
     (legend,) = drawing.figure.legends
     assert "chosen: left added 10 over 10 mm, right weakened over 10 mm" in legend_texts(legend)
     assert "the study's standard" in legend_texts(legend)
+    assert "what the paper says: at most 0.6, at least 80 %" in legend_texts(legend)
     assert not legend.get_window_extent().overlaps(drawing.figure.axes[1].get_tightbbox())
 
 
@@ -145,8 +147,8 @@ def test_a_chosen_sample_that_the_table_lacks_is_refused(study):
 @pytest.mark.parametrize(
     "labels, text",
     [
-        (["none", "R2", "R10"], "none\nR2 R10"),
-        (["1", "1.33", "2"], "1 1.33\n2"),
+        (["none", "R2", "R10"], "none\nR2\nR10"),
+        (["1", "1.33", "2"], "1\n1.33\n2"),
         (["raised", "weak"], "raised\nweak"),
         (["0.001", "0.002", "0.003", "0.004"], "0.001\n0.002\n..."),
         ([], ""),
@@ -169,6 +171,37 @@ def test_the_texts_of_cells_stay_inside(study):
     cell = ax.patches[0].get_window_extent()
     text = next(text for text in ax.texts if "R10" in text.get_text()).get_window_extent()
     assert text.width < cell.width and text.height < cell.height
+
+
+def test_all_type_can_be_read_in_print(study):
+    """Of at least 6.5 pt: the figure is drawn as wide as a page."""
+    figure = open_choices.draw(study).figure
+    figure.draw_without_rendering()
+    texts = [text for text in figure.findobj(Text) if text.get_text().strip() and text.get_visible()]
+    assert len(texts) > 30 and min(text.get_fontsize() for text in texts) >= 6.5
+    assert figure.get_figwidth() == pytest.approx(PAGE_MM / 25.4)
+
+
+def test_rows_are_as_high_as_their_lines(study):
+    turns = [{"choice": "corner", "level": level} for level in ("none", "fillet 2 mm", "fillet 10 mm")]
+    change_summary(study, lambda s: s["matrix"][0]["about_chosen"].update(turns=turns))
+    change_summary(study, lambda s: s["matrix"][1]["about_chosen"].update(turns=[]))
+    figure = open_choices.draw(study).figure
+    high, low = (artist(figure, f"{claim}:corner").get_height() for claim in ("C2", "C11"))
+    assert high - low == pytest.approx(2 * open_choices.LINE_MM)
+
+
+def test_samples_far_to_the_right_are_counted(study):
+    assert not open_choices.draw(study).figure.axes[1].texts
+    file = study / "open_choices.csv"
+    rows = file.read_text().splitlines()
+    column = rows[0].split(",").index("left_max_over_c_L")
+    cells = rows[1].split(",")
+    cells[column] = "99"
+    file.write_text("\n".join([rows[0], ",".join(cells), *rows[2:]]) + "\n")
+    ax = open_choices.draw(study).figure.axes[1]
+    assert [text.get_text() for text in ax.texts] == ["1 beyond the axis →"]
+    assert ax.get_xlim()[1] == open_choices.HIGHEST_RATIO
 
 
 def test_a_study_of_the_step_is_drawn_into_its_folder_too(tmp_path):

@@ -14,8 +14,9 @@ import h5py
 import numpy as np
 import pytest
 from slipfront import __main__ as package
+from slipfront.figures.style import DIRECTION_COLOURS
 from slipfront.files import DataError
-from slipfront.read import Fields, read_balance
+from slipfront.read import PROBE_FIELDS, Fields, read_balance
 from slipfront.report import history, picture_grid, run_data
 from slipfront.report.command import main
 from slipfront.report.numbers import listed, packed, unit
@@ -24,6 +25,7 @@ from slipfront.report.run import thin_run
 from synthetic import write_checksums, write_output, write_run
 from synthetic_study import write_interface_step, write_open_choices, write_study
 
+PROBE_PARTS = {"probes-plot", "probes-change"}  # of the page of a run with probes alone
 HOSTILE = '</script><script>alert(1)</script><b>"&\u202e'
 
 
@@ -91,7 +93,7 @@ def test_a_page_needs_no_network(run):
     assert not re.search(r'(?:src|href)="(?!#|data:)', text)
     # The plots that the script looks for, and controls that it wires.
     script = "".join(f.read_text() for f in Path(history.__file__).parent.glob("page/*.js"))
-    wanted = set(re.findall(r"byId\('([\w-]+)'\)", script)) - {"data", "run"}
+    wanted = set(re.findall(r"byId\('([\w-]+)'\)", script)) - {"data", "run", *PROBE_PARTS}
     assert wanted and all(f'id="{name}"' in text for name in wanted)
 
 
@@ -143,6 +145,96 @@ def test_a_run_without_snapshots_and_fronts_has_a_page(run):
     data = data_of(text)["runs"][0]
     assert data["snapshots"] is None and data["fronts"] == [] and data["origin"] is None
     assert "has no snapshots" in text and 'id="snapshots-plot"' not in text
+
+
+def write_probes(folder: Path, n_times: int = 11, n_probes: int = 2) -> dict[str, np.ndarray]:
+    """Records that grow over time; returns them by field."""
+    time_s = np.linspace(0, 250e-6, n_times)
+    sizes = {"u": 1e-6, "v": 2.0, "strain": 1e-5, "stress": 1e5}
+    fields = {}
+    with h5py.File(folder / "probes.h5", "w") as file:
+        file["name"] = [f"SG{k}" for k in range(n_probes)]
+        file["x_m"], file["y_m"], file["time_s"] = 0.05 * np.arange(n_probes), np.full(n_probes, 5e-3), time_s
+        for place, name in enumerate(PROBE_FIELDS):
+            grow = 1 + np.linspace(0, 1, n_times)[:, None] * (1 + np.arange(n_probes))
+            fields[name] = file[name] = (1 + place) * sizes[name.split("_")[0]] * grow
+    return fields
+
+
+def test_probes_are_shown_where_there_are_any(run):
+    text = page_of(run)
+    assert "probes" not in data_of(text)["runs"][0] and not any(
+        f'id="{part}"' in text for part in PROBE_PARTS
+    )
+    fields = write_probes(run)
+    text = page_of(run)
+    data = data_of(text)["runs"][0]["probes"]
+    assert all(f'id="{part}"' in text for part in PROBE_PARTS) and 'href="#probes"' in text
+    assert data["names"] == ["SG0", "SG1"] and data["x"] == [0, 50] and data["y"] == [5, 5]
+    np.testing.assert_allclose(data["time"], np.linspace(0, 250, 11), rtol=1e-4)
+    choices = {choice["name"]: choice for choice in data["choices"]}
+    assert [choices[name]["unit"] for name in ("velocity", "strain", "stress")] == ["m/s", "10⁻⁶", "MPa"]
+    for choice, factor, names in (
+        ("velocity", 1, ("v_x_m_per_s", "v_y_m_per_s")),
+        ("strain", 1e6, ("strain_xx", "strain_yy", "strain_xy")),
+        ("stress", 1e-6, ("stress_xx_Pa", "stress_yy_Pa", "stress_xy_Pa")),
+    ):
+        for part, name in zip(choices[choice]["parts"], names, strict=True):
+            np.testing.assert_allclose(unpacked(part["values"]), factor * fields[name], rtol=1e-3)
+
+
+def test_many_probes_and_times_are_thinned_and_the_page_says_so(run):
+    write_probes(run, 2500, 30)
+    text = page_of(run)
+    data = data_of(text)["runs"][0]["probes"]
+    assert data["choices"][0]["parts"][0]["values"]["shape"] == [834, 24] and len(data["time"]) == 834
+    assert "the first 24 of 30 probes and one in 3 of 2500 times" in text
+
+
+def test_probes_that_are_not_finite_are_refused(run, capsys):
+    write_probes(run)
+    with h5py.File(run / "probes.h5", "r+") as file:
+        file["strain_xx"][3, 1] = np.nan
+    assert "probes.h5: a value of strain_xx is not finite" in refusal(capsys, run)
+    info = json.loads((run / "run.json").read_text()) | {"status": "blew_up"}
+    (run / "run.json").write_text(json.dumps(info))
+    assert len(data_of(page_of(run))["runs"][0]["probes"]["time"]) == 3
+
+
+def test_a_page_opens_where_something_is_seen(run):
+    data = data_of(page_of(run))["runs"][0]
+    front = thin_run(run).fronts[0]
+    middle = 0.5e6 * (front.onset_s[0] + front.onset_s[-1])
+    assert data["opening"] == pytest.approx(middle)
+    frames = [frame["time"] for frame in data["snapshots"]["frames"]]
+    assert data["snapshots"]["opening"] == np.argmin(np.abs(np.array(frames) - middle))
+
+
+@pytest.mark.parametrize(
+    "fastest, wanted_s, index",
+    [
+        ([0, 1, 8, 9], 0.4, 2),  # nothing is seen in the two nearest
+        ([0, 1, 8, 9], 3.4, 3),
+        ([0, 0, 0, 0], 1.2, 1),
+        ([0, 5, 9, 1], 2.9, 2),
+    ],
+)
+def test_the_snapshot_that_is_opened_shows_motion(fastest, wanted_s, index):
+    assert run_data.opening_frame(np.arange(4.0), np.array(fastest), 11.0, wanted_s) == index
+
+
+def test_fronts_have_one_colour_for_each_direction(tmp_path):
+    write_run(tmp_path / "out", "spontaneous", 0.6, 20, 10, 30, 3)
+    data = data_of(page_of(tmp_path / "out"))["runs"][0]
+    colours = {front["direction"]: front["colour"] for front in data["fronts"]}
+    assert colours == DIRECTION_COLOURS and colours[1] != colours[-1]
+    tips = [tip for frame in data["snapshots"]["frames"] for tip in frame["tips"]]
+    assert tips and all(tip["colour"] == colours[tip["direction"]] for tip in tips)
+
+
+def test_energies_are_named_without_riddles(run):
+    terms = [term["label"] for term in data_of(page_of(run))["runs"][0]["energy"]["terms"]]
+    assert "strain energy" in terms and not any("(" in term for term in terms)
 
 
 def test_an_interrupted_run_is_marked(run, capsys):

@@ -5,14 +5,17 @@ import csv
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from slipfront.files import DataError
 from slipfront.folder import verify_checksums
 from slipfront.sweep import engine, maps, notebook, report
@@ -742,6 +745,49 @@ def test_a_map_is_drawn_into_a_picture(done, capsys):
     drawing = maps.draw(done)
     names = {c.get_gid() for ax in drawing.figure.axes for c in ax.collections}
     assert set(maps.SHOWN) <= names
+
+
+def test_wave_speeds_are_marked_in_scales_of_speeds(done):
+    results = read_results(done)
+    waves = results.waves_over_c_L
+    assert list(waves) == ["c_R", "c_S", "c_L"] and waves["c_L"] == 1
+    nu = 0.37  # of the default material, in plane stress
+    assert waves["c_S"] == pytest.approx(np.sqrt((1 - nu) / 2)) and 0.9 < waves["c_R"] / waves["c_S"] < 0.96
+    speeds = {q.name for q in results.quantities if results.waves_of(q)}
+    assert len(speeds) == 3 and all(name.endswith("_over_c_L") for name in speeds)
+    ax = Figure().subplots()
+    maps.mark_waves(ax, waves, 0.54, 1.2)
+    marked = {line.get_gid(): line.get_ydata()[0] for line in ax.lines}
+    assert marked == {name: waves[name] for name in ("c_S", "c_L")}
+    (data,) = (q for q in report.sweep_data(results)["quantities"] if q["name"] == "v_tip_largest_over_c_L")
+    assert {wave["name"]: wave["level"] for wave in data["waves"]} == waves
+
+
+def test_no_wave_speed_is_marked_where_the_material_varies(done):
+    vary = {"material.poissons_ratio": "0.3,0.4"}
+    results = replace(read_results(done), definition={"vary": vary, "combine": "grid"})
+    assert results.waves_over_c_L == {}
+
+
+def test_without_runs_no_wave_speed_is_marked(done):
+    shutil.rmtree(done / "points")
+    assert read_results(done).waves_over_c_L == {} and maps.draw(done)
+
+
+def test_a_scale_of_speeds_goes_out_to_the_next_wave_speeds():
+    waves = {"c_R": 0.52, "c_S": 0.56, "c_L": 1.0}
+    assert maps.with_waves(0.7, 0.9, waves) == (0.56, 1.0)
+    assert maps.with_waves(0.54, 1.5, waves) == (0.52, 1.5)
+    assert maps.with_waves(5.0, 50.0, waves) == (1.0, 50.0)
+    assert maps.with_waves(0.2, 0.4, {}) == (0.2, 0.4)
+
+
+def test_marks_close_to_each_other_have_one_label():
+    waves = {"c_R": 0.52, "c_S": 0.56, "c_L": 1.0}
+    names = [label.count("c_") for _, label in maps.merged(waves, 0.4, 1.4)]
+    assert names == [2, 1]
+    assert [level for level, _ in maps.merged(waves, 0.5, 0.9)] == [0.52, 0.56]
+    assert maps.merged(waves, 5, 50) == []
 
 
 @pytest.mark.parametrize(

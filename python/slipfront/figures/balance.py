@@ -25,7 +25,7 @@ TERMS: dict[str, tuple[str, str, style.Line]] = {
     "trigger_work": ("trigger", "#882255", (0, (1, 1.2))),
     "top_work": ("top edge", "#e69f00", (0, (1, 1.2))),
     "prestress_work": ("prescribed tractions", "#56b4e9", (0, (1, 1.2))),
-    "contact_work": ("landings", "#aa4499", (0, (6, 1.5, 1, 1.5))),
+    "contact_work": ("closing gaps", "#aa4499", (0, (6, 1.5, 1, 1.5))),
     "boundary_work": ("absorbing edges", "#56b4e9", (0, (6, 1.5, 1, 1.5))),
     "coupling_work": ("coupling of the layer", "#e69f00", "-"),
 }
@@ -116,7 +116,8 @@ def draw_balances(every: list[Books]) -> Drawing:
         "energy_balance",
         figure,
         "Energy over time, per unit thickness. Above: change of the stored energies since the start, and the "
-        "works done on the plate; what leaves it is negative. Below, on a logarithmic scale and over the "
+        "works done on the plate; what leaves it is negative. Closing gaps: what is lost where the plate "
+        "lands on its base again. Below, on a logarithmic scale and over the "
         f"largest change above: terms of at most {100 * SMALL:g} % of it, the coupling between the "
         "sub-cycled layer and the other cells, an error of the time stepping, and the imbalance: change "
         "less all works, "

@@ -140,13 +140,20 @@ def static_ratio_mu_k(results: Results) -> Drawing:
     ax = figure.subplots()
     lines: dict[int, style.Line] = {-1: (0, (4.5, 1.8)), 1: "-"}
     draw_fronts(ax, run, lambda front: front.static_ratio, speed(run), lines)
-    colour = style.EVENT_STYLES[run.name].colour
-    plain: style.Look = {"color": colour, "marker": "o"}
+    event = style.EVENT_STYLES[run.name]
     handles = [
-        Line2D([], [], linestyle=lines[1], markerfacecolor="white", label="front along the shear", **plain),
-        Line2D([], [], linestyle=lines[-1], label="front against the shear", **plain),
-        style.pale_handle(colour),
+        Line2D(
+            [],
+            [],
+            color=event.front(way).colour,
+            linestyle=lines[way],
+            marker=event.marker,
+            markerfacecolor=style.fill(event, way),
+            label=words,
+        )
+        for way, words in ((1, "front along the shear"), (-1, "front against the shear"))
     ]
+    handles.append(style.pale_handle(event.colour))
     measured = "No file of experimental data was given, so none are drawn."
     if results.experiment is not None:
         x, y = results.experiment
@@ -333,6 +340,7 @@ def energy(results: Results) -> Drawing:
     events = style.event_handles(results.events)
     for handle in events:
         handle.set_linestyle("none")
+        handle.set_markersize(4)
     tails = Line2D([], [], color="0.6", linestyle="none", marker="o", label=f"pale: last {1e3 * TAIL_M:g} mm")
     handles = [*events, tails, *style.fill_handles(), style.pale_handle(), *fits]
     style.legend_below(figure, handles, 3)

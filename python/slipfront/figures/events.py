@@ -173,7 +173,7 @@ def three_events(results: Results) -> Drawing:
     )
     bar.set_ticks(np.linspace(*SPEED_RANGE_M_PER_S, 5).tolist())
     bar.ax.annotate("$|v|$ (m/s)", (1.06, 0.5), xycoords="axes fraction", va="center")
-    d = axes(103, 24, 64, 46)
+    d = axes(103, 27.5, 64, 42.5)
     speed_over_static_ratio(d, results.events)
     outside = finish(d, results.events[0])
     handles = [*style.event_handles(results.events), *style.fill_handles(), style.pale_handle()]

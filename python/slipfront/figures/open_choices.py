@@ -29,9 +29,14 @@ SHARES = {
     "share_of_triggers_with_fronts": "% of those with fronts",
     "share_of_all": "% of all choices",
 }
+HIGHEST_RATIO = 2.5  # the axis ends there at the latest
+LARGEST_RATIO = 0.6  # of the left-triggered maximum to the smaller of the others, which C11 asks for
 HOLDS, FAILS, TURNS_ON, TURNS_OFF = "#c7d9ec", "#f0c9b0", "#0072b2", "#b5420f"
 NOT_VARIED: Look = {"facecolor": "white", "edgecolor": "0.75", "hatch": "/////", "linewidth": 0}
-LINE_LENGTH, MOST_LINES = 6, 3  # of a cell's text
+LINE_LENGTH, MOST_LINES = 5, 3  # of a cell's text
+TYPE_PT = 6.5  # of all that is not set in the figures' own size
+LINE_MM, CELL_MARGIN_MM = 2.5, 1.2  # of such type, and above and below a cell's lines together
+SAMPLES_MM, REST_MM = 62.0, 78.0  # the samples; headings, legends and labels
 #: Marker, colour and name of the sets of samples, those with the fewest on top.
 SETS = {
     "all": ("x", "0.6", "all choices, space-filling"),
@@ -96,7 +101,7 @@ def title(choice: str) -> str:
     if choice.endswith("_m"):
         return f"{choice[:-2]} (mm)".replace("_", " ")
     if choice.endswith("_s"):
-        return f"{choice[:-2]} (us)".replace("_", " ")
+        return f"{choice[:-2]} (µs)".replace("_", " ")
     return choice.replace("_", " ")
 
 
@@ -115,28 +120,41 @@ def cell_look(holds: bool, turns: bool) -> dict[str, Any]:
     return {"facecolor": colour, "edgecolor": "white", "linewidth": 0.5}
 
 
+def texts_of(row: dict[str, Any], summary: dict[str, Any]) -> list[str]:
+    """A claim's cells, by choice: the levels at which its verdict turns."""
+    turns = about(row, summary)["turns"]
+    names = [choice["name"] for choice in summary["choices"]]
+    return [cell_text([label(level, name) for level in turned_levels(turns, name)]) for name in names]
+
+
+def row_edges_mm(summary: dict[str, Any]) -> np.ndarray:
+    """Rows of the matrix as high as their cells with the most lines. [rows + 1]"""
+    n_lines = [max(text.count("\n") + 1 for text in texts_of(row, summary)) for row in summary["matrix"]]
+    return np.concatenate([[0.0], np.cumsum(LINE_MM * np.array(n_lines) + CELL_MARGIN_MM)])
+
+
 def draw_matrix(ax: Axes, summary: dict[str, Any], varied: set[str]) -> None:
-    choices, rows = summary["choices"], summary["matrix"]
-    n_choices = len(choices)
+    choices, rows, edges = summary["choices"], summary["matrix"], row_edges_mm(summary)
+    n_choices, middles = len(choices), (edges[1:] + edges[:-1]) / 2
+    shares_x = n_choices + 0.55 + 0.8 * np.arange(len(SHARES))
+    small: Look = {"fontsize": TYPE_PT, "ha": "center", "va": "center"}
     for y, row in enumerate(rows):
-        for x, choice in enumerate(choices):
+        for x, (choice, text) in enumerate(zip(choices, texts_of(row, summary), strict=True)):
             name = choice["name"]
-            levels = turned_levels(about(row, summary)["turns"], name)
-            look = cell_look(about(row, summary)["holds"], bool(levels)) if name in varied else NOT_VARIED
-            ax.add_patch(Rectangle((x, y), 1, 1, gid=f"{row['id']}:{name}", **look))
-            text = cell_text([label(level, name) for level in levels])
-            ax.text(x + 0.5, y + 0.5, text, color="white", fontsize=4.5, ha="center", va="center",
-                    linespacing=0.85)  # fmt: skip
-        for x, key in enumerate(SHARES, start=n_choices):
+            look = cell_look(about(row, summary)["holds"], bool(text)) if name in varied else NOT_VARIED
+            ax.add_patch(
+                Rectangle((x, edges[y]), 1, edges[y + 1] - edges[y], gid=f"{row['id']}:{name}", **look)
+            )
+            ax.text(x + 0.5, middles[y], text, color="white", linespacing=0.95, **small)
+        for x, key in zip(shares_x, SHARES, strict=True):
             share = row[key]
-            text = "" if share is None else f"{100 * share:.0f}"
-            ax.text(x + 0.6, y + 0.5, text, fontsize=5.5, ha="center", va="center")
-    ax.set_xlim(0, n_choices + len(SHARES) + 0.2)
-    ax.set_ylim(len(rows), 0)
-    ax.set_yticks(np.arange(len(rows)) + 0.5, labels=[row["id"] for row in rows], fontsize=5.5)
+            ax.text(x, middles[y], "" if share is None else f"{100 * share:.0f}", **small)
+    ax.set_xlim(0, shares_x[-1] + 0.4)
+    ax.set_ylim(edges[-1], 0)
+    ax.set_yticks(middles, labels=[row["id"] for row in rows], fontsize=TYPE_PT)
     headings = [title(c["name"]) for c in choices] + list(SHARES.values())
-    places = [*np.arange(n_choices) + 0.5, *(n_choices + np.arange(len(SHARES)) + 0.6)]
-    ax.set_xticks(places, labels=headings, rotation=55, ha="left", fontsize=5.5)
+    places = [*np.arange(n_choices) + 0.5, *shares_x]
+    ax.set_xticks(places, labels=headings, rotation=65, ha="left", fontsize=TYPE_PT)
     ax.xaxis.tick_top()
     ax.tick_params(length=0)
     ax.spines[:].set_visible(False)
@@ -148,8 +166,8 @@ def draw_matrix(ax: Axes, summary: dict[str, Any], varied: set[str]) -> None:
     ]
     if any(choice["name"] not in varied for choice in choices):
         handles.append(Patch(label="not varied by itself", **NOT_VARIED))
-    ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.005), ncols=5, fontsize=6,
-              columnspacing=1.0)  # fmt: skip
+    ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.005), ncols=5, fontsize=TYPE_PT,
+              columnspacing=1.0, handlelength=1.8)  # fmt: skip
 
 
 def trigger(values: dict[str, Any], edge: str) -> str:
@@ -205,12 +223,21 @@ def draw_samples(ax: Axes, table: Table, summary: dict[str, Any]) -> list[Line2D
     if chosen := summary["chosen"]:
         words = ", ".join(trigger(chosen["values"], edge) for edge in ("left", "right"))
         draw_rows([chosen_row(table, chosen)], "chosen", **CHOSEN, label=f"chosen: {words}")
-    ax.axvline(0.6, color="0.3", linewidth=0.6)
-    ax.axhline(100 * summary["wanted_share_in_band"], color="0.3", linewidth=0.6)
+    wanted = 100 * summary["wanted_share_in_band"]
+    limit: Look = {"color": "0.3", "linewidth": 0.6}
+    ax.axvline(LARGEST_RATIO, **limit)
+    ax.axhline(wanted, **limit)
+    words = f"what the paper says: at most {LARGEST_RATIO:g}, at least {wanted:.0f} %"
+    handles.insert(0, Line2D([], [], label=words, **limit))
     largest = np.max(ratio[np.isfinite(ratio)], initial=0.0)
+    beyond = int(np.sum(ratio > HIGHEST_RATIO))
+    if beyond:
+        ax.annotate(
+            f"{beyond} beyond the axis →", (0.995, 0.02), xycoords="axes fraction", ha="right", color="0.3"
+        )
     ax.set(xlabel="maximum of the left-triggered front over the smaller of the others",
            ylabel="points of the main fronts within the paper's band (%)",
-           xlim=(-0.02, max(1.4, 1.02 * largest)), ylim=(0, 100))  # fmt: skip
+           xlim=(-0.02, np.clip(1.02 * largest, 1.4, HIGHEST_RATIO)), ylim=(0, 100))  # fmt: skip
     return handles[::-1]
 
 
@@ -218,11 +245,12 @@ def draw(folder: Path) -> Drawing:
     """Matrix of claims and choices above, all samples below."""
     summary = read_json_table(result_file(folder / SUMMARY))
     table = read_table(result_file(folder / TABLE))
-    figure = new_figure(PAGE_MM, 240)
-    grid = figure.add_gridspec(2, 1, height_ratios=(2.1, 1))
+    matrix_mm = row_edges_mm(summary)[-1]
+    figure = new_figure(PAGE_MM, matrix_mm + SAMPLES_MM + REST_MM)
+    grid = figure.add_gridspec(2, 1, height_ratios=(matrix_mm, SAMPLES_MM))
     draw_matrix(figure.add_subplot(grid[0]), summary, varied_choices(table, summary))
     handles = draw_samples(figure.add_subplot(grid[1]), table, summary)
-    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=6)
+    figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=TYPE_PT)
     return Drawing("open_choices", figure, "")
 
 

@@ -211,7 +211,7 @@ def front_row(event: str, f: dict[str, Any]) -> list[str]:
     return [
         escape(event),
         text(f.get("id")),
-        text(f.get("direction")),
+        {1: "to +x", -1: "to −x"}.get(f.get("direction", 0), "–"),
         formatted(f.get("start_x_m"), ".1f", 1e3),
         formatted(f.get("start_s"), ".1f", 1e6),
         formatted(f.get("end_x_m"), ".1f", 1e3),

@@ -10,15 +10,18 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm
 from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.picture import command_to_draw, write_results
-from slipfront.figures.space_time import FRONT_COLOUR, OPEN_COLOUR, cell_edges
+from slipfront.figures.space_time import OPEN_COLOUR, cell_edges, draw_front
 from slipfront.read import Run, read_run
 
 DECADES = 3.0  # of slip rate below the highest that are told apart
@@ -50,9 +53,8 @@ def draw_slip_rate(ax: Axes, run: Run) -> AxesImage | QuadMesh:
         gid="rate",
     )
     for front in run.fronts:
-        ax.plot(
-            to_x * front.x_m, to_t * front.onset_s, color=FRONT_COLOUR, linewidth=0.9, gid=f"front:{front.id}"
-        )
+        colour = style.DIRECTION_COLOURS[front.direction]
+        draw_front(ax, to_x * front.x_m, to_t * front.onset_s, colour, f"front:{front.id}")
     ax.set(
         xlabel=f"$x$ ({x_unit})",
         ylabel=f"$t$ ({t_unit})",
@@ -63,32 +65,50 @@ def draw_slip_rate(ax: Axes, run: Run) -> AxesImage | QuadMesh:
 
 
 def draw_speeds(ax: Axes, run: Run) -> None:
-    """Front speeds over c_S, with the plate's wave speeds; points far above c_L are cut off."""
+    """Front speeds over c_S, with the plate's wave speeds; faster nodes than the axis has are counted."""
     c_S = run.fact("wave_speeds.c_S_m_per_s")
     to_x, x_unit = unit(run.parameter("plate.width_m"), "m")
     for front in run.fronts:
-        ax.plot(to_x * front.x_m, front.v_tip_m_per_s / c_S, color=FRONT_COLOUR, gid=f"speed:{front.id}")
+        colour = style.DIRECTION_COLOURS[front.direction]
+        ax.plot(to_x * front.x_m, front.v_tip_m_per_s / c_S, color=colour, gid=f"speed:{front.id}")
     for wave, line in WAVES.items():
         level = run.fact(f"wave_speeds.{wave}_m_per_s") / c_S
         ax.axhline(level, color="0.45", linewidth=0.5, linestyle=line, zorder=0.5, gid=wave)
         style.name_level(ax, level, rf"$c_\mathrm{{{wave[-1]}}}$", below=wave == "c_R")
+    highest = 1.3 * run.c_L_m_per_s / c_S
     ax.set(
         xlabel=f"$x$ ({x_unit})",
         ylabel=r"$V_\mathrm{tip} / c_\mathrm{S}$",
         xlim=(0, to_x * run.parameter("plate.width_m")),
-        ylim=(0, 1.3 * run.c_L_m_per_s / c_S),
+        ylim=(0, highest),
     )
+    above = sum(int(np.sum(front.v_tip_m_per_s / c_S > highest)) for front in run.fronts)
+    if above:
+        ax.set_title(f"{above} {'node' if above == 1 else 'nodes'} above the axis", loc="right", pad=3)
+
+
+def handles_of(run: Run) -> list[Artist]:
+    """Legend entries of what is in both panels."""
+    colours = {way: style.DIRECTION_COLOURS[way] for way in sorted({f.direction for f in run.fronts})}
+    names = {way: f"fronts {words}" for way, words in style.DIRECTION_WORDS.items()}
+    fronts = [Line2D([], [], color=colours[way], linewidth=1.2, label=names[way]) for way in colours]
+    has_open = bool((run.history.p_Pa <= 0).any())
+    return [*fronts, *([Patch(facecolor=OPEN_COLOUR, label="contact open")] if has_open else [])]
 
 
 def rupture(run: Run) -> Drawing:
-    figure = style.new_figure(style.PAGE_MM, 72)
+    figure = style.new_figure(style.PAGE_MM, 77)
     left, right = figure.subplots(1, 2)
-    figure.colorbar(draw_slip_rate(left, run), ax=left, label="slip rate $|v|$ (m/s)", pad=0.02, aspect=30)
+    bar: style.Look = {"label": "slip rate $|v|$ (m/s)", "extend": "min", "pad": 0.02, "aspect": 30}
+    figure.colorbar(draw_slip_rate(left, run), ax=left, **bar)
     draw_speeds(right, run)
+    handles = handles_of(run)
+    if handles:
+        style.legend_below(figure, handles, len(handles))
     caption = (
         "Left: slip rate along the interface over time, on a logarithmic scale, white a thousand times below "
-        "its largest value, grey where the contact is open; red: onsets of the fronts. Right: their speed "
-        "over c<sub>S</sub> of the plate, with its wave speeds."
+        "its largest value, grey where the contact is open; outlined: onsets of the fronts. Right: their "
+        "speed over c<sub>S</sub> of the plate, with its wave speeds."
     )
     return Drawing("rupture", figure, caption)
 

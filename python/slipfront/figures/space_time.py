@@ -8,6 +8,7 @@ from matplotlib import colormaps
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -19,7 +20,7 @@ from slipfront.read import Run
 
 RATE_RANGE_M_PER_S = (0.1, 30.0)
 OPEN_COLOUR = "0.8"
-FRONT_COLOUR = "#cc3311"
+FRONT_WORDS = {way: f"front {words}" for way, words in style.DIRECTION_WORDS.items()}
 WAVES: dict[str, style.Line] = {"c_L": "-", "c_S": (0, (4, 2)), "c_R": (0, (1, 1.2))}
 
 
@@ -52,10 +53,37 @@ def cell_edges(x: np.ndarray) -> np.ndarray:
     return np.concatenate([[x[0] - half[0]], x[:-1] + half, [x[-1] + half[-1]]])
 
 
+def draw_front(ax: Axes, x: np.ndarray, time: np.ndarray, colour: str, gid: str) -> None:
+    """The onsets along a front, outlined: its colour is seen on any slip rate."""
+    ax.plot(x, time, color=colour, linewidth=1.0, path_effects=style.outlined("white", 2.2), gid=gid)
+
+
+def front_handles(colours: dict[int, str]) -> list[Artist]:
+    """Legend entries of fronts by their direction; one for all where the colours are the same."""
+    look: style.Look = {"linewidth": 1.2}
+    if len(set(colours.values())) == 1:
+        return [Line2D([], [], color=next(iter(colours.values())), label="front", **look)]
+    names = {way: f"front {words}" for way, words in style.DIRECTION_WORDS.items()}
+    return [Line2D([], [], color=colour, label=names[way], **look) for way, colour in colours.items()]
+
+
+def add_legend(figure: Figure, colours: dict[int, str]) -> None:
+    """Above the axes: wave speeds under fronts and the open contact."""
+    upper = [*front_handles(colours), Patch(facecolor=OPEN_COLOUR, label="contact open")]
+    upper += [Line2D([], [], linestyle="none", label="")] * (len(WAVES) - len(upper))
+    lower = [
+        Line2D([], [], color="0.25", linestyle=line, linewidth=0.6, label=rf"$c_\mathrm{{{wave[-1]}}}$")
+        for wave, line in WAVES.items()
+    ]
+    columns = [handle for pair in zip(upper, lower, strict=True) for handle in pair]
+    labels = [str(handle.get_label()) for handle in columns]
+    figure.legend(columns, labels, loc="outside upper center", ncols=len(WAVES))
+
+
 def space_time(results: Results, name: str) -> Drawing:
     run = results.runs[name]
     history = run.history
-    figure = style.new_figure(style.COLUMN_MM, 72)
+    figure = style.new_figure(style.COLUMN_MM, 76)
     ax = figure.subplots()
     # A floor below the range: the logarithm of zero would be drawn as open.
     rate = np.maximum(np.abs(history.slip_rate_m_per_s), 0.1 * RATE_RANGE_M_PER_S[0])
@@ -68,37 +96,22 @@ def space_time(results: Results, name: str) -> Drawing:
         gid="rate",
     )
     draw_waves(ax, run)
-    for front in drawn_fronts(run):
-        ax.plot(
-            style.mm(front.x_m),
-            1e6 * front.onset_s,
-            color=FRONT_COLOUR,
-            linewidth=0.9,
-            gid=f"{name}:{front.id}",
-        )
+    event = style.EVENT_STYLES[name]
+    fronts = drawn_fronts(run)
+    for front in fronts:
+        colour = event.front(front.direction).colour
+        draw_front(ax, style.mm(front.x_m), 1e6 * front.onset_s, colour, f"{name}:{front.id}")
     style.x_axis(ax, run)
     ax.set(ylabel="$t$ (µs)", ylim=(1e6 * history.time_s[0], 1e6 * history.time_s[-1]))
-    handles: list[Artist] = [Line2D([], [], color=FRONT_COLOUR, linewidth=0.9, label="front")]
-    for wave, line in WAVES.items():
-        handles.append(
-            Line2D([], [], color="0.25", linestyle=line, linewidth=0.5, label=rf"$c_\mathrm{{{wave[-1]}}}$")
-        )
-    handles.append(Patch(facecolor=OPEN_COLOUR, label="open"))
-    ax.legend(
-        handles=handles,
-        loc="lower center",
-        bbox_to_anchor=(0.5, 1.0),
-        ncols=5,
-        columnspacing=1.0,
-        handlelength=2.0,
-    )
+    ways = sorted({front.direction for front in fronts})
+    add_legend(figure, {way: event.front(way).colour for way in ways})
     figure.colorbar(image, ax=ax, label="slip rate $|v|$ (m/s)", extend="max", pad=0.02, aspect=30)
     label = style.EVENT_STYLES[name].label.replace("$\\mu_k", "μ<sub>k</sub>").replace("$", "")
     return Drawing(
         f"space_time_{name}",
         figure,
         f"Slip rate along the interface over time, {label} event; logarithmic scale, white below "
-        f"{RATE_RANGE_M_PER_S[0]:g} m/s, grey where the contact is open. Red: onsets of the fronts at least "
-        f"{1e3 * DRAWN_LENGTH_M:g} mm long. Thin lines from the "
+        f"{RATE_RANGE_M_PER_S[0]:g} m/s, grey where the contact is open. Outlined: onsets of the fronts at "
+        f"least {1e3 * DRAWN_LENGTH_M:g} mm long, in the colours of the other figures. Thin lines from the "
         "start of the first front: c<sub>L</sub> (solid), c<sub>S</sub> (dashed), c<sub>R</sub> (dotted).",
     )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -23,7 +24,7 @@ from slipfront.read import Run
 
 COLUMNS = 3
 CELL_MM = 45.0
-LEGEND_MM = 16.0  # above the panels, where they leave no room for it
+LEGEND_MM = 19.0  # above the panels, where they leave no room for it
 BESIDE_MARKERS_PT = 12.0  # from a value to a number written beside its markers
 NUMBER_PT = 7.5  # width of such a number
 MOST_WITH_ROOM = 4  # values of a panel that leave room for one right of the last
@@ -159,10 +160,10 @@ def is_another(results: Results, point: StudyPoint, event: str, direction: int) 
 def front_look(event: str, direction: int) -> dict[str, Any]:
     look = style.EVENT_STYLES[event]
     return {
-        "color": look.colour,
-        "linestyle": look.line if direction < 0 or event != "spontaneous" else (0, (1, 1)),
+        "color": look.front(direction).colour,
+        "linestyle": look.front(direction).line,
         "marker": look.marker,
-        "markerfacecolor": look.colour if direction < 0 else "white",
+        "markerfacecolor": style.fill(look, direction),
         "linewidth": 0.8,
     }
 
@@ -274,7 +275,7 @@ def place_legend(figure: Figure, handles: list[Any], n_free: int, height_mm: flo
     else:
         left = (14 + 54.5 * (COLUMNS - n_free)) / style.PAGE_MM
         at = {"loc": "upper left", "bbox_to_anchor": (left, (CELL_MM - 5) / height_mm), "ncols": n_free}
-    figure.legend(handles=handles, **at)
+    figure.legend(handles=handles, labelspacing=0.3, **at)
 
 
 def handle(label: str, **look: Any) -> Line2D:
@@ -294,7 +295,7 @@ LEFT_OUT = (
 
 def speeds(results: Results) -> Drawing:
     names = {-1: "against the shear", 1: "along the shear"}
-    handles = [
+    handles: list[Artist] = [
         handle(
             style.EVENT_STYLES[event].label + (f", {names[way]}" if event == "spontaneous" else ""),
             markersize=3.0,
@@ -306,6 +307,8 @@ def speeds(results: Results) -> Drawing:
     handles.append(handle("maximum", marker="o", markersize=3.0, **grey))
     handles.append(handle("mean", marker="_", markersize=5.0, **grey))
     handles.append(handle("maximum, other front", marker="x", markersize=3.0, **grey))
+    handles.append(handle(r"$c_\mathrm{L}$; no change", **style.REFERENCE))
+    handles.append(Patch(facecolor="0.9", label="band: change within 1 %"))
     labels = (style.V_LABEL, "change (%)")
     return Drawing(
         "studies",
@@ -319,10 +322,13 @@ def speeds(results: Results) -> Drawing:
 
 
 def criteria(results: Results) -> Drawing:
-    handles = [handle("rms about the own fit", color="black", linestyle="-", marker="o", markersize=3.0)]
+    handles: list[Artist] = [
+        handle("rms about the own fit", color="black", linestyle="-", marker="o", markersize=3.0)
+    ]
     for _, label, colour, marker in SPREADS:
         handles.append(handle(f"spread, {label}", color=colour, linestyle="-", marker=marker, markersize=3.0))
-    labels = (r"rms ($c_\mathrm{L}$)", "spread")
+    handles.append(Patch(facecolor="0.9", label="band: half width of the paper's"))
+    labels = (r"rms / $c_\mathrm{L}$", "spread")
     return Drawing(
         "studies_criteria",
         small_multiples(results, draw_rms, draw_spreads, labels, handles),

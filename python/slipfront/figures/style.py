@@ -61,19 +61,41 @@ RC: dict[Any, Any] = {
 
 
 @dataclass(frozen=True)
-class EventStyle:
-    label: str
+class FrontStyle:
     colour: str
     line: Line
+
+
+@dataclass(frozen=True)
+class EventStyle:
+    """The look of an event and of its main fronts, by their direction."""
+
+    label: str
     marker: str
+    fronts: dict[int, FrontStyle]
+
+    def front(self, direction: int) -> FrontStyle:
+        """Of the main front in a direction; of a front in another one as of the event's own."""
+        return self.fronts.get(direction, next(iter(self.fronts.values())))
+
+    @property
+    def colour(self) -> str:
+        return next(iter(self.fronts.values())).colour
 
 
 EVENT_STYLES = {
-    "left": EventStyle("left-triggered", "#0072b2", (0, (4.5, 1.8)), "s"),
-    "spontaneous": EventStyle("spontaneous", "#000000", "-", "o"),
-    "right": EventStyle("right-triggered", "#d55e00", (0, (6, 1.5, 1, 1.5)), "^"),
-    "spontaneous_mu_k_1.0": EventStyle("spontaneous, $\\mu_k = 1.0$", "#117733", "-", "o"),
+    "left": EventStyle("left-triggered", "s", {1: FrontStyle("#0072b2", (0, (4.5, 1.8)))}),
+    "spontaneous": EventStyle(
+        "spontaneous", "o", {-1: FrontStyle("#000000", "-"), 1: FrontStyle("#cc79a7", "-")}
+    ),
+    "right": EventStyle("right-triggered", "^", {-1: FrontStyle("#d55e00", (0, (6, 1.5, 1, 1.5)))}),
+    "spontaneous_mu_k_1.0": EventStyle(
+        "spontaneous, $\\mu_k = 1.0$", "o", {-1: FrontStyle("#117733", "-"), 1: FrontStyle("#999933", "-")}
+    ),
 }
+#: Of fronts of any other run, by their direction: readable on white and, outlined, on the slip rate.
+DIRECTION_COLOURS = {-1: "#d55e00", 1: "#882255"}
+DIRECTION_WORDS = {-1: "to $-x$", 1: "to $+x$"}
 TIP_MARKER = [(0, 0), (-0.5, 1.0), (0.5, 1.0), (0, 0)]  # a triangle that stands on the tip
 REFERENCE: Look = {"color": "0.45", "linewidth": 0.5, "zorder": 0.5}  # wave speeds, mu_s
 
@@ -143,7 +165,7 @@ def front_gid(run: Run, front: Front, part: str = "") -> str:
 
 def fill(event: EventStyle, direction: int) -> str:
     """Markers are filled for fronts against the imposed shear, open for those along it."""
-    return event.colour if direction < 0 else "white"
+    return event.front(direction).colour if direction < 0 else "white"
 
 
 def draw_line(
@@ -155,8 +177,8 @@ def draw_line(
     ax.plot(
         x,
         y,
-        color=style.colour,
-        linestyle=style.line if line is None else line,
+        color=style.front(front.direction).colour,
+        linestyle=style.front(front.direction).line if line is None else line,
         marker=style.marker,
         markevery=(every // 2, every),
         markerfacecolor=fill(style, front.direction),
@@ -167,7 +189,8 @@ def draw_line(
 def draw_points(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, part: str = "") -> None:
     """A main front as a marker per node; those of a part in a pale colour."""
     style = EVENT_STYLES[run.name]
-    colour = pale(style.colour) if part else style.colour
+    own = style.front(front.direction).colour
+    colour = pale(own) if part else own
     ax.plot(
         x,
         y,
@@ -189,9 +212,21 @@ def draw_pale(ax: Axes, run: Run, front: Front, x: np.ndarray, y: np.ndarray, pa
 
 
 def event_handles(runs: list[Run]) -> list[Line2D]:
-    """Legend entries of events."""
-    styles = [EVENT_STYLES[run.name] for run in runs]
-    return [Line2D([], [], color=s.colour, linestyle=s.line, marker=s.marker, label=s.label) for s in styles]
+    """Legend entries of the events' main fronts, with their direction where an event has two."""
+    names = {-1: ", against", 1: ", along"}
+    return [
+        Line2D(
+            [],
+            [],
+            color=look.colour,
+            linestyle=look.line,
+            marker=event.marker,
+            markerfacecolor=fill(event, way),
+            label=event.label + (names[way] if len(event.fronts) > 1 else ""),
+        )
+        for event in (EVENT_STYLES[run.name] for run in runs)
+        for way, look in event.fronts.items()
+    ]
 
 
 def fill_handles() -> list[Line2D]:
@@ -210,4 +245,4 @@ def pale_handle(colour: str = "#000000") -> Line2D:
 def legend_below(figure: Figure, handles: list[Any], n_columns: int) -> None:
     """A legend under the axes, where it hides nothing; of handles in a tuple the last one has the label."""
     labels = [(handle[-1] if isinstance(handle, tuple) else handle).get_label() for handle in handles]
-    figure.legend(handles, labels, loc="outside lower center", ncols=n_columns, columnspacing=1.6)
+    figure.legend(handles, labels, loc="outside lower center", ncols=n_columns, columnspacing=1.2)

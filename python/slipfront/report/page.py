@@ -18,7 +18,16 @@ from slipfront.files import one_line
 #: The beginning of every page, by which a page of ours is known.
 MARK = "<!DOCTYPE html><!-- slipfront report -->"
 #: In the order in which they use each other.
-SCRIPTS = ("data.js", "space_time.js", "profiles.js", "criteria.js", "energy.js", "snapshots.js", "page.js")
+SCRIPTS = (
+    "data.js",
+    "space_time.js",
+    "profiles.js",
+    "criteria.js",
+    "energy.js",
+    "snapshots.js",
+    "probes.js",
+    "page.js",
+)
 #: The browser itself refuses whatever would come from a network.
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:"
 PLOTLY_MB = 4.8

@@ -60,7 +60,7 @@ def look(run: Run, front: Front) -> FrontLook:
     against = front.direction < 0
     way = "to −x, against the shear" if against else "to +x, along the shear"
     symbol = SYMBOLS[run.name] + ("" if against else "-open")
-    return FrontLook(f"front {front.id} {way}", EVENT_STYLES[run.name].colour, symbol)
+    return FrontLook(f"front {front.id} {way}", EVENT_STYLES[run.name].front(front.direction).colour, symbol)
 
 
 def fit_curves(results: Results) -> list[dict[str, Any]]:

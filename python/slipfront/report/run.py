@@ -13,7 +13,8 @@ from slipfront.folder import UNFINISHED, belongs
 from slipfront.read import STATUSES, Run, entry, read_run
 from slipfront.report.history import ThinHistory, thin_history
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
-from slipfront.report.run_data import MOST_FRAMES, has_snapshots, history_of, run_data
+from slipfront.report.probes import probe_data, probes_of, probes_section
+from slipfront.report.run_data import MOST_FRAMES, has_snapshots, history_of, run_data, units_of
 
 MOST_TIMES, MOST_NODES = 400, 320  # of a page with one run
 ENDS = {
@@ -21,6 +22,12 @@ ENDS = {
     "quiet": "nothing had slipped for time.quiet_s",
     "interrupted": "it was interrupted",
     "blow_up": "the motion blew up",
+}
+EVENTS = {
+    "left": "triggered at the left edge",
+    "right": "triggered at the right edge",
+    "spontaneous": "spontaneous",
+    "nucleation": "in a nucleation patch",
 }
 OF_RANDOM_FIELDS = (
     "random_key",
@@ -108,7 +115,8 @@ def facts(run: Run) -> str:
     info, steps = run.info, number_words(run.info.get("steps"), ",.0f")
     step = number_words(info.get("dt_s"), ".3g", 1e6, " µs")
     interface_step = number_words(info.get("interface_dt_s"), ".3g", 1e6, " µs")
-    sessions = number_words(info.get("sessions"), ".0f")
+    n_sessions = info.get("sessions")
+    sessions = f", in {n_sessions} parts" if isinstance(n_sessions, int) and n_sessions > 1 else ""
     return facts_table(
         [
             ("Case", words(info.get("title", "") or "without a title")),
@@ -120,10 +128,10 @@ def facts(run: Run) -> str:
             ("Material", settings_words(run, "material")),
             ("Friction", settings_words(run, "friction", OF_RANDOM_FIELDS)),
             ("Before the event", rupture_words(run)),
-            ("Start of the event", words(run.kind)),
+            ("Start of the event", EVENTS.get(run.kind, words(run.kind))),
             ("Time", f"{number_words(info.get('time_s'), '.4g', 1e6, ' µs')} in {steps} steps of {step}; "
                      f"{interface_step} at the interface"),
-            ("Computed in", f"{number_words(info.get('wall_s'), '.3g', 1, ' s')}, sessions: {sessions}"),
+            ("Computed in", number_words(info.get("wall_s"), ".3g", 1, " s") + sessions),
             ("Wave speeds", waves_words(run)),
         ]
     )  # fmt: skip
@@ -212,11 +220,13 @@ def energy_section() -> str:
         "energy",
         "Energy",
         plot("energy-plot", "Energies and works over time, stacked, and what they leave open"),
-        "<p>Per unit thickness, since the start. Above zero: where energy comes from; below: where it goes. "
+        "<p>Per unit thickness, since the start. Above zero: where energy comes from, such as strain "
+        "energy that is released; below: where it goes. "
         "Both sides "
         "are equally large but for the imbalance, which is drawn below over the largest term: each term is "
         "computed by "
-        "itself. Coupling is the part of the sub-cycled layer, an error of the time stepping.</p>",
+        "itself. Closing gaps: what is lost where the bodies meet again. Coupling: between the layer at the "
+        "interface, which moves in smaller steps, and the rest; an error of the time stepping.</p>",
     )
 
 
@@ -259,6 +269,7 @@ PLACES = [
     ("criteria", "Criteria"),
     ("energy", "Energy"),
     ("snapshots", "Snapshots"),
+    ("probes", "Probes"),
     ("fronts", "Fronts"),
 ]
 
@@ -269,19 +280,25 @@ def thin_run(folder: Path, most: tuple[int, int] = (MOST_TIMES, MOST_NODES)) -> 
 
 def page(folder: Path) -> Page:
     run = thin_run(folder)
+    probes = probes_of(run.place)
+    data = run_data(run)
+    if probes is not None:
+        units = units_of(run)
+        data["probes"] = probe_data(probes, units["time"].factor, units["x"].factor)
     title = str(run.info.get("title", "")) or run.name
     return Page(
         title=f"{title}: {run.mark}" if run.mark else title,
         parts=[
-            navigation(PLACES),
+            navigation([place for place in PLACES if place[0] != "probes" or probes is not None]),
             section("facts", "Facts", warnings_of(run), facts(run)),
             space_time_section(thinning(history_of(run))),
             profiles_section(),
             criteria_section(),
             energy_section(),
             snapshots_section(has_snapshots(run), frames_words(run)),
+            probes_section(probes) if probes is not None else "",
             fronts_section(run),
         ],
-        data={"runs": [run_data(run)]},
+        data={"runs": [data]},
         notes=run.remarks,
     )

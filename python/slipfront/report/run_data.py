@@ -12,6 +12,7 @@ import numpy as np
 from slipfront.figures.balance import TERMS
 from slipfront.figures.criteria import HIGHEST_V, LARGEST_RISE
 from slipfront.figures.main_fronts import away_from_trigger, counted, drawn_fronts, main_fronts, start
+from slipfront.figures.style import DIRECTION_COLOURS
 from slipfront.files import is_number, read_table
 from slipfront.folder import result_file
 from slipfront.read import Balance, Fields, Front, Run, entry, ratio
@@ -27,7 +28,7 @@ STRIPED = (
     "boundary_work",
     "coupling_work",
 )  # beside a plain term of similar colour
-WORDS = {"strain": "strain energy (its loss)"}  # of the terms that a ledger shows with another sign
+MOVES = 0.1  # of the scale's end, from which something is seen to move in a snapshot
 
 
 @dataclass(frozen=True)
@@ -45,9 +46,10 @@ Units = dict[str, Unit]
 
 def look_by_direction(run: Run, front: Front) -> FrontLook:
     """Filled markers are fronts to -x, open ones those to +x, as in all figures."""
+    colour = DIRECTION_COLOURS[front.direction]
     if front.direction < 0:
-        return FrontLook(f"front {front.id}, to −x", "#d55e00", "circle")
-    return FrontLook(f"front {front.id}, to +x", "#0072b2", "square-open")
+        return FrontLook(f"front {front.id}, to −x", colour, "circle")
+    return FrontLook(f"front {front.id}, to +x", colour, "square-open")
 
 
 def history_of(run: Run) -> ThinHistory:
@@ -145,7 +147,7 @@ def energy_data(balance: Balance, units: Units) -> dict[str, Any]:
         "largest": largest,
         "terms": [
             {
-                "label": WORDS.get(term, TERMS[term][0]),
+                "label": TERMS[term][0],
                 "colour": TERMS[term][1],
                 "striped": term in STRIPED,
                 "values": listed(values),
@@ -167,9 +169,28 @@ def tips_at(run: Run, time_s: float, units: Units, look: Look) -> list[dict[str,
     for front in drawn_fronts(run):
         tip_m = front.tip_m(time_s)
         if tip_m is not None:
-            label = look(run, front).label
-            found.append({"x": tip_m * units["x"].factor, "direction": front.direction, "label": label})
+            drawn = look(run, front)
+            tip = {"x": tip_m * units["x"].factor, "direction": front.direction}
+            found.append(tip | {"label": drawn.label, "colour": drawn.colour})
     return found
+
+
+def opening_s(run: Run) -> float:
+    """The time that a page shows first: when the first of the main fronts is half-way; without any, that of
+    the largest slip rate."""
+    fronts = main_fronts(run) or drawn_fronts(run)
+    if fronts:
+        return float(min(0.5 * (front.onset_s[0] + front.onset_s[-1]) for front in fronts))
+    history = history_of(run)
+    fastest = np.argmax(np.max(np.abs(history.slip_rate_m_per_s), axis=1))
+    return float(history.time_s[fastest])
+
+
+def opening_frame(time_s: np.ndarray, fastest: np.ndarray, largest: float, wanted_s: float) -> int:
+    """Of the snapshots in which something is seen to move, the one nearest to a time."""
+    moving = np.flatnonzero(fastest >= MOVES * largest)
+    candidates = moving if len(moving) > 0 else np.arange(len(time_s))
+    return int(candidates[np.argmin(np.abs(time_s[candidates] - wanted_s))])
 
 
 def snapshot_data(run: Run, fields: Fields, units: Units, look: Look) -> dict[str, Any]:
@@ -178,13 +199,15 @@ def snapshot_data(run: Run, fields: Fields, units: Units, look: Look) -> dict[st
     steps = evenly(len(fields.time_s), MOST_FRAMES)
     pictures = [grid.means(fields.speed_m_per_s(step)) for step in steps]
     # The scale leaves out the fastest thousandth, of the pixels of the fastest picture.
-    largest = max(float(np.nanquantile(picture, 0.999)) for picture in pictures) or 1.0
+    fastest = np.array([np.nanquantile(picture, 0.999) for picture in pictures])
+    largest = float(np.max(fastest)) or 1.0
     return {
         "x": listed(grid.x_m, units["x"].factor),
         "y": listed(grid.y_m, units["x"].factor),
         "two_bodies": bool(grid.y_m[0] < 0),
         "largest": largest,
         "of": len(fields.time_s),
+        "opening": opening_frame(fields.time_s[steps], fastest, largest, opening_s(run)),
         "frames": [
             {
                 "time": fields.time_s[step] * units["time"].factor,
@@ -230,6 +253,7 @@ def run_data(run: Run, look: Look = look_by_direction, name: str = "") -> dict[s
         "ratio_limit": ratio_limit(run),
         "waves": wave_data(run, units),
         "origin": origin,
+        "opening": opening_s(run) * units["time"].factor,
         "highest_v": HIGHEST_V,
         "largest_rise": LARGEST_RISE,
         "fronts": [front_data(run, front, units, look) for front in drawn_fronts(run)],

@@ -32,6 +32,7 @@ PANEL_MM = 52.0
 LOG_RATIO = 20  # of two values of a key from which its axis is logarithmic
 MOST_TICKS = 7  # values of a key that are all written at its axis
 NO_RESULT = "#ffffff"
+CLOSE = 0.06  # marks at a bar of colours that are closer, over its length, have one label
 
 
 def unevenness(ascending: np.ndarray) -> float:
@@ -111,10 +112,59 @@ def places(values: np.ndarray) -> np.ndarray:
     return np.arange(len(values), dtype=float) if values.dtype == object else values
 
 
-def name_colours(figure: Figure, ax: Axes, drawn: Any, quantity: Quantity) -> None:
-    """A bar of colours with numbers or words."""
+def merged(levels: dict[str, float], low: float, high: float) -> list[tuple[float, str]]:
+    """Places and labels of the levels from low to high, in ascending order, close ones in one."""
+    groups: list[list[str]] = []
+    inside = [name for name, level in levels.items() if low <= level <= high]
+    for name in inside:
+        if groups and levels[name] - levels[groups[-1][-1]] < CLOSE * (high - low):
+            groups[-1].append(name)
+        else:
+            groups.append([name])
+    return [
+        (
+            float(np.mean([levels[name] for name in names])),
+            ", ".join(rf"$c_\mathrm{{{name[-1]}}}$" for name in names),
+        )
+        for names in groups
+    ]
+
+
+def with_waves(low: float, high: float, levels: dict[str, float]) -> tuple[float, float]:
+    """A range of speeds, out to the next wave speeds below and above it."""
+    below = [level for level in levels.values() if level < low]
+    above = [level for level in levels.values() if level > high]
+    return max(below, default=low), min(above, default=high)
+
+
+def mark_waves(ax: Axes, levels: dict[str, float], low: float, high: float) -> None:
+    """Lines across a bar of colours, named at its left."""
+    for name, level in levels.items():
+        if low <= level <= high:
+            outline = style.outlined("white", 2.0)
+            ax.axhline(level, color="black", linewidth=0.8, path_effects=outline, gid=name)
+    for level, label in merged(levels, low, high):
+        ax.annotate(
+            label,
+            (0, level),
+            xycoords=ax.get_yaxis_transform(),
+            xytext=(-2, 0),
+            textcoords="offset points",
+            ha="right",
+            va="center",
+            annotation_clip=False,
+        )
+
+
+def name_colours(figure: Figure, ax: Axes, drawn: Any, quantity: Quantity, waves: dict[str, float]) -> None:
+    """A bar of colours with numbers or words; wave speeds are marked in that of a speed."""
     if not quantity.words:
-        figure.colorbar(drawn, ax=ax, pad=0.02)
+        low, high = drawn.get_clim()
+        low, high = with_waves(low, high, waves)
+        drawn.set_clim(low, high)
+        labels = [label for _, label in merged(waves, low, high)]
+        pad = 0.02 + (0.03 + 0.04 * max(label.count(",") for label in labels) if labels else 0.0)
+        mark_waves(figure.colorbar(drawn, ax=ax, pad=pad).ax, waves, low, high)
         return
     bar = figure.colorbar(drawn, ax=ax, pad=0.02, ticks=range(len(quantity.words)))
     bar.ax.set_yticklabels([word.replace("_", " ") for word in quantity.words])
@@ -137,7 +187,7 @@ def draw_map(figure: Figure, ax: Axes, results: Results, quantity: Quantity, x: 
     name_axis(ax, "x", x, results.axis(x))
     name_axis(ax, "y", y, results.axis(y))
     if np.isfinite(values).any():
-        name_colours(figure, ax, drawn, quantity)
+        name_colours(figure, ax, drawn, quantity, results.waves_of(quantity))
 
 
 def draw_line(ax: Axes, results: Results, quantity: Quantity, x: str) -> None:
@@ -146,6 +196,9 @@ def draw_line(ax: Axes, results: Results, quantity: Quantity, x: str) -> None:
     places_of = {value: k for k, value in enumerate(results.axis(x))}
     at = np.array([places_of[v] for v in values]) if values.dtype == object else values
     ax.plot(at, results.column(quantity), "o", color=COLOURS[0], gid=quantity.name)
+    for wave, level in results.waves_of(quantity).items():
+        ax.axhline(level, linestyle=":" if wave == "c_R" else "-", gid=wave, **style.REFERENCE)
+        style.name_level(ax, level, rf"$c_\mathrm{{{wave[-1]}}}$", below=wave == "c_R")
     if quantity.words:
         ax.set_yticks(range(len(quantity.words)), [word.replace("_", " ") for word in quantity.words])
     name_axis(ax, "x", x, results.axis(x))
@@ -183,7 +236,12 @@ def draw(folder: Path, shown: tuple[str, ...] = SHOWN) -> Drawing:
     at = fixed_words(results, keys)
     if at:
         figure.suptitle(plain(at))
-    return Drawing("sweep", figure, "Results over the keys that vary; white: no result.")
+    return Drawing(
+        "sweep",
+        figure,
+        "Results over the keys that vary; white: no result. Wave speeds are marked in the scales of "
+        "V<sub>tip</sub>/c<sub>L</sub> where the material does not vary.",
+    )
 
 
 def main(arguments: list[str] | None = None) -> int:

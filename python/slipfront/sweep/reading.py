@@ -10,12 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from slipfront.files import DataError, Table, exists, read_json_table, read_table
+from slipfront.files import DataError, Table, exists, number, read_json_table, read_table
 from slipfront.folder import located, result_file
 from slipfront.sweep.folder import DEFINITION
 from slipfront.sweep.outcome import QUANTITIES, Quantity
 from slipfront.sweep.tables import TABLE
 from slipfront.sweep.values import as_array, value_of
+from slipfront.sweep.work import DONE
+
+WAVES = ("c_R", "c_S", "c_L")
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,25 @@ class Results:
         if values.dtype == object:
             return np.array(list(dict.fromkeys(values)), dtype=object)
         return np.unique(values)
+
+    @cached_property
+    def waves_over_c_L(self) -> dict[str, float]:
+        """The plate's wave speeds over c_L by their names, ascending; none where the material varies or no
+        run is there any more to tell them."""
+        if any(key.startswith("material.") for key in self.keys):
+            return {}
+        states = zip(self.table.texts("folder"), self.table.texts("status"), strict=True)
+        files = (self.folder / place / "run.json" for place, status in states if status == DONE)
+        file = next((file for file in files if exists(located(file))), None)
+        if file is None:
+            return {}
+        info = read_json_table(result_file(file))
+        speeds = [number(file, info, f"wave_speeds.{wave}_m_per_s") for wave in WAVES]
+        return {wave: speed / speeds[-1] for wave, speed in zip(WAVES, speeds, strict=True)}
+
+    def waves_of(self, quantity: Quantity) -> dict[str, float]:
+        """Wave speeds to be marked in the scale of a quantity: of speeds over c_L alone."""
+        return self.waves_over_c_L if quantity.name.endswith("_over_c_L") else {}
 
     def column(self, quantity: Quantity) -> np.ndarray:
         """Numbers, NaN where undefined; of words their place in the quantity's list, NaN without. [points]"""

@@ -58,7 +58,13 @@ def sweep_data(results: Results) -> dict[str, Any]:
         "is_grid": results.is_grid,
         "keys": [{"name": key, "axis": [shown(v) for v in results.axis(key)]} for key in results.keys],
         "quantities": [
-            {"name": q.name, "long_name": q.long_name, "unit": q.unit, "words": list(q.words)}
+            {
+                "name": q.name,
+                "long_name": q.long_name,
+                "unit": q.unit,
+                "words": list(q.words),
+                "waves": [{"name": name, "level": level} for name, level in results.waves_of(q).items()],
+            }
             for q in results.quantities
         ],
         "points": points,

@@ -26,10 +26,12 @@ function drawEnergy() {
     xaxis: 'x', yaxis: 'y2', line: {color, dash, width: 1.5}, marker: {size: 5}, hovertemplate: `${name}: %{y:.2e}<extra></extra>`});
   const traces = [...stackedTerms(energy), line('imbalance / largest term', energy.imbalance, '#cc3311', 'solid'),
     ...(energy.coupling.some((v) => v > 0) ? [line('coupling / largest term', energy.coupling, '#555', 'dot')] : [])];
+  const note = (text, y, yanchor) => ({text, xref: 'paper', x: 0.01, xanchor: 'left', yref: 'paper', y, yanchor, showarrow: false});
   const layout = layoutWith({
     xaxis: axis(`t (${units.time})`, {anchor: 'y2', range: [energy.time[0], energy.time.at(-1)]}),
-    yaxis: axis('to ← energy (J/m) → from', {domain: [0.4, 1], zeroline: true, zerolinecolor: '#111'}),
-    yaxis2: axis('over the largest term', {domain: [0, 0.32], type: 'log', range: [-16, 0], exponentformat: 'power', dtick: 4, tickfont: {size: 11}}),
+    yaxis: axis('energy (J/m)', {domain: [0.4, 1], zeroline: true, zerolinecolor: '#111'}),
+    yaxis2: axis('magnitude / largest', {domain: [0, 0.32], type: 'log', range: [-16, 0], exponentformat: 'power', dtick: 4, tickfont: {size: 11}}),
+    annotations: [note('▲ comes from', 0.98, 'top'), note('▼ goes into', 0.42, 'bottom')],
     hovermode: 'x unified', legend: {x: 1.02, y: 1},
   });
   return Plotly.react('energy-plot', traces, layout, CONFIG);

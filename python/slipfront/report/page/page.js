@@ -15,7 +15,7 @@ function startRuns() {
 
 async function start() {
   startRuns();
-  await Promise.all([startSpaceTime(), startProfiles(), startCriteria(), drawEnergy(), startSnapshots()]);
+  await Promise.all([startSpaceTime(), startProfiles(), startCriteria(), drawEnergy(), startSnapshots(), startProbes()]);
   document.body.dataset.drawn = 'all';
 }
 

@@ -45,8 +45,8 @@ function tipMarks(run, time) {
   const tips = run.fronts.map((front) => ({front, x: tipAt(front, time)})).filter(({x}) => x !== null);
   return {type: 'scatter', mode: 'markers', name: 'tips', x: tips.map(({x}) => x), y: tips.map(() => lowestRatio(run)), cliponaxis: false,
     text: tips.map(({front}) => front.label), hovertemplate: '%{text}<extra></extra>',
-    marker: {symbol: tips.map(({front}) => triangle(front.direction)), size: 13, color: '#fff',
-      line: {color: '#111', width: 2}}};
+    marker: {symbol: tips.map(({front}) => triangle(front.direction)), size: 13, color: tips.map(({front}) => front.colour),
+      line: {color: '#fff', width: 1}}};
 }
 
 /** The same axes at all times. */
@@ -87,18 +87,10 @@ function showProfile(index) {
   return drawProfiles();
 }
 
-/** Half-way to the end of the last front: something moves then. */
-function firstProfile(run) {
-  const history = historyOf(run);
-  const main = run.fronts.filter((front) => front.main);
-  const ends = main.map((front) => 0.5 * (front.time[0] + front.time.at(-1)));
-  return nearest(history.time, ends.length ? Math.min(...ends) : history.time[Math.floor(history.time.length / 2)]);
-}
-
 function resetProfiles() {
   kept = [];
   byId('profiles-time').max = historyOf(current).time.length - 1;
-  return showProfile(firstProfile(current));
+  return showProfile(nearest(historyOf(current).time, current.opening));
 }
 
 function startProfiles() {

@@ -25,7 +25,7 @@ function tipTrace(snapshots, index) {
   const {tips} = snapshots.frames[index];
   return {type: 'scatter', mode: 'markers', x: tips.map((tip) => tip.x), y: tips.map(() => 0), text: tips.map((tip) => tip.label),
     hovertemplate: '%{text}<extra></extra>', cliponaxis: false,
-    marker: {symbol: tips.map((tip) => triangle(tip.direction)), size: 15, color: '#fff', line: {color: '#111', width: 2}}};
+    marker: {symbol: tips.map((tip) => triangle(tip.direction)), size: 15, color: tips.map((tip) => tip.colour), line: {color: '#fff', width: 2}}};
 }
 
 function drawSnapshot() {
@@ -43,7 +43,7 @@ function drawSnapshot() {
     xaxis: axis(`x (${units.x})`, {range: [snapshots.x[0] - side, snapshots.x.at(-1) + side], constrain: 'domain', showgrid: false}),
     yaxis: axis(`y (${units.x})`, {range: [snapshots.y[0] - side, snapshots.y.at(-1) + side], scaleanchor: 'x', constrain: 'domain', showgrid: false}),
     shapes: snapshots.two_bodies ? [{type: 'line', xref: 'paper', x0: 0, x1: 1, y0: 0, y1: 0, line: {color: '#fff', width: 1}}] : [],
-    margin: {l: 80, r: 20, t: 20, b: 60}, uirevision: 'same', showlegend: false,
+    margin: {l: 80, r: 20, t: 40, b: 60}, uirevision: 'same', showlegend: false,
   });
   return Plotly.react('snapshots-plot', [picture, tipTrace(snapshots, frame)], layout, CONFIG);
 }
@@ -68,17 +68,11 @@ function play() {
   player = setInterval(() => showFrame((frame + 1) % current.snapshots.frames.length), FRAME_MS);
 }
 
-/** The first frame in which something moves fast. */
-function firstFrame(snapshots) {
-  const index = snapshots.frames.findIndex(({tips}) => tips.length > 0);
-  return Math.max(0, index);
-}
-
 function resetSnapshots() {
   if (!byId('snapshots-plot')) return null;
   if (player) stop();
   byId('snapshots-time').max = current.snapshots.frames.length - 1;
-  return showFrame(firstFrame(current.snapshots));
+  return showFrame(current.snapshots.opening);
 }
 
 function startSnapshots() {

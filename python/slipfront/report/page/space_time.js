@@ -55,22 +55,27 @@ function heatmap(run) {
   };
 }
 
+/** A line on a wider white one, which is seen on any colour. */
+function outlined(trace) {
+  const {x, y, mode, legendgroup, line} = trace;
+  return [{type: 'scatter', x, y, mode, legendgroup, showlegend: false, hoverinfo: 'skip', line: {color: '#fff', width: line.width + 2}}, trace];
+}
+
 function wavePaths(run) {
   if (!run.origin) return [];
   const [x0, t0] = run.origin;
   const [left, right] = [run.history.x[0], run.history.x.at(-1)];
-  return run.waves.map((wave) => ({
+  return run.waves.flatMap((wave) => outlined({
     type: 'scatter', mode: 'lines', name: `${waveName(wave.name)} = ${wave.m_per_s.toFixed(0)} m/s`,
-    x: [left, x0, right], y: [t0 + (x0 - left) / wave.slope, t0, t0 + (right - x0) / wave.slope],
-    line: {color: '#444', width: 1.5, dash: WAVE_DASHES[wave.name]}, hoverinfo: 'skip', meta: {wave: wave.name},
+    x: [left, x0, right], y: [t0 + (x0 - left) / wave.slope, t0, t0 + (right - x0) / wave.slope], legendgroup: wave.name,
+    line: {color: '#333', width: 1.5, dash: WAVE_DASHES[wave.name]}, hoverinfo: 'skip', meta: {wave: wave.name},
   }));
 }
 
 function frontPaths(run) {
-  return run.fronts.map((front, k) => ({
+  return run.fronts.flatMap((front, k) => outlined({
     type: 'scatter', mode: 'lines', name: front.label, x: front.x, y: front.time, meta: {front: k},
-    line: {color: '#d81b60', width: front.main ? 2.5 : 1.2}, hoverinfo: 'none', legendgroup: 'fronts',
-    legendgrouptitle: {text: 'fronts'},
+    line: {color: front.colour, width: front.main ? 3 : 1.8}, hoverinfo: 'none', legendgroup: `front ${k}`,
   }));
 }
 
@@ -125,6 +130,7 @@ function markSpaceTime(run, front, point) {
 
 /** A line at a time. */
 function markTime(time) {
-  const shapes = [{type: 'line', xref: 'paper', x0: 0, x1: 1, y0: time, y1: time, line: {color: '#111', width: 1, dash: 'dot'}}];
+  const line = {type: 'line', xref: 'paper', x0: 0, x1: 1, y0: time, y1: time};
+  const shapes = [{...line, line: {color: '#fff', width: 3}}, {...line, line: {color: '#111', width: 1, dash: 'dot'}}];
   Plotly.relayout('space-time-plot', {shapes});
 }

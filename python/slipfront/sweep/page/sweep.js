@@ -3,6 +3,7 @@
 
 const sweep = JSON.parse(document.getElementById('sweep-data').textContent);
 const part = (name) => document.getElementById(`sweep-${name}`);
+const MOST_TICKS = 7; // values of a key that are all written at its axis
 const COLOURS = ['#0072b2', '#d55e00', '#e8c35a', '#117733', '#dddddd'];
 
 /** Points at which all keys but those of the axes have the values chosen. */
@@ -28,9 +29,50 @@ function text(quantity, point) {
   return quantity.words.length ? value.replaceAll('_', ' ') : Number(value).toPrecision(4);
 }
 
+/** The step of four to seven ticks over a range: 1, 2 or 5 times a power of ten. */
+function stepOver(range) {
+  const power = 10 ** Math.floor(Math.log10(range / 7));
+  return power * ([1, 2, 5].find((k) => k * power >= range / 7) ?? 10);
+}
+
+const CLOSE = 0.05; // over the length of the bar: closer ticks have one label
+
+/** Limits of the colours of a speed, out to the next wave speeds below and above; none of its own for all else. */
+function limitsWithWaves({name, waves}) {
+  const values = sweep.points.map((p) => p.cells[name]).filter((v) => v !== null);
+  if (!waves.length || !values.length) return [undefined, undefined];
+  const [low, high] = [Math.min(...values), Math.max(...values)];
+  const levels = waves.map(({level}) => level);
+  return [Math.max(...levels.filter((v) => v < low), -Infinity), Math.min(...levels.filter((v) => v > high), Infinity)]
+    .map((v, k) => (Number.isFinite(v) ? v : [low, high][k]));
+}
+
+/** Ticks of a bar of colours with wave speeds among them; none of its own where there are none to mark. */
+function ticksWithWaves(quantity) {
+  const [low, high] = limitsWithWaves(quantity);
+  const inside = quantity.waves.filter(({level}) => level >= low && level <= high);
+  if (!inside.length || high <= low) return {};
+  const groups = [];
+  for (const wave of inside) {
+    const last = groups.at(-1);
+    if (last && wave.level - last.at(-1).level < CLOSE * (high - low)) last.push(wave);
+    else groups.push([wave]);
+  }
+  const marks = groups.map((group) => [group.reduce((sum, {level}) => sum + level, 0) / group.length,
+    `${group.map((wave) => `c<sub>${wave.name.slice(2)}</sub>`).join(', ')} (${group.map(({level}) => Number(level.toPrecision(3))).join(', ')})`]);
+  const step = stepOver(high - low);
+  const first = Math.ceil(low / step);
+  const numbers = Array.from({length: Math.floor(high / step) - first + 1}, (_, k) => Number(((first + k) * step).toPrecision(6)));
+  const free = numbers.filter((v) => marks.every(([level]) => Math.abs(v - level) >= CLOSE * (high - low)));
+  return {tickvals: [...marks.map(([level]) => level), ...free], ticktext: [...marks.map(([, text]) => text), ...free.map(String)]};
+}
+
 function colours(quantity) {
   const n = quantity.words.length;
-  if (!n) return {colorscale: 'Viridis', colorbar: {title: {text: quantity.unit}}};
+  if (!n) {
+    const unit = quantity.unit === '1' ? '' : quantity.unit.replace(' m-1', '/m');
+    return {colorscale: 'Viridis', colorbar: {title: {text: unit}, ...ticksWithWaves(quantity)}};
+  }
   const used = quantity.words.at(-1) === 'none' ? [...COLOURS.slice(0, n - 1), COLOURS.at(-1)] : COLOURS.slice(0, n);
   return {
     colorscale: used.flatMap((colour, k) => [[k / n, colour], [(k + 1) / n, colour]]),
@@ -43,7 +85,8 @@ function axisOf(key) {
   const numeric = values.every((v) => typeof v === 'number');
   const least = Math.min(...values);
   const log = numeric && least > 0 && Math.max(...values) / least >= 20;
-  return {title: {text: key.name}, type: numeric ? (log ? 'log' : 'linear') : 'category'};
+  const ticks = numeric && values.length <= MOST_TICKS ? {tickvals: values, ticktext: values.map((v) => String(Number(v.toPrecision(4))))} : {};
+  return {title: {text: key.name}, type: numeric ? (log ? 'log' : 'linear') : 'category', ...ticks};
 }
 
 function hoverOf(quantity, point) {
@@ -54,7 +97,7 @@ function hoverOf(quantity, point) {
 /** Cells of a grid, else a dot for each point. */
 function mapOf(quantity, x, y, points) {
   const look = colours(quantity);
-  const range = quantity.words.length ? [-0.5, quantity.words.length - 0.5] : [undefined, undefined];
+  const range = quantity.words.length ? [-0.5, quantity.words.length - 0.5] : limitsWithWaves(quantity);
   if (!sweep.is_grid) {
     return {type: 'scatter', mode: 'markers', x: points.map((p) => p.values[x.name]), y: points.map((p) => p.values[y.name]),
       marker: {size: 11, color: points.map((p) => number(quantity, p)), cmin: range[0], cmax: range[1],
@@ -112,7 +155,10 @@ async function draw() {
   const yAxis = two ? axisOf(y) : {title: {text: quantity.long_name}};
   if (!two && quantity.words.length) Object.assign(yAxis, {tickvals: quantity.words.map((_, k) => k), ticktext: quantity.words});
   const trace = two ? mapOf(quantity, x, y, points) : lineOf(quantity, x, points);
-  const layout = {xaxis: axisOf(x), yaxis: yAxis, height: 520, margin: {t: 40, r: 20}, title: {text: quantity.long_name, font: {size: 14}}};
+  const shapes = two ? [] : quantity.waves.map(({level}) => ({type: 'line', xref: 'paper', x0: 0, x1: 1, y0: level, y1: level, line: {color: '#555', width: 1}}));
+  const annotations = two ? [] : quantity.waves.map(({name, level}) => ({text: `c<sub>${name.slice(2)}</sub>`, xref: 'paper', x: 1, xanchor: 'left',
+    y: level, yanchor: name === 'c_R' ? 'top' : 'bottom', showarrow: false}));
+  const layout = {shapes, annotations, xaxis: axisOf(x), yaxis: yAxis, height: 520, margin: {t: 40, r: 40}, title: {text: quantity.long_name, font: {size: 14}}};
   await Plotly.react(part('plot'), [trace], layout, {responsive: true, displaylogo: false});
 }
 
