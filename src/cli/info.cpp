@@ -95,10 +95,12 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
   const auto trigger = rupture.trigger_length_m
                            ? fmt::format("; the trigger has {:.3g} m", *rupture.trigger_length_m)
                            : std::string();
-  list.add("nucleation length", fmt::format("{:.3g} m (Uenishi, Rice 2003)", *o.nucleation_length_m));
+  list.add("nucleation length",
+           fmt::format("{:.3g} m (Uenishi, Rice 2003): slow slip over it runs away", *o.nucleation_length_m));
   if (o.griffith_half_length_m)
     list.add("critical crack length",
-             fmt::format("{:.3g} m (Griffith; Andrews 1976){}", 2 * *o.griffith_half_length_m, trigger));
+             fmt::format("{:.3g} m (Griffith; Andrews 1976): cracks as long run on{}",
+                         2 * *o.griffith_half_length_m, trigger));
   list.add("process zone at rest", fmt::format("{:.3g} m, {:.3g} elements (Palmer, Rice 1973)",
                                                *o.process_zone_m, *rupture.process_zone_elements));
 }
@@ -150,6 +152,7 @@ void print_info(const CaseArguments& arguments) {
   add_rupture(info.rupture, list);
   for (const auto& note : arguments.notes()) list.text += fmt::format("note: {}\n", note);
   for (const auto& doubt : info.rupture.doubts) list.text += fmt::format("note: {}\n", doubt);
+  if (!info.rupture.unresolved.empty()) list.text += fmt::format("note: {}\n", info.rupture.unresolved);
   for (const auto& warning : run::warnings_of_case(config)) list.text += fmt::format("note: {}\n", warning);
   print_output(list.text);
 }

@@ -30,7 +30,7 @@ constexpr std::array python_commands = {
     PythonCommand{"sweep", "Run a case over values of its keys, and compare"}};
 
 /// Tells in one line what is missing. The folder that the program is called in is no place for packages.
-constexpr const char* start_of_package = R"(import sys
+constexpr const char* start_of_package = R"(import os, sys
 sys.path = [place for place in sys.path if place]
 def refuse(what):
     print(f"slipfront: error: {sys.argv[1]} needs {what}", file=sys.stderr)
@@ -41,6 +41,9 @@ try:
     from slipfront.__main__ import main
 except ModuleNotFoundError as error:
     package = error.name.split(".")[0]
+    tree = os.environ.get("SLIPFRONT_SOURCES")
+    if tree:
+        refuse(f"Python packages, {package} first of all: 'make module' in {tree} installs them all")
     how = f"{sys.executable} -m pip install {'.' if package == 'slipfront' else package}"
     where = "' in the source tree of slipfront" if package == "slipfront" else "'"
     refuse(f"the Python package {package}, which {sys.executable} does not have: install it with '{how}{where}, "
@@ -82,6 +85,9 @@ void become_python_command(int argc, char** argv) {
   if (argc < 2 || std::none_of(python_commands.begin(), python_commands.end(), names)) return;
   const fs::path tree = source_tree();
   if (!tree.empty()) put_first_on_python_path(tree / "python");
+  // Where `make module` brings what is missing: not into an interpreter of the user's.
+  if (!tree.empty() && std::getenv("SLIPFRONT_PYTHON") == nullptr)
+    ::setenv("SLIPFRONT_SOURCES", tree.c_str(), 1);
   std::error_code unknown;
   const fs::path self = fs::read_symlink("/proc/self/exe", unknown);
   if (!unknown) ::setenv("SLIPFRONT_PROGRAM", self.c_str(), 0);  // what a sweep runs

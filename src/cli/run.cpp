@@ -40,9 +40,30 @@ void print_ramp(const motion::Ramp& ramp, double direct_shear_m) {
         ramp.record.n_onsets() - n_inside, n_inside);
 }
 
-void print_rupture(const stability::Outlook& o) {
-  print("S before the event, inside: {:.3g} to {:.3g}, median {:.3g}; expected: {}\n", o.S.least, o.S.largest,
-        o.S.median, o.regime);
+void print_rupture(const run::RuptureOutlook& rupture) {
+  const auto& o = rupture.of_nodes;
+  std::string text = fmt::format("S before the event, inside: {:.3g}", o.S.median);
+  if (o.S.least < o.S.largest)
+    text += fmt::format(" in the median, {:.3g} to {:.3g}", o.S.least, o.S.largest);
+  if (o.nucleation_length_m) text += fmt::format("; nucleation length {:.3g} m", *o.nucleation_length_m);
+  if (o.griffith_half_length_m)
+    text += fmt::format(", critical crack {:.3g} m", 2 * *o.griffith_half_length_m);
+  if (rupture.process_zone_elements)
+    text += fmt::format(", process zone {:.3g} elements", *rupture.process_zone_elements);
+  print("{}\nwhat this lets expect: {}\n", text, o.regime);
+}
+
+std::string speed_text(const fronts::Front& front, const run::WaveSpeeds& speeds) {
+  std::vector<double> v_m_per_s;
+  for (const auto& point : front.points) v_m_per_s.push_back(point.v_tip_m_per_s);
+  const double median = fronts::median(v_m_per_s);
+  if (std::isfinite(median))
+    return fmt::format("median speed {:.2f} c_L, {:.2f} c_S", median / speeds.c_L, median / speeds.c_S);
+  const auto is_triggered = [](const auto& point) {
+    return point.speed_kind == fronts::SpeedKind::triggered;
+  };
+  return std::ranges::all_of(front.points, is_triggered) ? "nowhere beyond what triggers it"
+                                                         : "speed undefined";
 }
 
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
@@ -63,16 +84,12 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
       1e-6 * static_cast<double>(event.steps) * result.node_updates_per_step / result.stepping_wall_s);
   print("ended: {}\n", run::end_of_event(result));
   for (const auto& front : result.fronts) {
-    std::vector<double> speeds;
-    for (const auto& point : front.points) speeds.push_back(point.v_tip_m_per_s / result.speeds.c_L);
-    const double speed = fronts::median(speeds);
     print("front {}: x = {:.4f} to {:.4f} m, {:.1f} to {:.1f} us, {}, {}, ends: {}\n", front.id,
           front.points.front().x_m, front.points.back().x_m, 1e6 * front.points.front().onset_s,
-          1e6 * front.points.back().onset_s,
-          std::isfinite(speed) ? fmt::format("median speed {:.2f} c_L", speed) : "speed undefined",
-          fronts::name(front.mode), fronts::name(front.end));
+          1e6 * front.points.back().onset_s, speed_text(front, result.speeds), fronts::name(front.mode),
+          fronts::name(front.end));
   }
-  print_rupture(run::rupture_outlook(result.config, initial).of_nodes);
+  print_rupture(run::rupture_outlook(result.config, initial));
   for (const auto& warning : result.warnings) print("note: {}\n", warning);
   print("results: {}\n", dir);
 }

@@ -25,6 +25,7 @@ void validate(const CaseArguments& arguments) {
   auto notes = arguments.notes();
   for (auto& note : run::warnings_of_case(config)) notes.push_back(std::move(note));
   for (auto& doubt : rupture.doubts) notes.push_back(std::move(doubt));
+  if (!rupture.unresolved.empty()) notes.push_back(rupture.unresolved);
   for (auto& note : run::snapshot_plan(config, run::estimated_size(config).step_s).notes)
     notes.push_back(std::move(note));
   for (const auto& note : notes) text += fmt::format("note: {}\n", note);

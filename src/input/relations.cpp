@@ -154,7 +154,8 @@ void check_trigger(const Case& config) {
   if (!interface::is_at_edge(config.event)) return;
   if (config.trigger.form == interface::TriggerForm::weakened && never_weakens(config))
     throw UserError(
-        "{} = weakened does nothing where the friction law does not weaken; choose added or raised",
+        "{} = weakened does nothing where the friction law does not weaken, mu_k as large as mu_s; choose "
+        "added or raised",
         Key("event.trigger_form"))
         .about("event.kind", "friction.law");
 }
@@ -173,8 +174,10 @@ void check_nucleation(const Case& config) {
     throw UserError("{} + {:leaf} is {} m; with {} = periodic it must be at most half of {}, {} m",
                     half_length, taper, reach_m, Key("plate.sides"), width, 0.5 * width_m);
   if (n.form == interface::NucleationForm::weakened && never_weakens(config))
-    throw UserError("{} = weakened does nothing where the friction law does not weaken; choose overstress",
-                    Key("nucleation.form"))
+    throw UserError(
+        "{} = weakened does nothing where the friction law does not weaken, mu_k as large as mu_s; choose "
+        "overstress",
+        Key("nucleation.form"))
         .about("event.kind", "friction.law");
 }
 

@@ -85,13 +85,9 @@ std::string doubt_of_beginning(const input::Case& config, const std::vector<Plac
                      config.nucleation.overstress_Pa, share);
 }
 
-/// Empty, or why slip that has begun stops.
-std::string doubt_of_growth(const input::Case& config, const RuptureOutlook& o) {
+/// Empty, or that slip stops for want of length.
+std::string doubt_of_length(const input::Case& config, const RuptureOutlook& o) {
   const auto& of = o.of_nodes;
-  if (of.n_weakening == 0) return "friction does not weaken at any node: no rupture feeds itself";
-  if (of.n_driven == 0)
-    return "the residual strength mu_k p is nowhere below t: a rupture finds no energy beyond its trigger";
-  if (of.n_barriers == of.n_nodes) return "S is beyond 10 at all nodes: no front breaks such strength";
   if (!of.griffith_half_length_m) return {};
   const double critical_m = 2 * *of.griffith_half_length_m;
   // At a free edge half a crack does.
@@ -106,6 +102,22 @@ std::string doubt_of_growth(const input::Case& config, const RuptureOutlook& o) 
   return {};
 }
 
+/// Why slip that has begun stops.
+std::vector<std::string> doubts_of_growth(const input::Case& config, const RuptureOutlook& o) {
+  const auto& of = o.of_nodes;
+  if (of.n_weakening == 0) return {"friction does not weaken at any node: no rupture feeds itself"};
+  if (of.n_driven == 0)
+    return {"the residual strength mu_k p is nowhere below t: a rupture finds no energy beyond its trigger"};
+  std::vector<std::string> doubts;
+  if (of.n_barriers == of.n_nodes)
+    doubts.emplace_back("S is beyond 10 at all nodes: no front breaks such strength");
+  if (auto doubt = doubt_of_length(config, o); !doubt.empty()) doubts.push_back(std::move(doubt));
+  return doubts;
+}
+
+/// Elements in a process zone at rest below which nobody calls it resolved (Day et al. 2005).
+constexpr double fewest_elements = 3;
+
 RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& placed) {
   std::vector<stability::NodeBefore> nodes;
   for (const auto& p : placed) nodes.push_back(p.node);
@@ -114,12 +126,18 @@ RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& 
   o.trigger_length_m = trigger_length_m(config);
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
+  if (o.process_zone_elements.value_or(fewest_elements) < fewest_elements)
+    o.unresolved = fmt::format(
+        "the process zone has {:.3g} elements at rest and fewer in motion; below 3 the mesh decides on "
+        "fronts and "
+        "their speeds",
+        *o.process_zone_elements);
   return o;
 }
 
 void add_doubts(const input::Case& config, const std::vector<Placed>& placed, RuptureOutlook& o) {
-  for (auto doubt : {doubt_of_beginning(config, placed), doubt_of_growth(config, o)})
-    if (!doubt.empty()) o.doubts.push_back(std::move(doubt));
+  if (auto doubt = doubt_of_beginning(config, placed); !doubt.empty()) o.doubts.push_back(std::move(doubt));
+  for (auto& doubt : doubts_of_growth(config, o)) o.doubts.push_back(std::move(doubt));
 }
 
 RuptureOutlook outlook_of_state(const input::Case& config, const statics::Equilibrium& state) {
@@ -143,7 +161,7 @@ RuptureOutlook rupture_outlook(const input::Case& config, const Meshes& meshes) 
   const double strength_Pa = interface::static_coefficient(config.friction) * p_Pa;
   auto o = outlook_of(config, {{0, node_before(config.friction, strength_Pa, p_Pa)}});
   o.nominal = true;
-  if (auto doubt = doubt_of_growth(config, o); !doubt.empty()) o.doubts.push_back(std::move(doubt));
+  o.doubts = doubts_of_growth(config, o);
   return o;
 }
 

@@ -20,6 +20,8 @@ struct RuptureOutlook {
   std::optional<double> trigger_length_m;  ///< of the zone at an edge, or of the patch
   std::optional<double> process_zone_elements;
   std::vector<std::string> doubts;  ///< why nothing may rupture, a line each
+  /// Empty, or that the mesh is too coarse for a process zone.
+  std::string unresolved;
 };
 
 /// Of a case that has its initial state.

@@ -265,9 +265,10 @@ void measure(Result& result, const InitialState& initial) {
         fmt::format("{} fronts may still be under way at time.end_s = {:g} s; choose a later end to see more",
                     n_running, config.time.end_s));
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
-  if (result.fronts.empty())
-    for (const auto& doubt : rupture_outlook(config, initial).doubts)
-      result.warnings.push_back("no rupture: " + doubt);
+  const auto rupture = rupture_outlook(config, initial);
+  for (const auto& doubt : rupture.doubts)
+    result.warnings.push_back(result.fronts.empty() ? "no rupture: " + doubt : doubt);
+  if (!rupture.unresolved.empty()) result.warnings.push_back(rupture.unresolved);
 }
 
 }  // namespace slipfront::run

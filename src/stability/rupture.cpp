@@ -54,7 +54,11 @@ std::string regime_of(const Outlook& o, bool on_rigid_plane) {
                ? "S < 1.77, as for fronts above c_S; without a length in the law no transition can be "
                  "foretold"
                : "S > 1.77, as for fronts below the Rayleigh speed; the law has no length";
-  if (o.S.median >= supershear_S) return "sub-Rayleigh: S > 1.77";
+  if (o.S.median >= supershear_S)
+    return on_rigid_plane
+               ? "S > 1.77: between equal bodies fronts stay below the Rayleigh speed; on a rigid plane they "
+                 "can pass c_S all the same"
+               : "sub-Rayleigh: S > 1.77";
   return fmt::format("S < 1.77: fronts above c_S can form, {}{:.3g} m from the nucleation on{}",
                      on_rigid_plane ? "between equal bodies " : "",
                      o.supershear_half_length_m.value_or(infinity),

@@ -56,6 +56,17 @@ Plan element_plan(const input::Case& base, const std::vector<double>& sizes) {
   return finish(std::move(plan));
 }
 
+/// @throws UserError that names the option, since the case has another size
+void require_sizes_fit(const Plan& plan) {
+  for (const auto& member : plan.members) {
+    try {
+      run::check(member.config);
+    } catch (const UserError& error) {
+      throw error.at(fmt::format("element size {:.8g} m of the study, see --element-sizes", member.value));
+    }
+  }
+}
+
 Plan step_plan(const input::Case& base) {
   const int n = base.time.interface_substeps;
   if (n == 1 || base.time.interface_rows == 0) {
@@ -144,6 +155,7 @@ std::vector<Plan> plan_convergence(const input::Case& config, const ConvergenceO
 Convergence study_convergence(const input::Case& config, const ConvergenceOptions& options,
                               const StudyMonitor& monitor) {
   auto plans = plan_convergence(config, options);
+  require_sizes_fit(plans.front());
   std::vector<input::Case> cases;
   std::map<std::string, std::size_t> index;
   const auto add = [&](const input::Case& c) {
@@ -166,6 +178,10 @@ Convergence study_convergence(const input::Case& config, const ConvergenceOption
         result.warnings.push_back(fmt::format("{} = {:g}: {}", plan.parameter, member.value, what));
     result.sequences.push_back(compare(plan, runs, options));
   }
+  if (std::ranges::all_of(result.sequences, [](const Sequence& s) { return s.stations.empty(); }))
+    result.warnings.emplace_back(
+        "no front of the case's own run goes far enough beyond its beginning to be measured: nothing is "
+        "compared");
   return result;
 }
 

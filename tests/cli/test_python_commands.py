@@ -96,6 +96,23 @@ def test_a_missing_package_is_told(elsewhere, interpreter, tmp_path, monkeypatch
     assert "report needs the Python package slipfront" in line and "-m pip install ." in line
 
 
+def test_a_source_tree_without_packages_names_its_target(program, tmp_path, monkeypatch):
+    tree = tmp_path / "tree"
+    (tree / "build/release").mkdir(parents=True)
+    (tree / "python").mkdir()
+    (tree / "python/slipfront").symlink_to(ROOT / "python/slipfront")
+    shutil.copy(program.path, tree / "build/release/slipfront")
+    python = tmp_path / "bin/python3"
+    python.parent.mkdir()
+    python.write_text(f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n')
+    python.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{python.parent}:{os.environ['PATH']}")
+    monkeypatch.delenv("SLIPFRONT_PYTHON", raising=False)
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+    program.path = tree / "build/release/slipfront"
+    assert f"'make module' in {tree} installs them all" in one_line(program("report", "DIR"))
+
+
 ONSETS = "x_m,time_s\n0,0\n1e-2,1e-5\n2e-2,2e-5\n"
 SWEEP = ["sweep", "coarse.toml", "--vary", "friction.mu_k=0.5,0.6", "--share", "1/1", "-o", "sweep"]
 TELLING = [["fronts", "onsets.csv"], ["report", "out"], SWEEP, ["sweep", "--restart", "done"]]
