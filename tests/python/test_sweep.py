@@ -19,6 +19,7 @@ from slipfront.sweep import engine, maps, notebook, report
 from slipfront.sweep.command import main, share_of
 from slipfront.sweep.definition import Sweep, read_sweep, require_sound
 from slipfront.sweep.folder import as_json, has_value
+from slipfront.sweep.glance import table_lines
 from slipfront.sweep.lines import lines_of
 from slipfront.sweep.needs import Needs, matters, require_disk, require_memory
 from slipfront.sweep.outcome import QUANTITIES, read_outcome
@@ -494,7 +495,9 @@ def test_one_point_that_fails_leaves_the_others(case, tmp_path, capsys, in_this_
     """A step far above the stable one blows up."""
     vary = ["--vary", "time.step_factor=0.9,1.5", "--set", "time.allow_unstable=true"]
     assert main([str(case), *vary, "-o", "out"]) == 1
-    assert "failed: time.step_factor = 1.5: " in capsys.readouterr().out
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[-1] == "results: out" and printed[-2].startswith("failed: time.step_factor = 1.5: ")
+    assert printed[-4].split()[0] == "0.9" and printed[-3].split() == ["1.5", "failed"]
     good, bad = rows_of(tmp_path / "out")
     assert good["status"] == "done" and float(good["n_fronts"]) >= 1 and good["message"] == ""
     assert bad["status"] == "failed" and bad["n_fronts"] == "" and "energy" in bad["message"]
@@ -507,6 +510,25 @@ def test_one_point_that_fails_leaves_the_others(case, tmp_path, capsys, in_this_
     assert {p: t for p, t in states_of(tmp_path / "out").items() if p.suffix != ".error"} == {
         p: t for p, t in before.items() if p.suffix != ".error"
     }
+
+
+def test_what_cannot_be_printed_costs_no_results(case, tmp_path, capsys, in_this_process, monkeypatch):
+    for arguments in ([str(case), *VARY, "-o", "out"], ["--restart", "out"]):
+        with open("/dev/full", "w") as full, monkeypatch.context() as patched:
+            patched.setattr(sys, "stdout", full)
+            assert main(arguments) == 1
+        told = "slipfront sweep: error: standard output: No space left on device"
+        assert capsys.readouterr().err.splitlines()[-1] == told
+        assert len(rows_of(tmp_path / "out")) == 4
+    assert main(["--restart", "out", "-q"]) == 0
+    assert capsys.readouterr().out == ""
+    assert main(["--restart", "out"]) == 0
+    assert [line.split()[:2] for line in capsys.readouterr().out.splitlines()[2:-1]] == [
+        ["0.5", "0.05"],
+        ["0.5", "0.1"],
+        ["0.7", "0.05"],
+        ["0.7", "0.1"],
+    ]
 
 
 def test_no_point_is_begun_after_so_many_failures(case, tmp_path, capsys, in_this_process):
@@ -714,6 +736,9 @@ CELLS = {quantity.name: "" if quantity.words else np.nan for quantity in QUANTIT
     "slipped_share": 1 / 3,
     "reached_ends": "both",
 }
+NO_FRONT = {"n_fronts": 0, "longest_front_slip": "none", "longest_front_end": "none", "reached_ends": "none"}
+NO_FRONT |= {"longest_front_length_m": 0.0, "slipped_share": 0.0}
+NO_FRONT |= {"longest_front_v_tip_median_over_c_L": np.nan}
 
 
 def done_row(values, **cells):
@@ -735,6 +760,49 @@ def test_numbers_of_the_table_have_no_digits_of_rounding():
     assert (done["n_fronts"], done["slipped_length_m"]) == ("2", "-2e-17")
     assert done["kinetic_energy_J_per_m"] == "2.29829674644e-05"
     assert done["nucleation_length_m"] == failed["n_fronts"] == failed["slipped_share"] == ""
+
+
+def test_a_small_table_tells_what_is_asked_first():
+    values = values_of("friction.mu_k", "0.50,7e-1,1")
+    points = [{"friction.mu_k": value, "event.kind": kind} for value, kind in zip(values, "abc", strict=True)]
+    rows = [done_row(points[0]), failed_row(points[1]), done_row(points[2], **NO_FRONT)]
+    assert table_lines(rows, Path("out")) == [
+        "                    of the longest front (V_tip: median)",
+        "mu_k  kind  fronts  slip   length_m  V_tip/c_L  end          slipped  reached",
+        "0.50  a          2  crack      0.15      0.674  contact_end    0.333  both",
+        "7e-1  b     failed",
+        "   1  c          0  none          0          -  none               0  none",
+    ]
+    assert table_lines([], Path("out")) == []
+    (_, _, only) = table_lines([failed_row(points[1])], Path("out"))
+    assert only == "7e-1  b     failed"
+
+
+def test_a_small_table_stays_small():
+    """At most 30 rows; keys that find no room are left out, long words show their end."""
+    rows = [done_row({"a.x": k}) for k in range(31)]
+    assert len(table_lines(rows[:30], Path("out"))) == 32
+    lines = table_lines(rows, Path("out"))
+    assert len(lines) == 33 and lines[-2].split()[0] == "29"
+    assert lines[-1] == f"... 1 more in {Path('out/sweep.csv')}"
+    keys = {f"friction.key_of_a_very_long_name_{k}": f"/a/long/folder/of/tables/{k}.csv" for k in range(9)}
+    *lines, last = table_lines([done_row(keys), failed_row(keys)], Path("out"))
+    assert max(map(len, lines)) <= 120
+    assert lines[1].split()[:2] == ["..._very_long_name_0", "..._very_long_name_1"]
+    assert lines[2].split()[:2] == ["...r/of/tables/0.csv", "...r/of/tables/1.csv"]
+    assert lines[2].split()[2] == "2" and lines[3].split()[2:] == ["failed"]
+    assert last == f"2 of 9 keys find room, all are in {Path('out/sweep.csv')}"
+
+
+def test_values_that_look_alike_have_all_digits_in_the_small_table():
+    rows = [done_row({"a.x": value}) for value in values_of("a.x", "1:1.000001:5")]
+    assert [line.split()[0] for line in table_lines(rows, Path("out"))[2:]] == [
+        "1",
+        "1.00000025",
+        "1.0000005",
+        "1.00000075",
+        "1.000001",
+    ]
 
 
 # --- Interruptions
