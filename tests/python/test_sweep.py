@@ -671,6 +671,7 @@ RIGHT = (50, 90, "contact_end")
         (SPONTANEOUS, [(10, 60, "arrest")], "left"),
         # Nodes beyond the contact are none of it.
         (SPONTANEOUS, [(30, 95, "contact_end")], "right"),
+        (SPONTANEOUS, [RIGHT, (50, 11, "arrest"), (10, 8, "contact_end")], "both"),
         # From the edge of a patch or a trigger zone on; an end in the zone is none that slip runs to.
         (PATCH, [(66, 90, "contact_end"), (50, 20, "arrest")], "right"),
         (PATCH, [(67, 90, "contact_end"), (50, 10, "contact_end")], "left"),
