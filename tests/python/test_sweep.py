@@ -16,17 +16,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from slipfront.files import DataError
+from slipfront.files import DataError, Table
 from slipfront.folder import verify_checksums
 from slipfront.sweep import engine, maps, notebook, report
 from slipfront.sweep.command import main, share_of
 from slipfront.sweep.definition import Sweep, read_sweep, require_sound
 from slipfront.sweep.folder import as_json, has_value
+from slipfront.sweep.glance import table_lines
 from slipfront.sweep.lines import lines_of
 from slipfront.sweep.needs import Needs, matters, require_disk, require_memory
-from slipfront.sweep.outcome import read_outcome
-from slipfront.sweep.points import folder_name, grid, sample, zipped
-from slipfront.sweep.reading import read_results
+from slipfront.sweep.outcome import QUANTITIES, read_outcome
+from slipfront.sweep.points import Point, folder_name, grid, sample, zipped
+from slipfront.sweep.reading import Results, read_results
+from slipfront.sweep.tables import Row, table_text
 from slipfront.sweep.values import Range, range_of, values_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -412,11 +414,8 @@ def test_a_sweep_by_dask_and_its_tables(case, tmp_path):
         at = data.sel(
             mu_k=float(row["friction.mu_k"]), alpha_m2_per_s2=float(row["friction.alpha_m2_per_s2"])
         )
-        assert (
-            float(row["friction_work_J_per_m"])
-            == found["friction_work_J_per_m"]
-            == float(at.friction_work_J_per_m)
-        )
+        assert found["friction_work_J_per_m"] == float(at.friction_work_J_per_m)
+        assert row["friction_work_J_per_m"] == repr(float(f"{found['friction_work_J_per_m']:.12g}"))
         assert row["longest_front_slip"] == str(at.longest_front_slip.item())
     # Friction takes the more the lower mu_k is: fronts run farther, and slip is larger.
     assert (data.friction_work_J_per_m.sel(mu_k=0.5) < data.friction_work_J_per_m.sel(mu_k=0.7)).all()
@@ -499,7 +498,9 @@ def test_one_point_that_fails_leaves_the_others(case, tmp_path, capsys, in_this_
     """A step far above the stable one blows up."""
     vary = ["--vary", "time.step_factor=0.9,1.5", "--set", "time.allow_unstable=true"]
     assert main([str(case), *vary, "-o", "out"]) == 1
-    assert "failed: time.step_factor = 1.5: " in capsys.readouterr().out
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[-1] == "results: out" and printed[-2].startswith("failed: time.step_factor = 1.5: ")
+    assert printed[-4].split()[0] == "0.9" and printed[-3].split() == ["1.5", "failed"]
     good, bad = rows_of(tmp_path / "out")
     assert good["status"] == "done" and float(good["n_fronts"]) >= 1 and good["message"] == ""
     assert bad["status"] == "failed" and bad["n_fronts"] == "" and "energy" in bad["message"]
@@ -512,6 +513,25 @@ def test_one_point_that_fails_leaves_the_others(case, tmp_path, capsys, in_this_
     assert {p: t for p, t in states_of(tmp_path / "out").items() if p.suffix != ".error"} == {
         p: t for p, t in before.items() if p.suffix != ".error"
     }
+
+
+def test_what_cannot_be_printed_costs_no_results(case, tmp_path, capsys, in_this_process, monkeypatch):
+    for arguments in ([str(case), *VARY, "-o", "out"], ["--restart", "out"]):
+        with open("/dev/full", "w") as full, monkeypatch.context() as patched:
+            patched.setattr(sys, "stdout", full)
+            assert main(arguments) == 1
+        told = "slipfront sweep: error: standard output: No space left on device"
+        assert capsys.readouterr().err.splitlines()[-1] == told
+        assert len(rows_of(tmp_path / "out")) == 4
+    assert main(["--restart", "out", "-q"]) == 0
+    assert capsys.readouterr().out == ""
+    assert main(["--restart", "out"]) == 0
+    assert [line.split()[:2] for line in capsys.readouterr().out.splitlines()[2:-1]] == [
+        ["0.5", "0.05"],
+        ["0.5", "0.1"],
+        ["0.7", "0.05"],
+        ["0.7", "0.1"],
+    ]
 
 
 def test_no_point_is_begun_after_so_many_failures(case, tmp_path, capsys, in_this_process):
@@ -551,13 +571,15 @@ FRONT_HEADER += "U_s_J_per_m3,U_r_J_per_m3,speed_kind\n"
 C_L = 1000.0
 
 
-def write_results(place, case, fronts):
-    """A run with nodes every 10 mm, in contact from 0.1 to 0.9 m. fronts: rows (x, speed, kind) of each."""
+def write_results(place, case, fronts, ends=None, **facts):
+    """A run with nodes every 10 mm, in contact from 0.1 to 0.9 m. fronts: rows (x, speed, kind) of each;
+    ends: why each ends; facts: further entries of run.json."""
     place.mkdir()
+    ends = ends or ["contact_end"] * len(fronts)
     told, rows = [], []
-    for k, points in enumerate(fronts):
+    for k, (points, end) in enumerate(zip(fronts, ends, strict=True)):
         direction = 1 if points[-1][0] > points[0][0] else -1
-        told.append({"id": k, "direction": direction, "end": "contact_end", "mode": "crack"})
+        told.append({"id": k, "direction": direction, "end": end, "mode": "crack"})
         rows += [
             f"{k},{x:.17g},{1e-5 * n},{direction},{v or ''},1,1,,,1,1,,,{kind}\n"
             for n, (x, v, kind) in enumerate(points)
@@ -570,7 +592,7 @@ def write_results(place, case, fronts):
     pressed = (x_m > 0.095) & (x_m < 0.905)
     static = [f"{x},1,{p:d}\n" for x, p in zip(x_m, pressed, strict=True)]
     (place / "static.csv").write_text("x_m,t_s_Pa,p_s_Pa\n" + "".join(static))
-    (place / "case.resolved.toml").write_text("[fronts]\nl_star_m = 0.02\n" + case)
+    (place / "case.resolved.toml").write_text("[fronts]\nl_star_m = 0.02\nmin_length_m = 0.02\n" + case)
     energies = dict.fromkeys(
         [
             f"{name}_J_per_m"
@@ -580,7 +602,7 @@ def write_results(place, case, fronts):
     )
     info = {"wave_speeds": {"c_L_m_per_s": C_L}, "fronts": told, "time_s": 1e-3, "end": "quiet"}
     info |= {"energy_at_start": energies, "energy_at_end": energies}
-    (place / "run.json").write_text(json.dumps(info))
+    (place / "run.json").write_text(json.dumps(info | facts))
     return read_outcome(place)
 
 
@@ -601,13 +623,13 @@ def test_a_trigger_zone_is_no_part_of_a_front(tmp_path):
     assert found["longest_front_length_m"] == pytest.approx(0.5)
     assert found["slipped_length_m"] == pytest.approx(0.5)
     assert found["slipped_share"] == pytest.approx(0.5 / 0.7)
-    assert found["reached_ends"] == "right"
+    assert found["reached_ends"] == "none"
     # Without a trigger both are fronts.
     found = write_results(tmp_path / "free", '[event]\nkind = "spontaneous"\n', [left, right])
     assert found["n_fronts"] == 2
     assert found["slipped_length_m"] == pytest.approx(0.6 - 0.01)
     assert found["slipped_share"] == pytest.approx(0.59 / 0.8)
-    assert found["reached_ends"] == "both"
+    assert found["reached_ends"] == "left"
     # Of an event in which nothing leaves the zone there is no front.
     found = write_results(tmp_path / "none", zone, [left])
     assert (found["n_fronts"], found["longest_front_end"], found["slipped_share"]) == (0, "none", 0)
@@ -626,6 +648,63 @@ def test_a_nucleation_patch_is_no_part_of_the_fronts(tmp_path, x_m):
     assert found["n_fronts"] == (2 if behind_m else 1)
     assert found["longest_front_length_m"] == pytest.approx(max(ahead_m, behind_m))
     assert found["slipped_share"] == pytest.approx((ahead_m + behind_m) / whole_m)
+
+
+SPONTANEOUS = '[event]\nkind = "spontaneous"\n'
+PATCH = '[event]\nkind = "nucleation"\n[nucleation]\nx_m = 0.5\nhalf_length_m = 0.1\ntaper_m = 0.05\n'
+TRIGGER = '[event]\nkind = "left"\ntrigger_zone_m = 0.1\n'
+RIGHT = (50, 90, "contact_end")
+
+
+@pytest.mark.parametrize(
+    ("case", "fronts", "reached"),
+    [
+        (SPONTANEOUS, [RIGHT, (50, 10, "contact_end")], "both"),
+        (SPONTANEOUS, [RIGHT, (50, 11, "arrest")], "right"),
+        (SPONTANEOUS, [RIGHT, (50, 11, "record_end")], "right"),
+        # Met by a front from the edge, in neighbouring nodes, and with a node between.
+        (SPONTANEOUS, [RIGHT, (50, 16, "meets_front"), (10, 15, "meets_front")], "both"),
+        (SPONTANEOUS, [RIGHT, (50, 16, "arrest"), (10, 15, "arrest")], "both"),
+        (SPONTANEOUS, [RIGHT, (50, 16, "arrest"), (10, 14, "arrest")], "right"),
+        # Met by slip from the edge that is too short for a front, 20 mm, and by slip that is none from there.
+        (SPONTANEOUS, [RIGHT, (50, 12, "meets_front")], "both"),
+        (SPONTANEOUS, [RIGHT, (50, 13, "meets_front")], "right"),
+        # A front that has come to an end by itself.
+        (SPONTANEOUS, [(20, 60, "arrest"), (80, 90, "contact_end")], "none"),
+        (SPONTANEOUS, [(10, 60, "arrest")], "left"),
+        # Nodes beyond the contact are none of it.
+        (SPONTANEOUS, [(30, 95, "contact_end")], "right"),
+        (SPONTANEOUS, [RIGHT, (50, 11, "arrest"), (10, 8, "contact_end")], "both"),
+        # From the edge of a patch or a trigger zone on; an end in the zone is none that slip runs to.
+        (PATCH, [(66, 90, "contact_end"), (50, 20, "arrest")], "right"),
+        (PATCH, [(67, 90, "contact_end"), (50, 10, "contact_end")], "left"),
+        (PATCH, [(50, 60, "arrest")], "none"),
+        (TRIGGER, [(15, 90, "contact_end"), (15, 10, "contact_end")], "right"),
+        (TRIGGER, [(15, 60, "meets_front"), (90, 61, "meets_front")], "right"),
+        (TRIGGER, [(22, 90, "contact_end")], "none"),
+    ],
+)
+def test_an_end_is_reached_where_slip_comes_to_it_without_a_gap(tmp_path, case, fronts, reached):
+    paths, ends = [path(*ends) for *ends, _ in fronts], [end for *_, end in fronts]
+    assert write_results(tmp_path / "run", case, paths, ends)["reached_ends"] == reached
+
+
+def test_what_is_expected_of_the_rupture_is_run_jsons(tmp_path):
+    """Lengths are null under a law that does not weaken over a slip."""
+    rupture = {"strength_excess_S": {"min": 0.5, "median": 1.5, "max": 4.0}, "nucleation_length_m": 0.02}
+    names = ("strength_excess_S_median", "nucleation_length_m", "griffith_half_length_m")
+    for k, (facts, expected) in enumerate(
+        [
+            ({"rupture": rupture | {"griffith_half_length_m": 0.03}}, [1.5, 0.02, 0.03]),
+            ({"rupture": rupture | {"griffith_half_length_m": None}}, [1.5, 0.02, np.nan]),
+            ({"rupture": {"strength_excess_S": {"median": None}}}, [np.nan] * 3),
+            ({}, [np.nan] * 3),
+        ]
+    ):
+        found = write_results(tmp_path / str(k), SPONTANEOUS, [path(20, 40)], **facts)
+        np.testing.assert_array_equal([found[name] for name in names], expected)
+    units = {quantity.name: quantity.unit for quantity in QUANTITIES}
+    assert [units[name] for name in names] == ["1", "m", "m"]
 
 
 def test_only_speeds_are_taken_for_speeds(tmp_path):
@@ -648,6 +727,86 @@ def test_only_speeds_are_taken_for_speeds(tmp_path):
     older = [(x, v, "") for x, v, _ in front]
     case = '[event]\nkind = "spontaneous"\n'
     assert write_results(tmp_path / "older", case, [older])["v_tip_largest_over_c_L"] == 9.0
+
+
+# --- The table as text
+
+CELLS = {quantity.name: "" if quantity.words else np.nan for quantity in QUANTITIES} | {
+    "n_fronts": 2,
+    "longest_front_slip": "crack",
+    "longest_front_end": "contact_end",
+    "longest_front_length_m": 0.15000000000000002,
+    "longest_front_v_tip_median_over_c_L": 0.67430413,
+    "slipped_share": 1 / 3,
+    "reached_ends": "both",
+}
+NO_FRONT = {"n_fronts": 0, "longest_front_slip": "none", "longest_front_end": "none", "reached_ends": "none"}
+NO_FRONT |= {"longest_front_length_m": 0.0, "slipped_share": 0.0}
+NO_FRONT |= {"longest_front_v_tip_median_over_c_L": np.nan}
+
+
+def done_row(values, **cells):
+    return Row(Point(folder_name(values), values), "done", "", CELLS | cells)
+
+
+def failed_row(values):
+    return Row(Point(folder_name(values), values), "failed", "blew up", {})
+
+
+def test_numbers_of_the_table_have_no_digits_of_rounding():
+    """Values of keys are the run's own, with all digits."""
+    values = {"a.x": 0.1234567890123456}
+    row = done_row(values, slipped_length_m=-2e-17, kinetic_energy_J_per_m=2.2982967464440616e-05)
+    text = table_text(Sweep(Path("c.toml"), {"a.x": [values["a.x"]]}), [row, failed_row(values)])
+    done, failed = csv.DictReader(text.splitlines())
+    assert done["a.x"] == failed["a.x"] == "0.1234567890123456"
+    assert (done["longest_front_length_m"], done["slipped_share"]) == ("0.15", "0.333333333333")
+    assert (done["n_fronts"], done["slipped_length_m"]) == ("2", "-2e-17")
+    assert done["kinetic_energy_J_per_m"] == "2.29829674644e-05"
+    assert done["nucleation_length_m"] == failed["n_fronts"] == failed["slipped_share"] == ""
+
+
+def test_a_small_table_tells_what_is_asked_first():
+    values = values_of("friction.mu_k", "0.50,7e-1,1")
+    points = [{"friction.mu_k": value, "event.kind": kind} for value, kind in zip(values, "abc", strict=True)]
+    rows = [done_row(points[0]), failed_row(points[1]), done_row(points[2], **NO_FRONT)]
+    assert table_lines(rows, Path("out")) == [
+        "                    of the longest front (V_tip: median)",
+        "mu_k  kind  fronts  slip   length_m  V_tip/c_L  end          slipped  reached",
+        "0.50  a          2  crack      0.15      0.674  contact_end    0.333  both",
+        "7e-1  b     failed",
+        "   1  c          0  none          0          -  none               0  none",
+    ]
+    assert table_lines([], Path("out")) == []
+    (_, _, only) = table_lines([failed_row(points[1])], Path("out"))
+    assert only == "7e-1  b     failed"
+
+
+def test_a_small_table_stays_small():
+    """At most 30 rows; keys that find no room are left out, long words show their end."""
+    rows = [done_row({"a.x": k}) for k in range(31)]
+    assert len(table_lines(rows[:30], Path("out"))) == 32
+    lines = table_lines(rows, Path("out"))
+    assert len(lines) == 33 and lines[-2].split()[0] == "29"
+    assert lines[-1] == f"... 1 more in {Path('out/sweep.csv')}"
+    keys = {f"friction.key_of_a_very_long_name_{k}": f"/a/long/folder/of/tables/{k}.csv" for k in range(9)}
+    *lines, last = table_lines([done_row(keys), failed_row(keys)], Path("out"))
+    assert max(map(len, lines)) <= 120
+    assert lines[1].split()[:2] == ["..._very_long_name_0", "..._very_long_name_1"]
+    assert lines[2].split()[:2] == ["...r/of/tables/0.csv", "...r/of/tables/1.csv"]
+    assert lines[2].split()[2] == "2" and lines[3].split()[2:] == ["failed"]
+    assert last == f"2 of 9 keys find room, all are in {Path('out/sweep.csv')}"
+
+
+def test_values_that_look_alike_have_all_digits_in_the_small_table():
+    rows = [done_row({"a.x": value}) for value in values_of("a.x", "1:1.000001:5")]
+    assert [line.split()[0] for line in table_lines(rows, Path("out"))[2:]] == [
+        "1",
+        "1.00000025",
+        "1.0000005",
+        "1.00000075",
+        "1.000001",
+    ]
 
 
 # --- Interruptions
@@ -819,10 +978,29 @@ def test_a_page_has_the_table_and_what_failed(done):
         text = row["v_tip_largest_over_c_L"]
         assert point["cells"]["v_tip_largest_over_c_L"] == (float(text) if text else None)
         assert point["status"] == row["status"]
+    assert data["first"] == SPEED
     html = report.sweep_section(done, with_plotly=False)
     assert "2 runs, 2 without results" in html
     assert html.count("<script") == 2 and "src=" not in html
     assert report.is_kind(done) and not report.is_kind(done / "points")
+
+
+SPEED, SLIP = "longest_front_v_tip_median_over_c_L", "longest_front_slip"
+
+
+@pytest.mark.parametrize(
+    ("columns", "first"),
+    [
+        ({"n_fronts": "123", SPEED: ["0.5", "0.6", ""], SLIP: ["crack", "pulse", "none"]}, SPEED),
+        ({"n_fronts": "222", SPEED: ["0.5", "0.5", ""], SLIP: ["crack", "pulse", "none"]}, SLIP),
+        ({SLIP: ["crack"] * 3, "n_fronts": "222", "end_s": ["1e-3", "1e-3", "2e-3"]}, "end_s"),
+        ({"n_fronts": "222", SPEED: ["0.5", "0.5", ""], SLIP: ["crack", "crack", ""]}, SPEED),
+    ],
+)
+def test_a_page_opens_on_a_result_that_varies(columns, first):
+    rows = [(k, list(cells)) for k, cells in enumerate(zip(*columns.values(), strict=True))]
+    results = Results(Path("out"), {"vary": {}}, Table(Path("sweep.csv"), list(columns), rows))
+    assert report.first_shown(results) == first
 
 
 def test_no_text_of_a_case_ends_a_script():

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from slipfront.files import DataError, number, read_json_table, read_toml
+from slipfront.files import DataError, is_number, number, read_json_table, read_toml
 from slipfront.folder import result_file
 from slipfront.read import SPEED_KINDS, Front, entry, read_fronts, read_static
 
@@ -49,12 +49,18 @@ class Run:
     info: dict[str, Any]
     file: Path  # run.json
     all_fronts: list[Front]
+    x_m: np.ndarray  # nodes, ascending
+    least_front_m: float  # length below which slip that spreads is no front of its own
     contact_m: Interval  # outermost nodes under pressure before the event
     driven_m: list[Interval]  # where the event's trigger makes the nodes slip
     heard_m: list[Interval]  # next to absorbing edges, where these change the onsets
 
     def fact(self, key: str) -> float:
         return number(self.file, self.info, key)
+
+    @property
+    def rounding_m(self) -> float:
+        return ROUNDING * (self.contact_m[1] - self.contact_m[0])
 
     @property
     def c_L_m_per_s(self) -> float:
@@ -72,8 +78,7 @@ class Run:
     @cached_property
     def fronts(self) -> list[Front]:
         """Those that leave the zone in which the trigger makes the nodes slip."""
-        least_m = ROUNDING * (self.contact_m[1] - self.contact_m[0])
-        return [front for front in self.all_fronts if self.length_m(front) > least_m]
+        return [front for front in self.all_fronts if self.length_m(front) > self.rounding_m]
 
     def speeds(self, front: Front) -> np.ndarray:
         """V_tip/c_L where something travels: where `speed_kind` says so, away from absorbing edges."""
@@ -93,6 +98,32 @@ class Run:
             if known.get("id") == front.id:
                 return str(known.get(entry, ""))
         return ""
+
+    def slipped_by(self, front: Front) -> Interval:
+        """What a front has run over, and what it met ahead: that may be too short for a front of its own."""
+        from_m, to_m = float(front.x_m.min()), float(front.x_m.max())
+        met_m = self.least_front_m if self.told(front, "end") == "meets_front" else 0.0
+        return (from_m, to_m + met_m) if front.direction > 0 else (from_m - met_m, to_m)
+
+    def is_reached(self, direction: int) -> bool:
+        """Whether slip has come to the end of contact in a direction without a gap, from the trigger zone or
+        the patch, else from where the longest front starts. An end inside the zone is not reached."""
+        if self.longest is None:
+            return False
+        ahead = direction * self.x_m  # positions along the direction
+        end_m = direction * self.contact_m[direction > 0] - self.rounding_m
+        edges = [direction * edge for zone in self.driven_m if self.touches(zone) for edge in zone]
+        if edges and max(edges) >= end_m:
+            return False
+        at_m = max(edges, default=direction * float(self.longest.x_m[0]))
+        parts = [sorted(direction * x for x in self.slipped_by(front)) for front in self.all_fronts]
+        for from_m, to_m in sorted(parts):
+            if not ((ahead > at_m + self.rounding_m) & (ahead < from_m - self.rounding_m)).any():
+                at_m = max(at_m, to_m)
+        return at_m >= end_m
+
+    def touches(self, zone: Interval) -> bool:
+        return zone[0] < self.contact_m[1] and zone[1] > self.contact_m[0]
 
 
 @dataclass(frozen=True)
@@ -138,11 +169,21 @@ def slipped_share(run: Run) -> float:
 
 
 def reached_ends(run: Run) -> str:
-    """Ends of the contact at which a front has arrived."""
-    ends = {front.direction for front in run.fronts if run.told(front, "end") == "contact_end"}
-    if len(ends) == 2:
-        return BOTH
-    return {frozenset({1}): "right", frozenset({-1}): "left"}.get(frozenset(ends), NONE)
+    """Ends of the contact that slip has come to without a gap."""
+    ends = [name for name, direction in (("left", -1), ("right", 1)) if run.is_reached(direction)]
+    return BOTH if len(ends) == 2 else (*ends, NONE)[0]
+
+
+def expected(key: str) -> Callable[[Run], Cell]:
+    """What the tractions before the event let expect, by run.json; NaN where undefined or not told."""
+
+    def value(run: Run) -> Cell:
+        found: Any = run.info.get("rupture")
+        for part in key.split("."):
+            found = found.get(part) if isinstance(found, dict) else None
+        return float(found) if is_number(found) else np.nan
+
+    return value
 
 
 def n_that(entry: str, word: str) -> Callable[[Run], Cell]:
@@ -186,8 +227,14 @@ QUANTITIES = (
     Quantity("slipped_length_m", "m", "length beyond the trigger zone that fronts have run over",
              slipped_length_m),
     Quantity("slipped_share", "1", "slipped share beyond the trigger zone", slipped_share),
-    Quantity("reached_ends", "", "ends of the contact that a front has reached", reached_ends,
+    Quantity("reached_ends", "", "ends of the contact that slip has reached without a gap", reached_ends,
              ("left", "right", BOTH, NONE)),
+    Quantity("strength_excess_S_median", "1", "median strength excess S before the event",
+             expected("strength_excess_S.median")),
+    Quantity("nucleation_length_m", "m", "nucleation length expected before the event",
+             expected("nucleation_length_m")),
+    Quantity("griffith_half_length_m", "m", "half the critical crack length expected before the event",
+             expected("griffith_half_length_m")),
     Quantity("strain_energy_change_J_per_m", "J m-1", "strain energy at the end less that at the start",
              energy_change("strain")),
     Quantity("kinetic_energy_J_per_m", "J m-1", "kinetic energy at the end", energy("kinetic")),
@@ -243,6 +290,8 @@ def read_outcome(place: Path) -> dict[str, Cell]:
         info=read_json_table(result_file(place / "run.json")),
         file=place / "run.json",
         all_fronts=read_fronts(place / "fronts.csv"),
+        x_m=static["x_m"],
+        least_front_m=number(file, case, "fronts.min_length_m"),
         contact_m=contact_m,
         driven_m=driven_zones(case, file, contact_m),
         heard_m=heard_zones(case, file, static),

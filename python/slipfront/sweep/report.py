@@ -14,6 +14,7 @@ from slipfront.sweep.reading import Results, is_sweep, read_results
 from slipfront.sweep.work import DONE
 
 MOST_FAILURES = 100  # that are listed
+PREFERRED = "longest_front_v_tip_median_over_c_L"
 
 CHOICES = """\
 <p class="choices">
@@ -36,6 +37,17 @@ def shown(value: Any) -> Any:
         return value
     number = float(value)
     return number if np.isfinite(number) else None
+
+
+def first_shown(results: Results) -> str:
+    """The result that the page opens on: one that varies, the longest front's speed where that does."""
+    by_name = {quantity.name: quantity for quantity in results.quantities}
+    names = sorted(by_name, key=lambda name: name != PREFERRED)  # else in the order of the table
+    for name in names:
+        column = results.column(by_name[name])
+        if len(np.unique(column[~np.isnan(column)])) > 1:
+            return name
+    return names[0]
 
 
 def sweep_data(results: Results) -> dict[str, Any]:
@@ -67,6 +79,7 @@ def sweep_data(results: Results) -> dict[str, Any]:
             }
             for q in results.quantities
         ],
+        "first": first_shown(results),
         "points": points,
     }
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from slipfront.sweep import engine
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep, require_sound
+from slipfront.sweep.glance import table_lines
 from slipfront.sweep.needs import needs_of, require_disk, require_memory, require_valid
 from slipfront.sweep.points import Point
 from slipfront.sweep.program import find_program, key_facts
@@ -131,7 +132,8 @@ def ending(
 
 def told(finished: Finished) -> list[str]:
     """What to print at the end."""
-    lines = [f"failed: {words}: {message}" for words, message in finished.failures[:MOST_TOLD]]
+    lines = table_lines(finished.rows, finished.folder)
+    lines += [f"failed: {words}: {message}" for words, message in finished.failures[:MOST_TOLD]]
     if len(finished.failures) > MOST_TOLD:
         lines.append(f"and {len(finished.failures) - MOST_TOLD} more; the tables list all")
     if finished.n_left and not finished.is_interrupted:

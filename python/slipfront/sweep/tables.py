@@ -21,7 +21,7 @@ from slipfront.sweep.definition import Sweep
 from slipfront.sweep.outcome import QUANTITIES, Cell, Quantity, read_outcome
 from slipfront.sweep.points import Point, short_names
 from slipfront.sweep.program import KeyFacts, version_of
-from slipfront.sweep.values import Value, as_array, text_of, values_of
+from slipfront.sweep.values import as_array, short_text, text_of, values_of
 from slipfront.sweep.work import DONE, FAILED
 
 if TYPE_CHECKING:
@@ -59,9 +59,9 @@ def without(quantity: Quantity) -> Cell:
     return "" if quantity.words else np.nan
 
 
-def csv_text(cell: Value | Cell) -> str:
-    if isinstance(cell, float) and np.isnan(cell):
-        return ""
+def csv_text(cell: Cell) -> str:
+    if isinstance(cell, float):
+        return "" if np.isnan(cell) else short_text(cell)
     return text_of(cell)
 
 
@@ -73,7 +73,7 @@ def table_text(sweep: Sweep, rows: list[Row]) -> str:
     for row in rows:
         cells = [row.cells.get(q.name, without(q)) for q in QUANTITIES]
         folder = f"{places.POINTS}/{row.point.name}"
-        values = [csv_text(value) for value in row.point.values.values()]
+        values = [text_of(value) for value in row.point.values.values()]
         writer.writerow([folder, *values, row.status, *map(csv_text, cells), row.message])
     return text.getvalue()
 

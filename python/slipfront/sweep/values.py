@@ -16,7 +16,7 @@ from slipfront.files import DataError, is_number
 
 MOST_POINTS = 1_000_000
 
-DIGITS = 12  # of values between the ends of a range: 0.6, not 0.6000000000000001
+DIGITS = 12  # of values between the ends of a range and of results: 0.6, not 0.6000000000000001
 NAME_DIGITS = 6  # of these in names, where that tells them apart
 LOG = "log"
 
@@ -82,6 +82,11 @@ def text_of(value: Value) -> str:
     if isinstance(value, float):
         return float.__repr__(value)
     return json.dumps(value)
+
+
+def short_text(value: float) -> str:
+    """The shortest text of a number within DIGITS digits."""
+    return text_of(float(f"{value:.{DIGITS}g}"))
 
 
 def name_text(value: Value) -> str:

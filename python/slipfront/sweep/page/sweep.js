@@ -185,7 +185,7 @@ function startFixed() {
 
 async function start() {
   const names = sweep.keys.map((key) => [key.name, key.name]);
-  fill('quantity', sweep.quantities.map((q) => [q.name, q.long_name]), 'longest_front_slip');
+  fill('quantity', sweep.quantities.map((q) => [q.name, q.long_name]), sweep.first);
   fill('x', names, names[Math.min(1, names.length - 1)][0]);
   fill('y', names, names[0][0]);
   startFixed();
