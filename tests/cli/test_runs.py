@@ -21,6 +21,7 @@ from slipfront.figures import interface_step, open_choices
 from slipfront.figures.__main__ import main as figures
 from slipfront.figures.convergence import read_study
 from slipfront.read import ENERGY_TERMS, HISTORY_FIELDS
+from test_commands import one_line
 from test_foreseen import settings
 
 SO_FAR = {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv", "energy.csv"}
@@ -490,6 +491,17 @@ def test_a_study_tells_how_many_runs_ended_early(program, coarse, tmp_path, even
     assert f"\n9 runs, {n_quiet} of which ended before time.end_s since nothing moved\n" in result.stdout
     told = json.loads((tmp_path / "out/convergence.json").read_text())
     assert (told["n_runs"], told["n_quiet"]) == (9, n_quiet)
+    assert ("note: no front of the case's own run" in result.stdout) == (event == "none")
+
+
+def test_sizes_of_a_study_that_do_not_fit_are_the_options(program, coarse):
+    told = one_line(
+        program("study", "convergence", coarse, "-o", "out", "--element-sizes", "5e-3,7e-3,2.5e-3")
+    )
+    assert (
+        "element size 0.007 m of the study, see --element-sizes: plate.element_size_m = 0.007 does not"
+        in told
+    )
 
 
 def test_reproduce_tells_how_far_the_scorecard_moves(program, tmp_path):

@@ -2,6 +2,7 @@
 """Cases of any material and size: defaults that follow the plate, what is foreseen, and how events end."""
 
 import json
+import re
 
 import pytest
 from test_commands import one_line
@@ -89,8 +90,27 @@ def test_why_nothing_will_rupture(program, write_case, tmp_path, t, half, note):
     case = write_case(PRESTRESSED.format(t=t, half=half))
     for command in ("validate", "info"):
         assert note in program(command, case).stdout
-    program("run", case, "-o", "out", "-q")
+    run = program("run", case, "-o", "out")
     assert any(note in doubt for doubt in read(tmp_path)["rupture"]["doubts"])
+    assert any(note in line for line in run.stdout.splitlines() if line.startswith("note: "))
+    assert any(note in warning for warning in read(tmp_path)["warnings"])
+
+
+def test_a_process_zone_that_is_not_resolved(program, write_case, tmp_path):
+    case = write_case(PRESTRESSED.format(t=2.1e6, half=20e-3))
+    note = "below 3 the mesh decides on fronts and their speeds"
+    for command in (["validate", case], ["info", case], ["run", case, "-o", "out", "--overwrite"]):
+        assert note not in program(*command).stdout
+        told = program(*command, "--set", "friction.d_c_m=1e-6").stdout
+        assert f"note: the process zone has 0.766 elements at rest and fewer in motion; {note}\n" in told
+
+
+def test_slip_that_stays_where_it_is_triggered_has_no_speed(program, write_case):
+    told = program("run", write_case(PRESTRESSED.format(t=1.6e6, half=20e-3)), "-o", "out").stdout
+    assert re.search(r"front 0: .*, nowhere beyond what triggers it, \w+, ends: arrest\n", told), told
+    told = program("run", write_case(PRESTRESSED.format(t=2.1e6, half=20e-3)), "-o", "runs").stdout
+    c_L, c_S = map(float, re.search(r"front 0: .*, median speed (\S+) c_L, (\S+) c_S, ", told).groups())
+    assert c_S / c_L == pytest.approx(1584.4 / 889.2, rel=0.02)
 
 
 def test_what_info_tells_of_a_rupture(program, write_case):

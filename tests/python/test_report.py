@@ -101,7 +101,7 @@ def test_facts_and_warnings_are_told(run):
     info = json.loads((run / "run.json").read_text())
     info |= {"title": "my case", "end": "quiet", "steps": 1234, "warnings": ["mind this"]}
     info["rupture"] = {"strength_excess_S": {"min": 0.5, "median": 1.25, "max": 4}, "regime": "sub-Rayleigh"}
-    info["rupture"] |= {"nucleation_length_m": 0.0125, "process_zone_m": None}
+    info["rupture"] |= {"nucleation_length_m": 0.0125, "griffith_half_length_m": 0.02, "process_zone_m": None}
     (run / "run.json").write_text(json.dumps(info))
     text = page_of(run)
     for part in (
@@ -109,7 +109,7 @@ def test_facts_and_warnings_are_told(run):
         "abc1234",
         "1,234 steps",
         "nothing had slipped",
-        "S 0.5 to 4, median 1.25; nucleation length 12.5 mm; sub-Rayleigh",
+        "S 0.5 to 4, median 1.25; nucleation length 12.5 mm; half the critical crack 20 mm; sub-Rayleigh",
         '<p class="warning">mind this</p>',
     ):
         assert part in text

@@ -122,7 +122,10 @@ TEST(Rupture, OutlookSaysWhyNothingRuns) {
   EXPECT_EQ(between.n_barriers, 2);
   EXPECT_NEAR(between.S.largest, 11.24 / 7, 1e-12);
   EXPECT_THAT(outlook(rock(), {{64e6, 81e6, 63e6, 0.4}}).regime, HasSubstr("beyond 10 at all nodes"));
-  EXPECT_THAT(outlook(rock(), {{67e6, 81e6, 63e6, 0.4}}).regime, StartsWith("sub-Rayleigh"));
+  // A rigid plane lets fronts pass c_S whatever S.
+  EXPECT_THAT(outlook({rock(), rock()}, {{67e6, 81e6, 63e6, 0.4}}).regime, StartsWith("sub-Rayleigh"));
+  EXPECT_THAT(outlook({rock(), {}}, {{67e6, 81e6, 63e6, 0.4}}).regime,
+              HasSubstr("they can pass c_S all the same"));
 }
 
 }  // namespace

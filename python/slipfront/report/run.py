@@ -6,6 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from slipfront.figures.main_fronts import DRAWN_LENGTH_M
 from slipfront.figures.report import front_row, table
 from slipfront.files import is_number
@@ -103,11 +105,14 @@ def rupture_words(run: Run) -> str:
         f"{name} {number_words(rupture[key], '.3g', 1e3, ' mm')}"
         for key, name in (
             ("nucleation_length_m", "nucleation length"),
+            ("griffith_half_length_m", "half the critical crack"),
             ("process_zone_m", "process zone"),
         )
         if is_number(rupture.get(key))
     ]
-    told = [f"S {spread[0]} to {spread[2]}, median {spread[1]}", *lengths, str(rupture.get("regime", ""))]
+    least, median, most = spread
+    of_S = f"S {median}" if least == most else f"S {least} to {most}, median {median}"
+    told = [of_S, *lengths, str(rupture.get("regime", ""))]
     return words("; ".join(text for text in told if text))
 
 
@@ -250,9 +255,32 @@ def frames_words(run: Run) -> str:
     return f"{MOST_FRAMES} of {n} snapshots are shown." if n > MOST_FRAMES else ""
 
 
+def median_speeds(run: Run) -> dict[int, str]:
+    """Of each front, over c_L and c_S, by its id; empty words where it has no speed."""
+    c_L, c_S = (run.info.get("wave_speeds", {}).get(f"{name}_m_per_s") for name in ("c_L", "c_S"))
+    told = {}
+    for front in run.fronts:
+        v_m_per_s = front.v_tip_m_per_s[np.isfinite(front.v_tip_m_per_s)]
+        if len(v_m_per_s) > 0 and is_number(c_L) and is_number(c_S):
+            median = float(np.median(v_m_per_s))
+            told[front.id] = f"{median / c_L:.2f} c_L, {median / c_S:.2f} c_S"
+    return told
+
+
 def fronts_section(run: Run) -> str:
-    header = ["Front", "Direction", "From (mm)", "at (µs)", "to (mm)", "at (µs)", "End", "Slip"]
-    rows = [front_row("", f)[1:] for f in run.info.get("fronts", [])]
+    header = [
+        "Front",
+        "Direction",
+        "From (mm)",
+        "at (µs)",
+        "to (mm)",
+        "at (µs)",
+        "End",
+        "Slip",
+        "Median V_tip",
+    ]
+    speeds = median_speeds(run)
+    rows = [[*front_row("", f)[1:], speeds.get(f.get("id"), "–")] for f in run.info.get("fronts", [])]
     text = table(header, rows) if rows else "<p>None was found.</p>"
     return section("fronts", "Fronts", "<p>All that were found, short ones too.</p>", text)
 
