@@ -437,10 +437,10 @@ def read_fields(file: Path) -> Fields:
         group = hdf5["VTKHDF"]
         n_points = int(dataset(group, "NumberOfPoints", 1)[0])
         n_cells = int(dataset(group, "NumberOfCells", 1)[0])
-        points = dataset(group, "Points", 2)[:n_points, :2]
-        types = dataset(group, "Types", 1)[:n_cells]
-        offsets = dataset(group, "Offsets", 1)[: n_cells + 1]
-        connectivity = dataset(group, "Connectivity", 1)[: 4 * n_cells]
+        points = dataset(group, "Points", 2)[:, :2]
+        types = dataset(group, "Types", 1)[()]
+        offsets = dataset(group, "Offsets", 1)[()]
+        connectivity = dataset(group, "Connectivity", 1)[()]
         time_s = dataset(group, "Steps/Values", 1)[()]
         starts = dataset(group, "Steps/PointDataOffsets/velocity_m_per_s", 1)[()]
         velocity = dataset(group, "PointData/velocity_m_per_s", 2).shape
@@ -450,9 +450,9 @@ def read_fields(file: Path) -> Fields:
         "the points are not as many as NumberOfPoints says",
     )
     require(np.isfinite(points), file, "a coordinate is not finite")
-    quads = (types == VTK_QUAD).all() and np.array_equal(offsets, 4 * np.arange(n_cells + 1))
+    complete = len(types) == n_cells > 0 and len(offsets) == n_cells + 1 and len(connectivity) == 4 * n_cells
     require(
-        quads and len(types) == n_cells > 0 and len(connectivity) == 4 * n_cells,
+        complete and (types == VTK_QUAD).all() and np.array_equal(offsets, 4 * np.arange(n_cells + 1)),
         file,
         "cells other than four-node quadrilaterals",
     )

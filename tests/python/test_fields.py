@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from slipfront.figures import fields
+from slipfront.files import DataError
 from synthetic import seal, write_output
 
 
@@ -58,6 +59,15 @@ def test_a_run_without_snapshots_is_refused(run, tmp_path, capsys):
     assert fields.main([str(tmp_path / "f.png"), str(run)]) == 2
     error = capsys.readouterr().err
     assert "fields.vtkhdf" in error and error.count("\n") == 1
+
+
+@pytest.mark.parametrize("n_cells", [2**53, 1, 0, -1])
+def test_a_wrong_number_of_cells_is_refused(run, n_cells):
+    with h5py.File(run / "fields.vtkhdf", "r+") as file:
+        file["VTKHDF/NumberOfCells"][0] = n_cells
+    seal(run.parent)
+    with pytest.raises(DataError, match="cells other than four-node quadrilaterals"):
+        fields.read(run)
 
 
 def test_a_film_has_every_frame(run, tmp_path, monkeypatch):
