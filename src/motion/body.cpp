@@ -2,6 +2,7 @@
 #include "motion/body.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "solid/kernels.hpp"
@@ -15,29 +16,47 @@ int rolling_columns(const solid::Operator& op) {
   return op.blocks.empty() ? 0 : op.widest_row();
 }
 
-}  // namespace
-
-Body::Body(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time)
-    : motion_{solid::make_operator(mesh, material), material.stiffness_damping_s,
-              solid::Field(mesh.n_nodes()), solid::Field(mesh.n_nodes())},
-      stable_step_s_(solid::stable_step_s(solid::largest_frequency_rad_per_s(mesh, material, motion_.op),
-                                          material.stiffness_damping_s)),
-      multiples_(step_multiples(mesh, material, time, stable_step_s_)),
-      finer_w_(rolling_columns(motion_.op)),
-      lower_(mesh.lower),
-      lower_runs_(runs_of(mesh.lower)),
-      tributary_m_(mesh::tributary_lengths_m(mesh)) {
-  for (const auto n : lower_) {
-    lower_mass_kg_.push_back(motion_.op.mass_kg[n]);
-    lower_y_m_.push_back(mesh.y_m[n]);
-  }
+double stable_step_s_of(const BodySource& source, const solid::Operator& op) {
+  const double omega = solid::largest_frequency_rad_per_s(source.mesh, source.material, op);
+  return solid::stable_step_s(omega, source.material.stiffness_damping_s);
 }
 
-void Body::divide(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time,
-                  double step_s, int substeps) {
+}  // namespace
+
+Body::Body(const BodySource& source, const TimeStepping& time)
+    : motion_{solid::make_operator(source.mesh, source.material), source.material.stiffness_damping_s,
+              solid::Field(source.mesh.n_nodes()), solid::Field(source.mesh.n_nodes()),
+              source.part == nullptr ? solid::all_columns : source.part->own},
+      stable_step_s_(source.part == nullptr ? stable_step_s_of(source, motion_.op)
+                                            : source.part->stable_step_s),
+      multiples_(source.part == nullptr ? step_multiples(source.mesh, source.material, time, stable_step_s_)
+                                        : source.part->multiples),
+      finer_w_(rolling_columns(motion_.op)),
+      lower_(source.mesh.lower),
+      lower_runs_(runs_of(source.mesh.lower, motion_)),
+      tributary_m_(mesh::tributary_lengths_m(source.mesh)) {
+  for (const auto n : lower_) {
+    lower_mass_kg_.push_back(motion_.op.mass_kg[n]);
+    lower_y_m_.push_back(source.mesh.y_m[n]);
+  }
+  own_lower_ = motion_.is_part() ? lower_in(motion_.own) : solid::Span{0, static_cast<int>(lower_.size())};
+}
+
+solid::Span Body::lower_in(solid::Span columns) const {
+  const auto is_in = [&](mesh::Node n) {
+    const int column = n % motion_.op.grid.stride();
+    return column >= columns.begin && column < columns.end;
+  };
+  const auto begin = std::ranges::find_if(lower_, is_in);
+  const auto end = std::find_if_not(begin, lower_.end(), is_in);
+  return {static_cast<int>(begin - lower_.begin()), static_cast<int>(end - lower_.begin())};
+}
+
+void Body::divide(const BodySource& source, const TimeStepping& time, double step_s, int substeps) {
   auto stepping = time;
   stepping.interface_substeps = substeps;
-  levels_ = make_levels(mesh, material, motion_, stepping, step_s, multiples_);
+  levels_ = make_levels(source.mesh, source.material, motion_, stepping, step_s, multiples_,
+                        source.part == nullptr ? LargestOfParts{} : source.part->largest);
   if (time.precision == Precision::single_precision)
     single_ = make_single_rows(levels_.level.front(), motion_.op);
 }
@@ -219,7 +238,19 @@ solid::Field Body::mean_velocity_m_per_s() const {
 }
 
 double Body::kinetic_energy_J_per_m() const {
-  return solid::kinetic_energy_J_per_m(motion_.op, motion_.v_m_per_s);
+  if (!motion_.is_part()) return solid::kinetic_energy_J_per_m(motion_.op, motion_.v_m_per_s);
+  const auto& v = motion_.v_m_per_s;
+  double energy = 0;
+  for_own_nodes([&](mesh::Node n) { energy += motion_.op.mass_kg[n] * (v.x[n] * v.x[n] + v.y[n] * v.y[n]); });
+  return 0.5 * energy;
+}
+
+double Body::mass_kg_per_m() const {
+  const auto& mass_kg = motion_.op.mass_kg;
+  if (!motion_.is_part()) return std::reduce(mass_kg.begin(), mass_kg.end());
+  double mass = 0;
+  for_own_nodes([&](mesh::Node n) { mass += mass_kg[n]; });
+  return mass;
 }
 
 double Body::strain_energy_J_per_m() const {

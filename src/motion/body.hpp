@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "mesh/mesh.hpp"
 #include "motion/landing.hpp"
 #include "motion/level.hpp"
+#include "motion/probes.hpp"
 #include "motion/settings.hpp"
 #include "record/energies.hpp"
 #include "solid/material.hpp"
@@ -32,7 +34,7 @@ struct BodyStep {
 class Body {
  public:
   /// @throws UserError where the interface rows do not fit into the mesh.
-  Body(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time);
+  Body(const BodySource& source, const TimeStepping& time);
 
   double stable_step_s() const { return stable_step_s_; }
   /// Steps of the lowest block in a step of the coarsest one.
@@ -41,8 +43,7 @@ class Body {
   /// Divides the cells into levels, before anything else.
   /// @param step_s      of the coarsest level
   /// @param substeps    of the last level in a step of the lowest block
-  void divide(const mesh::Mesh& mesh, const solid::Material& material, const TimeStepping& time,
-              double step_s, int substeps);
+  void divide(const BodySource& source, const TimeStepping& time, double step_s, int substeps);
   /// Rows in single precision are stepped band by band alone; a body that does not lead keeps to double.
   void keep_to_double() { single_ = {}; }
   void expect_steps_under_way(int n);
@@ -84,6 +85,8 @@ class Body {
   /// Interface nodes, and what the contact has to know of them. [lower]
   const std::vector<mesh::Node>& lower() const { return lower_; }
   const std::vector<NodeRun>& lower_runs() const { return lower_runs_; }
+  /// Those that count in energies and works, see BodyMotion.
+  solid::Span own_lower() const { return own_lower_; }
   const std::vector<double>& lower_mass_kg() const { return lower_mass_kg_; }
   const std::vector<double>& lower_y_m() const { return lower_y_m_; }
   const std::vector<double>& tributary_m() const { return tributary_m_; }
@@ -93,13 +96,21 @@ class Body {
   solid::Field& v_m_per_s() { return motion_.v_m_per_s; }
   /// Work of shifts that the contact has made, see Landing.
   void expect_landings(const mesh::Mesh& mesh, const solid::Material& material) {
-    landing_ = Landing(mesh, material, lower_);
+    landing_ = Landing(mesh, material, lower_, own_lower_);
   }
   Landing& landing() { return landing_; }
+
+  /// See Stepper::visit_columns.
+  template <class Visit>
+  void visit_columns(solid::Span columns, Visit&& visit);
+  void take_columns() { to_single(motion_, single_); }
+  /// Places in lower() of the nodes in some columns.
+  solid::Span lower_in(solid::Span columns) const;
 
   /// Energies and works up to the last half (sub-)step.
   record::Energies energies();
   double kinetic_energy_J_per_m() const;
+  double mass_kg_per_m() const;
   double strain_energy_J_per_m() const;
   solid::Field mean_velocity_m_per_s() const;
 
@@ -116,6 +127,11 @@ class Body {
   }
 
  private:
+  template <class F>
+  void for_own_nodes(F&& f) const {
+    for (const auto& row : motion_.op.rows)
+      for (int i = motion_.own.begin; i < std::min(motion_.own.end, row.count); ++i) f(row.first + i);
+  }
   void push(StepLevel& level, record::Energies& works);
   /// Products of the landings since the last push of a level, if it is the last one.
   void take_landing(const StepLevel& level, PushProducts& products);
@@ -132,9 +148,30 @@ class Body {
 
   std::vector<mesh::Node> lower_;
   std::vector<NodeRun> lower_runs_;
+  solid::Span own_lower_;
   std::vector<double> tributary_m_, lower_mass_kg_, lower_y_m_;  ///< [lower]
   Landing landing_;
   record::Energies works_;  ///< the works alone
 };
+
+template <class Visit>
+void Body::visit_columns(solid::Span columns, Visit&& visit) {
+  const auto width = static_cast<std::size_t>(columns.end - columns.begin);
+  for (const auto& row : motion_.op.rows)
+    for (auto* values : {&motion_.u_m.x, &motion_.u_m.y, &motion_.v_m_per_s.x, &motion_.v_m_per_s.y})
+      visit(values->data() + row.first + columns.begin, width);
+  const int stride = motion_.op.grid.stride();
+  for (auto& level : levels_.level) {
+    auto& s = level.shared;
+    for (std::size_t k = 0; k < s.node.size(); ++k) {
+      const int column = s.node[k] % stride;
+      if (column < columns.begin || column >= columns.end) continue;
+      for (auto* field : {&s.u_before_m, &s.push_m_per_s, &s.steady_m_per_s2, &s.v_last_m_per_s}) {
+        visit(&field->x[k], 1);
+        visit(&field->y[k], 1);
+      }
+    }
+  }
+}
 
 }  // namespace slipfront::motion

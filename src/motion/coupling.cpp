@@ -2,6 +2,7 @@
 #include "motion/coupling.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/error.hpp"
@@ -25,7 +26,9 @@ Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body>
       v_x_trial_(face_.size()),
       v_y_trial_(face_.size()),
       trigger_force_N_(face_.size(), 0.0),
-      start_u_x_m_(face_.size()) {
+      start_u_x_m_(face_.size()),
+      own_begin_(static_cast<std::size_t>(bodies.front().own_lower().begin)),
+      own_end_(static_cast<std::size_t>(bodies.front().own_lower().end)) {
   // Effective masses along x and y of each body.
   std::vector<std::vector<double>> mass_x, mass_y;
   for (const auto& body : bodies) {
@@ -125,7 +128,7 @@ void Coupling::set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa)
   prestress_p_Pa_ = std::move(p_Pa);
 }
 
-void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, Recorder& recorder,
+void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, UpdateObserver& observer,
                       record::History* sample, record::Energies& works) {
   const double impulse_s = dt_s * trigger_factor(trigger_, time_s);
   std::swap(face_.v_x_m_per_s, v_x_before_);
@@ -136,7 +139,7 @@ void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, Record
     gather_both(bodies, dt_s, impulse_s);
   std::ranges::copy(face_.v_y_m_per_s, v_y_trial_.begin());
   const bool changed = interface::update_contact(contact_, dt_s, face_);
-  recorder.observe(time_s, face_, changed);
+  observer.observe(time_s, face_, changed);
   if (sample != nullptr) append_sample(bodies, time_s, *sample);
   if (sides_.empty())
     scatter(bodies.front(), dt_s, works);
@@ -145,12 +148,31 @@ void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, Record
   add_works_of_loads(bodies, dt_s, impulse_s, works);
 }
 
+SlipRates Coupling::slip_rates() const {
+  SlipRates rates;
+  for (std::size_t i = own_begin_; i < own_end_; ++i) {
+    const double v = std::abs(face_.slip_rate_m_per_s[i]);
+    rates.finite &= std::isfinite(v);
+    rates.fastest_m_per_s = std::max(rates.fastest_m_per_s, v);
+    if (face_.slipping[i] != 0) rates.fastest_slipping_m_per_s = std::max(rates.fastest_slipping_m_per_s, v);
+  }
+  return rates;
+}
+
+double Coupling::largest_acceleration_m_per_s2() const {
+  double a = 0;
+  for (std::size_t i = own_begin_; i < own_end_; ++i)
+    a = std::max(a,
+                 std::max(std::abs(face_.t_Pa[i]), std::abs(face_.p_Pa[i])) / face_.mass_per_length_kg_m2[i]);
+  return a;
+}
+
 void Coupling::take_trial(const Body& body, double sign, double dt_s, double impulse_s,
                           const std::vector<double>& v_x_before, const std::vector<double>& v_y_before,
                           std::vector<double>& v_x, std::vector<double>& v_y) const {
-  for (const auto& [at, first, count] : body.lower_runs()) {
-    std::copy_n(&body.v_m_per_s().x[first], count, &v_x[at]);
-    std::copy_n(&body.v_m_per_s().y[first], count, &v_y[at]);
+  for (const auto& run : body.lower_runs()) {
+    std::copy_n(&body.v_m_per_s().x[run.first], run.count, &v_x[run.at]);
+    std::copy_n(&body.v_m_per_s().y[run.first], run.count, &v_y[run.at]);
   }
   const auto& mass = body.lower_mass_kg();
   for (const auto i : trigger_nodes_) v_x[i] += sign * impulse_s * trigger_force_N_[i] / mass[i];
@@ -167,8 +189,8 @@ void Coupling::take_trial(const Body& body, double sign, double dt_s, double imp
 }
 
 void Coupling::gather(const Body& body, double dt_s, double impulse_s) {
-  for (const auto& [at, first, count] : body.lower_runs())
-    std::copy_n(&body.u_m().y[first], count, &face_.u_y_m[at]);
+  for (const auto& run : body.lower_runs())
+    std::copy_n(&body.u_m().y[run.first], run.count, &face_.u_y_m[run.at]);
   take_trial(body, 1, dt_s, impulse_s, v_x_before_, v_y_before_, face_.v_x_m_per_s, face_.v_y_m_per_s);
 }
 
@@ -195,8 +217,9 @@ void Coupling::scatter(Body& body, double dt_s, record::Energies& works) {
       if (shift_m != 0) body.landing().add(i, shift_m);
     }
   }
-  double contact_work = 0, friction_work = 0;
+  double all_contact_work = 0, all_friction_work = 0;
   for (const auto& run : body.lower_runs()) {
+    double contact_work = all_contact_work, friction_work = all_friction_work;
     const auto at = run.at, count = run.count;
     const auto first = run.first;
     const double* v_x_now = &face_.v_x_m_per_s[at];
@@ -222,18 +245,23 @@ void Coupling::scatter(Body& body, double dt_s, record::Energies& works) {
       u_x[k] += dt_s * v_x_now[k];
       u_y[k] = u_y_now[k] + dt_s * v_y_now[k];
     }
+    if (!run.counts) continue;
+    all_contact_work = contact_work;
+    all_friction_work = friction_work;
   }
-  works.contact_work += contact_work + body.landing().work(u, v, dt_s);
-  works.friction_work += friction_work;
+  works.contact_work += all_contact_work + body.landing().work(u, v, dt_s);
+  works.friction_work += all_friction_work;
 }
 
 void Coupling::scatter_both(std::span<Body> bodies, double dt_s, record::Energies& works) {
   const bool shifts = contact_.algorithm == interface::ContactAlgorithm::predictor_corrector;
   for (std::size_t i = 0; i < face_.size(); ++i) {
-    works.contact_work += 0.5 * contact_mass_kg_[i] * (face_.v_y_m_per_s[i] - v_y_trial_[i]) *
-                          (face_.v_y_m_per_s[i] + v_y_before_[i]);
-    works.friction_work -=
-        0.5 * dt_s * tributary_m_[i] * face_.t_Pa[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]);
+    if (is_own(i)) {
+      works.contact_work += 0.5 * contact_mass_kg_[i] * (face_.v_y_m_per_s[i] - v_y_trial_[i]) *
+                            (face_.v_y_m_per_s[i] + v_y_before_[i]);
+      works.friction_work -=
+          0.5 * dt_s * tributary_m_[i] * face_.t_Pa[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]);
+    }
     const double shift_m = shifts ? face_.u_y_m[i] - (bodies[0].u_m().y[bodies[0].lower()[i]] +
                                                       bodies[1].u_m().y[bodies[1].lower()[i]])
                                   : 0;
@@ -261,6 +289,7 @@ void Coupling::add_works_of_loads(std::span<const Body> bodies, double dt_s, dou
                                 const auto& v_y_before) {
     for (const auto& dashpot : body.contact_dashpots()) {
       const auto i = dashpot.at;
+      if (!is_own(i)) continue;
       works.boundary_work += dashpot_work(dashpot, body.lower_mass_kg()[i], 0.5 * (v_x[i] + v_x_before[i]),
                                           0.5 * (v_y[i] + v_y_before[i]));
     }
@@ -269,12 +298,13 @@ void Coupling::add_works_of_loads(std::span<const Body> bodies, double dt_s, dou
     add_dashpots(bodies.front(), face_.v_x_m_per_s, face_.v_y_m_per_s, v_x_before_, v_y_before_);
   for (std::size_t s = 0; s < sides_.size(); ++s)
     add_dashpots(bodies[s], sides_[s].v_x, sides_[s].v_y, sides_[s].v_x_before, sides_[s].v_y_before);
-  for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i)
+  for (std::size_t i = own_begin_; i < std::min(own_end_, prestress_t_Pa_.size()); ++i)
     works.prestress_work += 0.5 * dt_s * tributary_m_[i] *
                             (prestress_t_Pa_[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]) -
                              prestress_p_Pa_[i] * (face_.v_y_m_per_s[i] + v_y_before_[i]));
   for (const auto i : trigger_nodes_)
-    works.trigger_work += 0.5 * impulse_s * trigger_force_N_[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]);
+    if (is_own(i))
+      works.trigger_work += 0.5 * impulse_s * trigger_force_N_[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]);
 }
 
 void Coupling::append_sample(std::span<const Body> bodies, double time_s, record::History& history) const {

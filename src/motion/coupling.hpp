@@ -10,6 +10,7 @@
 #include "mesh/mesh.hpp"
 #include "motion/body.hpp"
 #include "motion/recorder.hpp"
+#include "motion/time_stepper.hpp"
 #include "record/energies.hpp"
 #include "record/record.hpp"
 #include "statics/statics.hpp"
@@ -47,13 +48,33 @@ class Coupling {
 
   /// The sub-step of length dt_s that begins at time_s: finds the tractions and moves the interface nodes.
   /// @param sample  where to put the state at time_s, or null
-  void update(std::span<Body> bodies, double time_s, double dt_s, Recorder& recorder, record::History* sample,
-              record::Energies& works);
+  void update(std::span<Body> bodies, double time_s, double dt_s, UpdateObserver& observer,
+              record::History* sample, record::Energies& works);
 
   /// Turns the relative motion round.
   void reverse();
 
   const interface::Interface& state() const { return face_; }
+  /// See Stepper::visit_columns. @param nodes  places along the interface
+  template <class Visit>
+  void visit_nodes(solid::Span nodes, Visit&& visit) {
+    const auto n = static_cast<std::size_t>(nodes.end - nodes.begin);
+    const auto visit_all = [&](auto& values) { visit(values.data() + nodes.begin, n); };
+    for (auto* values :
+         {&face_.intact, &face_.v_x_m_per_s, &face_.v_y_m_per_s, &face_.u_y_m, &face_.slip_rate_m_per_s,
+          &face_.t_Pa, &face_.p_Pa, &face_.demand_Pa, &face_.strength_Pa, &face_.slip_m, &face_.relaxed_Pa,
+          &face_.target_Pa, &face_.acceleration_m_per_s2})
+      visit_all(*values);
+    visit_all(face_.slipping);
+    visit_all(face_.locked);
+    for (auto& side : sides_) {
+      visit_all(side.v_x);
+      visit_all(side.v_y);
+    }
+  }
+  SlipRates slip_rates() const;
+  /// Of a node whose tractions are not balanced.
+  double largest_acceleration_m_per_s2() const;
 
   template <class Archive>
   void serialize(Archive& archive) {
@@ -80,6 +101,7 @@ class Coupling {
     std::vector<double> share_x, share_y;  ///< of the relative motion's change
   };
 
+  bool is_own(std::size_t i) const { return i >= own_begin_ && i < own_end_; }
   void set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m);
   double relative_u_x_m(std::span<const Body> bodies, std::size_t i) const;
   /// The trial motion of the interface nodes, all forces but the contact's included.
@@ -107,6 +129,7 @@ class Coupling {
   std::vector<std::size_t> trigger_nodes_;               ///< where the force is not zero
   std::vector<double> prestress_t_Pa_, prestress_p_Pa_;  ///< [nodes], or empty
   std::vector<double> start_u_x_m_;                      ///< slip is counted from it
+  std::size_t own_begin_, own_end_;                      ///< nodes that count in works, see BodyMotion
 };
 
 }  // namespace slipfront::motion

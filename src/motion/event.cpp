@@ -24,7 +24,7 @@ void clear_rows(record::History& history) {
 }
 
 /// Steps, at least one, until the stepper's time is at least time_s; a far time is beyond any run.
-std::int64_t steps_until(const Stepper& stepper, double time_s) {
+std::int64_t steps_until(const TimeStepper& stepper, double time_s) {
   constexpr double far_steps = 1e13;
   if (!(time_s < far_steps * stepper.step_s())) return static_cast<std::int64_t>(far_steps);
   auto step = static_cast<std::int64_t>(time_s / stepper.step_s()) - 1;
@@ -37,15 +37,8 @@ std::int64_t next_row(std::int64_t n, double time_s, double interval_s) {
   return std::max(n, static_cast<std::int64_t>(time_s / interval_s)) + 1;
 }
 
-/// Adds the field of a body that is described upside down.
-void append_upright(solid::Field& field, const solid::Field& below) {
-  field.x.insert(field.x.end(), below.x.begin(), below.x.end());
-  field.y.reserve(field.y.size() + below.size());
-  for (const double y : below.y) field.y.push_back(-y);
-}
-
 /// Of a stepper about to begin: the velocity has been the present one.
-ProbeRecorder probe_recorder(const Stepper& stepper, double interval_s) {
+ProbeRecorder probe_recorder(const TimeStepper& stepper, double interval_s) {
   const auto now_m = stepper.probed_u_m();
   auto before_m = now_m;
   const auto v_m_per_s = stepper.probed_v_m_per_s();
@@ -132,16 +125,7 @@ double event_bytes(double n_nodes, double n_cells, bool with_snapshots, Precisio
   return motion + std::max(mesh + state + std::max(building, single), single + stepping + snapshot);
 }
 
-Snapshot take_snapshot(const Stepper& stepper) {
-  Snapshot snapshot{stepper.time_s(), stepper.u_m(), stepper.mean_velocity_m_per_s()};
-  for (const auto& below : stepper.bodies().subspan(1)) {
-    append_upright(snapshot.u_m, below.u_m());
-    append_upright(snapshot.v_m_per_s, below.mean_velocity_m_per_s());
-  }
-  return snapshot;
-}
-
-EventRun::EventRun(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s,
+EventRun::EventRun(TimeStepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s,
                    const Waves& waves, const interface::Trigger& trigger, const TimeStepping& time,
                    const Sampling& sampling, int halo)
     : stepper_(stepper),
@@ -181,7 +165,7 @@ void EventRun::take_snapshots(Sink* sink) {
     if (sink != nullptr)
       sink->snapshot(stepper_);
     else
-      event_.snapshots.push_back(take_snapshot(stepper_));
+      event_.snapshots.push_back(stepper_.snapshot());
     ++next_snapshot_;
   }
 }
@@ -194,9 +178,12 @@ void EventRun::take_probe_rows(Sink* sink) {
   if (!rows.time_s.empty()) sink->probe(rows);
 }
 
+double EventRun::moved_s() const {
+  return std::max({quiet_.since_s(), recorder_.last_motion_s(), recorder_.last_onset_s()});
+}
+
 bool EventRun::is_quiet() const {
-  const double since_s = std::max({quiet_.since_s(), recorder_.last_motion_s(), recorder_.last_onset_s()});
-  return stepper_.time_s() - since_s > time_.quiet_s;
+  return stepper_.time_s() - moved_s() > time_.quiet_s;
 }
 
 bool EventRun::is_quiet_all_over() {
@@ -219,14 +206,18 @@ Between EventRun::between(Sink* sink, record::History& row) {
     return sink != nullptr ? &row : &event_.history;
   };
   if (probes_) between.displacements = [this](std::int64_t step) { return probes_->room_for(step); };
-  between.go_on = [this, sink, &row] {
+  between.go_on = [this, sink, &row](const SlipRates& rates) {
     if (!row.time_s.empty()) {
       sink->sample(row);
       clear_rows(row);
     }
-    const bool physical = watch_->look();
+    const bool physical = watch_->look(rates);
     quiet_.see_slip_rate(stepper_.time_s(), watch_->fastest_slip_m_per_s());
     return physical && !is_quiet();
+  };
+  // A step less, since the sum may be rounded up.
+  between.sure_steps = [this] {
+    return std::max<std::int64_t>(steps_until(stepper_, moved_s() + time_.quiet_s) - 1, 1);
   };
   return between;
 }
@@ -278,9 +269,9 @@ Event EventRun::run(const Monitor& monitor, Sink* sink) {
   return std::move(event_);
 }
 
-Event run_event(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, const Waves& waves,
-                const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
-                int halo, const Monitor& monitor, Sink* sink) {
+Event run_event(TimeStepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s,
+                const Waves& waves, const interface::Trigger& trigger, const TimeStepping& time,
+                const Sampling& sampling, int halo, const Monitor& monitor, Sink* sink) {
   return EventRun(stepper, state, mu_s, waves, trigger, time, sampling, halo).run(monitor, sink);
 }
 
@@ -384,10 +375,10 @@ Ramp RampRun::run(const Monitor& monitor) {
   constexpr std::int64_t renewal_interval = 1000;
   bool reaches_common = false, reaches_handover = false;
   Between between;
-  between.go_on = [&] {
+  between.go_on = [&](const SlipRates& rates) {
     reaches_common = reaches(1 - loading_.critical_margin);
     reaches_handover = reaches_common && reaches(1 - ramp_handover);
-    return watch_->look() && !(have_common_ ? reaches_handover : reaches_common);
+    return watch_->look(rates) && !(have_common_ ? reaches_handover : reaches_common);
   };
   for (;;) {
     if (stepper_.step() > most_steps_)

@@ -12,6 +12,7 @@
 #include "motion/quiet.hpp"
 #include "motion/recorder.hpp"
 #include "motion/stepper.hpp"
+#include "motion/time_stepper.hpp"
 #include "motion/watch.hpp"
 #include "record/record.hpp"
 #include "statics/statics.hpp"
@@ -30,15 +31,6 @@ struct Sampling {
   double probe_interval_s = 0.5e-6;      ///< of the stepper's probes; one step where that is longer
 };
 
-/// Motion of all nodes at one instant, those of a body below after those of the plate, with u_y and v_y up.
-/// The velocity belongs to half a step (half a sub-step in the interface layer) earlier.
-struct Snapshot {
-  double time_s = 0;
-  solid::Field u_m, v_m_per_s;
-};
-
-Snapshot take_snapshot(const Stepper& stepper);
-
 /// Takes what an event is to keep of its motion, while it goes.
 class Sink {
  public:
@@ -46,7 +38,7 @@ class Sink {
   /// One row of the history; x_m is empty.
   virtual void sample(const record::History& row) = 0;
   /// It is time for a snapshot.
-  virtual void snapshot(const Stepper& stepper) = 0;
+  virtual void snapshot(TimeStepper& stepper) = 0;
   /// Rows of what the stepper's probes record; not asked without probes.
   virtual void probe(const record::ProbeRecord& rows) = 0;
 };
@@ -103,7 +95,7 @@ int halo_for(const mesh::Mesh& mesh, double l_star_m);
 class EventRun {
  public:
   /// @param state  tractions and contact before the event; its displacements are not needed
-  EventRun(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, const Waves& waves,
+  EventRun(TimeStepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, const Waves& waves,
            const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling, int halo);
 
   /// To the end, or until the monitor interrupts it, which it may do for good.
@@ -133,6 +125,8 @@ class EventRun {
   void require_possible(std::int64_t checked_step) const;
   void take_snapshots(Sink* sink);
   void take_probe_rows(Sink* sink);
+  /// When something has last moved, as far as the interface tells.
+  double moved_s() const;
   /// As far as the interface tells.
   bool is_quiet() const;
   /// As far as the energies that are known tell as well; where they are not, they are computed.
@@ -143,7 +137,7 @@ class EventRun {
   /// Looks at the motion. @return whether the event goes on
   bool look();
 
-  Stepper& stepper_;
+  TimeStepper& stepper_;
   Waves waves_;
   TimeStepping time_;
   std::vector<double> snapshot_times_s_;
@@ -157,9 +151,9 @@ class EventRun {
   std::int64_t n_samples_ = 0, n_energies_ = 1;
   std::size_t next_snapshot_ = 0;
 };
-Event run_event(Stepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s, const Waves& waves,
-                const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling,
-                int halo, const Monitor& monitor, Sink* sink = nullptr);
+Event run_event(TimeStepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s,
+                const Waves& waves, const interface::Trigger& trigger, const TimeStepping& time,
+                const Sampling& sampling, int halo, const Monitor& monitor, Sink* sink = nullptr);
 
 /// States that the explicit ramp reaches, and what happened on the way.
 struct Ramp {

@@ -4,8 +4,11 @@
 namespace slipfront::motion {
 
 Landing::Landing(const mesh::Mesh& mesh, const solid::Material& material,
-                 const std::vector<mesh::Node>& lower)
-    : lower_(lower), rows_(solid::assemble_rows(mesh, material, lower)), shift_m_(mesh.n_nodes(), 0.0) {}
+                 const std::vector<mesh::Node>& lower, solid::Span own)
+    : lower_(lower),
+      own_(own),
+      rows_(solid::assemble_rows(mesh, material, lower)),
+      shift_m_(mesh.n_nodes(), 0.0) {}
 
 void Landing::add(std::size_t i, double shift_m) {
   shift_m_[lower_[i]] = shift_m;
@@ -19,6 +22,7 @@ double Landing::work(const solid::Field& u_m, const solid::Field& v_m_per_s, dou
   // leave open 1/2 s K (u + u''). All neighbours of the interface have moved by dt v.
   double s_K_u = 0, s_K_v = 0, s_K_s = 0;
   for (const auto i : nodes_) {
+    if (static_cast<int>(i) < own_.begin || static_cast<int>(i) >= own_.end) continue;
     double u = 0, v = 0, s = 0;
     for (auto k = rows_.first[i]; k < rows_.first[i + 1]; ++k) {
       const auto n = rows_.neighbour[k];

@@ -15,7 +15,9 @@ namespace slipfront::motion {
 class Landing {
  public:
   Landing() = default;
-  Landing(const mesh::Mesh& mesh, const solid::Material& material, const std::vector<mesh::Node>& lower);
+  /// @param own  of the nodes `lower`, those whose works count
+  Landing(const mesh::Mesh& mesh, const solid::Material& material, const std::vector<mesh::Node>& lower,
+          solid::Span own = solid::all_columns);
 
   /// Interface node i was put away from its place before the sub-step by shift_m, away from the interface.
   void add(std::size_t i, double shift_m);
@@ -35,6 +37,7 @@ class Landing {
 
  private:
   std::vector<mesh::Node> lower_;
+  solid::Span own_;
   solid::BlockRows rows_;           ///< K of the interface nodes, N/m
   std::vector<double> shift_m_;     ///< [nodes]; 0 but for nodes that land
   std::vector<std::size_t> nodes_;  ///< of this sub-step, interface nodes

@@ -81,7 +81,9 @@ double general_product(const StepLevel& level, const BodyMotion& body, const sol
 /// Kicks and moves the nodes of the general rows.
 void move_general(const StepLevel& level, BodyMotion& body) {
   const double dt = level.step_s;
-  for (const auto& [at, first, count] : level.general_runs) {
+  for (const auto& run : level.general_runs) {
+    const auto at = run.at, count = run.count;
+    const auto first = run.first;
     const double* a_x = &level.a_x[at];
     const double* a_y = &level.a_y[at];
     double* __restrict u_x = &body.u_m.x[first];
@@ -112,7 +114,8 @@ void compute_irregular(StepLevel& level, const Band& band, const BodyMotion& bod
   const solid::Span all{0, static_cast<int>(level.top_rows.size())};
   solid::for_each_row_product(level.top_rows, all, w, [&](std::size_t r, double x, double y) {
     level.top_force_N[r] = {x, y};
-    works.top_work += level.step_s * x * body.v_m_per_s.x[level.top_rows.node[r]];
+    const auto n = level.top_rows.node[r];
+    if (body.counts(n)) works.top_work += level.step_s * x * body.v_m_per_s.x[n];
   });
 }
 
@@ -131,9 +134,12 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
       with_products ? solid::push_interior_row<true, double> : solid::push_interior_row<false, double>;
   const auto right = solid::scaled(body.op.edge, -dt);
   // Sums over kicks of nodes with one mass, which is 1/kick_scale of that amid the smallest squares.
-  solid::KickSums kicks = products.kicks;
+  solid::KickSums kicks = products.kicks, not_counted;
   products.kicks = {};
   double kick_scale = 1;
+  const auto sums_of = [&](solid::Span span) -> solid::KickSums& {
+    return body.counts(span) ? kicks : not_counted;
+  };
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
     const auto& row = level.stiffness.stencil[k];
@@ -155,14 +161,14 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
       const int inner = squares == solid::Squares::right ? 1 : -1;
       for (const auto span : spans)
         solid::push_side_node(side, span.begin, inner, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1),
-                              v_x, v_y, u_x, u_y, kicks);
+                              v_x, v_y, u_x, u_y, sums_of(span));
       continue;
     }
     if (squares == solid::Squares::all) {
       const auto interior = solid::scaled(body.op.interior, -dt * scale);
       for (const auto span : spans)
         push_interior(interior, span, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1), v_x, v_y, u_x,
-                      u_y, kicks);
+                      u_y, sums_of(span));
       continue;
     }
     const auto above = solid::scaled(body.op.edge, -dt * scale);
@@ -174,6 +180,7 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
     for (const auto span : spans) {
       const auto [u_d, v_d] =
           solid::kick_edge_row(stencil, span, row_of(w, j), inner, {u_x, u_y}, {v_x, v_y}, kick_x, kick_y);
+      if (!body.counts(span)) continue;
       // The nodes of an edge with a stencil have one mass.
       const double mass = body.op.mass_kg[o + span.begin];
       products.u_K_w -= mass / dt * u_d;
@@ -194,6 +201,7 @@ void add_irregular_products(const StepLevel& level, const Band& band, const Body
   const auto& v = body.v_m_per_s;
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
     const auto n = level.irregular[r];
+    if (!body.counts(n)) continue;
     products.u_K_w += body.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
     products.v_K_w += body.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
   }
@@ -204,6 +212,7 @@ void add_irregular_products(const StepLevel& level, const Band& band, const Body
   if (!band.has_top) return;
   for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
     const auto n = level.top_rows.node[r];
+    if (!body.counts(n)) continue;
     products.u_K_w += u.x[n] * level.top_force_N[r].x + u.y[n] * level.top_force_N[r].y;
     products.v_K_w += v.x[n] * level.top_force_N[r].x + v.y[n] * level.top_force_N[r].y;
   }
@@ -213,11 +222,13 @@ void move_irregular(const StepLevel& level, const Band& band, BodyMotion& body, 
   auto& u = body.u_m;
   auto& v = body.v_m_per_s;
   const double dt = level.step_s;
+  record::Energies not_counted;
   for (int k = band.dashpots.begin; k < band.dashpots.end; ++k) {
     const auto& dashpot = level.dashpots[k];
     const auto n = dashpot.node;
     const solid::Pair trial{v.x[n] - dt * level.a_x[dashpot.at], v.y[n] - dt * level.a_y[dashpot.at]};
-    const auto after = damp(dashpot, body.op.mass_kg[n], {v.x[n], v.y[n]}, trial, works);
+    const auto after =
+        damp(dashpot, body.op.mass_kg[n], {v.x[n], v.y[n]}, trial, body.counts(n) ? works : not_counted);
     v.x[n] = after.x;
     v.y[n] = after.y;
     u.x[n] += dt * after.x;
@@ -266,11 +277,13 @@ StiffnessProducts products_with(const StepLevel& level, const BodyMotion& body, 
                            a_x.data(), a_y.data());
     const solid::ConstRow a{a_x.data(), a_y.data()};
     for (const auto span : row.spans) {
+      if (!body.counts(span)) continue;
       sums.u_K_u += solid::row_product(span, &mass[o], a, row_of(w, row.row));
       sums.v_K_u += solid::row_product(span, &mass[o], a, {&v.x[o], &v.y[o]});
     }
   }
   const auto add = [&](mesh::Node n, double m, double x, double y) {
+    if (!body.counts(n)) return;
     const solid::Pair at = w_of(n);
     sums.u_K_u += m * (at.x * x + at.y * y);
     sums.v_K_u += m * (v.x[n] * x + v.y[n] * y);
@@ -359,7 +372,7 @@ SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op
   SingleRows single;
   const auto& bands = coarsest.bands;
   const auto has_block_rows = [](const Band& band) {
-    return band.irregular.begin < band.irregular.end || band.edges.begin < band.edges.end || band.has_top;
+    return band.has_block_rows || band.edges.begin < band.edges.end;
   };
   for (int begin = 1; begin < std::ssize(bands); ++begin) {
     int end = begin;
@@ -436,7 +449,7 @@ void push_band(const StepLevel& level, const Band& band, BodyMotion& body, Singl
   const auto right = solid::scaled(body.op.edge, -dt * scale);
   const auto push_interior =
       body.damping_s > 0 ? solid::push_interior_row<true, float> : solid::push_interior_row<false, float>;
-  solid::KickSums kicks;
+  solid::KickSums kicks, not_counted;
   int filled = band.first_row;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
     const auto& row_of_stencil = level.stiffness.stencil[k];
@@ -457,13 +470,14 @@ void push_band(const StepLevel& level, const Band& band, BodyMotion& body, Singl
       }
     }
     for (const auto span : row_of_stencil.spans) {
+      auto& sums = body.counts(span) ? kicks : not_counted;
       if (squares == solid::Squares::all) {
-        push_interior(interior, span, dt, row(j + 2), row(j), row(j + 1), v_x, v_y, u_x, u_y, kicks);
+        push_interior(interior, span, dt, row(j + 2), row(j), row(j + 1), v_x, v_y, u_x, u_y, sums);
       } else {
         const bool to_right = squares == solid::Squares::right;
         const auto side = to_right ? right : solid::mirrored(right);
         solid::push_side_node(side, span.begin, to_right ? 1 : -1, dt, row(j + 2), row(j), row(j + 1), v_x,
-                              v_y, u_x, u_y, kicks);
+                              v_y, u_x, u_y, sums);
       }
     }
   }
@@ -496,13 +510,15 @@ void move_shared(StepLevel& coarser, BodyMotion& body, double dt, record::Energi
   auto& s = coarser.shared;
   auto& u = body.u_m;
   auto& v = body.v_m_per_s;
+  record::Energies not_counted;
   for (const auto& dashpot : s.dashpots) {
     const auto k = dashpot.at;
     const auto n = dashpot.node;
     const double kick_x = dt * s.steady_m_per_s2.x[k] + s.push_m_per_s.x[k];
     const double kick_y = dt * s.steady_m_per_s2.y[k] + s.push_m_per_s.y[k];
     const solid::Pair before{s.v_last_m_per_s.x[k], s.v_last_m_per_s.y[k]};
-    const auto after = damp(dashpot, body.op.mass_kg[n], before, {v.x[n] + kick_x, v.y[n] + kick_y}, works);
+    const auto after = damp(dashpot, body.op.mass_kg[n], before, {v.x[n] + kick_x, v.y[n] + kick_y},
+                            body.counts(n) ? works : not_counted);
     v.x[n] = after.x - kick_x;
     v.y[n] = after.y - kick_y;
   }
@@ -534,7 +550,7 @@ void move_shared(StepLevel& coarser, BodyMotion& body, double dt, record::Energi
       u_y[k] += dt * v_y[k];
       push_x[k] = push_y[k] = 0;
     }
-    works.coupling_work += 0.5 * work;
+    if (run.counts) works.coupling_work += 0.5 * work;
   }
 }
 
@@ -561,6 +577,7 @@ double coupling_work(const StepLevel& level, const BodyMotion& body) {
   double work = 0;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto n = s.node[k];
+    if (!body.counts(n)) continue;
     const double impulse = 0.5 * level.step_s * body.op.mass_kg[n];
     work += impulse * (s.a_m_per_s2.x[k] * (s.v_mean_before_m_per_s.x[k] + v.x[n]) +
                        s.a_m_per_s2.y[k] * (s.v_mean_before_m_per_s.y[k] + v.y[n]));
@@ -573,6 +590,7 @@ double late_product(const StepLevel& level, const Band& band, const BodyMotion& 
   double sum = 0;
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
     const auto n = level.irregular[r];
+    if (!body.counts(n)) continue;
     sum += body.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
   }
   if (&band == &level.bands.front()) sum += general_product(level, body, v);
@@ -584,11 +602,13 @@ double late_product(const StepLevel& level, const Band& band, const BodyMotion& 
     const double* kick_x = level.edge_kick_m_per_s[edge++].data();
     const solid::ConstRow kick{kick_x, kick_x + body.op.grid.stride()};
     for (const auto span : row.spans)
-      sum -= solid::row_product(span, &body.op.mass_kg[o], kick, {&v.x[o], &v.y[o]}) / level.step_s;
+      if (body.counts(span))
+        sum -= solid::row_product(span, &body.op.mass_kg[o], kick, {&v.x[o], &v.y[o]}) / level.step_s;
   }
   if (band.has_top)
     for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
       const auto n = level.top_rows.node[r];
+      if (!body.counts(n)) continue;
       sum += v.x[n] * level.top_force_N[r].x + v.y[n] * level.top_force_N[r].y;
     }
   return sum;

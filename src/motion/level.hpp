@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,17 @@ struct BodyMotion {
   solid::Operator op;
   double damping_s = 0;
   solid::Field u_m, v_m_per_s;
+  /// Columns of nodes that count in energies and works: all, but for a part of a larger body. There a run, or
+  /// a span of a stencil row, lies within them or outside.
+  solid::Span own = solid::all_columns;
+
+  bool is_part() const { return own.end != solid::all_columns.end; }
+  bool counts(solid::Span columns) const { return columns.begin >= own.begin && columns.begin < own.end; }
+  bool counts(mesh::Node n) const {
+    if (!is_part()) return true;
+    const int column = n % op.grid.stride();
+    return column >= own.begin && column < own.end;
+  }
 };
 
 /// Nodes with consecutive numbers in a list: node at + k is first + k for k < count.
@@ -29,8 +41,9 @@ struct NodeRun {
   std::size_t at = 0;
   mesh::Node first = 0;
   std::size_t count = 0;
+  bool counts = true;  ///< see BodyMotion
 };
-std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes);
+std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body);
 
 /// An absorbing node: with the mass m and the constant c of its dashpot, d = c dt/(2 m), dt the step with
 /// which it moves; v+ = ((1 - d) v- - dt a)/(1 + d), stable whatever c.
@@ -77,6 +90,8 @@ struct Band {
   // Ranges within the level's lists:
   solid::Span stencil, edges, irregular, dashpots;
   bool has_top = false;
+  /// Whether the whole body, of which this may be a part, has block rows here; of the coarsest level.
+  bool has_block_rows = false;
 };
 
 /// Motion of rows of the coarsest level in single precision. While steps are taken these rows of BodyMotion
@@ -142,10 +157,15 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::str
 std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
                                 const TimeStepping& time, double stable_step_s);
 
+/// Replaces each of some numbers by the largest that any part of a body has there; empty for a whole body.
+using LargestOfParts = std::function<void(std::span<double>)>;
+
 /// @param step_s  of the coarsest level
 /// @param multiples  of step_multiples
+/// @param largest    asked as often by all parts of a body
 StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
-                       const TimeStepping& time, double step_s, std::span<const int> multiples);
+                       const TimeStepping& time, double step_s, std::span<const int> multiples,
+                       const LargestOfParts& largest = {});
 
 /// Velocity of a dashpot's node after a kick that alone would lead from `before` to `trial`; its work is
 /// added to `works`.
@@ -165,6 +185,7 @@ void push_band(StepLevel& level, const Band& band, BodyMotion& body, solid::Roll
                PushProducts& products, record::Energies& works);
 /// Longest run of bands that can be pushed in single precision; none where all have block rows.
 SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op);
+/// Nothing where there are no such rows.
 void to_single(const BodyMotion& body, SingleRows& single);
 void to_double(const SingleRows& single, BodyMotion& body);
 /// The same as push_band for one of these bands.

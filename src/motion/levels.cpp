@@ -135,13 +135,14 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
 
 }  // namespace
 
-std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes) {
+std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body) {
   std::vector<NodeRun> runs;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    if (k > 0 && nodes[k] == nodes[k - 1] + 1) {
+    const bool counts = body.counts(nodes[k]);
+    if (k > 0 && nodes[k] == nodes[k - 1] + 1 && counts == runs.back().counts) {
       ++runs.back().count;
     } else {
-      runs.push_back({k, nodes[k], 1});
+      runs.push_back({k, nodes[k], 1, counts});
     }
   }
   return runs;
@@ -234,6 +235,22 @@ std::vector<bool> nodes_of(const mesh::Mesh& mesh, const std::vector<bool>& in_l
   return is_in;
 }
 
+/// Divides the spans of stencil rows where columns begin and cease to count.
+void split_spans(std::vector<solid::StencilRow>& rows, solid::Span own) {
+  for (auto& row : rows) {
+    std::vector<solid::Span> spans;
+    for (auto span : row.spans) {
+      for (const int at : {own.begin, own.end}) {
+        if (at <= span.begin || at >= span.end) continue;
+        spans.push_back({span.begin, at});
+        span.begin = at;
+      }
+      spans.push_back(span);
+    }
+    row.spans = std::move(spans);
+  }
+}
+
 /// Rows without a stencil: block rows first, general ones after them.
 void set_irregular_rows(StepLevel& level) {
   auto& irregular = level.irregular;
@@ -248,7 +265,7 @@ void set_irregular_rows(StepLevel& level) {
 }
 
 /// Nodes of the level's cells that move with a finer one.
-void set_shared_nodes(StepLevel& level, const std::vector<bool>& shared) {
+void set_shared_nodes(StepLevel& level, const std::vector<bool>& shared, const BodyMotion& body) {
   std::vector<std::int32_t> irregular_row(shared.size(), -1);
   for (std::size_t r = 0; r < level.irregular.size(); ++r)
     irregular_row[level.irregular[r]] = static_cast<std::int32_t>(r);
@@ -258,7 +275,7 @@ void set_shared_nodes(StepLevel& level, const std::vector<bool>& shared) {
     s.node.push_back(static_cast<mesh::Node>(n));
     s.irregular_row.push_back(irregular_row[n]);
   }
-  s.runs = runs_of(s.node);
+  s.runs = runs_of(s.node, body);
   s.u_before_m = s.push_m_per_s = s.steady_m_per_s2 = solid::Field(s.node.size());
 }
 
@@ -289,11 +306,12 @@ void set_general_runs(StepLevel& level) {
   }
 }
 
-/// Last rows of the coarsest level's bands: the first one with all that the interface's part of a step needs,
-/// rows with irregular nodes alone.
-std::vector<int> last_rows_of_bands(const mesh::Mesh& mesh, const solid::Operator& op,
-                                    const StepLevels& levels) {
-  const auto& level = levels.level.front();
+/// Sets the coarsest level's bands: the first one with all that the interface's part of a step needs, rows
+/// with irregular nodes alone. For all parts of a body they come from the same rows.
+void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLevels& levels,
+                        const LargestOfParts& largest) {
+  const auto& op = body.op;
+  auto& level = levels.level.front();
   // The work of landing nodes needs the places of their neighbours after the step.
   const auto in_contact = mesh::marked(mesh, mesh.lower);
   std::vector<bool> needed(mesh.n_nodes(), false);
@@ -303,24 +321,32 @@ std::vector<int> last_rows_of_bands(const mesh::Mesh& mesh, const solid::Operato
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
     if (levels.level_of_node[n] > 0) needed[n] = true;
   const int top_row = op.n_rows() - 1;
-  std::vector<bool> single(op.rows.size(), false);
-  single[top_row] = true;
-  for (const auto n : level.stiffness.irregular.node) single[op.row_of(n)] = true;
+  std::vector<double> single(op.rows.size(), 0);
+  single[top_row] = 1;
+  for (const auto n : level.stiffness.irregular.node)
+    if (body.counts(n)) single[op.row_of(n)] = 1;
   const int most_rows = std::max(1, nodes_per_band / op.rows[top_row].count);
-  int row = last_row_of_first_band(level, op, needed);
+  double last_of_first = last_row_of_first_band(level, op, needed);
+  if (largest) {
+    largest(single);
+    largest(std::span(&last_of_first, 1));
+  }
+  int row = static_cast<int>(last_of_first);
   std::vector<int> last_rows{row};
   while (row < top_row) {
     const int first = ++row;
-    while (row - first + 1 < most_rows && !single[row] && !single[row + 1]) ++row;
+    while (row - first + 1 < most_rows && single[row] == 0 && single[row + 1] == 0) ++row;
     last_rows.push_back(row);
   }
-  return last_rows;
+  set_bands(level, op, last_rows);
+  for (auto& band : level.bands) band.has_block_rows = single[band.first_row] != 0;
 }
 
 }  // namespace
 
 StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
-                       const TimeStepping& time, double step_s, std::span<const int> multiples) {
+                       const TimeStepping& time, double step_s, std::span<const int> multiples,
+                       const LargestOfParts& largest) {
   require_rows_fit(mesh, time);
   const auto& op = body.op;
   const auto periods = periods_of_levels(time, multiples);
@@ -343,6 +369,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
     const int edge_row = is_layered(time) ? time.interface_rows : 0;
     level.stiffness =
         periods.size() > 1 ? solid::make_partial_stiffness(mesh, material, op, in_level, edge_row) : op.whole;
+    split_spans(level.stiffness.stencil, body.own);
     set_irregular_rows(level);
     const auto in_cells = nodes_of(mesh, in_level);
     std::vector<bool> shared(mesh.n_nodes(), false);
@@ -350,7 +377,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
       shared[n] = in_cells[n] && levels.level_of_node[n] > l && !op.is_top[n];
       is_shared[n] = is_shared[n] || shared[n];
     }
-    set_shared_nodes(level, shared);
+    set_shared_nodes(level, shared, body);
     for (const auto& row : level.stiffness.stencil)
       if (solid::is_horizontal_edge(row))
         level.edge_kick_m_per_s.emplace_back(2 * static_cast<std::size_t>(mesh.grid.stride()));
@@ -362,10 +389,10 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
   }
   set_dashpots(levels, mesh, material, body);
   for (auto& level : levels.level) set_general_runs(level);
-  set_bands(levels.level.front(), op, last_rows_of_bands(mesh, op, levels));
+  set_coarsest_bands(mesh, body, levels, largest);
   for (auto& level : std::span(levels.level).subspan(1)) set_bands(level, op, {op.n_rows() - 1});
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
-    if (!levels.is_orphan[n] && !op.is_top[n]) {
+    if (!levels.is_orphan[n] && !op.is_top[n] && body.counts(n)) {
       const int updates = substeps / levels.level[levels.level_of_node[n]].period;
       levels.node_updates_per_step += updates;
     }

@@ -9,16 +9,26 @@
 
 #include "base/state.hpp"
 #include "mesh/mesh.hpp"
+#include "motion/level.hpp"
 #include "record/probes.hpp"
 #include "solid/element.hpp"
 #include "solid/material.hpp"
 
 namespace slipfront::motion {
 
+/// What a part of a larger body, some columns of its mesh, has to know of the whole.
+struct PartOfBody {
+  solid::Span own;              ///< columns of nodes that this part, and no other, accounts for
+  double stable_step_s = 0;     ///< of the whole body
+  std::vector<int> multiples;   ///< of the whole body, see step_multiples
+  LargestOfParts largest = {};  ///< of all parts
+};
+
 /// What a stepper makes a body of.
 struct BodySource {
   const mesh::Mesh& mesh;
   const solid::Material& material;
+  const PartOfBody* part = nullptr;  ///< of a larger body; null for a whole one
 };
 
 /// A place within a cell of a body, at which its motion, strain and stress are recorded.

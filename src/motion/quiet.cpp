@@ -6,17 +6,6 @@
 
 namespace slipfront::motion {
 
-namespace {
-
-double mass_kg_per_m(const Stepper& stepper) {
-  double mass = 0;
-  for (const auto& body : stepper.bodies())
-    mass = std::reduce(body.op().mass_kg.begin(), body.op().mass_kg.end(), mass);
-  return mass;
-}
-
-}  // namespace
-
 double slip_rate_scale_m_per_s(const statics::Equilibrium& state, const PerNode& mu_s, const Waves& waves) {
   const auto& p_Pa = state.tractions.p_s_Pa;
   double strength_Pa = 0;
@@ -24,9 +13,9 @@ double slip_rate_scale_m_per_s(const statics::Equilibrium& state, const PerNode&
   return strength_Pa / static_cast<double>(p_Pa.size()) / waves.radiation_damping_Pa_s_per_m;
 }
 
-Quiet::Quiet(const Stepper& stepper, double slip_rate_scale_m_per_s, double from_s) : since_s_(from_s) {
+Quiet::Quiet(const TimeStepper& stepper, double slip_rate_scale_m_per_s, double from_s) : since_s_(from_s) {
   const double v = quiet_part * slip_rate_scale_m_per_s;
-  negligible_kinetic_J_per_m_ = 0.5 * mass_kg_per_m(stepper) * v * v;
+  negligible_kinetic_J_per_m_ = 0.5 * stepper.mass_kg_per_m() * v * v;
 }
 
 void Quiet::see_slip_rate(double time_s, double fastest_m_per_s) {

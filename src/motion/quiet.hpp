@@ -3,7 +3,7 @@
 
 #include "base/per_node.hpp"
 #include "motion/settings.hpp"
-#include "motion/stepper.hpp"
+#include "motion/time_stepper.hpp"
 #include "statics/statics.hpp"
 
 namespace slipfront::motion {
@@ -34,7 +34,7 @@ double slip_rate_scale_m_per_s(const statics::Equilibrium& state, const PerNode&
 class Quiet {
  public:
   /// @param from_s  the loads of the trigger change until then
-  Quiet(const Stepper& stepper, double slip_rate_scale_m_per_s, double from_s);
+  Quiet(const TimeStepper& stepper, double slip_rate_scale_m_per_s, double from_s);
 
   /// After each step: the fastest slip, to see whether it grows.
   void see_slip_rate(double time_s, double fastest_m_per_s);

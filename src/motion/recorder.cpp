@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/lanes.hpp"
 
@@ -11,74 +12,151 @@ namespace slipfront::motion {
 
 namespace {
 
-bool any_slips_faster(double speed_m_per_s, const interface::Interface& s) {
+bool any_slips_faster(double speed_m_per_s, const interface::Interface& s, std::size_t first,
+                      std::size_t end) {
   const auto in_lanes = [&](LanesMask slipping, Lanes slip_rate_m_per_s) {
     return any(slipping && absolute(slip_rate_m_per_s) > speed_m_per_s);
   };
-  std::size_t i = 0;
-  for (; i + lanes <= s.size(); i += lanes)
+  std::size_t i = first;
+  for (; i + lanes <= end; i += lanes)
     if (in_lanes(load(&s.slipping[i]), load(&s.slip_rate_m_per_s[i]))) return true;
-  const int rest = static_cast<int>(s.size() - i);
+  const int rest = static_cast<int>(end - i);
   return rest > 0 && in_lanes(load_part(&s.slipping[i], rest), load_part(&s.slip_rate_m_per_s[i], rest));
 }
 
 }  // namespace
 
+SlipFinder::SlipFinder(const statics::Equilibrium& before, const PerNode& mu_s, int halo,
+                       double creep_m_per_s)
+    : end_(before.contact.size()), halo_(halo), creep_m_per_s_(creep_m_per_s) {
+  memory_.t_Pa = before.tractions.t_s_Pa;
+  memory_.p_Pa = before.tractions.p_s_Pa;
+  for (std::size_t i = 0; i < memory_.p_Pa.size(); ++i)
+    memory_.strength_Pa.push_back(mu_s[i] * memory_.p_Pa[i]);
+  for (const auto contact : before.contact) memory_.slipping.push_back(contact == statics::Contact::slip);
+  count_slipping();
+}
+
+SlipFinder::SlipFinder(Memory memory, std::size_t first, std::size_t end, int halo, double creep_m_per_s)
+    : memory_(std::move(memory)), first_(first), end_(end), halo_(halo), creep_m_per_s_(creep_m_per_s) {
+  count_slipping();
+}
+
+void SlipFinder::count_slipping() {
+  n_slipping_ = 0;
+  for (std::size_t i = first_; i < end_; ++i) n_slipping_ += memory_.slipping[i];
+}
+
+void SlipFinder::find(double time_s, const interface::Interface& state, bool changed, SlipSeen& seen) {
+  seen.time_s = time_s;
+  seen.changes.clear();
+  seen.around.clear();
+  for (std::size_t i = first_; changed && i < end_; ++i) {
+    if (state.slipping[i] == memory_.slipping[i]) continue;
+    SlipChange change{static_cast<std::int32_t>(i), state.slipping[i] != 0, time_s};
+    if (change.begins) {
+      seen.around.resize(seen.around.size() + n_around());
+      change.time_s = locate_onset(i, time_s, state, std::span(seen.around).last(n_around()));
+      ++n_slipping_;
+    } else {
+      --n_slipping_;
+    }
+    seen.changes.push_back(change);
+    memory_.slipping[i] = state.slipping[i];
+  }
+  seen.moves = n_slipping_ > 0 && any_slips_faster(creep_m_per_s_, state, first_, end_);
+  renew_tractions(state);
+  std::ranges::copy(state.strength_Pa, memory_.strength_Pa.begin());
+  memory_.time_s = time_s;
+}
+
+double SlipFinder::locate_onset(std::size_t node, double time_s, const interface::Interface& state,
+                                std::span<record::Traction> around) const {
+  // |t| / strength passes 1 between the last time and this one; a node without strength, open or not, has no
+  // ratio to interpolate and begins to slip now.
+  double part = 1;
+  const double strength_before = memory_.strength_Pa[node], strength_now = state.strength_Pa[node];
+  if (strength_before > 0 && strength_now > 0 && time_s > memory_.time_s) {
+    const double before = std::abs(memory_.t_Pa[node]) / strength_before;
+    const double now = state.demand_Pa[node] / strength_now;
+    if (now > before) part = std::clamp((1 - before) / (now - before), 0.0, 1.0);
+  }
+  for (int k = -halo_; k <= halo_; ++k) {
+    auto& at = around[static_cast<std::size_t>(k + halo_)];
+    const auto i = static_cast<std::ptrdiff_t>(node) + k;
+    if (i < 0 || i >= static_cast<std::ptrdiff_t>(state.size())) {
+      at = {std::nan(""), std::nan("")};
+      continue;
+    }
+    // At the node itself the traction rises to the strength, interpolated as the others.
+    const double p = memory_.p_Pa[i] + part * (state.p_Pa[i] - memory_.p_Pa[i]);
+    const double strength = strength_before + part * (strength_now - strength_before);
+    const double t = k == 0 ? std::copysign(strength, state.t_Pa[i])
+                            : memory_.t_Pa[i] + part * (state.t_Pa[i] - memory_.t_Pa[i]);
+    at = {t, p};
+  }
+  return memory_.time_s + part * (time_s - memory_.time_s);
+}
+
+void SlipFinder::renew_tractions(const interface::Interface& state) {
+  std::ranges::copy(state.t_Pa, memory_.t_Pa.begin());
+  std::ranges::copy(state.p_Pa, memory_.p_Pa.begin());
+}
+
 Recorder::Recorder(const statics::Equilibrium& before, const PerNode& mu_s, int halo, double creep_m_per_s)
-    : creep_m_per_s_(creep_m_per_s),
-      previous_t_Pa_(before.tractions.t_s_Pa),
-      previous_p_Pa_(before.tractions.p_s_Pa) {
-  for (std::size_t i = 0; i < previous_p_Pa_.size(); ++i)
-    previous_strength_Pa_.push_back(mu_s[i] * previous_p_Pa_[i]);
+    : finder_(before, mu_s, halo, creep_m_per_s) {
   record_.x_m = before.tractions.x_m;
   record_.halo = halo;
-  for (const auto contact : before.contact) {
-    previous_slipping_.push_back(contact == statics::Contact::slip);
-    n_slipping_ += previous_slipping_.back();
-  }
+  n_slipping_ = static_cast<std::size_t>(std::ranges::count(before.contact, statics::Contact::slip));
   has_slipped_.assign(record_.x_m.size(), 0);
   waiting_.resize(record_.x_m.size());
   around_waiting_.resize(record_.x_m.size() * n_around());
 }
 
 void Recorder::observe(double time_s, const interface::Interface& state, bool changed) {
-  record_.resolution_s = std::max(record_.resolution_s, time_s - previous_time_s_);
-  if (changed) take_changes(time_s, state);
-  if (n_slipping_ > 0 && any_slips_faster(creep_m_per_s_, state)) last_motion_s_ = time_s;
-  std::ranges::copy(state.t_Pa, previous_t_Pa_.begin());
-  std::ranges::copy(state.p_Pa, previous_p_Pa_.begin());
-  std::ranges::copy(state.strength_Pa, previous_strength_Pa_.begin());
-  previous_time_s_ = time_s;
+  finder_.find(time_s, state, changed, seen_);
+  take(seen_);
 }
 
-void Recorder::take_changes(double time_s, const interface::Interface& state) {
-  std::vector<record::Traction> around(n_around());
-  // The first onsets of this (sub-)step decide on what else of it is left out.
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    if (state.slipping[i] == 0 || previous_slipping_[i] != 0 || has_slipped_[i] != 0) continue;
-    add_waiting(i, record_);
-    waiting_[i] = {};
-    const double onset_s = locate_onset(i, time_s, state, around);
-    record_.onsets.push_back({static_cast<std::int32_t>(i), onset_s});
-    record_.around.insert(record_.around.end(), around.begin(), around.end());
-    last_first_onset_s_ = std::max(last_first_onset_s_, onset_s);
-    last_onset_s_ = time_s;
-    has_slipped_[i] = 1;
-    previous_slipping_[i] = 1;
-    ++n_slipping_;
-  }
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    if (state.slipping[i] == previous_slipping_[i]) continue;
-    if (state.slipping[i] != 0) {
-      last_onset_s_ = time_s;
-      take_change(i, {locate_onset(i, time_s, state, around), onset}, around);
+void Recorder::take(const SlipSeen& seen) {
+  record_.resolution_s = std::max(record_.resolution_s, seen.time_s - previous_time_s_);
+  previous_time_s_ = seen.time_s;
+  if (seen.moves) last_motion_s_ = seen.time_s;
+  const auto for_each = [&](auto&& f) {
+    std::size_t n_begun = 0;
+    for (const auto& change : seen.changes) {
+      std::span<const record::Traction> around;
+      if (change.begins) around = std::span(seen.around).subspan(n_begun++ * n_around(), n_around());
+      f(change, static_cast<std::size_t>(change.node), around);
+    }
+  };
+  for (const auto& change : seen.changes)
+    if (change.begins) {
       ++n_slipping_;
     } else {
-      take_change(i, {time_s, stop}, {});
       --n_slipping_;
     }
-    previous_slipping_[i] = state.slipping[i];
-  }
+  const auto is_first = [&](const SlipChange& change) {
+    return change.begins && has_slipped_[static_cast<std::size_t>(change.node)] == 0;
+  };
+  // The first onsets of this (sub-)step decide on what else of it is left out.
+  std::vector<std::uint8_t>& done = is_first_;
+  done.clear();
+  for_each([&](const SlipChange& change, std::size_t node, std::span<const record::Traction> around) {
+    done.push_back(is_first(change));
+    if (!is_first(change)) return;
+    add_waiting(node, record_);
+    waiting_[node] = {};
+    record_.onsets.push_back({change.node, change.time_s});
+    record_.around.insert(record_.around.end(), around.begin(), around.end());
+    last_first_onset_s_ = std::max(last_first_onset_s_, change.time_s);
+    has_slipped_[node] = 1;
+  });
+  std::size_t k = 0;
+  for_each([&](const SlipChange& change, std::size_t node, std::span<const record::Traction> around) {
+    if (change.begins) last_onset_s_ = seen.time_s;
+    if (done[k++] == 0) take_change(node, {change.time_s, change.begins ? onset : stop}, around);
+  });
 }
 
 void Recorder::take_change(std::size_t node, const Waiting& change,
@@ -104,34 +182,6 @@ void Recorder::add_waiting(std::size_t node, record::SlipRecord& record) const {
   record.onsets.push_back({id, waiting.time_s});
   const auto first = around_waiting_.begin() + static_cast<std::ptrdiff_t>(node * n_around());
   record.around.insert(record.around.end(), first, first + static_cast<std::ptrdiff_t>(n_around()));
-}
-
-double Recorder::locate_onset(std::size_t node, double time_s, const interface::Interface& state,
-                              std::span<record::Traction> around) const {
-  // |t| / strength passes 1 between the last time and this one; a node without strength, open or not, has no
-  // ratio to interpolate and begins to slip now.
-  double part = 1;
-  const double strength_before = previous_strength_Pa_[node], strength_now = state.strength_Pa[node];
-  if (strength_before > 0 && strength_now > 0 && time_s > previous_time_s_) {
-    const double before = std::abs(previous_t_Pa_[node]) / strength_before;
-    const double now = state.demand_Pa[node] / strength_now;
-    if (now > before) part = std::clamp((1 - before) / (now - before), 0.0, 1.0);
-  }
-  for (int k = -record_.halo; k <= record_.halo; ++k) {
-    auto& at = around[static_cast<std::size_t>(k + record_.halo)];
-    const auto i = static_cast<std::ptrdiff_t>(node) + k;
-    if (i < 0 || i >= static_cast<std::ptrdiff_t>(state.size())) {
-      at = {std::nan(""), std::nan("")};
-      continue;
-    }
-    // At the node itself the traction rises to the strength, interpolated as the others.
-    const double p = previous_p_Pa_[i] + part * (state.p_Pa[i] - previous_p_Pa_[i]);
-    const double strength = strength_before + part * (strength_now - strength_before);
-    const double t = k == 0 ? std::copysign(strength, state.t_Pa[i])
-                            : previous_t_Pa_[i] + part * (state.t_Pa[i] - previous_t_Pa_[i]);
-    at = {t, p};
-  }
-  return previous_time_s_ + part * (time_s - previous_time_s_);
 }
 
 record::SlipRecord Recorder::take(double end_time_s) const {

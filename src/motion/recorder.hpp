@@ -13,13 +13,88 @@
 
 namespace slipfront::motion {
 
+/// Sees every contact update of an interface.
+class UpdateObserver {
+ public:
+  UpdateObserver() = default;
+  UpdateObserver(const UpdateObserver&) = default;
+  UpdateObserver(UpdateObserver&&) = default;
+  UpdateObserver& operator=(const UpdateObserver&) = default;
+  UpdateObserver& operator=(UpdateObserver&&) = default;
+  virtual ~UpdateObserver() = default;
+  /// After a contact update whose tractions belong to time_s. `changed` is update_contact's answer.
+  virtual void observe(double time_s, const interface::Interface& state, bool changed) = 0;
+};
+
+/// A node begins or ceases to slip.
+struct SlipChange {
+  std::int32_t node = 0;
+  bool begins = false;
+  double time_s = 0;  ///< of a beginning located inside the (sub-)step
+};
+
+/// What a contact update shows of slip.
+struct SlipSeen {
+  double time_s = 0;                     ///< to which its tractions belong
+  bool moves = false;                    ///< whether a node slips faster than creep
+  std::vector<SlipChange> changes;       ///< nodes ascending
+  std::vector<record::Traction> around;  ///< at the beginnings among them, [beginnings x (2 halo + 1)]
+};
+
+/// Finds beginnings and ends of slip between successive contact updates.
+class SlipFinder {
+ public:
+  /// What it knows of the last update, [nodes] each.
+  struct Memory {
+    double time_s = 0;
+    std::vector<double> t_Pa, p_Pa, strength_Pa;
+    std::vector<std::uint8_t> slipping;
+  };
+
+  /// @param before  the state at time 0, before the first (sub-)step
+  /// @param mu_s    coefficient at rest in that state
+  SlipFinder(const statics::Equilibrium& before, const PerNode& mu_s, int halo, double creep_m_per_s);
+  /// @param first, end  nodes that it looks at; of the others it knows the tractions
+  SlipFinder(Memory memory, std::size_t first, std::size_t end, int halo, double creep_m_per_s);
+
+  void find(double time_s, const interface::Interface& state, bool changed, SlipSeen& seen);
+  /// Takes the last update's tractions again, where they have been corrected since.
+  void renew_tractions(const interface::Interface& state);
+
+  const Memory& memory() const { return memory_; }
+  Memory& memory() { return memory_; }
+  double creep_m_per_s() const { return creep_m_per_s_; }
+  std::size_t n_around() const { return 2 * static_cast<std::size_t>(halo_) + 1; }
+  /// Counts anew what slips in the memory.
+  void count_slipping();
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(memory_.time_s, n_slipping_);
+    for (auto* values : {&memory_.t_Pa, &memory_.p_Pa, &memory_.strength_Pa})
+      archive_vector(archive, *values);
+    archive_vector(archive, memory_.slipping);
+  }
+
+ private:
+  /// Finds the time of an onset and the tractions around it.
+  double locate_onset(std::size_t node, double time_s, const interface::Interface& state,
+                      std::span<record::Traction> around) const;
+
+  Memory memory_;
+  std::size_t first_ = 0, end_ = 0;
+  int halo_;
+  double creep_m_per_s_;
+  std::size_t n_slipping_ = 0;  ///< of the nodes that it looks at
+};
+
 /// Records beginnings and ends of slip while the run goes, located inside the (sub-)step.
 ///
 /// Fronts are found from the first onset of each node, and from whether other nodes slip at these times. A
 /// node's end of slip and its next onset, or a later onset and the end after it, are left out where no node
 /// began to slip for the first time between the two: so the record stays bounded however often nodes slip
 /// again.
-class Recorder {
+class Recorder : public UpdateObserver {
  public:
   /// @param before  the state at time 0, before the first (sub-)step; nodes that slip in it have no onset
   /// @param mu_s    coefficient at rest in that state
@@ -27,10 +102,12 @@ class Recorder {
   /// @param halo    nodes on each side whose tractions are kept at an onset
   Recorder(const statics::Equilibrium& before, const PerNode& mu_s, int halo, double creep_m_per_s = 0);
 
-  /// After a contact update whose tractions belong to time_s. `changed` is update_contact's answer.
-  void observe(double time_s, const interface::Interface& state, bool changed);
-
+  void observe(double time_s, const interface::Interface& state, bool changed) override;
+  /// The same where what the update shows has been found elsewhere.
+  void take(const SlipSeen& seen);
+  SlipFinder& finder() { return finder_; }
   std::size_t n_slipping() const { return n_slipping_; }
+
   /// Last time at which a node slipped faster than creep; 0 before that.
   double last_motion_s() const { return last_motion_s_; }
   /// Last contact update in which a node began to slip, whether for the first time or not; 0 before that.
@@ -47,13 +124,11 @@ class Recorder {
   void serialize(Archive& archive) {
     const std::size_t n_nodes = record_.x_m.size();
     const int halo = record_.halo;
-    archive(last_motion_s_, last_onset_s_, record_, previous_time_s_, n_slipping_, last_first_onset_s_);
+    archive(last_motion_s_, last_onset_s_, record_, previous_time_s_, n_slipping_, last_first_onset_s_,
+            finder_);
     if (Archive::is_loading::value &&
         (record_.x_m.size() != n_nodes || record_.halo != halo || !record::is_consistent(record_)))
       throw UserError("the state that was kept has a record of another interface");
-    for (auto* values : {&previous_t_Pa_, &previous_p_Pa_, &previous_strength_Pa_})
-      archive_vector(archive, *values);
-    archive_vector(archive, previous_slipping_);
     archive_vector(archive, has_slipped_);
     archive_vector(archive, waiting_);
     archive_vector(archive, around_waiting_);
@@ -71,22 +146,18 @@ class Recorder {
   };
   enum Change : std::uint8_t { none, onset, stop };
 
-  void take_changes(double time_s, const interface::Interface& state);
   /// A node's change but for its first onset: it waits, or goes together with the change that waited.
   void take_change(std::size_t node, const Waiting& change, std::span<const record::Traction> around);
   /// Adds the change of a node that waits, if there is one, to a record.
   void add_waiting(std::size_t node, record::SlipRecord& record) const;
-  /// Finds the time of an onset and the tractions around it.
-  double locate_onset(std::size_t node, double time_s, const interface::Interface& state,
-                      std::span<record::Traction> around) const;
-  std::size_t n_around() const { return 2 * static_cast<std::size_t>(record_.halo) + 1; }
+  std::size_t n_around() const { return finder_.n_around(); }
 
-  double creep_m_per_s_;
+  SlipFinder finder_;
+  SlipSeen seen_;                       ///< of the last update
+  std::vector<std::uint8_t> is_first_;  ///< its changes that are a node's first onset
   double last_motion_s_ = 0, last_onset_s_ = 0;
   record::SlipRecord record_;
   double previous_time_s_ = 0;
-  std::vector<double> previous_t_Pa_, previous_p_Pa_, previous_strength_Pa_;
-  std::vector<std::uint8_t> previous_slipping_;
   std::size_t n_slipping_ = 0;
   double last_first_onset_s_ = -1;                ///< the latest first onset of any node
   std::vector<std::uint8_t> has_slipped_;         ///< since the start. [nodes]

@@ -36,7 +36,7 @@ constexpr double most_at_once = 16;
 /// Bodies as they are made, not yet divided.
 std::vector<Body> make_bodies(std::span<const BodySource> sources, const TimeStepping& time) {
   std::vector<Body> bodies;
-  for (const auto& source : sources) bodies.emplace_back(source.mesh, source.material, time);
+  for (const auto& source : sources) bodies.emplace_back(source, time);
   return bodies;
 }
 
@@ -47,16 +47,26 @@ double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, co
   for (const auto& body : bodies) stable_s = std::min(stable_s, body.stable_step_s());
   const double lowest_s = time.step_factor * stable_s;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    // Steps of the fastest body that this one takes at once.
-    const double allowed = bodies[b].stable_step_s() / stable_s * (1 + 1e-9);
-    const int at_once = static_cast<int>(std::clamp(allowed, 1.0, most_at_once));
-    bodies[b].divide(sources[b].mesh, sources[b].material, time, lowest_s * (at_once * bodies[b].multiple()),
+    const int at_once = steps_at_once(bodies[b].stable_step_s(), stable_s);
+    bodies[b].divide(sources[b], time, lowest_s * (at_once * bodies[b].multiple()),
                      at_once * time.interface_substeps);
   }
   return lowest_s;
 }
 
+/// Adds the field of a body that is described upside down.
+void append_upright(solid::Field& field, const solid::Field& below) {
+  field.x.insert(field.x.end(), below.x.begin(), below.x.end());
+  field.y.reserve(field.y.size() + below.size());
+  for (const double y : below.y) field.y.push_back(-y);
+}
+
 }  // namespace
+
+int steps_at_once(double stable_step_s, double least_s) {
+  const double allowed = stable_step_s / least_s * (1 + 1e-9);
+  return static_cast<int>(std::clamp(allowed, 1.0, most_at_once));
+}
 
 Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
                  const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution)
@@ -111,7 +121,7 @@ void Stepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_
   step_ = 0;
 }
 
-void Stepper::advance_interface(std::int64_t step, int n_substeps, Recorder& recorder,
+void Stepper::advance_interface(std::int64_t step, int n_substeps, UpdateObserver& observer,
                                 record::History* sample) {
   for (auto& body : bodies_) {
     body.under_way(step).products = {};
@@ -120,7 +130,7 @@ void Stepper::advance_interface(std::int64_t step, int n_substeps, Recorder& rec
   for (int k = 0; k < n_substeps; ++k) {
     // All forces are those of the places and velocities before the sub-step.
     for (auto& body : bodies_) body.push_due(body.under_way(step), k, leads(body));
-    coupling_.update(bodies_, time_s() + k * substep_s(), substep_s(), recorder, k == 0 ? sample : nullptr,
+    coupling_.update(bodies_, time_s() + k * substep_s(), substep_s(), observer, k == 0 ? sample : nullptr,
                      bodies_.front().under_way(step).works);
   }
   for (auto& body : bodies_)
@@ -180,21 +190,25 @@ std::vector<double> Stepper::probed_v_m_per_s() const {
 }
 
 std::int64_t Stepper::advance(Recorder& recorder, std::int64_t most_steps, const Between& between) {
+  return advance(static_cast<UpdateObserver&>(recorder), most_steps, between);
+}
+
+std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t most_steps, const Between& between) {
   const auto unit = [&](std::int64_t number, int band) {
-    if (band == 0) advance_interface(number, substeps_, recorder, between.sample());
+    if (band == 0) advance_interface(number, substeps_, observer, between.sample());
     advance_band(number, static_cast<std::size_t>(band));
     if (!watched_.empty()) show_watched(number + 1, static_cast<std::size_t>(band), between);
     if (band > 0) return true;
     ++step_;
-    return between.go_on();
+    return between.go_on(coupling_.slip_rates());
   };
   const auto taken = wavefront_->run(step_, most_steps, n_bands_, unit);
   for (auto& body : bodies_) body.settle();
   return taken;
 }
 
-void Stepper::advance(Recorder& recorder, record::History* sample) {
-  advance(recorder, 1, {.sample = [sample] { return sample; }});
+void Stepper::advance(UpdateObserver& observer, record::History* sample) {
+  advance(observer, 1, {.sample = [sample] { return sample; }});
 }
 
 void Stepper::reverse(Recorder& recorder) {
@@ -209,6 +223,32 @@ void Stepper::reverse(Recorder& recorder) {
     bodies_[b].settle();
     bodies_[b].reverse(u[b], time_s());
   }
+}
+
+std::int64_t Stepper::n_nodes() const {
+  std::int64_t n = 0;
+  for (const auto& body : bodies_) n += std::ssize(body.u_m().x);
+  return n;
+}
+
+double Stepper::mass_kg_per_m() const {
+  double mass = 0;
+  for (const auto& body : bodies_) mass += body.mass_kg_per_m();
+  return mass;
+}
+
+double Stepper::energy_of_tractions_J_per_m() const {
+  const double v = stable_step_s_ * coupling_.largest_acceleration_m_per_s2();
+  return 0.5 * bodies_.front().mass_kg_per_m() * v * v;
+}
+
+Snapshot Stepper::snapshot() const {
+  Snapshot snapshot{time_s(), u_m(), mean_velocity_m_per_s()};
+  for (const auto& below : bodies().subspan(1)) {
+    append_upright(snapshot.u_m, below.u_m());
+    append_upright(snapshot.v_m_per_s, below.mean_velocity_m_per_s());
+  }
+  return snapshot;
 }
 
 record::Energies Stepper::energies() {

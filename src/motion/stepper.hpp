@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "motion/probes.hpp"
 #include "motion/recorder.hpp"
 #include "motion/settings.hpp"
+#include "motion/time_stepper.hpp"
 #include "record/energies.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
@@ -28,17 +28,9 @@ struct Execution {
   int steps_per_sweep = 0;
 };
 
-/// Looks into a run between its steps. Both are called in the order of steps, not always by the same thread,
-/// and may ask the stepper for its time, its step and the interface's state only.
-struct Between {
-  /// Where to put the state at the beginning of the step that follows; null for nowhere.
-  std::function<record::History*()> sample = [] { return nullptr; };
-  /// After the interface's part of a step: whether another one may follow.
-  std::function<bool()> go_on = [] { return true; };
-  /// Where to put the displacements of the nodes of the stepper's probes at a step, see displacement_values;
-  /// null for nowhere. Asked for in each part of the step, from the thread that takes it.
-  std::function<double*(std::int64_t step)> displacements = [](std::int64_t) { return nullptr; };
-};
+/// Steps of the fastest body that one with this stable step takes at once.
+/// @param least_s  stable step of the fastest body
+int steps_at_once(double stable_step_s, double least_s);
 
 /// Explicit motion of a plate on a rigid plane, or on another body: Newmark with beta = 0, gamma = 1/2
 /// (displacements at whole steps, velocities at half steps), damping force on the last half-step velocity.
@@ -53,7 +45,7 @@ struct Between {
 ///
 /// Two bodies share their sub-step, the one that the faster of them allows. The other one's cells away from
 /// the interface take steps longer by the whole number that they allow, up to 16.
-class Stepper {
+class Stepper : public TimeStepper {
  public:
   /// On the rigid plane.
   /// @throws UserError where the interface rows do not fit into the mesh.
@@ -62,20 +54,22 @@ class Stepper {
   /// On another body, described upside down (see Body), with interface nodes at the same places along x.
   Stepper(const BodySource& above, const BodySource& below, const interface::ContactModel& contact,
           const TimeStepping& time, const Execution& execution = {});
+  /// Of one body or two, the one above first.
+  Stepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
+          const TimeStepping& time, const Execution& execution);
 
-  double stable_step_s() const { return stable_step_s_; }
-  double step_s() const { return step_s_; }
-  /// time.step_factor of the stable step: that of the lowest block, or of the faster body's.
-  double lowest_step_s() const { return lowest_step_s_; }
-  double substep_s() const { return step_s_ / substeps_; }
+  double stable_step_s() const override { return stable_step_s_; }
+  double step_s() const override { return step_s_; }
+  double lowest_step_s() const override { return lowest_step_s_; }
+  double substep_s() const override { return step_s_ / substeps_; }
   /// The (sub-)step with which a node moves; its velocity belongs to half of it before the displacement.
   double step_s(mesh::Node n) const { return bodies_.front().step_s(n); }
   const solid::Operator& plate() const { return bodies_.front().op(); }
   /// The body above and, where there is one, the body below, upside down.
   std::span<const Body> bodies() const { return bodies_; }
 
-  /// Nodes moved in one step, sub-steps counted, and nodes of the bodies that move at all.
-  double node_updates_per_step() const;
+  double node_updates_per_step() const override;
+  std::int64_t n_nodes() const override;
 
   /// Steps that a thread takes in one sweep through memory.
   int steps_per_sweep() const { return wavefront_->depth(); }
@@ -90,28 +84,22 @@ class Stepper {
 
   /// Looks at the nodes of these probes from now on.
   void watch(std::vector<Probe> probes);
-  const std::vector<Probe>& probes() const { return probes_; }
-  /// Displacements and velocities of the probes' nodes between two steps, see displacement_values.
-  std::vector<double> probed_u_m() const;
-  std::vector<double> probed_v_m_per_s() const;
+  const std::vector<Probe>& probes() const override { return probes_; }
+  std::vector<double> probed_u_m() const override;
+  std::vector<double> probed_v_m_per_s() const override;
 
-  /// Takes at most `most_steps` steps, several of them in one sweep through memory. Every contact update is
-  /// shown to the recorder.
-  /// @return the number of steps taken
-  /// @throws what recorder and `between` throw; after that only start may follow.
-  std::int64_t advance(Recorder& recorder, std::int64_t most_steps, const Between& between);
+  std::int64_t advance(Recorder& recorder, std::int64_t most_steps, const Between& between) override;
+  /// The same, seen by any observer.
+  std::int64_t advance(UpdateObserver& observer, std::int64_t most_steps, const Between& between);
   /// One step; the state at its beginning is appended to `sample` where it is given.
-  void advance(Recorder& recorder, record::History* sample = nullptr);
+  void advance(UpdateObserver& observer, record::History* sample = nullptr);
 
   /// Turns the motion round: the steps to come go back through the displacements of those before, exactly but
   /// for rounding where the forces do not depend on time and nothing dissipates. Time goes on. The contact is
   /// updated once, which the recorder sees; the works start anew and lack the first step's coupling.
   void reverse(Recorder& recorder);
 
-  /// Time of the displacements. The velocities belong to half a step, or half a sub-step in the layer,
-  /// earlier.
-  double time_s() const { return static_cast<double>(step_) * step_s_; }
-  std::int64_t step() const { return step_; }
+  std::int64_t step() const override { return step_; }
   const solid::Field& u_m() const { return bodies_.front().u_m(); }
   const solid::Field& v_m_per_s() const { return bodies_.front().v_m_per_s(); }
   /// The same with the mean velocity over the last step at nodes between sub-cycled and other cells, which
@@ -119,11 +107,26 @@ class Stepper {
   solid::Field mean_velocity_m_per_s() const { return bodies_.front().mean_velocity_m_per_s(); }
   const interface::Interface& interface_state() const { return coupling_.state(); }
 
+  SlipRates slip_rates() const { return coupling_.slip_rates(); }
+  double largest_acceleration_m_per_s2() const { return coupling_.largest_acceleration_m_per_s2(); }
   double energy_J_per_m() const;  ///< strain and kinetic, each of its own instant
-  double kinetic_energy_J_per_m() const;
+  double kinetic_energy_J_per_m() const override;
+  double mass_kg_per_m() const override;
+  double energy_of_tractions_J_per_m() const override;
+  record::Energies energies() override;
 
-  /// Energies and works up to the last half (sub-)step.
-  record::Energies energies();
+  Snapshot snapshot() const override;
+
+  /// Calls visit(values, n) with all that changes between two calls of advance and decides on the motion of
+  /// some columns of nodes; with take_columns after it others may be put there. Of plates of one block.
+  template <class Visit>
+  void visit_columns(solid::Span columns, Visit&& visit) {
+    for (auto& body : bodies_) body.visit_columns(columns, visit);
+    coupling_.visit_nodes(bodies_.front().lower_in(columns), visit);
+  }
+  void take_columns() {
+    for (auto& body : bodies_) body.take_columns();
+  }
 
   /// All that changes, between two calls of advance. A stepper of the same bodies and stepping that has read
   /// it goes on as this one would, to the last bit; start need not have been called.
@@ -134,15 +137,13 @@ class Stepper {
   }
 
  private:
-  Stepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
-          const TimeStepping& time, const Execution& execution);
-
   /// Whether the wavefront takes the bands of a body's coarsest level; its other levels, and all of a body
   /// with a shorter step, go with the interface.
   bool leads(const Body& body) const { return body.period() == substeps_; }
   /// The part of a step that concerns the interface: all that is due in its sub-steps, or in the first
   /// n_substeps of them.
-  void advance_interface(std::int64_t step, int n_substeps, Recorder& recorder, record::History* sample);
+  void advance_interface(std::int64_t step, int n_substeps, UpdateObserver& observer,
+                         record::History* sample);
   /// Copies the displacements of the watched nodes that the bands `band` have moved to where a step ends.
   void show_watched(std::int64_t step, std::size_t band, const Between& between) const;
   /// One band of the bodies' coarsest levels.

@@ -28,18 +28,6 @@ constexpr double tolerated_coupling = 0.1;
 /// that matters releases far more: a drop of 1 % of the stress over 1 % of the plate's area is 1e-6.
 constexpr double negligible_part = 1e-12;
 
-/// Kinetic energy of a plate that moves as fast as an interface node would after one step in which its
-/// tractions are not balanced. With h/c_L for the step it is near sigma^2/(2E) times the plate's area.
-double energy_of_tractions_J_per_m(const Stepper& stepper) {
-  const auto& face = stepper.interface_state();
-  double v = 0;
-  for (std::size_t i = 0; i < face.size(); ++i)
-    v = std::max(v, stepper.stable_step_s() * std::max(std::abs(face.t_Pa[i]), std::abs(face.p_Pa[i])) /
-                        face.mass_per_length_kg_m2[i]);
-  const auto& mass_kg = stepper.plate().mass_kg;
-  return 0.5 * std::reduce(mass_kg.begin(), mass_kg.end()) * v * v;
-}
-
 double supplied_J_per_m(const record::Energies& now, const record::Energies& start) {
   // Of a plate at rest rounding may leave less than nothing.
   return std::max(0.0, start.stored()) + std::abs(now.top_work) + std::abs(now.trigger_work) +
@@ -63,26 +51,18 @@ const char* strongest_load(const record::Energies& now, const record::Energies& 
 
 }  // namespace
 
-Watch::Watch(Stepper& stepper, double c_L_m_per_s) : Watch(stepper, c_L_m_per_s, stepper.energies(), 0) {}
+Watch::Watch(TimeStepper& stepper, double c_L_m_per_s) : Watch(stepper, c_L_m_per_s, stepper.energies(), 0) {}
 
-Watch::Watch(Stepper& stepper, double c_L_m_per_s, const record::Energies& start, std::int64_t checked_step)
+Watch::Watch(TimeStepper& stepper, double c_L_m_per_s, const record::Energies& start,
+             std::int64_t checked_step)
     : stepper_(stepper), c_L_m_per_s_(c_L_m_per_s), start_(start), checked_step_(checked_step) {}
 
-bool Watch::look() {
-  const auto& face = stepper_.interface_state();
-  double fastest = 0;
-  bool finite = true;
-  fastest_slip_m_per_s_ = 0;
-  for (std::size_t i = 0; i < face.size(); ++i) {
-    const double v = std::abs(face.slip_rate_m_per_s[i]);
-    finite &= std::isfinite(v);
-    fastest = std::max(fastest, v);
-    if (face.slipping[i] != 0) fastest_slip_m_per_s_ = std::max(fastest_slip_m_per_s_, v);
-  }
-  if (!finite) {
+bool Watch::look(const SlipRates& rates) {
+  fastest_slip_m_per_s_ = rates.fastest_slipping_m_per_s;
+  if (!rates.finite) {
     trouble_ = "the slip rate is not a number";
-  } else if (fastest > c_L_m_per_s_) {
-    trouble_ = fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", fastest);
+  } else if (rates.fastest_m_per_s > c_L_m_per_s_) {
+    trouble_ = fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", rates.fastest_m_per_s);
   }
   return trouble_.empty();
 }
@@ -112,7 +92,7 @@ bool Watch::is_from_nowhere(double energy_J_per_m, const record::Energies& now) 
   const double supplied = supplied_J_per_m(now, start_);
   return energy_J_per_m > (1 + tolerated_excess) * supplied +
                               std::clamp(now.coupling_work, 0.0, tolerated_coupling * supplied) +
-                              negligible_part * energy_of_tractions_J_per_m(stepper_);
+                              negligible_part * stepper_.energy_of_tractions_J_per_m();
 }
 
 std::string Watch::remedy(const record::Energies& now) const {
@@ -124,7 +104,7 @@ std::string Watch::remedy(const record::Energies& now) const {
   return fmt::format("the work of the loads accounts for the energy: reduce {}", strongest_load(now, start_));
 }
 
-std::string blow_up_message(const Stepper& stepper, const std::string& trouble) {
+std::string blow_up_message(const TimeStepper& stepper, const std::string& trouble) {
   return fmt::format("the run blew up at step {} (t = {:.6g} s): {}", stepper.step(), stepper.time_s(),
                      trouble);
 }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "motion/stepper.hpp"
+#include "motion/time_stepper.hpp"
 
 namespace slipfront::motion {
 
@@ -13,9 +13,9 @@ namespace slipfront::motion {
 /// start and has been supplied since.
 class Watch {
  public:
-  Watch(Stepper& stepper, double c_L_m_per_s);
+  Watch(TimeStepper& stepper, double c_L_m_per_s);
   /// Goes on from another watch's start and last look at the energy.
-  Watch(Stepper& stepper, double c_L_m_per_s, const record::Energies& start, std::int64_t checked_step);
+  Watch(TimeStepper& stepper, double c_L_m_per_s, const record::Energies& start, std::int64_t checked_step);
 
   const record::Energies& start() const { return start_; }
   /// Step of the last look at the energy.
@@ -25,8 +25,8 @@ class Watch {
   /// Largest slip rate of nodes that slip, in the last look at the interface.
   double fastest_slip_m_per_s() const { return fastest_slip_m_per_s_; }
 
-  /// Looks at the interface after a step. @return whether its motion is physical
-  bool look();
+  /// Looks at the interface's motion after a step. @return whether it is physical
+  bool look(const SlipRates& rates);
 
   /// Steps to the next look at the energy.
   std::int64_t steps_to_check() const;
@@ -41,7 +41,7 @@ class Watch {
   bool is_from_nowhere(double energy_J_per_m, const record::Energies& now) const;
   std::string remedy(const record::Energies& now) const;
 
-  Stepper& stepper_;
+  TimeStepper& stepper_;
   double c_L_m_per_s_;
   record::Energies start_;
   std::int64_t checked_step_ = 0;
@@ -50,6 +50,6 @@ class Watch {
   std::string trouble_;  ///< found at the interface
 };
 
-std::string blow_up_message(const Stepper& stepper, const std::string& trouble);
+std::string blow_up_message(const TimeStepper& stepper, const std::string& trouble);
 
 }  // namespace slipfront::motion

@@ -186,11 +186,10 @@ void ResultStream::hand_over() {
   if (probes_) put(probe_block_, *probes_);
 }
 
-void ResultStream::snapshot(const motion::Stepper& stepper) {
-  std::size_t bytes = 0;
-  for (const auto& body : stepper.bodies()) bytes += 4 * sizeof(double) * body.u_m().size();
+void ResultStream::snapshot(motion::TimeStepper& stepper) {
+  const auto bytes = 4 * sizeof(double) * static_cast<std::size_t>(stepper.n_nodes());
   writer_.wait_for_room(bytes);
-  const auto taken = std::make_shared<const motion::Snapshot>(motion::take_snapshot(stepper));
+  const auto taken = std::make_shared<const motion::Snapshot>(stepper.snapshot());
   writer_.put(bytes, [this, taken] {
     snapshots_.write(std::span(&taken->time_s, 1));
     for (const auto* column : {&taken->u_m.x, &taken->u_m.y, &taken->v_m_per_s.x, &taken->v_m_per_s.y})

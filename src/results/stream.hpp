@@ -61,7 +61,7 @@ class ResultStream : public motion::Sink {
   // Each throws WriteError where a file could not be written, perhaps long before.
   void sample(const record::History& row) override;
   /// Waits until there is room for a copy of the motion, then takes it.
-  void snapshot(const motion::Stepper& stepper) override;
+  void snapshot(motion::TimeStepper& stepper) override;
   void probe(const record::ProbeRecord& rows) override;
   /// Hands rows that are not yet a whole block to the writer, for those who look into the files.
   void hand_over();

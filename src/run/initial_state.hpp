@@ -53,7 +53,7 @@ struct Meshes {
 Meshes check(const input::Case& config);
 
 /// Both bodies in one mesh, for pictures: the nodes and cells of the body below follow those of the plate,
-/// its y turned downwards, as in motion::take_snapshot.
+/// its y turned downwards, as in motion::Stepper::snapshot.
 mesh::Mesh joined(Meshes meshes);
 
 /// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.

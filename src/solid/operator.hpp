@@ -4,6 +4,7 @@
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -49,6 +50,9 @@ struct EdgeStencil {
 struct Span {
   int begin = 0, end = 0;
 };
+
+/// Of all columns.
+inline constexpr Span all_columns = {0, std::numeric_limits<int>::max()};
 
 /// Rows of a block-sparse matrix for a list of nodes: any mesh.
 struct BlockRows {

@@ -219,7 +219,7 @@ class KeepingSink : public Sink {
     append(history_.t_Pa, row.t_Pa);
     append(history_.p_Pa, row.p_Pa);
   }
-  void snapshot(const Stepper& stepper) override { snapshots_.push_back(take_snapshot(stepper)); }
+  void snapshot(TimeStepper& stepper) override { snapshots_.push_back(stepper.snapshot()); }
   void probe(const record::ProbeRecord&) override { FAIL() << "without probes"; }
 
   record::History history_;

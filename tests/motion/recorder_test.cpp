@@ -396,7 +396,7 @@ TEST(Recorder, StaysBoundedInLongUndampedRuns) {
     Recorder recorder(state, 1.3, 2);
     EveryChange every(state, 2);
     Between between;
-    between.go_on = [&] {
+    between.go_on = [&](const SlipRates&) {
       // The contact of a step is that at its beginning.
       every.observe(static_cast<double>(stepper.step() - 1) * stepper.step_s(), stepper.interface_state());
       return true;

@@ -90,7 +90,7 @@ TEST_F(Watched, OverloadIsNotBlamedOnTheStep) {
       statics::prestressed(mesh_, {stepper.interface_state().u_y_m, stepper.interface_state().t_Pa,
                                    stepper.interface_state().p_Pa}),
       0.5, 0);
-  while (watch.look() && stepper.step() < 100) stepper.advance(recorder);
+  while (watch.look(stepper.slip_rates()) && stepper.step() < 100) stepper.advance(recorder);
   const auto message = blow_up_message(stepper, watch.trouble(nullptr));
   EXPECT_THAT(message,
               HasSubstr("above c_L; the work of the loads accounts for the energy: reduce prestress.t_Pa"));

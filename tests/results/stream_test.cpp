@@ -101,7 +101,7 @@ TEST_F(Stream, MakesTheFilesOfTheSameDataInMemory) {
   write_history(folder_ / "b.h5", whole);
   EXPECT_EQ(test::read_file(folder_ / "a.h5"), test::read_file(folder_ / "b.h5"));
   write_snapshots(folder_ / "a.vtkhdf", ResultStream::snapshot_file(folder_.path()), mesh_);
-  write_snapshots(folder_ / "b.vtkhdf", mesh_, std::vector{motion::take_snapshot(*stepper_)});
+  write_snapshots(folder_ / "b.vtkhdf", mesh_, std::vector{stepper_->snapshot()});
   EXPECT_EQ(test::read_file(folder_ / "a.vtkhdf"), test::read_file(folder_ / "b.vtkhdf"));
 }
 

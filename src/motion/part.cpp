@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/part.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace slipfront::motion {
+
+namespace {
+
+/// Most steps between two exchanges: what several steps in one sweep through memory gain is gained with
+/// these.
+constexpr int most_steps_per_exchange = 16;
+/// A halo on either side adds this part of a process's own work at most, if that allows a step.
+constexpr double tolerated_halo = 0.1;
+
+solid::Field take_field(Parcel& given) {
+  solid::Field field;
+  field.x = given.take_all<double>();
+  field.y = given.take_all<double>();
+  return field;
+}
+
+/// Sees the contact updates of several steps, to be told later.
+class Log final : public UpdateObserver {
+ public:
+  Log(SlipFinder& finder, Parcel& to) : finder_(finder), to_(to) {}
+  void observe(double time_s, const interface::Interface& state, bool changed) override {
+    finder_.find(time_s, state, changed, seen_);
+    to_.put(seen_.time_s).put(static_cast<std::uint8_t>(seen_.moves)).put(seen_.changes).put(seen_.around);
+  }
+
+ private:
+  SlipFinder& finder_;
+  Parcel& to_;
+  SlipSeen seen_;
+};
+
+}  // namespace
+
+solid::Span Division::all(int part) const {
+  const auto columns = own(part);
+  return {std::max(first.front(), columns.begin - halo), std::min(first.back(), columns.end + halo)};
+}
+
+int columns_per_step(std::span<const double> stable_steps_s, const TimeStepping& time) {
+  const double least_s = *std::ranges::min_element(stable_steps_s);
+  int substeps = 1, least_period = std::numeric_limits<int>::max();
+  for (const double stable_s : stable_steps_s) {
+    const int period = steps_at_once(stable_s, least_s) * time.interface_substeps;
+    substeps = std::lcm(substeps, period);
+    least_period = std::min(least_period, period);
+  }
+  const bool is_layered = time.interface_substeps > 1;
+  return is_layered ? substeps + substeps / least_period : substeps;
+}
+
+Division divide_columns(int n_columns, int n_parts, int columns_per_step, int reach) {
+  Division division;
+  for (int k = 0; k <= n_parts; ++k)
+    division.first.push_back(static_cast<int>(static_cast<std::int64_t>(n_columns) * k / n_parts));
+  const int width = n_columns / n_parts;
+  division.steps_per_exchange = std::clamp(static_cast<int>(0.5 * tolerated_halo * width / columns_per_step),
+                                           1, most_steps_per_exchange);
+  division.halo = division.steps_per_exchange * columns_per_step + std::max(1, reach);
+  if (n_parts > 1 && width < division.halo)
+    throw UserError(
+        "{} processes have {} columns of elements each, fewer than the {} that they compute for each other; "
+        "choose at most {}",
+        n_parts, width, division.halo, std::max(1, n_columns / division.halo));
+  return division;
+}
+
+Part::Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
+           const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
+           States states)
+    : processes_(processes), division_(division), states_(std::move(states)) {
+  const int rank = processes.rank();
+  const auto all = division.all(rank), own = division.own(rank);
+  const auto local = [&](solid::Span columns) {
+    return solid::Span{columns.begin - all.begin, columns.end - all.begin};
+  };
+  own_ = local(own);
+  stepper_ = std::make_unique<Stepper>(sources, contact, time, execution);
+  if (rank > 0)
+    neighbours_.push_back(
+        {rank - 1, local({own.begin, division.all(rank - 1).end}), local({all.begin, own.begin}), {}, {}});
+  if (rank + 1 < division.n_parts())
+    neighbours_.push_back(
+        {rank + 1, local({division.all(rank + 1).begin, own.end}), local({own.end, all.end}), {}, {}});
+}
+
+Parcel Part::carry_out(PartCommand command, Parcel& given) {
+  Parcel answer;
+  switch (command) {
+    case PartCommand::start:
+      start(given);
+      break;
+    case PartCommand::watch: {
+      std::vector<Probe> probes(given.take<std::uint64_t>());
+      for (auto& probe : probes) {
+        probe.body = given.take<std::size_t>();
+        probe.node = given.take<mesh::Cell>();
+      }
+      stepper_->watch(std::move(probes));
+      break;
+    }
+    case PartCommand::advance:
+      try {
+        advance(given, answer);
+      } catch (const std::exception& error) {
+        processes_.fail(error.what());  // the others wait for this part's halo
+      }
+      break;
+    case PartCommand::energies:
+      answer.put(stepper_->energies());
+      break;
+    case PartCommand::measures:
+      answer.put(PartMeasures{stepper_->kinetic_energy_J_per_m(), stepper_->mass_kg_per_m(),
+                              stepper_->bodies().front().mass_kg_per_m(),
+                              stepper_->largest_acceleration_m_per_s2(), stepper_->node_updates_per_step()});
+      break;
+    case PartCommand::snapshot:
+      put_snapshot(answer);
+      break;
+    case PartCommand::probed:
+      answer.put(stepper_->probed_u_m()).put(stepper_->probed_v_m_per_s());
+      break;
+    case PartCommand::keep:
+      answer.put(states_.write(*this));
+      break;
+    case PartCommand::restore:
+      states_.read(*this, given.take_text());
+      break;
+    case PartCommand::build:
+    case PartCommand::release:
+    case PartCommand::end:
+      SLIPFRONT_ASSERT(false, "a command of the part's owner");
+  }
+  return answer;
+}
+
+void Part::start(Parcel& given) {
+  statics::Equilibrium e;
+  e.u_m = take_field(given);
+  e.u_per_shear = take_field(given);
+  if (stepper_->bodies().size() > 1) {
+    e.below_u_m = take_field(given);
+    e.below_u_per_shear = take_field(given);
+  }
+  e.tractions.t_s_Pa = given.take_all<double>();
+  e.tractions.p_s_Pa = given.take_all<double>();
+  e.contact = given.take_all<statics::Contact>();
+  const auto top_speed_m_per_s = given.take<double>();
+  Loads loads;
+  for (auto* values :
+       {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
+    *values = given.take_all<double>();
+  loads.trigger = given.take<interface::Trigger>();
+  stepper_->start(e, top_speed_m_per_s, std::move(loads));
+  finder_.reset();
+  renew_halo();
+}
+
+void Part::make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s) {
+  const auto own = stepper_->bodies().front().own_lower();
+  finder_halo_ = halo;
+  finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
+                  halo, creep_m_per_s);
+}
+
+void Part::advance(Parcel& given, Parcel& answer) {
+  if (given.take<std::uint8_t>() != 0) {
+    SlipFinder::Memory memory;
+    memory.time_s = given.take<double>();
+    for (auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa}) *values = given.take_all<double>();
+    memory.slipping = given.take_all<std::uint8_t>();
+    const int halo = given.take<int>();
+    make_finder(std::move(memory), halo, given.take<double>());
+  }
+  const auto is_sampled = given.take_all<std::uint8_t>();
+  const auto n_steps = std::ssize(is_sampled);
+  const auto first_step = stepper_->step();
+  const std::size_t n_values = displacement_values(stepper_->probes());
+  Parcel seen;
+  Log log(*finder_, seen);
+  record::History samples;
+  std::vector<SlipRates> rates;
+  std::vector<double> displacements(n_values * static_cast<std::size_t>(n_steps));
+  std::int64_t next_sample = 0;
+  Between between;
+  between.sample = [&]() -> record::History* {
+    return is_sampled[static_cast<std::size_t>(next_sample++)] != 0 ? &samples : nullptr;
+  };
+  between.go_on = [&](const SlipRates& of_step) {
+    rates.push_back(of_step);
+    return true;
+  };
+  if (n_values > 0)
+    between.displacements = [&](std::int64_t step) {
+      return displacements.data() + n_values * static_cast<std::size_t>(step - first_step - 1);
+    };
+  for (std::int64_t done = 0; done < n_steps;) {
+    const auto n = std::min<std::int64_t>(division_.steps_per_exchange, n_steps - done);
+    stepper_->advance(log, n, between);
+    renew_halo();
+    finder_->renew_tractions(stepper_->interface_state());
+    done += n;
+  }
+  // Of the samples' columns only own nodes.
+  const auto own = stepper_->bodies().front().own_lower();
+  const auto width = stepper_->interface_state().size();
+  const auto n_rows = samples.time_s.size();
+  answer.put(rates).put(std::vector<std::byte>(seen.bytes().begin(), seen.bytes().end()));
+  for (const auto& field : record::history_fields) {
+    std::vector<double> values;
+    for (std::size_t row = 0; row < n_rows; ++row) {
+      const auto begin = (samples.*field.member).begin() + static_cast<std::ptrdiff_t>(row * width);
+      values.insert(values.end(), begin + own.begin, begin + own.end);
+    }
+    answer.put(values);
+  }
+  answer.put(displacements);
+}
+
+void Part::renew_halo() {
+  std::vector<Processes::Exchange> exchanges;
+  for (auto& neighbour : neighbours_) {
+    neighbour.sent.clear();
+    stepper_->visit_columns(neighbour.out, [&](const auto* values, std::size_t n) {
+      for (std::size_t k = 0; k < n; ++k) neighbour.sent.push_back(values[k]);
+    });
+    if (neighbour.received.empty()) {
+      std::size_t n_in = 0;
+      stepper_->visit_columns(neighbour.in, [&](const auto*, std::size_t n) { n_in += n; });
+      neighbour.received.resize(n_in);
+    }
+    exchanges.push_back({neighbour.rank, neighbour.sent, neighbour.received});
+  }
+  processes_.exchange(exchanges);
+  for (auto& neighbour : neighbours_) {
+    auto from = neighbour.received.cbegin();
+    stepper_->visit_columns(neighbour.in, [&]<class T>(T* values, std::size_t n) {
+      for (std::size_t k = 0; k < n; ++k) values[k] = static_cast<T>(*from++);
+    });
+  }
+  stepper_->take_columns();
+}
+
+void Part::put_snapshot(Parcel& answer) const {
+  const auto put = [&](const Body& body, const std::vector<double>& values) {
+    std::vector<double> own;
+    for (const auto& row : body.op().rows) {
+      const auto begin = values.begin() + row.first;
+      own.insert(own.end(), begin + own_.begin, begin + own_.end);
+    }
+    answer.put(own);
+  };
+  for (const auto& body : stepper_->bodies()) {
+    const auto v = body.mean_velocity_m_per_s();
+    for (const auto* values : {&body.u_m().x, &body.u_m().y, &v.x, &v.y}) put(body, *values);
+  }
+}
+
+void serve(Processes& processes, Part& part) {
+  for (;;) {
+    auto parcel = processes.receive(0);
+    const auto command = parcel.take<PartCommand>();
+    if (command == PartCommand::release) return;
+    Parcel given(parcel.take_all<std::byte>()), answer;
+    std::string error;
+    try {
+      answer = part.carry_out(command, given);
+    } catch (const std::exception& failure) {
+      error = failure.what();
+    }
+    processes.send(0, Parcel().put(error).append(answer));
+  }
+}
+
+}  // namespace slipfront::motion

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "motion/recorder.hpp"
+#include "motion/stepper.hpp"
+#include "processes/processes.hpp"
+
+namespace slipfront::motion {
+
+/// How the columns of nodes of a plate are divided into parts, one for each process.
+///
+/// A part accounts for its own columns and computes a halo beside them as well. What it computes there is
+/// wrong first in the outermost column, where cells are missing, and one column further in with each push;
+/// before that reaches a column which counts, the owners send the halo's motion (docs/processes.md).
+struct Division {
+  std::vector<int> first;      ///< [parts + 1] where the own columns of each begin
+  int halo = 0;                ///< columns beside them, as far as there are any
+  int steps_per_exchange = 1;  ///< after so many steps the halo is renewed
+
+  int n_parts() const { return static_cast<int>(first.size()) - 1; }
+  solid::Span own(int part) const { return {first[part], first[part + 1]}; }
+  /// Own columns and halo.
+  solid::Span all(int part) const;
+};
+
+/// Columns into which what is wrong at a part's edge may get within a step: the pushes of all levels.
+/// @param stable_steps_s  of each body
+int columns_per_step(std::span<const double> stable_steps_s, const TimeStepping& time);
+
+/// Parts of nearly equal width.
+/// @param n_columns         columns of nodes of the whole plate
+/// @param columns_per_step  see there
+/// @param reach             columns beyond its own that a part looks at
+/// @throws UserError where the parts would be narrower than their halo
+Division divide_columns(int n_columns, int n_parts, int columns_per_step, int reach);
+
+/// What is asked of all parts at a time. The number of the command is followed by its values.
+enum class PartCommand : int {
+  build,     ///< run::serve makes the part
+  start,     ///< begin at an equilibrium
+  watch,     ///< look at probes
+  advance,   ///< take steps
+  energies,  ///< and works
+  measures,  ///< see PartMeasures
+  snapshot,  ///< own columns of the motion
+  probed,    ///< displacements and velocities at the probes
+  keep,      ///< the state, for a checkpoint
+  restore,   ///< a state that was kept
+  release,   ///< the part is needed no more
+  end,       ///< and neither is the process
+};
+
+/// Sums and maxima over what a part accounts for.
+struct PartMeasures {
+  double kinetic_J_per_m = 0;
+  double mass_kg_per_m = 0, plate_mass_kg_per_m = 0;
+  double largest_acceleration_m_per_s2 = 0;
+  double node_updates_per_step = 0;
+};
+
+/// The part of an event's bodies that one process computes. All processes have one and are given the same
+/// commands, by PartedStepper.
+class Part {
+ public:
+  /// How the stepper's state is made bytes and back, which this room knows nothing of.
+  struct States {
+    std::function<std::string(Part&)> write;
+    std::function<void(Part&, const std::string&)> read;
+  };
+
+  /// @param sources   the bodies' columns `division.all(processes.rank())`, with their PartOfBody
+  /// @param contact   of the part's interface nodes
+  Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
+       const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
+       States states);
+
+  /// Carries out a command between build and release.
+  Parcel carry_out(PartCommand command, Parcel& given);
+
+  const Stepper& stepper() const { return *stepper_; }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    std::uint8_t has_finder = finder_ ? 1 : 0;
+    int halo = finder_halo_;
+    double creep_m_per_s = finder_ ? finder_->creep_m_per_s() : 0;
+    archive(*stepper_, has_finder, halo, creep_m_per_s);
+    if (Archive::is_loading::value && has_finder != 0) {
+      const auto n = stepper_->interface_state().size();
+      SlipFinder::Memory memory{0, std::vector<double>(n), std::vector<double>(n), std::vector<double>(n),
+                                std::vector<std::uint8_t>(n)};
+      make_finder(std::move(memory), halo, creep_m_per_s);
+    }
+    if (has_finder != 0) archive(*finder_);
+  }
+
+ private:
+  void start(Parcel& given);
+  void advance(Parcel& given, Parcel& answer);
+  void make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s);
+  void renew_halo();
+  void put_snapshot(Parcel& answer) const;
+
+  Processes& processes_;
+  Division division_;
+  States states_;
+  solid::Span own_;  ///< in the part's columns
+  std::unique_ptr<Stepper> stepper_;
+  std::optional<SlipFinder> finder_;
+  int finder_halo_ = 0;
+  /// Columns that go to a neighbour and come from it, in the part's columns.
+  struct Neighbour {
+    int rank = 0;
+    solid::Span out, in;
+    std::vector<double> sent, received;
+  };
+  std::vector<Neighbour> neighbours_;
+};
+
+/// Carries out the leader's commands until the part is needed no more.
+void serve(Processes& processes, Part& part);
+
+}  // namespace slipfront::motion

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/parted_stepper.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace slipfront::motion {
+
+namespace {
+
+/// Places in Mesh::lower of the nodes in some columns.
+solid::Span lower_in(const mesh::Mesh& mesh, solid::Span columns) {
+  const auto is_in = [&](mesh::Node n) {
+    const int column = n % mesh.grid.stride();
+    return column >= columns.begin && column < columns.end;
+  };
+  const auto begin = std::ranges::find_if(mesh.lower, is_in);
+  const auto end = std::find_if_not(begin, mesh.lower.end(), is_in);
+  SLIPFRONT_ASSERT(std::none_of(end, mesh.lower.end(), is_in), "interface nodes in the order of columns");
+  return {static_cast<int>(begin - mesh.lower.begin()), static_cast<int>(end - mesh.lower.begin())};
+}
+
+template <class T>
+std::span<const T> cut(const std::vector<T>& values, solid::Span span) {
+  if (values.empty()) return {};
+  return std::span(values).subspan(static_cast<std::size_t>(span.begin),
+                                   static_cast<std::size_t>(span.end - span.begin));
+}
+
+/// Some columns of a field over a whole grid.
+void put_columns(const mesh::Grid& grid, solid::Span columns, const solid::Field& field, Parcel& to) {
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(columns.end - columns.begin) *
+                 static_cast<std::size_t>(grid.rows + 1));
+  for (const auto* component : {&field.x, &field.y}) {
+    values.clear();
+    for (int j = 0; j <= grid.rows; ++j) {
+      const auto row = component->begin() + grid.node(0, j);
+      values.insert(values.end(), row + columns.begin, row + columns.end);
+    }
+    to.put(values);
+  }
+}
+
+}  // namespace
+
+PartedStepper::PartedStepper(Processes& processes, const Division& division, std::unique_ptr<Part> own,
+                             std::span<const mesh::Mesh* const> bodies)
+    : processes_(processes),
+      division_(division),
+      own_(std::move(own)),
+      n_lower_(bodies.front()->lower.size()) {
+  for (const auto* body : bodies) grids_.push_back(body->grid);
+  for (int part = 0; part < division.n_parts(); ++part) {
+    all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
+    own_lower_.push_back(lower_in(*bodies.front(), division.own(part)));
+  }
+}
+
+PartedStepper::~PartedStepper() {
+  const Parcel release = Parcel().put(PartCommand::release);
+  for (int rank = 1; rank < processes_.size(); ++rank) processes_.send(rank, release);
+}
+
+std::vector<Parcel> PartedStepper::ask(PartCommand command, std::vector<Parcel> given) const {
+  if (given.empty()) given.resize(1);
+  const auto of_part = [&](int part) -> Parcel& {
+    return given[given.size() == 1 ? 0 : static_cast<std::size_t>(part)];
+  };
+  for (int rank = 1; rank < processes_.size(); ++rank) {
+    Parcel parcel;
+    const auto values = of_part(rank).bytes();
+    parcel.put(command).put(std::vector<std::byte>(values.begin(), values.end()));
+    processes_.send(rank, parcel);
+  }
+  // All answers are taken, whatever fails: the next command's are not to be mixed up with them.
+  std::vector<Parcel> answers(1);
+  std::exception_ptr failure;
+  try {
+    answers.front() = own_->carry_out(command, of_part(0));
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  for (int rank = 1; rank < processes_.size(); ++rank) {
+    answers.push_back(processes_.receive(rank));
+    const auto error = answers.back().take_text();
+    if (!error.empty() && failure == nullptr)
+      failure = std::make_exception_ptr(
+          std::runtime_error(fmt::format("process {} of {}: {}", rank, processes_.size(), error)));
+  }
+  if (failure != nullptr) std::rethrow_exception(failure);
+  return answers;
+}
+
+void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_s, const Loads& loads) {
+  std::vector<Parcel> given;
+  for (int part = 0; part < division_.n_parts(); ++part) {
+    Parcel parcel;
+    const auto columns = division_.all(part);
+    const auto lower = all_lower_[static_cast<std::size_t>(part)];
+    put_columns(grids_.front(), columns, e.u_m, parcel);
+    put_columns(grids_.front(), columns, e.u_per_shear, parcel);
+    if (grids_.size() > 1) {
+      put_columns(grids_.back(), columns, e.below_u_m, parcel);
+      put_columns(grids_.back(), columns, e.below_u_per_shear, parcel);
+    }
+    parcel.put(cut(e.tractions.t_s_Pa, lower)).put(cut(e.tractions.p_s_Pa, lower));
+    parcel.put(cut(e.contact, lower)).put(top_speed_m_per_s);
+    for (const auto* values :
+         {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
+      parcel.put(cut(*values, lower));
+    parcel.put(loads.trigger);
+    given.push_back(std::move(parcel));
+  }
+  ask(PartCommand::start, std::move(given));
+  has_finders_ = false;
+  step_ = 0;
+}
+
+void PartedStepper::watch(std::vector<Probe> probes) {
+  probes_ = std::move(probes);
+  part_of_probe_.clear();
+  std::vector<std::vector<std::pair<std::size_t, mesh::Cell>>> of_part(
+      static_cast<std::size_t>(division_.n_parts()));
+  for (const auto& probe : probes_) {
+    const int stride = grids_[probe.body].stride();
+    const int column = probe.node[0] % stride;
+    const auto after = std::ranges::upper_bound(division_.first, column);
+    const int part = std::min(static_cast<int>(after - division_.first.begin()) - 1, division_.n_parts() - 1);
+    part_of_probe_.push_back(part);
+    const auto all = division_.all(part);
+    auto node = probe.node;
+    for (auto& n : node) n = n / stride * (all.end - all.begin) + n % stride - all.begin;
+    of_part[static_cast<std::size_t>(part)].emplace_back(probe.body, node);
+  }
+  std::vector<Parcel> given;
+  for (const auto& list : of_part) {
+    Parcel parcel;
+    parcel.put(static_cast<std::uint64_t>(list.size()));
+    for (const auto& [body, node] : list) parcel.put(body).put(node);
+    given.push_back(std::move(parcel));
+  }
+  ask(PartCommand::watch, std::move(given));
+}
+
+std::vector<double> PartedStepper::probed(int which) const {
+  std::vector<std::vector<double>> of_part;
+  for (auto& answer : ask(PartCommand::probed)) {
+    auto values = answer.take_all<double>();
+    if (which > 0) values = answer.take_all<double>();
+    of_part.push_back(std::move(values));
+  }
+  std::vector<std::size_t> taken(of_part.size());
+  std::vector<double> values;
+  for (const int part : part_of_probe_) {
+    auto& at = taken[static_cast<std::size_t>(part)];
+    const auto from = of_part[static_cast<std::size_t>(part)].begin() + static_cast<std::ptrdiff_t>(at);
+    values.insert(values.end(), from, from + 8);
+    at += 8;
+  }
+  return values;
+}
+
+std::int64_t PartedStepper::advance(Recorder& recorder, std::int64_t most_steps, const Between& between) {
+  std::int64_t taken = 0;
+  while (taken < most_steps) {
+    const auto steps = advance_surely(recorder, std::min(most_steps - taken, between.sure_steps()), between);
+    taken += steps.taken;
+    if (!steps.goes_on) break;
+  }
+  return taken;
+}
+
+PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int64_t n_steps,
+                                                   const Between& between) {
+  const auto first_step = step_;
+  std::vector<record::History*> samples;
+  std::vector<std::uint8_t> is_sampled;
+  for (std::int64_t k = 0; k < n_steps; ++k, ++step_) {
+    samples.push_back(between.sample());
+    is_sampled.push_back(samples.back() != nullptr);
+  }
+  step_ = first_step;
+  std::vector<Parcel> given;
+  for (int part = 0; part < division_.n_parts(); ++part) {
+    Parcel parcel;
+    parcel.put(static_cast<std::uint8_t>(!has_finders_));
+    if (!has_finders_) {
+      const auto& memory = recorder.finder().memory();
+      const auto lower = all_lower_[static_cast<std::size_t>(part)];
+      parcel.put(memory.time_s);
+      for (const auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa})
+        parcel.put(cut(*values, lower));
+      parcel.put(cut(memory.slipping, lower));
+      parcel.put(recorder.record().halo).put(recorder.finder().creep_m_per_s());
+    }
+    parcel.put(is_sampled);
+    given.push_back(std::move(parcel));
+  }
+  auto answers = ask(PartCommand::advance, std::move(given));
+  has_finders_ = true;
+
+  struct Told {
+    std::vector<SlipRates> rates;
+    Parcel seen;
+    std::vector<std::vector<double>> samples;  ///< of each field
+    std::vector<double> displacements;
+  };
+  std::vector<Told> told;
+  for (auto& answer : answers) {
+    Told of_part;
+    of_part.rates = answer.take_all<SlipRates>();
+    of_part.seen = Parcel(answer.take_all<std::byte>());
+    for (std::size_t f = 0; f < record::history_fields.size(); ++f)
+      of_part.samples.push_back(answer.take_all<double>());
+    of_part.displacements = answer.take_all<double>();
+    told.push_back(std::move(of_part));
+  }
+  const auto n_substeps = std::lround(step_s() / substep_s());
+  const auto n_around = recorder.finder().n_around();
+  std::ptrdiff_t row = 0;
+  for (std::int64_t k = 0; k < n_steps; ++k) {
+    for (long substep = 0; substep < n_substeps; ++substep) {
+      SlipSeen seen;
+      for (std::size_t part = 0; part < told.size(); ++part) {
+        auto& from = told[part].seen;
+        seen.time_s = from.take<double>();
+        seen.moves |= from.take<std::uint8_t>() != 0;
+        for (auto change : from.take_all<SlipChange>()) {
+          change.node += all_lower_[part].begin;
+          seen.changes.push_back(change);
+        }
+        const auto around = from.take_all<record::Traction>();
+        SLIPFRONT_ASSERT(around.size() % n_around == 0, "tractions around each onset");
+        seen.around.insert(seen.around.end(), around.begin(), around.end());
+      }
+      recorder.take(seen);
+    }
+    if (auto* to = samples[static_cast<std::size_t>(k)]; to != nullptr) {
+      to->time_s.push_back(time_s());
+      for (std::size_t f = 0; f < record::history_fields.size(); ++f) {
+        auto& field = to->*record::history_fields[f].member;
+        for (std::size_t part = 0; part < told.size(); ++part) {
+          const auto width = own_lower_[part].end - own_lower_[part].begin;
+          const auto from = told[part].samples[f].begin() + row * width;
+          field.insert(field.end(), from, from + width);
+        }
+      }
+      ++row;
+    }
+    if (!probes_.empty())
+      if (double* to = between.displacements(step_ + 1); to != nullptr) {
+        std::vector<std::size_t> taken(told.size());
+        for (std::size_t p = 0; p < probes_.size(); ++p) {
+          const auto part = static_cast<std::size_t>(part_of_probe_[p]);
+          const auto& from = told[part].displacements;
+          const auto per_step = from.size() / static_cast<std::size_t>(n_steps);
+          std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(k) * per_step +
+                                                                 8 * taken[part]++),
+                      8, to + 8 * p);
+        }
+      }
+    ++step_;
+    SlipRates rates;
+    for (const auto& of_part : told) {
+      const auto& r = of_part.rates[static_cast<std::size_t>(k)];
+      rates.finite &= r.finite;
+      rates.fastest_m_per_s = std::max(rates.fastest_m_per_s, r.fastest_m_per_s);
+      rates.fastest_slipping_m_per_s = std::max(rates.fastest_slipping_m_per_s, r.fastest_slipping_m_per_s);
+    }
+    // Before the last of these steps only a motion that is not physical is refused: it has gone on, and it
+    // does not matter how.
+    if (!between.go_on(rates)) return {k + 1, false};
+  }
+  return {n_steps, true};
+}
+
+record::Energies PartedStepper::energies() {
+  auto answers = ask(PartCommand::energies);
+  auto sum = answers.front().take<record::Energies>();
+  for (auto& answer : std::span(answers).subspan(1)) add_terms(sum, answer.take<record::Energies>());
+  sum.time_s = time_s();
+  return sum;
+}
+
+std::vector<PartMeasures> PartedStepper::measures() const {
+  std::vector<PartMeasures> all;
+  for (auto& answer : ask(PartCommand::measures)) all.push_back(answer.take<PartMeasures>());
+  return all;
+}
+
+double PartedStepper::node_updates_per_step() const {
+  double sum = 0;
+  for (const auto& m : measures()) sum += m.node_updates_per_step;
+  return sum;
+}
+
+double PartedStepper::kinetic_energy_J_per_m() const {
+  double sum = 0;
+  for (const auto& m : measures()) sum += m.kinetic_J_per_m;
+  return sum;
+}
+
+double PartedStepper::mass_kg_per_m() const {
+  double sum = 0;
+  for (const auto& m : measures()) sum += m.mass_kg_per_m;
+  return sum;
+}
+
+double PartedStepper::energy_of_tractions_J_per_m() const {
+  double mass = 0, a = 0;
+  for (const auto& m : measures()) {
+    mass += m.plate_mass_kg_per_m;
+    a = std::max(a, m.largest_acceleration_m_per_s2);
+  }
+  const double v = stable_step_s() * a;
+  return 0.5 * mass * v * v;
+}
+
+std::int64_t PartedStepper::n_nodes() const {
+  std::int64_t n = 0;
+  for (const auto& grid : grids_) n += grid.n_nodes();
+  return n;
+}
+
+Snapshot PartedStepper::snapshot() const {
+  Snapshot all;
+  all.time_s = time_s();
+  auto answers = ask(PartCommand::snapshot);
+  std::size_t before = 0;
+  const auto n = static_cast<std::size_t>(n_nodes());
+  all.u_m = all.v_m_per_s = solid::Field(n);
+  for (std::size_t b = 0; b < grids_.size(); ++b) {
+    const auto& grid = grids_[b];
+    for (int part = 0; part < division_.n_parts(); ++part) {
+      const auto own = division_.own(part);
+      const auto width = own.end - own.begin;
+      for (auto* values : {&all.u_m.x, &all.u_m.y, &all.v_m_per_s.x, &all.v_m_per_s.y}) {
+        const auto of_part = answers[static_cast<std::size_t>(part)].take_all<double>();
+        // Bodies below are described upside down.
+        const bool turns = b > 0 && (values == &all.u_m.y || values == &all.v_m_per_s.y);
+        for (int j = 0; j <= grid.rows; ++j)
+          for (int i = 0; i < width; ++i) {
+            const double value = of_part[static_cast<std::size_t>(j * width + i)];
+            (*values)[before + static_cast<std::size_t>(grid.node(own.begin + i, j))] =
+                turns ? -value : value;
+          }
+      }
+    }
+    before += static_cast<std::size_t>(grid.n_nodes());
+  }
+  return all;
+}
+
+std::vector<std::string> PartedStepper::states() const {
+  std::vector<std::string> states;
+  for (auto& answer : ask(PartCommand::keep)) states.push_back(answer.take_text());
+  return states;
+}
+
+void PartedStepper::take_states(const std::vector<std::string>& states, std::int64_t step) {
+  if (std::ssize(states) != division_.n_parts())
+    throw UserError("the run was begun with {} processes, and these are {}; go on with as many",
+                    states.size(), division_.n_parts());
+  std::vector<Parcel> given;
+  for (const auto& state : states) given.push_back(std::move(Parcel().put(state)));
+  ask(PartCommand::restore, std::move(given));
+  has_finders_ = true;
+  step_ = step;
+}
+
+}  // namespace slipfront::motion

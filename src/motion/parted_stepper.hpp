@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "motion/part.hpp"
+#include "motion/time_stepper.hpp"
+
+namespace slipfront::motion {
+
+/// Steps the bodies of an event with several processes, each of which has a Part; the one that leads has this
+/// as well. What is computed of a node does not depend on the part that it lies in: displacements, tractions
+/// and onsets are those of one process, to the last bit; energies but for the order of summation.
+class PartedStepper final : public TimeStepper {
+ public:
+  /// @param own     the leader's part; the others have theirs
+  /// @param bodies  the whole meshes of the bodies
+  PartedStepper(Processes& processes, const Division& division, std::unique_ptr<Part> own,
+                std::span<const mesh::Mesh* const> bodies);
+  ~PartedStepper() override;
+  PartedStepper(const PartedStepper&) = delete;
+  PartedStepper& operator=(const PartedStepper&) = delete;
+
+  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, const Loads& loads);
+  void watch(std::vector<Probe> probes);
+
+  double stable_step_s() const override { return own_->stepper().stable_step_s(); }
+  double step_s() const override { return own_->stepper().step_s(); }
+  double lowest_step_s() const override { return own_->stepper().lowest_step_s(); }
+  double substep_s() const override { return own_->stepper().substep_s(); }
+  double node_updates_per_step() const override;
+  std::int64_t n_nodes() const override;
+  std::int64_t step() const override { return step_; }
+  const std::vector<Probe>& probes() const override { return probes_; }
+  std::vector<double> probed_u_m() const override { return probed(0); }
+  std::vector<double> probed_v_m_per_s() const override { return probed(1); }
+  std::int64_t advance(Recorder& recorder, std::int64_t most_steps, const Between& between) override;
+  record::Energies energies() override;
+  double kinetic_energy_J_per_m() const override;
+  double mass_kg_per_m() const override;
+  double energy_of_tractions_J_per_m() const override;
+  Snapshot snapshot() const override;
+
+  /// The states of all parts, and the same back: for as many processes.
+  std::vector<std::string> states() const;
+  void take_states(const std::vector<std::string>& states, std::int64_t step);
+
+ private:
+  /// Gives each part a command, with values of its own or the same for all, and has their answers.
+  /// @throws std::runtime_error for what another process has failed in
+  std::vector<Parcel> ask(PartCommand command, std::vector<Parcel> given = {}) const;
+  struct Steps {
+    std::int64_t taken = 0;
+    bool goes_on = false;
+  };
+  /// Steps before which go_on does not refuse a motion that is physical.
+  Steps advance_surely(Recorder& recorder, std::int64_t n_steps, const Between& between);
+  std::vector<double> probed(int which) const;
+  std::vector<PartMeasures> measures() const;
+
+  Processes& processes_;
+  Division division_;
+  std::unique_ptr<Part> own_;
+  std::vector<mesh::Grid> grids_;  ///< of the whole bodies
+  std::size_t n_lower_;
+  /// Interface nodes of each part: all that it computes, and those that count.
+  std::vector<solid::Span> all_lower_, own_lower_;
+  std::vector<Probe> probes_;
+  std::vector<int> part_of_probe_;
+  bool has_finders_ = false;
+  std::int64_t step_ = 0;
+};
+
+}  // namespace slipfront::motion

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "motion/probes.hpp"
+#include "motion/recorder.hpp"
+#include "record/energies.hpp"
+#include "record/record.hpp"
+#include "solid/operator.hpp"
+
+namespace slipfront::motion {
+
+/// How fast the nodes of an interface slip.
+struct SlipRates {
+  bool finite = true;
+  double fastest_m_per_s = 0;
+  double fastest_slipping_m_per_s = 0;  ///< of nodes in contact that slip
+};
+
+/// Looks into a run between its steps. All are called in the order of steps, not always by the same thread,
+/// and may ask the stepper for its time and its step only.
+struct Between {
+  /// Where to put the state at the beginning of the step that follows; null for nowhere.
+  std::function<record::History*()> sample = [] { return nullptr; };
+  /// After the interface's part of a step: whether another one may follow.
+  std::function<bool(const SlipRates& rates)> go_on = [](const SlipRates&) { return true; };
+  /// Where to put the displacements of the nodes of the stepper's probes at a step, see displacement_values;
+  /// null for nowhere. Asked for in each part of the step, from the thread that takes it.
+  std::function<double*(std::int64_t step)> displacements = [](std::int64_t) { return nullptr; };
+  /// Steps, at least one, after which go_on may first refuse a motion that is physical.
+  std::function<std::int64_t()> sure_steps = [] { return std::int64_t{1}; };
+};
+
+/// Motion of all nodes at one instant, those of a body below after those of the plate, with u_y and v_y up.
+/// The velocity belongs to half a step (half a sub-step in the interface layer) earlier.
+struct Snapshot {
+  double time_s = 0;
+  solid::Field u_m, v_m_per_s;
+};
+
+/// Whoever steps the bodies of an event: one process, or several together.
+class TimeStepper {
+ public:
+  virtual ~TimeStepper() = default;
+
+  virtual double stable_step_s() const = 0;
+  virtual double step_s() const = 0;
+  /// time.step_factor of the stable step: that of the lowest block, or of the faster body's.
+  virtual double lowest_step_s() const = 0;
+  virtual double substep_s() const = 0;
+  /// Nodes moved in one step, sub-steps counted, and nodes of the bodies that move at all.
+  virtual double node_updates_per_step() const = 0;
+  /// Nodes of all bodies.
+  virtual std::int64_t n_nodes() const = 0;
+
+  /// Time of the displacements. The velocities belong to half a step, or half a sub-step in the layer,
+  /// earlier.
+  double time_s() const { return static_cast<double>(step()) * step_s(); }
+  virtual std::int64_t step() const = 0;
+
+  virtual const std::vector<Probe>& probes() const = 0;
+  /// Displacements and velocities of the probes' nodes between two steps, see displacement_values.
+  virtual std::vector<double> probed_u_m() const = 0;
+  virtual std::vector<double> probed_v_m_per_s() const = 0;
+
+  /// Takes at most `most_steps` steps, several of them in one sweep through memory. Every contact update is
+  /// shown to the recorder.
+  /// @return the number of steps taken
+  /// @throws what recorder and `between` throw; after that only start may follow.
+  virtual std::int64_t advance(Recorder& recorder, std::int64_t most_steps, const Between& between) = 0;
+
+  /// Energies and works up to the last half (sub-)step.
+  virtual record::Energies energies() = 0;
+  virtual double kinetic_energy_J_per_m() const = 0;
+  virtual double mass_kg_per_m() const = 0;
+  /// Kinetic energy of bodies that move as fast as an interface node would after one step in which its
+  /// tractions are not balanced. With h/c_L for the step it is near sigma^2/(2E) times the bodies' area.
+  virtual double energy_of_tractions_J_per_m() const = 0;
+
+  virtual Snapshot snapshot() const = 0;
+
+ protected:
+  TimeStepper() = default;
+  TimeStepper(const TimeStepper&) = default;
+  TimeStepper(TimeStepper&&) = default;
+  TimeStepper& operator=(const TimeStepper&) = default;
+  TimeStepper& operator=(TimeStepper&&) = default;
+};
+
+}  // namespace slipfront::motion

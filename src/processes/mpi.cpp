@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "processes/processes.hpp"
+
+#ifdef SLIPFRONT_MPI
+#include <mpi.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <vector>
+
+#include "base/clock.hpp"
+#endif
+
+namespace slipfront {
+
+#ifdef SLIPFRONT_MPI
+
+namespace {
+
+/// MPI counts with int.
+constexpr std::size_t most_bytes = std::size_t{1} << 30;
+
+/// What starters of MPI set for each process: Open MPI, PMIx, PMI (MPICH, Slurm).
+bool is_started_by_mpi() {
+  constexpr std::array names = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"};
+  return std::ranges::any_of(names, [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
+/// Over MPI_COMM_WORLD, whose errors end the program.
+class MpiProcesses final : public Processes {
+ public:
+  MpiProcesses(int& argc, char**& argv) {
+    int provided = 0;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  }
+  MpiProcesses(const MpiProcesses&) = delete;
+  MpiProcesses& operator=(const MpiProcesses&) = delete;
+  ~MpiProcesses() override { MPI_Finalize(); }
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+
+  void send(int to, const Parcel& parcel) override {
+    const Waiting waiting(counters_);
+    const auto bytes = parcel.bytes();
+    const auto n = static_cast<std::uint64_t>(bytes.size());
+    MPI_Send(&n, 1, MPI_UINT64_T, to, tag, MPI_COMM_WORLD);
+    for (std::size_t at = 0; at < bytes.size(); at += most_bytes)
+      MPI_Send(bytes.data() + at, static_cast<int>(std::min(most_bytes, bytes.size() - at)), MPI_BYTE, to,
+               tag, MPI_COMM_WORLD);
+    count(bytes.size());
+  }
+
+  Parcel receive(int from) override {
+    const Waiting waiting(counters_);
+    std::uint64_t n = 0;
+    MPI_Recv(&n, 1, MPI_UINT64_T, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    std::vector<std::byte> bytes(n);
+    for (std::size_t at = 0; at < bytes.size(); at += most_bytes)
+      MPI_Recv(bytes.data() + at, static_cast<int>(std::min(most_bytes, bytes.size() - at)), MPI_BYTE, from,
+               tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    return Parcel(std::move(bytes));
+  }
+
+  void exchange(std::span<const Exchange> exchanges) override {
+    const Waiting waiting(counters_);
+    std::vector<MPI_Request> requests(2 * exchanges.size());
+    for (std::size_t k = 0; k < exchanges.size(); ++k) {
+      const auto& [with, out, in] = exchanges[k];
+      MPI_Irecv(in.data(), static_cast<int>(in.size()), MPI_DOUBLE, with, tag, MPI_COMM_WORLD,
+                &requests[2 * k]);
+      MPI_Isend(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, with, tag, MPI_COMM_WORLD,
+                &requests[2 * k + 1]);
+      count(out.size_bytes());
+    }
+    MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  }
+
+  void take_largest(std::span<double> values) override {
+    const Waiting waiting(counters_);
+    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX,
+                  MPI_COMM_WORLD);
+    count(values.size_bytes());
+  }
+
+  [[noreturn]] void fail(const std::string& message) override {
+    const auto line = "slipfront: process " + std::to_string(rank_) + ": " + message + "\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
+    MPI_Abort(MPI_COMM_WORLD, 1);
+    std::abort();
+  }
+
+ private:
+  static constexpr int tag = 0;
+
+  /// Adds the time until it goes out of scope.
+  class Waiting {
+   public:
+    explicit Waiting(Counters& counters) : counters_(counters) {}
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
+    ~Waiting() { counters_.waiting_s += seconds_since(begin_); }
+
+   private:
+    Counters& counters_;
+    Clock::time_point begin_ = Clock::now();
+  };
+
+  void count(std::size_t bytes) {
+    ++counters_.messages;
+    counters_.bytes += static_cast<std::int64_t>(bytes);
+  }
+
+  int rank_ = 0, size_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<Processes> join_processes(int& argc, char**& argv) {
+  if (!is_started_by_mpi()) return nullptr;
+  auto processes = std::make_unique<MpiProcesses>(argc, argv);
+  if (processes->size() == 1) return nullptr;
+  return processes;
+}
+
+#else
+
+std::unique_ptr<Processes> join_processes(int&, char**&) {
+  return nullptr;
+}
+
+#endif
+
+}  // namespace slipfront

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "processes/parcel.hpp"
+
+namespace slipfront {
+
+/// Processes that share one run, each with memory of its own. Number 0 leads: it alone reads options, writes
+/// files and prints.
+///
+/// A call that another process does not answer ends the program: see fail.
+class Processes {
+ public:
+  /// What this process has sent, and how long it has waited.
+  struct Counters {
+    std::int64_t messages = 0, bytes = 0;
+    double waiting_s = 0;
+  };
+  /// Numbers that go to and come from another process at the same time.
+  struct Exchange {
+    int with = 0;
+    std::span<const double> out;
+    std::span<double> in;
+  };
+
+  Processes() = default;
+  Processes(const Processes&) = delete;
+  Processes& operator=(const Processes&) = delete;
+  virtual ~Processes() = default;
+
+  virtual int rank() const = 0;
+  virtual int size() const = 0;
+
+  virtual void send(int to, const Parcel& parcel) = 0;
+  virtual Parcel receive(int from) = 0;
+  /// All of them at once; their partners call it for the other ends.
+  virtual void exchange(std::span<const Exchange> exchanges) = 0;
+  /// Replaces each number by the largest that any process has there; called by all.
+  virtual void take_largest(std::span<double> values) = 0;
+
+  /// Ends all processes at once, with exit code 1, where this one cannot go on while others wait for it.
+  [[noreturn]] virtual void fail(const std::string& message) = 0;
+
+  const Counters& counters() const { return counters_; }
+
+ protected:
+  Counters counters_;
+};
+
+/// Joins the other processes that mpirun, or another starter of MPI, has begun with this one.
+/// @return null where this process is alone, or the program was built without MPI
+std::unique_ptr<Processes> join_processes(int& argc, char**& argv);
+
+}  // namespace slipfront

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/error.hpp"
+#include "mesh/part.hpp"
+#include "motion/event.hpp"
+#include "motion/parted_stepper.hpp"
+#include "motion/support.hpp"
+#include "statics/prestress.hpp"
+#include "support/processes.hpp"
+
+namespace slipfront::motion {
+namespace {
+
+const solid::Material pmma{.youngs_modulus_Pa = 5.6e9,
+                           .poissons_ratio = 0.37,
+                           .density_kg_per_m3 = 1190,
+                           .plane = solid::Plane::strain,
+                           .stiffness_damping_s = 7e-9};
+const solid::Material gel{.youngs_modulus_Pa = 1.4e9,
+                          .poissons_ratio = 0.30,
+                          .density_kg_per_m3 = 1100,
+                          .plane = solid::Plane::strain,
+                          .stiffness_damping_s = 7e-9};
+
+/// A rupture from a weakened patch under uniform tractions.
+struct Problem {
+  mesh::Plate plate{.width_m = 0.2, .height_m = 0.03, .element_size_m = 1e-3, .corner = mesh::Corner::none};
+  const solid::Material* below = nullptr;
+  TimeStepping time{.interface_rows = 2, .interface_substeps = 4};
+  interface::ContactModel contact = support::paper_law;
+  double t_over_p = 1.2;
+  std::vector<record::ProbePlace> probes = {{"a", 0.0501, 0.0049}, {"b", 0.1004, 0.0102}};
+};
+
+struct Bodies {
+  explicit Bodies(const Problem& problem) : above(mesh::make_plate(problem.plate)) {
+    if (problem.below == nullptr) return;
+    auto plate = problem.plate;
+    plate.corner = mesh::Corner::none;
+    below = mesh::make_plate(plate);
+  }
+  std::vector<BodySource> sources(const Problem& problem) const {
+    std::vector<BodySource> sources = {{above, pmma}};
+    if (below) sources.push_back({*below, *problem.below});
+    return sources;
+  }
+  mesh::Mesh above;
+  std::optional<mesh::Mesh> below;
+};
+
+struct Begin {
+  statics::Equilibrium state;
+  Loads loads;
+};
+
+constexpr double p_Pa = 5e6;
+constexpr int halo = 3;
+
+Begin begin_of(const Problem& problem, const Bodies& bodies) {
+  const auto n = bodies.above.lower.size();
+  record::StaticState tractions;
+  for (const auto node : bodies.above.lower) tractions.x_m.push_back(bodies.above.x_m[node]);
+  for (std::size_t i = 0; i < n; ++i)
+    tractions.t_s_Pa.push_back(problem.t_over_p * p_Pa * (1 + 1e-2 * std::sin(0.1 * static_cast<double>(i))));
+  tractions.p_s_Pa.assign(n, p_Pa);
+  Begin begin{statics::prestressed(bodies.above, tractions), {tractions.t_s_Pa, tractions.p_s_Pa}};
+  if (bodies.below)
+    begin.state.below_u_m = begin.state.below_u_per_shear = solid::Field(bodies.below->n_nodes());
+  begin.loads.intact.assign(n, 1.0);
+  for (std::size_t i = n / 3 - 6; i < n / 3 + 6; ++i) begin.loads.intact[i] = 0;
+  return begin;
+}
+
+/// What a run of some steps leaves.
+struct Outcome {
+  Snapshot snapshot;
+  record::SlipRecord record;
+  record::History history;
+  record::ProbeRecord probes;
+  record::Energies energies;
+  double node_updates = 0;
+};
+
+Outcome run(TimeStepper& stepper, const Begin& begin, std::int64_t n_steps) {
+  Recorder recorder(begin.state, 1.3, halo, 1e-6);
+  auto before_m = stepper.probed_u_m();
+  ProbeRecorder probes(stepper.probes(), stepper.step_s(), 3 * stepper.step_s(), before_m, before_m);
+  Outcome outcome;
+  std::int64_t n_samples = 0;
+  Between between;
+  between.sample = [&]() -> record::History* {
+    if (stepper.step() % 7 != 0) return nullptr;
+    ++n_samples;
+    return &outcome.history;
+  };
+  between.displacements = [&](std::int64_t step) { return probes.room_for(step); };
+  between.sure_steps = [] { return std::int64_t{1000}; };
+  for (std::int64_t done = 0; done < n_steps;) {
+    const auto n = std::min<std::int64_t>(23, n_steps - done);
+    probes.expect(stepper.step(), n);
+    done += stepper.advance(recorder, n, between);
+    probes.take_rows(stepper.step(), outcome.probes);
+  }
+  outcome.snapshot = stepper.snapshot();
+  outcome.record = recorder.take(stepper.time_s());
+  outcome.energies = stepper.energies();
+  outcome.node_updates = stepper.node_updates_per_step();
+  return outcome;
+}
+
+Outcome run_by_one(const Problem& problem, std::int64_t n_steps) {
+  const Bodies bodies(problem);
+  const auto begin = begin_of(problem, bodies);
+  const auto sources = bodies.sources(problem);
+  Stepper stepper(sources, problem.contact, problem.time, {});
+  stepper.watch(locate_probes(problem.probes, sources));
+  stepper.start(begin.state, 0, begin.loads);
+  return run(stepper, begin, n_steps);
+}
+
+/// Cuts a process's part out of the whole bodies.
+class OwnPart {
+ public:
+  OwnPart(const Problem& problem, const Bodies& bodies, Processes& processes, const Division& division,
+          std::span<const double> stable_steps_s) {
+    const auto all = division.all(processes.rank()), own = division.own(processes.rank());
+    const auto whole = bodies.sources(problem);
+    meshes_.reserve(2);
+    parts_.reserve(2);
+    for (std::size_t b = 0; b < whole.size(); ++b) {
+      meshes_.push_back(mesh::columns_of(whole[b].mesh, all.begin, all.end).mesh);
+      parts_.push_back({{own.begin - all.begin, own.end - all.begin},
+                        stable_steps_s[b],
+                        {1},
+                        [&](std::span<double> values) { processes.take_largest(values); }});
+      sources_.push_back({meshes_[b], whole[b].material, &parts_[b]});
+    }
+    part_ = std::make_unique<Part>(processes, division, sources_, problem.contact, problem.time, Execution{},
+                                   Part::States{});
+  }
+  std::unique_ptr<Part> take() { return std::move(part_); }
+
+ private:
+  std::vector<mesh::Mesh> meshes_;
+  std::vector<PartOfBody> parts_;
+  std::vector<BodySource> sources_;
+  std::unique_ptr<Part> part_;
+};
+
+Outcome run_by(int n_processes, const Problem& problem, std::int64_t n_steps) {
+  test::Mailboxes mail(n_processes);
+  const Bodies bodies(problem);
+  const auto begin = begin_of(problem, bodies);
+  const auto sources = bodies.sources(problem);
+  std::vector<double> stable_steps_s;
+  for (const auto& source : sources) stable_steps_s.push_back(Body(source, problem.time).stable_step_s());
+  const auto division = divide_columns(bodies.above.grid.stride(), n_processes,
+                                       columns_per_step(stable_steps_s, problem.time), halo);
+  std::vector<std::jthread> others;
+  for (int rank = 1; rank < n_processes; ++rank)
+    others.emplace_back([&, rank] {
+      test::ThreadProcess process(mail, rank);
+      OwnPart own(problem, bodies, process, division, stable_steps_s);
+      const auto part = own.take();
+      serve(process, *part);
+    });
+  test::ThreadProcess leader(mail, 0);
+  std::vector<const mesh::Mesh*> meshes = {&bodies.above};
+  if (bodies.below) meshes.push_back(&*bodies.below);
+  OwnPart own(problem, bodies, leader, division, stable_steps_s);
+  PartedStepper stepper(leader, division, own.take(), meshes);
+  stepper.watch(locate_probes(problem.probes, sources));
+  stepper.start(begin.state, 0, begin.loads);
+  return run(stepper, begin, n_steps);
+}
+
+/// @param rounding  of the sums over nodes
+void expect_same(const Outcome& one, const Outcome& several, double rounding) {
+  EXPECT_EQ(one.snapshot.time_s, several.snapshot.time_s);
+  EXPECT_EQ(one.snapshot.u_m.x, several.snapshot.u_m.x);
+  EXPECT_EQ(one.snapshot.u_m.y, several.snapshot.u_m.y);
+  EXPECT_EQ(one.snapshot.v_m_per_s.x, several.snapshot.v_m_per_s.x);
+  EXPECT_EQ(one.snapshot.v_m_per_s.y, several.snapshot.v_m_per_s.y);
+  ASSERT_EQ(one.record.onsets.size(), several.record.onsets.size());
+  for (std::size_t k = 0; k < one.record.onsets.size(); ++k) {
+    EXPECT_EQ(one.record.onsets[k].node, several.record.onsets[k].node);
+    EXPECT_EQ(one.record.onsets[k].time_s, several.record.onsets[k].time_s);
+    for (int a = 0; a < 2 * halo + 1; ++a) {
+      const auto& x = one.record.around_onset(k)[a];
+      const auto& y = several.record.around_onset(k)[a];
+      if (std::isnan(x.t_Pa)) {
+        EXPECT_TRUE(std::isnan(y.t_Pa));
+        continue;
+      }
+      EXPECT_EQ(x.t_Pa, y.t_Pa);
+      EXPECT_EQ(x.p_Pa, y.p_Pa);
+    }
+  }
+  ASSERT_EQ(one.record.stops.size(), several.record.stops.size());
+  for (std::size_t k = 0; k < one.record.stops.size(); ++k) {
+    EXPECT_EQ(one.record.stops[k].node, several.record.stops[k].node);
+    EXPECT_EQ(one.record.stops[k].time_s, several.record.stops[k].time_s);
+  }
+  EXPECT_EQ(one.record.n_onsets_left_out, several.record.n_onsets_left_out);
+  EXPECT_EQ(one.record.resolution_s, several.record.resolution_s);
+  EXPECT_EQ(one.history.time_s, several.history.time_s);
+  for (const auto& field : record::history_fields)
+    EXPECT_EQ(one.history.*field.member, several.history.*field.member) << field.name;
+  EXPECT_EQ(one.probes.time_s, several.probes.time_s);
+  for (const auto& field : record::probe_fields)
+    EXPECT_EQ(one.probes.*field.member, several.probes.*field.member) << field.name;
+  double largest = 0;
+  for (const auto& term : record::energy_terms)
+    largest = std::max(largest, std::abs(one.energies.*term.member));
+  for (const auto& term : record::energy_terms)
+    EXPECT_NEAR(one.energies.*term.member, several.energies.*term.member, rounding * largest) << term.name;
+  EXPECT_EQ(one.node_updates, several.node_updates);
+}
+
+constexpr std::int64_t n_steps = 150;
+
+void expect_parts_change_nothing(const Problem& problem, std::vector<int> numbers = {2, 3}) {
+  const auto one = run_by_one(problem, n_steps);
+  EXPECT_GT(one.record.onsets.size(), 20U);
+  for (const int n : numbers) {
+    SCOPED_TRACE(fmt::format("{} processes", n));
+    const bool is_single = problem.time.precision == Precision::single_precision;
+    expect_same(one, run_by(n, problem, n_steps), is_single ? 1e-7 : 1e-13);
+  }
+}
+
+TEST(Parts, LeaveTheMotionAsItIs) {
+  expect_parts_change_nothing(Problem{}, {2, 3, 4, 5});
+}
+
+TEST(Parts, WithoutSubSteps) {
+  Problem problem;
+  problem.time.interface_substeps = 1;
+  problem.time.interface_rows = 1;
+  expect_parts_change_nothing(problem);
+}
+
+TEST(Parts, WithEachCorner) {
+  for (const auto corner : {mesh::Corner::relief, mesh::Corner::fillet}) {
+    SCOPED_TRACE(test::name_of(corner));
+    Problem problem;
+    problem.plate.corner = corner;
+    expect_parts_change_nothing(problem);
+  }
+}
+
+TEST(Parts, BetweenAbsorbingEdges) {
+  Problem problem;
+  problem.plate.sides = mesh::Sides::absorbing;
+  problem.plate.top = mesh::Top::absorbing;
+  expect_parts_change_nothing(problem);
+}
+
+TEST(Parts, InSinglePrecision) {
+  for (const auto corner : {mesh::Corner::none, mesh::Corner::relief}) {
+    Problem problem;
+    problem.plate.corner = corner;
+    problem.time.precision = Precision::single_precision;
+    expect_parts_change_nothing(problem);
+  }
+}
+
+TEST(Parts, OfTwoBodies) {
+  for (const auto algorithm :
+       {interface::ContactAlgorithm::direct, interface::ContactAlgorithm::predictor_corrector}) {
+    Problem problem;
+    problem.below = &gel;
+    problem.contact.algorithm = algorithm;
+    expect_parts_change_nothing(problem);
+  }
+}
+
+TEST(Parts, WithAPredictorCorrector) {
+  Problem problem;
+  problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
+  expect_parts_change_nothing(problem);
+}
+
+TEST(Parts, WithRegularisedFriction) {
+  Problem problem;
+  problem.contact.regularisation = {.relaxed = interface::Relaxed::strength, .time_s = 0.5e-6};
+  expect_parts_change_nothing(problem);
+}
+
+TEST(Parts, AreNoNarrowerThanTheirHalo) {
+  EXPECT_THROW(divide_columns(201, 40, 5, 3), UserError);
+  const auto division = divide_columns(2001, 8, 5, 3);
+  for (int part = 0; part < 8; ++part) {
+    EXPECT_GE(division.own(part).end - division.own(part).begin, division.halo);
+    EXPECT_GE(division.halo, 5 * division.steps_per_exchange + 3);
+  }
+}
+
+}  // namespace
+}  // namespace slipfront::motion
