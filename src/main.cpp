@@ -8,12 +8,16 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/python_command.hpp"
+#include "processes/processes.hpp"
+#include "run/parts.hpp"
 
 namespace {
 
@@ -63,12 +67,41 @@ int report(int code, const std::string& message) {
   return code;
 }
 
+/// Of several processes all but the leader wait for what it asks of them.
+class Leading {
+ public:
+  explicit Leading(slipfront::Processes& processes) : processes_(processes) {}
+  Leading(const Leading&) = delete;
+  Leading& operator=(const Leading&) = delete;
+  ~Leading() { slipfront::run::dismiss(processes_); }
+
+ private:
+  slipfront::Processes& processes_;
+};
+
+/// Other commands would do all of their work in each process.
+void require_run(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-' || std::string_view(argv[1]) == "run") return;
+  throw slipfront::UserError("slipfront: only run can be shared by several processes; start {} alone",
+                             argv[1]);
+}
+
 int run(int argc, char** argv) {
+  const auto processes = slipfront::join_processes(argc, argv);
+  if (processes && processes->rank() > 0) {
+    slipfront::run::serve(*processes);
+    return done;
+  }
+  std::optional<Leading> leading;
+  if (processes) {
+    leading.emplace(*processes);
+    require_run(argc, argv);
+  }
   slipfront::cli::become_python_command(argc, argv);
   slipfront::cli::Program program("slipfront", "Slip fronts at frictional interfaces",
                                   slipfront::cli::version_text());
   auto& command = program.command();
-  slipfront::cli::add_run(command);
+  slipfront::cli::add_run(command, processes.get());
   slipfront::cli::add_reproduce(command);
   slipfront::cli::add_study(command);
   slipfront::cli::add_verify(command);

@@ -8,12 +8,14 @@
 
 #include "cli/command.hpp"
 #include "input/schema.hpp"
+#include "processes/processes.hpp"
 
 /// The subcommands, one file each. `add_<name>` registers its options and, as its callback, its work; the
 /// work reports failure by the exceptions of base/error.hpp, which main turns into one line and an exit code.
 namespace slipfront::cli {
 
-void add_run(Command& app);
+/// @param processes  that share a run with this one; null where it is alone
+void add_run(Command& app, Processes* processes);
 void add_reproduce(Command& app);
 void add_study(Command& app);
 void add_verify(Command& app);

@@ -158,6 +158,13 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
     folder.require_empty(options.overwrite);
     require_fit(arguments, *config, folder.dir());
   }
+  if (options.session.processes != nullptr && config) {
+    try {
+      run::require_divisible(*config);
+    } catch (const UserError& error) {
+      throw arguments.with_place(error);
+    }
+  }
   catch_interrupts();
   try {
     const auto [result, initial] = run_or_go_on(arguments, options, folder, config);
@@ -174,10 +181,11 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
 
 }  // namespace
 
-void add_run(Command& app) {
+void add_run(Command& app, Processes* processes) {
   Command* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
   const auto arguments = add_case_arguments(*command);
   auto options = std::make_shared<RunArguments>();
+  options->session.processes = processes;
   command->get_option("CASE")->required(false);
   command->add_option("-o,--output", options->dir, "Folder for the results")->type_name("DIR");
   command

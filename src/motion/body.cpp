@@ -23,6 +23,10 @@ double stable_step_s_of(const BodySource& source, const solid::Operator& op) {
 
 }  // namespace
 
+double stable_step_s(const BodySource& body) {
+  return stable_step_s_of(body, solid::make_operator(body.mesh, body.material));
+}
+
 Body::Body(const BodySource& source, const TimeStepping& time)
     : motion_{solid::make_operator(source.mesh, source.material), source.material.stiffness_damping_s,
               solid::Field(source.mesh.n_nodes()), solid::Field(source.mesh.n_nodes()),

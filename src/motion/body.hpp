@@ -25,6 +25,9 @@ struct BodyStep {
   record::Energies works;
 };
 
+/// Of a whole body.
+double stable_step_s(const BodySource& body);
+
 /// A deformable body on its own: its cells in levels, each with a step of its own, and its motion. It knows
 /// nothing of contact: the velocities of its interface nodes are kicked by its cells, and someone else moves
 /// them.

@@ -2,6 +2,9 @@
 #include "processes/processes.hpp"
 
 #ifdef SLIPFRONT_MPI
+// Without the C++ bindings, which MPI no longer has: of Open MPI and of MPICH.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
 #include <unistd.h>
 

@@ -69,6 +69,30 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
   return initial;
 }
 
+void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper) {
+  std::vector<std::string> states;  // of the parts, where several processes share the event
+  std::int64_t step = stepper.step();
+  const auto* parted = dynamic_cast<const motion::PartedStepper*>(&stepper);
+  if (parted != nullptr) states = parted->states();
+  archive(states, step);
+  if (parted == nullptr) archive(dynamic_cast<motion::Stepper&>(stepper));
+}
+
+void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper) {
+  std::vector<std::string> states;
+  std::int64_t step = 0;
+  archive(states, step);
+  auto* parted = dynamic_cast<motion::PartedStepper*>(&stepper);
+  if (parted == nullptr && !states.empty())
+    throw UserError("the run was begun with {} processes; go on with as many", states.size());
+  if (parted == nullptr) {
+    archive(dynamic_cast<motion::Stepper&>(stepper));
+  } else {
+    if (states.empty()) throw UserError("the run was begun with one process; go on with one");
+    parted->take_states(states, step);
+  }
+}
+
 void Checkpoints::keep(const CheckpointHead& head,
                        const std::function<void(results::OutputArchive&)>& write) {
   auto files = numbered(dir_);

@@ -34,6 +34,11 @@ struct CheckpointHead {
 /// @throws UserError where it is of another plate
 InitialState read_initial_state(results::InputArchive& archive, const input::Case& config);
 
+/// The motion in an event, as it is kept.
+void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper);
+/// @throws UserError where it is that of another number of processes
+void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper);
+
 /// The checkpoints in a folder: the last two are kept, numbered as they come.
 class Checkpoints {
  public:

@@ -109,14 +109,19 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
 
 namespace {
 
-std::unique_ptr<motion::Stepper> started_stepper(const input::Case& config, const InitialState& initial,
-                                                 const motion::Execution& execution) {
+std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, const InitialState& initial,
+                                                     const motion::Execution& execution,
+                                                     const Together& together) {
   const auto& state = event_state(config, initial);
-  auto loads = starting_loads(config, state, initial.mesh, initial.mu_s);
-  auto stepper = new_stepper(config, initial.mesh, initial.base, execution);
-  stepper->watch(probes_of(config, initial.mesh, initial.base));
-  stepper->start(state, top_speed_m_per_s(config), std::move(loads));
-  return stepper;
+  const auto start = [&](auto stepper) {
+    stepper->watch(probes_of(config, initial.mesh, initial.base));
+    stepper->start(state, top_speed_m_per_s(config),
+                   starting_loads(config, state, initial.mesh, initial.mu_s));
+    return stepper;
+  };
+  if (together.processes != nullptr)
+    return start(new_parted_stepper(config, initial.mesh, initial.base, together, execution));
+  return start(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
 void release_displacements(statics::Equilibrium& state) {
@@ -138,8 +143,9 @@ void release_nodes(mesh::Mesh& mesh) {
 
 }  // namespace
 
-std::unique_ptr<motion::Stepper> start_event(const input::Case& config, InitialState& initial,
-                                             const motion::Execution& execution) {
+std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
+                                                 const motion::Execution& execution,
+                                                 const Together& together) {
   const auto* from = &event_state(config, initial);
   if (from != &initial.common) release_displacements(initial.common);
   if (from != &initial.spontaneous) release_displacements(initial.spontaneous);
@@ -147,7 +153,7 @@ std::unique_ptr<motion::Stepper> start_event(const input::Case& config, InitialS
     release_displacements(initial.ramp->common);
     release_displacements(initial.ramp->spontaneous);
   }
-  auto stepper = started_stepper(config, initial, execution);
+  auto stepper = started_stepper(config, initial, execution, together);
   release_displacements(initial.common);
   release_displacements(initial.spontaneous);
   release_nodes(initial.mesh);
@@ -155,17 +161,22 @@ std::unique_ptr<motion::Stepper> start_event(const input::Case& config, InitialS
   return stepper;
 }
 
-std::unique_ptr<motion::Stepper> make_stepper(const input::Case& config, InitialState& initial,
-                                              const motion::Execution& execution) {
-  auto stepper = new_stepper(config, initial.mesh, initial.base, execution);
-  stepper->watch(probes_of(config, initial.mesh, initial.base));
-  release_nodes(initial.mesh);
-  if (initial.base) release_nodes(*initial.base);
-  return stepper;
+std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
+                                                  const motion::Execution& execution,
+                                                  const Together& together) {
+  const auto make = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
+    stepper->watch(probes_of(config, initial.mesh, initial.base));
+    release_nodes(initial.mesh);
+    if (initial.base) release_nodes(*initial.base);
+    return stepper;
+  };
+  if (together.processes != nullptr)
+    return make(new_parted_stepper(config, initial.mesh, initial.base, together, execution));
+  return make(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
 motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
-                             motion::Stepper& stepper) {
+                             motion::TimeStepper& stepper) {
   const bool triggered =
       (is_at_edge(config.event) && config.trigger.form != interface::TriggerForm::weakened) ||
       (config.event == interface::EventKind::nucleation &&
@@ -183,11 +194,11 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
 
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution) {
-  const auto stepper = started_stepper(config, initial, execution);
+  const auto stepper = started_stepper(config, initial, execution, {});
   return run_from(config, initial, *stepper, monitor);
 }
 
-Result run_from(const input::Case& config, const InitialState& initial, motion::Stepper& stepper,
+Result run_from(const input::Case& config, const InitialState& initial, motion::TimeStepper& stepper,
                 const motion::Monitor& monitor, motion::Sink* sink) {
   const auto start = Clock::now();
   auto result = unmeasured(config, stepper, begin_event(config, initial, stepper).run(monitor, sink));
@@ -196,7 +207,7 @@ Result run_from(const input::Case& config, const InitialState& initial, motion::
   return result;
 }
 
-Result unmeasured(const input::Case& config, const motion::Stepper& stepper, motion::Event event) {
+Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event) {
   Result result;
   result.config = config;
   result.speeds = wave_speeds(config.material);

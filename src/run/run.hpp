@@ -16,6 +16,7 @@
 #include "run/initial_state.hpp"
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
+#include "run/parts.hpp"
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
 
@@ -47,19 +48,22 @@ struct Result {
 
 /// The bodies in a case's initial state, about to move. Takes what only this needs out of the initial state:
 /// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
-std::unique_ptr<motion::Stepper> start_event(const input::Case& config, InitialState& initial,
-                                             const motion::Execution& execution = {});
+/// @param together  the processes that share it
+std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
+                                                 const motion::Execution& execution = {},
+                                                 const Together& together = {});
 
 /// The same plate without its motion, which is to be read from where it was kept.
-std::unique_ptr<motion::Stepper> make_stepper(const input::Case& config, InitialState& initial,
-                                              const motion::Execution& execution = {});
+std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
+                                                  const motion::Execution& execution = {},
+                                                  const Together& together = {});
 
 /// The event of a case, about to begin with a started stepper.
 motion::EventRun begin_event(const input::Case& config, const InitialState& initial,
-                             motion::Stepper& stepper);
+                             motion::TimeStepper& stepper);
 
 /// The case, the steps and an event, without fronts yet.
-Result unmeasured(const input::Case& config, const motion::Stepper& stepper, motion::Event event);
+Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper, motion::Event event);
 /// Finds the fronts of a result's event, and what its reader should know.
 void measure(Result& result, const InitialState& initial);
 
@@ -67,7 +71,7 @@ void measure(Result& result, const InitialState& initial);
 /// ends the event early and is told by event.end.
 /// @param started  by start_event
 /// @param sink     takes samples and snapshots; without one the event keeps them
-Result run_from(const input::Case& config, const InitialState& initial, motion::Stepper& started,
+Result run_from(const input::Case& config, const InitialState& initial, motion::TimeStepper& started,
                 const motion::Monitor& monitor, motion::Sink* sink = nullptr);
 /// Starts the event as well, and leaves the initial state as it is.
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,

@@ -52,6 +52,7 @@ class Session {
   bool look(const char* part, std::int64_t step, std::int64_t total, double time_s);
   void keep();
   void tell();
+  Together together() const { return {options_.processes, dir_ / case_file}; }
   double wall_s() const { return head_.wall_s + seconds_since(event_began_); }
   /// The run's event is over: makes its results.
   Finished finish(motion::Event event);
@@ -72,9 +73,10 @@ class Session {
   double kept_time_s_ = 0, tell_interval_s_ = least_tell_interval_s;
 
   InitialState initial_;
-  motion::Stepper* stepper_ = nullptr;  ///< of the ramp or of the event
-  motion::RampRun* ramp_ = nullptr;     ///< while it goes
-  std::unique_ptr<motion::Stepper> event_stepper_;
+  motion::TimeStepper* stepper_ = nullptr;   ///< of the ramp or of the event
+  motion::Stepper* ramp_stepper_ = nullptr;  ///< while the ramp goes
+  motion::RampRun* ramp_ = nullptr;
+  std::unique_ptr<motion::TimeStepper> event_stepper_;
   std::optional<motion::EventRun> event_;
   std::optional<results::ResultStream> stream_;
 };
@@ -91,7 +93,7 @@ Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
     } else {
       initial_ = initial_state(kept.get());
       ramp_ = nullptr;
-      stepper_ = nullptr;
+      stepper_ = ramp_stepper_ = nullptr;
       if (hooks_.request() == Request::stop) throw Interrupted("interrupted before the event");
       begin_event(nullptr);
     }
@@ -144,7 +146,7 @@ void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, moti
     kept->rest.close();
   }
   began_ = true;
-  stepper_ = &stepper;
+  stepper_ = ramp_stepper_ = &stepper;
   ramp_ = &ramp;
   kept_time_s_ = stepper.time_s();
 }
@@ -152,8 +154,8 @@ void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, moti
 void Session::begin_event(Checkpoints::Kept* kept) {
   if (kept != nullptr) {
     initial_ = read_initial_state(kept->rest, config_);
-    event_stepper_ = make_stepper(config_, initial_, execution_);
-    kept->rest(*event_stepper_);
+    event_stepper_ = make_stepper(config_, initial_, execution_, together());
+    read_motion(kept->rest, *event_stepper_);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
     results::ResultStream::Extents extents;
     kept->rest(*event_, extents);
@@ -164,7 +166,7 @@ void Session::begin_event(Checkpoints::Kept* kept) {
     files::remove_file(results::ResultStream::snapshot_file(folder_.state()));
     files::remove_file(results::ResultStream::probe_file(folder_.state()));
     stream_.emplace(folder_.state(), !config_.probes.x_m.empty());
-    event_stepper_ = start_event(config_, initial_, execution_);
+    event_stepper_ = start_event(config_, initial_, execution_, together());
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
   }
   write_static(dir_, config_, initial_);
@@ -200,10 +202,13 @@ void Session::keep() {
   // The streams first: a checkpoint must not count on rows that are not there yet.
   auto extents = stream_ ? stream_->keep() : results::ResultStream::Extents{};
   checkpoints_.keep(head, [&](results::OutputArchive& archive) {
-    if (head.in_event)
-      archive(initial_, *stepper_, *event_, extents);
-    else
-      archive(*stepper_, *ramp_);
+    if (head.in_event) {
+      archive(initial_);
+      write_motion(archive, *stepper_);
+      archive(*event_, extents);
+    } else {
+      archive(*ramp_stepper_, *ramp_);
+    }
   });
   kept_ = Clock::now();
   kept_time_s_ = stepper_->time_s();

@@ -24,6 +24,7 @@ struct SessionOptions {
   double keep_every_wall_s = 300;                                 ///< wall time between checkpoints
   double keep_every_s = std::numeric_limits<double>::infinity();  ///< simulated time between them
   std::optional<std::string> shared_states;                       ///< folder of SharedStates, see there
+  Processes* processes = nullptr;  ///< that share the event with this one; the others are in run::serve
 };
 
 /// All three are called by the thread that steps.

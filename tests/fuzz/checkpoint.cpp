@@ -94,7 +94,9 @@ std::string checkpoint_of(const input::Case& config) {
     head.in_event = true;
     event.run([&](std::int64_t, std::int64_t) {
       checkpoints.keep(head, [&](results::OutputArchive& archive) {
-        archive(initial, *stepper, event, results::ResultStream::Extents{});
+        archive(initial);
+        run::write_motion(archive, *stepper);
+        archive(event, results::ResultStream::Extents{});
       });
       return false;
     });
@@ -110,7 +112,7 @@ void go_on(const input::Case& config, run::Checkpoints::Kept& kept) {
   if (kept.head.in_event) {
     auto initial = run::read_initial_state(kept.rest, config);
     const auto stepper = run::make_stepper(config, initial);
-    kept.rest(*stepper);
+    run::read_motion(kept.rest, *stepper);
     auto event = run::begin_event(config, initial, *stepper);
     results::ResultStream::Extents extents;
     kept.rest(event, extents);
