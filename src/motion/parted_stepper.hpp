@@ -44,6 +44,10 @@ class PartedStepper final : public TimeStepper {
   double energy_of_tractions_J_per_m() const override;
   Snapshot snapshot() const override;
 
+  const Division& division() const { return division_; }
+  /// What each part has cost since this process began or went on with the event.
+  std::vector<PartCost> costs() const;
+
   /// The states of all parts, and the same back: for as many processes.
   std::vector<std::string> states() const;
   void take_states(const std::vector<std::string>& states, std::int64_t step);

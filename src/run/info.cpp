@@ -134,9 +134,51 @@ double expected_statics_s(const Info& info) {
   return info.solver == statics::StaticSolver::iterative ? 1e-6 * n : 0;
 }
 
+/// What the leader asks all parts for during an event: steps until it looks, energies.
+double commands_of(const Needs& needs) {
+  constexpr double steps_per_look = 50, steps_per_check = 100;  // of motion::EventRun, motion::Watch
+  const auto steps = static_cast<double>(needs.steps);
+  return steps / steps_per_look + needs.energy_rows + 2 * needs.snapshots +
+         std::max(needs.energy_rows, steps / steps_per_check);
+}
+
+Info::Shared shared_by(const input::Case& config, const mesh::Mesh& plate, motion::Stepper& stepper,
+                       const Sharing& sharing, const Info& info) {
+  require_divisible(config);
+  std::vector<double> stable_steps_s;
+  for (const auto& body : stepper.bodies()) stable_steps_s.push_back(body.stable_step_s());
+  const int n_columns = plate.grid.stride();
+  SharedWork work;
+  work.n_nodes = static_cast<double>(info.n_nodes);
+  work.n_cells = static_cast<double>(info.n_cells);
+  work.n_columns = n_columns;
+  work.node_updates_per_step = stepper.node_updates_per_step();
+  work.node_updates_per_s = info.node_updates_per_s;
+  stepper.visit_columns({n_columns / 2, n_columns / 2 + 1}, [&](const auto*, std::size_t n) {
+    work.values_per_column += static_cast<double>(n);
+  });
+  work.updates_per_step = std::round(info.step_s / info.substep_s);
+  work.steps = static_cast<double>(info.n_steps);
+  work.commands = commands_of(info.needs);
+  work.history_rows = info.needs.history_rows;
+  work.values_per_row = static_cast<double>(record::history_fields.size()) * n_columns;
+  work.snapshots = info.needs.snapshots;
+  work.statics_s = expected_statics_s(info);
+  work.statics_bytes = info.solver_bytes;
+  work.precision = config.time.precision;
+  work.bytes_per_interface_node = bytes_per_interface_node(config);
+  work.program_bytes = program_bytes;
+  Info::Shared shared;
+  shared.division = motion::divide_columns(n_columns, sharing.n_processes,
+                                           motion::columns_per_step(stable_steps_s, config.time),
+                                           motion::halo_for(plate, config.fronts.l_star_m));
+  shared.cost = process_cost(work, shared.division, sharing.n_processors, sharing.network);
+  return shared;
+}
+
 }  // namespace
 
-Info info(const input::Case& config) {
+Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   Info info;
   info.speeds = wave_speeds(config.material);
   const auto meshes = check(config);
@@ -152,6 +194,7 @@ Info info(const input::Case& config) {
   add_needs(config, meshes, stepper->node_updates_per_step(), info);
   info.node_updates_per_s = stepper->node_updates_per_step() / measured_step_s(*stepper, meshes);
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info);
+  if (sharing) info.shared = shared_by(config, meshes.plate, *stepper, *sharing, info);
   return info;
 }
 

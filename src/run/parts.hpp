@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/parted_stepper.hpp"
+#include "processes/network.hpp"
 #include "processes/processes.hpp"
 
 namespace slipfront::run {
@@ -29,6 +31,9 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
                                                           const std::optional<mesh::Mesh>& base,
                                                           const Together& together,
                                                           const motion::Execution& execution);
+
+/// Between each process and the next one, one after the other. To be called by the leader, as above.
+std::vector<Link> measure_network(Processes& processes);
 
 /// What the processes do that do not lead: their parts of what the leader runs, until it dismisses them.
 void serve(Processes& processes);
