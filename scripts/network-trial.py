@@ -5,9 +5,10 @@
     scripts/network-trial.py PROGRAM -o OUT.csv [--quick]     as root, with iproute2 and Open MPI 4.1
 
 By shared memory with 1, 2, 4 and 8 processes; and with 2 and 4 between network namespaces, each taken for a
-machine. The namespaces are joined by a switch of this script's own, since not every kernel has netem: each has
-a tap device, and the script takes every Ethernet frame from one and puts it into another after the latency. The
-bandwidth is limited by tc tbf on the devices. Nothing of it is seen outside; all is removed at the end.
+machine. The namespaces are joined by a switch of this script's own, since not every kernel has netem: each
+has a tap device, and the script takes every Ethernet frame from one and puts it into another after the
+latency. The bandwidth is limited by tc tbf on the devices. Nothing of it is seen outside; all is removed at
+the end.
 
 What a run takes is the median over some runs of run.json's wall_s over its steps; the prediction is that of
 info in the same minutes, with latency and bandwidth by bench --network over the same network. Both go before
@@ -32,10 +33,12 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any, Self
 
 ROOT = Path(__file__).resolve().parent.parent
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 TIMEOUT_S = 120
+PROCESSORS = os.cpu_count() or 1
 
 # A rupture under uniform tractions, so that statics take no part: rigid_flat_a.toml on wider plates.
 CASE = ROOT / "cases" / "reference" / "rigid_flat_a.toml"
@@ -59,7 +62,7 @@ COMMON = [
 ]
 
 
-def sets(case, end_s):
+def sets(case: str, end_s: float) -> list[str]:
     keys = [*COMMON, *CASES[case], f"time.end_s={end_s}"]
     return [word for key in keys for word in ("--set", key)]
 
@@ -67,18 +70,19 @@ def sets(case, end_s):
 # --- the switch
 
 
-def make_tap(name):
+def make_tap(name: str) -> int:
     tap = os.open("/dev/net/tun", os.O_RDWR | os.O_NONBLOCK)
     TUNSETIFF, IFF_TAP, IFF_NO_PI = 0x400454CA, 0x0002, 0x1000
     fcntl.ioctl(tap, TUNSETIFF, struct.pack("16sH22x", name.encode(), IFF_TAP | IFF_NO_PI))
     return tap
 
 
-def carry_frames(taps, latency_s):
+def carry_frames(taps: list[int], latency_s: float) -> None:
     """Until it is killed: from each tap to the one of the frame's address, in order, after the latency."""
     os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
     by_address = {bytes([2, 0, 0, 0, 0, k]): tap for k, tap in enumerate(taps)}
-    waiting, number = [], 0
+    waiting: list[tuple[float, int, int, bytes]] = []
+    number = 0
     while True:
         timeout = None if not waiting else max(0.0, waiting[0][0] - time.monotonic())
         readable, _, _ = select.select(taps, [], [], timeout)
@@ -97,17 +101,21 @@ def carry_frames(taps, latency_s):
                 os.write(tap, frame)
 
 
+def ip(*words: str) -> None:
+    subprocess.run(["ip", *words], check=True)
+
+
 class Machines:
     """Network namespaces of this process's, with a switch between them while it is used as a context."""
 
-    def __init__(self, count, latency_s, bits_per_s, work):
+    def __init__(self, count: int, latency_s: float, bits_per_s: int, work: Path):
         self.names = [f"slipfront{os.getpid()}-{k}" for k in range(count)]
         self.addresses = [f"10.77.0.{k + 1}" for k in range(count)]
         self.latency_s, self.bits_per_s, self.work = latency_s, bits_per_s, work
-        self.switch = None
-        self.taps = []
+        self.switch = 0
+        self.taps: list[int] = []
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         try:
             for k, name in enumerate(self.names):
                 self.add(k, name)
@@ -121,32 +129,20 @@ class Machines:
             os._exit(0)
         return self
 
-    def add(self, k, name):
-        ip = lambda *words: subprocess.run(["ip", *words], check=True)  # noqa: E731
+    def add(self, k: int, name: str) -> None:
         tap = f"sf{os.getpid() % 100000}t{k}"
         ip("netns", "add", name)
         self.taps.append(make_tap(tap))
         ip("link", "set", tap, "netns", name)
-        inside = lambda *words: ip("-n", name, *words)  # noqa: E731
-        inside("link", "set", "lo", "up")
-        inside(
-            "link",
-            "set",
-            tap,
-            "address",
-            f"02:00:00:00:00:{k:02x}",
-            "mtu",
-            "9000",
-            "txqueuelen",
-            "10000",
-            "up",
-        )
-        inside("addr", "add", f"{self.addresses[k]}/24", "dev", tap)
+        ip("-n", name, "link", "set", "lo", "up")
+        ip("-n", name, "link", "set", tap, "address", f"02:00:00:00:00:{k:02x}", "mtu", "9000")
+        ip("-n", name, "link", "set", tap, "txqueuelen", "10000", "up")
+        ip("-n", name, "addr", "add", f"{self.addresses[k]}/24", "dev", tap)
         if self.bits_per_s:
             shape = ["rate", str(self.bits_per_s), "burst", "20000", "latency", "400ms"]
             subprocess.run(["tc", "-n", name, "qdisc", "add", "dev", tap, "root", "tbf", *shape], check=True)
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         if self.switch:
             os.kill(self.switch, signal.SIGKILL)
             os.waitpid(self.switch, 0)
@@ -155,7 +151,7 @@ class Machines:
         for tap in self.taps:
             os.close(tap)
 
-    def agent(self):
+    def agent(self) -> Path:
         """What mpirun starts its daemons with instead of ssh: ADDRESS COMMAND..."""
         script = self.work / "agent"
         lines = ["#!/bin/sh", 'address=$1; shift; case "$address" in']
@@ -165,7 +161,7 @@ class Machines:
         script.chmod(0o755)
         return script
 
-    def mpirun(self, processes):
+    def mpirun(self, processes: int) -> list[str]:
         each = processes // len(self.names)
         hosts = ",".join(f"{address}:{each}" for address in self.addresses)
         options = {
@@ -182,22 +178,22 @@ class Machines:
 class SharedMemory:
     """This machine as it is."""
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         pass
 
-    def mpirun(self, processes):
+    def mpirun(self, processes: int) -> list[str]:
         return ["mpirun", "-n", str(processes)]
 
 
 # --- measurement
 
 
-def call(words, timeout_s=TIMEOUT_S):
+def call(command: list[Any], timeout_s: float = TIMEOUT_S) -> str:
     """What a command prints, before other work on the machine."""
-    words = ["nice", "-n", "-20", *map(str, words)]
+    words = ["nice", "-n", "-20", *map(str, command)]
     # Its own group, so that what it has started ends with it.
     with subprocess.Popen(
         words,
@@ -217,36 +213,42 @@ def call(words, timeout_s=TIMEOUT_S):
     return out
 
 
+Network = SharedMemory | Machines
+
+
 class Trial:
-    def __init__(self, program, work, repeats):
+    def __init__(self, program: Path, work: Path, repeats: int):
         self.program, self.work, self.repeats = program, work, repeats
 
-    def together(self, network, processes, *words):
+    def together(self, network: Network, processes: int, *words: Any) -> str:
         if processes == 1:
             return call([self.program, *words])
         mpirun = [*network.mpirun(processes), "--oversubscribe", "--bind-to", "none"]
         return call([*mpirun, self.program, *words])
 
-    def network(self, network):
+    def link(self, network: Network) -> tuple[float, float]:
         """Latency and bandwidth between two processes."""
         told = [json.loads(self.together(network, 2, "bench", "--network", "--json")) for _ in range(3)]
-        return [statistics.median(t[key] for t in told) for key in ("latency_s", "bandwidth_bytes_per_s")]
+        latency_s, bytes_per_s = ([t[key] for t in told] for key in ("latency_s", "bandwidth_bytes_per_s"))
+        return statistics.median(latency_s), statistics.median(bytes_per_s)
 
-    def predict(self, case, end_s, processes, link):
+    def predict(self, case: str, end_s: float, processes: int, link: tuple[float, float]) -> dict[str, float]:
         """Parts of the time and of the division, by name; times in all steps."""
-        options = ["--processes", processes, "--processors", min(processes, os.cpu_count())]
+        options: list[Any] = ["--processes", processes, "--processors", min(processes, PROCESSORS)]
         options += ["--latency-s", link[0], "--bandwidth-bytes-per-s", link[1]]
         text = call([self.program, "info", CASE, *sets(case, end_s), *options])
         parts = {name: float(s) for name, s in re.findall(r"^  time: (.+?) {2,}(\S+) s$", text, re.MULTILINE)}
         return {name: s for name, s in parts.items() if name not in ("statics, leader alone", "start")}
 
-    def run(self, case, end_s, network, processes):
+    def run(self, case: str, end_s: float, network: Network, processes: int) -> dict[str, Any]:
         out = self.work / "run"
         words = [*sets(case, end_s), "--threads", "1", "-o", out, "-q", "--overwrite"]
         self.together(network, processes, "run", CASE, *words)
         return json.loads((out / "run.json").read_text())
 
-    def measure(self, case, end_s, network, name, link, processes):
+    def measure(
+        self, case: str, end_s: float, network: Network, name: str, link: tuple[float, float], processes: int
+    ) -> dict[str, Any]:
         predictions, runs = [], []
         for _ in range(self.repeats):
             predictions.append(self.predict(case, end_s, processes, link))
@@ -266,7 +268,7 @@ class Trial:
             "network": name,
             "case": case,
             "processes": processes,
-            "processors": min(processes, os.cpu_count()),
+            "processors": min(processes, PROCESSORS),
             "latency_us": link[0] * 1e6,
             "bandwidth_MB_per_s": link[1] * 1e-6,
             "own_columns": max(cost["own_columns"]) if cost else 2401,
@@ -288,7 +290,7 @@ class Trial:
         }
 
 
-def print_row(row):
+def print_row(row: dict[str, Any]) -> None:
     print(
         f"{row['network']:<22}{row['case']:<12}{row['processes']:>3} on {row['processors']}"
         f"{row['own_columns']:>7} + {row['halo_columns']:<5}{row['steps_per_exchange']:>3}"
@@ -299,7 +301,7 @@ def print_row(row):
     )
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=Path)
     parser.add_argument("-o", "--output", type=Path, required=True)
@@ -312,18 +314,18 @@ def main():
             sys.exit(f"network-trial: {tool} is missing")
     end_s, repeats = (1e-5, 1) if options.quick else (1e-4, 5)
     gbit = int(1e9)
-    networks = [("shared memory", None, (1, 2, 4, 8))]
+    networks: list[tuple[str, float | None, tuple[int, ...]]] = [("shared memory", None, (1, 2, 4, 8))]
     networks += [(f"1 Gbit/s, {ms} ms added", ms * 1e-3, (2, 4)) for ms in (0, 0.1, 1)]
     rows = []
     with tempfile.TemporaryDirectory(prefix="slipfront-network.") as folder:
         trial = Trial(options.program.resolve(), Path(folder), repeats)
         for name, latency_s, numbers in networks:
             for processes in numbers:
-                machines = (
-                    SharedMemory() if latency_s is None else Machines(processes, latency_s, gbit, trial.work)
-                )
+                machines: Network = SharedMemory()
+                if latency_s is not None:
+                    machines = Machines(processes, latency_s, gbit, trial.work)
                 with machines as network:
-                    link = trial.network(network)
+                    link = trial.link(network)
                     for case in CASES:
                         try:
                             rows.append(trial.measure(case, end_s, network, name, link, processes))
