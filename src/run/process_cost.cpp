@@ -9,12 +9,12 @@ namespace slipfront::run {
 
 namespace {
 
-constexpr double number = sizeof(double);
+constexpr double number_bytes = sizeof(double);
 
 /// Nodes and cells (x_m, y_m, cells) and the state before the event (u_m, u_per_shear).
-constexpr double bytes_of_mesh = 2 * number + sizeof(mesh::Cell), bytes_of_state = 4 * number;
+constexpr double bytes_of_mesh = 2 * number_bytes + sizeof(mesh::Cell), bytes_of_state = 4 * number_bytes;
 /// u_m, v_m_per_s of a snapshot.
-constexpr double bytes_of_snapshot = 4 * number;
+constexpr double bytes_of_snapshot = 4 * number_bytes;
 
 /// Columns of the part that computes most.
 struct Widest {
@@ -45,7 +45,7 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   cost.own_s = part.own * s_per_column;
   cost.halo_s = part.halo * s_per_column;
 
-  const double halo_bytes = part.n_sides * division.halo * work.values_per_column * number;
+  const double halo_bytes = part.n_sides * division.halo * work.values_per_column * number_bytes;
   cost.bytes_per_step = halo_bytes / division.steps_per_exchange;
   if (part.n_sides > 0)
     cost.exchange_s = work.steps / division.steps_per_exchange *
@@ -60,7 +60,7 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   if (others > 0) {
     cost.command_s = work.commands * 2 * (network.latency_s + others * leader.s_per_message);
     cost.gathering_s = work.steps * work.updates_per_step * n_parts * leader.s_per_update +
-                       passed_s(work.history_rows * work.values_per_row * number +
+                       passed_s(work.history_rows * work.values_per_row * number_bytes +
                                 work.snapshots * bytes_of_snapshot * work.n_nodes);
     cost.start_s = passed_s((bytes_of_mesh + bytes_of_state) * work.n_nodes);
   }
