@@ -36,7 +36,7 @@ Widest widest(const motion::Division& division) {
 }  // namespace
 
 ProcessCost process_cost(const SharedWork& work, const motion::Division& division, int processors,
-                         const Network& network, const LeaderRates& leader) {
+                         const Network& network, const Handling& handling) {
   const double n_parts = division.n_parts();
   const auto part = widest(division);
   const double s_per_column = work.steps * work.node_updates_per_step / work.n_columns /
@@ -50,16 +50,17 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   if (part.n_sides > 0)
     cost.exchange_s = work.steps / division.steps_per_exchange *
                       (network.latency_s + halo_bytes / network.bandwidth_bytes_per_s +
-                       2 * halo_bytes / leader.halo_bytes_per_s);
+                       2 * halo_bytes / handling.halo_bytes_per_s);
 
-  // Of the leader alone nothing passes between processes.
-  const double others = n_parts - 1, share_of_others = others / n_parts;
+  // The leader handles its own bytes as the others'.
+  const double others = n_parts - 1;
   const auto passed_s = [&](double bytes) {
-    return bytes * share_of_others * (1 / network.bandwidth_bytes_per_s + 1 / leader.handled_bytes_per_s);
+    return bytes *
+           (others / n_parts / network.bandwidth_bytes_per_s + (1 + 1 / n_parts) / handling.bytes_per_s);
   };
   if (others > 0) {
-    cost.command_s = work.commands * 2 * (network.latency_s + others * leader.s_per_message);
-    cost.gathering_s = work.steps * work.updates_per_step * n_parts * leader.s_per_update +
+    cost.command_s = work.commands * 2 * (network.latency_s + others * handling.s_per_message);
+    cost.gathering_s = work.steps * work.updates_per_step * n_parts * handling.s_per_update +
                        passed_s(work.history_rows * work.values_per_row * number_bytes +
                                 work.snapshots * bytes_of_snapshot * work.n_nodes);
     cost.start_s = passed_s((bytes_of_mesh + bytes_of_state) * work.n_nodes);

@@ -13,12 +13,12 @@ struct Network {
 /// Of processes on one machine: Open MPI 4.1, two cores of an AMD EPYC (Zen 4), a virtual machine.
 inline constexpr Network shared_memory = {0.4e-6, 4e9};
 
-/// What it costs the leader to command, and to put together what it is answered, measured on such a core.
-struct LeaderRates {
-  double s_per_message = 2e-6;       ///< to send a command or to receive an answer
-  double s_per_update = 0.1e-6;      ///< to join what one part saw in one contact update
-  double handled_bytes_per_s = 1e9;  ///< of samples and snapshots, taken apart and joined again
-  double halo_bytes_per_s = 2e9;     ///< of each process: halos packed and unpacked
+/// What a core does to what is sent, measured on such a one.
+struct Handling {
+  double s_per_message = 2e-6;    ///< the leader's, to send a command or to receive an answer
+  double s_per_update = 0.3e-6;   ///< the leader's, to join what one part saw in one contact update
+  double bytes_per_s = 1e9;       ///< samples and snapshots, packed by each part and joined by the leader
+  double halo_bytes_per_s = 5e9;  ///< packed or unpacked
 };
 
 /// What a case asks of the processes that share it.
@@ -54,25 +54,26 @@ struct ProcessCost {
   double total_s() const { return event_s() + statics_s + start_s; }
 };
 
-/// The cost of a case shared by the parts of a division, P processes on C processors of one speed:
+/// The cost of a case shared by the parts of a division, P processes on C processors of one speed.
 ///
-///   own        n u w / r max(1, P/C)               n steps, u node updates per column, w own columns, r rate
-///   halo       n u (s h) / r max(1, P/C)           s sides with a neighbour (2, or 1 of two processes), h
-///   columns exchange   n/k (L + s m / B + 2 s m / b)       k steps per exchange, m bytes of a halo, L
-///   latency,
-///                                                  B bandwidth, b packing and unpacking
-///   commands   c (2 L + 2 (P - 1) o)               c commands, o for each message of the leader
-///   gathering  n q P a + G (1/B + 1/g)             q contact updates a step, a for each part's, G bytes of
-///   samples
-///                                                  and snapshots that are not the leader's own, g its
-///                                                  handling
-///   statics    as by one process
-///   start      S (1/B + 1/g)                       S bytes of meshes and initial motion
+/// With n steps, u node updates of a column in a step, r node updates/s, latency L and bandwidth B:
+/// - own columns: n u w / r max(1, P/C), w of them
+/// - halo: n u s h / r max(1, P/C), h columns on s sides with a neighbour, 2, or 1 of two processes
+/// - exchange: n/k (L + s m/B + 2 s m/b), k steps per exchange, m bytes of a halo, b of them packed in a
+/// second
+/// - commands: c (2 L + 2 (P - 1) o), c of them, o for each message of the leader
+/// - gathering: n q P a + G F, q contact updates in a step, a to join what a part saw in one, G bytes of
+/// samples
+///   and snapshots
+/// - statics: as by one process
+/// - start: S F, S bytes of meshes and initial motion
 ///
-/// Nothing overlaps: a part waits for its neighbours before it goes on, and all wait for the leader.
+/// with F = (1 - 1/P)/B + (1 + 1/P)/g: the bytes of the others pass between processes, the leader handles all
+/// at the rate g, each part its own. Nothing overlaps: a part waits for its neighbours before it goes on, and
+/// all wait for the leader.
 /// @param work        of the whole case
 /// @param processors  of the machines together
 ProcessCost process_cost(const SharedWork& work, const motion::Division& division, int processors,
-                         const Network& network, const LeaderRates& leader = {});
+                         const Network& network, const Handling& handling = {});
 
 }  // namespace slipfront::run

@@ -39,7 +39,7 @@ motion::Division division(int n_columns, int n_parts, int halo, int steps_per_ex
 
 constexpr Network ethernet = {1e-4, 1e8};
 /// Nothing but computing takes time.
-constexpr LeaderRates at_once = {0, 0, 1e300, 1e300};
+constexpr Handling at_once = {0, 0, 1e300, 1e300};
 constexpr Network immediate = {1e-300, 1e300};
 
 TEST(ProcessCost, OfOneProcessIsItsComputing) {
@@ -101,24 +101,24 @@ TEST(ProcessCost, GrowsWithLatencyAndFallsWithBandwidth) {
 TEST(ProcessCost, OfTheLeaderGrowsWithTheNumberOfProcesses) {
   auto work = square();
   work.updates_per_step = 18;
-  const LeaderRates leader = {2e-6, 1e-7, 1e300, 1e300};
-  const auto cost = process_cost(work, division(1000, 10, 10), 10, {1e-4, 1e300}, leader);
+  const Handling handling = {2e-6, 1e-7, 1e300, 1e300};
+  const auto cost = process_cost(work, division(1000, 10, 10), 10, {1e-4, 1e300}, handling);
   EXPECT_DOUBLE_EQ(cost.command_s, 30 * 2 * (1e-4 + 9 * 2e-6));
   EXPECT_NEAR(cost.gathering_s, 1000 * 18 * 10 * 1e-7, 1e-12);
-  const auto more = process_cost(work, division(1000, 100, 10), 100, {1e-4, 1e300}, leader);
+  const auto more = process_cost(work, division(1000, 100, 10), 100, {1e-4, 1e300}, handling);
   EXPECT_NEAR(more.gathering_s, 10 * cost.gathering_s, 1e-12);
 }
 
 TEST(ProcessCost, OfSamplesAndSnapshotsIsWhatTheOthersSend) {
   auto work = square();
-  const LeaderRates leader = {0, 0, 1e9, 1e300};
-  const auto rows = process_cost(work, division(1000, 4, 10), 4, ethernet, leader);
-  const double bytes = 100 * 4e3 * 8 * 0.75;
-  EXPECT_NEAR(rows.gathering_s, bytes / 1e8 + bytes / 1e9, 1e-12);
+  const Handling handling = {0, 0, 1e9, 1e300};
+  const auto rows = process_cost(work, division(1000, 4, 10), 4, ethernet, handling);
+  const double bytes = 100 * 4e3 * 8;
+  EXPECT_NEAR(rows.gathering_s, 0.75 * bytes / 1e8 + 1.25 * bytes / 1e9, 1e-12);
   work.snapshots = 3;
-  const auto both = process_cost(work, division(1000, 4, 10), 4, ethernet, leader);
-  const double more = 3 * 32e6 * 0.75;
-  EXPECT_NEAR(both.gathering_s - rows.gathering_s, more / 1e8 + more / 1e9, 1e-9);
+  const auto both = process_cost(work, division(1000, 4, 10), 4, ethernet, handling);
+  const double more = 3 * 32e6;
+  EXPECT_NEAR(both.gathering_s - rows.gathering_s, 0.75 * more / 1e8 + 1.25 * more / 1e9, 1e-9);
 }
 
 TEST(ProcessCost, OfMemoryFallsForAllButTheLeader) {
