@@ -14,7 +14,7 @@ namespace {
 /// What the measuring process asks of the other one.
 constexpr double nothing_more = 0, an_answer = 1, an_exchange = 2;
 
-constexpr std::size_t large = std::size_t{4} << 20U;  // bytes
+constexpr std::size_t large = std::size_t{1} << 20U;  // bytes, as of a halo
 
 /// To the other process, or from it.
 void tell(Processes& processes, int with, double number) {

@@ -144,14 +144,6 @@ double expected_statics_s(const Info& info) {
   return info.solver == statics::StaticSolver::iterative ? 1e-6 * n : 0;
 }
 
-/// What the leader asks all parts for during an event: steps until it looks, energies.
-double commands_of(const Needs& needs) {
-  constexpr double steps_per_look = 50, steps_per_check = 100;  // of motion::EventRun, motion::Watch
-  const auto steps = static_cast<double>(needs.steps);
-  return steps / steps_per_look + needs.energy_rows + 2 * needs.snapshots +
-         std::max(needs.energy_rows, steps / steps_per_check);
-}
-
 Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::Stepper& stepper,
                        const Sharing& sharing, const Info& info) {
   require_divisible(config);
@@ -176,7 +168,10 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
   });
   work.updates_per_step = std::round(info.step_s / info.substep_s);
   work.steps = static_cast<double>(info.n_steps);
-  work.commands = commands_of(info.needs);
+  constexpr double steps_per_look = 50, steps_per_check = 100;  // of motion::EventRun, motion::Watch
+  work.advances =
+      std::min(work.steps, work.steps / steps_per_look + info.needs.energy_rows + info.needs.snapshots);
+  work.energies = std::max(info.needs.energy_rows, work.steps / steps_per_check);
   work.history_rows = info.needs.history_rows;
   work.values_per_row = static_cast<double>(record::history_fields.size()) * n_columns;
   work.snapshots = info.needs.snapshots;
