@@ -324,6 +324,32 @@ def print_row(row: dict[str, Any]) -> None:
     )
 
 
+COLUMNS = {
+    "network": "network",
+    "case": "case",
+    "processes": "processes",
+    "latency_us": "latency, us",
+    "bandwidth_MB_per_s": "MB/s each way",
+    "steps_per_exchange": "steps per exchange",
+    "measured_us_per_step": "measured, us",
+    "least_us_per_step": "from",
+    "largest_us_per_step": "to",
+    "predicted_us_per_step": "predicted, us",
+    "deviation_percent": "deviation, %",
+    "measured_computing_us_per_step": "of it computing",
+    "measured_exchange_us_per_step": "waiting in exchanges",
+    "measured_commands_us_per_step": "in commands",
+}
+
+
+def print_table(rows: list[dict[str, Any]]) -> None:
+    """As docs/processes-cost.md has it."""
+    print("| " + " | ".join(COLUMNS.values()) + " |\n|" + "---|" * len(COLUMNS))
+    for row in rows:
+        cells = [f"{v:.3g}" if isinstance(v := row[key], float) and v < 100 else v for key in COLUMNS]
+        print("| " + " | ".join(f"{v:.0f}" if isinstance(v, float) else str(v) for v in cells) + " |")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=Path)
@@ -366,6 +392,7 @@ def main() -> None:
                                 table.writerow(
                                     {k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()}
                                 )
+    print_table(rows)
 
 
 if __name__ == "__main__":
