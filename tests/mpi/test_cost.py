@@ -65,8 +65,10 @@ def test_run_json_tells_what_processes_cost(runs, n):
     assert cost["imbalance_largest_over_mean"] == pytest.approx(longest / mean)
     # 121 rows of u and v go to each neighbour with every exchange, and little else beside them.
     exchanges = 2 * (n - 1) / cost["steps_per_exchange"]
-    assert cost["messages_per_step"] == pytest.approx(exchanges, rel=0.2)
-    assert cost["messages_per_step"] >= exchanges
+    # The rest are commands and answers: some rounds to all but the leader and back.
+    rounds = (cost["messages_per_step"] - exchanges) * cost["steps"] / (2 * (n - 1))
+    assert rounds == pytest.approx(round(rounds), abs=1e-9)
+    assert 1 <= rounds <= 20
     least = exchanges * halo * 121 * 4 * 8
     assert least < cost["bytes_per_step"] < 1.5 * least
     # Of two processes both send the same halo; of three the middle one sends two.
@@ -135,18 +137,19 @@ def test_info_predicts_what_a_run_counts(runs):
         assert lines["exchange every"] == f"{cost['steps_per_exchange']} steps"
         assert f"and {cost['halo_columns'][0]} beside them" in lines["columns of nodes of each"]
         sent = float(lines["bytes sent per step"].split()[0])
-        # Commands and answers are not in it.
-        assert sent == pytest.approx(cost["bytes_per_step_of_busiest"], rel=0.1)
+        # Commands and answers are not in it, among them a row of history in each second step.
+        assert sent <= cost["bytes_per_step_of_busiest"] < 1.5 * sent
         parts = [seconds(text) for name, text in lines.items() if name.startswith("time: ")]
         assert len(parts) == 7
         assert sum(parts) == pytest.approx(seconds(lines["time in all"]), rel=0.02)  # printed to 3 digits
 
 
-def test_info_follows_the_network():
+def test_info_follows_the_network(runs):
     of = lambda *options: seconds(predicted(3, *options)["time: exchange"])  # noqa: E731
     slow, fast = of("--latency-s", 1e-2), of("--latency-s", 1e-6)
-    steps = 20e-6 / 2e-7
-    assert slow > fast + 10 * 1e-2 * 0.5 * steps / 16
+    # At least one latency for each exchange.
+    exchanges = runs[2]["steps"] / runs[2]["processes"]["steps_per_exchange"]
+    assert slow - fast >= 0.99 * 1e-2 * exchanges
     assert of("--bandwidth-bytes-per-s", 1e6) > of("--bandwidth-bytes-per-s", 1e9)
 
 
