@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "motion/kept_motion.hpp"
 
 namespace slipfront::motion {
 
@@ -78,14 +79,13 @@ Division divide_columns(int n_columns, int n_parts, int columns_per_step, int re
 
 Part::Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
            const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
-           States states)
-    : processes_(processes), division_(division), states_(std::move(states)) {
+           const PlaceInWhole& place)
+    : processes_(processes), division_(division), place_(place) {
   const int rank = processes.rank();
   const auto all = division.all(rank), own = division.own(rank);
   const auto local = [&](solid::Span columns) {
     return solid::Span{columns.begin - all.begin, columns.end - all.begin};
   };
-  own_ = local(own);
   stepper_ = std::make_unique<Stepper>(sources, contact, time, execution);
   if (rank > 0)
     neighbours_.push_back(
@@ -132,10 +132,11 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
       answer.put(stepper_->probed_u_m()).put(stepper_->probed_v_m_per_s());
       break;
     case PartCommand::keep:
-      answer.put(states_.write(*this));
+      keep(*stepper_, place_).put(answer);
       break;
     case PartCommand::restore:
-      states_.read(*this, given.take_text());
+      restore(KeptMotion::take(given), *stepper_, place_);
+      finder_.reset();
       break;
     case PartCommand::build:
     case PartCommand::release:
@@ -169,7 +170,6 @@ void Part::start(Parcel& given) {
 
 void Part::make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s) {
   const auto own = stepper_->bodies().front().own_lower();
-  finder_halo_ = halo;
   finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
                   halo, creep_m_per_s);
 }
@@ -212,10 +212,18 @@ void Part::advance(Parcel& given, Parcel& answer) {
     finder_->renew_tractions(stepper_->interface_state());
     done += n;
   }
-  // Of the samples' columns only own nodes.
+  const auto& memory = finder_->memory();
+  answer.put(memory.time_s);
+  // Of nodes along the interface only own ones.
   const auto own = stepper_->bodies().front().own_lower();
   const auto width = stepper_->interface_state().size();
   const auto n_rows = samples.time_s.size();
+  const auto of_own = [&]<class T>(const std::vector<T>& values) {
+    return std::span(values).subspan(static_cast<std::size_t>(own.begin),
+                                     static_cast<std::size_t>(own.end - own.begin));
+  };
+  for (const auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa}) answer.put(of_own(*values));
+  answer.put(of_own(memory.slipping));
   answer.put(rates).put(std::vector<std::byte>(seen.bytes().begin(), seen.bytes().end()));
   for (const auto& field : record::history_fields) {
     std::vector<double> values;
@@ -257,7 +265,7 @@ void Part::put_snapshot(Parcel& answer) const {
     std::vector<double> own;
     for (const auto& row : body.op().rows) {
       const auto begin = values.begin() + row.first;
-      own.insert(own.end(), begin + own_.begin, begin + own_.end);
+      own.insert(own.end(), begin + place_.own.begin, begin + place_.own.end);
     }
     answer.put(own);
   };

@@ -68,37 +68,17 @@ struct PartMeasures {
 /// commands, by PartedStepper.
 class Part {
  public:
-  /// How the stepper's state is made bytes and back, which this room knows nothing of.
-  struct States {
-    std::function<std::string(Part&)> write;
-    std::function<void(Part&, const std::string&)> read;
-  };
-
   /// @param sources   the bodies' columns `division.all(processes.rank())`, with their PartOfBody
   /// @param contact   of the part's interface nodes
+  /// @param place     of the part in the whole
   Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
        const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
-       States states);
+       const PlaceInWhole& place);
 
   /// Carries out a command between build and release.
   Parcel carry_out(PartCommand command, Parcel& given);
 
   const Stepper& stepper() const { return *stepper_; }
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    std::uint8_t has_finder = finder_ ? 1 : 0;
-    int halo = finder_halo_;
-    double creep_m_per_s = finder_ ? finder_->creep_m_per_s() : 0;
-    archive(*stepper_, has_finder, halo, creep_m_per_s);
-    if (Archive::is_loading::value && has_finder != 0) {
-      const auto n = stepper_->interface_state().size();
-      SlipFinder::Memory memory{0, std::vector<double>(n), std::vector<double>(n), std::vector<double>(n),
-                                std::vector<std::uint8_t>(n)};
-      make_finder(std::move(memory), halo, creep_m_per_s);
-    }
-    if (has_finder != 0) archive(*finder_);
-  }
 
  private:
   void start(Parcel& given);
@@ -109,11 +89,9 @@ class Part {
 
   Processes& processes_;
   Division division_;
-  States states_;
-  solid::Span own_;  ///< in the part's columns
+  PlaceInWhole place_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<SlipFinder> finder_;
-  int finder_halo_ = 0;
   /// Columns that go to a neighbour and come from it, in the part's columns.
   struct Neighbour {
     int rank = 0;

@@ -190,12 +190,12 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
     Parcel parcel;
     parcel.put(static_cast<std::uint8_t>(!has_finders_));
     if (!has_finders_) {
-      const auto& memory = recorder.finder().memory();
+      const auto& known = recorder.finder().memory();
       const auto lower = all_lower_[static_cast<std::size_t>(part)];
-      parcel.put(memory.time_s);
-      for (const auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa})
+      parcel.put(known.time_s);
+      for (const auto* values : {&known.t_Pa, &known.p_Pa, &known.strength_Pa})
         parcel.put(cut(*values, lower));
-      parcel.put(cut(memory.slipping, lower));
+      parcel.put(cut(known.slipping, lower));
       parcel.put(recorder.record().halo).put(recorder.finder().creep_m_per_s());
     }
     parcel.put(is_sampled);
@@ -211,7 +211,15 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
     std::vector<double> displacements;
   };
   std::vector<Told> told;
-  for (auto& answer : answers) {
+  auto& memory = recorder.finder().memory();
+  for (std::size_t part = 0; part < answers.size(); ++part) {
+    auto& answer = answers[part];
+    memory.time_s = answer.take<double>();
+    const auto take = [&]<class T>(std::vector<T>& to) {
+      std::ranges::copy(answer.take_all<T>(), to.begin() + own_lower_[part].begin);
+    };
+    for (auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa}) take(*values);
+    take(memory.slipping);
     Told of_part;
     of_part.rates = answer.take_all<SlipRates>();
     of_part.seen = Parcel(answer.take_all<std::byte>());
@@ -356,21 +364,28 @@ Snapshot PartedStepper::snapshot() const {
   return all;
 }
 
-std::vector<std::string> PartedStepper::states() const {
-  std::vector<std::string> states;
-  for (auto& answer : ask(PartCommand::keep)) states.push_back(answer.take_text());
-  return states;
+KeptMotion PartedStepper::kept() const {
+  KeptMotion all;
+  for (auto& answer : ask(PartCommand::keep)) all.add(KeptMotion::take(answer));
+  all.step = step_;
+  return all;
 }
 
-void PartedStepper::take_states(const std::vector<std::string>& states, std::int64_t step) {
-  if (std::ssize(states) != division_.n_parts())
-    throw UserError("the run was begun with {} processes, and these are {}; go on with as many",
-                    states.size(), division_.n_parts());
+void PartedStepper::restore(const KeptMotion& kept) {
+  KeptMotion sorted = kept;
+  sorted.sort();
   std::vector<Parcel> given;
-  for (const auto& state : states) given.push_back(std::move(Parcel().put(state)));
+  for (int part = 0; part < division_.n_parts(); ++part) {
+    Parcel parcel;
+    sorted
+        .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], grids_.front().stride(),
+            part == 0)
+        .put(parcel);
+    given.push_back(std::move(parcel));
+  }
   ask(PartCommand::restore, std::move(given));
-  has_finders_ = true;
-  step_ = step;
+  has_finders_ = false;
+  step_ = kept.step;
 }
 
 }  // namespace slipfront::motion

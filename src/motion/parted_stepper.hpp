@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "motion/kept_motion.hpp"
 #include "motion/part.hpp"
 #include "motion/time_stepper.hpp"
 
@@ -44,9 +45,9 @@ class PartedStepper final : public TimeStepper {
   double energy_of_tractions_J_per_m() const override;
   Snapshot snapshot() const override;
 
-  /// The states of all parts, and the same back: for as many processes.
-  std::vector<std::string> states() const;
-  void take_states(const std::vector<std::string>& states, std::int64_t step);
+  /// What changes, of the whole bodies; the same back, kept by any number of processes.
+  KeptMotion kept() const;
+  void restore(const KeptMotion& kept);
 
  private:
   /// Gives each part a command, with values of its own or the same for all, and has their answers.

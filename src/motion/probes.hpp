@@ -31,6 +31,18 @@ struct BodySource {
   const PartOfBody* part = nullptr;  ///< of a larger body; null for a whole one
 };
 
+/// What entries of a list in KeptMotion belong to: nodes, by their number; places along the interface;
+/// columns of nodes.
+enum class KeptBy : std::uint8_t { node, place, column };
+
+/// Where a stepper's columns lie in the whole bodies.
+struct PlaceInWhole {
+  solid::Span own = solid::all_columns;  ///< columns to be kept, in the stepper's own count
+  int first_column = 0;                  ///< of the whole, which is the stepper's column 0
+  int stride = 0;                        ///< columns of nodes of the whole
+  int first_lower = 0;                   ///< the same along the interface
+};
+
 /// A place within a cell of a body, at which its motion, strain and stress are recorded.
 struct Probe {
   std::size_t body = 0;  ///< 0 above, 1 below

@@ -70,27 +70,38 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
 }
 
 void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper) {
-  std::vector<std::string> states;  // of the parts, where several processes share the event
-  std::int64_t step = stepper.step();
   const auto* parted = dynamic_cast<const motion::PartedStepper*>(&stepper);
-  if (parted != nullptr) states = parted->states();
-  archive(states, step);
-  if (parted == nullptr) archive(dynamic_cast<motion::Stepper&>(stepper));
+  archive(parted != nullptr);
+  if (parted != nullptr)
+    archive(parted->kept());
+  else
+    archive(dynamic_cast<motion::Stepper&>(stepper));
 }
 
-void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper) {
-  std::vector<std::string> states;
-  std::int64_t step = 0;
-  archive(states, step);
+void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
+                 const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
+  bool was_parted = false;
+  archive(was_parted);
   auto* parted = dynamic_cast<motion::PartedStepper*>(&stepper);
-  if (parted == nullptr && !states.empty())
-    throw UserError("the run was begun with {} processes; go on with as many", states.size());
-  if (parted == nullptr) {
+  if (parted == nullptr && !was_parted) {
     archive(dynamic_cast<motion::Stepper&>(stepper));
-  } else {
-    if (states.empty()) throw UserError("the run was begun with one process; go on with one");
-    parted->take_states(states, step);
+    return;
   }
+  motion::KeptMotion kept;
+  motion::PlaceInWhole whole;
+  if (was_parted) {
+    archive(kept);
+  } else {
+    const auto by_one = make_whole();
+    archive(*by_one);
+    whole.stride = by_one->plate().grid.stride();
+    kept = motion::keep(*by_one, whole);
+  }
+  if (parted != nullptr) return parted->restore(kept);
+  auto& by_one = dynamic_cast<motion::Stepper&>(stepper);
+  whole.stride = by_one.plate().grid.stride();
+  kept.sort();
+  motion::restore(kept, by_one, whole);
 }
 
 void Checkpoints::keep(const CheckpointHead& head,

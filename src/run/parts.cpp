@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/parts.hpp"
 
-#include <cereal/archives/binary.hpp>
-#include <cereal/types/string.hpp>
-#include <cereal/types/vector.hpp>
 #include <csignal>
 #include <exception>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,20 +17,6 @@
 namespace slipfront::run {
 
 namespace {
-
-motion::Part::States binary_states() {
-  return {[](motion::Part& part) {
-            std::ostringstream stream;
-            cereal::BinaryOutputArchive archive(stream);
-            archive(part);
-            return std::move(stream).str();
-          },
-          [](motion::Part& part, const std::string& state) {
-            std::istringstream stream(state);
-            cereal::BinaryInputArchive archive(stream);
-            archive(part);
-          }};
-}
 
 void put_mesh(const mesh::Mesh& mesh, Parcel& to) {
   to.put(mesh.grid).put(mesh.x_m).put(mesh.y_m).put(mesh.cells).put(mesh.lower).put(mesh.top);
@@ -58,10 +40,11 @@ struct Plan {
   motion::Division division;
   int threads = 1;
   std::vector<double> stable_steps_s;  ///< of the bodies
+  int first_lower = 0;  ///< of the process that this is for: its first place along the interface
 
   void put(Parcel& to) const {
     to.put(division.first).put(division.halo).put(division.steps_per_exchange).put(threads);
-    to.put(stable_steps_s);
+    to.put(stable_steps_s).put(first_lower);
   }
   static Plan take(Parcel& from) {
     Plan plan;
@@ -70,6 +53,7 @@ struct Plan {
     plan.division.steps_per_exchange = from.take<int>();
     plan.threads = from.take<int>();
     plan.stable_steps_s = from.take_all<double>();
+    plan.first_lower = from.take<int>();
     return plan;
   }
 };
@@ -88,8 +72,9 @@ std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case&
   std::vector<motion::BodySource> sources = {{meshes.front(), config.material, &parts.front()}};
   if (meshes.size() > 1) sources.push_back({meshes.back(), base_material, &parts.back()});
   const auto contact = input::contact_model(config, interface_x_m(meshes.front()));
-  return std::make_unique<motion::Part>(processes, plan.division, sources, contact, config.time,
-                                        motion::Execution{.threads = plan.threads}, binary_states());
+  return std::make_unique<motion::Part>(
+      processes, plan.division, sources, contact, config.time, motion::Execution{.threads = plan.threads},
+      motion::PlaceInWhole{parts.front().own, all.begin, plan.division.first.back(), plan.first_lower});
 }
 
 std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
@@ -137,7 +122,11 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
   const auto columns_of = [&](int rank) {
     const auto all = plan.division.all(rank);
     std::vector<mesh::Mesh> meshes;
-    for (const auto& body : whole) meshes.push_back(mesh::columns_of(body.mesh, all.begin, all.end).mesh);
+    for (const auto& body : whole) {
+      auto part = mesh::columns_of(body.mesh, all.begin, all.end);
+      if (meshes.empty()) plan.first_lower = static_cast<int>(part.first_lower);
+      meshes.push_back(std::move(part.mesh));
+    }
     return meshes;
   };
   std::vector<const mesh::Mesh*> bodies = {&plate};
@@ -146,14 +135,16 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
   for (int rank = 1; rank < processes.size(); ++rank) {
     Parcel parcel;
     parcel.put(motion::PartCommand::build).put(program_identity()).put(together.case_file.string());
+    const auto meshes = columns_of(rank);
     plan.put(parcel);
-    for (const auto& mesh : columns_of(rank)) put_mesh(mesh, parcel);
+    for (const auto& mesh : meshes) put_mesh(mesh, parcel);
     processes.send(rank, parcel);
   }
   std::unique_ptr<motion::PartedStepper> stepper;
   try {
-    stepper = std::make_unique<motion::PartedStepper>(
-        processes, plan.division, make_part(processes, config, plan, columns_of(0)), bodies);
+    const auto meshes = columns_of(0);
+    stepper = std::make_unique<motion::PartedStepper>(processes, plan.division,
+                                                      make_part(processes, config, plan, meshes), bodies);
   } catch (const std::exception& error) {
     processes.fail(error.what());  // the others wait for this part
   }

@@ -154,8 +154,12 @@ void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, moti
 void Session::begin_event(Checkpoints::Kept* kept) {
   if (kept != nullptr) {
     initial_ = read_initial_state(kept->rest, config_);
+    const auto make_whole = [&] {
+      const auto meshes = check(config_);
+      return new_stepper(config_, meshes.plate, meshes.base, execution_);
+    };
     event_stepper_ = make_stepper(config_, initial_, execution_, together());
-    read_motion(kept->rest, *event_stepper_);
+    read_motion(kept->rest, *event_stepper_, make_whole);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
     results::ResultStream::Extents extents;
     kept->rest(*event_, extents);
