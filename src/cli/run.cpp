@@ -160,7 +160,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
   }
   if (options.session.processes != nullptr && config) {
     try {
-      run::require_divisible(*config);
+      run::require_divisible(*config, options.session.processes->size());
     } catch (const UserError& error) {
       throw arguments.with_place(error);
     }

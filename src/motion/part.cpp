@@ -114,7 +114,7 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
       try {
         advance(given, answer);
       } catch (const std::exception& error) {
-        processes_.fail(error.what());  // the others wait for this part's halo
+        processes_.fail(reason_of(error));  // the others wait for this part's halo
       }
       break;
     case PartCommand::energies:
@@ -285,7 +285,7 @@ void serve(Processes& processes, Part& part) {
     try {
       answer = part.carry_out(command, given);
     } catch (const std::exception& failure) {
-      error = failure.what();
+      error = reason_of(failure);
     }
     processes.send(0, Parcel().put(error).append(answer));
   }

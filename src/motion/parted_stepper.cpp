@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <stdexcept>
 #include <utility>
 
 #include "base/error.hpp"
@@ -90,7 +89,7 @@ std::vector<Parcel> PartedStepper::ask(PartCommand command, std::vector<Parcel> 
     const auto error = answers.back().take_text();
     if (!error.empty() && failure == nullptr)
       failure = std::make_exception_ptr(
-          std::runtime_error(fmt::format("process {} of {}: {}", rank, processes_.size(), error)));
+          ProcessError(fmt::format("process {} of {}: {}", rank, processes_.size(), error)));
   }
   if (failure != nullptr) std::rethrow_exception(failure);
   return answers;

@@ -2,7 +2,9 @@
 #include "run/parts.hpp"
 
 #include <csignal>
+#include <cstdint>
 #include <exception>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +15,8 @@
 #include "mesh/part.hpp"
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
+#include "run/initial_state.hpp"
+#include "run/run.hpp"
 
 namespace slipfront::run {
 
@@ -35,16 +39,33 @@ mesh::Mesh take_mesh(Parcel& from) {
   return mesh;
 }
 
+/// The case itself and not its file, which the other machines may see late or not at all.
+void put_case(const input::Case& config, Parcel& to) {
+  const auto& table = config.friction_along_x.table;
+  to.put(resolved_text(config)).put(table.x_m).put(static_cast<std::uint64_t>(table.keys.size()));
+  for (std::size_t k = 0; k < table.keys.size(); ++k) to.put(table.keys[k]).put(table.values[k]);
+}
+
+input::Case take_case(Parcel& from) {
+  auto config = input::parse_case(from.take_text(), case_file);
+  auto& table = config.friction_along_x.table;
+  table.x_m = from.take_all<double>();
+  for (auto n = from.take<std::uint64_t>(); n > 0; --n) {
+    table.keys.push_back(from.take_text());
+    table.values.push_back(from.take_all<double>());
+  }
+  return config;
+}
+
 /// What a process needs to make its part.
 struct Plan {
   motion::Division division;
   int threads = 1;
   std::vector<double> stable_steps_s;  ///< of the bodies
-  int first_lower = 0;  ///< of the process that this is for: its first place along the interface
 
   void put(Parcel& to) const {
     to.put(division.first).put(division.halo).put(division.steps_per_exchange).put(threads);
-    to.put(stable_steps_s).put(first_lower);
+    to.put(stable_steps_s);
   }
   static Plan take(Parcel& from) {
     Plan plan;
@@ -53,14 +74,75 @@ struct Plan {
     plan.division.steps_per_exchange = from.take<int>();
     plan.threads = from.take<int>();
     plan.stable_steps_s = from.take_all<double>();
-    plan.first_lower = from.take<int>();
     return plan;
   }
 };
 
-/// @param meshes  the process's columns of the bodies
+/// Of the bodies those columns that a process computes.
+struct Columns {
+  std::vector<mesh::Mesh> meshes;
+  int first_lower = 0;  ///< place along the whole interface of their first node
+
+  void put(Parcel& to) const {
+    to.put(first_lower);
+    for (const auto& mesh : meshes) put_mesh(mesh, to);
+  }
+  static Columns take(Parcel& from) {
+    Columns columns;
+    columns.first_lower = from.take<int>();
+    while (!from.is_empty()) columns.meshes.push_back(take_mesh(from));
+    return columns;
+  }
+};
+
+/// The bodies that are to be divided.
+class Whole {
+ public:
+  Whole(const input::Case& config, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base)
+      : config_(config), base_material_(input::base_material(config)) {
+    bodies_.push_back({plate, config.material});
+    if (base) bodies_.push_back({*base, base_material_});
+  }
+  Whole(const Whole&) = delete;
+  Whole& operator=(const Whole&) = delete;
+
+  /// @throws UserError where so many processes cannot share them
+  Plan divide(int n_processes) const {
+    const auto& plate = bodies_.front().mesh;
+    Plan plan;
+    for (const auto& body : bodies_) plan.stable_steps_s.push_back(motion::stable_step_s(body));
+    plan.division = motion::divide_columns(plate.grid.stride(), n_processes,
+                                           motion::columns_per_step(plan.stable_steps_s, config_.time),
+                                           motion::halo_for(plate, config_.fronts.l_star_m));
+    for (int rank = 0; rank < n_processes; ++rank) columns_of(plan, rank);  // refuses cuts through corners
+    return plan;
+  }
+  Columns columns_of(const Plan& plan, int rank) const {
+    const auto all = plan.division.all(rank);
+    Columns columns;
+    for (const auto& body : bodies_) {
+      auto part = mesh::columns_of(body.mesh, all.begin, all.end);
+      if (columns.meshes.empty()) columns.first_lower = static_cast<int>(part.first_lower);
+      columns.meshes.push_back(std::move(part.mesh));
+    }
+    return columns;
+  }
+  std::vector<const mesh::Mesh*> meshes() const {
+    std::vector<const mesh::Mesh*> meshes;
+    for (const auto& body : bodies_) meshes.push_back(&body.mesh);
+    return meshes;
+  }
+
+ private:
+  const input::Case& config_;
+  solid::Material base_material_;
+  std::vector<motion::BodySource> bodies_;
+};
+
+/// @param columns  the process's own
 std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case& config, const Plan& plan,
-                                        const std::vector<mesh::Mesh>& meshes) {
+                                        const Columns& columns) {
+  const auto& meshes = columns.meshes;
   const auto all = plan.division.all(processes.rank()), own = plan.division.own(processes.rank());
   const auto base_material = input::base_material(config);
   std::vector<motion::PartOfBody> parts;
@@ -74,18 +156,13 @@ std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case&
   const auto contact = input::contact_model(config, interface_x_m(meshes.front()));
   return std::make_unique<motion::Part>(
       processes, plan.division, sources, contact, config.time, motion::Execution{.threads = plan.threads},
-      motion::PlaceInWhole{parts.front().own, all.begin, plan.division.first.back(), plan.first_lower});
+      motion::PlaceInWhole{parts.front().own, all.begin, plan.division.first.back(), columns.first_lower});
 }
 
 std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
-  if (const auto program = given.take_text(); program != program_identity())
-    throw UserError("the program here is {}, and that of process 0 {}; start the same one everywhere",
-                    program_identity(), program);
-  const std::filesystem::path case_file = given.take_text();
+  const auto config = take_case(given);
   const auto plan = Plan::take(given);
-  std::vector<mesh::Mesh> meshes;
-  while (!given.is_empty()) meshes.push_back(take_mesh(given));
-  return make_part(processes, input::read_case(case_file), plan, meshes);
+  return make_part(processes, config, plan, Columns::take(given));
 }
 
 }  // namespace
@@ -104,66 +181,65 @@ void require_divisible(const input::Case& config) {
   if (input::has_base_body(config)) require_even(input::base_plate(config), "base.coarsenings");
 }
 
+void require_divisible(const input::Case& config, int n_processes) {
+  require_divisible(config);
+  const auto meshes = check(config);
+  Whole(config, meshes.plate, meshes.base).divide(n_processes);
+}
+
 std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& config, const mesh::Mesh& plate,
                                                           const std::optional<mesh::Mesh>& base,
-                                                          const Together& together,
+                                                          Processes& processes,
                                                           const motion::Execution& execution) {
   require_divisible(config);
-  auto& processes = *together.processes;
-  const auto base_material = input::base_material(config);
-  std::vector<motion::BodySource> whole = {{plate, config.material}};
-  if (base) whole.push_back({*base, base_material});
-  Plan plan;
+  const Whole whole(config, plate, base);
+  auto plan = whole.divide(processes.size());
   plan.threads = execution.threads;
-  for (const auto& body : whole) plan.stable_steps_s.push_back(motion::stable_step_s(body));
-  plan.division = motion::divide_columns(plate.grid.stride(), processes.size(),
-                                         motion::columns_per_step(plan.stable_steps_s, config.time),
-                                         motion::halo_for(plate, config.fronts.l_star_m));
-  const auto columns_of = [&](int rank) {
-    const auto all = plan.division.all(rank);
-    std::vector<mesh::Mesh> meshes;
-    for (const auto& body : whole) {
-      auto part = mesh::columns_of(body.mesh, all.begin, all.end);
-      if (meshes.empty()) plan.first_lower = static_cast<int>(part.first_lower);
-      meshes.push_back(std::move(part.mesh));
-    }
-    return meshes;
-  };
-  std::vector<const mesh::Mesh*> bodies = {&plate};
-  if (base) bodies.push_back(&*base);
-  for (int rank = 0; rank < processes.size(); ++rank) columns_of(rank);  // refuses cuts through corners
   for (int rank = 1; rank < processes.size(); ++rank) {
     Parcel parcel;
-    parcel.put(motion::PartCommand::build).put(program_identity()).put(together.case_file.string());
-    const auto meshes = columns_of(rank);
+    parcel.put(motion::PartCommand::build);
+    put_case(config, parcel);
     plan.put(parcel);
-    for (const auto& mesh : meshes) put_mesh(mesh, parcel);
+    whole.columns_of(plan, rank).put(parcel);
     processes.send(rank, parcel);
   }
   std::unique_ptr<motion::PartedStepper> stepper;
   try {
-    const auto meshes = columns_of(0);
-    stepper = std::make_unique<motion::PartedStepper>(processes, plan.division,
-                                                      make_part(processes, config, plan, meshes), bodies);
+    stepper = std::make_unique<motion::PartedStepper>(
+        processes, plan.division, make_part(processes, config, plan, whole.columns_of(plan, 0)),
+        whole.meshes());
   } catch (const std::exception& error) {
-    processes.fail(error.what());  // the others wait for this part
+    processes.fail(reason_of(error));  // the others wait for this part
   }
   return stepper;
 }
 
-void serve(Processes& processes) {
+void lead(Processes& processes) {
+  std::string other;
+  for (int rank = 1; rank < processes.size(); ++rank) {
+    const auto program = processes.receive(rank).take_text();
+    if (other.empty() && program != program_identity())
+      other = fmt::format("slipfront: process {} is {}, and process 0 {}; start the same program everywhere",
+                          rank, program, program_identity());
+  }
+  const auto is_one_program = static_cast<std::uint8_t>(other.empty());
+  for (int rank = 1; rank < processes.size(); ++rank) processes.send(rank, Parcel().put(is_one_program));
+  if (!other.empty()) throw UserError("{}", other);
+}
+
+void serve(Processes& processes) try {
   // What a signal asks for is the leader's to hear.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) std::signal(signal, SIG_IGN);
+  processes.send(0, Parcel().put(program_identity()));
+  if (processes.receive(0).take<std::uint8_t>() == 0) return;
   for (;;) {
     auto parcel = processes.receive(0);
     if (parcel.take<motion::PartCommand>() == motion::PartCommand::end) return;
-    try {
-      const auto part = take_part(processes, parcel);
-      motion::serve(processes, *part);
-    } catch (const std::exception& error) {
-      processes.fail(error.what());
-    }
+    const auto part = take_part(processes, parcel);
+    motion::serve(processes, *part);
   }
+} catch (const std::exception& error) {
+  processes.fail(reason_of(error));
 }
 
 void dismiss(Processes& processes) {

@@ -111,7 +111,7 @@ namespace {
 
 std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, const InitialState& initial,
                                                      const motion::Execution& execution,
-                                                     const Together& together) {
+                                                     Processes* processes) {
   const auto& state = event_state(config, initial);
   const auto start = [&](auto stepper) {
     stepper->watch(probes_of(config, initial.mesh, initial.base));
@@ -119,8 +119,8 @@ std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, 
                    starting_loads(config, state, initial.mesh, initial.mu_s));
     return stepper;
   };
-  if (together.processes != nullptr)
-    return start(new_parted_stepper(config, initial.mesh, initial.base, together, execution));
+  if (processes != nullptr)
+    return start(new_parted_stepper(config, initial.mesh, initial.base, *processes, execution));
   return start(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
@@ -144,8 +144,7 @@ void release_nodes(mesh::Mesh& mesh) {
 }  // namespace
 
 std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
-                                                 const motion::Execution& execution,
-                                                 const Together& together) {
+                                                 const motion::Execution& execution, Processes* processes) {
   const auto* from = &event_state(config, initial);
   if (from != &initial.common) release_displacements(initial.common);
   if (from != &initial.spontaneous) release_displacements(initial.spontaneous);
@@ -153,7 +152,7 @@ std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, Init
     release_displacements(initial.ramp->common);
     release_displacements(initial.ramp->spontaneous);
   }
-  auto stepper = started_stepper(config, initial, execution, together);
+  auto stepper = started_stepper(config, initial, execution, processes);
   release_displacements(initial.common);
   release_displacements(initial.spontaneous);
   release_nodes(initial.mesh);
@@ -162,16 +161,15 @@ std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, Init
 }
 
 std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
-                                                  const motion::Execution& execution,
-                                                  const Together& together) {
+                                                  const motion::Execution& execution, Processes* processes) {
   const auto make = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
     stepper->watch(probes_of(config, initial.mesh, initial.base));
     release_nodes(initial.mesh);
     if (initial.base) release_nodes(*initial.base);
     return stepper;
   };
-  if (together.processes != nullptr)
-    return make(new_parted_stepper(config, initial.mesh, initial.base, together, execution));
+  if (processes != nullptr)
+    return make(new_parted_stepper(config, initial.mesh, initial.base, *processes, execution));
   return make(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
@@ -194,7 +192,7 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
 
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution) {
-  const auto stepper = started_stepper(config, initial, execution, {});
+  const auto stepper = started_stepper(config, initial, execution, nullptr);
   return run_from(config, initial, *stepper, monitor);
 }
 

@@ -31,19 +31,19 @@ class Mpirun:
         with self.start(n, *arguments, **options) as process:
             return finished(process, timeout_s)
 
-    def start(self, n, *arguments, programs=None, environment=None, starter=(), **options):
-        """Of several `programs` each is one process; `starter` are options of mpirun."""
+    def start(self, n, *arguments, programs=None, starter=(), **options):
+        """`starter` are options of mpirun. Of `programs`, its own options before it, each is one process."""
         command = ["mpirun", "--oversubscribe", "--bind-to", "none", *starter]
         if programs is None:
-            command += ["-n", str(n), self.program, *arguments]
+            command += ["-n", n, self.program, *arguments]
         else:
             for k, program in enumerate(programs):
-                command += [*([":"] if k else []), "-n", "1", program, *arguments]
+                command += [*([":"] if k else []), "-n", 1, *program, *arguments]
         options = {"stdin": subprocess.DEVNULL, "text": True} | options
         return subprocess.Popen(
             list(map(str, command)),
             cwd=self.folder,
-            env=os.environ | AS_ROOT | (environment or {}),
+            env=os.environ | AS_ROOT,
             **options,
         )
 
