@@ -81,11 +81,13 @@ class Leading {
   slipfront::Processes& processes_;
 };
 
-/// Other commands would do all of their work in each process.
-void require_run(int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-' || std::string_view(argv[1]) == "run") return;
-  throw slipfront::UserError("slipfront: only run can be shared by several processes; start {} alone",
-                             argv[1]);
+/// Other commands would leave all of their work to the leader.
+void require_shared(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  const std::string_view command(argv[1]);
+  if (command == "run" || command == "bench") return;
+  throw slipfront::UserError(
+      "slipfront: only run and bench --network can be shared by several processes; start {} alone", command);
 }
 
 int run(int argc, char** argv) {
@@ -97,7 +99,7 @@ int run(int argc, char** argv) {
   std::optional<Leading> leading;
   if (processes) {
     leading.emplace(*processes);
-    require_run(argc, argv);
+    require_shared(argc, argv);
   }
   slipfront::cli::become_python_command(argc, argv);
   slipfront::cli::Program program("slipfront", "Slip fronts at frictional interfaces",
@@ -108,7 +110,7 @@ int run(int argc, char** argv) {
   slipfront::cli::add_study(command);
   slipfront::cli::add_verify(command);
   slipfront::cli::add_info(command);
-  slipfront::cli::add_bench(command);
+  slipfront::cli::add_bench(command, processes.get());
   slipfront::cli::add_validate(command);
   slipfront::cli::add_keys(command);
   slipfront::cli::add_python_commands(command);

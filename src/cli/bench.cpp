@@ -9,8 +9,11 @@
 #include <string>
 #include <thread>
 
+#include "base/error.hpp"
 #include "base/version.hpp"
 #include "cli/commands.hpp"
+#include "fronts/fit.hpp"
+#include "run/parts.hpp"
 #include "statics/plate_solver.hpp"
 
 namespace slipfront::cli {
@@ -80,6 +83,41 @@ void print_table(const bench::Results& results) {
         r.node_updates_per_s * 1e-6);
 }
 
+void print_network(const std::vector<Link>& links, bool as_json) {
+  std::vector<double> latencies_s, bandwidths_bytes_per_s;
+  nlohmann::ordered_json list;
+  for (const auto& link : links) {
+    latencies_s.push_back(link.latency_s);
+    bandwidths_bytes_per_s.push_back(link.bandwidth_bytes_per_s);
+    list.push_back({{"from", link.from},
+                    {"to", link.to},
+                    {"latency_s", link.latency_s},
+                    {"bandwidth_bytes_per_s", link.bandwidth_bytes_per_s}});
+  }
+  const double latency_s = fronts::median(latencies_s);
+  const double bandwidth_bytes_per_s = fronts::median(bandwidths_bytes_per_s);
+  if (as_json) {
+    const nlohmann::ordered_json all = {{"version", version()},
+                                        {"commit", commit()},
+                                        {"processor", processor()},
+                                        {"processes", links.size() + 1},
+                                        {"latency_s", latency_s},
+                                        {"bandwidth_bytes_per_s", bandwidth_bytes_per_s},
+                                        {"links", list}};
+    fmt::print("{}\n", all.dump(2));
+    return;
+  }
+  fmt::print("{}, {}, {}\n\n", version_line(), processor(), compiler());
+  fmt::print("{:<16}{:>14}{:>18}\n", "processes", "latency, us", "GB/s each way");
+  for (const auto& link : links)
+    fmt::print("{:<16}{:>14.3g}{:>18.3g}\n", fmt::format("{} and {}", link.from, link.to),
+               link.latency_s * 1e6, link.bandwidth_bytes_per_s * 1e-9);
+  fmt::print(
+      "\nHalf a round trip of one number; messages of 4 MiB both ways at once. Medians.\n"
+      "info --latency-s {:.4g} --bandwidth-bytes-per-s {:.4g}\n",
+      latency_s, bandwidth_bytes_per_s);
+}
+
 void print_statics(const bench::StaticsRun& r) {
   fmt::print(
       "{} x {}, {}, {:.3g} unknowns: {:.2f} s ({:.2f} s of processor), {} cycles, peak memory {:.2f} GB, "
@@ -90,7 +128,7 @@ void print_statics(const bench::StaticsRun& r) {
 
 }  // namespace
 
-void add_bench(Command& app) {
+void add_bench(Command& app, Processes* processes) {
   Command* command =
       app.add_subcommand("bench", "Measure node updates per second against the machine's bounds");
   auto options = std::make_shared<bench::Options>();
@@ -105,7 +143,21 @@ void add_bench(Command& app) {
       ->range(2, 100'000);
   command->add_option("--solver", *solver, "... by this solver: auto, direct or iterative")
       ->one_of({"auto", "direct", "iterative"});
-  command->callback([options, json, columns, solver] {
+  auto network = std::make_shared<bool>(false);
+  command->add_flag(
+      "--network", *network,
+      "Measure latency and bandwidth between processes instead, started by mpirun -n 2 or more");
+  command->callback([options, json, columns, solver, network, processes] {
+    if (*network) {
+      if (processes == nullptr)
+        throw UserError(
+            "slipfront: bench --network measures between processes; start several of a program built for MPI "
+            "with mpirun -n 2 or more");
+      return print_network(run::measure_network(*processes), *json);
+    }
+    if (processes != nullptr)
+      throw UserError(
+          "slipfront: of bench only --network can be shared by several processes; start it alone");
     if (*columns > 0) {
       for (const auto s : {statics::StaticSolver::automatic, statics::StaticSolver::direct,
                            statics::StaticSolver::iterative})

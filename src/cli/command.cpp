@@ -99,6 +99,7 @@ Option* Command::add_option(const char* names, Value& value, const char* descrip
 template Option* Command::add_option(const char*, int&, const char*);
 template Option* Command::add_option(const char*, std::optional<int>&, const char*);
 template Option* Command::add_option(const char*, double&, const char*);
+template Option* Command::add_option(const char*, std::optional<double>&, const char*);
 template Option* Command::add_option(const char*, std::string&, const char*);
 template Option* Command::add_option(const char*, std::optional<std::string>&, const char*);
 template Option* Command::add_option(const char*, std::vector<int>&, const char*);

@@ -20,7 +20,8 @@ void add_reproduce(Command& app);
 void add_study(Command& app);
 void add_verify(Command& app);
 void add_info(Command& app);
-void add_bench(Command& app);
+/// @param processes  between which it may measure; null where this one is alone
+void add_bench(Command& app, Processes* processes);
 void add_validate(Command& app);
 void add_keys(Command& app);
 /// Hidden: prints what the installation takes from the program. @param program  with all its subcommands

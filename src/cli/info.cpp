@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <numeric>
+#include <optional>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
@@ -131,23 +135,81 @@ void add_stability_of_sliding(const run::Info& info, Listing& list) {
     list.add("  with the friction at", fmt::format("x = {:.4g} m, the worst node", info.well_posedness_x_m));
 }
 
-run::Info info_of(const CaseArguments& arguments, const input::Case& config) {
+std::string columns_text(const motion::Division& division) {
+  int least = std::numeric_limits<int>::max(), most = 0;
+  for (int part = 0; part < division.n_parts(); ++part) {
+    const auto own = division.own(part);
+    least = std::min(least, own.end - own.begin);
+    most = std::max(most, own.end - own.begin);
+  }
+  return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
+}
+
+/// The prediction, a line for each part of the time.
+void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, Listing& list) {
+  const auto& [division, cost] = shared;
+  const auto add_s = [&](const char* what, double s) { list.add(what, fmt::format("{:.3g} s", s)); };
+  list.add("shared by",
+           fmt::format("{} processes on {} processors, {:.3g} us and {:.3g} GB/s between them",
+                       sharing.n_processes, sharing.n_processors, sharing.network.latency_s * 1e6,
+                       sharing.network.bandwidth_bytes_per_s * 1e-9));
+  list.add("  columns of nodes of each",
+           fmt::format("{}, and {} beside them on either side", columns_text(division), division.halo));
+  list.add("  exchange every", fmt::format("{} steps", division.steps_per_exchange));
+  list.add("  bytes sent per step",
+           fmt::format("{:.4g} by a process between two others", cost.bytes_per_step));
+  list.add("  memory", fmt::format("{:.3g} GB of the leader, {:.3g} GB of each other process",
+                                   cost.leader_memory_bytes * 1e-9, cost.memory_bytes * 1e-9));
+  add_s("  time: own columns", cost.own_s);
+  add_s("  time: halo", cost.halo_s);
+  add_s("  time: exchange", cost.exchange_s);
+  add_s("  time: commands of the leader", cost.command_s);
+  add_s("  time: samples, snapshots", cost.gathering_s);
+  add_s("  time: statics, leader alone", cost.statics_s);
+  add_s("  time: start", cost.start_s);
+  add_s("  time in all", cost.total_s());
+}
+
+run::Info info_of(const CaseArguments& arguments, const input::Case& config,
+                  const std::optional<run::Sharing>& sharing) {
   try {
-    return run::info(config);
+    return run::info(config, sharing);
   } catch (const UserError& error) {
     throw arguments.with_place(error);
   }
 }
 
-void print_info(const CaseArguments& arguments) {
+/// As it is given.
+struct SharingArguments {
+  std::optional<int> n_processes, n_processors;
+  std::optional<double> latency_s, bandwidth_bytes_per_s;
+
+  std::optional<run::Sharing> sharing() const {
+    if (!n_processes) {
+      if (n_processors || latency_s || bandwidth_bytes_per_s)
+        throw UserError(
+            "slipfront: --processors, --latency-s and --bandwidth-bytes-per-s of info say something with "
+            "--processes only");
+      return {};
+    }
+    const auto& known = run::shared_memory;
+    return run::Sharing{
+        *n_processes,
+        n_processors.value_or(*n_processes),
+        {latency_s.value_or(known.latency_s), bandwidth_bytes_per_s.value_or(known.bandwidth_bytes_per_s)}};
+  }
+};
+
+void print_info(const CaseArguments& arguments, const std::optional<run::Sharing>& sharing) {
   const input::Case& config = arguments.read();
-  const auto info = info_of(arguments, config);
+  const auto info = info_of(arguments, config, sharing);
   Listing list;
   if (!config.title.empty()) list.add("title", files::one_line(config.title));
   add_wave_speeds(info, list);
   add_size(info, list);
   add_steps(config, info, list);
   add_costs(info, list);
+  if (sharing) add_shared(*info.shared, *sharing, list);
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
   for (const auto& note : arguments.notes()) list.text += fmt::format("note: {}\n", note);
@@ -164,7 +226,26 @@ void add_info(Command& app) {
       "info",
       "Print what follows from a case: wave speeds, step, size, memory, expected time, stability of sliding");
   const auto arguments = add_case_arguments(*command);
-  command->callback([arguments] { print_info(*arguments); });
+  auto shared = std::make_shared<SharingArguments>();
+  command
+      ->add_option("--processes", shared->n_processes,
+                   "Also predict time and memory of a run that so many processes share")
+      ->range(1, 10'000'000);
+  command
+      ->add_option("--processors", shared->n_processors,
+                   "Processors that the processes share; by default one for each")
+      ->range(1, 10'000'000);
+  command
+      ->add_option("--latency-s", shared->latency_s,
+                   "Between processes, as bench --network tells it; by default that of shared memory")
+      ->positive()
+      ->type_name("S");
+  command
+      ->add_option("--bandwidth-bytes-per-s", shared->bandwidth_bytes_per_s,
+                   "Between processes, each way; by default that of shared memory")
+      ->positive()
+      ->type_name("B");
+  command->callback([arguments, shared] { print_info(*arguments, shared->sharing()); });
 }
 
 }  // namespace slipfront::cli

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "motion/kept_motion.hpp"
 
@@ -123,7 +124,8 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
     case PartCommand::measures:
       answer.put(PartMeasures{stepper_->kinetic_energy_J_per_m(), stepper_->mass_kg_per_m(),
                               stepper_->bodies().front().mass_kg_per_m(),
-                              stepper_->largest_acceleration_m_per_s2(), stepper_->node_updates_per_step()});
+                              stepper_->largest_acceleration_m_per_s2(), stepper_->node_updates_per_step(),
+                              cost()});
       break;
     case PartCommand::snapshot:
       put_snapshot(answer);
@@ -137,7 +139,9 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
     case PartCommand::restore:
       restore(KeptMotion::take(given), *stepper_, place_);
       finder_.reset();
+      begin_counting();
       break;
+    case PartCommand::network:
     case PartCommand::build:
     case PartCommand::release:
     case PartCommand::end:
@@ -166,6 +170,23 @@ void Part::start(Parcel& given) {
   stepper_->start(e, top_speed_m_per_s, std::move(loads));
   finder_.reset();
   renew_halo();
+  begin_counting();
+}
+
+void Part::begin_counting() {
+  counted_before_ = processes_.counters();
+  first_counted_step_ = stepper_->step();
+  computing_s_ = 0;
+}
+
+PartCost Part::cost() const {
+  const auto& now = processes_.counters();
+  return {.steps = stepper_->step() - first_counted_step_,
+          .messages = now.messages - counted_before_.messages,
+          .bytes = now.bytes - counted_before_.bytes,
+          .computing_s = computing_s_,
+          .exchange_s = now.exchange_s - counted_before_.exchange_s,
+          .command_s = now.command_s - counted_before_.command_s};
 }
 
 void Part::make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s) {
@@ -207,7 +228,9 @@ void Part::advance(Parcel& given, Parcel& answer) {
     };
   for (std::int64_t done = 0; done < n_steps;) {
     const auto n = std::min<std::int64_t>(division_.steps_per_exchange, n_steps - done);
+    const auto begin = Clock::now();
     stepper_->advance(log, n, between);
+    computing_s_ += seconds_since(begin);
     renew_halo();
     finder_->renew_tractions(stepper_->interface_state());
     done += n;

@@ -42,6 +42,7 @@ Division divide_columns(int n_columns, int n_parts, int columns_per_step, int re
 
 /// What is asked of all parts at a time. The number of the command is followed by its values.
 enum class PartCommand : int {
+  network,   ///< run::serve measures it, or answers one that does
   build,     ///< run::serve makes the part
   start,     ///< begin at an equilibrium
   watch,     ///< look at probes
@@ -56,12 +57,22 @@ enum class PartCommand : int {
   end,       ///< and neither is the process
 };
 
+/// What a part has cost since it was started or restored.
+struct PartCost {
+  std::int64_t steps = 0;
+  std::int64_t messages = 0, bytes = 0;  ///< that its process has sent
+  double computing_s = 0;
+  double exchange_s = 0;  ///< in exchanges with its neighbours
+  double command_s = 0;   ///< waiting for commands, the leader for answers
+};
+
 /// Sums and maxima over what a part accounts for.
 struct PartMeasures {
   double kinetic_J_per_m = 0;
   double mass_kg_per_m = 0, plate_mass_kg_per_m = 0;
   double largest_acceleration_m_per_s2 = 0;
   double node_updates_per_step = 0;
+  PartCost cost;
 };
 
 /// The part of an event's bodies that one process computes. All processes have one and are given the same
@@ -85,6 +96,8 @@ class Part {
   void advance(Parcel& given, Parcel& answer);
   void make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s);
   void renew_halo();
+  void begin_counting();
+  PartCost cost() const;
   void put_snapshot(Parcel& answer) const;
 
   Processes& processes_;
@@ -99,6 +112,9 @@ class Part {
     std::vector<double> sent, received;
   };
   std::vector<Neighbour> neighbours_;
+  Processes::Counters counted_before_;
+  std::int64_t first_counted_step_ = 0;
+  double computing_s_ = 0;
 };
 
 /// Carries out the leader's commands until the part is needed no more.

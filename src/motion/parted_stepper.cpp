@@ -300,6 +300,12 @@ std::vector<PartMeasures> PartedStepper::measures() const {
   return all;
 }
 
+std::vector<PartCost> PartedStepper::costs() const {
+  std::vector<PartCost> costs;
+  for (const auto& m : measures()) costs.push_back(m.cost);
+  return costs;
+}
+
 double PartedStepper::node_updates_per_step() const {
   double sum = 0;
   for (const auto& m : measures()) sum += m.node_updates_per_step;

@@ -45,6 +45,10 @@ class PartedStepper final : public TimeStepper {
   double energy_of_tractions_J_per_m() const override;
   Snapshot snapshot() const override;
 
+  const Division& division() const { return division_; }
+  /// What each part has cost since this process began or went on with the event.
+  std::vector<PartCost> costs() const;
+
   /// What changes, of the whole bodies; the same back, kept by any number of processes.
   KeptMotion kept() const;
   void restore(const KeptMotion& kept);

@@ -48,7 +48,7 @@ class MpiProcesses final : public Processes {
   int size() const override { return size_; }
 
   void send(int to, const Parcel& parcel) override {
-    const Waiting waiting(counters_);
+    const Waiting waiting(counters_.command_s);
     const auto bytes = parcel.bytes();
     const auto n = static_cast<std::uint64_t>(bytes.size());
     MPI_Send(&n, 1, MPI_UINT64_T, to, tag, MPI_COMM_WORLD);
@@ -59,7 +59,7 @@ class MpiProcesses final : public Processes {
   }
 
   Parcel receive(int from) override {
-    const Waiting waiting(counters_);
+    const Waiting waiting(counters_.command_s);
     std::uint64_t n = 0;
     MPI_Recv(&n, 1, MPI_UINT64_T, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     std::vector<std::byte> bytes(n);
@@ -70,21 +70,22 @@ class MpiProcesses final : public Processes {
   }
 
   void exchange(std::span<const Exchange> exchanges) override {
-    const Waiting waiting(counters_);
-    std::vector<MPI_Request> requests(2 * exchanges.size());
-    for (std::size_t k = 0; k < exchanges.size(); ++k) {
-      const auto& [with, out, in] = exchanges[k];
-      MPI_Irecv(in.data(), static_cast<int>(in.size()), MPI_DOUBLE, with, tag, MPI_COMM_WORLD,
-                &requests[2 * k]);
+    const Waiting waiting(counters_.exchange_s);
+    std::vector<MPI_Request> requests;
+    for (const auto& [with, out, in] : exchanges) {
+      if (!in.empty())
+        MPI_Irecv(in.data(), static_cast<int>(in.size()), MPI_DOUBLE, with, tag, MPI_COMM_WORLD,
+                  &requests.emplace_back());
+      if (out.empty()) continue;
       MPI_Isend(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, with, tag, MPI_COMM_WORLD,
-                &requests[2 * k + 1]);
+                &requests.emplace_back());
       count(out.size_bytes());
     }
     MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   }
 
   void take_largest(std::span<double> values) override {
-    const Waiting waiting(counters_);
+    const Waiting waiting(counters_.command_s);
     MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX,
                   MPI_COMM_WORLD);
     count(values.size_bytes());
@@ -103,13 +104,13 @@ class MpiProcesses final : public Processes {
   /// Adds the time until it goes out of scope.
   class Waiting {
    public:
-    explicit Waiting(Counters& counters) : counters_(counters) {}
+    explicit Waiting(double& waited_s) : waited_s_(waited_s) {}
     Waiting(const Waiting&) = delete;
     Waiting& operator=(const Waiting&) = delete;
-    ~Waiting() { counters_.waiting_s += seconds_since(begin_); }
+    ~Waiting() { waited_s_ += seconds_since(begin_); }
 
    private:
-    Counters& counters_;
+    double& waited_s_;
     Clock::time_point begin_ = Clock::now();
   };
 

@@ -22,9 +22,10 @@ class Processes {
   /// What this process has sent, and how long it has waited.
   struct Counters {
     std::int64_t messages = 0, bytes = 0;
-    double waiting_s = 0;
+    double exchange_s = 0;  ///< in exchange
+    double command_s = 0;   ///< in the other calls
   };
-  /// Numbers that go to and come from another process at the same time.
+  /// Numbers that go to and come from another process at the same time; either may be none.
   struct Exchange {
     int with = 0;
     std::span<const double> out;

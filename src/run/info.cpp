@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
-#include <limits>
 #include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "base/clock.hpp"
+#include "fronts/fit.hpp"
 #include "input/friction_along_x.hpp"
 #include "motion/stepper.hpp"
 #include "run/choices.hpp"
@@ -108,22 +108,32 @@ void add_needs(const input::Case& config, const Meshes& meshes, double node_upda
     info.solver = statics::choose_solver(wanted_solver(config), n_unknowns_of(info));
 }
 
-/// A plate at rest takes the same time per step as one in motion: a few steps give this machine's rate.
-double measured_step_s(motion::Stepper& stepper, const Meshes& meshes) {
-  record::StaticState no_tractions;
-  for (const auto n : meshes.plate.lower) no_tractions.x_m.push_back(meshes.plate.x_m[n]);
-  no_tractions.t_s_Pa = no_tractions.p_s_Pa = std::vector<double>(meshes.plate.lower.size(), 0.0);
-  const auto rest = statics::prestressed(meshes.plate, no_tractions, meshes.base ? &*meshes.base : nullptr);
-  stepper.start(rest, 0);
-  motion::Recorder recorder(rest, 1, 0);
+/// A few steps give this machine's rate: under the mean pressure, with half of the interface sliding, which
+/// takes longer than to stick.
+/// @param n_steps  taken at once
+double measured_step_s(const input::Case& config, motion::Stepper& stepper, const Meshes& meshes,
+                       std::int64_t n_steps) {
+  constexpr double least_s = 20e-3, most_s = 0.5;
+  const double mu_s = interface::static_coefficient(config.friction);
+  const auto n = meshes.plate.lower.size();
+  record::StaticState tractions;
+  for (const auto node : meshes.plate.lower) tractions.x_m.push_back(meshes.plate.x_m[node]);
+  tractions.p_s_Pa.assign(n, mean_pressure_Pa(config, meshes.plate));
+  tractions.t_s_Pa.assign(n, 0.0);
+  for (std::size_t k = 0; k < n / 2; ++k) tractions.t_s_Pa[k] = 1.1 * mu_s * tractions.p_s_Pa[k];
+  const auto state = statics::prestressed(meshes.plate, tractions, meshes.base ? &*meshes.base : nullptr);
+  stepper.start(state, 0, {tractions.t_s_Pa, tractions.p_s_Pa});
+  motion::Recorder recorder(state, mu_s, 0);
+  std::vector<double> times_s;
   const auto start = Clock::now();
-  double fastest_s = std::numeric_limits<double>::infinity();
+  double spent_s = 0;
   do {
-    const auto step_start = Clock::now();
-    stepper.advance(recorder);
-    fastest_s = std::min(fastest_s, seconds_since(step_start));
-  } while (seconds_since(start) < 2e-3);
-  return fastest_s;
+    const auto begin = Clock::now();
+    stepper.advance(recorder, n_steps, {});
+    times_s.push_back(seconds_since(begin) / static_cast<double>(n_steps));
+    spent_s = seconds_since(start);
+  } while (spent_s < least_s || (times_s.size() < 3 && spent_s < most_s));
+  return fronts::median(times_s);
 }
 
 /// Of the factorisation n^1.5 operations are those of large fronts, the rest of its assembly and small ones;
@@ -134,9 +144,54 @@ double expected_statics_s(const Info& info) {
   return info.solver == statics::StaticSolver::iterative ? 1e-6 * n : 0;
 }
 
+/// What the leader asks all parts for during an event: steps until it looks, energies.
+double commands_of(const Needs& needs) {
+  constexpr double steps_per_look = 50, steps_per_check = 100;  // of motion::EventRun, motion::Watch
+  const auto steps = static_cast<double>(needs.steps);
+  return steps / steps_per_look + needs.energy_rows + 2 * needs.snapshots +
+         std::max(needs.energy_rows, steps / steps_per_check);
+}
+
+Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::Stepper& stepper,
+                       const Sharing& sharing, const Info& info) {
+  require_divisible(config);
+  std::vector<double> stable_steps_s;
+  for (const auto& body : stepper.bodies()) stable_steps_s.push_back(body.stable_step_s());
+  const int n_columns = meshes.plate.grid.stride();
+  Info::Shared shared;
+  shared.division = motion::divide_columns(n_columns, sharing.n_processes,
+                                           motion::columns_per_step(stable_steps_s, config.time),
+                                           motion::halo_for(meshes.plate, config.fronts.l_star_m));
+  SharedWork work;
+  work.n_nodes = static_cast<double>(info.n_nodes);
+  work.n_cells = static_cast<double>(info.n_cells);
+  work.n_columns = n_columns;
+  work.node_updates_per_step = stepper.node_updates_per_step();
+  int at_once = stepper.steps_per_sweep();
+  if (sharing.n_processes > 1) at_once = std::min(at_once, shared.division.steps_per_exchange);
+  work.node_updates_per_s =
+      stepper.node_updates_per_step() / measured_step_s(config, stepper, meshes, at_once);
+  stepper.visit_columns({n_columns / 2, n_columns / 2 + 1}, [&](const auto*, std::size_t n) {
+    work.values_per_column += static_cast<double>(n);
+  });
+  work.updates_per_step = std::round(info.step_s / info.substep_s);
+  work.steps = static_cast<double>(info.n_steps);
+  work.commands = commands_of(info.needs);
+  work.history_rows = info.needs.history_rows;
+  work.values_per_row = static_cast<double>(record::history_fields.size()) * n_columns;
+  work.snapshots = info.needs.snapshots;
+  work.statics_s = expected_statics_s(info);
+  work.statics_bytes = info.solver_bytes;
+  work.precision = config.time.precision;
+  work.bytes_per_interface_node = bytes_per_interface_node(config);
+  work.program_bytes = program_bytes;
+  shared.cost = process_cost(work, shared.division, sharing.n_processors, sharing.network);
+  return shared;
+}
+
 }  // namespace
 
-Info info(const input::Case& config) {
+Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   Info info;
   info.speeds = wave_speeds(config.material);
   const auto meshes = check(config);
@@ -150,8 +205,10 @@ Info info(const input::Case& config) {
   sliding.get();
   add_steps(*stepper, info);
   add_needs(config, meshes, stepper->node_updates_per_step(), info);
-  info.node_updates_per_s = stepper->node_updates_per_step() / measured_step_s(*stepper, meshes);
+  info.node_updates_per_s = stepper->node_updates_per_step() /
+                            measured_step_s(config, *stepper, meshes, stepper->steps_per_sweep());
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info);
+  if (sharing) info.shared = shared_by(config, meshes, *stepper, *sharing, info);
   return info;
 }
 

@@ -68,15 +68,8 @@ double estimated_critical_shear_m(const input::Case& config) {
   }
 }
 
-/// The interface's state, and the recorder with the copy of its record in the order of time.
 double interface_bytes(const input::Case& config, const Size& size) {
-  const double halo = std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
-  const double around = 2 * number * (2 * halo + 1);
-  const double state = 30 * number + 2 * number + around;
-  // A node's onsets and stops: the first ones, and those that other nodes' first onsets fell between.
-  constexpr double changes = 6;
-  const double record = changes * (2 * number + around + 2 * number);
-  return size.n_interface * (state + 2 * record);
+  return size.n_interface * bytes_per_interface_node(config);
 }
 
 /// Largest frequency of many squares of side h; corners and coarser blocks change it little, or lower it.
@@ -101,9 +94,6 @@ std::filesystem::path existing_parent(const std::filesystem::path& folder) {
   while (!std::filesystem::exists(path, ignored) && path.has_relative_path()) path = path.parent_path();
   return path;
 }
-
-/// The program, its libraries and its threads, before it has a case.
-constexpr double program_bytes = 26e6;
 
 /// glibc keeps up to two freed arrays as long as the largest that it has taken from its heap, of 32 MB at
 /// most: beyond that it gives memory back.
@@ -272,6 +262,17 @@ Size estimated_size(const input::Case& config) {
     size.step_s =
         std::min(size.step_s, config.time.step_factor * stable_step_s(input::base_material(config)));
   return size;
+}
+
+double bytes_per_interface_node(const input::Case& config) {
+  const double halo = std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
+  const double around = 2 * number * (2 * halo + 1);
+  const double state = 30 * number + 2 * number + around;
+  // A node's onsets and stops: the first ones, and those that other nodes' first onsets fell between.
+  constexpr double changes = 6;
+  const double record = changes * (2 * number + around + 2 * number);
+  // The recorder with the copy of its record in the order of time.
+  return state + 2 * record;
 }
 
 Needs needs(const input::Case& config, const Size& size) {

@@ -36,6 +36,12 @@ struct Size {
 /// which is shorter, and of a graded plate, which may be longer.
 Size estimated_size(const input::Case& config);
 
+/// The program, its libraries and its threads, before it has a case.
+inline constexpr double program_bytes = 26e6;
+
+/// Of a node of the interface: its state, and the record of its slip.
+double bytes_per_interface_node(const input::Case& config);
+
 /// Work, memory and space on disk that a run takes. Bytes on disk are the most that lies there at one time:
 /// while they become the results, raw history and snapshots lie beside them.
 struct Needs {

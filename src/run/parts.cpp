@@ -227,6 +227,37 @@ void lead(Processes& processes) {
   if (!other.empty()) throw UserError("{}", other);
 }
 
+namespace {
+
+/// Of a process's links that to another one: whether it measures, or answers.
+Parcel network_command(int with, bool measures) {
+  Parcel parcel;
+  parcel.put(motion::PartCommand::network).put(with).put(static_cast<std::uint8_t>(measures));
+  return parcel;
+}
+
+void carry_out_network(Processes& processes, Parcel& given) {
+  const int with = given.take<int>();
+  if (given.take<std::uint8_t>() == 0) return answer_link(processes, with);
+  processes.send(0, Parcel().put(measure_link(processes, with)));
+}
+
+}  // namespace
+
+std::vector<Link> measure_network(Processes& processes) {
+  std::vector<Link> links;
+  for (int rank = 0; rank + 1 < processes.size(); ++rank) {
+    processes.send(rank + 1, network_command(rank, false));
+    if (rank == 0) {
+      links.push_back(measure_link(processes, 1));
+    } else {
+      processes.send(rank, network_command(rank + 1, true));
+      links.push_back(processes.receive(rank).take<Link>());
+    }
+  }
+  return links;
+}
+
 void serve(Processes& processes) try {
   // What a signal asks for is the leader's to hear.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) std::signal(signal, SIG_IGN);
@@ -234,7 +265,12 @@ void serve(Processes& processes) try {
   if (processes.receive(0).take<std::uint8_t>() == 0) return;
   for (;;) {
     auto parcel = processes.receive(0);
-    if (parcel.take<motion::PartCommand>() == motion::PartCommand::end) return;
+    const auto command = parcel.take<motion::PartCommand>();
+    if (command == motion::PartCommand::end) return;
+    if (command == motion::PartCommand::network) {
+      carry_out_network(processes, parcel);
+      continue;
+    }
     const auto part = take_part(processes, parcel);
     motion::serve(processes, *part);
   }

@@ -3,10 +3,12 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/parted_stepper.hpp"
+#include "processes/network.hpp"
 #include "processes/processes.hpp"
 
 namespace slipfront::run {
@@ -28,6 +30,8 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
 /// What the process does first that leads.
 /// @throws UserError where another process is another program; all are dismissed then
 void lead(Processes& processes);
+/// Between each process and the next one, one after the other. To be called by the leader, as above.
+std::vector<Link> measure_network(Processes& processes);
 /// What the other ones do: their parts of what the leader runs, until it dismisses them.
 void serve(Processes& processes);
 void dismiss(Processes& processes);

@@ -12,6 +12,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/per_node.hpp"
+#include "motion/parted_stepper.hpp"
 #include "motion/stepper.hpp"
 #include "run/begin.hpp"
 #include "run/choices.hpp"
@@ -213,6 +214,8 @@ Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper,
   result.step_s = stepper.step_s();
   result.substep_s = stepper.substep_s();
   result.node_updates_per_step = stepper.node_updates_per_step();
+  if (const auto* parted = dynamic_cast<const motion::PartedStepper*>(&stepper); parted != nullptr)
+    result.shared = SharedCost{parted->division(), parted->costs()};
   result.event = std::move(event);
   return result;
 }

@@ -17,6 +17,7 @@
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
 #include "run/parts.hpp"
+#include "run/process_cost.hpp"
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
 
@@ -28,6 +29,12 @@ struct WaveSpeeds {
 };
 WaveSpeeds wave_speeds(const solid::Material& material);
 
+/// What several processes have spent on an event, since they began or went on with it.
+struct SharedCost {
+  motion::Division division;
+  std::vector<motion::PartCost> of_parts;
+};
+
 /// A run with all it found.
 struct Result {
   input::Case config;
@@ -38,6 +45,7 @@ struct Result {
   motion::Event event;
   std::vector<fronts::Front> fronts;
   std::vector<std::string> warnings;
+  std::optional<SharedCost> shared;  ///< of several processes
 
   /// What cannot be made again from the case and the initial state, see measure.
   template <class Archive>
@@ -123,6 +131,12 @@ void write_status(const std::filesystem::path& dir, const input::Case& config, c
 
 /// Derived quantities of a case, found without solving anything.
 struct Info {
+  /// A division among processes and what it costs, for runs of several.
+  struct Shared {
+    motion::Division division;
+    ProcessCost cost;
+  };
+
   WaveSpeeds speeds;                                         ///< of the plate
   std::optional<WaveSpeeds> base_speeds;                     ///< of the body below
   std::optional<double> generalised_rayleigh_speed_m_per_s;  ///< of the two, where it exists
@@ -141,7 +155,15 @@ struct Info {
   stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure
   /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
   double well_posedness_x_m = fronts::undefined;
+  std::optional<Shared> shared;
 };
-Info info(const input::Case& config);
+
+/// Processes that are to share a run.
+struct Sharing {
+  int n_processes = 2, n_processors = 2;
+  Network network = shared_memory;
+};
+/// @throws UserError where the plate cannot be divided among so many
+Info info(const input::Case& config, const std::optional<Sharing>& sharing = {});
 
 }  // namespace slipfront::run

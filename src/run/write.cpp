@@ -131,6 +131,45 @@ Json rupture_json(const RuptureOutlook& rupture) {
           {"doubts", rupture.doubts}};
 }
 
+/// Columns are of nodes; what a process has sent counts as its messages and bytes.
+Json processes_json(const SharedCost& shared) {
+  const auto& division = shared.division;
+  Json own = Json::array(), halo = Json::array(), computing_s = Json::array();
+  Json exchange_s = Json::array(), command_s = Json::array();
+  double messages = 0, bytes = 0, most_messages = 0, most_bytes = 0, sum_s = 0, largest_s = 0;
+  for (int part = 0; part < division.n_parts(); ++part) {
+    const auto columns = division.own(part), all = division.all(part);
+    own.push_back(columns.end - columns.begin);
+    halo.push_back(all.end - all.begin - (columns.end - columns.begin));
+    const auto& cost = shared.of_parts[static_cast<std::size_t>(part)];
+    computing_s.push_back(cost.computing_s);
+    exchange_s.push_back(cost.exchange_s);
+    command_s.push_back(cost.command_s);
+    messages += static_cast<double>(cost.messages);
+    bytes += static_cast<double>(cost.bytes);
+    most_messages = std::max(most_messages, static_cast<double>(cost.messages));
+    most_bytes = std::max(most_bytes, static_cast<double>(cost.bytes));
+    sum_s += cost.computing_s;
+    largest_s = std::max(largest_s, cost.computing_s);
+  }
+  const auto steps = shared.of_parts.front().steps;
+  const auto per_step = [&](double n) { return steps > 0 ? Json(n / static_cast<double>(steps)) : Json(); };
+  const double mean_s = sum_s / division.n_parts();
+  return {{"count", division.n_parts()},
+          {"own_columns", own},
+          {"halo_columns", halo},
+          {"steps_per_exchange", division.steps_per_exchange},
+          {"steps", steps},
+          {"messages_per_step", per_step(messages)},
+          {"messages_per_step_of_busiest", per_step(most_messages)},
+          {"bytes_per_step", per_step(bytes)},
+          {"bytes_per_step_of_busiest", per_step(most_bytes)},
+          {"computing_s", computing_s},
+          {"waiting_in_exchanges_s", exchange_s},
+          {"waiting_in_commands_s", command_s},
+          {"imbalance_largest_over_mean", mean_s > 0 ? Json(largest_s / mean_s) : Json()}};
+}
+
 /// What every run.json begins with.
 Json about(const input::Case& config, const Status& status) {
   Json json = {{"version", version()},     {"commit", commit()},      {"compiler", compiler()},
@@ -171,6 +210,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                 status.name == "running" ? Json() : Json(snapshots_after(result.config, event.time_s))},
                {"fronts", fronts_json(result.fronts)},
                {"warnings", warnings}});
+  if (result.shared) json["processes"] = processes_json(*result.shared);
   if (input::has_base_body(result.config)) json["mesh"]["base_rows"] = initial.base->grid.rows;
   if (input::has_base_body(result.config))
     json["base"] = {{"columns", initial.base->grid.columns},

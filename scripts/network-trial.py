@@ -1,0 +1,349 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures the time per step of a run shared by several processes against what info --processes predicts.
+
+    scripts/network-trial.py PROGRAM -o OUT.csv [--quick]     as root, with iproute2 and Open MPI 4.1
+
+By shared memory with 1, 2, 4 and 8 processes; and with 2 and 4 between network namespaces, each taken for a
+machine. The namespaces are joined by a switch of this script's own, since not every kernel has netem: each
+has a tap device, and the script takes every Ethernet frame from one and puts it into another after the
+latency. The bandwidth is limited by tc tbf on the devices. Nothing of it is seen outside; all is removed at
+the end.
+
+What a run takes is the median over some runs of run.json's wall_s over its steps; the prediction is that of
+info in the same minutes, with latency and bandwidth by bench --network over the same network. Both go before
+other work on the machine (nice -20). All processes share the processors of this machine.
+"""
+
+import argparse
+import contextlib
+import csv
+import fcntl
+import heapq
+import json
+import os
+import re
+import select
+import shutil
+import signal
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any, Self
+
+ROOT = Path(__file__).resolve().parent.parent
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+TIMEOUT_S = 120
+PROCESSORS = os.cpu_count() or 1
+
+# A rupture under uniform tractions, so that statics take no part: rigid_flat_a.toml on wider plates.
+CASE = ROOT / "cases" / "reference" / "rigid_flat_a.toml"
+CASES = {
+    # 2401 x 241 nodes, the plain scheme: a process has much to compute between two exchanges.
+    "plain": [
+        "plate.width_m=1.2",
+        "plate.height_m=0.12",
+        "time.interface_substeps=1",
+        "time.interface_rows=1",
+    ],
+    # 2401 x 121 nodes with 18 sub-steps: the halo is wide, exchanges are frequent.
+    "sub-cycled": ["plate.width_m=1.2", "plate.height_m=0.06", "time.interface_substeps=18"],
+}
+COMMON = [
+    "plate.element_size_m=0.5e-3",
+    "nucleation.x_m=0.6",
+    "time.quiet_s=inf",
+    "output.history_interval_s=0.5e-6",
+    "output.energy_interval_s=20e-6",
+]
+
+
+def sets(case: str, end_s: float) -> list[str]:
+    keys = [*COMMON, *CASES[case], f"time.end_s={end_s}"]
+    return [word for key in keys for word in ("--set", key)]
+
+
+# --- the switch
+
+
+def make_tap(name: str) -> int:
+    tap = os.open("/dev/net/tun", os.O_RDWR | os.O_NONBLOCK)
+    TUNSETIFF, IFF_TAP, IFF_NO_PI = 0x400454CA, 0x0002, 0x1000
+    fcntl.ioctl(tap, TUNSETIFF, struct.pack("16sH22x", name.encode(), IFF_TAP | IFF_NO_PI))
+    return tap
+
+
+def carry_frames(taps: list[int], latency_s: float) -> None:
+    """Until it is killed: from each tap to the one of the frame's address, in order, after the latency."""
+    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
+    by_address = {bytes([2, 0, 0, 0, 0, k]): tap for k, tap in enumerate(taps)}
+    waiting: list[tuple[float, int, int, bytes]] = []
+    number = 0
+    while True:
+        timeout = None if not waiting else max(0.0, waiting[0][0] - time.monotonic())
+        readable, _, _ = select.select(taps, [], [], timeout)
+        for tap in readable:
+            with contextlib.suppress(BlockingIOError):
+                while True:
+                    frame = os.read(tap, 65536)
+                    due = time.monotonic() + latency_s
+                    to = by_address.get(frame[:6])
+                    for other in [to] if to is not None else [t for t in taps if t != tap]:
+                        heapq.heappush(waiting, (due, number, other, frame))
+                        number += 1
+        while waiting and waiting[0][0] <= time.monotonic():
+            _, _, tap, frame = heapq.heappop(waiting)
+            with contextlib.suppress(OSError):  # a full device loses it, as a switch would
+                os.write(tap, frame)
+
+
+def ip(*words: str) -> None:
+    subprocess.run(["ip", *words], check=True)
+
+
+class Machines:
+    """Network namespaces of this process's, with a switch between them while it is used as a context."""
+
+    def __init__(self, count: int, latency_s: float, bits_per_s: int, work: Path):
+        self.names = [f"slipfront{os.getpid()}-{k}" for k in range(count)]
+        self.addresses = [f"10.77.0.{k + 1}" for k in range(count)]
+        self.latency_s, self.bits_per_s, self.work = latency_s, bits_per_s, work
+        self.switch = 0
+        self.taps: list[int] = []
+
+    def __enter__(self) -> Self:
+        try:
+            for k, name in enumerate(self.names):
+                self.add(k, name)
+        except BaseException:
+            self.__exit__()
+            raise
+        self.switch = os.fork()
+        if self.switch == 0:
+            with contextlib.suppress(KeyboardInterrupt):
+                carry_frames(self.taps, self.latency_s)
+            os._exit(0)
+        return self
+
+    def add(self, k: int, name: str) -> None:
+        tap = f"sf{os.getpid() % 100000}t{k}"
+        ip("netns", "add", name)
+        self.taps.append(make_tap(tap))
+        ip("link", "set", tap, "netns", name)
+        ip("-n", name, "link", "set", "lo", "up")
+        ip("-n", name, "link", "set", tap, "address", f"02:00:00:00:00:{k:02x}", "mtu", "9000")
+        ip("-n", name, "link", "set", tap, "txqueuelen", "10000", "up")
+        ip("-n", name, "addr", "add", f"{self.addresses[k]}/24", "dev", tap)
+        if self.bits_per_s:
+            shape = ["rate", str(self.bits_per_s), "burst", "20000", "latency", "400ms"]
+            subprocess.run(["tc", "-n", name, "qdisc", "add", "dev", tap, "root", "tbf", *shape], check=True)
+
+    def __exit__(self, *_: object) -> None:
+        if self.switch:
+            os.kill(self.switch, signal.SIGKILL)
+            os.waitpid(self.switch, 0)
+        for name in self.names:
+            subprocess.run(["ip", "netns", "delete", name], stderr=subprocess.DEVNULL)
+        for tap in self.taps:
+            os.close(tap)
+
+    def agent(self) -> Path:
+        """What mpirun starts its daemons with instead of ssh: ADDRESS COMMAND..."""
+        script = self.work / "agent"
+        lines = ["#!/bin/sh", 'address=$1; shift; case "$address" in']
+        for name, address in zip(self.names, self.addresses, strict=True):
+            lines.append(f'  {address}) exec ip netns exec {name} unshare -u sh -c "hostname {name}; $*" ;;')
+        script.write_text("\n".join([*lines, "esac", "exit 1", ""]))
+        script.chmod(0o755)
+        return script
+
+    def mpirun(self, processes: int) -> list[str]:
+        each = processes // len(self.names)
+        hosts = ",".join(f"{address}:{each}" for address in self.addresses)
+        options = {
+            "plm_rsh_agent": self.agent(),
+            "btl": "tcp,self,vader",
+            "btl_tcp_if_include": "10.77.0.0/24",
+            "oob_tcp_if_include": "10.77.0.0/24",
+        }
+        words = [word for name, value in options.items() for word in ("--mca", name, str(value))]
+        inside = ["ip", "netns", "exec", self.names[0], "unshare", "-u", "sh", "-c"]
+        return [*inside, f'hostname {self.names[0]}; exec "$@"', "sh", "mpirun", *words, "--host", hosts]
+
+
+class SharedMemory:
+    """This machine as it is."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def mpirun(self, processes: int) -> list[str]:
+        return ["mpirun", "-n", str(processes)]
+
+
+# --- measurement
+
+
+def call(command: list[Any], timeout_s: float = TIMEOUT_S) -> str:
+    """What a command prints, before other work on the machine."""
+    words = ["nice", "-n", "-20", *map(str, command)]
+    # Its own group, so that what it has started ends with it.
+    with subprocess.Popen(
+        words,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | MPI,
+        start_new_session=True,
+    ) as process:
+        try:
+            out, errors = process.communicate(timeout=timeout_s)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
+    if process.returncode != 0:
+        raise RuntimeError(f"{' '.join(words)}\n{errors}")
+    return out
+
+
+Network = SharedMemory | Machines
+
+
+class Trial:
+    def __init__(self, program: Path, work: Path, repeats: int):
+        self.program, self.work, self.repeats = program, work, repeats
+
+    def together(self, network: Network, processes: int, *words: Any) -> str:
+        if processes == 1:
+            return call([self.program, *words])
+        mpirun = [*network.mpirun(processes), "--oversubscribe", "--bind-to", "none"]
+        return call([*mpirun, self.program, *words])
+
+    def link(self, network: Network) -> tuple[float, float]:
+        """Latency and bandwidth between two processes."""
+        told = [json.loads(self.together(network, 2, "bench", "--network", "--json")) for _ in range(3)]
+        latency_s, bytes_per_s = ([t[key] for t in told] for key in ("latency_s", "bandwidth_bytes_per_s"))
+        return statistics.median(latency_s), statistics.median(bytes_per_s)
+
+    def predict(self, case: str, end_s: float, processes: int, link: tuple[float, float]) -> dict[str, float]:
+        """Parts of the time and of the division, by name; times in all steps."""
+        options: list[Any] = ["--processes", processes, "--processors", min(processes, PROCESSORS)]
+        options += ["--latency-s", link[0], "--bandwidth-bytes-per-s", link[1]]
+        text = call([self.program, "info", CASE, *sets(case, end_s), *options])
+        parts = {name: float(s) for name, s in re.findall(r"^  time: (.+?) {2,}(\S+) s$", text, re.MULTILINE)}
+        return {name: s for name, s in parts.items() if name not in ("statics, leader alone", "start")}
+
+    def run(self, case: str, end_s: float, network: Network, processes: int) -> dict[str, Any]:
+        out = self.work / "run"
+        words = [*sets(case, end_s), "--threads", "1", "-o", out, "-q", "--overwrite"]
+        self.together(network, processes, "run", CASE, *words)
+        return json.loads((out / "run.json").read_text())
+
+    def measure(
+        self, case: str, end_s: float, network: Network, name: str, link: tuple[float, float], processes: int
+    ) -> dict[str, Any]:
+        predictions, runs = [], []
+        for _ in range(self.repeats):
+            predictions.append(self.predict(case, end_s, processes, link))
+            runs.append(self.run(case, end_s, network, processes))
+        steps = runs[0]["steps"]
+        us = [1e6 * run["wall_s"] / steps for run in runs]
+        measured_us = statistics.median(us)
+        part_us = {
+            key: 1e6 * statistics.median(p[key] for p in predictions) / steps for key in predictions[0]
+        }
+        predicted_us = sum(part_us.values())
+        # Of the run in the middle.
+        cost = runs[us.index(sorted(us)[len(us) // 2])].get("processes")
+        waits = ("computing_s", "waiting_in_exchanges_s", "waiting_in_commands_s")
+        of_run = {key: [1e6 * s / steps for s in cost[key]] for key in waits} if cost else {}
+        return {
+            "network": name,
+            "case": case,
+            "processes": processes,
+            "processors": min(processes, PROCESSORS),
+            "latency_us": link[0] * 1e6,
+            "bandwidth_MB_per_s": link[1] * 1e-6,
+            "own_columns": max(cost["own_columns"]) if cost else 2401,
+            "halo_columns": max(cost["halo_columns"]) if cost else 0,
+            "steps_per_exchange": cost["steps_per_exchange"] if cost else 0,
+            "steps": steps,
+            "runs": len(runs),
+            "measured_us_per_step": measured_us,
+            "least_us_per_step": min(us),
+            "largest_us_per_step": max(us),
+            "predicted_us_per_step": predicted_us,
+            "deviation_percent": 100 * (predicted_us / measured_us - 1),
+            **{f"predicted_{key.split(' ')[0].strip(',')}_us_per_step": us for key, us in part_us.items()},
+            "measured_computing_us_per_step": max(of_run["computing_s"]) if cost else measured_us,
+            "measured_exchange_us_per_step": statistics.mean(of_run["waiting_in_exchanges_s"]) if cost else 0,
+            "measured_commands_us_per_step": max(of_run["waiting_in_commands_s"]) if cost else 0,
+            "messages_per_step": cost["messages_per_step"] if cost else 0,
+            "bytes_per_step": cost["bytes_per_step"] if cost else 0,
+        }
+
+
+def print_row(row: dict[str, Any]) -> None:
+    print(
+        f"{row['network']:<22}{row['case']:<12}{row['processes']:>3} on {row['processors']}"
+        f"{row['own_columns']:>7} + {row['halo_columns']:<5}{row['steps_per_exchange']:>3}"
+        f"{row['measured_us_per_step']:>10.0f}"
+        f" ({row['least_us_per_step']:.0f} to {row['largest_us_per_step']:.0f})"
+        f"{row['predicted_us_per_step']:>10.0f}{row['deviation_percent']:>+8.0f} %",
+        flush=True,
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", type=Path)
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    parser.add_argument("--quick", action="store_true", help="one short run of each")
+    options = parser.parse_args()
+    if os.geteuid() != 0:
+        sys.exit("network-trial: network namespaces are made as root")
+    for tool in ("ip", "tc", "mpirun", "unshare"):
+        if shutil.which(tool) is None:
+            sys.exit(f"network-trial: {tool} is missing")
+    end_s, repeats = (1e-5, 1) if options.quick else (1e-4, 5)
+    gbit = int(1e9)
+    networks: list[tuple[str, float | None, tuple[int, ...]]] = [("shared memory", None, (1, 2, 4, 8))]
+    networks += [(f"1 Gbit/s, {ms} ms added", ms * 1e-3, (2, 4)) for ms in (0, 0.1, 1)]
+    rows = []
+    with tempfile.TemporaryDirectory(prefix="slipfront-network.") as folder:
+        trial = Trial(options.program.resolve(), Path(folder), repeats)
+        for name, latency_s, numbers in networks:
+            for processes in numbers:
+                machines: Network = SharedMemory()
+                if latency_s is not None:
+                    machines = Machines(processes, latency_s, gbit, trial.work)
+                with machines as network:
+                    link = trial.link(network)
+                    for case in CASES:
+                        try:
+                            rows.append(trial.measure(case, end_s, network, name, link, processes))
+                        except subprocess.TimeoutExpired:
+                            print(
+                                f"{name}, {case}, {processes} processes: no end within {TIMEOUT_S} s",
+                                flush=True,
+                            )
+                            continue
+                        print_row(rows[-1])
+                        with options.output.open("w", newline="") as file:
+                            table = csv.DictWriter(file, rows[0].keys())
+                            table.writeheader()
+                            for row in rows:
+                                table.writerow(
+                                    {k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()}
+                                )
+
+
+if __name__ == "__main__":
+    main()

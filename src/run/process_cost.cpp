@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/process_cost.hpp"
+
+#include <algorithm>
+
+#include "motion/event.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+constexpr double number_bytes = sizeof(double);
+
+/// Nodes and cells (x_m, y_m, cells) and the state before the event (u_m, u_per_shear).
+constexpr double bytes_of_mesh = 2 * number_bytes + sizeof(mesh::Cell), bytes_of_state = 4 * number_bytes;
+/// u_m, v_m_per_s of a snapshot.
+constexpr double bytes_of_snapshot = 4 * number_bytes;
+
+/// Columns of the part that computes most.
+struct Widest {
+  double own = 0, halo = 0;
+  int n_sides = 0;
+};
+
+Widest widest(const motion::Division& division) {
+  Widest most;
+  for (int part = 0; part < division.n_parts(); ++part) {
+    const auto own = division.own(part), all = division.all(part);
+    const double n_own = own.end - own.begin, n_halo = (all.end - all.begin) - n_own;
+    const int n_sides = (all.begin < own.begin ? 1 : 0) + (all.end > own.end ? 1 : 0);
+    if (n_own + n_halo > most.own + most.halo) most = {n_own, n_halo, n_sides};
+  }
+  return most;
+}
+
+}  // namespace
+
+ProcessCost process_cost(const SharedWork& work, const motion::Division& division, int processors,
+                         const Network& network, const Handling& handling) {
+  const double n_parts = division.n_parts();
+  const auto part = widest(division);
+  const double s_per_column = work.steps * work.node_updates_per_step / work.n_columns /
+                              work.node_updates_per_s * std::max(1.0, n_parts / processors);
+  ProcessCost cost;
+  cost.own_s = part.own * s_per_column;
+  cost.halo_s = part.halo * s_per_column;
+
+  const double halo_bytes = part.n_sides * division.halo * work.values_per_column * number_bytes;
+  cost.bytes_per_step = halo_bytes / division.steps_per_exchange;
+  if (part.n_sides > 0)
+    cost.exchange_s = work.steps / division.steps_per_exchange *
+                      (network.latency_s + halo_bytes / network.bandwidth_bytes_per_s +
+                       2 * halo_bytes / handling.halo_bytes_per_s);
+
+  // The leader handles its own bytes as the others'.
+  const double others = n_parts - 1;
+  const auto passed_s = [&](double bytes) {
+    return bytes *
+           (others / n_parts / network.bandwidth_bytes_per_s + (1 + 1 / n_parts) / handling.bytes_per_s);
+  };
+  if (others > 0) {
+    cost.command_s = work.commands * 2 * (network.latency_s + others * handling.s_per_message);
+    cost.gathering_s = work.steps * work.updates_per_step * n_parts * handling.s_per_update +
+                       passed_s(work.history_rows * work.values_per_row * number_bytes +
+                                work.snapshots * bytes_of_snapshot * work.n_nodes);
+    cost.start_s = passed_s((bytes_of_mesh + bytes_of_state) * work.n_nodes);
+  }
+  cost.statics_s = work.statics_s;
+
+  // Built from the parcel that brought it.
+  const double share = (part.own + part.halo) / work.n_columns;
+  const double of_part =
+      motion::event_bytes(share * work.n_nodes, share * work.n_cells, false, work.precision) +
+      share * (bytes_of_mesh * work.n_nodes + work.bytes_per_interface_node * work.n_columns);
+  cost.memory_bytes = work.program_bytes + of_part;
+  // Parcels for all parts are made before the first one is sent, and a snapshot is joined from all answers.
+  const double sent = n_parts > 1 ? bytes_of_state : 0;
+  const double starting = (bytes_of_mesh + bytes_of_state + sent) * work.n_nodes;
+  const double joining = (work.snapshots > 0 ? 2 * bytes_of_snapshot : 0) * work.n_nodes;
+  cost.leader_memory_bytes =
+      work.program_bytes + std::max(work.statics_bytes, of_part + std::max(starting, joining) +
+                                                            work.bytes_per_interface_node * work.n_columns);
+  return cost;
+}
+
+}  // namespace slipfront::run

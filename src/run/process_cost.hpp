@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "motion/part.hpp"
+
+namespace slipfront::run {
+
+/// What lies between two neighbouring processes, as `slipfront bench --network` measures it.
+struct Network {
+  double latency_s = 0;
+  double bandwidth_bytes_per_s = 0;  ///< each way at once
+};
+/// Of processes on one machine: Open MPI 4.1, two cores of an AMD EPYC (Zen 4), a virtual machine.
+inline constexpr Network shared_memory = {0.4e-6, 4e9};
+
+/// What a core does to what is sent, measured on such a one.
+struct Handling {
+  double s_per_message = 2e-6;    ///< the leader's, to send a command or to receive an answer
+  double s_per_update = 0.3e-6;   ///< the leader's, to join what one part saw in one contact update
+  double bytes_per_s = 1e9;       ///< samples and snapshots, packed by each part and joined by the leader
+  double halo_bytes_per_s = 5e9;  ///< packed or unpacked
+};
+
+/// What a case asks of the processes that share it.
+struct SharedWork {
+  double n_nodes = 0, n_cells = 0, n_columns = 0;  ///< columns of nodes, the same as interface nodes
+  double node_updates_per_step = 0;
+  double node_updates_per_s = 0;  ///< of one processor
+  double values_per_column = 0;   ///< that an exchange sends
+  double updates_per_step = 1;    ///< of the contact
+  double steps = 0;
+  double commands = 0;  ///< of the event
+  double history_rows = 0, values_per_row = 0;
+  double snapshots = 0;
+  double statics_s = 0, statics_bytes = 0;
+  motion::Precision precision = motion::Precision::double_precision;
+  double bytes_per_interface_node = 0;  ///< see there
+  double program_bytes = 0;
+};
+
+/// Times of the whole run, of the process with most to do and of what it waits for.
+struct ProcessCost {
+  double own_s = 0;           ///< columns that the process accounts for
+  double halo_s = 0;          ///< columns that others account for, computed as well
+  double exchange_s = 0;      ///< of the halos
+  double command_s = 0;       ///< from the leader and back
+  double gathering_s = 0;     ///< of samples, of what each contact update saw, of snapshots
+  double statics_s = 0;       ///< which the leader solves while the others wait
+  double start_s = 0;         ///< meshes and initial motion, sent by the leader
+  double bytes_per_step = 0;  ///< that a process between two others sends in exchanges
+  double memory_bytes = 0, leader_memory_bytes = 0;
+
+  double event_s() const { return own_s + halo_s + exchange_s + command_s + gathering_s; }
+  double total_s() const { return event_s() + statics_s + start_s; }
+};
+
+/// The cost of a case shared by the parts of a division, P processes on C processors of one speed.
+///
+/// With n steps, u node updates of a column in a step, r node updates/s, latency L and bandwidth B:
+/// - own columns: n u w / r max(1, P/C), w of them
+/// - halo: n u s h / r max(1, P/C), h columns on s sides with a neighbour, 2, or 1 of two processes
+/// - exchange: n/k (L + s m/B + 2 s m/b), k steps per exchange, m bytes of a halo, b of them packed in a
+/// second
+/// - commands: c (2 L + 2 (P - 1) o), c of them, o for each message of the leader
+/// - gathering: n q P a + G F, q contact updates in a step, a to join what a part saw in one, G bytes of
+/// samples
+///   and snapshots
+/// - statics: as by one process
+/// - start: S F, S bytes of meshes and initial motion
+///
+/// with F = (1 - 1/P)/B + (1 + 1/P)/g: the bytes of the others pass between processes, the leader handles all
+/// at the rate g, each part its own. Nothing overlaps: a part waits for its neighbours before it goes on, and
+/// all wait for the leader.
+/// @param work        of the whole case
+/// @param processors  of the machines together
+ProcessCost process_cost(const SharedWork& work, const motion::Division& division, int processors,
+                         const Network& network, const Handling& handling = {});
+
+}  // namespace slipfront::run

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What processes cost: counted in run.json, measured by bench --network, predicted by info --processes."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = Path(os.environ.get("SLIPFRONT_MPI", ROOT / "build" / "mpi" / "slipfront"))
+pytestmark = pytest.mark.skipif(
+    not PROGRAM.is_file() or shutil.which("mpirun") is None, reason="needs mpirun and a program built for MPI"
+)
+
+CASE = ROOT / "cases" / "reference" / "rigid_flat_a.toml"
+KEYS = ["plate.element_size_m=1e-3", "time.end_s=20e-6", "time.interface_substeps=2", "time.interface_rows=2"]
+SETS = [word for key in KEYS for word in ("--set", key)]
+
+
+def alone(*args):
+    return subprocess.run([PROGRAM, *map(str, args)], capture_output=True, text=True, timeout=60, check=False)
+
+
+def together(n, *args):
+    root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(n), PROGRAM, *map(str, args)]
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=120, env=os.environ | root, check=False
+    )
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("cost")
+    for n in (2, 3):
+        result = together(n, "run", CASE, *SETS, "--threads", 1, "-o", folder / str(n), "-q")
+        assert (result.returncode, result.stderr) == (0, "")
+    assert alone("run", CASE, *SETS, "-o", folder / "1", "-q").returncode == 0
+    return [json.loads((folder / str(n) / "run.json").read_text()) for n in (1, 2, 3)]
+
+
+def test_one_process_has_no_counters(runs):
+    assert "processes" not in runs[0]
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_run_json_tells_what_processes_cost(runs, n):
+    run = runs[n - 1]
+    cost = run["processes"]
+    assert cost["count"] == n
+    assert cost["steps"] == run["steps"]
+    # 401 columns of nodes; a part has a halo beside each neighbour.
+    assert sum(cost["own_columns"]) == 401
+    halo = cost["halo_columns"][0]
+    assert halo > 0
+    assert cost["halo_columns"] == [halo] + [2 * halo] * (n - 2) + [halo]
+    for times in ("computing_s", "waiting_in_exchanges_s", "waiting_in_commands_s"):
+        assert len(cost[times]) == n
+        assert all(0 < t < 60 for t in cost[times])
+    longest, mean = max(cost["computing_s"]), sum(cost["computing_s"]) / n
+    assert cost["imbalance_largest_over_mean"] == pytest.approx(longest / mean)
+    # 121 rows of u and v go to each neighbour with every exchange, and little else beside them.
+    exchanges = 2 * (n - 1) / cost["steps_per_exchange"]
+    assert cost["messages_per_step"] == pytest.approx(exchanges, rel=0.2)
+    assert cost["messages_per_step"] >= exchanges
+    least = exchanges * halo * 121 * 4 * 8
+    assert least < cost["bytes_per_step"] < 1.5 * least
+    # Of two processes both send the same halo; of three the middle one sends two.
+    share = cost["bytes_per_step_of_busiest"] / cost["bytes_per_step"]
+    assert share == pytest.approx(0.5, abs=0.1)
+    assert 1 / n <= cost["messages_per_step_of_busiest"] / cost["messages_per_step"] < 0.6
+
+
+def test_all_else_is_the_same(runs):
+    one, *others = runs
+    for other in others:
+        for key in ("steps", "onsets", "fronts", "mesh", "warnings"):
+            assert other[key] == one[key]
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_bench_measures_between_neighbours(n):
+    result = together(n, "bench", "--network", "--json")
+    assert (result.returncode, result.stderr) == (0, "")
+    told = json.loads(result.stdout)
+    assert told["processes"] == n
+    assert [(link["from"], link["to"]) for link in told["links"]] == [(k, k + 1) for k in range(n - 1)]
+    for link in [told, *told["links"]]:
+        # Far apart: from a register to a slow network of a busy machine.
+        assert 1e-8 < link["latency_s"] < 1
+        assert 1e6 < link["bandwidth_bytes_per_s"] < 1e12
+
+
+def test_bench_prints_what_info_takes():
+    result = together(2, "bench", "--network")
+    assert (result.returncode, result.stderr) == (0, "")
+    options = re.search(r"^info (--latency-s \S+ --bandwidth-bytes-per-s \S+)$", result.stdout, re.MULTILINE)[
+        1
+    ]
+    assert alone("info", CASE, *SETS, "--processes", 2, *options.split()).returncode == 0
+
+
+def test_bench_of_a_network_needs_processes():
+    result = alone("bench", "--network")
+    assert result.returncode == 2
+    assert result.stderr.count("\n") == 1
+    assert "mpirun -n 2 or more" in result.stderr
+
+
+def test_other_commands_are_one_processs():
+    for command in (["bench"], ["info", CASE]):
+        result = together(2, *command)
+        assert result.returncode == 2
+        assert "can be shared by several processes" in result.stderr
+
+
+def predicted(n, *options):
+    result = alone("info", CASE, *SETS, "--processes", n, *options)
+    assert (result.returncode, result.stderr) == (0, "")
+    lines = re.findall(r"^  (.+?) {2,}(.+)$", result.stdout, re.MULTILINE)
+    return dict(lines)
+
+
+def seconds(text):
+    return float(re.fullmatch(r"(\S+) s", text)[1])
+
+
+def test_info_predicts_what_a_run_counts(runs):
+    for n, run in ((2, runs[1]), (3, runs[2])):
+        lines, cost = predicted(n), run["processes"]
+        assert lines["exchange every"] == f"{cost['steps_per_exchange']} steps"
+        assert f"and {cost['halo_columns'][0]} beside them" in lines["columns of nodes of each"]
+        sent = float(lines["bytes sent per step"].split()[0])
+        # Commands and answers are not in it.
+        assert sent == pytest.approx(cost["bytes_per_step_of_busiest"], rel=0.1)
+        parts = [seconds(text) for name, text in lines.items() if name.startswith("time: ")]
+        assert len(parts) == 7
+        assert sum(parts) == pytest.approx(seconds(lines["time in all"]), rel=0.02)  # printed to 3 digits
+
+
+def test_info_follows_the_network():
+    of = lambda *options: seconds(predicted(3, *options)["time: exchange"])  # noqa: E731
+    slow, fast = of("--latency-s", 1e-2), of("--latency-s", 1e-6)
+    steps = 20e-6 / 2e-7
+    assert slow > fast + 10 * 1e-2 * 0.5 * steps / 16
+    assert of("--bandwidth-bytes-per-s", 1e6) > of("--bandwidth-bytes-per-s", 1e9)
+
+
+@pytest.mark.parametrize(
+    "options, told",
+    [
+        (["--processors", 4], "--processes"),
+        (["--processes", 100], "choose at most"),
+        (["--processes", 0], "--processes"),
+        (["--processes", 2, "--latency-s", 0], "--latency-s"),
+    ],
+)
+def test_info_refuses(options, told):
+    result = alone("info", CASE, *SETS, *options)
+    assert result.returncode == 2
+    assert result.stderr.count("\n") == 1
+    assert told in result.stderr

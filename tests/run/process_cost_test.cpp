@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/process_cost.hpp"
+
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "cases.hpp"
+
+namespace slipfront::run {
+namespace {
+
+/// A thousand columns of a thousand nodes, each node updated once in each of a thousand steps.
+SharedWork square() {
+  SharedWork work;
+  work.n_nodes = work.n_cells = 1e6;
+  work.n_columns = 1e3;
+  work.node_updates_per_step = 1e6;
+  work.node_updates_per_s = 1e8;
+  work.values_per_column = 4e3;
+  work.steps = 1000;
+  work.commands = 30;
+  work.history_rows = 100;
+  work.values_per_row = 4e3;
+  work.statics_s = 7;
+  work.statics_bytes = 1e9;
+  work.bytes_per_interface_node = 1e3;
+  work.program_bytes = 1e7;
+  return work;
+}
+
+/// Parts of equal width.
+motion::Division division(int n_columns, int n_parts, int halo, int steps_per_exchange = 1) {
+  motion::Division division;
+  for (int k = 0; k <= n_parts; ++k) division.first.push_back(n_columns / n_parts * k);
+  division.halo = halo;
+  division.steps_per_exchange = steps_per_exchange;
+  return division;
+}
+
+constexpr Network ethernet = {1e-4, 1e8};
+/// Nothing but computing takes time.
+constexpr Handling at_once = {0, 0, 1e300, 1e300};
+constexpr Network immediate = {1e-300, 1e300};
+
+TEST(ProcessCost, OfOneProcessIsItsComputing) {
+  const auto cost = process_cost(square(), division(1000, 1, 10), 1, ethernet);
+  EXPECT_DOUBLE_EQ(cost.own_s, 10);  // 1e9 updates
+  EXPECT_DOUBLE_EQ(cost.event_s(), 10);
+  EXPECT_DOUBLE_EQ(cost.total_s(), 17);
+  EXPECT_EQ(cost.bytes_per_step, 0);
+}
+
+TEST(ProcessCost, FallsWithProcessesButForTheHaloAndTheStatics) {
+  // 250 own columns and 10 on either side, of a part between two others.
+  const auto cost = process_cost(square(), division(1000, 4, 10), 4, immediate, at_once);
+  EXPECT_DOUBLE_EQ(cost.own_s, 10.0 / 4);
+  EXPECT_DOUBLE_EQ(cost.halo_s, 10.0 * 20 / 1000);
+  EXPECT_NEAR(cost.event_s(), 10.0 * 270 / 1000, 1e-12);
+  EXPECT_DOUBLE_EQ(cost.statics_s, 7);
+}
+
+TEST(ProcessCost, OfTwoHasAHaloOnOneSide) {
+  const auto cost = process_cost(square(), division(1000, 2, 10), 2, immediate, at_once);
+  EXPECT_DOUBLE_EQ(cost.halo_s, 10.0 * 10 / 1000);
+  EXPECT_DOUBLE_EQ(cost.bytes_per_step, 10 * 4e3 * 8);
+}
+
+TEST(ProcessCost, OfExchangesIsLatencyAndBytes) {
+  // Every fifth step 20 columns of 32,000 bytes leave.
+  const auto cost = process_cost(square(), division(1000, 4, 10, 5), 4, ethernet, at_once);
+  EXPECT_DOUBLE_EQ(cost.bytes_per_step, 20 * 4e3 * 8 / 5);
+  EXPECT_DOUBLE_EQ(cost.exchange_s, 200 * (1e-4 + 640e3 / 1e8));
+  const auto packed = process_cost(square(), division(1000, 4, 10, 5), 4, ethernet, {0, 0, 1e300, 1e9});
+  EXPECT_NEAR(packed.exchange_s - cost.exchange_s, 200 * 2 * 640e3 / 1e9, 1e-12);
+}
+
+TEST(ProcessCost, OfProcessorsThatAreSharedIsThatOfFewer) {
+  const auto own = process_cost(square(), division(1000, 4, 10), 4, ethernet);
+  const auto shared = process_cost(square(), division(1000, 4, 10), 2, ethernet);
+  EXPECT_DOUBLE_EQ(shared.own_s, 2 * own.own_s);
+  EXPECT_DOUBLE_EQ(shared.halo_s, 2 * own.halo_s);
+  EXPECT_DOUBLE_EQ(shared.exchange_s, own.exchange_s);
+  const auto more = process_cost(square(), division(1000, 4, 10), 100, ethernet);
+  EXPECT_DOUBLE_EQ(more.own_s, own.own_s);
+}
+
+TEST(ProcessCost, GrowsWithLatencyAndFallsWithBandwidth) {
+  double before_s = 0;
+  for (const double latency_s : {1e-7, 1e-6, 1e-4, 1e-2}) {
+    const auto cost = process_cost(square(), division(1000, 4, 10), 4, {latency_s, 1e8});
+    EXPECT_GT(cost.event_s(), before_s);
+    before_s = cost.event_s();
+  }
+  for (const double bytes_per_s : {1e7, 1e8, 1e9, 1e10}) {
+    const auto cost = process_cost(square(), division(1000, 4, 10), 4, {1e-6, bytes_per_s});
+    EXPECT_LT(cost.event_s(), before_s);
+    before_s = cost.event_s();
+  }
+}
+
+TEST(ProcessCost, OfTheLeaderGrowsWithTheNumberOfProcesses) {
+  auto work = square();
+  work.updates_per_step = 18;
+  const Handling handling = {2e-6, 1e-7, 1e300, 1e300};
+  const auto cost = process_cost(work, division(1000, 10, 10), 10, {1e-4, 1e300}, handling);
+  EXPECT_DOUBLE_EQ(cost.command_s, 30 * 2 * (1e-4 + 9 * 2e-6));
+  EXPECT_NEAR(cost.gathering_s, 1000 * 18 * 10 * 1e-7, 1e-12);
+  const auto more = process_cost(work, division(1000, 100, 10), 100, {1e-4, 1e300}, handling);
+  EXPECT_NEAR(more.gathering_s, 10 * cost.gathering_s, 1e-12);
+}
+
+TEST(ProcessCost, OfSamplesAndSnapshotsIsWhatTheOthersSend) {
+  auto work = square();
+  const Handling handling = {0, 0, 1e9, 1e300};
+  const auto rows = process_cost(work, division(1000, 4, 10), 4, ethernet, handling);
+  const double bytes = 100 * 4e3 * 8;
+  EXPECT_NEAR(rows.gathering_s, 0.75 * bytes / 1e8 + 1.25 * bytes / 1e9, 1e-12);
+  work.snapshots = 3;
+  const auto both = process_cost(work, division(1000, 4, 10), 4, ethernet, handling);
+  const double more = 3 * 32e6;
+  EXPECT_NEAR(both.gathering_s - rows.gathering_s, 0.75 * more / 1e8 + 1.25 * more / 1e9, 1e-9);
+}
+
+TEST(ProcessCost, OfMemoryFallsForAllButTheLeader) {
+  const auto of = [](int n) { return process_cost(square(), division(1000, n, 10), n, ethernet); };
+  const auto ten = of(10), twenty = of(20);
+  // 120 columns and 70.
+  EXPECT_NEAR((ten.memory_bytes - 1e7) / (twenty.memory_bytes - 1e7), 120.0 / 70, 1e-9);
+  EXPECT_DOUBLE_EQ(ten.leader_memory_bytes, 1e7 + 1e9);  // the statics
+  EXPECT_DOUBLE_EQ(twenty.leader_memory_bytes, 1e7 + 1e9);
+}
+
+TEST(ProcessCost, FollowsFromACase) {
+  auto config = test::coarse_case(interface::EventKind::left, 0.5e-3);
+  config.time.interface_substeps = 1;
+  config.time.interface_rows = 1;
+  const auto info = run::info(config, Sharing{4, 4, ethernet});
+  ASSERT_TRUE(info.shared);
+  const auto& [division, cost] = *info.shared;
+  EXPECT_EQ(division.n_parts(), 4);
+  // u and v of the node in each row, and of its interface node what the contact keeps.
+  const double rows = static_cast<double>(info.n_nodes) / static_cast<double>(info.n_interface);
+  const double bytes =
+      cost.bytes_per_step * division.steps_per_exchange / (2 * division.halo) / sizeof(double);
+  EXPECT_GE(bytes, 4 * rows);
+  EXPECT_LT(bytes, 4 * rows + 40);
+  EXPECT_GT(cost.own_s, 0.25 * info.node_updates / info.node_updates_per_s);
+  EXPECT_LT(cost.own_s, 0.26 * info.node_updates / info.node_updates_per_s);
+  EXPECT_LT(cost.memory_bytes, cost.leader_memory_bytes);
+  EXPECT_FALSE(run::info(config).shared);
+  EXPECT_THROW(run::info(config, Sharing{1000, 4, ethernet}), UserError);
+}
+
+}  // namespace
+}  // namespace slipfront::run
