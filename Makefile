@@ -25,7 +25,7 @@ PYTHON := $(VENV)/bin/python
 PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
+.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -178,6 +178,10 @@ slurm-trial: ready  ## sweeps by job arrays and workers of a Slurm cluster of th
 	@scripts/install-packages $(SLURM_PACKAGES)
 	$(PYTHON) scripts/python-requirements.py sweep cluster | $(PIP_INSTALL)
 	scripts/slurm-trial $(PROGRAM) $(PYTHON)
+
+slurm-mpi-trial: build-mpi  ## runs that several processes share as jobs of such a cluster, over a limit of time; as root
+	@scripts/install-packages $(SLURM_PACKAGES)
+	scripts/slurm-mpi-trial build/mpi/slipfront
 
 reference: ready  ## problems that other codes have solved, on several meshes each, into results-reference/
 	$(PYTHON) scripts/compare-reference.py a --program $(PROGRAM) --results $(RESULTS)-reference

@@ -16,7 +16,7 @@ case=$1
 dir=$2
 
 begin=("$case" -o "$dir")
-[ -d "$dir/unfinished" ] && begin=(--restart "$dir")
+[ -e "$dir" ] && begin=(--restart "$dir")
 srun --mpi=pmix --kill-on-bad-exit=1 slipfront run "${begin[@]}" --threads "${SLURM_CPUS_PER_TASK:-1}" --quiet
 code=$?
 [ "$code" -eq 143 ] && scontrol requeue "$SLURM_JOB_ID"

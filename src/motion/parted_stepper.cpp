@@ -383,8 +383,8 @@ void PartedStepper::restore(const KeptMotion& kept) {
   for (int part = 0; part < division_.n_parts(); ++part) {
     Parcel parcel;
     sorted
-        .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], grids_.front().stride(),
-            part == 0)
+        .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], grids_.front().stride(), part,
+            division_.n_parts())
         .put(parcel);
     given.push_back(std::move(parcel));
   }
