@@ -371,7 +371,10 @@ Snapshot PartedStepper::snapshot() const {
 
 KeptMotion PartedStepper::kept() const {
   KeptMotion all;
-  for (auto& answer : ask(PartCommand::keep)) all.add(KeptMotion::take(answer));
+  for (auto& answer : ask(PartCommand::keep)) {
+    all.add(KeptMotion::take(answer));
+    answer = {};
+  }
   all.step = step_;
   return all;
 }

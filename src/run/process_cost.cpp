@@ -15,6 +15,8 @@ constexpr double number_bytes = sizeof(double);
 constexpr double bytes_of_mesh = 2 * number_bytes + sizeof(mesh::Cell), bytes_of_state = 4 * number_bytes;
 /// u_m, v_m_per_s of a snapshot.
 constexpr double bytes_of_snapshot = 4 * number_bytes;
+/// Of a checkpoint, more than of a snapshot: numbers, u_m and v_m_per_s of nodes, in answers and joined.
+constexpr double bytes_of_gathered_state = 3 * (number_bytes + bytes_of_snapshot);
 
 /// Columns of the part that computes most.
 struct Widest {
@@ -73,10 +75,10 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
       motion::event_bytes(share * work.n_nodes, share * work.n_cells, false, work.precision) +
       share * (bytes_of_mesh * work.n_nodes + work.bytes_per_interface_node * work.n_columns);
   cost.memory_bytes = work.program_bytes + of_part;
-  // Parcels for all parts are made before the first one is sent, and a snapshot is joined from all answers.
+  // Parcels for all parts are made before the first one is sent, and a checkpoint is joined from all answers.
   const double sent = n_parts > 1 ? bytes_of_state : 0;
   const double starting = (bytes_of_mesh + bytes_of_state + sent) * work.n_nodes;
-  const double joining = (work.snapshots > 0 ? 2 * bytes_of_snapshot : 0) * work.n_nodes;
+  const double joining = (n_parts > 1 ? bytes_of_gathered_state : 0) * work.n_nodes;
   cost.leader_memory_bytes =
       work.program_bytes + std::max(work.statics_bytes, of_part + std::max(starting, joining) +
                                                             work.bytes_per_interface_node * work.n_columns);
