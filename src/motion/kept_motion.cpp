@@ -146,7 +146,8 @@ void KeptMotion::sort() {
   }
 }
 
-KeptMotion KeptMotion::in(solid::Span columns, solid::Span lower, int stride, int part, int n_parts) const {
+KeptMotion KeptMotion::in(const mesh::Subset& columns, const mesh::Subset& lower, int stride, int part,
+                          int n_parts) const {
   std::vector<double> its_sums;
   if (std::ssize(sums) == n_parts) {
     its_sums = sums[static_cast<std::size_t>(part)];
@@ -156,11 +157,11 @@ KeptMotion KeptMotion::in(solid::Span columns, solid::Span lower, int stride, in
   }
   KeptMotion of_part{step, {}, {std::move(its_sums)}, flags, trigger};
   for (const auto& list : values) {
-    const auto span = list.by == By::place ? lower : columns;
+    const auto& subset = list.by == By::place ? lower : columns;
     Values some{list.by, list.body, list.width, {}, {}};
     for (std::size_t k = 0; k < list.key.size(); ++k) {
       const auto at = list.by == By::place ? list.key[k] : list.key[k] % stride;
-      if (at < span.begin || at >= span.end) continue;
+      if (!subset.has(static_cast<int>(at))) continue;
       some.key.push_back(list.key[k]);
       const auto from = list.value.begin() + static_cast<std::ptrdiff_t>(k * list.width);
       some.value.insert(some.value.end(), from, from + static_cast<std::ptrdiff_t>(list.width));

@@ -43,7 +43,8 @@ struct KeptMotion {
   void sort();
   /// Of sorted lists those in some columns, and places along the interface; for one of so many parts.
   /// @param stride  columns of nodes of the whole
-  KeptMotion in(solid::Span columns, solid::Span lower, int stride, int part, int n_parts) const;
+  KeptMotion in(const mesh::Subset& columns, const mesh::Subset& lower, int stride, int part,
+                int n_parts) const;
 
   template <class Archive>
   void serialize(Archive& archive) {

@@ -27,9 +27,10 @@ struct Widest {
 Widest widest(const motion::Division& division) {
   Widest most;
   for (int part = 0; part < division.n_parts(); ++part) {
-    const auto own = division.own(part), all = division.all(part);
-    const double n_own = own.end - own.begin, n_halo = (all.end - all.begin) - n_own;
-    const int n_sides = (all.begin < own.begin ? 1 : 0) + (all.end > own.end ? 1 : 0);
+    const auto own = division.own(part);
+    const int below = division.halo_below(part), above = division.halo_above(part);
+    const double n_own = own.end - own.begin, n_halo = below + above;
+    const int n_sides = (below > 0 ? 1 : 0) + (above > 0 ? 1 : 0);
     if (n_own + n_halo > most.own + most.halo) most = {n_own, n_halo, n_sides};
   }
   return most;
