@@ -23,7 +23,7 @@ mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns) {
 
 namespace {
 
-solid::Span lower_in(const mesh::Mesh& mesh, solid::Span columns) {
+solid::Span own_lower_in(const mesh::Mesh& mesh, solid::Span columns) {
   const auto places = lower_in(mesh, mesh::Subset({{columns.begin, columns.end}}));
   SLIPFRONT_ASSERT(places.ranges().size() == 1, "interface nodes in the order of columns");
   return {places.ranges().front().begin, places.ranges().front().end};
@@ -64,7 +64,7 @@ PartedStepper::PartedStepper(Processes& processes, const Division& division, std
   for (const auto* body : bodies) grids_.push_back(body->grid);
   for (int part = 0; part < division.n_parts(); ++part) {
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
-    own_lower_.push_back(lower_in(*bodies.front(), division.own(part)));
+    own_lower_.push_back(own_lower_in(*bodies.front(), division.own(part)));
   }
 }
 
