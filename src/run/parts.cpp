@@ -144,7 +144,8 @@ class Whole {
 std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case& config, const Plan& plan,
                                         const Columns& columns) {
   const auto& meshes = columns.meshes;
-  const auto all = plan.division.all(processes.rank()), own = plan.division.own(processes.rank());
+  const auto all = plan.division.all(processes.rank());
+  const auto own = plan.division.own(processes.rank());
   const int first = all.place_of(own.begin);
   const solid::Span own_places{first, first + own.end - own.begin};
   const auto base_material = input::base_material(config);
