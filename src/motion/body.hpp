@@ -189,7 +189,8 @@ void Body::visit_state(Visitor& visitor, std::size_t b, const PlaceInWhole& plac
         KeptBy::node, b, n,
         [&](std::size_t k) {
           const auto node = node_of(k);
-          return static_cast<std::int64_t>(node / stride) * place.stride + node % stride + place.first_column;
+          return static_cast<std::int64_t>(node / stride) * place.stride +
+                 place.columns.number_at(node % stride);
         },
         [&](std::size_t k) { return node_of(k) % stride; }, each);
   };
@@ -230,8 +231,8 @@ void Body::visit_state(Visitor& visitor, std::size_t b, const PlaceInWhole& plac
     visitor.list(
         KeptBy::column, b, level.edge_kick_m_per_s.size() * width,
         [&](std::size_t k) {
-          return static_cast<std::int64_t>(k / width) * place.stride + static_cast<std::int64_t>(k % width) +
-                 place.first_column;
+          return static_cast<std::int64_t>(k / width) * place.stride +
+                 place.columns.number_at(static_cast<int>(k % width));
         },
         [&](std::size_t k) { return static_cast<int>(k % width); },
         [&](std::size_t k, auto&& f) {

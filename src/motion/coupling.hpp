@@ -147,7 +147,7 @@ void Coupling::visit_state(Visitor& visitor, const Body& plate, const PlaceInWho
   }
   visitor.list(
       KeptBy::place, 0, face_.size(),
-      [&](std::size_t k) { return static_cast<std::int64_t>(k) + place.first_lower; },
+      [&](std::size_t k) { return place.lower.number_at(static_cast<int>(k)); },
       [&](std::size_t k) { return plate.lower()[k] % plate.op().grid.stride(); },
       [&](std::size_t k, auto&& f) {
         for (auto* values :

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "base/error.hpp"
 
@@ -12,6 +13,17 @@ namespace {
 
 [[noreturn]] void throw_of_others() {
   throw UserError("the state that was kept is of other bodies");
+}
+
+/// Those of all parts together.
+std::vector<double> total(const std::vector<std::vector<double>>& sums) {
+  std::vector<double> all;
+  for (const auto& of_part : sums) {
+    if (all.empty()) all.assign(of_part.size(), 0.0);
+    if (of_part.size() != all.size()) throw_of_others();
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] += of_part[k];
+  }
+  return all;
 }
 
 /// Writes lists of what a stepper shows of its state.
@@ -35,7 +47,7 @@ class Keeper {
     if (!list.key.empty()) list.width = static_cast<std::uint32_t>(list.value.size() / list.key.size());
     kept_.values.push_back(std::move(list));
   }
-  void sum(double& value) { kept_.sums.push_back(value); }
+  void sum(double& value) { kept_.sums.front().push_back(value); }
   void flag(bool& value) { kept_.flags.push_back(value ? 1 : 0); }
   void trigger(interface::Trigger& value) { kept_.trigger = value; }
 
@@ -47,7 +59,8 @@ class Keeper {
 /// Reads them.
 class Restorer {
  public:
-  Restorer(const KeptMotion& kept, const PlaceInWhole& place) : kept_(kept), place_(place) {}
+  Restorer(const KeptMotion& kept, const PlaceInWhole& place)
+      : kept_(kept), sums_(total(kept.sums)), place_(place) {}
 
   template <class Key, class Column, class Each>
   void list(KeptMotion::By by, std::size_t body, std::size_t n, Key&& key_of, Column&& column_of,
@@ -78,8 +91,8 @@ class Restorer {
     }
   }
   void sum(double& value) {
-    if (next_sum_ == kept_.sums.size()) throw_of_others();
-    value = kept_.sums[next_sum_++];
+    if (next_sum_ == sums_.size()) throw_of_others();
+    value = sums_[next_sum_++];
   }
   void flag(bool& value) {
     if (next_flag_ == kept_.flags.size()) throw_of_others();
@@ -87,13 +100,13 @@ class Restorer {
   }
   void trigger(interface::Trigger& value) { value = kept_.trigger; }
   void require_end() const {
-    if (next_list_ != kept_.values.size() || next_sum_ != kept_.sums.size() ||
-        next_flag_ != kept_.flags.size())
+    if (next_list_ != kept_.values.size() || next_sum_ != sums_.size() || next_flag_ != kept_.flags.size())
       throw_of_others();
   }
 
  private:
   const KeptMotion& kept_;
+  std::vector<double> sums_;
   const PlaceInWhole& place_;
   std::size_t next_list_ = 0, next_sum_ = 0, next_flag_ = 0;
 };
@@ -105,7 +118,7 @@ void KeptMotion::add(const KeptMotion& part) {
     *this = part;
     return;
   }
-  SLIPFRONT_ASSERT(part.values.size() == values.size() && part.sums.size() == sums.size(), "of one stepper");
+  SLIPFRONT_ASSERT(part.values.size() == values.size(), "of one stepper");
   for (std::size_t l = 0; l < values.size(); ++l) {
     auto& to = values[l];
     const auto& from = part.values[l];
@@ -113,7 +126,7 @@ void KeptMotion::add(const KeptMotion& part) {
     to.key.insert(to.key.end(), from.key.begin(), from.key.end());
     to.value.insert(to.value.end(), from.value.begin(), from.value.end());
   }
-  for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += part.sums[k];
+  sums.insert(sums.end(), part.sums.begin(), part.sums.end());
 }
 
 void KeptMotion::sort() {
@@ -133,29 +146,38 @@ void KeptMotion::sort() {
   }
 }
 
-KeptMotion KeptMotion::in(solid::Span columns, solid::Span lower, int stride, bool with_sums) const {
-  KeptMotion part{step, {}, sums, flags, trigger};
-  if (!with_sums) std::ranges::fill(part.sums, 0.0);
+KeptMotion KeptMotion::in(const mesh::Subset& columns, const mesh::Subset& lower, int stride, int part,
+                          int n_parts) const {
+  std::vector<double> its_sums;
+  if (std::ssize(sums) == n_parts) {
+    its_sums = sums[static_cast<std::size_t>(part)];
+  } else {
+    its_sums = total(sums);
+    if (part > 0) std::ranges::fill(its_sums, 0.0);
+  }
+  KeptMotion of_part{step, {}, {std::move(its_sums)}, flags, trigger};
   for (const auto& list : values) {
-    const auto span = list.by == By::place ? lower : columns;
+    const auto& subset = list.by == By::place ? lower : columns;
     Values some{list.by, list.body, list.width, {}, {}};
     for (std::size_t k = 0; k < list.key.size(); ++k) {
       const auto at = list.by == By::place ? list.key[k] : list.key[k] % stride;
-      if (at < span.begin || at >= span.end) continue;
+      if (!subset.has(static_cast<int>(at))) continue;
       some.key.push_back(list.key[k]);
       const auto from = list.value.begin() + static_cast<std::ptrdiff_t>(k * list.width);
       some.value.insert(some.value.end(), from, from + static_cast<std::ptrdiff_t>(list.width));
     }
-    part.values.push_back(std::move(some));
+    of_part.values.push_back(std::move(some));
   }
-  return part;
+  return of_part;
 }
 
 void KeptMotion::put(Parcel& to) const {
   to.put(step).put(static_cast<std::uint64_t>(values.size()));
   for (const auto& list : values)
     to.put(list.by).put(list.body).put(list.width).put(list.key).put(list.value);
-  to.put(sums).put(flags).put(trigger);
+  to.put(static_cast<std::uint64_t>(sums.size()));
+  for (const auto& of_part : sums) to.put(of_part);
+  to.put(flags).put(trigger);
 }
 
 KeptMotion KeptMotion::take(Parcel& from) {
@@ -169,7 +191,8 @@ KeptMotion KeptMotion::take(Parcel& from) {
     list.key = from.take_all<std::int64_t>();
     list.value = from.take_all<double>();
   }
-  kept.sums = from.take_all<double>();
+  kept.sums.resize(from.take<std::uint64_t>());
+  for (auto& of_part : kept.sums) of_part = from.take_all<double>();
   kept.flags = from.take_all<std::uint8_t>();
   kept.trigger = from.take<interface::Trigger>();
   return kept;
@@ -178,6 +201,7 @@ KeptMotion KeptMotion::take(Parcel& from) {
 KeptMotion keep(Stepper& stepper, const PlaceInWhole& place) {
   KeptMotion kept;
   kept.step = stepper.step();
+  kept.sums.resize(1);
   Keeper keeper(kept, place);
   stepper.visit_state(keeper, place);
   return kept;

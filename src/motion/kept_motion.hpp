@@ -15,8 +15,8 @@ namespace slipfront::motion {
 /// All that changes in a Stepper, in the columns of nodes that a part of the bodies accounts for, or in all
 /// of them: by the nodes' numbers in the whole bodies, so that it goes into parts of any other division.
 ///
-/// Of sums over nodes, works among them, the parts' add up to the whole's; any division of the whole's among
-/// parts serves as well.
+/// Of sums over nodes, works among them, the parts' add up to the whole's. As many parts as kept them go on
+/// with their own; of another number the first one has them all.
 struct KeptMotion {
   using By = KeptBy;
   /// Values of some of them, `width` of each.
@@ -32,18 +32,19 @@ struct KeptMotion {
     }
   };
   std::int64_t step = 0;
-  std::vector<Values> values;  ///< lists in a fixed order
-  std::vector<double> sums;
-  std::vector<std::uint8_t> flags;  ///< the same in all parts
+  std::vector<Values> values;             ///< lists in a fixed order
+  std::vector<std::vector<double>> sums;  ///< of each part
+  std::vector<std::uint8_t> flags;        ///< the same in all parts
   interface::Trigger trigger;
 
   /// Adds another part's.
   void add(const KeptMotion& part);
   /// Brings each list into the order of its keys, which restore needs.
   void sort();
-  /// Of sorted lists those in some columns, and places along the interface.
+  /// Of sorted lists those in some columns, and places along the interface; for one of so many parts.
   /// @param stride  columns of nodes of the whole
-  KeptMotion in(solid::Span columns, solid::Span lower, int stride, bool with_sums) const;
+  KeptMotion in(const mesh::Subset& columns, const mesh::Subset& lower, int stride, int part,
+                int n_parts) const;
 
   template <class Archive>
   void serialize(Archive& archive) {

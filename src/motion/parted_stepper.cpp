@@ -9,37 +9,45 @@
 
 namespace slipfront::motion {
 
+mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns) {
+  std::vector<mesh::Subset::Range> ranges;
+  for (int k = 0; k < std::ssize(mesh.lower); ++k) {
+    if (!columns.has(mesh.lower[static_cast<std::size_t>(k)] % mesh.grid.stride())) continue;
+    if (!ranges.empty() && ranges.back().end == k)
+      ++ranges.back().end;
+    else
+      ranges.push_back({k, k + 1});
+  }
+  return mesh::Subset(std::move(ranges));
+}
+
 namespace {
 
-/// Places in Mesh::lower of the nodes in some columns.
-solid::Span lower_in(const mesh::Mesh& mesh, solid::Span columns) {
-  const auto is_in = [&](mesh::Node n) {
-    const int column = n % mesh.grid.stride();
-    return column >= columns.begin && column < columns.end;
-  };
-  const auto begin = std::ranges::find_if(mesh.lower, is_in);
-  const auto end = std::find_if_not(begin, mesh.lower.end(), is_in);
-  SLIPFRONT_ASSERT(std::none_of(end, mesh.lower.end(), is_in), "interface nodes in the order of columns");
-  return {static_cast<int>(begin - mesh.lower.begin()), static_cast<int>(end - mesh.lower.begin())};
+solid::Span own_lower_in(const mesh::Mesh& mesh, solid::Span columns) {
+  const auto places = lower_in(mesh, mesh::Subset({{columns.begin, columns.end}}));
+  SLIPFRONT_ASSERT(places.ranges().size() == 1, "interface nodes in the order of columns");
+  return {places.ranges().front().begin, places.ranges().front().end};
 }
 
 template <class T>
-std::span<const T> cut(const std::vector<T>& values, solid::Span span) {
-  if (values.empty()) return {};
-  return std::span(values).subspan(static_cast<std::size_t>(span.begin),
-                                   static_cast<std::size_t>(span.end - span.begin));
+std::vector<T> cut(const std::vector<T>& values, const mesh::Subset& places) {
+  std::vector<T> some;
+  if (values.empty()) return some;
+  for (const auto& range : places.ranges())
+    some.insert(some.end(), values.begin() + range.begin, values.begin() + range.end);
+  return some;
 }
 
 /// Some columns of a field over a whole grid.
-void put_columns(const mesh::Grid& grid, solid::Span columns, const solid::Field& field, Parcel& to) {
+void put_columns(const mesh::Grid& grid, const mesh::Subset& columns, const solid::Field& field, Parcel& to) {
   std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(columns.end - columns.begin) *
-                 static_cast<std::size_t>(grid.rows + 1));
+  values.reserve(static_cast<std::size_t>(columns.count()) * static_cast<std::size_t>(grid.rows + 1));
   for (const auto* component : {&field.x, &field.y}) {
     values.clear();
     for (int j = 0; j <= grid.rows; ++j) {
       const auto row = component->begin() + grid.node(0, j);
-      values.insert(values.end(), row + columns.begin, row + columns.end);
+      for (const auto& range : columns.ranges())
+        values.insert(values.end(), row + range.begin, row + range.end);
     }
     to.put(values);
   }
@@ -56,7 +64,7 @@ PartedStepper::PartedStepper(Processes& processes, const Division& division, std
   for (const auto* body : bodies) grids_.push_back(body->grid);
   for (int part = 0; part < division.n_parts(); ++part) {
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
-    own_lower_.push_back(lower_in(*bodies.front(), division.own(part)));
+    own_lower_.push_back(own_lower_in(*bodies.front(), division.own(part)));
   }
 }
 
@@ -100,7 +108,7 @@ void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_
   for (int part = 0; part < division_.n_parts(); ++part) {
     Parcel parcel;
     const auto columns = division_.all(part);
-    const auto lower = all_lower_[static_cast<std::size_t>(part)];
+    const auto& lower = all_lower_[static_cast<std::size_t>(part)];
     put_columns(grids_.front(), columns, e.u_m, parcel);
     put_columns(grids_.front(), columns, e.u_per_shear, parcel);
     if (grids_.size() > 1) {
@@ -133,7 +141,7 @@ void PartedStepper::watch(std::vector<Probe> probes) {
     part_of_probe_.push_back(part);
     const auto all = division_.all(part);
     auto node = probe.node;
-    for (auto& n : node) n = n / stride * (all.end - all.begin) + n % stride - all.begin;
+    for (auto& n : node) n = n / stride * all.count() + all.place_of(n % stride);
     of_part[static_cast<std::size_t>(part)].emplace_back(probe.body, node);
   }
   std::vector<Parcel> given;
@@ -190,7 +198,7 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
     parcel.put(static_cast<std::uint8_t>(!has_finders_));
     if (!has_finders_) {
       const auto& known = recorder.finder().memory();
-      const auto lower = all_lower_[static_cast<std::size_t>(part)];
+      const auto& lower = all_lower_[static_cast<std::size_t>(part)];
       parcel.put(known.time_s);
       for (const auto* values : {&known.t_Pa, &known.p_Pa, &known.strength_Pa})
         parcel.put(cut(*values, lower));
@@ -238,7 +246,7 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
         seen.time_s = from.take<double>();
         seen.moves |= from.take<std::uint8_t>() != 0;
         for (auto change : from.take_all<SlipChange>()) {
-          change.node += all_lower_[part].begin;
+          change.node = all_lower_[part].number_at(change.node);
           seen.changes.push_back(change);
         }
         const auto around = from.take_all<record::Traction>();
@@ -371,7 +379,10 @@ Snapshot PartedStepper::snapshot() const {
 
 KeptMotion PartedStepper::kept() const {
   KeptMotion all;
-  for (auto& answer : ask(PartCommand::keep)) all.add(KeptMotion::take(answer));
+  for (auto& answer : ask(PartCommand::keep)) {
+    all.add(KeptMotion::take(answer));
+    answer = {};
+  }
   all.step = step_;
   return all;
 }
@@ -383,8 +394,8 @@ void PartedStepper::restore(const KeptMotion& kept) {
   for (int part = 0; part < division_.n_parts(); ++part) {
     Parcel parcel;
     sorted
-        .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], grids_.front().stride(),
-            part == 0)
+        .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], grids_.front().stride(), part,
+            division_.n_parts())
         .put(parcel);
     given.push_back(std::move(parcel));
   }

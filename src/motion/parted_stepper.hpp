@@ -12,6 +12,9 @@
 
 namespace slipfront::motion {
 
+/// Places in Mesh::lower of the nodes in some columns.
+mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns);
+
 /// Steps the bodies of an event with several processes, each of which has a Part; the one that leads has this
 /// as well. What is computed of a node does not depend on the part that it lies in: displacements, tractions
 /// and onsets are those of one process, to the last bit; energies but for the order of summation.
@@ -72,7 +75,8 @@ class PartedStepper final : public TimeStepper {
   std::vector<mesh::Grid> grids_;  ///< of the whole bodies
   std::size_t n_lower_;
   /// Interface nodes of each part: all that it computes, and those that count.
-  std::vector<solid::Span> all_lower_, own_lower_;
+  std::vector<mesh::Subset> all_lower_;
+  std::vector<solid::Span> own_lower_;
   std::vector<Probe> probes_;
   std::vector<int> part_of_probe_;
   bool has_finders_ = false;

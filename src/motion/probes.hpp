@@ -9,6 +9,7 @@
 
 #include "base/state.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/part.hpp"
 #include "motion/level.hpp"
 #include "record/probes.hpp"
 #include "solid/element.hpp"
@@ -38,9 +39,9 @@ enum class KeptBy : std::uint8_t { node, place, column };
 /// Where a stepper's columns lie in the whole bodies.
 struct PlaceInWhole {
   solid::Span own = solid::all_columns;  ///< columns to be kept, in the stepper's own count
-  int first_column = 0;                  ///< of the whole, which is the stepper's column 0
+  mesh::Subset columns;                  ///< of the whole, in the stepper's order
   int stride = 0;                        ///< columns of nodes of the whole
-  int first_lower = 0;                   ///< the same along the interface
+  mesh::Subset lower;                    ///< the same along the interface
 };
 
 /// A place within a cell of a body, at which its motion, strain and stress are recorded.

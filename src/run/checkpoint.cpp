@@ -78,6 +78,23 @@ void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper)
     archive(dynamic_cast<motion::Stepper&>(stepper));
 }
 
+namespace {
+
+/// The whole bodies of a stepper. Of a plate that repeats the last column has no cells, and nothing of it is
+/// kept by several processes.
+motion::PlaceInWhole whole_of(const motion::Stepper& stepper) {
+  const auto& plate = stepper.bodies().front();
+  const int stride = stepper.plate().grid.stride();
+  const auto& is_orphan = plate.levels().is_orphan;
+  bool has_cells = false;
+  for (std::size_t n = static_cast<std::size_t>(stride) - 1; n < is_orphan.size();
+       n += static_cast<std::size_t>(stride))
+    has_cells = has_cells || !is_orphan[n];
+  return {.own = {0, has_cells ? stride : stride - 1}, .columns = {}, .stride = stride, .lower = {}};
+}
+
+}  // namespace
+
 void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
                  const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
   bool was_parted = false;
@@ -88,20 +105,17 @@ void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
     return;
   }
   motion::KeptMotion kept;
-  motion::PlaceInWhole whole;
   if (was_parted) {
     archive(kept);
   } else {
     const auto by_one = make_whole();
     archive(*by_one);
-    whole.stride = by_one->plate().grid.stride();
-    kept = motion::keep(*by_one, whole);
+    kept = motion::keep(*by_one, whole_of(*by_one));
   }
   if (parted != nullptr) return parted->restore(kept);
   auto& by_one = dynamic_cast<motion::Stepper&>(stepper);
-  whole.stride = by_one.plate().grid.stride();
   kept.sort();
-  motion::restore(kept, by_one, whole);
+  motion::restore(kept, by_one, whole_of(by_one));
 }
 
 void Checkpoints::keep(const CheckpointHead& head,

@@ -64,7 +64,8 @@ struct Plan {
   std::vector<double> stable_steps_s;  ///< of the bodies
 
   void put(Parcel& to) const {
-    to.put(division.first).put(division.halo).put(division.steps_per_exchange).put(threads);
+    to.put(division.first).put(division.halo).put(division.steps_per_exchange).put(division.is_ring);
+    to.put(threads);
     to.put(stable_steps_s);
   }
   static Plan take(Parcel& from) {
@@ -72,6 +73,7 @@ struct Plan {
     plan.division.first = from.take_all<int>();
     plan.division.halo = from.take<int>();
     plan.division.steps_per_exchange = from.take<int>();
+    plan.division.is_ring = from.take<bool>();
     plan.threads = from.take<int>();
     plan.stable_steps_s = from.take_all<double>();
     return plan;
@@ -81,15 +83,15 @@ struct Plan {
 /// Of the bodies those columns that a process computes.
 struct Columns {
   std::vector<mesh::Mesh> meshes;
-  int first_lower = 0;  ///< place along the whole interface of their first node
+  mesh::Subset lower;  ///< places along the whole interface of their nodes
 
   void put(Parcel& to) const {
-    to.put(first_lower);
+    to.put(lower.ranges());
     for (const auto& mesh : meshes) put_mesh(mesh, to);
   }
   static Columns take(Parcel& from) {
     Columns columns;
-    columns.first_lower = from.take<int>();
+    columns.lower = mesh::Subset(from.take_all<mesh::Subset::Range>());
     while (!from.is_empty()) columns.meshes.push_back(take_mesh(from));
     return columns;
   }
@@ -111,7 +113,7 @@ class Whole {
     const auto& plate = bodies_.front().mesh;
     Plan plan;
     for (const auto& body : bodies_) plan.stable_steps_s.push_back(motion::stable_step_s(body));
-    plan.division = motion::divide_columns(plate.grid.stride(), n_processes,
+    plan.division = motion::divide_columns(plate, n_processes,
                                            motion::columns_per_step(plan.stable_steps_s, config_.time),
                                            motion::halo_for(plate, config_.fronts.l_star_m));
     for (int rank = 0; rank < n_processes; ++rank) columns_of(plan, rank);  // refuses cuts through corners
@@ -121,10 +123,9 @@ class Whole {
     const auto all = plan.division.all(rank);
     Columns columns;
     for (const auto& body : bodies_) {
-      auto part = mesh::columns_of(body.mesh, all.begin, all.end);
-      if (columns.meshes.empty()) columns.first_lower = static_cast<int>(part.first_lower);
-      columns.meshes.push_back(std::move(part.mesh));
+      columns.meshes.push_back(mesh::columns_of(body.mesh, all));
     }
+    columns.lower = motion::lower_in(bodies_.front().mesh, all);
     return columns;
   }
   std::vector<const mesh::Mesh*> meshes() const {
@@ -144,19 +145,19 @@ std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case&
                                         const Columns& columns) {
   const auto& meshes = columns.meshes;
   const auto all = plan.division.all(processes.rank()), own = plan.division.own(processes.rank());
+  const int first = all.place_of(own.begin);
+  const solid::Span own_places{first, first + own.end - own.begin};
   const auto base_material = input::base_material(config);
   std::vector<motion::PartOfBody> parts;
   for (const double stable_s : plan.stable_steps_s)
     parts.push_back(
-        {{own.begin - all.begin, own.end - all.begin}, stable_s, {1}, [&](std::span<double> values) {
-           processes.take_largest(values);
-         }});
+        {own_places, stable_s, {1}, [&](std::span<double> values) { processes.take_largest(values); }});
   std::vector<motion::BodySource> sources = {{meshes.front(), config.material, &parts.front()}};
   if (meshes.size() > 1) sources.push_back({meshes.back(), base_material, &parts.back()});
   const auto contact = input::contact_model(config, interface_x_m(meshes.front()));
   return std::make_unique<motion::Part>(
       processes, plan.division, sources, contact, config.time, motion::Execution{.threads = plan.threads},
-      motion::PlaceInWhole{parts.front().own, all.begin, plan.division.first.back(), columns.first_lower});
+      motion::PlaceInWhole{own_places, all, plan.division.n_columns(), columns.lower});
 }
 
 std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
@@ -168,9 +169,6 @@ std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
 }  // namespace
 
 void require_divisible(const input::Case& config) {
-  if (config.plate.sides == mesh::Sides::periodic)
-    throw UserError("{} = periodic cannot be shared by several processes; start one alone, with threads",
-                    Key("plate.sides"));
   const auto require_even = [](const mesh::Plate& plate, const char* key) {
     if (plate.coarsenings > 0)
       throw UserError(

@@ -68,6 +68,11 @@ CASES = {
         "plate": 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
         "rest": NUCLEATION.format(form="overstress", x_m=0.1),
     },
+    # The rupture passes the sides.
+    "periodic": {
+        "plate": 'corner = "none"\nsides = "periodic"\ntop = "absorbing"',
+        "rest": NUCLEATION.format(form="overstress", x_m=0.19),
+    },
     # The patch lies where the parts of two processes, and of three, meet.
     "weakened between two": {
         "plate": 'corner = "none"',
