@@ -11,8 +11,9 @@ latency. The bandwidth is limited by tc tbf on the devices. Nothing of it is see
 the end.
 
 What a run takes is the median over some runs of run.json's wall_s over its steps; the prediction is that of
-info in the same minutes, with latency and bandwidth by bench --network over the same network. Both go before
-other work on the machine (nice -20). All processes share the processors of this machine.
+info in the same minutes, as many at once as processes compute at once, with latency and bandwidth by bench
+--network over the same network. Both go before other work on the machine (nice -20). All processes share the
+processors of this machine.
 """
 
 import argparse
@@ -162,17 +163,26 @@ class Machines:
         return script
 
     def mpirun(self, processes: int) -> list[str]:
-        each = processes // len(self.names)
-        hosts = ",".join(f"{address}:{each}" for address in self.addresses)
+        hosts = ",".join(f"{address}:1" for address in self.addresses[:processes])
         options = {
             "plm_rsh_agent": self.agent(),
-            "btl": "tcp,self,vader",
+            "btl": "tcp,self",
             "btl_tcp_if_include": "10.77.0.0/24",
             "oob_tcp_if_include": "10.77.0.0/24",
         }
         words = [word for name, value in options.items() for word in ("--mca", name, str(value))]
         inside = ["ip", "netns", "exec", self.names[0], "unshare", "-u", "sh", "-c"]
-        return [*inside, f'hostname {self.names[0]}; exec "$@"', "sh", "mpirun", *words, "--host", hosts]
+        return [
+            *inside,
+            f'hostname {self.names[0]}; exec "$@"',
+            "sh",
+            "mpirun",
+            "-n",
+            str(processes),
+            *words,
+            "--host",
+            hosts,
+        ]
 
 
 class SharedMemory:
@@ -191,26 +201,30 @@ class SharedMemory:
 # --- measurement
 
 
-def call(command: list[Any], timeout_s: float = TIMEOUT_S) -> str:
-    """What a command prints, before other work on the machine."""
+def begin(command: list[Any]) -> subprocess.Popen[str]:
+    """Before other work on the machine, in a group of its own, so that what it has started ends with it."""
     words = ["nice", "-n", "-20", *map(str, command)]
-    # Its own group, so that what it has started ends with it.
-    with subprocess.Popen(
-        words,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=os.environ | MPI,
-        start_new_session=True,
-    ) as process:
-        try:
-            out, errors = process.communicate(timeout=timeout_s)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGKILL)
-            raise
+    pipe, environment = subprocess.PIPE, os.environ | MPI
+    return subprocess.Popen(
+        words, stdout=pipe, stderr=pipe, text=True, env=environment, start_new_session=True
+    )
+
+
+def end(process: subprocess.Popen[str]) -> str:
+    """What it has printed."""
+    try:
+        out, errors = process.communicate(timeout=TIMEOUT_S)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        raise
     if process.returncode != 0:
-        raise RuntimeError(f"{' '.join(words)}\n{errors}")
+        raise RuntimeError(f"{process.args!r}\n{errors}")
     return out
+
+
+def call(command: list[Any]) -> str:
+    return end(begin(command))
 
 
 Network = SharedMemory | Machines
@@ -224,6 +238,8 @@ class Trial:
         if processes == 1:
             return call([self.program, *words])
         mpirun = [*network.mpirun(processes), "--oversubscribe", "--bind-to", "none"]
+        if processes > PROCESSORS:
+            mpirun += ["--mca", "mpi_yield_when_idle", "1"]
         return call([*mpirun, self.program, *words])
 
     def link(self, network: Network) -> tuple[float, float]:
@@ -236,9 +252,16 @@ class Trial:
         """Parts of the time and of the division, by name; times in all steps."""
         options: list[Any] = ["--processes", processes, "--processors", min(processes, PROCESSORS)]
         options += ["--latency-s", link[0], "--bandwidth-bytes-per-s", link[1]]
-        text = call([self.program, "info", CASE, *sets(case, end_s), *options])
-        parts = {name: float(s) for name, s in re.findall(r"^  time: (.+?) {2,}(\S+) s$", text, re.MULTILINE)}
-        return {name: s for name, s in parts.items() if name not in ("statics, leader alone", "start")}
+        command = [self.program, "info", CASE, *sets(case, end_s), *options]
+        # As many at once as processes compute at once: a processor is slower while the others are busy.
+        at_once = [begin(command) for _ in range(min(processes, PROCESSORS))]
+        parts: dict[str, list[float]] = {}
+        for text in [end(process) for process in at_once]:
+            for name, s in re.findall(r"^  time: (.+?) {2,}(\S+) s$", text, re.MULTILINE):
+                parts.setdefault(name, []).append(float(s))
+        for name in ("statics, leader alone", "start"):
+            del parts[name]
+        return {name: statistics.mean(values) for name, values in parts.items()}
 
     def run(self, case: str, end_s: float, network: Network, processes: int) -> dict[str, Any]:
         out = self.work / "run"
@@ -301,6 +324,32 @@ def print_row(row: dict[str, Any]) -> None:
     )
 
 
+COLUMNS = {
+    "network": "network",
+    "case": "case",
+    "processes": "processes",
+    "latency_us": "latency, us",
+    "bandwidth_MB_per_s": "MB/s each way",
+    "steps_per_exchange": "steps per exchange",
+    "measured_us_per_step": "measured, us",
+    "least_us_per_step": "from",
+    "largest_us_per_step": "to",
+    "predicted_us_per_step": "predicted, us",
+    "deviation_percent": "deviation, %",
+    "measured_computing_us_per_step": "of it computing",
+    "measured_exchange_us_per_step": "waiting in exchanges",
+    "measured_commands_us_per_step": "in commands",
+}
+
+
+def print_table(rows: list[dict[str, Any]]) -> None:
+    """As docs/processes-cost.md has it."""
+    print("| " + " | ".join(COLUMNS.values()) + " |\n|" + "---|" * len(COLUMNS))
+    for row in rows:
+        cells = [f"{v:.3g}" if isinstance(v := row[key], float) and v < 100 else v for key in COLUMNS]
+        print("| " + " | ".join(f"{v:.0f}" if isinstance(v, float) else str(v) for v in cells) + " |")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=Path)
@@ -312,7 +361,7 @@ def main() -> None:
     for tool in ("ip", "tc", "mpirun", "unshare"):
         if shutil.which(tool) is None:
             sys.exit(f"network-trial: {tool} is missing")
-    end_s, repeats = (1e-5, 1) if options.quick else (1e-4, 5)
+    end_s, repeats = (2e-5, 1) if options.quick else (1.5e-4, 5)
     gbit = int(1e9)
     networks: list[tuple[str, float | None, tuple[int, ...]]] = [("shared memory", None, (1, 2, 4, 8))]
     networks += [(f"1 Gbit/s, {ms} ms added", ms * 1e-3, (2, 4)) for ms in (0, 0.1, 1)]
@@ -343,6 +392,7 @@ def main() -> None:
                                 table.writerow(
                                     {k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()}
                                 )
+    print_table(rows)
 
 
 if __name__ == "__main__":

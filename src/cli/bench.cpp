@@ -113,7 +113,7 @@ void print_network(const std::vector<Link>& links, bool as_json) {
     fmt::print("{:<16}{:>14.3g}{:>18.3g}\n", fmt::format("{} and {}", link.from, link.to),
                link.latency_s * 1e6, link.bandwidth_bytes_per_s * 1e-9);
   fmt::print(
-      "\nHalf a round trip of one number; messages of 4 MiB both ways at once. Medians.\n"
+      "\nHalf a round trip of one number; messages of 256 KiB both ways at once. Medians.\n"
       "info --latency-s {:.4g} --bandwidth-bytes-per-s {:.4g}\n",
       latency_s, bandwidth_bytes_per_s);
 }

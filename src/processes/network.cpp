@@ -14,7 +14,7 @@ namespace {
 /// What the measuring process asks of the other one.
 constexpr double nothing_more = 0, an_answer = 1, an_exchange = 2;
 
-constexpr std::size_t large = std::size_t{4} << 20U;  // bytes
+constexpr std::size_t large = std::size_t{256} << 10U;  // bytes, as of a halo
 
 /// To the other process, or from it.
 void tell(Processes& processes, int with, double number) {
@@ -69,16 +69,16 @@ Link measure_link(Processes& processes, int with) {
   link.latency_s = 0.5 * round_trips_s / at_once;
   LargeExchange exchange(processes, with);
   constexpr int in_turn = 4;  // the two do not begin the first one together
-  const double exchanges_s = median_s(11, 2, [&] {
+  const double exchanges_s = median_s(101, 2, [&] {
     for (int k = 0; k < in_turn; ++k) {
       tell(processes, with, an_exchange);
       exchange();
     }
   });
-  // The word that precedes an exchange takes a latency, as the exchange does; where they take all of the time
-  // to within its scatter, the bandwidth is a lower bound.
+  // The word that precedes an exchange takes a latency, the exchange three: its message is announced, asked
+  // for and sent. Where these take all of the time to within its scatter, the bandwidth is a lower bound.
   const double turn_s = exchanges_s / in_turn;
-  const double transfer_s = std::max(turn_s - 2 * link.latency_s, 0.1 * turn_s);
+  const double transfer_s = std::max(turn_s - 4 * link.latency_s, 0.1 * turn_s);
   link.bandwidth_bytes_per_s = static_cast<double>(large) / transfer_s;
   tell(processes, with, nothing_more);
   return link;

@@ -108,11 +108,25 @@ void add_needs(const input::Case& config, const Meshes& meshes, double node_upda
     info.solver = statics::choose_solver(wanted_solver(config), n_unknowns_of(info));
 }
 
+constexpr double steps_per_look = 50, steps_per_check = 100;  // of motion::EventRun, motion::Watch
+
+/// Times at which an event is looked at: every so many steps, and for energies and snapshots.
+double commands_of(const Needs& needs) {
+  const auto steps = static_cast<double>(needs.steps);
+  return std::min(steps, steps / steps_per_look + needs.energy_rows + needs.snapshots);
+}
+
+/// Steps between two of them, at least 1.
+int steps_of_command(const Needs& needs) {
+  return std::max(1, static_cast<int>(static_cast<double>(needs.steps) / commands_of(needs)));
+}
+
 /// A few steps give this machine's rate: under the mean pressure, with half of the interface sliding, which
 /// takes longer than to stick.
-/// @param n_steps  taken at once
+/// @param n_steps  of a command
+/// @param at_once  that no exchange interrupts
 double measured_step_s(const input::Case& config, motion::Stepper& stepper, const Meshes& meshes,
-                       std::int64_t n_steps) {
+                       std::int64_t n_steps, std::int64_t at_once) {
   constexpr double least_s = 20e-3, most_s = 0.5;
   const double mu_s = interface::static_coefficient(config.friction);
   const auto n = meshes.plate.lower.size();
@@ -129,7 +143,8 @@ double measured_step_s(const input::Case& config, motion::Stepper& stepper, cons
   double spent_s = 0;
   do {
     const auto begin = Clock::now();
-    stepper.advance(recorder, n_steps, {});
+    for (std::int64_t done = 0; done < n_steps; done += at_once)
+      stepper.advance(recorder, std::min(at_once, n_steps - done), {});
     times_s.push_back(seconds_since(begin) / static_cast<double>(n_steps));
     spent_s = seconds_since(start);
   } while (spent_s < least_s || (times_s.size() < 3 && spent_s < most_s));
@@ -142,14 +157,6 @@ double expected_statics_s(const Info& info) {
   const double n = n_unknowns_of(info);
   if (info.solver == statics::StaticSolver::direct) return 1.6e-9 * std::pow(n, 1.5) + 2.8e-6 * n;
   return info.solver == statics::StaticSolver::iterative ? 1e-6 * n : 0;
-}
-
-/// What the leader asks all parts for during an event: steps until it looks, energies.
-double commands_of(const Needs& needs) {
-  constexpr double steps_per_look = 50, steps_per_check = 100;  // of motion::EventRun, motion::Watch
-  const auto steps = static_cast<double>(needs.steps);
-  return steps / steps_per_look + needs.energy_rows + 2 * needs.snapshots +
-         std::max(needs.energy_rows, steps / steps_per_check);
 }
 
 Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::Stepper& stepper,
@@ -167,16 +174,17 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
   work.n_cells = static_cast<double>(info.n_cells);
   work.n_columns = n_columns;
   work.node_updates_per_step = stepper.node_updates_per_step();
-  int at_once = stepper.steps_per_sweep();
-  if (sharing.n_processes > 1) at_once = std::min(at_once, shared.division.steps_per_exchange);
+  const int n_steps = steps_of_command(info.needs);
+  const int at_once = sharing.n_processes > 1 ? shared.division.steps_per_exchange : n_steps;
   work.node_updates_per_s =
-      stepper.node_updates_per_step() / measured_step_s(config, stepper, meshes, at_once);
+      stepper.node_updates_per_step() / measured_step_s(config, stepper, meshes, n_steps, at_once);
   stepper.visit_columns({n_columns / 2, n_columns / 2 + 1}, [&](const auto*, std::size_t n) {
     work.values_per_column += static_cast<double>(n);
   });
   work.updates_per_step = std::round(info.step_s / info.substep_s);
   work.steps = static_cast<double>(info.n_steps);
-  work.commands = commands_of(info.needs);
+  work.advances = commands_of(info.needs);
+  work.energies = std::max(info.needs.energy_rows, work.steps / steps_per_check);
   work.history_rows = info.needs.history_rows;
   work.values_per_row = static_cast<double>(record::history_fields.size()) * n_columns;
   work.snapshots = info.needs.snapshots;
@@ -205,8 +213,9 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   sliding.get();
   add_steps(*stepper, info);
   add_needs(config, meshes, stepper->node_updates_per_step(), info);
-  info.node_updates_per_s = stepper->node_updates_per_step() /
-                            measured_step_s(config, *stepper, meshes, stepper->steps_per_sweep());
+  const int n_steps = steps_of_command(info.needs);
+  info.node_updates_per_s =
+      stepper->node_updates_per_step() / measured_step_s(config, *stepper, meshes, n_steps, n_steps);
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info);
   if (sharing) info.shared = shared_by(config, meshes, *stepper, *sharing, info);
   return info;

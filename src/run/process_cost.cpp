@@ -2,6 +2,7 @@
 #include "run/process_cost.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "motion/event.hpp"
 
@@ -13,6 +14,8 @@ constexpr double number_bytes = sizeof(double);
 
 /// Nodes and cells (x_m, y_m, cells) and the state before the event (u_m, u_per_shear).
 constexpr double bytes_of_mesh = 2 * number_bytes + sizeof(mesh::Cell), bytes_of_state = 4 * number_bytes;
+/// Larger messages are sent when they are asked for: Open MPI's over TCP, where latency counts most.
+constexpr double eager_bytes = 64 << 10;
 /// u_m, v_m_per_s of a snapshot.
 constexpr double bytes_of_snapshot = 4 * number_bytes;
 /// Of a checkpoint, more than of a snapshot: numbers, u_m and v_m_per_s of nodes, in answers and joined.
@@ -40,32 +43,35 @@ Widest widest(const motion::Division& division) {
 
 ProcessCost process_cost(const SharedWork& work, const motion::Division& division, int processors,
                          const Network& network, const Handling& handling) {
-  const double n_parts = division.n_parts();
+  const double n_parts = division.n_parts(), others = n_parts - 1;
   const auto part = widest(division);
-  const double s_per_column = work.steps * work.node_updates_per_step / work.n_columns /
-                              work.node_updates_per_s * std::max(1.0, n_parts / processors);
+  const double s_per_column = work.node_updates_per_step / work.n_columns / work.node_updates_per_s *
+                              std::max(1.0, n_parts / processors);
   ProcessCost cost;
-  cost.own_s = part.own * s_per_column;
-  cost.halo_s = part.halo * s_per_column;
+  cost.own_s = (work.steps + work.energies) * part.own * s_per_column;
+  cost.halo_s = work.steps * part.halo * s_per_column;
 
-  const double halo_bytes = part.n_sides * division.halo * work.values_per_column * number_bytes;
-  cost.bytes_per_step = halo_bytes / division.steps_per_exchange;
+  const auto latency_s = [&](double bytes) { return (bytes > eager_bytes ? 3 : 1) * network.latency_s; };
+  const double halo_bytes = division.halo * work.values_per_column * number_bytes;
+  const double exchanges =
+      work.advances * std::ceil(work.steps / work.advances / division.steps_per_exchange);
+  cost.bytes_per_step = exchanges * part.n_sides * halo_bytes / work.steps;
   if (part.n_sides > 0)
-    cost.exchange_s = work.steps / division.steps_per_exchange *
-                      (network.latency_s + halo_bytes / network.bandwidth_bytes_per_s +
-                       2 * halo_bytes / handling.halo_bytes_per_s);
+    cost.exchange_s = exchanges * (latency_s(halo_bytes) +
+                                   part.n_sides * halo_bytes *
+                                       (1 / network.bandwidth_bytes_per_s + 2 / handling.halo_bytes_per_s));
 
-  // The leader handles its own bytes as the others'.
-  const double others = n_parts - 1;
   const auto passed_s = [&](double bytes) {
-    return bytes *
-           (others / n_parts / network.bandwidth_bytes_per_s + (1 + 1 / n_parts) / handling.bytes_per_s);
+    const double by_parts = others > 0 ? 1 / n_parts : 0;
+    return bytes * (others / n_parts / network.bandwidth_bytes_per_s + (1 + by_parts) / handling.bytes_per_s);
   };
+  const double row_bytes = work.history_rows * work.values_per_row * number_bytes;
+  cost.gathering_s = passed_s(row_bytes + work.snapshots * bytes_of_snapshot * work.n_nodes);
   if (others > 0) {
-    cost.command_s = work.commands * 2 * (network.latency_s + others * handling.s_per_message);
-    cost.gathering_s = work.steps * work.updates_per_step * n_parts * handling.s_per_update +
-                       passed_s(work.history_rows * work.values_per_row * number_bytes +
-                                work.snapshots * bytes_of_snapshot * work.n_nodes);
+    cost.gathering_s += work.steps * work.updates_per_step * n_parts * handling.s_per_update;
+    cost.command_s =
+        (work.advances + work.energies) * 2 * (network.latency_s + others * handling.s_per_message) +
+        work.advances * others * (latency_s(row_bytes / n_parts / work.advances) - network.latency_s);
     cost.start_s = passed_s((bytes_of_mesh + bytes_of_state) * work.n_nodes);
   }
   cost.statics_s = work.statics_s;

@@ -11,13 +11,13 @@ struct Network {
   double bandwidth_bytes_per_s = 0;  ///< each way at once
 };
 /// Of processes on one machine: Open MPI 4.1, two cores of an AMD EPYC (Zen 4), a virtual machine.
-inline constexpr Network shared_memory = {0.4e-6, 4e9};
+inline constexpr Network shared_memory = {0.5e-6, 10e9};
 
 /// What a core does to what is sent, measured on such a one.
 struct Handling {
   double s_per_message = 2e-6;    ///< the leader's, to send a command or to receive an answer
   double s_per_update = 0.3e-6;   ///< the leader's, to join what one part saw in one contact update
-  double bytes_per_s = 1e9;       ///< samples and snapshots, packed by each part and joined by the leader
+  double bytes_per_s = 0.8e9;     ///< samples and snapshots, packed by each part and joined by the leader
   double halo_bytes_per_s = 5e9;  ///< packed or unpacked
 };
 
@@ -29,7 +29,8 @@ struct SharedWork {
   double values_per_column = 0;   ///< that an exchange sends
   double updates_per_step = 1;    ///< of the contact
   double steps = 0;
-  double commands = 0;  ///< of the event
+  double advances = 1;  ///< commands in which these steps are taken
+  double energies = 0;  ///< sums over all nodes
   double history_rows = 0, values_per_row = 0;
   double snapshots = 0;
   double statics_s = 0, statics_bytes = 0;
@@ -56,21 +57,24 @@ struct ProcessCost {
 
 /// The cost of a case shared by the parts of a division, P processes on C processors of one speed.
 ///
-/// With n steps, u node updates of a column in a step, r node updates/s, latency L and bandwidth B:
-/// - own columns: n u w / r max(1, P/C), w of them
+/// n steps in A commands, u node updates of a column in a step, r node updates/s, latency L, bandwidth B:
+/// - own columns: (n + e) u w / r max(1, P/C), w of them, e sums of the energies, each as long as a step
 /// - halo: n u s h / r max(1, P/C), h columns on s sides with a neighbour, 2, or 1 of two processes
-/// - exchange: n/k (L + s m/B + 2 s m/b), k steps per exchange, m bytes of a halo, b of them packed in a
-/// second
-/// - commands: c (2 L + 2 (P - 1) o), c of them, o for each message of the leader
-/// - gathering: n q P a + G F, q contact updates in a step, a to join what a part saw in one, G bytes of
-/// samples
-///   and snapshots
+/// - exchange: A ceil(n/(A k)) (l(m) + s m/B + 2 s m/b), k steps to an exchange, m bytes of a halo, rate b of
+///   packing
+/// - commands: (A + e) (2 L + 2 (P - 1) o) + A (P - 1) (l(a) - L), o for each message of the leader, a bytes
+///   of an answer; answers are received one after the other
+/// - gathering: n q P j + G F, q contact updates in a step, j to join what a part saw in one, G bytes of
+///   samples and snapshots
 /// - statics: as by one process
 /// - start: S F, S bytes of meshes and initial motion
 ///
-/// with F = (1 - 1/P)/B + (1 + 1/P)/g: the bytes of the others pass between processes, the leader handles all
-/// at the rate g, each part its own. Nothing overlaps: a part waits for its neighbours before it goes on, and
-/// all wait for the leader.
+/// l(m) = L up to 64 KiB and 3 L for more, which MPI sends when it is asked for them.
+///
+/// F = (1 - 1/P)/B + (1 + 1/P)/g: the bytes of the others pass between processes, the leader handles all at
+/// the rate g, each part its own; of one process 1/g.
+///
+/// Nothing overlaps: a part waits for its neighbours before it goes on, and all wait for the leader.
 /// @param work        of the whole case
 /// @param processors  of the machines together
 ProcessCost process_cost(const SharedWork& work, const motion::Division& division, int processors,

@@ -18,9 +18,7 @@ SharedWork square() {
   work.node_updates_per_s = 1e8;
   work.values_per_column = 4e3;
   work.steps = 1000;
-  work.commands = 30;
-  work.history_rows = 100;
-  work.values_per_row = 4e3;
+  work.advances = 20;
   work.statics_s = 7;
   work.statics_bytes = 1e9;
   work.bytes_per_interface_node = 1e3;
@@ -66,12 +64,29 @@ TEST(ProcessCost, OfTwoHasAHaloOnOneSide) {
 }
 
 TEST(ProcessCost, OfExchangesIsLatencyAndBytes) {
-  // Every fifth step 20 columns of 32,000 bytes leave.
+  // Every fifth step 20 columns of 32,000 bytes leave, more than are sent before they are asked for.
   const auto cost = process_cost(square(), division(1000, 4, 10, 5), 4, ethernet, at_once);
   EXPECT_DOUBLE_EQ(cost.bytes_per_step, 20 * 4e3 * 8 / 5);
-  EXPECT_DOUBLE_EQ(cost.exchange_s, 200 * (1e-4 + 640e3 / 1e8));
+  EXPECT_DOUBLE_EQ(cost.exchange_s, 200 * (3e-4 + 640e3 / 1e8));
   const auto packed = process_cost(square(), division(1000, 4, 10, 5), 4, ethernet, {0, 0, 1e300, 1e9});
   EXPECT_NEAR(packed.exchange_s - cost.exchange_s, 200 * 2 * 640e3 / 1e9, 1e-12);
+  const auto small = process_cost(square(), division(1000, 4, 1, 5), 4, ethernet, at_once);
+  EXPECT_DOUBLE_EQ(small.exchange_s, 200 * (1e-4 + 64e3 / 1e8));
+}
+
+TEST(ProcessCost, OfExchangesCountsThoseAtTheEndOfACommand) {
+  // 50 steps of a command in fours of 16, 16, 16 and 2.
+  const auto cost = process_cost(square(), division(1000, 2, 2, 16), 2, {1e-4, 1e300}, at_once);
+  EXPECT_DOUBLE_EQ(cost.exchange_s, 20 * 4 * 1e-4);
+  EXPECT_DOUBLE_EQ(cost.bytes_per_step, 20 * 4 * 64e3 / 1000);
+}
+
+TEST(ProcessCost, OfEnergiesIsThatOfSteps) {
+  auto work = square();
+  work.energies = 10;
+  const auto cost = process_cost(work, division(1000, 4, 10), 4, ethernet, at_once);
+  EXPECT_DOUBLE_EQ(cost.own_s, 2.5 * 1.01);
+  EXPECT_DOUBLE_EQ(cost.command_s, 30 * 2 * 1e-4);
 }
 
 TEST(ProcessCost, OfProcessorsThatAreSharedIsThatOfFewer) {
@@ -103,22 +118,38 @@ TEST(ProcessCost, OfTheLeaderGrowsWithTheNumberOfProcesses) {
   work.updates_per_step = 18;
   const Handling handling = {2e-6, 1e-7, 1e300, 1e300};
   const auto cost = process_cost(work, division(1000, 10, 10), 10, {1e-4, 1e300}, handling);
-  EXPECT_DOUBLE_EQ(cost.command_s, 30 * 2 * (1e-4 + 9 * 2e-6));
+  EXPECT_DOUBLE_EQ(cost.command_s, 20 * 2 * (1e-4 + 9 * 2e-6));
   EXPECT_NEAR(cost.gathering_s, 1000 * 18 * 10 * 1e-7, 1e-12);
   const auto more = process_cost(work, division(1000, 100, 10), 100, {1e-4, 1e300}, handling);
   EXPECT_NEAR(more.gathering_s, 10 * cost.gathering_s, 1e-12);
 }
 
-TEST(ProcessCost, OfSamplesAndSnapshotsIsWhatTheOthersSend) {
+TEST(ProcessCost, OfSamplesAndSnapshotsIsPackedSentAndJoined) {
   auto work = square();
   const Handling handling = {0, 0, 1e9, 1e300};
+  const auto none = process_cost(work, division(1000, 4, 10), 4, ethernet, handling);
+  EXPECT_EQ(none.gathering_s, 0);
+  work.history_rows = 100;
+  work.values_per_row = 4e3;
   const auto rows = process_cost(work, division(1000, 4, 10), 4, ethernet, handling);
   const double bytes = 100 * 4e3 * 8;
   EXPECT_NEAR(rows.gathering_s, 0.75 * bytes / 1e8 + 1.25 * bytes / 1e9, 1e-12);
+  EXPECT_EQ(rows.command_s, none.command_s);  // 40,000 bytes in an answer
+  const auto alone = process_cost(work, division(1000, 1, 10), 1, ethernet, handling);
+  EXPECT_NEAR(alone.gathering_s, bytes / 1e9, 1e-12);
   work.snapshots = 3;
   const auto both = process_cost(work, division(1000, 4, 10), 4, ethernet, handling);
   const double more = 3 * 32e6;
   EXPECT_NEAR(both.gathering_s - rows.gathering_s, 0.75 * more / 1e8 + 1.25 * more / 1e9, 1e-9);
+}
+
+TEST(ProcessCost, OfLargeAnswersIsARoundTripEach) {
+  auto work = square();
+  work.values_per_row = 4e3;
+  work.history_rows = 1000;  // 400,000 bytes in an answer of four
+  const auto small = process_cost(square(), division(1000, 4, 10), 4, ethernet);
+  const auto large = process_cost(work, division(1000, 4, 10), 4, ethernet);
+  EXPECT_NEAR(large.command_s - small.command_s, 20 * 3 * 2e-4, 1e-12);
 }
 
 TEST(ProcessCost, OfMemoryFallsForAllButTheLeader) {
