@@ -7,6 +7,7 @@ SHELL := bash
 APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv python3-dev \
   libfmt-dev libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev \
   libhdf5-dev libboost-dev libcereal-dev libssl-dev libgtest-dev libgmock-dev
+MPI_PACKAGES := libopenmpi-dev openmpi-bin
 SLURM_PACKAGES := slurm-wlm munge
 LINT_PACKAGES := clang-format-14 clang-tidy-14
 SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev
@@ -24,7 +25,7 @@ PYTHON := $(VENV)/bin/python
 PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
 PROGRAM := build/release/slipfront
 
-.PHONY: help setup program build module stubs wheel wheel-trial test examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
+.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -71,6 +72,12 @@ build: packages  ## build the program and all tests
 	$(CONFIGURE)
 	cmake --build --preset release
 
+build-mpi: packages  ## the program whose runs several processes of MPI can share: build/mpi/slipfront
+	@scripts/install-packages $(MPI_PACKAGES)
+	@echo "== Building build/mpi/slipfront"
+	cmake --preset mpi
+	cmake --build --preset mpi
+
 module: program $(VENV)/.installed  ## build the Python module as well: python/slipfront/_core
 	cmake --preset release -D SLIPFRONT_PYTHON=ON -D Python_EXECUTABLE=$(abspath $(PYTHON))
 	cmake --build --preset release --target slipfront_core
@@ -89,6 +96,9 @@ wheel-trial: wheel program  ## try it in an empty environment, and on an old pro
 
 test: ready-to-test  ## all tests, C++ and Python
 	@scripts/run-tests build/release $(PYTHON)
+
+test-mpi: build-mpi $(VENV)/.installed  ## what processes share: as one process, with 2 and 3 of them
+	SLIPFRONT_MPI=$(abspath build/mpi/slipfront) $(PYTHON) -m pytest -q tests/mpi
 
 # The paper's runs and figures; the argument adds options.
 define REPRODUCE
@@ -168,6 +178,10 @@ slurm-trial: ready  ## sweeps by job arrays and workers of a Slurm cluster of th
 	@scripts/install-packages $(SLURM_PACKAGES)
 	$(PYTHON) scripts/python-requirements.py sweep cluster | $(PIP_INSTALL)
 	scripts/slurm-trial $(PROGRAM) $(PYTHON)
+
+slurm-mpi-trial: build-mpi  ## runs that several processes share as jobs of such a cluster, over a limit of time; as root
+	@scripts/install-packages $(SLURM_PACKAGES)
+	scripts/slurm-mpi-trial build/mpi/slipfront
 
 reference: ready  ## problems that other codes have solved, on several meshes each, into results-reference/
 	$(PYTHON) scripts/compare-reference.py a --program $(PROGRAM) --results $(RESULTS)-reference

@@ -70,7 +70,9 @@ int report(int code, const std::string& message) {
 /// Of several processes all but the leader wait for what it asks of them.
 class Leading {
  public:
-  explicit Leading(slipfront::Processes& processes) : processes_(processes) {}
+  explicit Leading(slipfront::Processes& processes) : processes_(processes) {
+    slipfront::run::lead(processes);
+  }
   Leading(const Leading&) = delete;
   Leading& operator=(const Leading&) = delete;
   ~Leading() { slipfront::run::dismiss(processes_); }
@@ -131,6 +133,8 @@ int main(int argc, char** argv) try {
 } catch (const slipfront::Interrupted& error) {
   return report(code_of(slipfront::cli::interrupting_signal()), fmt::format("slipfront: {}", error.what()));
 } catch (const slipfront::WriteError& error) {
+  return report(internal_error, fmt::format("slipfront: {}", error.what()));
+} catch (const slipfront::ProcessError& error) {
   return report(internal_error, fmt::format("slipfront: {}", error.what()));
 } catch (const std::bad_alloc&) {
   return report(internal_error, "slipfront: not enough memory; use larger elements");

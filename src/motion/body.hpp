@@ -110,6 +110,10 @@ class Body {
   /// Places in lower() of the nodes in some columns.
   solid::Span lower_in(solid::Span columns) const;
 
+  /// See Stepper::visit_state. @param b  number of the body
+  template <class Visitor>
+  void visit_state(Visitor& visitor, std::size_t b, const PlaceInWhole& place);
+
   /// Energies and works up to the last half (sub-)step.
   record::Energies energies();
   double kinetic_energy_J_per_m() const;
@@ -175,6 +179,71 @@ void Body::visit_columns(solid::Span columns, Visit&& visit) {
       }
     }
   }
+}
+
+template <class Visitor>
+void Body::visit_state(Visitor& visitor, std::size_t b, const PlaceInWhole& place) {
+  const int stride = motion_.op.grid.stride();
+  const auto list_of_nodes = [&](std::size_t n, auto&& node_of, auto&& each) {
+    visitor.list(
+        KeptBy::node, b, n,
+        [&](std::size_t k) {
+          const auto node = node_of(k);
+          return static_cast<std::int64_t>(node / stride) * place.stride +
+                 place.columns.number_at(node % stride);
+        },
+        [&](std::size_t k) { return node_of(k) % stride; }, each);
+  };
+  auto& u = motion_.u_m;
+  auto& v = motion_.v_m_per_s;
+  list_of_nodes(
+      u.size(), [](std::size_t k) { return static_cast<mesh::Node>(k); },
+      [&](std::size_t k, auto&& f) {
+        f(u.x[k]);
+        f(u.y[k]);
+        f(v.x[k]);
+        f(v.y[k]);
+      });
+  for (auto& level : levels_.level) {
+    list_of_nodes(
+        level.irregular.size(), [&](std::size_t r) { return level.irregular[r]; },
+        [&](std::size_t r, auto&& f) {
+          f(level.a_x[r]);
+          f(level.a_y[r]);
+        });
+    auto& s = level.shared;
+    list_of_nodes(
+        s.node.size(), [&](std::size_t k) { return s.node[k]; },
+        [&](std::size_t k, auto&& f) {
+          for (auto* field : {&s.u_before_m, &s.push_m_per_s, &s.steady_m_per_s2, &s.v_last_m_per_s,
+                              &s.a_m_per_s2, &s.v_mean_before_m_per_s}) {
+            f(field->x[k]);
+            f(field->y[k]);
+          }
+        });
+    list_of_nodes(
+        level.top_rows.node.size(), [&](std::size_t r) { return level.top_rows.node[r]; },
+        [&](std::size_t r, auto&& f) {
+          f(level.top_force_N[r].x);
+          f(level.top_force_N[r].y);
+        });
+    const auto width = static_cast<std::size_t>(stride);
+    visitor.list(
+        KeptBy::column, b, level.edge_kick_m_per_s.size() * width,
+        [&](std::size_t k) {
+          return static_cast<std::int64_t>(k / width) * place.stride +
+                 place.columns.number_at(static_cast<int>(k % width));
+        },
+        [&](std::size_t k) { return static_cast<int>(k % width); },
+        [&](std::size_t k, auto&& f) {
+          auto& kick = level.edge_kick_m_per_s[k / width];
+          f(kick[k % width]);
+          f(kick[width + k % width]);
+        });
+    level.damping_work.visit_state(visitor);
+  }
+  landing_.visit_state(visitor);
+  for (const auto& term : record::energy_terms) visitor.sum(works_.*term.member);
 }
 
 }  // namespace slipfront::motion

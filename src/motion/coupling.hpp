@@ -76,6 +76,11 @@ class Coupling {
   /// Of a node whose tractions are not balanced.
   double largest_acceleration_m_per_s2() const;
 
+  /// See Stepper::visit_state.
+  template <class Visitor>
+  void visit_state(Visitor& visitor, const Body& plate, const PlaceInWhole& place);
+  void take_state() { set_trigger(trigger_, std::vector<double>(trigger_force_N_)); }
+
   template <class Archive>
   void serialize(Archive& archive) {
     archive(face_);
@@ -131,5 +136,37 @@ class Coupling {
   std::vector<double> start_u_x_m_;                      ///< slip is counted from it
   std::size_t own_begin_, own_end_;                      ///< nodes that count in works, see BodyMotion
 };
+
+template <class Visitor>
+void Coupling::visit_state(Visitor& visitor, const Body& plate, const PlaceInWhole& place) {
+  bool has_prestress = !prestress_t_Pa_.empty();
+  visitor.flag(has_prestress);
+  if (has_prestress) {
+    prestress_t_Pa_.resize(face_.size());
+    prestress_p_Pa_.resize(face_.size());
+  }
+  visitor.list(
+      KeptBy::place, 0, face_.size(),
+      [&](std::size_t k) { return place.lower.number_at(static_cast<int>(k)); },
+      [&](std::size_t k) { return plate.lower()[k] % plate.op().grid.stride(); },
+      [&](std::size_t k, auto&& f) {
+        for (auto* values :
+             {&face_.intact, &face_.v_x_m_per_s, &face_.v_y_m_per_s, &face_.u_y_m, &face_.slip_rate_m_per_s,
+              &face_.t_Pa, &face_.p_Pa, &face_.demand_Pa, &face_.strength_Pa, &face_.slip_m,
+              &face_.relaxed_Pa, &face_.target_Pa, &face_.acceleration_m_per_s2, &v_x_before_, &v_y_before_,
+              &v_y_trial_, &trigger_force_N_, &start_u_x_m_})
+          f((*values)[k]);
+        f(face_.slipping[k]);
+        f(face_.locked[k]);
+        for (auto& side : sides_)
+          for (auto* values : {&side.v_x, &side.v_y, &side.v_x_before, &side.v_y_before}) f((*values)[k]);
+        if (has_prestress) {
+          f(prestress_t_Pa_[k]);
+          f(prestress_p_Pa_[k]);
+        }
+      });
+  visitor.flag(face_.begun);
+  visitor.trigger(trigger_);
+}
 
 }  // namespace slipfront::motion

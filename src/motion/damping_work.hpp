@@ -55,6 +55,13 @@ class DampingWork {
   /// @param u_K_u, v_K_u  of the present displacements and velocities
   double of_last_push(const PushProducts& since_last, double u_K_u, double v_K_u) const;
 
+  /// See Stepper::visit_state.
+  template <class Visitor>
+  void visit_state(Visitor& visitor) {
+    visitor.flag(begun_);
+    for (auto* value : {&last_.u_K_u, &last_.v_K_v, &last_.after_K_w}) visitor.sum(*value);
+  }
+
   template <class Archive>
   void serialize(Archive& archive) {
     archive(begun_, last_.u_K_u, last_.v_K_v, last_.after_K_w);

@@ -30,6 +30,13 @@ class Landing {
   }
   void clear() { K_v_ = K_u_ = 0; }
 
+  /// See Stepper::visit_state.
+  template <class Visitor>
+  void visit_state(Visitor& visitor) {
+    visitor.sum(K_v_);
+    visitor.sum(K_u_);
+  }
+
   template <class Archive>
   void serialize(Archive& archive) {
     archive(K_v_, K_u_);

@@ -276,7 +276,9 @@ void set_shared_nodes(StepLevel& level, const std::vector<bool>& shared, const B
     s.irregular_row.push_back(irregular_row[n]);
   }
   s.runs = runs_of(s.node, body);
-  s.u_before_m = s.push_m_per_s = s.steady_m_per_s2 = solid::Field(s.node.size());
+  for (auto* field : {&s.u_before_m, &s.push_m_per_s, &s.steady_m_per_s2, &s.v_last_m_per_s, &s.a_m_per_s2,
+                      &s.v_mean_before_m_per_s})
+    *field = solid::Field(s.node.size());
 }
 
 /// Nodes of the loaded edge that move with the level, and the rows of all in its cells.

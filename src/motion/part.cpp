@@ -9,6 +9,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "motion/kept_motion.hpp"
 
 namespace slipfront::motion {
 
@@ -44,9 +45,12 @@ class Log final : public UpdateObserver {
 
 }  // namespace
 
-solid::Span Division::all(int part) const {
+mesh::Subset Division::all(int part) const {
   const auto columns = own(part);
-  return {std::max(first.front(), columns.begin - halo), std::min(first.back(), columns.end + halo)};
+  const int begin = columns.begin - halo_below(part), end = columns.end + halo_above(part);
+  if (begin < 0) return mesh::Subset({{0, end}, {first.back() + begin, n_columns()}});
+  if (end > first.back()) return mesh::Subset({{0, end - first.back()}, {begin, n_columns()}});
+  return mesh::Subset({{begin, end}});
 }
 
 int columns_per_step(std::span<const double> stable_steps_s, const TimeStepping& time) {
@@ -61,39 +65,52 @@ int columns_per_step(std::span<const double> stable_steps_s, const TimeStepping&
   return is_layered ? substeps + substeps / least_period : substeps;
 }
 
-Division divide_columns(int n_columns, int n_parts, int columns_per_step, int reach) {
+Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach) {
   Division division;
+  division.is_ring = mesh.period_m > 0;
+  const int n_columns = mesh.grid.stride() - (division.is_ring ? 1 : 0);
   for (int k = 0; k <= n_parts; ++k)
     division.first.push_back(static_cast<int>(static_cast<std::int64_t>(n_columns) * k / n_parts));
   const int width = n_columns / n_parts;
   division.steps_per_exchange = std::clamp(static_cast<int>(0.5 * tolerated_halo * width / columns_per_step),
                                            1, most_steps_per_exchange);
   division.halo = division.steps_per_exchange * columns_per_step + std::max(1, reach);
-  if (n_parts > 1 && width < division.halo)
+  // The halos of two parts of a ring do not meet.
+  const int least_width = division.is_ring && n_parts == 2 ? 2 * division.halo + 1 : division.halo;
+  if (n_parts > 1 && width < least_width)
     throw UserError(
         "{} processes have {} columns of elements each, fewer than the {} that they compute for each other; "
         "choose at most {}",
-        n_parts, width, division.halo, std::max(1, n_columns / division.halo));
+        n_parts, width, least_width, std::max(1, n_columns / least_width));
   return division;
 }
 
 Part::Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
            const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
-           States states)
-    : processes_(processes), division_(division), states_(std::move(states)) {
-  const int rank = processes.rank();
-  const auto all = division.all(rank), own = division.own(rank);
-  const auto local = [&](solid::Span columns) {
-    return solid::Span{columns.begin - all.begin, columns.end - all.begin};
-  };
-  own_ = local(own);
+           const PlaceInWhole& place)
+    : processes_(processes), division_(division), place_(place) {
+  const int rank = processes.rank(), n_parts = division.n_parts();
   stepper_ = std::make_unique<Stepper>(sources, contact, time, execution);
-  if (rank > 0)
+  const auto own = place_.own;
+  const auto width = [](int begin, int count) { return solid::Span{begin, begin + count}; };
+  // Beyond the sides of a plate that repeats lie the columns of its other end.
+  const auto span_of = [&](int first_column, int count) {
+    const int n = division.first.back();
+    return width(place_.columns.place_of((first_column + n) % n), count);
+  };
+  const int below = division.halo_below(rank), above = division.halo_above(rank);
+  const auto columns = division.own(rank);
+  if (below > 0)
+    neighbours_.push_back({(rank + n_parts - 1) % n_parts,
+                           width(own.begin, below),
+                           span_of(columns.begin - below, below),
+                           {},
+                           {}});
+  if (above > 0)
     neighbours_.push_back(
-        {rank - 1, local({own.begin, division.all(rank - 1).end}), local({all.begin, own.begin}), {}, {}});
-  if (rank + 1 < division.n_parts())
-    neighbours_.push_back(
-        {rank + 1, local({division.all(rank + 1).begin, own.end}), local({own.end, all.end}), {}, {}});
+        {(rank + 1) % n_parts, width(own.end - above, above), span_of(columns.end, above), {}, {}});
+  // Messages between the same two are matched in their order.
+  if (n_parts == 2 && rank == 1 && neighbours_.size() == 2) std::swap(neighbours_[0], neighbours_[1]);
 }
 
 Parcel Part::carry_out(PartCommand command, Parcel& given) {
@@ -115,7 +132,7 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
       try {
         advance(given, answer);
       } catch (const std::exception& error) {
-        processes_.fail(error.what());  // the others wait for this part's halo
+        processes_.fail(reason_of(error));  // the others wait for this part's halo
       }
       break;
     case PartCommand::energies:
@@ -134,10 +151,11 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
       answer.put(stepper_->probed_u_m()).put(stepper_->probed_v_m_per_s());
       break;
     case PartCommand::keep:
-      answer.put(states_.write(*this));
+      keep(*stepper_, place_).put(answer);
       break;
     case PartCommand::restore:
-      states_.read(*this, given.take_text());
+      restore(KeptMotion::take(given), *stepper_, place_);
+      finder_.reset();
       begin_counting();
       break;
     case PartCommand::network:
@@ -190,7 +208,6 @@ PartCost Part::cost() const {
 
 void Part::make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s) {
   const auto own = stepper_->bodies().front().own_lower();
-  finder_halo_ = halo;
   finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
                   halo, creep_m_per_s);
 }
@@ -235,10 +252,18 @@ void Part::advance(Parcel& given, Parcel& answer) {
     finder_->renew_tractions(stepper_->interface_state());
     done += n;
   }
-  // Of the samples' columns only own nodes.
+  const auto& memory = finder_->memory();
+  answer.put(memory.time_s);
+  // Of nodes along the interface only own ones.
   const auto own = stepper_->bodies().front().own_lower();
   const auto width = stepper_->interface_state().size();
   const auto n_rows = samples.time_s.size();
+  const auto of_own = [&]<class T>(const std::vector<T>& values) {
+    return std::span(values).subspan(static_cast<std::size_t>(own.begin),
+                                     static_cast<std::size_t>(own.end - own.begin));
+  };
+  for (const auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa}) answer.put(of_own(*values));
+  answer.put(of_own(memory.slipping));
   answer.put(rates).put(std::vector<std::byte>(seen.bytes().begin(), seen.bytes().end()));
   for (const auto& field : record::history_fields) {
     std::vector<double> values;
@@ -280,7 +305,7 @@ void Part::put_snapshot(Parcel& answer) const {
     std::vector<double> own;
     for (const auto& row : body.op().rows) {
       const auto begin = values.begin() + row.first;
-      own.insert(own.end(), begin + own_.begin, begin + own_.end);
+      own.insert(own.end(), begin + place_.own.begin, begin + place_.own.end);
     }
     answer.put(own);
   };
@@ -300,7 +325,7 @@ void serve(Processes& processes, Part& part) {
     try {
       answer = part.carry_out(command, given);
     } catch (const std::exception& failure) {
-      error = failure.what();
+      error = reason_of(failure);
     }
     processes.send(0, Parcel().put(error).append(answer));
   }

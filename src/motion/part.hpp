@@ -22,11 +22,18 @@ struct Division {
   std::vector<int> first;      ///< [parts + 1] where the own columns of each begin
   int halo = 0;                ///< columns beside them, as far as there are any
   int steps_per_exchange = 1;  ///< after so many steps the halo is renewed
+  /// Whether the plate repeats: the first part and the last one are neighbours, and the whole has a column of
+  /// nodes more, without cells.
+  bool is_ring = false;
 
   int n_parts() const { return static_cast<int>(first.size()) - 1; }
+  int n_columns() const { return first.back() + (is_ring ? 1 : 0); }  ///< of nodes of the whole
   solid::Span own(int part) const { return {first[part], first[part + 1]}; }
   /// Own columns and halo.
-  solid::Span all(int part) const;
+  mesh::Subset all(int part) const;
+  /// Columns of its halo on either side, 0 where it has no neighbour.
+  int halo_below(int part) const { return part > 0 || is_ring ? halo : 0; }
+  int halo_above(int part) const { return part + 1 < n_parts() || is_ring ? halo : 0; }
 };
 
 /// Columns into which what is wrong at a part's edge may get within a step: the pushes of all levels.
@@ -34,11 +41,11 @@ struct Division {
 int columns_per_step(std::span<const double> stable_steps_s, const TimeStepping& time);
 
 /// Parts of nearly equal width.
-/// @param n_columns         columns of nodes of the whole plate
+/// @param mesh              of the whole plate
 /// @param columns_per_step  see there
 /// @param reach             columns beyond its own that a part looks at
 /// @throws UserError where the parts would be narrower than their halo
-Division divide_columns(int n_columns, int n_parts, int columns_per_step, int reach);
+Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach);
 
 /// What is asked of all parts at a time. The number of the command is followed by its values.
 enum class PartCommand : int {
@@ -79,37 +86,17 @@ struct PartMeasures {
 /// commands, by PartedStepper.
 class Part {
  public:
-  /// How the stepper's state is made bytes and back, which this room knows nothing of.
-  struct States {
-    std::function<std::string(Part&)> write;
-    std::function<void(Part&, const std::string&)> read;
-  };
-
   /// @param sources   the bodies' columns `division.all(processes.rank())`, with their PartOfBody
   /// @param contact   of the part's interface nodes
+  /// @param place     of the part in the whole
   Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
        const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
-       States states);
+       const PlaceInWhole& place);
 
   /// Carries out a command between build and release.
   Parcel carry_out(PartCommand command, Parcel& given);
 
   const Stepper& stepper() const { return *stepper_; }
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    std::uint8_t has_finder = finder_ ? 1 : 0;
-    int halo = finder_halo_;
-    double creep_m_per_s = finder_ ? finder_->creep_m_per_s() : 0;
-    archive(*stepper_, has_finder, halo, creep_m_per_s);
-    if (Archive::is_loading::value && has_finder != 0) {
-      const auto n = stepper_->interface_state().size();
-      SlipFinder::Memory memory{0, std::vector<double>(n), std::vector<double>(n), std::vector<double>(n),
-                                std::vector<std::uint8_t>(n)};
-      make_finder(std::move(memory), halo, creep_m_per_s);
-    }
-    if (has_finder != 0) archive(*finder_);
-  }
 
  private:
   void start(Parcel& given);
@@ -122,11 +109,9 @@ class Part {
 
   Processes& processes_;
   Division division_;
-  States states_;
-  solid::Span own_;  ///< in the part's columns
+  PlaceInWhole place_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<SlipFinder> finder_;
-  int finder_halo_ = 0;
   /// Columns that go to a neighbour and come from it, in the part's columns.
   struct Neighbour {
     int rank = 0;

@@ -3,44 +3,51 @@
 
 #include <algorithm>
 #include <exception>
-#include <stdexcept>
 #include <utility>
 
 #include "base/error.hpp"
 
 namespace slipfront::motion {
 
+mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns) {
+  std::vector<mesh::Subset::Range> ranges;
+  for (int k = 0; k < std::ssize(mesh.lower); ++k) {
+    if (!columns.has(mesh.lower[static_cast<std::size_t>(k)] % mesh.grid.stride())) continue;
+    if (!ranges.empty() && ranges.back().end == k)
+      ++ranges.back().end;
+    else
+      ranges.push_back({k, k + 1});
+  }
+  return mesh::Subset(std::move(ranges));
+}
+
 namespace {
 
-/// Places in Mesh::lower of the nodes in some columns.
-solid::Span lower_in(const mesh::Mesh& mesh, solid::Span columns) {
-  const auto is_in = [&](mesh::Node n) {
-    const int column = n % mesh.grid.stride();
-    return column >= columns.begin && column < columns.end;
-  };
-  const auto begin = std::ranges::find_if(mesh.lower, is_in);
-  const auto end = std::find_if_not(begin, mesh.lower.end(), is_in);
-  SLIPFRONT_ASSERT(std::none_of(end, mesh.lower.end(), is_in), "interface nodes in the order of columns");
-  return {static_cast<int>(begin - mesh.lower.begin()), static_cast<int>(end - mesh.lower.begin())};
+solid::Span own_lower_in(const mesh::Mesh& mesh, solid::Span columns) {
+  const auto places = lower_in(mesh, mesh::Subset({{columns.begin, columns.end}}));
+  SLIPFRONT_ASSERT(places.ranges().size() == 1, "interface nodes in the order of columns");
+  return {places.ranges().front().begin, places.ranges().front().end};
 }
 
 template <class T>
-std::span<const T> cut(const std::vector<T>& values, solid::Span span) {
-  if (values.empty()) return {};
-  return std::span(values).subspan(static_cast<std::size_t>(span.begin),
-                                   static_cast<std::size_t>(span.end - span.begin));
+std::vector<T> cut(const std::vector<T>& values, const mesh::Subset& places) {
+  std::vector<T> some;
+  if (values.empty()) return some;
+  for (const auto& range : places.ranges())
+    some.insert(some.end(), values.begin() + range.begin, values.begin() + range.end);
+  return some;
 }
 
 /// Some columns of a field over a whole grid.
-void put_columns(const mesh::Grid& grid, solid::Span columns, const solid::Field& field, Parcel& to) {
+void put_columns(const mesh::Grid& grid, const mesh::Subset& columns, const solid::Field& field, Parcel& to) {
   std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(columns.end - columns.begin) *
-                 static_cast<std::size_t>(grid.rows + 1));
+  values.reserve(static_cast<std::size_t>(columns.count()) * static_cast<std::size_t>(grid.rows + 1));
   for (const auto* component : {&field.x, &field.y}) {
     values.clear();
     for (int j = 0; j <= grid.rows; ++j) {
       const auto row = component->begin() + grid.node(0, j);
-      values.insert(values.end(), row + columns.begin, row + columns.end);
+      for (const auto& range : columns.ranges())
+        values.insert(values.end(), row + range.begin, row + range.end);
     }
     to.put(values);
   }
@@ -57,7 +64,7 @@ PartedStepper::PartedStepper(Processes& processes, const Division& division, std
   for (const auto* body : bodies) grids_.push_back(body->grid);
   for (int part = 0; part < division.n_parts(); ++part) {
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
-    own_lower_.push_back(lower_in(*bodies.front(), division.own(part)));
+    own_lower_.push_back(own_lower_in(*bodies.front(), division.own(part)));
   }
 }
 
@@ -90,7 +97,7 @@ std::vector<Parcel> PartedStepper::ask(PartCommand command, std::vector<Parcel> 
     const auto error = answers.back().take_text();
     if (!error.empty() && failure == nullptr)
       failure = std::make_exception_ptr(
-          std::runtime_error(fmt::format("process {} of {}: {}", rank, processes_.size(), error)));
+          ProcessError(fmt::format("process {} of {}: {}", rank, processes_.size(), error)));
   }
   if (failure != nullptr) std::rethrow_exception(failure);
   return answers;
@@ -101,7 +108,7 @@ void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_
   for (int part = 0; part < division_.n_parts(); ++part) {
     Parcel parcel;
     const auto columns = division_.all(part);
-    const auto lower = all_lower_[static_cast<std::size_t>(part)];
+    const auto& lower = all_lower_[static_cast<std::size_t>(part)];
     put_columns(grids_.front(), columns, e.u_m, parcel);
     put_columns(grids_.front(), columns, e.u_per_shear, parcel);
     if (grids_.size() > 1) {
@@ -134,7 +141,7 @@ void PartedStepper::watch(std::vector<Probe> probes) {
     part_of_probe_.push_back(part);
     const auto all = division_.all(part);
     auto node = probe.node;
-    for (auto& n : node) n = n / stride * (all.end - all.begin) + n % stride - all.begin;
+    for (auto& n : node) n = n / stride * all.count() + all.place_of(n % stride);
     of_part[static_cast<std::size_t>(part)].emplace_back(probe.body, node);
   }
   std::vector<Parcel> given;
@@ -190,12 +197,12 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
     Parcel parcel;
     parcel.put(static_cast<std::uint8_t>(!has_finders_));
     if (!has_finders_) {
-      const auto& memory = recorder.finder().memory();
-      const auto lower = all_lower_[static_cast<std::size_t>(part)];
-      parcel.put(memory.time_s);
-      for (const auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa})
+      const auto& known = recorder.finder().memory();
+      const auto& lower = all_lower_[static_cast<std::size_t>(part)];
+      parcel.put(known.time_s);
+      for (const auto* values : {&known.t_Pa, &known.p_Pa, &known.strength_Pa})
         parcel.put(cut(*values, lower));
-      parcel.put(cut(memory.slipping, lower));
+      parcel.put(cut(known.slipping, lower));
       parcel.put(recorder.record().halo).put(recorder.finder().creep_m_per_s());
     }
     parcel.put(is_sampled);
@@ -211,7 +218,15 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
     std::vector<double> displacements;
   };
   std::vector<Told> told;
-  for (auto& answer : answers) {
+  auto& memory = recorder.finder().memory();
+  for (std::size_t part = 0; part < answers.size(); ++part) {
+    auto& answer = answers[part];
+    memory.time_s = answer.take<double>();
+    const auto take = [&]<class T>(std::vector<T>& to) {
+      std::ranges::copy(answer.take_all<T>(), to.begin() + own_lower_[part].begin);
+    };
+    for (auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa}) take(*values);
+    take(memory.slipping);
     Told of_part;
     of_part.rates = answer.take_all<SlipRates>();
     of_part.seen = Parcel(answer.take_all<std::byte>());
@@ -231,7 +246,7 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
         seen.time_s = from.take<double>();
         seen.moves |= from.take<std::uint8_t>() != 0;
         for (auto change : from.take_all<SlipChange>()) {
-          change.node += all_lower_[part].begin;
+          change.node = all_lower_[part].number_at(change.node);
           seen.changes.push_back(change);
         }
         const auto around = from.take_all<record::Traction>();
@@ -362,21 +377,31 @@ Snapshot PartedStepper::snapshot() const {
   return all;
 }
 
-std::vector<std::string> PartedStepper::states() const {
-  std::vector<std::string> states;
-  for (auto& answer : ask(PartCommand::keep)) states.push_back(answer.take_text());
-  return states;
+KeptMotion PartedStepper::kept() const {
+  KeptMotion all;
+  for (auto& answer : ask(PartCommand::keep)) {
+    all.add(KeptMotion::take(answer));
+    answer = {};
+  }
+  all.step = step_;
+  return all;
 }
 
-void PartedStepper::take_states(const std::vector<std::string>& states, std::int64_t step) {
-  if (std::ssize(states) != division_.n_parts())
-    throw UserError("the run was begun with {} processes, and these are {}; go on with as many",
-                    states.size(), division_.n_parts());
+void PartedStepper::restore(const KeptMotion& kept) {
+  KeptMotion sorted = kept;
+  sorted.sort();
   std::vector<Parcel> given;
-  for (const auto& state : states) given.push_back(std::move(Parcel().put(state)));
+  for (int part = 0; part < division_.n_parts(); ++part) {
+    Parcel parcel;
+    sorted
+        .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], grids_.front().stride(), part,
+            division_.n_parts())
+        .put(parcel);
+    given.push_back(std::move(parcel));
+  }
   ask(PartCommand::restore, std::move(given));
-  has_finders_ = true;
-  step_ = step;
+  has_finders_ = false;
+  step_ = kept.step;
 }
 
 }  // namespace slipfront::motion

@@ -6,10 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "motion/kept_motion.hpp"
 #include "motion/part.hpp"
 #include "motion/time_stepper.hpp"
 
 namespace slipfront::motion {
+
+/// Places in Mesh::lower of the nodes in some columns.
+mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns);
 
 /// Steps the bodies of an event with several processes, each of which has a Part; the one that leads has this
 /// as well. What is computed of a node does not depend on the part that it lies in: displacements, tractions
@@ -48,9 +52,9 @@ class PartedStepper final : public TimeStepper {
   /// What each part has cost since this process began or went on with the event.
   std::vector<PartCost> costs() const;
 
-  /// The states of all parts, and the same back: for as many processes.
-  std::vector<std::string> states() const;
-  void take_states(const std::vector<std::string>& states, std::int64_t step);
+  /// What changes, of the whole bodies; the same back, kept by any number of processes.
+  KeptMotion kept() const;
+  void restore(const KeptMotion& kept);
 
  private:
   /// Gives each part a command, with values of its own or the same for all, and has their answers.
@@ -71,7 +75,8 @@ class PartedStepper final : public TimeStepper {
   std::vector<mesh::Grid> grids_;  ///< of the whole bodies
   std::size_t n_lower_;
   /// Interface nodes of each part: all that it computes, and those that count.
-  std::vector<solid::Span> all_lower_, own_lower_;
+  std::vector<mesh::Subset> all_lower_;
+  std::vector<solid::Span> own_lower_;
   std::vector<Probe> probes_;
   std::vector<int> part_of_probe_;
   bool has_finders_ = false;

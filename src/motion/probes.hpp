@@ -9,6 +9,7 @@
 
 #include "base/state.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/part.hpp"
 #include "motion/level.hpp"
 #include "record/probes.hpp"
 #include "solid/element.hpp"
@@ -29,6 +30,18 @@ struct BodySource {
   const mesh::Mesh& mesh;
   const solid::Material& material;
   const PartOfBody* part = nullptr;  ///< of a larger body; null for a whole one
+};
+
+/// What entries of a list in KeptMotion belong to: nodes, by their number; places along the interface;
+/// columns of nodes.
+enum class KeptBy : std::uint8_t { node, place, column };
+
+/// Where a stepper's columns lie in the whole bodies.
+struct PlaceInWhole {
+  solid::Span own = solid::all_columns;  ///< columns to be kept, in the stepper's own count
+  mesh::Subset columns;                  ///< of the whole, in the stepper's order
+  int stride = 0;                        ///< columns of nodes of the whole
+  mesh::Subset lower;                    ///< the same along the interface
 };
 
 /// A place within a cell of a body, at which its motion, strain and stress are recorded.

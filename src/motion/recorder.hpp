@@ -70,10 +70,11 @@ class SlipFinder {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(memory_.time_s, n_slipping_);
+    archive(memory_.time_s);
     for (auto* values : {&memory_.t_Pa, &memory_.p_Pa, &memory_.strength_Pa})
       archive_vector(archive, *values);
     archive_vector(archive, memory_.slipping);
+    if constexpr (Archive::is_loading::value) count_slipping();
   }
 
  private:

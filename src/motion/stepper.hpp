@@ -128,6 +128,19 @@ class Stepper : public TimeStepper {
     for (auto& body : bodies_) body.take_columns();
   }
 
+  /// Shows all that changes between two calls of advance to a visitor, see KeptMotion.
+  template <class Visitor>
+  void visit_state(Visitor& visitor, const PlaceInWhole& place) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].visit_state(visitor, b, place);
+    coupling_.visit_state(visitor, bodies_.front(), place);
+  }
+  /// After other values have been put there.
+  void take_state(std::int64_t step) {
+    take_columns();
+    coupling_.take_state();
+    step_ = step;
+  }
+
   /// All that changes, between two calls of advance. A stepper of the same bodies and stepping that has read
   /// it goes on as this one would, to the last bit; start need not have been called.
   template <class Archive>

@@ -94,6 +94,7 @@ class MpiProcesses final : public Processes {
   [[noreturn]] void fail(const std::string& message) override {
     const auto line = "slipfront: process " + std::to_string(rank_) + ": " + message + "\n";
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
+    reserve_ = std::vector<std::byte>();
     MPI_Abort(MPI_COMM_WORLD, 1);
     std::abort();
   }
@@ -120,6 +121,8 @@ class MpiProcesses final : public Processes {
   }
 
   int rank_ = 0, size_ = 1;
+  /// MPI_Abort takes memory, of which there may be none left.
+  std::vector<std::byte> reserve_ = std::vector<std::byte>(std::size_t{1} << 20);
 };
 
 }  // namespace

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <memory>
+#include <new>
 #include <span>
+#include <stdexcept>
 #include <string>
 
 #include "processes/parcel.hpp"
@@ -52,6 +55,18 @@ class Processes {
  protected:
   Counters counters_;
 };
+
+/// What another process could not do, told in one line.
+class ProcessError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What to tell other processes of an exception.
+inline std::string reason_of(const std::exception& error) {
+  const bool is_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+  return is_memory ? "not enough memory; use larger elements, or fewer processes on a machine" : error.what();
+}
 
 /// Joins the other processes that mpirun, or another starter of MPI, has begun with this one.
 /// @return null where this process is alone, or the program was built without MPI

@@ -70,27 +70,52 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
 }
 
 void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper) {
-  std::vector<std::string> states;  // of the parts, where several processes share the event
-  std::int64_t step = stepper.step();
   const auto* parted = dynamic_cast<const motion::PartedStepper*>(&stepper);
-  if (parted != nullptr) states = parted->states();
-  archive(states, step);
-  if (parted == nullptr) archive(dynamic_cast<motion::Stepper&>(stepper));
+  archive(parted != nullptr);
+  if (parted != nullptr)
+    archive(parted->kept());
+  else
+    archive(dynamic_cast<motion::Stepper&>(stepper));
 }
 
-void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper) {
-  std::vector<std::string> states;
-  std::int64_t step = 0;
-  archive(states, step);
+namespace {
+
+/// The whole bodies of a stepper. Of a plate that repeats the last column has no cells, and nothing of it is
+/// kept by several processes.
+motion::PlaceInWhole whole_of(const motion::Stepper& stepper) {
+  const auto& plate = stepper.bodies().front();
+  const int stride = stepper.plate().grid.stride();
+  const auto& is_orphan = plate.levels().is_orphan;
+  bool has_cells = false;
+  for (std::size_t n = static_cast<std::size_t>(stride) - 1; n < is_orphan.size();
+       n += static_cast<std::size_t>(stride))
+    has_cells = has_cells || !is_orphan[n];
+  return {.own = {0, has_cells ? stride : stride - 1}, .columns = {}, .stride = stride, .lower = {}};
+}
+
+}  // namespace
+
+void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
+                 const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
+  bool was_parted = false;
+  archive(was_parted);
   auto* parted = dynamic_cast<motion::PartedStepper*>(&stepper);
-  if (parted == nullptr && !states.empty())
-    throw UserError("the run was begun with {} processes; go on with as many", states.size());
-  if (parted == nullptr) {
+  if (parted == nullptr && !was_parted) {
     archive(dynamic_cast<motion::Stepper&>(stepper));
-  } else {
-    if (states.empty()) throw UserError("the run was begun with one process; go on with one");
-    parted->take_states(states, step);
+    return;
   }
+  motion::KeptMotion kept;
+  if (was_parted) {
+    archive(kept);
+  } else {
+    const auto by_one = make_whole();
+    archive(*by_one);
+    kept = motion::keep(*by_one, whole_of(*by_one));
+  }
+  if (parted != nullptr) return parted->restore(kept);
+  auto& by_one = dynamic_cast<motion::Stepper&>(stepper);
+  kept.sort();
+  motion::restore(kept, by_one, whole_of(by_one));
 }
 
 void Checkpoints::keep(const CheckpointHead& head,

@@ -166,7 +166,7 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
   for (const auto& body : stepper.bodies()) stable_steps_s.push_back(body.stable_step_s());
   const int n_columns = meshes.plate.grid.stride();
   Info::Shared shared;
-  shared.division = motion::divide_columns(n_columns, sharing.n_processes,
+  shared.division = motion::divide_columns(meshes.plate, sharing.n_processes,
                                            motion::columns_per_step(stable_steps_s, config.time),
                                            motion::halo_for(meshes.plate, config.fronts.l_star_m));
   SharedWork work;

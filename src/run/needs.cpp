@@ -95,6 +95,10 @@ std::filesystem::path existing_parent(const std::filesystem::path& folder) {
   return path;
 }
 
+/// Of a node while the leader gathers a checkpoint of several processes: answers, and the list made of them,
+/// which may have room for twice as many; and such a checkpoint over that of one process: nodes with numbers.
+constexpr double gathered_node_bytes = 40 + 2 * 40, shared_checkpoint_bytes = 1.25;
+
 /// glibc keeps up to two freed arrays as long as the largest that it has taken from its heap, of 32 MB at
 /// most: beyond that it gives memory back.
 BudgetItem kept_by_allocator(double array_bytes) {
@@ -330,11 +334,17 @@ void require_memory_fits(const input::Case& config) {
   require_memory(largest_of(memory_stages(config, size, n_snapshots, 0, 0)), work_of(size));
 }
 
-void require_fit(const input::Case& config, const std::filesystem::path& folder) {
+void require_fit(const input::Case& config, const std::filesystem::path& folder, bool is_shared) {
   require_memory_fits(config);  // before the coarse statics that count a ramp's steps
   const Size size = estimated_size(config);
-  const Needs n = needs(config, size);
-  require_memory(largest_of(n.memory), work_of(size));
+  Needs n = needs(config, size);
+  Budget memory = largest_of(n.memory);
+  if (is_shared) {
+    memory.push_back(
+        {"what the processes keep, gathered", gathered_node_bytes * size.n_nodes, larger_elements()});
+    n.checkpoint_bytes *= shared_checkpoint_bytes;
+  }
+  require_memory(memory, work_of(size));
   require_disk(n, folder);
 }
 

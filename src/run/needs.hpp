@@ -67,7 +67,8 @@ void require_memory_fits(const input::Case& config);
 
 /// Refuses a case whose run would not fit into the memory or onto the disk of `folder`, which need not exist
 /// yet.
+/// @param is_shared  by several processes, of which this one leads
 /// @throws UserError naming what to change.
-void require_fit(const input::Case& config, const std::filesystem::path& folder);
+void require_fit(const input::Case& config, const std::filesystem::path& folder, bool is_shared = false);
 
 }  // namespace slipfront::run

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/parts.hpp"
 
-#include <cereal/archives/binary.hpp>
-#include <cereal/types/string.hpp>
-#include <cereal/types/vector.hpp>
 #include <csignal>
+#include <cstdint>
 #include <exception>
-#include <sstream>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,24 +15,12 @@
 #include "mesh/part.hpp"
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
+#include "run/initial_state.hpp"
+#include "run/run.hpp"
 
 namespace slipfront::run {
 
 namespace {
-
-motion::Part::States binary_states() {
-  return {[](motion::Part& part) {
-            std::ostringstream stream;
-            cereal::BinaryOutputArchive archive(stream);
-            archive(part);
-            return std::move(stream).str();
-          },
-          [](motion::Part& part, const std::string& state) {
-            std::istringstream stream(state);
-            cereal::BinaryInputArchive archive(stream);
-            archive(part);
-          }};
-}
 
 void put_mesh(const mesh::Mesh& mesh, Parcel& to) {
   to.put(mesh.grid).put(mesh.x_m).put(mesh.y_m).put(mesh.cells).put(mesh.lower).put(mesh.top);
@@ -53,6 +39,24 @@ mesh::Mesh take_mesh(Parcel& from) {
   return mesh;
 }
 
+/// The case itself and not its file, which the other machines may see late or not at all.
+void put_case(const input::Case& config, Parcel& to) {
+  const auto& table = config.friction_along_x.table;
+  to.put(resolved_text(config)).put(table.x_m).put(static_cast<std::uint64_t>(table.keys.size()));
+  for (std::size_t k = 0; k < table.keys.size(); ++k) to.put(table.keys[k]).put(table.values[k]);
+}
+
+input::Case take_case(Parcel& from) {
+  auto config = input::parse_case(from.take_text(), case_file);
+  auto& table = config.friction_along_x.table;
+  table.x_m = from.take_all<double>();
+  for (auto n = from.take<std::uint64_t>(); n > 0; --n) {
+    table.keys.push_back(from.take_text());
+    table.values.push_back(from.take_all<double>());
+  }
+  return config;
+}
+
 /// What a process needs to make its part.
 struct Plan {
   motion::Division division;
@@ -60,7 +64,8 @@ struct Plan {
   std::vector<double> stable_steps_s;  ///< of the bodies
 
   void put(Parcel& to) const {
-    to.put(division.first).put(division.halo).put(division.steps_per_exchange).put(threads);
+    to.put(division.first).put(division.halo).put(division.steps_per_exchange).put(division.is_ring);
+    to.put(threads);
     to.put(stable_steps_s);
   }
   static Plan take(Parcel& from) {
@@ -68,47 +73,103 @@ struct Plan {
     plan.division.first = from.take_all<int>();
     plan.division.halo = from.take<int>();
     plan.division.steps_per_exchange = from.take<int>();
+    plan.division.is_ring = from.take<bool>();
     plan.threads = from.take<int>();
     plan.stable_steps_s = from.take_all<double>();
     return plan;
   }
 };
 
-/// @param meshes  the process's columns of the bodies
+/// Of the bodies those columns that a process computes.
+struct Columns {
+  std::vector<mesh::Mesh> meshes;
+  mesh::Subset lower;  ///< places along the whole interface of their nodes
+
+  void put(Parcel& to) const {
+    to.put(lower.ranges());
+    for (const auto& mesh : meshes) put_mesh(mesh, to);
+  }
+  static Columns take(Parcel& from) {
+    Columns columns;
+    columns.lower = mesh::Subset(from.take_all<mesh::Subset::Range>());
+    while (!from.is_empty()) columns.meshes.push_back(take_mesh(from));
+    return columns;
+  }
+};
+
+/// The bodies that are to be divided.
+class Whole {
+ public:
+  Whole(const input::Case& config, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base)
+      : config_(config), base_material_(input::base_material(config)) {
+    bodies_.push_back({plate, config.material});
+    if (base) bodies_.push_back({*base, base_material_});
+  }
+  Whole(const Whole&) = delete;
+  Whole& operator=(const Whole&) = delete;
+
+  /// @throws UserError where so many processes cannot share them
+  Plan divide(int n_processes) const {
+    const auto& plate = bodies_.front().mesh;
+    Plan plan;
+    for (const auto& body : bodies_) plan.stable_steps_s.push_back(motion::stable_step_s(body));
+    plan.division = motion::divide_columns(plate, n_processes,
+                                           motion::columns_per_step(plan.stable_steps_s, config_.time),
+                                           motion::halo_for(plate, config_.fronts.l_star_m));
+    for (int rank = 0; rank < n_processes; ++rank) columns_of(plan, rank);  // refuses cuts through corners
+    return plan;
+  }
+  Columns columns_of(const Plan& plan, int rank) const {
+    const auto all = plan.division.all(rank);
+    Columns columns;
+    for (const auto& body : bodies_) {
+      columns.meshes.push_back(mesh::columns_of(body.mesh, all));
+    }
+    columns.lower = motion::lower_in(bodies_.front().mesh, all);
+    return columns;
+  }
+  std::vector<const mesh::Mesh*> meshes() const {
+    std::vector<const mesh::Mesh*> meshes;
+    for (const auto& body : bodies_) meshes.push_back(&body.mesh);
+    return meshes;
+  }
+
+ private:
+  const input::Case& config_;
+  solid::Material base_material_;
+  std::vector<motion::BodySource> bodies_;
+};
+
+/// @param columns  the process's own
 std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case& config, const Plan& plan,
-                                        const std::vector<mesh::Mesh>& meshes) {
-  const auto all = plan.division.all(processes.rank()), own = plan.division.own(processes.rank());
+                                        const Columns& columns) {
+  const auto& meshes = columns.meshes;
+  const auto all = plan.division.all(processes.rank());
+  const auto own = plan.division.own(processes.rank());
+  const int first = all.place_of(own.begin);
+  const solid::Span own_places{first, first + own.end - own.begin};
   const auto base_material = input::base_material(config);
   std::vector<motion::PartOfBody> parts;
   for (const double stable_s : plan.stable_steps_s)
     parts.push_back(
-        {{own.begin - all.begin, own.end - all.begin}, stable_s, {1}, [&](std::span<double> values) {
-           processes.take_largest(values);
-         }});
+        {own_places, stable_s, {1}, [&](std::span<double> values) { processes.take_largest(values); }});
   std::vector<motion::BodySource> sources = {{meshes.front(), config.material, &parts.front()}};
   if (meshes.size() > 1) sources.push_back({meshes.back(), base_material, &parts.back()});
   const auto contact = input::contact_model(config, interface_x_m(meshes.front()));
-  return std::make_unique<motion::Part>(processes, plan.division, sources, contact, config.time,
-                                        motion::Execution{.threads = plan.threads}, binary_states());
+  return std::make_unique<motion::Part>(
+      processes, plan.division, sources, contact, config.time, motion::Execution{.threads = plan.threads},
+      motion::PlaceInWhole{own_places, all, plan.division.n_columns(), columns.lower});
 }
 
 std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
-  if (const auto program = given.take_text(); program != program_identity())
-    throw UserError("the program here is {}, and that of process 0 {}; start the same one everywhere",
-                    program_identity(), program);
-  const std::filesystem::path case_file = given.take_text();
+  const auto config = take_case(given);
   const auto plan = Plan::take(given);
-  std::vector<mesh::Mesh> meshes;
-  while (!given.is_empty()) meshes.push_back(take_mesh(given));
-  return make_part(processes, input::read_case(case_file), plan, meshes);
+  return make_part(processes, config, plan, Columns::take(given));
 }
 
 }  // namespace
 
 void require_divisible(const input::Case& config) {
-  if (config.plate.sides == mesh::Sides::periodic)
-    throw UserError("{} = periodic cannot be shared by several processes; start one alone, with threads",
-                    Key("plate.sides"));
   const auto require_even = [](const mesh::Plate& plate, const char* key) {
     if (plate.coarsenings > 0)
       throw UserError(
@@ -119,45 +180,50 @@ void require_divisible(const input::Case& config) {
   if (input::has_base_body(config)) require_even(input::base_plate(config), "base.coarsenings");
 }
 
+void require_divisible(const input::Case& config, int n_processes) {
+  require_divisible(config);
+  const auto meshes = check(config);
+  Whole(config, meshes.plate, meshes.base).divide(n_processes);
+}
+
 std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& config, const mesh::Mesh& plate,
                                                           const std::optional<mesh::Mesh>& base,
-                                                          const Together& together,
+                                                          Processes& processes,
                                                           const motion::Execution& execution) {
   require_divisible(config);
-  auto& processes = *together.processes;
-  const auto base_material = input::base_material(config);
-  std::vector<motion::BodySource> whole = {{plate, config.material}};
-  if (base) whole.push_back({*base, base_material});
-  Plan plan;
+  const Whole whole(config, plate, base);
+  auto plan = whole.divide(processes.size());
   plan.threads = execution.threads;
-  for (const auto& body : whole) plan.stable_steps_s.push_back(motion::stable_step_s(body));
-  plan.division = motion::divide_columns(plate.grid.stride(), processes.size(),
-                                         motion::columns_per_step(plan.stable_steps_s, config.time),
-                                         motion::halo_for(plate, config.fronts.l_star_m));
-  const auto columns_of = [&](int rank) {
-    const auto all = plan.division.all(rank);
-    std::vector<mesh::Mesh> meshes;
-    for (const auto& body : whole) meshes.push_back(mesh::columns_of(body.mesh, all.begin, all.end).mesh);
-    return meshes;
-  };
-  std::vector<const mesh::Mesh*> bodies = {&plate};
-  if (base) bodies.push_back(&*base);
-  for (int rank = 0; rank < processes.size(); ++rank) columns_of(rank);  // refuses cuts through corners
   for (int rank = 1; rank < processes.size(); ++rank) {
     Parcel parcel;
-    parcel.put(motion::PartCommand::build).put(program_identity()).put(together.case_file.string());
+    parcel.put(motion::PartCommand::build);
+    put_case(config, parcel);
     plan.put(parcel);
-    for (const auto& mesh : columns_of(rank)) put_mesh(mesh, parcel);
+    whole.columns_of(plan, rank).put(parcel);
     processes.send(rank, parcel);
   }
   std::unique_ptr<motion::PartedStepper> stepper;
   try {
     stepper = std::make_unique<motion::PartedStepper>(
-        processes, plan.division, make_part(processes, config, plan, columns_of(0)), bodies);
+        processes, plan.division, make_part(processes, config, plan, whole.columns_of(plan, 0)),
+        whole.meshes());
   } catch (const std::exception& error) {
-    processes.fail(error.what());  // the others wait for this part
+    processes.fail(reason_of(error));  // the others wait for this part
   }
   return stepper;
+}
+
+void lead(Processes& processes) {
+  std::string other;
+  for (int rank = 1; rank < processes.size(); ++rank) {
+    const auto program = processes.receive(rank).take_text();
+    if (other.empty() && program != program_identity())
+      other = fmt::format("slipfront: process {} is {}, and process 0 {}; start the same program everywhere",
+                          rank, program, program_identity());
+  }
+  const auto is_one_program = static_cast<std::uint8_t>(other.empty());
+  for (int rank = 1; rank < processes.size(); ++rank) processes.send(rank, Parcel().put(is_one_program));
+  if (!other.empty()) throw UserError("{}", other);
 }
 
 namespace {
@@ -191,24 +257,24 @@ std::vector<Link> measure_network(Processes& processes) {
   return links;
 }
 
-void serve(Processes& processes) {
+void serve(Processes& processes) try {
   // What a signal asks for is the leader's to hear.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) std::signal(signal, SIG_IGN);
+  processes.send(0, Parcel().put(program_identity()));
+  if (processes.receive(0).take<std::uint8_t>() == 0) return;
   for (;;) {
     auto parcel = processes.receive(0);
     const auto command = parcel.take<motion::PartCommand>();
     if (command == motion::PartCommand::end) return;
-    try {
-      if (command == motion::PartCommand::network) {
-        carry_out_network(processes, parcel);
-        continue;
-      }
-      const auto part = take_part(processes, parcel);
-      motion::serve(processes, *part);
-    } catch (const std::exception& error) {
-      processes.fail(error.what());
+    if (command == motion::PartCommand::network) {
+      carry_out_network(processes, parcel);
+      continue;
     }
+    const auto part = take_part(processes, parcel);
+    motion::serve(processes, *part);
   }
+} catch (const std::exception& error) {
+  processes.fail(reason_of(error));
 }
 
 void dismiss(Processes& processes) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -14,28 +13,26 @@
 
 namespace slipfront::run {
 
-/// Processes that share the event of a run; none where it is one process's.
-struct Together {
-  Processes* processes = nullptr;
-  std::filesystem::path case_file;  ///< the resolved case, where all of them can read it
-};
-
 /// Refuses what several processes cannot share.
 /// @throws UserError
 void require_divisible(const input::Case& config);
+/// The same, and too many processes; builds the meshes for it.
+void require_divisible(const input::Case& config, int n_processes);
 
 /// The bodies without their motion, divided among the processes. To be called by the leader, while the others
 /// are in `serve`.
 /// @throws UserError where the plate is too narrow for so many
 std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& config, const mesh::Mesh& plate,
                                                           const std::optional<mesh::Mesh>& base,
-                                                          const Together& together,
+                                                          Processes& processes,
                                                           const motion::Execution& execution);
 
+/// What the process does first that leads.
+/// @throws UserError where another process is another program; all are dismissed then
+void lead(Processes& processes);
 /// Between each process and the next one, one after the other. To be called by the leader, as above.
 std::vector<Link> measure_network(Processes& processes);
-
-/// What the processes do that do not lead: their parts of what the leader runs, until it dismisses them.
+/// What the other ones do: their parts of what the leader runs, until it dismisses them.
 void serve(Processes& processes);
 void dismiss(Processes& processes);
 

@@ -18,6 +18,8 @@ constexpr double bytes_of_mesh = 2 * number_bytes + sizeof(mesh::Cell), bytes_of
 constexpr double eager_bytes = 64 << 10;
 /// u_m, v_m_per_s of a snapshot.
 constexpr double bytes_of_snapshot = 4 * number_bytes;
+/// Of a checkpoint, more than of a snapshot: numbers, u_m and v_m_per_s of nodes, in answers and joined.
+constexpr double bytes_of_gathered_state = 3 * (number_bytes + bytes_of_snapshot);
 
 /// Columns of the part that computes most.
 struct Widest {
@@ -28,9 +30,10 @@ struct Widest {
 Widest widest(const motion::Division& division) {
   Widest most;
   for (int part = 0; part < division.n_parts(); ++part) {
-    const auto own = division.own(part), all = division.all(part);
-    const double n_own = own.end - own.begin, n_halo = (all.end - all.begin) - n_own;
-    const int n_sides = (all.begin < own.begin ? 1 : 0) + (all.end > own.end ? 1 : 0);
+    const auto own = division.own(part);
+    const int below = division.halo_below(part), above = division.halo_above(part);
+    const double n_own = own.end - own.begin, n_halo = below + above;
+    const int n_sides = (below > 0 ? 1 : 0) + (above > 0 ? 1 : 0);
     if (n_own + n_halo > most.own + most.halo) most = {n_own, n_halo, n_sides};
   }
   return most;
@@ -79,10 +82,10 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
       motion::event_bytes(share * work.n_nodes, share * work.n_cells, false, work.precision) +
       share * (bytes_of_mesh * work.n_nodes + work.bytes_per_interface_node * work.n_columns);
   cost.memory_bytes = work.program_bytes + of_part;
-  // Parcels for all parts are made before the first one is sent, and a snapshot is joined from all answers.
+  // Parcels for all parts are made before the first one is sent, and a checkpoint is joined from all answers.
   const double sent = n_parts > 1 ? bytes_of_state : 0;
   const double starting = (bytes_of_mesh + bytes_of_state + sent) * work.n_nodes;
-  const double joining = (work.snapshots > 0 ? 2 * bytes_of_snapshot : 0) * work.n_nodes;
+  const double joining = (n_parts > 1 ? bytes_of_gathered_state : 0) * work.n_nodes;
   cost.leader_memory_bytes =
       work.program_bytes + std::max(work.statics_bytes, of_part + std::max(starting, joining) +
                                                             work.bytes_per_interface_node * work.n_columns);

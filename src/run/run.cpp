@@ -112,7 +112,7 @@ namespace {
 
 std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, const InitialState& initial,
                                                      const motion::Execution& execution,
-                                                     const Together& together) {
+                                                     Processes* processes) {
   const auto& state = event_state(config, initial);
   const auto start = [&](auto stepper) {
     stepper->watch(probes_of(config, initial.mesh, initial.base));
@@ -120,8 +120,8 @@ std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, 
                    starting_loads(config, state, initial.mesh, initial.mu_s));
     return stepper;
   };
-  if (together.processes != nullptr)
-    return start(new_parted_stepper(config, initial.mesh, initial.base, together, execution));
+  if (processes != nullptr)
+    return start(new_parted_stepper(config, initial.mesh, initial.base, *processes, execution));
   return start(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
@@ -145,8 +145,7 @@ void release_nodes(mesh::Mesh& mesh) {
 }  // namespace
 
 std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
-                                                 const motion::Execution& execution,
-                                                 const Together& together) {
+                                                 const motion::Execution& execution, Processes* processes) {
   const auto* from = &event_state(config, initial);
   if (from != &initial.common) release_displacements(initial.common);
   if (from != &initial.spontaneous) release_displacements(initial.spontaneous);
@@ -154,7 +153,7 @@ std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, Init
     release_displacements(initial.ramp->common);
     release_displacements(initial.ramp->spontaneous);
   }
-  auto stepper = started_stepper(config, initial, execution, together);
+  auto stepper = started_stepper(config, initial, execution, processes);
   release_displacements(initial.common);
   release_displacements(initial.spontaneous);
   release_nodes(initial.mesh);
@@ -163,16 +162,15 @@ std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, Init
 }
 
 std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
-                                                  const motion::Execution& execution,
-                                                  const Together& together) {
+                                                  const motion::Execution& execution, Processes* processes) {
   const auto make = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
     stepper->watch(probes_of(config, initial.mesh, initial.base));
     release_nodes(initial.mesh);
     if (initial.base) release_nodes(*initial.base);
     return stepper;
   };
-  if (together.processes != nullptr)
-    return make(new_parted_stepper(config, initial.mesh, initial.base, together, execution));
+  if (processes != nullptr)
+    return make(new_parted_stepper(config, initial.mesh, initial.base, *processes, execution));
   return make(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
@@ -195,7 +193,7 @@ motion::EventRun begin_event(const input::Case& config, const InitialState& init
 
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution) {
-  const auto stepper = started_stepper(config, initial, execution, {});
+  const auto stepper = started_stepper(config, initial, execution, nullptr);
   return run_from(config, initial, *stepper, monitor);
 }
 

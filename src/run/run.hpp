@@ -56,15 +56,15 @@ struct Result {
 
 /// The bodies in a case's initial state, about to move. Takes what only this needs out of the initial state:
 /// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
-/// @param together  the processes that share it
+/// @param processes  that share it; null where it is one's
 std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
                                                  const motion::Execution& execution = {},
-                                                 const Together& together = {});
+                                                 Processes* processes = nullptr);
 
 /// The same plate without its motion, which is to be read from where it was kept.
 std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
                                                   const motion::Execution& execution = {},
-                                                  const Together& together = {});
+                                                  Processes* processes = nullptr);
 
 /// The event of a case, about to begin with a started stepper.
 motion::EventRun begin_event(const input::Case& config, const InitialState& initial,

@@ -52,7 +52,6 @@ class Session {
   bool look(const char* part, std::int64_t step, std::int64_t total, double time_s);
   void keep();
   void tell();
-  Together together() const { return {options_.processes, dir_ / case_file}; }
   double wall_s() const { return head_.wall_s + seconds_since(event_began_); }
   /// The run's event is over: makes its results.
   Finished finish(motion::Event event);
@@ -154,8 +153,12 @@ void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, moti
 void Session::begin_event(Checkpoints::Kept* kept) {
   if (kept != nullptr) {
     initial_ = read_initial_state(kept->rest, config_);
-    event_stepper_ = make_stepper(config_, initial_, execution_, together());
-    read_motion(kept->rest, *event_stepper_);
+    const auto make_whole = [&] {
+      const auto meshes = check(config_);
+      return new_stepper(config_, meshes.plate, meshes.base, execution_);
+    };
+    event_stepper_ = make_stepper(config_, initial_, execution_, options_.processes);
+    read_motion(kept->rest, *event_stepper_, make_whole);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
     results::ResultStream::Extents extents;
     kept->rest(*event_, extents);
@@ -166,7 +169,7 @@ void Session::begin_event(Checkpoints::Kept* kept) {
     files::remove_file(results::ResultStream::snapshot_file(folder_.state()));
     files::remove_file(results::ResultStream::probe_file(folder_.state()));
     stream_.emplace(folder_.state(), !config_.probes.x_m.empty());
-    event_stepper_ = start_event(config_, initial_, execution_, together());
+    event_stepper_ = start_event(config_, initial_, execution_, options_.processes);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
   }
   write_static(dir_, config_, initial_);

@@ -138,9 +138,9 @@ Json processes_json(const SharedCost& shared) {
   Json exchange_s = Json::array(), command_s = Json::array();
   double messages = 0, bytes = 0, most_messages = 0, most_bytes = 0, sum_s = 0, largest_s = 0;
   for (int part = 0; part < division.n_parts(); ++part) {
-    const auto columns = division.own(part), all = division.all(part);
+    const auto columns = division.own(part);
     own.push_back(columns.end - columns.begin);
-    halo.push_back(all.end - all.begin - (columns.end - columns.begin));
+    halo.push_back(division.halo_below(part) + division.halo_above(part));
     const auto& cost = shared.of_parts[static_cast<std::size_t>(part)];
     computing_s.push_back(cost.computing_s);
     exchange_s.push_back(cost.exchange_s);

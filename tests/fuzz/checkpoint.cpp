@@ -112,7 +112,8 @@ void go_on(const input::Case& config, run::Checkpoints::Kept& kept) {
   if (kept.head.in_event) {
     auto initial = run::read_initial_state(kept.rest, config);
     const auto stepper = run::make_stepper(config, initial);
-    run::read_motion(kept.rest, *stepper);
+    run::read_motion(kept.rest, *stepper,
+                     [&] { return run::new_stepper(config, initial.mesh, initial.base); });
     auto event = run::begin_event(config, initial, *stepper);
     results::ResultStream::Extents extents;
     kept.rest(event, extents);

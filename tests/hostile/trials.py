@@ -16,7 +16,7 @@ from pathlib import Path
 CHECKSUMS = "checksums.sha256"
 LOCK = ".slipfront.lock"
 #: What run.json, and the files of studies and verifications, say of the computation but not of its results.
-MEASURED = {"wall_s", "node_updates_per_s", "process", "host", "sessions"}
+MEASURED = {"wall_s", "node_updates_per_s", "process", "processes", "host", "sessions"}
 
 
 class Wrong(AssertionError):

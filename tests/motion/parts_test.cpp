@@ -38,6 +38,7 @@ struct Problem {
   TimeStepping time{.interface_rows = 2, .interface_substeps = 4};
   interface::ContactModel contact = support::paper_law;
   double t_over_p = 1.2;
+  double patch = 1.0 / 3;  ///< its middle, in lengths of the plate
   std::vector<record::ProbePlace> probes = {{"a", 0.0501, 0.0049}, {"b", 0.1004, 0.0102}};
 };
 
@@ -76,7 +77,8 @@ Begin begin_of(const Problem& problem, const Bodies& bodies) {
   if (bodies.below)
     begin.state.below_u_m = begin.state.below_u_per_shear = solid::Field(bodies.below->n_nodes());
   begin.loads.intact.assign(n, 1.0);
-  for (std::size_t i = n / 3 - 6; i < n / 3 + 6; ++i) begin.loads.intact[i] = 0;
+  const auto middle = static_cast<std::size_t>(problem.patch * static_cast<double>(n));
+  for (std::size_t i = middle - 6; i < middle + 6; ++i) begin.loads.intact[i % n] = 0;
   return begin;
 }
 
@@ -90,17 +92,20 @@ struct Outcome {
   double node_updates = 0;
 };
 
-Outcome run(TimeStepper& stepper, const Begin& begin, std::int64_t n_steps) {
-  Recorder recorder(begin.state, 1.3, halo, 1e-6);
+/// A run that may change its stepper on the way.
+struct Journey {
+  explicit Journey(const Begin& begin) : recorder(begin.state, 1.3, halo, 1e-6) {}
+  Recorder recorder;
+  Outcome outcome;
+};
+
+void take_steps(Journey& journey, TimeStepper& stepper, std::int64_t n_steps) {
+  auto& [recorder, outcome] = journey;
   auto before_m = stepper.probed_u_m();
   ProbeRecorder probes(stepper.probes(), stepper.step_s(), 3 * stepper.step_s(), before_m, before_m);
-  Outcome outcome;
-  std::int64_t n_samples = 0;
   Between between;
   between.sample = [&]() -> record::History* {
-    if (stepper.step() % 7 != 0) return nullptr;
-    ++n_samples;
-    return &outcome.history;
+    return stepper.step() % 7 == 0 ? &journey.outcome.history : nullptr;
   };
   between.displacements = [&](std::int64_t step) { return probes.room_for(step); };
   between.sure_steps = [] { return std::int64_t{1000}; };
@@ -114,7 +119,12 @@ Outcome run(TimeStepper& stepper, const Begin& begin, std::int64_t n_steps) {
   outcome.record = recorder.take(stepper.time_s());
   outcome.energies = stepper.energies();
   outcome.node_updates = stepper.node_updates_per_step();
-  return outcome;
+}
+
+Outcome run(TimeStepper& stepper, const Begin& begin, std::int64_t n_steps) {
+  Journey journey(begin);
+  take_steps(journey, stepper, n_steps);
+  return journey.outcome;
 }
 
 Outcome run_by_one(const Problem& problem, std::int64_t n_steps) {
@@ -132,20 +142,23 @@ class OwnPart {
  public:
   OwnPart(const Problem& problem, const Bodies& bodies, Processes& processes, const Division& division,
           std::span<const double> stable_steps_s) {
-    const auto all = division.all(processes.rank()), own = division.own(processes.rank());
+    const auto all = division.all(processes.rank());
+    const auto own = division.own(processes.rank());
+    const int first = all.place_of(own.begin);
+    const solid::Span own_places{first, first + own.end - own.begin};
     const auto whole = bodies.sources(problem);
     meshes_.reserve(2);
     parts_.reserve(2);
     for (std::size_t b = 0; b < whole.size(); ++b) {
-      meshes_.push_back(mesh::columns_of(whole[b].mesh, all.begin, all.end).mesh);
-      parts_.push_back({{own.begin - all.begin, own.end - all.begin},
-                        stable_steps_s[b],
-                        {1},
-                        [&](std::span<double> values) { processes.take_largest(values); }});
+      meshes_.push_back(mesh::columns_of(whole[b].mesh, all));
+      parts_.push_back({own_places, stable_steps_s[b], {1}, [&](std::span<double> values) {
+                          processes.take_largest(values);
+                        }});
       sources_.push_back({meshes_[b], whole[b].material, &parts_[b]});
     }
-    part_ = std::make_unique<Part>(processes, division, sources_, problem.contact, problem.time, Execution{},
-                                   Part::States{});
+    part_ = std::make_unique<Part>(
+        processes, division, sources_, problem.contact, problem.time, Execution{},
+        PlaceInWhole{own_places, all, division.n_columns(), lower_in(bodies.above, all)});
   }
   std::unique_ptr<Part> take() { return std::move(part_); }
 
@@ -156,31 +169,50 @@ class OwnPart {
   std::unique_ptr<Part> part_;
 };
 
+/// The bodies on several processes; the state before the event is in them.
+class Team {
+ public:
+  Team(int n_processes, const Problem& problem)
+      : problem_(problem), bodies_(problem), mail_(n_processes), leader_(mail_, 0) {
+    const auto sources = bodies_.sources(problem);
+    for (const auto& source : sources) stable_steps_s_.push_back(Body(source, problem.time).stable_step_s());
+    division_ =
+        divide_columns(bodies_.above, n_processes, columns_per_step(stable_steps_s_, problem.time), halo);
+    for (int rank = 1; rank < n_processes; ++rank)
+      others_.emplace_back([this, rank] {
+        test::ThreadProcess process(mail_, rank);
+        OwnPart own(problem_, bodies_, process, division_, stable_steps_s_);
+        const auto part = own.take();
+        serve(process, *part);
+      });
+    std::vector<const mesh::Mesh*> meshes = {&bodies_.above};
+    if (bodies_.below) meshes.push_back(&*bodies_.below);
+    OwnPart own(problem_, bodies_, leader_, division_, stable_steps_s_);
+    stepper_ = std::make_unique<PartedStepper>(leader_, division_, own.take(), meshes);
+    stepper_->watch(locate_probes(problem.probes, sources));
+    const auto begin = begin_of(problem, bodies_);
+    stepper_->start(begin.state, 0, begin.loads);
+  }
+  ~Team() { stepper_.reset(); }
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+  PartedStepper& stepper() { return *stepper_; }
+  Begin begin() const { return begin_of(problem_, bodies_); }
+
+ private:
+  Problem problem_;
+  Bodies bodies_;
+  test::Mailboxes mail_;
+  test::ThreadProcess leader_;
+  std::vector<double> stable_steps_s_;
+  Division division_;
+  std::vector<std::jthread> others_;
+  std::unique_ptr<PartedStepper> stepper_;
+};
+
 Outcome run_by(int n_processes, const Problem& problem, std::int64_t n_steps) {
-  test::Mailboxes mail(n_processes);
-  const Bodies bodies(problem);
-  const auto begin = begin_of(problem, bodies);
-  const auto sources = bodies.sources(problem);
-  std::vector<double> stable_steps_s;
-  for (const auto& source : sources) stable_steps_s.push_back(Body(source, problem.time).stable_step_s());
-  const auto division = divide_columns(bodies.above.grid.stride(), n_processes,
-                                       columns_per_step(stable_steps_s, problem.time), halo);
-  std::vector<std::jthread> others;
-  for (int rank = 1; rank < n_processes; ++rank)
-    others.emplace_back([&, rank] {
-      test::ThreadProcess process(mail, rank);
-      OwnPart own(problem, bodies, process, division, stable_steps_s);
-      const auto part = own.take();
-      serve(process, *part);
-    });
-  test::ThreadProcess leader(mail, 0);
-  std::vector<const mesh::Mesh*> meshes = {&bodies.above};
-  if (bodies.below) meshes.push_back(&*bodies.below);
-  OwnPart own(problem, bodies, leader, division, stable_steps_s);
-  PartedStepper stepper(leader, division, own.take(), meshes);
-  stepper.watch(locate_probes(problem.probes, sources));
-  stepper.start(begin.state, 0, begin.loads);
-  return run(stepper, begin, n_steps);
+  Team team(n_processes, problem);
+  return run(team.stepper(), team.begin(), n_steps);
 }
 
 /// @param rounding  of the sums over nodes
@@ -265,6 +297,18 @@ TEST(Parts, BetweenAbsorbingEdges) {
   expect_parts_change_nothing(problem);
 }
 
+TEST(Parts, OfAPlateThatRepeats) {
+  for (const auto* below : {static_cast<const solid::Material*>(nullptr), &gel}) {
+    Problem problem;
+    problem.below = below;
+    problem.plate.sides = mesh::Sides::periodic;
+    problem.plate.top = mesh::Top::absorbing;
+    // The rupture passes the sides.
+    problem.patch = 0.97;
+    expect_parts_change_nothing(problem, {2, 3, 4});
+  }
+}
+
 TEST(Parts, InSinglePrecision) {
   for (const auto corner : {mesh::Corner::none, mesh::Corner::relief}) {
     Problem problem;
@@ -296,9 +340,57 @@ TEST(Parts, WithRegularisedFriction) {
   expect_parts_change_nothing(problem);
 }
 
+TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
+  for (const auto* below : {static_cast<const solid::Material*>(nullptr), &gel}) {
+    Problem problem;
+    problem.below = below;
+    problem.plate.corner = mesh::Corner::relief;
+    problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
+    const auto one = run_by_one(problem, n_steps);
+    Team two(2, problem), three(3, problem);
+    Journey journey(two.begin());
+    // Probes' velocities begin anew with each stepper.
+    const auto compare = [&] {
+      journey.outcome.probes = one.probes;
+      expect_same(one, journey.outcome, 1e-13);
+    };
+    const std::int64_t first = 49, second = 47;
+    take_steps(journey, two.stepper(), first);
+    three.stepper().restore(two.stepper().kept());
+    take_steps(journey, three.stepper(), second);
+    const Bodies bodies(problem);
+    Stepper by_one(bodies.sources(problem), problem.contact, problem.time, {});
+    const PlaceInWhole whole{.columns = {}, .stride = bodies.above.grid.stride(), .lower = {}};
+    auto kept = three.stepper().kept();
+    kept.sort();
+    restore(kept, by_one, whole);
+    two.stepper().restore(keep(by_one, whole));
+    auto by_two = journey;
+    take_steps(journey, by_one, n_steps - first - second);
+    compare();
+    journey = by_two;
+    take_steps(journey, two.stepper(), n_steps - first - second);
+    compare();
+  }
+}
+
+TEST(Parts, DoNotGoOnWithOtherBodies) {
+  Problem narrow, wide;
+  wide.plate.width_m = 0.21;
+  const Bodies bodies(narrow), others(wide);
+  Stepper stepper(bodies.sources(narrow), narrow.contact, narrow.time, {});
+  Stepper other(others.sources(wide), wide.contact, wide.time, {});
+  const auto kept = keep(stepper, {.columns = {}, .stride = bodies.above.grid.stride(), .lower = {}});
+  EXPECT_THROW(restore(kept, other, {.columns = {}, .stride = others.above.grid.stride(), .lower = {}}),
+               UserError);
+}
+
 TEST(Parts, AreNoNarrowerThanTheirHalo) {
-  EXPECT_THROW(divide_columns(201, 40, 5, 3), UserError);
-  const auto division = divide_columns(2001, 8, 5, 3);
+  mesh::Mesh mesh;
+  mesh.grid.columns = 200;
+  EXPECT_THROW(divide_columns(mesh, 40, 5, 3), UserError);
+  mesh.grid.columns = 2000;
+  const auto division = divide_columns(mesh, 8, 5, 3);
   for (int part = 0; part < 8; ++part) {
     EXPECT_GE(division.own(part).end - division.own(part).begin, division.halo);
     EXPECT_GE(division.halo, 5 * division.steps_per_exchange + 3);

@@ -1,0 +1,375 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What may go wrong while several processes share a run: it ends with one line and the exit code of the
+README, and nothing is lost that a run of one process would keep."""
+
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, finished
+from hostile.trials import alone, difference
+from test_same import require_same
+
+# Elements of 4 mm and 2000 steps: some tenths of a second on idle processors.
+CASE = """\
+title = "shared"
+
+[plate]
+element_size_m = 4e-3
+
+[event]
+kind = "left"
+
+[time]
+end_s = 4e-3
+quiet_s = inf
+
+[output]
+history_interval_s = 1e-5
+snapshot_times_s = [1e-3, 3e-3]
+"""
+OFTEN = ("--checkpoint-every-simulated", "2e-4")
+# The statics take seconds, the event few steps.
+SLOW_STATICS = (
+    "--set",
+    "plate.element_size_m=5e-4",
+    "--set",
+    "loading.solver=direct",
+    "--set",
+    "time.end_s=2e-5",
+)
+# What mpirun, and not the program, says; it names the program's node before what its libraries tell.
+OF_MPIRUN = re.compile(
+    r"^(-{10,}|mpirun|\[|Primary job|a non-zero exit|the job to be terminated|\s*(Process name|Exit code):"
+    r"|MPI_ABORT|with errorcode|NOTE: invoking|You may or may not|exactly when|$)"
+)
+
+
+@pytest.fixture
+def case(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    return path
+
+
+@pytest.fixture(scope="session")
+def undisturbed(tmp_path_factory):
+    """The folder of a run that nothing happens to; made when first asked for."""
+    folder = tmp_path_factory.mktemp("undisturbed") / "out"
+
+    def results(mpirun, case):
+        if not folder.exists():
+            result = mpirun(2, "run", case, "-o", folder, "-q")
+            assert result.returncode == 0, result.stderr
+        return folder
+
+    return results
+
+
+def own_lines(result):
+    """Lines on standard error that are not mpirun's."""
+    return [line for line in result.stderr.splitlines() if not OF_MPIRUN.match(line)]
+
+
+def one_line(result, code):
+    """The only line of a run that ended with this code."""
+    lines = own_lines(result)
+    assert result.returncode == code, (result.returncode, result.stderr)
+    assert len(lines) == 1, result.stderr
+    return lines[0]
+
+
+def wait_until(condition, process, timeout_s=30):
+    end = time.monotonic() + timeout_s
+    while not condition():
+        assert process.poll() is None, f"ended before: {process.communicate()}"
+        assert time.monotonic() < end, "nothing has come"
+        time.sleep(0.002)
+
+
+def processes_of(mpirun):
+    """Those of this program by their ranks."""
+    found = {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            if (folder / "exe").readlink() == mpirun.program and (folder / "cwd").readlink() == mpirun.folder:
+                settings = (folder / "environ").read_bytes().split(b"\0")
+                rank = next(s for s in settings if s.startswith(b"OMPI_COMM_WORLD_RANK="))
+                found[int(rank.split(b"=")[1])] = int(folder.name)
+        except (OSError, StopIteration):
+            pass  # ended meanwhile, or another one
+    return found
+
+
+def in_event(mpirun, *arguments, **options):
+    """A run of two processes that has kept a checkpoint of its event, and its own."""
+    process = mpirun.start(
+        2,
+        "run",
+        *arguments,
+        "-o",
+        "out",
+        "-q",
+        *OFTEN,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        **options,
+    )
+    state = mpirun.folder / "out/unfinished/state"
+    wait_until(lambda: any(state.glob("checkpoint-*.bin")), process)
+    return process, processes_of(mpirun)
+
+
+def in_statics(mpirun, case):
+    """The same before its event."""
+    process = mpirun.start(
+        2, "run", case, "-o", "out", "-q", *SLOW_STATICS, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    wait_until((mpirun.folder / "out/unfinished/run.json").exists, process)
+    return process, processes_of(mpirun)
+
+
+def is_ended(pid):
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rsplit(")", 1)[1].split()[0] == "Z"
+    except OSError:
+        return True
+
+
+def require_ended(pids):
+    """No process is left that waits for one that has gone."""
+    end = time.monotonic() + 10
+    while not all(is_ended(pid) for pid in pids):
+        assert time.monotonic() < end, "processes are left"
+        time.sleep(0.02)
+
+
+def require_goes_on(mpirun, case, undisturbed):
+    """Going on with what was kept gives what an undisturbed run gives: bit for bit, but for the rounding of
+    the energies, whose sums over the parts of a checkpoint go to one of them."""
+    result = mpirun(2, "run", "--restart", "out", "-q")
+    assert result.returncode == 0, result.stderr
+    assert not own_lines(result)
+    require_same(undisturbed(mpirun, case), mpirun.folder / "out")
+
+
+def require_undisturbed(mpirun, case, undisturbed):
+    """A run that was not stopped: every file, bit for bit."""
+    assert not difference(alone(mpirun.folder / "out"), alone(undisturbed(mpirun, case)))
+
+
+def require_no_core(folder):
+    assert not list(folder.rglob("core*"))
+
+
+# --- Command lines and cases
+
+
+@pytest.mark.parametrize("arguments", [["--version"], ["run", "--help"]])
+def test_one_process_answers(mpirun, arguments):
+    result = mpirun(2, *arguments)
+    assert result.returncode == 0
+    assert result.stdout == mpirun.alone(*arguments).stdout
+    assert not own_lines(result)
+
+
+@pytest.mark.parametrize("command", [["validate", "case.toml"], ["sweep", "case.toml"]])
+def test_other_commands_are_refused(mpirun, case, command):
+    result = mpirun(2, *command)
+    assert f"start {command[0]} alone" in one_line(result, 2)
+    assert result.stdout == ""
+
+
+@pytest.mark.parametrize(
+    "n, setting, told",
+    [
+        (2, "plate.sids=free", "did you mean plate.sides?"),
+        (2, "plate.coarsenings=1", "choose 0"),
+        (4, "title=x", "choose at most 2"),
+    ],
+)
+def test_refused_cases(mpirun, case, tmp_path, n, setting, told):
+    result = mpirun(n, "run", case, "-o", "out", "--set", setting, "--state-dir", "states")
+    assert told in one_line(result, 2)
+    # Before the statics, which would have been kept.
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["case.toml"]
+
+
+def test_blow_up(mpirun, case, tmp_path):
+    unstable = ("--set", "time.allow_unstable=true", "--set", "time.step_factor=1.4")
+    result = mpirun(2, "run", case, "-o", "out", "-q", *unstable)
+    assert "kept in out/unfinished" in one_line(result, 3)
+    assert (tmp_path / "out/unfinished/run.json").is_file()
+
+
+def test_different_programs(mpirun, case, tmp_path):
+    other = tmp_path / "other"
+    shutil.copy(mpirun.program, other)
+    with other.open("ab") as file:
+        file.write(b"another build")
+    process = mpirun.start(
+        2,
+        *("run", case, "-o", "out"),
+        programs=[[mpirun.program], [other]],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    line = one_line(finished(process), 2)
+    assert "start the same program everywhere" in line
+    assert len(set(re.findall(r"build ([0-9a-f]{16})", line))) == 2
+    assert not (tmp_path / "out").exists()
+
+
+def test_other_processes_read_no_file(mpirun, case, tmp_path):
+    """Theirs may be other machines, on which paths lead elsewhere."""
+    table = tmp_path / "friction.csv"
+    table.write_text("x_m,mu_k\n0,0.6\n0.1,0.7\n0.2,0.5\n")
+    with_table = ("run", case, "-q", "--set", f"friction.file={table}", "-o", "out")
+    leader, other = tmp_path / "leader", tmp_path / "other"
+    leader.mkdir()
+    other.mkdir()
+    process = mpirun.start(
+        2,
+        *with_table,
+        programs=[["-wdir", folder, mpirun.program] for folder in (leader, other)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    result = finished(process)
+    assert result.returncode == 0, result.stderr
+    assert not list(other.iterdir())
+    assert mpirun.alone(*with_table).returncode == 0
+    for name in ("interface.h5", "fields.vtkhdf", "fronts.csv", "static.csv"):
+        assert (leader / "out" / name).read_bytes() == (tmp_path / "out" / name).read_bytes(), name
+
+
+# --- Processes that die
+
+
+@pytest.mark.parametrize("rank", [0, 1])
+def test_killed_in_the_event(mpirun, case, undisturbed, rank):
+    process, pids = in_event(mpirun, case)
+    os.kill(pids[rank], signal.SIGKILL)
+    result = finished(process, 20)
+    assert result.returncode == 128 + signal.SIGKILL
+    assert not own_lines(result)
+    require_ended(pids.values())
+    require_no_core(mpirun.folder)
+    require_goes_on(mpirun, case, undisturbed)
+
+
+@pytest.mark.parametrize("rank", [0, 1])
+def test_killed_in_the_statics(mpirun, case, rank):
+    process, pids = in_statics(mpirun, case)
+    os.kill(pids[rank], signal.SIGKILL)
+    result = finished(process, 20)
+    assert result.returncode == 128 + signal.SIGKILL
+    assert not own_lines(result)
+    require_ended(pids.values())
+    require_no_core(mpirun.folder)
+
+
+def test_killed_mpirun_leaves_nobody(mpirun, case, undisturbed):
+    process, pids = in_event(mpirun, case)
+    process.kill()
+    process.wait()
+    require_ended(pids.values())
+    require_goes_on(mpirun, case, undisturbed)
+
+
+# --- Signals
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_by_mpirun(mpirun, case, undisturbed, sent):
+    process, pids = in_event(mpirun, case)
+    process.send_signal(sent)
+    result = finished(process, 20)
+    assert result.returncode != 0
+    require_ended(pids.values())
+    require_no_core(mpirun.folder)
+    require_goes_on(mpirun, case, undisturbed)
+
+
+def test_interrupted_leader(mpirun, case, undisturbed):
+    process, pids = in_event(mpirun, case)
+    os.kill(pids[0], signal.SIGTERM)
+    line = one_line(finished(process, 20), 128 + signal.SIGTERM)
+    assert "kept in out/unfinished" in line
+    assert "--restart out" in line
+    require_goes_on(mpirun, case, undisturbed)
+
+
+def test_interrupted_leader_in_the_statics(mpirun, case):
+    process, pids = in_statics(mpirun, case)
+    os.kill(pids[0], signal.SIGTERM)
+    assert "interrupted" in one_line(finished(process, 20), 128 + signal.SIGTERM)
+
+
+def test_checkpoint_on_request(mpirun, case, undisturbed):
+    state = mpirun.folder / "out/unfinished/state"
+    process = mpirun.start(2, "run", case, "-o", "out", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    wait_until((state / "history.raw").exists, process)
+    process.send_signal(signal.SIGUSR1)
+    result = finished(process)
+    assert result.returncode == 0, result.stderr
+    assert re.search(r"note: checkpoint at t = \S+ s of the event", result.stderr)
+    require_undisturbed(mpirun, case, undisturbed)
+
+
+# --- Disks, streams, memory
+
+
+def test_full_disk(mpirun, case, undisturbed, tmp_path):
+    """A library before the system's lets all writing below the folder fail from a call on."""
+    shim = tmp_path / "fault.so"
+    subprocess.run(["cc", "-shared", "-fPIC", ROOT / "tests/hostile/fault.c", "-o", shim, "-ldl"], check=True)
+    settings = {"FAULT_BELOW": tmp_path / "out", "FAULT_AT": 200, "FAULT_MODE": "on", "FAULT_ERROR": 28}
+    options = [text for name, value in settings.items() for text in ("-x", f"{name}={value}")]
+    process = mpirun.start(
+        2,
+        *("run", case, "-o", "out", "-q", *OFTEN),
+        starter=["-x", f"LD_PRELOAD={shim}", *options],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    line = one_line(finished(process), 1)
+    assert "No space left on device" in line
+    assert "--restart out" in line
+    require_goes_on(mpirun, case, undisturbed)
+
+
+@pytest.mark.parametrize("out", ["closed", "full"])
+def test_output_that_nobody_takes(mpirun, case, undisturbed, out):
+    """What one process prints of its run may be lost, too."""
+    with open("/dev/full", "w") as full:
+        process = mpirun.start(
+            2,
+            *("run", case, "-o", "out"),
+            stdout=full,
+            stderr=subprocess.PIPE,
+            preexec_fn=(lambda: os.close(1)) if out == "closed" else None,
+        )
+        result = finished(process)
+    assert result.returncode == 0, result.stderr
+    require_undisturbed(mpirun, case, undisturbed)
+
+
+@pytest.mark.parametrize(
+    "rank, code, told",
+    [(0, 2, "out of memory in the static solution"), (1, 1, "process 1: not enough memory")],
+)
+def test_no_memory(mpirun, case, rank, code, told):
+    process, pids = in_statics(mpirun, case)
+    pages = int(Path(f"/proc/{pids[rank]}/statm").read_text().split()[0])
+    limit = pages * resource.getpagesize()
+    resource.prlimit(pids[rank], resource.RLIMIT_AS, (limit, limit))
+    assert told in one_line(finished(process), code)
+    require_ended(pids.values())
+    require_no_core(mpirun.folder)

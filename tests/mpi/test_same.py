@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What several processes find is what one finds: the files of a run byte by byte, energies to rounding."""
+
+import csv
+import json
+import signal
+import subprocess
+import time
+
+import pytest
+from conftest import finished
+
+# Elements of 2 mm: a run takes a tenth of a second.
+PLATE = """\
+title = "shared"
+[plate]
+element_size_m = 2e-3
+height_m = 0.04
+{plate}
+[time]
+end_s = 60e-6
+{time}
+[friction]
+law = "velocity_weakening"
+mu_s = 1.3
+mu_k = 0.6
+{friction}
+[output]
+snapshot_times_s = [0, 30e-6, 45e-6]
+[probes]
+x_m = [0.0731, 0.1]
+y_m = [0.0049, 0.0101]
+{rest}
+"""
+
+RELIEF = {"plate": 'corner = "relief"'}
+TABLE = "x_m,mu_s\n0,1.3\n0.09,1.3\n0.11,1.35\n0.2,1.3\n"
+NUCLEATION = """
+[loading]
+method = "prestress"
+[prestress]
+t_Pa = 4.6e6
+p_Pa = 4e6
+[event]
+kind = "nucleation"
+[nucleation]
+form = "{form}"
+x_m = {x_m}
+half_length_m = 8e-3
+"""
+
+CASES = {
+    "relieved corners": RELIEF,
+    "right angles": {"plate": 'corner = "none"'},
+    "rounded corners": {"plate": 'corner = "fillet"\nfillet_radius_m = 6e-3'},
+    "event at the right": {"rest": '[event]\nkind = "right"'},
+    "spontaneous": {"rest": '[event]\nkind = "spontaneous"'},
+    "ramp": {"rest": '[event]\nkind = "spontaneous"\n[loading]\nmethod = "ramp"\nshear_speed_over_c_L = 1e-3'},
+    "no sub-steps": {"time": "interface_substeps = 1"},
+    "single precision": RELIEF | {"time": 'precision = "single"'},
+    "predictor-corrector": {"rest": '[contact]\nalgorithm = "predictor_corrector"'},
+    "strength relaxed": {"friction": 'regularisation = "strength"\nrelaxation_time_s = 1e-6'},
+    "pressure relaxed": {"friction": 'regularisation = "pressure"\nrelaxation_time_s = 1e-6'},
+    "friction along x": {"friction": 'file = "mu.csv"', "files": {"mu.csv": TABLE}},
+    "two bodies": {"rest": '[base]\nkind = "body"\nyoungs_modulus_Pa = 1.4e9\npoissons_ratio = 0.3\n'
+                           'density_kg_per_m3 = 1100\nstiffness_damping_s = 1e-7\nheight_m = 0.04'},
+    "absorbing edges": {
+        "plate": 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
+        "rest": NUCLEATION.format(form="overstress", x_m=0.1),
+    },
+    # The rupture passes the sides.
+    "periodic": {
+        "plate": 'corner = "none"\nsides = "periodic"\ntop = "absorbing"',
+        "rest": NUCLEATION.format(form="overstress", x_m=0.19),
+    },
+    # The patch lies where the parts of two processes, and of three, meet.
+    "weakened between two": {
+        "plate": 'corner = "none"',
+        "rest": NUCLEATION.format(form="weakened", x_m=0.1),
+    },
+    "weakened between three": {
+        "plate": 'corner = "none"',
+        "rest": NUCLEATION.format(form="weakened", x_m=0.0667),
+    },
+    "quiet end": {"friction": "alpha_m2_per_s2 = 1", "time": "quiet_s = 2e-6", "rest": '[event]\nkind = "right"'},
+}  # fmt: skip
+
+
+def write_case(folder, name):
+    parts = CASES[name]
+    for file, text in parts.get("files", {}).items():
+        (folder / file).write_text(text, encoding="utf-8")
+    slots = {slot: parts.get(slot, "") for slot in ("plate", "time", "friction", "rest")}
+    (folder / "case.toml").write_text(PLATE.format(**slots), encoding="utf-8")
+    return folder / "case.toml"
+
+
+def energies(folder):
+    with open(folder / "energy.csv", encoding="utf-8", newline="") as stream:
+        rows = list(csv.reader(stream))[1:]
+    return [[float(value) for value in row] for row in rows]
+
+
+def require_same(one, several, rounding=1e-13):
+    """All files but run.json's times, and energies to a part of the largest."""
+    names = {path.name for path in one.iterdir()}
+    assert {path.name for path in several.iterdir()} == names
+    for name in names - {"run.json", "energy.csv", "checksums.sha256"}:
+        assert (several / name).read_bytes() == (one / name).read_bytes(), name
+    first, second = energies(one), energies(several)
+    assert len(first) == len(second)
+    largest = max(abs(value) for row in first for value in row)
+    for row, other in zip(first, second, strict=True):
+        assert row == pytest.approx(other, rel=0, abs=rounding * largest)
+    of_one, of_several = (json.loads((folder / "run.json").read_text()) for folder in (one, several))
+    for key in ("status", "fronts", "steps", "end", "warnings"):
+        assert of_one.get(key) == of_several.get(key), key
+
+
+def stop_after_checkpoint(mpirun, n, folder, *arguments):
+    """Begins or goes on, and ends it once there is a checkpoint more."""
+    state = folder / "unfinished/state"
+    before = set(state.glob("*checkpoint*"))
+    with mpirun.start(n, *arguments, "-q", stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        while not set(state.glob("*checkpoint*")) - before:
+            assert process.poll() is None, process.communicate()
+            time.sleep(0.002)
+        process.send_signal(signal.SIGTERM)
+        assert finished(process).returncode != 0
+
+
+def require_done(run):
+    assert run.returncode == 0, run.stderr
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_processes_change_nothing(name, tmp_path, mpirun):
+    case = write_case(tmp_path, name)
+    one = tmp_path / "one"
+    require_done(mpirun.alone("run", case, "-o", one, "-q"))
+    with open(one / "fronts.csv", encoding="utf-8") as stream:
+        assert len(stream.readlines()) > 10
+    # Where a step is single precision's, so are its sums.
+    rounding = 1e-7 if "single" in name else 1e-13
+    for n in (2, 3):
+        several = tmp_path / f"by-{n}"
+        require_done(mpirun(n, "run", case, "-o", several, "-q"))
+        require_same(one, several, rounding)
+
+
+def test_any_number_of_processes_goes_on(tmp_path, mpirun):
+    """A run that is stopped once there is a checkpoint, and gone on with by other numbers of processes."""
+    case = write_case(tmp_path, "two bodies")
+    # Long enough to be stopped again and again.
+    text = case.read_text().replace("end_s = 60e-6", "end_s = 1.2e-3\nquiet_s = inf")
+    case.write_text(text.replace("element_size_m = 2e-3", "element_size_m = 1e-3"))
+    one, several = tmp_path / "one", tmp_path / "several"
+    require_done(mpirun.alone("run", case, "-o", one, "-q"))
+    often = ("--checkpoint-every-simulated", "20e-6")
+    stop_after_checkpoint(mpirun, 2, several, "run", case, "-o", several, *often)
+    for n in (3, 1, 2):
+        stop_after_checkpoint(mpirun, n, several, "run", "--restart", several, *often)
+    require_done(mpirun(3, "run", "--restart", several, *often))
+    require_same(one, several)
+    assert json.loads((several / "run.json").read_text())["sessions"] == 5
