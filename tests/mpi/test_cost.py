@@ -17,7 +17,12 @@ pytestmark = pytest.mark.skipif(
 )
 
 CASE = ROOT / "cases" / "reference" / "rigid_flat_a.toml"
-KEYS = ["plate.element_size_m=1e-3", "time.end_s=0.2e-3", "time.interface_substeps=2", "time.interface_rows=2"]
+KEYS = [
+    "plate.element_size_m=1e-3",
+    "time.end_s=0.2e-3",
+    "time.interface_substeps=2",
+    "time.interface_rows=2",
+]
 SETS = [word for key in KEYS for word in ("--set", key)]
 
 
@@ -65,10 +70,9 @@ def test_run_json_tells_what_processes_cost(runs, n):
     assert cost["imbalance_largest_over_mean"] == pytest.approx(longest / mean)
     # 121 rows of u and v go to each neighbour with every exchange, and little else beside them.
     exchanges = 2 * (n - 1) / cost["steps_per_exchange"]
-    # The rest are commands and answers: some rounds to all but the leader and back.
+    # The rest are commands of at most 50 steps and their answers, exchanges that end them early, and energies.
     rounds = (cost["messages_per_step"] - exchanges) * cost["steps"] / (2 * (n - 1))
-    assert rounds == pytest.approx(round(rounds), abs=1e-9)
-    assert 1 <= rounds <= 20
+    assert cost["steps"] / 50 <= rounds <= cost["steps"] / 5
     least = exchanges * halo * 121 * 4 * 8
     assert least < cost["bytes_per_step"] < 1.5 * least
     # Of two processes both send the same halo; of three the middle one sends two.
