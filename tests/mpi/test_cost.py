@@ -70,7 +70,7 @@ def test_run_json_tells_what_processes_cost(runs, n):
     assert cost["imbalance_largest_over_mean"] == pytest.approx(longest / mean)
     # 121 rows of u and v go to each neighbour with every exchange, and little else beside them.
     exchanges = 2 * (n - 1) / cost["steps_per_exchange"]
-    # The rest are commands of at most 50 steps and their answers, exchanges that end them early, and energies.
+    # The rest: commands of at most 50 steps and their answers, exchanges that end them early, energies.
     rounds = (cost["messages_per_step"] - exchanges) * cost["steps"] / (2 * (n - 1))
     assert cost["steps"] / 50 <= rounds <= cost["steps"] / 5
     least = exchanges * halo * 121 * 4 * 8
