@@ -24,7 +24,7 @@ namespace {
 
 void put_mesh(const mesh::Mesh& mesh, Parcel& to) {
   to.put(mesh.grid).put(mesh.x_m).put(mesh.y_m).put(mesh.cells).put(mesh.lower).put(mesh.top);
-  to.put(mesh.absorbing);
+  to.put(mesh.absorbing).put(mesh.period_m);
 }
 
 mesh::Mesh take_mesh(Parcel& from) {
@@ -36,6 +36,7 @@ mesh::Mesh take_mesh(Parcel& from) {
   mesh.lower = from.take_all<mesh::Node>();
   mesh.top = from.take_all<mesh::Node>();
   mesh.absorbing = from.take_all<mesh::AbsorbingNode>();
+  mesh.period_m = from.take<double>();
   return mesh;
 }
 

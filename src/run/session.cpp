@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/session.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -21,6 +22,11 @@ namespace {
 constexpr double least_tell_interval_s = 2;
 constexpr double tell_share = 0.02;
 
+/// By default each of several processes has threads for its part.
+int threads_of_each(const input::Case& config, const Processes* processes) {
+  return std::max(1, suitable_threads(config) / (processes == nullptr ? 1 : processes->size()));
+}
+
 class Session {
  public:
   Session(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
@@ -30,7 +36,7 @@ class Session {
         config_(config),
         options_(options),
         hooks_(hooks),
-        execution_{.threads = options.threads.value_or(suitable_threads(config))},
+        execution_{.threads = options.threads.value_or(threads_of_each(config, options.processes))},
         checkpoints_(folder.state()),
         resumed_(resumed) {
     head_.case_text = resolved_text(config);

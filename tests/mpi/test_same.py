@@ -55,7 +55,9 @@ CASES = {
     "rounded corners": {"plate": 'corner = "fillet"\nfillet_radius_m = 6e-3'},
     "event at the right": {"rest": '[event]\nkind = "right"'},
     "spontaneous": {"rest": '[event]\nkind = "spontaneous"'},
-    "ramp": {"rest": '[event]\nkind = "spontaneous"\n[loading]\nmethod = "ramp"\nshear_speed_over_c_L = 1e-3'},
+    "ramp": {
+        "rest": '[event]\nkind = "spontaneous"\n[loading]\nmethod = "ramp"\nshear_speed_over_c_L = 1e-3'
+    },
     "no sub-steps": {"time": "interface_substeps = 1"},
     "single precision": RELIEF | {"time": 'precision = "single"'},
     "predictor-corrector": {"rest": '[contact]\nalgorithm = "predictor_corrector"'},
@@ -82,7 +84,11 @@ CASES = {
         "plate": 'corner = "none"',
         "rest": NUCLEATION.format(form="weakened", x_m=0.0667),
     },
-    "quiet end": {"friction": "alpha_m2_per_s2 = 1", "time": "quiet_s = 2e-6", "rest": '[event]\nkind = "right"'},
+    "quiet end": {
+        "friction": "alpha_m2_per_s2 = 1",
+        "time": "quiet_s = 2e-6",
+        "rest": '[event]\nkind = "right"',
+    },
 }  # fmt: skip
 
 
