@@ -113,11 +113,20 @@ Part::Part(Processes& processes, const Division& division, std::span<const BodyS
   if (n_parts == 2 && rank == 1 && neighbours_.size() == 2) std::swap(neighbours_[0], neighbours_[1]);
 }
 
+template <class F>
+void Part::or_fail(F&& f) {
+  try {
+    f();
+  } catch (const std::exception& error) {
+    processes_.fail(reason_of(error));
+  }
+}
+
 Parcel Part::carry_out(PartCommand command, Parcel& given) {
   Parcel answer;
   switch (command) {
     case PartCommand::start:
-      start(given);
+      or_fail([&] { start(given); });
       break;
     case PartCommand::watch: {
       std::vector<Probe> probes(given.take<std::uint64_t>());
@@ -129,11 +138,7 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
       break;
     }
     case PartCommand::advance:
-      try {
-        advance(given, answer);
-      } catch (const std::exception& error) {
-        processes_.fail(reason_of(error));  // the others wait for this part's halo
-      }
+      or_fail([&] { advance(given, answer); });
       break;
     case PartCommand::energies:
       answer.put(stepper_->energies());

@@ -99,6 +99,9 @@ class Part {
   const Stepper& stepper() const { return *stepper_; }
 
  private:
+  /// Ends all processes where this one fails while others may wait for its halo.
+  template <class F>
+  void or_fail(F&& f);
   void start(Parcel& given);
   void advance(Parcel& given, Parcel& answer);
   void make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s);
