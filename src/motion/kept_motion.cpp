@@ -113,6 +113,11 @@ class Restorer {
 
 }  // namespace
 
+void KeptMotion::require_consistent() const {
+  for (const auto& list : values)
+    if (list.value.size() != list.key.size() * list.width) throw_of_others();
+}
+
 void KeptMotion::add(const KeptMotion& part) {
   if (values.empty()) {
     *this = part;

@@ -37,6 +37,8 @@ struct KeptMotion {
   std::vector<std::uint8_t> flags;        ///< the same in all parts
   interface::Trigger trigger;
 
+  /// @throws UserError where lists have other lengths than they say
+  void require_consistent() const;
   /// Adds another part's.
   void add(const KeptMotion& part);
   /// Brings each list into the order of its keys, which restore needs.

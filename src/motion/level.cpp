@@ -374,10 +374,16 @@ SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op
   const auto has_block_rows = [](const Band& band) {
     return band.has_block_rows || band.edges.begin < band.edges.end;
   };
+  int most_rows = 0;
   for (int begin = 1; begin < std::ssize(bands); ++begin) {
     int end = begin;
     while (end < std::ssize(bands) && !has_block_rows(bands[end])) ++end;
-    if (end - begin > single.bands.end - single.bands.begin) single.bands = {begin, end};
+    // By rows, since parts of a body have other bands.
+    const int n_rows = end > begin ? bands[end - 1].last_row - bands[begin].first_row + 1 : 0;
+    if (n_rows > most_rows) {
+      single.bands = {begin, end};
+      most_rows = n_rows;
+    }
     begin = end;
   }
   if (single.bands.begin == single.bands.end) return single;

@@ -32,8 +32,8 @@ struct Division {
   /// Own columns and halo.
   mesh::Subset all(int part) const;
   /// Columns of its halo on either side, 0 where it has no neighbour.
-  int halo_below(int part) const { return part > 0 || is_ring ? halo : 0; }
-  int halo_above(int part) const { return part + 1 < n_parts() || is_ring ? halo : 0; }
+  int halo_below(int part) const { return n_parts() > 1 && (part > 0 || is_ring) ? halo : 0; }
+  int halo_above(int part) const { return n_parts() > 1 && (part + 1 < n_parts() || is_ring) ? halo : 0; }
 };
 
 /// Columns into which what is wrong at a part's edge may get within a step: the pushes of all levels.

@@ -57,10 +57,7 @@ void put_columns(const mesh::Grid& grid, const mesh::Subset& columns, const soli
 
 PartedStepper::PartedStepper(Processes& processes, const Division& division, std::unique_ptr<Part> own,
                              std::span<const mesh::Mesh* const> bodies)
-    : processes_(processes),
-      division_(division),
-      own_(std::move(own)),
-      n_lower_(bodies.front()->lower.size()) {
+    : processes_(processes), division_(division), own_(std::move(own)) {
   for (const auto* body : bodies) grids_.push_back(body->grid);
   for (int part = 0; part < division.n_parts(); ++part) {
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
@@ -78,12 +75,19 @@ std::vector<Parcel> PartedStepper::ask(PartCommand command, std::vector<Parcel> 
   const auto of_part = [&](int part) -> Parcel& {
     return given[given.size() == 1 ? 0 : static_cast<std::size_t>(part)];
   };
-  for (int rank = 1; rank < processes_.size(); ++rank) {
+  // Others wait for what is not sent, or not received: there is no way back.
+  const auto or_fail = [&](auto&& talk) {
+    try {
+      for (int rank = 1; rank < processes_.size(); ++rank) talk(rank);
+    } catch (const std::exception& error) {
+      processes_.fail(reason_of(error));
+    }
+  };
+  or_fail([&](int rank) {
     Parcel parcel;
-    const auto values = of_part(rank).bytes();
-    parcel.put(command).put(std::vector<std::byte>(values.begin(), values.end()));
+    parcel.put(command).put(of_part(rank).bytes());
     processes_.send(rank, parcel);
-  }
+  });
   // All answers are taken, whatever fails: the next command's are not to be mixed up with them.
   std::vector<Parcel> answers(1);
   std::exception_ptr failure;
@@ -92,13 +96,13 @@ std::vector<Parcel> PartedStepper::ask(PartCommand command, std::vector<Parcel> 
   } catch (...) {
     failure = std::current_exception();
   }
-  for (int rank = 1; rank < processes_.size(); ++rank) {
+  or_fail([&](int rank) {
     answers.push_back(processes_.receive(rank));
     const auto error = answers.back().take_text();
     if (!error.empty() && failure == nullptr)
       failure = std::make_exception_ptr(
           ProcessError(fmt::format("process {} of {}: {}", rank, processes_.size(), error)));
-  }
+  });
   if (failure != nullptr) std::rethrow_exception(failure);
   return answers;
 }
@@ -287,8 +291,8 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
       rates.fastest_m_per_s = std::max(rates.fastest_m_per_s, r.fastest_m_per_s);
       rates.fastest_slipping_m_per_s = std::max(rates.fastest_slipping_m_per_s, r.fastest_slipping_m_per_s);
     }
-    // Before the last of these steps only a motion that is not physical is refused: it has gone on, and it
-    // does not matter how.
+    // Before the last of these steps only a motion that is not physical is refused. The parts have gone on:
+    // what is told of its energy is that of their last step.
     if (!between.go_on(rates)) return {k + 1, false};
   }
   return {n_steps, true};

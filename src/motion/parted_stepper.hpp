@@ -73,7 +73,6 @@ class PartedStepper final : public TimeStepper {
   Division division_;
   std::unique_ptr<Part> own_;
   std::vector<mesh::Grid> grids_;  ///< of the whole bodies
-  std::size_t n_lower_;
   /// Interface nodes of each part: all that it computes, and those that count.
   std::vector<mesh::Subset> all_lower_;
   std::vector<solid::Span> own_lower_;

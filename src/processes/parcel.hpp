@@ -35,6 +35,10 @@ class Parcel {
     return put_bytes(values.data(), values.size_bytes());
   }
   template <class T>
+  requires std::is_trivially_copyable_v<T> Parcel& put(std::span<T> values) {
+    return put(std::span<const T>(values));
+  }
+  template <class T>
   Parcel& put(const std::vector<T>& values) {
     return put(std::span<const T>(values));
   }

@@ -107,6 +107,7 @@ void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
   motion::KeptMotion kept;
   if (was_parted) {
     archive(kept);
+    kept.require_consistent();
   } else {
     const auto by_one = make_whole();
     archive(*by_one);

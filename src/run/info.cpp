@@ -10,6 +10,7 @@
 #include "base/clock.hpp"
 #include "fronts/fit.hpp"
 #include "input/friction_along_x.hpp"
+#include "mesh/part.hpp"
 #include "motion/stepper.hpp"
 #include "run/choices.hpp"
 #include "run/run.hpp"
@@ -169,6 +170,10 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
   shared.division = motion::divide_columns(meshes.plate, sharing.n_processes,
                                            motion::columns_per_step(stable_steps_s, config.time),
                                            motion::halo_for(meshes.plate, config.fronts.l_star_m));
+  // Refuses cuts through them.
+  if (config.plate.corner == mesh::Corner::fillet)
+    for (int part = 0; part < sharing.n_processes; ++part)
+      mesh::columns_of(meshes.plate, shared.division.all(part));
   SharedWork work;
   work.n_nodes = static_cast<double>(info.n_nodes);
   work.n_cells = static_cast<double>(info.n_cells);

@@ -84,15 +84,17 @@ struct Plan {
 /// Of the bodies those columns that a process computes.
 struct Columns {
   std::vector<mesh::Mesh> meshes;
-  mesh::Subset lower;  ///< places along the whole interface of their nodes
+  mesh::Subset lower;             ///< places along the whole interface of their nodes
+  std::vector<double> whole_x_m;  ///< of the whole interface: a table of friction is read at its nodes
 
   void put(Parcel& to) const {
-    to.put(lower.ranges());
+    to.put(lower.ranges()).put(whole_x_m);
     for (const auto& mesh : meshes) put_mesh(mesh, to);
   }
   static Columns take(Parcel& from) {
     Columns columns;
     columns.lower = mesh::Subset(from.take_all<mesh::Subset::Range>());
+    columns.whole_x_m = from.take_all<double>();
     while (!from.is_empty()) columns.meshes.push_back(take_mesh(from));
     return columns;
   }
@@ -127,6 +129,7 @@ class Whole {
       columns.meshes.push_back(mesh::columns_of(body.mesh, all));
     }
     columns.lower = motion::lower_in(bodies_.front().mesh, all);
+    columns.whole_x_m = interface_x_m(bodies_.front().mesh);
     return columns;
   }
   std::vector<const mesh::Mesh*> meshes() const {
@@ -140,6 +143,16 @@ class Whole {
   solid::Material base_material_;
   std::vector<motion::BodySource> bodies_;
 };
+
+interface::ContactModel contact_of(const input::Case& config, const Columns& columns) {
+  auto contact = input::contact_model(config, columns.whole_x_m);
+  if (contact.of_nodes.empty()) return contact;
+  std::vector<interface::FrictionLaw> laws;
+  for (std::size_t k = 0; k < columns.meshes.front().lower.size(); ++k)
+    laws.push_back(contact.of_nodes[static_cast<std::size_t>(columns.lower.number_at(static_cast<int>(k)))]);
+  contact.of_nodes = interface::NodeLaws(std::move(laws));
+  return contact;
+}
 
 /// @param columns  the process's own
 std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case& config, const Plan& plan,
@@ -156,7 +169,7 @@ std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case&
         {own_places, stable_s, {1}, [&](std::span<double> values) { processes.take_largest(values); }});
   std::vector<motion::BodySource> sources = {{meshes.front(), config.material, &parts.front()}};
   if (meshes.size() > 1) sources.push_back({meshes.back(), base_material, &parts.back()});
-  const auto contact = input::contact_model(config, interface_x_m(meshes.front()));
+  const auto contact = contact_of(config, columns);
   return std::make_unique<motion::Part>(
       processes, plan.division, sources, contact, config.time, motion::Execution{.threads = plan.threads},
       motion::PlaceInWhole{own_places, all, plan.division.n_columns(), columns.lower});
@@ -195,16 +208,16 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
   const Whole whole(config, plate, base);
   auto plan = whole.divide(processes.size());
   plan.threads = execution.threads;
-  for (int rank = 1; rank < processes.size(); ++rank) {
-    Parcel parcel;
-    parcel.put(motion::PartCommand::build);
-    put_case(config, parcel);
-    plan.put(parcel);
-    whole.columns_of(plan, rank).put(parcel);
-    processes.send(rank, parcel);
-  }
   std::unique_ptr<motion::PartedStepper> stepper;
   try {
+    for (int rank = 1; rank < processes.size(); ++rank) {
+      Parcel parcel;
+      parcel.put(motion::PartCommand::build);
+      put_case(config, parcel);
+      plan.put(parcel);
+      whole.columns_of(plan, rank).put(parcel);
+      processes.send(rank, parcel);
+    }
     stepper = std::make_unique<motion::PartedStepper>(
         processes, plan.division, make_part(processes, config, plan, whole.columns_of(plan, 0)),
         whole.meshes());
@@ -260,7 +273,8 @@ std::vector<Link> measure_network(Processes& processes) {
 
 void serve(Processes& processes) try {
   // What a signal asks for is the leader's to hear.
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) std::signal(signal, SIG_IGN);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGXFSZ, SIGPIPE, SIGUSR1})
+    std::signal(signal, SIG_IGN);
   processes.send(0, Parcel().put(program_identity()));
   if (processes.receive(0).take<std::uint8_t>() == 0) return;
   for (;;) {

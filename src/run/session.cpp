@@ -22,11 +22,6 @@ namespace {
 constexpr double least_tell_interval_s = 2;
 constexpr double tell_share = 0.02;
 
-/// By default each of several processes has threads for its part.
-int threads_of_each(const input::Case& config, const Processes* processes) {
-  return std::max(1, suitable_threads(config) / (processes == nullptr ? 1 : processes->size()));
-}
-
 class Session {
  public:
   Session(results::ResultFolder& folder, const input::Case& config, const SessionOptions& options,
@@ -36,7 +31,7 @@ class Session {
         config_(config),
         options_(options),
         hooks_(hooks),
-        execution_{.threads = options.threads.value_or(threads_of_each(config, options.processes))},
+        execution_{.threads = options.threads.value_or(suitable_threads(config))},
         checkpoints_(folder.state()),
         resumed_(resumed) {
     head_.case_text = resolved_text(config);
@@ -58,6 +53,11 @@ class Session {
   bool look(const char* part, std::int64_t step, std::int64_t total, double time_s);
   void keep();
   void tell();
+  /// Of the event: by default each of several processes has threads for its part.
+  motion::Execution event_execution() const {
+    if (options_.threads || options_.processes == nullptr) return execution_;
+    return {.threads = std::max(1, execution_.threads / options_.processes->size())};
+  }
   double wall_s() const { return head_.wall_s + seconds_since(event_began_); }
   /// The run's event is over: makes its results.
   Finished finish(motion::Event event);
@@ -163,7 +163,7 @@ void Session::begin_event(Checkpoints::Kept* kept) {
       const auto meshes = check(config_);
       return new_stepper(config_, meshes.plate, meshes.base, execution_);
     };
-    event_stepper_ = make_stepper(config_, initial_, execution_, options_.processes);
+    event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);
     read_motion(kept->rest, *event_stepper_, make_whole);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
     results::ResultStream::Extents extents;
@@ -175,7 +175,7 @@ void Session::begin_event(Checkpoints::Kept* kept) {
     files::remove_file(results::ResultStream::snapshot_file(folder_.state()));
     files::remove_file(results::ResultStream::probe_file(folder_.state()));
     stream_.emplace(folder_.state(), !config_.probes.x_m.empty());
-    event_stepper_ = start_event(config_, initial_, execution_, options_.processes);
+    event_stepper_ = start_event(config_, initial_, event_execution(), options_.processes);
     event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
   }
   write_static(dir_, config_, initial_);
