@@ -58,6 +58,19 @@ class Mpirun:
             stdin=subprocess.DEVNULL,
         )
 
+    def processes(self):
+        """Those of this program that mpirun has started here: their ids by their ranks."""
+        found = {}
+        for folder in Path("/proc").glob("[0-9]*"):
+            try:
+                if (folder / "exe").readlink() == self.program and (folder / "cwd").readlink() == self.folder:
+                    settings = (folder / "environ").read_bytes().split(b"\0")
+                    rank = next(s for s in settings if s.startswith(b"OMPI_COMM_WORLD_RANK="))
+                    found[int(rank.split(b"=")[1])] = int(folder.name)
+            except (OSError, StopIteration):
+                pass  # ended meanwhile, or another one
+        return found
+
 
 def finished(process, timeout_s=60):
     """Waits for an mpirun; fails the test if it does not end in time."""

@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 from conftest import ROOT, finished
 from hostile.trials import alone, difference
-from test_same import require_same
 
 # Elements of 4 mm and 2000 steps: some tenths of a second on idle processors.
 CASE = """\
@@ -93,20 +92,6 @@ def wait_until(condition, process, timeout_s=30):
         time.sleep(0.002)
 
 
-def processes_of(mpirun):
-    """Those of this program by their ranks."""
-    found = {}
-    for folder in Path("/proc").glob("[0-9]*"):
-        try:
-            if (folder / "exe").readlink() == mpirun.program and (folder / "cwd").readlink() == mpirun.folder:
-                settings = (folder / "environ").read_bytes().split(b"\0")
-                rank = next(s for s in settings if s.startswith(b"OMPI_COMM_WORLD_RANK="))
-                found[int(rank.split(b"=")[1])] = int(folder.name)
-        except (OSError, StopIteration):
-            pass  # ended meanwhile, or another one
-    return found
-
-
 def in_event(mpirun, *arguments, **options):
     """A run of two processes that has kept a checkpoint of its event, and its own."""
     process = mpirun.start(
@@ -123,7 +108,7 @@ def in_event(mpirun, *arguments, **options):
     )
     state = mpirun.folder / "out/unfinished/state"
     wait_until(lambda: any(state.glob("checkpoint-*.bin")), process)
-    return process, processes_of(mpirun)
+    return process, mpirun.processes()
 
 
 def in_statics(mpirun, case):
@@ -132,7 +117,7 @@ def in_statics(mpirun, case):
         2, "run", case, "-o", "out", "-q", *SLOW_STATICS, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
     wait_until((mpirun.folder / "out/unfinished/run.json").exists, process)
-    return process, processes_of(mpirun)
+    return process, mpirun.processes()
 
 
 def is_ended(pid):
