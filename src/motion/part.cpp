@@ -2,9 +2,11 @@
 #include "motion/part.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "base/clock.hpp"
@@ -74,6 +76,7 @@ Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_ste
   const int width = n_columns / n_parts;
   division.steps_per_exchange = std::clamp(static_cast<int>(0.5 * tolerated_halo * width / columns_per_step),
                                            1, most_steps_per_exchange);
+  division.columns_per_step = columns_per_step;
   division.halo = division.steps_per_exchange * columns_per_step + std::max(1, reach);
   // The halos of two parts of a ring do not meet.
   const int least_width = division.is_ring && n_parts == 2 ? 2 * division.halo + 1 : division.halo;
@@ -104,11 +107,12 @@ Part::Part(Processes& processes, const Division& division, std::span<const BodyS
     neighbours_.push_back({(rank + n_parts - 1) % n_parts,
                            width(own.begin, below),
                            span_of(columns.begin - below, below),
+                           true,
                            {},
                            {}});
   if (above > 0)
     neighbours_.push_back(
-        {(rank + 1) % n_parts, width(own.end - above, above), span_of(columns.end, above), {}, {}});
+        {(rank + 1) % n_parts, width(own.end - above, above), span_of(columns.end, above), false, {}, {}});
   // Messages between the same two are matched in their order.
   if (n_parts == 2 && rank == 1 && neighbours_.size() == 2) std::swap(neighbours_[0], neighbours_[1]);
 }
@@ -251,7 +255,7 @@ void Part::advance(Parcel& given, Parcel& answer) {
   for (std::int64_t done = 0; done < n_steps;) {
     const auto n = std::min<std::int64_t>(division_.steps_per_exchange, n_steps - done);
     const auto begin = Clock::now();
-    stepper_->advance(log, n, between);
+    advance_to_exchange(log, n, between);
     computing_s_ += seconds_since(begin);
     renew_halo();
     finder_->renew_tractions(stepper_->interface_state());
@@ -279,6 +283,37 @@ void Part::advance(Parcel& given, Parcel& answer) {
     answer.put(values);
   }
   answer.put(displacements);
+}
+
+void Part::advance_to_exchange(UpdateObserver& observer, std::int64_t n_steps, const Between& between) {
+#ifdef NDEBUG
+  stepper_->advance(observer, n_steps, between);
+#else
+  for (std::int64_t k = 1; k <= n_steps; ++k) {
+    stepper_->advance(observer, 1, between);
+    const auto n_wrong = static_cast<int>(k) * division_.columns_per_step;
+    const auto all_finite = [&](solid::Span columns) {
+      bool finite = true;
+      stepper_->visit_columns(columns, [&](const auto* values, std::size_t n) {
+        for (std::size_t i = 0; i < n; ++i) finite &= std::isfinite(static_cast<double>(values[i]));
+      });
+      return finite;
+    };
+    for (const auto& [rank, out, in, is_below, sent, received] : neighbours_) {
+      const solid::Span wrong =
+          is_below ? solid::Span{in.begin, in.begin + n_wrong} : solid::Span{in.end - n_wrong, in.end};
+      const solid::Span right =
+          is_below ? solid::Span{wrong.end, in.end} : solid::Span{in.begin, wrong.begin};
+      if (stepper_->slip_rates().finite)
+        SLIPFRONT_ASSERT(all_finite(right) && all_finite(out), "a step reads beyond its part");
+      stepper_->visit_columns(wrong, []<class T>(T* values, std::size_t n) {
+        if constexpr (std::is_floating_point_v<T>)
+          std::fill_n(values, n, std::numeric_limits<T>::quiet_NaN());
+      });
+    }
+    stepper_->take_columns();
+  }
+#endif
 }
 
 void Part::renew_halo() {

@@ -21,6 +21,7 @@ namespace slipfront::motion {
 struct Division {
   std::vector<int> first;      ///< [parts + 1] where the own columns of each begin
   int halo = 0;                ///< columns beside them, as far as there are any
+  int columns_per_step = 1;    ///< see the function of this name
   int steps_per_exchange = 1;  ///< after so many steps the halo is renewed
   /// Whether the plate repeats: the first part and the last one are neighbours, and the whole has a column of
   /// nodes more, without cells.
@@ -104,6 +105,9 @@ class Part {
   void or_fail(F&& f);
   void start(Parcel& given);
   void advance(Parcel& given, Parcel& answer);
+  /// Steps between two exchanges. In debug builds what is wrong in the halo is no number after each of them,
+  /// and nothing else may become so.
+  void advance_to_exchange(UpdateObserver& observer, std::int64_t n_steps, const Between& between);
   void make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s);
   void renew_halo();
   void begin_counting();
@@ -119,6 +123,7 @@ class Part {
   struct Neighbour {
     int rank = 0;
     solid::Span out, in;
+    bool is_below = false;
     std::vector<double> sent, received;
   };
   std::vector<Neighbour> neighbours_;

@@ -6,11 +6,14 @@
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -31,6 +34,28 @@ bool is_started_by_mpi() {
   return std::ranges::any_of(names, [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
+/// Waits without keeping a processor from others: the library polls for as long as it waits, and where other
+/// processes or threads have to compute on this processor it would wait for what it holds up itself.
+class Patience {
+ public:
+  /// To poll for so long costs less than to fall asleep and to wake up.
+  void polls_for_s(double poll_s) { poll_s_ = poll_s; }
+
+  void wait_all(std::span<MPI_Request> requests) const {
+    const auto begin = Clock::now();
+    for (;;) {
+      int done = 0;
+      MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
+      if (done != 0) return;
+      if (seconds_since(begin) > poll_s_) std::this_thread::sleep_for(std::chrono::microseconds(10));
+    }
+  }
+  void wait(MPI_Request& request) const { wait_all({&request, 1}); }
+
+ private:
+  double poll_s_ = 2e-3;
+};
+
 /// Over MPI_COMM_WORLD, whose errors end the program.
 class MpiProcesses final : public Processes {
  public:
@@ -39,6 +64,10 @@ class MpiProcesses final : public Processes {
     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    if (size_ == 1) return;
+    // Else the kernel adds 50 us to each sleep.
+    ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+    if (n_on_this_machine() > static_cast<int>(std::thread::hardware_concurrency())) patience_.polls_for_s(0);
   }
   MpiProcesses(const MpiProcesses&) = delete;
   MpiProcesses& operator=(const MpiProcesses&) = delete;
@@ -51,21 +80,29 @@ class MpiProcesses final : public Processes {
     const Waiting waiting(counters_.command_s);
     const auto bytes = parcel.bytes();
     const auto n = static_cast<std::uint64_t>(bytes.size());
-    MPI_Send(&n, 1, MPI_UINT64_T, to, tag, MPI_COMM_WORLD);
-    for (std::size_t at = 0; at < bytes.size(); at += most_bytes)
-      MPI_Send(bytes.data() + at, static_cast<int>(std::min(most_bytes, bytes.size() - at)), MPI_BYTE, to,
-               tag, MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Isend(&n, 1, MPI_UINT64_T, to, tag, MPI_COMM_WORLD, &request);
+    patience_.wait(request);
+    for (std::size_t at = 0; at < bytes.size(); at += most_bytes) {
+      MPI_Isend(bytes.data() + at, static_cast<int>(std::min(most_bytes, bytes.size() - at)), MPI_BYTE, to,
+                tag, MPI_COMM_WORLD, &request);
+      patience_.wait(request);
+    }
     count(bytes.size());
   }
 
   Parcel receive(int from) override {
     const Waiting waiting(counters_.command_s);
     std::uint64_t n = 0;
-    MPI_Recv(&n, 1, MPI_UINT64_T, from, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Irecv(&n, 1, MPI_UINT64_T, from, tag, MPI_COMM_WORLD, &request);
+    patience_.wait(request);
     std::vector<std::byte> bytes(n);
-    for (std::size_t at = 0; at < bytes.size(); at += most_bytes)
-      MPI_Recv(bytes.data() + at, static_cast<int>(std::min(most_bytes, bytes.size() - at)), MPI_BYTE, from,
-               tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    for (std::size_t at = 0; at < bytes.size(); at += most_bytes) {
+      MPI_Irecv(bytes.data() + at, static_cast<int>(std::min(most_bytes, bytes.size() - at)), MPI_BYTE, from,
+                tag, MPI_COMM_WORLD, &request);
+      patience_.wait(request);
+    }
     return Parcel(std::move(bytes));
   }
 
@@ -81,13 +118,15 @@ class MpiProcesses final : public Processes {
                 &requests.emplace_back());
       count(out.size_bytes());
     }
-    MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+    patience_.wait_all(requests);
   }
 
   void take_largest(std::span<double> values) override {
     const Waiting waiting(counters_.command_s);
-    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX,
-                  MPI_COMM_WORLD);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX,
+                   MPI_COMM_WORLD, &request);
+    patience_.wait(request);
     count(values.size_bytes());
   }
 
@@ -115,12 +154,22 @@ class MpiProcesses final : public Processes {
     Clock::time_point begin_ = Clock::now();
   };
 
+  static int n_on_this_machine() {
+    MPI_Comm machine = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    int n = 0;
+    MPI_Comm_size(machine, &n);
+    MPI_Comm_free(&machine);
+    return n;
+  }
+
   void count(std::size_t bytes) {
     ++counters_.messages;
     counters_.bytes += static_cast<std::int64_t>(bytes);
   }
 
   int rank_ = 0, size_ = 1;
+  Patience patience_;
   /// MPI_Abort takes memory, of which there may be none left.
   std::vector<std::byte> reserve_ = std::vector<std::byte>(std::size_t{1} << 20);
 };

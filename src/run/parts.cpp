@@ -65,7 +65,8 @@ struct Plan {
   std::vector<double> stable_steps_s;  ///< of the bodies
 
   void put(Parcel& to) const {
-    to.put(division.first).put(division.halo).put(division.steps_per_exchange).put(division.is_ring);
+    to.put(division.first).put(division.halo).put(division.columns_per_step);
+    to.put(division.steps_per_exchange).put(division.is_ring);
     to.put(threads);
     to.put(stable_steps_s);
   }
@@ -73,6 +74,7 @@ struct Plan {
     Plan plan;
     plan.division.first = from.take_all<int>();
     plan.division.halo = from.take<int>();
+    plan.division.columns_per_step = from.take<int>();
     plan.division.steps_per_exchange = from.take<int>();
     plan.division.is_ring = from.take<bool>();
     plan.threads = from.take<int>();
