@@ -164,6 +164,7 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
       break;
     case PartCommand::restore:
       restore(KeptMotion::take(given), *stepper_, place_);
+      steps_since_exchange_ = 0;
       finder_.reset();
       begin_counting();
       break;
@@ -253,13 +254,14 @@ void Part::advance(Parcel& given, Parcel& answer) {
       return displacements.data() + n_values * static_cast<std::size_t>(step - first_step - 1);
     };
   for (std::int64_t done = 0; done < n_steps;) {
-    const auto n = std::min<std::int64_t>(division_.steps_per_exchange, n_steps - done);
+    const auto n = std::min(division_.steps_per_exchange - steps_since_exchange_, n_steps - done);
     const auto begin = Clock::now();
-    advance_to_exchange(log, n, between);
+    advance_between_exchanges(log, n, between);
     computing_s_ += seconds_since(begin);
+    done += n;
+    if (steps_since_exchange_ < division_.steps_per_exchange) continue;
     renew_halo();
     finder_->renew_tractions(stepper_->interface_state());
-    done += n;
   }
   const auto& memory = finder_->memory();
   answer.put(memory.time_s);
@@ -285,13 +287,14 @@ void Part::advance(Parcel& given, Parcel& answer) {
   answer.put(displacements);
 }
 
-void Part::advance_to_exchange(UpdateObserver& observer, std::int64_t n_steps, const Between& between) {
+void Part::advance_between_exchanges(UpdateObserver& observer, std::int64_t n_steps,
+                                     const Between& between) {
 #ifdef NDEBUG
   stepper_->advance(observer, n_steps, between);
 #else
   for (std::int64_t k = 1; k <= n_steps; ++k) {
     stepper_->advance(observer, 1, between);
-    const auto n_wrong = static_cast<int>(k) * division_.columns_per_step;
+    const auto n_wrong = static_cast<int>(steps_since_exchange_ + k) * division_.columns_per_step;
     const auto all_finite = [&](solid::Span columns) {
       bool finite = true;
       stepper_->visit_columns(columns, [&](const auto* values, std::size_t n) {
@@ -314,9 +317,11 @@ void Part::advance_to_exchange(UpdateObserver& observer, std::int64_t n_steps, c
     stepper_->take_columns();
   }
 #endif
+  steps_since_exchange_ += n_steps;
 }
 
 void Part::renew_halo() {
+  steps_since_exchange_ = 0;
   std::vector<Processes::Exchange> exchanges;
   for (auto& neighbour : neighbours_) {
     neighbour.sent.clear();

@@ -105,9 +105,9 @@ class Part {
   void or_fail(F&& f);
   void start(Parcel& given);
   void advance(Parcel& given, Parcel& answer);
-  /// Steps between two exchanges. In debug builds what is wrong in the halo is no number after each of them,
-  /// and nothing else may become so.
-  void advance_to_exchange(UpdateObserver& observer, std::int64_t n_steps, const Between& between);
+  /// In debug builds what is wrong in the halo is set to no number after each step, and nothing else may
+  /// become so.
+  void advance_between_exchanges(UpdateObserver& observer, std::int64_t n_steps, const Between& between);
   void make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s);
   void renew_halo();
   void begin_counting();
@@ -129,6 +129,7 @@ class Part {
   std::vector<Neighbour> neighbours_;
   Processes::Counters counted_before_;
   std::int64_t first_counted_step_ = 0;
+  std::int64_t steps_since_exchange_ = 0;
   double computing_s_ = 0;
 };
 

@@ -70,11 +70,8 @@ PartedStepper::~PartedStepper() {
   for (int rank = 1; rank < processes_.size(); ++rank) processes_.send(rank, release);
 }
 
-std::vector<Parcel> PartedStepper::ask(PartCommand command, std::vector<Parcel> given) const {
-  if (given.empty()) given.resize(1);
-  const auto of_part = [&](int part) -> Parcel& {
-    return given[given.size() == 1 ? 0 : static_cast<std::size_t>(part)];
-  };
+std::vector<Parcel> PartedStepper::ask(PartCommand command,
+                                       const std::function<Parcel(int part)>& given) const {
   // Others wait for what is not sent, or not received: there is no way back.
   const auto or_fail = [&](auto&& talk) {
     try {
@@ -85,14 +82,15 @@ std::vector<Parcel> PartedStepper::ask(PartCommand command, std::vector<Parcel> 
   };
   or_fail([&](int rank) {
     Parcel parcel;
-    parcel.put(command).put(of_part(rank).bytes());
+    parcel.put(command).put(given(rank).bytes());
     processes_.send(rank, parcel);
   });
   // All answers are taken, whatever fails: the next command's are not to be mixed up with them.
   std::vector<Parcel> answers(1);
   std::exception_ptr failure;
   try {
-    answers.front() = own_->carry_out(command, of_part(0));
+    auto own = given(0);
+    answers.front() = own_->carry_out(command, own);
   } catch (...) {
     failure = std::current_exception();
   }
@@ -108,8 +106,7 @@ std::vector<Parcel> PartedStepper::ask(PartCommand command, std::vector<Parcel> 
 }
 
 void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_s, const Loads& loads) {
-  std::vector<Parcel> given;
-  for (int part = 0; part < division_.n_parts(); ++part) {
+  ask(PartCommand::start, [&](int part) {
     Parcel parcel;
     const auto columns = division_.all(part);
     const auto& lower = all_lower_[static_cast<std::size_t>(part)];
@@ -125,9 +122,8 @@ void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_
          {&loads.prestress_t_Pa, &loads.prestress_p_Pa, &loads.trigger_force_N_per_m, &loads.intact})
       parcel.put(cut(*values, lower));
     parcel.put(loads.trigger);
-    given.push_back(std::move(parcel));
-  }
-  ask(PartCommand::start, std::move(given));
+    return parcel;
+  });
   has_finders_ = false;
   step_ = 0;
 }
@@ -148,14 +144,13 @@ void PartedStepper::watch(std::vector<Probe> probes) {
     for (auto& n : node) n = n / stride * all.count() + all.place_of(n % stride);
     of_part[static_cast<std::size_t>(part)].emplace_back(probe.body, node);
   }
-  std::vector<Parcel> given;
-  for (const auto& list : of_part) {
+  ask(PartCommand::watch, [&](int part) {
+    const auto& list = of_part[static_cast<std::size_t>(part)];
     Parcel parcel;
     parcel.put(static_cast<std::uint64_t>(list.size()));
     for (const auto& [body, node] : list) parcel.put(body).put(node);
-    given.push_back(std::move(parcel));
-  }
-  ask(PartCommand::watch, std::move(given));
+    return parcel;
+  });
 }
 
 std::vector<double> PartedStepper::probed(int which) const {
@@ -196,8 +191,7 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
     is_sampled.push_back(samples.back() != nullptr);
   }
   step_ = first_step;
-  std::vector<Parcel> given;
-  for (int part = 0; part < division_.n_parts(); ++part) {
+  auto answers = ask(PartCommand::advance, [&](int part) {
     Parcel parcel;
     parcel.put(static_cast<std::uint8_t>(!has_finders_));
     if (!has_finders_) {
@@ -210,9 +204,8 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
       parcel.put(recorder.record().halo).put(recorder.finder().creep_m_per_s());
     }
     parcel.put(is_sampled);
-    given.push_back(std::move(parcel));
-  }
-  auto answers = ask(PartCommand::advance, std::move(given));
+    return parcel;
+  });
   has_finders_ = true;
 
   struct Told {
@@ -394,16 +387,14 @@ KeptMotion PartedStepper::kept() const {
 void PartedStepper::restore(const KeptMotion& kept) {
   KeptMotion sorted = kept;
   sorted.sort();
-  std::vector<Parcel> given;
-  for (int part = 0; part < division_.n_parts(); ++part) {
+  ask(PartCommand::restore, [&](int part) {
     Parcel parcel;
     sorted
         .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], grids_.front().stride(), part,
             division_.n_parts())
         .put(parcel);
-    given.push_back(std::move(parcel));
-  }
-  ask(PartCommand::restore, std::move(given));
+    return parcel;
+  });
   has_finders_ = false;
   step_ = kept.step;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -57,9 +58,10 @@ class PartedStepper final : public TimeStepper {
   void restore(const KeptMotion& kept);
 
  private:
-  /// Gives each part a command, with values of its own or the same for all, and has their answers.
+  /// Gives each part a command, with values of its own, and has their answers.
   /// @throws std::runtime_error for what another process has failed in
-  std::vector<Parcel> ask(PartCommand command, std::vector<Parcel> given = {}) const;
+  std::vector<Parcel> ask(
+      PartCommand command, const std::function<Parcel(int part)>& given = [](int) { return Parcel(); }) const;
   struct Steps {
     std::int64_t taken = 0;
     bool goes_on = false;

@@ -53,8 +53,7 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
 
   const auto latency_s = [&](double bytes) { return (bytes > eager_bytes ? 3 : 1) * network.latency_s; };
   const double halo_bytes = division.halo * work.values_per_column * number_bytes;
-  const double exchanges =
-      work.advances * std::ceil(work.steps / work.advances / division.steps_per_exchange);
+  const double exchanges = std::floor(work.steps / division.steps_per_exchange);
   cost.bytes_per_step = exchanges * part.n_sides * halo_bytes / work.steps;
   if (part.n_sides > 0)
     cost.exchange_s = exchanges * (latency_s(halo_bytes) +
@@ -82,8 +81,8 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
       motion::event_bytes(share * work.n_nodes, share * work.n_cells, false, work.precision) +
       share * (bytes_of_mesh * work.n_nodes + work.bytes_per_interface_node * work.n_columns);
   cost.memory_bytes = work.program_bytes + of_part;
-  // Parcels for all parts are made before the first one is sent, and a checkpoint is joined from all answers.
-  const double sent = n_parts > 1 ? bytes_of_state : 0;
+  // A part's parcel is made when it is sent; a checkpoint is joined from all answers.
+  const double sent = n_parts > 1 ? share * bytes_of_state : 0;
   const double starting = (bytes_of_mesh + bytes_of_state + sent) * work.n_nodes;
   const double joining = (n_parts > 1 ? bytes_of_gathered_state : 0) * work.n_nodes;
   cost.leader_memory_bytes =

@@ -69,12 +69,12 @@ def test_run_json_tells_what_processes_cost(runs, n):
     longest, mean = max(cost["computing_s"]), sum(cost["computing_s"]) / n
     assert cost["imbalance_largest_over_mean"] == pytest.approx(longest / mean)
     # 121 rows of u and v go to each neighbour with every exchange, and little else beside them.
-    exchanges = 2 * (n - 1) / cost["steps_per_exchange"]
-    # The rest: commands of at most 50 steps and their answers, exchanges that end them early, energies.
+    exchanges = 2 * (n - 1) * (cost["steps"] // cost["steps_per_exchange"]) / cost["steps"]
+    # The rest: commands of at most 50 steps and their answers, and energies.
     rounds = (cost["messages_per_step"] - exchanges) * cost["steps"] / (2 * (n - 1))
     assert cost["steps"] / 50 <= rounds <= cost["steps"] / 5
     least = exchanges * halo * 121 * 4 * 8
-    assert least < cost["bytes_per_step"] < 1.5 * least
+    assert least <= cost["bytes_per_step"] < 1.5 * least
     # Of two processes both send the same halo; of three the middle one sends two.
     share = cost["bytes_per_step_of_busiest"] / cost["bytes_per_step"]
     assert share == pytest.approx(0.5, abs=0.1)
@@ -152,7 +152,7 @@ def test_info_follows_the_network(runs):
     of = lambda *options: seconds(predicted(3, *options)["time: exchange"])  # noqa: E731
     slow, fast = of("--latency-s", 1e-2), of("--latency-s", 1e-6)
     # At least one latency for each exchange.
-    exchanges = runs[2]["steps"] / runs[2]["processes"]["steps_per_exchange"]
+    exchanges = runs[2]["steps"] // runs[2]["processes"]["steps_per_exchange"]
     assert slow - fast >= 0.99 * 1e-2 * exchanges
     assert of("--bandwidth-bytes-per-s", 1e6) > of("--bandwidth-bytes-per-s", 1e9)
 

@@ -74,11 +74,11 @@ TEST(ProcessCost, OfExchangesIsLatencyAndBytes) {
   EXPECT_DOUBLE_EQ(small.exchange_s, 200 * (1e-4 + 64e3 / 1e8));
 }
 
-TEST(ProcessCost, OfExchangesCountsThoseAtTheEndOfACommand) {
-  // 50 steps of a command in fours of 16, 16, 16 and 2.
+TEST(ProcessCost, OfExchangesDoesNotDependOnCommands) {
+  // 1000 steps, 50 with each command: 62 times 16, and 8 more.
   const auto cost = process_cost(square(), division(1000, 2, 2, 16), 2, {1e-4, 1e300}, at_once);
-  EXPECT_DOUBLE_EQ(cost.exchange_s, 20 * 4 * 1e-4);
-  EXPECT_DOUBLE_EQ(cost.bytes_per_step, 20 * 4 * 64e3 / 1000);
+  EXPECT_DOUBLE_EQ(cost.exchange_s, 62 * 1e-4);
+  EXPECT_DOUBLE_EQ(cost.bytes_per_step, 62 * 64e3 / 1000);
 }
 
 TEST(ProcessCost, OfEnergiesIsThatOfSteps) {
@@ -170,8 +170,7 @@ TEST(ProcessCost, FollowsFromACase) {
   ASSERT_TRUE(info.shared);
   const auto& [division, cost] = *info.shared;
   EXPECT_EQ(division.n_parts(), 4);
-  // u and v of the node in each row, and of its interface node what the contact keeps; some more exchanges
-  // where commands end.
+  // u and v of the node in each row, and of its interface node what the contact keeps.
   const double rows = static_cast<double>(info.n_nodes) / static_cast<double>(info.n_interface);
   const double values =
       cost.bytes_per_step * division.steps_per_exchange / (2 * division.halo) / sizeof(double);
