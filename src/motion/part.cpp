@@ -287,8 +287,7 @@ void Part::advance(Parcel& given, Parcel& answer) {
   answer.put(displacements);
 }
 
-void Part::advance_between_exchanges(UpdateObserver& observer, std::int64_t n_steps,
-                                     const Between& between) {
+void Part::advance_between_exchanges(UpdateObserver& observer, std::int64_t n_steps, const Between& between) {
 #ifdef NDEBUG
   stepper_->advance(observer, n_steps, between);
 #else
