@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 #include "base/error.hpp"
@@ -412,6 +414,41 @@ TEST(Parts, OfTwoBodiesOneOrBothGraded) {
     problem.coarsenings_below = below;
     problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
     expect_parts_change_nothing(problem);
+  }
+}
+
+/// Wrong numbers put into the first columns of whole bodies, as far as they have come after a step.
+TEST(Parts, AreWrongNoFartherThanTheColumnsOfAStep) {
+  auto even = graded(), of_one_step = graded(), of_two = graded(), without_sub_steps = graded();
+  even.plate.coarsenings = 0;
+  of_one_step.time.local_steps = false;
+  of_two.below = &gel;
+  of_two.plate.coarsenings = 1;
+  without_sub_steps.time.interface_substeps = without_sub_steps.time.interface_rows = 1;
+  for (const auto& problem : {even, graded(), of_one_step, of_two, without_sub_steps}) {
+    const Bodies bodies(problem);
+    const auto sources = bodies.sources();
+    const auto begin = begin_of(problem, bodies);
+    Stepper stepper(sources, problem.contact, problem.time, {});
+    stepper.start(begin.state, 0, begin.loads);
+    const int n_wrong = 16;
+    stepper.visit_columns({0, n_wrong}, []<class T>(T* values, std::size_t n) {
+      if constexpr (std::is_floating_point_v<T>) std::fill_n(values, n, std::numeric_limits<T>::quiet_NaN());
+    });
+    stepper.take_columns();
+    Journey journey(begin);
+    stepper.advance(journey.recorder, 1, {});
+    int end = 0;
+    std::vector<BodySteps> steps;
+    for (const auto& body : stepper.bodies()) {
+      steps.push_back(body.steps());
+      for (std::size_t n = 0; n < body.u_m().size(); ++n)
+        if (!std::isfinite(body.u_m().x[n]) || !std::isfinite(body.v_m_per_s().x[n]))
+          end = std::max(end, body.columns().column_of(static_cast<mesh::Node>(n)) + 1);
+    }
+    const int most = columns_per_step(sources, steps, problem.time);
+    EXPECT_LE(end, n_wrong + most);
+    EXPECT_GT(end, n_wrong);
   }
 }
 
