@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/lanes.hpp"
@@ -201,7 +202,7 @@ class GeneralRows::Builder {
     std::vector<mesh::Node> others;
     for (std::size_t c = 0; c < mesh_.cells.size(); ++c) {
       if (!in_part[c] || std::ranges::none_of(mesh_.cells[c], has_row)) continue;
-      cells_.push_back(in_order(mesh_, mesh_.cells[c]));
+      cells_.push_back({in_order(mesh_, mesh_.cells[c]), c});
       for (const auto n : mesh_.cells[c])
         if (place_[n] < 0) others.push_back(n);
     }
@@ -210,9 +211,9 @@ class GeneralRows::Builder {
     others.erase(std::unique(others.begin(), others.end()), others.end());
     for (const auto n : others) append(n);
     // In the order of their nodes, so that successive cells find them in cache.
-    std::ranges::sort(cells_, {}, [&](const mesh::Cell& cell) {
+    std::ranges::sort(cells_, {}, [&](const Numbered& cell) {
       std::array<std::int32_t, 4> at;
-      for (int a = 0; a < 4; ++a) at[a] = place_[cell[a]];
+      for (int a = 0; a < 4; ++a) at[a] = place_[cell.nodes[a]];
       std::ranges::sort(at);
       return at;
     });
@@ -221,7 +222,7 @@ class GeneralRows::Builder {
   Corners corners_of(std::span<const std::size_t> batch) const {
     Corners corners{};
     for (std::size_t lane = 0; lane < batch.size(); ++lane)
-      for (int a = 0; a < 4; ++a) corners[a][lane] = 2 * place_[cells_[batch[lane]][a]];
+      for (int a = 0; a < 4; ++a) corners[a][lane] = 2 * place_[cells_[batch[lane]].nodes[a]];
     return corners;
   }
 
@@ -231,7 +232,7 @@ class GeneralRows::Builder {
     std::map<CellCoordinates, std::vector<std::size_t>> of_shape;
     std::vector<std::size_t> single;
     for (std::size_t c = 0; c < cells_.size(); ++c) {
-      const auto [corners, is_regular] = shape_of(cell_coordinates(mesh_, cells_[c]));
+      const auto [corners, is_regular] = shape_of(cell_coordinates(mesh_, cells_[c].nodes));
       shape.push_back(corners);
       if (is_regular)
         of_shape[corners].push_back(c);
@@ -274,13 +275,16 @@ class GeneralRows::Builder {
     for (std::size_t lane = 0; lane < batch.size(); ++lane) batch_of_[batch[lane]] = {number, lane};
   }
 
-  /// Rows add their cells' forces in the order of the cells.
+  /// Rows add their cells' forces in the order that the cells have in the mesh.
   void find_forces() {
     const auto n_rows = result_->per_mass.size();
     std::vector<std::vector<std::int32_t>> of_row(n_rows);
-    for (std::size_t c = 0; c < cells_.size(); ++c)
+    std::vector<std::size_t> in_mesh(cells_.size());
+    std::iota(in_mesh.begin(), in_mesh.end(), std::size_t{0});
+    std::ranges::sort(in_mesh, {}, [&](std::size_t c) { return cells_[c].number; });
+    for (const auto c : in_mesh)
       for (std::size_t a = 0; a < 4; ++a) {
-        const auto row = static_cast<std::size_t>(place_[cells_[c][a]]);
+        const auto row = static_cast<std::size_t>(place_[cells_[c].nodes[a]]);
         if (row >= n_rows) continue;
         const auto [batch, lane] = batch_of_[c];
         of_row[row].push_back(static_cast<std::int32_t>(batch * forces_of_batch + a * pairs) +
@@ -296,7 +300,11 @@ class GeneralRows::Builder {
   const mesh::Mesh& mesh_;
   const Material& material_;
   std::vector<std::int32_t> place_;  ///< [nodes], -1 where they are not needed
-  std::vector<mesh::Cell> cells_;
+  struct Numbered {
+    mesh::Cell nodes{};
+    std::size_t number = 0;  ///< in the mesh
+  };
+  std::vector<Numbered> cells_;
   struct InBatch {
     std::size_t batch = 0, lane = 0;
   };

@@ -18,9 +18,9 @@ struct Field;
 /// the fourth, d, they are the 6 x 6 stiffness of these three times d, and the fourth node's force balances
 /// the others. As many cells as a vector has lanes are computed at once. Regular cells that are similar
 /// (equal but for place and size; a plane cell's stiffness does not depend on its size) share one stiffness,
-/// the others have their own. The forces on a node are added up in the order of its cells; neither they nor a
-/// cell's stiffness depend on what other cells there are: in a part of a mesh they are those of the whole.
-/// Neighbouring nodes should have near numbers, see mesh::near_numbers.
+/// the others have their own. The forces on a node are added up in the order of its cells in the mesh;
+/// neither they nor a cell's stiffness depend on what other cells there are: in a part of a mesh they are
+/// those of the whole. Neighbouring nodes should have near numbers, see mesh::near_numbers.
 class GeneralRows {
  public:
   GeneralRows() = default;

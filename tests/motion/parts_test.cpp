@@ -453,10 +453,15 @@ TEST(Parts, AreWrongNoFartherThanTheColumnsOfAStep) {
 }
 
 TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
-  for (const auto* below : {static_cast<const solid::Material*>(nullptr), &gel}) {
-    Problem problem;
-    problem.below = below;
-    problem.plate.corner = mesh::Corner::relief;
+  Problem even, of_two, of_graded = graded(), of_two_graded = graded(), repeating = graded();
+  of_two.below = of_two_graded.below = &gel;
+  of_two_graded.plate.coarsenings = 1;
+  of_two_graded.plate.width_m = 0.4;
+  for (auto* problem : {&even, &of_two, &of_graded, &of_two_graded})
+    problem->plate.corner = mesh::Corner::relief;
+  repeating.plate.sides = mesh::Sides::periodic;
+  repeating.plate.top = mesh::Top::absorbing;
+  for (auto problem : {even, of_two, of_graded, of_two_graded, repeating}) {
     problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
     const auto one = run_by_one(problem, n_steps);
     Team two(2, problem), three(3, problem);
@@ -472,7 +477,9 @@ TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
     take_steps(journey, three.stepper(), second);
     const Bodies bodies(problem);
     Stepper by_one(bodies.sources(), problem.contact, problem.time, {});
-    const PlaceInWhole whole;
+    // The last column of a plate that repeats has no cells.
+    const int n_columns = bodies.above.grid.stride() - (bodies.above.period_m > 0 ? 1 : 0);
+    const PlaceInWhole whole{.own = {0, n_columns}, .lower = {}};
     auto kept = three.stepper().kept();
     kept.sort();
     restore(kept, by_one, whole);

@@ -97,7 +97,11 @@ CASES = {
         "rest": NUCLEATION.format(form="weakened", x_m=0.0667),
     },
     "graded": {"plate": GRADED + 'corner = "none"', "time": FEW_SUB_STEPS, "rest": DAMPED},
-    "graded, relieved corners": {"plate": GRADED + 'corner = "relief"', "time": FEW_SUB_STEPS, "rest": DAMPED},
+    "graded, relieved corners": {
+        "plate": GRADED + 'corner = "relief"',
+        "time": FEW_SUB_STEPS,
+        "rest": DAMPED,
+    },
     "graded, one step": {
         "plate": GRADED + 'corner = "none"',
         "time": "local_steps = false\ninterface_substeps = 1",
