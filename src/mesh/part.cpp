@@ -2,6 +2,7 @@
 #include "mesh/part.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/error.hpp"
@@ -51,45 +52,165 @@ Subset Subset::below(int end) const {
   return Subset(std::move(ranges));
 }
 
+namespace {
+
+/// Nodes of a row of the whole in columns below `column`. Of a transition every fourth column has none.
+int n_below(int block, bool is_inner, int column) {
+  const int size = 1 << block;
+  const int n = (column + size - 1) / size;
+  return is_inner ? n - (n + 3) / 4 : n;
+}
+
+int column_at(int block, bool is_inner, int place) {
+  return (is_inner ? place + 1 + place / 3 : place) << block;
+}
+
+}  // namespace
+
+NodeColumns::NodeColumns(const Mesh& whole)
+    : NodeColumns(whole, Subset(),
+                  whole.grid.columns > 0 ? whole.grid.stride() : static_cast<int>(whole.n_nodes())) {}
+
+NodeColumns::NodeColumns(const Mesh& part, const Subset& held, int n_columns) : n_columns_(n_columns) {
+  const auto grids = blocks(part);
+  const Subset columns = held.ranges().empty() ? Subset({{0, n_columns}}) : held;
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    for (int j = 0; j <= grids[k].rows; ++j) add_row(static_cast<int>(k), false, columns);
+    if (k + 1 < grids.size()) add_row(static_cast<int>(k), true, columns);
+  }
+  SLIPFRONT_ASSERT(n_nodes() == part.n_nodes(), "columns of this mesh");
+}
+
+NodeColumns NodeColumns::of_part(const Subset& held) const {
+  NodeColumns part;
+  part.n_columns_ = n_columns_;
+  for (const auto& row : rows_) part.add_row(row.block, row.is_inner, held);
+  return part;
+}
+
+void NodeColumns::add_row(int block, bool is_inner, const Subset& columns) {
+  Row row{block, is_inner, 0, 0, {}};
+  if (!rows_.empty()) {
+    const auto& below = rows_.back();
+    row.first = below.first + below.held.count();
+    row.first_in_whole = below.first_in_whole + n_below(below.block, below.is_inner, n_columns_);
+  }
+  std::vector<Subset::Range> places;
+  for (const auto& range : columns.ranges())
+    places.push_back({n_below(block, is_inner, range.begin), n_below(block, is_inner, range.end)});
+  row.held = Subset(std::move(places));
+  rows_.push_back(std::move(row));
+}
+
+NodeColumns::Nodes NodeColumns::nodes(int row, Subset::Range columns) const {
+  const auto& [block, is_inner, first, first_in_whole, held] = rows_[row];
+  const int begin = n_below(block, is_inner, columns.begin), end = n_below(block, is_inner, columns.end);
+  return {first + held.place_of(begin), end - begin};
+}
+
+int NodeColumns::row_of(Node n) const {
+  const auto above = std::ranges::upper_bound(rows_, n, {}, &Row::first);
+  return static_cast<int>(above - rows_.begin()) - 1;
+}
+
+int NodeColumns::column_of(Node n) const {
+  const auto& row = rows_[row_of(n)];
+  return column_at(row.block, row.is_inner, row.held.number_at(n - row.first));
+}
+
+std::int64_t NodeColumns::number_in_whole(Node n) const {
+  const auto& row = rows_[row_of(n)];
+  return row.first_in_whole + row.held.number_at(n - row.first);
+}
+
+const NodeColumns::Row& NodeColumns::row_of_whole(std::int64_t number) const {
+  return *std::prev(std::ranges::upper_bound(rows_, number, {}, &Row::first_in_whole));
+}
+
+Node NodeColumns::node_of_whole(std::int64_t number) const {
+  const auto& row = row_of_whole(number);
+  return row.first + row.held.place_of(static_cast<int>(number - row.first_in_whole));
+}
+
+int NodeColumns::column_of_whole(std::int64_t number) const {
+  const auto& row = row_of_whole(number);
+  return column_at(row.block, row.is_inner, static_cast<int>(number - row.first_in_whole));
+}
+
+int columns_of_cells(const Mesh& mesh, int block) {
+  return 1 << std::min(block + 1, static_cast<int>(mesh.coarser.size()));
+}
+
 Mesh columns_of(const Mesh& whole, const Subset& columns) {
-  const Grid& grid = whole.grid;
-  SLIPFRONT_ASSERT(grid.columns > 0 && whole.coarser.empty(), "a plate of one block");
+  SLIPFRONT_ASSERT(whole.grid.columns > 0, "a plate");
+  const NodeColumns of_whole(whole);
   Mesh mesh;
-  mesh.grid = grid;
-  mesh.grid.columns = columns.count() - 1;
   if (columns.ranges().size() > 1) mesh.period_m = whole.period_m;
-  const auto column = [&](Node n) { return n % grid.stride(); };
-  const auto has = [&](Node n) { return columns.has(column(n)); };
-  const auto number = [&](Node n) { return mesh.grid.node(columns.place_of(column(n)), n / grid.stride()); };
-  const auto n_nodes = static_cast<std::size_t>(mesh.grid.n_nodes());
-  mesh.x_m.reserve(n_nodes);
-  mesh.y_m.reserve(n_nodes);
-  for (int j = 0; j <= grid.rows; ++j)
-    for (const auto& range : columns.ranges())
-      for (int i = range.begin; i < range.end; ++i) {
-        mesh.x_m.push_back(whole.x_m[grid.node(i, j)]);
-        mesh.y_m.push_back(whole.y_m[grid.node(i, j)]);
+  std::vector<Node> number(whole.x_m.size(), -1);  // in the part, -1 where it has them not
+  const auto take_row = [&](int row) {
+    const Node first = mesh.n_nodes();
+    for (const auto& range : columns.ranges()) {
+      const auto nodes = of_whole.nodes(row, range);
+      for (Node n = nodes.first; n < nodes.end(); ++n) {
+        number[n] = mesh.n_nodes();
+        mesh.x_m.push_back(whole.x_m[n]);
+        mesh.y_m.push_back(whole.y_m[n]);
       }
-  const auto at_cut = [&](Node n) {
-    const int i = column(n);
-    return (i > 0 && !columns.has(i - 1)) || (i < grid.columns && !columns.has(i + 1));
+    }
+    return NodeColumns::Nodes{first, mesh.n_nodes() - first};
+  };
+  int row = 0;
+  for (Grid grid : blocks(whole)) {
+    if (row > 0) take_row(row++);  // the transition below
+    const auto lowest = take_row(row++);
+    grid.first = lowest.first;
+    grid.columns = lowest.count - 1;
+    for (int j = 1; j <= grid.rows; ++j) take_row(row++);
+    if (lowest.first == 0)
+      mesh.grid = grid;
+    else
+      mesh.coarser.push_back(grid);
+  }
+  const auto has = [&](Node n) { return number[n] >= 0; };
+  const auto grids = blocks(whole);
+  const auto block_of = [&](Node n) {
+    return static_cast<int>(std::ranges::upper_bound(grids, n, {}, &Grid::first) - grids.begin()) - 1;
+  };
+  // Columns over which a cell reaches where it is not wrapped around a corner.
+  const auto reach_of = [&](const Cell& cell) {
+    const auto [lowest, highest] = std::ranges::minmax(cell);
+    const int block = block_of(lowest);
+    const bool is_square =
+        block_of(highest) == block && highest < grids[block].first + grids[block].n_nodes();
+    return is_square ? 1 << block : columns_of_cells(whole, block);
+  };
+  // Whether columns of the whole are missing so near to a node.
+  const auto at_cut = [&](Node n, int reach) {
+    const int last = whole.grid.columns, column = of_whole.column_of(n);
+    for (int i = column - reach; i <= column + reach; ++i) {
+      if (whole.period_m > 0 ? !columns.has((i + last) % last) : i >= 0 && i <= last && !columns.has(i))
+        return true;
+    }
+    return false;
   };
   for (const Cell& cell : whole.cells) {
     if (std::ranges::all_of(cell, has)) {
-      mesh.cells.push_back({number(cell[0]), number(cell[1]), number(cell[2]), number(cell[3])});
-    } else if (std::ranges::any_of(cell, [&](Node n) { return has(n) && !at_cut(n); })) {
-      throw UserError("a part of the plate would end within a rounded corner; choose fewer processes");
+      mesh.cells.push_back({number[cell[0]], number[cell[1]], number[cell[2]], number[cell[3]]});
+    } else if (std::ranges::any_of(cell, has)) {
+      const int reach = reach_of(cell);
+      if (std::ranges::any_of(cell, [&](Node n) { return has(n) && !at_cut(n, reach); }))
+        throw UserError("a part of the plate would end within a rounded corner; choose fewer processes");
     }
   }
   const auto take = [&](const std::vector<Node>& from, std::vector<Node>& to) {
     for (const Node n : from)
-      if (has(n)) to.push_back(number(n));
+      if (has(n)) to.push_back(number[n]);
   };
   take(whole.lower, mesh.lower);
   take(whole.top, mesh.top);
   for (AbsorbingNode absorbing : whole.absorbing) {
     if (!has(absorbing.node)) continue;
-    absorbing.node = number(absorbing.node);
+    absorbing.node = number[absorbing.node];
     mesh.absorbing.push_back(absorbing);
   }
   return mesh;

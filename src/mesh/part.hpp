@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -33,14 +34,67 @@ class Subset {
   std::vector<Range> ranges_;
 };
 
-/// The columns of nodes of a mesh that are among `columns`, with the cells between them: a mesh of its own,
-/// whose nodes have the order of the whole one.
+/// The columns of a plate's nodes, counted in the smallest squares: node i of a grid row of the k-th block
+/// upwards stands in column 2^k i, as does the inner node i of the transition above that block, where i is no
+/// multiple of 4. Of a mesh that holds some columns of a plate they are those of the plate, the whole.
+class NodeColumns {
+ public:
+  /// No nodes.
+  NodeColumns() = default;
+  /// Of a whole plate. The nodes of a mesh that knows no grid stand in a column each.
+  explicit NodeColumns(const Mesh& whole);
+  /// Of the columns `held` of a plate with n_columns columns of nodes.
+  NodeColumns(const Mesh& part, const Subset& held, int n_columns);
+  /// Of a part that holds some columns of this whole.
+  NodeColumns of_part(const Subset& held) const;
+
+  int n_columns() const { return n_columns_; }  ///< of the whole
+  Node n_nodes() const { return rows_.empty() ? 0 : row(n_rows() - 1).end(); }
+  /// Rows of nodes, upwards: grid rows and, between blocks, the inner nodes of a transition.
+  int n_rows() const { return static_cast<int>(rows_.size()); }
+  /// Nodes with consecutive numbers, as many as the mesh has of a row.
+  struct Nodes {
+    Node first = 0;
+    int count = 0;
+    Node end() const { return first + count; }
+  };
+  Nodes row(int row) const { return {rows_[row].first, rows_[row].held.count()}; }
+  /// A row's nodes in some neighbouring columns of the whole. @pre the mesh holds these
+  Nodes nodes(int row, Subset::Range columns) const;
+  int row_of(Node n) const;
+  int column_of(Node n) const;
+  /// The number that a node of the mesh has in the whole, and back. @pre the mesh holds it
+  std::int64_t number_in_whole(Node n) const;
+  Node node_of_whole(std::int64_t number) const;
+  /// The column of a node of the whole, by its number there.
+  int column_of_whole(std::int64_t number) const;
+
+ private:
+  struct Row {
+    int block = 0;
+    bool is_inner = false;  ///< of a transition
+    Node first = 0;
+    std::int64_t first_in_whole = 0;
+    Subset held;  ///< places in the row of the whole
+  };
+  void add_row(int block, bool is_inner, const Subset& held);
+  const Row& row_of_whole(std::int64_t number) const;
+
+  int n_columns_ = 0;
+  std::vector<Row> rows_;
+};
+
+/// Columns over which the widest cells of a block, or of the transition above it, reach.
+int columns_of_cells(const Mesh& mesh, int block);
+
+/// The nodes of a mesh in the columns `columns`, with the cells between them: a mesh of its own, whose nodes
+/// have the order of the whole one.
 ///
 /// Right-angled, relieved and rounded corners keep their shape where the part holds them. The part's own
-/// edges, where they are not the plate's, lack the cells beyond. A part of a plate that repeats has either a
-/// single range of columns, or two: then it holds the cells that join the plate's sides, and the last column,
-/// which has no cells, with them.
-/// @pre the mesh has a grid of a single block
+/// edges, where they are not the plate's, lack the cells that reach beyond. A part of a plate that repeats
+/// has either a single range of columns, or two: then it holds the cells that join the plate's sides, and the
+/// last column, which has no cells, with them.
+/// @pre the mesh has a grid
 /// @throws UserError where a cut goes through the cells that are wrapped around a corner
 Mesh columns_of(const Mesh& whole, const Subset& columns);
 

@@ -16,25 +16,46 @@ int rolling_columns(const solid::Operator& op) {
   return op.blocks.empty() ? 0 : op.widest_row();
 }
 
-double stable_step_s_of(const BodySource& source, const solid::Operator& op) {
+BodySteps steps_of(const BodySource& source, const solid::Operator& op, const TimeStepping& time) {
+  if (source.part != nullptr) return source.part->steps;
   const double omega = solid::largest_frequency_rad_per_s(source.mesh, source.material, op);
-  return solid::stable_step_s(omega, source.material.stiffness_damping_s);
+  const double stable_s = solid::stable_step_s(omega, source.material.stiffness_damping_s);
+  return {stable_s, step_multiples(source.mesh, source.material, time, stable_s)};
+}
+
+BodyMotion motion_of(const BodySource& source) {
+  BodyMotion motion{solid::make_operator(source.mesh, source.material),
+                    source.material.stiffness_damping_s,
+                    solid::Field(source.mesh.n_nodes()),
+                    solid::Field(source.mesh.n_nodes()),
+                    {},
+                    {},
+                    {}};
+  if (source.part == nullptr) {
+    motion.columns = mesh::NodeColumns(source.mesh);
+    return motion;
+  }
+  const auto& part = *source.part;
+  motion.columns = mesh::NodeColumns(source.mesh, part.columns, part.n_columns);
+  motion.is_own.resize(source.mesh.n_nodes());
+  for (int r = 0; r < motion.columns.n_rows(); ++r) {
+    const auto nodes = motion.columns.nodes(r, {part.own.begin, part.own.end});
+    const int begin = nodes.first - motion.columns.row(r).first;
+    motion.own.push_back({begin, begin + nodes.count});
+    for (auto n = nodes.first; n < nodes.end(); ++n) motion.is_own[n] = true;
+  }
+  return motion;
 }
 
 }  // namespace
 
-double stable_step_s(const BodySource& body) {
-  return stable_step_s_of(body, solid::make_operator(body.mesh, body.material));
+BodySteps body_steps(const BodySource& body, const TimeStepping& time) {
+  return steps_of(body, solid::make_operator(body.mesh, body.material), time);
 }
 
 Body::Body(const BodySource& source, const TimeStepping& time)
-    : motion_{solid::make_operator(source.mesh, source.material), source.material.stiffness_damping_s,
-              solid::Field(source.mesh.n_nodes()), solid::Field(source.mesh.n_nodes()),
-              source.part == nullptr ? solid::all_columns : source.part->own},
-      stable_step_s_(source.part == nullptr ? stable_step_s_of(source, motion_.op)
-                                            : source.part->stable_step_s),
-      multiples_(source.part == nullptr ? step_multiples(source.mesh, source.material, time, stable_step_s_)
-                                        : source.part->multiples),
+    : motion_(motion_of(source)),
+      steps_(steps_of(source, motion_.op, time)),
       finer_w_(rolling_columns(motion_.op)),
       lower_(source.mesh.lower),
       lower_runs_(runs_of(source.mesh.lower, motion_)),
@@ -43,12 +64,13 @@ Body::Body(const BodySource& source, const TimeStepping& time)
     lower_mass_kg_.push_back(motion_.op.mass_kg[n]);
     lower_y_m_.push_back(source.mesh.y_m[n]);
   }
-  own_lower_ = motion_.is_part() ? lower_in(motion_.own) : solid::Span{0, static_cast<int>(lower_.size())};
+  own_lower_ =
+      source.part != nullptr ? lower_in(source.part->own) : solid::Span{0, static_cast<int>(lower_.size())};
 }
 
 solid::Span Body::lower_in(solid::Span columns) const {
   const auto is_in = [&](mesh::Node n) {
-    const int column = n % motion_.op.grid.stride();
+    const int column = motion_.columns.column_of(n);
     return column >= columns.begin && column < columns.end;
   };
   const auto begin = std::ranges::find_if(lower_, is_in);
@@ -59,7 +81,7 @@ solid::Span Body::lower_in(solid::Span columns) const {
 void Body::divide(const BodySource& source, const TimeStepping& time, double step_s, int substeps) {
   auto stepping = time;
   stepping.interface_substeps = substeps;
-  levels_ = make_levels(source.mesh, source.material, motion_, stepping, step_s, multiples_,
+  levels_ = make_levels(source.mesh, source.material, motion_, stepping, step_s, steps_.multiples,
                         source.part == nullptr ? LargestOfParts{} : source.part->largest);
   if (time.precision == Precision::single_precision)
     single_ = make_single_rows(levels_.level.front(), motion_.op);
@@ -242,7 +264,7 @@ solid::Field Body::mean_velocity_m_per_s() const {
 }
 
 double Body::kinetic_energy_J_per_m() const {
-  if (!motion_.is_part()) return solid::kinetic_energy_J_per_m(motion_.op, motion_.v_m_per_s);
+  if (motion_.own.empty()) return solid::kinetic_energy_J_per_m(motion_.op, motion_.v_m_per_s);
   const auto& v = motion_.v_m_per_s;
   double energy = 0;
   for_own_nodes([&](mesh::Node n) { energy += motion_.op.mass_kg[n] * (v.x[n] * v.x[n] + v.y[n] * v.y[n]); });
@@ -251,7 +273,7 @@ double Body::kinetic_energy_J_per_m() const {
 
 double Body::mass_kg_per_m() const {
   const auto& mass_kg = motion_.op.mass_kg;
-  if (!motion_.is_part()) return std::reduce(mass_kg.begin(), mass_kg.end());
+  if (motion_.own.empty()) return std::reduce(mass_kg.begin(), mass_kg.end());
   double mass = 0;
   for_own_nodes([&](mesh::Node n) { mass += mass_kg[n]; });
   return mass;

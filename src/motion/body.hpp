@@ -26,7 +26,7 @@ struct BodyStep {
 };
 
 /// Of a whole body.
-double stable_step_s(const BodySource& body);
+BodySteps body_steps(const BodySource& body, const TimeStepping& time);
 
 /// A deformable body on its own: its cells in levels, each with a step of its own, and its motion. It knows
 /// nothing of contact: the velocities of its interface nodes are kicked by its cells, and someone else moves
@@ -39,9 +39,10 @@ class Body {
   /// @throws UserError where the interface rows do not fit into the mesh.
   Body(const BodySource& source, const TimeStepping& time);
 
-  double stable_step_s() const { return stable_step_s_; }
+  double stable_step_s() const { return steps_.stable_step_s; }
+  const BodySteps& steps() const { return steps_; }
   /// Steps of the lowest block in a step of the coarsest one.
-  int multiple() const { return multiples_.back(); }
+  int multiple() const { return steps_.multiples.back(); }
 
   /// Divides the cells into levels, before anything else.
   /// @param step_s      of the coarsest level
@@ -52,6 +53,7 @@ class Body {
   void expect_steps_under_way(int n);
 
   const solid::Operator& op() const { return motion_.op; }
+  const mesh::NodeColumns& columns() const { return motion_.columns; }
   const solid::Field& u_m() const { return motion_.u_m; }
   const solid::Field& v_m_per_s() const { return motion_.v_m_per_s; }
   double damping_s() const { return motion_.damping_s; }
@@ -112,7 +114,7 @@ class Body {
 
   /// See Stepper::visit_state. @param b  number of the body
   template <class Visitor>
-  void visit_state(Visitor& visitor, std::size_t b, const PlaceInWhole& place);
+  void visit_state(Visitor& visitor, std::size_t b);
 
   /// Energies and works up to the last half (sub-)step.
   record::Energies energies();
@@ -136,8 +138,8 @@ class Body {
  private:
   template <class F>
   void for_own_nodes(F&& f) const {
-    for (const auto& row : motion_.op.rows)
-      for (int i = motion_.own.begin; i < std::min(motion_.own.end, row.count); ++i) f(row.first + i);
+    for (int r = 0; r < motion_.columns.n_rows(); ++r)
+      for (int i = motion_.own[r].begin; i < motion_.own[r].end; ++i) f(motion_.columns.row(r).first + i);
   }
   void push(StepLevel& level, record::Energies& works);
   /// Products of the landings since the last push of a level, if it is the last one.
@@ -146,8 +148,7 @@ class Body {
   void find_steady_force(StepLevel& level);
 
   BodyMotion motion_;
-  double stable_step_s_ = 0;
-  std::vector<int> multiples_;
+  BodySteps steps_;
   StepLevels levels_;
   SingleRows single_;           ///< none unless time.precision is single
   solid::RollingRows finer_w_;  ///< of u + beta_R v, of the other levels' sweeps
@@ -163,36 +164,37 @@ class Body {
 
 template <class Visit>
 void Body::visit_columns(solid::Span columns, Visit&& visit) {
-  const auto width = static_cast<std::size_t>(columns.end - columns.begin);
-  for (const auto& row : motion_.op.rows)
+  const auto nodes_of_row = [&](int row) { return motion_.columns.nodes(row, {columns.begin, columns.end}); };
+  for (int r = 0; r < motion_.columns.n_rows(); ++r) {
+    const auto nodes = nodes_of_row(r);
     for (auto* values : {&motion_.u_m.x, &motion_.u_m.y, &motion_.v_m_per_s.x, &motion_.v_m_per_s.y})
-      visit(values->data() + row.first + columns.begin, width);
-  const int stride = motion_.op.grid.stride();
+      visit(values->data() + nodes.first, static_cast<std::size_t>(nodes.count));
+  }
   for (auto& level : levels_.level) {
     auto& s = level.shared;
-    for (std::size_t k = 0; k < s.node.size(); ++k) {
-      const int column = s.node[k] % stride;
-      if (column < columns.begin || column >= columns.end) continue;
+    auto next = s.node.begin();
+    while (next != s.node.end()) {
+      const int row = motion_.columns.row_of(*next);
+      const auto nodes = nodes_of_row(row);
+      const auto begin = std::lower_bound(next, s.node.end(), nodes.first);
+      const auto end = std::lower_bound(begin, s.node.end(), nodes.end());
+      const auto at = begin - s.node.begin();
       for (auto* field : {&s.u_before_m, &s.push_m_per_s, &s.steady_m_per_s2, &s.v_last_m_per_s}) {
-        visit(&field->x[k], 1);
-        visit(&field->y[k], 1);
+        visit(field->x.data() + at, static_cast<std::size_t>(end - begin));
+        visit(field->y.data() + at, static_cast<std::size_t>(end - begin));
       }
+      next = std::lower_bound(end, s.node.end(), motion_.columns.row(row).end());
     }
   }
 }
 
 template <class Visitor>
-void Body::visit_state(Visitor& visitor, std::size_t b, const PlaceInWhole& place) {
-  const int stride = motion_.op.grid.stride();
+void Body::visit_state(Visitor& visitor, std::size_t b) {
+  const auto& columns = motion_.columns;
   const auto list_of_nodes = [&](std::size_t n, auto&& node_of, auto&& each) {
     visitor.list(
-        KeptBy::node, b, n,
-        [&](std::size_t k) {
-          const auto node = node_of(k);
-          return static_cast<std::int64_t>(node / stride) * place.stride +
-                 place.columns.number_at(node % stride);
-        },
-        [&](std::size_t k) { return node_of(k) % stride; }, each);
+        KeptBy::node, b, n, [&](std::size_t k) { return columns.number_in_whole(node_of(k)); },
+        [&](std::size_t k) { return columns.column_of(node_of(k)); }, each);
   };
   auto& u = motion_.u_m;
   auto& v = motion_.v_m_per_s;
@@ -227,14 +229,17 @@ void Body::visit_state(Visitor& visitor, std::size_t b, const PlaceInWhole& plac
           f(level.top_force_N[r].x);
           f(level.top_force_N[r].y);
         });
-    const auto width = static_cast<std::size_t>(stride);
+    // Only the lowest block has edges with a stencil.
+    const auto width = static_cast<std::size_t>(columns.row(0).count);
+    const auto column_of = [&](std::size_t k) {
+      return columns.column_of(static_cast<mesh::Node>(k % width));
+    };
     visitor.list(
         KeptBy::column, b, level.edge_kick_m_per_s.size() * width,
         [&](std::size_t k) {
-          return static_cast<std::int64_t>(k / width) * place.stride +
-                 place.columns.number_at(static_cast<int>(k % width));
+          return static_cast<std::int64_t>(k / width) * columns.n_columns() + column_of(k);
         },
-        [&](std::size_t k) { return static_cast<int>(k % width); },
+        column_of,
         [&](std::size_t k, auto&& f) {
           auto& kick = level.edge_kick_m_per_s[k / width];
           f(kick[k % width]);

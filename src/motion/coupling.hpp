@@ -148,7 +148,7 @@ void Coupling::visit_state(Visitor& visitor, const Body& plate, const PlaceInWho
   visitor.list(
       KeptBy::place, 0, face_.size(),
       [&](std::size_t k) { return place.lower.number_at(static_cast<int>(k)); },
-      [&](std::size_t k) { return plate.lower()[k] % plate.op().grid.stride(); },
+      [&](std::size_t k) { return plate.columns().column_of(plate.lower()[k]); },
       [&](std::size_t k, auto&& f) {
         for (auto* values :
              {&face_.intact, &face_.v_x_m_per_s, &face_.v_y_m_per_s, &face_.u_y_m, &face_.slip_rate_m_per_s,

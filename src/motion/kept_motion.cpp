@@ -151,8 +151,8 @@ void KeptMotion::sort() {
   }
 }
 
-KeptMotion KeptMotion::in(const mesh::Subset& columns, const mesh::Subset& lower, int stride, int part,
-                          int n_parts) const {
+KeptMotion KeptMotion::in(const mesh::Subset& columns, const mesh::Subset& lower,
+                          std::span<const mesh::NodeColumns> bodies, int part, int n_parts) const {
   std::vector<double> its_sums;
   if (std::ssize(sums) == n_parts) {
     its_sums = sums[static_cast<std::size_t>(part)];
@@ -162,11 +162,16 @@ KeptMotion KeptMotion::in(const mesh::Subset& columns, const mesh::Subset& lower
   }
   KeptMotion of_part{step, {}, {std::move(its_sums)}, flags, trigger};
   for (const auto& list : values) {
+    if (list.body >= bodies.size()) throw_of_others();
+    const auto& body = bodies[list.body];
     const auto& subset = list.by == By::place ? lower : columns;
+    const auto number_of = [&](std::int64_t key) {
+      if (list.by == By::place) return static_cast<int>(key);
+      return list.by == By::node ? body.column_of_whole(key) : static_cast<int>(key % body.n_columns());
+    };
     Values some{list.by, list.body, list.width, {}, {}};
     for (std::size_t k = 0; k < list.key.size(); ++k) {
-      const auto at = list.by == By::place ? list.key[k] : list.key[k] % stride;
-      if (!subset.has(static_cast<int>(at))) continue;
+      if (!subset.has(number_of(list.key[k]))) continue;
       some.key.push_back(list.key[k]);
       const auto from = list.value.begin() + static_cast<std::ptrdiff_t>(k * list.width);
       some.value.insert(some.value.end(), from, from + static_cast<std::ptrdiff_t>(list.width));

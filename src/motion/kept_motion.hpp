@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "interface/trigger.hpp"
@@ -24,7 +25,7 @@ struct KeptMotion {
     By by = By::node;
     std::uint8_t body = 0;
     std::uint32_t width = 0;
-    std::vector<std::int64_t> key;  ///< a column's is that of the whole, `stride` more for each further row
+    std::vector<std::int64_t> key;  ///< a column's is that of the whole, n_columns more for each further row
     std::vector<double> value;      ///< [keys x width]
     template <class Archive>
     void serialize(Archive& archive) {
@@ -44,9 +45,9 @@ struct KeptMotion {
   /// Brings each list into the order of its keys, which restore needs.
   void sort();
   /// Of sorted lists those in some columns, and places along the interface; for one of so many parts.
-  /// @param stride  columns of nodes of the whole
-  KeptMotion in(const mesh::Subset& columns, const mesh::Subset& lower, int stride, int part,
-                int n_parts) const;
+  /// @param bodies  the whole ones
+  KeptMotion in(const mesh::Subset& columns, const mesh::Subset& lower,
+                std::span<const mesh::NodeColumns> bodies, int part, int n_parts) const;
 
   template <class Archive>
   void serialize(Archive& archive) {

@@ -65,6 +65,7 @@ class RowsAround {
 double general_product(const StepLevel& level, const BodyMotion& body, const solid::Field& x) {
   double sum = 0;
   for (const auto& run : level.general_runs) {
+    if (!run.counts) continue;
     const auto at = run.at, count = run.count;
     const auto first = run.first;
     const double* mass = &body.op.mass_kg[first];
@@ -137,8 +138,8 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
   solid::KickSums kicks = products.kicks, not_counted;
   products.kicks = {};
   double kick_scale = 1;
-  const auto sums_of = [&](solid::Span span) -> solid::KickSums& {
-    return body.counts(span) ? kicks : not_counted;
+  const auto sums_of = [&](int row, solid::Span span) -> solid::KickSums& {
+    return body.counts(row, span) ? kicks : not_counted;
   };
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
@@ -161,14 +162,14 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
       const int inner = squares == solid::Squares::right ? 1 : -1;
       for (const auto span : spans)
         solid::push_side_node(side, span.begin, inner, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1),
-                              v_x, v_y, u_x, u_y, sums_of(span));
+                              v_x, v_y, u_x, u_y, sums_of(j, span));
       continue;
     }
     if (squares == solid::Squares::all) {
       const auto interior = solid::scaled(body.op.interior, -dt * scale);
       for (const auto span : spans)
         push_interior(interior, span, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1), v_x, v_y, u_x,
-                      u_y, sums_of(span));
+                      u_y, sums_of(j, span));
       continue;
     }
     const auto above = solid::scaled(body.op.edge, -dt * scale);
@@ -180,7 +181,7 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
     for (const auto span : spans) {
       const auto [u_d, v_d] =
           solid::kick_edge_row(stencil, span, row_of(w, j), inner, {u_x, u_y}, {v_x, v_y}, kick_x, kick_y);
-      if (!body.counts(span)) continue;
+      if (!body.counts(j, span)) continue;
       // The nodes of an edge with a stencil have one mass.
       const double mass = body.op.mass_kg[o + span.begin];
       products.u_K_w -= mass / dt * u_d;
@@ -277,7 +278,7 @@ StiffnessProducts products_with(const StepLevel& level, const BodyMotion& body, 
                            a_x.data(), a_y.data());
     const solid::ConstRow a{a_x.data(), a_y.data()};
     for (const auto span : row.spans) {
-      if (!body.counts(span)) continue;
+      if (!body.counts(row.row, span)) continue;
       sums.u_K_u += solid::row_product(span, &mass[o], a, row_of(w, row.row));
       sums.v_K_u += solid::row_product(span, &mass[o], a, {&v.x[o], &v.y[o]});
     }
@@ -476,7 +477,7 @@ void push_band(const StepLevel& level, const Band& band, BodyMotion& body, Singl
       }
     }
     for (const auto span : row_of_stencil.spans) {
-      auto& sums = body.counts(span) ? kicks : not_counted;
+      auto& sums = body.counts(j, span) ? kicks : not_counted;
       if (squares == solid::Squares::all) {
         push_interior(interior, span, dt, row(j + 2), row(j), row(j + 1), v_x, v_y, u_x, u_y, sums);
       } else {
@@ -608,7 +609,7 @@ double late_product(const StepLevel& level, const Band& band, const BodyMotion& 
     const double* kick_x = level.edge_kick_m_per_s[edge++].data();
     const solid::ConstRow kick{kick_x, kick_x + body.op.grid.stride()};
     for (const auto span : row.spans)
-      if (body.counts(span))
+      if (body.counts(row.row, span))
         sum -= solid::row_product(span, &body.op.mass_kg[o], kick, {&v.x[o], &v.y[o]}) / level.step_s;
   }
   if (band.has_top)

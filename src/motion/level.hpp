@@ -9,6 +9,7 @@
 
 #include "base/state.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/part.hpp"
 #include "motion/damping_work.hpp"
 #include "motion/settings.hpp"
 #include "record/energies.hpp"
@@ -23,17 +24,17 @@ struct BodyMotion {
   solid::Operator op;
   double damping_s = 0;
   solid::Field u_m, v_m_per_s;
-  /// Columns of nodes that count in energies and works: all, but for a part of a larger body. There a run, or
-  /// a span of a stencil row, lies within them or outside.
-  solid::Span own = solid::all_columns;
+  mesh::NodeColumns columns;
+  /// Of a part of a larger body the nodes that count in energies and works: in each row, by their places
+  /// there, and for each node. A run, or a span of a stencil row, lies within them or outside. Empty for a
+  /// whole body, of which all count.
+  std::vector<solid::Span> own;
+  std::vector<bool> is_own;
 
-  bool is_part() const { return own.end != solid::all_columns.end; }
-  bool counts(solid::Span columns) const { return columns.begin >= own.begin && columns.begin < own.end; }
-  bool counts(mesh::Node n) const {
-    if (!is_part()) return true;
-    const int column = n % op.grid.stride();
-    return column >= own.begin && column < own.end;
+  bool counts(int row, solid::Span nodes) const {
+    return own.empty() || (nodes.begin >= own[row].begin && nodes.begin < own[row].end);
   }
+  bool counts(mesh::Node n) const { return is_own.empty() || is_own[n]; }
 };
 
 /// Nodes with consecutive numbers in a list: node at + k is first + k for k < count.
@@ -156,6 +157,15 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::str
 /// @param stable_step_s  of the whole body
 std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
                                 const TimeStepping& time, double stable_step_s);
+
+/// How often a level's cells push their nodes, in steps of the last level, and over how many columns they
+/// reach.
+struct LevelReach {
+  int period = 1, columns = 1;
+};
+/// Of a body's levels, coarsest first.
+std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeStepping& time,
+                                        std::span<const int> multiples);
 
 /// Replaces each of some numbers by the largest that any part of a body has there; empty for a whole body.
 using LargestOfParts = std::function<void(std::span<double>)>;

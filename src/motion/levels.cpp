@@ -235,9 +235,11 @@ std::vector<bool> nodes_of(const mesh::Mesh& mesh, const std::vector<bool>& in_l
   return is_in;
 }
 
-/// Divides the spans of stencil rows where columns begin and cease to count.
-void split_spans(std::vector<solid::StencilRow>& rows, solid::Span own) {
+/// Divides the spans of stencil rows where nodes begin and cease to count.
+void split_spans(std::vector<solid::StencilRow>& rows, const std::vector<solid::Span>& own_of_row) {
+  if (own_of_row.empty()) return;
   for (auto& row : rows) {
+    const auto own = own_of_row[row.row];
     std::vector<solid::Span> spans;
     for (auto span : row.spans) {
       for (const int at : {own.begin, own.end}) {
@@ -295,15 +297,17 @@ void set_loaded_edge(StepLevel& level, std::size_t l, const mesh::Mesh& mesh, co
 }
 
 /// Neighbouring general rows that are treated alike.
-void set_general_runs(StepLevel& level) {
+void set_general_runs(StepLevel& level, const BodyMotion& body) {
   for (int r = level.general.begin; r < level.general.end; ++r) {
+    const bool counts = body.counts(level.irregular[r]);
     const bool goes_on = r > level.general.begin && level.irregular[r] == level.irregular[r - 1] + 1 &&
+                         counts == level.general_runs.back().counts &&
                          level.takes_push[r] == level.takes_push[r - 1] &&
                          level.moves[r] == level.moves[r - 1];
     if (goes_on) {
       ++level.general_runs.back().count;
     } else {
-      level.general_runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1});
+      level.general_runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1, counts});
     }
   }
 }
@@ -345,6 +349,17 @@ void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLeve
 }
 
 }  // namespace
+
+std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeStepping& time,
+                                        std::span<const int> multiples) {
+  std::vector<LevelReach> levels;
+  for (const int period : periods_of_levels(time, multiples)) levels.push_back({period, 1});
+  for (int block = 0; block < std::ssize(multiples); ++block) {
+    auto& level = *std::ranges::find(levels, multiples[block] * time.interface_substeps, &LevelReach::period);
+    level.columns = std::max(level.columns, mesh::columns_of_cells(mesh, block));
+  }
+  return levels;
+}
 
 StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
                        const TimeStepping& time, double step_s, std::span<const int> multiples,
@@ -390,7 +405,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
     set_loaded_edge(level, l, mesh, material, levels.level_of_node, in_level, in_cells);
   }
   set_dashpots(levels, mesh, material, body);
-  for (auto& level : levels.level) set_general_runs(level);
+  for (auto& level : levels.level) set_general_runs(level, body);
   set_coarsest_bands(mesh, body, levels, largest);
   for (auto& level : std::span(levels.level).subspan(1)) set_bands(level, op, {op.n_rows() - 1});
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)

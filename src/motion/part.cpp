@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -55,16 +54,29 @@ mesh::Subset Division::all(int part) const {
   return mesh::Subset({{begin, end}});
 }
 
-int columns_per_step(std::span<const double> stable_steps_s, const TimeStepping& time) {
-  const double least_s = *std::ranges::min_element(stable_steps_s);
-  int substeps = 1, least_period = std::numeric_limits<int>::max();
-  for (const double stable_s : stable_steps_s) {
-    const int period = steps_at_once(stable_s, least_s) * time.interface_substeps;
-    substeps = std::lcm(substeps, period);
-    least_period = std::min(least_period, period);
+int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
+                     const TimeStepping& time) {
+  const double least_s = std::ranges::min(steps, {}, &BodySteps::stable_step_s).stable_step_s;
+  std::vector<std::vector<LevelReach>> levels;
+  int substeps = 1;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    auto of_body = time;
+    of_body.interface_substeps *= steps_at_once(steps[b].stable_step_s, least_s);
+    levels.push_back(reach_of_levels(bodies[b].mesh, of_body, steps[b].multiples));
+    substeps = std::lcm(substeps, levels.back().front().period);
   }
-  const bool is_layered = time.interface_substeps > 1;
-  return is_layered ? substeps + substeps / least_period : substeps;
+  int columns = 0;
+  for (int k = 0; k < substeps; ++k) {
+    int farthest = 0;
+    for (const auto& of_body : levels) {
+      int together = 0;
+      for (const auto& level : of_body)
+        if (k % level.period == 0) together += level.columns;
+      farthest = std::max(farthest, together);
+    }
+    columns += farthest;
+  }
+  return columns;
 }
 
 Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach) {
@@ -77,7 +89,7 @@ Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_ste
   division.steps_per_exchange = std::clamp(static_cast<int>(0.5 * tolerated_halo * width / columns_per_step),
                                            1, most_steps_per_exchange);
   division.columns_per_step = columns_per_step;
-  division.halo = division.steps_per_exchange * columns_per_step + std::max(1, reach);
+  division.halo = division.steps_per_exchange * columns_per_step + reach;
   // The halos of two parts of a ring do not meet.
   const int least_width = division.is_ring && n_parts == 2 ? 2 * division.halo + 1 : division.halo;
   if (n_parts > 1 && width < least_width)
@@ -88,31 +100,38 @@ Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_ste
   return division;
 }
 
+Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
+                       const TimeStepping& time, int n_parts, int halo) {
+  // Probes look at all nodes of a cell, wherever its first one lies.
+  int reach = halo;
+  for (const auto& body : bodies) reach = std::max(reach, 1 << body.mesh.coarser.size());
+  return divide_columns(bodies.front().mesh, n_parts, columns_per_step(bodies, steps, time), reach);
+}
+
 Part::Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
            const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
-           const PlaceInWhole& place)
-    : processes_(processes), division_(division), place_(place) {
+           const mesh::Subset& lower)
+    : processes_(processes), division_(division), place_{division.own(processes.rank()), lower} {
   const int rank = processes.rank(), n_parts = division.n_parts();
   stepper_ = std::make_unique<Stepper>(sources, contact, time, execution);
-  const auto own = place_.own;
   const auto width = [](int begin, int count) { return solid::Span{begin, begin + count}; };
   // Beyond the sides of a plate that repeats lie the columns of its other end.
-  const auto span_of = [&](int first_column, int count) {
+  const auto beyond = [&](int first_column, int count) {
     const int n = division.first.back();
-    return width(place_.columns.place_of((first_column + n) % n), count);
+    return width((first_column + n) % n, count);
   };
   const int below = division.halo_below(rank), above = division.halo_above(rank);
-  const auto columns = division.own(rank);
+  const auto own = place_.own;
   if (below > 0)
     neighbours_.push_back({(rank + n_parts - 1) % n_parts,
                            width(own.begin, below),
-                           span_of(columns.begin - below, below),
+                           beyond(own.begin - below, below),
                            true,
                            {},
                            {}});
   if (above > 0)
     neighbours_.push_back(
-        {(rank + 1) % n_parts, width(own.end - above, above), span_of(columns.end, above), false, {}, {}});
+        {(rank + 1) % n_parts, width(own.end - above, above), beyond(own.end, above), false, {}, {}});
   // Messages between the same two are matched in their order.
   if (n_parts == 2 && rank == 1 && neighbours_.size() == 2) std::swap(neighbours_[0], neighbours_[1]);
 }
@@ -347,9 +366,9 @@ void Part::renew_halo() {
 void Part::put_snapshot(Parcel& answer) const {
   const auto put = [&](const Body& body, const std::vector<double>& values) {
     std::vector<double> own;
-    for (const auto& row : body.op().rows) {
-      const auto begin = values.begin() + row.first;
-      own.insert(own.end(), begin + place_.own.begin, begin + place_.own.end);
+    for (int r = 0; r < body.columns().n_rows(); ++r) {
+      const auto nodes = body.columns().nodes(r, {place_.own.begin, place_.own.end});
+      own.insert(own.end(), values.begin() + nodes.first, values.begin() + nodes.end());
     }
     answer.put(own);
   };

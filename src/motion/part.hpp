@@ -37,9 +37,11 @@ struct Division {
   int halo_above(int part) const { return n_parts() > 1 && (part + 1 < n_parts() || is_ring) ? halo : 0; }
 };
 
-/// Columns into which what is wrong at a part's edge may get within a step: the pushes of all levels.
-/// @param stable_steps_s  of each body
-int columns_per_step(std::span<const double> stable_steps_s, const TimeStepping& time);
+/// Columns into which what is wrong at a part's edge may get within a step. A push carries it over the cells
+/// that push, those of a block 2^k columns, of the transition above it twice as many; as far as all the
+/// pushes of a step's levels together do, one after the other. Two bodies push at the same time.
+int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
+                     const TimeStepping& time);
 
 /// Parts of nearly equal width.
 /// @param mesh              of the whole plate
@@ -47,6 +49,11 @@ int columns_per_step(std::span<const double> stable_steps_s, const TimeStepping&
 /// @param reach             columns beyond its own that a part looks at
 /// @throws UserError where the parts would be narrower than their halo
 Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach);
+/// The same for bodies.
+/// @param steps  of each body
+/// @param halo   columns around an onset whose tractions are recorded
+Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
+                       const TimeStepping& time, int n_parts, int halo);
 
 /// What is asked of all parts at a time. The number of the command is followed by its values.
 enum class PartCommand : int {
@@ -89,10 +96,10 @@ class Part {
  public:
   /// @param sources   the bodies' columns `division.all(processes.rank())`, with their PartOfBody
   /// @param contact   of the part's interface nodes
-  /// @param place     of the part in the whole
+  /// @param lower     their places along the whole interface
   Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
        const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
-       const PlaceInWhole& place);
+       const mesh::Subset& lower);
 
   /// Carries out a command between build and release.
   Parcel carry_out(PartCommand command, Parcel& given);
@@ -119,7 +126,7 @@ class Part {
   PlaceInWhole place_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<SlipFinder> finder_;
-  /// Columns that go to a neighbour and come from it, in the part's columns.
+  /// Columns that go to a neighbour and come from it.
   struct Neighbour {
     int rank = 0;
     solid::Span out, in;

@@ -10,9 +10,10 @@
 namespace slipfront::motion {
 
 mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns) {
+  const mesh::NodeColumns of_nodes(mesh);
   std::vector<mesh::Subset::Range> ranges;
   for (int k = 0; k < std::ssize(mesh.lower); ++k) {
-    if (!columns.has(mesh.lower[static_cast<std::size_t>(k)] % mesh.grid.stride())) continue;
+    if (!columns.has(of_nodes.column_of(mesh.lower[static_cast<std::size_t>(k)]))) continue;
     if (!ranges.empty() && ranges.back().end == k)
       ++ranges.back().end;
     else
@@ -38,17 +39,17 @@ std::vector<T> cut(const std::vector<T>& values, const mesh::Subset& places) {
   return some;
 }
 
-/// Some columns of a field over a whole grid.
-void put_columns(const mesh::Grid& grid, const mesh::Subset& columns, const solid::Field& field, Parcel& to) {
+/// Some columns of a field over a whole body.
+void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, const solid::Field& field,
+                 Parcel& to) {
   std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(columns.count()) * static_cast<std::size_t>(grid.rows + 1));
   for (const auto* component : {&field.x, &field.y}) {
     values.clear();
-    for (int j = 0; j <= grid.rows; ++j) {
-      const auto row = component->begin() + grid.node(0, j);
-      for (const auto& range : columns.ranges())
-        values.insert(values.end(), row + range.begin, row + range.end);
-    }
+    for (int r = 0; r < body.n_rows(); ++r)
+      for (const auto& range : columns.ranges()) {
+        const auto nodes = body.nodes(r, range);
+        values.insert(values.end(), component->begin() + nodes.first, component->begin() + nodes.end());
+      }
     to.put(values);
   }
 }
@@ -58,7 +59,7 @@ void put_columns(const mesh::Grid& grid, const mesh::Subset& columns, const soli
 PartedStepper::PartedStepper(Processes& processes, const Division& division, std::unique_ptr<Part> own,
                              std::span<const mesh::Mesh* const> bodies)
     : processes_(processes), division_(division), own_(std::move(own)) {
-  for (const auto* body : bodies) grids_.push_back(body->grid);
+  for (const auto* body : bodies) columns_.emplace_back(*body);
   for (int part = 0; part < division.n_parts(); ++part) {
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
     own_lower_.push_back(own_lower_in(*bodies.front(), division.own(part)));
@@ -110,11 +111,11 @@ void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_
     Parcel parcel;
     const auto columns = division_.all(part);
     const auto& lower = all_lower_[static_cast<std::size_t>(part)];
-    put_columns(grids_.front(), columns, e.u_m, parcel);
-    put_columns(grids_.front(), columns, e.u_per_shear, parcel);
-    if (grids_.size() > 1) {
-      put_columns(grids_.back(), columns, e.below_u_m, parcel);
-      put_columns(grids_.back(), columns, e.below_u_per_shear, parcel);
+    put_columns(columns_.front(), columns, e.u_m, parcel);
+    put_columns(columns_.front(), columns, e.u_per_shear, parcel);
+    if (columns_.size() > 1) {
+      put_columns(columns_.back(), columns, e.below_u_m, parcel);
+      put_columns(columns_.back(), columns, e.below_u_per_shear, parcel);
     }
     parcel.put(cut(e.tractions.t_s_Pa, lower)).put(cut(e.tractions.p_s_Pa, lower));
     parcel.put(cut(e.contact, lower)).put(top_speed_m_per_s);
@@ -134,14 +135,14 @@ void PartedStepper::watch(std::vector<Probe> probes) {
   std::vector<std::vector<std::pair<std::size_t, mesh::Cell>>> of_part(
       static_cast<std::size_t>(division_.n_parts()));
   for (const auto& probe : probes_) {
-    const int stride = grids_[probe.body].stride();
-    const int column = probe.node[0] % stride;
+    const auto& body = columns_[probe.body];
+    const int column = body.column_of(probe.node[0]);
     const auto after = std::ranges::upper_bound(division_.first, column);
     const int part = std::min(static_cast<int>(after - division_.first.begin()) - 1, division_.n_parts() - 1);
     part_of_probe_.push_back(part);
-    const auto all = division_.all(part);
+    const auto held = body.of_part(division_.all(part));
     auto node = probe.node;
-    for (auto& n : node) n = n / stride * all.count() + all.place_of(n % stride);
+    for (auto& n : node) n = held.node_of_whole(n);
     of_part[static_cast<std::size_t>(part)].emplace_back(probe.body, node);
   }
   ask(PartCommand::watch, [&](int part) {
@@ -341,7 +342,7 @@ double PartedStepper::energy_of_tractions_J_per_m() const {
 
 std::int64_t PartedStepper::n_nodes() const {
   std::int64_t n = 0;
-  for (const auto& grid : grids_) n += grid.n_nodes();
+  for (const auto& body : columns_) n += body.n_nodes();
   return n;
 }
 
@@ -352,24 +353,23 @@ Snapshot PartedStepper::snapshot() const {
   std::size_t before = 0;
   const auto n = static_cast<std::size_t>(n_nodes());
   all.u_m = all.v_m_per_s = solid::Field(n);
-  for (std::size_t b = 0; b < grids_.size(); ++b) {
-    const auto& grid = grids_[b];
+  for (std::size_t b = 0; b < columns_.size(); ++b) {
+    const auto& body = columns_[b];
     for (int part = 0; part < division_.n_parts(); ++part) {
       const auto own = division_.own(part);
-      const auto width = own.end - own.begin;
       for (auto* values : {&all.u_m.x, &all.u_m.y, &all.v_m_per_s.x, &all.v_m_per_s.y}) {
         const auto of_part = answers[static_cast<std::size_t>(part)].take_all<double>();
         // Bodies below are described upside down.
         const bool turns = b > 0 && (values == &all.u_m.y || values == &all.v_m_per_s.y);
-        for (int j = 0; j <= grid.rows; ++j)
-          for (int i = 0; i < width; ++i) {
-            const double value = of_part[static_cast<std::size_t>(j * width + i)];
-            (*values)[before + static_cast<std::size_t>(grid.node(own.begin + i, j))] =
-                turns ? -value : value;
-          }
+        auto from = of_part.begin();
+        for (int r = 0; r < body.n_rows(); ++r) {
+          const auto nodes = body.nodes(r, {own.begin, own.end});
+          for (auto node = nodes.first; node < nodes.end(); ++node, ++from)
+            (*values)[before + static_cast<std::size_t>(node)] = turns ? -*from : *from;
+        }
       }
     }
-    before += static_cast<std::size_t>(grid.n_nodes());
+    before += static_cast<std::size_t>(body.n_nodes());
   }
   return all;
 }
@@ -390,7 +390,7 @@ void PartedStepper::restore(const KeptMotion& kept) {
   ask(PartCommand::restore, [&](int part) {
     Parcel parcel;
     sorted
-        .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], grids_.front().stride(), part,
+        .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], columns_, part,
             division_.n_parts())
         .put(parcel);
     return parcel;

@@ -74,7 +74,7 @@ class PartedStepper final : public TimeStepper {
   Processes& processes_;
   Division division_;
   std::unique_ptr<Part> own_;
-  std::vector<mesh::Grid> grids_;  ///< of the whole bodies
+  std::vector<mesh::NodeColumns> columns_;  ///< of the whole bodies
   /// Interface nodes of each part: all that it computes, and those that count.
   std::vector<mesh::Subset> all_lower_;
   std::vector<solid::Span> own_lower_;

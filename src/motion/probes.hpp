@@ -17,11 +17,18 @@
 
 namespace slipfront::motion {
 
+/// What a body's steps follow from.
+struct BodySteps {
+  double stable_step_s = 0;
+  std::vector<int> multiples;  ///< see step_multiples
+};
+
 /// What a part of a larger body, some columns of its mesh, has to know of the whole.
 struct PartOfBody {
-  solid::Span own;              ///< columns of nodes that this part, and no other, accounts for
-  double stable_step_s = 0;     ///< of the whole body
-  std::vector<int> multiples;   ///< of the whole body, see step_multiples
+  mesh::Subset columns;         ///< of the whole body's, those that its mesh holds
+  int n_columns = 0;            ///< of the whole body
+  solid::Span own;              ///< columns that this part, and no other, accounts for
+  BodySteps steps;              ///< of the whole body
   LargestOfParts largest = {};  ///< of all parts
 };
 
@@ -36,12 +43,10 @@ struct BodySource {
 /// columns of nodes.
 enum class KeptBy : std::uint8_t { node, place, column };
 
-/// Where a stepper's columns lie in the whole bodies.
+/// Where a stepper of some columns of the bodies lies in the whole ones.
 struct PlaceInWhole {
-  solid::Span own = solid::all_columns;  ///< columns to be kept, in the stepper's own count
-  mesh::Subset columns;                  ///< of the whole, in the stepper's order
-  int stride = 0;                        ///< columns of nodes of the whole
-  mesh::Subset lower;                    ///< the same along the interface
+  solid::Span own = solid::all_columns;  ///< columns that it accounts for
+  mesh::Subset lower;                    ///< places of its nodes along the interface
 };
 
 /// A place within a cell of a body, at which its motion, strain and stress are recorded.

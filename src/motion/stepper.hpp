@@ -118,7 +118,7 @@ class Stepper : public TimeStepper {
   Snapshot snapshot() const override;
 
   /// Calls visit(values, n) with all that changes between two calls of advance and decides on the motion of
-  /// some columns of nodes; with take_columns after it others may be put there. Of plates of one block.
+  /// some neighbouring columns of nodes; with take_columns after it others may be put there.
   template <class Visit>
   void visit_columns(solid::Span columns, Visit&& visit) {
     for (auto& body : bodies_) body.visit_columns(columns, visit);
@@ -131,7 +131,7 @@ class Stepper : public TimeStepper {
   /// Shows all that changes between two calls of advance to a visitor, see KeptMotion.
   template <class Visitor>
   void visit_state(Visitor& visitor, const PlaceInWhole& place) {
-    for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].visit_state(visitor, b, place);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].visit_state(visitor, b);
     coupling_.visit_state(visitor, bodies_.front(), place);
   }
   /// After other values have been put there.

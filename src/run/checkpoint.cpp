@@ -84,13 +84,14 @@ namespace {
 /// kept by several processes.
 motion::PlaceInWhole whole_of(const motion::Stepper& stepper) {
   const auto& plate = stepper.bodies().front();
-  const int stride = stepper.plate().grid.stride();
-  const auto& is_orphan = plate.levels().is_orphan;
+  const auto& columns = plate.columns();
+  const int n = columns.n_columns();
   bool has_cells = false;
-  for (std::size_t n = static_cast<std::size_t>(stride) - 1; n < is_orphan.size();
-       n += static_cast<std::size_t>(stride))
-    has_cells = has_cells || !is_orphan[n];
-  return {.own = {0, has_cells ? stride : stride - 1}, .columns = {}, .stride = stride, .lower = {}};
+  for (int r = 0; r < columns.n_rows(); ++r) {
+    const auto last = columns.nodes(r, {n - 1, n});
+    has_cells = has_cells || (last.count > 0 && !plate.levels().is_orphan[last.first]);
+  }
+  return {.own = {0, has_cells ? n : n - 1}, .lower = {}};
 }
 
 }  // namespace

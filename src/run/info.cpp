@@ -162,14 +162,15 @@ double expected_statics_s(const Info& info) {
 
 Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::Stepper& stepper,
                        const Sharing& sharing, const Info& info) {
-  require_divisible(config);
-  std::vector<double> stable_steps_s;
-  for (const auto& body : stepper.bodies()) stable_steps_s.push_back(body.stable_step_s());
+  const auto base_material = input::base_material(config);
+  std::vector<motion::BodySource> bodies = {{meshes.plate, config.material}};
+  if (meshes.base) bodies.push_back({*meshes.base, base_material});
+  std::vector<motion::BodySteps> steps;
+  for (const auto& body : stepper.bodies()) steps.push_back(body.steps());
   const int n_columns = meshes.plate.grid.stride();
   Info::Shared shared;
-  shared.division = motion::divide_columns(meshes.plate, sharing.n_processes,
-                                           motion::columns_per_step(stable_steps_s, config.time),
-                                           motion::halo_for(meshes.plate, config.fronts.l_star_m));
+  shared.division = motion::divide_bodies(bodies, steps, config.time, sharing.n_processes,
+                                          motion::halo_for(meshes.plate, config.fronts.l_star_m));
   // Refuses cuts through them.
   if (config.plate.corner == mesh::Corner::fillet)
     for (int part = 0; part < sharing.n_processes; ++part)
@@ -183,8 +184,13 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
   const int at_once = sharing.n_processes > 1 ? shared.division.steps_per_exchange : n_steps;
   work.node_updates_per_s =
       stepper.node_updates_per_step() / measured_step_s(config, stepper, meshes, n_steps, at_once);
-  stepper.visit_columns({n_columns / 2, n_columns / 2 + 1}, [&](const auto*, std::size_t n) {
-    work.values_per_column += static_cast<double>(n);
+  // Coarser blocks have nodes in some columns only, in the same ones of so many.
+  int period = 1;
+  for (const auto& body : bodies)
+    if (const auto n = body.mesh.coarser.size(); n > 0) period = std::max(period, 2 << n);
+  const int first = n_columns / 2 / period * period;
+  stepper.visit_columns({first, first + period}, [&](const auto*, std::size_t n) {
+    work.values_per_column += static_cast<double>(n) / period;
   });
   work.updates_per_step = std::round(info.step_s / info.substep_s);
   work.steps = static_cast<double>(info.n_steps);

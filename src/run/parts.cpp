@@ -23,13 +23,20 @@ namespace slipfront::run {
 namespace {
 
 void put_mesh(const mesh::Mesh& mesh, Parcel& to) {
-  to.put(mesh.grid).put(mesh.x_m).put(mesh.y_m).put(mesh.cells).put(mesh.lower).put(mesh.top);
+  to.put(mesh.grid)
+      .put(mesh.coarser)
+      .put(mesh.x_m)
+      .put(mesh.y_m)
+      .put(mesh.cells)
+      .put(mesh.lower)
+      .put(mesh.top);
   to.put(mesh.absorbing).put(mesh.period_m);
 }
 
 mesh::Mesh take_mesh(Parcel& from) {
   mesh::Mesh mesh;
   mesh.grid = from.take<mesh::Grid>();
+  mesh.coarser = from.take_all<mesh::Grid>();
   mesh.x_m = from.take_all<double>();
   mesh.y_m = from.take_all<double>();
   mesh.cells = from.take_all<mesh::Cell>();
@@ -62,13 +69,13 @@ input::Case take_case(Parcel& from) {
 struct Plan {
   motion::Division division;
   int threads = 1;
-  std::vector<double> stable_steps_s;  ///< of the bodies
+  std::vector<motion::BodySteps> steps;  ///< of the bodies
 
   void put(Parcel& to) const {
     to.put(division.first).put(division.halo).put(division.columns_per_step);
     to.put(division.steps_per_exchange).put(division.is_ring);
-    to.put(threads);
-    to.put(stable_steps_s);
+    to.put(threads).put(static_cast<std::uint64_t>(steps.size()));
+    for (const auto& of_body : steps) to.put(of_body.stable_step_s).put(of_body.multiples);
   }
   static Plan take(Parcel& from) {
     Plan plan;
@@ -78,7 +85,10 @@ struct Plan {
     plan.division.steps_per_exchange = from.take<int>();
     plan.division.is_ring = from.take<bool>();
     plan.threads = from.take<int>();
-    plan.stable_steps_s = from.take_all<double>();
+    for (auto n = from.take<std::uint64_t>(); n > 0; --n) {
+      const auto stable_step_s = from.take<double>();
+      plan.steps.push_back({stable_step_s, from.take_all<int>()});
+    }
     return plan;
   }
 };
@@ -115,12 +125,10 @@ class Whole {
 
   /// @throws UserError where so many processes cannot share them
   Plan divide(int n_processes) const {
-    const auto& plate = bodies_.front().mesh;
     Plan plan;
-    for (const auto& body : bodies_) plan.stable_steps_s.push_back(motion::stable_step_s(body));
-    plan.division = motion::divide_columns(plate, n_processes,
-                                           motion::columns_per_step(plan.stable_steps_s, config_.time),
-                                           motion::halo_for(plate, config_.fronts.l_star_m));
+    for (const auto& body : bodies_) plan.steps.push_back(motion::body_steps(body, config_.time));
+    plan.division = motion::divide_bodies(bodies_, plan.steps, config_.time, n_processes,
+                                          motion::halo_for(bodies_.front().mesh, config_.fronts.l_star_m));
     for (int rank = 0; rank < n_processes; ++rank) columns_of(plan, rank);  // refuses cuts through corners
     return plan;
   }
@@ -162,19 +170,16 @@ std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case&
   const auto& meshes = columns.meshes;
   const auto all = plan.division.all(processes.rank());
   const auto own = plan.division.own(processes.rank());
-  const int first = all.place_of(own.begin);
-  const solid::Span own_places{first, first + own.end - own.begin};
   const auto base_material = input::base_material(config);
   std::vector<motion::PartOfBody> parts;
-  for (const double stable_s : plan.stable_steps_s)
-    parts.push_back(
-        {own_places, stable_s, {1}, [&](std::span<double> values) { processes.take_largest(values); }});
+  for (const auto& steps : plan.steps)
+    parts.push_back({all, plan.division.n_columns(), own, steps,
+                     [&](std::span<double> values) { processes.take_largest(values); }});
   std::vector<motion::BodySource> sources = {{meshes.front(), config.material, &parts.front()}};
   if (meshes.size() > 1) sources.push_back({meshes.back(), base_material, &parts.back()});
   const auto contact = contact_of(config, columns);
-  return std::make_unique<motion::Part>(
-      processes, plan.division, sources, contact, config.time, motion::Execution{.threads = plan.threads},
-      motion::PlaceInWhole{own_places, all, plan.division.n_columns(), columns.lower});
+  return std::make_unique<motion::Part>(processes, plan.division, sources, contact, config.time,
+                                        motion::Execution{.threads = plan.threads}, columns.lower);
 }
 
 std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
@@ -185,19 +190,7 @@ std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
 
 }  // namespace
 
-void require_divisible(const input::Case& config) {
-  const auto require_even = [](const mesh::Plate& plate, const char* key) {
-    if (plate.coarsenings > 0)
-      throw UserError(
-          "{} = {} cannot be shared by several processes; start one alone, with threads, or choose 0",
-          Key(key), plate.coarsenings);
-  };
-  require_even(config.plate, "plate.coarsenings");
-  if (input::has_base_body(config)) require_even(input::base_plate(config), "base.coarsenings");
-}
-
 void require_divisible(const input::Case& config, int n_processes) {
-  require_divisible(config);
   const auto meshes = check(config);
   Whole(config, meshes.plate, meshes.base).divide(n_processes);
 }
@@ -206,7 +199,6 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
                                                           const std::optional<mesh::Mesh>& base,
                                                           Processes& processes,
                                                           const motion::Execution& execution) {
-  require_divisible(config);
   const Whole whole(config, plate, base);
   auto plan = whole.divide(processes.size());
   plan.threads = execution.threads;

@@ -13,10 +13,8 @@
 
 namespace slipfront::run {
 
-/// Refuses what several processes cannot share.
+/// Refuses what so many processes cannot share; builds the meshes for it.
 /// @throws UserError
-void require_divisible(const input::Case& config);
-/// The same, and too many processes; builds the meshes for it.
 void require_divisible(const input::Case& config, int n_processes);
 
 /// The bodies without their motion, divided among the processes. To be called by the leader, while the others

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
-#include <unordered_map>
 
 #include "base/error.hpp"
 #include "base/lanes.hpp"
@@ -19,11 +19,6 @@ namespace {
 template <class V, int... k>
 inline auto joined(const V& first, const V& second, std::integer_sequence<int, k...>) {
   return __builtin_shufflevector(first, second, k...);
-}
-/// The numbers of a vector from `from` on, half as many as it has.
-template <int from, class V, int... k>
-inline auto half_of(const V& whole, std::integer_sequence<int, k...>) {
-  return __builtin_shufflevector(whole, whole, (from + k)...);
 }
 /// even[c], odd[c], even[2 + c], odd[2 + c] ...
 template <int c, class V, int... k>
@@ -56,20 +51,14 @@ inline LanePairs gather(const double* w, const Places& at) {
   return {component_of_pairs<0>(even, odd), component_of_pairs<1>(even, odd)};
 }
 
-template <class V>
-inline void scatter_add_pairs(double* force, const Places& at, int lane, const V& even, const V& odd) {
-  constexpr int n = length<V>;
-  if constexpr (n == 2) {
-    store(force + at[lane], load_as<V>(force + at[lane]) + even);
-    store(force + at[lane + 1], load_as<V>(force + at[lane + 1]) + odd);
-  } else {
-    constexpr auto half = std::make_integer_sequence<int, n / 2>{};
-    scatter_add_pairs(force, at, lane, half_of<0>(even, half), half_of<0>(odd, half));
-    scatter_add_pairs(force, at, lane + n / 2, half_of<n / 2>(even, half), half_of<n / 2>(odd, half));
-  }
+/// Room for x and y of a number in each lane, in turn: lane k's are at place_of_lane(k) and the one after it.
+constexpr int pairs = 2 * lanes;
+constexpr int place_of_lane(int lane) {
+  return lane % 2 * lanes + lane / 2 * 2;
 }
-inline void scatter_add(double* force, const Places& at, Lanes x, Lanes y) {
-  scatter_add_pairs(force, at, 0, component_of_pairs<0>(x, y), component_of_pairs<1>(x, y));
+inline void store_pairs(double* to, Lanes x, Lanes y) {
+  store(to, component_of_pairs<0>(x, y));
+  store(to + lanes, component_of_pairs<1>(x, y));
 }
 
 /// The cell's nodes, beginning with the lower left one, so that cells equal in shape are so in order.
@@ -87,46 +76,27 @@ mesh::Cell in_order(const mesh::Mesh& mesh, const mesh::Cell& cell) {
   return ordered;
 }
 
-/// Places of the nodes 1, 2, 3 relative to node 0, in units of the cell's size.
-using Shape = std::array<double, 6>;
+/// A cell that stands for itself and all that are similar to it.
+struct Shape {
+  CellCoordinates corners{};
+  /// Whether its corners lie, to rounding, on a coarse lattice in units of its largest extent, as those of
+  /// squares and of the cells between blocks of squares do. There they are taken to lie exactly.
+  bool is_regular = false;
+};
 Shape shape_of(const CellCoordinates& c) {
-  const double area = 0.5 * ((c[4] - c[0]) * (c[7] - c[3]) - (c[6] - c[2]) * (c[5] - c[1]));
-  SLIPFRONT_ASSERT(area > 0, "cell is not convex and counterclockwise");
-  Shape shape;
-  for (int k = 0; k < 6; ++k) shape[k] = (c[k + 2] - c[k % 2]) / std::sqrt(area);
+  constexpr double steps = 8, tolerance = 1e-11;
+  Shape shape{c, true};
+  double extent = 0;
+  for (int k = 2; k < 8; ++k) extent = std::max(extent, std::abs(c[k] - c[k % 2]));
+  CellCoordinates exact{};
+  for (int k = 2; k < 8; ++k) {
+    const double x = (c[k] - c[k % 2]) / extent;
+    exact[k] = std::round(steps * x) / steps + 0.0;  // no -0
+    shape.is_regular = shape.is_regular && std::abs(x - exact[k]) <= tolerance;
+  }
+  if (shape.is_regular) shape.corners = exact;
   return shape;
 }
-
-/// Numbers of the classes of similar cells. The tolerance is that of rounding in the nodes' coordinates.
-class Shapes {
- public:
-  std::size_t class_of(const Shape& shape) {
-    auto& candidates = classes_[key(shape)];
-    for (const auto k : candidates)
-      if (is_same(shapes_[k], shape)) return k;
-    candidates.push_back(shapes_.size());
-    shapes_.push_back(shape);
-    return shapes_.size() - 1;
-  }
-  std::size_t size() const { return shapes_.size(); }
-
- private:
-  /// Of coordinates rounded far more coarsely than the tolerance. Equal shapes on two sides of a rounding
-  /// limit become two classes, which does no harm.
-  static std::uint64_t key(const Shape& shape) {
-    std::uint64_t hash = 0;
-    for (const double x : shape)
-      hash = (hash ^ static_cast<std::uint64_t>(std::llround(1e6 * x + 0.25))) * 0x9e3779b97f4a7c15ULL;
-    return hash;
-  }
-  static bool is_same(const Shape& a, const Shape& b) {
-    for (std::size_t k = 0; k < a.size(); ++k)
-      if (std::abs(a[k] - b[k]) > 1e-11) return false;
-    return true;
-  }
-  std::vector<Shape> shapes_;
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> classes_;
-};
 
 /// Upper triangle, row by row, of the stiffness of nodes 1, 2, 3, both components of each in turn.
 constexpr int n_entries = 21;
@@ -157,9 +127,10 @@ struct Run {
   std::int32_t place = 0, count = 0;
 };
 
-/// Adds the forces of a batch of cells; `stiffness(k)` is the k-th entry of the triangle.
+/// Puts the forces on the corners of a batch's cells into `force`; `stiffness(k)` is the k-th entry of the
+/// triangle.
 template <class Stiffness>
-void add_batch(const Corners& corners, Stiffness&& stiffness, const double* w, double* force) {
+void compute_batch(const Corners& corners, Stiffness&& stiffness, const double* w, double* force) {
   const LanePairs origin = gather(w, corners[0]);
   std::array<Lanes, 6> d;
   for (int a = 1; a < 4; ++a) {
@@ -175,9 +146,10 @@ void add_batch(const Corners& corners, Stiffness&& stiffness, const double* w, d
       f[r] += entry * d[c];
       if (c > r) f[c] += entry * d[r];
     }
-  scatter_add(force, corners[0], -(f[0] + f[2] + f[4]), -(f[1] + f[3] + f[5]));
-  for (int a = 1; a < 4; ++a) scatter_add(force, corners[a], f[2 * a - 2], f[2 * a - 1]);
+  store_pairs(force, -(f[0] + f[2] + f[4]), -(f[1] + f[3] + f[5]));
+  for (int a = 1; a < 4; ++a) store_pairs(force + a * pairs, f[2 * a - 2], f[2 * a - 1]);
 }
+constexpr std::size_t forces_of_batch = 4 * pairs;
 
 }  // namespace
 
@@ -189,6 +161,9 @@ struct GeneralRows::Cells {
   std::vector<SharedStiffness> shared;
   std::vector<Corners> shared_corners, own_corners;  ///< [batches]
   std::vector<LaneTriangles> own;                    ///< [batches]
+  /// Of each row, where its cells' forces are: those of the shared batches, then those of the others.
+  std::vector<std::int32_t> first_force, force;
+  std::size_t n_batches() const { return shared_corners.size() + own_corners.size(); }
 };
 
 /// Makes Cells.
@@ -205,6 +180,7 @@ class GeneralRows::Builder {
     }
     find_cells(in_part);
     add_batches();
+    find_forces();
     return std::move(result_);
   }
 
@@ -226,7 +202,7 @@ class GeneralRows::Builder {
     std::vector<mesh::Node> others;
     for (std::size_t c = 0; c < mesh_.cells.size(); ++c) {
       if (!in_part[c] || std::ranges::none_of(mesh_.cells[c], has_row)) continue;
-      cells_.push_back(in_order(mesh_, mesh_.cells[c]));
+      cells_.push_back({in_order(mesh_, mesh_.cells[c]), c});
       for (const auto n : mesh_.cells[c])
         if (place_[n] < 0) others.push_back(n);
     }
@@ -235,68 +211,104 @@ class GeneralRows::Builder {
     others.erase(std::unique(others.begin(), others.end()), others.end());
     for (const auto n : others) append(n);
     // In the order of their nodes, so that successive cells find them in cache.
-    std::ranges::sort(cells_, {}, [&](const mesh::Cell& cell) {
+    std::ranges::sort(cells_, {}, [&](const Numbered& cell) {
       std::array<std::int32_t, 4> at;
-      for (int a = 0; a < 4; ++a) at[a] = place_[cell[a]];
+      for (int a = 0; a < 4; ++a) at[a] = place_[cell.nodes[a]];
       std::ranges::sort(at);
       return at;
     });
   }
 
-  std::vector<std::vector<std::size_t>> cells_by_shape() const {
-    Shapes shapes;
-    std::vector<std::size_t> shape(cells_.size());
-    for (std::size_t c = 0; c < cells_.size(); ++c)
-      shape[c] = shapes.class_of(shape_of(cell_coordinates(mesh_, cells_[c])));
-    std::vector<std::vector<std::size_t>> of_shape(shapes.size());
-    for (std::size_t c = 0; c < cells_.size(); ++c) of_shape[shape[c]].push_back(c);
-    return of_shape;
-  }
-
   Corners corners_of(std::span<const std::size_t> batch) const {
     Corners corners{};
     for (std::size_t lane = 0; lane < batch.size(); ++lane)
-      for (int a = 0; a < 4; ++a) corners[a][lane] = 2 * place_[cells_[batch[lane]][a]];
+      for (int a = 0; a < 4; ++a) corners[a][lane] = 2 * place_[cells_[batch[lane]].nodes[a]];
     return corners;
   }
 
-  auto stiffness_of(std::size_t c) const {
-    return triangle(cell_stiffness(cell_coordinates(mesh_, cells_[c]), material_));
-  }
-
-  /// Full batches of one shape share its stiffness; in the others each lane has its own.
+  /// Full batches of one regular shape share its stiffness; in the others each lane has its own.
   void add_batches() {
+    std::vector<CellCoordinates> shape;
+    std::map<CellCoordinates, std::vector<std::size_t>> of_shape;
     std::vector<std::size_t> single;
-    for (const auto& list : cells_by_shape()) {
+    for (std::size_t c = 0; c < cells_.size(); ++c) {
+      const auto [corners, is_regular] = shape_of(cell_coordinates(mesh_, cells_[c].nodes));
+      shape.push_back(corners);
+      if (is_regular)
+        of_shape[corners].push_back(c);
+      else
+        single.push_back(c);
+    }
+    batch_of_.resize(cells_.size());
+    for (const auto& [corners, list] : of_shape) {
       const std::size_t n_batches = list.size() / lanes;
       if (n_batches > 0) {
         const std::size_t begin = result_->shared_corners.size();
-        for (std::size_t b = 0; b < n_batches; ++b)
-          result_->shared_corners.push_back(corners_of(std::span(list).subspan(b * lanes, lanes)));
-        result_->shared.push_back({stiffness_of(list.front()), begin, result_->shared_corners.size()});
+        for (std::size_t b = 0; b < n_batches; ++b) {
+          const auto batch = std::span(list).subspan(b * lanes, lanes);
+          note_batch(batch, begin + b);
+          result_->shared_corners.push_back(corners_of(batch));
+        }
+        const auto K = triangle(cell_stiffness(corners, material_));
+        result_->shared.push_back({K, begin, result_->shared_corners.size()});
       }
       single.insert(single.end(), list.begin() + static_cast<std::ptrdiff_t>(n_batches * lanes), list.end());
     }
     std::ranges::sort(single);
     for (std::size_t first = 0; first < single.size(); first += lanes)
-      add_batch_of_own(std::span(single).subspan(first, std::min<std::size_t>(lanes, single.size() - first)));
+      add_batch_of_own(std::span(single).subspan(first, std::min<std::size_t>(lanes, single.size() - first)),
+                       shape);
   }
 
   /// Lanes without a cell have no stiffness.
-  void add_batch_of_own(std::span<const std::size_t> batch) {
+  void add_batch_of_own(std::span<const std::size_t> batch, std::span<const CellCoordinates> shape) {
+    note_batch(batch, result_->n_batches());
     result_->own_corners.push_back(corners_of(batch));
     LaneTriangles own{};
     for (std::size_t lane = 0; lane < batch.size(); ++lane) {
-      const auto K = stiffness_of(batch[lane]);
+      const auto K = triangle(cell_stiffness(shape[batch[lane]], material_));
       for (int k = 0; k < n_entries; ++k) own.entry[k][lane] = K[k];
     }
     result_->own.push_back(own);
+  }
+  void note_batch(std::span<const std::size_t> batch, std::size_t number) {
+    for (std::size_t lane = 0; lane < batch.size(); ++lane) batch_of_[batch[lane]] = {number, lane};
+  }
+
+  /// Rows add their cells' forces in the order that the cells have in the mesh.
+  void find_forces() {
+    const auto n_rows = result_->per_mass.size();
+    std::vector<std::vector<std::int32_t>> of_row(n_rows);
+    std::vector<std::size_t> in_mesh(cells_.size());
+    std::iota(in_mesh.begin(), in_mesh.end(), std::size_t{0});
+    std::ranges::sort(in_mesh, {}, [&](std::size_t c) { return cells_[c].number; });
+    for (const auto c : in_mesh)
+      for (std::size_t a = 0; a < 4; ++a) {
+        const auto row = static_cast<std::size_t>(place_[cells_[c].nodes[a]]);
+        if (row >= n_rows) continue;
+        const auto [batch, lane] = batch_of_[c];
+        of_row[row].push_back(static_cast<std::int32_t>(batch * forces_of_batch + a * pairs) +
+                              place_of_lane(static_cast<int>(lane)));
+      }
+    result_->first_force.push_back(0);
+    for (const auto& forces : of_row) {
+      result_->force.insert(result_->force.end(), forces.begin(), forces.end());
+      result_->first_force.push_back(static_cast<std::int32_t>(result_->force.size()));
+    }
   }
 
   const mesh::Mesh& mesh_;
   const Material& material_;
   std::vector<std::int32_t> place_;  ///< [nodes], -1 where they are not needed
-  std::vector<mesh::Cell> cells_;
+  struct Numbered {
+    mesh::Cell nodes{};
+    std::size_t number = 0;  ///< in the mesh
+  };
+  std::vector<Numbered> cells_;
+  struct InBatch {
+    std::size_t batch = 0, lane = 0;
+  };
+  std::vector<InBatch> batch_of_;  ///< [cells]
   std::shared_ptr<Cells> result_ = std::make_shared<Cells>();
 };
 
@@ -316,7 +328,8 @@ std::size_t GeneralRows::n_shared_stiffnesses() const {
 
 GeneralRows::Workspace GeneralRows::workspace() const {
   if (!cells_) return {};
-  return {std::vector<double>(2 * cells_->n_places), std::vector<double>(2 * cells_->n_places)};
+  return {std::vector<double>(2 * cells_->n_places),
+          std::vector<double>(forces_of_batch * cells_->n_batches())};
 }
 
 void GeneralRows::multiply(const Field& u, double factor, const Field& v, Workspace& space, double* a_x,
@@ -335,19 +348,23 @@ void GeneralRows::multiply(const Field& u, double factor, const Field& v, Worksp
       to[2 * i + 1] = u_y[i] + factor * v_y[i];
     }
   }
-  std::fill_n(force, 2 * cells_->n_places, 0.0);
+  double* of_batch = force;
   for (const auto& shared : cells_->shared) {
     const auto stiffness = shared.stiffness;
-    for (std::size_t b = shared.begin; b < shared.end; ++b)
-      add_batch(
-          cells_->shared_corners[b], [&](int k) { return stiffness[k]; }, w, force);
+    for (std::size_t b = shared.begin; b < shared.end; ++b, of_batch += forces_of_batch)
+      compute_batch(
+          cells_->shared_corners[b], [&](int k) { return stiffness[k]; }, w, of_batch);
   }
-  for (std::size_t b = 0; b < cells_->own.size(); ++b)
-    add_batch(
-        cells_->own_corners[b], [&](int k) { return load(cells_->own[b].entry[k].data()); }, w, force);
+  for (std::size_t b = 0; b < cells_->own.size(); ++b, of_batch += forces_of_batch)
+    compute_batch(
+        cells_->own_corners[b], [&](int k) { return load(cells_->own[b].entry[k].data()); }, w, of_batch);
+  const auto* first = cells_->first_force.data();
+  const auto* at = cells_->force.data();
   for (std::size_t r = 0; r < node_.size(); ++r) {
-    a_x[r] = cells_->per_mass[r] * force[2 * r];
-    a_y[r] = cells_->per_mass[r] * force[2 * r + 1];
+    Vector<double, 2> sum{};
+    for (auto k = first[r]; k < first[r + 1]; ++k) sum += load_as<Vector<double, 2>>(force + at[k]);
+    a_x[r] = cells_->per_mass[r] * sum[0];
+    a_y[r] = cells_->per_mass[r] * sum[1];
   }
 }
 

@@ -16,10 +16,11 @@ struct Field;
 ///
 /// A cell's forces do not change with a translation: with the displacements of three of its nodes relative to
 /// the fourth, d, they are the 6 x 6 stiffness of these three times d, and the fourth node's force balances
-/// the others. As many cells as a vector has lanes are computed at once. Similar cells (equal but for place
-/// and size; a plane cell's stiffness does not depend on its size) share one stiffness; where fewer cells
-/// than lanes are similar, each one has its own. The forces are added up in one fixed order. Neighbouring
-/// nodes should have near numbers, see mesh::near_numbers.
+/// the others. As many cells as a vector has lanes are computed at once. Regular cells that are similar
+/// (equal but for place and size; a plane cell's stiffness does not depend on its size) share one stiffness,
+/// the others have their own. The forces on a node are added up in the order of its cells in the mesh;
+/// neither they nor a cell's stiffness depend on what other cells there are: in a part of a mesh they are
+/// those of the whole. Neighbouring nodes should have near numbers, see mesh::near_numbers.
 class GeneralRows {
  public:
   GeneralRows() = default;
@@ -32,11 +33,12 @@ class GeneralRows {
   const std::vector<mesh::Node>& node() const { return node_; }  ///< [rows]
   std::size_t size() const { return node_.size(); }
   std::size_t n_cells() const;
-  std::size_t n_shared_stiffnesses() const;  ///< classes of similar cells
+  std::size_t n_shared_stiffnesses() const;  ///< classes of similar regular cells
 
   /// Memory of one product.
   struct Workspace {
-    std::vector<double> w, force;  ///< [nodes at the cells] x, y of each in turn
+    std::vector<double> w;      ///< [nodes at the cells] x, y of each in turn
+    std::vector<double> force;  ///< on the corners of each cell
   };
   Workspace workspace() const;
 

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 #include "base/error.hpp"
@@ -35,6 +37,8 @@ const solid::Material gel{.youngs_modulus_Pa = 1.4e9,
 struct Problem {
   mesh::Plate plate{.width_m = 0.2, .height_m = 0.03, .element_size_m = 1e-3, .corner = mesh::Corner::none};
   const solid::Material* below = nullptr;
+  double stiffness_damping_s = pmma.stiffness_damping_s;
+  int coarsenings_below = 0;
   TimeStepping time{.interface_rows = 2, .interface_substeps = 4};
   interface::ContactModel contact = support::paper_law;
   double t_over_p = 1.2;
@@ -43,18 +47,23 @@ struct Problem {
 };
 
 struct Bodies {
-  explicit Bodies(const Problem& problem) : above(mesh::make_plate(problem.plate)) {
+  explicit Bodies(const Problem& problem) : above(mesh::make_plate(problem.plate)), material(pmma) {
+    material.stiffness_damping_s = problem.stiffness_damping_s;
     if (problem.below == nullptr) return;
     auto plate = problem.plate;
     plate.corner = mesh::Corner::none;
+    plate.coarsenings = problem.coarsenings_below;
     below = mesh::make_plate(plate);
+    material_below = *problem.below;
+    material_below.stiffness_damping_s = problem.stiffness_damping_s;
   }
-  std::vector<BodySource> sources(const Problem& problem) const {
-    std::vector<BodySource> sources = {{above, pmma}};
-    if (below) sources.push_back({*below, *problem.below});
+  std::vector<BodySource> sources() const {
+    std::vector<BodySource> sources = {{above, material}};
+    if (below) sources.push_back({*below, material_below});
     return sources;
   }
   mesh::Mesh above;
+  solid::Material material, material_below;
   std::optional<mesh::Mesh> below;
 };
 
@@ -130,7 +139,7 @@ Outcome run(TimeStepper& stepper, const Begin& begin, std::int64_t n_steps) {
 Outcome run_by_one(const Problem& problem, std::int64_t n_steps) {
   const Bodies bodies(problem);
   const auto begin = begin_of(problem, bodies);
-  const auto sources = bodies.sources(problem);
+  const auto sources = bodies.sources();
   Stepper stepper(sources, problem.contact, problem.time, {});
   stepper.watch(locate_probes(problem.probes, sources));
   stepper.start(begin.state, 0, begin.loads);
@@ -141,24 +150,20 @@ Outcome run_by_one(const Problem& problem, std::int64_t n_steps) {
 class OwnPart {
  public:
   OwnPart(const Problem& problem, const Bodies& bodies, Processes& processes, const Division& division,
-          std::span<const double> stable_steps_s) {
+          std::span<const BodySteps> steps) {
     const auto all = division.all(processes.rank());
     const auto own = division.own(processes.rank());
-    const int first = all.place_of(own.begin);
-    const solid::Span own_places{first, first + own.end - own.begin};
-    const auto whole = bodies.sources(problem);
+    const auto whole = bodies.sources();
     meshes_.reserve(2);
     parts_.reserve(2);
     for (std::size_t b = 0; b < whole.size(); ++b) {
       meshes_.push_back(mesh::columns_of(whole[b].mesh, all));
-      parts_.push_back({own_places, stable_steps_s[b], {1}, [&](std::span<double> values) {
-                          processes.take_largest(values);
-                        }});
+      parts_.push_back({all, division.n_columns(), own, steps[b],
+                        [&](std::span<double> values) { processes.take_largest(values); }});
       sources_.push_back({meshes_[b], whole[b].material, &parts_[b]});
     }
-    part_ = std::make_unique<Part>(
-        processes, division, sources_, problem.contact, problem.time, Execution{},
-        PlaceInWhole{own_places, all, division.n_columns(), lower_in(bodies.above, all)});
+    part_ = std::make_unique<Part>(processes, division, sources_, problem.contact, problem.time, Execution{},
+                                   lower_in(bodies.above, all));
   }
   std::unique_ptr<Part> take() { return std::move(part_); }
 
@@ -174,20 +179,19 @@ class Team {
  public:
   Team(int n_processes, const Problem& problem)
       : problem_(problem), bodies_(problem), mail_(n_processes), leader_(mail_, 0) {
-    const auto sources = bodies_.sources(problem);
-    for (const auto& source : sources) stable_steps_s_.push_back(Body(source, problem.time).stable_step_s());
-    division_ =
-        divide_columns(bodies_.above, n_processes, columns_per_step(stable_steps_s_, problem.time), halo);
+    const auto sources = bodies_.sources();
+    for (const auto& source : sources) steps_.push_back(body_steps(source, problem.time));
+    division_ = divide_bodies(sources, steps_, problem.time, n_processes, halo);
     for (int rank = 1; rank < n_processes; ++rank)
       others_.emplace_back([this, rank] {
         test::ThreadProcess process(mail_, rank);
-        OwnPart own(problem_, bodies_, process, division_, stable_steps_s_);
+        OwnPart own(problem_, bodies_, process, division_, steps_);
         const auto part = own.take();
         serve(process, *part);
       });
     std::vector<const mesh::Mesh*> meshes = {&bodies_.above};
     if (bodies_.below) meshes.push_back(&*bodies_.below);
-    OwnPart own(problem_, bodies_, leader_, division_, stable_steps_s_);
+    OwnPart own(problem_, bodies_, leader_, division_, steps_);
     stepper_ = std::make_unique<PartedStepper>(leader_, division_, own.take(), meshes);
     stepper_->watch(locate_probes(problem.probes, sources));
     const auto begin = begin_of(problem, bodies_);
@@ -204,7 +208,7 @@ class Team {
   Bodies bodies_;
   test::Mailboxes mail_;
   test::ThreadProcess leader_;
-  std::vector<double> stable_steps_s_;
+  std::vector<BodySteps> steps_;
   Division division_;
   std::vector<std::jthread> others_;
   std::unique_ptr<PartedStepper> stepper_;
@@ -340,11 +344,124 @@ TEST(Parts, WithRegularisedFriction) {
   expect_parts_change_nothing(problem);
 }
 
-TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
+/// Three sizes of elements; local steps need the damping.
+Problem graded() {
+  Problem problem;
+  problem.plate.coarsenings = problem.coarsenings_below = 2;
+  problem.plate.fine_height_m = 4e-3;
+  problem.stiffness_damping_s = 1e-7;
+  problem.probes = {{"a", 0.0501, 0.0049}, {"b", 0.1004, 0.0102}, {"c", 0.0672, 0.0201}};
+  return problem;
+}
+
+TEST(Parts, OfGradedPlates) {
+  for (const bool local_steps : {true, false}) {
+    auto problem = graded();
+    problem.time.local_steps = local_steps;
+    expect_parts_change_nothing(problem, {2, 3, 4, 5});
+    problem.time.interface_substeps = 1;
+    problem.time.interface_rows = 1;
+    expect_parts_change_nothing(problem);
+  }
+}
+
+TEST(Parts, OfGradedPlatesWithEachCorner) {
+  for (const auto corner : {mesh::Corner::relief, mesh::Corner::fillet}) {
+    SCOPED_TRACE(test::name_of(corner));
+    auto problem = graded();
+    problem.plate.corner = corner;
+    problem.plate.fine_height_m = 9e-3;
+    problem.plate.coarsenings = 1;
+    expect_parts_change_nothing(problem);
+  }
+}
+
+TEST(Parts, OfGradedPlatesOfHalfUnitsBetweenAbsorbingEdges) {
+  auto problem = graded();
+  problem.plate.coarsenings = 2;
+  problem.plate.width_m = 0.204;
+  problem.plate.sides = mesh::Sides::absorbing;
+  problem.plate.top = mesh::Top::absorbing;
+  expect_parts_change_nothing(problem);
+}
+
+TEST(Parts, OfGradedPlatesThatRepeat) {
   for (const auto* below : {static_cast<const solid::Material*>(nullptr), &gel}) {
-    Problem problem;
+    auto problem = graded();
     problem.below = below;
-    problem.plate.corner = mesh::Corner::relief;
+    problem.plate.width_m = 0.4;
+    problem.plate.sides = mesh::Sides::periodic;
+    problem.plate.top = mesh::Top::absorbing;
+    problem.patch = 0.97;
+    expect_parts_change_nothing(problem, {2, 3, 4});
+  }
+}
+
+TEST(Parts, OfGradedPlatesInSinglePrecision) {
+  auto problem = graded();
+  problem.plate.height_m = 0.1;
+  problem.time.precision = Precision::single_precision;
+  expect_parts_change_nothing(problem);
+}
+
+TEST(Parts, OfTwoBodiesOneOrBothGraded) {
+  for (const auto& [above, below] : {std::pair{2, 2}, std::pair{0, 2}, std::pair{2, 0}, std::pair{1, 2}}) {
+    SCOPED_TRACE(fmt::format("{} and {}", above, below));
+    auto problem = graded();
+    problem.below = &gel;
+    problem.plate.width_m = 0.4;
+    problem.plate.coarsenings = above;
+    problem.coarsenings_below = below;
+    problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
+    expect_parts_change_nothing(problem);
+  }
+}
+
+/// Wrong numbers put into the first columns of whole bodies, as far as they have come after a step.
+TEST(Parts, AreWrongNoFartherThanTheColumnsOfAStep) {
+  auto even = graded(), of_one_step = graded(), of_two = graded(), without_sub_steps = graded();
+  even.plate.coarsenings = 0;
+  of_one_step.time.local_steps = false;
+  of_two.below = &gel;
+  of_two.plate.coarsenings = 1;
+  without_sub_steps.time.interface_substeps = without_sub_steps.time.interface_rows = 1;
+  for (const auto& problem : {even, graded(), of_one_step, of_two, without_sub_steps}) {
+    const Bodies bodies(problem);
+    const auto sources = bodies.sources();
+    const auto begin = begin_of(problem, bodies);
+    Stepper stepper(sources, problem.contact, problem.time, {});
+    stepper.start(begin.state, 0, begin.loads);
+    const int n_wrong = 16;
+    stepper.visit_columns({0, n_wrong}, []<class T>(T* values, std::size_t n) {
+      if constexpr (std::is_floating_point_v<T>) std::fill_n(values, n, std::numeric_limits<T>::quiet_NaN());
+    });
+    stepper.take_columns();
+    Journey journey(begin);
+    stepper.advance(journey.recorder, 1, {});
+    int end = 0;
+    std::vector<BodySteps> steps;
+    for (const auto& body : stepper.bodies()) {
+      steps.push_back(body.steps());
+      for (std::size_t n = 0; n < body.u_m().size(); ++n)
+        if (!std::isfinite(body.u_m().x[n]) || !std::isfinite(body.v_m_per_s().x[n]))
+          end = std::max(end, body.columns().column_of(static_cast<mesh::Node>(n)) + 1);
+    }
+    const int most = columns_per_step(sources, steps, problem.time);
+    EXPECT_LE(end, n_wrong + most);
+    EXPECT_GT(end, n_wrong);
+  }
+}
+
+TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
+  Problem even, of_two, of_graded = graded(), of_two_graded = graded(), repeating = graded();
+  of_two.below = of_two_graded.below = &gel;
+  of_two_graded.plate.coarsenings = 1;
+  of_two_graded.plate.width_m = 0.4;
+  for (auto* problem : {&even, &of_two, &of_graded, &of_two_graded})
+    problem->plate.corner = mesh::Corner::relief;
+  repeating.plate.sides = mesh::Sides::periodic;
+  repeating.plate.top = mesh::Top::absorbing;
+  for (auto problem : {even, of_two, of_graded, of_two_graded, repeating}) {
     problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
     const auto one = run_by_one(problem, n_steps);
     Team two(2, problem), three(3, problem);
@@ -359,8 +476,10 @@ TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
     three.stepper().restore(two.stepper().kept());
     take_steps(journey, three.stepper(), second);
     const Bodies bodies(problem);
-    Stepper by_one(bodies.sources(problem), problem.contact, problem.time, {});
-    const PlaceInWhole whole{.columns = {}, .stride = bodies.above.grid.stride(), .lower = {}};
+    Stepper by_one(bodies.sources(), problem.contact, problem.time, {});
+    // The last column of a plate that repeats has no cells.
+    const int n_columns = bodies.above.grid.stride() - (bodies.above.period_m > 0 ? 1 : 0);
+    const PlaceInWhole whole{.own = {0, n_columns}, .lower = {}};
     auto kept = three.stepper().kept();
     kept.sort();
     restore(kept, by_one, whole);
@@ -378,11 +497,10 @@ TEST(Parts, DoNotGoOnWithOtherBodies) {
   Problem narrow, wide;
   wide.plate.width_m = 0.21;
   const Bodies bodies(narrow), others(wide);
-  Stepper stepper(bodies.sources(narrow), narrow.contact, narrow.time, {});
-  Stepper other(others.sources(wide), wide.contact, wide.time, {});
-  const auto kept = keep(stepper, {.columns = {}, .stride = bodies.above.grid.stride(), .lower = {}});
-  EXPECT_THROW(restore(kept, other, {.columns = {}, .stride = others.above.grid.stride(), .lower = {}}),
-               UserError);
+  Stepper stepper(bodies.sources(), narrow.contact, narrow.time, {});
+  Stepper other(others.sources(), wide.contact, wide.time, {});
+  const auto kept = keep(stepper, {});
+  EXPECT_THROW(restore(kept, other, {}), UserError);
 }
 
 TEST(Parts, AreNoNarrowerThanTheirHalo) {

@@ -135,17 +135,29 @@ def seconds(text):
     return float(re.fullmatch(r"(\S+) s", text)[1])
 
 
+def require_predicted(lines, cost):
+    assert lines["exchange every"] == f"{cost['steps_per_exchange']} steps"
+    assert f"and {cost['halo_columns'][0]} beside them" in lines["columns of nodes of each"]
+    sent = float(lines["bytes sent per step"].split()[0])
+    # Commands and answers are not in it, among them a row of history in each second step.
+    assert sent <= cost["bytes_per_step_of_busiest"] < 1.5 * sent
+    parts = [seconds(text) for name, text in lines.items() if name.startswith("time: ")]
+    assert len(parts) == 7
+    assert sum(parts) == pytest.approx(seconds(lines["time in all"]), rel=0.02)  # printed to 3 digits
+
+
 def test_info_predicts_what_a_run_counts(runs):
     for n, run in ((2, runs[1]), (3, runs[2])):
-        lines, cost = predicted(n), run["processes"]
-        assert lines["exchange every"] == f"{cost['steps_per_exchange']} steps"
-        assert f"and {cost['halo_columns'][0]} beside them" in lines["columns of nodes of each"]
-        sent = float(lines["bytes sent per step"].split()[0])
-        # Commands and answers are not in it, among them a row of history in each second step.
-        assert sent <= cost["bytes_per_step_of_busiest"] < 1.5 * sent
-        parts = [seconds(text) for name, text in lines.items() if name.startswith("time: ")]
-        assert len(parts) == 7
-        assert sum(parts) == pytest.approx(seconds(lines["time in all"]), rel=0.02)  # printed to 3 digits
+        require_predicted(predicted(n), run["processes"])
+
+
+def test_info_predicts_what_a_graded_plate_sends(tmp_path):
+    keys = ["plate.coarsenings=2", "plate.fine_height_m=10e-3", "material.stiffness_damping_s=1e-7"]
+    graded = [word for key in keys for word in ("--set", key)]
+    result = together(2, "run", CASE, *SETS, *graded, "-o", tmp_path / "out", "-q")
+    assert (result.returncode, result.stderr) == (0, "")
+    run = json.loads((tmp_path / "out" / "run.json").read_text())
+    require_predicted(predicted(2, *graded), run["processes"])
 
 
 def test_info_follows_the_network(runs):

@@ -174,7 +174,6 @@ def test_other_commands_are_refused(mpirun, case, command):
     "n, setting, told",
     [
         (2, "plate.sids=free", "did you mean plate.sides?"),
-        (2, "plate.coarsenings=1", "choose 0"),
         (4, "title=x", "choose at most 2"),
     ],
 )

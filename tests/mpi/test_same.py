@@ -35,6 +35,18 @@ y_m = [0.0049, 0.0101]
 """
 
 RELIEF = {"plate": 'corner = "relief"'}
+BASE = """
+[base]
+kind = "body"
+youngs_modulus_Pa = 1.4e9
+poissons_ratio = 0.3
+density_kg_per_m3 = 1100
+stiffness_damping_s = 1e-7
+height_m = 0.04
+"""
+GRADED = "coarsenings = 1\nfine_height_m = 12e-3\n"
+FEW_SUB_STEPS = "interface_substeps = 2\ninterface_rows = 2"  # as parts of 33 columns allow
+DAMPED = "[material]\nstiffness_damping_s = 1e-7\n"  # so that larger elements take larger steps
 TABLE = "x_m,mu_s\n0,1.3\n0.09,1.3\n0.11,1.35\n0.2,1.3\n"
 NUCLEATION = """
 [loading]
@@ -65,8 +77,7 @@ CASES = {
     "strength relaxed": {"friction": 'regularisation = "strength"\nrelaxation_time_s = 1e-6'},
     "pressure relaxed": {"friction": 'regularisation = "pressure"\nrelaxation_time_s = 1e-6'},
     "friction along x": {"friction": 'file = "mu.csv"', "files": {"mu.csv": TABLE}},
-    "two bodies": {"rest": '[base]\nkind = "body"\nyoungs_modulus_Pa = 1.4e9\npoissons_ratio = 0.3\n'
-                           'density_kg_per_m3 = 1100\nstiffness_damping_s = 1e-7\nheight_m = 0.04'},
+    "two bodies": {"rest": BASE},
     "absorbing edges": {
         "plate": 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
         "rest": NUCLEATION.format(form="overstress", x_m=0.1),
@@ -84,6 +95,32 @@ CASES = {
     "weakened between three": {
         "plate": 'corner = "none"',
         "rest": NUCLEATION.format(form="weakened", x_m=0.0667),
+    },
+    "graded": {"plate": GRADED + 'corner = "none"', "time": FEW_SUB_STEPS, "rest": DAMPED},
+    "graded, relieved corners": {
+        "plate": GRADED + 'corner = "relief"',
+        "time": FEW_SUB_STEPS,
+        "rest": DAMPED,
+    },
+    "graded, one step": {
+        "plate": GRADED + 'corner = "none"',
+        "time": "local_steps = false\ninterface_substeps = 1",
+    },
+    "graded, two bodies": {
+        "plate": GRADED + 'corner = "none"',
+        "time": FEW_SUB_STEPS,
+        "rest": BASE + "coarsenings = 2\nfine_height_m = 8e-3\n" + DAMPED,
+    },
+    "graded base": {"time": FEW_SUB_STEPS, "rest": BASE + "coarsenings = 1\nfine_height_m = 8e-3\n"},
+    "graded, absorbing edges": {
+        "plate": GRADED + 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
+        "time": FEW_SUB_STEPS,
+        "rest": NUCLEATION.format(form="overstress", x_m=0.1) + DAMPED,
+    },
+    "graded, periodic": {
+        "plate": GRADED + 'corner = "none"\nsides = "periodic"\ntop = "absorbing"',
+        "time": FEW_SUB_STEPS,
+        "rest": NUCLEATION.format(form="overstress", x_m=0.19) + DAMPED,
     },
     "quiet end": {
         "friction": "alpha_m2_per_s2 = 1",
@@ -156,9 +193,10 @@ def test_processes_change_nothing(name, tmp_path, mpirun):
         require_same(one, several, rounding)
 
 
-def test_any_number_of_processes_goes_on(tmp_path, mpirun):
+@pytest.mark.parametrize("name", ["two bodies", "graded, two bodies"])
+def test_any_number_of_processes_goes_on(name, tmp_path, mpirun):
     """A run that is stopped once there is a checkpoint, and gone on with by other numbers of processes."""
-    case = write_case(tmp_path, "two bodies")
+    case = write_case(tmp_path, name)
     # Long enough to be stopped again and again.
     text = case.read_text().replace("end_s = 60e-6", "end_s = 3e-3\nquiet_s = inf")
     case.write_text(text.replace("element_size_m = 2e-3", "element_size_m = 1e-3"))

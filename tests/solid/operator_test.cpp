@@ -173,6 +173,32 @@ TEST_P(OnPlate, PartsAddUpToTheWhole) {
   }
 }
 
+TEST_P(OnPlate, GeneralForcesAreThoseOfTheCellsAlone) {
+  // Of fewer rows, with other cells beside them in a vector, to the last bit.
+  const auto& all = op_.whole.general;
+  const std::vector<bool> every_cell(mesh_.cells.size(), true);
+  const Field u = random_field(n_, 7), v = random_field(n_, 8);
+  const auto products = [&](const GeneralRows& rows) {
+    Field a(rows.size());
+    auto space = rows.workspace();
+    rows.multiply(u, 0.3, v, space, a.x.data(), a.y.data());
+    return a;
+  };
+  const Field of_all = products(all);
+  for (std::size_t begin = 0; begin < all.size(); begin += 1 + all.size() / 9) {
+    const auto end = std::min(begin + 1 + all.size() / 3, all.size());
+    const GeneralRows some(mesh_, material_,
+                           {all.node().begin() + static_cast<std::ptrdiff_t>(begin),
+                            all.node().begin() + static_cast<std::ptrdiff_t>(end)},
+                           op_.mass_kg, every_cell);
+    const Field a = products(some);
+    for (std::size_t r = begin; r < end; ++r) {
+      EXPECT_EQ(a.x[r - begin], of_all.x[r]);
+      EXPECT_EQ(a.y[r - begin], of_all.y[r]);
+    }
+  }
+}
+
 TEST_P(OnPlate, PatchTest) {
   // A linear displacement: no force on any inner node; on the boundary each edge's uniform traction in
   // halves.
