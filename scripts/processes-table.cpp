@@ -40,8 +40,9 @@ void print_row(double n_nodes, int n_processes) {
   const auto w = work(n_nodes);
   constexpr int columns_per_step = 1, reach = 2;
   try {
-    const auto division =
-        motion::divide_columns(static_cast<int>(w.n_columns), n_processes, columns_per_step, reach);
+    mesh::Mesh plate;
+    plate.grid.columns = static_cast<int>(w.n_columns) - 1;
+    const auto division = motion::divide_columns(plate, n_processes, columns_per_step, reach);
     const auto c = run::process_cost(w, division, n_processes, network);
     const auto ms = [&](double s) { return fmt::format("{:.3g}", 1e3 * s / steps); };
     const double efficiency = n_nodes / rate_per_s / n_processes / (c.event_s() / steps);
