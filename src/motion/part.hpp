@@ -50,6 +50,7 @@ Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_ste
 /// What is asked of all parts at a time. The number of the command is followed by its values.
 enum class PartCommand : int {
   network,   ///< run::serve measures it, or answers one that does
+  statics,   ///< run::serve does its share of the statics
   build,     ///< run::serve makes the part
   start,     ///< begin at an equilibrium
   watch,     ///< look at probes

@@ -16,6 +16,7 @@
 #include "run/begin.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
+#include "run/parts.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/prestress.hpp"
 
@@ -155,7 +156,8 @@ std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const me
 }
 
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
-                                const motion::Execution& execution, const RampBegins& ramp_begins) {
+                                const motion::Execution& execution, const RampBegins& ramp_begins,
+                                Processes* processes) {
   const auto start = Clock::now();
   const double margin = config.loading.critical_margin;
   InitialState initial;
@@ -179,9 +181,11 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
   if (initial.base) base.emplace(statics::ElasticBody{*initial.base, base_material});
+  const bool is_shared = config.loading.solver == statics::StaticSolver::petsc;
+  const SharedStatics helpers(is_shared ? processes : nullptr);
   const statics::Statics statics(
       {initial.mesh, config.material}, base, config.loading, at_all_nodes(mu_s, initial.mesh),
-      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); });
+      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); }, is_shared ? processes : nullptr);
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();

@@ -17,6 +17,7 @@
 #include "run/choices.hpp"
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
+#include "statics/petsc_solver.hpp"
 
 namespace slipfront::run {
 
@@ -271,6 +272,16 @@ std::vector<Link> measure_network(Processes& processes) {
   return links;
 }
 
+SharedStatics::SharedStatics(Processes* processes) : processes_(processes) {
+  if (processes_ == nullptr) return;
+  for (int rank = 1; rank < processes_->size(); ++rank)
+    processes_->send(rank, Parcel().put(motion::PartCommand::statics));
+}
+
+SharedStatics::~SharedStatics() {
+  if (processes_ != nullptr) statics::release_statics(*processes_);
+}
+
 void serve(Processes& processes) try {
   // What a signal asks for is the leader's to hear.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGXFSZ, SIGPIPE, SIGUSR1})
@@ -283,6 +294,10 @@ void serve(Processes& processes) try {
     if (command == motion::PartCommand::end) return;
     if (command == motion::PartCommand::network) {
       carry_out_network(processes, parcel);
+      continue;
+    }
+    if (command == motion::PartCommand::statics) {
+      statics::serve_statics(processes);
       continue;
     }
     const auto part = take_part(processes, parcel);

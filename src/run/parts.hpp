@@ -27,6 +27,19 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
                                                           Processes& processes,
                                                           const motion::Execution& execution);
 
+/// While it lives the other processes do their shares of static solutions by PETSc.
+class SharedStatics {
+ public:
+  /// @param processes  null, or all in `serve`
+  explicit SharedStatics(Processes* processes);
+  SharedStatics(const SharedStatics&) = delete;
+  SharedStatics& operator=(const SharedStatics&) = delete;
+  ~SharedStatics();
+
+ private:
+  Processes* processes_;
+};
+
 /// What the process does first that leads.
 /// @throws UserError where another process is another program; all are dismissed then
 void lead(Processes& processes);

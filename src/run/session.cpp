@@ -140,7 +140,8 @@ InitialState Session::initial_state(Checkpoints::Kept* kept) {
       [&](std::int64_t step, std::int64_t total) {
         return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
       },
-      execution_, [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept, stepper, ramp); });
+      execution_, [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept, stepper, ramp); },
+      options_.processes);
   if (shared) shared->keep(config_, initial);
   return initial;
 }
