@@ -98,6 +98,8 @@ test: ready-to-test  ## all tests, C++ and Python
 	@scripts/run-tests build/release $(PYTHON)
 
 test-mpi: build-mpi $(VENV)/.installed  ## what processes share: as one process, with 2 and 3 of them
+	cmake --preset mpi -D SLIPFRONT_TESTS=ON
+	cmake --build --preset mpi --target test_petsc
 	SLIPFRONT_MPI=$(abspath build/mpi/slipfront) $(PYTHON) -m pytest -q tests/mpi
 
 # The paper's runs and figures; the argument adds options.

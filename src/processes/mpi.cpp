@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -125,20 +126,31 @@ class MpiProcesses final : public Processes {
   std::vector<std::byte> reserve_ = std::vector<std::byte>(std::size_t{1} << 20);
 };
 
+/// MPI for one that was started alone, whose libraries may use it until the end.
+std::unique_ptr<Processes>& alone() {
+  static std::unique_ptr<Processes> processes;
+  return processes;
+}
+
 }  // namespace
 
 std::unique_ptr<Processes> join_processes(int& argc, char**& argv) {
   if (!is_started_by_mpi()) return nullptr;
   auto processes = std::make_unique<MpiProcesses>(argc, argv);
-  if (processes->size() == 1) return nullptr;
-  return processes;
+  if (processes->size() > 1) return processes;
+  alone() = std::move(processes);
+  return nullptr;
 }
+
+void leave_processes() { alone().reset(); }
 
 #else
 
 std::unique_ptr<Processes> join_processes(int&, char**&) {
   return nullptr;
 }
+
+void leave_processes() {}
 
 #endif
 

@@ -71,5 +71,7 @@ inline std::string reason_of(const std::exception& error) {
 /// Joins the other processes that mpirun, or another starter of MPI, has begun with this one.
 /// @return null where this process is alone, or the program was built without MPI
 std::unique_ptr<Processes> join_processes(int& argc, char**& argv);
+/// What a starter of MPI has begun alone leaves it before it becomes another program.
+void leave_processes();
 
 }  // namespace slipfront

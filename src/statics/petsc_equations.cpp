@@ -33,6 +33,8 @@ constexpr int most_iterations = 2000;
 constexpr int most_attempts = 8;
 /// Of the error wanted, to which a solution goes on in a norm that only resembles it.
 constexpr double margin = 0.3;
+/// What is taken for the least eigenvalue of the preconditioned equations until a less one is seen.
+constexpr double first_eigenvalue = 0.25;
 
 std::string& last_error() {
   static std::string text;
@@ -485,7 +487,7 @@ class PetscEquations::Impl {
       if (!slips_ && n > 1) {
         double largest = 0, least = 0;
         check(KSPComputeExtremeSingularValues(solver, &largest, &least));
-        if (least > 0) least_eigenvalue_ = std::min(least, 1.0);
+        if (least > 0) least_eigenvalue_ = std::min(least_eigenvalue_, least);
       }
       clear_prescribed(z_);
       check(VecAXPY(u, 1, z_));
@@ -516,7 +518,7 @@ class PetscEquations::Impl {
   Solver cg_, bicgstab_;
   Vector u0_, u1_, f_, r_, z_;
   double diagonal_ = 0;  ///< of A for prescribed unknowns
-  double least_eigenvalue_ = 1;
+  double least_eigenvalue_ = first_eigenvalue;  ///< of B A, as far as seen
   TopConstraint constraint_ = TopConstraint::both;
   bool is_sheared_ = false, slips_ = false;
   std::vector<PetscInt> prescribed_;

@@ -150,6 +150,9 @@ PetscSolver::PetscSolver(const ElasticBody& plate, const std::optional<ElasticBo
   ask(Command::build, std::move(given));
 }
 
+// PETSc's objects go at the same time everywhere.
+PetscSolver::~PetscSolver() { ask(Command::drop); }
+
 std::unique_ptr<LoadCase> PetscSolver::load_case(TopConstraint constraint, const TopDisplacement& top,
                                                  bool sheared, const DisplacementOfBodies* start, int) {
   return std::make_unique<PetscLoadCase>(*this, constraint, top, sheared, start);
@@ -167,7 +170,6 @@ Parcel PetscSolver::carry_out(Command command, Parcel& given, std::unique_ptr<Pe
   Parcel answer;
   switch (command) {
     case Command::build: {
-      equations.reset();
       const auto piece = Piece::take(given);
       given = {};
       equations = std::make_unique<PetscEquations>(piece);
@@ -194,6 +196,9 @@ Parcel PetscSolver::carry_out(Command command, Parcel& given, std::unique_ptr<Pe
       answer.put(u);
       break;
     }
+    case Command::drop:
+      equations.reset();
+      break;
     case Command::release:
       SLIPFRONT_ASSERT(false, "a command of serve_statics");
   }

@@ -23,6 +23,7 @@ class PetscSolver : public PlateSolver {
  public:
   /// @param processes  that are in serve_statics; null for this one alone
   PetscSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base, Processes* processes);
+  ~PetscSolver() override;
 
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
                                       const DisplacementOfBodies* start, int level) override;
@@ -35,12 +36,12 @@ class PetscSolver : public PlateSolver {
 
  private:
   friend class PetscLoadCase;
-  enum class Command : int { build, begin, solve, displacements, release };
+  enum class Command : int { build, begin, solve, displacements, drop, release };
   friend void serve_statics(Processes& processes);
   friend void release_statics(Processes& processes);
 
   /// Gives each process its parcel, or all the same one; carries out the own share and returns all answers.
-  std::vector<Parcel> ask(Command command, std::vector<Parcel> given);
+  std::vector<Parcel> ask(Command command, std::vector<Parcel> given = std::vector<Parcel>(1));
   static Parcel carry_out(Command command, Parcel& given, std::unique_ptr<PetscEquations>& equations);
 
   const mesh::Mesh& plate_;
