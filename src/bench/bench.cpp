@@ -231,9 +231,9 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes*
   }.mu_s;
   const run::SharedStatics helpers(processes);
   const solid::Material material;
-  const statics::Statics statics({mesh, material}, std::nullopt, loading,
-                                 std::vector<double>(mesh.lower.size(), mu_s), "friction.mu_s",
-                                 [] { return true; }, processes);
+  const statics::Statics statics(
+      {mesh, material}, std::nullopt, loading, std::vector<double>(mesh.lower.size(), mu_s), "friction.mu_s",
+      [] { return true; }, processes);
   StaticsRun result{columns, mesh.grid.rows,
                     std::string(statics::name_of(statics::choose_solver(solver, n_unknowns))), n_unknowns};
   result.critical_shear_m = statics.shear_to(1).shear_m;

@@ -40,6 +40,10 @@ class MpiProcesses final : public Processes {
     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    MPI_Comm machine = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
+    MPI_Comm_size(machine, &on_machine_);
+    MPI_Comm_free(&machine);
   }
   MpiProcesses(const MpiProcesses&) = delete;
   MpiProcesses& operator=(const MpiProcesses&) = delete;
@@ -47,6 +51,7 @@ class MpiProcesses final : public Processes {
 
   int rank() const override { return rank_; }
   int size() const override { return size_; }
+  int on_this_machine() const override { return on_machine_; }
 
   void send(int to, const Parcel& parcel) override {
     const Waiting waiting(counters_.command_s);
@@ -121,7 +126,7 @@ class MpiProcesses final : public Processes {
     counters_.bytes += static_cast<std::int64_t>(bytes);
   }
 
-  int rank_ = 0, size_ = 1;
+  int rank_ = 0, size_ = 1, on_machine_ = 1;
   /// MPI_Abort takes memory, of which there may be none left.
   std::vector<std::byte> reserve_ = std::vector<std::byte>(std::size_t{1} << 20);
 };
@@ -142,7 +147,9 @@ std::unique_ptr<Processes> join_processes(int& argc, char**& argv) {
   return nullptr;
 }
 
-void leave_processes() { alone().reset(); }
+void leave_processes() {
+  alone().reset();
+}
 
 #else
 

@@ -39,6 +39,8 @@ class Processes {
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
+  /// How many of them share this one's machine and its memory, this one included.
+  virtual int on_this_machine() const { return size(); }
 
   virtual void send(int to, const Parcel& parcel) = 0;
   virtual Parcel receive(int from) = 0;

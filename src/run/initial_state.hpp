@@ -50,8 +50,9 @@ struct Meshes {
 };
 
 /// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer.
+/// @param processes  that share the run, of which this one leads; null for this one alone
 /// @throws UserError
-Meshes check(const input::Case& config);
+Meshes check(const input::Case& config, const Processes* processes = nullptr);
 
 /// Both bodies in one mesh, for pictures: the nodes and cells of the body below follow those of the plate,
 /// its y turned downwards, as in motion::Stepper::snapshot.

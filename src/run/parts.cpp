@@ -195,10 +195,10 @@ void require_divisible(const input::Case& config) {
   if (input::has_base_body(config)) require_even(input::base_plate(config), "base.coarsenings");
 }
 
-void require_divisible(const input::Case& config, int n_processes) {
+void require_divisible(const input::Case& config, const Processes& processes) {
   require_divisible(config);
-  const auto meshes = check(config);
-  Whole(config, meshes.plate, meshes.base).divide(n_processes);
+  const auto meshes = check(config, &processes);
+  Whole(config, meshes.plate, meshes.base).divide(processes.size());
 }
 
 std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& config, const mesh::Mesh& plate,

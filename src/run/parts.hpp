@@ -17,7 +17,7 @@ namespace slipfront::run {
 /// @throws UserError
 void require_divisible(const input::Case& config);
 /// The same, and too many processes; builds the meshes for it.
-void require_divisible(const input::Case& config, int n_processes);
+void require_divisible(const input::Case& config, const Processes& processes);
 
 /// The bodies without their motion, divided among the processes. To be called by the leader, while the others
 /// are in `serve`.

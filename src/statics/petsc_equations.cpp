@@ -233,8 +233,13 @@ std::string_view petsc_version() {
 class PetscEquations::Impl {
  public:
   explicit Impl(const Piece& piece)
-      : comm_(Library::comm()), first_(2 * piece.first), n_(2 * piece.count), lower_(piece.lower),
-        gap_m_(piece.gap_m), top_(piece.top), held_(piece.held) {
+      : comm_(Library::comm()),
+        first_(2 * piece.first),
+        n_(2 * piece.count),
+        lower_(piece.lower),
+        gap_m_(piece.gap_m),
+        top_(piece.top),
+        held_(piece.held) {
     assemble(piece);
     check(MatCreateVecs(K_, u0_.renew(), f_.renew()));
     for (auto* vector : {&u1_, &r_, &z_}) check(VecDuplicate(u0_, vector->renew()));
@@ -243,8 +248,7 @@ class PetscEquations::Impl {
     check(MatSetOption(A_, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
     check(MatSetNearNullSpace(A_, rigid_));
     make_solvers();
-    for (const auto& body : piece.bodies)
-      diagonal_ = std::max(diagonal_, body.material.youngs_modulus_Pa);
+    for (const auto& body : piece.bodies) diagonal_ = std::max(diagonal_, body.material.youngs_modulus_Pa);
   }
 
   void begin(TopConstraint constraint, std::span<const double> u0, std::span<const double> u1) {
@@ -520,7 +524,7 @@ class PetscEquations::Impl {
   NullSpace rigid_;
   Solver cg_, bicgstab_;
   Vector u0_, u1_, f_, r_, z_;
-  double diagonal_ = 0;  ///< of A for prescribed unknowns
+  double diagonal_ = 0;                         ///< of A for prescribed unknowns
   double least_eigenvalue_ = first_eigenvalue;  ///< of B A, as far as seen
   TopConstraint constraint_ = TopConstraint::both;
   bool is_sheared_ = false, slips_ = false;
@@ -537,7 +541,9 @@ class PetscEquations::Impl {
 
 #else
 
-std::string_view petsc_version() { return {}; }
+std::string_view petsc_version() {
+  return {};
+}
 
 class PetscEquations::Impl {
  public:
@@ -559,8 +565,14 @@ void PetscEquations::begin(TopConstraint constraint, std::span<const double> u0,
 std::optional<PetscEquations::AtInterface> PetscEquations::solve(const Support& support, double accuracy) {
   return impl_->solve(support, accuracy);
 }
-std::vector<double> PetscEquations::own_u0() const { return impl_->own_u0(); }
-std::vector<double> PetscEquations::own_u1() const { return impl_->own_u1(); }
-int PetscEquations::n_iterations() const { return impl_->n_iterations(); }
+std::vector<double> PetscEquations::own_u0() const {
+  return impl_->own_u0();
+}
+std::vector<double> PetscEquations::own_u1() const {
+  return impl_->own_u1();
+}
+int PetscEquations::n_iterations() const {
+  return impl_->n_iterations();
+}
 
 }  // namespace slipfront::statics

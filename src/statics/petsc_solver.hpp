@@ -14,8 +14,10 @@
 
 namespace slipfront::statics {
 
-/// Bytes of a process's share of the static equations, the equilibria found not.
+/// Bytes of the equations of so many unknowns at their peak, in all processes together; and of the leader
+/// besides, which divides the bodies and gathers displacements. The equilibria found not.
 double petsc_bytes(double n_unknowns);
+double divided_bytes(double n_unknowns);
 
 /// Equilibria by PetscEquations: the leader's end, which divides the bodies, gives all processes the same
 /// commands and puts together what they answer. Contact states remain its own.

@@ -37,10 +37,10 @@ struct Piece {
 
   std::int32_t first = 0, count = 0, n_pairs = 0;  ///< own pairs, and those of all processes
   std::vector<Body> bodies;
-  std::vector<Place> lower;         ///< places in mesh.lower, ascending
-  std::vector<double> gap_m;        ///< [lower]
-  std::vector<std::int32_t> top;    ///< pairs of the loaded edge
-  std::vector<std::int32_t> held;   ///< pairs at which a base is held
+  std::vector<Place> lower;        ///< places in mesh.lower, ascending
+  std::vector<double> gap_m;       ///< [lower]
+  std::vector<std::int32_t> top;   ///< pairs of the loaded edge
+  std::vector<std::int32_t> held;  ///< pairs at which a base is held
 
   bool has(std::int32_t pair) const { return pair >= first && pair < first + count; }
   void put(Parcel& to) const;

@@ -222,6 +222,12 @@ bool is_direct(const StaticsSize& size) {
 StaticsBudget statics_budget(const StaticsSize& size) {
   if (is_direct(size)) return direct_budget(size);
   const double n = size.n_unknowns + size.n_unknowns_base;
+  if (size.solver == StaticSolver::petsc) {
+    // What each process receives and the leader puts together comes on top of the shares.
+    const Budget shares = {{"the static equations of PETSc", size.share * petsc_bytes(n), larger_elements()},
+                           {"bodies on their way to the processes", divided_bytes(n), larger_elements()}};
+    return {shares + Budget{equilibria(n, all_equilibria)}, shares + Budget{equilibria(n, 1)}};
+  }
   Budget iterative = {{"the iterative solution", iterative_bytes(n), larger_elements()}};
   if (size.n_unknowns_base > 0)
     iterative.push_back(
@@ -245,7 +251,8 @@ std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const sol
   solver = solver_for_shapes(solver, shape_of(mesh), shape_of_base);
   double n_unknowns = 2.0 * mesh.n_nodes();
   if (base) n_unknowns += 2.0 * base->mesh.n_nodes();
-  if (solver == StaticSolver::petsc) return std::make_unique<PetscSolver>(ElasticBody{mesh, material}, base, processes);
+  if (solver == StaticSolver::petsc)
+    return std::make_unique<PetscSolver>(ElasticBody{mesh, material}, base, processes);
   if (choose_solver(solver, n_unknowns) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);

@@ -103,6 +103,7 @@ struct StaticsSize {
   double n_unknowns = 0, n_interface = 0;  ///< of the plate
   double n_unknowns_base = 0;              ///< 0 on the rigid plane
   bool top_free_in_tilt = false;           ///< the tilt then has a factorisation of its own
+  double share = 1;                        ///< of PETSc's equations that this machine's processes have
 };
 
 /// What the statics take at their peak, the meshes and the equilibria found included, and what they hold of

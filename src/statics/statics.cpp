@@ -304,7 +304,8 @@ Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const 
               std::move(mu_s_key), std::move(go_on)) {}
 
 Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>& base,
-                 const Loading& loading, std::vector<double> mu_s, std::string mu_s_key, GoOn go_on, Processes* processes)
+                 const Loading& loading, std::vector<double> mu_s, std::string mu_s_key, GoOn go_on,
+                 Processes* processes)
     : mesh_(plate_body.mesh),
       base_mesh_(base ? &base->mesh : nullptr),
       loading_(loading),

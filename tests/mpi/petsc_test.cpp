@@ -96,7 +96,8 @@ double energy(const Bodies& bodies, const Displacement& u) {
     const Eigen::VectorXd v = flat(field);
     return v.dot(test::assembled_stiffness(mesh, material) * v);
   };
-  return of(bodies.plate, pmma, u.above) + (bodies.base ? of(*bodies.base, bodies.base_material, u.below) : 0);
+  return of(bodies.plate, pmma, u.above) +
+         (bodies.base ? of(*bodies.base, bodies.base_material, u.below) : 0);
 }
 
 class Equilibria : public ::testing::TestWithParam<Bodies> {};
@@ -126,8 +127,7 @@ void expect_same(const Bodies& bodies, LoadCase& by_petsc, LoadCase& direct, con
   // Where all nodes slip the shear moves the plate as a whole: what is solved begins with that of a plate
   // that sticks, whose energy is less than E.
   const double error_1 =
-      accuracy *
-      std::sqrt(std::max(energy(bodies, direct.displacement_per_shear()), pmma.youngs_modulus_Pa));
+      accuracy * std::sqrt(std::max(energy(bodies, direct.displacement_per_shear()), pmma.youngs_modulus_Pa));
   EXPECT_LE(max_abs(by_petsc.f1 - direct.f1), 2 * std::sqrt(E) * error_1);
   EXPECT_LE(max_abs(by_petsc.u1 - direct.u1), 4 / std::sqrt(softest) * error_1);
   const double shear = 3e-5;
@@ -204,8 +204,8 @@ TEST(Contact, SettlesAsByTheFactorisation) {
       const auto statics_by = [&](StaticSolver solver, double coefficient) {
         const std::vector<double> mu_s(mesh.lower.size(), coefficient);
         loading.solver = solver;
-        return Statics({mesh, pmma}, std::nullopt, loading, mu_s, "friction.mu_s", [] { return true; },
-                       processes.get());
+        return Statics(
+            {mesh, pmma}, std::nullopt, loading, mu_s, "friction.mu_s", [] { return true; }, processes.get());
       };
       const auto slippery = statics_by(StaticSolver::petsc, 0.3).tilted().contact;
       EXPECT_EQ(slippery, statics_by(StaticSolver::direct, 0.3).tilted().contact);
