@@ -96,6 +96,9 @@ class Library {
     static int count = 3;
     check(PetscInitialize(&count, &all, nullptr, nullptr));
     check(PetscOptionsClear(nullptr));
+    // Coarse equations made without the product of two of their three factors: several processes then take a
+    // quarter less memory, and a fifth more time.
+    check(PetscOptionsSetValue(nullptr, "-matptap_via", "allatonce"));
     check(PetscPushErrorHandler(keep_error, nullptr));
     // MPI frees what is attached to this communicator before it ends.
     int key = 0;
