@@ -98,7 +98,9 @@ class Library {
     check(PetscOptionsClear(nullptr));
     // Coarse equations made without the product of two of their three factors: several processes then take a
     // quarter less memory, and a fifth more time.
-    check(PetscOptionsSetValue(nullptr, "-matptap_via", "allatonce"));
+    int size = 1;
+    MPI_Comm_size(PETSC_COMM_WORLD, &size);
+    if (size > 1) check(PetscOptionsSetValue(nullptr, "-matptap_via", "allatonce"));
     check(PetscPushErrorHandler(keep_error, nullptr));
     // MPI frees what is attached to this communicator before it ends.
     int key = 0;

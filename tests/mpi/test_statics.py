@@ -140,8 +140,7 @@ def test_options_of_petsc_change_nothing(mpirun, case, tmp_path, monkeypatch):
     assert (tmp_path / "set/static.csv").read_bytes() == (plain / "static.csv").read_bytes()
 
 
-def test_goes_on_with_the_same_state(mpirun, case):
-    """The same statics and event again, by as many processes."""
+def test_as_many_processes_give_the_same_again(mpirun, case):
     petsc = ("--set", "loading.solver=petsc")
     first, again = (run(mpirun, 2, case, name, *petsc) for name in ("first", "again"))
     for name in ("static.csv", "fronts.csv", "interface.h5"):
