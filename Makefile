@@ -7,7 +7,7 @@ SHELL := bash
 APT_PACKAGES := build-essential cmake ninja-build git pkg-config python3-venv python3-dev \
   libfmt-dev libeigen3-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev \
   libhdf5-dev libboost-dev libcereal-dev libssl-dev libgtest-dev libgmock-dev
-MPI_PACKAGES := libopenmpi-dev openmpi-bin
+MPI_PACKAGES := libopenmpi-dev openmpi-bin libpetsc-real-dev
 SLURM_PACKAGES := slurm-wlm munge
 LINT_PACKAGES := clang-format-14 clang-tidy-14
 SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev
@@ -98,6 +98,8 @@ test: ready-to-test  ## all tests, C++ and Python
 	@scripts/run-tests build/release $(PYTHON)
 
 test-mpi: build-mpi $(VENV)/.installed  ## what processes share: as one process, with 2 and 3 of them
+	cmake --preset mpi -D SLIPFRONT_TESTS=ON
+	cmake --build --preset mpi --target test_petsc
 	SLIPFRONT_MPI=$(abspath build/mpi/slipfront) $(PYTHON) -m pytest -q tests/mpi
 
 # The paper's runs and figures; the argument adds options.

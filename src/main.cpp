@@ -87,7 +87,7 @@ void require_shared(int argc, char** argv) {
   const std::string_view command(argv[1]);
   if (command == "run" || command == "bench") return;
   throw slipfront::UserError(
-      "slipfront: only run and bench --network can be shared by several processes; start {} alone", command);
+      "slipfront: only run and bench can be shared by several processes; start {} alone", command);
 }
 
 int run(int argc, char** argv) {
@@ -101,6 +101,7 @@ int run(int argc, char** argv) {
     leading.emplace(*processes);
     require_shared(argc, argv);
   }
+  if (slipfront::cli::is_python_command(argc, argv)) slipfront::leave_processes();
   slipfront::cli::become_python_command(argc, argv);
   slipfront::cli::Program program("slipfront", "Slip fronts at frictional interfaces",
                                   slipfront::cli::version_text());

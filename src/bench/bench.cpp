@@ -20,6 +20,7 @@
 #include "mesh/plate.hpp"
 #include "mesh/reorder.hpp"
 #include "motion/stepper.hpp"
+#include "run/parts.hpp"
 #include "run/run.hpp"
 #include "solid/kernels.hpp"
 #include "statics/prestress.hpp"
@@ -215,7 +216,7 @@ PaperRun paper_run(int columns, int threads) {
 
 }  // namespace
 
-StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
+StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes* processes) {
   const auto plate = plate_of(columns);
   const int rows = columns / 2;
   const double n_unknowns = 2 * (columns + 1.0) * (rows + 1.0);
@@ -228,7 +229,11 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver) {
   loading.solver = solver;
   const double mu_s = interface::VelocityWeakening {
   }.mu_s;
-  const statics::Statics statics(mesh, {}, loading, mu_s);
+  const run::SharedStatics helpers(processes);
+  const solid::Material material;
+  const statics::Statics statics(
+      {mesh, material}, std::nullopt, loading, std::vector<double>(mesh.lower.size(), mu_s), "friction.mu_s",
+      [] { return true; }, processes);
   StaticsRun result{columns, mesh.grid.rows,
                     std::string(statics::name_of(statics::choose_solver(solver, n_unknowns))), n_unknowns};
   result.critical_shear_m = statics.shear_to(1).shear_m;

@@ -14,6 +14,7 @@
 #include "cli/commands.hpp"
 #include "fronts/fit.hpp"
 #include "run/parts.hpp"
+#include "statics/petsc_equations.hpp"
 #include "statics/plate_solver.hpp"
 
 namespace slipfront::cli {
@@ -141,8 +142,8 @@ void add_bench(Command& app, Processes* processes) {
   auto solver = std::make_shared<std::string>("iterative");
   command->add_option("--statics", *columns, "Measure the statics of a plate of so many columns instead")
       ->range(2, 100'000);
-  command->add_option("--solver", *solver, "... by this solver: auto, direct or iterative")
-      ->one_of({"auto", "direct", "iterative"});
+  command->add_option("--solver", *solver, "... by this solver: auto, direct, iterative or petsc")
+      ->one_of({"auto", "direct", "iterative", "petsc"});
   auto network = std::make_shared<bool>(false);
   command->add_flag(
       "--network", *network,
@@ -155,13 +156,19 @@ void add_bench(Command& app, Processes* processes) {
             "with mpirun -n 2 or more");
       return print_network(run::measure_network(*processes), *json);
     }
-    if (processes != nullptr)
+    const bool is_by_petsc = *columns > 0 && *solver == "petsc";
+    if (is_by_petsc && statics::petsc_version().empty())
       throw UserError(
-          "slipfront: of bench only --network can be shared by several processes; start it alone");
+          "slipfront: this program was built without PETSc; build it with make build-mpi, or choose another "
+          "--solver");
+    if (processes != nullptr && !is_by_petsc)
+      throw UserError(
+          "slipfront: of bench only --network, and --statics with --solver petsc, can be shared by several "
+          "processes; start it alone");
     if (*columns > 0) {
       for (const auto s : {statics::StaticSolver::automatic, statics::StaticSolver::direct,
-                           statics::StaticSolver::iterative})
-        if (statics::name_of(s) == *solver) print_statics(bench::measure_statics(*columns, s));
+                           statics::StaticSolver::iterative, statics::StaticSolver::petsc})
+        if (statics::name_of(s) == *solver) print_statics(bench::measure_statics(*columns, s, processes));
       return;
     }
     const auto results = bench::measure(

@@ -80,9 +80,13 @@ void add_python_commands(Command& app) {
   for (const PythonCommand& command : python_commands) app.add_subcommand(command.name, command.description);
 }
 
-void become_python_command(int argc, char** argv) {
+bool is_python_command(int argc, char** argv) {
   const auto names = [&](const PythonCommand& command) { return std::string_view(argv[1]) == command.name; };
-  if (argc < 2 || std::none_of(python_commands.begin(), python_commands.end(), names)) return;
+  return argc >= 2 && std::any_of(python_commands.begin(), python_commands.end(), names);
+}
+
+void become_python_command(int argc, char** argv) {
+  if (!is_python_command(argc, argv)) return;
   const fs::path tree = source_tree();
   if (!tree.empty()) put_first_on_python_path(tree / "python");
   // Where `make module` brings what is missing: not into an interpreter of the user's.

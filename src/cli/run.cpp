@@ -132,9 +132,9 @@ run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& o
 
 /// Refuses what the machine cannot hold before anything is written.
 void require_fit(const CaseArguments& arguments, const input::Case& config, const std::filesystem::path& dir,
-                 bool is_shared) {
+                 const Processes* processes) {
   try {
-    run::require_fit(config, dir, is_shared);
+    run::require_fit(config, dir, processes);
   } catch (const UserError& error) {
     throw arguments.with_place(error);
   }
@@ -156,11 +156,11 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
   }
   if (!options.restart) {
     folder.require_empty(options.overwrite);
-    require_fit(arguments, *config, folder.dir(), options.session.processes != nullptr);
+    require_fit(arguments, *config, folder.dir(), options.session.processes);
   }
   if (options.session.processes != nullptr && config) {
     try {
-      run::require_divisible(*config, options.session.processes->size());
+      run::require_divisible(*config, *options.session.processes);
     } catch (const UserError& error) {
       throw arguments.with_place(error);
     }

@@ -428,9 +428,11 @@ void add_loading(EntryList& list) {
                   "loading.solver", at(&Case::loading, &Loading::solver),
                   {{"auto", StaticSolver::automatic},
                    {"direct", StaticSolver::direct},
-                   {"iterative", StaticSolver::iterative}},
+                   {"iterative", StaticSolver::iterative},
+                   {"petsc", StaticSolver::petsc}},
                   "static equilibria by a sparse factorisation, by conjugate gradients with a multigrid "
-                  "preconditioner, or by the one that suits the number of elements")),
+                  "preconditioner, or by the one of both that suits the number of elements; by PETSc, shared "
+                  "by the processes of a run, where the program was built with it")),
       });
   list.add(
       Stage::motion,

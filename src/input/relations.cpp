@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "input/entries.hpp"
 #include "solid/operator.hpp"
+#include "statics/petsc_equations.hpp"
 #include "statics/plate_solver.hpp"
 
 namespace slipfront::input {
@@ -106,6 +107,10 @@ void check_trigger_zone(const Case& config) {
 }
 
 void check_solver(const Case& config) {
+  if (config.loading.solver == StaticSolver::petsc && statics::petsc_version().empty())
+    throw UserError(
+        "{} = petsc: this program was built without PETSc; build it with make build-mpi, or choose another",
+        Key("loading.solver"));
   if (config.loading.solver != StaticSolver::iterative) return;
   const Key solver("loading.solver");
   const auto& plate = config.plate;

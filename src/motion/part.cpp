@@ -188,6 +188,7 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
       begin_counting();
       break;
     case PartCommand::network:
+    case PartCommand::statics:
     case PartCommand::build:
     case PartCommand::release:
     case PartCommand::end:

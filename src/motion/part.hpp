@@ -58,6 +58,7 @@ Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodyS
 /// What is asked of all parts at a time. The number of the command is followed by its values.
 enum class PartCommand : int {
   network,   ///< run::serve measures it, or answers one that does
+  statics,   ///< run::serve does its share of the statics
   build,     ///< run::serve makes the part
   start,     ///< begin at an equilibrium
   watch,     ///< look at probes

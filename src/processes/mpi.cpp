@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -64,10 +65,14 @@ class MpiProcesses final : public Processes {
     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
+    MPI_Comm machine = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
+    MPI_Comm_size(machine, &on_machine_);
+    MPI_Comm_free(&machine);
     if (size_ == 1) return;
     // Else the kernel adds 50 us to each sleep.
     ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-    if (n_on_this_machine() > static_cast<int>(std::thread::hardware_concurrency())) patience_.polls_for_s(0);
+    if (on_machine_ > static_cast<int>(std::thread::hardware_concurrency())) patience_.polls_for_s(0);
   }
   MpiProcesses(const MpiProcesses&) = delete;
   MpiProcesses& operator=(const MpiProcesses&) = delete;
@@ -75,6 +80,7 @@ class MpiProcesses final : public Processes {
 
   int rank() const override { return rank_; }
   int size() const override { return size_; }
+  int on_this_machine() const override { return on_machine_; }
 
   void send(int to, const Parcel& parcel) override {
     const Waiting waiting(counters_.command_s);
@@ -154,33 +160,35 @@ class MpiProcesses final : public Processes {
     Clock::time_point begin_ = Clock::now();
   };
 
-  static int n_on_this_machine() {
-    MPI_Comm machine = MPI_COMM_NULL;
-    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-    int n = 0;
-    MPI_Comm_size(machine, &n);
-    MPI_Comm_free(&machine);
-    return n;
-  }
-
   void count(std::size_t bytes) {
     ++counters_.messages;
     counters_.bytes += static_cast<std::int64_t>(bytes);
   }
 
-  int rank_ = 0, size_ = 1;
+  int rank_ = 0, size_ = 1, on_machine_ = 1;
   Patience patience_;
   /// MPI_Abort takes memory, of which there may be none left.
   std::vector<std::byte> reserve_ = std::vector<std::byte>(std::size_t{1} << 20);
 };
+
+/// MPI for one that was started alone, whose libraries may use it until the end.
+std::unique_ptr<Processes>& alone() {
+  static std::unique_ptr<Processes> processes;
+  return processes;
+}
 
 }  // namespace
 
 std::unique_ptr<Processes> join_processes(int& argc, char**& argv) {
   if (!is_started_by_mpi()) return nullptr;
   auto processes = std::make_unique<MpiProcesses>(argc, argv);
-  if (processes->size() == 1) return nullptr;
-  return processes;
+  if (processes->size() > 1) return processes;
+  alone() = std::move(processes);
+  return nullptr;
+}
+
+void leave_processes() {
+  alone().reset();
 }
 
 #else
@@ -188,6 +196,8 @@ std::unique_ptr<Processes> join_processes(int& argc, char**& argv) {
 std::unique_ptr<Processes> join_processes(int&, char**&) {
   return nullptr;
 }
+
+void leave_processes() {}
 
 #endif
 

@@ -39,6 +39,8 @@ class Processes {
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
+  /// How many of them share this one's machine and its memory, this one included.
+  virtual int on_this_machine() const { return size(); }
 
   virtual void send(int to, const Parcel& parcel) = 0;
   virtual Parcel receive(int from) = 0;
@@ -71,5 +73,7 @@ inline std::string reason_of(const std::exception& error) {
 /// Joins the other processes that mpirun, or another starter of MPI, has begun with this one.
 /// @return null where this process is alone, or the program was built without MPI
 std::unique_ptr<Processes> join_processes(int& argc, char**& argv);
+/// What a starter of MPI has begun alone leaves it before it becomes another program.
+void leave_processes();
 
 }  // namespace slipfront

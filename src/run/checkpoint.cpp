@@ -52,9 +52,10 @@ const std::string& program_identity() {
   return identity;
 }
 
-InitialState read_initial_state(results::InputArchive& archive, const input::Case& config) {
+InitialState read_initial_state(results::InputArchive& archive, const input::Case& config,
+                                const Processes* processes) {
   InitialState initial;
-  auto meshes = check(config);
+  auto meshes = check(config, processes);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   archive(initial);

@@ -31,8 +31,10 @@ struct CheckpointHead {
 };
 
 /// Reads what was kept of a case's initial state, and makes its mesh.
+/// @param processes  that share the run, of which this one leads; null for this one alone
 /// @throws UserError where it is of another plate
-InitialState read_initial_state(results::InputArchive& archive, const input::Case& config);
+InitialState read_initial_state(results::InputArchive& archive, const input::Case& config,
+                                const Processes* processes = nullptr);
 
 /// The motion in an event, as it is kept.
 void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper);

@@ -153,10 +153,11 @@ double measured_step_s(const input::Case& config, motion::Stepper& stepper, cons
 }
 
 /// Of the factorisation n^1.5 operations are those of large fronts, the rest of its assembly and small ones;
-/// rates measured with two threads over 2e4 to 8e5 unknowns.
+/// rates measured with two threads over 2e4 to 8e5 unknowns. By PETSc of one process.
 double expected_statics_s(const Info& info) {
   const double n = n_unknowns_of(info);
   if (info.solver == statics::StaticSolver::direct) return 1.6e-9 * std::pow(n, 1.5) + 2.8e-6 * n;
+  if (info.solver == statics::StaticSolver::petsc) return 3e-5 * n;
   return info.solver == statics::StaticSolver::iterative ? 1e-6 * n : 0;
 }
 
@@ -201,6 +202,10 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
   work.snapshots = info.needs.snapshots;
   work.statics_s = expected_statics_s(info);
   work.statics_bytes = info.solver_bytes;
+  if (info.solver == statics::StaticSolver::petsc) {
+    work.statics_s /= std::min(sharing.n_processes, sharing.n_processors);
+    work.statics_bytes /= sharing.n_processes;
+  }
   work.precision = config.time.precision;
   work.bytes_per_interface_node = bytes_per_interface_node(config);
   work.program_bytes = program_bytes;

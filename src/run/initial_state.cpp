@@ -16,6 +16,7 @@
 #include "run/begin.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
+#include "run/parts.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/prestress.hpp"
 
@@ -108,8 +109,8 @@ std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh
   return motion::locate_probes(input::probe_places(config), bodies);
 }
 
-Meshes check(const input::Case& config) {
-  require_memory_fits(config);
+Meshes check(const input::Case& config, const Processes* processes) {
+  require_memory_fits(config, processes);
   if (!is_prestressed(config)) require_edges_to_tilt(config);
   require_free_sides_for_single(config);
   Meshes meshes{mesh::make_plate(config.plate), {}};
@@ -155,11 +156,12 @@ std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const me
 }
 
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
-                                const motion::Execution& execution, const RampBegins& ramp_begins) {
+                                const motion::Execution& execution, const RampBegins& ramp_begins,
+                                Processes* processes) {
   const auto start = Clock::now();
   const double margin = config.loading.critical_margin;
   InitialState initial;
-  auto meshes = check(config);
+  auto meshes = check(config, processes);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   initial.n_nodes = initial.mesh.n_nodes() + (initial.base ? initial.base->n_nodes() : 0);
@@ -179,9 +181,12 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   const auto base_material = input::base_material(config);
   std::optional<statics::ElasticBody> base;
   if (initial.base) base.emplace(statics::ElasticBody{*initial.base, base_material});
+  const bool is_shared = config.loading.solver == statics::StaticSolver::petsc;
+  const SharedStatics helpers(is_shared ? processes : nullptr);
   const statics::Statics statics(
       {initial.mesh, config.material}, base, config.loading, at_all_nodes(mu_s, initial.mesh),
-      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); });
+      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); },
+      is_shared ? processes : nullptr);
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();

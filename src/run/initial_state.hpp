@@ -10,6 +10,7 @@
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
+#include "processes/processes.hpp"
 #include "statics/statics.hpp"
 
 namespace slipfront::run {
@@ -49,8 +50,9 @@ struct Meshes {
 };
 
 /// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer.
+/// @param processes  that share the run, of which this one leads; null for this one alone
 /// @throws UserError
-Meshes check(const input::Case& config);
+Meshes check(const input::Case& config, const Processes* processes = nullptr);
 
 /// Both bodies in one mesh, for pictures: the nodes and cells of the body below follow those of the plate,
 /// its y turned downwards, as in motion::Stepper::snapshot.
@@ -59,9 +61,11 @@ mesh::Mesh joined(Meshes meshes);
 /// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.
 using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
 
+/// @param processes  that share statics by PETSc, all in `serve`; null for this one alone
 /// @throws UserError, BlowUp, Interrupted as its parts do.
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
-                                const motion::Execution& execution = {}, const RampBegins& ramp_begins = {});
+                                const motion::Execution& execution = {}, const RampBegins& ramp_begins = {},
+                                Processes* processes = nullptr);
 
 /// A text that is the same for two cases if and only if they share their initial state.
 std::string initial_state_key(const input::Case& config);

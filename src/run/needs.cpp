@@ -120,9 +120,9 @@ double node_bytes_of_mesh() {
 }
 
 statics::StaticsBudget statics_budget(const input::Case& config, const Size& size) {
-  return statics::statics_budget({wanted_solver(config), 2 * (size.n_nodes - size.n_base_nodes),
-                                  size.n_interface, 2 * size.n_base_nodes,
-                                  config.loading.top_during_tilt == statics::TopEdge::free});
+  return statics::statics_budget(
+      {wanted_solver(config), 2 * (size.n_nodes - size.n_base_nodes), size.n_interface, 2 * size.n_base_nodes,
+       config.loading.top_during_tilt == statics::TopEdge::free, size.statics_share});
 }
 
 /// The event while it is built and goes, with what is recorded of it and waits to be written.
@@ -185,6 +185,11 @@ Size estimated_mesh_size(const input::Case& config) {
   size.n_nodes = size.n_cells = 0.5 * unknowns.of_plate + size.n_base_nodes;
   size.n_interface = config.plate.width_m / config.plate.element_size_m + 1;
   return size;
+}
+
+double statics_share(const Processes* processes) {
+  if (processes == nullptr) return 1;
+  return static_cast<double>(processes->on_this_machine()) / processes->size();
 }
 
 std::string work_of(const Size& size) {
@@ -326,20 +331,22 @@ Budget Needs::disk() const {
           {"energy.csv", energy_bytes, Message("a larger {}", Key("output.energy_interval_s"))}};
 }
 
-void require_memory_fits(const input::Case& config) {
-  const Size size = estimated_mesh_size(config);
+void require_memory_fits(const input::Case& config, const Processes* processes) {
+  Size size = estimated_mesh_size(config);
+  size.statics_share = statics_share(processes);
   const bool with_snapshots =
       !config.output.snapshot_times_s.empty() || std::isfinite(config.output.snapshot_interval_s);
   const double n_snapshots = with_snapshots ? 1 : 0;
   require_memory(largest_of(memory_stages(config, size, n_snapshots, 0, 0)), work_of(size));
 }
 
-void require_fit(const input::Case& config, const std::filesystem::path& folder, bool is_shared) {
-  require_memory_fits(config);  // before the coarse statics that count a ramp's steps
-  const Size size = estimated_size(config);
+void require_fit(const input::Case& config, const std::filesystem::path& folder, const Processes* processes) {
+  require_memory_fits(config, processes);  // before the coarse statics that count a ramp's steps
+  Size size = estimated_size(config);
+  size.statics_share = statics_share(processes);
   Needs n = needs(config, size);
   Budget memory = largest_of(n.memory);
-  if (is_shared) {
+  if (processes != nullptr) {
     memory.push_back(
         {"what the processes keep, gathered", gathered_node_bytes * size.n_nodes, larger_elements()});
     n.checkpoint_bytes *= shared_checkpoint_bytes;

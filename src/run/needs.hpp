@@ -8,6 +8,7 @@
 
 #include "base/budget.hpp"
 #include "input/case.hpp"
+#include "processes/processes.hpp"
 
 namespace slipfront::run {
 
@@ -29,7 +30,8 @@ std::vector<double> snapshots_after(const input::Case& config, double time_s);
 struct Size {
   double n_nodes = 0, n_cells = 0, n_interface = 0;
   double step_s = 0;
-  double n_base_nodes = 0;  ///< of n_nodes those of a base
+  double n_base_nodes = 0;   ///< of n_nodes those of a base
+  double statics_share = 1;  ///< see statics::StaticsSize
 };
 
 /// The same from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,
@@ -62,13 +64,15 @@ Needs needs(const input::Case& config, const Size& size);
 
 /// Refuses a case that would not fit into the memory, before anything is built; what grows with its steps is
 /// left out.
+/// @param processes  that share the run, of which this one leads; null for this one alone
 /// @throws UserError naming what to change.
-void require_memory_fits(const input::Case& config);
+void require_memory_fits(const input::Case& config, const Processes* processes = nullptr);
 
 /// Refuses a case whose run would not fit into the memory or onto the disk of `folder`, which need not exist
 /// yet.
-/// @param is_shared  by several processes, of which this one leads
+/// @param processes  as above
 /// @throws UserError naming what to change.
-void require_fit(const input::Case& config, const std::filesystem::path& folder, bool is_shared = false);
+void require_fit(const input::Case& config, const std::filesystem::path& folder,
+                 const Processes* processes = nullptr);
 
 }  // namespace slipfront::run

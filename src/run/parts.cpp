@@ -17,6 +17,7 @@
 #include "run/choices.hpp"
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
+#include "statics/petsc_solver.hpp"
 
 namespace slipfront::run {
 
@@ -190,9 +191,9 @@ std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
 
 }  // namespace
 
-void require_divisible(const input::Case& config, int n_processes) {
-  const auto meshes = check(config);
-  Whole(config, meshes.plate, meshes.base).divide(n_processes);
+void require_divisible(const input::Case& config, const Processes& processes) {
+  const auto meshes = check(config, &processes);
+  Whole(config, meshes.plate, meshes.base).divide(processes.size());
 }
 
 std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& config, const mesh::Mesh& plate,
@@ -265,6 +266,16 @@ std::vector<Link> measure_network(Processes& processes) {
   return links;
 }
 
+SharedStatics::SharedStatics(Processes* processes) : processes_(processes) {
+  if (processes_ == nullptr) return;
+  for (int rank = 1; rank < processes_->size(); ++rank)
+    processes_->send(rank, Parcel().put(motion::PartCommand::statics));
+}
+
+SharedStatics::~SharedStatics() {
+  if (processes_ != nullptr) statics::release_statics(*processes_);
+}
+
 void serve(Processes& processes) try {
   // What a signal asks for is the leader's to hear.
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGXFSZ, SIGPIPE, SIGUSR1})
@@ -277,6 +288,10 @@ void serve(Processes& processes) try {
     if (command == motion::PartCommand::end) return;
     if (command == motion::PartCommand::network) {
       carry_out_network(processes, parcel);
+      continue;
+    }
+    if (command == motion::PartCommand::statics) {
+      statics::serve_statics(processes);
       continue;
     }
     const auto part = take_part(processes, parcel);

@@ -15,7 +15,7 @@ namespace slipfront::run {
 
 /// Refuses what so many processes cannot share; builds the meshes for it.
 /// @throws UserError
-void require_divisible(const input::Case& config, int n_processes);
+void require_divisible(const input::Case& config, const Processes& processes);
 
 /// The bodies without their motion, divided among the processes. To be called by the leader, while the others
 /// are in `serve`.
@@ -24,6 +24,19 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
                                                           const std::optional<mesh::Mesh>& base,
                                                           Processes& processes,
                                                           const motion::Execution& execution);
+
+/// While it lives the other processes do their shares of static solutions by PETSc.
+class SharedStatics {
+ public:
+  /// @param processes  null, or all in `serve`
+  explicit SharedStatics(Processes* processes);
+  SharedStatics(const SharedStatics&) = delete;
+  SharedStatics& operator=(const SharedStatics&) = delete;
+  ~SharedStatics();
+
+ private:
+  Processes* processes_;
+};
 
 /// What the process does first that leads.
 /// @throws UserError where another process is another program; all are dismissed then

@@ -140,7 +140,8 @@ InitialState Session::initial_state(Checkpoints::Kept* kept) {
       [&](std::int64_t step, std::int64_t total) {
         return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
       },
-      execution_, [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept, stepper, ramp); });
+      execution_, [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept, stepper, ramp); },
+      options_.processes);
   if (shared) shared->keep(config_, initial);
   return initial;
 }
@@ -158,9 +159,9 @@ void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, moti
 
 void Session::begin_event(Checkpoints::Kept* kept) {
   if (kept != nullptr) {
-    initial_ = read_initial_state(kept->rest, config_);
+    initial_ = read_initial_state(kept->rest, config_, options_.processes);
     const auto make_whole = [&] {
-      const auto meshes = check(config_);
+      const auto meshes = check(config_, options_.processes);
       return new_stepper(config_, meshes.plate, meshes.base, execution_);
     };
     event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);
@@ -268,7 +269,7 @@ void Session::write_results(const Finished& run) {
     results::write_probes(dir_ / "probes.h5", results::ResultStream::probe_file(folder_.state()), places,
                           origin_of(config_));
   if (!snapshot_plan(config_, run.result.step_s).times_s.empty()) {
-    auto meshes = check(config_);
+    auto meshes = check(config_, options_.processes);
     const auto n_plate_cells = meshes.plate.cells.size();
     const auto mesh = joined(std::move(meshes));
     results::write_snapshots(dir_ / "fields.vtkhdf", results::ResultStream::snapshot_file(folder_.state()),

@@ -10,6 +10,7 @@
 #include "statics/factorisation.hpp"
 #include "statics/iterative.hpp"
 #include "statics/load_case.hpp"
+#include "statics/petsc_solver.hpp"
 
 namespace slipfront::statics {
 
@@ -158,6 +159,7 @@ StaticSolver choose_solver(StaticSolver wanted, double n_unknowns) {
 }
 
 StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate, const std::optional<Shape>& base) {
+  if (wanted == StaticSolver::petsc) return wanted;
   if (plate.is_graded || (base && base->is_graded)) return StaticSolver::direct;
   if (wanted != StaticSolver::automatic) return wanted;
   const double rows = plate.rows + (base ? base->rows : 0);
@@ -169,6 +171,7 @@ StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate, const st
 
 std::string_view name_of(StaticSolver solver) {
   if (solver == StaticSolver::automatic) return "auto";
+  if (solver == StaticSolver::petsc) return "petsc";
   return solver == StaticSolver::direct ? "direct" : "iterative";
 }
 
@@ -219,6 +222,12 @@ bool is_direct(const StaticsSize& size) {
 StaticsBudget statics_budget(const StaticsSize& size) {
   if (is_direct(size)) return direct_budget(size);
   const double n = size.n_unknowns + size.n_unknowns_base;
+  if (size.solver == StaticSolver::petsc) {
+    // What each process receives and the leader puts together comes on top of the shares.
+    const Budget shares = {{"the static equations of PETSc", size.share * petsc_bytes(n), larger_elements()},
+                           {"bodies on their way to the processes", divided_bytes(n), larger_elements()}};
+    return {shares + Budget{equilibria(n, all_equilibria)}, shares + Budget{equilibria(n, 1)}};
+  }
   Budget iterative = {{"the iterative solution", iterative_bytes(n), larger_elements()}};
   if (size.n_unknowns_base > 0)
     iterative.push_back(
@@ -234,13 +243,16 @@ void require_statics_memory(const StaticsSize& size) {
 }
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
-                                               StaticSolver solver, const std::optional<ElasticBody>& base) {
+                                               StaticSolver solver, const std::optional<ElasticBody>& base,
+                                               Processes* processes) {
   if (base) require_base_fits(mesh, base->mesh);
   std::optional<Shape> shape_of_base;
   if (base) shape_of_base = shape_of(base->mesh);
   solver = solver_for_shapes(solver, shape_of(mesh), shape_of_base);
   double n_unknowns = 2.0 * mesh.n_nodes();
   if (base) n_unknowns += 2.0 * base->mesh.n_nodes();
+  if (solver == StaticSolver::petsc)
+    return std::make_unique<PetscSolver>(ElasticBody{mesh, material}, base, processes);
   if (choose_solver(solver, n_unknowns) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);

@@ -9,6 +9,7 @@
 
 #include "base/budget.hpp"
 #include "mesh/mesh.hpp"
+#include "processes/processes.hpp"
 #include "solid/operator.hpp"
 #include "statics/elastic_body.hpp"
 #include "statics/settings.hpp"
@@ -82,7 +83,8 @@ struct Shape {
   bool is_graded = false;
 };
 
-/// What the shapes of a plate and of a base leave of `wanted`. Graded plates are solved directly. Multigrid
+/// What the shapes of a plate and of a base leave of `wanted`; PETSc takes any. Others solve graded plates
+/// directly. Multigrid
 /// cannot follow a plate far higher than wide, nor make two bodies coarser of which one is far thinner; there
 /// a factorisation is cheap. On a long interface its dense part is not.
 StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate,
@@ -101,6 +103,7 @@ struct StaticsSize {
   double n_unknowns = 0, n_interface = 0;  ///< of the plate
   double n_unknowns_base = 0;              ///< 0 on the rigid plane
   bool top_free_in_tilt = false;           ///< the tilt then has a factorisation of its own
+  double share = 1;                        ///< of PETSc's equations that this machine's processes have
 };
 
 /// What the statics take at their peak, the meshes and the equilibria found included, and what they hold of
@@ -116,8 +119,10 @@ void require_statics_memory(const StaticsSize& size);
 
 /// By the solver that the bodies' shapes leave of `solver`. Before it makes anything, see
 /// require_statics_memory.
+/// @param processes  that are in serve_statics, for PETSc; null for this one alone
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver,
-                                               const std::optional<ElasticBody>& base = std::nullopt);
+                                               const std::optional<ElasticBody>& base = std::nullopt,
+                                               Processes* processes = nullptr);
 
 }  // namespace slipfront::statics

@@ -304,7 +304,8 @@ Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const 
               std::move(mu_s_key), std::move(go_on)) {}
 
 Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>& base,
-                 const Loading& loading, std::vector<double> mu_s, std::string mu_s_key, GoOn go_on)
+                 const Loading& loading, std::vector<double> mu_s, std::string mu_s_key, GoOn go_on,
+                 Processes* processes)
     : mesh_(plate_body.mesh),
       base_mesh_(base ? &base->mesh : nullptr),
       loading_(loading),
@@ -313,7 +314,7 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
       go_on_(std::move(go_on)) {
   const auto& mesh = mesh_;
   SLIPFRONT_ASSERT(mu_s_.size() == mesh.lower.size(), "mu_s of another interface");
-  solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base);
+  solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base, processes);
 
   auto tilt = tilt_of(mesh, loading);
   const bool is_free = loading.top_during_tilt == TopEdge::free;

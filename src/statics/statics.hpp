@@ -65,11 +65,13 @@ class Statics {
   /// @param mu_s      coefficient at rest of each interface node. [lower]
   /// @param mu_s_key  key of mu_s in the case file, for messages
   /// @param go_on     of all solutions, those of later calls included
+  /// @param processes  that are in serve_statics, for loading.solver = petsc; null for this one alone
   /// @throws UserError where the tilt leaves the plate without contact, or where `loading` asks for an
   /// iterative solution on a base; Interrupted.
   Statics(
       const ElasticBody& plate, const std::optional<ElasticBody>& base, const Loading& loading,
-      std::vector<double> mu_s, std::string mu_s_key = "friction.mu_s", GoOn go_on = [] { return true; });
+      std::vector<double> mu_s, std::string mu_s_key = "friction.mu_s", GoOn go_on = [] { return true; },
+      Processes* processes = nullptr);
   /// On the rigid plane, with one coefficient everywhere.
   Statics(
       const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,

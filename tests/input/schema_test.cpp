@@ -13,6 +13,7 @@
 #include "input/entries.hpp"
 #include "interface/friction/registry.hpp"
 #include "interface/friction/velocity_weakening.hpp"
+#include "statics/petsc_equations.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::input {
@@ -340,6 +341,15 @@ TEST(Schema, IterativeStaticsKnowNoGradedPlates) {
   EXPECT_THAT(
       parse_error("[plate]\ncoarsenings = 1\nfine_height_m = 0.02\n[loading]\nsolver = \"iterative\"\n"),
       HasSubstr("knows no graded plates"));
+}
+
+TEST(Schema, StaticsByPetscAreRefusedWithoutIt) {
+  const std::string text = "[loading]\nsolver = \"petsc\"\n";
+  if (statics::petsc_version().empty())
+    EXPECT_THAT(parse_error(text), HasSubstr("loading.solver = petsc: this program was built without PETSc; "
+                                             "build it with make build-mpi"));
+  else
+    EXPECT_EQ(parse_case(text, "c.toml").loading.solver, statics::StaticSolver::petsc);
 }
 
 TEST(Schema, TheKeysStandForTheirMembers) {

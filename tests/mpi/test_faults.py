@@ -34,15 +34,12 @@ history_interval_s = 1e-5
 snapshot_times_s = [1e-3, 3e-3]
 """
 OFTEN = ("--checkpoint-every-simulated", "2e-4")
-# The statics take seconds, the event few steps.
-SLOW_STATICS = (
-    "--set",
-    "plate.element_size_m=5e-4",
-    "--set",
-    "loading.solver=direct",
-    "--set",
-    "time.end_s=2e-5",
-)
+# The statics take seconds, by the leader alone or shared; the event few steps.
+SLOW_STATICS = {
+    "direct": ("--set", "plate.element_size_m=5e-4", "--set", "loading.solver=direct"),
+    "petsc": ("--set", "plate.element_size_m=5e-4", "--set", "loading.solver=petsc"),
+}
+each_statics = pytest.mark.parametrize("solver", SLOW_STATICS)
 # What mpirun, and not the program, says; it names the program's node before what its libraries tell.
 OF_MPIRUN = re.compile(
     r"^(-{10,}|mpirun|\[|Primary job|a non-zero exit|the job to be terminated|\s*(Process name|Exit code):"
@@ -111,10 +108,11 @@ def in_event(mpirun, *arguments, **options):
     return process, mpirun.processes()
 
 
-def in_statics(mpirun, case):
+def in_statics(mpirun, case, solver="direct"):
     """The same before its event."""
+    settings = (*SLOW_STATICS[solver], "--set", "time.end_s=2e-5")
     process = mpirun.start(
-        2, "run", case, "-o", "out", "-q", *SLOW_STATICS, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        2, "run", case, "-o", "out", "-q", *settings, stdout=subprocess.PIPE, stderr=subprocess.PIPE
     )
     wait_until((mpirun.folder / "out/unfinished/run.json").exists, process)
     return process, mpirun.processes()
@@ -247,9 +245,10 @@ def test_killed_in_the_event(mpirun, case, undisturbed, rank):
     require_goes_on(mpirun, case, undisturbed)
 
 
+@each_statics
 @pytest.mark.parametrize("rank", [0, 1])
-def test_killed_in_the_statics(mpirun, case, rank):
-    process, pids = in_statics(mpirun, case)
+def test_killed_in_the_statics(mpirun, case, rank, solver):
+    process, pids = in_statics(mpirun, case, solver)
     os.kill(pids[rank], signal.SIGKILL)
     result = finished(process, 20)
     assert result.returncode == 128 + signal.SIGKILL
@@ -289,8 +288,9 @@ def test_interrupted_leader(mpirun, case, undisturbed):
     require_goes_on(mpirun, case, undisturbed)
 
 
-def test_interrupted_leader_in_the_statics(mpirun, case):
-    process, pids = in_statics(mpirun, case)
+@each_statics
+def test_interrupted_leader_in_the_statics(mpirun, case, solver):
+    process, pids = in_statics(mpirun, case, solver)
     os.kill(pids[0], signal.SIGTERM)
     assert "interrupted" in one_line(finished(process, 20), 128 + signal.SIGTERM)
 

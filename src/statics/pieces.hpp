@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "processes/parcel.hpp"
+#include "statics/elastic_body.hpp"
+#include "statics/load_case.hpp"
+
+namespace slipfront::statics {
+
+/// What one process computes of bodies that several share: the cells at its own nodes.
+///
+/// The unknowns are pairs along x and y, one for each node with cells, numbered through all processes; each
+/// has consecutive ones. A pair is a node's displacement; at the interface of two bodies, for the nodes of
+/// the softer one, it is the plate's displacement relative to the base, so that contact fixes or frees it.
+struct Piece {
+  struct Node {
+    double x_m = 0, y_m = 0;
+    std::int32_t pair = 0;
+    std::int32_t opposite = -1;  ///< where the pair is a relative displacement, that of the other body's node
+  };
+  struct Body {
+    solid::Material material;
+    bool is_base = false;  ///< described upside down
+    std::vector<Node> nodes;
+    std::vector<mesh::Cell> cells;  ///< of these nodes
+  };
+  /// An own pair of unknowns with its place along an edge.
+  struct Place {
+    std::int32_t pair = 0, place = 0;
+  };
+
+  std::int32_t first = 0, count = 0, n_pairs = 0;  ///< own pairs, and those of all processes
+  std::vector<Body> bodies;
+  std::vector<Place> lower;        ///< places in mesh.lower, ascending
+  std::vector<double> gap_m;       ///< [lower]
+  std::vector<std::int32_t> top;   ///< pairs of the loaded edge
+  std::vector<std::int32_t> held;  ///< pairs at which a base is held
+
+  bool has(std::int32_t pair) const { return pair >= first && pair < first + count; }
+  void put(Parcel& to) const;
+  static Piece take(Parcel& from);
+};
+
+/// Factors of a node's pair and of its opposite's in its displacement, along x and y.
+struct Terms {
+  std::array<double, 2> own{1, 1}, opposite{0, 0};
+};
+Terms terms_of(bool is_relative, bool is_base);
+
+/// A plate, and a base below it, cut across the interface into pieces with as many nodes each.
+class DividedBodies {
+ public:
+  DividedBodies(const ElasticBody& plate, const std::optional<ElasticBody>& base, int n_pieces);
+
+  int n_pieces() const { return static_cast<int>(first_.size()) - 1; }
+  std::int32_t n_pairs() const { return first_.back(); }
+  Piece piece(int number) const;
+
+  /// All unknowns for displacements of the bodies, and back; 0 at numbers without a cell.
+  std::vector<double> unknowns(const DisplacementOfBodies& u) const;
+  Displacement displacement(const std::vector<double>& unknowns) const;
+  /// Of all unknowns those of a piece.
+  std::vector<double> of_piece(const std::vector<double>& unknowns, int number) const;
+
+ private:
+  struct Body {
+    const mesh::Mesh* mesh;
+    const solid::Material* material;
+    std::vector<std::int32_t> pair;  ///< [nodes] -1 where there is no cell
+  };
+  bool is_relative_body(std::size_t body) const { return bodies_.size() > 1 && body == softer_; }
+  /// [nodes] The other body's pair at the nodes whose own one is relative; else -1.
+  std::vector<std::int32_t> opposites(std::size_t body) const;
+
+  std::vector<Body> bodies_;
+  std::size_t softer_ = 0;
+  std::vector<std::int32_t> first_;  ///< [pieces + 1]
+};
+
+}  // namespace slipfront::statics

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Statics by PETSc, shared by processes, against the factorisation of one process."""
+
+import json
+import math
+import os
+import subprocess
+
+import numpy as np
+import pytest
+from conftest import AS_ROOT
+
+CASE = """\
+title = "shared statics"
+
+[plate]
+element_size_m = 2e-3
+
+[loading]
+solver = "direct"
+
+[event]
+kind = "left"
+
+[time]
+end_s = 2e-4
+quiet_s = inf
+"""
+# docs/statics-petsc.md: of a displacement in the energy norm, over the displacement's.
+ACCURACY = 1e-10
+GRADED = ("--set", "plate.coarsenings=2", "--set", "plate.fine_height_m=0.02")
+ON_BASE = tuple(
+    word
+    for setting in (
+        "kind=body",
+        "height_m=0.06",
+        "youngs_modulus_Pa=5e9",
+        "poissons_ratio=0.3",
+        "density_kg_per_m3=1500",
+        "stiffness_damping_s=1e-7",
+    )
+    for word in ("--set", f"base.{setting}")
+)
+FILLET = ("--set", "plate.corner=fillet")
+YOUNGS_MODULUS_PA, HEIGHT_M, WIDTH_M, ELEMENT_M = 2.6e9, 0.1, 0.2, 2e-3
+
+
+@pytest.fixture
+def case(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    return path
+
+
+def table(folder, name):
+    return np.genfromtxt(folder / name, delimiter=",", names=True, comments="#", dtype=None, encoding="utf-8")
+
+
+def traction_tolerance_pa(folder):
+    """A node's force differs by no more than sqrt(K_kk) times the error in the energy norm. Twice the strain
+    energy is at most that of the loaded edge's largest displacement over the whole plate; K_kk is about E."""
+    shear_m = json.loads((folder / "run.json").read_text())["statics"]["critical_shear_m"]
+    strain = (0.37e-3 + shear_m) / HEIGHT_M
+    norm = math.sqrt(YOUNGS_MODULUS_PA * strain**2 * HEIGHT_M * WIDTH_M)
+    return 2 * math.sqrt(YOUNGS_MODULUS_PA) * ACCURACY * norm / ELEMENT_M
+
+
+def require_same_state(found, expected):
+    a, b = table(found, "static.csv"), table(expected, "static.csv")
+    assert np.array_equal(a["x_m"], b["x_m"])
+    tolerance_pa = traction_tolerance_pa(expected)
+    assert tolerance_pa < 1e-6 * b["p_s_Pa"].max()
+    for name in ("t_s_Pa", "p_s_Pa"):
+        assert np.abs(a[name] - b[name]).max() <= tolerance_pa, name
+        # Another solver, indeed.
+        assert np.abs(a[name] - b[name]).max() > 0, name
+    # Open nodes have none; slipping ones have the friction's share of the pressure.
+    assert np.array_equal(a["p_s_Pa"] == 0, b["p_s_Pa"] == 0)
+
+
+def require_same_fronts(found, expected):
+    a, b = table(found, "fronts.csv"), table(expected, "fronts.csv")
+    assert a.size == b.size > 3
+    step_s = json.loads((expected / "run.json").read_text())["dt_s"]
+    assert np.array_equal(a["x_m"], b["x_m"])
+    assert np.abs(a["onset_s"] - b["onset_s"]).max() <= 2 * step_s
+
+
+def run(mpirun, n, case, out, *settings):
+    arguments = ("run", case, "-o", out, "-q", *settings)
+    result = mpirun.alone(*arguments) if n == 0 else mpirun(n, *arguments)
+    assert result.returncode == 0, result.stderr
+    return mpirun.folder / out
+
+
+@pytest.mark.parametrize(
+    "settings, most", [((), 4), (FILLET, 3), (ON_BASE, 4)], ids=["relief", "fillet", "base"]
+)
+def test_as_the_factorisation(mpirun, case, settings, most):
+    expected = run(mpirun, 0, case, "direct", *settings)
+    for n in range(most + 1):
+        found = run(mpirun, n, case, f"petsc-{n}", *settings, "--set", "loading.solver=petsc")
+        require_same_state(found, expected)
+        require_same_fronts(found, expected)
+
+
+@pytest.mark.parametrize("n", [0, 1])
+def test_graded(mpirun, case, n):
+    expected = run(mpirun, 0, case, "direct", *GRADED)
+    found = run(mpirun, n, case, "petsc", *GRADED, "--set", "loading.solver=petsc")
+    require_same_state(found, expected)
+    require_same_fronts(found, expected)
+
+
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_equilibria(mpirun, n):
+    """Each kind of body and contact, node by node: petsc_test.cpp."""
+    program = mpirun.program.with_name("test_petsc")
+    result = subprocess.run(
+        ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(n), program],
+        env=os.environ | AS_ROOT,
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert result.returncode == 0, result.stdout[-4000:] + result.stderr
+    assert "[  PASSED  ]" in result.stdout
+
+
+def test_options_of_petsc_change_nothing(mpirun, case, tmp_path, monkeypatch):
+    petsc = ("--set", "loading.solver=petsc")
+    plain = run(mpirun, 0, case, "plain", *petsc)
+    options = "-log_view -info -mg_levels_ksp_max_it 7 -pc_gamg_agg_nsmooths 0 -malloc_view -no_such_option"
+    monkeypatch.setenv("PETSC_OPTIONS", options)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    for name in (".petscrc", "petscrc"):
+        (tmp_path / name).write_text(options.replace(" -", "\n-") + "\n")
+    result = mpirun.alone("run", case, "-o", "set", "-q", *petsc)
+    assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+    assert (tmp_path / "set/static.csv").read_bytes() == (plain / "static.csv").read_bytes()
+
+
+def test_as_many_processes_give_the_same_again(mpirun, case):
+    petsc = ("--set", "loading.solver=petsc")
+    first, again = (run(mpirun, 2, case, name, *petsc) for name in ("first", "again"))
+    for name in ("static.csv", "fronts.csv", "interface.h5"):
+        assert (first / name).read_bytes() == (again / name).read_bytes(), name

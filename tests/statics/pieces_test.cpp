@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "statics/pieces.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "support/plate.hpp"
+
+namespace slipfront::statics {
+namespace {
+
+using mesh::Corner;
+using test::max_abs;
+
+const solid::Material pmma{};
+const solid::Material gel{.youngs_modulus_Pa = 0.3e9, .poissons_ratio = 0.45};
+
+solid::Field some_field(const mesh::Mesh& mesh, double seed) {
+  solid::Field u(static_cast<std::size_t>(mesh.n_nodes()));
+  const auto is_orphan = mesh::orphans(mesh);
+  for (std::size_t n = 0; n < u.size(); ++n) {
+    if (is_orphan[n]) continue;
+    u.x[n] = std::sin(seed + static_cast<double>(n));
+    u.y[n] = std::cos(seed + 0.7 * static_cast<double>(n));
+  }
+  return u;
+}
+
+/// K' u of the unknowns, from the pieces' own rows alone.
+Eigen::VectorXd product_of_pieces(const DividedBodies& divided, const std::vector<double>& u) {
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(u.size()));
+  for (int k = 0; k < divided.n_pieces(); ++k) {
+    Parcel parcel;
+    divided.piece(k).put(parcel);
+    const auto piece = Piece::take(parcel);
+    EXPECT_TRUE(parcel.is_empty());
+    for (const auto& body : piece.bodies)
+      for (const auto& cell : body.cells) {
+        solid::CellCoordinates c{};
+        std::array<double, 8> of_cell{};
+        for (std::size_t a = 0; a < 8; ++a) {
+          const auto& node = body.nodes[cell[a / 2]];
+          const auto terms = terms_of(node.opposite >= 0, body.is_base);
+          c[a] = a % 2 == 0 ? node.x_m : node.y_m;
+          of_cell[a] = terms.own[a % 2] * u[2 * node.pair + a % 2];
+          if (node.opposite >= 0) of_cell[a] += terms.opposite[a % 2] * u[2 * node.opposite + a % 2];
+        }
+        const auto K = solid::cell_stiffness(c, body.material);
+        for (std::size_t a = 0; a < 8; ++a) {
+          double force = 0;
+          for (std::size_t b = 0; b < 8; ++b) force += K[8 * a + b] * of_cell[b];
+          const auto& node = body.nodes[cell[a / 2]];
+          const auto terms = terms_of(node.opposite >= 0, body.is_base);
+          if (piece.has(node.pair)) f(2 * node.pair + a % 2) += terms.own[a % 2] * force;
+          if (piece.has(node.opposite)) f(2 * node.opposite + a % 2) += terms.opposite[a % 2] * force;
+        }
+      }
+  }
+  return f;
+}
+
+Eigen::VectorXd product(const mesh::Mesh& mesh, const solid::Material& material, const solid::Field& u) {
+  return test::assembled_stiffness(mesh, material) * test::flat(u);
+}
+
+TEST(Pieces, OwnRowsMakeTheProductOfThePlate) {
+  for (const auto corner : {Corner::none, Corner::relief, Corner::fillet}) {
+    const auto mesh = test::tiny_plate(corner);
+    const auto u = some_field(mesh, 0.3);
+    const Eigen::VectorXd expected = product(mesh, pmma, u);
+    for (const int n : {1, 2, 3, 7}) {
+      const DividedBodies divided({mesh, pmma}, std::nullopt, n);
+      const auto unknowns = divided.unknowns({&u});
+      const Eigen::VectorXd f = product_of_pieces(divided, unknowns);
+      const auto at_nodes = divided.displacement(std::vector<double>(f.data(), f.data() + f.size())).above;
+      EXPECT_LE(max_abs(test::flat(at_nodes) - expected), 1e-12 * max_abs(expected)) << n;
+    }
+  }
+}
+
+TEST(Pieces, HaveAsManyNodesEach) {
+  const auto mesh = test::tiny_plate(Corner::relief);
+  const DividedBodies divided({mesh, pmma}, std::nullopt, 4);
+  std::size_t n_lower = 0, n_top = 0;
+  std::int32_t next = 0;
+  for (int k = 0; k < 4; ++k) {
+    const auto piece = divided.piece(k);
+    EXPECT_EQ(piece.first, next);
+    next += piece.count;
+    EXPECT_NEAR(piece.count, mesh.n_nodes() / 4.0, 12);  // a column has 11
+    EXPECT_LT(piece.bodies.front().cells.size(), 0.4 * static_cast<double>(mesh.cells.size()));
+    n_lower += piece.lower.size();
+    n_top += piece.top.size();
+  }
+  EXPECT_EQ(next, mesh.n_nodes());
+  EXPECT_EQ(n_lower, mesh.lower.size());
+  EXPECT_EQ(n_top, mesh.top.size());
+}
+
+/// The contact's force on the plate is conjugate to the relative displacement, whichever body is the softer.
+TEST(Pieces, OfTwoBodiesHaveTheRelativeDisplacement) {
+  const auto mesh = test::tiny_plate(Corner::relief),
+             base = test::make_plate(0.02, 0.014, 1e-3, Corner::none);
+  const auto above = some_field(mesh, 0.3), below = some_field(base, 0.9);
+  for (const auto& [material, of_base] : {std::pair(pmma, gel), std::pair(gel, pmma)}) {
+    const Eigen::VectorXd f_above = product(mesh, material, above), f_below = product(base, of_base, below);
+    for (const int n : {1, 3}) {
+      const DividedBodies divided({mesh, material}, ElasticBody{base, of_base}, n);
+      const auto unknowns = divided.unknowns({&above, &below});
+      const auto back = divided.displacement(unknowns);
+      EXPECT_LE(max_abs(test::flat(back.above) - test::flat(above)), 1e-15 * 4);
+      EXPECT_LE(max_abs(test::flat(back.below) - test::flat(below)), 1e-15 * 4);
+      const Eigen::VectorXd f = product_of_pieces(divided, unknowns);
+      const bool is_plate_softer = material.youngs_modulus_Pa < of_base.youngs_modulus_Pa;
+      for (int k = 0; k < n; ++k)
+        for (const auto& [pair, place] : divided.piece(k).lower) {
+          const auto a = mesh.lower[place], b = base.lower[place];
+          EXPECT_EQ(unknowns[2 * pair], above.x[a] - below.x[b]);
+          EXPECT_EQ(unknowns[2 * pair + 1], above.y[a] + below.y[b]);
+          const double tolerance = 1e-12 * max_abs(f);
+          EXPECT_NEAR(f(2 * pair), is_plate_softer ? f_above(2 * a) : -f_below(2 * b), tolerance);
+          EXPECT_NEAR(f(2 * pair + 1), is_plate_softer ? f_above(2 * a + 1) : f_below(2 * b + 1), tolerance);
+        }
+    }
+  }
+}
+
+TEST(Pieces, BudgetIsOfTheMachinesShare) {
+  StaticsSize size{StaticSolver::petsc, 1e6, 1e3};
+  const double alone = total_bytes(statics_budget(size).peak);
+  size.share = 0.25;
+  const double quarter = total_bytes(statics_budget(size).peak);
+  EXPECT_LT(quarter, 0.4 * alone);
+  EXPECT_GT(quarter, 0.25 * alone);  // the leader's own remains
+}
+
+}  // namespace
+}  // namespace slipfront::statics
