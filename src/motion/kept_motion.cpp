@@ -118,9 +118,15 @@ void KeptMotion::require_consistent() const {
     if (list.value.size() != list.key.size() * list.width) throw_of_others();
 }
 
-void KeptMotion::add(const KeptMotion& part) {
+void KeptMotion::add(KeptMotion part, int n_parts) {
   if (values.empty()) {
-    *this = part;
+    *this = std::move(part);
+    // Parts are nearly equal: no list is copied to make room.
+    const auto make_room = [&](auto& list) { list.reserve((list.size() + 1) * (n_parts + 1)); };
+    for (auto& list : values) {
+      make_room(list.key);
+      make_room(list.value);
+    }
     return;
   }
   SLIPFRONT_ASSERT(part.values.size() == values.size(), "of one stepper");

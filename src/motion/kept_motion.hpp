@@ -40,8 +40,8 @@ struct KeptMotion {
 
   /// @throws UserError where lists have other lengths than they say
   void require_consistent() const;
-  /// Adds another part's.
-  void add(const KeptMotion& part);
+  /// Adds another one of n_parts parts' to what there is.
+  void add(KeptMotion part, int n_parts);
   /// Brings each list into the order of its keys, which restore needs.
   void sort();
   /// Of sorted lists those in some columns, and places along the interface; for one of so many parts.

@@ -71,8 +71,8 @@ PartedStepper::~PartedStepper() {
   for (int rank = 1; rank < processes_.size(); ++rank) processes_.send(rank, release);
 }
 
-std::vector<Parcel> PartedStepper::ask(PartCommand command,
-                                       const std::function<Parcel(int part)>& given) const {
+void PartedStepper::ask(PartCommand command, const std::function<Parcel(int part)>& given,
+                        const std::function<void(Parcel& answer)>& take) const {
   // Others wait for what is not sent, or not received: there is no way back.
   const auto or_fail = [&](auto&& talk) {
     try {
@@ -87,22 +87,36 @@ std::vector<Parcel> PartedStepper::ask(PartCommand command,
     processes_.send(rank, parcel);
   });
   // All answers are taken, whatever fails: the next command's are not to be mixed up with them.
-  std::vector<Parcel> answers(1);
   std::exception_ptr failure;
-  try {
+  const auto unless_failed = [&](auto&& f) {
+    if (failure != nullptr) return;
+    try {
+      f();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  };
+  unless_failed([&] {
     auto own = given(0);
-    answers.front() = own_->carry_out(command, own);
-  } catch (...) {
-    failure = std::current_exception();
-  }
+    auto answer = own_->carry_out(command, own);
+    take(answer);
+  });
   or_fail([&](int rank) {
-    answers.push_back(processes_.receive(rank));
-    const auto error = answers.back().take_text();
-    if (!error.empty() && failure == nullptr)
-      failure = std::make_exception_ptr(
-          ProcessError(fmt::format("process {} of {}: {}", rank, processes_.size(), error)));
+    auto answer = processes_.receive(rank);
+    unless_failed([&] {
+      const auto error = answer.take_text();
+      if (!error.empty())
+        throw ProcessError(fmt::format("process {} of {}: {}", rank, processes_.size(), error));
+      take(answer);
+    });
   });
   if (failure != nullptr) std::rethrow_exception(failure);
+}
+
+std::vector<Parcel> PartedStepper::ask(PartCommand command,
+                                       const std::function<Parcel(int part)>& given) const {
+  std::vector<Parcel> answers;
+  ask(command, given, [&](Parcel& answer) { answers.push_back(std::move(answer)); });
   return answers;
 }
 
@@ -349,16 +363,16 @@ std::int64_t PartedStepper::n_nodes() const {
 Snapshot PartedStepper::snapshot() const {
   Snapshot all;
   all.time_s = time_s();
-  auto answers = ask(PartCommand::snapshot);
-  std::size_t before = 0;
   const auto n = static_cast<std::size_t>(n_nodes());
   all.u_m = all.v_m_per_s = solid::Field(n);
-  for (std::size_t b = 0; b < columns_.size(); ++b) {
-    const auto& body = columns_[b];
-    for (int part = 0; part < division_.n_parts(); ++part) {
-      const auto own = division_.own(part);
+  int part = 0;
+  ask(PartCommand::snapshot, nothing, [&](Parcel& answer) {
+    const auto own = division_.own(part++);
+    std::size_t before = 0;
+    for (std::size_t b = 0; b < columns_.size(); ++b) {
+      const auto& body = columns_[b];
       for (auto* values : {&all.u_m.x, &all.u_m.y, &all.v_m_per_s.x, &all.v_m_per_s.y}) {
-        const auto of_part = answers[static_cast<std::size_t>(part)].take_all<double>();
+        const auto of_part = answer.take_all<double>();
         // Bodies below are described upside down.
         const bool turns = b > 0 && (values == &all.u_m.y || values == &all.v_m_per_s.y);
         auto from = of_part.begin();
@@ -368,18 +382,16 @@ Snapshot PartedStepper::snapshot() const {
             (*values)[before + static_cast<std::size_t>(node)] = turns ? -*from : *from;
         }
       }
+      before += static_cast<std::size_t>(body.n_nodes());
     }
-    before += static_cast<std::size_t>(body.n_nodes());
-  }
+  });
   return all;
 }
 
 KeptMotion PartedStepper::kept() const {
   KeptMotion all;
-  for (auto& answer : ask(PartCommand::keep)) {
-    all.add(KeptMotion::take(answer));
-    answer = {};
-  }
+  ask(PartCommand::keep, nothing,
+      [&](Parcel& answer) { all.add(KeptMotion::take(answer), division_.n_parts()); });
   all.step = step_;
   return all;
 }

@@ -60,8 +60,11 @@ class PartedStepper final : public TimeStepper {
  private:
   /// Gives each part a command, with values of its own, and has their answers.
   /// @throws std::runtime_error for what another process has failed in
-  std::vector<Parcel> ask(
-      PartCommand command, const std::function<Parcel(int part)>& given = [](int) { return Parcel(); }) const;
+  std::vector<Parcel> ask(PartCommand command, const std::function<Parcel(int part)>& given = nothing) const;
+  /// The same, with answers taken one by one, in the order of the parts.
+  void ask(PartCommand command, const std::function<Parcel(int part)>& given,
+           const std::function<void(Parcel& answer)>& take) const;
+  static Parcel nothing(int /*part*/) { return {}; }
   struct Steps {
     std::int64_t taken = 0;
     bool goes_on = false;
