@@ -81,7 +81,7 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   const double of_part =
       motion::event_bytes(share * work.n_nodes, share * work.n_cells, false, work.precision) +
       share * (bytes_of_mesh * work.n_nodes + work.bytes_per_interface_node * work.n_columns);
-  cost.memory_bytes = work.program_bytes + of_part;
+  cost.memory_bytes = work.program_bytes + std::max(work.shared_statics_bytes, of_part);
   // Parcels for all parts are made before the first one is sent, and a checkpoint is joined from all answers.
   const double sent = n_parts > 1 ? bytes_of_state : 0;
   const double starting = (bytes_of_mesh + bytes_of_state + sent) * work.n_nodes;
