@@ -146,7 +146,8 @@ std::string columns_text(const motion::Division& division) {
 }
 
 /// The prediction, a line for each part of the time.
-void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, Listing& list) {
+void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, statics::StaticSolver solver,
+                Listing& list) {
   const auto& [division, cost] = shared;
   const auto add_s = [&](const char* what, double s) { list.add(what, fmt::format("{:.3g} s", s)); };
   list.add("shared by",
@@ -165,7 +166,8 @@ void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, Li
   add_s("  time: exchange", cost.exchange_s);
   add_s("  time: commands of the leader", cost.command_s);
   add_s("  time: samples, snapshots", cost.gathering_s);
-  add_s("  time: statics, leader alone", cost.statics_s);
+  add_s(solver == statics::StaticSolver::petsc ? "  time: statics" : "  time: statics, leader alone",
+        cost.statics_s);
   add_s("  time: start", cost.start_s);
   add_s("  time in all", cost.total_s());
 }
@@ -209,7 +211,7 @@ void print_info(const CaseArguments& arguments, const std::optional<run::Sharing
   add_size(info, list);
   add_steps(config, info, list);
   add_costs(info, list);
-  if (sharing) add_shared(*info.shared, *sharing, list);
+  if (sharing) add_shared(*info.shared, *sharing, config.loading.solver, list);
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
   for (const auto& note : arguments.notes()) list.text += fmt::format("note: {}\n", note);

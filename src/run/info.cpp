@@ -205,6 +205,7 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
   if (info.solver == statics::StaticSolver::petsc) {
     work.statics_s /= std::min(sharing.n_processes, sharing.n_processors);
     work.statics_bytes /= sharing.n_processes;
+    work.shared_statics_bytes = work.statics_bytes;
   }
   work.precision = config.time.precision;
   work.bytes_per_interface_node = bytes_per_interface_node(config);

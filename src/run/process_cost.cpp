@@ -18,8 +18,8 @@ constexpr double bytes_of_mesh = 2 * number_bytes + sizeof(mesh::Cell), bytes_of
 constexpr double eager_bytes = 64 << 10;
 /// u_m, v_m_per_s of a snapshot.
 constexpr double bytes_of_snapshot = 4 * number_bytes;
-/// Of a checkpoint, more than of a snapshot: numbers, u_m and v_m_per_s of nodes, in answers and joined.
-constexpr double bytes_of_gathered_state = 3 * (number_bytes + bytes_of_snapshot);
+/// Of a checkpoint: numbers, u_m and v_m_per_s of nodes. An answer has them, what is read from it, and all.
+constexpr double bytes_of_kept_state = number_bytes + bytes_of_snapshot;
 
 /// Columns of the part that computes most.
 struct Widest {
@@ -80,11 +80,11 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   const double of_part =
       motion::event_bytes(share * work.n_nodes, share * work.n_cells, false, work.precision) +
       share * (bytes_of_mesh * work.n_nodes + work.bytes_per_interface_node * work.n_columns);
-  cost.memory_bytes = work.program_bytes + of_part;
-  // A part's parcel is made when it is sent; a checkpoint is joined from all answers.
+  cost.memory_bytes = work.program_bytes + std::max(work.shared_statics_bytes, of_part);
+  // A part's parcel is made when it is sent, and a checkpoint is joined from answers taken one by one.
   const double sent = n_parts > 1 ? share * bytes_of_state : 0;
   const double starting = (bytes_of_mesh + bytes_of_state + sent) * work.n_nodes;
-  const double joining = (n_parts > 1 ? bytes_of_gathered_state : 0) * work.n_nodes;
+  const double joining = (n_parts > 1 ? (1 + 2 * share) * bytes_of_kept_state : 0) * work.n_nodes;
   cost.leader_memory_bytes =
       work.program_bytes + std::max(work.statics_bytes, of_part + std::max(starting, joining) +
                                                             work.bytes_per_interface_node * work.n_columns);

@@ -33,7 +33,8 @@ struct SharedWork {
   double energies = 0;  ///< sums over all nodes
   double history_rows = 0, values_per_row = 0;
   double snapshots = 0;
-  double statics_s = 0, statics_bytes = 0;
+  double statics_s = 0, statics_bytes = 0;  ///< of the leader
+  double shared_statics_bytes = 0;          ///< of each other process, where they share the statics
   motion::Precision precision = motion::Precision::double_precision;
   double bytes_per_interface_node = 0;  ///< see there
   double program_bytes = 0;
@@ -46,7 +47,7 @@ struct ProcessCost {
   double exchange_s = 0;      ///< of the halos
   double command_s = 0;       ///< from the leader and back
   double gathering_s = 0;     ///< of samples, of what each contact update saw, of snapshots
-  double statics_s = 0;       ///< which the leader solves while the others wait
+  double statics_s = 0;       ///< for which the others wait, or which they share
   double start_s = 0;         ///< meshes and initial motion, sent by the leader
   double bytes_per_step = 0;  ///< that a process between two others sends in exchanges
   double memory_bytes = 0, leader_memory_bytes = 0;
@@ -66,7 +67,7 @@ struct ProcessCost {
 ///   of an answer; answers are received one after the other
 /// - gathering: n q P j + G F, q contact updates in a step, j to join what a part saw in one, G bytes of
 ///   samples and snapshots
-/// - statics: as by one process
+/// - statics: as by one process; by PETSc, of the processes together
 /// - start: S F, S bytes of meshes and initial motion
 ///
 /// l(m) = L up to 64 KiB and 3 L for more, which MPI sends when it is asked for them.

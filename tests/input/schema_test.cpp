@@ -345,11 +345,12 @@ TEST(Schema, IterativeStaticsKnowNoGradedPlates) {
 
 TEST(Schema, StaticsByPetscAreRefusedWithoutIt) {
   const std::string text = "[loading]\nsolver = \"petsc\"\n";
-  if (statics::petsc_version().empty())
+  if (statics::petsc_version().empty()) {
     EXPECT_THAT(parse_error(text), HasSubstr("loading.solver = petsc: this program was built without PETSc; "
                                              "build it with make build-mpi"));
-  else
+  } else {
     EXPECT_EQ(parse_case(text, "c.toml").loading.solver, statics::StaticSolver::petsc);
+  }
 }
 
 TEST(Schema, TheKeysStandForTheirMembers) {
