@@ -38,11 +38,13 @@ class Keeper {
   void list(KeptMotion::By by, std::size_t body, std::size_t n, Key&& key_of, Column&& column_of,
             Each&& each) {
     KeptMotion::Values list{by, static_cast<std::uint8_t>(body), 0, {}, {}};
+    list.key.reserve(n);
     for (std::size_t k = 0; k < n; ++k) {
       const int column = column_of(k);
       if (column < place_.own.begin || column >= place_.own.end) continue;
       list.key.push_back(key_of(k));
       each(k, [&](auto& value) { list.value.push_back(static_cast<double>(value)); });
+      if (list.key.size() == 1) list.value.reserve(n * list.value.size());
     }
     if (!list.key.empty()) list.width = static_cast<std::uint32_t>(list.value.size() / list.key.size());
     kept_.values.push_back(std::move(list));
@@ -188,6 +190,9 @@ KeptMotion KeptMotion::in(const mesh::Subset& columns, const mesh::Subset& lower
 }
 
 void KeptMotion::put(Parcel& to) const {
+  std::size_t bytes = 4096 + 1024 * sums.size();  // more than what is not in the lists
+  for (const auto& list : values) bytes += 64 + (list.key.size() + list.value.size()) * sizeof(double);
+  to.reserve(bytes);
   to.put(step).put(static_cast<std::uint64_t>(values.size()));
   for (const auto& list : values)
     to.put(list.by).put(list.body).put(list.width).put(list.key).put(list.value);

@@ -167,6 +167,10 @@ struct LevelReach {
 std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeStepping& time,
                                         std::span<const int> multiples);
 
+/// Columns at either end in which the layer that takes sub-steps has cells above its rows, since it follows a
+/// rounded corner; 0 where there are none.
+int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time);
+
 /// Replaces each of some numbers by the largest that any part of a body has there; empty for a whole body.
 using LargestOfParts = std::function<void(std::span<double>)>;
 

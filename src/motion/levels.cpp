@@ -361,6 +361,22 @@ std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeSteppi
   return levels;
 }
 
+int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time) {
+  const auto& grid = mesh.grid;
+  const auto is_in_lowest_row = [&](mesh::Node n) { return n < grid.stride(); };
+  if (!is_layered(time) || std::ranges::all_of(mesh.lower, is_in_lowest_row)) return 0;
+  const auto near = cells_next_to_interface(mesh, time.interface_rows);
+  int columns = 0;
+  for (std::size_t c = 0; c < near.size(); ++c) {
+    if (!near[c] || std::ranges::min(mesh.cells[c]) / grid.stride() < time.interface_rows) continue;
+    for (const auto n : mesh.cells[c]) {
+      const int column = n % grid.stride();
+      columns = std::max(columns, std::min(column, grid.columns - column));
+    }
+  }
+  return columns;
+}
+
 StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
                        const TimeStepping& time, double step_s, std::span<const int> multiples,
                        const LargestOfParts& largest) {

@@ -100,12 +100,35 @@ Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_ste
   return division;
 }
 
+namespace {
+
+/// A part that begins or ends there does not know the layer of the whole.
+void require_whole_layers(std::span<const BodySource> bodies, const TimeStepping& time,
+                          const Division& division) {
+  for (const auto& body : bodies) {
+    const int rounded = columns_of_rounded_layer(body.mesh, time), last = body.mesh.grid.columns;
+    if (rounded == 0) continue;
+    for (int part = 0; part < division.n_parts(); ++part) {
+      const auto own = division.own(part);
+      const int begin = own.begin - division.halo_below(part), end = own.end - 1 + division.halo_above(part);
+      if ((begin > 0 && begin <= rounded) || (end < last && last - end <= rounded))
+        throw UserError(
+            "a part of the plate would end within the layer of small steps around a rounded corner; choose "
+            "fewer processes");
+    }
+  }
+}
+
+}  // namespace
+
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
                        const TimeStepping& time, int n_parts, int halo) {
   // Probes look at all nodes of a cell, wherever its first one lies.
   int reach = halo;
   for (const auto& body : bodies) reach = std::max(reach, 1 << body.mesh.coarser.size());
-  return divide_columns(bodies.front().mesh, n_parts, columns_per_step(bodies, steps, time), reach);
+  auto division = divide_columns(bodies.front().mesh, n_parts, columns_per_step(bodies, steps, time), reach);
+  require_whole_layers(bodies, time, division);
+  return division;
 }
 
 Part::Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
@@ -145,8 +168,7 @@ void Part::or_fail(F&& f) {
   }
 }
 
-Parcel Part::carry_out(PartCommand command, Parcel& given) {
-  Parcel answer;
+void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
   switch (command) {
     case PartCommand::start:
       or_fail([&] { start(given); });
@@ -194,7 +216,6 @@ Parcel Part::carry_out(PartCommand command, Parcel& given) {
     case PartCommand::end:
       SLIPFRONT_ASSERT(false, "a command of the part's owner");
   }
-  return answer;
 }
 
 void Part::start(Parcel& given) {
@@ -384,14 +405,15 @@ void serve(Processes& processes, Part& part) {
     auto parcel = processes.receive(0);
     const auto command = parcel.take<PartCommand>();
     if (command == PartCommand::release) return;
-    Parcel given(parcel.take_all<std::byte>()), answer;
-    std::string error;
+    Parcel answer;
     try {
-      answer = part.carry_out(command, given);
+      answer.put(std::string());
+      part.carry_out(command, parcel, answer);
     } catch (const std::exception& failure) {
-      error = reason_of(failure);
+      answer = Parcel();
+      answer.put(reason_of(failure));
     }
-    processes.send(0, Parcel().put(error).append(answer));
+    processes.send(0, answer);
   }
 }
 

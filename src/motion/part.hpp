@@ -103,7 +103,7 @@ class Part {
        const mesh::Subset& lower);
 
   /// Carries out a command between build and release.
-  Parcel carry_out(PartCommand command, Parcel& given);
+  void carry_out(PartCommand command, Parcel& given, Parcel& answer);
 
   const Stepper& stepper() const { return *stepper_; }
 

@@ -83,7 +83,7 @@ void PartedStepper::ask(PartCommand command, const std::function<Parcel(int part
   };
   or_fail([&](int rank) {
     Parcel parcel;
-    parcel.put(command).put(given(rank).bytes());
+    parcel.put(command).append(given(rank));
     processes_.send(rank, parcel);
   });
   // All answers are taken, whatever fails: the next command's are not to be mixed up with them.
@@ -98,7 +98,8 @@ void PartedStepper::ask(PartCommand command, const std::function<Parcel(int part
   };
   unless_failed([&] {
     auto own = given(0);
-    auto answer = own_->carry_out(command, own);
+    Parcel answer;
+    own_->carry_out(command, own, answer);
     take(answer);
   });
   or_fail([&](int rank) {

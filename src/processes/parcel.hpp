@@ -42,6 +42,8 @@ class Parcel {
   Parcel& put(const std::vector<T>& values) {
     return put(std::span<const T>(values));
   }
+  /// Makes room for so many bytes more.
+  void reserve(std::size_t n) { bytes_.reserve(bytes_.size() + n); }
   /// All that another parcel holds, to be taken as if it had been put here.
   Parcel& append(const Parcel& parcel) { return put_bytes(parcel.bytes_.data(), parcel.bytes_.size()); }
   Parcel& put(const std::string& text) { return put(std::span<const char>(text)); }

@@ -503,6 +503,27 @@ TEST(Parts, DoNotGoOnWithOtherBodies) {
   EXPECT_THROW(restore(kept, other, {}), UserError);
 }
 
+TEST(Parts, DoNotEndInTheLayerAroundARoundedCorner) {
+  Problem problem;
+  problem.plate.corner = mesh::Corner::fillet;
+  problem.time.interface_rows = 10;
+  const auto one = run_by_one(problem, n_steps);
+  int n_same = 0, n_refused = 0;
+  for (const int n : {6, 7, 8, 9, 10, 11, 12}) {
+    SCOPED_TRACE(fmt::format("{} processes", n));
+    try {
+      Team team(n, problem);
+      expect_same(one, run(team.stepper(), team.begin(), n_steps), 1e-13);
+      ++n_same;
+    } catch (const UserError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("rounded corner"));
+      ++n_refused;
+    }
+  }
+  EXPECT_GT(n_same, 1);
+  EXPECT_GT(n_refused, 1);
+}
+
 TEST(Parts, AreNoNarrowerThanTheirHalo) {
   mesh::Mesh mesh;
   mesh.grid.columns = 200;
