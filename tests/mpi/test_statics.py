@@ -28,7 +28,14 @@ quiet_s = inf
 """
 # docs/statics-petsc.md: of a displacement in the energy norm, over the displacement's.
 ACCURACY = 1e-10
-GRADED = ("--set", "plate.coarsenings=2", "--set", "plate.fine_height_m=0.02")
+GRADED = (
+    "--set",
+    "plate.coarsenings=2",
+    "--set",
+    "plate.fine_height_m=0.02",
+    "--set",
+    "time.interface_substeps=2",
+)
 ON_BASE = tuple(
     word
     for setting in (
@@ -104,7 +111,7 @@ def test_as_the_factorisation(mpirun, case, settings, most):
         require_same_fronts(found, expected)
 
 
-@pytest.mark.parametrize("n", [0, 1])
+@pytest.mark.parametrize("n", [0, 1, 2])
 def test_graded(mpirun, case, n):
     expected = run(mpirun, 0, case, "direct", *GRADED)
     found = run(mpirun, n, case, "petsc", *GRADED, "--set", "loading.solver=petsc")
