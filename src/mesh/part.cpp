@@ -2,7 +2,9 @@
 #include "mesh/part.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "base/error.hpp"
@@ -141,6 +143,35 @@ int columns_of_cells(const Mesh& mesh, int block) {
   return 1 << std::min(block + 1, static_cast<int>(mesh.coarser.size()));
 }
 
+namespace {
+
+/// Columns over which a cell reaches where it is not wrapped around a corner.
+int columns_of_cell(const Mesh& mesh, std::span<const Grid> grids, const Cell& cell) {
+  const auto block_of = [&](Node n) {
+    return static_cast<int>(std::ranges::upper_bound(grids, n, {}, &Grid::first) - grids.begin()) - 1;
+  };
+  const auto [lowest, highest] = std::ranges::minmax(cell);
+  const int block = block_of(lowest);
+  const bool is_square = block_of(highest) == block && highest < grids[block].first + grids[block].n_nodes();
+  return is_square ? 1 << block : columns_of_cells(mesh, block);
+}
+
+}  // namespace
+
+int columns_of_wrapped_cells(const Mesh& mesh) {
+  const auto& grid = mesh.grid;
+  if (std::ranges::all_of(mesh.lower, [&](Node n) { return n < grid.stride(); })) return 0;
+  int columns = 0;
+  for (const Cell& cell : mesh.cells) {
+    if (std::ranges::max(cell) >= grid.n_nodes()) continue;
+    std::array<int, 4> of_cell{};
+    std::ranges::transform(cell, of_cell.begin(), [&](Node n) { return n % grid.stride(); });
+    const auto [first, last] = std::ranges::minmax(of_cell);
+    if (last - first > 1) columns = std::max(columns, std::min(last, grid.columns - first));
+  }
+  return columns;
+}
+
 Mesh columns_of(const Mesh& whole, const Subset& columns) {
   SLIPFRONT_ASSERT(whole.grid.columns > 0, "a plate");
   const NodeColumns of_whole(whole);
@@ -173,17 +204,6 @@ Mesh columns_of(const Mesh& whole, const Subset& columns) {
   }
   const auto has = [&](Node n) { return number[n] >= 0; };
   const auto grids = blocks(whole);
-  const auto block_of = [&](Node n) {
-    return static_cast<int>(std::ranges::upper_bound(grids, n, {}, &Grid::first) - grids.begin()) - 1;
-  };
-  // Columns over which a cell reaches where it is not wrapped around a corner.
-  const auto reach_of = [&](const Cell& cell) {
-    const auto [lowest, highest] = std::ranges::minmax(cell);
-    const int block = block_of(lowest);
-    const bool is_square =
-        block_of(highest) == block && highest < grids[block].first + grids[block].n_nodes();
-    return is_square ? 1 << block : columns_of_cells(whole, block);
-  };
   // Whether columns of the whole are missing so near to a node.
   const auto at_cut = [&](Node n, int reach) {
     const int last = whole.grid.columns, column = of_whole.column_of(n);
@@ -197,9 +217,10 @@ Mesh columns_of(const Mesh& whole, const Subset& columns) {
     if (std::ranges::all_of(cell, has)) {
       mesh.cells.push_back({number[cell[0]], number[cell[1]], number[cell[2]], number[cell[3]]});
     } else if (std::ranges::any_of(cell, has)) {
-      const int reach = reach_of(cell);
-      if (std::ranges::any_of(cell, [&](Node n) { return has(n) && !at_cut(n, reach); }))
-        throw UserError("a part of the plate would end within a rounded corner; choose fewer processes");
+      const int reach = columns_of_cell(whole, grids, cell);
+      SLIPFRONT_ASSERT(
+          std::ranges::none_of(cell, [&](Node n) { return has(n) && !at_cut(n, reach); }),
+          "a part that does not end within a rounded corner");
     }
   }
   const auto take = [&](const std::vector<Node>& from, std::vector<Node>& to) {

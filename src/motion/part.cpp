@@ -90,33 +90,35 @@ Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_ste
                                            1, most_steps_per_exchange);
   division.columns_per_step = columns_per_step;
   division.halo = division.steps_per_exchange * columns_per_step + reach;
-  // The halos of two parts of a ring do not meet.
-  const int least_width = division.is_ring && n_parts == 2 ? 2 * division.halo + 1 : division.halo;
-  if (n_parts > 1 && width < least_width)
-    throw UserError(
-        "{} processes have {} columns of elements each, fewer than the {} that they compute for each other; "
-        "choose at most {}",
-        n_parts, width, least_width, std::max(1, n_columns / least_width));
   return division;
 }
 
 namespace {
 
-/// A part that begins or ends there does not know the layer of the whole.
-void require_whole_layers(std::span<const BodySource> bodies, const TimeStepping& time,
-                          const Division& division) {
-  for (const auto& body : bodies) {
-    const int rounded = columns_of_rounded_layer(body.mesh, time), last = body.mesh.grid.columns;
-    if (rounded == 0) continue;
-    for (int part = 0; part < division.n_parts(); ++part) {
-      const auto own = division.own(part);
-      const int begin = own.begin - division.halo_below(part), end = own.end - 1 + division.halo_above(part);
-      if ((begin > 0 && begin <= rounded) || (end < last && last - end <= rounded))
-        throw UserError(
-            "a part of the plate would end within the layer of small steps around a rounded corner; choose "
-            "fewer processes");
-    }
+/// Why parts do not know of the whole what they need; empty where they do.
+/// @param widest_cell  columns over which it reaches: the halos of a part that go round a ring do not meet
+/// @param corner       columns at either end among which no part begins or ends
+std::string reason_against(const Division& division, int widest_cell, int corner) {
+  const int n_parts = division.n_parts(), n_columns = division.first.back();
+  if (n_parts == 1) return {};
+  const int width = n_columns / n_parts;
+  int least_width = division.halo;
+  if (division.is_ring && n_parts <= 3) {
+    const int others = 2 * division.halo + widest_cell;
+    least_width = std::max(least_width, (others + n_parts - 2) / (n_parts - 1));
   }
+  if (width < least_width)
+    return fmt::format("{} processes have {} columns of elements each, fewer than the {} that they need",
+                       n_parts, width, least_width);
+  const int last = division.n_columns() - 1;
+  const auto is_at_corner = [&](int column) { return std::min(column, last - column) <= corner; };
+  for (int part = 0; part < n_parts && corner > 0; ++part) {
+    const auto own = division.own(part);
+    const int begin = own.begin - division.halo_below(part), end = own.end - 1 + division.halo_above(part);
+    if ((begin > 0 && is_at_corner(begin)) || (end < last && is_at_corner(end)))
+      return fmt::format("of {} processes one would compute a part that ends at a rounded corner", n_parts);
+  }
+  return {};
 }
 
 }  // namespace
@@ -124,11 +126,22 @@ void require_whole_layers(std::span<const BodySource> bodies, const TimeStepping
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
                        const TimeStepping& time, int n_parts, int halo) {
   // Probes look at all nodes of a cell, wherever its first one lies.
-  int reach = halo;
-  for (const auto& body : bodies) reach = std::max(reach, 1 << body.mesh.coarser.size());
-  auto division = divide_columns(bodies.front().mesh, n_parts, columns_per_step(bodies, steps, time), reach);
-  require_whole_layers(bodies, time, division);
-  return division;
+  int widest_cell = 1, corner = 0;
+  for (const auto& body : bodies) {
+    widest_cell = std::max(widest_cell, 1 << body.mesh.coarser.size());
+    corner = std::max(
+        {corner, mesh::columns_of_wrapped_cells(body.mesh), columns_of_rounded_layer(body.mesh, time)});
+  }
+  const int per_step = columns_per_step(bodies, steps, time);
+  const auto divided = [&](int n) {
+    return divide_columns(bodies.front().mesh, n, per_step, std::max(halo, widest_cell));
+  };
+  const auto why_not = [&](int n) { return reason_against(divided(n), widest_cell, corner); };
+  const auto reason = why_not(n_parts);
+  if (reason.empty()) return divided(n_parts);
+  int most = n_parts - 1;
+  while (!why_not(most).empty()) --most;
+  throw UserError("{}; choose at most {}", reason, most);
 }
 
 Part::Part(Processes& processes, const Division& division, std::span<const BodySource> sources,

@@ -47,11 +47,12 @@ int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySte
 /// @param mesh              of the whole plate
 /// @param columns_per_step  see there
 /// @param reach             columns beyond its own that a part looks at
-/// @throws UserError where the parts would be narrower than their halo
 Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach);
 /// The same for bodies.
 /// @param steps  of each body
 /// @param halo   columns around an onset whose tractions are recorded
+/// @throws UserError where the parts would be too narrow for their halo, or would end at a rounded corner; it
+///         tells how many are possible
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
                        const TimeStepping& time, int n_parts, int halo);
 

@@ -130,7 +130,6 @@ class Whole {
     for (const auto& body : bodies_) plan.steps.push_back(motion::body_steps(body, config_.time));
     plan.division = motion::divide_bodies(bodies_, plan.steps, config_.time, n_processes,
                                           motion::halo_for(bodies_.front().mesh, config_.fronts.l_star_m));
-    for (int rank = 0; rank < n_processes; ++rank) columns_of(plan, rank);  // refuses cuts through corners
     return plan;
   }
   Columns columns_of(const Plan& plan, int rank) const {

@@ -256,7 +256,6 @@ class PetscEquations::Impl {
     check(MatDuplicate(K_, MAT_COPY_VALUES, A_.renew()));
     check(MatSetOption(A_, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
     check(MatSetNearNullSpace(A_, rigid_));
-    make_solvers();
     for (const auto& body : piece.bodies) diagonal_ = std::max(diagonal_, body.material.youngs_modulus_Pa);
   }
 
@@ -269,6 +268,7 @@ class PetscEquations::Impl {
     solved_.reset();
     prescribed_.clear();
     has_seen_eigenvalue_ = false;
+    make_solvers();
   }
 
   std::optional<AtInterface> solve(const Support& support, double accuracy) {
@@ -367,8 +367,7 @@ class PetscEquations::Impl {
     check(KSPSetType(cg_, KSPCG));
     check(KSPSetNormType(cg_, KSP_NORM_NATURAL));
     check(KSPSetComputeSingularValues(cg_, PETSC_TRUE));
-    PC pc = nullptr;
-    check(KSPGetPC(cg_, &pc));
+    PC pc = preconditioner();
     check(PCSetType(pc, PCGAMG));
     check(PCGAMGSetAggressiveLevels(pc, aggressive_levels));
     check(KSPCreate(comm_, bicgstab_.renew()));
@@ -376,6 +375,20 @@ class PetscEquations::Impl {
     check(KSPSetPCSide(bicgstab_, PC_RIGHT));
     check(KSPSetNormType(bicgstab_, KSP_NORM_UNPRECONDITIONED));
     check(KSPSetPC(bicgstab_, pc));
+  }
+
+  PC preconditioner() const {
+    PC pc = nullptr;
+    check(KSPGetPC(cg_, &pc));
+    return pc;
+  }
+
+  /// From one state of contact to the next the preconditioner keeps its aggregates. Those of unknowns that
+  /// have become prescribed since may make it indefinite.
+  void renew_preconditioner() {
+    make_solvers();
+    set_operators();
+    check(KSPSetUp(cg_));
   }
 
   /// Fixes what the edges and the contact fix, and has nodes slip.
@@ -420,6 +433,10 @@ class PetscEquations::Impl {
     MPI_Allreduce(MPI_IN_PLACE, &slips, 1, MPI_INT, MPI_MAX, comm_);
     slips_ = slips != 0;
     if (slips_) add_friction();
+    set_operators();
+  }
+
+  void set_operators() {
     check(KSPSetOperators(cg_, A_, A_));
     check(KSPSetOperators(bicgstab_, slips_ ? static_cast<Mat>(with_friction_) : static_cast<Mat>(A_), A_));
   }
@@ -479,59 +496,75 @@ class PetscEquations::Impl {
   /// conjugate gradients find on the way. Friction may enlarge the error further: as much as it did that of
   /// the last attempt, whose correction was the error.
   bool improve(Vec u, double accuracy) {
-    PC pc = nullptr;
-    check(KSPGetPC(cg_, &pc));
-    KSP solver = slips_ ? bicgstab_ : cg_;
-    check(KSPSetUp(solver));
+    check(KSPSetUp(slips_ ? bicgstab_ : cg_));
     check(MatMult(K_, u, f_));
     const double first_norm = std::sqrt(std::abs(dot(u, f_)));
+    auto outcome = iterate(u, first_norm, accuracy);
+    if (outcome == Outcome::preconditioner_fails) {
+      renew_preconditioner();
+      outcome = iterate(u, first_norm, accuracy);
+    }
+    return outcome == Outcome::in_equilibrium;
+  }
+
+  enum class Outcome { in_equilibrium, too_slow, preconditioner_fails };
+
+  Outcome iterate(Vec u, double first_norm, double accuracy) {
     for (int attempt = 0; attempt < most_attempts; ++attempt) {
       set_residual();
-      if (slips_ && !has_seen_eigenvalue_) solve_without_friction(glance);
-      check(PCApply(pc, r_, z_));
+      if (slips_ && !has_seen_eigenvalue_ && !solve_without_friction(glance))
+        return Outcome::preconditioner_fails;
+      check(PCApply(preconditioner(), r_, z_));
       ++n_iterations_;
       // That of the guess where the displacement itself takes no energy.
       const double norm = std::sqrt(std::abs(dot(u, f_)));
       const double wanted = accuracy * (norm > least_norm * first_norm ? norm : first_norm);
-      const double error2 = std::abs(dot(r_, z_));
+      const double error2 = dot(r_, z_);
+      if (error2 < 0) return Outcome::preconditioner_fails;
       const double error = std::sqrt(error2 / least_eigenvalue_);
-      if (!std::isfinite(error)) return false;
+      if (!std::isfinite(error)) return Outcome::too_slow;
       if (error <= wanted) {
         clear_prescribed(z_);
         check(VecAXPY(u, 1, z_));
-        return true;
+        return Outcome::in_equilibrium;
       }
       const double reduction = std::max(margin * wanted / error, 1e-12);
-      if (slips_)
-        n_iterations_ += 2 * solve_by(bicgstab_, reduction);
-      else
-        solve_without_friction(reduction);
+      if (!(slips_ ? solve_with_friction(reduction) : solve_without_friction(reduction)))
+        return Outcome::preconditioner_fails;
       clear_prescribed(z_);
       check(VecAXPY(u, 1, z_));
       check(MatMult(K_, z_, r_));
       check(VecAXPY(f_, 1, r_));
       least_eigenvalue_ = std::min(least_eigenvalue_, error2 / std::abs(dot(z_, r_)));
     }
-    return false;
+    return Outcome::too_slow;
   }
 
-  /// z from r. @return iterations
-  PetscInt solve_by(KSP solver, double reduction) {
+  /// z from r. @return iterations, none where it goes no further
+  std::optional<PetscInt> solve_by(KSP solver, double reduction) {
     check(KSPSetTolerances(solver, reduction, std::numeric_limits<double>::min(), 1e10, most_iterations));
     check(KSPSolve(solver, r_, z_));
     PetscInt n = 0;
     check(KSPGetIterationNumber(solver, &n));
+    n_iterations_ += solver == bicgstab_ ? 2 * n : n;
+    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+    check(KSPGetConvergedReason(solver, &reason));
+    if (reason < 0 && reason != KSP_DIVERGED_ITS) return std::nullopt;
     return n;
   }
 
-  void solve_without_friction(double reduction) {
+  /// @return whether the preconditioner serves
+  bool solve_with_friction(double reduction) { return solve_by(bicgstab_, reduction).has_value(); }
+
+  bool solve_without_friction(double reduction) {
     const auto n = solve_by(cg_, reduction);
-    n_iterations_ += n;
-    if (n < 2) return;
+    if (!n) return false;
+    if (*n < 2) return true;
     double largest = 0, least = 0;
     check(KSPComputeExtremeSingularValues(cg_, &largest, &least));
     if (least > 0) least_eigenvalue_ = std::min(least_eigenvalue_, least);
     has_seen_eigenvalue_ = true;
+    return true;
   }
 
   void take_at_interface(Vec u, std::vector<double>& displacements, std::vector<double>& forces) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -503,31 +504,70 @@ TEST(Parts, DoNotGoOnWithOtherBodies) {
   EXPECT_THROW(restore(kept, other, {}), UserError);
 }
 
-TEST(Parts, DoNotEndInTheLayerAroundARoundedCorner) {
+/// How many processes a refusal of n allows.
+int allowed_instead(int n, const Problem& problem, const std::string& why) {
+  try {
+    const Team team(n, problem);
+  } catch (const UserError& error) {
+    const std::string text = error.what();
+    EXPECT_THAT(text, testing::HasSubstr(why));
+    const auto at = text.rfind("choose at most ");
+    return at == std::string::npos ? 0 : std::stoi(text.substr(at + 15));
+  }
+  return n;
+}
+
+TEST(Parts, DoNotEndAtARoundedCorner) {
   Problem problem;
   problem.plate.corner = mesh::Corner::fillet;
-  problem.time.interface_rows = 10;
-  const auto one = run_by_one(problem, n_steps);
-  int n_same = 0, n_refused = 0;
-  for (const int n : {6, 7, 8, 9, 10, 11, 12}) {
-    SCOPED_TRACE(fmt::format("{} processes", n));
-    try {
-      Team team(n, problem);
+  int n_refused = 0;
+  for (const int interface_rows : {2, 10}) {
+    problem.time.interface_rows = interface_rows;
+    const auto one = run_by_one(problem, n_steps);
+    std::set<int> same;
+    for (const int n : {6, 7, 8, 9, 10, 11, 12}) {
+      const int allowed = allowed_instead(n, problem, "rounded corner");
+      SCOPED_TRACE(fmt::format("{} processes, {} rows", allowed, interface_rows));
+      ASSERT_GT(allowed, 0);
+      n_refused += allowed < n ? 1 : 0;
+      if (!same.insert(allowed).second) continue;
+      Team team(allowed, problem);
       expect_same(one, run(team.stepper(), team.begin(), n_steps), 1e-13);
-      ++n_same;
-    } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr("rounded corner"));
-      ++n_refused;
     }
+    EXPECT_GT(same.size(), 1U);
   }
-  EXPECT_GT(n_same, 1);
   EXPECT_GT(n_refused, 1);
 }
 
+TEST(Parts, OfARingHaveHalosThatDoNotMeet) {
+  Problem problem;
+  problem.plate.sides = mesh::Sides::periodic;
+  problem.plate.coarsenings = 3;
+  problem.plate.height_m = 0.12;
+  problem.plate.fine_height_m = 6e-3;
+  problem.time.interface_substeps = 1;
+  std::set<int> allowed_of_all;
+  for (const int columns : {128, 192, 208, 256}) {
+    problem.plate.width_m = columns * problem.plate.element_size_m;
+    const auto one = run_by_one(problem, n_steps);
+    for (const int n : {2, 3, 4}) {
+      const int allowed = allowed_instead(n, problem, "fewer than");
+      SCOPED_TRACE(fmt::format("{} columns, {} processes", columns, allowed));
+      ASSERT_GT(allowed, 0);
+      allowed_of_all.insert(allowed);
+      Team team(allowed, problem);
+      expect_same(one, run(team.stepper(), team.begin(), n_steps), 1e-13);
+    }
+  }
+  EXPECT_GT(allowed_of_all.size(), 2U);
+}
+
 TEST(Parts, AreNoNarrowerThanTheirHalo) {
+  const Problem problem;
+  const int most = allowed_instead(40, problem, "fewer than");
+  EXPECT_LT(most, 40);
+  EXPECT_EQ(allowed_instead(most, problem, ""), most);
   mesh::Mesh mesh;
-  mesh.grid.columns = 200;
-  EXPECT_THROW(divide_columns(mesh, 40, 5, 3), UserError);
   mesh.grid.columns = 2000;
   const auto division = divide_columns(mesh, 8, 5, 3);
   for (int part = 0; part < 8; ++part) {
