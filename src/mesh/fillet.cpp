@@ -30,10 +30,7 @@ struct Fold {
   bool has_cell(int i, int j) const { return i >= cut || j >= cut; }
 };
 
-struct Point {
-  double x = 0;
-  double y = 0;
-};
+using Point = RoundedCorners::Point;
 
 /// One corner of a cell and the corners after and before it, counterclockwise.
 struct CellCorner {
@@ -48,39 +45,6 @@ struct Patch {
   std::vector<int> free;
   std::vector<std::vector<CellCorner>> around;
 };
-
-Fold choose_fold(const Mesh& mesh, double radius_m) {
-  const Grid& grid = mesh.grid;
-  const double h = grid.spacing_m;
-  const double smallest = min_radius_in_cells * h;
-  const int room = std::min(grid.columns / 2, grid.rows);
-  const double largest = (room - min_margin_in_cells) * h;
-  if (largest < smallest)
-    throw UserError("{} = {:g} is too large to round the corners of this plate; use a smaller size",
-                    Key("plate.element_size_m"), h);
-  // The slack admits the limits as printed.
-  if (!(radius_m >= (1 - 1e-6) * smallest))
-    throw UserError("{} = {:g} is too small for these elements; make it at least {:.8g}",
-                    Key("plate.fillet_radius_m"), radius_m, smallest)
-        .about("plate.element_size_m");
-  if (radius_m > (1 + 1e-6) * largest)
-    throw UserError(
-        "{} = {:g} does not fit into the plate{}; make it at most {:.8g}", Key("plate.fillet_radius_m"),
-        radius_m,
-        mesh.coarser.empty() ? Message() : Message("'s smallest elements ({})", Key("plate.fine_height_m")),
-        largest)
-        .about("plate.width_m", "plate.height_m");
-  Fold fold;
-  fold.radius_m = radius_m;
-  fold.spacing_m = h;
-  fold.cut = std::max(1, static_cast<int>(std::lround((1 - pi / 4) * radius_m / h)));
-  fold.side = std::min(room, static_cast<int>(std::ceil(1.25 * radius_m / h)) + 4);
-  const int segments = fold.side - fold.cut;
-  const double arc_m = pi / 4 * radius_m;
-  const double segment_m = (fold.side * h - radius_m + arc_m) / segments;
-  fold.half_arc = std::clamp(static_cast<int>(std::lround(arc_m / segment_m)), 1, segments - 1);
-  return fold;
-}
 
 /// Node `a` of the smooth side, counted from the middle of the arc along the bottom edge.
 Point on_smooth_side(const Fold& fold, int a) {
@@ -199,62 +163,67 @@ void optimise(Patch& patch, const Fold& fold) {
     for (const int n : patch.free) improve(patch, fold, n, relaxation);
 }
 
-/// Takes the cut cells away at both ends and glues the faces of the cut. Touches the lowest rows only.
-void fold_cells(Mesh& mesh, int cut) {
-  const Grid& grid = mesh.grid;
-  const auto glue = [&](Node n) {
-    const int j = n / grid.stride();
-    const int i = n % grid.stride();
-    if (j != cut) return n;
-    if (i < cut) return grid.node(cut, i);
-    if (grid.columns - i < cut) return grid.node(grid.columns - cut, grid.columns - i);
-    return n;
-  };
-  const auto is_cut = [&](const Cell& cell) {
-    const int j = cell[0] / grid.stride();
-    const int i = cell[0] % grid.stride();
-    return j < cut && (i < cut || i >= grid.columns - cut);
-  };
-  const auto low_end = mesh.cells.begin() + static_cast<std::ptrdiff_t>(cut + 1) * grid.columns;
-  const auto kept_end = std::remove_if(mesh.cells.begin(), low_end, is_cut);
-  for (auto cell = mesh.cells.begin(); cell != kept_end; ++cell)
-    for (Node& n : *cell) n = glue(n);
-  mesh.cells.erase(kept_end, low_end);
-}
-
-/// Puts the patch's nodes into the left corner and, mirrored, into the right one.
-void place(Mesh& mesh, const Patch& patch, const Fold& fold) {
-  const Grid& grid = mesh.grid;
-  const double width = mesh.x_m[grid.columns];
-  const Point arc_middle = on_smooth_side(fold, 0);
-  for (int j = 0; j < fold.side; ++j)
-    for (int i = 0; i < fold.side; ++i) {
-      const Point p = fold.has_node(i, j) ? patch.at[fold.node(i, j)] : arc_middle;
-      mesh.x_m[grid.node(i, j)] = p.x;
-      mesh.y_m[grid.node(i, j)] = p.y;
-      mesh.x_m[grid.node(grid.columns - i, j)] = width - p.x;
-      mesh.y_m[grid.node(grid.columns - i, j)] = p.y;
-    }
-}
-
-std::vector<Node> lower_side(const Grid& grid, const Fold& fold) {
-  std::vector<Node> lower;
-  for (int a = fold.half_arc; a > 0; --a) lower.push_back(grid.node(0, fold.cut + a));
-  for (int i = fold.cut; i <= grid.columns - fold.cut; ++i) lower.push_back(grid.node(i, 0));
-  for (int a = 1; a <= fold.half_arc; ++a) lower.push_back(grid.node(grid.columns, fold.cut + a));
-  return lower;
-}
-
 }  // namespace
 
-void round_corners(Mesh& mesh, double radius_m) {
-  const Fold fold = choose_fold(mesh, radius_m);
+RoundedCorners::RoundedCorners(const Grid& grid, bool is_graded, double radius_m)
+    : columns_(grid.columns), radius_m_(radius_m), spacing_m_(grid.spacing_m) {
+  const double h = grid.spacing_m;
+  const double smallest = min_radius_in_cells * h;
+  const int room = std::min(grid.columns / 2, grid.rows);
+  const double largest = (room - min_margin_in_cells) * h;
+  if (largest < smallest)
+    throw UserError("{} = {:g} is too large to round the corners of this plate; use a smaller size",
+                    Key("plate.element_size_m"), h);
+  // The slack admits the limits as printed.
+  if (!(radius_m >= (1 - 1e-6) * smallest))
+    throw UserError("{} = {:g} is too small for these elements; make it at least {:.8g}",
+                    Key("plate.fillet_radius_m"), radius_m, smallest)
+        .about("plate.element_size_m");
+  if (radius_m > (1 + 1e-6) * largest)
+    throw UserError("{} = {:g} does not fit into the plate{}; make it at most {:.8g}",
+                    Key("plate.fillet_radius_m"), radius_m,
+                    is_graded ? Message("'s smallest elements ({})", Key("plate.fine_height_m")) : Message(),
+                    largest)
+        .about("plate.width_m", "plate.height_m");
+  cut_ = std::max(1, static_cast<int>(std::lround((1 - pi / 4) * radius_m / h)));
+  side_ = std::min(room, static_cast<int>(std::ceil(1.25 * radius_m / h)) + 4);
+  const int segments = side_ - cut_;
+  const double arc_m = pi / 4 * radius_m;
+  const double segment_m = (side_ * h - radius_m + arc_m) / segments;
+  half_arc_ = std::clamp(static_cast<int>(std::lround(arc_m / segment_m)), 1, segments - 1);
+}
+
+bool RoundedCorners::is_cut(int i, int j) const {
+  return j < cut_ && (i < cut_ || i >= columns_ - cut_);
+}
+
+RoundedCorners::Place RoundedCorners::glued(Place node) const {
+  const auto [i, j] = node;
+  if (j != cut_) return node;
+  if (i < cut_) return {cut_, i};
+  if (columns_ - i < cut_) return {columns_ - cut_, columns_ - i};
+  return node;
+}
+
+std::vector<RoundedCorners::Point> RoundedCorners::places() const {
+  const Fold fold{radius_m_, spacing_m_, cut_, side_, half_arc_};
   Patch patch = make_patch(fold);
   spread(patch, fold);
   optimise(patch, fold);
-  fold_cells(mesh, fold.cut);
-  place(mesh, patch, fold);
-  mesh.lower = lower_side(mesh.grid, fold);
+  const Point arc_middle = on_smooth_side(fold, 0);
+  std::vector<Point> places;
+  for (int j = 0; j < side_; ++j)
+    for (int i = 0; i < side_; ++i)
+      places.push_back(fold.has_node(i, j) ? patch.at[fold.node(i, j)] : arc_middle);
+  return places;
+}
+
+std::vector<RoundedCorners::Place> RoundedCorners::lower() const {
+  std::vector<Place> lower;
+  for (int a = half_arc_; a > 0; --a) lower.push_back({0, cut_ + a});
+  for (int i = cut_; i <= columns_ - cut_; ++i) lower.push_back({i, 0});
+  for (int a = 1; a <= half_arc_; ++a) lower.push_back({columns_, cut_ + a});
+  return lower;
 }
 
 }  // namespace slipfront::mesh

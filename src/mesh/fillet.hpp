@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "mesh/mesh.hpp"
 
 namespace slipfront::mesh {
 
-/// Rounds both lower corners of a regular rectangular mesh by quarter circles, without slivers.
+/// Both lower corners of a regular rectangular grid rounded by quarter circles, without slivers.
 ///
 /// Pushing the nodes of a regular grid onto a rounded corner makes a cell with a nearly straight angle. So
 /// the grid is folded instead: at each corner the k x k outermost cells are taken away and the two faces of
@@ -24,11 +26,45 @@ namespace slipfront::mesh {
 /// time step as possible. There are nodes at both ends and in the middle of each arc. Both corners are mirror
 /// images.
 ///
-/// `mesh.lower` becomes the base with both arcs, from the left vertical edge to the right one. Grid numbers
+/// The interface becomes the base with both arcs, from the left vertical edge to the right one. Grid numbers
 /// that lose their cells stay as orphans, placed in the middle of the arc, k (k + 1) at each corner.
-/// @param mesh      the regular mesh of a rectangle, all of whose nodes are at their grid positions
-/// @param radius_m  of the quarter circles
-/// @throws UserError for a radius too small for the cells or too large for the plate.
-void round_corners(Mesh& mesh, double radius_m);
+class RoundedCorners {
+ public:
+  /// A node of the grid, by its column and row.
+  struct Place {
+    int i = 0, j = 0;
+  };
+  struct Point {
+    double x = 0, y = 0;
+  };
+
+  /// @param grid      of the rectangle's lowest squares
+  /// @param is_graded  whether larger squares lie above it
+  /// @param radius_m  of the quarter circles
+  /// @throws UserError for a radius too small for the cells or too large for the plate.
+  RoundedCorners(const Grid& grid, bool is_graded, double radius_m);
+
+  /// Columns at either end in which nodes are moved.
+  int side() const { return side_; }
+  /// Columns at either end that cells wrapped around the corner reach.
+  int cut() const { return cut_; }
+  /// Whether the cell between nodes (i, j) and (i + 1, j + 1) is taken away.
+  bool is_cut(int i, int j) const;
+  /// The node that a cell has instead of this one.
+  Place glued(Place node) const;
+  /// Where the nodes of the left corner are, row by row, side() columns and rows; those of the right corner
+  /// are their mirror images.
+  std::vector<Point> places() const;
+  /// The nodes that may touch the base, x ascending.
+  std::vector<Place> lower() const;
+
+ private:
+  int columns_ = 0;
+  double radius_m_ = 0;
+  double spacing_m_ = 0;
+  int cut_ = 0;       ///< k: cells taken away along each side of the corner
+  int side_ = 0;      ///< cells along each side of the re-shaped patch
+  int half_arc_ = 0;  ///< cells along one half of the arc
+};
 
 }  // namespace slipfront::mesh

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <span>
 #include <utility>
 
 #include "base/error.hpp"
@@ -143,21 +142,6 @@ int columns_of_cells(const Mesh& mesh, int block) {
   return 1 << std::min(block + 1, static_cast<int>(mesh.coarser.size()));
 }
 
-namespace {
-
-/// Columns over which a cell reaches where it is not wrapped around a corner.
-int columns_of_cell(const Mesh& mesh, std::span<const Grid> grids, const Cell& cell) {
-  const auto block_of = [&](Node n) {
-    return static_cast<int>(std::ranges::upper_bound(grids, n, {}, &Grid::first) - grids.begin()) - 1;
-  };
-  const auto [lowest, highest] = std::ranges::minmax(cell);
-  const int block = block_of(lowest);
-  const bool is_square = block_of(highest) == block && highest < grids[block].first + grids[block].n_nodes();
-  return is_square ? 1 << block : columns_of_cells(mesh, block);
-}
-
-}  // namespace
-
 int columns_of_wrapped_cells(const Mesh& mesh) {
   const auto& grid = mesh.grid;
   if (std::ranges::all_of(mesh.lower, [&](Node n) { return n < grid.stride(); })) return 0;
@@ -170,71 +154,6 @@ int columns_of_wrapped_cells(const Mesh& mesh) {
     if (last - first > 1) columns = std::max(columns, std::min(last, grid.columns - first));
   }
   return columns;
-}
-
-Mesh columns_of(const Mesh& whole, const Subset& columns) {
-  SLIPFRONT_ASSERT(whole.grid.columns > 0, "a plate");
-  const NodeColumns of_whole(whole);
-  Mesh mesh;
-  if (columns.ranges().size() > 1) mesh.period_m = whole.period_m;
-  std::vector<Node> number(whole.x_m.size(), -1);  // in the part, -1 where it has them not
-  const auto take_row = [&](int row) {
-    const Node first = mesh.n_nodes();
-    for (const auto& range : columns.ranges()) {
-      const auto nodes = of_whole.nodes(row, range);
-      for (Node n = nodes.first; n < nodes.end(); ++n) {
-        number[n] = mesh.n_nodes();
-        mesh.x_m.push_back(whole.x_m[n]);
-        mesh.y_m.push_back(whole.y_m[n]);
-      }
-    }
-    return NodeColumns::Nodes{first, mesh.n_nodes() - first};
-  };
-  int row = 0;
-  for (Grid grid : blocks(whole)) {
-    if (row > 0) take_row(row++);  // the transition below
-    const auto lowest = take_row(row++);
-    grid.first = lowest.first;
-    grid.columns = lowest.count - 1;
-    for (int j = 1; j <= grid.rows; ++j) take_row(row++);
-    if (lowest.first == 0)
-      mesh.grid = grid;
-    else
-      mesh.coarser.push_back(grid);
-  }
-  const auto has = [&](Node n) { return number[n] >= 0; };
-  const auto grids = blocks(whole);
-  // Whether columns of the whole are missing so near to a node.
-  const auto at_cut = [&](Node n, int reach) {
-    const int last = whole.grid.columns, column = of_whole.column_of(n);
-    for (int i = column - reach; i <= column + reach; ++i) {
-      if (whole.period_m > 0 ? !columns.has((i + last) % last) : i >= 0 && i <= last && !columns.has(i))
-        return true;
-    }
-    return false;
-  };
-  for (const Cell& cell : whole.cells) {
-    if (std::ranges::all_of(cell, has)) {
-      mesh.cells.push_back({number[cell[0]], number[cell[1]], number[cell[2]], number[cell[3]]});
-    } else if (std::ranges::any_of(cell, has)) {
-      const int reach = columns_of_cell(whole, grids, cell);
-      SLIPFRONT_ASSERT(
-          std::ranges::none_of(cell, [&](Node n) { return has(n) && !at_cut(n, reach); }),
-          "a part that does not end within a rounded corner");
-    }
-  }
-  const auto take = [&](const std::vector<Node>& from, std::vector<Node>& to) {
-    for (const Node n : from)
-      if (has(n)) to.push_back(number[n]);
-  };
-  take(whole.lower, mesh.lower);
-  take(whole.top, mesh.top);
-  for (AbsorbingNode absorbing : whole.absorbing) {
-    if (!has(absorbing.node)) continue;
-    absorbing.node = number[absorbing.node];
-    mesh.absorbing.push_back(absorbing);
-  }
-  return mesh;
 }
 
 }  // namespace slipfront::mesh

@@ -90,14 +90,4 @@ int columns_of_cells(const Mesh& mesh, int block);
 /// Columns at either end in which cells are wrapped around a rounded corner; 0 where there is none.
 int columns_of_wrapped_cells(const Mesh& mesh);
 
-/// The nodes of a mesh in the columns `columns`, with the cells between them: a mesh of its own, whose nodes
-/// have the order of the whole one.
-///
-/// Right-angled, relieved and rounded corners keep their shape where the part holds them. The part's own
-/// edges, where they are not the plate's, lack the cells that reach beyond. A part of a plate that repeats
-/// has either a single range of columns, or two: then it holds the cells that join the plate's sides, and the
-/// last column, which has no cells, with them.
-/// @pre the mesh has a grid, and no cut goes through cells that are wrapped around a corner
-Mesh columns_of(const Mesh& whole, const Subset& columns);
-
 }  // namespace slipfront::mesh

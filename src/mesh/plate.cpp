@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "mesh/fillet.hpp"
@@ -50,15 +51,16 @@ std::optional<double> size_that_fits(const Plate& plate, int step) {
       .about(width, height);
 }
 
-Grid make_grid(const Plate& plate) {
+Grid make_grid(const Plate& plate, bool is_whole_plate) {
   require_positive(plate.width_m, "plate.width_m");
   require_positive(plate.height_m, "plate.height_m");
   require_positive(plate.element_size_m, "plate.element_size_m");
   const double columns = plate.width_m / plate.element_size_m;
   const double rows = plate.height_m / plate.element_size_m;
-  if ((columns + 1) * (rows + 1) > std::numeric_limits<Node>::max())
+  constexpr auto most = std::numeric_limits<Node>::max();
+  if (is_whole_plate ? (columns + 1) * (rows + 1) > most : std::max(columns, rows) >= most)
     throw UserError("{} = {:.8g} makes more than {} nodes; use a larger size", Key("plate.element_size_m"),
-                    plate.element_size_m, std::numeric_limits<Node>::max());
+                    plate.element_size_m, most);
   if (!is_whole(columns) || !is_whole(rows)) throw_no_fit(plate);
   Grid grid;
   grid.columns = static_cast<int>(std::lround(columns));
@@ -72,13 +74,6 @@ Grid make_grid(const Plate& plate) {
 bool has_inner(int i) {
   return i % 4 != 0;
 }
-int n_inner(const Grid& below) {
-  return below.columns - below.columns / 4;
-}
-Node inner_node(const Grid& below, int i) {
-  return below.first + below.n_nodes() + i - 1 - i / 4;
-}
-
 /// Grids of the blocks of a plate whose rectangle has the grid `whole`, upwards.
 std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole, std::string_view table) {
   if (plate.coarsenings == 0) return {whole};
@@ -113,7 +108,6 @@ std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole, std::string
     grids.push_back(block);
     below_m += (block.rows + 2) * block.spacing_m;
     rows_left = (rows_left - block.rows) / 2 - 1;
-    block.first += block.n_nodes() + n_inner(block);
     block.columns /= 2;
     block.spacing_m *= 2;
   }
@@ -125,72 +119,44 @@ double transition_edge_m(const Grid& below, bool right) {
   return below.spacing_m * (right && has_inner(below.columns) ? 1 : 2);
 }
 
-void add_squares(Mesh& mesh, const Grid& grid) {
-  for (int j = 0; j < grid.rows; ++j)
-    for (int i = 0; i < grid.columns; ++i)
-      mesh.cells.push_back(
-          {grid.node(i, j), grid.node(i + 1, j), grid.node(i + 1, j + 1), grid.node(i, j + 1)});
-}
-
-void add_transition(Mesh& mesh, const Grid& below, const Grid& above) {
-  const auto b = [&](int i) { return below.node(i, below.rows); };
-  const auto m = [&](int i) { return inner_node(below, i); };
-  for (int column = 0; column < above.columns; ++column) {
-    const int i = 2 * column;
-    const Node left = above.node(column, 0), right = above.node(column + 1, 0);
-    if (column % 2 == 0) {
-      mesh.cells.push_back({b(i), b(i + 1), m(i + 1), left});
-      mesh.cells.push_back({b(i + 1), b(i + 2), m(i + 2), m(i + 1)});
-      mesh.cells.push_back({left, m(i + 1), m(i + 2), right});
-    } else {
-      mesh.cells.push_back({b(i), b(i + 1), m(i + 1), m(i)});
-      mesh.cells.push_back({b(i + 1), b(i + 2), right, m(i + 1)});
-      mesh.cells.push_back({left, m(i), m(i + 1), right});
+/// The nodes of a block's grid rows, and of the transition above it, that a mesh holds; columns and rows are
+/// those of the whole plate.
+class Block {
+ public:
+  /// @param columns  of the smallest squares' nodes, of which the mesh holds some
+  Block(const Grid& whole, int level, const Subset& columns, Node first)
+      : grid(whole), size(1 << level), place_(static_cast<std::size_t>(whole.stride()), -1) {
+    inner_place_ = place_;
+    part_ = {0, whole.rows, whole.spacing_m, first};
+    for (int i = 0; i <= whole.columns; ++i) {
+      if (!columns.has(i * size)) continue;
+      place_[static_cast<std::size_t>(i)] = static_cast<int>(held.size());
+      held.push_back(i);
+      if (has_inner(i)) inner_place_[static_cast<std::size_t>(i)] = n_inner_++;
     }
+    part_.columns = static_cast<int>(held.size()) - 1;
   }
-}
 
-Mesh make_rectangle(const Plate& plate, std::string_view table) {
-  const Grid whole = make_grid(plate);
-  const auto grids = make_blocks(plate, whole, table);
-  std::size_t n_nodes = 0;
-  for (const Grid& grid : grids)
-    n_nodes += static_cast<std::size_t>(grid.stride()) * (static_cast<std::size_t>(grid.rows) + 2);
-  if (n_nodes > static_cast<std::size_t>(std::numeric_limits<Node>::max()))
-    throw UserError("{} = {:g} makes {} nodes, more than can be numbered; choose a larger one",
-                    Key("plate.element_size_m"), plate.element_size_m, n_nodes);
-  Mesh mesh;
-  mesh.grid = grids.front();
-  mesh.coarser.assign(grids.begin() + 1, grids.end());
-  mesh.x_m.reserve(n_nodes);
-  mesh.y_m.reserve(n_nodes);
-  mesh.cells.reserve(n_nodes);
-  int level = 0;  // of the row, in rows of the smallest squares
-  const auto y_of = [&](int at) { return at * plate.height_m / whole.rows; };
-  for (std::size_t k = 0; k < grids.size(); ++k) {
-    const Grid& grid = grids[k];
-    const int size = 1 << k;  // of the block's squares, in smallest ones
-    for (int j = 0; j <= grid.rows; ++j)
-      for (int i = 0; i <= grid.columns; ++i) {
-        mesh.x_m.push_back(i * plate.width_m / grid.columns);
-        mesh.y_m.push_back(y_of(level + j * size));
-      }
-    add_squares(mesh, grid);
-    if (k + 1 == grids.size()) break;
-    level += (grid.rows + 1) * size;
-    for (int i = 0; i <= grid.columns; ++i) {
-      if (!has_inner(i)) continue;
-      mesh.x_m.push_back(i * plate.width_m / grid.columns);
-      mesh.y_m.push_back(y_of(level));
-    }
-    add_transition(mesh, grid, grids[k + 1]);
-    level += size;
+  Grid grid;              ///< of the whole; without `first`
+  int size;               ///< of its squares, in smallest ones
+  std::vector<int> held;  ///< columns
+
+  const Grid& part() const { return part_; }
+  bool has(int i) const { return place_[static_cast<std::size_t>(i)] >= 0; }
+  /// @pre the mesh has it
+  Node node(int i, int j) const {
+    return part_.first + j * part_.stride() + place_[static_cast<std::size_t>(i)];
   }
-  const Grid& highest = grids.back();
-  for (int i = 0; i <= mesh.grid.columns; ++i) mesh.lower.push_back(mesh.grid.node(i, 0));
-  for (int i = 0; i <= highest.columns; ++i) mesh.top.push_back(highest.node(i, highest.rows));
-  return mesh;
-}
+  Node inner_node(int i) const {
+    return part_.first + part_.n_nodes() + inner_place_[static_cast<std::size_t>(i)];
+  }
+  Node first_above() const { return part_.first + part_.n_nodes() + n_inner_; }
+
+ private:
+  Grid part_;
+  std::vector<int> place_, inner_place_;
+  int n_inner_ = 0;
+};
 
 void check_relief(const Plate& plate, const Grid& grid) {
   const Key relief_length("plate.relief_length_m"), relief_height("plate.relief_height_m"),
@@ -218,104 +184,246 @@ void check_relief(const Plate& plate, const Grid& grid) {
                     plate.relief_depth_m, relief_height, plate.relief_height_m);
 }
 
-/// Moves the nodes above the two arcs up, and by the same amount at both ends.
-void lift_corners(Mesh& mesh, const Plate& plate) {
-  const double length = plate.relief_length_m;
-  const double height = plate.relief_height_m;
-  const double radius = (length * length + height * height) / (2 * height);
-  const auto lifted = [&](double x, double y) {
-    const double into = length - x;
-    if (into <= 0 || y >= plate.relief_depth_m) return y;
+/// Two arcs over which nodes are moved up.
+class Relief {
+ public:
+  explicit Relief(const Plate& plate)
+      : length_m_(plate.relief_length_m),
+        depth_m_(plate.relief_depth_m),
+        radius_m_((length_m_ * length_m_ + plate.relief_height_m * plate.relief_height_m) /
+                  (2 * plate.relief_height_m)) {}
+
+  /// The new height of a node. @param x  from the nearer side of the plate
+  double lifted_m(double x, double y) const {
+    const double into = length_m_ - x;
+    if (into <= 0 || y >= depth_m_) return y;
     // radius - sqrt(radius^2 - into^2), without the cancellation
-    const double rise = into * into / (radius + std::sqrt(radius * radius - into * into));
-    return y + rise * (1 - y / plate.relief_depth_m);
-  };
-  for (const Grid& grid : blocks(mesh))
-    for (int j = 0; j <= grid.rows; ++j)
-      for (int i = 0; 2 * i < grid.columns; ++i) {
-        const double y = mesh.y_m[grid.node(i, j)];
-        const double moved = lifted(mesh.x_m[grid.node(i, j)], y);
-        if (moved == y) break;
-        mesh.y_m[grid.node(i, j)] = moved;
-        mesh.y_m[grid.node(grid.columns - i, j)] = moved;
-      }
-  const auto grids = blocks(mesh);
-  for (std::size_t k = 0; k + 1 < grids.size(); ++k)
-    for (int i = 1; i <= grids[k].columns; ++i) {
-      if (!has_inner(i)) continue;
-      const Node n = inner_node(grids[k], i);
-      const double x = mesh.x_m[n];
-      mesh.y_m[n] = lifted(std::min(x, plate.width_m - x), mesh.y_m[n]);
-    }
-}
-
-void join_sides(Mesh& mesh, const Plate& plate) {
-  if (mesh.grid.columns < 3)
-    throw UserError("{} = periodic needs three columns of elements or more, not {}", Key("plate.sides"),
-                    mesh.grid.columns);
-  mesh.period_m = plate.width_m;
-  std::vector<Node> joined(mesh.x_m.size());
-  std::iota(joined.begin(), joined.end(), 0);
-  for (const Grid& grid : blocks(mesh))
-    for (int j = 0; j <= grid.rows; ++j) joined[grid.node(grid.columns, j)] = grid.node(0, j);
-  for (Cell& cell : mesh.cells)
-    for (Node& n : cell) n = joined[n];
-  mesh.lower.pop_back();
-  mesh.top.pop_back();
-}
-
-/// Every edge between two nodes gives half of its length to each.
-void absorb(Mesh& mesh, const Plate& plate) {
-  const bool sides = plate.sides == Sides::absorbing, top = plate.top == Top::absorbing;
-  const bool loaded = plate.top == Top::loaded;
-  const bool periodic = mesh.period_m > 0;
-  const auto grids = blocks(mesh);
-  for (std::size_t k = 0; k < grids.size(); ++k) {
-    const Grid& grid = grids[k];
-    const bool first = k == 0, last = k + 1 == grids.size();
-    for (int j = 0; j <= grid.rows; ++j)
-      for (int i = 0; i <= grid.columns - (periodic ? 1 : 0); ++i) {
-        AbsorbingNode a{grid.node(i, j)};
-        const bool at_top = last && j == grid.rows;
-        if (sides && (i == 0 || i == grid.columns) && (!loaded || !at_top)) {
-          const bool at_end = (first && j == 0) || at_top;
-          a.side_m = grid.spacing_m * (at_end ? 0.5 : 1);
-          // The transition's edges: 2 h, or h and h where an inner node stands on the edge.
-          const Grid* below = j == 0 && !first ? &grids[k - 1] : nullptr;
-          if (below != nullptr) a.side_m = 0.5 * (grid.spacing_m + transition_edge_m(*below, i > 0));
-          if (j == grid.rows && !last) a.side_m = 0.5 * (grid.spacing_m + transition_edge_m(grid, i > 0));
-        }
-        if (at_top && top) a.top_m = grid.spacing_m * (!periodic && (i == 0 || i == grid.columns) ? 0.5 : 1);
-        if (a.side_m > 0 || a.top_m > 0) mesh.absorbing.push_back(a);
-      }
-    if (sides && !last && has_inner(grid.columns))
-      mesh.absorbing.push_back({inner_node(grid, grid.columns), grid.spacing_m, 0});
+    const double rise = into * into / (radius_m_ + std::sqrt(radius2_ - into * into));
+    return y + rise * (1 - y / depth_m_);
   }
-  if (!loaded) mesh.top.clear();
-}
+
+ private:
+  double length_m_, depth_m_, radius_m_;
+  double radius2_ = radius_m_ * radius_m_;
+};
+
+/// A plate, of whose nodes and cells a mesh holds some columns.
+class Maker {
+ public:
+  Maker(const Plate& plate, const Subset& columns, std::string_view table)
+      : plate_(plate),
+        whole_(make_grid(plate, columns.ranges().empty())),
+        is_periodic_(plate.sides == Sides::periodic) {
+    const auto grids = make_blocks(plate, whole_, table);
+    double n_nodes = 0;
+    Node first = 0;
+    for (std::size_t k = 0; k < grids.size(); ++k) {
+      const auto& block = blocks_.emplace_back(grids[k], static_cast<int>(k), columns, first);
+      n_nodes += static_cast<double>(block.held.size()) * (block.grid.rows + 2.0);
+      if (n_nodes > std::numeric_limits<Node>::max())
+        throw UserError("{} = {:g} makes more than {} nodes; choose a larger one",
+                        Key("plate.element_size_m"), plate.element_size_m, std::numeric_limits<Node>::max());
+      first = block.first_above();
+    }
+    if (plate.sides != Sides::free && plate.corner != Corner::none)
+      throw UserError("{} other than free needs right-angled corners; set {} = \"none\"", Key("plate.sides"),
+                      Key("plate.corner"));
+    if (is_periodic_ && lowest().columns < 3)
+      throw UserError("{} = periodic needs three columns of elements or more, not {}", Key("plate.sides"),
+                      lowest().columns);
+    if (plate.corner == Corner::relief) {
+      check_relief(plate, lowest());
+      relief_.emplace(plate);
+    }
+    if (plate.corner == Corner::fillet) {
+      require_positive(plate.fillet_radius_m, "plate.fillet_radius_m");
+      rounded_.emplace(lowest(), blocks_.size() > 1, plate.fillet_radius_m);
+      for (const auto& [begin, end] : columns.ranges())
+        SLIPFRONT_ASSERT(
+            (begin == 0 || (begin > rounded_->cut() && begin <= lowest().columns - rounded_->cut())) &&
+                (end == lowest().stride() ||
+                 (end > rounded_->cut() && end <= lowest().columns - rounded_->cut())),
+            "no part ends at a rounded corner");
+    }
+    mesh_.x_m.reserve(static_cast<std::size_t>(n_nodes));
+    mesh_.y_m.reserve(static_cast<std::size_t>(n_nodes));
+    mesh_.cells.reserve(static_cast<std::size_t>(n_nodes));
+    if (is_periodic_ && columns.ranges().size() != 1) mesh_.period_m = plate.width_m;
+  }
+
+  Mesh make() && {
+    mesh_.grid = blocks_.front().part();
+    for (std::size_t k = 1; k < blocks_.size(); ++k) mesh_.coarser.push_back(blocks_[k].part());
+    int level = 0;  // of the row, in rows of the smallest squares
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      const auto& block = blocks_[k];
+      for (int j = 0; j <= block.grid.rows; ++j)
+        for (const int i : block.held) add_grid_node(block, i, level + j * block.size);
+      add_squares(block);
+      if (k + 1 == blocks_.size()) break;
+      level += (block.grid.rows + 1) * block.size;
+      for (const int i : block.held)
+        if (has_inner(i)) add_inner_node(block, i, level);
+      add_transition(block, blocks_[k + 1]);
+      level += block.size;
+    }
+    if (rounded_) move_to_arcs();
+    name_nodes();
+    absorb();
+    return std::move(mesh_);
+  }
+
+ private:
+  const Grid& lowest() const { return blocks_.front().grid; }
+  double x_of(const Block& block, int i) const { return i * plate_.width_m / block.grid.columns; }
+
+  /// @param from_edge_m  from the nearer side of the plate
+  void add_node(double x_m, double from_edge_m, int level) {
+    const double y = level * plate_.height_m / whole_.rows;
+    mesh_.x_m.push_back(x_m);
+    mesh_.y_m.push_back(relief_ ? relief_->lifted_m(from_edge_m, y) : y);
+  }
+  /// Both ends of a grid row are mirror images.
+  void add_grid_node(const Block& block, int i, int level) {
+    add_node(x_of(block, i), x_of(block, std::min(i, block.grid.columns - i)), level);
+  }
+  void add_inner_node(const Block& block, int i, int level) {
+    const double x_m = x_of(block, i);
+    add_node(x_m, std::min(x_m, plate_.width_m - x_m), level);
+  }
+
+  /// -1 where the mesh does not hold it.
+  Node node(const Block& block, int i, int j) const {
+    if (is_periodic_ && i == block.grid.columns) i = 0;
+    return block.has(i) ? block.node(i, j) : -1;
+  }
+  Node inner_node(const Block& block, int i) const { return block.has(i) ? block.inner_node(i) : -1; }
+
+  /// Where the mesh holds all of its nodes.
+  void add_cell(const Cell& cell) {
+    if (std::ranges::none_of(cell, [](Node n) { return n < 0; })) mesh_.cells.push_back(cell);
+  }
+
+  void add_squares(const Block& block) {
+    const bool is_folded = rounded_ && &block == blocks_.data();
+    for (int j = 0; j < block.grid.rows; ++j)
+      for (const int i : block.held) {
+        if (i == block.grid.columns) continue;
+        if (is_folded && j <= rounded_->cut())
+          add_folded(block, i, j);
+        else
+          add_cell(
+              {node(block, i, j), node(block, i + 1, j), node(block, i + 1, j + 1), node(block, i, j + 1)});
+      }
+  }
+
+  void add_folded(const Block& block, int i, int j) {
+    if (rounded_->is_cut(i, j)) return;
+    const auto at = [&](int column, int row) {
+      const auto place = rounded_->glued({column, row});
+      return node(block, place.i, place.j);
+    };
+    add_cell({at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+  }
+
+  void add_transition(const Block& below, const Block& above) {
+    const auto b = [&](int i) { return node(below, i, below.grid.rows); };
+    const auto m = [&](int i) { return inner_node(below, i); };
+    for (int column = 0; column < above.grid.columns; ++column) {
+      const int i = 2 * column;
+      const Node left = node(above, column, 0), right = node(above, column + 1, 0);
+      if (column % 2 == 0) {
+        add_cell({b(i), b(i + 1), m(i + 1), left});
+        add_cell({b(i + 1), b(i + 2), m(i + 2), m(i + 1)});
+        add_cell({left, m(i + 1), m(i + 2), right});
+      } else {
+        add_cell({b(i), b(i + 1), m(i + 1), m(i)});
+        add_cell({b(i + 1), b(i + 2), right, m(i + 1)});
+        add_cell({left, m(i), m(i + 1), right});
+      }
+    }
+  }
+
+  void move_to_arcs() {
+    const auto& block = blocks_.front();
+    const int columns = lowest().columns, side = rounded_->side();
+    const auto is_moved = [&](int i) { return std::min(i, columns - i) < side; };
+    if (std::ranges::none_of(block.held, is_moved)) return;
+    const auto places = rounded_->places();
+    const double width_m = x_of(block, columns);
+    for (int j = 0; j < side; ++j)
+      for (const int i : block.held) {
+        if (!is_moved(i)) continue;
+        const auto [x, y] = places[static_cast<std::size_t>(j * side + std::min(i, columns - i))];
+        const Node n = block.node(i, j);
+        mesh_.x_m[n] = i < side ? x : width_m - x;
+        mesh_.y_m[n] = y;
+      }
+  }
+
+  void name_nodes() {
+    const auto& block = blocks_.front();
+    const auto is_orphan = [&](const Block& of, int i) { return is_periodic_ && i == of.grid.columns; };
+    if (rounded_) {
+      for (const auto [i, j] : rounded_->lower())
+        if (block.has(i)) mesh_.lower.push_back(block.node(i, j));
+    } else {
+      for (const int i : block.held)
+        if (!is_orphan(block, i)) mesh_.lower.push_back(block.node(i, 0));
+    }
+    if (plate_.top != Top::loaded) return;
+    const auto& highest = blocks_.back();
+    for (const int i : highest.held)
+      if (!is_orphan(highest, i)) mesh_.top.push_back(highest.node(i, highest.grid.rows));
+  }
+
+  /// Every edge between two nodes gives half of its length to each.
+  void absorb() {
+    const bool sides = plate_.sides == Sides::absorbing, top = plate_.top == Top::absorbing;
+    const bool loaded = plate_.top == Top::loaded;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+      const auto& block = blocks_[k];
+      const Grid& grid = block.grid;
+      const bool first = k == 0, last = k + 1 == blocks_.size();
+      for (int j = 0; j <= grid.rows; ++j)
+        for (const int i : block.held) {
+          if (is_periodic_ && i == grid.columns) continue;
+          AbsorbingNode a{block.node(i, j)};
+          const bool at_top = last && j == grid.rows;
+          if (sides && (i == 0 || i == grid.columns) && (!loaded || !at_top)) {
+            const bool at_end = (first && j == 0) || at_top;
+            a.side_m = grid.spacing_m * (at_end ? 0.5 : 1);
+            // The transition's edges: 2 h, or h and h where an inner node stands on the edge.
+            const Grid* below = j == 0 && !first ? &blocks_[k - 1].grid : nullptr;
+            if (below != nullptr) a.side_m = 0.5 * (grid.spacing_m + transition_edge_m(*below, i > 0));
+            if (j == grid.rows && !last) a.side_m = 0.5 * (grid.spacing_m + transition_edge_m(grid, i > 0));
+          }
+          if (at_top && top)
+            a.top_m = grid.spacing_m * (!is_periodic_ && (i == 0 || i == grid.columns) ? 0.5 : 1);
+          if (a.side_m > 0 || a.top_m > 0) mesh_.absorbing.push_back(a);
+        }
+      if (sides && !last && has_inner(grid.columns) && block.has(grid.columns))
+        mesh_.absorbing.push_back({block.inner_node(grid.columns), grid.spacing_m, 0});
+    }
+  }
+
+  const Plate& plate_;
+  Grid whole_;
+  bool is_periodic_ = false;
+  std::vector<Block> blocks_;
+  std::optional<Relief> relief_;
+  std::optional<RoundedCorners> rounded_;
+  Mesh mesh_;
+};
 
 }  // namespace
 
 Mesh make_plate(const Plate& plate, std::string_view table) {
-  Mesh mesh = make_rectangle(plate, table);
-  if (plate.sides != Sides::free && plate.corner != Corner::none)
-    throw UserError("{} other than free needs right-angled corners; set {} = \"none\"", Key("plate.sides"),
-                    Key("plate.corner"));
-  if (plate.sides == Sides::periodic) join_sides(mesh, plate);
-  absorb(mesh, plate);
-  switch (plate.corner) {
-    case Corner::none:
-      break;
-    case Corner::relief:
-      check_relief(plate, mesh.grid);
-      lift_corners(mesh, plate);
-      break;
-    case Corner::fillet:
-      require_positive(plate.fillet_radius_m, "plate.fillet_radius_m");
-      round_corners(mesh, plate.fillet_radius_m);
-      break;
-  }
-  return mesh;
+  return make_columns(plate, Subset(), table);
+}
+
+Mesh make_columns(const Plate& plate, const Subset& columns, std::string_view table) {
+  return Maker(plate, columns, table).make();
 }
 
 }  // namespace slipfront::mesh

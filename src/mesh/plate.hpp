@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "mesh/mesh.hpp"
+#include "mesh/part.hpp"
 
 namespace slipfront::mesh {
 
@@ -73,5 +74,16 @@ struct Plate {
 /// @param table  of the case file that holds coarsenings and fine_height_m, for messages
 /// @throws UserError for an impossible geometry, naming the quantity to change.
 Mesh make_plate(const Plate& plate, std::string_view table = "plate");
+
+/// The nodes of make_plate in some columns, with the cells between them: a mesh of its own, whose nodes and
+/// cells have the order and the places of the whole plate's, to the last bit. The whole plate may have more
+/// nodes than can be numbered.
+///
+/// The part's own edges, where they are not the plate's, lack the cells that reach beyond. A part of a plate
+/// that repeats has either a single range of columns, or two: then it holds the cells that join the plate's
+/// sides, and the last column, which has no cells, with them.
+/// @param columns  as NodeColumns counts them
+/// @pre no part ends among the columns of cells that are wrapped around a corner
+Mesh make_columns(const Plate& plate, const Subset& columns, std::string_view table = "plate");
 
 }  // namespace slipfront::mesh

@@ -172,10 +172,6 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
   Info::Shared shared;
   shared.division = motion::divide_bodies(bodies, steps, config.time, sharing.n_processes,
                                           motion::halo_for(meshes.plate, config.fronts.l_star_m));
-  // Refuses cuts through them.
-  if (config.plate.corner == mesh::Corner::fillet)
-    for (int part = 0; part < sharing.n_processes; ++part)
-      mesh::columns_of(meshes.plate, shared.division.all(part));
   SharedWork work;
   work.n_nodes = static_cast<double>(info.n_nodes);
   work.n_cells = static_cast<double>(info.n_cells);

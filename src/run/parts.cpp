@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "input/friction_along_x.hpp"
 #include "input/schema.hpp"
-#include "mesh/part.hpp"
+#include "mesh/plate.hpp"
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
 #include "run/initial_state.hpp"
@@ -22,31 +22,6 @@
 namespace slipfront::run {
 
 namespace {
-
-void put_mesh(const mesh::Mesh& mesh, Parcel& to) {
-  to.put(mesh.grid)
-      .put(mesh.coarser)
-      .put(mesh.x_m)
-      .put(mesh.y_m)
-      .put(mesh.cells)
-      .put(mesh.lower)
-      .put(mesh.top);
-  to.put(mesh.absorbing).put(mesh.period_m);
-}
-
-mesh::Mesh take_mesh(Parcel& from) {
-  mesh::Mesh mesh;
-  mesh.grid = from.take<mesh::Grid>();
-  mesh.coarser = from.take_all<mesh::Grid>();
-  mesh.x_m = from.take_all<double>();
-  mesh.y_m = from.take_all<double>();
-  mesh.cells = from.take_all<mesh::Cell>();
-  mesh.lower = from.take_all<mesh::Node>();
-  mesh.top = from.take_all<mesh::Node>();
-  mesh.absorbing = from.take_all<mesh::AbsorbingNode>();
-  mesh.period_m = from.take<double>();
-  return mesh;
-}
 
 /// The case itself and not its file, which the other machines may see late or not at all.
 void put_case(const input::Case& config, Parcel& to) {
@@ -71,12 +46,14 @@ struct Plan {
   motion::Division division;
   int threads = 1;
   std::vector<motion::BodySteps> steps;  ///< of the bodies
+  std::vector<double> whole_x_m;         ///< of the whole interface: friction along x is read at its nodes
 
   void put(Parcel& to) const {
     to.put(division.first).put(division.halo).put(division.columns_per_step);
     to.put(division.steps_per_exchange).put(division.is_ring);
     to.put(threads).put(static_cast<std::uint64_t>(steps.size()));
     for (const auto& of_body : steps) to.put(of_body.stable_step_s).put(of_body.multiples);
+    to.put(whole_x_m);
   }
   static Plan take(Parcel& from) {
     Plan plan;
@@ -90,26 +67,8 @@ struct Plan {
       const auto stable_step_s = from.take<double>();
       plan.steps.push_back({stable_step_s, from.take_all<int>()});
     }
+    plan.whole_x_m = from.take_all<double>();
     return plan;
-  }
-};
-
-/// Of the bodies those columns that a process computes.
-struct Columns {
-  std::vector<mesh::Mesh> meshes;
-  mesh::Subset lower;             ///< places along the whole interface of their nodes
-  std::vector<double> whole_x_m;  ///< of the whole interface: a table of friction is read at its nodes
-
-  void put(Parcel& to) const {
-    to.put(lower.ranges()).put(whole_x_m);
-    for (const auto& mesh : meshes) put_mesh(mesh, to);
-  }
-  static Columns take(Parcel& from) {
-    Columns columns;
-    columns.lower = mesh::Subset(from.take_all<mesh::Subset::Range>());
-    columns.whole_x_m = from.take_all<double>();
-    while (!from.is_empty()) columns.meshes.push_back(take_mesh(from));
-    return columns;
   }
 };
 
@@ -130,17 +89,12 @@ class Whole {
     for (const auto& body : bodies_) plan.steps.push_back(motion::body_steps(body, config_.time));
     plan.division = motion::divide_bodies(bodies_, plan.steps, config_.time, n_processes,
                                           motion::halo_for(bodies_.front().mesh, config_.fronts.l_star_m));
+    plan.whole_x_m = interface_x_m(bodies_.front().mesh);
     return plan;
   }
-  Columns columns_of(const Plan& plan, int rank) const {
-    const auto all = plan.division.all(rank);
-    Columns columns;
-    for (const auto& body : bodies_) {
-      columns.meshes.push_back(mesh::columns_of(body.mesh, all));
-    }
-    columns.lower = motion::lower_in(bodies_.front().mesh, all);
-    columns.whole_x_m = interface_x_m(bodies_.front().mesh);
-    return columns;
+  /// Places along the whole interface of a part's nodes.
+  mesh::Subset lower_of(const Plan& plan, int rank) const {
+    return motion::lower_in(bodies_.front().mesh, plan.division.all(rank));
   }
   std::vector<const mesh::Mesh*> meshes() const {
     std::vector<const mesh::Mesh*> meshes;
@@ -154,38 +108,39 @@ class Whole {
   std::vector<motion::BodySource> bodies_;
 };
 
-interface::ContactModel contact_of(const input::Case& config, const Columns& columns) {
-  auto contact = input::contact_model(config, columns.whole_x_m);
+interface::ContactModel contact_of(const input::Case& config, const Plan& plan, const mesh::Subset& lower) {
+  auto contact = input::contact_model(config, plan.whole_x_m);
   if (contact.of_nodes.empty()) return contact;
   std::vector<interface::FrictionLaw> laws;
-  for (std::size_t k = 0; k < columns.meshes.front().lower.size(); ++k)
-    laws.push_back(contact.of_nodes[static_cast<std::size_t>(columns.lower.number_at(static_cast<int>(k)))]);
+  for (int k = 0; k < lower.count(); ++k)
+    laws.push_back(contact.of_nodes[static_cast<std::size_t>(lower.number_at(k))]);
   contact.of_nodes = interface::NodeLaws(std::move(laws));
   return contact;
 }
 
-/// @param columns  the process's own
+/// The process's own part, of columns that it makes itself.
+/// @param lower  places of its nodes along the whole interface
 std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case& config, const Plan& plan,
-                                        const Columns& columns) {
-  const auto& meshes = columns.meshes;
-  const auto all = plan.division.all(processes.rank());
-  const auto own = plan.division.own(processes.rank());
+                                        const mesh::Subset& lower) {
+  const int rank = processes.rank();
+  const auto all = plan.division.all(rank);
+  std::vector<mesh::Mesh> meshes = {mesh::make_columns(config.plate, all)};
+  if (input::has_base_body(config)) meshes.push_back(mesh::make_columns(input::base_plate(config), all));
   const auto base_material = input::base_material(config);
   std::vector<motion::PartOfBody> parts;
   for (const auto& steps : plan.steps)
-    parts.push_back({all, plan.division.n_columns(), own, steps,
+    parts.push_back({all, plan.division.n_columns(), plan.division.own(rank), steps,
                      [&](std::span<double> values) { processes.take_largest(values); }});
   std::vector<motion::BodySource> sources = {{meshes.front(), config.material, &parts.front()}};
   if (meshes.size() > 1) sources.push_back({meshes.back(), base_material, &parts.back()});
-  const auto contact = contact_of(config, columns);
-  return std::make_unique<motion::Part>(processes, plan.division, sources, contact, config.time,
-                                        motion::Execution{.threads = plan.threads}, columns.lower);
+  return std::make_unique<motion::Part>(processes, plan.division, sources, contact_of(config, plan, lower),
+                                        config.time, motion::Execution{.threads = plan.threads}, lower);
 }
 
 std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
   const auto config = take_case(given);
   const auto plan = Plan::take(given);
-  return make_part(processes, config, plan, Columns::take(given));
+  return make_part(processes, config, plan, mesh::Subset(given.take_all<mesh::Subset::Range>()));
 }
 
 }  // namespace
@@ -209,11 +164,11 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
       parcel.put(motion::PartCommand::build);
       put_case(config, parcel);
       plan.put(parcel);
-      whole.columns_of(plan, rank).put(parcel);
+      parcel.put(whole.lower_of(plan, rank).ranges());
       processes.send(rank, parcel);
     }
     stepper = std::make_unique<motion::PartedStepper>(
-        processes, plan.division, make_part(processes, config, plan, whole.columns_of(plan, 0)),
+        processes, plan.division, make_part(processes, config, plan, whole.lower_of(plan, 0)),
         whole.meshes());
   } catch (const std::exception& error) {
     processes.fail(reason_of(error));  // the others wait for this part

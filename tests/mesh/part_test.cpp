@@ -5,8 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <tuple>
+#include <vector>
 
+#include "base/error.hpp"
 #include "mesh/plate.hpp"
 
 namespace slipfront::mesh {
@@ -64,7 +68,7 @@ TEST(NodeColumns, OfAPartAreThoseOfTheWhole) {
   const auto whole = make_plate(plate(2, Sides::periodic));
   const NodeColumns of_whole(whole);
   for (const auto& held : {Subset({{5, 39}}), Subset({{0, 18}, {31, 49}})}) {
-    const auto part = columns_of(whole, held);
+    const auto part = make_columns(plate(2, Sides::periodic), held);
     const auto nodes = nodes_by_place(whole);
     const NodeColumns of_nodes(part, held, 49), told = of_whole.of_part(held);
     ASSERT_EQ(told.n_nodes(), part.n_nodes());
@@ -78,57 +82,98 @@ TEST(NodeColumns, OfAPartAreThoseOfTheWhole) {
   }
 }
 
-TEST(ColumnsOf, AreTheNodesThereAndTheCellsBetweenThem) {
-  for (const int coarsenings : {0, 1, 2})
-    for (const auto sides : {Sides::free, Sides::absorbing}) {
-      const auto whole = make_plate(plate(coarsenings, sides));
-      const NodeColumns of_whole(whole);
-      const auto nodes = nodes_by_place(whole);
-      // Cuts anywhere, within units of transitions, too.
-      for (const auto& range : {Subset::Range{0, 25}, {9, 33}, {18, 49}, {15, 34}, {0, 49}}) {
-        const Subset held({range});
-        const auto part = columns_of(whole, held);
-        EXPECT_EQ(part.coarser.size(), whole.coarser.size());
-        EXPECT_EQ(part.grid.columns, range.end - range.begin - 1);
-        const auto is_held = [&](Node n) { return held.has(of_whole.column_of(n)); };
-        // Neighbouring numbers ascend as in the whole.
-        Node last = -1;
-        for (Node n = 0; n < part.n_nodes(); ++n) {
-          const auto in_whole = nodes.at(place(part, n));
-          EXPECT_TRUE(is_held(in_whole));
-          EXPECT_GT(in_whole, last);
-          last = in_whole;
-        }
-        EXPECT_EQ(part.n_nodes(),
-                  std::ranges::count_if(nodes, [&](const auto& n) { return is_held(n.second); }));
-        std::vector<Cell> cells;
-        for (auto cell : part.cells) {
-          for (auto& n : cell) n = nodes.at(place(part, n));
-          cells.push_back(cell);
-        }
-        std::vector<Cell> expected;
-        for (const auto& cell : whole.cells)
-          if (std::ranges::all_of(cell, is_held)) expected.push_back(cell);
-        EXPECT_EQ(cells, expected);
-        for (const auto& grids = blocks(part); const auto& grid : grids)
-          for (int j = 0; j <= grid.rows; ++j) {
-            const auto row = grid.node(0, j);
-            EXPECT_EQ(part.y_m[row], part.y_m[grid.node(grid.columns, j)]);
-            EXPECT_EQ(of_whole.row_of(nodes.at(place(part, row))),
-                      NodeColumns(part, held, whole.grid.stride()).row_of(row));
-          }
-        EXPECT_EQ(part.absorbing.size(), std::ranges::count_if(whole.absorbing, [&](const AbsorbingNode& a) {
-                    return is_held(a.node);
-                  }));
-        EXPECT_EQ(part.top.size(), std::ranges::count_if(whole.top, is_held));
-        EXPECT_EQ(part.lower.size(), std::ranges::count_if(whole.lower, is_held));
-      }
+/// A part's nodes and cells, to the last bit and in the same order, are those of the whole.
+void expect_columns(const Plate& plate, const Subset& held) {
+  const auto whole = make_plate(plate);
+  const auto part = make_columns(plate, held);
+  const NodeColumns of_whole(whole), of_part(part, held, whole.grid.stride());
+  const auto is_held = [&](Node n) { return held.has(of_whole.column_of(n)); };
+  std::vector<Node> nodes;
+  for (Node n = 0; n < whole.n_nodes(); ++n)
+    if (is_held(n)) nodes.push_back(n);
+  ASSERT_EQ(part.x_m.size(), nodes.size());
+  ASSERT_EQ(part.y_m.size(), nodes.size());
+  for (Node n = 0; n < part.n_nodes(); ++n) {
+    const auto in_whole = nodes[static_cast<std::size_t>(n)];
+    EXPECT_EQ(of_part.number_in_whole(n), in_whole);
+    EXPECT_EQ(place(part, n), place(whole, in_whole));
+  }
+  const auto in_whole = [&](Node n) { return nodes[static_cast<std::size_t>(n)]; };
+  std::vector<Cell> cells, expected_cells;
+  for (auto cell : part.cells) {
+    std::ranges::transform(cell, cell.begin(), in_whole);
+    cells.push_back(cell);
+  }
+  for (const auto& cell : whole.cells)
+    if (std::ranges::all_of(cell, is_held)) expected_cells.push_back(cell);
+  EXPECT_EQ(cells, expected_cells);
+  const auto expect_some = [&](const std::vector<Node>& some, const std::vector<Node>& all) {
+    std::vector<Node> found, expected;
+    std::ranges::transform(some, std::back_inserter(found), in_whole);
+    std::ranges::copy_if(all, std::back_inserter(expected), is_held);
+    EXPECT_EQ(found, expected);
+  };
+  expect_some(part.lower, whole.lower);
+  expect_some(part.top, whole.top);
+  std::vector<std::tuple<Node, double, double>> absorbing, expected_absorbing;
+  for (const auto& a : part.absorbing) absorbing.emplace_back(in_whole(a.node), a.side_m, a.top_m);
+  for (const auto& a : whole.absorbing)
+    if (is_held(a.node)) expected_absorbing.emplace_back(a.node, a.side_m, a.top_m);
+  EXPECT_EQ(absorbing, expected_absorbing);
+  const auto grids = blocks(part), grids_of_whole = blocks(whole);
+  ASSERT_EQ(grids.size(), grids_of_whole.size());
+  for (std::size_t k = 0; k < grids.size(); ++k) {
+    EXPECT_EQ(grids[k].rows, grids_of_whole[k].rows);
+    EXPECT_EQ(grids[k].spacing_m, grids_of_whole[k].spacing_m);
+    for (int j = 0; j <= grids[k].rows; ++j) {
+      const auto row = of_part.row(of_part.row_of(grids[k].node(0, j)));
+      EXPECT_EQ(row.first, grids[k].node(0, j));
+      EXPECT_EQ(row.count, grids[k].stride());
     }
+  }
 }
 
-TEST(ColumnsOf, TwoRangesHoldTheCellsThatJoinTheSides) {
+TEST(MakeColumns, MakesTheNodesThereAndTheCellsBetweenThem) {
+  for (const int coarsenings : {0, 1, 2})
+    for (const int columns : {48, 44})
+      for (const auto sides : {Sides::free, Sides::absorbing})
+        for (const auto corner : {Corner::none, Corner::relief, Corner::fillet}) {
+          auto some = plate(coarsenings, sides, columns);
+          if (sides != Sides::free && corner != Corner::none) continue;
+          some.corner = corner;
+          some.fillet_radius_m = 4e-3;
+          some.fine_height_m = 8e-3;
+          if (coarsenings == 2) some.height_m = 0.06;
+          // Cuts anywhere, within units of transitions, too.
+          for (const auto& range :
+               {Subset::Range{0, 25}, {9, 33}, {18, columns + 1}, {15, 34}, {0, columns + 1}}) {
+            SCOPED_TRACE(testing::Message()
+                         << coarsenings << " coarsenings, " << columns << " columns, corner "
+                         << static_cast<int>(corner) << ", from " << range.begin);
+            expect_columns(some, Subset({range}));
+          }
+        }
+}
+
+TEST(MakeColumns, MakesThoseOfAPlateThatRepeats) {
+  for (const int coarsenings : {0, 1, 2})
+    for (const auto& held : {Subset({{0, 17}, {32, 49}}), Subset({{3, 41}}), Subset({{0, 20}})})
+      expect_columns(plate(coarsenings, Sides::periodic), held);
+}
+
+TEST(MakeColumns, MakesThoseOfAPlateWithMoreNodesThanCanBeNumbered) {
+  auto wide = plate(0);
+  wide.width_m = 1000;
+  wide.height_m = 30;
+  EXPECT_THROW(make_plate(wide), UserError);
+  const auto part = make_columns(wide, Subset({{500000, 500004}}));
+  EXPECT_EQ(part.n_nodes(), 4 * 30001);
+  EXPECT_EQ(part.x_m[1], 500001 * wide.width_m / 1000000);
+}
+
+TEST(MakeColumns, TwoRangesHoldTheCellsThatJoinTheSides) {
   const auto whole = make_plate(plate(2, Sides::periodic));
-  const auto part = columns_of(whole, Subset({{0, 17}, {32, 49}}));
+  const auto part = make_columns(plate(2, Sides::periodic), Subset({{0, 17}, {32, 49}}));
   EXPECT_EQ(part.period_m, whole.period_m);
   const auto joins = [](const Mesh& mesh) {
     return std::ranges::count_if(mesh.cells, [&](const Cell& cell) {
@@ -138,10 +183,10 @@ TEST(ColumnsOf, TwoRangesHoldTheCellsThatJoinTheSides) {
   };
   EXPECT_GT(joins(whole), 10);
   EXPECT_EQ(joins(part), joins(whole));
-  EXPECT_EQ(columns_of(whole, Subset({{0, 17}})).period_m, 0);
+  EXPECT_EQ(make_columns(plate(2, Sides::periodic), Subset({{0, 17}})).period_m, 0);
 }
 
-TEST(ColumnsOf, NoCutThroughARoundedCorner) {
+TEST(MakeColumns, NoCutThroughARoundedCorner) {
   for (const int coarsenings : {0, 1}) {
     auto rounded = plate(coarsenings);
     rounded.corner = Corner::fillet;
@@ -152,11 +197,11 @@ TEST(ColumnsOf, NoCutThroughARoundedCorner) {
     EXPECT_GT(corner, 1);
     EXPECT_LT(corner, 17);
     for (int column = corner + 1; column < last - corner; ++column) {
-      const auto left = columns_of(whole, Subset({{0, column + 1}}));
-      const auto right = columns_of(whole, Subset({{column, last + 1}}));
+      const auto left = make_columns(rounded, Subset({{0, column + 1}}));
+      const auto right = make_columns(rounded, Subset({{column, last + 1}}));
       EXPECT_LE(left.cells.size() + right.cells.size(), whole.cells.size());
     }
-    EXPECT_DEATH(columns_of(whole, Subset({{0, 2}})), "rounded corner");
+    EXPECT_DEATH(make_columns(rounded, Subset({{0, 2}})), "rounded corner");
   }
   EXPECT_EQ(columns_of_wrapped_cells(make_plate(plate(1))), 0);
 }

@@ -50,10 +50,12 @@ struct Problem {
 struct Bodies {
   explicit Bodies(const Problem& problem) : above(mesh::make_plate(problem.plate)), material(pmma) {
     material.stiffness_damping_s = problem.stiffness_damping_s;
+    plates.push_back(problem.plate);
     if (problem.below == nullptr) return;
     auto plate = problem.plate;
     plate.corner = mesh::Corner::none;
     plate.coarsenings = problem.coarsenings_below;
+    plates.push_back(plate);
     below = mesh::make_plate(plate);
     material_below = *problem.below;
     material_below.stiffness_damping_s = problem.stiffness_damping_s;
@@ -63,6 +65,7 @@ struct Bodies {
     if (below) sources.push_back({*below, material_below});
     return sources;
   }
+  std::vector<mesh::Plate> plates;
   mesh::Mesh above;
   solid::Material material, material_below;
   std::optional<mesh::Mesh> below;
@@ -158,7 +161,7 @@ class OwnPart {
     meshes_.reserve(2);
     parts_.reserve(2);
     for (std::size_t b = 0; b < whole.size(); ++b) {
-      meshes_.push_back(mesh::columns_of(whole[b].mesh, all));
+      meshes_.push_back(mesh::make_columns(bodies.plates[b], all));
       parts_.push_back({all, division.n_columns(), own, steps[b],
                         [&](std::span<double> values) { processes.take_largest(values); }});
       sources_.push_back({meshes_[b], whole[b].material, &parts_[b]});
