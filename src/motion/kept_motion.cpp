@@ -160,14 +160,9 @@ void KeptMotion::sort() {
 }
 
 KeptMotion KeptMotion::in(const mesh::Subset& columns, const mesh::Subset& lower,
-                          std::span<const mesh::NodeColumns> bodies, int part, int n_parts) const {
-  std::vector<double> its_sums;
-  if (std::ssize(sums) == n_parts) {
-    its_sums = sums[static_cast<std::size_t>(part)];
-  } else {
-    its_sums = total(sums);
-    if (part > 0) std::ranges::fill(its_sums, 0.0);
-  }
+                          std::span<const mesh::NodeColumns> bodies, bool has_sums) const {
+  auto its_sums = total(sums);
+  if (!has_sums) std::ranges::fill(its_sums, 0.0);
   KeptMotion of_part{step, {}, {std::move(its_sums)}, flags, trigger};
   for (const auto& list : values) {
     if (list.body >= bodies.size()) throw_of_others();

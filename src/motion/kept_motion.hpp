@@ -16,8 +16,7 @@ namespace slipfront::motion {
 /// All that changes in a Stepper, in the columns of nodes that a part of the bodies accounts for, or in all
 /// of them: by the nodes' numbers in the whole bodies, so that it goes into parts of any other division.
 ///
-/// Of sums over nodes, works among them, the parts' add up to the whole's. As many parts as kept them go on
-/// with their own; of another number the first one has them all.
+/// Of sums over nodes, works among them, the parts' add up to the whole's.
 struct KeptMotion {
   using By = KeptBy;
   /// Values of some of them, `width` of each.
@@ -40,14 +39,15 @@ struct KeptMotion {
 
   /// @throws UserError where lists have other lengths than they say
   void require_consistent() const;
-  /// Adds another one of n_parts parts' to what there is.
+  /// Adds what another part keeps, of n_parts nearly equal ones.
   void add(KeptMotion part, int n_parts);
   /// Brings each list into the order of its keys, which restore needs.
   void sort();
-  /// Of sorted lists those in some columns, and places along the interface; for one of so many parts.
-  /// @param bodies  the whole ones
+  /// What is in some columns, and places along the interface, in the same order.
+  /// @param bodies    the whole ones
+  /// @param has_sums  0 instead of them, if not
   KeptMotion in(const mesh::Subset& columns, const mesh::Subset& lower,
-                std::span<const mesh::NodeColumns> bodies, int part, int n_parts) const;
+                std::span<const mesh::NodeColumns> bodies, bool has_sums) const;
 
   template <class Archive>
   void serialize(Archive& archive) {

@@ -10,7 +10,6 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
-#include "motion/kept_motion.hpp"
 
 namespace slipfront::motion {
 
@@ -216,12 +215,18 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
     case PartCommand::keep:
       keep(*stepper_, place_).put(answer);
       break;
-    case PartCommand::restore:
-      restore(KeptMotion::take(given), *stepper_, place_);
+    case PartCommand::restore: {
+      const bool is_last = given.take<std::uint8_t>() != 0;
+      kept_.add(KeptMotion::take(given), 1);
+      if (!is_last) break;
+      given = {};
+      kept_.sort();
+      restore(std::exchange(kept_, {}), *stepper_, place_);
       steps_since_exchange_ = 0;
       finder_.reset();
       begin_counting();
       break;
+    }
     case PartCommand::network:
     case PartCommand::statics:
     case PartCommand::build:

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "motion/kept_motion.hpp"
 #include "motion/recorder.hpp"
 #include "motion/stepper.hpp"
 #include "processes/processes.hpp"
@@ -69,7 +70,7 @@ enum class PartCommand : int {
   snapshot,  ///< own columns of the motion
   probed,    ///< displacements and velocities at the probes
   keep,      ///< the state, for a checkpoint
-  restore,   ///< a state that was kept
+  restore,   ///< a piece of a state that was kept, and whether it is the last one
   release,   ///< the part is needed no more
   end,       ///< and neither is the process
 };
@@ -128,6 +129,7 @@ class Part {
   PlaceInWhole place_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<SlipFinder> finder_;
+  KeptMotion kept_;  ///< pieces of it, until the last one has come
   /// Columns that go to a neighbour and come from it.
   struct Neighbour {
     int rank = 0;

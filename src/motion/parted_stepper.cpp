@@ -389,27 +389,30 @@ Snapshot PartedStepper::snapshot() const {
   return all;
 }
 
-KeptMotion PartedStepper::kept() const {
-  KeptMotion all;
-  ask(PartCommand::keep, nothing,
-      [&](Parcel& answer) { all.add(KeptMotion::take(answer), division_.n_parts()); });
-  all.step = step_;
-  return all;
+void PartedStepper::keep(const std::function<void(const KeptMotion& piece)>& take) const {
+  ask(PartCommand::keep, nothing, [&](Parcel& answer) {
+    auto piece = KeptMotion::take(answer);
+    answer = {};
+    piece.step = step_;
+    take(piece);
+  });
 }
 
-void PartedStepper::restore(const KeptMotion& kept) {
-  KeptMotion sorted = kept;
-  sorted.sort();
-  ask(PartCommand::restore, [&](int part) {
-    Parcel parcel;
-    sorted
-        .in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], columns_, part,
-            division_.n_parts())
-        .put(parcel);
-    return parcel;
-  });
+void PartedStepper::restore(int n_pieces, const std::function<KeptMotion()>& next) {
+  for (int k = 0; k < n_pieces; ++k) {
+    const auto piece = next();
+    ask(PartCommand::restore, [&](int part) {
+      // As many parts as kept them go on with their own sums; of another number the first one has them all.
+      const bool has_sums = n_pieces == division_.n_parts() ? part == k : part == 0;
+      Parcel parcel;
+      parcel.put(static_cast<std::uint8_t>(k + 1 == n_pieces));
+      piece.in(division_.all(part), all_lower_[static_cast<std::size_t>(part)], columns_, has_sums)
+          .put(parcel);
+      return parcel;
+    });
+    step_ = piece.step;
+  }
   has_finders_ = false;
-  step_ = kept.step;
 }
 
 }  // namespace slipfront::motion

@@ -53,9 +53,10 @@ class PartedStepper final : public TimeStepper {
   /// What each part has cost since this process began or went on with the event.
   std::vector<PartCost> costs() const;
 
-  /// What changes, of the whole bodies; the same back, kept by any number of processes.
-  KeptMotion kept() const;
-  void restore(const KeptMotion& kept);
+  /// Shows what changes, as each part in turn keeps it.
+  void keep(const std::function<void(const KeptMotion& piece)>& take) const;
+  /// Puts such pieces back, of any number of parts, one after the other.
+  void restore(int n_pieces, const std::function<KeptMotion()>& next);
 
  private:
   /// Gives each part a command, with values of its own, and has their answers.

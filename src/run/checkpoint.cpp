@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Begins every checkpoint. The number goes up when what follows changes.
-const std::string magic = "slipfront checkpoint 3";
+const std::string magic = "slipfront checkpoint 4";
 
 constexpr std::size_t n_kept = 2;
 constexpr std::string_view prefix = "checkpoint-", suffix = ".bin";
@@ -72,9 +72,9 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
 
 void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper) {
   const auto* parted = dynamic_cast<const motion::PartedStepper*>(&stepper);
-  archive(parted != nullptr);
+  archive(parted != nullptr ? parted->division().n_parts() : 0);
   if (parted != nullptr)
-    archive(parted->kept());
+    parted->keep([&](const motion::KeptMotion& piece) { archive(piece); });
   else
     archive(dynamic_cast<motion::Stepper&>(stepper));
 }
@@ -99,24 +99,30 @@ motion::PlaceInWhole whole_of(const motion::Stepper& stepper) {
 
 void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
                  const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
-  bool was_parted = false;
-  archive(was_parted);
+  int n_pieces = 0;
+  archive(n_pieces);
   auto* parted = dynamic_cast<motion::PartedStepper*>(&stepper);
-  if (parted == nullptr && !was_parted) {
+  if (parted == nullptr && n_pieces == 0) {
     archive(dynamic_cast<motion::Stepper&>(stepper));
     return;
   }
-  motion::KeptMotion kept;
-  if (was_parted) {
-    archive(kept);
-    kept.require_consistent();
-  } else {
-    const auto by_one = make_whole();
+  const auto next = [&] {
+    motion::KeptMotion piece;
+    archive(piece);
+    piece.require_consistent();
+    return piece;
+  };
+  if (parted != nullptr && n_pieces > 0) return parted->restore(n_pieces, next);
+  if (parted != nullptr) {
+    auto by_one = make_whole();
     archive(*by_one);
-    kept = motion::keep(*by_one, whole_of(*by_one));
+    auto kept = motion::keep(*by_one, whole_of(*by_one));
+    by_one.reset();
+    return parted->restore(1, [&] { return std::move(kept); });
   }
-  if (parted != nullptr) return parted->restore(kept);
   auto& by_one = dynamic_cast<motion::Stepper&>(stepper);
+  motion::KeptMotion kept;
+  for (int k = 0; k < n_pieces; ++k) kept.add(next(), n_pieces);
   kept.sort();
   motion::restore(kept, by_one, whole_of(by_one));
 }

@@ -456,6 +456,17 @@ TEST(Parts, AreWrongNoFartherThanTheColumnsOfAStep) {
   }
 }
 
+std::vector<KeptMotion> pieces_of(const PartedStepper& stepper) {
+  std::vector<KeptMotion> pieces;
+  stepper.keep([&](const KeptMotion& piece) { pieces.push_back(piece); });
+  return pieces;
+}
+
+void restore_pieces(PartedStepper& stepper, const std::vector<KeptMotion>& pieces) {
+  auto next = pieces.begin();
+  stepper.restore(static_cast<int>(pieces.size()), [&] { return *next++; });
+}
+
 TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
   Problem even, of_two, of_graded = graded(), of_two_graded = graded(), repeating = graded();
   of_two.below = of_two_graded.below = &gel;
@@ -477,17 +488,18 @@ TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
     };
     const std::int64_t first = 49, second = 47;
     take_steps(journey, two.stepper(), first);
-    three.stepper().restore(two.stepper().kept());
+    restore_pieces(three.stepper(), pieces_of(two.stepper()));
     take_steps(journey, three.stepper(), second);
     const Bodies bodies(problem);
     Stepper by_one(bodies.sources(), problem.contact, problem.time, {});
     // The last column of a plate that repeats has no cells.
     const int n_columns = bodies.above.grid.stride() - (bodies.above.period_m > 0 ? 1 : 0);
     const PlaceInWhole whole{.own = {0, n_columns}, .lower = {}};
-    auto kept = three.stepper().kept();
+    KeptMotion kept;
+    for (auto& piece : pieces_of(three.stepper())) kept.add(std::move(piece), 3);
     kept.sort();
     restore(kept, by_one, whole);
-    two.stepper().restore(keep(by_one, whole));
+    restore_pieces(two.stepper(), {keep(by_one, whole)});
     auto by_two = journey;
     take_steps(journey, by_one, n_steps - first - second);
     compare();
