@@ -33,6 +33,7 @@ run::SharedWork work(double n_nodes) {
   work.values_per_row = 4 * work.n_columns;
   work.bytes_per_interface_node = run::bytes_per_interface_node(input::Case{});
   work.program_bytes = run::program_bytes;
+  work.leads_by_interface = true;
   return work;
 }
 

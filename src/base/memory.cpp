@@ -9,6 +9,10 @@
 #include <limits>
 #include <string>
 
+#ifdef __GLIBC__  // known from the headers above
+#include <malloc.h>
+#endif
+
 namespace slipfront {
 
 namespace {
@@ -40,6 +44,12 @@ double free_memory_bytes() {
 
 double available_memory_bytes() {
   return std::min(free_memory_bytes(), left_by_limit_bytes());
+}
+
+void return_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 }  // namespace slipfront

@@ -7,4 +7,7 @@ namespace slipfront {
 /// RLIMIT_AS).
 double available_memory_bytes();
 
+/// Gives freed memory back to the system that the allocator keeps, since it may lie between what is in use.
+void return_freed_memory();
+
 }  // namespace slipfront

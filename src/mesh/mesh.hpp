@@ -53,6 +53,8 @@ struct Mesh {
   std::vector<AbsorbingNode> absorbing;
 
   Node n_nodes() const { return static_cast<Node>(x_m.size()); }
+  /// Whether only the lowest row is held, see make_interface.
+  bool is_interface() const { return cells.empty() && !lower.empty(); }
 };
 
 /// The grids of all blocks, upwards.

@@ -73,13 +73,20 @@ NodeColumns::NodeColumns(const Mesh& whole)
                   whole.grid.columns > 0 ? whole.grid.stride() : static_cast<int>(whole.n_nodes())) {}
 
 NodeColumns::NodeColumns(const Mesh& part, const Subset& held, int n_columns) : n_columns_(n_columns) {
-  const auto grids = blocks(part);
-  const Subset columns = held.ranges().empty() ? Subset({{0, n_columns}}) : held;
-  for (std::size_t k = 0; k < grids.size(); ++k) {
-    for (int j = 0; j <= grids[k].rows; ++j) add_row(static_cast<int>(k), false, columns);
-    if (k + 1 < grids.size()) add_row(static_cast<int>(k), true, columns);
-  }
+  add_rows(blocks(part), held);
   SLIPFRONT_ASSERT(n_nodes() == part.n_nodes(), "columns of this mesh");
+}
+
+NodeColumns::NodeColumns(std::span<const Grid> blocks) : n_columns_(blocks.front().stride()) {
+  add_rows(blocks, Subset());
+}
+
+void NodeColumns::add_rows(std::span<const Grid> blocks, const Subset& held) {
+  const Subset columns = held.ranges().empty() ? Subset({{0, n_columns_}}) : held;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    for (int j = 0; j <= blocks[k].rows; ++j) add_row(static_cast<int>(k), false, columns);
+    if (k + 1 < blocks.size()) add_row(static_cast<int>(k), true, columns);
+  }
 }
 
 NodeColumns NodeColumns::of_part(const Subset& held) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -43,6 +44,8 @@ class NodeColumns {
   NodeColumns() = default;
   /// Of a whole plate. The nodes of a mesh that knows no grid stand in a column each.
   explicit NodeColumns(const Mesh& whole);
+  /// Of a whole plate with these blocks, upwards.
+  explicit NodeColumns(std::span<const Grid> blocks);
   /// Of the columns `held` of a plate with n_columns columns of nodes.
   NodeColumns(const Mesh& part, const Subset& held, int n_columns);
   /// Of a part that holds some columns of this whole.
@@ -77,6 +80,7 @@ class NodeColumns {
     std::int64_t first_in_whole = 0;
     Subset held;  ///< places in the row of the whole
   };
+  void add_rows(std::span<const Grid> blocks, const Subset& held);
   void add_row(int block, bool is_inner, const Subset& held);
   const Row& row_of_whole(std::int64_t number) const;
 

@@ -245,15 +245,24 @@ class Maker {
                  (end > rounded_->cut() && end <= lowest().columns - rounded_->cut())),
             "no part ends at a rounded corner");
     }
-    mesh_.x_m.reserve(static_cast<std::size_t>(n_nodes));
-    mesh_.y_m.reserve(static_cast<std::size_t>(n_nodes));
-    mesh_.cells.reserve(static_cast<std::size_t>(n_nodes));
     if (is_periodic_ && columns.ranges().size() != 1) mesh_.period_m = plate.width_m;
+    mesh_.grid = blocks_.front().part();
+    for (std::size_t k = 1; k < blocks_.size(); ++k) mesh_.coarser.push_back(blocks_[k].part());
+  }
+
+  Mesh make_lowest_row() && {
+    SLIPFRONT_ASSERT(plate_.corner == Corner::none, "the interface is a row");
+    const auto& block = blocks_.front();
+    for (const int i : block.held) add_grid_node(block, i, 0);
+    name_lower();
+    return std::move(mesh_);
   }
 
   Mesh make() && {
-    mesh_.grid = blocks_.front().part();
-    for (std::size_t k = 1; k < blocks_.size(); ++k) mesh_.coarser.push_back(blocks_[k].part());
+    const auto n_nodes = static_cast<std::size_t>(blocks_.back().first_above());
+    mesh_.x_m.reserve(n_nodes);
+    mesh_.y_m.reserve(n_nodes);
+    mesh_.cells.reserve(n_nodes);
     int level = 0;  // of the row, in rows of the smallest squares
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const auto& block = blocks_[k];
@@ -268,7 +277,8 @@ class Maker {
       level += block.size;
     }
     if (rounded_) move_to_arcs();
-    name_nodes();
+    name_lower();
+    name_top();
     absorb();
     return std::move(mesh_);
   }
@@ -361,9 +371,10 @@ class Maker {
       }
   }
 
-  void name_nodes() {
+  bool is_orphan(const Block& block, int i) const { return is_periodic_ && i == block.grid.columns; }
+
+  void name_lower() {
     const auto& block = blocks_.front();
-    const auto is_orphan = [&](const Block& of, int i) { return is_periodic_ && i == of.grid.columns; };
     if (rounded_) {
       for (const auto [i, j] : rounded_->lower())
         if (block.has(i)) mesh_.lower.push_back(block.node(i, j));
@@ -371,6 +382,9 @@ class Maker {
       for (const int i : block.held)
         if (!is_orphan(block, i)) mesh_.lower.push_back(block.node(i, 0));
     }
+  }
+
+  void name_top() {
     if (plate_.top != Top::loaded) return;
     const auto& highest = blocks_.back();
     for (const int i : highest.held)
@@ -387,7 +401,7 @@ class Maker {
       const bool first = k == 0, last = k + 1 == blocks_.size();
       for (int j = 0; j <= grid.rows; ++j)
         for (const int i : block.held) {
-          if (is_periodic_ && i == grid.columns) continue;
+          if (is_orphan(block, i)) continue;
           AbsorbingNode a{block.node(i, j)};
           const bool at_top = last && j == grid.rows;
           if (sides && (i == 0 || i == grid.columns) && (!loaded || !at_top)) {
@@ -420,6 +434,10 @@ class Maker {
 
 Mesh make_plate(const Plate& plate, std::string_view table) {
   return make_columns(plate, Subset(), table);
+}
+
+Mesh make_interface(const Plate& plate, std::string_view table) {
+  return Maker(plate, Subset(), table).make_lowest_row();
 }
 
 Mesh make_columns(const Plate& plate, const Subset& columns, std::string_view table) {

@@ -75,6 +75,10 @@ struct Plate {
 /// @throws UserError for an impossible geometry, naming the quantity to change.
 Mesh make_plate(const Plate& plate, std::string_view table = "plate");
 
+/// Of a plate with right-angled corners the nodes of the lowest row alone, in the grids of the whole plate
+/// and without cells: what is known of a plate whose columns are held elsewhere.
+Mesh make_interface(const Plate& plate, std::string_view table = "plate");
+
 /// The nodes of make_plate in some columns, with the cells between them: a mesh of its own, whose nodes and
 /// cells have the order and the places of the whole plate's, to the last bit. The whole plate may have more
 /// nodes than can be numbered.

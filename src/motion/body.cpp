@@ -2,6 +2,7 @@
 #include "motion/body.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "base/error.hpp"
@@ -49,7 +50,28 @@ BodyMotion motion_of(const BodySource& source) {
 
 }  // namespace
 
+namespace {
+
+/// Of squares alone, as solid::frequency_bound_rad_per_s finds it in their cells.
+double smallest_side_m(const mesh::Mesh& interface) {
+  double smallest_m = std::numeric_limits<double>::infinity();
+  const auto look_at = [&](mesh::Node n, mesh::Node next) {
+    const double x_m = interface.x_m[n];
+    smallest_m = std::min(smallest_m, x_m + mesh::distance_x_m(interface, n, next) - x_m);
+  };
+  const auto& lower = interface.lower;
+  for (std::size_t k = 0; k + 1 < lower.size(); ++k) look_at(lower[k], lower[k + 1]);
+  if (interface.period_m > 0) look_at(lower.back(), lower.front());
+  return smallest_m;
+}
+
+}  // namespace
+
 BodySteps body_steps(const BodySource& body, const TimeStepping& time) {
+  if (body.mesh.is_interface()) {
+    const double omega = solid::frequency_of_squares_rad_per_s(smallest_side_m(body.mesh), body.material);
+    return {solid::stable_step_s(omega, body.material.stiffness_damping_s), {1}};
+  }
   return steps_of(body, solid::make_operator(body.mesh, body.material), time);
 }
 

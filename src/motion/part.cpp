@@ -10,6 +10,7 @@
 
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/memory.hpp"
 
 namespace slipfront::motion {
 
@@ -222,6 +223,7 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
       given = {};
       kept_.sort();
       restore(std::exchange(kept_, {}), *stepper_, place_);
+      return_freed_memory();
       steps_since_exchange_ = 0;
       finder_.reset();
       begin_counting();
@@ -238,12 +240,18 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
 
 void Part::start(Parcel& given) {
   statics::Equilibrium e;
-  e.u_m = take_field(given);
-  e.u_per_shear = take_field(given);
-  if (stepper_->bodies().size() > 1) {
-    e.below_u_m = take_field(given);
-    e.below_u_per_shear = take_field(given);
-  }
+  const auto& bodies = stepper_->bodies();
+  const bool is_strained = given.take<std::uint8_t>() != 0;
+  const auto fields_of = [&](const Body& body, solid::Field& u_m, solid::Field& u_per_shear) {
+    const auto n = body.u_m().size();
+    u_m = is_strained ? take_field(given) : solid::Field(n);
+    u_per_shear = is_strained ? take_field(given) : solid::Field(n);
+  };
+  fields_of(bodies.front(), e.u_m, e.u_per_shear);
+  if (!is_strained)
+    for (std::size_t n = 0; n < e.u_per_shear.size(); ++n)
+      if (bodies.front().op().is_top[n]) e.u_per_shear.x[n] = 1;
+  if (bodies.size() > 1) fields_of(bodies.back(), e.below_u_m, e.below_u_per_shear);
   e.tractions.t_s_Pa = given.take_all<double>();
   e.tractions.p_s_Pa = given.take_all<double>();
   e.contact = given.take_all<statics::Contact>();
@@ -255,6 +263,8 @@ void Part::start(Parcel& given) {
   loads.trigger = given.take<interface::Trigger>();
   stepper_->start(e, top_speed_m_per_s, std::move(loads));
   finder_.reset();
+  e = {};
+  return_freed_memory();
   renew_halo();
   begin_counting();
 }

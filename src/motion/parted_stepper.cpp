@@ -10,7 +10,7 @@
 namespace slipfront::motion {
 
 mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns) {
-  const mesh::NodeColumns of_nodes(mesh);
+  const mesh::NodeColumns of_nodes(mesh::blocks(mesh));
   std::vector<mesh::Subset::Range> ranges;
   for (int k = 0; k < std::ssize(mesh.lower); ++k) {
     if (!columns.has(of_nodes.column_of(mesh.lower[static_cast<std::size_t>(k)]))) continue;
@@ -59,7 +59,7 @@ void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, con
 PartedStepper::PartedStepper(Processes& processes, const Division& division, std::unique_ptr<Part> own,
                              std::span<const mesh::Mesh* const> bodies)
     : processes_(processes), division_(division), own_(std::move(own)) {
-  for (const auto* body : bodies) columns_.emplace_back(*body);
+  for (const auto* body : bodies) columns_.emplace_back(mesh::blocks(*body));
   for (int part = 0; part < division.n_parts(); ++part) {
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
     own_lower_.push_back(own_lower_in(*bodies.front(), division.own(part)));
@@ -126,11 +126,15 @@ void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_
     Parcel parcel;
     const auto columns = division_.all(part);
     const auto& lower = all_lower_[static_cast<std::size_t>(part)];
-    put_columns(columns_.front(), columns, e.u_m, parcel);
-    put_columns(columns_.front(), columns, e.u_per_shear, parcel);
-    if (columns_.size() > 1) {
-      put_columns(columns_.back(), columns, e.below_u_m, parcel);
-      put_columns(columns_.back(), columns, e.below_u_per_shear, parcel);
+    const bool is_strained = e.u_m.size() > 0;
+    parcel.put(static_cast<std::uint8_t>(is_strained));
+    if (is_strained) {
+      put_columns(columns_.front(), columns, e.u_m, parcel);
+      put_columns(columns_.front(), columns, e.u_per_shear, parcel);
+      if (columns_.size() > 1) {
+        put_columns(columns_.back(), columns, e.below_u_m, parcel);
+        put_columns(columns_.back(), columns, e.below_u_per_shear, parcel);
+      }
     }
     parcel.put(cut(e.tractions.t_s_Pa, lower)).put(cut(e.tractions.p_s_Pa, lower));
     parcel.put(cut(e.contact, lower)).put(top_speed_m_per_s);

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
 #include <thread>
 
 #include "input/prestress.hpp"
+#include "solid/operator.hpp"
 #include "stability/verdict.hpp"
 #include "statics/plate_solver.hpp"
 
@@ -77,6 +81,26 @@ double nominal_pressure_Pa(const input::Case& config) {
 
 bool is_prestressed(const input::Case& config) {
   return config.loading.method == statics::LoadingMethod::prestress;
+}
+
+bool has_snapshots(const input::Case& config) {
+  return !config.output.snapshot_times_s.empty() || std::isfinite(config.output.snapshot_interval_s);
+}
+
+bool leads_by_interface(const input::Case& config, int n_processes) {
+  const auto is_of_many_squares = [](const mesh::Plate& plate) {
+    if (plate.coarsenings != 0 || plate.corner != mesh::Corner::none) return false;
+    const double columns = std::round(plate.width_m / plate.element_size_m);
+    const double rows = std::round(plate.height_m / plate.element_size_m);
+    constexpr double most = std::numeric_limits<int>::max();
+    if (!(columns > 0 && columns < most && rows > 0 && rows < most)) return false;  // refused elsewhere
+    const mesh::Grid grid{.columns = static_cast<int>(columns), .rows = static_cast<int>(rows)};
+    const auto n_nodes = static_cast<std::int64_t>((columns + 1) * (rows + 1));
+    return solid::takes_frequency_bound(n_nodes, std::span(&grid, 1));
+  };
+  return n_processes > 1 && is_prestressed(config) && !has_snapshots(config) &&
+         is_of_many_squares(config.plate) &&
+         (!input::has_base_body(config) || is_of_many_squares(input::base_plate(config)));
 }
 
 record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh) {

@@ -44,6 +44,14 @@ double nominal_pressure_Pa(const input::Case& config);
 /// Whether the tractions of the interface are given: no statics, no ramp.
 bool is_prestressed(const input::Case& config);
 
+/// Whether the output asks for fields of all nodes.
+bool has_snapshots(const input::Case& config);
+
+/// Whether the process that leads several needs no more of the bodies than their interfaces (see
+/// mesh::make_interface): nothing is strained before the event, all cells are squares, so many that the step
+/// follows from their side, and no fields are written.
+bool leads_by_interface(const input::Case& config, int n_processes);
+
 /// Given tractions at the nodes of the interface, from their file if there is one.
 /// @throws UserError
 record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh);

@@ -196,6 +196,7 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
   work.history_rows = info.needs.history_rows;
   work.values_per_row = static_cast<double>(record::history_fields.size()) * n_columns;
   work.snapshots = info.needs.snapshots;
+  work.leads_by_interface = leads_by_interface(config, sharing.n_processes);
   work.statics_s = expected_statics_s(info);
   work.statics_bytes = info.solver_bytes;
   if (info.solver == statics::StaticSolver::petsc) {

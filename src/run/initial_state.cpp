@@ -86,7 +86,7 @@ void require_free_sides_for_single(const input::Case& config) {
 }
 
 /// Of the body below, upside down.
-mesh::Mesh make_base(const input::Case& config) {
+mesh::Mesh make_base(const input::Case& config, bool only_interface) {
   const auto plate = input::base_plate(config);
   const double rows = plate.height_m / plate.element_size_m;
   if (std::abs(rows - std::round(rows)) > 1e-6 * rows)
@@ -95,7 +95,43 @@ mesh::Mesh make_base(const input::Case& config) {
         "other; the nearest that fit are {:.8g} and {:.8g}",
         Key("base.height_m"), plate.height_m, Key("plate.element_size_m"), plate.element_size_m,
         std::floor(rows) * plate.element_size_m, std::ceil(rows) * plate.element_size_m);
-  return mesh::make_plate(plate, "base");
+  return only_interface ? mesh::make_interface(plate, "base") : mesh::make_plate(plate, "base");
+}
+
+/// Found in those columns of the bodies that are next to each.
+std::vector<motion::Probe> probes_among_columns(const input::Case& config, const mesh::Mesh& interface) {
+  constexpr int beside = 4;
+  const auto& grid = interface.grid;
+  const auto base_material = input::base_material(config);
+  std::vector<motion::Probe> probes;
+  for (const auto& place : input::probe_places(config)) {
+    const double column = std::clamp(place.x_m / grid.spacing_m, 0.0, static_cast<double>(grid.columns));
+    const int begin = std::max(static_cast<int>(column) - beside, 0);
+    const int end = std::min(static_cast<int>(column) + beside + 2, grid.stride());
+    std::vector<mesh::Subset::Range> ranges = {{begin, end}};
+    if (interface.period_m > 0 && (begin == 0 || end == grid.stride()))
+      ranges = {{0, 2 * beside}, {grid.stride() - 2 * beside, grid.stride()}};
+    const mesh::Subset columns(ranges);
+    const auto plate = mesh::make_columns(config.plate, columns);
+    std::optional<mesh::Mesh> base;
+    std::vector<motion::BodySource> bodies = {{plate, config.material}};
+    if (input::has_base_body(config)) {
+      base = mesh::make_columns(input::base_plate(config), columns);
+      bodies.push_back({*base, base_material});
+    }
+    auto probe = motion::locate_probes(std::span(&place, 1), bodies).front();
+    const mesh::NodeColumns of_part(bodies[probe.body].mesh, columns, grid.stride());
+    for (auto& n : probe.node) n = static_cast<mesh::Node>(of_part.number_in_whole(n));
+    probes.push_back(probe);
+  }
+  return probes;
+}
+
+std::int64_t n_nodes_of(const mesh::Mesh& mesh) {
+  return mesh.is_interface() ? mesh.grid.n_nodes() : mesh.n_nodes();
+}
+std::int64_t n_cells_of(const mesh::Mesh& mesh) {
+  return mesh.is_interface() ? std::int64_t{mesh.grid.columns} * mesh.grid.rows : std::ssize(mesh.cells);
 }
 
 }  // namespace
@@ -103,6 +139,7 @@ mesh::Mesh make_base(const input::Case& config) {
 std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh& plate,
                                      const std::optional<mesh::Mesh>& base) {
   if (config.probes.x_m.empty()) return {};
+  if (plate.is_interface()) return probes_among_columns(config, plate);
   const auto base_material = input::base_material(config);
   std::vector<motion::BodySource> bodies = {{plate, config.material}};
   if (base) bodies.push_back({*base, base_material});
@@ -113,10 +150,11 @@ Meshes check(const input::Case& config, const Processes* processes) {
   require_memory_fits(config, processes);
   if (!is_prestressed(config)) require_edges_to_tilt(config);
   require_free_sides_for_single(config);
-  Meshes meshes{mesh::make_plate(config.plate), {}};
+  const bool only_interface = leads_by_interface(config, processes != nullptr ? processes->size() : 1);
+  Meshes meshes{only_interface ? mesh::make_interface(config.plate) : mesh::make_plate(config.plate), {}};
   motion::require_rows_fit(meshes.plate, config.time);
   if (input::has_base_body(config)) {
-    meshes.base = make_base(config);
+    meshes.base = make_base(config, only_interface);
     motion::require_rows_fit(*meshes.base, config.time, "base");
   }
   probes_of(config, meshes.plate, meshes.base);  // refuses what lies outside
@@ -164,8 +202,8 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   auto meshes = check(config, processes);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
-  initial.n_nodes = initial.mesh.n_nodes() + (initial.base ? initial.base->n_nodes() : 0);
-  initial.n_cells = std::ssize(initial.mesh.cells) + (initial.base ? std::ssize(initial.base->cells) : 0);
+  initial.n_nodes = n_nodes_of(initial.mesh) + (initial.base ? n_nodes_of(*initial.base) : 0);
+  initial.n_cells = n_cells_of(initial.mesh) + (initial.base ? n_cells_of(*initial.base) : 0);
   initial.tributary_m = mesh::tributary_lengths_m(initial.mesh);
   initial.mu_s = std::move(meshes.mu_s);
   const auto mu_s = static_coefficients(config, initial.mu_s);

@@ -49,7 +49,8 @@ struct Meshes {
   std::vector<double> mu_s = {};  ///< as in InitialState
 };
 
-/// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer.
+/// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer. The
+/// meshes are those of the interfaces alone where leads_by_interface says so.
 /// @param processes  that share the run, of which this one leads; null for this one alone
 /// @throws UserError
 Meshes check(const input::Case& config, const Processes* processes = nullptr);
@@ -70,7 +71,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
 /// A text that is the same for two cases if and only if they share their initial state.
 std::string initial_state_key(const input::Case& config);
 
-/// Where a case's probes lie in its bodies.
+/// Where a case's probes lie in its bodies, of which the interfaces may be all that is held.
 /// @throws UserError where one lies outside
 std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh& plate,
                                      const std::optional<mesh::Mesh>& base);

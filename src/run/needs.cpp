@@ -68,19 +68,13 @@ double estimated_critical_shear_m(const input::Case& config) {
   }
 }
 
-double interface_bytes(const input::Case& config, const Size& size) {
-  return size.n_interface * bytes_per_interface_node(config);
+/// Columns around an onset whose tractions are recorded.
+double fronts_halo(const input::Case& config) {
+  return std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
 }
 
-/// Largest frequency of many squares of side h; corners and coarser blocks change it little, or lower it.
-double frequency_of_squares_rad_per_s(double h, const solid::Material& material) {
-  constexpr int side = 32;
-  mesh::Plate squares;
-  squares.width_m = squares.height_m = side * h;
-  squares.element_size_m = h;
-  squares.corner = mesh::Corner::none;
-  squares.top = mesh::Top::free;
-  return solid::frequency_bound_rad_per_s(mesh::make_plate(squares), material);
+double interface_bytes(const input::Case& config, const Size& size) {
+  return size.n_interface * bytes_per_interface_node(config);
 }
 
 double rows_of(double end_s, double interval_s, double step_s) {
@@ -95,9 +89,9 @@ std::filesystem::path existing_parent(const std::filesystem::path& folder) {
   return path;
 }
 
-/// Of a node while the leader gathers a checkpoint of several processes: answers, and the list made of them,
-/// which may have room for twice as many; and such a checkpoint over that of one process: nodes with numbers.
-constexpr double gathered_node_bytes = 40 + 2 * 40, shared_checkpoint_bytes = 1.25;
+/// Of a node while several processes keep a checkpoint: what each keeps, and the message with it; and such a
+/// checkpoint over that of one process: nodes with numbers.
+constexpr double kept_node_bytes = 2 * 40, shared_checkpoint_bytes = 1.25;
 
 /// glibc keeps up to two freed arrays as long as the largest that it has taken from its heap, of 32 MB at
 /// most: beyond that it gives memory back.
@@ -187,9 +181,23 @@ Size estimated_mesh_size(const input::Case& config) {
   return size;
 }
 
-double statics_share(const Processes* processes) {
+/// Of the processes' parts, what this machine has.
+double share_here(const Processes* processes) {
   if (processes == nullptr) return 1;
   return static_cast<double>(processes->on_this_machine()) / processes->size();
+}
+
+/// What this machine holds of the bodies. Unless the leader leads by the interface it has all of them.
+Size held_here(const input::Case& config, Size size, const Processes* processes) {
+  size.statics_share = share_here(processes);
+  if (processes == nullptr || !leads_by_interface(config, processes->size())) return size;
+  const double width = size.n_interface / processes->size();
+  const double halo = 2.0 * (config.time.interface_substeps + 1) + 2 * fronts_halo(config);
+  const double held = share_here(processes) * (1 + std::max(0.1, halo / width));
+  size.n_nodes *= held;
+  size.n_cells *= held;
+  size.n_base_nodes *= held;
+  return size;
 }
 
 std::string work_of(const Size& size) {
@@ -264,7 +272,9 @@ Size estimated_size(const input::Case& config) {
   Size size = estimated_mesh_size(config);
   const double h = config.plate.element_size_m;
   const auto stable_step_s = [&](const solid::Material& material) {
-    return solid::stable_step_s(frequency_of_squares_rad_per_s(h, material), material.stiffness_damping_s);
+    // Corners and coarser blocks change it little, or lower it.
+    return solid::stable_step_s(solid::frequency_of_squares_rad_per_s(h, material),
+                                material.stiffness_damping_s);
   };
   size.step_s = config.time.step_factor * stable_step_s(config.material);
   if (input::has_base_body(config))
@@ -274,8 +284,7 @@ Size estimated_size(const input::Case& config) {
 }
 
 double bytes_per_interface_node(const input::Case& config) {
-  const double halo = std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
-  const double around = 2 * number * (2 * halo + 1);
+  const double around = 2 * number * (2 * fronts_halo(config) + 1);
   const double state = 30 * number + 2 * number + around;
   // A node's onsets and stops: the first ones, and those that other nodes' first onsets fell between.
   constexpr double changes = 6;
@@ -332,26 +341,25 @@ Budget Needs::disk() const {
 }
 
 void require_memory_fits(const input::Case& config, const Processes* processes) {
-  Size size = estimated_mesh_size(config);
-  size.statics_share = statics_share(processes);
-  const bool with_snapshots =
-      !config.output.snapshot_times_s.empty() || std::isfinite(config.output.snapshot_interval_s);
-  const double n_snapshots = with_snapshots ? 1 : 0;
-  require_memory(largest_of(memory_stages(config, size, n_snapshots, 0, 0)), work_of(size));
+  const auto whole = estimated_mesh_size(config);
+  const auto size = held_here(config, whole, processes);
+  const double n_snapshots = has_snapshots(config) ? 1 : 0;
+  require_memory(largest_of(memory_stages(config, size, n_snapshots, 0, 0)), work_of(whole));
 }
 
 void require_fit(const input::Case& config, const std::filesystem::path& folder, const Processes* processes) {
   require_memory_fits(config, processes);  // before the coarse statics that count a ramp's steps
-  Size size = estimated_size(config);
-  size.statics_share = statics_share(processes);
-  Needs n = needs(config, size);
-  Budget memory = largest_of(n.memory);
+  const auto whole = estimated_size(config);
+  Needs n = needs(config, whole);
+  const auto size = held_here(config, whole, processes);
+  Budget memory = largest_of(memory_stages(config, size, n.snapshots, n.history_rows, n.energy_rows));
   if (processes != nullptr) {
+    const double kept = share_here(processes) + 1.0 / processes->size();  // those here, and one that has come
     memory.push_back(
-        {"what the processes keep, gathered", gathered_node_bytes * size.n_nodes, larger_elements()});
+        {"a checkpoint of the processes", kept * kept_node_bytes * whole.n_nodes, larger_elements()});
     n.checkpoint_bytes *= shared_checkpoint_bytes;
   }
-  require_memory(memory, work_of(size));
+  require_memory(memory, work_of(whole));
   require_disk(n, folder);
 }
 

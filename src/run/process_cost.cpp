@@ -18,9 +18,6 @@ constexpr double bytes_of_mesh = 2 * number_bytes + sizeof(mesh::Cell), bytes_of
 constexpr double eager_bytes = 64 << 10;
 /// u_m, v_m_per_s of a snapshot.
 constexpr double bytes_of_snapshot = 4 * number_bytes;
-/// Of a checkpoint: numbers, u_m and v_m_per_s of nodes. An answer has them, and what is read from it.
-constexpr double bytes_of_kept_state = number_bytes + bytes_of_snapshot;
-
 /// Columns of the part that computes most.
 struct Widest {
   double own = 0, halo = 0;
@@ -71,7 +68,7 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
     cost.command_s =
         (work.advances + work.energies) * 2 * (network.latency_s + others * handling.s_per_message) +
         work.advances * others * (latency_s(row_bytes / n_parts / work.advances) - network.latency_s);
-    cost.start_s = passed_s(bytes_of_state * work.n_nodes);
+    cost.start_s = work.leads_by_interface ? 0 : passed_s(bytes_of_state * work.n_nodes);
   }
   cost.statics_s = work.statics_s;
 
@@ -80,13 +77,14 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
       motion::event_bytes(share * work.n_nodes, share * work.n_cells, false, work.precision) +
       share * work.bytes_per_interface_node * work.n_columns;
   cost.memory_bytes = work.program_bytes + std::max(work.shared_statics_bytes, of_part);
-  // What a part is sent is made when it is sent, and a checkpoint is written from answers taken one by one.
+  // What a part is sent is made when it is sent. A checkpoint, written from answers taken one by one, takes
+  // less than the building of the leader's own part has taken.
   const double sent = n_parts > 1 ? share * bytes_of_state : 0;
-  const double starting = (bytes_of_mesh + bytes_of_state + sent) * work.n_nodes;
-  const double keeping = (n_parts > 1 ? 2 * share * bytes_of_kept_state : 0) * work.n_nodes;
+  const double starting =
+      work.leads_by_interface ? 0 : (bytes_of_mesh + bytes_of_state + sent) * work.n_nodes;
   cost.leader_memory_bytes =
-      work.program_bytes + std::max(work.statics_bytes, of_part + std::max(starting, keeping) +
-                                                            work.bytes_per_interface_node * work.n_columns);
+      work.program_bytes +
+      std::max(work.statics_bytes, of_part + starting + work.bytes_per_interface_node * work.n_columns);
   return cost;
 }
 

@@ -33,6 +33,7 @@ struct SharedWork {
   double energies = 0;  ///< sums over all nodes
   double history_rows = 0, values_per_row = 0;
   double snapshots = 0;
+  bool leads_by_interface = false;          ///< the leader holds nothing of all nodes
   double statics_s = 0, statics_bytes = 0;  ///< of the leader
   double shared_statics_bytes = 0;          ///< of each other process, where they share the statics
   motion::Precision precision = motion::Precision::double_precision;

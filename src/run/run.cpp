@@ -5,12 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#ifdef __GLIBC__  // known from the headers above
-#include <malloc.h>
-#endif
-
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "base/per_node.hpp"
 #include "motion/parted_stepper.hpp"
 #include "motion/stepper.hpp"
@@ -137,9 +134,7 @@ void release_nodes(mesh::Mesh& mesh) {
   mesh.x_m = std::vector<double>();
   mesh.y_m = std::vector<double>();
   mesh.cells = std::vector<mesh::Cell>();
-#ifdef __GLIBC__
-  malloc_trim(0);  // what was freed may lie between what was not
-#endif
+  return_freed_memory();
 }
 
 }  // namespace

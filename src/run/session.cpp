@@ -161,7 +161,7 @@ void Session::begin_event(Checkpoints::Kept* kept) {
   if (kept != nullptr) {
     initial_ = read_initial_state(kept->rest, config_, options_.processes);
     const auto make_whole = [&] {
-      const auto meshes = check(config_, options_.processes);
+      const auto meshes = check(config_);
       return new_stepper(config_, meshes.plate, meshes.base, execution_);
     };
     event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);

@@ -78,8 +78,7 @@ double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& materia
     }
   }
   double largest = 0;
-  if (std::isfinite(smallest_side_m))
-    largest = largest_frequency_rad_per_s(make_operator(square_block(block_side, smallest_side_m), material));
+  if (std::isfinite(smallest_side_m)) largest = frequency_of_squares_rad_per_s(smallest_side_m, material);
   if (std::ranges::find(near, true) == near.end()) return largest;
   for (int ring = 0; ring < rings; ++ring) {
     const auto reached = of_near;
@@ -92,13 +91,19 @@ double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& materia
   return std::max(largest, largest_frequency_rad_per_s(make_operator(part_of(mesh, near), material)));
 }
 
+double frequency_of_squares_rad_per_s(double side_m, const Material& material) {
+  return largest_frequency_rad_per_s(make_operator(square_block(block_side, side_m), material));
+}
+
+bool takes_frequency_bound(std::int64_t n_nodes, std::span<const mesh::Grid> blocks) {
+  return n_nodes >= many_nodes && std::ranges::all_of(blocks, [](const mesh::Grid& grid) {
+           return std::min(grid.rows, grid.columns) >= block_side;
+         });
+}
+
 double largest_frequency_rad_per_s(const mesh::Mesh& mesh, const Material& material, const Operator& op) {
-  const auto blocks = mesh::blocks(mesh);
-  const bool large = mesh.n_nodes() >= many_nodes && !blocks.empty() &&
-                     std::ranges::all_of(blocks, [](const mesh::Grid& grid) {
-                       return std::min(grid.rows, grid.columns) >= block_side;
-                     });
-  return large ? frequency_bound_rad_per_s(mesh, material) : largest_frequency_rad_per_s(op);
+  return takes_frequency_bound(mesh.n_nodes(), mesh::blocks(mesh)) ? frequency_bound_rad_per_s(mesh, material)
+                                                                   : largest_frequency_rad_per_s(op);
 }
 
 }  // namespace slipfront::solid

@@ -207,10 +207,16 @@ double largest_frequency_rad_per_s(const Operator& op);
 /// 1e-3.
 double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material);
 
+/// The same of squares alone, with this smallest side.
+double frequency_of_squares_rad_per_s(double side_m, const Material& material);
+
 /// Nodes from which on iterations over the whole mesh would take longer than many steps.
 inline constexpr mesh::Node many_nodes = 500'000;
 
-/// The one or the other by the number of nodes.
+/// Whether a mesh with such blocks takes the bound.
+bool takes_frequency_bound(std::int64_t n_nodes, std::span<const mesh::Grid> blocks);
+
+/// The one or the other.
 double largest_frequency_rad_per_s(const mesh::Mesh& mesh, const Material& material, const Operator& op);
 
 /// Largest stable step of the explicit scheme whose damping force acts on the last half-step velocity:

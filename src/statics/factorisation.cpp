@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "statics/factorisation.hpp"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
 #include "solid/element.hpp"
 #include "statics/dissection.hpp"
 
@@ -54,13 +53,6 @@ Budget factor_budget(double n_unknowns, double n_interface, double factor_bytes)
 }
 
 namespace {
-
-/// To the system, before as much is taken again; glibc would keep arrays of up to 32 MB.
-void return_freed_memory() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
-}
 
 /// Those whose rows of K feel the loaded edge: its own nodes and their neighbours.
 std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh) {

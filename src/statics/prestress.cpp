@@ -7,9 +7,11 @@ namespace slipfront::statics {
 
 Equilibrium prestressed(const mesh::Mesh& mesh, record::StaticState tractions, const mesh::Mesh* below) {
   Equilibrium e;
-  e.u_m = e.u_per_shear = solid::Field(mesh.n_nodes());
-  for (const auto n : mesh.top) e.u_per_shear.x[n] = 1;
-  if (below != nullptr) e.below_u_m = e.below_u_per_shear = solid::Field(below->n_nodes());
+  if (!mesh.is_interface()) {
+    e.u_m = e.u_per_shear = solid::Field(mesh.n_nodes());
+    for (const auto n : mesh.top) e.u_per_shear.x[n] = 1;
+    if (below != nullptr) e.below_u_m = e.below_u_per_shear = solid::Field(below->n_nodes());
+  }
   e.contact.assign(mesh.lower.size(), Contact::stick);
   e.tractions = std::move(tractions);
   e.inside_from_m = e.tractions.x_m.front();

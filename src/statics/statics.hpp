@@ -25,6 +25,8 @@ struct ContactStates {
 /// Equilibrium of the plate with its interface, and how it changes with the shear.
 ///
 /// What limits the shear inside is the largest t/(mu_s p); peak_ratio and peak_x_m belong to its node.
+///
+/// Without displacements nothing is strained, and with the loaded edge nothing else moves.
 struct Equilibrium {
   solid::Field u_m;          ///< [nodes] displacement
   solid::Field u_per_shear;  ///< [nodes] change of u per unit displacement of the loaded edge along x

@@ -161,6 +161,22 @@ TEST(MakeColumns, MakesThoseOfAPlateThatRepeats) {
       expect_columns(plate(coarsenings, Sides::periodic), held);
 }
 
+TEST(MakeInterface, MakesTheLowestRow) {
+  for (const auto sides : {Sides::free, Sides::periodic})
+    for (const int coarsenings : {0, 2}) {
+      const auto whole = make_plate(plate(coarsenings, sides));
+      const auto interface = make_interface(plate(coarsenings, sides));
+      EXPECT_TRUE(interface.is_interface());
+      EXPECT_FALSE(whole.is_interface());
+      EXPECT_EQ(interface.lower, whole.lower);
+      EXPECT_EQ(interface.period_m, whole.period_m);
+      EXPECT_EQ(tributary_lengths_m(interface), tributary_lengths_m(whole));
+      ASSERT_EQ(interface.n_nodes(), whole.grid.stride());
+      for (Node n = 0; n < interface.n_nodes(); ++n) EXPECT_EQ(place(interface, n), place(whole, n));
+      EXPECT_EQ(NodeColumns(blocks(interface)).n_nodes(), whole.n_nodes());
+    }
+}
+
 TEST(MakeColumns, MakesThoseOfAPlateWithMoreNodesThanCanBeNumbered) {
   auto wide = plate(0);
   wide.width_m = 1000;

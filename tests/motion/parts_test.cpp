@@ -532,6 +532,20 @@ int allowed_instead(int n, const Problem& problem, const std::string& why) {
   return n;
 }
 
+TEST(BodySteps, OfManySquaresFollowFromTheirInterface) {
+  for (const auto sides : {mesh::Sides::free, mesh::Sides::periodic}) {
+    // Sides that rounding makes unequal.
+    mesh::Plate plate{
+        .width_m = 0.7, .element_size_m = 0.7 / 859, .corner = mesh::Corner::none, .sides = sides};
+    plate.height_m = 600 * plate.element_size_m;
+    const auto whole = mesh::make_plate(plate), interface = mesh::make_interface(plate);
+    ASSERT_TRUE(solid::takes_frequency_bound(whole.n_nodes(), mesh::blocks(whole)));
+    const auto expected = body_steps({whole, pmma}, {}), found = body_steps({interface, pmma}, {});
+    EXPECT_EQ(found.stable_step_s, expected.stable_step_s);
+    EXPECT_EQ(found.multiples, expected.multiples);
+  }
+}
+
 TEST(Parts, DoNotEndAtARoundedCorner) {
   Problem problem;
   problem.plate.corner = mesh::Corner::fillet;

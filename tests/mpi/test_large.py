@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plates of so many squares, under given tractions, that the leader knows only their interfaces."""
+
+import os
+import subprocess
+
+import pytest
+from conftest import AS_ROOT
+from test_same import require_done, require_same, stop_after_checkpoint
+
+# 600,000 nodes.
+PLATE = """\
+title = "large"
+[plate]
+width_m = 1.0
+height_m = 0.6
+element_size_m = 1e-3
+corner = "none"
+{plate}
+[loading]
+method = "prestress"
+[prestress]
+{prestress}
+[friction]
+mu_s = 0.6
+mu_k = 0.1
+[event]
+kind = "nucleation"
+[nucleation]
+form = "overstress"
+overstress_Pa = 1e6
+x_m = {x_m}
+half_length_m = 0.02
+[time]
+end_s = {end_s}
+{time}
+[output]
+{output}
+[probes]
+x_m = [0.5, 0.3333, 0.501, 0.0, 1.0, 0.9996]
+y_m = [0.0, 0.1, 0.25, 0.6, 0.3, {y_m}]
+interval_s = 1e-6
+{rest}
+"""
+UNIFORM = "t_Pa = 0.45e6\np_Pa = 1e6"
+BASE = """
+[base]
+kind = "body"
+youngs_modulus_Pa = 5e9
+poissons_ratio = 0.3
+density_kg_per_m3 = 1500
+stiffness_damping_s = 1e-7
+height_m = 0.55
+"""
+CASES = {
+    "absorbing edges": {"plate": 'sides = "absorbing"\ntop = "absorbing"'},
+    "loaded edge": {"time": "interface_substeps = 4", "prestress": 'file = "prestress.csv"'},
+    # The rupture passes the sides.
+    "periodic, two bodies": {
+        "plate": 'sides = "periodic"',
+        "rest": BASE + 'sides = "periodic"',
+        "x_m": 0.99,
+        "y_m": -0.2,
+    },
+    "single precision": {"time": 'precision = "single"'},
+}
+
+
+def write_case(folder, name, **changes):
+    values = {
+        "plate": "",
+        "prestress": UNIFORM,
+        "x_m": 0.5,
+        "end_s": 3e-5,
+        "time": "",
+        "output": "",
+        "rest": "",
+    }
+    values |= {"y_m": 0.2} | CASES[name] | changes
+    (folder / "prestress.csv").write_text("x_m,t_Pa,p_Pa\n0,0.4e6,1e6\n0.6,0.46e6,1e6\n1,0.43e6,1.1e6\n")
+    (folder / "case.toml").write_text(PLATE.format(**values))
+    return folder / "case.toml"
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_processes_change_nothing(name, tmp_path, mpirun):
+    case = write_case(tmp_path, name)
+    one = tmp_path / "one"
+    require_done(mpirun.alone("run", case, "-o", one, "-q"))
+    assert (one / "fronts.csv").read_text().count("\n") > 20
+    for n in (2, 3):
+        several = tmp_path / f"by-{n}"
+        require_done(mpirun(n, "run", case, "-o", several, "-q"))
+        require_same(one, several, 1e-7 if "single" in name else 1e-13)
+
+
+def test_any_number_of_processes_goes_on(tmp_path, mpirun):
+    """Other than with few nodes a checkpoint of several processes has no displacements before the event."""
+    case = write_case(tmp_path, "absorbing edges", end_s=2e-4)
+    one, several = tmp_path / "one", tmp_path / "several"
+    states = ("--state-dir", tmp_path / "states")
+    often = ("--checkpoint-every-simulated", "20e-6")
+    stop_after_checkpoint(mpirun, 2, several, "run", case, "-o", several, *states, *often)
+    # One process begins with the state that two have left in the folder, and then with that of a checkpoint.
+    require_done(mpirun.alone("run", case, "-o", one, "-q", *states))
+    for n in (3, 1, 2):
+        stop_after_checkpoint(mpirun, n, several, "run", "--restart", several, *often)
+    require_done(mpirun(3, "run", "--restart", several))
+    require_same(one, several)
+
+
+def peak_mb_of_leader(mpirun, case, out):
+    """The starter of its only child is measured."""
+    measured = (
+        "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
+        "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)"
+    )
+    command = [
+        *("mpirun", "--oversubscribe", "--bind-to", "none"),
+        *("-n", "1", "python3", "-c", measured, mpirun.program, "run", case, "-o", out, "-q"),
+        *(":", "-n", "3", mpirun.program, "run", case, "-o", out, "-q"),
+    ]
+    result = subprocess.run(
+        list(map(str, command)), cwd=mpirun.folder, env=os.environ | AS_ROOT, capture_output=True, text=True
+    )
+    require_done(result)
+    return float(result.stdout)
+
+
+def test_the_leader_holds_its_part_alone(tmp_path, mpirun):
+    case = write_case(tmp_path, "absorbing edges", end_s=2e-6)
+    alone = peak_mb_of_leader(mpirun, case, tmp_path / "alone")
+    # Fields of all nodes need a mesh of all nodes.
+    with_fields = write_case(tmp_path, "absorbing edges", end_s=2e-6, output="snapshot_times_s = [1e-6]")
+    n_nodes = 1001 * 601
+    assert peak_mb_of_leader(mpirun, with_fields, tmp_path / "fields") - alone > 64e-6 * n_nodes
