@@ -46,8 +46,8 @@ void add_wave_speeds(const run::Info& info, Listing& list) {
 }
 
 void add_size(const run::Info& info, Listing& list) {
-  list.add("nodes", fmt::format("{} ({} on the interface, {} without a stencil)", info.n_nodes,
-                                info.n_interface, info.n_irregular));
+  const auto irregular = info.n_irregular ? fmt::format(", {} without a stencil", *info.n_irregular) : "";
+  list.add("nodes", fmt::format("{} ({} on the interface{})", info.n_nodes, info.n_interface, irregular));
   list.add("cells", fmt::format("{}", info.n_cells));
 }
 

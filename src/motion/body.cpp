@@ -48,10 +48,6 @@ BodyMotion motion_of(const BodySource& source) {
   return motion;
 }
 
-}  // namespace
-
-namespace {
-
 /// Of squares alone, as solid::frequency_bound_rad_per_s finds it in their cells.
 double smallest_side_m(const mesh::Mesh& interface) {
   double smallest_m = std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <memory>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "mesh/part.hpp"
 #include "motion/stepper.hpp"
 #include "run/choices.hpp"
+#include "run/parts.hpp"
 #include "run/run.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/prestress.hpp"
@@ -69,22 +71,34 @@ void add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info&
   }
 }
 
+/// Bodies whose steps are timed: the whole ones, or some columns of them.
+struct Timed {
+  std::unique_ptr<motion::Stepper> stepper;
+  const mesh::Mesh* plate = nullptr;
+  const mesh::Mesh* base = nullptr;
+  int first_column = 0;
+  double share = 1;  ///< of the whole
+};
+
 void add_sizes(const input::Case& config, const Meshes& meshes, Info& info) {
-  info.n_nodes = meshes.plate.n_nodes();
-  info.n_cells = std::ssize(meshes.plate.cells);
+  info.n_nodes = n_nodes_of(meshes.plate);
+  info.n_cells = n_cells_of(meshes.plate);
   info.n_interface = std::ssize(meshes.plate.lower);
   if (!meshes.base) return;
   info.base_speeds = wave_speeds(input::base_material(config));
   info.generalised_rayleigh_speed_m_per_s =
       stability::generalised_rayleigh_speed_m_per_s(config.material, input::base_material(config));
-  info.n_nodes += meshes.base->n_nodes();
-  info.n_cells += std::ssize(meshes.base->cells);
+  info.n_nodes += n_nodes_of(*meshes.base);
+  info.n_cells += n_cells_of(*meshes.base);
 }
 
-void add_steps(const motion::Stepper& stepper, Info& info) {
+void add_steps(const Timed& timed, Info& info) {
+  const auto& stepper = *timed.stepper;
+  if (timed.share == 1) info.n_irregular = 0;
   for (const auto& body : stepper.bodies()) {
-    info.n_irregular +=
-        static_cast<std::int64_t>(body.op().whole.irregular.size() + body.op().whole.general.size());
+    if (info.n_irregular)
+      *info.n_irregular +=
+          static_cast<std::int64_t>(body.op().whole.irregular.size() + body.op().whole.general.size());
     info.substeps_of_bodies.push_back(body.period());
   }
   info.stable_step_s = stepper.stable_step_s();
@@ -99,7 +113,7 @@ double n_unknowns_of(const Info& info) {
 void add_needs(const input::Case& config, const Meshes& meshes, double node_updates_per_step, Info& info) {
   info.needs = needs(config, {static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
                               static_cast<double>(info.n_interface), info.step_s,
-                              meshes.base ? static_cast<double>(meshes.base->n_nodes()) : 0});
+                              meshes.base ? static_cast<double>(n_nodes_of(*meshes.base)) : 0});
   info.n_steps = info.needs.steps;
   info.node_updates = static_cast<double>(info.n_steps) * node_updates_per_step +
                       static_cast<double>(info.needs.ramp_steps) * static_cast<double>(info.n_nodes);
@@ -126,17 +140,19 @@ int steps_of_command(const Needs& needs) {
 /// takes longer than to stick.
 /// @param n_steps  of a command
 /// @param at_once  that no exchange interrupts
-double measured_step_s(const input::Case& config, motion::Stepper& stepper, const Meshes& meshes,
-                       std::int64_t n_steps, std::int64_t at_once) {
+double measured_step_s(const input::Case& config, const Timed& timed, std::int64_t n_steps,
+                       std::int64_t at_once) {
   constexpr double least_s = 20e-3, most_s = 0.5;
   const double mu_s = interface::static_coefficient(config.friction);
-  const auto n = meshes.plate.lower.size();
+  auto& stepper = *timed.stepper;
+  const auto& plate = *timed.plate;
+  const auto n = plate.lower.size();
   record::StaticState tractions;
-  for (const auto node : meshes.plate.lower) tractions.x_m.push_back(meshes.plate.x_m[node]);
-  tractions.p_s_Pa.assign(n, mean_pressure_Pa(config, meshes.plate));
+  tractions.x_m = interface_x_m(plate);
+  tractions.p_s_Pa.assign(n, mean_pressure_Pa(config, plate));
   tractions.t_s_Pa.assign(n, 0.0);
   for (std::size_t k = 0; k < n / 2; ++k) tractions.t_s_Pa[k] = 1.1 * mu_s * tractions.p_s_Pa[k];
-  const auto state = statics::prestressed(meshes.plate, tractions, meshes.base ? &*meshes.base : nullptr);
+  const auto state = statics::prestressed(plate, tractions, timed.base);
   stepper.start(state, 0, {tractions.t_s_Pa, tractions.p_s_Pa});
   motion::Recorder recorder(state, mu_s, 0);
   std::vector<double> times_s;
@@ -161,31 +177,60 @@ double expected_statics_s(const Info& info) {
   return info.solver == statics::StaticSolver::iterative ? 1e-6 * n : 0;
 }
 
-Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::Stepper& stepper,
+Timed whole_to_time(const input::Case& config, const Meshes& meshes) {
+  Timed timed;
+  timed.stepper = new_stepper(config, meshes.plate, meshes.base);
+  timed.plate = &meshes.plate;
+  timed.base = meshes.base ? &*meshes.base : nullptr;
+  return timed;
+}
+
+/// The columns of a part, no more than show the rate.
+Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_processes, LonePart& part) {
+  constexpr double most_nodes = 4e6;
+  constexpr int least_columns = 64;
+  const WholeBodies whole(config, interfaces.plate, interfaces.base);
+  const auto steps = whole.steps();
+  const auto division = whole.divided(n_processes, steps);
+  const auto own = division.own(n_processes / 2);
+  double per_column = 0;
+  for (const auto& body : whole.bodies()) per_column += body.mesh.grid.rows + 1;
+  const int most = std::max(least_columns, static_cast<int>(most_nodes / per_column));
+  const int width = std::min(own.end - own.begin, most);
+  part = make_lone_part(config, interfaces.plate, steps, {own.begin, own.begin + width});
+  Timed timed;
+  timed.stepper = std::move(part.stepper);
+  timed.plate = &part.plate;
+  timed.base = part.base ? &*part.base : nullptr;
+  timed.first_column = own.begin;
+  timed.share = static_cast<double>(width) / division.first.back();
+  return timed;
+}
+
+Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Timed& timed,
                        const Sharing& sharing, const Info& info) {
-  const auto base_material = input::base_material(config);
-  std::vector<motion::BodySource> bodies = {{meshes.plate, config.material}};
-  if (meshes.base) bodies.push_back({*meshes.base, base_material});
+  auto& stepper = *timed.stepper;
+  const WholeBodies whole(config, meshes.plate, meshes.base);
+  const auto bodies = whole.bodies();
   std::vector<motion::BodySteps> steps;
   for (const auto& body : stepper.bodies()) steps.push_back(body.steps());
   const int n_columns = meshes.plate.grid.stride();
   Info::Shared shared;
-  shared.division = motion::divide_bodies(bodies, steps, config.time, sharing.n_processes,
-                                          motion::halo_for(meshes.plate, config.fronts.l_star_m));
+  shared.division = whole.divided(sharing.n_processes, steps);
   SharedWork work;
   work.n_nodes = static_cast<double>(info.n_nodes);
   work.n_cells = static_cast<double>(info.n_cells);
   work.n_columns = n_columns;
-  work.node_updates_per_step = stepper.node_updates_per_step();
+  work.node_updates_per_step = stepper.node_updates_per_step() / timed.share;
   const int n_steps = steps_of_command(info.needs);
   const int at_once = sharing.n_processes > 1 ? shared.division.steps_per_exchange : n_steps;
   work.node_updates_per_s =
-      stepper.node_updates_per_step() / measured_step_s(config, stepper, meshes, n_steps, at_once);
+      stepper.node_updates_per_step() / measured_step_s(config, timed, n_steps, at_once);
   // Coarser blocks have nodes in some columns only, in the same ones of so many.
   int period = 1;
   for (const auto& body : bodies)
     if (const auto n = body.mesh.coarser.size(); n > 0) period = std::max(period, 2 << n);
-  const int first = n_columns / 2 / period * period;
+  const int first = timed.share < 1 ? timed.first_column : n_columns / 2 / period * period;
   stepper.visit_columns({first, first + period}, [&](const auto*, std::size_t n) {
     work.values_per_column += static_cast<double>(n) / period;
   });
@@ -216,22 +261,25 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, motion::
 Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   Info info;
   info.speeds = wave_speeds(config.material);
-  const auto meshes = check(config);
+  const bool is_by_interface = sharing && leads_by_interface(config, sharing->n_processes);
+  const auto meshes = is_by_interface ? check_interfaces(config) : check(config);
   add_sizes(config, meshes, info);
   info.rupture = rupture_outlook(config, meshes);
 
   // About as long as making the stepper.
   auto sliding = std::async(std::launch::async | std::launch::deferred,
                             [&] { add_well_posedness(config, meshes.plate, info); });
-  const auto stepper = new_stepper(config, meshes.plate, meshes.base);
+  LonePart part;
+  const auto timed = is_by_interface ? part_to_time(config, meshes, sharing->n_processes, part)
+                                     : whole_to_time(config, meshes);
   sliding.get();
-  add_steps(*stepper, info);
-  add_needs(config, meshes, stepper->node_updates_per_step(), info);
+  add_steps(timed, info);
+  const double node_updates_per_step = timed.stepper->node_updates_per_step();
+  add_needs(config, meshes, node_updates_per_step / timed.share, info);
   const int n_steps = steps_of_command(info.needs);
-  info.node_updates_per_s =
-      stepper->node_updates_per_step() / measured_step_s(config, *stepper, meshes, n_steps, n_steps);
+  info.node_updates_per_s = node_updates_per_step / measured_step_s(config, timed, n_steps, n_steps);
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info);
-  if (sharing) info.shared = shared_by(config, meshes, *stepper, *sharing, info);
+  if (sharing) info.shared = shared_by(config, meshes, timed, *sharing, info);
   return info;
 }
 

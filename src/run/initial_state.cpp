@@ -127,14 +127,14 @@ std::vector<motion::Probe> probes_among_columns(const input::Case& config, const
   return probes;
 }
 
+}  // namespace
+
 std::int64_t n_nodes_of(const mesh::Mesh& mesh) {
   return mesh.is_interface() ? mesh.grid.n_nodes() : mesh.n_nodes();
 }
 std::int64_t n_cells_of(const mesh::Mesh& mesh) {
   return mesh.is_interface() ? std::int64_t{mesh.grid.columns} * mesh.grid.rows : std::ssize(mesh.cells);
 }
-
-}  // namespace
 
 std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh& plate,
                                      const std::optional<mesh::Mesh>& base) {
@@ -146,11 +146,11 @@ std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh
   return motion::locate_probes(input::probe_places(config), bodies);
 }
 
-Meshes check(const input::Case& config, const Processes* processes) {
-  require_memory_fits(config, processes);
+namespace {
+
+Meshes checked_meshes(const input::Case& config, bool only_interface) {
   if (!is_prestressed(config)) require_edges_to_tilt(config);
   require_free_sides_for_single(config);
-  const bool only_interface = leads_by_interface(config, processes != nullptr ? processes->size() : 1);
   Meshes meshes{only_interface ? mesh::make_interface(config.plate) : mesh::make_plate(config.plate), {}};
   motion::require_rows_fit(meshes.plate, config.time);
   if (input::has_base_body(config)) {
@@ -163,6 +163,17 @@ Meshes check(const input::Case& config, const Processes* processes) {
   const auto state = statics::prestressed(meshes.plate, prescribed_tractions(config.prestress, meshes.plate));
   starting_loads(config, state, meshes.plate, meshes.mu_s);  // refuses what does nothing
   return meshes;
+}
+
+}  // namespace
+
+Meshes check(const input::Case& config, const Processes* processes) {
+  require_memory_fits(config, processes);
+  return checked_meshes(config, leads_by_interface(config, processes != nullptr ? processes->size() : 1));
+}
+
+Meshes check_interfaces(const input::Case& config) {
+  return checked_meshes(config, true);
 }
 
 mesh::Mesh joined(Meshes meshes) {

@@ -55,6 +55,13 @@ struct Meshes {
 /// @throws UserError
 Meshes check(const input::Case& config, const Processes* processes = nullptr);
 
+/// The same of the interfaces alone, whatever the memory.
+Meshes check_interfaces(const input::Case& config);
+
+/// Of a body, of which the interface may be all that is held.
+std::int64_t n_nodes_of(const mesh::Mesh& mesh);
+std::int64_t n_cells_of(const mesh::Mesh& mesh);
+
 /// Both bodies in one mesh, for pictures: the nodes and cells of the body below follow those of the plate,
 /// its y turned downwards, as in motion::Stepper::snapshot.
 mesh::Mesh joined(Meshes meshes);

@@ -72,44 +72,22 @@ struct Plan {
   }
 };
 
-/// The bodies that are to be divided.
-class Whole {
- public:
-  Whole(const input::Case& config, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base)
-      : config_(config), base_material_(input::base_material(config)) {
-    bodies_.push_back({plate, config.material});
-    if (base) bodies_.push_back({*base, base_material_});
-  }
-  Whole(const Whole&) = delete;
-  Whole& operator=(const Whole&) = delete;
+Plan plan_for(const WholeBodies& whole, int n_processes) {
+  Plan plan;
+  plan.steps = whole.steps();
+  plan.division = whole.divided(n_processes, plan.steps);
+  plan.whole_x_m = interface_x_m(whole.plate());
+  return plan;
+}
 
-  /// @throws UserError where so many processes cannot share them
-  Plan divide(int n_processes) const {
-    Plan plan;
-    for (const auto& body : bodies_) plan.steps.push_back(motion::body_steps(body, config_.time));
-    plan.division = motion::divide_bodies(bodies_, plan.steps, config_.time, n_processes,
-                                          motion::halo_for(bodies_.front().mesh, config_.fronts.l_star_m));
-    plan.whole_x_m = interface_x_m(bodies_.front().mesh);
-    return plan;
-  }
-  /// Places along the whole interface of a part's nodes.
-  mesh::Subset lower_of(const Plan& plan, int rank) const {
-    return motion::lower_in(bodies_.front().mesh, plan.division.all(rank));
-  }
-  std::vector<const mesh::Mesh*> meshes() const {
-    std::vector<const mesh::Mesh*> meshes;
-    for (const auto& body : bodies_) meshes.push_back(&body.mesh);
-    return meshes;
-  }
+/// Places along the whole interface of a part's nodes.
+mesh::Subset lower_of(const WholeBodies& whole, const Plan& plan, int rank) {
+  return motion::lower_in(whole.plate(), plan.division.all(rank));
+}
 
- private:
-  const input::Case& config_;
-  solid::Material base_material_;
-  std::vector<motion::BodySource> bodies_;
-};
-
-interface::ContactModel contact_of(const input::Case& config, const Plan& plan, const mesh::Subset& lower) {
-  auto contact = input::contact_model(config, plan.whole_x_m);
+interface::ContactModel contact_of(const input::Case& config, const std::vector<double>& whole_x_m,
+                                   const mesh::Subset& lower) {
+  auto contact = input::contact_model(config, whole_x_m);
   if (contact.of_nodes.empty()) return contact;
   std::vector<interface::FrictionLaw> laws;
   for (int k = 0; k < lower.count(); ++k)
@@ -118,23 +96,43 @@ interface::ContactModel contact_of(const input::Case& config, const Plan& plan, 
   return contact;
 }
 
+/// Some columns of the bodies, for a stepper.
+class Columns {
+ public:
+  /// @param own    of them, those that count
+  /// @param steps  of the bodies
+  Columns(const input::Case& config, const mesh::Subset& all, int n_columns, solid::Span own,
+          const std::vector<motion::BodySteps>& steps, const motion::LargestOfParts& largest)
+      : plate(mesh::make_columns(config.plate, all)), base_material_(input::base_material(config)) {
+    if (input::has_base_body(config)) base = mesh::make_columns(input::base_plate(config), all);
+    for (const auto& of_body : steps) parts_.push_back({all, n_columns, own, of_body, largest});
+    sources_.push_back({plate, config.material, &parts_.front()});
+    if (base) sources_.push_back({*base, base_material_, &parts_.back()});
+  }
+  Columns(const Columns&) = delete;
+  Columns& operator=(const Columns&) = delete;
+
+  std::span<const motion::BodySource> sources() const { return sources_; }
+
+  mesh::Mesh plate;
+  std::optional<mesh::Mesh> base;
+
+ private:
+  solid::Material base_material_;
+  std::vector<motion::PartOfBody> parts_;
+  std::vector<motion::BodySource> sources_;
+};
+
 /// The process's own part, of columns that it makes itself.
 /// @param lower  places of its nodes along the whole interface
 std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case& config, const Plan& plan,
                                         const mesh::Subset& lower) {
   const int rank = processes.rank();
-  const auto all = plan.division.all(rank);
-  std::vector<mesh::Mesh> meshes = {mesh::make_columns(config.plate, all)};
-  if (input::has_base_body(config)) meshes.push_back(mesh::make_columns(input::base_plate(config), all));
-  const auto base_material = input::base_material(config);
-  std::vector<motion::PartOfBody> parts;
-  for (const auto& steps : plan.steps)
-    parts.push_back({all, plan.division.n_columns(), plan.division.own(rank), steps,
-                     [&](std::span<double> values) { processes.take_largest(values); }});
-  std::vector<motion::BodySource> sources = {{meshes.front(), config.material, &parts.front()}};
-  if (meshes.size() > 1) sources.push_back({meshes.back(), base_material, &parts.back()});
-  return std::make_unique<motion::Part>(processes, plan.division, sources, contact_of(config, plan, lower),
-                                        config.time, motion::Execution{.threads = plan.threads}, lower);
+  const Columns columns(config, plan.division.all(rank), plan.division.n_columns(), plan.division.own(rank),
+                        plan.steps, [&](std::span<double> values) { processes.take_largest(values); });
+  return std::make_unique<motion::Part>(processes, plan.division, columns.sources(),
+                                        contact_of(config, plan.whole_x_m, lower), config.time,
+                                        motion::Execution{.threads = plan.threads}, lower);
 }
 
 std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
@@ -145,17 +143,46 @@ std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
 
 }  // namespace
 
+WholeBodies::WholeBodies(const input::Case& config, const mesh::Mesh& plate,
+                         const std::optional<mesh::Mesh>& base)
+    : config_(config), base_material_(input::base_material(config)) {
+  bodies_.push_back({plate, config.material});
+  if (base) bodies_.push_back({*base, base_material_});
+}
+
+std::vector<motion::BodySteps> WholeBodies::steps() const {
+  std::vector<motion::BodySteps> steps;
+  for (const auto& body : bodies_) steps.push_back(motion::body_steps(body, config_.time));
+  return steps;
+}
+
+motion::Division WholeBodies::divided(int n_processes, std::span<const motion::BodySteps> steps) const {
+  return motion::divide_bodies(bodies_, steps, config_.time, n_processes,
+                               motion::halo_for(plate(), config_.fronts.l_star_m));
+}
+
 void require_divisible(const input::Case& config, const Processes& processes) {
   const auto meshes = check(config, &processes);
-  Whole(config, meshes.plate, meshes.base).divide(processes.size());
+  plan_for(WholeBodies(config, meshes.plate, meshes.base), processes.size());
+}
+
+LonePart make_lone_part(const input::Case& config, const mesh::Mesh& interface,
+                        const std::vector<motion::BodySteps>& steps, solid::Span columns) {
+  const mesh::Subset all({{columns.begin, columns.end}});
+  Columns some(config, all, interface.grid.stride(), columns, steps, [](std::span<double>) {});
+  const auto contact = contact_of(config, interface_x_m(interface), motion::lower_in(interface, all));
+  auto stepper = std::make_unique<motion::Stepper>(some.sources(), contact, config.time, motion::Execution{});
+  return {std::move(some.plate), std::move(some.base), std::move(stepper)};
 }
 
 std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& config, const mesh::Mesh& plate,
                                                           const std::optional<mesh::Mesh>& base,
                                                           Processes& processes,
                                                           const motion::Execution& execution) {
-  const Whole whole(config, plate, base);
-  auto plan = whole.divide(processes.size());
+  const WholeBodies whole(config, plate, base);
+  auto plan = plan_for(whole, processes.size());
+  std::vector<const mesh::Mesh*> meshes;
+  for (const auto& body : whole.bodies()) meshes.push_back(&body.mesh);
   plan.threads = execution.threads;
   std::unique_ptr<motion::PartedStepper> stepper;
   try {
@@ -164,12 +191,11 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
       parcel.put(motion::PartCommand::build);
       put_case(config, parcel);
       plan.put(parcel);
-      parcel.put(whole.lower_of(plan, rank).ranges());
+      parcel.put(lower_of(whole, plan, rank).ranges());
       processes.send(rank, parcel);
     }
     stepper = std::make_unique<motion::PartedStepper>(
-        processes, plan.division, make_part(processes, config, plan, whole.lower_of(plan, 0)),
-        whole.meshes());
+        processes, plan.division, make_part(processes, config, plan, lower_of(whole, plan, 0)), meshes);
   } catch (const std::exception& error) {
     processes.fail(reason_of(error));  // the others wait for this part
   }

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "input/case.hpp"
@@ -24,6 +25,36 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
                                                           const std::optional<mesh::Mesh>& base,
                                                           Processes& processes,
                                                           const motion::Execution& execution);
+
+/// The bodies that processes are to divide among themselves; their interfaces may be all that is held.
+class WholeBodies {
+ public:
+  WholeBodies(const input::Case& config, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base);
+  WholeBodies(const WholeBodies&) = delete;
+  WholeBodies& operator=(const WholeBodies&) = delete;
+
+  std::span<const motion::BodySource> bodies() const { return bodies_; }
+  const mesh::Mesh& plate() const { return bodies_.front().mesh; }
+  std::vector<motion::BodySteps> steps() const;
+  /// @throws UserError where so many processes cannot share them
+  motion::Division divided(int n_processes, std::span<const motion::BodySteps> steps) const;
+
+ private:
+  const input::Case& config_;
+  solid::Material base_material_;
+  std::vector<motion::BodySource> bodies_;
+};
+
+/// Some columns of the bodies as a part has them, without neighbours: to be timed.
+struct LonePart {
+  mesh::Mesh plate;
+  std::optional<mesh::Mesh> base;
+  std::unique_ptr<motion::Stepper> stepper;
+};
+/// @param interface  of the plate, or all of it
+/// @param steps      of the whole bodies
+LonePart make_lone_part(const input::Case& config, const mesh::Mesh& interface,
+                        const std::vector<motion::BodySteps>& steps, solid::Span columns);
 
 /// While it lives the other processes do their shares of static solutions by PETSc.
 class SharedStatics {

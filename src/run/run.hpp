@@ -140,7 +140,8 @@ struct Info {
   WaveSpeeds speeds;                                         ///< of the plate
   std::optional<WaveSpeeds> base_speeds;                     ///< of the body below
   std::optional<double> generalised_rayleigh_speed_m_per_s;  ///< of the two, where it exists
-  std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0, n_irregular = 0;
+  std::int64_t n_nodes = 0, n_cells = 0, n_interface = 0;
+  std::optional<std::int64_t> n_irregular;  ///< none where not all of the bodies was made
   double stable_step_s = 0, step_s = 0, substep_s = 0;
   std::vector<int> substeps_of_bodies;  ///< in a step of each, the plate first
   Needs needs;
@@ -163,6 +164,7 @@ struct Sharing {
   int n_processes = 2, n_processors = 2;
   Network network = shared_memory;
 };
+/// Of a case that leads_by_interface only columns of one process are made.
 /// @throws UserError where the plate cannot be divided among so many
 Info info(const input::Case& config, const std::optional<Sharing>& sharing = {});
 

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plates of so many squares, under given tractions, that the leader knows only their interfaces."""
 
+import json
 import os
+import re
 import subprocess
 
 import pytest
@@ -107,6 +109,38 @@ def test_any_number_of_processes_goes_on(tmp_path, mpirun):
         stop_after_checkpoint(mpirun, n, several, "run", "--restart", several, *often)
     require_done(mpirun(3, "run", "--restart", several))
     require_same(one, several)
+
+
+def told_by_info(mpirun, case, *options):
+    result = mpirun.alone("info", case, *options)
+    require_done(result)
+    return dict(re.findall(r"^ *(.+?) {2,}(.+)$", result.stdout, re.MULTILINE))
+
+
+def test_info_is_of_the_run(tmp_path, mpirun):
+    case = write_case(tmp_path, "periodic, two bodies", end_s=3e-6)
+    alone, shared = told_by_info(mpirun, case), told_by_info(mpirun, case, "--processes", 3)
+    assert alone["nodes"].startswith(f"{1001 * (601 + 551)} (1000 on the interface, ")
+    assert shared["nodes"] == f"{1001 * (601 + 551)} (1000 on the interface)"
+    for key in ("cells", "largest stable step", "step", "steps to the end", "disk", "expected regime"):
+        assert shared[key] == alone[key], key
+    updates = [told["node updates"].split(" at ")[0] for told in (alone, shared)]
+    assert updates[0] == updates[1]
+    require_done(mpirun(3, "run", case, "-o", "out", "-q"))
+    run = json.loads((tmp_path / "out/run.json").read_text())
+    assert shared["steps to the end"] == str(run["steps"])
+    assert shared["exchange every"] == f"{run['processes']['steps_per_exchange']} steps"
+
+
+def test_info_of_what_no_machine_holds(tmp_path, mpirun):
+    case = write_case(tmp_path, "absorbing edges")
+    sizes = ("--set", "plate.element_size_m=2.5e-5", "--set", "plate.height_m=1.0")
+    refused = mpirun.alone("info", case, *sizes)
+    assert refused.returncode == 2
+    assert "needs about" in refused.stderr
+    told = told_by_info(mpirun, case, *sizes, "--processes", 100)
+    assert told["nodes"] == f"{40001 * 40001} (40001 on the interface)"
+    assert told["columns of nodes of each"].startswith("400 to 401, ")
 
 
 def peak_mb_of_leader(mpirun, case, out):
