@@ -39,7 +39,7 @@ run::SharedWork work(double n_nodes) {
 
 void print_row(double n_nodes, int n_processes) {
   const auto w = work(n_nodes);
-  constexpr int columns_per_step = 1, reach = 2;
+  constexpr int columns_per_step = 1, reach = 1;
   try {
     mesh::Mesh plate;
     plate.grid.columns = static_cast<int>(w.n_columns) - 1;

@@ -32,14 +32,17 @@ solid::Field take_field(Parcel& given) {
 /// Sees the contact updates of several steps, to be told later.
 class Log final : public UpdateObserver {
  public:
-  Log(SlipFinder& finder, Parcel& to) : finder_(finder), to_(to) {}
+  Log(SlipFinder& finder, TractionLog& tractions, Parcel& to)
+      : finder_(finder), tractions_(tractions), to_(to) {}
   void observe(double time_s, const interface::Interface& state, bool changed) override {
     finder_.find(time_s, state, changed, seen_);
+    tractions_.add(state.t_Pa, state.p_Pa);
     to_.put(seen_.time_s).put(static_cast<std::uint8_t>(seen_.moves)).put(seen_.changes).put(seen_.around);
   }
 
  private:
   SlipFinder& finder_;
+  TractionLog& tractions_;
   Parcel& to_;
   SlipSeen seen_;
 };
@@ -124,7 +127,7 @@ std::string reason_against(const Division& division, int widest_cell, int corner
 }  // namespace
 
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
-                       const TimeStepping& time, int n_parts, int halo) {
+                       const TimeStepping& time, int n_parts) {
   // Probes look at all nodes of a cell, wherever its first one lies.
   int widest_cell = 1, corner = 0;
   for (const auto& body : bodies) {
@@ -133,15 +136,40 @@ Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodyS
         {corner, mesh::columns_of_wrapped_cells(body.mesh), columns_of_rounded_layer(body.mesh, time)});
   }
   const int per_step = columns_per_step(bodies, steps, time);
-  const auto divided = [&](int n) {
-    return divide_columns(bodies.front().mesh, n, per_step, std::max(halo, widest_cell));
-  };
+  const auto divided = [&](int n) { return divide_columns(bodies.front().mesh, n, per_step, widest_cell); };
   const auto why_not = [&](int n) { return reason_against(divided(n), widest_cell, corner); };
   const auto reason = why_not(n_parts);
   if (reason.empty()) return divided(n_parts);
   int most = n_parts - 1;
   while (!why_not(most).empty()) --most;
   throw UserError("{}; choose at most {}", reason, most);
+}
+
+TractionLog::TractionLog(solid::Span own, int reach) {
+  if (own.end - own.begin <= 2 * reach)
+    places_ = {own};
+  else if (reach > 0)
+    places_ = {{own.begin, own.begin + reach}, {own.end - reach, own.end}};
+  for (const auto& place : places_) width_ += static_cast<std::size_t>(place.end - place.begin);
+}
+
+void TractionLog::add(std::span<const double> t_Pa, std::span<const double> p_Pa) {
+  for (const auto& values : {t_Pa, p_Pa})
+    for (const auto& place : places_)
+      values_.insert(values_.end(), values.begin() + place.begin, values.begin() + place.end);
+}
+
+record::Traction TractionLog::at(std::size_t update, int node) const {
+  std::size_t before = 2 * width_ * update;
+  for (const auto& place : places_) {
+    if (node >= place.begin && node < place.end) {
+      const auto k = before + static_cast<std::size_t>(node - place.begin);
+      return {values_[k], values_[k + width_]};
+    }
+    before += static_cast<std::size_t>(place.end - place.begin);
+  }
+  SLIPFRONT_ASSERT(false, "within reach of an end");
+  return {};
 }
 
 Part::Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
@@ -197,6 +225,12 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
     }
     case PartCommand::advance:
       or_fail([&] { advance(given, answer); });
+      break;
+    case PartCommand::tractions:
+      for (const auto& [update, nodes] : given.take_all<TractionsWanted>())
+        for (int n = nodes.begin; n < nodes.end; ++n)
+          answer.put(log_.at(static_cast<std::size_t>(update), n))
+              .put(log_.at(static_cast<std::size_t>(update) + 1, n));
       break;
     case PartCommand::energies:
       answer.put(stepper_->energies());
@@ -289,6 +323,7 @@ void Part::make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s
   const auto own = stepper_->bodies().front().own_lower();
   finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
                   halo, creep_m_per_s);
+  log_ = TractionLog(own, halo);
 }
 
 void Part::advance(Parcel& given, Parcel& answer) {
@@ -305,7 +340,9 @@ void Part::advance(Parcel& given, Parcel& answer) {
   const auto first_step = stepper_->step();
   const std::size_t n_values = displacement_values(stepper_->probes());
   Parcel seen;
-  Log log(*finder_, seen);
+  log_.clear();
+  log_.add(finder_->memory().t_Pa, finder_->memory().p_Pa);
+  Log log(*finder_, log_, seen);
   record::History samples;
   std::vector<SlipRates> rates;
   std::vector<double> displacements(n_values * static_cast<std::size_t>(n_steps));
@@ -328,9 +365,7 @@ void Part::advance(Parcel& given, Parcel& answer) {
     advance_between_exchanges(log, n, between);
     computing_s_ += seconds_since(begin);
     done += n;
-    if (steps_since_exchange_ < division_.steps_per_exchange) continue;
-    renew_halo();
-    finder_->renew_tractions(stepper_->interface_state());
+    if (steps_since_exchange_ == division_.steps_per_exchange) renew_halo();
   }
   const auto& memory = finder_->memory();
   answer.put(memory.time_s);

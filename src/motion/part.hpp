@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -51,28 +52,28 @@ int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySte
 Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach);
 /// The same for bodies.
 /// @param steps  of each body
-/// @param halo   columns around an onset whose tractions are recorded
 /// @throws UserError where the parts would be too narrow for their halo, or would end at a rounded corner; it
 ///         tells how many are possible
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
-                       const TimeStepping& time, int n_parts, int halo);
+                       const TimeStepping& time, int n_parts);
 
 /// What is asked of all parts at a time. The number of the command is followed by its values.
 enum class PartCommand : int {
-  network,   ///< run::serve measures it, or answers one that does
-  statics,   ///< run::serve does its share of the statics
-  build,     ///< run::serve makes the part
-  start,     ///< begin at an equilibrium
-  watch,     ///< look at probes
-  advance,   ///< take steps
-  energies,  ///< and works
-  measures,  ///< see PartMeasures
-  snapshot,  ///< own columns of the motion
-  probed,    ///< displacements and velocities at the probes
-  keep,      ///< the state, for a checkpoint
-  restore,   ///< a piece of a state that was kept, and whether it is the last one
-  release,   ///< the part is needed no more
-  end,       ///< and neither is the process
+  network,    ///< run::serve measures it, or answers one that does
+  statics,    ///< run::serve does its share of the statics
+  build,      ///< run::serve makes the part
+  start,      ///< begin at an equilibrium
+  watch,      ///< look at probes
+  advance,    ///< take steps
+  tractions,  ///< near the part's ends, in contact updates of these steps
+  energies,   ///< and works
+  measures,   ///< see PartMeasures
+  snapshot,   ///< own columns of the motion
+  probed,     ///< displacements and velocities at the probes
+  keep,       ///< the state, for a checkpoint
+  restore,    ///< a piece of a state that was kept, and whether it is the last one
+  release,    ///< the part is needed no more
+  end,        ///< and neither is the process
 };
 
 /// What a part has cost since it was started or restored.
@@ -91,6 +92,36 @@ struct PartMeasures {
   double largest_acceleration_m_per_s2 = 0;
   double node_updates_per_step = 0;
   PartCost cost;
+};
+
+/// Tractions of a part's nodes near its ends at the contact updates of a command: around onsets of its
+/// neighbours' nodes they are recorded.
+class TractionLog {
+ public:
+  TractionLog() = default;
+  /// @param own    places of the part's nodes along its interface
+  /// @param reach  nodes around an onset whose tractions are recorded
+  TractionLog(solid::Span own, int reach);
+
+  void clear() { values_.clear(); }
+  /// Those of the next update, [interface nodes of the part]; first those before the command.
+  void add(std::span<const double> t_Pa, std::span<const double> p_Pa);
+  /// @pre the nodes lie within reach of an end
+  record::Traction at(std::size_t update, int node) const;
+  static double bytes_per_update(int n_own, int reach) {
+    return 2.0 * sizeof(double) * std::min(n_own, 2 * reach);
+  }
+
+ private:
+  std::vector<solid::Span> places_;
+  std::size_t width_ = 0;  ///< nodes of them
+  std::vector<double> values_;
+};
+
+/// What is asked of a part's log.
+struct TractionsWanted {
+  std::int64_t update = 0;  ///< of the command, from 0
+  solid::Span nodes;        ///< places along the part's interface
 };
 
 /// The part of an event's bodies that one process computes. All processes have one and are given the same
@@ -129,6 +160,7 @@ class Part {
   PlaceInWhole place_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<SlipFinder> finder_;
+  TractionLog log_;
   KeptMotion kept_;  ///< pieces of it, until the last one has come
   /// Columns that go to a neighbour and come from it.
   struct Neighbour {

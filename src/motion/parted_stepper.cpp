@@ -193,8 +193,16 @@ std::vector<double> PartedStepper::probed(int which) const {
 
 std::int64_t PartedStepper::advance(Recorder& recorder, std::int64_t most_steps, const Between& between) {
   std::int64_t taken = 0;
+  // Parts keep their logs of tractions between commands.
+  constexpr double most_bytes = 16e6;
+  int widest = 0;
+  for (const auto& own : own_lower_) widest = std::max(widest, own.end - own.begin);
+  const double logged =
+      TractionLog::bytes_per_update(widest, recorder.record().halo) * std::round(step_s() / substep_s());
+  const auto at_once = std::max(std::int64_t{1}, static_cast<std::int64_t>(most_bytes / (logged + 1)));
   while (taken < most_steps) {
-    const auto steps = advance_surely(recorder, std::min(most_steps - taken, between.sure_steps()), between);
+    const auto n = std::min({most_steps - taken, between.sure_steps(), at_once});
+    const auto steps = advance_surely(recorder, n, between);
     taken += steps.taken;
     if (!steps.goes_on) break;
   }
@@ -230,11 +238,11 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
 
   struct Told {
     std::vector<SlipRates> rates;
-    Parcel seen;
     std::vector<std::vector<double>> samples;  ///< of each field
     std::vector<double> displacements;
   };
   std::vector<Told> told;
+  std::vector<Parcel> seen_by_part;
   auto& memory = recorder.finder().memory();
   for (std::size_t part = 0; part < answers.size(); ++part) {
     auto& answer = answers[part];
@@ -246,32 +254,19 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
     take(memory.slipping);
     Told of_part;
     of_part.rates = answer.take_all<SlipRates>();
-    of_part.seen = Parcel(answer.take_all<std::byte>());
+    seen_by_part.emplace_back(answer.take_all<std::byte>());
     for (std::size_t f = 0; f < record::history_fields.size(); ++f)
       of_part.samples.push_back(answer.take_all<double>());
     of_part.displacements = answer.take_all<double>();
     told.push_back(std::move(of_part));
   }
   const auto n_substeps = std::lround(step_s() / substep_s());
-  const auto n_around = recorder.finder().n_around();
+  const auto seen = joined(std::move(seen_by_part), static_cast<std::size_t>(n_steps * n_substeps),
+                           recorder.finder().n_around());
+  auto next_seen = seen.begin();
   std::ptrdiff_t row = 0;
   for (std::int64_t k = 0; k < n_steps; ++k) {
-    for (long substep = 0; substep < n_substeps; ++substep) {
-      SlipSeen seen;
-      for (std::size_t part = 0; part < told.size(); ++part) {
-        auto& from = told[part].seen;
-        seen.time_s = from.take<double>();
-        seen.moves |= from.take<std::uint8_t>() != 0;
-        for (auto change : from.take_all<SlipChange>()) {
-          change.node = all_lower_[part].number_at(change.node);
-          seen.changes.push_back(change);
-        }
-        const auto around = from.take_all<record::Traction>();
-        SLIPFRONT_ASSERT(around.size() % n_around == 0, "tractions around each onset");
-        seen.around.insert(seen.around.end(), around.begin(), around.end());
-      }
-      recorder.take(seen);
-    }
+    for (long substep = 0; substep < n_substeps; ++substep) recorder.take(*next_seen++);
     if (auto* to = samples[static_cast<std::size_t>(k)]; to != nullptr) {
       to->time_s.push_back(time_s());
       for (std::size_t f = 0; f < record::history_fields.size(); ++f) {
@@ -309,6 +304,69 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
     if (!between.go_on(rates)) return {k + 1, false};
   }
   return {n_steps, true};
+}
+
+std::vector<SlipSeen> PartedStepper::joined(std::vector<Parcel> seen_by_part, std::size_t n_updates,
+                                            std::size_t n_around) const {
+  const int reach = static_cast<int>(n_around / 2);
+  struct Gap {                       // of some nodes around an onset, which another part knows
+    std::size_t update = 0, at = 0;  // where the tractions are to go in SlipSeen::around
+    double share = 0;
+  };
+  std::vector<std::vector<TractionsWanted>> wanted(own_lower_.size());
+  std::vector<std::vector<Gap>> gaps(own_lower_.size());
+  std::vector<SlipSeen> seen(n_updates);
+  for (std::size_t part = 0; part < seen_by_part.size(); ++part) {
+    auto& from = seen_by_part[part];
+    for (std::size_t update = 0; update < n_updates; ++update) {
+      auto& all = seen[update];
+      all.time_s = from.take<double>();
+      all.moves |= from.take<std::uint8_t>() != 0;
+      auto first_around = all.around.size();
+      for (auto change : from.take_all<SlipChange>()) {
+        change.node = all_lower_[part].number_at(change.node);
+        all.changes.push_back(change);
+        if (!change.begins) continue;
+        for (std::size_t other = 0; other < own_lower_.size(); ++other) {
+          const auto own = own_lower_[other];
+          const int begin = std::max(own.begin, change.node - reach);
+          const int end = std::min(own.end, change.node + reach + 1);
+          if (other == part || begin >= end) continue;
+          const int place = all_lower_[other].place_of(begin);
+          wanted[other].push_back({static_cast<std::int64_t>(update), {place, place + end - begin}});
+          gaps[other].push_back(
+              {update, first_around + static_cast<std::size_t>(begin - (change.node - reach)), change.share});
+        }
+        first_around += n_around;
+      }
+      const auto around = from.take_all<record::Traction>();
+      all.around.insert(all.around.end(), around.begin(), around.end());
+      SLIPFRONT_ASSERT(all.around.size() == first_around, "tractions around each onset");
+    }
+  }
+  if (std::ranges::all_of(wanted, [](const auto& of_part) { return of_part.empty(); })) return seen;
+  std::size_t part = 0;
+  ask(
+      PartCommand::tractions,
+      [&](int other) {
+        Parcel parcel;
+        parcel.put(wanted[static_cast<std::size_t>(other)]);
+        return parcel;
+      },
+      [&](Parcel& answer) {
+        for (std::size_t k = 0; k < wanted[part].size(); ++k) {
+          const auto& [update, nodes] = wanted[part][k];
+          const auto& gap = gaps[part][k];
+          for (int n = 0; n < nodes.end - nodes.begin; ++n) {
+            const auto before = answer.take<record::Traction>();
+            const auto after = answer.take<record::Traction>();
+            seen[gap.update].around[gap.at + static_cast<std::size_t>(n)] =
+                traction_between(before, after, gap.share);
+          }
+        }
+        ++part;
+      });
+  return seen;
 }
 
 record::Energies PartedStepper::energies() {

@@ -72,6 +72,10 @@ class PartedStepper final : public TimeStepper {
   };
   /// Steps before which go_on does not refuse a motion that is physical.
   Steps advance_surely(Recorder& recorder, std::int64_t n_steps, const Between& between);
+  /// What all parts have seen in the updates of a command, in the nodes' numbers along the whole interface;
+  /// tractions around onsets near a part's end are asked of the parts beside it.
+  std::vector<SlipSeen> joined(std::vector<Parcel> seen_by_part, std::size_t n_updates,
+                               std::size_t n_around) const;
   std::vector<double> probed(int which) const;
   std::vector<PartMeasures> measures() const;
 

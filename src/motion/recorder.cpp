@@ -53,10 +53,10 @@ void SlipFinder::find(double time_s, const interface::Interface& state, bool cha
   seen.around.clear();
   for (std::size_t i = first_; changed && i < end_; ++i) {
     if (state.slipping[i] == memory_.slipping[i]) continue;
-    SlipChange change{static_cast<std::int32_t>(i), state.slipping[i] != 0, time_s};
+    SlipChange change{static_cast<std::int32_t>(i), state.slipping[i] != 0, time_s, 1};
     if (change.begins) {
       seen.around.resize(seen.around.size() + n_around());
-      change.time_s = locate_onset(i, time_s, state, std::span(seen.around).last(n_around()));
+      locate_onset(change, time_s, state, std::span(seen.around).last(n_around()));
       ++n_slipping_;
     } else {
       --n_slipping_;
@@ -65,13 +65,15 @@ void SlipFinder::find(double time_s, const interface::Interface& state, bool cha
     memory_.slipping[i] = state.slipping[i];
   }
   seen.moves = n_slipping_ > 0 && any_slips_faster(creep_m_per_s_, state, first_, end_);
-  renew_tractions(state);
+  std::ranges::copy(state.t_Pa, memory_.t_Pa.begin());
+  std::ranges::copy(state.p_Pa, memory_.p_Pa.begin());
   std::ranges::copy(state.strength_Pa, memory_.strength_Pa.begin());
   memory_.time_s = time_s;
 }
 
-double SlipFinder::locate_onset(std::size_t node, double time_s, const interface::Interface& state,
-                                std::span<record::Traction> around) const {
+void SlipFinder::locate_onset(SlipChange& onset, double time_s, const interface::Interface& state,
+                              std::span<record::Traction> around) const {
+  const auto node = static_cast<std::size_t>(onset.node);
   // |t| / strength passes 1 between the last time and this one; a node without strength, open or not, has no
   // ratio to interpolate and begins to slip now.
   double part = 1;
@@ -84,23 +86,17 @@ double SlipFinder::locate_onset(std::size_t node, double time_s, const interface
   for (int k = -halo_; k <= halo_; ++k) {
     auto& at = around[static_cast<std::size_t>(k + halo_)];
     const auto i = static_cast<std::ptrdiff_t>(node) + k;
-    if (i < 0 || i >= static_cast<std::ptrdiff_t>(state.size())) {
+    if (i < static_cast<std::ptrdiff_t>(first_) || i >= static_cast<std::ptrdiff_t>(end_)) {
       at = {std::nan(""), std::nan("")};
       continue;
     }
+    at = traction_between({memory_.t_Pa[i], memory_.p_Pa[i]}, {state.t_Pa[i], state.p_Pa[i]}, part);
     // At the node itself the traction rises to the strength, interpolated as the others.
-    const double p = memory_.p_Pa[i] + part * (state.p_Pa[i] - memory_.p_Pa[i]);
     const double strength = strength_before + part * (strength_now - strength_before);
-    const double t = k == 0 ? std::copysign(strength, state.t_Pa[i])
-                            : memory_.t_Pa[i] + part * (state.t_Pa[i] - memory_.t_Pa[i]);
-    at = {t, p};
+    if (k == 0) at.t_Pa = std::copysign(strength, state.t_Pa[i]);
   }
-  return memory_.time_s + part * (time_s - memory_.time_s);
-}
-
-void SlipFinder::renew_tractions(const interface::Interface& state) {
-  std::ranges::copy(state.t_Pa, memory_.t_Pa.begin());
-  std::ranges::copy(state.p_Pa, memory_.p_Pa.begin());
+  onset.time_s = memory_.time_s + part * (time_s - memory_.time_s);
+  onset.share = part;
 }
 
 Recorder::Recorder(const statics::Equilibrium& before, const PerNode& mu_s, int halo, double creep_m_per_s)

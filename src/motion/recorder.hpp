@@ -31,6 +31,7 @@ struct SlipChange {
   std::int32_t node = 0;
   bool begins = false;
   double time_s = 0;  ///< of a beginning located inside the (sub-)step
+  double share = 1;   ///< of the (sub-)step that has passed then
 };
 
 /// What a contact update shows of slip.
@@ -40,6 +41,12 @@ struct SlipSeen {
   std::vector<SlipChange> changes;       ///< nodes ascending
   std::vector<record::Traction> around;  ///< at the beginnings among them, [beginnings x (2 halo + 1)]
 };
+
+/// At an onset, from those of the updates before and after it. @param share  see SlipChange
+inline record::Traction traction_between(const record::Traction& before, const record::Traction& after,
+                                         double share) {
+  return {before.t_Pa + share * (after.t_Pa - before.t_Pa), before.p_Pa + share * (after.p_Pa - before.p_Pa)};
+}
 
 /// Finds beginnings and ends of slip between successive contact updates.
 class SlipFinder {
@@ -54,12 +61,10 @@ class SlipFinder {
   /// @param before  the state at time 0, before the first (sub-)step
   /// @param mu_s    coefficient at rest in that state
   SlipFinder(const statics::Equilibrium& before, const PerNode& mu_s, int halo, double creep_m_per_s);
-  /// @param first, end  nodes that it looks at; of the others it knows the tractions
+  /// @param first, end  nodes that it looks at; around onsets tractions of others are not numbers
   SlipFinder(Memory memory, std::size_t first, std::size_t end, int halo, double creep_m_per_s);
 
   void find(double time_s, const interface::Interface& state, bool changed, SlipSeen& seen);
-  /// Takes the last update's tractions again, where they have been corrected since.
-  void renew_tractions(const interface::Interface& state);
 
   const Memory& memory() const { return memory_; }
   Memory& memory() { return memory_; }
@@ -79,8 +84,8 @@ class SlipFinder {
 
  private:
   /// Finds the time of an onset and the tractions around it.
-  double locate_onset(std::size_t node, double time_s, const interface::Interface& state,
-                      std::span<record::Traction> around) const;
+  void locate_onset(SlipChange& onset, double time_s, const interface::Interface& state,
+                    std::span<record::Traction> around) const;
 
   Memory memory_;
   std::size_t first_ = 0, end_ = 0;

@@ -68,11 +68,6 @@ double estimated_critical_shear_m(const input::Case& config) {
   }
 }
 
-/// Columns around an onset whose tractions are recorded.
-double fronts_halo(const input::Case& config) {
-  return std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
-}
-
 double interface_bytes(const input::Case& config, const Size& size) {
   return size.n_interface * bytes_per_interface_node(config);
 }
@@ -192,7 +187,7 @@ Size held_here(const input::Case& config, Size size, const Processes* processes)
   size.statics_share = share_here(processes);
   if (processes == nullptr || !leads_by_interface(config, processes->size())) return size;
   const double width = size.n_interface / processes->size();
-  const double halo = 2.0 * (config.time.interface_substeps + 1) + 2 * fronts_halo(config);
+  const double halo = 2.0 * (config.time.interface_substeps + 2);
   const double held = share_here(processes) * (1 + std::max(0.1, halo / width));
   size.n_nodes *= held;
   size.n_cells *= held;
@@ -284,7 +279,8 @@ Size estimated_size(const input::Case& config) {
 }
 
 double bytes_per_interface_node(const input::Case& config) {
-  const double around = 2 * number * (2 * fronts_halo(config) + 1);
+  const double halo = std::ceil(config.fronts.l_star_m / config.plate.element_size_m) + 1;
+  const double around = 2 * number * (2 * halo + 1);
   const double state = 30 * number + 2 * number + around;
   // A node's onsets and stops: the first ones, and those that other nodes' first onsets fell between.
   constexpr double changes = 6;

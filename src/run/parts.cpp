@@ -157,8 +157,7 @@ std::vector<motion::BodySteps> WholeBodies::steps() const {
 }
 
 motion::Division WholeBodies::divided(int n_processes, std::span<const motion::BodySteps> steps) const {
-  return motion::divide_bodies(bodies_, steps, config_.time, n_processes,
-                               motion::halo_for(plate(), config_.fronts.l_star_m));
+  return motion::divide_bodies(bodies_, steps, config_.time, n_processes);
 }
 
 void require_divisible(const input::Case& config, const Processes& processes) {

@@ -44,6 +44,7 @@ struct Problem {
   interface::ContactModel contact = support::paper_law;
   double t_over_p = 1.2;
   double patch = 1.0 / 3;  ///< its middle, in lengths of the plate
+  int halo = 3;            ///< nodes around an onset whose tractions are recorded
   std::vector<record::ProbePlace> probes = {{"a", 0.0501, 0.0049}, {"b", 0.1004, 0.0102}};
 };
 
@@ -72,12 +73,12 @@ struct Bodies {
 };
 
 struct Begin {
+  int halo = 0;
   statics::Equilibrium state;
   Loads loads;
 };
 
 constexpr double p_Pa = 5e6;
-constexpr int halo = 3;
 
 Begin begin_of(const Problem& problem, const Bodies& bodies) {
   const auto n = bodies.above.lower.size();
@@ -86,7 +87,8 @@ Begin begin_of(const Problem& problem, const Bodies& bodies) {
   for (std::size_t i = 0; i < n; ++i)
     tractions.t_s_Pa.push_back(problem.t_over_p * p_Pa * (1 + 1e-2 * std::sin(0.1 * static_cast<double>(i))));
   tractions.p_s_Pa.assign(n, p_Pa);
-  Begin begin{statics::prestressed(bodies.above, tractions), {tractions.t_s_Pa, tractions.p_s_Pa}};
+  Begin begin{
+      problem.halo, statics::prestressed(bodies.above, tractions), {tractions.t_s_Pa, tractions.p_s_Pa}};
   if (bodies.below)
     begin.state.below_u_m = begin.state.below_u_per_shear = solid::Field(bodies.below->n_nodes());
   begin.loads.intact.assign(n, 1.0);
@@ -107,7 +109,7 @@ struct Outcome {
 
 /// A run that may change its stepper on the way.
 struct Journey {
-  explicit Journey(const Begin& begin) : recorder(begin.state, 1.3, halo, 1e-6) {}
+  explicit Journey(const Begin& begin) : recorder(begin.state, 1.3, begin.halo, 1e-6) {}
   Recorder recorder;
   Outcome outcome;
 };
@@ -185,7 +187,7 @@ class Team {
       : problem_(problem), bodies_(problem), mail_(n_processes), leader_(mail_, 0) {
     const auto sources = bodies_.sources();
     for (const auto& source : sources) steps_.push_back(body_steps(source, problem.time));
-    division_ = divide_bodies(sources, steps_, problem.time, n_processes, halo);
+    division_ = divide_bodies(sources, steps_, problem.time, n_processes);
     for (int rank = 1; rank < n_processes; ++rank)
       others_.emplace_back([this, rank] {
         test::ThreadProcess process(mail_, rank);
@@ -234,7 +236,7 @@ void expect_same(const Outcome& one, const Outcome& several, double rounding) {
   for (std::size_t k = 0; k < one.record.onsets.size(); ++k) {
     EXPECT_EQ(one.record.onsets[k].node, several.record.onsets[k].node);
     EXPECT_EQ(one.record.onsets[k].time_s, several.record.onsets[k].time_s);
-    for (int a = 0; a < 2 * halo + 1; ++a) {
+    for (int a = 0; a < 2 * one.record.halo + 1; ++a) {
       const auto& x = one.record.around_onset(k)[a];
       const auto& y = several.record.around_onset(k)[a];
       if (std::isnan(x.t_Pa)) {
@@ -532,6 +534,19 @@ int allowed_instead(int n, const Problem& problem, const std::string& why) {
   return n;
 }
 
+TEST(Parts, RecordTractionsAroundOnsetsAsFarAsTheyReach) {
+  for (const int reach : {0, 12, 60})
+    for (const auto sides : {mesh::Sides::free, mesh::Sides::periodic}) {
+      Problem problem;
+      problem.halo = reach;
+      problem.plate.sides = sides;
+      const auto one = run_by_one(problem, n_steps);
+      EXPECT_GT(one.record.onsets.size(), 50U);
+      // Of 40 columns, so that the farthest lie beyond the part beside it.
+      for (const int n : {2, 5}) expect_same(one, run_by(n, problem, n_steps), 1e-13);
+    }
+}
+
 TEST(BodySteps, OfManySquaresFollowFromTheirInterface) {
   for (const auto sides : {mesh::Sides::free, mesh::Sides::periodic}) {
     // Sides that rounding makes unequal.
@@ -554,7 +569,7 @@ TEST(Parts, DoNotEndAtARoundedCorner) {
     problem.time.interface_rows = interface_rows;
     const auto one = run_by_one(problem, n_steps);
     std::set<int> same;
-    for (const int n : {6, 7, 8, 9, 10, 11, 12}) {
+    for (const int n : {6, 7, 8, 9, 10, 11, 12, 13, 14, 15}) {
       const int allowed = allowed_instead(n, problem, "rounded corner");
       SCOPED_TRACE(fmt::format("{} processes, {} rows", allowed, interface_rows));
       ASSERT_GT(allowed, 0);
