@@ -16,8 +16,9 @@ case=$1
 dir=$2
 
 begin=("$case" -o "$dir")
-[ -e "$dir" ] && begin=(--restart "$dir")
-srun --mpi=pmix --kill-on-bad-exit=1 slipfront run "${begin[@]}" --threads "${SLURM_CPUS_PER_TASK:-1}" --quiet
+[ -e "$dir/unfinished" ] || [ -e "$dir/run.json" ] && begin=(--restart "$dir")
+cpus=${SLURM_CPUS_PER_TASK:-1} # of which srun knows nothing since Slurm 22.05
+srun --mpi=pmix --kill-on-bad-exit=1 --cpus-per-task="$cpus" slipfront run "${begin[@]}" --threads "$cpus" --quiet
 code=$?
 [ "$code" -eq 143 ] && scontrol requeue "$SLURM_JOB_ID"
 exit "$code"

@@ -155,10 +155,11 @@ void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, st
                        sharing.n_processes, sharing.n_processors, sharing.network.latency_s * 1e6,
                        sharing.network.bandwidth_bytes_per_s * 1e-9));
   list.add("  columns of nodes of each",
-           fmt::format("{}, and {} beside them on either side", columns_text(division), division.halo));
+           fmt::format("{}, and {} beside them on either side", columns_text(division),
+                       division.n_parts() > 1 ? division.halo : 0));
   list.add("  exchange every", fmt::format("{} steps", division.steps_per_exchange));
   list.add("  bytes sent per step",
-           fmt::format("{:.4g} by a process between two others", cost.bytes_per_step));
+           fmt::format("{:.4g} by the process that sends most", cost.bytes_per_step));
   list.add("  memory", fmt::format("{:.3g} GB of the leader, {:.3g} GB of each other process",
                                    cost.leader_memory_bytes * 1e-9, cost.memory_bytes * 1e-9));
   add_s("  time: own columns", cost.own_s);
@@ -235,7 +236,7 @@ void add_info(Command& app) {
       ->range(1, 10'000'000);
   command
       ->add_option("--processors", shared->n_processors,
-                   "Processors that the processes share; by default one for each")
+                   "Processors of all machines that the processes share; by default one for each")
       ->range(1, 10'000'000);
   command
       ->add_option("--latency-s", shared->latency_s,

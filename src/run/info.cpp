@@ -280,6 +280,7 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   info.node_updates_per_s = node_updates_per_step / measured_step_s(config, timed, n_steps, n_steps);
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info);
   if (sharing) info.shared = shared_by(config, meshes, timed, *sharing, info);
+  if (sharing && sharing->n_processes > 1) info.needs.checkpoint_bytes *= shared_checkpoint_bytes;
   return info;
 }
 

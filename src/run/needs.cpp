@@ -84,9 +84,8 @@ std::filesystem::path existing_parent(const std::filesystem::path& folder) {
   return path;
 }
 
-/// Of a node while several processes keep a checkpoint: what each keeps, and the message with it; and such a
-/// checkpoint over that of one process: nodes with numbers.
-constexpr double kept_node_bytes = 2 * 40, shared_checkpoint_bytes = 1.25;
+/// Of a node while several processes keep a checkpoint: what each keeps, and the message with it.
+constexpr double kept_node_bytes = 2 * 40;
 
 /// glibc keeps up to two freed arrays as long as the largest that it has taken from its heap, of 32 MB at
 /// most: beyond that it gives memory back.
@@ -320,7 +319,7 @@ Needs needs(const input::Case& config, const Size& size) {
   if (const auto n_probes = config.probes.x_m.size(); n_probes > 0)
     n.probe_bytes = 2 * rows_of(config.time.end_s, config.probes.interval_s, size.step_s) * number *
                     static_cast<double>(record::probe_row_values(n_probes));
-  n.checkpoint_bytes = 2 * (2 * field + interface_bytes(config, size));
+  n.checkpoint_bytes = 3 * (2 * field + interface_bytes(config, size));  // two, and one that is written
   n.energy_bytes = n.energy_rows * bytes_per_number_in_text * sizeof(record::Energies) / number;
   return n;
 }

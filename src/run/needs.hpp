@@ -44,6 +44,9 @@ inline constexpr double program_bytes = 26e6;
 /// Of a node of the interface: its state, and the record of its slip.
 double bytes_per_interface_node(const input::Case& config);
 
+/// A checkpoint of several processes over that of one: it numbers its nodes.
+inline constexpr double shared_checkpoint_bytes = 1.25;
+
 /// Work, memory and space on disk that a run takes. Bytes on disk are the most that lies there at one time:
 /// while they become the results, raw history and snapshots lie beside them.
 struct Needs {

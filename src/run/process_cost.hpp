@@ -50,7 +50,7 @@ struct ProcessCost {
   double gathering_s = 0;     ///< of samples, of what each contact update saw, of snapshots
   double statics_s = 0;       ///< for which the others wait, or which they share
   double start_s = 0;         ///< meshes and initial motion, sent by the leader
-  double bytes_per_step = 0;  ///< that a process between two others sends in exchanges
+  double bytes_per_step = 0;  ///< that the process with most neighbours sends in exchanges
   double memory_bytes = 0, leader_memory_bytes = 0;
 
   double event_s() const { return own_s + halo_s + exchange_s + command_s + gathering_s; }

@@ -122,7 +122,7 @@ def test_info_is_of_the_run(tmp_path, mpirun):
     alone, shared = told_by_info(mpirun, case), told_by_info(mpirun, case, "--processes", 3)
     assert alone["nodes"].startswith(f"{1001 * (601 + 551)} (1000 on the interface, ")
     assert shared["nodes"] == f"{1001 * (601 + 551)} (1000 on the interface)"
-    for key in ("cells", "largest stable step", "step", "steps to the end", "disk", "expected regime"):
+    for key in ("cells", "largest stable step", "step", "steps to the end", "expected regime"):
         assert shared[key] == alone[key], key
     updates = [told["node updates"].split(" at ")[0] for told in (alone, shared)]
     assert updates[0] == updates[1]
