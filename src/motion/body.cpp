@@ -2,7 +2,6 @@
 #include "motion/body.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "base/error.hpp"
@@ -17,9 +16,7 @@ int rolling_columns(const solid::Operator& op) {
   return op.blocks.empty() ? 0 : op.widest_row();
 }
 
-BodySteps steps_of(const BodySource& source, const solid::Operator& op, const TimeStepping& time) {
-  if (source.part != nullptr) return source.part->steps;
-  const double omega = solid::largest_frequency_rad_per_s(source.mesh, source.material, op);
+BodySteps steps_of(const BodySource& source, double omega, const TimeStepping& time) {
   const double stable_s = solid::stable_step_s(omega, source.material.stiffness_damping_s);
   return {stable_s, step_multiples(source.mesh, source.material, time, stable_s)};
 }
@@ -48,32 +45,23 @@ BodyMotion motion_of(const BodySource& source) {
   return motion;
 }
 
-/// Of squares alone, as solid::frequency_bound_rad_per_s finds it in their cells.
-double smallest_side_m(const mesh::Mesh& interface) {
-  double smallest_m = std::numeric_limits<double>::infinity();
-  const auto look_at = [&](mesh::Node n, mesh::Node next) {
-    const double x_m = interface.x_m[n];
-    smallest_m = std::min(smallest_m, x_m + mesh::distance_x_m(interface, n, next) - x_m);
-  };
-  const auto& lower = interface.lower;
-  for (std::size_t k = 0; k + 1 < lower.size(); ++k) look_at(lower[k], lower[k + 1]);
-  if (interface.period_m > 0) look_at(lower.back(), lower.front());
-  return smallest_m;
-}
-
 }  // namespace
 
 BodySteps body_steps(const BodySource& body, const TimeStepping& time) {
-  if (body.mesh.is_interface()) {
-    const double omega = solid::frequency_of_squares_rad_per_s(smallest_side_m(body.mesh), body.material);
-    return {solid::stable_step_s(omega, body.material.stiffness_damping_s), {1}};
-  }
-  return steps_of(body, solid::make_operator(body.mesh, body.material), time);
+  const auto& [mesh, material, part] = body;
+  const double omega = mesh.is_interface() ? solid::frequency_bound_rad_per_s(mesh, material)
+                                           : solid::largest_frequency_rad_per_s(
+                                                 mesh, material, solid::make_operator(mesh, material));
+  return steps_of(body, omega, time);
 }
 
 Body::Body(const BodySource& source, const TimeStepping& time)
     : motion_(motion_of(source)),
-      steps_(steps_of(source, motion_.op, time)),
+      steps_(source.part != nullptr
+                 ? source.part->steps
+                 : steps_of(source,
+                            solid::largest_frequency_rad_per_s(source.mesh, source.material, motion_.op),
+                            time)),
       finer_w_(rolling_columns(motion_.op)),
       lower_(source.mesh.lower),
       lower_runs_(runs_of(source.mesh.lower, motion_)),
@@ -133,10 +121,12 @@ double Body::step_s(mesh::Node n) const {
 }
 
 void Body::start(const solid::Field& u_m, const solid::Field& u_per_shear, double top_speed_m_per_s) {
-  motion_.u_m = u_m;
+  const bool is_strained = u_m.size() > 0;
+  motion_.u_m = is_strained ? u_m : solid::Field(motion_.v_m_per_s.size());
   for (std::size_t n = 0; n < motion_.v_m_per_s.size(); ++n) {
-    motion_.v_m_per_s.x[n] = top_speed_m_per_s * u_per_shear.x[n];
-    motion_.v_m_per_s.y[n] = top_speed_m_per_s * u_per_shear.y[n];
+    const double of_top = motion_.op.is_top[n] ? 1 : 0;
+    motion_.v_m_per_s.x[n] = top_speed_m_per_s * (is_strained ? u_per_shear.x[n] : of_top);
+    motion_.v_m_per_s.y[n] = is_strained ? top_speed_m_per_s * u_per_shear.y[n] : 0;
   }
   for (auto& level : levels_.level)
     if (!level.shared.node.empty()) find_steady_force(level);

@@ -71,7 +71,7 @@ class Body {
 
   /// Begins the motion at a place of equilibrium, with the velocity that the top's gives to u_per_shear: what
   /// the levels do to each other there is kept as a steady force, without which a stressed body at rest would
-  /// not stay at rest.
+  /// not stay at rest. Without displacements nothing is strained, and nothing but the loaded edge moves.
   void start(const solid::Field& u_m, const solid::Field& u_per_shear, double top_speed_m_per_s);
 
   /// What a step of the stepper has of its own while it is under way; several are, see threads::Wavefront.

@@ -274,18 +274,7 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
 
 void Part::start(Parcel& given) {
   statics::Equilibrium e;
-  const auto& bodies = stepper_->bodies();
-  const bool is_strained = given.take<std::uint8_t>() != 0;
-  const auto fields_of = [&](const Body& body, solid::Field& u_m, solid::Field& u_per_shear) {
-    const auto n = body.u_m().size();
-    u_m = is_strained ? take_field(given) : solid::Field(n);
-    u_per_shear = is_strained ? take_field(given) : solid::Field(n);
-  };
-  fields_of(bodies.front(), e.u_m, e.u_per_shear);
-  if (!is_strained)
-    for (std::size_t n = 0; n < e.u_per_shear.size(); ++n)
-      if (bodies.front().op().is_top[n]) e.u_per_shear.x[n] = 1;
-  if (bodies.size() > 1) fields_of(bodies.back(), e.below_u_m, e.below_u_per_shear);
+  for (auto* field : {&e.u_m, &e.u_per_shear, &e.below_u_m, &e.below_u_per_shear}) *field = take_field(given);
   e.tractions.t_s_Pa = given.take_all<double>();
   e.tractions.p_s_Pa = given.take_all<double>();
   e.contact = given.take_all<statics::Contact>();

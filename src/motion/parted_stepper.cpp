@@ -39,13 +39,13 @@ std::vector<T> cut(const std::vector<T>& values, const mesh::Subset& places) {
   return some;
 }
 
-/// Some columns of a field over a whole body.
+/// Some columns of a field over a whole body, or none of an empty one.
 void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, const solid::Field& field,
                  Parcel& to) {
   std::vector<double> values;
   for (const auto* component : {&field.x, &field.y}) {
     values.clear();
-    for (int r = 0; r < body.n_rows(); ++r)
+    for (int r = 0; r < (component->empty() ? 0 : body.n_rows()); ++r)
       for (const auto& range : columns.ranges()) {
         const auto nodes = body.nodes(r, range);
         values.insert(values.end(), component->begin() + nodes.first, component->begin() + nodes.end());
@@ -126,16 +126,10 @@ void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_
     Parcel parcel;
     const auto columns = division_.all(part);
     const auto& lower = all_lower_[static_cast<std::size_t>(part)];
-    const bool is_strained = e.u_m.size() > 0;
-    parcel.put(static_cast<std::uint8_t>(is_strained));
-    if (is_strained) {
-      put_columns(columns_.front(), columns, e.u_m, parcel);
-      put_columns(columns_.front(), columns, e.u_per_shear, parcel);
-      if (columns_.size() > 1) {
-        put_columns(columns_.back(), columns, e.below_u_m, parcel);
-        put_columns(columns_.back(), columns, e.below_u_per_shear, parcel);
-      }
-    }
+    put_columns(columns_.front(), columns, e.u_m, parcel);
+    put_columns(columns_.front(), columns, e.u_per_shear, parcel);
+    put_columns(columns_.back(), columns, e.below_u_m, parcel);
+    put_columns(columns_.back(), columns, e.below_u_per_shear, parcel);
     parcel.put(cut(e.tractions.t_s_Pa, lower)).put(cut(e.tractions.p_s_Pa, lower));
     parcel.put(cut(e.contact, lower)).put(top_speed_m_per_s);
     for (const auto* values :
@@ -327,11 +321,12 @@ std::vector<SlipSeen> PartedStepper::joined(std::vector<Parcel> seen_by_part, st
         change.node = all_lower_[part].number_at(change.node);
         all.changes.push_back(change);
         if (!change.begins) continue;
-        for (std::size_t other = 0; other < own_lower_.size(); ++other) {
-          const auto own = own_lower_[other];
-          const int begin = std::max(own.begin, change.node - reach);
-          const int end = std::min(own.end, change.node + reach + 1);
-          if (other == part || begin >= end) continue;
+        const auto near = std::ranges::upper_bound(own_lower_, change.node - reach, {}, &solid::Span::end);
+        for (auto other = static_cast<std::size_t>(near - own_lower_.begin());
+             other < own_lower_.size() && own_lower_[other].begin <= change.node + reach; ++other) {
+          if (other == part) continue;
+          const int begin = std::max(own_lower_[other].begin, change.node - reach);
+          const int end = std::min(own_lower_[other].end, change.node + reach + 1);
           const int place = all_lower_[other].place_of(begin);
           wanted[other].push_back({static_cast<std::int64_t>(update), {place, place + end - begin}});
           gaps[other].push_back(

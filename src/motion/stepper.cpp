@@ -116,7 +116,8 @@ double Stepper::node_updates_per_step() const {
 void Stepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads) {
   bodies_.front().start(equilibrium.u_m, equilibrium.u_per_shear, top_speed_m_per_s);
   if (bodies_.size() > 1)
-    bodies_.back().start(equilibrium.below_u_m, equilibrium.below_u_per_shear, top_speed_m_per_s);
+    bodies_.back().start(equilibrium.below_u_m, equilibrium.below_u_per_shear,
+                         equilibrium.below_u_m.size() > 0 ? top_speed_m_per_s : 0);
   coupling_.start(bodies_, equilibrium, std::move(loads));
   step_ = 0;
 }

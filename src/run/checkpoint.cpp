@@ -10,7 +10,6 @@
 
 #include "base/error.hpp"
 #include "base/version.hpp"
-#include "statics/prestress.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -68,10 +67,6 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
   if (initial.tributary_m.size() != n || initial.mu_s.size() != (varies ? n : 0) || !fits(initial) ||
       (initial.ramp && (!fits(*initial.ramp) || !record::is_consistent(initial.ramp->record))))
     throw UserError("the state before the event that was kept is of another plate");
-  // Several processes may have kept it without fields.
-  if (initial.prescribed && initial.common.u_m.size() != static_cast<std::size_t>(initial.mesh.n_nodes()))
-    initial.common = initial.spontaneous = statics::prestressed(
-        initial.mesh, std::move(initial.common.tractions), initial.base ? &*initial.base : nullptr);
   return initial;
 }
 

@@ -63,9 +63,23 @@ mesh::Mesh square_block(int side, double spacing_m) {
   return block;
 }
 
+/// Of the squares on a row of nodes, as cell_coordinates has it.
+double smallest_side_m(const mesh::Mesh& interface) {
+  double smallest_m = std::numeric_limits<double>::infinity();
+  const auto look_at = [&](mesh::Node n, mesh::Node next) {
+    const double x_m = interface.x_m[n];
+    smallest_m = std::min(smallest_m, x_m + mesh::distance_x_m(interface, n, next) - x_m);
+  };
+  const auto& lower = interface.lower;
+  for (std::size_t k = 0; k + 1 < lower.size(); ++k) look_at(lower[k], lower[k + 1]);
+  if (interface.period_m > 0) look_at(lower.back(), lower.front());
+  return smallest_m;
+}
+
 }  // namespace
 
 double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material) {
+  if (mesh.is_interface()) return frequency_of_squares_rad_per_s(smallest_side_m(mesh), material);
   std::vector<bool> near(mesh.cells.size(), false), of_near(mesh.n_nodes(), false);
   double smallest_side_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {

@@ -205,6 +205,7 @@ double largest_frequency_rad_per_s(const Operator& op);
 /// those around them, free as well. A plate divided into parts, each with its own share of the mass, has no
 /// higher frequency than the highest of them; free blocks of 20 x 20 and more squares differ by less than
 /// 1e-3.
+/// @param mesh  of squares alone the interface is enough, see mesh::make_interface
 double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material);
 
 /// The same of squares alone, with this smallest side.
