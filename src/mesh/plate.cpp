@@ -258,6 +258,16 @@ class Maker {
     return std::move(mesh_);
   }
 
+  Mesh make_rows(int begin, int end) && {
+    SLIPFRONT_ASSERT(blocks_.size() == 1 && !rounded_, "rows of one grid");
+    const auto& block = blocks_.front();
+    mesh_.grid.rows = end - begin;
+    for (int j = begin; j <= end; ++j)
+      for (const int i : block.held) add_grid_node(block, i, j);
+    for (int j = 0; j < mesh_.grid.rows; ++j) add_row_of_squares(block, j);
+    return std::move(mesh_);
+  }
+
   Mesh make() && {
     const auto n_nodes = static_cast<std::size_t>(blocks_.back().first_above());
     mesh_.x_m.reserve(n_nodes);
@@ -315,16 +325,19 @@ class Maker {
   }
 
   void add_squares(const Block& block) {
-    const bool is_folded = rounded_ && &block == blocks_.data();
-    for (int j = 0; j < block.grid.rows; ++j)
-      for (const int i : block.held) {
-        if (i == block.grid.columns) continue;
-        if (is_folded && j <= rounded_->cut())
-          add_folded(block, i, j);
-        else
-          add_cell(
-              {node(block, i, j), node(block, i + 1, j), node(block, i + 1, j + 1), node(block, i, j + 1)});
-      }
+    for (int j = 0; j < block.grid.rows; ++j) add_row_of_squares(block, j);
+  }
+
+  void add_row_of_squares(const Block& block, int j) {
+    const bool is_folded = rounded_ && &block == blocks_.data() && j <= rounded_->cut();
+    for (const int i : block.held) {
+      if (i == block.grid.columns) continue;
+      if (is_folded)
+        add_folded(block, i, j);
+      else
+        add_cell(
+            {node(block, i, j), node(block, i + 1, j), node(block, i + 1, j + 1), node(block, i, j + 1)});
+    }
   }
 
   void add_folded(const Block& block, int i, int j) {
@@ -438,6 +451,10 @@ Mesh make_plate(const Plate& plate, std::string_view table) {
 
 Mesh make_interface(const Plate& plate, std::string_view table) {
   return Maker(plate, Subset(), table).make_lowest_row();
+}
+
+Mesh make_rows(const Plate& plate, int begin, int end, std::string_view table) {
+  return Maker(plate, Subset(), table).make_rows(begin, end);
 }
 
 Mesh make_columns(const Plate& plate, const Subset& columns, std::string_view table) {

@@ -79,6 +79,11 @@ Mesh make_plate(const Plate& plate, std::string_view table = "plate");
 /// and without cells: what is known of a plate whose columns are held elsewhere.
 Mesh make_interface(const Plate& plate, std::string_view table = "plate");
 
+/// The nodes of make_plate in grid rows [begin, end], numbered from 0, with the cells between them: a mesh of
+/// its own for those who write a plate row after row. It has no edges.
+/// @pre elements are equal, corners not wrapped
+Mesh make_rows(const Plate& plate, int begin, int end, std::string_view table = "plate");
+
 /// The nodes of make_plate in some columns, with the cells between them: a mesh of its own, whose nodes and
 /// cells have the order and the places of the whole plate's, to the last bit. The whole plate may have more
 /// nodes than can be numbered.

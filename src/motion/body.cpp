@@ -259,16 +259,27 @@ void Body::reverse(const solid::Field& u_m, double time_s) {
 }
 
 solid::Field Body::mean_velocity_m_per_s() const {
-  solid::Field v = motion_.v_m_per_s;
+  solid::Field v;
+  for (auto component : {&solid::Field::x, &solid::Field::y})
+    append_mean_velocity(component, 0, static_cast<mesh::Node>(motion_.v_m_per_s.size()), v.*component);
+  return v;
+}
+
+void Body::append_mean_velocity(std::vector<double> solid::Field::*component, mesh::Node first,
+                                mesh::Node end, std::vector<double>& to) const {
+  const auto& u_m = motion_.u_m.*component;
+  const auto& v_m_per_s = motion_.v_m_per_s.*component;
+  const auto before = static_cast<std::ptrdiff_t>(to.size());
+  to.insert(to.end(), v_m_per_s.begin() + first, v_m_per_s.begin() + end);
+  const auto of_first = to.begin() + before;
   for (const auto& level : levels_.level) {
     const auto& s = level.shared;
-    for (std::size_t k = 0; k < s.node.size(); ++k) {
+    for (auto k = static_cast<std::size_t>(std::ranges::lower_bound(s.node, first) - s.node.begin());
+         k < s.node.size() && s.node[k] < end; ++k) {
       const auto n = s.node[k];
-      v.x[n] = (motion_.u_m.x[n] - s.u_before_m.x[k]) / level.step_s;
-      v.y[n] = (motion_.u_m.y[n] - s.u_before_m.y[k]) / level.step_s;
+      of_first[n - first] = (u_m[n] - (s.u_before_m.*component)[k]) / level.step_s;
     }
   }
-  return v;
 }
 
 double Body::kinetic_energy_J_per_m() const {

@@ -121,7 +121,11 @@ class Body {
   double kinetic_energy_J_per_m() const;
   double mass_kg_per_m() const;
   double strain_energy_J_per_m() const;
+  /// See Stepper::mean_velocity_m_per_s.
   solid::Field mean_velocity_m_per_s() const;
+  /// A component of it, of the nodes [first, end).
+  void append_mean_velocity(std::vector<double> solid::Field::*component, mesh::Node first, mesh::Node end,
+                            std::vector<double>& to) const;
 
   /// Turns the motion round at the places `u_m`, see Stepper::reverse.
   void reverse(const solid::Field& u_m, double time_s);

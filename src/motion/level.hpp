@@ -58,7 +58,7 @@ struct Dashpot {
 /// force of the level's own cells on them, what it was in the equilibrium at the start acts as a constant
 /// load in each of these steps; the change since then comes as one kick per step of the level, a push.
 struct Shared {
-  std::vector<mesh::Node> node;
+  std::vector<mesh::Node> node;  ///< ascending
   std::vector<NodeRun> runs;
   std::vector<Dashpot> dashpots;
   std::vector<std::int32_t> irregular_row;  ///< of the level; -1: in its stencil row

@@ -242,7 +242,7 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
                               cost()});
       break;
     case PartCommand::snapshot:
-      put_snapshot(answer);
+      put_snapshot(given.take<SnapshotPiece>(), answer);
       break;
     case PartCommand::probed:
       answer.put(stepper_->probed_u_m()).put(stepper_->probed_v_m_per_s());
@@ -437,19 +437,15 @@ void Part::renew_halo() {
   stepper_->take_columns();
 }
 
-void Part::put_snapshot(Parcel& answer) const {
-  const auto put = [&](const Body& body, const std::vector<double>& values) {
-    std::vector<double> own;
-    for (int r = 0; r < body.columns().n_rows(); ++r) {
-      const auto nodes = body.columns().nodes(r, {place_.own.begin, place_.own.end});
-      own.insert(own.end(), values.begin() + nodes.first, values.begin() + nodes.end());
-    }
-    answer.put(own);
-  };
-  for (const auto& body : stepper_->bodies()) {
-    const auto v = body.mean_velocity_m_per_s();
-    for (const auto* values : {&body.u_m().x, &body.u_m().y, &v.x, &v.y}) put(body, *values);
+void Part::put_snapshot(const SnapshotPiece& piece, Parcel& answer) const {
+  const auto body = static_cast<std::size_t>(piece.body);
+  const auto& columns = stepper_->bodies()[body].columns();
+  std::vector<double> own;
+  for (int r = piece.first_row; r < piece.end_row; ++r) {
+    const auto nodes = columns.nodes(r, {place_.own.begin, place_.own.end});
+    stepper_->append(piece.component, body, nodes.first, nodes.end(), own);
   }
+  answer.put(own);
 }
 
 void serve(Processes& processes, Part& part) {

@@ -68,7 +68,7 @@ enum class PartCommand : int {
   tractions,  ///< near the part's ends, in contact updates of these steps
   energies,   ///< and works
   measures,   ///< see PartMeasures
-  snapshot,   ///< own columns of the motion
+  snapshot,   ///< own columns of a piece of it
   probed,     ///< displacements and velocities at the probes
   keep,       ///< the state, for a checkpoint
   restore,    ///< a piece of a state that was kept, and whether it is the last one
@@ -124,6 +124,13 @@ struct TractionsWanted {
   solid::Span nodes;        ///< places along the part's interface
 };
 
+/// Some rows of nodes in a snapshot.
+struct SnapshotPiece {
+  MotionComponent component = MotionComponent::u_x;
+  int body = 0;
+  int first_row = 0, end_row = 0;
+};
+
 /// The part of an event's bodies that one process computes. All processes have one and are given the same
 /// commands, by PartedStepper.
 class Part {
@@ -153,7 +160,7 @@ class Part {
   void renew_halo();
   void begin_counting();
   PartCost cost() const;
-  void put_snapshot(Parcel& answer) const;
+  void put_snapshot(const SnapshotPiece& piece, Parcel& answer) const;
 
   Processes& processes_;
   Division division_;

@@ -54,6 +54,23 @@ void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, con
   }
 }
 
+/// Rows of a body in groups of so many nodes, at most, or single ones.
+std::vector<mesh::Subset::Range> rows_at_once(const mesh::NodeColumns& body) {
+  constexpr int most_nodes = 1 << 19;
+  std::vector<mesh::Subset::Range> groups;
+  int nodes = 0;
+  for (int r = 0; r < body.n_rows(); ++r) {
+    const int of_row = body.row(r).count;
+    if (groups.empty() || nodes + of_row > most_nodes) {
+      groups.push_back({r, r});
+      nodes = 0;
+    }
+    groups.back().end = r + 1;
+    nodes += of_row;
+  }
+  return groups;
+}
+
 }  // namespace
 
 PartedStepper::PartedStepper(Processes& processes, const Division& division, std::unique_ptr<Part> own,
@@ -64,6 +81,10 @@ PartedStepper::PartedStepper(Processes& processes, const Division& division, std
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
     own_lower_.push_back(own_lower_in(*bodies.front(), division.own(part)));
   }
+  for (int component = 0; component < n_motion_components; ++component)
+    for (std::size_t b = 0; b < columns_.size(); ++b)
+      for (const auto& [first, end] : rows_at_once(columns_[b]))
+        snapshot_pieces_.push_back({MotionComponent{component}, static_cast<int>(b), first, end});
 }
 
 PartedStepper::~PartedStepper() {
@@ -418,32 +439,37 @@ std::int64_t PartedStepper::n_nodes() const {
   return n;
 }
 
-Snapshot PartedStepper::snapshot() const {
-  Snapshot all;
-  all.time_s = time_s();
-  const auto n = static_cast<std::size_t>(n_nodes());
-  all.u_m = all.v_m_per_s = solid::Field(n);
+mesh::NodeColumns::Nodes PartedStepper::nodes_of(const SnapshotPiece& piece) const {
+  const auto& body = columns_[static_cast<std::size_t>(piece.body)];
+  const auto first = body.row(piece.first_row).first;
+  return {first, body.row(piece.end_row - 1).end() - first};
+}
+
+std::size_t PartedStepper::snapshot_piece_bytes() const {
+  int most = 0;
+  for (const auto& piece : snapshot_pieces_) most = std::max(most, nodes_of(piece).count);
+  return sizeof(double) * static_cast<std::size_t>(most);
+}
+
+std::vector<double> PartedStepper::snapshot_piece(int k) const {
+  const auto& piece = snapshot_pieces_[static_cast<std::size_t>(k)];
+  const auto& body = columns_[static_cast<std::size_t>(piece.body)];
+  const auto all = nodes_of(piece);
+  std::vector<double> values(static_cast<std::size_t>(all.count));
   int part = 0;
-  ask(PartCommand::snapshot, nothing, [&](Parcel& answer) {
-    const auto own = division_.own(part++);
-    std::size_t before = 0;
-    for (std::size_t b = 0; b < columns_.size(); ++b) {
-      const auto& body = columns_[b];
-      for (auto* values : {&all.u_m.x, &all.u_m.y, &all.v_m_per_s.x, &all.v_m_per_s.y}) {
+  ask(
+      PartCommand::snapshot, [&](int) { return Parcel().put(piece); },
+      [&](Parcel& answer) {
+        const auto own = division_.own(part++);
         const auto of_part = answer.take_all<double>();
-        // Bodies below are described upside down.
-        const bool turns = b > 0 && (values == &all.u_m.y || values == &all.v_m_per_s.y);
         auto from = of_part.begin();
-        for (int r = 0; r < body.n_rows(); ++r) {
+        for (int r = piece.first_row; r < piece.end_row; ++r) {
           const auto nodes = body.nodes(r, {own.begin, own.end});
-          for (auto node = nodes.first; node < nodes.end(); ++node, ++from)
-            (*values)[before + static_cast<std::size_t>(node)] = turns ? -*from : *from;
+          std::copy_n(from, nodes.count, values.begin() + (nodes.first - all.first));
+          from += nodes.count;
         }
-      }
-      before += static_cast<std::size_t>(body.n_nodes());
-    }
-  });
-  return all;
+      });
+  return values;
 }
 
 void PartedStepper::keep(const std::function<void(const KeptMotion& piece)>& take) const {

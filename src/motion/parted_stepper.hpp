@@ -47,7 +47,9 @@ class PartedStepper final : public TimeStepper {
   double kinetic_energy_J_per_m() const override;
   double mass_kg_per_m() const override;
   double energy_of_tractions_J_per_m() const override;
-  Snapshot snapshot() const override;
+  int n_snapshot_pieces() const override { return static_cast<int>(snapshot_pieces_.size()); }
+  std::size_t snapshot_piece_bytes() const override;
+  std::vector<double> snapshot_piece(int k) const override;
 
   const Division& division() const { return division_; }
   /// What each part has cost since this process began or went on with the event.
@@ -72,6 +74,8 @@ class PartedStepper final : public TimeStepper {
   };
   /// Steps before which go_on does not refuse a motion that is physical.
   Steps advance_surely(Recorder& recorder, std::int64_t n_steps, const Between& between);
+  /// Nodes of a piece, by their numbers in the whole body.
+  mesh::NodeColumns::Nodes nodes_of(const SnapshotPiece& piece) const;
   /// What all parts have seen in the updates of a command, in the nodes' numbers along the whole interface;
   /// tractions around onsets near a part's end are asked of the parts beside it.
   std::vector<SlipSeen> joined(std::vector<Parcel> seen_by_part, std::size_t n_updates,
@@ -86,6 +90,7 @@ class PartedStepper final : public TimeStepper {
   /// Interface nodes of each part: all that it computes, and those that count.
   std::vector<mesh::Subset> all_lower_;
   std::vector<solid::Span> own_lower_;
+  std::vector<SnapshotPiece> snapshot_pieces_;
   std::vector<Probe> probes_;
   std::vector<int> part_of_probe_;
   bool has_finders_ = false;

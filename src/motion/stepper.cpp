@@ -54,13 +54,6 @@ double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, co
   return lowest_s;
 }
 
-/// Adds the field of a body that is described upside down.
-void append_upright(solid::Field& field, const solid::Field& below) {
-  field.x.insert(field.x.end(), below.x.begin(), below.x.end());
-  field.y.reserve(field.y.size() + below.size());
-  for (const double y : below.y) field.y.push_back(-y);
-}
-
 }  // namespace
 
 int steps_at_once(double stable_step_s, double least_s) {
@@ -243,13 +236,34 @@ double Stepper::energy_of_tractions_J_per_m() const {
   return 0.5 * bodies_.front().mass_kg_per_m() * v * v;
 }
 
-Snapshot Stepper::snapshot() const {
-  Snapshot snapshot{time_s(), u_m(), mean_velocity_m_per_s()};
-  for (const auto& below : bodies().subspan(1)) {
-    append_upright(snapshot.u_m, below.u_m());
-    append_upright(snapshot.v_m_per_s, below.mean_velocity_m_per_s());
+std::size_t Stepper::snapshot_piece_bytes() const {
+  return n_motion_components * sizeof(double) * static_cast<std::size_t>(n_nodes());
+}
+
+std::vector<double> Stepper::snapshot_piece(int /*k*/) const {
+  std::vector<double> all;
+  all.reserve(snapshot_piece_bytes() / sizeof(double));
+  for (int component = 0; component < n_motion_components; ++component)
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      append(MotionComponent{component}, b, 0, static_cast<mesh::Node>(bodies_[b].u_m().size()), all);
+  return all;
+}
+
+void Stepper::append(MotionComponent component, std::size_t body, mesh::Node first, mesh::Node end,
+                     std::vector<double>& to) const {
+  using enum MotionComponent;
+  const auto& of_body = bodies_[body];
+  const bool is_y = component == u_y || component == v_y;
+  const auto along = is_y ? &solid::Field::y : &solid::Field::x;
+  const auto before = static_cast<std::ptrdiff_t>(to.size());
+  if (component == u_x || component == u_y) {
+    const auto& u_m = of_body.u_m().*along;
+    to.insert(to.end(), u_m.begin() + first, u_m.begin() + end);
+  } else {
+    of_body.append_mean_velocity(along, first, end, to);
   }
-  return snapshot;
+  // Bodies below are described upside down.
+  if (body > 0 && is_y) std::for_each(to.begin() + before, to.end(), [](double& value) { value = -value; });
 }
 
 record::Energies Stepper::energies() {

@@ -115,7 +115,12 @@ class Stepper : public TimeStepper {
   double energy_of_tractions_J_per_m() const override;
   record::Energies energies() override;
 
-  Snapshot snapshot() const override;
+  int n_snapshot_pieces() const override { return 1; }
+  std::size_t snapshot_piece_bytes() const override;
+  std::vector<double> snapshot_piece(int k) const override;
+  /// Of the nodes [first, end) of a body what a snapshot has.
+  void append(MotionComponent component, std::size_t body, mesh::Node first, mesh::Node end,
+              std::vector<double>& to) const;
 
   /// Calls visit(values, n) with all that changes between two calls of advance and decides on the motion of
   /// some neighbouring columns of nodes; with take_columns after it others may be put there.

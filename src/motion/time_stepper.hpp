@@ -41,6 +41,10 @@ struct Snapshot {
   solid::Field u_m, v_m_per_s;
 };
 
+/// What a snapshot tells of a node, in its order.
+enum class MotionComponent : int { u_x, u_y, v_x, v_y };
+inline constexpr int n_motion_components = 4;
+
 /// Whoever steps the bodies of an event: one process, or several together.
 class TimeStepper {
  public:
@@ -80,7 +84,14 @@ class TimeStepper {
   /// tractions are not balanced. With h/c_L for the step it is near sigma^2/(2E) times the bodies' area.
   virtual double energy_of_tractions_J_per_m() const = 0;
 
-  virtual Snapshot snapshot() const = 0;
+  /// A snapshot is told in pieces, so that none need hold all of it: u_x, u_y, v_x, v_y [nodes], one after
+  /// the other, in so many.
+  virtual int n_snapshot_pieces() const = 0;
+  /// Bytes of the largest of them.
+  virtual std::size_t snapshot_piece_bytes() const = 0;
+  virtual std::vector<double> snapshot_piece(int k) const = 0;
+  /// All of it.
+  Snapshot snapshot() const;
 
  protected:
   TimeStepper() = default;

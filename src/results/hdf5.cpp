@@ -208,14 +208,11 @@ void write(const File& file, const std::string& name, std::span<const std::int64
   write_values(file, name, H5T_NATIVE_INT64, values, shape);
 }
 
-void write(const File& file, const std::string& name, std::span<const std::uint8_t> values,
-           const Shape& shape) {
-  write_values(file, name, H5T_NATIVE_UINT8, values, shape);
-}
-
 void create(const File& file, const std::string& name, Type type, const Shape& shape) {
-  finish(new_dataset(file, name, type == Type::int64 ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, shape), file,
-         name);
+  const hid_t of_hdf5 = type == Type::float64 ? H5T_NATIVE_DOUBLE
+                        : type == Type::int64 ? H5T_NATIVE_INT64
+                                              : H5T_NATIVE_UINT8;
+  finish(new_dataset(file, name, of_hdf5, shape), file, name);
 }
 
 void create_growing(const File& file, const std::string& name, const Shape& row, hsize_t chunk_rows,
@@ -249,6 +246,11 @@ void write_rows(const File& file, const std::string& name, hsize_t first_row,
 void write_rows(const File& file, const std::string& name, hsize_t first_row,
                 std::span<const std::int64_t> values) {
   write_rows_of(file, name, H5T_NATIVE_INT64, first_row, values);
+}
+
+void write_rows(const File& file, const std::string& name, hsize_t first_row,
+                std::span<const std::uint8_t> values) {
+  write_rows_of(file, name, H5T_NATIVE_UINT8, first_row, values);
 }
 
 void set_attribute(const File& file, const std::string& object, const std::string& name,

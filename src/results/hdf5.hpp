@@ -69,11 +69,9 @@ using Shape = std::vector<hsize_t>;
 void write(const File& file, const std::string& name, std::span<const double> values, const Shape& shape);
 void write(const File& file, const std::string& name, std::span<const std::int64_t> values,
            const Shape& shape);
-void write(const File& file, const std::string& name, std::span<const std::uint8_t> values,
-           const Shape& shape);
 
 /// Makes a data set that write_rows fills.
-enum class Type { float64, int64 };
+enum class Type { float64, int64, uint8 };
 void create(const File& file, const std::string& name, Type type, const Shape& shape);
 /// Makes a data set of doubles without rows that append_rows lengthens, stored in chunks of `chunk_rows`
 /// rows.
@@ -89,6 +87,8 @@ void create_growing(const File& file, const std::string& name, const Shape& row,
 void write_rows(const File& file, const std::string& name, hsize_t first_row, std::span<const double> values);
 void write_rows(const File& file, const std::string& name, hsize_t first_row,
                 std::span<const std::int64_t> values);
+void write_rows(const File& file, const std::string& name, hsize_t first_row,
+                std::span<const std::uint8_t> values);
 /// Lengthens a data set by `rows` rows, for write_rows.
 void add_rows(const File& file, const std::string& name, hsize_t rows);
 

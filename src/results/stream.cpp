@@ -37,16 +37,23 @@ class Records {
   std::size_t count() const { return count_; }
 
   /// The next `n` records, value by value.
-  std::vector<double> read(std::size_t n) {
-    std::vector<double> values(n * values_);
+  std::vector<double> read(std::size_t n) { return next_values(n * values_); }
+  /// Some values of a record.
+  std::vector<double> read_values(std::size_t record, std::size_t first, std::size_t n) {
+    stream_.seekg(static_cast<std::streamoff>(sizeof(double) * (record * values_ + first)));
+    return next_values(n);
+  }
+  void rewind() { stream_.seekg(0); }
+
+ private:
+  std::vector<double> next_values(std::size_t n) {
+    std::vector<double> values(n);
     if (!stream_.read(reinterpret_cast<char*>(values.data()),
                       static_cast<std::streamsize>(sizeof(double) * values.size())))
       throw UserError("{}: cannot be read; begin the run again", path_.string());
     return values;
   }
-  void rewind() { stream_.seekg(0); }
 
- private:
   std::filesystem::path path_;
   std::ifstream stream_;
   std::size_t values_, count_ = 0;
@@ -86,15 +93,17 @@ record::ProbeRecord read_probe_rows(Records& records, std::size_t n, std::size_t
   return rows;
 }
 
-motion::Snapshot read_snapshot(Records& records, std::size_t n_nodes) {
-  const auto values = records.read(1);
-  motion::Snapshot snapshot{values[0], solid::Field(n_nodes), solid::Field(n_nodes)};
-  auto from = values.begin() + 1;
-  for (auto* column : {&snapshot.u_m.x, &snapshot.u_m.y, &snapshot.v_m_per_s.x, &snapshot.v_m_per_s.y}) {
-    std::copy_n(from, n_nodes, column->begin());
-    from += static_cast<std::ptrdiff_t>(n_nodes);
-  }
-  return snapshot;
+/// Snapshot k of as many, read where it is wanted.
+SnapshotValues read_snapshot(Records& records, std::size_t k, std::size_t n_nodes) {
+  const auto field = [&records, k, n_nodes](std::size_t component) {
+    return [&records, k, n_nodes, component](std::size_t first, std::size_t n) {
+      solid::Field some;
+      some.x = records.read_values(k, 1 + component * n_nodes + first, n);
+      some.y = records.read_values(k, 1 + (component + 1) * n_nodes + first, n);
+      return some;
+    };
+  };
+  return {records.read_values(k, 0, 1).front(), field(0), field(2)};
 }
 
 }  // namespace
@@ -187,14 +196,13 @@ void ResultStream::hand_over() {
 }
 
 void ResultStream::snapshot(motion::TimeStepper& stepper) {
-  const auto bytes = 4 * sizeof(double) * static_cast<std::size_t>(stepper.n_nodes());
-  writer_.wait_for_room(bytes);
-  const auto taken = std::make_shared<const motion::Snapshot>(stepper.snapshot());
-  writer_.put(bytes, [this, taken] {
-    snapshots_.write(std::span(&taken->time_s, 1));
-    for (const auto* column : {&taken->u_m.x, &taken->u_m.y, &taken->v_m_per_s.x, &taken->v_m_per_s.y})
-      snapshots_.write(*column);
-  });
+  const double time_s = stepper.time_s();
+  writer_.put(sizeof(double), [this, time_s] { snapshots_.write(std::span(&time_s, 1)); });
+  for (int k = 0; k < stepper.n_snapshot_pieces(); ++k) {
+    writer_.wait_for_room(stepper.snapshot_piece_bytes());
+    const auto piece = std::make_shared<const std::vector<double>>(stepper.snapshot_piece(k));
+    writer_.put(sizeof(double) * piece->size(), [this, piece] { snapshots_.write(*piece); });
+  }
 }
 
 ResultStream::Extents ResultStream::keep() {
@@ -243,16 +251,15 @@ void write_probes(const std::filesystem::path& file, const std::filesystem::path
 }
 
 std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
-                            const mesh::Mesh& mesh, const SnapshotContents& contents) {
-  const std::size_t n_nodes = mesh.x_m.size();
-  Records records(raw, 1 + 4 * n_nodes);
+                            const mesh::Slabs& mesh, const SnapshotContents& contents) {
+  Records records(raw, 1 + 4 * mesh.n_nodes);
   if (records.count() == 0) return 0;
   SnapshotFile output(file, mesh, contents);
-  for (std::size_t k = 0; k < records.count(); ++k) output.append(read_snapshot(records, n_nodes));
+  for (std::size_t k = 0; k < records.count(); ++k) output.append(read_snapshot(records, k, mesh.n_nodes));
   output.close();
-  records.rewind();
   const WrittenSnapshots written(file, mesh, contents);
-  for (std::size_t k = 0; k < records.count(); ++k) written.require(k, read_snapshot(records, n_nodes));
+  for (std::size_t k = 0; k < records.count(); ++k)
+    written.require(k, read_snapshot(records, k, mesh.n_nodes));
   written.require_steps(records.count());
   return records.count();
 }

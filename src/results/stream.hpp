@@ -60,7 +60,7 @@ class ResultStream : public motion::Sink {
 
   // Each throws WriteError where a file could not be written, perhaps long before.
   void sample(const record::History& row) override;
-  /// Waits until there is room for a copy of the motion, then takes it.
+  /// Takes each piece of the motion when there is room for a copy of it.
   void snapshot(motion::TimeStepper& stepper) override;
   void probe(const record::ProbeRecord& rows) override;
   /// Hands rows that are not yet a whole block to the writer, for those who look into the files.
@@ -107,6 +107,6 @@ void write_probes(const std::filesystem::path& file, const std::filesystem::path
 /// Makes fields.vtkhdf of a stream's file.
 /// @return the number of snapshots; without any no file is made
 std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
-                            const mesh::Mesh& mesh, const SnapshotContents& contents = {});
+                            const mesh::Slabs& mesh, const SnapshotContents& contents = {});
 
 }  // namespace slipfront::results

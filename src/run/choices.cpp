@@ -98,8 +98,7 @@ bool leads_by_interface(const input::Case& config, int n_processes) {
     const auto n_nodes = static_cast<std::int64_t>((columns + 1) * (rows + 1));
     return solid::takes_frequency_bound(n_nodes, std::span(&grid, 1));
   };
-  return n_processes > 1 && is_prestressed(config) && !has_snapshots(config) &&
-         is_of_many_squares(config.plate) &&
+  return n_processes > 1 && is_prestressed(config) && is_of_many_squares(config.plate) &&
          (!input::has_base_body(config) || is_of_many_squares(input::base_plate(config)));
 }
 

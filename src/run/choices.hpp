@@ -48,8 +48,8 @@ bool is_prestressed(const input::Case& config);
 bool has_snapshots(const input::Case& config);
 
 /// Whether the process that leads several needs no more of the bodies than their interfaces (see
-/// mesh::make_interface): nothing is strained before the event, all cells are squares, so many that the step
-/// follows from their side, and no fields are written.
+/// mesh::make_interface): nothing is strained before the event, and all cells are squares, so many that the
+/// step follows from their side.
 bool leads_by_interface(const input::Case& config, int n_processes);
 
 /// Given tractions at the nodes of the interface, from their file if there is one.

@@ -176,22 +176,6 @@ Meshes check_interfaces(const input::Case& config) {
   return checked_meshes(config, true);
 }
 
-mesh::Mesh joined(Meshes meshes) {
-  auto mesh = std::move(meshes.plate);
-  if (!meshes.base) return mesh;
-  const auto& base = *meshes.base;
-  const auto first = mesh.n_nodes();
-  for (auto grid : mesh::blocks(base)) {
-    grid.first += first;
-    mesh.coarser.push_back(grid);
-  }
-  mesh.x_m.insert(mesh.x_m.end(), base.x_m.begin(), base.x_m.end());
-  for (const double y : base.y_m) mesh.y_m.push_back(-y);
-  for (const auto& [a, b, c, d] : base.cells)  // counterclockwise again
-    mesh.cells.push_back({first + d, first + c, first + b, first + a});
-  return mesh;
-}
-
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,
                                              const motion::Execution& execution) {

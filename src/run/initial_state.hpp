@@ -62,10 +62,6 @@ Meshes check_interfaces(const input::Case& config);
 std::int64_t n_nodes_of(const mesh::Mesh& mesh);
 std::int64_t n_cells_of(const mesh::Mesh& mesh);
 
-/// Both bodies in one mesh, for pictures: the nodes and cells of the body below follow those of the plate,
-/// its y turned downwards, as in motion::Stepper::snapshot.
-mesh::Mesh joined(Meshes meshes);
-
 /// Shown a ramp before its first step, with the monitor that is asked in it yet to be called.
 using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
 

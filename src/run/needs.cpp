@@ -12,6 +12,7 @@
 #include "results/snapshots.hpp"
 #include "results/stream.hpp"
 #include "run/choices.hpp"
+#include "run/snapshot_mesh.hpp"
 #include "solid/operator.hpp"
 #include "stability/verdict.hpp"
 #include "statics/plate_solver.hpp"
@@ -116,16 +117,20 @@ statics::StaticsBudget statics_budget(const input::Case& config, const Size& siz
 /// The event while it is built and goes, with what is recorded of it and waits to be written.
 Budget event_budget(const input::Case& config, const Size& size, double n_snapshots, double energy_rows) {
   return {{fmt::format("the motion of {:.4g} nodes", size.n_nodes),
-           motion::event_bytes(size.n_nodes, size.n_cells, n_snapshots > 0, config.time.precision),
+           motion::event_bytes(size.n_nodes, size.n_cells, n_snapshots > 0 && !size.in_pieces,
+                               config.time.precision),
            larger_elements()},
           {"the interface and the record of its slip", interface_bytes(config, size), larger_elements()},
           energies_budget(energy_rows)};
 }
 
-/// fields.vtkhdf is made of one raw snapshot at a time, beside its mesh.
+/// fields.vtkhdf is made of one raw field at a time, beside its mesh or some rows of it.
 Budget snapshot_budget(const Size& size) {
-  const double raw = 4 * number * size.n_nodes;
-  return {{"a snapshot and its mesh", 2 * raw + node_bytes_of_mesh() * size.n_nodes, larger_elements()}};
+  const double at_once = std::max(static_cast<double>(snapshot_nodes_at_once), 2 * size.n_interface);
+  const double n_nodes = size.leads_by_interface ? std::min(size.n_nodes, at_once) : size.n_nodes;
+  const double field = 2 * number, same_motion = number;
+  return {
+      {"fields and their mesh", (field + same_motion + node_bytes_of_mesh()) * n_nodes, larger_elements()}};
 }
 
 /// What every stage has besides. @param array_bytes  of the arrays that are freed in it
@@ -147,9 +152,11 @@ std::vector<Budget> memory_stages(const input::Case& config, const Size& size, d
     }
   }
   const double most_waiting = history_rows > 0 ? results::ResultStream::most_bytes_waiting : 0;
+  const double in_pieces =
+      size.in_pieces && n_snapshots > 0 ? 2.0 * results::ResultStream::most_bytes_waiting : 0;
   const Budget waiting = {{"rows of history that wait to be written",
-                           std::min(history_rows * history_row_bytes(size), most_waiting),
-                           larger_elements()}};
+                           std::min(history_rows * history_row_bytes(size), most_waiting), larger_elements()},
+                          {"pieces of snapshots that wait to be written", in_pieces, larger_elements()}};
   stages.push_back(with_program(event_budget(config, size, n_snapshots, energy_rows) + waiting, field));
   if (n_snapshots > 0)
     stages.push_back(with_program(snapshot_budget(size) + Budget{energies_budget(energy_rows)}, field));
@@ -184,7 +191,9 @@ double share_here(const Processes* processes) {
 /// What this machine holds of the bodies. Unless the leader leads by the interface it has all of them.
 Size held_here(const input::Case& config, Size size, const Processes* processes) {
   size.statics_share = share_here(processes);
+  size.in_pieces = processes != nullptr;
   if (processes == nullptr || !leads_by_interface(config, processes->size())) return size;
+  size.leads_by_interface = true;
   const double width = size.n_interface / processes->size();
   const double halo = 2.0 * (config.time.interface_substeps + 2);
   const double held = share_here(processes) * (1 + std::max(0.1, halo / width));

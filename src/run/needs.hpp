@@ -32,6 +32,9 @@ struct Size {
   double step_s = 0;
   double n_base_nodes = 0;   ///< of n_nodes those of a base
   double statics_share = 1;  ///< see statics::StaticsSize
+  /// Several processes tell snapshots in pieces.
+  bool in_pieces = false;
+  bool leads_by_interface = false;  ///< see there; then the nodes are those of the parts
 };
 
 /// The same from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,

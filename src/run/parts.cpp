@@ -232,16 +232,15 @@ void carry_out_network(Processes& processes, Parcel& given) {
 }  // namespace
 
 std::vector<Link> measure_network(Processes& processes) {
+  const auto measured = [&](int from, int to) {
+    processes.send(to, network_command(from, false));
+    if (from == 0) return measure_link(processes, to);
+    processes.send(from, network_command(to, true));
+    return processes.receive(from).take<Link>();
+  };
   std::vector<Link> links;
-  for (int rank = 0; rank + 1 < processes.size(); ++rank) {
-    processes.send(rank + 1, network_command(rank, false));
-    if (rank == 0) {
-      links.push_back(measure_link(processes, 1));
-    } else {
-      processes.send(rank, network_command(rank + 1, true));
-      links.push_back(processes.receive(rank).take<Link>());
-    }
-  }
+  for (int rank = 1; rank < processes.size(); ++rank) links.push_back(measured(rank - 1, rank));
+  for (int rank = 2; rank < processes.size(); ++rank) links.push_back(measured(0, rank));
   return links;
 }
 

@@ -72,7 +72,8 @@ class SharedStatics {
 /// What the process does first that leads.
 /// @throws UserError where another process is another program; all are dismissed then
 void lead(Processes& processes);
-/// Between each process and the next one, one after the other. To be called by the leader, as above.
+/// Between each process and the next one, then between the leader and each other one, one after the other. To
+/// be called by the leader, as above.
 std::vector<Link> measure_network(Processes& processes);
 /// What the other ones do: their parts of what the leader runs, until it dismisses them.
 void serve(Processes& processes);

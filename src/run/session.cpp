@@ -14,6 +14,7 @@
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
 #include "run/shared_states.hpp"
+#include "run/snapshot_mesh.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -270,10 +271,10 @@ void Session::write_results(const Finished& run) {
                           origin_of(config_));
   if (!snapshot_plan(config_, run.result.step_s).times_s.empty()) {
     auto meshes = check(config_, options_.processes);
-    const auto n_plate_cells = meshes.plate.cells.size();
-    const auto mesh = joined(std::move(meshes));
+    const auto n_plate_cells = static_cast<std::size_t>(n_cells_of(meshes.plate));
+    const auto mesh = snapshot_mesh(config_, std::move(meshes));
     results::write_snapshots(dir_ / "fields.vtkhdf", results::ResultStream::snapshot_file(folder_.state()),
-                             mesh, snapshot_contents(config_, n_plate_cells, mesh.cells.size()));
+                             mesh, snapshot_contents(config_, n_plate_cells, mesh.n_cells));
   }
   if (status.name == "complete") folder_.publish();
 }

@@ -16,6 +16,7 @@
 #include "results/results.hpp"
 #include "results/snapshots.hpp"
 #include "run/run.hpp"
+#include "run/snapshot_mesh.hpp"
 
 namespace slipfront::run {
 
@@ -294,10 +295,9 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   write_static(dir, result.config, initial);
   results::write_history(dir / "interface.h5", event.history, origin_of(result.config));
   if (!event.snapshots.empty()) {
-    const auto n_plate_cells = initial.mesh.cells.size();
-    const auto mesh = joined({initial.mesh, initial.base});
+    const auto mesh = snapshot_mesh(result.config, {initial.mesh, initial.base});
     results::write_snapshots(dir / "fields.vtkhdf", mesh, event.snapshots,
-                             snapshot_contents(result.config, n_plate_cells, mesh.cells.size()));
+                             snapshot_contents(result.config, initial.mesh.cells.size(), mesh.n_cells));
   }
   if (const auto places = input::probe_places(result.config); !places.empty())
     results::write_probes(dir / "probes.h5", places, event.probes, origin_of(result.config));

@@ -506,9 +506,10 @@ class PetscEquations::Impl {
 
   enum class Outcome { in_equilibrium, too_slow, preconditioner_fails };
 
-  /// With z = B r and B near the inverse, r . z is the square of the error in the energy norm; more exactly it
-  /// lies below it by the least eigenvalue of B A, at most, which conjugate gradients find on the way. Friction
-  /// may enlarge the error further: as much as it did that of the last attempt, whose correction was the error.
+  /// With z = B r and B near the inverse, r . z is the square of the error in the energy norm; more exactly
+  /// it lies below it by the least eigenvalue of B A, at most, which conjugate gradients find on the way.
+  /// Friction may enlarge the error further: as much as it did that of the last attempt, whose correction was
+  /// the error.
   Outcome iterate(Vec u, double first_norm, double accuracy) {
     for (int attempt = 0; attempt < most_attempts; ++attempt) {
       set_residual();

@@ -5,6 +5,7 @@ import json
 import os
 import re
 import shutil
+import statistics
 import subprocess
 from pathlib import Path
 
@@ -89,13 +90,17 @@ def test_all_else_is_the_same(runs):
             assert other[key] == one[key]
 
 
-@pytest.mark.parametrize("n", [2, 3])
-def test_bench_measures_between_neighbours(n):
+@pytest.mark.parametrize("n", [2, 4])
+def test_bench_measures_between_neighbours_and_from_the_leader(n):
     result = together(n, "bench", "--network", "--json")
     assert (result.returncode, result.stderr) == (0, "")
     told = json.loads(result.stdout)
     assert told["processes"] == n
-    assert [(link["from"], link["to"]) for link in told["links"]] == [(k, k + 1) for k in range(n - 1)]
+    neighbours, of_leader = [(k, k + 1) for k in range(n - 1)], [(0, k) for k in range(2, n)]
+    assert [(link["from"], link["to"]) for link in told["links"]] == neighbours + of_leader
+    for part in (neighbours, [(0, 1), *of_leader]):
+        in_part = [link for link in told["links"] if (link["from"], link["to"]) in part]
+        assert told["latency_s"] >= statistics.median(link["latency_s"] for link in in_part)
     for link in [told, *told["links"]]:
         # Far apart: from a register to a slow network of a busy machine.
         assert 1e-8 < link["latency_s"] < 1

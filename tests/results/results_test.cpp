@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
 
 #include "mesh/plate.hpp"
 #include "results/hdf5.hpp"
@@ -200,7 +201,10 @@ TEST(Writing, IntoAMissingFolderIsRefused) {
       error_of([&] { write_static(none / "static.csv", {}); }),
       HasSubstr(": cannot be made (No such file or directory); check that its folder can be written"));
   EXPECT_THAT(error_of([&] { write_fronts(none / "fronts.csv", {}); }), HasSubstr("cannot be made"));
-  EXPECT_THAT(error_of([&] { write_snapshots(none / "fields.vtkhdf", {}, {}); }),
+  EXPECT_THAT(error_of([&] {
+                write_snapshots(none / "fields.vtkhdf",
+                                mesh::in_one_slab(std::make_shared<const mesh::Mesh>()), {});
+              }),
               HasSubstr("cannot be created"));
 }
 
@@ -258,12 +262,12 @@ TEST(FrontsFile, HasARowPerFrontAndNodeWithUndefinedValuesEmpty) {
 }
 
 /// Two cells side by side and an orphan, node 6.
-mesh::Mesh two_cells() {
+mesh::Slabs two_cells() {
   mesh::Mesh mesh;
   mesh.x_m = {0, 1, 2, 0, 1, 2, 9};
   mesh.y_m = {0, 0, 0, 1, 1, 1, 9};
   mesh.cells = {{0, 1, 4, 3}, {1, 2, 5, 4}};
-  return mesh;
+  return mesh::in_one_slab(std::make_shared<const mesh::Mesh>(mesh));
 }
 
 motion::Snapshot snapshot(double time_s, double offset) {
@@ -326,7 +330,8 @@ TEST(SnapshotFile, LargeFieldsArePutTogetherFromPieces) {
     snapshot.u_m.x[k] = static_cast<double>(k);
     snapshot.v_m_per_s.y[k] = -static_cast<double>(k);
   }
-  write_snapshots(folder / "fields.vtkhdf", mesh, std::vector{snapshot, snapshot});
+  write_snapshots(folder / "fields.vtkhdf", mesh::in_one_slab(std::make_shared<const mesh::Mesh>(mesh)),
+                  std::vector{snapshot, snapshot});
   const hdf5::File file = hdf5::open_file(folder / "fields.vtkhdf");
   const auto points = hdf5::read(file, "/VTKHDF/Points").values;
   const auto connectivity = hdf5::read(file, "/VTKHDF/Connectivity").values;

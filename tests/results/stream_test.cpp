@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <set>
 
 #include "files/checksum.hpp"
@@ -36,10 +37,11 @@ class Stream : public testing::Test {
     mesh::Plate plate;
     plate.element_size_m = 10e-3;
     plate.corner = mesh::Corner::none;
-    mesh_ = mesh::make_plate(plate);
-    stepper_.emplace(mesh_, solid::Material{}, interface::ContactModel{interface::VelocityWeakening{}},
+    const auto mesh = std::make_shared<const mesh::Mesh>(mesh::make_plate(plate));
+    mesh_ = mesh::in_one_slab(mesh);
+    stepper_.emplace(*mesh, solid::Material{}, interface::ContactModel{interface::VelocityWeakening{}},
                      motion::TimeStepping{});
-    for (const auto n : mesh_.lower) x_m_.push_back(mesh_.x_m[n]);
+    for (const auto n : mesh->lower) x_m_.push_back(mesh->x_m[n]);
   }
 
   record::History row(int k) const {
@@ -52,7 +54,7 @@ class Stream : public testing::Test {
     return h;
   }
 
-  mesh::Mesh mesh_;
+  mesh::Slabs mesh_;
   std::optional<motion::Stepper> stepper_;
   std::vector<double> x_m_;
   test::TemporaryFolder folder_;
