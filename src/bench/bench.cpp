@@ -220,7 +220,8 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes*
   const auto plate = plate_of(columns);
   const int rows = columns / 2;
   const double n_unknowns = 2 * (columns + 1.0) * (rows + 1.0);
-  const statics::StaticsSize size = {solver, n_unknowns, columns + 1.0};
+  statics::StaticsSize size = {solver, n_unknowns, columns + 1.0};
+  size.is_kept_by_all = processes != nullptr;
   statics::require_statics_memory(size);
   const auto mesh = mesh::make_plate(plate);
   const auto start = Clock::now();
@@ -230,10 +231,11 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes*
   const double mu_s = interface::VelocityWeakening {
   }.mu_s;
   const run::SharedStatics helpers(processes);
+  statics::KeptDisplacements kept;
   const solid::Material material;
-  const statics::Statics statics(
-      {mesh, material}, std::nullopt, loading, std::vector<double>(mesh.lower.size(), mu_s), "friction.mu_s",
-      [] { return true; }, processes);
+  const statics::Statics statics({mesh, material}, std::nullopt, loading,
+                                 std::vector<double>(mesh.lower.size(), mu_s), "friction.mu_s",
+                                 [] { return true; }, {processes, processes != nullptr ? &kept : nullptr});
   StaticsRun result{columns, mesh.grid.rows,
                     std::string(statics::name_of(statics::choose_solver(solver, n_unknowns))), n_unknowns};
   result.critical_shear_m = statics.shear_to(1).shear_m;

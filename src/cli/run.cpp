@@ -132,9 +132,9 @@ run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& o
 
 /// Refuses what the machine cannot hold before anything is written.
 void require_fit(const CaseArguments& arguments, const input::Case& config, const std::filesystem::path& dir,
-                 const Processes* processes) {
+                 const run::SessionOptions& options) {
   try {
-    run::require_fit(config, dir, processes);
+    run::require_fit(config, dir, options.processes, !options.shared_states);
   } catch (const UserError& error) {
     throw arguments.with_place(error);
   }
@@ -156,7 +156,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
   }
   if (!options.restart) {
     folder.require_empty(options.overwrite);
-    require_fit(arguments, *config, folder.dir(), options.session.processes);
+    require_fit(arguments, *config, folder.dir(), options.session);
   }
   if (options.session.processes != nullptr && config) {
     try {

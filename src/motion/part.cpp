@@ -11,6 +11,7 @@
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "statics/pieces.hpp"
 
 namespace slipfront::motion {
 
@@ -174,8 +175,11 @@ record::Traction TractionLog::at(std::size_t update, int node) const {
 
 Part::Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
            const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
-           const mesh::Subset& lower)
-    : processes_(processes), division_(division), place_{division.own(processes.rank()), lower} {
+           const mesh::Subset& lower, statics::KeptDisplacements* kept)
+    : processes_(processes),
+      division_(division),
+      place_{division.own(processes.rank()), lower},
+      displacements_(kept) {
   const int rank = processes.rank(), n_parts = division.n_parts();
   stepper_ = std::make_unique<Stepper>(sources, contact, time, execution);
   const auto width = [](int begin, int count) { return solid::Span{begin, begin + count}; };
@@ -223,6 +227,14 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
       stepper_->watch(std::move(probes));
       break;
     }
+    case PartCommand::kept:
+      SLIPFRONT_ASSERT(displacements_ != nullptr, "a part whose process has shared the statics");
+      if (given.take<int>() == processes_.rank())
+        for (int k = 0; k < 2; ++k) answer.put(displacements_->own(given.take<int>()));
+      break;
+    case PartCommand::place:
+      place(given);
+      break;
     case PartCommand::advance:
       or_fail([&] { advance(given, answer); });
       break;
@@ -272,9 +284,36 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
   }
 }
 
+void Part::place(Parcel& given) {
+  if (given.is_empty()) return;
+  for (std::size_t b = 0; b < stepper_->bodies().size(); ++b) {
+    const auto nodes = given.take_all<mesh::Node>();
+    for (auto& field : placed_[b]) {
+      if (field.size() == 0) field = solid::Field(stepper_->bodies()[b].u_m().size());
+      const auto values = given.take_all<double>();
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        field.x[nodes[k]] = values[2 * k];
+        field.y[nodes[k]] = values[2 * k + 1];
+      }
+    }
+  }
+}
+
 void Part::start(Parcel& given) {
   statics::Equilibrium e;
   for (auto* field : {&e.u_m, &e.u_per_shear, &e.below_u_m, &e.below_u_per_shear}) *field = take_field(given);
+  if (const bool base_is_relative = given.take<std::uint8_t>() != 0; placed_[0][0].size() > 0) {
+    const auto& bodies = stepper_->bodies();
+    if (bodies.size() > 1)
+      for (std::size_t k = 0; k < 2; ++k)
+        statics::make_absolute(placed_[0][k], bodies.front().lower(), placed_[1][k], bodies.back().lower(),
+                               base_is_relative);
+    e.u_m = std::exchange(placed_[0][0], {});
+    e.u_per_shear = std::exchange(placed_[0][1], {});
+    e.below_u_m = std::exchange(placed_[1][0], {});
+    e.below_u_per_shear = std::exchange(placed_[1][1], {});
+    displacements_->clear();
+  }
   e.tractions.t_s_Pa = given.take_all<double>();
   e.tractions.p_s_Pa = given.take_all<double>();
   e.contact = given.take_all<statics::Contact>();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "motion/recorder.hpp"
 #include "motion/stepper.hpp"
 #include "processes/processes.hpp"
+#include "statics/kept_displacements.hpp"
 
 namespace slipfront::motion {
 
@@ -62,7 +64,9 @@ enum class PartCommand : int {
   network,    ///< run::serve measures it, or answers one that does
   statics,    ///< run::serve does its share of the statics
   build,      ///< run::serve makes the part
-  start,      ///< begin at an equilibrium
+  kept,       ///< displacements before the event that the process keeps
+  place,      ///< some of these, which the part needs
+  start,      ///< begin at an equilibrium, its displacements given or placed before
   watch,      ///< look at probes
   advance,    ///< take steps
   tractions,  ///< near the part's ends, in contact updates of these steps
@@ -138,9 +142,10 @@ class Part {
   /// @param sources   the bodies' columns `division.all(processes.rank())`, with their PartOfBody
   /// @param contact   of the part's interface nodes
   /// @param lower     their places along the whole interface
+  /// @param kept      displacements that this process has found, until the event starts
   Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
        const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
-       const mesh::Subset& lower);
+       const mesh::Subset& lower, statics::KeptDisplacements* kept = nullptr);
 
   /// Carries out a command between build and release.
   void carry_out(PartCommand command, Parcel& given, Parcel& answer);
@@ -151,6 +156,7 @@ class Part {
   /// Ends all processes where this one fails while others may wait for its halo.
   template <class F>
   void or_fail(F&& f);
+  void place(Parcel& given);
   void start(Parcel& given);
   void advance(Parcel& given, Parcel& answer);
   /// In debug builds what is wrong in the halo is set to no number after each step, and nothing else may
@@ -169,6 +175,9 @@ class Part {
   std::optional<SlipFinder> finder_;
   TractionLog log_;
   KeptMotion kept_;  ///< pieces of it, until the last one has come
+  statics::KeptDisplacements* displacements_;
+  /// u_m, u_per_shear of the bodies as unknowns, see Piece; empty unless they have been placed.
+  std::array<std::array<solid::Field, 2>, 2> placed_;
   /// Columns that go to a neighbour and come from it.
   struct Neighbour {
     int rank = 0;

@@ -2,6 +2,7 @@
 #include "motion/parted_stepper.hpp"
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <utility>
 
@@ -142,7 +143,48 @@ std::vector<Parcel> PartedStepper::ask(PartCommand command,
   return answers;
 }
 
+void PartedStepper::place(const statics::KeptDisplacement& u_m,
+                          const statics::KeptDisplacement& u_per_shear) {
+  for (int piece = 0; piece < u_m.cut->n_pieces(); ++piece) {
+    std::array<std::vector<double>, 2> values;  // of one process after the other: no one has all of them
+    ask(
+        PartCommand::kept,
+        [&](int) { return std::move(Parcel().put(piece).put(u_m.number).put(u_per_shear.number)); },
+        [&](Parcel& answer) {
+          if (!answer.is_empty())
+            for (auto& of_piece : values) of_piece = answer.take_all<double>();
+        });
+    const auto nodes = u_m.cut->nodes_of_piece(columns_, piece);
+    const int first = u_m.cut->first_column[static_cast<std::size_t>(piece)];
+    const int end = u_m.cut->first_column[static_cast<std::size_t>(piece) + 1];
+    ask(PartCommand::place, [&](int part) {
+      const auto columns = division_.all(part);
+      Parcel parcel;
+      if (columns.ranges().front().begin >= end || columns.ranges().back().end <= first) return parcel;
+      std::size_t before = 0;
+      for (std::size_t b = 0; b < columns_.size(); ++b) {
+        const auto held = columns_[b].of_part(columns);
+        std::vector<mesh::Node> here;
+        std::array<std::vector<double>, 2> some;
+        for (std::size_t k = 0; k < nodes[b].size(); ++k) {
+          if (!columns.has(columns_[b].column_of(nodes[b][k]))) continue;
+          here.push_back(held.node_of_whole(nodes[b][k]));
+          for (std::size_t f = 0; f < 2; ++f) {
+            const auto from = values[f].begin() + static_cast<std::ptrdiff_t>(2 * (before + k));
+            some[f].insert(some[f].end(), from, from + 2);
+          }
+        }
+        before += nodes[b].size();
+        parcel.put(here).put(some[0]).put(some[1]);
+      }
+      return parcel;
+    });
+  }
+}
+
 void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_s, const Loads& loads) {
+  const bool is_elsewhere = e.u_m.size() == 0 && e.kept_u_m;
+  if (is_elsewhere) place(*e.kept_u_m, *e.kept_u_per_shear);
   ask(PartCommand::start, [&](int part) {
     Parcel parcel;
     const auto columns = division_.all(part);
@@ -151,6 +193,7 @@ void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_
     put_columns(columns_.front(), columns, e.u_per_shear, parcel);
     put_columns(columns_.back(), columns, e.below_u_m, parcel);
     put_columns(columns_.back(), columns, e.below_u_per_shear, parcel);
+    parcel.put(static_cast<std::uint8_t>(is_elsewhere && e.kept_u_m->cut->base_is_relative));
     parcel.put(cut(e.tractions.t_s_Pa, lower)).put(cut(e.tractions.p_s_Pa, lower));
     parcel.put(cut(e.contact, lower)).put(top_speed_m_per_s);
     for (const auto* values :

@@ -68,6 +68,8 @@ class PartedStepper final : public TimeStepper {
   void ask(PartCommand command, const std::function<Parcel(int part)>& given,
            const std::function<void(Parcel& answer)>& take) const;
   static Parcel nothing(int /*part*/) { return {}; }
+  /// Gives the parts what processes keep of an equilibrium, one process's share after the other.
+  void place(const statics::KeptDisplacement& u_m, const statics::KeptDisplacement& u_per_shear);
   struct Steps {
     std::int64_t taken = 0;
     bool goes_on = false;

@@ -102,6 +102,12 @@ bool leads_by_interface(const input::Case& config, int n_processes) {
          (!input::has_base_body(config) || is_of_many_squares(input::base_plate(config)));
 }
 
+bool keeps_displacements(const input::Case& config, int n_processes) {
+  return n_processes > 1 && config.loading.solver == statics::StaticSolver::petsc &&
+         config.loading.method == statics::LoadingMethod::direct &&
+         config.loading.top_during_tilt == statics::TopEdge::held;
+}
+
 record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh) {
   record::StaticState state;
   state.x_m = interface_x_m(mesh);

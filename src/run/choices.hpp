@@ -52,6 +52,10 @@ bool has_snapshots(const input::Case& config);
 /// step follows from their side.
 bool leads_by_interface(const input::Case& config, int n_processes);
 
+/// Whether several processes, which solve the statics together, each keep their share of the displacements
+/// before the event, and the one that leads has no more than its own.
+bool keeps_displacements(const input::Case& config, int n_processes);
+
 /// Given tractions at the nodes of the interface, from their file if there is one.
 /// @throws UserError
 record::StaticState prescribed_tractions(const input::Prestress& prestress, const mesh::Mesh& mesh);

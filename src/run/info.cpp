@@ -110,10 +110,14 @@ double n_unknowns_of(const Info& info) {
   return 2.0 * static_cast<double>(info.n_nodes);
 }
 
+Size size_of(const Meshes& meshes, const Info& info) {
+  return {static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
+          static_cast<double>(info.n_interface), info.step_s,
+          meshes.base ? static_cast<double>(n_nodes_of(*meshes.base)) : 0};
+}
+
 void add_needs(const input::Case& config, const Meshes& meshes, double node_updates_per_step, Info& info) {
-  info.needs = needs(config, {static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
-                              static_cast<double>(info.n_interface), info.step_s,
-                              meshes.base ? static_cast<double>(n_nodes_of(*meshes.base)) : 0});
+  info.needs = needs(config, size_of(meshes, info));
   info.n_steps = info.needs.steps;
   info.node_updates = static_cast<double>(info.n_steps) * node_updates_per_step +
                       static_cast<double>(info.needs.ramp_steps) * static_cast<double>(info.n_nodes);
@@ -242,12 +246,16 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
   work.values_per_row = static_cast<double>(record::history_fields.size()) * n_columns;
   work.snapshots = info.needs.snapshots;
   work.leads_by_interface = leads_by_interface(config, sharing.n_processes);
+  work.keeps_displacements = keeps_displacements(config, sharing.n_processes);
   work.statics_s = expected_statics_s(info);
   work.statics_bytes = info.solver_bytes;
   if (info.solver == statics::StaticSolver::petsc) {
     work.statics_s /= std::min(sharing.n_processes, sharing.n_processors);
-    work.statics_bytes /= sharing.n_processes;
-    work.shared_statics_bytes = work.statics_bytes;
+    auto size = size_of(meshes, info);
+    size.statics_share = 1.0 / sharing.n_processes;
+    size.keeps_displacements = work.keeps_displacements;
+    work.statics_bytes = statics_bytes(config, size);
+    work.shared_statics_bytes = info.solver_bytes / sharing.n_processes;
   }
   work.precision = config.time.precision;
   work.bytes_per_interface_node = bytes_per_interface_node(config);

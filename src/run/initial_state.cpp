@@ -190,10 +190,11 @@ std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const me
 
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
                                 const motion::Execution& execution, const RampBegins& ramp_begins,
-                                Processes* processes) {
+                                Processes* processes, bool may_keep) {
   const auto start = Clock::now();
   const double margin = config.loading.critical_margin;
   InitialState initial;
+  require_memory_fits(config, processes, may_keep);
   auto meshes = check(config, processes);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
@@ -216,10 +217,12 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   if (initial.base) base.emplace(statics::ElasticBody{*initial.base, base_material});
   const bool is_shared = config.loading.solver == statics::StaticSolver::petsc;
   const SharedStatics helpers(is_shared ? processes : nullptr);
+  if (may_keep && processes != nullptr && keeps_displacements(config, processes->size()))
+    initial.kept = std::make_shared<statics::KeptDisplacements>();
   const statics::Statics statics(
       {initial.mesh, config.material}, base, config.loading, at_all_nodes(mu_s, initial.mesh),
       interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); },
-      is_shared ? processes : nullptr);
+      statics::SharedBy{is_shared ? processes : nullptr, initial.kept.get()});
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();

@@ -33,8 +33,10 @@ struct InitialState {
   double solver_bytes = 0;                                          ///< held by it
   double wall_s = 0;
   std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
+  /// This process's share of the displacements where processes keep them; else null.
+  std::shared_ptr<statics::KeptDisplacements> kept;
 
-  /// All but the meshes.
+  /// All but the meshes and what processes keep.
   template <class Archive>
   void serialize(Archive& archive) {
     archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, mu_s, critical_shear_m,
@@ -66,10 +68,11 @@ std::int64_t n_cells_of(const mesh::Mesh& mesh);
 using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
 
 /// @param processes  that share statics by PETSc, all in `serve`; null for this one alone
+/// @param may_keep   whether these may keep the displacements that they find, for an event that they share
 /// @throws UserError, BlowUp, Interrupted as its parts do.
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
                                 const motion::Execution& execution = {}, const RampBegins& ramp_begins = {},
-                                Processes* processes = nullptr);
+                                Processes* processes = nullptr, bool may_keep = false);
 
 /// A text that is the same for two cases if and only if they share their initial state.
 std::string initial_state_key(const input::Case& config);

@@ -109,16 +109,29 @@ double node_bytes_of_mesh() {
 }
 
 statics::StaticsBudget statics_budget(const input::Case& config, const Size& size) {
-  return statics::statics_budget(
-      {wanted_solver(config), 2 * (size.n_nodes - size.n_base_nodes), size.n_interface, 2 * size.n_base_nodes,
-       config.loading.top_during_tilt == statics::TopEdge::free, size.statics_share});
+  return statics::statics_budget({wanted_solver(config), 2 * (size.n_nodes - size.n_base_nodes),
+                                  size.n_interface, 2 * size.n_base_nodes,
+                                  config.loading.top_during_tilt == statics::TopEdge::free,
+                                  size.statics_share, size.keeps_displacements});
+}
+
+/// Bodies in motion. The process that leads several has the mesh and the state of all nodes as well while
+/// they begin, unless it leads by the interface, or the state is kept by all.
+double motion_bytes(const input::Case& config, const Size& size, double n_snapshots) {
+  const auto of = [&](double share, bool with_snapshots) {
+    return motion::event_bytes(share * size.n_nodes, share * size.n_cells, with_snapshots,
+                               config.time.precision);
+  };
+  if (!size.parts_share) return of(1, n_snapshots > 0);
+  double of_all_nodes = 0;
+  if (!size.leads_by_interface) of_all_nodes += node_bytes_of_mesh();
+  if (!size.leads_by_interface && !size.keeps_displacements) of_all_nodes += 4 * number;
+  return of(*size.parts_share, false) + of_all_nodes * size.n_nodes;
 }
 
 /// The event while it is built and goes, with what is recorded of it and waits to be written.
 Budget event_budget(const input::Case& config, const Size& size, double n_snapshots, double energy_rows) {
-  return {{fmt::format("the motion of {:.4g} nodes", size.n_nodes),
-           motion::event_bytes(size.n_nodes, size.n_cells, n_snapshots > 0 && !size.in_pieces,
-                               config.time.precision),
+  return {{fmt::format("the motion of {:.4g} nodes", size.n_nodes), motion_bytes(config, size, n_snapshots),
            larger_elements()},
           {"the interface and the record of its slip", interface_bytes(config, size), larger_elements()},
           energies_budget(energy_rows)};
@@ -153,7 +166,7 @@ std::vector<Budget> memory_stages(const input::Case& config, const Size& size, d
   }
   const double most_waiting = history_rows > 0 ? results::ResultStream::most_bytes_waiting : 0;
   const double in_pieces =
-      size.in_pieces && n_snapshots > 0 ? 2.0 * results::ResultStream::most_bytes_waiting : 0;
+      size.parts_share && n_snapshots > 0 ? 2.0 * results::ResultStream::most_bytes_waiting : 0;
   const Budget waiting = {{"rows of history that wait to be written",
                            std::min(history_rows * history_row_bytes(size), most_waiting), larger_elements()},
                           {"pieces of snapshots that wait to be written", in_pieces, larger_elements()}};
@@ -188,18 +201,16 @@ double share_here(const Processes* processes) {
   return static_cast<double>(processes->on_this_machine()) / processes->size();
 }
 
-/// What this machine holds of the bodies. Unless the leader leads by the interface it has all of them.
-Size held_here(const input::Case& config, Size size, const Processes* processes) {
+/// What this machine holds of the bodies.
+Size held_here(const input::Case& config, Size size, const Processes* processes, bool may_keep) {
+  if (processes == nullptr) return size;
+  const int n_processes = processes->size();
   size.statics_share = share_here(processes);
-  size.in_pieces = processes != nullptr;
-  if (processes == nullptr || !leads_by_interface(config, processes->size())) return size;
-  size.leads_by_interface = true;
-  const double width = size.n_interface / processes->size();
+  const double width = size.n_interface / n_processes;
   const double halo = 2.0 * (config.time.interface_substeps + 2);
-  const double held = share_here(processes) * (1 + std::max(0.1, halo / width));
-  size.n_nodes *= held;
-  size.n_cells *= held;
-  size.n_base_nodes *= held;
+  size.parts_share = share_here(processes) * (1 + std::max(0.1, halo / width));
+  size.leads_by_interface = leads_by_interface(config, n_processes);
+  size.keeps_displacements = may_keep && keeps_displacements(config, n_processes);
   return size;
 }
 
@@ -297,6 +308,10 @@ double bytes_per_interface_node(const input::Case& config) {
   return state + 2 * record;
 }
 
+double statics_bytes(const input::Case& config, const Size& size) {
+  return is_prestressed(config) ? 0 : total_bytes(statics_budget(config, size).peak);
+}
+
 Needs needs(const input::Case& config, const Size& size) {
   Needs n;
   n.steps = countable(std::ceil(config.time.end_s / size.step_s * (1 - 1e-12)),
@@ -312,7 +327,7 @@ Needs needs(const input::Case& config, const Size& size) {
   n.energy_rows = rows_of(config.time.end_s, config.output.energy_interval_s, size.step_s) + 1;
   n.snapshots = static_cast<double>(snapshot_plan(config, size.step_s).times_s.size());
 
-  if (!is_prestressed(config)) n.statics_bytes = total_bytes(statics_budget(config, size).peak);
+  n.statics_bytes = statics_bytes(config, size);
   n.memory = memory_stages(config, size, n.snapshots, n.history_rows, n.energy_rows);
 
   constexpr double bytes_per_number_in_text = 20;
@@ -344,18 +359,19 @@ Budget Needs::disk() const {
           {"energy.csv", energy_bytes, Message("a larger {}", Key("output.energy_interval_s"))}};
 }
 
-void require_memory_fits(const input::Case& config, const Processes* processes) {
+void require_memory_fits(const input::Case& config, const Processes* processes, bool may_keep) {
   const auto whole = estimated_mesh_size(config);
-  const auto size = held_here(config, whole, processes);
+  const auto size = held_here(config, whole, processes, may_keep);
   const double n_snapshots = has_snapshots(config) ? 1 : 0;
   require_memory(largest_of(memory_stages(config, size, n_snapshots, 0, 0)), work_of(whole));
 }
 
-void require_fit(const input::Case& config, const std::filesystem::path& folder, const Processes* processes) {
-  require_memory_fits(config, processes);  // before the coarse statics that count a ramp's steps
+void require_fit(const input::Case& config, const std::filesystem::path& folder, const Processes* processes,
+                 bool may_keep) {
+  require_memory_fits(config, processes, may_keep);  // before the coarse statics that count a ramp's steps
   const auto whole = estimated_size(config);
   Needs n = needs(config, whole);
-  const auto size = held_here(config, whole, processes);
+  const auto size = held_here(config, whole, processes, may_keep);
   Budget memory = largest_of(memory_stages(config, size, n.snapshots, n.history_rows, n.energy_rows));
   if (processes != nullptr) {
     const double kept = share_here(processes) + 1.0 / processes->size();  // those here, and one that has come

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,10 @@ struct Size {
   double step_s = 0;
   double n_base_nodes = 0;   ///< of n_nodes those of a base
   double statics_share = 1;  ///< see statics::StaticsSize
-  /// Several processes tell snapshots in pieces.
-  bool in_pieces = false;
-  bool leads_by_interface = false;  ///< see there; then the nodes are those of the parts
+  /// Of a run that several processes share: the nodes that those of this machine compute, over all. They tell
+  /// snapshots in pieces.
+  std::optional<double> parts_share = {};
+  bool leads_by_interface = false, keeps_displacements = false;  ///< see there
 };
 
 /// The same from the case alone, before there is a mesh: to a few per cent, but for the step of a fillet,
@@ -65,20 +67,25 @@ struct Needs {
   double disk_bytes() const { return total_bytes(disk()); }
 };
 
+/// The peak of the statics, 0 without any.
+double statics_bytes(const input::Case& config, const Size& size);
+
 /// @throws UserError where more steps are asked for than any machine takes.
 Needs needs(const input::Case& config, const Size& size);
 
 /// Refuses a case that would not fit into the memory, before anything is built; what grows with its steps is
 /// left out.
 /// @param processes  that share the run, of which this one leads; null for this one alone
+/// @param may_keep   see make_initial_state
 /// @throws UserError naming what to change.
-void require_memory_fits(const input::Case& config, const Processes* processes = nullptr);
+void require_memory_fits(const input::Case& config, const Processes* processes = nullptr,
+                         bool may_keep = true);
 
 /// Refuses a case whose run would not fit into the memory or onto the disk of `folder`, which need not exist
 /// yet.
 /// @param processes  as above
 /// @throws UserError naming what to change.
 void require_fit(const input::Case& config, const std::filesystem::path& folder,
-                 const Processes* processes = nullptr);
+                 const Processes* processes = nullptr, bool may_keep = true);
 
 }  // namespace slipfront::run

@@ -126,19 +126,20 @@ class Columns {
 /// The process's own part, of columns that it makes itself.
 /// @param lower  places of its nodes along the whole interface
 std::unique_ptr<motion::Part> make_part(Processes& processes, const input::Case& config, const Plan& plan,
-                                        const mesh::Subset& lower) {
+                                        const mesh::Subset& lower, statics::KeptDisplacements* kept) {
   const int rank = processes.rank();
   const Columns columns(config, plan.division.all(rank), plan.division.n_columns(), plan.division.own(rank),
                         plan.steps, [&](std::span<double> values) { processes.take_largest(values); });
   return std::make_unique<motion::Part>(processes, plan.division, columns.sources(),
                                         contact_of(config, plan.whole_x_m, lower), config.time,
-                                        motion::Execution{.threads = plan.threads}, lower);
+                                        motion::Execution{.threads = plan.threads}, lower, kept);
 }
 
-std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given) {
+std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given,
+                                        statics::KeptDisplacements& kept) {
   const auto config = take_case(given);
   const auto plan = Plan::take(given);
-  return make_part(processes, config, plan, mesh::Subset(given.take_all<mesh::Subset::Range>()));
+  return make_part(processes, config, plan, mesh::Subset(given.take_all<mesh::Subset::Range>()), &kept);
 }
 
 }  // namespace
@@ -177,7 +178,8 @@ LonePart make_lone_part(const input::Case& config, const mesh::Mesh& interface,
 std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& config, const mesh::Mesh& plate,
                                                           const std::optional<mesh::Mesh>& base,
                                                           Processes& processes,
-                                                          const motion::Execution& execution) {
+                                                          const motion::Execution& execution,
+                                                          statics::KeptDisplacements* kept) {
   const WholeBodies whole(config, plate, base);
   auto plan = plan_for(whole, processes.size());
   std::vector<const mesh::Mesh*> meshes;
@@ -194,7 +196,7 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
       processes.send(rank, parcel);
     }
     stepper = std::make_unique<motion::PartedStepper>(
-        processes, plan.division, make_part(processes, config, plan, lower_of(whole, plan, 0)), meshes);
+        processes, plan.division, make_part(processes, config, plan, lower_of(whole, plan, 0), kept), meshes);
   } catch (const std::exception& error) {
     processes.fail(reason_of(error));  // the others wait for this part
   }
@@ -260,6 +262,7 @@ void serve(Processes& processes) try {
     std::signal(signal, SIG_IGN);
   processes.send(0, Parcel().put(program_identity()));
   if (processes.receive(0).take<std::uint8_t>() == 0) return;
+  statics::KeptDisplacements kept;
   for (;;) {
     auto parcel = processes.receive(0);
     const auto command = parcel.take<motion::PartCommand>();
@@ -269,10 +272,10 @@ void serve(Processes& processes) try {
       continue;
     }
     if (command == motion::PartCommand::statics) {
-      statics::serve_statics(processes);
+      statics::serve_statics(processes, kept);
       continue;
     }
-    const auto part = take_part(processes, parcel);
+    const auto part = take_part(processes, parcel, kept);
     motion::serve(processes, *part);
   }
 } catch (const std::exception& error) {

@@ -11,6 +11,7 @@
 #include "motion/parted_stepper.hpp"
 #include "processes/network.hpp"
 #include "processes/processes.hpp"
+#include "statics/kept_displacements.hpp"
 
 namespace slipfront::run {
 
@@ -20,11 +21,13 @@ void require_divisible(const input::Case& config, const Processes& processes);
 
 /// The bodies without their motion, divided among the processes. To be called by the leader, while the others
 /// are in `serve`.
+/// @param kept  this process's share of the displacements before the event; null where they are gathered
 /// @throws UserError where the plate is too narrow for so many
 std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& config, const mesh::Mesh& plate,
                                                           const std::optional<mesh::Mesh>& base,
                                                           Processes& processes,
-                                                          const motion::Execution& execution);
+                                                          const motion::Execution& execution,
+                                                          statics::KeptDisplacements* kept = nullptr);
 
 /// The bodies that processes are to divide among themselves; their interfaces may be all that is held.
 class WholeBodies {

@@ -80,8 +80,8 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   // What a part is sent is made when it is sent. A checkpoint, written from answers taken one by one, takes
   // less than the building of the leader's own part has taken.
   const double sent = n_parts > 1 ? share * bytes_of_state : 0;
-  const double starting =
-      work.leads_by_interface ? 0 : (bytes_of_mesh + bytes_of_state + sent) * work.n_nodes;
+  const double state = (work.keeps_displacements ? 0 : bytes_of_state) + sent;
+  const double starting = work.leads_by_interface ? 0 : (bytes_of_mesh + state) * work.n_nodes;
   cost.leader_memory_bytes =
       work.program_bytes +
       std::max(work.statics_bytes, of_part + starting + work.bytes_per_interface_node * work.n_columns);

@@ -118,7 +118,8 @@ std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, 
     return stepper;
   };
   if (processes != nullptr)
-    return start(new_parted_stepper(config, initial.mesh, initial.base, *processes, execution));
+    return start(
+        new_parted_stepper(config, initial.mesh, initial.base, *processes, execution, initial.kept.get()));
   return start(new_stepper(config, initial.mesh, initial.base, execution));
 }
 

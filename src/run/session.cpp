@@ -142,7 +142,7 @@ InitialState Session::initial_state(Checkpoints::Kept* kept) {
         return stepper_ == nullptr ? look_at_statics() : look("ramp", step, total, stepper_->time_s());
       },
       execution_, [&](motion::Stepper& stepper, motion::RampRun& ramp) { begin_ramp(kept, stepper, ramp); },
-      options_.processes);
+      options_.processes, !shared);
   if (shared) shared->keep(config_, initial);
   return initial;
 }

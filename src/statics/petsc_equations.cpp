@@ -394,7 +394,7 @@ class PetscEquations::Impl {
   /// Fixes what the edges and the contact fix, and has nodes slip.
   void take(const Support& support) {
     std::vector<PetscInt> prescribed;
-    for (const auto pair : top_) {
+    for (const auto& [pair, place] : top_) {
       if (constraint_ == TopConstraint::both) prescribed.push_back(2 * pair);
       prescribed.push_back(2 * pair + 1);
     }
@@ -582,7 +582,8 @@ class PetscEquations::Impl {
   PetscInt first_, n_;
   std::vector<Piece::Place> lower_;
   std::vector<double> gap_m_;
-  std::vector<std::int32_t> top_, held_;
+  std::vector<Piece::Place> top_;
+  std::vector<std::int32_t> held_;
   Matrix K_;  ///< of all unknowns, none prescribed
   Matrix A_;  ///< the same with rows and columns of prescribed unknowns cleared
   Matrix friction_, with_friction_;

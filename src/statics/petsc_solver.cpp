@@ -33,99 +33,71 @@ class PetscLoadCase : public LoadCase {
  public:
   PetscLoadCase(PetscSolver& solver, TopConstraint constraint, const TopDisplacement& top, bool sheared,
                 const DisplacementOfBodies* start)
-      : solver_(solver) {
+      : solver_(solver), is_sheared_(sheared) {
     const auto& plate = solver.plate_;
-    const auto at_start = unknowns(start != nullptr ? *start : DisplacementOfBodies{}, [&](solid::Field& u) {
-      if (start == nullptr) set_uniform_strain(constraint, top, u);
-      for (std::size_t k = 0; k < plate.top.size(); ++k) {
-        if (constraint == TopConstraint::both) u.x[plate.top[k]] = top.u_x_m[k];
-        u.y[plate.top[k]] = top.u_y_m[k];
-      }
-    });
-    std::vector<double> per_shear;
-    if (sheared)
-      per_shear = unknowns({}, [&](solid::Field& u) {
-        for (mesh::Node n = 0; n < plate.n_nodes(); ++n) u.x[n] = share_of_height(n);
-        for (const auto n : plate.top) u.x[n] = 1;
-      });
-    std::vector<Parcel> given;
-    for (int k = 0; k < solver.divided_.n_pieces(); ++k) {
-      Parcel parcel;
-      parcel.put(constraint).put(solver.divided_.of_piece(at_start, k));
-      parcel.put(sheared ? solver.divided_.of_piece(per_shear, k) : per_shear);
-      given.push_back(std::move(parcel));
-    }
-    solver.ask(PetscSolver::Command::begin, std::move(given));
+    const double x0_m = plate.x_m[plate.top.front()];
+    Parcel given;
+    given.put(constraint).put(static_cast<std::uint8_t>(sheared)).put(start != nullptr ? start->kept : -1);
+    given.put(x0_m).put(plate.x_m[plate.top.back()] - x0_m).put(plate.y_m[plate.top.front()]);
+    given.put(top.u_x_m).put(top.u_y_m);
+    solver.ask(PetscSolver::Command::begin, [&](int) { return given; });
   }
 
   void solve(const Support& support, double accuracy) override {
     Parcel given;
     put_support(support, given);
     given.put(accuracy);
-    auto answers = solver_.ask(PetscSolver::Command::solve, {std::move(given)});
     const auto n = static_cast<Eigen::Index>(2 * solver_.plate_.lower.size());
     for (auto* values : {&u0, &u1, &f0, &f1}) *values = Eigen::VectorXd::Zero(n);
-    for (std::size_t piece = 0; piece < answers.size(); ++piece) {
-      if (answers[piece].take<std::uint8_t>() == 0)
-        throw UserError("the static solution by PETSc does not converge; set {} = direct",
-                        Key("loading.solver"));
-      for (auto* values : {&u0, &u1, &f0, &f1}) {
-        const auto of_piece = answers[piece].take_all<double>();
-        for (std::size_t k = 0; k < of_piece.size(); ++k)
-          (*values)(2 * solver_.lower_[piece][k / 2] + static_cast<Eigen::Index>(k % 2)) = of_piece[k];
-      }
-    }
+    bool converges = true;
+    solver_.ask(
+        PetscSolver::Command::solve, [&](int) { return given; },
+        [&](int piece, Parcel& answer) {
+          converges &= answer.take<std::uint8_t>() != 0;
+          if (!converges) return;
+          const auto& lower = solver_.lower_[static_cast<std::size_t>(piece)];
+          for (auto* values : {&u0, &u1, &f0, &f1}) {
+            const auto of_piece = answer.take_all<double>();
+            for (std::size_t k = 0; k < of_piece.size(); ++k)
+              (*values)(2 * lower[k / 2] + static_cast<Eigen::Index>(k % 2)) = of_piece[k];
+          }
+        });
+    if (!converges)
+      throw UserError("the static solution by PETSc does not converge; set {} = direct",
+                      Key("loading.solver"));
   }
 
-  Displacement displacement(double shear) const override { return gathered(1, shear); }
-  Displacement displacement_per_shear() const override { return gathered(0, 1); }
+  Displacement displacement(double shear) const override { return kept(1, shear); }
+  Displacement displacement_per_shear() const override { return kept(0, 1); }
   void begin_from(const LoadCase&) override {}
 
  private:
-  double share_of_height(mesh::Node n) const {
-    const auto& plate = solver_.plate_;
-    return plate.y_m[n] / plate.y_m[plate.top.front()];
-  }
-
-  /// From the interface to the loaded edge, whose nodes have the same places along x.
-  void set_uniform_strain(TopConstraint constraint, const TopDisplacement& top, solid::Field& u) const {
-    const auto& plate = solver_.plate_;
-    const double x0 = plate.x_m[plate.top.front()], width = plate.x_m[plate.top.back()] - x0;
-    const auto last = static_cast<double>(plate.top.size() - 1);
-    for (mesh::Node n = 0; n < plate.n_nodes(); ++n) {
-      const auto k =
-          static_cast<std::size_t>(std::clamp(std::round((plate.x_m[n] - x0) / width * last), 0.0, last));
-      if (constraint == TopConstraint::both) u.x[n] = share_of_height(n) * top.u_x_m[k];
-      u.y[n] = share_of_height(n) * top.u_y_m[k];
-    }
-  }
-
-  /// Of the bodies' displacement, none where there is none yet, with that of the plate changed.
-  template <class Change>
-  std::vector<double> unknowns(const DisplacementOfBodies& start, Change&& change) const {
-    auto above = start.above != nullptr ? *start.above
-                                        : solid::Field(static_cast<std::size_t>(solver_.plate_.n_nodes()));
-    change(above);
-    if (solver_.base_ == nullptr) return solver_.divided_.unknowns({&above});
-    const auto below = start.below != nullptr
-                           ? *start.below
-                           : solid::Field(static_cast<std::size_t>(solver_.base_->n_nodes()));
-    return solver_.divided_.unknowns({&above, &below});
-  }
-
   /// factor_0 u0 + factor_1 u1
-  Displacement gathered(double factor_0, double factor_1) const {
+  Displacement kept(double factor_0, double factor_1) const {
+    int number = 0;
+    solver_.ask(
+        PetscSolver::Command::keep, [&](int) { return std::move(Parcel().put(factor_0).put(factor_1)); },
+        [&](int, Parcel& answer) { number = answer.take<int>(); });
+    if (!solver_.gathers_) return {{}, {}, KeptDisplacement{number, solver_.divided_.cut()}};
     std::vector<double> all;
-    for (auto& answer : solver_.ask(PetscSolver::Command::displacements,
-                                    {std::move(Parcel().put(factor_0).put(factor_1))})) {
-      const auto of_piece = answer.take_all<double>();
-      answer = {};
-      all.insert(all.end(), of_piece.begin(), of_piece.end());
-    }
-    return solver_.divided_.displacement(all);
+    solver_.ask(
+        PetscSolver::Command::gather, [&](int) { return std::move(Parcel().put(number)); },
+        [&](int, Parcel& answer) {
+          const auto of_piece = answer.take_all<double>();
+          answer = {};
+          all.insert(all.end(), of_piece.begin(), of_piece.end());
+        });
+    auto u = solver_.divided_.displacement(all);
+    // The sheared plate begins from the tilted one; nothing from the sheared one.
+    if (is_sheared_)
+      solver_.ask(PetscSolver::Command::forget, [&](int) { return std::move(Parcel().put(number)); });
+    else
+      u.kept = {number, solver_.divided_.cut()};
+    return u;
   }
 
   PetscSolver& solver_;
+  bool is_sheared_;
 };
 
 double petsc_bytes(double n_unknowns) {
@@ -133,32 +105,118 @@ double petsc_bytes(double n_unknowns) {
   return 1300 * n_unknowns;
 }
 
-double divided_bytes(double n_unknowns) {
-  // Half of a node: numbers, pieces with their coordinates and cells, and one field on its way.
-  return n_unknowns * (4 + 28 + 16);
+double divided_bytes(double n_unknowns, double share) {
+  // Half of a node: meshes and numbers; a piece with its coordinates and cells, on its way, or a field.
+  return n_unknowns * (16 + 6 + share * 28);
+}
+
+void PetscShare::build(const Piece& piece) {
+  equations_ = std::make_unique<PetscEquations>(piece);
+  first_ = piece.first;
+  top_ = piece.top;
+  x_m_.assign(static_cast<std::size_t>(piece.count), 0.0);
+  y_m_ = x_m_;
+  for (const auto& node : piece.bodies.front().nodes)
+    if (piece.has(node.pair)) {
+      x_m_[node.pair - first_] = node.x_m;
+      y_m_[node.pair - first_] = node.y_m;
+    }
+}
+
+/// Begins at displacements that are kept, or at uniform strain from the interface to the loaded edge, whose
+/// nodes have the same places along x; a base at rest.
+void PetscShare::begin(Parcel& given) {
+  const auto constraint = given.take<TopConstraint>();
+  const bool sheared = given.take<std::uint8_t>() != 0;
+  const int start = given.take<int>();
+  const auto x0_m = given.take<double>(), width_m = given.take<double>(), height_m = given.take<double>();
+  const auto u_x_m = given.take_all<double>(), u_y_m = given.take_all<double>();
+  const std::size_t n = x_m_.size();
+  std::vector<double> u0 = start >= 0 ? kept_.own(start) : std::vector<double>(2 * n, 0.0);
+  std::vector<double> u1(sheared ? 2 * n : 0, 0.0);
+  const auto last = static_cast<double>(u_y_m.size() - 1);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double share_of_height = y_m_[k] / height_m;
+    if (sheared) u1[2 * k] = share_of_height;
+    if (start >= 0) continue;
+    const auto above =
+        static_cast<std::size_t>(std::clamp(std::round((x_m_[k] - x0_m) / width_m * last), 0.0, last));
+    if (constraint == TopConstraint::both) u0[2 * k] = share_of_height * u_x_m[above];
+    u0[2 * k + 1] = share_of_height * u_y_m[above];
+  }
+  for (const auto& [pair, place] : top_) {
+    const auto at = 2 * static_cast<std::size_t>(pair - first_);
+    if (constraint == TopConstraint::both) u0[at] = u_x_m[place];
+    u0[at + 1] = u_y_m[place];
+    if (sheared) u1[at] = 1;
+  }
+  equations_->begin(constraint, u0, u1);
+}
+
+Parcel PetscShare::carry_out(Command command, Parcel& given) {
+  Parcel answer;
+  switch (command) {
+    case Command::build: {
+      const auto piece = Piece::take(given);
+      given = {};
+      build(piece);
+      break;
+    }
+    case Command::begin:
+      begin(given);
+      break;
+    case Command::solve: {
+      const auto support = take_support(given);
+      const auto at = equations_->solve(support, given.take<double>());
+      answer.put(static_cast<std::uint8_t>(at.has_value()));
+      if (at) answer.put(at->u0).put(at->u1).put(at->f0).put(at->f1);
+      break;
+    }
+    case Command::keep: {
+      auto u = equations_->own_u0();
+      const auto u1 = equations_->own_u1();
+      const auto factor_0 = given.take<double>(), factor_1 = given.take<double>();
+      for (std::size_t k = 0; k < u.size(); ++k) u[k] = factor_0 * u[k] + factor_1 * u1[k];
+      answer.put(kept_.add(std::move(u)));
+      break;
+    }
+    case Command::gather:
+      answer.put(kept_.own(given.take<int>()));
+      break;
+    case Command::forget:
+      kept_.forget(given.take<int>());
+      break;
+    case Command::drop:
+      equations_.reset();
+      break;
+    case Command::release:
+      SLIPFRONT_ASSERT(false, "a command of serve_statics");
+  }
+  return answer;
 }
 
 PetscSolver::PetscSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base,
-                         Processes* processes)
+                         const SharedBy& shared)
     : plate_(plate.mesh),
-      base_(base ? &base->mesh : nullptr),
-      divided_(plate, base, processes != nullptr ? processes->size() : 1),
-      processes_(processes) {
+      divided_(plate, base, shared.processes != nullptr ? shared.processes->size() : 1),
+      processes_(shared.processes),
+      gathers_(shared.kept == nullptr),
+      share_(gathers_ ? own_kept_ : *shared.kept) {
   std::size_t n_prescribed = plate.mesh.top.size() + (base ? base->mesh.top.size() : 0);
   n_unknowns_ = 2 * (static_cast<std::int64_t>(divided_.n_pairs()) - static_cast<std::int64_t>(n_prescribed));
-  std::vector<Parcel> given;
-  for (int k = 0; k < divided_.n_pieces(); ++k) {
-    const auto piece = divided_.piece(k);
-    auto& lower = lower_.emplace_back();
-    for (const auto& place : piece.lower) lower.push_back(place.place);
-    piece.put(given.emplace_back());
-  }
-  ask(Command::build, std::move(given));
+  lower_.resize(static_cast<std::size_t>(divided_.n_pieces()));
+  ask(Command::build, [&](int rank) {
+    const auto piece = divided_.piece(rank);
+    for (const auto& place : piece.lower) lower_[static_cast<std::size_t>(rank)].push_back(place.place);
+    Parcel parcel;
+    piece.put(parcel);
+    return parcel;
+  });
 }
 
 // PETSc's objects go at the same time everywhere.
 PetscSolver::~PetscSolver() {
-  ask(Command::drop);
+  ask(Command::drop, [](int) { return Parcel(); });
 }
 
 std::unique_ptr<LoadCase> PetscSolver::load_case(TopConstraint constraint, const TopDisplacement& top,
@@ -176,72 +234,35 @@ std::vector<std::size_t> PetscSolver::interface_of(int) const {
   return all;
 }
 
-Parcel PetscSolver::carry_out(Command command, Parcel& given, std::unique_ptr<PetscEquations>& equations) {
-  Parcel answer;
-  switch (command) {
-    case Command::build: {
-      const auto piece = Piece::take(given);
-      given = {};
-      equations = std::make_unique<PetscEquations>(piece);
-      break;
-    }
-    case Command::begin: {
-      const auto constraint = given.take<TopConstraint>();
-      const auto u0 = given.take_all<double>(), u1 = given.take_all<double>();
-      equations->begin(constraint, u0, u1);
-      break;
-    }
-    case Command::solve: {
-      const auto support = take_support(given);
-      const auto at = equations->solve(support, given.take<double>());
-      answer.put(static_cast<std::uint8_t>(at.has_value()));
-      if (at) answer.put(at->u0).put(at->u1).put(at->f0).put(at->f1);
-      break;
-    }
-    case Command::displacements: {
-      auto u = equations->own_u0();
-      const auto u1 = equations->own_u1();
-      const auto factor_0 = given.take<double>(), factor_1 = given.take<double>();
-      for (std::size_t k = 0; k < u.size(); ++k) u[k] = factor_0 * u[k] + factor_1 * u1[k];
-      answer.put(u);
-      break;
-    }
-    case Command::drop:
-      equations.reset();
-      break;
-    case Command::release:
-      SLIPFRONT_ASSERT(false, "a command of serve_statics");
-  }
-  return answer;
-}
-
-std::vector<Parcel> PetscSolver::ask(Command command, std::vector<Parcel> given) {
-  std::vector<Parcel> answers;
-  if (processes_ == nullptr) {
-    answers.push_back(carry_out(command, given.front(), equations_));
-    return answers;
-  }
+void PetscSolver::ask(Command command, const std::function<Parcel(int rank)>& given,
+                      const std::function<void(int rank, Parcel& answer)>& take) {
+  const auto own = [&] {
+    auto parcel = given(0);
+    auto answer = share_.carry_out(command, parcel);
+    take(0, answer);
+  };
+  if (processes_ == nullptr) return own();
   try {
+    for (int rank = 1; rank < processes_->size(); ++rank)
+      processes_->send(rank, Parcel().put(command).append(given(rank)));
+    own();
     for (int rank = 1; rank < processes_->size(); ++rank) {
-      auto& of_rank = given[given.size() == 1 ? 0 : static_cast<std::size_t>(rank)];
-      processes_->send(rank, Parcel().put(command).append(of_rank));
-      if (given.size() > 1) of_rank = {};
+      auto answer = processes_->receive(rank);
+      take(rank, answer);
     }
-    answers.push_back(carry_out(command, given.front(), equations_));
-    for (int rank = 1; rank < processes_->size(); ++rank) answers.push_back(processes_->receive(rank));
   } catch (const std::exception& error) {
     processes_->fail(reason_of(error));  // the others wait for this process's share
   }
-  return answers;
 }
 
-void serve_statics(Processes& processes) try {
-  std::unique_ptr<PetscEquations> equations;
+void serve_statics(Processes& processes, KeptDisplacements& kept) try {
+  kept.clear();
+  PetscShare share(kept);
   for (;;) {
     auto given = processes.receive(0);
-    const auto command = given.take<PetscSolver::Command>();
-    if (command == PetscSolver::Command::release) return;
-    processes.send(0, PetscSolver::carry_out(command, given, equations));
+    const auto command = given.take<PetscShare::Command>();
+    if (command == PetscShare::Command::release) return;
+    processes.send(0, share.carry_out(command, given));
   }
 } catch (const std::exception& error) {
   processes.fail(reason_of(error));
@@ -249,7 +270,7 @@ void serve_statics(Processes& processes) try {
 
 void release_statics(Processes& processes) {
   for (int rank = 1; rank < processes.size(); ++rank)
-    processes.send(rank, Parcel().put(PetscSolver::Command::release));
+    processes.send(rank, Parcel().put(PetscShare::Command::release));
 }
 
 }  // namespace slipfront::statics

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "processes/processes.hpp"
+#include "statics/kept_displacements.hpp"
 #include "statics/petsc_equations.hpp"
 #include "statics/pieces.hpp"
 #include "statics/plate_solver.hpp"
@@ -15,16 +17,38 @@
 namespace slipfront::statics {
 
 /// Bytes of the equations of so many unknowns at their peak, in all processes together; and of the leader
-/// besides, which divides the bodies and gathers displacements. The equilibria found not.
+/// besides, with the bodies that it divides. The equilibria found not.
+/// @param share  of the bodies, the largest piece
 double petsc_bytes(double n_unknowns);
-double divided_bytes(double n_unknowns);
+double divided_bytes(double n_unknowns, double share);
+
+/// One process's share in PETSc's equations.
+class PetscShare {
+ public:
+  /// @param kept  where it keeps what is found
+  explicit PetscShare(KeptDisplacements& kept) : kept_(kept) {}
+
+  enum class Command : int { build, begin, solve, keep, gather, forget, drop, release };
+  /// Carries out a command that all are given at the same time, but for release.
+  Parcel carry_out(Command command, Parcel& given);
+  int n_iterations() const { return equations_->n_iterations(); }
+
+ private:
+  void build(const Piece& piece);
+  void begin(Parcel& given);
+
+  KeptDisplacements& kept_;
+  std::unique_ptr<PetscEquations> equations_;
+  std::int32_t first_ = 0;
+  std::vector<double> x_m_, y_m_;  ///< [own pairs] of the plate's nodes; 0 for those of a base
+  std::vector<Piece::Place> top_;
+};
 
 /// Equilibria by PetscEquations: the leader's end, which divides the bodies, gives all processes the same
 /// commands and puts together what they answer. Contact states remain its own.
 class PetscSolver : public PlateSolver {
  public:
-  /// @param processes  that are in serve_statics; null for this one alone
-  PetscSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base, Processes* processes);
+  PetscSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base, const SharedBy& shared);
   ~PetscSolver() override;
 
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
@@ -32,31 +56,32 @@ class PetscSolver : public PlateSolver {
   std::int64_t n_unknowns() const override { return n_unknowns_; }
   double bytes() const override;
   bool iterates() const override { return true; }
-  int n_cycles() const override { return equations_->n_iterations(); }
+  int n_cycles() const override { return share_.n_iterations(); }
   int n_levels() const override { return 1; }
   std::vector<std::size_t> interface_of(int) const override;
 
  private:
   friend class PetscLoadCase;
-  enum class Command : int { build, begin, solve, displacements, drop, release };
-  friend void serve_statics(Processes& processes);
-  friend void release_statics(Processes& processes);
+  using Command = PetscShare::Command;
 
-  /// Gives each process its parcel, or all the same one; carries out the own share and returns all answers.
-  std::vector<Parcel> ask(Command command, std::vector<Parcel> given = std::vector<Parcel>(1));
-  static Parcel carry_out(Command command, Parcel& given, std::unique_ptr<PetscEquations>& equations);
+  /// Gives each process a parcel, carries out the own share and shows all answers, one by one.
+  void ask(
+      Command command, const std::function<Parcel(int rank)>& given,
+      const std::function<void(int rank, Parcel& answer)>& take = [](int, Parcel&) {});
 
   const mesh::Mesh& plate_;
-  const mesh::Mesh* base_;  ///< null on the rigid plane
   DividedBodies divided_;
   Processes* processes_;
+  bool gathers_;
+  KeptDisplacements own_kept_;  ///< where it gathers
+  PetscShare share_;
   std::vector<std::vector<std::int32_t>> lower_;  ///< [pieces] places in mesh.lower of each
-  std::unique_ptr<PetscEquations> equations_;
   std::int64_t n_unknowns_ = 0;
 };
 
 /// What the other processes do while the leader has a PetscSolver, until it releases them.
-void serve_statics(Processes& processes);
+/// @param kept  where this one keeps its share of what is found
+void serve_statics(Processes& processes, KeptDisplacements& kept);
 void release_statics(Processes& processes);
 
 }  // namespace slipfront::statics

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "base/error.hpp"
 
@@ -29,7 +30,7 @@ Piece Piece::take(Parcel& from) {
   }
   piece.lower = from.take_all<Place>();
   piece.gap_m = from.take_all<double>();
-  piece.top = from.take_all<std::int32_t>();
+  piece.top = from.take_all<Place>();
   piece.held = from.take_all<std::int32_t>();
   return piece;
 }
@@ -41,47 +42,74 @@ Terms terms_of(bool is_relative, bool is_base) {
   return {{is_base ? -1.0 : 1.0, 1}, {1, -1}};
 }
 
+void make_absolute(solid::Field& plate, std::span<const mesh::Node> plate_lower, solid::Field& base,
+                   std::span<const mesh::Node> base_lower, bool base_is_relative) {
+  auto& relative = base_is_relative ? base : plate;
+  const auto& other = base_is_relative ? plate : base;
+  const auto lower = base_is_relative ? base_lower : plate_lower;
+  const auto other_lower = base_is_relative ? plate_lower : base_lower;
+  const auto [own, opposite] = terms_of(true, base_is_relative);
+  for (std::size_t k = 0; k < lower.size(); ++k) {
+    double &x = relative.x[lower[k]], &y = relative.y[lower[k]];
+    x = own[0] * x + opposite[0] * other.x[other_lower[k]];
+    y = own[1] * y + opposite[1] * other.y[other_lower[k]];
+  }
+}
+
+namespace {
+
+/// The first column of each piece, and the number of columns.
+std::vector<int> first_columns(const std::vector<std::int64_t>& nodes_of_column, int n_pieces) {
+  const auto n_nodes = std::reduce(nodes_of_column.begin(), nodes_of_column.end());
+  SLIPFRONT_ASSERT(n_nodes < std::numeric_limits<std::int32_t>::max() / 2, "too many unknowns");
+  std::vector<int> first = {0};
+  std::int64_t before = 0;
+  for (std::size_t column = 0; column < nodes_of_column.size(); ++column) {
+    while (std::ssize(first) < n_pieces && before * n_pieces >= n_nodes * std::ssize(first))
+      first.push_back(static_cast<int>(column));
+    before += nodes_of_column[column];
+  }
+  first.resize(static_cast<std::size_t>(n_pieces) + 1, static_cast<int>(nodes_of_column.size()));
+  return first;
+}
+
+}  // namespace
+
 DividedBodies::DividedBodies(const ElasticBody& plate, const std::optional<ElasticBody>& base, int n_pieces) {
+  Cut cut;
   bodies_.push_back({&plate.mesh, &plate.material, {}});
   if (base) {
     bodies_.push_back({&base->mesh, &base->material, {}});
-    softer_ = plate.material.youngs_modulus_Pa > base->material.youngs_modulus_Pa ? 1 : 0;
+    cut.base_is_relative = plate.material.youngs_modulus_Pa > base->material.youngs_modulus_Pa;
   }
-  std::vector<std::vector<bool>> is_orphan;
-  std::vector<double> x_m;
-  for (const auto& body : bodies_) {
-    is_orphan.push_back(mesh::orphans(*body.mesh));
-    for (mesh::Node n = 0; n < body.mesh->n_nodes(); ++n)
-      if (!is_orphan.back()[n]) x_m.push_back(body.mesh->x_m[n]);
-  }
-  SLIPFRONT_ASSERT(x_m.size() < std::numeric_limits<std::int32_t>::max() / 2, "too many unknowns");
-  // From where along x each further piece has the nodes.
-  std::vector<double> from_m;
-  for (int k = 1; k < n_pieces; ++k) {
-    const auto middle =
-        x_m.begin() + static_cast<std::ptrdiff_t>(x_m.size() * static_cast<std::size_t>(k) / n_pieces);
-    std::ranges::nth_element(x_m, middle);
-    from_m.push_back(*middle);
-  }
-  const auto piece_at = [&](double x) {
-    return static_cast<std::size_t>(std::ranges::upper_bound(from_m, x) - from_m.begin());
-  };
-  std::vector<std::int32_t> count(static_cast<std::size_t>(n_pieces));
-  for (const double x : x_m) ++count[piece_at(x)];
-  first_.resize(count.size() + 1);
-  std::partial_sum(count.begin(), count.end(), first_.begin() + 1);
-  auto next = first_;
+  std::vector<mesh::NodeColumns> columns;
+  for (const auto& body : bodies_) columns.emplace_back(*body.mesh);
+  std::vector<std::int64_t> nodes_of_column(static_cast<std::size_t>(columns.front().n_columns()));
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    auto& body = bodies_[b];
-    body.pair.assign(is_orphan[b].size(), -1);
-    for (std::size_t n = 0; n < body.pair.size(); ++n)
-      if (!is_orphan[b][n]) body.pair[n] = next[piece_at(body.mesh->x_m[n])]++;
+    auto& orphans = cut.orphans.emplace_back();
+    const auto is_orphan = mesh::orphans(*bodies_[b].mesh);
+    for (mesh::Node n = 0; n < bodies_[b].mesh->n_nodes(); ++n)
+      if (is_orphan[n])
+        orphans.push_back(n);
+      else
+        ++nodes_of_column[columns[b].column_of(n)];
   }
+  cut.first_column = first_columns(nodes_of_column, n_pieces);
+  first_ = {0};
+  for (auto& body : bodies_) body.pair.assign(static_cast<std::size_t>(body.mesh->n_nodes()), -1);
+  for (int k = 0; k < n_pieces; ++k) {
+    std::int32_t next = first_.back();
+    const auto nodes = cut.nodes_of_piece(columns, k);
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      for (const auto n : nodes[b]) bodies_[b].pair[n] = next++;
+    first_.push_back(next);
+  }
+  cut_ = std::make_shared<const Cut>(std::move(cut));
 }
 
 std::vector<std::int32_t> DividedBodies::opposites(std::size_t body) const {
   std::vector<std::int32_t> opposite(bodies_[body].pair.size(), -1);
-  if (!is_relative_body(body)) return opposite;
+  if (bodies_.size() == 1 || &bodies_[body] != &relative()) return opposite;
   const auto& lower = bodies_[body].mesh->lower;
   const auto& other = bodies_[1 - body];
   for (std::size_t k = 0; k < lower.size(); ++k) opposite[lower[k]] = other.pair[other.mesh->lower[k]];
@@ -112,7 +140,7 @@ Piece DividedBodies::piece(int number) const {
       }
     }
   }
-  const auto& relative = bodies_[softer_];
+  const auto& relative = this->relative();
   const auto gap_m = gaps_m(*bodies_.front().mesh, bodies_.size() > 1 ? bodies_.back().mesh : nullptr);
   for (std::size_t k = 0; k < relative.mesh->lower.size(); ++k) {
     const auto own = relative.pair[relative.mesh->lower[k]];
@@ -120,35 +148,14 @@ Piece DividedBodies::piece(int number) const {
     piece.lower.push_back({own, static_cast<std::int32_t>(k)});
     piece.gap_m.push_back(gap_m[k]);
   }
-  const auto take_top = [&](const Body& body, std::vector<std::int32_t>& to) {
-    for (const auto n : body.mesh->top)
-      if (piece.has(body.pair[n])) to.push_back(body.pair[n]);
-  };
-  take_top(bodies_.front(), piece.top);
-  if (bodies_.size() > 1) take_top(bodies_.back(), piece.held);
+  const auto& plate = bodies_.front();
+  for (std::size_t k = 0; k < plate.mesh->top.size(); ++k)
+    if (const auto pair = plate.pair[plate.mesh->top[k]]; piece.has(pair))
+      piece.top.push_back({pair, static_cast<std::int32_t>(k)});
+  if (bodies_.size() > 1)
+    for (const auto n : bodies_.back().mesh->top)
+      if (const auto pair = bodies_.back().pair[n]; piece.has(pair)) piece.held.push_back(pair);
   return piece;
-}
-
-std::vector<double> DividedBodies::unknowns(const DisplacementOfBodies& u) const {
-  std::vector<double> unknowns(2 * static_cast<std::size_t>(n_pairs()));
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const auto& field = b == 0 ? *u.above : *u.below;
-    for (std::size_t n = 0; n < bodies_[b].pair.size(); ++n) {
-      const auto pair = bodies_[b].pair[n];
-      if (pair < 0) continue;
-      unknowns[2 * pair] = field.x[n];
-      unknowns[2 * pair + 1] = field.y[n];
-    }
-  }
-  if (bodies_.size() == 1) return unknowns;
-  const auto &plate = bodies_[0].mesh->lower, &base = bodies_[1].mesh->lower;
-  const auto& relative = bodies_[softer_];
-  for (std::size_t k = 0; k < plate.size(); ++k) {
-    const auto pair = relative.pair[relative.mesh->lower[k]];
-    unknowns[2 * pair] = u.above->x[plate[k]] - u.below->x[base[k]];
-    unknowns[2 * pair + 1] = u.above->y[plate[k]] + u.below->y[base[k]];
-  }
-  return unknowns;
 }
 
 Displacement DividedBodies::displacement(const std::vector<double>& unknowns) const {
@@ -156,24 +163,16 @@ Displacement DividedBodies::displacement(const std::vector<double>& unknowns) co
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     auto& field = b == 0 ? u.above : u.below;
     field = solid::Field(bodies_[b].pair.size());
-    const auto opposite = opposites(b);
     for (std::size_t n = 0; n < field.size(); ++n) {
       const auto pair = bodies_[b].pair[n];
       if (pair < 0) continue;
-      const auto terms = terms_of(opposite[n] >= 0, b > 0);
-      field.x[n] = terms.own[0] * unknowns[2 * pair];
-      field.y[n] = terms.own[1] * unknowns[2 * pair + 1];
-      if (opposite[n] < 0) continue;
-      field.x[n] += terms.opposite[0] * unknowns[2 * opposite[n]];
-      field.y[n] += terms.opposite[1] * unknowns[2 * opposite[n] + 1];
+      field.x[n] = unknowns[2 * pair];
+      field.y[n] = unknowns[2 * pair + 1];
     }
   }
+  if (bodies_.size() > 1)
+    make_absolute(u.above, bodies_[0].mesh->lower, u.below, bodies_[1].mesh->lower, cut_->base_is_relative);
   return u;
-}
-
-std::vector<double> DividedBodies::of_piece(const std::vector<double>& unknowns, int number) const {
-  return {unknowns.begin() + 2 * std::ptrdiff_t{first_[number]},
-          unknowns.begin() + 2 * std::ptrdiff_t{first_[number + 1]}};
 }
 
 }  // namespace slipfront::statics

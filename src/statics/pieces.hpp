@@ -3,12 +3,15 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mesh/mesh.hpp"
 #include "processes/parcel.hpp"
 #include "statics/elastic_body.hpp"
+#include "statics/kept_displacements.hpp"
 #include "statics/load_case.hpp"
 
 namespace slipfront::statics {
@@ -39,7 +42,7 @@ struct Piece {
   std::vector<Body> bodies;
   std::vector<Place> lower;        ///< places in mesh.lower, ascending
   std::vector<double> gap_m;       ///< [lower]
-  std::vector<std::int32_t> top;   ///< pairs of the loaded edge
+  std::vector<Place> top;          ///< pairs of the loaded edge, with places in mesh.top
   std::vector<std::int32_t> held;  ///< pairs at which a base is held
 
   bool has(std::int32_t pair) const { return pair >= first && pair < first + count; }
@@ -52,21 +55,23 @@ struct Terms {
   std::array<double, 2> own{1, 1}, opposite{0, 0};
 };
 Terms terms_of(bool is_relative, bool is_base);
+/// Displacements of two bodies, from what their unknowns are at nodes that face each other.
+void make_absolute(solid::Field& plate, std::span<const mesh::Node> plate_lower, solid::Field& base,
+                   std::span<const mesh::Node> base_lower, bool base_is_relative);
 
-/// A plate, and a base below it, cut across the interface into pieces with as many nodes each.
+/// A plate, and a base below it, cut across the interface into pieces of columns with about as many nodes
+/// each.
 class DividedBodies {
  public:
   DividedBodies(const ElasticBody& plate, const std::optional<ElasticBody>& base, int n_pieces);
 
-  int n_pieces() const { return static_cast<int>(first_.size()) - 1; }
+  int n_pieces() const { return cut_->n_pieces(); }
+  const std::shared_ptr<const Cut>& cut() const { return cut_; }
   std::int32_t n_pairs() const { return first_.back(); }
   Piece piece(int number) const;
 
-  /// All unknowns for displacements of the bodies, and back; 0 at numbers without a cell.
-  std::vector<double> unknowns(const DisplacementOfBodies& u) const;
+  /// Displacements of the bodies for all unknowns; 0 at numbers without a cell.
   Displacement displacement(const std::vector<double>& unknowns) const;
-  /// Of all unknowns those of a piece.
-  std::vector<double> of_piece(const std::vector<double>& unknowns, int number) const;
 
  private:
   struct Body {
@@ -74,12 +79,12 @@ class DividedBodies {
     const solid::Material* material;
     std::vector<std::int32_t> pair;  ///< [nodes] -1 where there is no cell
   };
-  bool is_relative_body(std::size_t body) const { return bodies_.size() > 1 && body == softer_; }
+  const Body& relative() const { return bodies_[cut_->base_is_relative ? 1 : 0]; }
   /// [nodes] The other body's pair at the nodes whose own one is relative; else -1.
   std::vector<std::int32_t> opposites(std::size_t body) const;
 
   std::vector<Body> bodies_;
-  std::size_t softer_ = 0;
+  std::shared_ptr<const Cut> cut_;
   std::vector<std::int32_t> first_;  ///< [pieces + 1]
 };
 

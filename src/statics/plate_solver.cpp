@@ -223,10 +223,11 @@ StaticsBudget statics_budget(const StaticsSize& size) {
   if (is_direct(size)) return direct_budget(size);
   const double n = size.n_unknowns + size.n_unknowns_base;
   if (size.solver == StaticSolver::petsc) {
-    // What each process receives and the leader puts together comes on top of the shares.
-    const Budget shares = {{"the static equations of PETSc", size.share * petsc_bytes(n), larger_elements()},
-                           {"bodies on their way to the processes", divided_bytes(n), larger_elements()}};
-    return {shares + Budget{equilibria(n, all_equilibria)}, shares + Budget{equilibria(n, 1)}};
+    const Budget shares = {
+        {"the static equations of PETSc", size.share * petsc_bytes(n), larger_elements()},
+        {"bodies on their way to the processes", divided_bytes(n, size.share), larger_elements()}};
+    const double n_kept = size.is_kept_by_all ? size.share * n : n;
+    return {shares + Budget{equilibria(n_kept, all_equilibria)}, shares + Budget{equilibria(n_kept, 1)}};
   }
   Budget iterative = {{"the iterative solution", iterative_bytes(n), larger_elements()}};
   if (size.n_unknowns_base > 0)
@@ -244,7 +245,7 @@ void require_statics_memory(const StaticsSize& size) {
 
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver, const std::optional<ElasticBody>& base,
-                                               Processes* processes) {
+                                               const SharedBy& shared) {
   if (base) require_base_fits(mesh, base->mesh);
   std::optional<Shape> shape_of_base;
   if (base) shape_of_base = shape_of(base->mesh);
@@ -252,7 +253,7 @@ std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const sol
   double n_unknowns = 2.0 * mesh.n_nodes();
   if (base) n_unknowns += 2.0 * base->mesh.n_nodes();
   if (solver == StaticSolver::petsc)
-    return std::make_unique<PetscSolver>(ElasticBody{mesh, material}, base, processes);
+    return std::make_unique<PetscSolver>(ElasticBody{mesh, material}, base, shared);
   if (choose_solver(solver, n_unknowns) == StaticSolver::direct)
     return std::make_unique<DirectSolver>(mesh, material, base);
   return std::make_unique<IterativeSolver>(ElasticBody{mesh, material}, base);

@@ -41,12 +41,22 @@ struct Support {
 /// How far the interface of the undeformed bodies is open. [lower]
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base);
 
-class LoadCase;  // load_case.hpp
+class LoadCase;           // load_case.hpp
+class KeptDisplacements;  // kept_displacements.hpp
 
-/// Displacements of all nodes that are kept elsewhere: of the plate, and of the base where there is one.
+/// The processes that solve together, by PETSc.
+struct SharedBy {
+  Processes* processes = nullptr;  ///< all others are in serve_statics; null for this one alone
+  /// Where this one keeps its share of what is found, which is gathered nowhere; null to gather it here.
+  KeptDisplacements* kept = nullptr;
+};
+
+/// Displacements of all nodes that are kept elsewhere: of the plate, and of the base where there is one; for
+/// PETSc their number, see KeptDisplacements.
 struct DisplacementOfBodies {
   const solid::Field* above;
   const solid::Field* below = nullptr;
+  int kept = -1;
 };
 
 /// Solves the linear equilibria of one plate on the rigid plane or on a base.
@@ -104,6 +114,7 @@ struct StaticsSize {
   double n_unknowns_base = 0;              ///< 0 on the rigid plane
   bool top_free_in_tilt = false;           ///< the tilt then has a factorisation of its own
   double share = 1;                        ///< of PETSc's equations that this machine's processes have
+  bool is_kept_by_all = false;             ///< each process keeps its share of PETSc's equilibria
 };
 
 /// What the statics take at their peak, the meshes and the equilibria found included, and what they hold of
@@ -119,10 +130,10 @@ void require_statics_memory(const StaticsSize& size);
 
 /// By the solver that the bodies' shapes leave of `solver`. Before it makes anything, see
 /// require_statics_memory.
-/// @param processes  that are in serve_statics, for PETSc; null for this one alone
+/// @param shared  by whom, for PETSc
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver,
                                                const std::optional<ElasticBody>& base = std::nullopt,
-                                               Processes* processes = nullptr);
+                                               const SharedBy& shared = {});
 
 }  // namespace slipfront::statics

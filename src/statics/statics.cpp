@@ -205,10 +205,15 @@ Inside inside_contact(const ContactProblem& problem, double margin_m) {
 }
 
 /// Interface nodes' displacement along x, relative to that of a base. [lower]
-std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Equilibrium& e) {
+std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Displacement& u,
+                                   const LoadCase& of_interface) {
   std::vector<double> u_x_m;
-  for (const auto n : mesh.lower) u_x_m.push_back(e.u_m.x[n]);
-  for (std::size_t k = 0; base != nullptr && k < u_x_m.size(); ++k) u_x_m[k] -= e.below_u_m.x[base->lower[k]];
+  if (u.kept) {
+    for (Eigen::Index k = 0; k < of_interface.u0.size(); k += 2) u_x_m.push_back(of_interface.u0(k));
+    return u_x_m;
+  }
+  for (const auto n : mesh.lower) u_x_m.push_back(u.above.x[n]);
+  for (std::size_t k = 0; base != nullptr && k < u_x_m.size(); ++k) u_x_m[k] -= u.below.x[base->lower[k]];
   return u_x_m;
 }
 
@@ -283,6 +288,10 @@ TopDisplacement tilt_of(const mesh::Mesh& mesh, const Loading& loading) {
   return tilt;
 }
 
+DisplacementOfBodies displacement_of(const Equilibrium& e) {
+  return {&e.u_m, &e.below_u_m, e.kept_u_m ? e.kept_u_m->number : -1};
+}
+
 /// Nodes without a gap stick where they are.
 ContactStates states_before(const std::vector<double>& gap_m, const std::vector<double>& mu_s) {
   const std::size_t n = gap_m.size();
@@ -305,7 +314,7 @@ Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const 
 
 Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>& base,
                  const Loading& loading, std::vector<double> mu_s, std::string mu_s_key, GoOn go_on,
-                 Processes* processes)
+                 const SharedBy& shared)
     : mesh_(plate_body.mesh),
       base_mesh_(base ? &base->mesh : nullptr),
       loading_(loading),
@@ -314,10 +323,10 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
       go_on_(std::move(go_on)) {
   const auto& mesh = mesh_;
   SLIPFRONT_ASSERT(mu_s_.size() == mesh.lower.size(), "mu_s of another interface");
-  solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base, processes);
+  const bool is_free = loading.top_during_tilt == TopEdge::free;
+  solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base, shared);
 
   auto tilt = tilt_of(mesh, loading);
-  const bool is_free = loading.top_during_tilt == TopEdge::free;
   const auto make_case = [&](int level) {
     return solver_->load_case(is_free ? TopConstraint::vertical : TopConstraint::both, tilt, false, nullptr,
                               level);
@@ -342,16 +351,18 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
     throw UserError("the tilt leaves the plate without contact; increase {} or {}",
                     Key("loading.tilt_left_m"), Key("loading.tilt_right_m"));
   auto u = plate->displacement(0);
+  tilted_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u, *plate);
   plate.reset();
   tilted_.u_m = std::move(u.above);
   tilted_.below_u_m = std::move(u.below);
+  tilted_.kept_u_m = std::move(u.kept);
   tilted_.u_per_shear = solid::Field(tilted_.u_m.size());
   tilted_.below_u_per_shear = solid::Field(tilted_.below_u_m.size());
 
   if (is_free)
     for (std::size_t k = 0; k < mesh.top.size(); ++k) tilt.u_x_m[k] = tilted_.u_m.x[mesh.top[k]];
   tilted_top_ = tilt;
-  const DisplacementOfBodies tilted_u{&tilted_.u_m, &tilted_.below_u_m};
+  const auto tilted_u = displacement_of(tilted_);
   sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_u, 0);
 }
 
@@ -377,14 +388,14 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
     const std::size_t n = mesh_.lower.size();
     states = {{tilted_.contact, std::vector<double>(n, 0.0), std::vector<double>(n, 0.0), mu_s_},
               std::vector<std::uint8_t>(n, 0)};
-    states.support.anchor_x_m = relative_u_x_m(mesh_, base_mesh_, tilted_);
+    states.support.anchor_x_m = tilted_u_x_m_;
     for (std::size_t k = 0; k < n; ++k) {
       if (tilted_.contact[k] != Contact::open) states.support.contact[k] = Contact::stick;
       states.has_touched[k] = tilted_.contact[k] != Contact::open;
     }
     if (solver_->iterates()) accuracy = first_accuracy;
     const auto start = states;
-    const DisplacementOfBodies tilted_u{&tilted_.u_m, &tilted_.below_u_m};
+    const auto tilted_u = displacement_of(tilted_);
     const auto make_case = [&](int level) {
       return solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_u, level);
     };
@@ -404,6 +415,8 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
   auto u = sheared_->displacement(shear), per_shear = sheared_->displacement_per_shear();
   e.u_m = std::move(u.above);
   e.below_u_m = std::move(u.below);
+  e.kept_u_m = std::move(u.kept);
+  e.kept_u_per_shear = std::move(per_shear.kept);
   e.u_per_shear = std::move(per_shear.above);
   e.below_u_per_shear = std::move(per_shear.below);
   return e;

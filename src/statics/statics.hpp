@@ -11,6 +11,7 @@
 #include "record/record.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
+#include "statics/kept_displacements.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/settings.hpp"
 
@@ -32,6 +33,8 @@ struct Equilibrium {
   solid::Field u_per_shear;  ///< [nodes] change of u per unit displacement of the loaded edge along x
   /// The same of a base, described upside down; empty for the rigid plane.
   solid::Field below_u_m, below_u_per_shear;
+  /// Where the processes that have found them keep both, perhaps they alone; not in archives.
+  std::optional<KeptDisplacement> kept_u_m = {}, kept_u_per_shear = {};
   double shear_m = 0;                         ///< displacement of the loaded edge along x since the tilt
   std::vector<Contact> contact;               ///< [lower]
   record::StaticState tractions;              ///< [lower]
@@ -67,13 +70,13 @@ class Statics {
   /// @param mu_s      coefficient at rest of each interface node. [lower]
   /// @param mu_s_key  key of mu_s in the case file, for messages
   /// @param go_on     of all solutions, those of later calls included
-  /// @param processes  that are in serve_statics, for loading.solver = petsc; null for this one alone
+  /// @param shared     by whom, for loading.solver = petsc
   /// @throws UserError where the tilt leaves the plate without contact, or where `loading` asks for an
   /// iterative solution on a base; Interrupted.
   Statics(
       const ElasticBody& plate, const std::optional<ElasticBody>& base, const Loading& loading,
       std::vector<double> mu_s, std::string mu_s_key = "friction.mu_s", GoOn go_on = [] { return true; },
-      Processes* processes = nullptr);
+      const SharedBy& shared = {});
   /// On the rigid plane, with one coefficient everywhere.
   Statics(
       const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
@@ -110,6 +113,7 @@ class Statics {
   TopDisplacement tilted_top_;         ///< the loaded edge after the tilt
   std::unique_ptr<LoadCase> sheared_;  ///< the loaded edge where it stands after the tilt, then moved along x
   Equilibrium tilted_;
+  std::vector<double> tilted_u_x_m_;  ///< [lower] relative to a base
   /// Contact states of the last shear, where beginning with them pays.
   mutable std::optional<ContactStates> last_;
 };

@@ -143,7 +143,7 @@ void expect_same(const Bodies& bodies, LoadCase& by_petsc, LoadCase& direct, con
 
 TEST_P(Equilibria, AreThoseOfTheFactorisation) {
   const auto& bodies = GetParam();
-  PetscSolver petsc({bodies.plate, pmma}, bodies.base_body(), processes.get());
+  PetscSolver petsc({bodies.plate, pmma}, bodies.base_body(), {processes.get()});
   const auto direct = make_plate_solver(bodies.plate, pmma, StaticSolver::direct, bodies.base_body());
   const auto n = bodies.plate.lower.size();
   const auto top = tilt_of(bodies.plate);
@@ -167,7 +167,7 @@ TEST_P(Equilibria, AreThoseOfTheFactorisation) {
 
 TEST_P(Equilibria, LooserOnesAreLessAccurate) {
   const auto& bodies = GetParam();
-  PetscSolver petsc({bodies.plate, pmma}, bodies.base_body(), processes.get());
+  PetscSolver petsc({bodies.plate, pmma}, bodies.base_body(), {processes.get()});
   const auto direct = make_plate_solver(bodies.plate, pmma, StaticSolver::direct, bodies.base_body());
   const auto top = tilt_of(bodies.plate);
   const auto support = mixed_support(bodies.plate.lower.size());
@@ -204,8 +204,8 @@ TEST(Contact, SettlesAsByTheFactorisation) {
       const auto statics_by = [&](StaticSolver solver, double coefficient) {
         const std::vector<double> mu_s(mesh.lower.size(), coefficient);
         loading.solver = solver;
-        return Statics(
-            {mesh, pmma}, std::nullopt, loading, mu_s, "friction.mu_s", [] { return true; }, processes.get());
+        return Statics({mesh, pmma}, std::nullopt, loading, mu_s, "friction.mu_s", [] { return true; },
+                       {processes.get()});
       };
       const auto slippery = statics_by(StaticSolver::petsc, 0.3).tilted().contact;
       EXPECT_EQ(slippery, statics_by(StaticSolver::direct, 0.3).tilted().contact);
@@ -227,7 +227,8 @@ int main(int argc, char** argv) {
   slipfront::statics::processes = slipfront::join_processes(argc, argv);
   auto* processes = slipfront::statics::processes.get();
   if (processes != nullptr && processes->rank() > 0) {
-    slipfront::statics::serve_statics(*processes);
+    slipfront::statics::KeptDisplacements kept;
+    slipfront::statics::serve_statics(*processes, kept);
     slipfront::statics::processes.reset();
     return 0;
   }

@@ -204,3 +204,19 @@ def test_as_many_processes_give_the_same_again(mpirun, case):
     first, again = (run(mpirun, 2, case, name, *petsc) for name in ("first", "again"))
     for name in ("static.csv", "fronts.csv", "interface.h5"):
         assert (first / name).read_bytes() == (again / name).read_bytes(), name
+
+
+@pytest.mark.parametrize(
+    "settings, n",
+    [((), 3), (FILLET, 2), (GRADED, 3), (ON_BASE, 3), ((*ON_BASE, "--set", "base.youngs_modulus_Pa=1e9"), 2)],
+    ids=["relief", "fillet", "graded", "base", "soft base"],
+)
+def test_displacements_stay_where_they_are_found(mpirun, case, settings, n):
+    """Where the state before the event is to be used again, the leader gathers them."""
+    settings = (*settings, "--set", "loading.solver=petsc", "--set", "output.snapshot_times_s=[0, 1e-4]")
+    kept = run(mpirun, n, case, "kept", *settings)
+    gathered = run(mpirun, n, case, "gathered", *settings, "--state-dir", "states")
+    again = run(mpirun, 1, case, "again", *settings, "--state-dir", "states")
+    for other in (gathered, again):
+        for name in ("static.csv", "fronts.csv", "interface.h5", "fields.vtkhdf"):
+            assert (kept / name).read_bytes() == (other / name).read_bytes(), (other, name)

@@ -162,6 +162,30 @@ TEST(ProcessCost, OfMemoryFallsForAllButTheLeader) {
   EXPECT_DOUBLE_EQ(twenty.leader_memory_bytes, 1e7 + 1e9);
 }
 
+TEST(ProcessCost, OfTheLeadersMemoryFallsWhereAllKeepTheStateBefore) {
+  auto work = square();
+  work.statics_bytes = 0;
+  const auto of_leader = [&] {
+    return process_cost(work, division(1000, 4, 10), 4, ethernet).leader_memory_bytes;
+  };
+  const double gathered = of_leader();
+  work.keeps_displacements = true;
+  EXPECT_NEAR(gathered - of_leader(), 4 * sizeof(double) * work.n_nodes, 1);
+}
+
+TEST(ProcessCost, TheStateBeforeIsKeptByThoseWhoFindIt) {
+  auto config = test::coarse_case();
+  EXPECT_FALSE(keeps_displacements(config, 4));
+  config.loading.solver = statics::StaticSolver::petsc;
+  EXPECT_TRUE(keeps_displacements(config, 4));
+  EXPECT_FALSE(keeps_displacements(config, 1));
+  auto free_top = config, ramp = config;
+  free_top.loading.top_during_tilt = statics::TopEdge::free;
+  EXPECT_FALSE(keeps_displacements(free_top, 4));
+  ramp.loading.method = statics::LoadingMethod::ramp;
+  EXPECT_FALSE(keeps_displacements(ramp, 4));
+}
+
 TEST(ProcessCost, FollowsFromACase) {
   auto config = test::coarse_case(interface::EventKind::left, 0.5e-3);
   config.time.interface_substeps = 1;
