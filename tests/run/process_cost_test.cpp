@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "cases.hpp"
+#include "run/choices.hpp"
 
 namespace slipfront::run {
 namespace {
