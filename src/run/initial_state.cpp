@@ -167,8 +167,8 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
 
 }  // namespace
 
-Meshes check(const input::Case& config, const Processes* processes) {
-  require_memory_fits(config, processes);
+Meshes check(const input::Case& config, const Processes* processes, bool may_keep) {
+  require_memory_fits(config, processes, may_keep);
   return checked_meshes(config, leads_by_interface(config, processes != nullptr ? processes->size() : 1));
 }
 
@@ -194,8 +194,7 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   const auto start = Clock::now();
   const double margin = config.loading.critical_margin;
   InitialState initial;
-  require_memory_fits(config, processes, may_keep);
-  auto meshes = check(config, processes);
+  auto meshes = check(config, processes, may_keep);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   initial.n_nodes = n_nodes_of(initial.mesh) + (initial.base ? n_nodes_of(*initial.base) : 0);

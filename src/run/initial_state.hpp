@@ -54,8 +54,9 @@ struct Meshes {
 /// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer. The
 /// meshes are those of the interfaces alone where leads_by_interface says so.
 /// @param processes  that share the run, of which this one leads; null for this one alone
+/// @param may_keep   see make_initial_state
 /// @throws UserError
-Meshes check(const input::Case& config, const Processes* processes = nullptr);
+Meshes check(const input::Case& config, const Processes* processes = nullptr, bool may_keep = true);
 
 /// The same of the interfaces alone, whatever the memory.
 Meshes check_interfaces(const input::Case& config);

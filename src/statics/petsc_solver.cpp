@@ -74,10 +74,14 @@ class PetscLoadCase : public LoadCase {
  private:
   /// factor_0 u0 + factor_1 u1
   Displacement kept(double factor_0, double factor_1) const {
-    int number = 0;
+    int number = -1;
     solver_.ask(
         PetscSolver::Command::keep, [&](int) { return std::move(Parcel().put(factor_0).put(factor_1)); },
-        [&](int, Parcel& answer) { number = answer.take<int>(); });
+        [&](int rank, Parcel& answer) {
+          const int of_process = answer.take<int>();
+          SLIPFRONT_ASSERT(rank == 0 || of_process == number, "the same number in all processes");
+          number = of_process;
+        });
     if (!solver_.gathers_) return {{}, {}, KeptDisplacement{number, solver_.divided_.cut()}};
     std::vector<double> all;
     solver_.ask(
@@ -111,6 +115,7 @@ double divided_bytes(double n_unknowns, double share) {
 }
 
 void PetscShare::build(const Piece& piece) {
+  kept_.clear();  // of another solver's pieces
   equations_ = std::make_unique<PetscEquations>(piece);
   first_ = piece.first;
   top_ = piece.top;
@@ -256,7 +261,6 @@ void PetscSolver::ask(Command command, const std::function<Parcel(int rank)>& gi
 }
 
 void serve_statics(Processes& processes, KeptDisplacements& kept) try {
-  kept.clear();
   PetscShare share(kept);
   for (;;) {
     auto given = processes.receive(0);
