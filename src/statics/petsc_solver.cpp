@@ -206,7 +206,7 @@ PetscSolver::PetscSolver(const ElasticBody& plate, const std::optional<ElasticBo
       divided_(plate, base, shared.processes != nullptr ? shared.processes->size() : 1),
       processes_(shared.processes),
       gathers_(shared.kept == nullptr),
-      share_(gathers_ ? own_kept_ : *shared.kept) {
+      share_(shared.kept != nullptr ? *shared.kept : own_kept_) {
   std::size_t n_prescribed = plate.mesh.top.size() + (base ? base->mesh.top.size() : 0);
   n_unknowns_ = 2 * (static_cast<std::int64_t>(divided_.n_pairs()) - static_cast<std::int64_t>(n_prescribed));
   lower_.resize(static_cast<std::size_t>(divided_.n_pieces()));
