@@ -16,7 +16,9 @@ case=$1
 dir=$2
 
 begin=("$case" -o "$dir")
-[ -e "$dir/unfinished" ] || [ -e "$dir/run.json" ] && begin=(--restart "$dir")
+for name in unfinished publishing run.json; do
+  [ -e "$dir/$name" ] && begin=(--restart "$dir")
+done
 cpus=${SLURM_CPUS_PER_TASK:-1} # of which srun knows nothing since Slurm 22.05
 srun --mpi=pmix --kill-on-bad-exit=1 --cpus-per-task="$cpus" slipfront run "${begin[@]}" --threads "$cpus" --quiet
 code=$?

@@ -4,15 +4,20 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/version.hpp"
 #include "cli/commands.hpp"
+#include "cli/output.hpp"
+#include "cli/print.hpp"
 #include "fronts/fit.hpp"
 #include "run/parts.hpp"
 #include "statics/petsc_equations.hpp"
@@ -57,28 +62,28 @@ void print_json(const bench::Results& results) {
       {"stencil_alone_per_s", results.stencil_alone_per_s},
       {"rates", rates},
       {"paper_runs", paper_runs}};
-  fmt::print("{}\n", all.dump(2));
+  print("{}\n", all.dump(2));
 }
 
 void print_table(const bench::Results& results) {
-  fmt::print("{}, {}, {}\n\n", version_line(), processor(), compiler());
-  fmt::print("bandwidth of u, v in and out: {:.1f} GB/s by one thread, {:.1f} GB/s by all\n",
-             results.bandwidth_bytes_per_s * 1e-9, results.bandwidth_all_threads_bytes_per_s * 1e-9);
-  fmt::print("the stencil alone, in the nearest cache: {:.0f} million node updates/s\n\n",
-             results.stencil_alone_per_s * 1e-6);
-  fmt::print("{:<32}{:>15}{:>9}{:>13}{:>12}{:>9}{:>10}{:>12}\n", "path", "mesh", "threads", "steps/sweep",
-             "M updates/s", "bound", "fraction", "bytes/node");
+  print("{}, {}, {}\n\n", version_line(), processor(), compiler());
+  print("bandwidth of u, v in and out: {:.1f} GB/s by one thread, {:.1f} GB/s by all\n",
+        results.bandwidth_bytes_per_s * 1e-9, results.bandwidth_all_threads_bytes_per_s * 1e-9);
+  print("the stencil alone, in the nearest cache: {:.0f} million node updates/s\n\n",
+        results.stencil_alone_per_s * 1e-6);
+  print("{:<32}{:>15}{:>9}{:>13}{:>12}{:>9}{:>10}{:>12}\n", "path", "mesh", "threads", "steps/sweep",
+        "M updates/s", "bound", "fraction", "bytes/node");
   for (const auto& r : results.rates)
-    fmt::print("{:<32}{:>15}{:>9}{:>13}{:>12.0f}{:>9.0f}{:>10.2f}{:>12}\n", r.path,
-               fmt::format("{} x {}", r.columns, r.rows), r.threads, r.steps_per_sweep,
-               r.node_updates_per_s * 1e-6, r.bound_per_s * 1e-6, r.node_updates_per_s / r.bound_per_s,
-               r.bytes_per_node > 0 ? fmt::format("{:.0f}", r.bytes_per_node) : "");
-  fmt::print(
+    print("{:<32}{:>15}{:>9}{:>13}{:>12.0f}{:>9.0f}{:>10.2f}{:>12}\n", r.path,
+          fmt::format("{} x {}", r.columns, r.rows), r.threads, r.steps_per_sweep,
+          r.node_updates_per_s * 1e-6, r.bound_per_s * 1e-6, r.node_updates_per_s / r.bound_per_s,
+          r.bytes_per_node > 0 ? fmt::format("{:.0f}", r.bytes_per_node) : "");
+  print(
       "\nBound: bandwidth over {:.0f} bytes a node for one step per sweep through memory, else the "
       "stencil alone. Medians of 5.\n\n",
       bench::bytes_per_node_update);
   for (const auto& r : results.paper_runs)
-    fmt::print(
+    print(
         "the paper's left event, {} x {}, {} thread{}: statics {:.2f} s, event {:.2f} s ({:.0f} "
         "million node updates/s)\n",
         r.columns, r.rows, r.threads, r.threads > 1 ? "s" : "", r.statics_s, r.event_s,
@@ -115,62 +120,102 @@ void print_network(std::span<const Link> links, int n_processes, bool as_json) {
                                         {"latency_s", latency_s},
                                         {"bandwidth_bytes_per_s", bandwidth_bytes_per_s},
                                         {"links", list}};
-    fmt::print("{}\n", all.dump(2));
+    print("{}\n", all.dump(2));
     return;
   }
-  fmt::print("{}, {}, {}\n\n", version_line(), processor(), compiler());
-  fmt::print("{:<26}{:>14}{:>18}\n", "processes", "latency, us", "GB/s each way");
-  const auto print = [](const std::string& name, const Link& link) {
-    fmt::print("{:<26}{:>14.3g}{:>18.3g}\n", name, link.latency_s * 1e6, link.bandwidth_bytes_per_s * 1e-9);
+  print("{}, {}, {}\n\n", version_line(), processor(), compiler());
+  print("{:<26}{:>14}{:>18}\n", "processes", "latency, us", "GB/s each way");
+  const auto print_link = [](const std::string& name, const Link& link) {
+    print("{:<26}{:>14.3g}{:>18.3g}\n", name, link.latency_s * 1e6, link.bandwidth_bytes_per_s * 1e-9);
   };
-  for (const auto& link : links) print(fmt::format("{} and {}", link.from, link.to), link);
-  print("median of neighbours", neighbours);
-  print("median of 0 and others", leader);
-  fmt::print(
+  for (const auto& link : links) print_link(fmt::format("{} and {}", link.from, link.to), link);
+  print_link("median of neighbours", neighbours);
+  print_link("median of 0 and others", leader);
+  print(
       "\nHalf a round trip of one number; messages of 256 KiB both ways at once. Medians; the slower ones "
       "for\n"
       "info --latency-s {:.4g} --bandwidth-bytes-per-s {:.4g}\n",
       latency_s, bandwidth_bytes_per_s);
 }
 
-void print_statics(const bench::StaticsRun& r) {
-  fmt::print(
+void print_statics(const bench::StaticsRun& r, bool as_json) {
+  if (as_json) {
+    const nlohmann::ordered_json all = {{"version", version()},
+                                        {"commit", commit()},
+                                        {"processor", processor()},
+                                        {"columns", r.columns},
+                                        {"rows", r.rows},
+                                        {"solver", r.solver},
+                                        {"unknowns", r.unknowns},
+                                        {"wall_s", r.wall_s},
+                                        {"processor_s", r.processor_s},
+                                        {"cycles", r.cycles},
+                                        {"peak_bytes", r.peak_bytes},
+                                        {"expected_bytes", r.expected_bytes},
+                                        {"critical_shear_m", r.critical_shear_m}};
+    return print("{}\n", all.dump(2));
+  }
+  print(
       "{} x {}, {}, {:.3g} unknowns: {:.2f} s ({:.2f} s of processor), {} cycles, peak memory {:.2f} GB, "
       "expected {:.2f} GB, critical shear {:.12g} m\n",
       r.columns, r.rows, r.solver, r.unknowns, r.wall_s, r.processor_s, r.cycles, r.peak_bytes * 1e-9,
       r.expected_bytes * 1e-9, r.critical_shear_m);
 }
 
+struct BenchArguments {
+  std::optional<int> threads, columns;
+  std::optional<std::string> solver;
+  bool large = false, network = false;
+
+  /// @throws UserError where some of them are of different measurements
+  void require_one() const {
+    const auto refuse = [](bool is_given, const char* option, const char* with) {
+      if (is_given) throw UserError("slipfront: bench {} takes no {}; leave it out", with, option);
+    };
+    for (const auto& [is_chosen, chosen] :
+         {std::pair(network, "--network"), std::pair(columns.has_value(), "--statics")}) {
+      if (!is_chosen) continue;
+      refuse(threads.has_value(), "--threads", chosen);
+      refuse(large, "--large", chosen);
+    }
+    refuse(network && columns, "--statics", "--network");
+    refuse(solver && !columns, "--solver", "without --statics");
+  }
+};
+
 }  // namespace
 
 void add_bench(Command& app, Processes* processes) {
   Command* command =
       app.add_subcommand("bench", "Measure node updates per second against the machine's bounds");
-  auto options = std::make_shared<bench::Options>();
-  options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  auto arguments = std::make_shared<BenchArguments>();
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON, for comparison between versions");
-  command->add_option("--threads", options->threads, "The most threads to measure with")->range(1, 1024);
-  command->add_flag("--large", options->large, "Also 10,000 x 5,000 cells, some 7 GB");
-  auto columns = std::make_shared<int>(0);
-  auto solver = std::make_shared<std::string>("iterative");
-  command->add_option("--statics", *columns, "Measure the statics of a plate of so many columns instead")
+  command->add_option("--threads", arguments->threads, "The most threads to measure with")->range(1, 1024);
+  command->add_flag("--large", arguments->large, "Also 10,000 x 5,000 cells, some 7 GB");
+  command
+      ->add_option("--statics", arguments->columns,
+                   "Measure the statics of a plate of so many columns instead")
       ->range(2, 100'000);
-  command->add_option("--solver", *solver, "... by this solver: auto, direct, iterative or petsc")
+  command
+      ->add_option("--solver", arguments->solver,
+                   "... by this solver: auto, direct, iterative (default) or petsc")
       ->one_of({"auto", "direct", "iterative", "petsc"});
-  auto network = std::make_shared<bool>(false);
   command->add_flag(
-      "--network", *network,
+      "--network", arguments->network,
       "Measure latency and bandwidth between processes instead, started by mpirun -n 2 or more");
-  command->callback([options, json, columns, solver, network, processes] {
-    if (*network) {
+  command->callback([arguments, json, processes] {
+    arguments->require_one();
+    if (arguments->network) {
       if (processes == nullptr)
         throw UserError(
             "slipfront: bench --network measures between processes; start several of a program built for MPI "
             "with mpirun -n 2 or more");
-      return print_network(run::measure_network(*processes), processes->size(), *json);
+      print_network(run::measure_network(*processes), processes->size(), *json);
+      return finish_output();
     }
-    const bool is_by_petsc = *columns > 0 && *solver == "petsc";
+    const auto solver = arguments->solver.value_or("iterative");
+    const bool is_by_petsc = arguments->columns && solver == "petsc";
     if (is_by_petsc && statics::petsc_version().empty())
       throw UserError(
           "slipfront: this program was built without PETSc; build it with make build-mpi, or choose another "
@@ -179,16 +224,22 @@ void add_bench(Command& app, Processes* processes) {
       throw UserError(
           "slipfront: of bench only --network, and --statics with --solver petsc, can be shared by several "
           "processes; start it alone");
-    if (*columns > 0) {
+    if (arguments->columns) {
       for (const auto s : {statics::StaticSolver::automatic, statics::StaticSolver::direct,
                            statics::StaticSolver::iterative, statics::StaticSolver::petsc})
-        if (statics::name_of(s) == *solver) print_statics(bench::measure_statics(*columns, s, processes));
-      return;
+        if (statics::name_of(s) == solver)
+          print_statics(bench::measure_statics(*arguments->columns, s, processes), *json);
+      return finish_output();
     }
+    bench::Options options;
+    options.threads =
+        arguments->threads.value_or(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+    options.large = arguments->large;
     const auto results = bench::measure(
-        *options, [](const std::string& next) { fmt::print(stderr, "\r{:<70}", next), std::fflush(stderr); });
-    fmt::print(stderr, "\r{:<70}\r", "");
+        options, [](const std::string& next) { std::fputs(fmt::format("\r{:<70}", next).c_str(), stderr); });
+    std::fputs(fmt::format("\r{:<70}\r", "").c_str(), stderr);
     *json ? print_json(results) : print_table(results);
+    finish_output();
   });
 }
 

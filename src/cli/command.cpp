@@ -61,6 +61,11 @@ Option* Option::positive() {
   return this;
 }
 
+Option* Option::finite() {
+  option_.check(number_that([](double value) { return std::isfinite(value); }, "finite", "FINITE"));
+  return this;
+}
+
 Option* Option::non_negative() {
   option_.check(number_that([](double value) { return value >= 0; }, "of at least 0", "NONNEGATIVE"));
   return this;

@@ -51,6 +51,7 @@ class Option {
   // Values that are refused otherwise.
   Option* range(int from, int to);
   Option* positive();
+  Option* finite();
   Option* non_negative();
   Option* one_of(const std::vector<std::string>& values);
   /// An empty text, as of a variable that is not set, is no path.

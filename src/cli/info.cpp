@@ -157,11 +157,14 @@ void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, st
   list.add("  columns of nodes of each",
            fmt::format("{}, and {} beside them on either side", columns_text(division),
                        division.n_parts() > 1 ? division.halo : 0));
-  list.add("  exchange every", fmt::format("{} steps", division.steps_per_exchange));
-  list.add("  bytes sent per step",
-           fmt::format("{:.4g} by the process that sends most", cost.bytes_per_step));
-  list.add("  memory", fmt::format("{:.3g} GB of the leader, {:.3g} GB of each other process",
-                                   cost.leader_memory_bytes * 1e-9, cost.memory_bytes * 1e-9));
+  auto memory = fmt::format("{:.3g} GB of the leader", cost.leader_memory_bytes * 1e-9);
+  if (division.n_parts() > 1) {
+    list.add("  exchange every", fmt::format("{} steps", division.steps_per_exchange));
+    list.add("  bytes sent per step",
+             fmt::format("{:.4g} by the process that sends most", cost.bytes_per_step));
+    memory += fmt::format(", {:.3g} GB of each other process", cost.memory_bytes * 1e-9);
+  }
+  list.add("  memory", memory);
   add_s("  time: own columns", cost.own_s);
   add_s("  time: halo", cost.halo_s);
   add_s("  time: exchange", cost.exchange_s);
@@ -242,11 +245,13 @@ void add_info(Command& app) {
       ->add_option("--latency-s", shared->latency_s,
                    "Between processes, as bench --network tells it; by default that of shared memory")
       ->positive()
+      ->finite()
       ->type_name("S");
   command
       ->add_option("--bandwidth-bytes-per-s", shared->bandwidth_bytes_per_s,
                    "Between processes, each way; by default that of shared memory")
       ->positive()
+      ->finite()
       ->type_name("B");
   command->callback([arguments, shared] { print_info(*arguments, shared->sharing()); });
 }

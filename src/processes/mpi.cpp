@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <thread>
 #include <utility>
@@ -62,7 +63,10 @@ class MpiProcesses final : public Processes {
  public:
   MpiProcesses(int& argc, char**& argv) {
     int provided = 0;
+    // MPI's own files may be longer than a limit allows, which it can tell unless it is ended without a word.
+    const auto on_limit = std::signal(SIGXFSZ, SIG_IGN);
     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
+    std::signal(SIGXFSZ, on_limit);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
     MPI_Comm machine = MPI_COMM_NULL;

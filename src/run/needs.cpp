@@ -104,6 +104,10 @@ double history_row_bytes(const Size& size) {
   return number * (1 + static_cast<double>(record::history_fields.size()) * size.n_interface);
 }
 
+double waiting_history_bytes(const Size& size, double history_rows) {
+  return std::min(history_rows * history_row_bytes(size), double{results::ResultStream::most_bytes_waiting});
+}
+
 double node_bytes_of_mesh() {
   return 2 * number + sizeof(mesh::Cell);
 }
@@ -164,11 +168,10 @@ std::vector<Budget> memory_stages(const input::Case& config, const Size& size, d
       stages.push_back(with_program(statics.held + event_budget(config, size, 0, 0) + states, field));
     }
   }
-  const double most_waiting = history_rows > 0 ? results::ResultStream::most_bytes_waiting : 0;
   const double in_pieces =
       size.parts_share && n_snapshots > 0 ? 2.0 * results::ResultStream::most_bytes_waiting : 0;
   const Budget waiting = {{"rows of history that wait to be written",
-                           std::min(history_rows * history_row_bytes(size), most_waiting), larger_elements()},
+                           waiting_history_bytes(size, history_rows), larger_elements()},
                           {"pieces of snapshots that wait to be written", in_pieces, larger_elements()}};
   stages.push_back(with_program(event_budget(config, size, n_snapshots, energy_rows) + waiting, field));
   if (n_snapshots > 0)
@@ -328,6 +331,7 @@ Needs needs(const input::Case& config, const Size& size) {
   n.snapshots = static_cast<double>(snapshot_plan(config, size.step_s).times_s.size());
 
   n.statics_bytes = statics_bytes(config, size);
+  n.recorded_bytes = energies_budget(n.energy_rows).bytes + waiting_history_bytes(size, n.history_rows);
   n.memory = memory_stages(config, size, n.snapshots, n.history_rows, n.energy_rows);
 
   constexpr double bytes_per_number_in_text = 20;

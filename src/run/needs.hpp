@@ -60,6 +60,7 @@ struct Needs {
   double history_rows = 0, energy_rows = 0, snapshots = 0;
   std::vector<Budget> memory;  ///< of the stages of a run, one after the other
   double statics_bytes = 0;    ///< of it the peak of the statics
+  double recorded_bytes = 0;   ///< of it rows of energies, and rows of history that wait to be written
   double history_bytes = 0, snapshot_bytes = 0, checkpoint_bytes = 0, energy_bytes = 0, probe_bytes = 0;
 
   double memory_bytes() const { return total_bytes(largest_of(memory)); }

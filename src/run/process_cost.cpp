@@ -83,8 +83,8 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   const double state = (work.keeps_displacements ? 0 : bytes_of_state) + sent;
   const double starting = work.leads_by_interface ? 0 : (bytes_of_mesh + state) * work.n_nodes;
   cost.leader_memory_bytes =
-      work.program_bytes +
-      std::max(work.statics_bytes, of_part + starting + work.bytes_per_interface_node * work.n_columns);
+      work.program_bytes + std::max(work.statics_bytes, of_part + starting + work.recorded_bytes +
+                                                            work.bytes_per_interface_node * work.n_columns);
   return cost;
 }
 

@@ -40,6 +40,7 @@ struct SharedWork {
   motion::Precision precision = motion::Precision::double_precision;
   double bytes_per_interface_node = 0;  ///< see there
   double program_bytes = 0;
+  double recorded_bytes = 0;  ///< of the leader: rows of energies, and what waits to be written
 };
 
 /// Times of the whole run, of the process with most to do and of what it waits for.

@@ -10,6 +10,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from conftest import AS_ROOT
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(os.environ.get("SLIPFRONT_MPI", ROOT / "build" / "mpi" / "slipfront"))
@@ -33,10 +34,9 @@ def alone(*args):
 
 
 def together(n, *args):
-    root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(n), PROGRAM, *map(str, args)]
     return subprocess.run(
-        command, capture_output=True, text=True, timeout=120, env=os.environ | root, check=False
+        command, capture_output=True, text=True, timeout=120, env=os.environ | AS_ROOT, check=False
     )
 
 
@@ -123,6 +123,38 @@ def test_bench_of_a_network_needs_processes():
     assert "mpirun -n 2 or more" in result.stderr
 
 
+@pytest.mark.parametrize("words", ["--network", "--network --json", "--statics 50 --solver petsc"])
+def test_bench_that_cannot_tell_fails(words):
+    """Within each process: mpirun reads what they print."""
+    command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", "2", "bash", "-c"]
+    command.append(f"exec {PROGRAM} bench {words} > /dev/full")
+    result = subprocess.run(command, env=os.environ | AS_ROOT, capture_output=True, text=True, timeout=100)
+    assert result.returncode == 1
+    assert "slipfront: standard output cannot be written (No space left on device)" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "words, refused",
+    [
+        ("--network --statics 50", "--network takes no --statics"),
+        ("--network --solver petsc", "without --statics takes no --solver"),
+        ("--network --large", "--network takes no --large"),
+        ("--statics 50 --threads 2", "--statics takes no --threads"),
+        ("--solver direct", "without --statics takes no --solver"),
+    ],
+)
+def test_bench_measures_one_thing_at_a_time(words, refused):
+    result = alone("bench", *words.split())
+    assert result.returncode == 2
+    assert refused in result.stderr
+
+
+def test_bench_tells_statics_as_json():
+    told = json.loads(alone("bench", "--statics", 50, "--solver", "direct", "--json").stdout)
+    assert (told["columns"], told["rows"], told["solver"]) == (50, 25, "direct")
+    assert told["critical_shear_m"] > 0
+
+
 def test_other_commands_are_one_processs():
     for command in (["bench"], ["info", CASE]):
         result = together(2, *command)
@@ -189,3 +221,27 @@ def test_info_refuses(options, told):
     assert result.returncode == 2
     assert result.stderr.count("\n") == 1
     assert told in result.stderr
+
+
+def test_the_leader_holds_the_rows_of_energies():
+    def leader_gb(*options):
+        return float(predicted(2, *options)["memory"].split(" GB of the leader")[0])
+
+    rows = ("--set", "time.end_s=1", "--set", "output.energy_interval_s=1e-9")
+    row_bytes = 8 * 10
+    steps = 1 / 3e-7
+    assert leader_gb(*rows) > leader_gb() + 0.5 * steps * row_bytes * 1e-9
+
+
+def test_of_one_process_no_other_is_told():
+    told = alone("info", CASE, *SETS, "--processes", 1).stdout
+    assert "of the leader" in told
+    assert "other process" not in told
+    assert "exchange every" not in told
+
+
+def test_a_network_is_finite():
+    for option in ("--latency-s", "--bandwidth-bytes-per-s"):
+        result = alone("info", CASE, *SETS, "--processes", 2, option, "inf")
+        assert result.returncode == 2
+        assert "finite" in result.stderr

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, finished
+from conftest import AS_ROOT, ROOT, finished
 from hostile.trials import alone, difference
 
 # Elements of 4 mm and 2000 steps: some tenths of a second on idle processors.
@@ -325,6 +325,24 @@ def test_full_disk(mpirun, case, undisturbed, tmp_path):
     line = one_line(finished(process), 1)
     assert "No space left on device" in line
     assert "--restart out" in line
+    require_goes_on(mpirun, case, undisturbed)
+
+
+def test_limit_of_file_sizes(mpirun, case, undisturbed):
+    """It is below that of the files by which MPI shares memory, too."""
+    limited = ["bash", "-c", 'ulimit -f 16; exec "$0" "$@"', mpirun.program]
+    command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", "2", *limited]
+    result = subprocess.run(
+        [*map(str, command), "run", case, "-o", "out", "-q", *OFTEN],
+        cwd=mpirun.folder,
+        env=os.environ | AS_ROOT,
+        capture_output=True,
+        text=True,
+        timeout=100,
+    )
+    assert result.returncode == 1
+    assert "(File too large)" in result.stderr
+    assert "--restart out" in result.stderr
     require_goes_on(mpirun, case, undisturbed)
 
 
