@@ -312,8 +312,8 @@ void Part::start(Parcel& given) {
     e.u_per_shear = std::exchange(placed_[0][1], {});
     e.below_u_m = std::exchange(placed_[1][0], {});
     e.below_u_per_shear = std::exchange(placed_[1][1], {});
-    displacements_->clear();
   }
+  if (displacements_ != nullptr) displacements_->clear();
   e.tractions.t_s_Pa = given.take_all<double>();
   e.tractions.p_s_Pa = given.take_all<double>();
   e.contact = given.take_all<statics::Contact>();
