@@ -6,8 +6,8 @@
 namespace slipfront::motion {
 
 Snapshot TimeStepper::snapshot() const {
-  std::vector<double> values;
-  for (int k = 0; k < n_snapshot_pieces(); ++k) {
+  auto values = snapshot_piece(0);
+  for (int k = 1; k < n_snapshot_pieces(); ++k) {
     const auto piece = snapshot_piece(k);
     values.insert(values.end(), piece.begin(), piece.end());
   }

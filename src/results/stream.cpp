@@ -198,8 +198,9 @@ void ResultStream::hand_over() {
 void ResultStream::snapshot(motion::TimeStepper& stepper) {
   const double time_s = stepper.time_s();
   writer_.put(sizeof(double), [this, time_s] { snapshots_.write(std::span(&time_s, 1)); });
+  const auto most_bytes = stepper.snapshot_piece_bytes();
   for (int k = 0; k < stepper.n_snapshot_pieces(); ++k) {
-    writer_.wait_for_room(stepper.snapshot_piece_bytes());
+    writer_.wait_for_room(most_bytes);
     const auto piece = std::make_shared<const std::vector<double>>(stepper.snapshot_piece(k));
     writer_.put(sizeof(double) * piece->size(), [this, piece] { snapshots_.write(*piece); });
   }
