@@ -33,6 +33,13 @@ std::string processor() {
   return "unknown processor";
 }
 
+/// With what was measured and where.
+void print_json(const nlohmann::ordered_json& measured) {
+  nlohmann::ordered_json all = {{"version", version()}, {"commit", commit()}, {"processor", processor()}};
+  all.update(measured);
+  print("{}\n", all.dump(2));
+}
+
 void print_json(const bench::Results& results) {
   nlohmann::ordered_json rates, paper_runs;
   for (const auto& r : results.rates)
@@ -52,17 +59,14 @@ void print_json(const bench::Results& results) {
                           {"statics_s", r.statics_s},
                           {"event_s", r.event_s},
                           {"node_updates_per_s", r.node_updates_per_s}});
-  const nlohmann::ordered_json all = {
-      {"version", version()},
-      {"commit", commit()},
-      {"processor", processor()},
+  const nlohmann::ordered_json measured = {
       {"compiler", compiler()},
       {"bandwidth_bytes_per_s", results.bandwidth_bytes_per_s},
       {"bandwidth_all_threads_bytes_per_s", results.bandwidth_all_threads_bytes_per_s},
       {"stencil_alone_per_s", results.stencil_alone_per_s},
       {"rates", rates},
       {"paper_runs", paper_runs}};
-  print("{}\n", all.dump(2));
+  print_json(measured);
 }
 
 void print_table(const bench::Results& results) {
@@ -113,15 +117,11 @@ void print_network(std::span<const Link> links, int n_processes, bool as_json) {
                       {"to", link.to},
                       {"latency_s", link.latency_s},
                       {"bandwidth_bytes_per_s", link.bandwidth_bytes_per_s}});
-    const nlohmann::ordered_json all = {{"version", version()},
-                                        {"commit", commit()},
-                                        {"processor", processor()},
-                                        {"processes", n_processes},
-                                        {"latency_s", latency_s},
-                                        {"bandwidth_bytes_per_s", bandwidth_bytes_per_s},
-                                        {"links", list}};
-    print("{}\n", all.dump(2));
-    return;
+    const nlohmann::ordered_json measured = {{"processes", n_processes},
+                                             {"latency_s", latency_s},
+                                             {"bandwidth_bytes_per_s", bandwidth_bytes_per_s},
+                                             {"links", list}};
+    return print_json(measured);
   }
   print("{}, {}, {}\n\n", version_line(), processor(), compiler());
   print("{:<26}{:>14}{:>18}\n", "processes", "latency, us", "GB/s each way");
@@ -140,20 +140,17 @@ void print_network(std::span<const Link> links, int n_processes, bool as_json) {
 
 void print_statics(const bench::StaticsRun& r, bool as_json) {
   if (as_json) {
-    const nlohmann::ordered_json all = {{"version", version()},
-                                        {"commit", commit()},
-                                        {"processor", processor()},
-                                        {"columns", r.columns},
-                                        {"rows", r.rows},
-                                        {"solver", r.solver},
-                                        {"unknowns", r.unknowns},
-                                        {"wall_s", r.wall_s},
-                                        {"processor_s", r.processor_s},
-                                        {"cycles", r.cycles},
-                                        {"peak_bytes", r.peak_bytes},
-                                        {"expected_bytes", r.expected_bytes},
-                                        {"critical_shear_m", r.critical_shear_m}};
-    return print("{}\n", all.dump(2));
+    const nlohmann::ordered_json measured = {{"columns", r.columns},
+                                             {"rows", r.rows},
+                                             {"solver", r.solver},
+                                             {"unknowns", r.unknowns},
+                                             {"wall_s", r.wall_s},
+                                             {"processor_s", r.processor_s},
+                                             {"cycles", r.cycles},
+                                             {"peak_bytes", r.peak_bytes},
+                                             {"expected_bytes", r.expected_bytes},
+                                             {"critical_shear_m", r.critical_shear_m}};
+    return print_json(measured);
   }
   print(
       "{} x {}, {}, {:.3g} unknowns: {:.2f} s ({:.2f} s of processor), {} cycles, peak memory {:.2f} GB, "
