@@ -12,6 +12,7 @@
 #include "results/snapshots.hpp"
 #include "results/stream.hpp"
 #include "run/choices.hpp"
+#include "run/process_cost.hpp"
 #include "run/snapshot_mesh.hpp"
 #include "solid/operator.hpp"
 #include "stability/verdict.hpp"
@@ -108,10 +109,6 @@ double waiting_history_bytes(const Size& size, double history_rows) {
   return std::min(history_rows * history_row_bytes(size), double{results::ResultStream::most_bytes_waiting});
 }
 
-double node_bytes_of_mesh() {
-  return 2 * number + sizeof(mesh::Cell);
-}
-
 statics::StaticsBudget statics_budget(const input::Case& config, const Size& size) {
   return statics::statics_budget({wanted_solver(config), 2 * (size.n_nodes - size.n_base_nodes),
                                   size.n_interface, 2 * size.n_base_nodes,
@@ -127,9 +124,7 @@ double motion_bytes(const input::Case& config, const Size& size, double n_snapsh
                                config.time.precision);
   };
   if (!size.parts_share) return of(1, n_snapshots > 0);
-  double of_all_nodes = 0;
-  if (!size.leads_by_interface) of_all_nodes += node_bytes_of_mesh();
-  if (!size.leads_by_interface && !size.keeps_displacements) of_all_nodes += 4 * number;
+  const double of_all_nodes = leaders_bytes_per_node(size.leads_by_interface, size.keeps_displacements);
   return of(*size.parts_share, false) + of_all_nodes * size.n_nodes;
 }
 
@@ -147,7 +142,7 @@ Budget snapshot_budget(const Size& size) {
   const double n_nodes = size.leads_by_interface ? std::min(size.n_nodes, at_once) : size.n_nodes;
   const double field = 2 * number, same_motion = number;
   return {
-      {"fields and their mesh", (field + same_motion + node_bytes_of_mesh()) * n_nodes, larger_elements()}};
+      {"fields and their mesh", (field + same_motion + mesh_bytes_per_node) * n_nodes, larger_elements()}};
 }
 
 /// What every stage has besides. @param array_bytes  of the arrays that are freed in it

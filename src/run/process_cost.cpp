@@ -12,8 +12,6 @@ namespace {
 
 constexpr double number_bytes = sizeof(double);
 
-/// Nodes and cells (x_m, y_m, cells) and the state before the event (u_m, u_per_shear).
-constexpr double bytes_of_mesh = 2 * number_bytes + sizeof(mesh::Cell), bytes_of_state = 4 * number_bytes;
 /// Larger messages are sent when they are asked for: Open MPI's over TCP, where latency counts most.
 constexpr double eager_bytes = 64 << 10;
 /// u_m, v_m_per_s of a snapshot.
@@ -37,6 +35,11 @@ Widest widest(const motion::Division& division) {
 }
 
 }  // namespace
+
+double leaders_bytes_per_node(bool leads_by_interface, bool keeps_displacements) {
+  if (leads_by_interface) return 0;
+  return mesh_bytes_per_node + (keeps_displacements ? 0 : state_bytes_per_node);
+}
 
 ProcessCost process_cost(const SharedWork& work, const motion::Division& division, int processors,
                          const Network& network, const Handling& handling) {
@@ -68,7 +71,7 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
     cost.command_s =
         (work.advances + work.energies) * 2 * (network.latency_s + others * handling.s_per_message) +
         work.advances * others * (latency_s(row_bytes / n_parts / work.advances) - network.latency_s);
-    cost.start_s = work.leads_by_interface ? 0 : passed_s(bytes_of_state * work.n_nodes);
+    cost.start_s = work.leads_by_interface ? 0 : passed_s(state_bytes_per_node * work.n_nodes);
   }
   cost.statics_s = work.statics_s;
 
@@ -79,9 +82,9 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   cost.memory_bytes = work.program_bytes + std::max(work.shared_statics_bytes, of_part);
   // What a part is sent is made when it is sent. A checkpoint, written from answers taken one by one, takes
   // less than the building of the leader's own part has taken.
-  const double sent = n_parts > 1 ? share * bytes_of_state : 0;
-  const double state = (work.keeps_displacements ? 0 : bytes_of_state) + sent;
-  const double starting = work.leads_by_interface ? 0 : (bytes_of_mesh + state) * work.n_nodes;
+  const double sent = n_parts > 1 ? share * state_bytes_per_node : 0;
+  const double of_node = leaders_bytes_per_node(work.leads_by_interface, work.keeps_displacements);
+  const double starting = work.leads_by_interface ? 0 : (of_node + sent) * work.n_nodes;
   cost.leader_memory_bytes =
       work.program_bytes + std::max(work.statics_bytes, of_part + starting + work.recorded_bytes +
                                                             work.bytes_per_interface_node * work.n_columns);

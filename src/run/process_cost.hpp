@@ -21,6 +21,12 @@ struct Handling {
   double halo_bytes_per_s = 5e9;  ///< packed or unpacked
 };
 
+/// Of a node: its place and its share of the cells; u_m and u_per_shear before the event.
+inline constexpr double mesh_bytes_per_node = 2 * sizeof(double) + sizeof(mesh::Cell),
+                        state_bytes_per_node = 4 * sizeof(double);
+/// What the process that leads several has of every node of the bodies while the event begins.
+double leaders_bytes_per_node(bool leads_by_interface, bool keeps_displacements);
+
 /// What a case asks of the processes that share it.
 struct SharedWork {
   double n_nodes = 0, n_cells = 0, n_columns = 0;  ///< columns of nodes, the same as interface nodes
