@@ -5,26 +5,23 @@
     scripts/network-trial.py PROGRAM -o OUT.csv [--quick]     as root, with iproute2 and Open MPI 4.1
 
 By shared memory with 1, 2, 4 and 8 processes; and with 2 and 4 between network namespaces, each taken for a
-machine. The namespaces are joined by a switch of this script's own, since not every kernel has netem: each
-has a tap device, and the script takes every Ethernet frame from one and puts it into another after the
-latency. The bandwidth is limited by tc tbf on the devices. Nothing of it is seen outside; all is removed at
-the end.
+machine. The namespaces are joined by a switch of their own (network-switch.cpp), since not every kernel has
+netem: each has a tap device, and the switch takes every Ethernet frame from one and puts it into another
+after the latency. The bandwidth is limited by tc tbf on the devices. Nothing of it is seen outside; all is
+removed at the end.
 
 What a run takes is the median over some runs of run.json's wall_s over its steps; the prediction is that of
-info in the same minutes, as many at once as processes compute at once, with latency and bandwidth by bench
---network over the same network. Both go before other work on the machine (nice -20). All processes share the
-processors of this machine.
+info in the same minutes, as many at once as processes compute at once, with what bench --network tells of
+the same network. Both go before other work on the machine (nice -20). All processes share the processors of
+this machine, with the switch.
 """
 
 import argparse
-import contextlib
 import csv
 import fcntl
-import heapq
 import json
 import os
 import re
-import select
 import shutil
 import signal
 import statistics
@@ -32,9 +29,8 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 ROOT = Path(__file__).resolve().parent.parent
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -78,30 +74,6 @@ def make_tap(name: str) -> int:
     return tap
 
 
-def carry_frames(taps: list[int], latency_s: float) -> None:
-    """Until it is killed: from each tap to the one of the frame's address, in order, after the latency."""
-    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
-    by_address = {bytes([2, 0, 0, 0, 0, k]): tap for k, tap in enumerate(taps)}
-    waiting: list[tuple[float, int, int, bytes]] = []
-    number = 0
-    while True:
-        timeout = None if not waiting else max(0.0, waiting[0][0] - time.monotonic())
-        readable, _, _ = select.select(taps, [], [], timeout)
-        for tap in readable:
-            with contextlib.suppress(BlockingIOError):
-                while True:
-                    frame = os.read(tap, 65536)
-                    due = time.monotonic() + latency_s
-                    to = by_address.get(frame[:6])
-                    for other in [to] if to is not None else [t for t in taps if t != tap]:
-                        heapq.heappush(waiting, (due, number, other, frame))
-                        number += 1
-        while waiting and waiting[0][0] <= time.monotonic():
-            _, _, tap, frame = heapq.heappop(waiting)
-            with contextlib.suppress(OSError):  # a full device loses it, as a switch would
-                os.write(tap, frame)
-
-
 def ip(*words: str) -> None:
     subprocess.run(["ip", *words], check=True)
 
@@ -113,7 +85,7 @@ class Machines:
         self.names = [f"slipfront{os.getpid()}-{k}" for k in range(count)]
         self.addresses = [f"10.77.0.{k + 1}" for k in range(count)]
         self.latency_s, self.bits_per_s, self.work = latency_s, bits_per_s, work
-        self.switch = 0
+        self.switch: subprocess.Popen[bytes] | None = None
         self.taps: list[int] = []
 
     def __enter__(self) -> Self:
@@ -123,11 +95,12 @@ class Machines:
         except BaseException:
             self.__exit__()
             raise
-        self.switch = os.fork()
-        if self.switch == 0:
-            with contextlib.suppress(KeyboardInterrupt):
-                carry_frames(self.taps, self.latency_s)
-            os._exit(0)
+        program = self.work / "network-switch"
+        if not program.exists():
+            source = ROOT / "scripts" / "network-switch.cpp"
+            subprocess.run(["g++", "-std=c++20", "-O2", "-o", program, source], check=True)
+        command = [str(word) for word in (program, self.latency_s, *self.taps)]
+        self.switch = subprocess.Popen(command, pass_fds=self.taps)
         return self
 
     def add(self, k: int, name: str) -> None:
@@ -145,8 +118,8 @@ class Machines:
 
     def __exit__(self, *_: object) -> None:
         if self.switch:
-            os.kill(self.switch, signal.SIGKILL)
-            os.waitpid(self.switch, 0)
+            self.switch.kill()
+            self.switch.wait()
         for name in self.names:
             subprocess.run(["ip", "netns", "delete", name], stderr=subprocess.DEVNULL)
         for tap in self.taps:
@@ -230,6 +203,14 @@ def call(command: list[Any]) -> str:
 Network = SharedMemory | Machines
 
 
+class Link(NamedTuple):
+    """As bench --network tells it."""
+
+    latency_s: float
+    bandwidth_bytes_per_s: float
+    processor_s_per_byte: float
+
+
 class Trial:
     def __init__(self, program: Path, work: Path, repeats: int):
         self.program, self.work, self.repeats = program, work, repeats
@@ -242,16 +223,16 @@ class Trial:
             mpirun += ["--mca", "mpi_yield_when_idle", "1"]
         return call([*mpirun, self.program, *words])
 
-    def link(self, network: Network) -> tuple[float, float]:
-        """Latency and bandwidth between two processes."""
+    def link(self, network: Network) -> Link:
+        """Between two processes."""
         told = [json.loads(self.together(network, 2, "bench", "--network", "--json")) for _ in range(3)]
-        latency_s, bytes_per_s = ([t[key] for t in told] for key in ("latency_s", "bandwidth_bytes_per_s"))
-        return statistics.median(latency_s), statistics.median(bytes_per_s)
+        return Link(*(statistics.median(t[key] for t in told) for key in Link._fields))
 
-    def predict(self, case: str, end_s: float, processes: int, link: tuple[float, float]) -> dict[str, float]:
+    def predict(self, case: str, end_s: float, processes: int, link: Link) -> dict[str, float]:
         """Parts of the time and of the division, by name; times in all steps."""
         options: list[Any] = ["--processes", processes, "--processors", min(processes, PROCESSORS)]
-        options += ["--latency-s", link[0], "--bandwidth-bytes-per-s", link[1]]
+        for name, value in link._asdict().items():
+            options += ["--" + name.replace("_", "-"), value]
         command = [self.program, "info", CASE, *sets(case, end_s), *options]
         # As many at once as processes compute at once: a processor is slower while the others are busy.
         at_once = [begin(command) for _ in range(min(processes, PROCESSORS))]
@@ -270,7 +251,7 @@ class Trial:
         return json.loads((out / "run.json").read_text())
 
     def measure(
-        self, case: str, end_s: float, network: Network, name: str, link: tuple[float, float], processes: int
+        self, case: str, end_s: float, network: Network, name: str, link: Link, processes: int
     ) -> dict[str, Any]:
         predictions, runs = [], []
         for _ in range(self.repeats):
@@ -292,8 +273,9 @@ class Trial:
             "case": case,
             "processes": processes,
             "processors": min(processes, PROCESSORS),
-            "latency_us": link[0] * 1e6,
-            "bandwidth_MB_per_s": link[1] * 1e-6,
+            "latency_us": link.latency_s * 1e6,
+            "bandwidth_MB_per_s": link.bandwidth_bytes_per_s * 1e-6,
+            "processor_ns_per_byte": link.processor_s_per_byte * 1e9,
             "own_columns": max(cost["own_columns"]) if cost else 2401,
             "halo_columns": max(cost["halo_columns"]) if cost else 0,
             "steps_per_exchange": cost["steps_per_exchange"] if cost else 0,
@@ -330,6 +312,7 @@ COLUMNS = {
     "processes": "processes",
     "latency_us": "latency, us",
     "bandwidth_MB_per_s": "MB/s each way",
+    "processor_ns_per_byte": "processor, ns/byte",
     "steps_per_exchange": "steps per exchange",
     "measured_us_per_step": "measured, us",
     "least_us_per_step": "from",
@@ -361,7 +344,7 @@ def main() -> None:
     for tool in ("ip", "tc", "mpirun", "unshare"):
         if shutil.which(tool) is None:
             sys.exit(f"network-trial: {tool} is missing")
-    end_s, repeats = (2e-5, 1) if options.quick else (1.5e-4, 5)
+    end_s, repeats = (2e-5, 1) if options.quick else (4e-4, 3)
     gbit = int(1e9)
     networks: list[tuple[str, float | None, tuple[int, ...]]] = [("shared memory", None, (1, 2, 4, 8))]
     networks += [(f"1 Gbit/s, {ms} ms added", ms * 1e-3, (2, 4)) for ms in (0, 0.1, 1)]

@@ -25,7 +25,10 @@ run::SharedWork work(double n_nodes) {
   work.n_nodes = work.n_cells = n_nodes;
   work.node_updates_per_step = n_nodes;
   work.node_updates_per_s = rate_per_s;
-  work.values_per_column = 4 * n_nodes / work.n_columns + 20;
+  const double rows = n_nodes / work.n_columns, rows_with_interface = 2;
+  work.bytes_per_column = 8 * (4 * rows + 20);
+  work.interface_bytes_per_column = 8 * (4 * rows_with_interface + 20);
+  work.interface_share = rows_with_interface / rows;
   work.steps = steps;
   work.advances = steps / 50;
   work.energies = steps / 100;

@@ -188,21 +188,23 @@ run::Info info_of(const CaseArguments& arguments, const input::Case& config,
 /// As it is given.
 struct SharingArguments {
   std::optional<int> n_processes, n_processors;
-  std::optional<double> latency_s, bandwidth_bytes_per_s;
+  std::optional<double> latency_s, bandwidth_bytes_per_s, processor_s_per_byte;
 
   std::optional<run::Sharing> sharing() const {
     if (!n_processes) {
-      if (n_processors || latency_s || bandwidth_bytes_per_s)
+      if (n_processors || latency_s || bandwidth_bytes_per_s || processor_s_per_byte)
         throw UserError(
-            "slipfront: --processors, --latency-s and --bandwidth-bytes-per-s of info say something with "
-            "--processes only");
+            "slipfront: --processors, --latency-s, --bandwidth-bytes-per-s and --processor-s-per-byte of "
+            "info "
+            "say something with --processes only");
       return {};
     }
     const auto& known = run::shared_memory;
     return run::Sharing{
         *n_processes,
         n_processors.value_or(*n_processes),
-        {latency_s.value_or(known.latency_s), bandwidth_bytes_per_s.value_or(known.bandwidth_bytes_per_s)}};
+        {latency_s.value_or(known.latency_s), bandwidth_bytes_per_s.value_or(known.bandwidth_bytes_per_s),
+         processor_s_per_byte.value_or(known.processor_s_per_byte)}};
   }
 };
 
@@ -253,6 +255,12 @@ void add_info(Command& app) {
       ->positive()
       ->finite()
       ->type_name("B");
+  command
+      ->add_option("--processor-s-per-byte", shared->processor_s_per_byte,
+                   "By which a byte between processes holds up computing; by default 0, of shared memory")
+      ->non_negative()
+      ->finite()
+      ->type_name("S");
   command->callback([arguments, shared] { print_info(*arguments, shared->sharing()); });
 }
 

@@ -29,6 +29,20 @@ Descriptor open(const std::filesystem::path& path, int flags) {
   return Descriptor(::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW, 0666));
 }
 
+/// Writes piece by piece. @param write  as the system's, of data and their number
+template <class F>
+void write_all(const std::filesystem::path& path, std::span<const std::byte> bytes, F&& write) {
+  while (!bytes.empty()) {
+    const ssize_t n = write(bytes.data(), std::min(bytes.size(), most_bytes_at_once));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) {
+      if (n == 0) errno = ENOSPC;
+      throw_write(path, "written");
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+}
+
 }  // namespace
 
 Descriptor::~Descriptor() {
@@ -70,16 +84,8 @@ OutputFile OutputFile::go_on(const std::filesystem::path& path, std::uint64_t le
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t n = ::write(file_.get(), bytes.data(), std::min(bytes.size(), most_bytes_at_once));
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) {
-      if (n == 0) errno = ENOSPC;
-      throw_write(path_, "written");
-    }
-    bytes = bytes.subspan(static_cast<std::size_t>(n));
-    length_ += static_cast<std::uint64_t>(n);
-  }
+  write_all(path_, bytes, [&](const void* data, std::size_t n) { return ::write(file_.get(), data, n); });
+  length_ += bytes.size();
 }
 
 void OutputFile::sync() {
@@ -87,6 +93,37 @@ void OutputFile::sync() {
 }
 
 void OutputFile::close() {
+  if (!file_.close()) throw_write(path_, "written");
+}
+
+PlacedFile::PlacedFile(const std::filesystem::path& path) : path_(path), file_(open(path, O_WRONLY)) {
+  if (!file_.valid()) throw_write(path_, "written");
+}
+
+void PlacedFile::reserve() {
+  struct stat now {};
+  if (::fstat(file_.get(), &now) != 0) throw_write(path_, "written");
+  if (now.st_size == 0) return;
+  int result = 0;
+  do {
+    result = ::fallocate(file_.get(), 0, 0, now.st_size);
+  } while (result != 0 && errno == EINTR);
+  if (result != 0 && errno != EOPNOTSUPP && errno != ENOSYS) throw_write(path_, "written");
+}
+
+void PlacedFile::write_at(std::uint64_t place, std::span<const std::byte> bytes) {
+  write_all(path_, bytes, [&](const void* data, std::size_t n) {
+    const ssize_t written = ::pwrite(file_.get(), data, n, static_cast<off_t>(place));
+    if (written > 0) place += static_cast<std::uint64_t>(written);
+    return written;
+  });
+}
+
+void PlacedFile::sync() {
+  if (::fsync(file_.get()) != 0) throw_write(path_, "written");
+}
+
+void PlacedFile::close() {
   if (!file_.close()) throw_write(path_, "written");
 }
 

@@ -56,6 +56,22 @@ class OutputFile {
   std::uint64_t length_ = 0;
 };
 
+/// A file that is there, written to at any place within its length, by several processes at a time.
+class PlacedFile {
+ public:
+  explicit PlacedFile(const std::filesystem::path& path);
+  /// Takes space on the device for all of its length, as far as the file system can.
+  void reserve();
+  void write_at(std::uint64_t place, std::span<const std::byte> bytes);
+  /// Returns when all is on the device.
+  void sync();
+  void close();
+
+ private:
+  std::filesystem::path path_;
+  Descriptor file_;
+};
+
 /// Writes a text file that is there completely, or not at all: under another name first.
 void write_text(const std::filesystem::path& file, std::string_view text);
 /// The same piece by piece.

@@ -18,11 +18,22 @@ struct Slab {
   std::size_t n_own = 0;  ///< nodes; those after them are the first ones of the next slab
 };
 
-/// A mesh of which not all need be held at a time.
+/// A mesh of which not all need be held at a time. The numbers of a slab's nodes and cells follow those of
+/// the slab before.
 struct Slabs {
-  std::size_t n_nodes = 0, n_cells = 0;
-  /// Calls a function with each slab, in the order of the numbers.
-  std::function<void(const std::function<void(const Slab&)>& visit)> for_each;
+  std::size_t n_nodes = 0, n_cells = 0, n_slabs = 0;
+  /// Calls a function with slab k.
+  std::function<void(std::size_t k, const std::function<void(const Slab&)>& f)> visit;
+
+  /// Calls a function with slabs [begin, end).
+  template <class F>
+  void for_some(std::size_t begin, std::size_t end, F&& f) const {
+    for (std::size_t k = begin; k < end; ++k) visit(k, f);
+  }
+  template <class F>
+  void for_each(F&& f) const {
+    for_some(0, n_slabs, f);
+  }
 };
 
 /// The whole in one slab.

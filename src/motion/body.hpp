@@ -59,6 +59,10 @@ class Body {
   double damping_s() const { return motion_.damping_s; }
   const StepLevels& levels() const { return levels_; }
   std::size_t n_bands() const { return levels_.level.front().bands.size(); }
+  /// Rows below the next band of the coarsest level.
+  int rows_moved(std::size_t band) const {
+    return levels_.level.front().bands[std::min(band, n_bands() - 1)].last_row + 1;
+  }
   /// The band of the coarsest level with which a node moves; all that moves with finer levels or the
   /// interface does so with the first one.
   std::size_t band_of(mesh::Node n) const;
@@ -105,10 +109,12 @@ class Body {
   }
   Landing& landing() { return landing_; }
 
-  /// See Stepper::visit_columns.
+  int n_rows() const { return motion_.columns.n_rows(); }
+  /// See Stepper::visit_columns. @param with_shared  also what levels keep of shared nodes
   template <class Visit>
-  void visit_columns(solid::Span columns, Visit&& visit);
-  void take_columns() { to_single(motion_, single_); }
+  void visit_columns(solid::Span columns, solid::Span rows, bool with_shared, Visit&& visit);
+  /// After other values have been put into u_m, v_m_per_s.
+  void take_state() { to_single(motion_, single_); }
   /// Places in lower() of the nodes in some columns.
   solid::Span lower_in(solid::Span columns) const;
 
@@ -142,8 +148,10 @@ class Body {
  private:
   template <class F>
   void for_own_nodes(F&& f) const {
-    for (int r = 0; r < motion_.columns.n_rows(); ++r)
-      for (int i = motion_.own[r].begin; i < motion_.own[r].end; ++i) f(motion_.columns.row(r).first + i);
+    for (int r = 0; r < n_rows(); ++r) {
+      const auto first = motion_.columns.row(r).first;
+      for (int i = motion_.own[r].begin; i < motion_.own[r].end; ++i) f(first + i);
+    }
   }
   void push(StepLevel& level, record::Energies& works);
   /// Products of the landings since the last push of a level, if it is the last one.
@@ -167,13 +175,23 @@ class Body {
 };
 
 template <class Visit>
-void Body::visit_columns(solid::Span columns, Visit&& visit) {
+void Body::visit_columns(solid::Span columns, solid::Span rows, bool with_shared, Visit&& visit) {
   const auto nodes_of_row = [&](int row) { return motion_.columns.nodes(row, {columns.begin, columns.end}); };
-  for (int r = 0; r < motion_.columns.n_rows(); ++r) {
+  for (int r = rows.begin; r < rows.end; ++r) {
     const auto nodes = nodes_of_row(r);
-    for (auto* values : {&motion_.u_m.x, &motion_.u_m.y, &motion_.v_m_per_s.x, &motion_.v_m_per_s.y})
-      visit(values->data() + nodes.first, static_cast<std::size_t>(nodes.count));
+    const auto n = static_cast<std::size_t>(nodes.count);
+    const bool is_single = !single_.u_x_m.empty() && r >= single_.first_row && r <= single_.last_row;
+    if (is_single) {
+      const auto at = nodes.first - motion_.columns.row(single_.first_row).first;
+      for (auto* values : {&single_.u_x_m, &single_.u_y_m, &single_.v_x_m_per_s, &single_.v_y_m_per_s})
+        visit(values->data() + at, n);
+    }
+    // The row below the first one in single precision reads it in double precision.
+    if (!is_single || r == single_.first_row)
+      for (auto* values : {&motion_.u_m.x, &motion_.u_m.y, &motion_.v_m_per_s.x, &motion_.v_m_per_s.y})
+        visit(values->data() + nodes.first, n);
   }
+  if (!with_shared) return;
   for (auto& level : levels_.level) {
     auto& s = level.shared;
     auto next = s.node.begin();

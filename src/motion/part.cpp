@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion/part.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
-#include <numeric>
-#include <type_traits>
 #include <utility>
 
-#include "base/clock.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "statics/pieces.hpp"
@@ -16,12 +11,6 @@
 namespace slipfront::motion {
 
 namespace {
-
-/// Most steps between two exchanges: what several steps in one sweep through memory gain is gained with
-/// these.
-constexpr int most_steps_per_exchange = 16;
-/// A halo on either side adds this part of a process's own work at most, if that allows a step.
-constexpr double tolerated_halo = 0.1;
 
 solid::Field take_field(Parcel& given) {
   solid::Field field;
@@ -49,102 +38,6 @@ class Log final : public UpdateObserver {
 };
 
 }  // namespace
-
-mesh::Subset Division::all(int part) const {
-  const auto columns = own(part);
-  const int begin = columns.begin - halo_below(part), end = columns.end + halo_above(part);
-  if (begin < 0) return mesh::Subset({{0, end}, {first.back() + begin, n_columns()}});
-  if (end > first.back()) return mesh::Subset({{0, end - first.back()}, {begin, n_columns()}});
-  return mesh::Subset({{begin, end}});
-}
-
-int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
-                     const TimeStepping& time) {
-  const double least_s = std::ranges::min(steps, {}, &BodySteps::stable_step_s).stable_step_s;
-  std::vector<std::vector<LevelReach>> levels;
-  int substeps = 1;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    auto of_body = time;
-    of_body.interface_substeps *= steps_at_once(steps[b].stable_step_s, least_s);
-    levels.push_back(reach_of_levels(bodies[b].mesh, of_body, steps[b].multiples));
-    substeps = std::lcm(substeps, levels.back().front().period);
-  }
-  int columns = 0;
-  for (int k = 0; k < substeps; ++k) {
-    int farthest = 0;
-    for (const auto& of_body : levels) {
-      int together = 0;
-      for (const auto& level : of_body)
-        if (k % level.period == 0) together += level.columns;
-      farthest = std::max(farthest, together);
-    }
-    columns += farthest;
-  }
-  return columns;
-}
-
-Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach) {
-  Division division;
-  division.is_ring = mesh.period_m > 0;
-  const int n_columns = mesh.grid.stride() - (division.is_ring ? 1 : 0);
-  for (int k = 0; k <= n_parts; ++k)
-    division.first.push_back(static_cast<int>(static_cast<std::int64_t>(n_columns) * k / n_parts));
-  const int width = n_columns / n_parts;
-  division.steps_per_exchange = std::clamp(static_cast<int>(0.5 * tolerated_halo * width / columns_per_step),
-                                           1, most_steps_per_exchange);
-  division.columns_per_step = columns_per_step;
-  division.halo = division.steps_per_exchange * columns_per_step + reach;
-  return division;
-}
-
-namespace {
-
-/// Why parts do not know of the whole what they need; empty where they do.
-/// @param widest_cell  columns over which it reaches: the halos of a part that go round a ring do not meet
-/// @param corner       columns at either end among which no part begins or ends
-std::string reason_against(const Division& division, int widest_cell, int corner) {
-  const int n_parts = division.n_parts(), n_columns = division.first.back();
-  if (n_parts == 1) return {};
-  const int width = n_columns / n_parts;
-  int least_width = division.halo;
-  if (division.is_ring && n_parts <= 3) {
-    const int others = 2 * division.halo + widest_cell;
-    least_width = std::max(least_width, (others + n_parts - 2) / (n_parts - 1));
-  }
-  if (width < least_width)
-    return fmt::format("{} processes have {} columns of elements each, fewer than the {} that they need",
-                       n_parts, width, least_width);
-  const int last = division.n_columns() - 1;
-  const auto is_at_corner = [&](int column) { return std::min(column, last - column) <= corner; };
-  for (int part = 0; part < n_parts && corner > 0; ++part) {
-    const auto own = division.own(part);
-    const int begin = own.begin - division.halo_below(part), end = own.end - 1 + division.halo_above(part);
-    if ((begin > 0 && is_at_corner(begin)) || (end < last && is_at_corner(end)))
-      return fmt::format("of {} processes one would compute a part that ends at a rounded corner", n_parts);
-  }
-  return {};
-}
-
-}  // namespace
-
-Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
-                       const TimeStepping& time, int n_parts) {
-  // Probes look at all nodes of a cell, wherever its first one lies.
-  int widest_cell = 1, corner = 0;
-  for (const auto& body : bodies) {
-    widest_cell = std::max(widest_cell, 1 << body.mesh.coarser.size());
-    corner = std::max(
-        {corner, mesh::columns_of_wrapped_cells(body.mesh), columns_of_rounded_layer(body.mesh, time)});
-  }
-  const int per_step = columns_per_step(bodies, steps, time);
-  const auto divided = [&](int n) { return divide_columns(bodies.front().mesh, n, per_step, widest_cell); };
-  const auto why_not = [&](int n) { return reason_against(divided(n), widest_cell, corner); };
-  const auto reason = why_not(n_parts);
-  if (reason.empty()) return divided(n_parts);
-  int most = n_parts - 1;
-  while (!why_not(most).empty()) --most;
-  throw UserError("{}; choose at most {}", reason, most);
-}
 
 TractionLog::TractionLog(solid::Span own, int reach) {
   if (own.end - own.begin <= 2 * reach)
@@ -176,32 +69,11 @@ record::Traction TractionLog::at(std::size_t update, int node) const {
 Part::Part(Processes& processes, const Division& division, std::span<const BodySource> sources,
            const interface::ContactModel& contact, const TimeStepping& time, const Execution& execution,
            const mesh::Subset& lower, statics::KeptDisplacements* kept)
-    : processes_(processes),
-      division_(division),
-      place_{division.own(processes.rank()), lower},
-      displacements_(kept) {
-  const int rank = processes.rank(), n_parts = division.n_parts();
-  stepper_ = std::make_unique<Stepper>(sources, contact, time, execution);
-  const auto width = [](int begin, int count) { return solid::Span{begin, begin + count}; };
-  // Beyond the sides of a plate that repeats lie the columns of its other end.
-  const auto beyond = [&](int first_column, int count) {
-    const int n = division.first.back();
-    return width((first_column + n) % n, count);
-  };
-  const int below = division.halo_below(rank), above = division.halo_above(rank);
-  const auto own = place_.own;
-  if (below > 0)
-    neighbours_.push_back({(rank + n_parts - 1) % n_parts,
-                           width(own.begin, below),
-                           beyond(own.begin - below, below),
-                           true,
-                           {},
-                           {}});
-  if (above > 0)
-    neighbours_.push_back(
-        {(rank + 1) % n_parts, width(own.end - above, above), beyond(own.end, above), false, {}, {}});
-  // Messages between the same two are matched in their order.
-  if (n_parts == 2 && rank == 1 && neighbours_.size() == 2) std::swap(neighbours_[0], neighbours_[1]);
+    : processes_(processes), place_{division.own(processes.rank()), lower}, displacements_(kept) {
+  auto sharing = execution;
+  sharing.most_steps = division.steps_per_exchange;
+  stepper_ = std::make_unique<Stepper>(sources, contact, time, sharing);
+  halo_ = std::make_unique<Halo>(processes, division, *stepper_, sharing.halo_stage_bytes);
 }
 
 template <class F>
@@ -214,6 +86,8 @@ void Part::or_fail(F&& f) {
 }
 
 void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
+  // These look at no motion beside the interface.
+  if (command != PartCommand::advance && command != PartCommand::tractions) halo_->finish();
   switch (command) {
     case PartCommand::start:
       or_fail([&] { start(given); });
@@ -229,8 +103,7 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
     }
     case PartCommand::kept:
       SLIPFRONT_ASSERT(displacements_ != nullptr, "a part whose process has shared the statics");
-      if (given.take<int>() == processes_.rank())
-        for (int k = 0; k < 2; ++k) answer.put(displacements_->own(given.take<int>()));
+      for (int k = 0; k < 2; ++k) answer.put(displacements_->own(given.take<int>()));
       break;
     case PartCommand::place:
       place(given);
@@ -270,13 +143,14 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
       kept_.sort();
       restore(std::exchange(kept_, {}), *stepper_, place_);
       return_freed_memory();
-      steps_since_exchange_ = 0;
+      halo_->begin_anew();
       finder_.reset();
       begin_counting();
       break;
     }
     case PartCommand::network:
     case PartCommand::statics:
+    case PartCommand::fields:
     case PartCommand::build:
     case PartCommand::release:
     case PartCommand::end:
@@ -285,7 +159,6 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
 }
 
 void Part::place(Parcel& given) {
-  if (given.is_empty()) return;
   for (std::size_t b = 0; b < stepper_->bodies().size(); ++b) {
     const auto nodes = given.take_all<mesh::Node>();
     for (auto& field : placed_[b]) {
@@ -327,14 +200,13 @@ void Part::start(Parcel& given) {
   finder_.reset();
   e = {};
   return_freed_memory();
-  renew_halo();
+  halo_->renew();
   begin_counting();
 }
 
 void Part::begin_counting() {
   counted_before_ = processes_.counters();
   first_counted_step_ = stepper_->step();
-  computing_s_ = 0;
 }
 
 PartCost Part::cost() const {
@@ -342,7 +214,7 @@ PartCost Part::cost() const {
   return {.steps = stepper_->step() - first_counted_step_,
           .messages = now.messages - counted_before_.messages,
           .bytes = now.bytes - counted_before_.bytes,
-          .computing_s = computing_s_,
+          .computing_s = halo_->computing_s(),
           .exchange_s = now.exchange_s - counted_before_.exchange_s,
           .command_s = now.command_s - counted_before_.command_s};
 }
@@ -387,14 +259,7 @@ void Part::advance(Parcel& given, Parcel& answer) {
     between.displacements = [&](std::int64_t step) {
       return displacements.data() + n_values * static_cast<std::size_t>(step - first_step - 1);
     };
-  for (std::int64_t done = 0; done < n_steps;) {
-    const auto n = std::min(division_.steps_per_exchange - steps_since_exchange_, n_steps - done);
-    const auto begin = Clock::now();
-    advance_between_exchanges(log, n, between);
-    computing_s_ += seconds_since(begin);
-    done += n;
-    if (steps_since_exchange_ == division_.steps_per_exchange) renew_halo();
-  }
+  halo_->advance(log, n_steps, between);
   const auto& memory = finder_->memory();
   answer.put(memory.time_s);
   // Of nodes along the interface only own ones.
@@ -417,63 +282,6 @@ void Part::advance(Parcel& given, Parcel& answer) {
     answer.put(values);
   }
   answer.put(displacements);
-}
-
-void Part::advance_between_exchanges(UpdateObserver& observer, std::int64_t n_steps, const Between& between) {
-#ifdef NDEBUG
-  stepper_->advance(observer, n_steps, between);
-#else
-  for (std::int64_t k = 1; k <= n_steps; ++k) {
-    stepper_->advance(observer, 1, between);
-    const auto n_wrong = static_cast<int>(steps_since_exchange_ + k) * division_.columns_per_step;
-    const auto all_finite = [&](solid::Span columns) {
-      bool finite = true;
-      stepper_->visit_columns(columns, [&](const auto* values, std::size_t n) {
-        for (std::size_t i = 0; i < n; ++i) finite &= std::isfinite(static_cast<double>(values[i]));
-      });
-      return finite;
-    };
-    for (const auto& [rank, out, in, is_below, sent, received] : neighbours_) {
-      const solid::Span wrong =
-          is_below ? solid::Span{in.begin, in.begin + n_wrong} : solid::Span{in.end - n_wrong, in.end};
-      const solid::Span right =
-          is_below ? solid::Span{wrong.end, in.end} : solid::Span{in.begin, wrong.begin};
-      if (stepper_->slip_rates().finite)
-        SLIPFRONT_ASSERT(all_finite(right) && all_finite(out), "a step reads beyond its part");
-      stepper_->visit_columns(wrong, []<class T>(T* values, std::size_t n) {
-        if constexpr (std::is_floating_point_v<T>)
-          std::fill_n(values, n, std::numeric_limits<T>::quiet_NaN());
-      });
-    }
-    stepper_->take_columns();
-  }
-#endif
-  steps_since_exchange_ += n_steps;
-}
-
-void Part::renew_halo() {
-  steps_since_exchange_ = 0;
-  std::vector<Processes::Exchange> exchanges;
-  for (auto& neighbour : neighbours_) {
-    neighbour.sent.clear();
-    stepper_->visit_columns(neighbour.out, [&](const auto* values, std::size_t n) {
-      for (std::size_t k = 0; k < n; ++k) neighbour.sent.push_back(values[k]);
-    });
-    if (neighbour.received.empty()) {
-      std::size_t n_in = 0;
-      stepper_->visit_columns(neighbour.in, [&](const auto*, std::size_t n) { n_in += n; });
-      neighbour.received.resize(n_in);
-    }
-    exchanges.push_back({neighbour.rank, neighbour.sent, neighbour.received});
-  }
-  processes_.exchange(exchanges);
-  for (auto& neighbour : neighbours_) {
-    auto from = neighbour.received.cbegin();
-    stepper_->visit_columns(neighbour.in, [&]<class T>(T* values, std::size_t n) {
-      for (std::size_t k = 0; k < n; ++k) values[k] = static_cast<T>(*from++);
-    });
-  }
-  stepper_->take_columns();
 }
 
 void Part::put_snapshot(const SnapshotPiece& piece, Parcel& answer) const {

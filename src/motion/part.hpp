@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "motion/division.hpp"
+#include "motion/halo.hpp"
 #include "motion/kept_motion.hpp"
 #include "motion/recorder.hpp"
 #include "motion/stepper.hpp"
@@ -17,52 +17,11 @@
 
 namespace slipfront::motion {
 
-/// How the columns of nodes of a plate are divided into parts, one for each process.
-///
-/// A part accounts for its own columns and computes a halo beside them as well. What it computes there is
-/// wrong first in the outermost column, where cells are missing, and one column further in with each push;
-/// before that reaches a column which counts, the owners send the halo's motion (docs/processes.md).
-struct Division {
-  std::vector<int> first;      ///< [parts + 1] where the own columns of each begin
-  int halo = 0;                ///< columns beside them, as far as there are any
-  int columns_per_step = 1;    ///< see the function of this name
-  int steps_per_exchange = 1;  ///< after so many steps the halo is renewed
-  /// Whether the plate repeats: the first part and the last one are neighbours, and the whole has a column of
-  /// nodes more, without cells.
-  bool is_ring = false;
-
-  int n_parts() const { return static_cast<int>(first.size()) - 1; }
-  int n_columns() const { return first.back() + (is_ring ? 1 : 0); }  ///< of nodes of the whole
-  solid::Span own(int part) const { return {first[part], first[part + 1]}; }
-  /// Own columns and halo.
-  mesh::Subset all(int part) const;
-  /// Columns of its halo on either side, 0 where it has no neighbour.
-  int halo_below(int part) const { return n_parts() > 1 && (part > 0 || is_ring) ? halo : 0; }
-  int halo_above(int part) const { return n_parts() > 1 && (part + 1 < n_parts() || is_ring) ? halo : 0; }
-};
-
-/// Columns into which what is wrong at a part's edge may get within a step. A push carries it over the cells
-/// that push, those of a block 2^k columns, of the transition above it twice as many; as far as all the
-/// pushes of a step's levels together do, one after the other. Two bodies push at the same time.
-int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
-                     const TimeStepping& time);
-
-/// Parts of nearly equal width.
-/// @param mesh              of the whole plate
-/// @param columns_per_step  see there
-/// @param reach             columns beyond its own that a part looks at
-Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach);
-/// The same for bodies.
-/// @param steps  of each body
-/// @throws UserError where the parts would be too narrow for their halo, or would end at a rounded corner; it
-///         tells how many are possible
-Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
-                       const TimeStepping& time, int n_parts);
-
 /// What is asked of all parts at a time. The number of the command is followed by its values.
 enum class PartCommand : int {
   network,    ///< run::serve measures it, or answers one that does
   statics,    ///< run::serve does its share of the statics
+  fields,     ///< run::serve writes its share of fields.vtkhdf
   build,      ///< run::serve makes the part
   kept,       ///< displacements before the event that the process keeps
   place,      ///< some of these, which the part needs
@@ -159,37 +118,23 @@ class Part {
   void place(Parcel& given);
   void start(Parcel& given);
   void advance(Parcel& given, Parcel& answer);
-  /// In debug builds what is wrong in the halo is set to no number after each step, and nothing else may
-  /// become so.
-  void advance_between_exchanges(UpdateObserver& observer, std::int64_t n_steps, const Between& between);
   void make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s);
-  void renew_halo();
   void begin_counting();
   PartCost cost() const;
   void put_snapshot(const SnapshotPiece& piece, Parcel& answer) const;
 
   Processes& processes_;
-  Division division_;
   PlaceInWhole place_;
   std::unique_ptr<Stepper> stepper_;
+  std::unique_ptr<Halo> halo_;
   std::optional<SlipFinder> finder_;
   TractionLog log_;
   KeptMotion kept_;  ///< pieces of it, until the last one has come
   statics::KeptDisplacements* displacements_;
   /// u_m, u_per_shear of the bodies as unknowns, see Piece; empty unless they have been placed.
   std::array<std::array<solid::Field, 2>, 2> placed_;
-  /// Columns that go to a neighbour and come from it.
-  struct Neighbour {
-    int rank = 0;
-    solid::Span out, in;
-    bool is_below = false;
-    std::vector<double> sent, received;
-  };
-  std::vector<Neighbour> neighbours_;
   Processes::Counters counted_before_;
   std::int64_t first_counted_step_ = 0;
-  std::int64_t steps_since_exchange_ = 0;
-  double computing_s_ = 0;
 };
 
 /// Carries out the leader's commands until the part is needed no more.

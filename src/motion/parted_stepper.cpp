@@ -79,6 +79,7 @@ PartedStepper::PartedStepper(Processes& processes, const Division& division, std
     : processes_(processes), division_(division), own_(std::move(own)) {
   for (const auto* body : bodies) columns_.emplace_back(mesh::blocks(*body));
   for (int part = 0; part < division.n_parts(); ++part) {
+    all_parts_.push_back(part);
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
     own_lower_.push_back(own_lower_in(*bodies.front(), division.own(part)));
   }
@@ -93,12 +94,15 @@ PartedStepper::~PartedStepper() {
   for (int rank = 1; rank < processes_.size(); ++rank) processes_.send(rank, release);
 }
 
-void PartedStepper::ask(PartCommand command, const std::function<Parcel(int part)>& given,
+void PartedStepper::ask(std::span<const int> parts, PartCommand command,
+                        const std::function<Parcel(int part)>& given,
                         const std::function<void(Parcel& answer)>& take) const {
+  const bool asks_own = !parts.empty() && parts.front() == 0;
+  const auto others = parts.subspan(asks_own ? 1 : 0);
   // Others wait for what is not sent, or not received: there is no way back.
   const auto or_fail = [&](auto&& talk) {
     try {
-      for (int rank = 1; rank < processes_.size(); ++rank) talk(rank);
+      for (const int rank : others) talk(rank);
     } catch (const std::exception& error) {
       processes_.fail(reason_of(error));
     }
@@ -119,6 +123,7 @@ void PartedStepper::ask(PartCommand command, const std::function<Parcel(int part
     }
   };
   unless_failed([&] {
+    if (!asks_own) return;
     auto own = given(0);
     Parcel answer;
     own_->carry_out(command, own, answer);
@@ -148,19 +153,22 @@ void PartedStepper::place(const statics::KeptDisplacement& u_m,
   for (int piece = 0; piece < u_m.cut->n_pieces(); ++piece) {
     std::array<std::vector<double>, 2> values;  // of one process after the other: no one has all of them
     ask(
-        PartCommand::kept,
-        [&](int) { return std::move(Parcel().put(piece).put(u_m.number).put(u_per_shear.number)); },
+        std::array{piece}, PartCommand::kept,
+        [&](int) { return std::move(Parcel().put(u_m.number).put(u_per_shear.number)); },
         [&](Parcel& answer) {
-          if (!answer.is_empty())
-            for (auto& of_piece : values) of_piece = answer.take_all<double>();
+          for (auto& of_piece : values) of_piece = answer.take_all<double>();
         });
     const auto nodes = u_m.cut->nodes_of_piece(columns_, piece);
     const int first = u_m.cut->first_column[static_cast<std::size_t>(piece)];
     const int end = u_m.cut->first_column[static_cast<std::size_t>(piece) + 1];
-    ask(PartCommand::place, [&](int part) {
+    std::vector<int> reached;
+    for (const int part : all_parts_)
+      if (const auto columns = division_.all(part);
+          columns.ranges().front().begin < end && columns.ranges().back().end > first)
+        reached.push_back(part);
+    const auto placed = [&](int part) {
       const auto columns = division_.all(part);
       Parcel parcel;
-      if (columns.ranges().front().begin >= end || columns.ranges().back().end <= first) return parcel;
       std::size_t before = 0;
       for (std::size_t b = 0; b < columns_.size(); ++b) {
         const auto held = columns_[b].of_part(columns);
@@ -178,7 +186,8 @@ void PartedStepper::place(const statics::KeptDisplacement& u_m,
         parcel.put(here).put(some[0]).put(some[1]);
       }
       return parcel;
-    });
+    };
+    ask(reached, PartCommand::place, placed, [](Parcel&) {});
   }
 }
 

@@ -66,6 +66,11 @@ class PartedStepper final : public TimeStepper {
   std::vector<Parcel> ask(PartCommand command, const std::function<Parcel(int part)>& given = nothing) const;
   /// The same, with answers taken one by one, in the order of the parts.
   void ask(PartCommand command, const std::function<Parcel(int part)>& given,
+           const std::function<void(Parcel& answer)>& take) const {
+    ask(all_parts_, command, given, take);
+  }
+  /// The same of some parts, in ascending order.
+  void ask(std::span<const int> parts, PartCommand command, const std::function<Parcel(int part)>& given,
            const std::function<void(Parcel& answer)>& take) const;
   static Parcel nothing(int /*part*/) { return {}; }
   /// Gives the parts what processes keep of an equilibrium, one process's share after the other.
@@ -88,6 +93,7 @@ class PartedStepper final : public TimeStepper {
   Processes& processes_;
   Division division_;
   std::unique_ptr<Part> own_;
+  std::vector<int> all_parts_;
   std::vector<mesh::NodeColumns> columns_;  ///< of the whole bodies
   /// Interface nodes of each part: all that it computes, and those that count.
   std::vector<mesh::Subset> all_lower_;

@@ -15,13 +15,14 @@ namespace {
 constexpr double cache_bytes = 16e6;
 constexpr int most_steps_per_sweep = 16;
 
-/// A mesh that fits into the cache itself gains nothing from several steps in one sweep.
-int suitable_steps_per_sweep(const mesh::Grid& grid, int threads) {
+/// A mesh that fits into the cache itself gains nothing from several steps in one sweep, but what is on its
+/// way from one call to the next has most time in a single sweep.
+int suitable_steps_per_sweep(const mesh::Grid& grid, const Execution& execution) {
   const double motion = 4 * sizeof(double), rolling_rows = 6 * sizeof(double);
   const double rows = grid.rows + 1, columns = grid.stride();
-  if (motion * rows * columns < 0.5 * cache_bytes) return 1;
-  return std::clamp(static_cast<int>(cache_bytes / ((2 * motion + rolling_rows) * columns * threads)), 1,
-                    most_steps_per_sweep);
+  if (execution.most_steps == 0 && motion * rows * columns < 0.5 * cache_bytes) return 1;
+  const double sweep = cache_bytes / ((2 * motion + rolling_rows) * columns * execution.threads);
+  return std::clamp(static_cast<int>(sweep), 1, most_steps_per_sweep);
 }
 
 /// Threads that can be at work at a time: each has a group of steps that are a band apart.
@@ -83,10 +84,11 @@ Stepper::Stepper(std::span<const BodySource> sources, const interface::ContactMo
   step_s_ = lowest_step_s_ * lowest_steps;
   for (const auto& body : bodies_)
     if (leads(body)) n_bands_ = std::max(n_bands_, static_cast<int>(body.n_bands()));
-  const int depth =
-      execution.steps_per_sweep > 0
-          ? execution.steps_per_sweep
-          : suitable_steps_per_sweep(mesh::blocks(sources.front().mesh).back(), execution.threads);
+  int depth = execution.steps_per_sweep > 0
+                  ? execution.steps_per_sweep
+                  : suitable_steps_per_sweep(mesh::blocks(sources.front().mesh).back(), execution);
+  if (execution.most_steps > 0)
+    depth = std::min(depth, (execution.most_steps + execution.threads - 1) / execution.threads);
   wavefront_ = std::make_unique<threads::Wavefront>(
       useful_threads(execution.threads, static_cast<std::size_t>(n_bands_), depth), depth);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -187,17 +189,25 @@ std::int64_t Stepper::advance(Recorder& recorder, std::int64_t most_steps, const
   return advance(static_cast<UpdateObserver&>(recorder), most_steps, between);
 }
 
-std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t most_steps, const Between& between) {
+std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t most_steps, const Between& between,
+                              const AtBands& at_bands) {
+  const auto first = step_, last = first + most_steps - 1;
+  const auto is_in_calling_thread = [&](std::int64_t number) {
+    return (number - first) / wavefront_->depth() % wavefront_->threads() == 0;
+  };
   const auto unit = [&](std::int64_t number, int band) {
+    if (at_bands.before && is_in_calling_thread(number)) at_bands.before(number - first, band);
     if (band == 0) advance_interface(number, substeps_, observer, between.sample());
     advance_band(number, static_cast<std::size_t>(band));
     if (!watched_.empty()) show_watched(number + 1, static_cast<std::size_t>(band), between);
+    if (number == last && at_bands.after_last) at_bands.after_last(band);
     if (band > 0) return true;
     ++step_;
     return between.go_on(coupling_.slip_rates());
   };
   const auto taken = wavefront_->run(step_, most_steps, n_bands_, unit);
-  for (auto& body : bodies_) body.settle();
+  SLIPFRONT_ASSERT(!at_bands.after_last || taken == most_steps, "all steps are taken");
+  settle();
   return taken;
 }
 

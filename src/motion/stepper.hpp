@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "interface/interface.hpp"
@@ -13,6 +15,7 @@
 #include "motion/recorder.hpp"
 #include "motion/settings.hpp"
 #include "motion/time_stepper.hpp"
+#include "processes/processes.hpp"
 #include "record/energies.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
@@ -26,6 +29,20 @@ struct Execution {
   int threads = 1;  ///< at most; fewer where the plate has not rows enough to keep them at work
   /// Steps that a thread takes in one sweep through memory; 0 chooses by the size of the topmost block.
   int steps_per_sweep = 0;
+  /// Most steps of a call of advance, which the threads share; 0 for many.
+  int most_steps = 0;
+  /// Of a stage in which a part sends its halo, see Halo.
+  double halo_stage_bytes = Processes::prompt_bytes;
+};
+
+/// What is done while the bands of a step move, see Stepper::rows_moved.
+struct AtBands {
+  /// Before a band moves in a step of a call, counted from 0, where the calling thread takes it; that it
+  /// takes the first one, and later ones have not looked at the band yet.
+  std::function<void(std::int64_t step, int band)> before;
+  /// When a band has moved in the last one, in any thread, one band after the other. All steps are taken
+  /// then.
+  std::function<void(int band)> after_last;
 };
 
 /// Steps of the fastest body that one with this stable step takes at once.
@@ -90,7 +107,8 @@ class Stepper : public TimeStepper {
 
   std::int64_t advance(Recorder& recorder, std::int64_t most_steps, const Between& between) override;
   /// The same, seen by any observer.
-  std::int64_t advance(UpdateObserver& observer, std::int64_t most_steps, const Between& between);
+  std::int64_t advance(UpdateObserver& observer, std::int64_t most_steps, const Between& between,
+                       const AtBands& at_bands = {});
   /// One step; the state at its beginning is appended to `sample` where it is given.
   void advance(UpdateObserver& observer, record::History* sample = nullptr);
 
@@ -122,15 +140,34 @@ class Stepper : public TimeStepper {
   void append(MotionComponent component, std::size_t body, mesh::Node first, mesh::Node end,
               std::vector<double>& to) const;
 
-  /// Calls visit(values, n) with all that changes between two calls of advance and decides on the motion of
-  /// some neighbouring columns of nodes; with take_columns after it others may be put there.
+  int n_bands() const { return n_bands_; }
+  /// Rows of a body's nodes that a step has moved for good when its band has: these, from 0. Of the others
+  /// the first one has been read.
+  int rows_moved(std::size_t body, int band) const {
+    return leads(bodies_[body]) ? bodies_[body].rows_moved(static_cast<std::size_t>(band))
+                                : bodies_[body].n_rows();
+  }
+  /// Calls visit(values, n) with all that changes between two steps and decides on the motion of some
+  /// neighbouring columns of nodes. Others may be put there.
+  /// @param rows           of each body
+  /// @param and_interface  besides these rows all that moves with the interface, wherever it lies
+  template <class Visit>
+  void visit_columns(solid::Span columns, std::span<const solid::Span> rows, bool and_interface,
+                     Visit&& visit) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      bodies_[b].visit_columns(columns, rows[b], and_interface, visit);
+    if (and_interface) coupling_.visit_nodes(bodies_.front().lower_in(columns), visit);
+  }
+  /// The same in all rows.
   template <class Visit>
   void visit_columns(solid::Span columns, Visit&& visit) {
-    for (auto& body : bodies_) body.visit_columns(columns, visit);
-    coupling_.visit_nodes(bodies_.front().lower_in(columns), visit);
+    std::vector<solid::Span> rows;
+    for (const auto& body : bodies_) rows.push_back({0, body.n_rows()});
+    visit_columns(columns, rows, true, visit);
   }
-  void take_columns() {
-    for (auto& body : bodies_) body.take_columns();
+  /// After other values have been put there: before anyone but a step looks at them.
+  void settle() {
+    for (auto& body : bodies_) body.settle();
   }
 
   /// Shows all that changes between two calls of advance to a visitor, see KeptMotion.
@@ -141,7 +178,7 @@ class Stepper : public TimeStepper {
   }
   /// After other values have been put there.
   void take_state(std::int64_t step) {
-    take_columns();
+    for (auto& body : bodies_) body.take_state();
     coupling_.take_state();
     step_ = step;
   }

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/error.hpp"
 #endif
 
 namespace slipfront {
@@ -28,7 +29,7 @@ namespace slipfront {
 namespace {
 
 /// MPI counts with int.
-constexpr std::size_t most_bytes = std::size_t{1} << 30;
+constexpr std::size_t most_bytes = Processes::most_transferred_bytes;
 
 /// What starters of MPI set for each process: Open MPI, PMIx, PMI (MPICH, Slurm).
 bool is_started_by_mpi() {
@@ -56,6 +57,54 @@ class Patience {
 
  private:
   double poll_s_ = 2e-3;
+};
+
+/// Adds the time until it goes out of scope.
+class Waiting {
+ public:
+  explicit Waiting(double& waited_s) : waited_s_(waited_s) {}
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+  ~Waiting() { waited_s_ += seconds_since(begin_); }
+
+ private:
+  double& waited_s_;
+  Clock::time_point begin_ = Clock::now();
+};
+
+class MpiTransfer final : public Processes::Transfer {
+ public:
+  /// @param sent  bytes
+  MpiTransfer(const Patience& patience, Processes::Counters& counters, std::size_t sent)
+      : patience_(patience), counters_(counters), sent_(sent) {}
+  MpiTransfer(const MpiTransfer&) = delete;
+  MpiTransfer& operator=(const MpiTransfer&) = delete;
+  ~MpiTransfer() override {
+    finish();
+    MPI_Request_free(&request);
+  }
+
+  void begin() override {
+    MPI_Start(&request);
+    is_under_way_ = true;
+    if (sent_ == 0) return;
+    ++counters_.messages;
+    counters_.bytes += static_cast<std::int64_t>(sent_);
+  }
+  void finish() override {
+    if (!is_under_way_) return;
+    const Waiting waiting(counters_.exchange_s);
+    patience_.wait(request);
+    is_under_way_ = false;
+  }
+
+  MPI_Request request = MPI_REQUEST_NULL;  ///< persistent
+
+ private:
+  const Patience& patience_;
+  Processes::Counters& counters_;
+  std::size_t sent_;
+  bool is_under_way_ = false;
 };
 
 /// Over MPI_COMM_WORLD, whose errors end the program.
@@ -116,19 +165,21 @@ class MpiProcesses final : public Processes {
     return Parcel(std::move(bytes));
   }
 
-  void exchange(std::span<const Exchange> exchanges) override {
-    const Waiting waiting(counters_.exchange_s);
-    std::vector<MPI_Request> requests;
-    for (const auto& [with, out, in] : exchanges) {
-      if (!in.empty())
-        MPI_Irecv(in.data(), static_cast<int>(in.size()), MPI_DOUBLE, with, tag, MPI_COMM_WORLD,
-                  &requests.emplace_back());
-      if (out.empty()) continue;
-      MPI_Isend(out.data(), static_cast<int>(out.size()), MPI_DOUBLE, with, tag, MPI_COMM_WORLD,
-                &requests.emplace_back());
-      count(out.size_bytes());
-    }
-    patience_.wait_all(requests);
+  std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) override {
+    auto transfer = std::make_unique<MpiTransfer>(patience_, counters_, bytes.size());
+    MPI_Send_init(bytes.data(), as_count(bytes.size()), MPI_BYTE, rank, first_channel + channel,
+                  MPI_COMM_WORLD, &transfer->request);
+    return transfer;
+  }
+  std::unique_ptr<Transfer> transfer_from(int rank, int channel, std::span<std::byte> bytes) override {
+    auto transfer = std::make_unique<MpiTransfer>(patience_, counters_, 0);
+    MPI_Recv_init(bytes.data(), as_count(bytes.size()), MPI_BYTE, rank, first_channel + channel,
+                  MPI_COMM_WORLD, &transfer->request);
+    return transfer;
+  }
+  void attend() override {
+    int is_there = 0;
+    MPI_Iprobe(MPI_ANY_SOURCE, no_tag, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
   }
 
   void take_largest(std::span<double> values) override {
@@ -149,21 +200,13 @@ class MpiProcesses final : public Processes {
   }
 
  private:
-  static constexpr int tag = 0;
+  /// Of parcels, and of nothing; those of channels come after them.
+  static constexpr int tag = 0, no_tag = 1, first_channel = 2;
 
-  /// Adds the time until it goes out of scope.
-  class Waiting {
-   public:
-    explicit Waiting(double& waited_s) : waited_s_(waited_s) {}
-    Waiting(const Waiting&) = delete;
-    Waiting& operator=(const Waiting&) = delete;
-    ~Waiting() { waited_s_ += seconds_since(begin_); }
-
-   private:
-    double& waited_s_;
-    Clock::time_point begin_ = Clock::now();
-  };
-
+  static int as_count(std::size_t bytes) {
+    SLIPFRONT_ASSERT(bytes <= most_bytes, "a halo is short");
+    return static_cast<int>(bytes);
+  }
   void count(std::size_t bytes) {
     ++counters_.messages;
     counters_.bytes += static_cast<std::int64_t>(bytes);

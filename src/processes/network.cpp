@@ -2,7 +2,9 @@
 #include "processes/network.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -12,31 +14,95 @@ namespace slipfront {
 namespace {
 
 /// What the measuring process asks of the other one.
-constexpr double nothing_more = 0, an_answer = 1, an_exchange = 2;
+constexpr double nothing_more = 0, an_answer = 1, an_exchange = 2, work_alone = 3, work_beside = 4;
 
-constexpr std::size_t large = std::size_t{256} << 10U;  // bytes, as of a halo
+/// As a halo goes, in stages.
+constexpr int n_stages = 8;
+constexpr std::size_t stage_bytes = Processes::prompt_bytes;
 
-/// To the other process, or from it.
-void tell(Processes& processes, int with, double number) {
-  processes.exchange(std::array{Processes::Exchange{with, {&number, 1}, {}}});
-}
-double hear(Processes& processes, int with) {
-  double number = 0;
-  processes.exchange(std::array{Processes::Exchange{with, {}, {&number, 1}}});
-  return number;
-}
-
-/// Both ways at once.
-class LargeExchange {
+/// Computing that takes about as long each time.
+class Work {
  public:
-  LargeExchange(Processes& processes, int with) : processes_(processes), with_(with) {}
-  void operator()() { processes_.exchange(std::array{Processes::Exchange{with_, out_, in_}}); }
+  Work() {
+    const auto begin = Clock::now();
+    double pieces = 0;
+    while (seconds_since(begin) < 10e-3) {
+      compute();
+      ++pieces;
+    }
+    pieces_per_s_ = pieces / seconds_since(begin);
+  }
+  int pieces_in(double s) const { return std::max(1, static_cast<int>(s * pieces_per_s_)); }
+  /// A piece.
+  void compute() {
+    for (int k = 0; k < steps_of_piece; ++k) value_ = 0.5 * value_ + 1;
+  }
+
+ private:
+  static constexpr int steps_of_piece = 50'000;  // some 100 us
+  double pieces_per_s_ = 0;
+  volatile double value_ = 0;
+};
+
+/// What two processes tell each other, and exchange both ways at once.
+class Talk {
+ public:
+  Talk(Processes& processes, int with)
+      : processes_(processes),
+        tell_(processes.transfer_to(with, 0, std::as_bytes(std::span(&told_, 1)))),
+        hear_(processes.transfer_from(with, 0, std::as_writable_bytes(std::span(&heard_, 1)))) {
+    for (int k = 0; k < n_stages; ++k) {
+      const auto stage = [k](std::vector<std::byte>& bytes) {
+        return std::span(bytes).subspan(k * stage_bytes, stage_bytes);
+      };
+      exchanged_.push_back(processes.transfer_from(with, 1 + k, stage(in_)));
+      exchanged_.push_back(processes.transfer_to(with, 1 + k, stage(out_)));
+    }
+  }
+  Talk(const Talk&) = delete;
+  Talk& operator=(const Talk&) = delete;
+  ~Talk() = default;
+
+  void tell(double number) {
+    told_ = number;
+    tell_->begin();
+    tell_->finish();
+  }
+  double hear() {
+    hear_->begin();
+    hear_->finish();
+    return heard_;
+  }
+  void exchange() {
+    for (const auto& stage : exchanged_) stage->begin();
+    for (const auto& stage : exchanged_) stage->finish();
+  }
+  /// Computes for so long, and exchanges meanwhile.
+  void exchange_beside(double work_s) {
+    const int n = work_.pieces_in(work_s);
+    for (const auto& stage : exchanged_) stage->begin();
+    for (int k = 0; k < n; ++k) {
+      work_.compute();
+      processes_.attend();
+    }
+    for (const auto& stage : exchanged_) stage->finish();
+  }
+  void compute(double work_s) {
+    const int n = work_.pieces_in(work_s);
+    for (int k = 0; k < n; ++k) {
+      work_.compute();
+      processes_.attend();
+    }
+  }
 
  private:
   Processes& processes_;
-  int with_;
-  std::vector<double> out_ = std::vector<double>(large / sizeof(double), 1.0);
-  std::vector<double> in_ = std::vector<double>(large / sizeof(double));
+  Work work_;
+  double told_ = 0, heard_ = 0;
+  std::vector<std::byte> out_ = std::vector<std::byte>(n_stages * stage_bytes, std::byte{1});
+  std::vector<std::byte> in_ = std::vector<std::byte>(n_stages * stage_bytes);
+  std::unique_ptr<Processes::Transfer> tell_, hear_;
+  std::vector<std::unique_ptr<Processes::Transfer>> exchanged_;
 };
 
 /// Median of what some calls take, after one for warming up; at least three, and others until most_s is over.
@@ -59,40 +125,62 @@ double median_s(int most_calls, double most_s, Call call) {
 
 Link measure_link(Processes& processes, int with) {
   Link link{processes.rank(), with};
+  Talk talk(processes, with);
   constexpr int at_once = 10;  // the clock takes as long as a message
   const double round_trips_s = median_s(1001, 1, [&] {
     for (int k = 0; k < at_once; ++k) {
-      tell(processes, with, an_answer);
-      hear(processes, with);
+      talk.tell(an_answer);
+      talk.hear();
     }
   });
   link.latency_s = 0.5 * round_trips_s / at_once;
-  LargeExchange exchange(processes, with);
   constexpr int in_turn = 4;  // the two do not begin the first one together
   const double exchanges_s = median_s(101, 2, [&] {
     for (int k = 0; k < in_turn; ++k) {
-      tell(processes, with, an_exchange);
-      exchange();
+      talk.tell(an_exchange);
+      talk.exchange();
     }
   });
-  // The word that precedes an exchange takes a latency, the exchange three: its message is announced, asked
-  // for and sent. Where these take all of the time to within its scatter, the bandwidth is a lower bound.
+  // The word that precedes an exchange takes a latency, and the exchange as well. Where these take all of the
+  // time to within its scatter, the bandwidth is a lower bound.
   const double turn_s = exchanges_s / in_turn;
-  const double transfer_s = std::max(turn_s - 4 * link.latency_s, 0.1 * turn_s);
-  link.bandwidth_bytes_per_s = static_cast<double>(large) / transfer_s;
-  tell(processes, with, nothing_more);
+  const double transfer_s = std::max(turn_s - 2 * link.latency_s, 0.1 * turn_s);
+  link.bandwidth_bytes_per_s = static_cast<double>(n_stages * stage_bytes) / transfer_s;
+  // Long enough for the bytes to have come before its end.
+  const double work_s = std::max(5e-3, 4 * turn_s);
+  const double beside_s = median_s(31, 1, [&] {
+    talk.tell(work_beside);
+    talk.tell(work_s);
+    talk.exchange_beside(work_s);
+    talk.hear();
+  });
+  const double alone_s = median_s(31, 1, [&] {
+    talk.tell(work_alone);
+    talk.tell(work_s);
+    talk.compute(work_s);
+    talk.hear();
+  });
+  const double bytes = 2.0 * n_stages * stage_bytes;
+  link.processor_s_per_byte = std::max(0.0, beside_s - alone_s) / bytes;
+  talk.tell(nothing_more);
   return link;
 }
 
 void answer_link(Processes& processes, int with) {
-  LargeExchange exchange(processes, with);
+  Talk talk(processes, with);
   for (;;) {
-    const double wanted = hear(processes, with);
+    const double wanted = talk.hear();
     if (wanted == an_exchange)
-      exchange();
+      talk.exchange();
     else if (wanted == an_answer)
-      tell(processes, with, an_answer);
-    else
+      talk.tell(an_answer);
+    else if (wanted == work_beside) {
+      talk.exchange_beside(talk.hear());
+      talk.tell(an_answer);
+    } else if (wanted == work_alone) {
+      talk.compute(talk.hear());
+      talk.tell(an_answer);
+    } else
       return;
   }
 }

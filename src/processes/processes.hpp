@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -22,14 +23,20 @@ class Processes {
   /// What this process has sent, and how long it has waited.
   struct Counters {
     std::int64_t messages = 0, bytes = 0;
-    double exchange_s = 0;  ///< in exchange
-    double command_s = 0;   ///< in the other calls
+    double exchange_s = 0;  ///< for transfers
+    double command_s = 0;   ///< in other calls
   };
-  /// Numbers that go to and come from another process at the same time; either may be none.
-  struct Exchange {
-    int with = 0;
-    std::span<const double> out;
-    std::span<double> in;
+  /// Bytes that go to another process, or come from it, whenever both ends begin it. They stay at the same
+  /// place, and are left alone while they are under way.
+  class Transfer {
+   public:
+    Transfer() = default;
+    Transfer(const Transfer&) = delete;
+    Transfer& operator=(const Transfer&) = delete;
+    virtual ~Transfer() = default;
+    virtual void begin() = 0;
+    /// Waits until it is done; nothing where none is under way.
+    virtual void finish() = 0;
   };
 
   Processes() = default;
@@ -44,8 +51,14 @@ class Processes {
 
   virtual void send(int to, const Parcel& parcel) = 0;
   virtual Parcel receive(int from) = 0;
-  /// All of them at once; their partners call it for the other ends.
-  virtual void exchange(std::span<const Exchange> exchanges) = 0;
+  static constexpr std::size_t most_transferred_bytes = std::size_t{1} << 30;
+  /// Of a transfer that sets out without an answer of the other end: below the 64 KiB of Open MPI's over TCP.
+  static constexpr std::size_t prompt_bytes = std::size_t{48} << 10;
+  /// @param channel  not negative, the same at both ends; no other transfer between the two goes that way
+  virtual std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) = 0;
+  virtual std::unique_ptr<Transfer> transfer_from(int rank, int channel, std::span<std::byte> bytes) = 0;
+  /// Lets transfers go on while this process has something else to do.
+  virtual void attend() {}
   /// Replaces each number by the largest that any process has there; called by all.
   virtual void take_largest(std::span<double> values) = 0;
 

@@ -76,9 +76,14 @@ Handle new_dataset(const File& file, const std::string& name, hid_t type, const 
   return dataset;
 }
 
-Handle new_dataset(const File& file, const std::string& name, hid_t type, const Shape& shape) {
+Handle new_dataset(const File& file, const std::string& name, hid_t type, const Shape& shape,
+                   const Handle& properties) {
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  return new_dataset(file, name, type, space, dataset_properties(file, name));
+  return new_dataset(file, name, type, space, properties);
+}
+
+Handle new_dataset(const File& file, const std::string& name, hid_t type, const Shape& shape) {
+  return new_dataset(file, name, type, shape, dataset_properties(file, name));
 }
 
 /// A data set that was made before, and its shape.
@@ -90,7 +95,7 @@ struct Dataset {
 Dataset open_dataset(const File& file, const std::string& name) {
   Handle handle(H5Dopen2(file.handle.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
   Handle space(H5Dget_space(handle.get()), H5Sclose);
-  SLIPFRONT_ASSERT(space.valid(), "rows of a data set that was not created");
+  if (!space.valid()) throw_write(file, name);
   Shape shape(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space.get())));
   H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
   return {std::move(handle), std::move(space), std::move(shape)};
@@ -212,7 +217,24 @@ void create(const File& file, const std::string& name, Type type, const Shape& s
   const hid_t of_hdf5 = type == Type::float64 ? H5T_NATIVE_DOUBLE
                         : type == Type::int64 ? H5T_NATIVE_INT64
                                               : H5T_NATIVE_UINT8;
-  finish(new_dataset(file, name, of_hdf5, shape), file, name);
+  const Handle properties = dataset_properties(file, name);
+  if (H5Pset_alloc_time(properties.get(), H5D_ALLOC_TIME_EARLY) < 0 ||
+      H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER) < 0)
+    throw_write(file, name);
+  finish(new_dataset(file, name, of_hdf5, shape, properties), file, name);
+}
+
+Place place_of(const File& file, const std::string& name) {
+  const auto [dataset, space, shape] = open_dataset(file, name);
+  const Handle type(H5Dget_type(dataset.get()), H5Tclose);
+  const haddr_t offset = H5Dget_offset(dataset.get());
+  const std::size_t bytes = H5Tget_size(type.get());
+  SLIPFRONT_ASSERT(bytes > 0 && !shape.empty(), "a data set of numbers");
+  Shape row = shape;
+  row.front() = 1;
+  // An empty one has no place.
+  if (offset == HADDR_UNDEF && count(shape) > 0) throw_write(file, name);
+  return {offset, bytes * count(row), shape.front()};
 }
 
 void create_growing(const File& file, const std::string& name, const Shape& row, hsize_t chunk_rows,
@@ -225,7 +247,6 @@ void create_growing(const File& file, const std::string& name, const Shape& row,
   const Handle space(H5Screate_simple(rank, now.data(), most.data()), H5Sclose);
   const Handle properties = dataset_properties(file, name);
   if (H5Pset_chunk(properties.get(), rank, chunk.data()) < 0 ||
-      (chunks == Chunks::whole && H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER) < 0) ||
       (chunks == Chunks::checked && H5Pset_fletcher32(properties.get()) < 0))
     throw_write(file, name);
   finish(new_dataset(file, name, H5T_NATIVE_DOUBLE, space, properties), file, name);
@@ -241,16 +262,6 @@ void add_rows(const File& file, const std::string& name, hsize_t rows) {
 void write_rows(const File& file, const std::string& name, hsize_t first_row,
                 std::span<const double> values) {
   write_rows_of(file, name, H5T_NATIVE_DOUBLE, first_row, values);
-}
-
-void write_rows(const File& file, const std::string& name, hsize_t first_row,
-                std::span<const std::int64_t> values) {
-  write_rows_of(file, name, H5T_NATIVE_INT64, first_row, values);
-}
-
-void write_rows(const File& file, const std::string& name, hsize_t first_row,
-                std::span<const std::uint8_t> values) {
-  write_rows_of(file, name, H5T_NATIVE_UINT8, first_row, values);
 }
 
 void set_attribute(const File& file, const std::string& object, const std::string& name,

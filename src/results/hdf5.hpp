@@ -70,25 +70,25 @@ void write(const File& file, const std::string& name, std::span<const double> va
 void write(const File& file, const std::string& name, std::span<const std::int64_t> values,
            const Shape& shape);
 
-/// Makes a data set that write_rows fills.
+/// Makes a data set whose numbers others write: its place in the file is taken, and nothing is put there.
 enum class Type { float64, int64, uint8 };
 void create(const File& file, const std::string& name, Type type, const Shape& shape);
-/// Makes a data set of doubles without rows that append_rows lengthens, stored in chunks of `chunk_rows`
-/// rows.
-/// @param row  the lengths after the first
+/// Where such a data set lies in its file, row after row in the order of memory.
+struct Place {
+  std::uint64_t offset = 0, row_bytes = 0;
+  std::uint64_t n_rows = 0;
+};
+Place place_of(const File& file, const std::string& name);
 enum class Chunks {
   any,
-  whole,    ///< nothing shorter than a chunk will be left over: saves filling chunks in advance
   checked,  ///< each with a checksum of its numbers, compared when it is read; for those written at once
 };
+/// Makes a data set of doubles without rows that add_rows lengthens, stored in chunks of `chunk_rows` rows.
+/// @param row  the lengths after the first
 void create_growing(const File& file, const std::string& name, const Shape& row, hsize_t chunk_rows,
                     Chunks chunks = Chunks::any);
 /// Writes values.size() / (product of the other lengths) rows from `first_row` on.
 void write_rows(const File& file, const std::string& name, hsize_t first_row, std::span<const double> values);
-void write_rows(const File& file, const std::string& name, hsize_t first_row,
-                std::span<const std::int64_t> values);
-void write_rows(const File& file, const std::string& name, hsize_t first_row,
-                std::span<const std::uint8_t> values);
 /// Lengthens a data set by `rows` rows, for write_rows.
 void add_rows(const File& file, const std::string& name, hsize_t rows);
 

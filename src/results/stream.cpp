@@ -93,19 +93,6 @@ record::ProbeRecord read_probe_rows(Records& records, std::size_t n, std::size_t
   return rows;
 }
 
-/// Snapshot k of as many, read where it is wanted.
-SnapshotValues read_snapshot(Records& records, std::size_t k, std::size_t n_nodes) {
-  const auto field = [&records, k, n_nodes](std::size_t component) {
-    return [&records, k, n_nodes, component](std::size_t first, std::size_t n) {
-      solid::Field some;
-      some.x = records.read_values(k, 1 + component * n_nodes + first, n);
-      some.y = records.read_values(k, 1 + (component + 1) * n_nodes + first, n);
-      return some;
-    };
-  };
-  return {records.read_values(k, 0, 1).front(), field(0), field(2)};
-}
-
 }  // namespace
 
 std::filesystem::path ResultStream::history_file(const std::filesystem::path& dir) {
@@ -251,18 +238,20 @@ void write_probes(const std::filesystem::path& file, const std::filesystem::path
   written.require_length(records.count());
 }
 
-std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
-                            const mesh::Slabs& mesh, const SnapshotContents& contents) {
-  Records records(raw, 1 + 4 * mesh.n_nodes);
-  if (records.count() == 0) return 0;
-  SnapshotFile output(file, mesh, contents);
-  for (std::size_t k = 0; k < records.count(); ++k) output.append(read_snapshot(records, k, mesh.n_nodes));
-  output.close();
-  const WrittenSnapshots written(file, mesh, contents);
-  for (std::size_t k = 0; k < records.count(); ++k)
-    written.require(k, read_snapshot(records, k, mesh.n_nodes));
-  written.require_steps(records.count());
-  return records.count();
+SnapshotSeries read_snapshots(const std::filesystem::path& raw, std::size_t n_nodes) {
+  const auto records = std::make_shared<Records>(raw, 1 + 4 * n_nodes);
+  const auto field = [&](std::size_t component) {
+    return [records, n_nodes, component](std::size_t k, std::size_t first, std::size_t n) {
+      solid::Field some;
+      some.x = records->read_values(k, 1 + component * n_nodes + first, n);
+      some.y = records->read_values(k, 1 + (component + 1) * n_nodes + first, n);
+      return some;
+    };
+  };
+  SnapshotSeries series{{}, field(0), field(2)};
+  for (std::size_t k = 0; k < records->count(); ++k)
+    series.time_s.push_back(records->read_values(k, 0, 1).front());
+  return series;
 }
 
 }  // namespace slipfront::results

@@ -104,9 +104,8 @@ void write_history(const std::filesystem::path& file, const std::filesystem::pat
 void write_probes(const std::filesystem::path& file, const std::filesystem::path& raw,
                   std::span<const record::ProbePlace> places, const Origin& origin);
 
-/// Makes fields.vtkhdf of a stream's file.
-/// @return the number of snapshots; without any no file is made
-std::size_t write_snapshots(const std::filesystem::path& file, const std::filesystem::path& raw,
-                            const mesh::Slabs& mesh, const SnapshotContents& contents = {});
+/// The snapshots of a stream's file over the nodes of a mesh, read where they are wanted. One that was cut
+/// off at its end is left out. @throws UserError where the file is missing
+SnapshotSeries read_snapshots(const std::filesystem::path& raw, std::size_t n_nodes);
 
 }  // namespace slipfront::results

@@ -140,12 +140,18 @@ int steps_of_command(const Needs& needs) {
   return std::max(1, static_cast<int>(static_cast<double>(needs.steps) / commands_of(needs)));
 }
 
+struct MeasuredSteps {
+  double step_s = 0;
+  /// Of the time of a step, what goes with the interface, before other rows.
+  double interface_share = 0;
+};
+
 /// A few steps give this machine's rate: under the mean pressure, with half of the interface sliding, which
 /// takes longer than to stick.
 /// @param n_steps  of a command
 /// @param at_once  that no exchange interrupts
-double measured_step_s(const input::Case& config, const Timed& timed, std::int64_t n_steps,
-                       std::int64_t at_once) {
+MeasuredSteps measure_steps(const input::Case& config, const Timed& timed, std::int64_t n_steps,
+                            std::int64_t at_once) {
   constexpr double least_s = 20e-3, most_s = 0.5;
   const double mu_s = interface::static_coefficient(config.friction);
   auto& stepper = *timed.stepper;
@@ -159,7 +165,7 @@ double measured_step_s(const input::Case& config, const Timed& timed, std::int64
   const auto state = statics::prestressed(plate, tractions, timed.base);
   stepper.start(state, 0, {tractions.t_s_Pa, tractions.p_s_Pa});
   motion::Recorder recorder(state, mu_s, 0);
-  std::vector<double> times_s;
+  std::vector<double> times_s, shares;
   const auto start = Clock::now();
   double spent_s = 0;
   do {
@@ -167,9 +173,17 @@ double measured_step_s(const input::Case& config, const Timed& timed, std::int64
     for (std::int64_t done = 0; done < n_steps; done += at_once)
       stepper.advance(recorder, std::min(at_once, n_steps - done), {});
     times_s.push_back(seconds_since(begin) / static_cast<double>(n_steps));
+    double with_interface_s = 0;
+    const auto one = Clock::now();
+    motion::AtBands at_bands;
+    at_bands.after_last = [&](int band) {
+      if (band == 0) with_interface_s = seconds_since(one);
+    };
+    stepper.advance(recorder, 1, {}, at_bands);
+    shares.push_back(with_interface_s / seconds_since(one));
     spent_s = seconds_since(start);
   } while (spent_s < least_s || (times_s.size() < 3 && spent_s < most_s));
-  return fronts::median(times_s);
+  return {fronts::median(times_s), fronts::median(shares)};
 }
 
 /// Of the factorisation n^1.5 operations are those of large fronts, the rest of its assembly and small ones;
@@ -228,16 +242,25 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
   work.node_updates_per_step = stepper.node_updates_per_step() / timed.share;
   const int n_steps = steps_of_command(info.needs);
   const int at_once = sharing.n_processes > 1 ? shared.division.steps_per_exchange : n_steps;
-  work.node_updates_per_s =
-      stepper.node_updates_per_step() / measured_step_s(config, timed, n_steps, at_once);
+  const auto measured = measure_steps(config, timed, n_steps, at_once);
+  work.node_updates_per_s = stepper.node_updates_per_step() / measured.step_s;
+  work.interface_share = measured.interface_share;
   // Coarser blocks have nodes in some columns only, in the same ones of so many.
   int period = 1;
   for (const auto& body : bodies)
     if (const auto n = body.mesh.coarser.size(); n > 0) period = std::max(period, 2 << n);
   const int first = timed.share < 1 ? timed.first_column : n_columns / 2 / period * period;
-  stepper.visit_columns({first, first + period}, [&](const auto*, std::size_t n) {
-    work.values_per_column += static_cast<double>(n) / period;
-  });
+  std::vector<solid::Span> with_interface;
+  for (std::size_t b = 0; b < stepper.bodies().size(); ++b)
+    with_interface.push_back({0, stepper.rows_moved(b, 0)});
+  const solid::Span columns = {first, first + period};
+  const auto add_to = [period](double& bytes_per_column) {
+    return [&bytes_per_column, period](const auto* values, std::size_t n) {
+      bytes_per_column += static_cast<double>(n * sizeof(*values)) / period;
+    };
+  };
+  stepper.visit_columns(columns, add_to(work.bytes_per_column));
+  stepper.visit_columns(columns, with_interface, true, add_to(work.interface_bytes_per_column));
   work.updates_per_step = std::round(info.step_s / info.substep_s);
   work.steps = static_cast<double>(info.n_steps);
   work.advances = commands_of(info.needs);
@@ -286,7 +309,7 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   const double node_updates_per_step = timed.stepper->node_updates_per_step();
   add_needs(config, meshes, node_updates_per_step / timed.share, info);
   const int n_steps = steps_of_command(info.needs);
-  info.node_updates_per_s = node_updates_per_step / measured_step_s(config, timed, n_steps, n_steps);
+  info.node_updates_per_s = node_updates_per_step / measure_steps(config, timed, n_steps, n_steps).step_s;
   info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info);
   if (sharing) info.shared = shared_by(config, meshes, timed, *sharing, info);
   if (sharing && sharing->n_processes > 1) info.needs.checkpoint_bytes *= shared_checkpoint_bytes;

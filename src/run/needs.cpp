@@ -137,9 +137,9 @@ Budget event_budget(const input::Case& config, const Size& size, double n_snapsh
 }
 
 /// fields.vtkhdf is made of one raw field at a time, beside its mesh or some rows of it.
-Budget snapshot_budget(const Size& size) {
+Budget snapshot_budget(const input::Case& config, const Size& size) {
   const double at_once = std::max(static_cast<double>(snapshot_nodes_at_once), 2 * size.n_interface);
-  const double n_nodes = size.leads_by_interface ? std::min(size.n_nodes, at_once) : size.n_nodes;
+  const double n_nodes = has_equal_elements(config) ? std::min(size.n_nodes, at_once) : size.n_nodes;
   const double field = 2 * number, same_motion = number;
   return {
       {"fields and their mesh", (field + same_motion + mesh_bytes_per_node) * n_nodes, larger_elements()}};
@@ -170,7 +170,8 @@ std::vector<Budget> memory_stages(const input::Case& config, const Size& size, d
                           {"pieces of snapshots that wait to be written", in_pieces, larger_elements()}};
   stages.push_back(with_program(event_budget(config, size, n_snapshots, energy_rows) + waiting, field));
   if (n_snapshots > 0)
-    stages.push_back(with_program(snapshot_budget(size) + Budget{energies_budget(energy_rows)}, field));
+    stages.push_back(
+        with_program(snapshot_budget(config, size) + Budget{energies_budget(energy_rows)}, field));
   return stages;
 }
 

@@ -13,8 +13,10 @@
 #include "input/friction_along_x.hpp"
 #include "input/schema.hpp"
 #include "mesh/plate.hpp"
+#include "run/case_parcel.hpp"
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
+#include "run/fields.hpp"
 #include "run/initial_state.hpp"
 #include "run/run.hpp"
 #include "statics/petsc_solver.hpp"
@@ -22,24 +24,6 @@
 namespace slipfront::run {
 
 namespace {
-
-/// The case itself and not its file, which the other machines may see late or not at all.
-void put_case(const input::Case& config, Parcel& to) {
-  const auto& table = config.friction_along_x.table;
-  to.put(resolved_text(config)).put(table.x_m).put(static_cast<std::uint64_t>(table.keys.size()));
-  for (std::size_t k = 0; k < table.keys.size(); ++k) to.put(table.keys[k]).put(table.values[k]);
-}
-
-input::Case take_case(Parcel& from) {
-  auto config = input::parse_case(from.take_text(), case_file);
-  auto& table = config.friction_along_x.table;
-  table.x_m = from.take_all<double>();
-  for (auto n = from.take<std::uint64_t>(); n > 0; --n) {
-    table.keys.push_back(from.take_text());
-    table.values.push_back(from.take_all<double>());
-  }
-  return config;
-}
 
 /// What a process needs to make its part.
 struct Plan {
@@ -269,6 +253,10 @@ void serve(Processes& processes) try {
     if (command == motion::PartCommand::end) return;
     if (command == motion::PartCommand::network) {
       carry_out_network(processes, parcel);
+      continue;
+    }
+    if (command == motion::PartCommand::fields) {
+      carry_out_fields(processes, parcel);
       continue;
     }
     if (command == motion::PartCommand::statics) {

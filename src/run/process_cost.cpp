@@ -45,20 +45,27 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
                          const Network& network, const Handling& handling) {
   const double n_parts = division.n_parts(), others = n_parts - 1;
   const auto part = widest(division);
-  const double s_per_column = work.node_updates_per_step / work.n_columns / work.node_updates_per_s *
-                              std::max(1.0, n_parts / processors);
+  const double sharing = std::max(1.0, n_parts / processors);
+  const double s_per_column = work.node_updates_per_step / work.n_columns / work.node_updates_per_s * sharing;
   ProcessCost cost;
   cost.own_s = (work.steps + work.energies) * part.own * s_per_column;
   cost.halo_s = work.steps * part.halo * s_per_column;
 
   const auto latency_s = [&](double bytes) { return (bytes > eager_bytes ? 3 : 1) * network.latency_s; };
-  const double halo_bytes = division.halo * work.values_per_column * number_bytes;
+  const double halo_bytes = division.halo * work.bytes_per_column;
   const double exchanges = std::floor(work.steps / division.steps_per_exchange);
   cost.bytes_per_step = exchanges * part.n_sides * halo_bytes / work.steps;
-  if (part.n_sides > 0)
-    cost.exchange_s = exchanges * (latency_s(halo_bytes) +
-                                   part.n_sides * halo_bytes *
-                                       (1 / network.bandwidth_bytes_per_s + 2 / handling.halo_bytes_per_s));
+  if (part.n_sides > 0) {
+    const auto way_s = [&](double bytes) { return part.n_sides * bytes / network.bandwidth_bytes_per_s; };
+    const double handling_s = 2 * part.n_sides * halo_bytes *
+                              (1 / handling.halo_bytes_per_s + network.processor_s_per_byte * sharing);
+    const double steps_s = division.steps_per_exchange * (part.own + part.halo) * s_per_column + handling_s;
+    const double interface_bytes = division.halo * work.interface_bytes_per_column;
+    const double waiting_s = std::max(
+        {0.0, work.interface_share * steps_s + latency_s(interface_bytes) + way_s(interface_bytes) - steps_s,
+         way_s(halo_bytes) - steps_s});
+    cost.exchange_s = exchanges * (handling_s + waiting_s);
+  }
 
   const auto passed_s = [&](double bytes) {
     const double by_parts = others > 0 ? 1 / n_parts : 0;
@@ -76,9 +83,10 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   cost.statics_s = work.statics_s;
 
   const double share = (part.own + part.halo) / work.n_columns;
+  const double messages = 3 * part.n_sides * halo_bytes;  // two that are sent, one that comes
   const double of_part =
       motion::event_bytes(share * work.n_nodes, share * work.n_cells, false, work.precision) +
-      share * work.bytes_per_interface_node * work.n_columns;
+      share * work.bytes_per_interface_node * work.n_columns + messages;
   cost.memory_bytes = work.program_bytes + std::max(work.shared_statics_bytes, of_part);
   // What a part is sent is made when it is sent. A checkpoint, written from answers taken one by one, takes
   // less than the building of the leader's own part has taken.

@@ -9,6 +9,8 @@ namespace slipfront::run {
 struct Network {
   double latency_s = 0;
   double bandwidth_bytes_per_s = 0;  ///< each way at once
+  /// By which a byte that goes or comes holds up what is computed meanwhile.
+  double processor_s_per_byte = 0;
 };
 /// Of processes on one machine: Open MPI 4.1, two cores of an AMD EPYC (Zen 4), a virtual machine.
 inline constexpr Network shared_memory = {0.5e-6, 10e9};
@@ -32,8 +34,10 @@ struct SharedWork {
   double n_nodes = 0, n_cells = 0, n_columns = 0;  ///< columns of nodes, the same as interface nodes
   double node_updates_per_step = 0;
   double node_updates_per_s = 0;  ///< of one processor
-  double values_per_column = 0;   ///< that an exchange sends
-  double updates_per_step = 1;    ///< of the contact
+  double bytes_per_column = 0;    ///< that an exchange sends
+  /// Of these, and of a step's time the share, what goes with the interface, before other rows.
+  double interface_bytes_per_column = 0, interface_share = 0;
+  double updates_per_step = 1;  ///< of the contact
   double steps = 0;
   double advances = 1;  ///< commands in which these steps are taken
   double energies = 0;  ///< sums over all nodes
@@ -53,7 +57,7 @@ struct SharedWork {
 struct ProcessCost {
   double own_s = 0;           ///< columns that the process accounts for
   double halo_s = 0;          ///< columns that others account for, computed as well
-  double exchange_s = 0;      ///< of the halos
+  double exchange_s = 0;      ///< of the halos: packing, and what no computing covers of their way
   double command_s = 0;       ///< from the leader and back
   double gathering_s = 0;     ///< of samples, of what each contact update saw, of snapshots
   double statics_s = 0;       ///< for which the others wait, or which they share
@@ -70,8 +74,10 @@ struct ProcessCost {
 /// n steps in A commands, u node updates of a column in a step, r node updates/s, latency L, bandwidth B:
 /// - own columns: (n + e) u w / r max(1, P/C), w of them, e sums of the energies, each as long as a step
 /// - halo: n u s h / r max(1, P/C), h columns on s sides with a neighbour, 2, or 1 of two processes
-/// - exchange: A ceil(n/(A k)) (l(m) + s m/B + 2 s m/b), k steps to an exchange, m bytes of a halo, rate b of
-///   packing
+/// - exchange: floor(n/k) (H + max(0, f T + l(i) + s i/B - T, s m/B - T)), H = 2 s m (1/b + c max(1, P/C)),
+///   k steps to an exchange in the time T, H included, a share f of it for what goes with the interface; m
+///   bytes of a halo, i of these with the interface; rate b of packing, c processor time of a byte on its
+///   way
 /// - commands: (A + e) (2 L + 2 (P - 1) o) + A (P - 1) (l(a) - L), o for each message of the leader, a bytes
 ///   of an answer; answers are received one after the other
 /// - gathering: n q P j + G F, q contact updates in a step, j to join what a part saw in one, G bytes of
@@ -84,7 +90,8 @@ struct ProcessCost {
 /// F = (1 - 1/P)/B + (1 + 1/P)/g: the bytes of the others pass between processes, the leader handles all at
 /// the rate g, each part its own; of one process 1/g.
 ///
-/// Nothing overlaps: a part waits for its neighbours before it goes on, and all wait for the leader.
+/// Only the halo's way overlaps with computing: rows of a step that has moved them are sent, see
+/// motion::Halo. The interface is first in each step, so it is on its way while the rows above it move.
 /// @param work        of the whole case
 /// @param processors  of the machines together
 ProcessCost process_cost(const SharedWork& work, const motion::Division& division, int processors,

@@ -18,6 +18,7 @@
 #include "run/outlook.hpp"
 #include "run/parts.hpp"
 #include "run/process_cost.hpp"
+#include "run/snapshot_mesh.hpp"
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
 
@@ -109,9 +110,8 @@ inline constexpr const char* friction_file = "friction.csv";
 std::string resolved_text(const input::Case& config);
 /// What a run's HDF5 files say of where they come from.
 results::Origin origin_of(const input::Case& config);
-/// What a case's fields.vtkhdf holds. @param n_plate_cells  cells of the plate; those of the base follow
-results::SnapshotContents snapshot_contents(const input::Case& config, std::size_t n_plate_cells,
-                                            std::size_t n_cells);
+/// What a case's fields.vtkhdf holds.
+results::SnapshotContents snapshot_contents(const input::Case& config, const SnapshotMesh& mesh);
 
 /// Writes them all.
 void write_case(const std::filesystem::path& dir, const input::Case& config);

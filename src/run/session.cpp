@@ -13,8 +13,8 @@
 #include "results/stream.hpp"
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
+#include "run/fields.hpp"
 #include "run/shared_states.hpp"
-#include "run/snapshot_mesh.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -269,13 +269,8 @@ void Session::write_results(const Finished& run) {
   if (const auto places = input::probe_places(config_); !places.empty())
     results::write_probes(dir_ / "probes.h5", results::ResultStream::probe_file(folder_.state()), places,
                           origin_of(config_));
-  if (!snapshot_plan(config_, run.result.step_s).times_s.empty()) {
-    auto meshes = check(config_, options_.processes);
-    const auto n_plate_cells = static_cast<std::size_t>(n_cells_of(meshes.plate));
-    const auto mesh = snapshot_mesh(config_, std::move(meshes));
-    results::write_snapshots(dir_ / "fields.vtkhdf", results::ResultStream::snapshot_file(folder_.state()),
-                             mesh, snapshot_contents(config_, n_plate_cells, mesh.n_cells));
-  }
+  if (!snapshot_plan(config_, run.result.step_s).times_s.empty())
+    write_fields(folder_, config_, run.initial, options_.processes, hooks_.note);
   if (status.name == "complete") folder_.publish();
 }
 

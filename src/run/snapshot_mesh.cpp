@@ -39,35 +39,36 @@ mesh::Mesh joined(Meshes meshes) {
   return mesh;
 }
 
-/// Rows of squares of a body of many.
+/// Rows of equal squares.
 struct RowsOfBody {
   mesh::Plate plate;
-  int rows = 0;
+  int rows = 0, at_once = 1;
   std::size_t nodes_per_row = 0, cells_per_row = 0;
   bool is_below = false;
 
   std::size_t n_nodes() const { return nodes_per_row * (static_cast<std::size_t>(rows) + 1); }
   std::size_t n_cells() const { return cells_per_row * static_cast<std::size_t>(rows); }
+  std::size_t n_slabs() const { return static_cast<std::size_t>((rows + at_once - 1) / at_once); }
 };
 
-RowsOfBody rows_of(const mesh::Plate& plate, const mesh::Grid& grid, bool is_below) {
-  return {plate, grid.rows, static_cast<std::size_t>(grid.stride()), static_cast<std::size_t>(grid.columns),
-          is_below};
+RowsOfBody rows_of(const mesh::Plate& plate, const mesh::Grid& grid, bool is_below, int n_writers) {
+  const auto nodes_per_row = static_cast<std::size_t>(grid.stride());
+  const auto few = static_cast<int>(snapshot_nodes_at_once / nodes_per_row);
+  const int at_once = std::max(1, std::min(few, (grid.rows + n_writers - 1) / n_writers));
+  return {plate, grid.rows, at_once, nodes_per_row, static_cast<std::size_t>(grid.columns), is_below};
 }
 
-void for_slabs(const RowsOfBody& body, std::size_t first_node, std::size_t first_cell,
-               const std::function<void(const mesh::Slab&)>& visit) {
-  const auto rows_at_once =
-      static_cast<int>(std::max<std::size_t>(1, snapshot_nodes_at_once / body.nodes_per_row));
-  for (int row = 0; row < body.rows; row += rows_at_once) {
-    const int end = std::min(row + rows_at_once, body.rows);
-    auto mesh = mesh::make_rows(body.plate, row, end);
-    if (body.is_below) turn_over(mesh);
-    const auto before = static_cast<std::size_t>(row);
-    const std::size_t own_rows = static_cast<std::size_t>(end - row) + (end == body.rows ? 1 : 0);
-    visit({mesh, first_node + before * body.nodes_per_row, first_cell + before * body.cells_per_row,
-           own_rows * body.nodes_per_row});
-  }
+/// @param first_node, first_cell  numbers of the body's first ones
+void visit_slab(const RowsOfBody& body, std::size_t slab, std::size_t first_node, std::size_t first_cell,
+                const std::function<void(const mesh::Slab&)>& f) {
+  const int row = static_cast<int>(slab) * body.at_once;
+  const int end = std::min(row + body.at_once, body.rows);
+  auto mesh = mesh::make_rows(body.plate, row, end);
+  if (body.is_below) turn_over(mesh);
+  const auto before = static_cast<std::size_t>(row);
+  const std::size_t own_rows = static_cast<std::size_t>(end - row) + (end == body.rows ? 1 : 0);
+  f({mesh, first_node + before * body.nodes_per_row, first_cell + before * body.cells_per_row,
+     own_rows * body.nodes_per_row});
 }
 
 mesh::Slabs in_rows(std::vector<RowsOfBody> bodies) {
@@ -75,11 +76,13 @@ mesh::Slabs in_rows(std::vector<RowsOfBody> bodies) {
   for (const auto& body : bodies) {
     slabs.n_nodes += body.n_nodes();
     slabs.n_cells += body.n_cells();
+    slabs.n_slabs += body.n_slabs();
   }
-  slabs.for_each = [bodies = std::move(bodies)](const auto& visit) {
+  slabs.visit = [bodies = std::move(bodies)](std::size_t k, const auto& f) {
     std::size_t first_node = 0, first_cell = 0;
     for (const auto& body : bodies) {
-      for_slabs(body, first_node, first_cell, visit);
+      if (k < body.n_slabs()) return visit_slab(body, k, first_node, first_cell, f);
+      k -= body.n_slabs();
       first_node += body.n_nodes();
       first_cell += body.n_cells();
     }
@@ -87,14 +90,32 @@ mesh::Slabs in_rows(std::vector<RowsOfBody> bodies) {
   return slabs;
 }
 
+std::size_t n_squares(const mesh::Grid& grid) {
+  return static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
+}
+
 }  // namespace
 
-mesh::Slabs snapshot_mesh(const input::Case& config, Meshes meshes) {
-  if (!meshes.plate.is_interface())
-    return mesh::in_one_slab(std::make_shared<const mesh::Mesh>(joined(std::move(meshes))));
-  std::vector<RowsOfBody> bodies = {rows_of(config.plate, meshes.plate.grid, false)};
-  if (meshes.base) bodies.push_back(rows_of(input::base_plate(config), meshes.base->grid, true));
-  return in_rows(std::move(bodies));
+bool has_equal_elements(const input::Case& config) {
+  const auto are_equal = [](const mesh::Plate& plate) {
+    return plate.coarsenings == 0 && plate.corner != mesh::Corner::fillet;
+  };
+  return are_equal(config.plate) && (!input::has_base_body(config) || are_equal(input::base_plate(config)));
+}
+
+SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, const mesh::Grid& plate,
+                                   const std::optional<mesh::Grid>& base, int n_writers) {
+  std::vector<RowsOfBody> bodies = {rows_of(config.plate, plate, false, n_writers)};
+  if (base) bodies.push_back(rows_of(input::base_plate(config), *base, true, n_writers));
+  SnapshotMesh mesh;
+  mesh.slabs = in_rows(std::move(bodies));
+  mesh.n_plate_cells = n_squares(plate);
+  return mesh;
+}
+
+SnapshotMesh whole_snapshot_mesh(Meshes meshes) {
+  const auto n_plate_cells = meshes.plate.cells.size();
+  return {mesh::in_one_slab(std::make_shared<const mesh::Mesh>(joined(std::move(meshes)))), n_plate_cells};
 }
 
 }  // namespace slipfront::run

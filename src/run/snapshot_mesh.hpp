@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <optional>
+
 #include "input/case.hpp"
 #include "mesh/slabs.hpp"
 #include "run/initial_state.hpp"
@@ -11,8 +14,22 @@ namespace slipfront::run {
 inline constexpr std::size_t snapshot_nodes_at_once = 1U << 18U;
 
 /// The mesh of a case's fields.vtkhdf: nodes and cells of the plate, then those of the body below, its y
-/// turned downwards, as in motion::Snapshot. Where the meshes are those of the interfaces alone, some rows of
-/// it are made at a time.
-mesh::Slabs snapshot_mesh(const input::Case& config, Meshes meshes);
+/// turned downwards, as in motion::Snapshot.
+struct SnapshotMesh {
+  mesh::Slabs slabs;
+  std::size_t n_plate_cells = 0;
+};
+
+/// Whether there are neither coarser elements nor some that are wrapped around a corner: then the mesh can be
+/// made in rows.
+bool has_equal_elements(const input::Case& config);
+
+/// The mesh, some rows at a time. @param plate, base  the grids of the bodies
+/// @param n_writers  each of which may have a slab at least, as far as there are rows enough
+SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, const mesh::Grid& plate,
+                                   const std::optional<mesh::Grid>& base, int n_writers = 1);
+
+/// The mesh in one slab.
+SnapshotMesh whole_snapshot_mesh(Meshes meshes);
 
 }  // namespace slipfront::run

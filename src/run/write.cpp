@@ -248,12 +248,12 @@ results::Origin origin_of(const input::Case& config) {
   return {config.title, resolved_text(config)};
 }
 
-results::SnapshotContents snapshot_contents(const input::Case& config, std::size_t n_plate_cells,
-                                            std::size_t n_cells) {
+results::SnapshotContents snapshot_contents(const input::Case& config, const SnapshotMesh& mesh) {
   results::SnapshotContents contents{{}, origin_of(config)};
   if (!config.output.snapshot_stress) return contents;
-  contents.bodies.push_back({n_plate_cells, config.material});
-  if (input::has_base_body(config)) contents.bodies.push_back({n_cells, input::base_material(config)});
+  contents.bodies.push_back({mesh.n_plate_cells, config.material});
+  if (input::has_base_body(config))
+    contents.bodies.push_back({mesh.slabs.n_cells, input::base_material(config)});
   return contents;
 }
 
@@ -295,9 +295,9 @@ void write(const std::filesystem::path& dir, const Result& result, const Initial
   write_static(dir, result.config, initial);
   results::write_history(dir / "interface.h5", event.history, origin_of(result.config));
   if (!event.snapshots.empty()) {
-    const auto mesh = snapshot_mesh(result.config, {initial.mesh, initial.base});
-    results::write_snapshots(dir / "fields.vtkhdf", mesh, event.snapshots,
-                             snapshot_contents(result.config, initial.mesh.cells.size(), mesh.n_cells));
+    const auto mesh = whole_snapshot_mesh({initial.mesh, initial.base});
+    results::write_snapshots(dir / "fields.vtkhdf", mesh.slabs, results::series_of(event.snapshots),
+                             snapshot_contents(result.config, mesh));
   }
   if (const auto places = input::probe_places(result.config); !places.empty())
     results::write_probes(dir / "probes.h5", places, event.probes, origin_of(result.config));

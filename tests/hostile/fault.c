@@ -197,6 +197,13 @@ int ftruncate64(int fd, off_t length) {
   return fd_is_ours(fd) && fails() ? -1 : REAL(ftruncate64)(fd, length);
 }
 
+int fallocate(int fd, int how, off_t from, off_t length) {
+  return fd_is_ours(fd) && fails() ? -1 : REAL(fallocate)(fd, how, from, length);
+}
+int fallocate64(int fd, int how, off64_t from, off64_t length) {
+  return fd_is_ours(fd) && fails() ? -1 : REAL(fallocate64)(fd, how, from, length);
+}
+
 int rename(const char* from, const char* to) {
   return (path_is_ours(from) || path_is_ours(to)) && fails() ? -1 : REAL(rename)(from, to);
 }

@@ -38,9 +38,11 @@ const solid::Material gel{.youngs_modulus_Pa = 1.4e9,
 struct Problem {
   mesh::Plate plate{.width_m = 0.2, .height_m = 0.03, .element_size_m = 1e-3, .corner = mesh::Corner::none};
   const solid::Material* below = nullptr;
+  double height_below_m = plate.height_m;
   double stiffness_damping_s = pmma.stiffness_damping_s;
   int coarsenings_below = 0;
   TimeStepping time{.interface_rows = 2, .interface_substeps = 4};
+  Execution execution{.halo_stage_bytes = 1};  ///< of the parts; as many stages as there are
   interface::ContactModel contact = support::paper_law;
   double t_over_p = 1.2;
   double patch = 1.0 / 3;  ///< its middle, in lengths of the plate
@@ -56,6 +58,7 @@ struct Bodies {
     auto plate = problem.plate;
     plate.corner = mesh::Corner::none;
     plate.coarsenings = problem.coarsenings_below;
+    plate.height_m = problem.height_below_m;
     plates.push_back(plate);
     below = mesh::make_plate(plate);
     material_below = *problem.below;
@@ -168,8 +171,8 @@ class OwnPart {
                         [&](std::span<double> values) { processes.take_largest(values); }});
       sources_.push_back({meshes_[b], whole[b].material, &parts_[b]});
     }
-    part_ = std::make_unique<Part>(processes, division, sources_, problem.contact, problem.time, Execution{},
-                                   lower_in(bodies.above, all));
+    part_ = std::make_unique<Part>(processes, division, sources_, problem.contact, problem.time,
+                                   problem.execution, lower_in(bodies.above, all));
   }
   std::unique_ptr<Part> take() { return std::move(part_); }
 
@@ -291,6 +294,30 @@ TEST(Parts, WithoutSubSteps) {
   expect_parts_change_nothing(problem);
 }
 
+TEST(Parts, ByThreads) {
+  Problem problem;
+  problem.plate.height_m = 0.2;
+  problem.time.interface_substeps = 1;
+  problem.time.interface_rows = 1;
+  problem.execution.threads = 2;
+  for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+    problem.time.precision = precision;
+    expect_parts_change_nothing(problem);
+  }
+}
+
+TEST(Parts, ShareTheStepsBetweenExchangesAmongThreads) {
+  Problem problem;
+  problem.plate.height_m = 0.2;
+  const Bodies bodies(problem);
+  for (const auto& [most_steps, per_sweep] :
+       {std::pair{0, 16}, std::pair{16, 8}, std::pair{5, 3}, std::pair{1, 1}}) {
+    const Execution execution{.threads = 2, .steps_per_sweep = 16, .most_steps = most_steps};
+    EXPECT_EQ(Stepper(bodies.sources(), problem.contact, problem.time, execution).steps_per_sweep(),
+              per_sweep);
+  }
+}
+
 TEST(Parts, WithEachCorner) {
   for (const auto corner : {mesh::Corner::relief, mesh::Corner::fillet}) {
     SCOPED_TRACE(test::name_of(corner));
@@ -338,6 +365,21 @@ TEST(Parts, OfTwoBodies) {
   }
 }
 
+TEST(Parts, OfBodiesOfDifferentHeights) {
+  for (const double height_m : {6e-3, 7e-3, 9e-3, 60e-3})
+    for (const double height_below_m : {6e-3, 8e-3, 60e-3}) {
+      SCOPED_TRACE(fmt::format("{} m on {} m", height_m, height_below_m));
+      Problem problem;
+      problem.below = &pmma;
+      problem.plate.height_m = height_m;
+      problem.height_below_m = height_below_m;
+      problem.time.interface_substeps = 1;
+      problem.time.interface_rows = 1;
+      problem.probes.clear();
+      expect_parts_change_nothing(problem, {2});
+    }
+}
+
 TEST(Parts, WithAPredictorCorrector) {
   Problem problem;
   problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
@@ -368,6 +410,19 @@ TEST(Parts, OfGradedPlates) {
     problem.time.interface_substeps = 1;
     problem.time.interface_rows = 1;
     expect_parts_change_nothing(problem);
+  }
+}
+
+TEST(Parts, OfAGradedBodyOnAnotherOne) {
+  for (const auto& [above, below] : {std::pair{0, 1}, std::pair{1, 0}, std::pair{0, 2}}) {
+    SCOPED_TRACE(fmt::format("{} on {} coarsenings", above, below));
+    auto problem = graded();
+    problem.below = &pmma;
+    problem.plate.width_m = 0.4;
+    problem.plate.coarsenings = above;
+    problem.coarsenings_below = below;
+    problem.time.local_steps = false;
+    expect_parts_change_nothing(problem, {2});
   }
 }
 
@@ -441,7 +496,6 @@ TEST(Parts, AreWrongNoFartherThanTheColumnsOfAStep) {
     stepper.visit_columns({0, n_wrong}, []<class T>(T* values, std::size_t n) {
       if constexpr (std::is_floating_point_v<T>) std::fill_n(values, n, std::numeric_limits<T>::quiet_NaN());
     });
-    stepper.take_columns();
     Journey journey(begin);
     stepper.advance(journey.recorder, 1, {});
     int end = 0;

@@ -309,16 +309,23 @@ def test_checkpoint_on_request(mpirun, case, undisturbed):
 # --- Disks, streams, memory
 
 
-def test_full_disk(mpirun, case, undisturbed, tmp_path):
-    """A library before the system's lets all writing below the folder fail from a call on."""
-    shim = tmp_path / "fault.so"
-    subprocess.run(["cc", "-shared", "-fPIC", ROOT / "tests/hostile/fault.c", "-o", shim, "-ldl"], check=True)
+@pytest.fixture(scope="session")
+def fault_library(tmp_path_factory):
+    """Put before the system's, it lets writing below a folder fail."""
+    library = tmp_path_factory.mktemp("fault") / "fault.so"
+    subprocess.run(
+        ["cc", "-shared", "-fPIC", ROOT / "tests/hostile/fault.c", "-o", library, "-ldl"], check=True
+    )
+    return library
+
+
+def test_full_disk(mpirun, case, undisturbed, tmp_path, fault_library):
     settings = {"FAULT_BELOW": tmp_path / "out", "FAULT_AT": 200, "FAULT_MODE": "on", "FAULT_ERROR": 28}
     options = [text for name, value in settings.items() for text in ("-x", f"{name}={value}")]
     process = mpirun.start(
         2,
         *("run", case, "-o", "out", "-q", *OFTEN),
-        starter=["-x", f"LD_PRELOAD={shim}", *options],
+        starter=["-x", f"LD_PRELOAD={fault_library}", *options],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
     )
@@ -344,6 +351,105 @@ def test_limit_of_file_sizes(mpirun, case, undisturbed):
     assert "(File too large)" in result.stderr
     assert "--restart out" in result.stderr
     require_goes_on(mpirun, case, undisturbed)
+
+
+# --- fields.vtkhdf, which all processes write
+
+
+def fails_in_fields(mpirun, fault_library, case, rank, at, mode):
+    """A run of two processes, of which one cannot write fields.vtkhdf from a call of the system on."""
+    settings = {
+        "LD_PRELOAD": fault_library,
+        "FAULT_BELOW": mpirun.folder / "out/unfinished/fields.vtkhdf",
+        "FAULT_AT": at,
+        "FAULT_MODE": mode,
+        "FAULT_ERROR": 28,
+    }
+    programs = [[mpirun.program], [mpirun.program]]
+    programs[rank] = ["env", *(f"{name}={value}" for name, value in settings.items()), mpirun.program]
+    process = mpirun.start(
+        *(2, "run", case, "-o", "out", "-q", *OFTEN),
+        programs=programs,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    return finished(process, 20)
+
+
+# Each process writes some 25 times, the leader after it has made the file.
+@pytest.mark.parametrize(
+    ("rank", "at"), [(0, 1), (0, 20), (0, 40), (0, 60), (1, 1), (1, 12), (1, 24), (1, 25)]
+)
+def test_fields_that_one_process_cannot_write(mpirun, fault_library, case, undisturbed, rank, at):
+    line = one_line(fails_in_fields(mpirun, fault_library, case, rank, at, "on"), 1)
+    assert "fields.vtkhdf: cannot " in line
+    assert ("process 1: " in line) == (rank == 1)
+    assert "--restart out" in line
+    require_goes_on(mpirun, case, undisturbed)
+
+
+@pytest.mark.parametrize(("rank", "at"), [(0, 20), (1, 10)])
+def test_killed_while_fields_are_written(mpirun, fault_library, case, undisturbed, rank, at):
+    result = fails_in_fields(mpirun, fault_library, case, rank, at, "kill")
+    assert result.returncode == 128 + signal.SIGKILL
+    assert not own_lines(result)
+    require_goes_on(mpirun, case, undisturbed)
+
+
+OTHERS_DO_NOT_SEE = (
+    "note: fields.vtkhdf is written by process 0 alone: others do not see out, or cannot write there"
+)
+
+
+def test_folder_that_others_do_not_see(mpirun, case, undisturbed):
+    """As on machines without a common file system: the leader writes all files."""
+    if subprocess.run(["unshare", "-m", "true"], capture_output=True).returncode != 0:
+        pytest.skip("no file system can be mounted here")
+    folder = mpirun.folder / "out"
+    folder.mkdir()
+    elsewhere = f'mount -t tmpfs none {folder} && exec "$0" "$@"'
+    process = mpirun.start(
+        *(2, "run", case, "-o", "out"),
+        programs=[[mpirun.program], ["unshare", "-m", "bash", "-c", elsewhere, mpirun.program]],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    result = finished(process, 20)
+    assert result.returncode == 0, result.stderr
+    assert OTHERS_DO_NOT_SEE in result.stderr
+    require_undisturbed(mpirun, case, undisturbed)
+
+
+# The other process sees the files of the leader, and not the other way round, or cannot write there.
+@pytest.mark.parametrize(
+    "view",
+    [
+        "mount -t tmpfs none {own} && mkdir {own}/up {own}/work &&"
+        " mount -t overlay none -o lowerdir={out},upperdir={own}/up,workdir={own}/work {out}",
+        "mount --bind {out} {out} && mount -o remount,ro,bind {out}",
+    ],
+    ids=["overlay", "read-only"],
+)
+def test_folder_that_others_see_otherwise(mpirun, case, undisturbed, tmp_path, view):
+    folder, own = mpirun.folder / "out", tmp_path / "own"
+    folder.mkdir()
+    own.mkdir()
+    script = view.format(out=folder, own=own)
+    if subprocess.run(["unshare", "-m", "bash", "-c", script], capture_output=True).returncode != 0:
+        pytest.skip("no such file system can be mounted here")
+    process = mpirun.start(
+        *(2, "run", case, "-o", "out"),
+        programs=[
+            [mpirun.program],
+            ["unshare", "-m", "bash", "-c", script + ' && exec "$0" "$@"', mpirun.program],
+        ],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
+    result = finished(process, 20)
+    assert result.returncode == 0, result.stderr
+    assert OTHERS_DO_NOT_SEE in result.stderr
+    require_undisturbed(mpirun, case, undisturbed)
 
 
 @pytest.mark.parametrize("out", ["closed", "full"])

@@ -203,7 +203,7 @@ TEST(Writing, IntoAMissingFolderIsRefused) {
   EXPECT_THAT(error_of([&] { write_fronts(none / "fronts.csv", {}); }), HasSubstr("cannot be made"));
   EXPECT_THAT(error_of([&] {
                 write_snapshots(none / "fields.vtkhdf",
-                                mesh::in_one_slab(std::make_shared<const mesh::Mesh>()), {});
+                                mesh::in_one_slab(std::make_shared<const mesh::Mesh>()), SnapshotSeries());
               }),
               HasSubstr("cannot be created"));
 }
@@ -286,7 +286,7 @@ motion::Snapshot snapshot(double time_s, double offset) {
 TEST(SnapshotFile, WritesTheMeshOnceAndAStepPerSnapshot) {
   const test::TemporaryFolder folder;
   const auto path = folder / "fields.vtkhdf";
-  write_snapshots(path, two_cells(), std::vector{snapshot(1e-5, 100), snapshot(2e-5, 200)});
+  write_snapshots(path, two_cells(), series_of(std::vector{snapshot(1e-5, 100), snapshot(2e-5, 200)}));
   const hdf5::File file = hdf5::open_file(path);
   const auto values = [&](const std::string& name) { return hdf5::read(file, "/VTKHDF/" + name).values; };
   const auto shape = [&](const std::string& name) { return hdf5::read(file, "/VTKHDF/" + name).shape; };
@@ -331,7 +331,7 @@ TEST(SnapshotFile, LargeFieldsArePutTogetherFromPieces) {
     snapshot.v_m_per_s.y[k] = -static_cast<double>(k);
   }
   write_snapshots(folder / "fields.vtkhdf", mesh::in_one_slab(std::make_shared<const mesh::Mesh>(mesh)),
-                  std::vector{snapshot, snapshot});
+                  series_of(std::vector{snapshot, snapshot}));
   const hdf5::File file = hdf5::open_file(folder / "fields.vtkhdf");
   const auto points = hdf5::read(file, "/VTKHDF/Points").values;
   const auto connectivity = hdf5::read(file, "/VTKHDF/Connectivity").values;
@@ -364,7 +364,7 @@ TEST(SnapshotFile, LargeFieldsArePutTogetherFromPieces) {
 
 TEST(SnapshotFile, WithoutSnapshotsHoldsTheMesh) {
   const test::TemporaryFolder folder;
-  write_snapshots(folder / "fields.vtkhdf", two_cells(), {});
+  write_snapshots(folder / "fields.vtkhdf", two_cells(), SnapshotSeries());
   const hdf5::File file = hdf5::open_file(folder / "fields.vtkhdf");
   EXPECT_THAT(hdf5::read(file, "/VTKHDF/Points").shape, ElementsAre(7, 3));
   EXPECT_THAT(error_of([&] { hdf5::read(file, "/VTKHDF/Steps/Values"); }), HasSubstr("has no data set"));

@@ -15,27 +15,40 @@
 namespace slipfront::run {
 namespace {
 
+struct Edges {
+  const char* name;
+  mesh::Sides sides;
+  mesh::Corner corner;
+};
+
 /// A body on a base of another height, each of several slabs.
-input::Case many_squares(mesh::Sides sides) {
+input::Case many_elements(const Edges& edges) {
   auto config = test::coarse_case(interface::EventKind::nucleation, 1e-3);
-  config.plate.corner = mesh::Corner::none;
+  config.plate.corner = edges.corner;
   config.plate.width_m = 0.7;
   config.plate.height_m = 0.5;
-  config.plate.sides = sides;
+  config.plate.sides = edges.sides;
   config.loading.method = statics::LoadingMethod::prestress;
   config.prestress.t_Pa = 0.45e6;
   config.base.kind = input::BaseKind::body;
   config.base.plate.height_m = 0.4;
-  config.base.plate.sides = sides;
+  config.base.plate.sides = edges.sides;
   return config;
 }
 
-class SnapshotMesh : public testing::TestWithParam<mesh::Sides> {};
+SnapshotMesh in_rows(const input::Case& config) {
+  const auto meshes = check(config);
+  return snapshot_mesh_in_rows(config, meshes.plate.grid, meshes.base->grid);
+}
 
-TEST_P(SnapshotMesh, InRowsIsTheWholeToTheLastBit) {
-  const auto config = many_squares(GetParam());
-  const auto whole = snapshot_mesh(config, check(config));
-  const auto rows = snapshot_mesh(config, check_interfaces(config));
+class SnapshotMeshes : public testing::TestWithParam<Edges> {};
+
+TEST_P(SnapshotMeshes, InRowsIsTheWholeToTheLastBit) {
+  const auto config = many_elements(GetParam());
+  ASSERT_TRUE(has_equal_elements(config));
+  const auto whole_mesh = whole_snapshot_mesh(check(config)), mesh_in_rows = in_rows(config);
+  ASSERT_EQ(mesh_in_rows.n_plate_cells, whole_mesh.n_plate_cells);
+  const auto &whole = whole_mesh.slabs, &rows = mesh_in_rows.slabs;
   ASSERT_EQ(rows.n_nodes, whole.n_nodes);
   ASSERT_EQ(rows.n_cells, whole.n_cells);
   std::vector<double> x_m, y_m;
@@ -61,30 +74,32 @@ TEST_P(SnapshotMesh, InRowsIsTheWholeToTheLastBit) {
   });
 }
 
-TEST_P(SnapshotMesh, InRowsMakesTheSameFile) {
-  const auto config = many_squares(GetParam());
-  const auto meshes = check_interfaces(config);
-  const auto n_plate_cells = static_cast<std::size_t>(n_cells_of(meshes.plate));
-  const auto rows = snapshot_mesh(config, meshes), whole = snapshot_mesh(config, check(config));
+TEST_P(SnapshotMeshes, InRowsMakesTheSameFile) {
+  const auto config = many_elements(GetParam());
+  const auto rows = in_rows(config), whole = whole_snapshot_mesh(check(config));
   std::mt19937 random(1);
   std::uniform_real_distribution<double> some(-1e-6, 1e-6);
-  motion::Snapshot snapshot{1e-6, solid::Field(rows.n_nodes), solid::Field(rows.n_nodes)};
+  motion::Snapshot snapshot{1e-6, solid::Field(rows.slabs.n_nodes), solid::Field(rows.slabs.n_nodes)};
   for (auto* field : {&snapshot.u_m, &snapshot.v_m_per_s})
     for (auto* component : {&field->x, &field->y})
       for (double& value : *component) value = some(random);
-  const auto contents = snapshot_contents(config, n_plate_cells, rows.n_cells);
   const test::TemporaryFolder folder;
-  results::write_snapshots(folder / "rows.vtkhdf", rows, std::vector{snapshot}, contents);
-  results::write_snapshots(folder / "whole.vtkhdf", whole, std::vector{snapshot}, contents);
+  const auto write = [&](const char* name, const SnapshotMesh& mesh) {
+    results::write_snapshots(folder / name, mesh.slabs, results::series_of(std::span(&snapshot, 1)),
+                             snapshot_contents(config, mesh));
+  };
+  write("rows.vtkhdf", rows);
+  write("whole.vtkhdf", whole);
   const auto a = test::read_file(folder / "rows.vtkhdf"), b = test::read_file(folder / "whole.vtkhdf");
   ASSERT_EQ(a.size(), b.size());
   EXPECT_TRUE(a == b);
 }
 
-INSTANTIATE_TEST_SUITE_P(, SnapshotMesh, testing::Values(mesh::Sides::absorbing, mesh::Sides::periodic),
-                         [](const auto& sides) {
-                           return sides.param == mesh::Sides::periodic ? "periodic" : "absorbing";
-                         });
+INSTANTIATE_TEST_SUITE_P(, SnapshotMeshes,
+                         testing::Values(Edges{"absorbing", mesh::Sides::absorbing, mesh::Corner::none},
+                                         Edges{"periodic", mesh::Sides::periodic, mesh::Corner::none},
+                                         Edges{"relief", mesh::Sides::free, mesh::Corner::relief}),
+                         [](const auto& edges) { return std::string(edges.param.name); });
 
 }  // namespace
 }  // namespace slipfront::run

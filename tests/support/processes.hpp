@@ -9,7 +9,9 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,14 +24,15 @@ class Mailboxes {
  public:
   explicit Mailboxes(int size) : size_(size) {}
   int size() const { return size_; }
-  void put(int from, int to, Parcel parcel) {
+  static constexpr int of_parcels = -1;
+  void put(int from, int to, Parcel parcel, int channel = of_parcels) {
     const std::scoped_lock lock(mutex_);
-    boxes_[{from, to}].push_back(std::move(parcel));
+    boxes_[{from, to, channel}].push_back(std::move(parcel));
     changed_.notify_all();
   }
-  Parcel take(int from, int to) {
+  Parcel take(int from, int to, int channel = of_parcels) {
     std::unique_lock lock(mutex_);
-    auto& box = boxes_[{from, to}];
+    auto& box = boxes_[{from, to, channel}];
     changed_.wait(lock, [&] { return !box.empty(); });
     auto parcel = std::move(box.front());
     box.pop_front();
@@ -40,7 +43,43 @@ class Mailboxes {
   int size_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::map<std::pair<int, int>, std::deque<Parcel>> boxes_;
+  std::map<std::tuple<int, int, int>, std::deque<Parcel>> boxes_;
+};
+
+class Sent final : public Processes::Transfer {
+ public:
+  Sent(Mailboxes& mail, int from, int to, int channel, std::span<const std::byte> bytes)
+      : mail_(mail), from_(from), to_(to), channel_(channel), bytes_(bytes) {}
+  void begin() override { mail_.put(from_, to_, Parcel({bytes_.begin(), bytes_.end()}), channel_); }
+  void finish() override {}
+
+ private:
+  Mailboxes& mail_;
+  int from_, to_, channel_;
+  std::span<const std::byte> bytes_;
+};
+
+class Received final : public Processes::Transfer {
+ public:
+  Received(Mailboxes& mail, int from, int to, int channel, std::span<std::byte> bytes)
+      : mail_(mail), from_(from), to_(to), channel_(channel), bytes_(bytes) {}
+  void begin() override {
+    SLIPFRONT_ASSERT(!is_under_way_, "begun again before its end");
+    is_under_way_ = true;
+  }
+  void finish() override {
+    if (!is_under_way_) return;
+    is_under_way_ = false;
+    const auto parcel = mail_.take(from_, to_, channel_);
+    SLIPFRONT_ASSERT(parcel.bytes().size() == bytes_.size(), "a transfer of other lengths");
+    std::ranges::copy(parcel.bytes(), bytes_.begin());
+  }
+
+ private:
+  Mailboxes& mail_;
+  int from_, to_, channel_;
+  std::span<std::byte> bytes_;
+  bool is_under_way_ = false;
 };
 
 class ThreadProcess final : public Processes {
@@ -50,13 +89,11 @@ class ThreadProcess final : public Processes {
   int size() const override { return mail_.size(); }
   void send(int to, const Parcel& parcel) override { mail_.put(rank_, to, parcel); }
   Parcel receive(int from) override { return mail_.take(from, rank_); }
-  void exchange(std::span<const Exchange> exchanges) override {
-    for (const auto& e : exchanges) send(e.with, Parcel().put(std::span<const double>(e.out)));
-    for (const auto& e : exchanges) {
-      const auto values = receive(e.with).take_all<double>();
-      if (values.size() != e.in.size()) fail("an exchange of other lengths");
-      std::ranges::copy(values, e.in.begin());
-    }
+  std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) override {
+    return std::make_unique<Sent>(mail_, rank_, rank, channel, bytes);
+  }
+  std::unique_ptr<Transfer> transfer_from(int rank, int channel, std::span<std::byte> bytes) override {
+    return std::make_unique<Received>(mail_, rank, rank_, channel, bytes);
   }
   void take_largest(std::span<double> values) override {
     for (int other = 0; other < size(); ++other)

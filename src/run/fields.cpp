@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/fields.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <random>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "base/error.hpp"
+#include "files/files.hpp"
+#include "motion/part.hpp"
+#include "results/stream.hpp"
+#include "run/case_parcel.hpp"
+#include "run/run.hpp"
+#include "run/snapshot_mesh.hpp"
+
+namespace slipfront::run {
+
+namespace {
+
+/// What all processes have to know.
+struct Order {
+  std::filesystem::path file, raw;
+  std::uint64_t raw_bytes = 0, n_snapshots = 0;
+  std::filesystem::path sign;  ///< a file, and beside it others with the numbers of processes
+  std::string sign_text;
+  mesh::Grid plate;
+  std::optional<mesh::Grid> base;
+
+  void put(Parcel& to) const {
+    for (const auto& path : {file, raw, sign}) to.put(path.string());
+    to.put(raw_bytes).put(n_snapshots).put(sign_text).put(plate);
+    to.put(static_cast<std::uint8_t>(base.has_value()));
+    if (base) to.put(*base);
+  }
+  static Order take(Parcel& from) {
+    Order order;
+    for (auto* path : {&order.file, &order.raw, &order.sign}) *path = from.take_text();
+    order.raw_bytes = from.take<std::uint64_t>();
+    order.n_snapshots = from.take<std::uint64_t>();
+    order.sign_text = from.take_text();
+    order.plate = from.take<mesh::Grid>();
+    if (from.take<std::uint8_t>() != 0) order.base = from.take<mesh::Grid>();
+    return order;
+  }
+};
+
+/// A text that no other run's folder holds.
+std::string unique_text() {
+  std::random_device random;
+  std::string text;
+  for (int k = 0; k < 4; ++k) text += fmt::format("{:08x}", random());
+  return text;
+}
+
+std::filesystem::path sign_of(const Order& order, int rank) {
+  return order.sign.string() + "." + std::to_string(rank);
+}
+
+bool holds_sign(const std::filesystem::path& file, const Order& order) {
+  std::ifstream stream(file, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(stream), {}) == order.sign_text;
+}
+
+/// Whether this process sees the leader's files, and leaves a sign for it.
+bool answers_sign(const Order& order, int rank) {
+  std::error_code error;
+  if (!holds_sign(order.sign, order) || std::filesystem::file_size(order.raw, error) != order.raw_bytes ||
+      error)
+    return false;
+  try {
+    files::write_text(sign_of(order, rank), order.sign_text);
+  } catch (const WriteError&) {
+    return false;
+  }
+  return true;
+}
+
+void write(const Order& order, const input::Case& config, const std::function<SnapshotMesh()>& make_mesh,
+           results::Writer writer) {
+  std::optional<SnapshotMesh> mesh;
+  results::SnapshotSeries series;
+  writer.together([&] {
+    mesh = make_mesh();
+    series = results::read_snapshots(order.raw, mesh->slabs.n_nodes);
+    if (series.time_s.size() != order.n_snapshots)
+      throw WriteError("{}: is not what was written: it was changed meanwhile", order.raw.string());
+  });
+  writer.count = std::min(writer.count, static_cast<int>(mesh->slabs.n_slabs));
+  results::write_snapshots(order.file, mesh->slabs, series, snapshot_contents(config, *mesh), writer);
+}
+
+void write_share(const Order& order, const input::Case& config, Processes& processes) {
+  const auto is_any = [&](bool here) {
+    double value = here ? 1 : 0;
+    processes.take_largest(std::span(&value, 1));
+    return value > 0;
+  };
+  const auto make_mesh = [&] {
+    return snapshot_mesh_in_rows(config, order.plate, order.base, processes.size());
+  };
+  write(order, config, make_mesh, {processes.rank(), processes.size(), is_any});
+}
+
+/// Begins the work with the others.
+/// @return whether they see the files of this process, and it sees theirs
+bool begin_together(const Order& order, const input::Case& config, Processes& processes) {
+  files::write_text(order.sign, order.sign_text);
+  for (int rank = 1; rank < processes.size(); ++rank) {
+    Parcel parcel;
+    parcel.put(motion::PartCommand::fields);
+    put_case(config, parcel);
+    order.put(parcel);
+    processes.send(rank, parcel);
+  }
+  bool all_see = true;
+  for (int rank = 1; rank < processes.size(); ++rank)
+    all_see = processes.receive(rank).take<std::uint8_t>() != 0 && holds_sign(sign_of(order, rank), order) &&
+              all_see;
+  for (int rank = 1; rank < processes.size(); ++rank)
+    processes.send(rank, Parcel().put(static_cast<std::uint8_t>(all_see)));
+  return all_see;
+}
+
+/// The leader's share, and what the others tell of theirs.
+void write_together(const Order& order, const input::Case& config, Processes& processes) {
+  std::exception_ptr failure;
+  bool is_own = false;
+  try {
+    write_share(order, config, processes);
+  } catch (const results::FailedElsewhere&) {
+    failure = std::current_exception();
+  } catch (...) {
+    failure = std::current_exception();
+    is_own = true;
+  }
+  std::string reason;
+  for (int rank = 1; rank < processes.size(); ++rank)
+    if (const auto told = processes.receive(rank).take_text(); reason.empty() && !told.empty())
+      reason = fmt::format("process {}: {}", rank, told);
+  if (!failure) return;
+  if (is_own || reason.empty()) std::rethrow_exception(failure);
+  throw WriteError("{}", reason);
+}
+
+}  // namespace
+
+void write_fields(const results::ResultFolder& folder, const input::Case& config, const InitialState& bodies,
+                  Processes* processes, const std::function<void(const std::string&)>& note) {
+  Order order;
+  order.file = std::filesystem::absolute(folder.unfinished() / "fields.vtkhdf");
+  order.raw = std::filesystem::absolute(results::ResultStream::snapshot_file(folder.state()));
+  order.sign = std::filesystem::absolute(folder.state() / "seen-by-all");
+  order.sign_text = unique_text();
+  order.plate = bodies.mesh.grid;
+  if (bodies.base) order.base = bodies.base->grid;
+  order.n_snapshots =
+      results::read_snapshots(order.raw, static_cast<std::size_t>(bodies.n_nodes)).time_s.size();
+  if (order.n_snapshots == 0) return;
+  order.raw_bytes = std::filesystem::file_size(order.raw);
+  const bool is_in_rows = has_equal_elements(config);
+  if (is_in_rows && processes != nullptr) {
+    if (begin_together(order, config, *processes)) return write_together(order, config, *processes);
+    note(fmt::format("{} is written by process 0 alone: others do not see {}, or cannot write there",
+                     order.file.filename().string(), folder.dir().string()));
+  }
+  const auto make_mesh = [&] {
+    return is_in_rows ? snapshot_mesh_in_rows(config, order.plate, order.base)
+                      : whole_snapshot_mesh(check(config, processes));
+  };
+  write(order, config, make_mesh, {});
+}
+
+void carry_out_fields(Processes& processes, Parcel& given) {
+  const auto config = take_case(given);
+  const auto order = Order::take(given);
+  processes.send(0, Parcel().put(static_cast<std::uint8_t>(answers_sign(order, processes.rank()))));
+  if (processes.receive(0).take<std::uint8_t>() == 0) return;
+  std::string reason;
+  try {
+    write_share(order, config, processes);
+  } catch (const results::FailedElsewhere&) {
+  } catch (const std::exception& error) {
+    reason = reason_of(error);
+  }
+  processes.send(0, Parcel().put(reason));
+}
+
+}  // namespace slipfront::run
