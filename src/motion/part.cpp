@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion/part.hpp"
 
-#include <exception>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
+#include "motion/steps_told.hpp"
+#include "processes/answers.hpp"
+#include "processes/tree.hpp"
 #include "statics/pieces.hpp"
 
 namespace slipfront::motion {
@@ -22,22 +24,30 @@ solid::Field take_field(Parcel& given) {
 /// Sees the contact updates of several steps, to be told later.
 class Log final : public UpdateObserver {
  public:
-  Log(SlipFinder& finder, TractionLog& tractions, Parcel& to)
-      : finder_(finder), tractions_(tractions), to_(to) {}
+  /// @param lower  places of the part's nodes along the whole interface
+  Log(SlipFinder& finder, const mesh::Subset& lower, TractionLog& tractions, SlipsSeen& to)
+      : finder_(finder), lower_(lower), tractions_(tractions), to_(to) {}
   void observe(double time_s, const interface::Interface& state, bool changed) override {
     finder_.find(time_s, state, changed, seen_);
     tractions_.add(state.t_Pa, state.p_Pa);
-    to_.put(seen_.time_s).put(static_cast<std::uint8_t>(seen_.moves)).put(seen_.changes).put(seen_.around);
+    for (auto& change : seen_.changes) change.node = lower_.number_at(change.node);
+    to_.add(seen_);
   }
 
  private:
   SlipFinder& finder_;
+  const mesh::Subset& lower_;
   TractionLog& tractions_;
-  Parcel& to_;
+  SlipsSeen& to_;
   SlipSeen seen_;
 };
 
 }  // namespace
+
+bool is_for_all(PartCommand command) {
+  return command == PartCommand::advance || command == PartCommand::energies ||
+         command == PartCommand::measures;
+}
 
 TractionLog::TractionLog(solid::Span own, int reach) {
   if (own.end - own.begin <= 2 * reach)
@@ -76,21 +86,12 @@ Part::Part(Processes& processes, const Division& division, std::span<const BodyS
   halo_ = std::make_unique<Halo>(processes, division, *stepper_, sharing.halo_stage_bytes);
 }
 
-template <class F>
-void Part::or_fail(F&& f) {
-  try {
-    f();
-  } catch (const std::exception& error) {
-    processes_.fail(reason_of(error));
-  }
-}
-
 void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
   // These look at no motion beside the interface.
   if (command != PartCommand::advance && command != PartCommand::tractions) halo_->finish();
   switch (command) {
     case PartCommand::start:
-      or_fail([&] { start(given); });
+      or_fail(processes_, [&] { start(given); });
       break;
     case PartCommand::watch: {
       std::vector<Probe> probes(given.take<std::uint64_t>());
@@ -108,8 +109,11 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
     case PartCommand::place:
       place(given);
       break;
+    case PartCommand::memory:
+      make_finder(given);
+      break;
     case PartCommand::advance:
-      or_fail([&] { advance(given, answer); });
+      or_fail(processes_, [&] { advance(given, answer); });
       break;
     case PartCommand::tractions:
       for (const auto& [update, nodes] : given.take_all<TractionsWanted>())
@@ -121,10 +125,10 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
       answer.put(stepper_->energies());
       break;
     case PartCommand::measures:
-      answer.put(PartMeasures{stepper_->kinetic_energy_J_per_m(), stepper_->mass_kg_per_m(),
-                              stepper_->bodies().front().mass_kg_per_m(),
-                              stepper_->largest_acceleration_m_per_s2(), stepper_->node_updates_per_step(),
-                              cost()});
+      answer.put(std::vector{PartMeasures{stepper_->kinetic_energy_J_per_m(), stepper_->mass_kg_per_m(),
+                                          stepper_->bodies().front().mass_kg_per_m(),
+                                          stepper_->largest_acceleration_m_per_s2(),
+                                          stepper_->node_updates_per_step(), cost()}});
       break;
     case PartCommand::snapshot:
       put_snapshot(given.take<SnapshotPiece>(), answer);
@@ -219,7 +223,13 @@ PartCost Part::cost() const {
           .command_s = now.command_s - counted_before_.command_s};
 }
 
-void Part::make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s) {
+void Part::make_finder(Parcel& given) {
+  SlipFinder::Memory memory;
+  memory.time_s = given.take<double>();
+  for (auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa}) *values = given.take_all<double>();
+  memory.slipping = given.take_all<std::uint8_t>();
+  const int halo = given.take<int>();
+  const auto creep_m_per_s = given.take<double>();
   const auto own = stepper_->bodies().front().own_lower();
   finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
                   halo, creep_m_per_s);
@@ -227,61 +237,48 @@ void Part::make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s
 }
 
 void Part::advance(Parcel& given, Parcel& answer) {
-  if (given.take<std::uint8_t>() != 0) {
-    SlipFinder::Memory memory;
-    memory.time_s = given.take<double>();
-    for (auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa}) *values = given.take_all<double>();
-    memory.slipping = given.take_all<std::uint8_t>();
-    const int halo = given.take<int>();
-    make_finder(std::move(memory), halo, given.take<double>());
-  }
+  SLIPFRONT_ASSERT(finder_, "the last contact update is known");
   const auto is_sampled = given.take_all<std::uint8_t>();
   const auto n_steps = std::ssize(is_sampled);
   const auto first_step = stepper_->step();
   const std::size_t n_values = displacement_values(stepper_->probes());
-  Parcel seen;
+  StepsTold told;
+  told.displacements.resize(n_values * static_cast<std::size_t>(n_steps));
   log_.clear();
   log_.add(finder_->memory().t_Pa, finder_->memory().p_Pa);
-  Log log(*finder_, log_, seen);
+  Log log(*finder_, place_.lower, log_, told.seen);
   record::History samples;
-  std::vector<SlipRates> rates;
-  std::vector<double> displacements(n_values * static_cast<std::size_t>(n_steps));
   std::int64_t next_sample = 0;
   Between between;
   between.sample = [&]() -> record::History* {
     return is_sampled[static_cast<std::size_t>(next_sample++)] != 0 ? &samples : nullptr;
   };
   between.go_on = [&](const SlipRates& of_step) {
-    rates.push_back(of_step);
+    told.rates.push_back(of_step);
     return true;
   };
   if (n_values > 0)
     between.displacements = [&](std::int64_t step) {
-      return displacements.data() + n_values * static_cast<std::size_t>(step - first_step - 1);
+      return told.displacements.data() + n_values * static_cast<std::size_t>(step - first_step - 1);
     };
   halo_->advance(log, n_steps, between);
   const auto& memory = finder_->memory();
-  answer.put(memory.time_s);
   // Of nodes along the interface only own ones.
   const auto own = stepper_->bodies().front().own_lower();
   const auto width = stepper_->interface_state().size();
-  const auto n_rows = samples.time_s.size();
-  const auto of_own = [&]<class T>(const std::vector<T>& values) {
-    return std::span(values).subspan(static_cast<std::size_t>(own.begin),
-                                     static_cast<std::size_t>(own.end - own.begin));
+  const auto append_own = [&]<class T>(const std::vector<T>& values, std::size_t row, std::vector<T>& to) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row * width);
+    to.insert(to.end(), begin + own.begin, begin + own.end);
   };
-  for (const auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa}) answer.put(of_own(*values));
-  answer.put(of_own(memory.slipping));
-  answer.put(rates).put(std::vector<std::byte>(seen.bytes().begin(), seen.bytes().end()));
-  for (const auto& field : record::history_fields) {
-    std::vector<double> values;
-    for (std::size_t row = 0; row < n_rows; ++row) {
-      const auto begin = (samples.*field.member).begin() + static_cast<std::ptrdiff_t>(row * width);
-      values.insert(values.end(), begin + own.begin, begin + own.end);
-    }
-    answer.put(values);
-  }
-  answer.put(displacements);
+  told.memory.time_s = memory.time_s;
+  append_own(memory.t_Pa, 0, told.memory.t_Pa);
+  append_own(memory.p_Pa, 0, told.memory.p_Pa);
+  append_own(memory.strength_Pa, 0, told.memory.strength_Pa);
+  append_own(memory.slipping, 0, told.memory.slipping);
+  for (std::size_t f = 0; f < told.samples.size(); ++f)
+    for (std::size_t row = 0; row < samples.time_s.size(); ++row)
+      append_own(samples.*record::history_fields[f].member, row, told.samples[f]);
+  told.put(answer);
 }
 
 void Part::put_snapshot(const SnapshotPiece& piece, Parcel& answer) const {
@@ -295,20 +292,56 @@ void Part::put_snapshot(const SnapshotPiece& piece, Parcel& answer) const {
   answer.put(own);
 }
 
+Parcel joined(PartCommand command, std::span<Parcel> answers) {
+  if (answers.size() == 1) return std::move(answers.front());
+  Parcel all;
+  if (command == PartCommand::advance) {
+    StepsTold::take_joined(answers).put(all);
+  } else if (command == PartCommand::energies) {
+    auto sum = answers.front().take<record::Energies>();
+    for (auto& answer : answers.subspan(1)) add_terms(sum, answer.take<record::Energies>());
+    all.put(sum);
+  } else {
+    SLIPFRONT_ASSERT(command == PartCommand::measures, "a command for all");
+    std::vector<PartMeasures> measures;
+    for (auto& answer : answers)
+      for (const auto& of_part : answer.take_all<PartMeasures>()) measures.push_back(of_part);
+    all.put(measures);
+  }
+  return all;
+}
+
+std::vector<Parcel> carry_out_with_others(Processes& processes, Part& part, const Parcel& parcel) {
+  const auto below = below_in_tree(processes.rank(), processes.size());
+  std::vector<Parcel> all(1 + below.size());
+  or_fail(processes, [&] {
+    // First to the process with most of them below it.
+    for (std::size_t k = below.size(); k-- > 0;) processes.send(below[k], parcel);
+  });
+  Answers answers(processes);
+  answers.unless_failed([&] {
+    auto given = parcel;
+    const auto command = given.take<PartCommand>();
+    part.carry_out(command, given, all.front());
+  });
+  for (std::size_t k = 0; k < below.size(); ++k)
+    answers.take(below[k], [&](Parcel& answer) { all[k + 1] = std::move(answer); });
+  answers.end();
+  return all;
+}
+
 void serve(Processes& processes, Part& part) {
   for (;;) {
-    auto parcel = processes.receive(0);
-    const auto command = parcel.take<PartCommand>();
+    const auto parcel = processes.receive_any();
+    auto given = parcel;
+    const auto command = given.take<PartCommand>();
     if (command == PartCommand::release) return;
-    Parcel answer;
-    try {
-      answer.put(std::string());
-      part.carry_out(command, parcel, answer);
-    } catch (const std::exception& failure) {
-      answer = Parcel();
-      answer.put(reason_of(failure));
-    }
-    processes.send(0, answer);
+    const int asks = is_for_all(command) ? above_in_tree(processes.rank()) : 0;
+    processes.send(asks, answer_of(processes, [&](Parcel& answer) {
+                     if (!is_for_all(command)) return part.carry_out(command, given, answer);
+                     auto answers = carry_out_with_others(processes, part, parcel);
+                     answer.append(joined(command, answers));
+                   }));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "motion/division.hpp"
@@ -27,6 +28,7 @@ enum class PartCommand : int {
   place,      ///< some of these, which the part needs
   start,      ///< begin at an equilibrium, its displacements given or placed before
   watch,      ///< look at probes
+  memory,     ///< of the last contact update, from which slip is found
   advance,    ///< take steps
   tractions,  ///< near the part's ends, in contact updates of these steps
   energies,   ///< and works
@@ -39,13 +41,18 @@ enum class PartCommand : int {
   end,        ///< and neither is the process
 };
 
+/// Whether the command is the same for all parts, and what they tell of it can be joined: so it goes from
+/// each process to those below it in the tree, and answers come back that way (processes/tree.hpp). Others go
+/// from the leader to each process; they come before the first of these, with answers.
+bool is_for_all(PartCommand command);
+
 /// What a part has cost since it was started or restored.
 struct PartCost {
   std::int64_t steps = 0;
   std::int64_t messages = 0, bytes = 0;  ///< that its process has sent
   double computing_s = 0;
   double exchange_s = 0;  ///< in exchanges with its neighbours
-  double command_s = 0;   ///< waiting for commands, the leader for answers
+  double command_s = 0;   ///< waiting for commands, and for answers of others
 };
 
 /// Sums and maxima over what a part accounts for.
@@ -112,13 +119,10 @@ class Part {
   const Stepper& stepper() const { return *stepper_; }
 
  private:
-  /// Ends all processes where this one fails while others may wait for its halo.
-  template <class F>
-  void or_fail(F&& f);
   void place(Parcel& given);
   void start(Parcel& given);
   void advance(Parcel& given, Parcel& answer);
-  void make_finder(SlipFinder::Memory memory, int halo, double creep_m_per_s);
+  void make_finder(Parcel& given);
   void begin_counting();
   PartCost cost() const;
   void put_snapshot(const SnapshotPiece& piece, Parcel& answer) const;
@@ -136,6 +140,14 @@ class Part {
   Processes::Counters counted_before_;
   std::int64_t first_counted_step_ = 0;
 };
+
+/// Carries out a command for all with a process's own part and those of the processes below it.
+/// @param parcel  the command and its values, untouched
+/// @return what the part tells, and what each of these processes has joined of its own and of those below
+/// @throws what the part throws, and ProcessError for another one, after it has all answers
+std::vector<Parcel> carry_out_with_others(Processes& processes, Part& part, const Parcel& parcel);
+/// What such answers tell together.
+Parcel joined(PartCommand command, std::span<Parcel> answers);
 
 /// Carries out the leader's commands until the part is needed no more.
 void serve(Processes& processes, Part& part);

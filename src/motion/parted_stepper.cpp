@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
+#include <map>
+#include <numeric>
 #include <utility>
 
 #include "base/error.hpp"
+#include "motion/steps_told.hpp"
+#include "processes/answers.hpp"
 
 namespace slipfront::motion {
 
@@ -99,46 +102,28 @@ void PartedStepper::ask(std::span<const int> parts, PartCommand command,
                         const std::function<void(Parcel& answer)>& take) const {
   const bool asks_own = !parts.empty() && parts.front() == 0;
   const auto others = parts.subspan(asks_own ? 1 : 0);
-  // Others wait for what is not sent, or not received: there is no way back.
-  const auto or_fail = [&](auto&& talk) {
-    try {
-      for (const int rank : others) talk(rank);
-    } catch (const std::exception& error) {
-      processes_.fail(reason_of(error));
-    }
-  };
-  or_fail([&](int rank) {
-    Parcel parcel;
-    parcel.put(command).append(given(rank));
-    processes_.send(rank, parcel);
+  or_fail(processes_, [&] {
+    for (const int rank : others) processes_.send(rank, Parcel().put(command).append(given(rank)));
   });
-  // All answers are taken, whatever fails: the next command's are not to be mixed up with them.
-  std::exception_ptr failure;
-  const auto unless_failed = [&](auto&& f) {
-    if (failure != nullptr) return;
-    try {
-      f();
-    } catch (...) {
-      failure = std::current_exception();
-    }
-  };
-  unless_failed([&] {
+  Answers answers(processes_);
+  answers.unless_failed([&] {
     if (!asks_own) return;
     auto own = given(0);
     Parcel answer;
     own_->carry_out(command, own, answer);
     take(answer);
   });
-  or_fail([&](int rank) {
-    auto answer = processes_.receive(rank);
-    unless_failed([&] {
-      const auto error = answer.take_text();
-      if (!error.empty())
-        throw ProcessError(fmt::format("process {} of {}: {}", rank, processes_.size(), error));
-      take(answer);
-    });
-  });
-  if (failure != nullptr) std::rethrow_exception(failure);
+  for (const int rank : others) answers.take(rank, take);
+  answers.end();
+}
+
+std::vector<Parcel> PartedStepper::ask_all(PartCommand command, const Parcel& given) const {
+  return carry_out_with_others(processes_, *own_, Parcel().put(command).append(given));
+}
+
+Parcel PartedStepper::all_told(PartCommand command) const {
+  auto answers = ask_all(command, {});
+  return joined(command, answers);
 }
 
 std::vector<Parcel> PartedStepper::ask(PartCommand command,
@@ -217,20 +202,23 @@ void PartedStepper::start(const statics::Equilibrium& e, double top_speed_m_per_
 
 void PartedStepper::watch(std::vector<Probe> probes) {
   probes_ = std::move(probes);
-  part_of_probe_.clear();
   std::vector<std::vector<std::pair<std::size_t, mesh::Cell>>> of_part(
       static_cast<std::size_t>(division_.n_parts()));
+  std::vector<int> part_of_probe;
   for (const auto& probe : probes_) {
     const auto& body = columns_[probe.body];
     const int column = body.column_of(probe.node[0]);
     const auto after = std::ranges::upper_bound(division_.first, column);
     const int part = std::min(static_cast<int>(after - division_.first.begin()) - 1, division_.n_parts() - 1);
-    part_of_probe_.push_back(part);
+    part_of_probe.push_back(part);
     const auto held = body.of_part(division_.all(part));
     auto node = probe.node;
     for (auto& n : node) n = held.node_of_whole(n);
     of_part[static_cast<std::size_t>(part)].emplace_back(probe.body, node);
   }
+  told_probes_.resize(probes_.size());
+  std::iota(told_probes_.begin(), told_probes_.end(), std::size_t{0});
+  std::ranges::stable_sort(told_probes_, {}, [&](std::size_t p) { return part_of_probe[p]; });
   ask(PartCommand::watch, [&](int part) {
     const auto& list = of_part[static_cast<std::size_t>(part)];
     Parcel parcel;
@@ -241,21 +229,21 @@ void PartedStepper::watch(std::vector<Probe> probes) {
 }
 
 std::vector<double> PartedStepper::probed(int which) const {
-  std::vector<std::vector<double>> of_part;
+  std::vector<double> told;
   for (auto& answer : ask(PartCommand::probed)) {
     auto values = answer.take_all<double>();
     if (which > 0) values = answer.take_all<double>();
-    of_part.push_back(std::move(values));
+    told.insert(told.end(), values.begin(), values.end());
   }
-  std::vector<std::size_t> taken(of_part.size());
-  std::vector<double> values;
-  for (const int part : part_of_probe_) {
-    auto& at = taken[static_cast<std::size_t>(part)];
-    const auto from = of_part[static_cast<std::size_t>(part)].begin() + static_cast<std::ptrdiff_t>(at);
-    values.insert(values.end(), from, from + 8);
-    at += 8;
-  }
+  std::vector<double> values(told.size());
+  put_probes_in_order(told, values.data());
   return values;
+}
+
+void PartedStepper::put_probes_in_order(std::span<const double> told, double* to) const {
+  constexpr std::size_t n_values = 8;
+  for (std::size_t k = 0; k < told_probes_.size(); ++k)
+    std::ranges::copy(told.subspan(n_values * k, n_values), to + n_values * told_probes_[k]);
 }
 
 std::int64_t PartedStepper::advance(Recorder& recorder, std::int64_t most_steps, const Between& between) {
@@ -286,169 +274,110 @@ PartedStepper::Steps PartedStepper::advance_surely(Recorder& recorder, std::int6
     is_sampled.push_back(samples.back() != nullptr);
   }
   step_ = first_step;
-  auto answers = ask(PartCommand::advance, [&](int part) {
-    Parcel parcel;
-    parcel.put(static_cast<std::uint8_t>(!has_finders_));
-    if (!has_finders_) {
-      const auto& known = recorder.finder().memory();
+  auto& finder = recorder.finder();
+  if (!has_finders_)
+    ask(PartCommand::memory, [&](int part) {
+      const auto& known = finder.memory();
       const auto& lower = all_lower_[static_cast<std::size_t>(part)];
+      Parcel parcel;
       parcel.put(known.time_s);
       for (const auto* values : {&known.t_Pa, &known.p_Pa, &known.strength_Pa})
         parcel.put(cut(*values, lower));
-      parcel.put(cut(known.slipping, lower));
-      parcel.put(recorder.record().halo).put(recorder.finder().creep_m_per_s());
-    }
-    parcel.put(is_sampled);
-    return parcel;
-  });
+      parcel.put(cut(known.slipping, lower)).put(recorder.record().halo).put(finder.creep_m_per_s());
+      return parcel;
+    });
   has_finders_ = true;
 
-  struct Told {
-    std::vector<SlipRates> rates;
-    std::vector<std::vector<double>> samples;  ///< of each field
-    std::vector<double> displacements;
-  };
-  std::vector<Told> told;
-  std::vector<Parcel> seen_by_part;
-  auto& memory = recorder.finder().memory();
-  for (std::size_t part = 0; part < answers.size(); ++part) {
-    auto& answer = answers[part];
-    memory.time_s = answer.take<double>();
-    const auto take = [&]<class T>(std::vector<T>& to) {
-      std::ranges::copy(answer.take_all<T>(), to.begin() + own_lower_[part].begin);
-    };
-    for (auto* values : {&memory.t_Pa, &memory.p_Pa, &memory.strength_Pa}) take(*values);
-    take(memory.slipping);
-    Told of_part;
-    of_part.rates = answer.take_all<SlipRates>();
-    seen_by_part.emplace_back(answer.take_all<std::byte>());
-    for (std::size_t f = 0; f < record::history_fields.size(); ++f)
-      of_part.samples.push_back(answer.take_all<double>());
-    of_part.displacements = answer.take_all<double>();
-    told.push_back(std::move(of_part));
-  }
+  auto answers = ask_all(PartCommand::advance, Parcel().put(is_sampled));
+  auto told = StepsTold::take_joined(answers);
+  SLIPFRONT_ASSERT(told.memory.t_Pa.size() == finder.memory().t_Pa.size(), "the parts have all nodes");
+  finder.memory() = std::move(told.memory);
+  add_tractions_of_others(told.seen, finder.n_around());
+  SlipsInTurn slips(told.seen, finder.n_around());
   const auto n_substeps = std::lround(step_s() / substep_s());
-  const auto seen = joined(std::move(seen_by_part), static_cast<std::size_t>(n_steps * n_substeps),
-                           recorder.finder().n_around());
-  auto next_seen = seen.begin();
+  const auto n_nodes = static_cast<std::ptrdiff_t>(finder.memory().t_Pa.size());
+  const auto n_displacements = displacement_values(probes_);
   std::ptrdiff_t row = 0;
   for (std::int64_t k = 0; k < n_steps; ++k) {
-    for (long substep = 0; substep < n_substeps; ++substep) recorder.take(*next_seen++);
+    for (long substep = 0; substep < n_substeps; ++substep) recorder.take(slips.next());
     if (auto* to = samples[static_cast<std::size_t>(k)]; to != nullptr) {
       to->time_s.push_back(time_s());
       for (std::size_t f = 0; f < record::history_fields.size(); ++f) {
         auto& field = to->*record::history_fields[f].member;
-        for (std::size_t part = 0; part < told.size(); ++part) {
-          const auto width = own_lower_[part].end - own_lower_[part].begin;
-          const auto from = told[part].samples[f].begin() + row * width;
-          field.insert(field.end(), from, from + width);
-        }
+        const auto from = told.samples[f].begin() + row * n_nodes;
+        field.insert(field.end(), from, from + n_nodes);
       }
       ++row;
     }
-    if (!probes_.empty())
-      if (double* to = between.displacements(step_ + 1); to != nullptr) {
-        std::vector<std::size_t> taken(told.size());
-        for (std::size_t p = 0; p < probes_.size(); ++p) {
-          const auto part = static_cast<std::size_t>(part_of_probe_[p]);
-          const auto& from = told[part].displacements;
-          const auto per_step = from.size() / static_cast<std::size_t>(n_steps);
-          std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(k) * per_step +
-                                                                 8 * taken[part]++),
-                      8, to + 8 * p);
-        }
-      }
+    if (n_displacements > 0)
+      if (double* to = between.displacements(step_ + 1); to != nullptr)
+        put_probes_in_order(std::span(told.displacements)
+                                .subspan(static_cast<std::size_t>(k) * n_displacements, n_displacements),
+                            to);
     ++step_;
-    SlipRates rates;
-    for (const auto& of_part : told) {
-      const auto& r = of_part.rates[static_cast<std::size_t>(k)];
-      rates.finite &= r.finite;
-      rates.fastest_m_per_s = std::max(rates.fastest_m_per_s, r.fastest_m_per_s);
-      rates.fastest_slipping_m_per_s = std::max(rates.fastest_slipping_m_per_s, r.fastest_slipping_m_per_s);
-    }
     // Before the last of these steps only a motion that is not physical is refused. The parts have gone on:
     // what is told of its energy is that of their last step.
-    if (!between.go_on(rates)) return {k + 1, false};
+    if (!between.go_on(told.rates[static_cast<std::size_t>(k)])) return {k + 1, false};
   }
   return {n_steps, true};
 }
 
-std::vector<SlipSeen> PartedStepper::joined(std::vector<Parcel> seen_by_part, std::size_t n_updates,
-                                            std::size_t n_around) const {
+void PartedStepper::add_tractions_of_others(SlipsSeen& seen, std::size_t n_around) const {
   const int reach = static_cast<int>(n_around / 2);
-  struct Gap {                       // of some nodes around an onset, which another part knows
-    std::size_t update = 0, at = 0;  // where the tractions are to go in SlipSeen::around
+  struct Gap {           // of some nodes around an onset, which another part knows
+    std::size_t at = 0;  // where their tractions are to go in SlipsSeen::around
     double share = 0;
   };
-  std::vector<std::vector<TractionsWanted>> wanted(own_lower_.size());
-  std::vector<std::vector<Gap>> gaps(own_lower_.size());
-  std::vector<SlipSeen> seen(n_updates);
-  for (std::size_t part = 0; part < seen_by_part.size(); ++part) {
-    auto& from = seen_by_part[part];
-    for (std::size_t update = 0; update < n_updates; ++update) {
-      auto& all = seen[update];
-      all.time_s = from.take<double>();
-      all.moves |= from.take<std::uint8_t>() != 0;
-      auto first_around = all.around.size();
-      for (auto change : from.take_all<SlipChange>()) {
-        change.node = all_lower_[part].number_at(change.node);
-        all.changes.push_back(change);
-        if (!change.begins) continue;
-        const auto near = std::ranges::upper_bound(own_lower_, change.node - reach, {}, &solid::Span::end);
-        for (auto other = static_cast<std::size_t>(near - own_lower_.begin());
-             other < own_lower_.size() && own_lower_[other].begin <= change.node + reach; ++other) {
-          if (other == part) continue;
-          const int begin = std::max(own_lower_[other].begin, change.node - reach);
-          const int end = std::min(own_lower_[other].end, change.node + reach + 1);
-          const int place = all_lower_[other].place_of(begin);
-          wanted[other].push_back({static_cast<std::int64_t>(update), {place, place + end - begin}});
-          gaps[other].push_back(
-              {update, first_around + static_cast<std::size_t>(begin - (change.node - reach)), change.share});
-        }
-        first_around += n_around;
-      }
-      const auto around = from.take_all<record::Traction>();
-      all.around.insert(all.around.end(), around.begin(), around.end());
-      SLIPFRONT_ASSERT(all.around.size() == first_around, "tractions around each onset");
+  struct Asked {
+    std::vector<TractionsWanted> wanted;
+    std::vector<Gap> gaps;
+  };
+  std::map<int, Asked> of_part;
+  std::size_t first_around = 0;
+  for (std::size_t c = 0; c < seen.changes.size(); ++c) {
+    const auto& change = seen.changes[c];
+    if (!change.begins) continue;
+    auto other = std::ranges::upper_bound(own_lower_, change.node - reach, {}, &solid::Span::end);
+    for (; other != own_lower_.end() && other->begin <= change.node + reach; ++other) {
+      if (change.node >= other->begin && change.node < other->end) continue;  // it knows them itself
+      const auto part = static_cast<int>(other - own_lower_.begin());
+      const int begin = std::max(other->begin, change.node - reach);
+      const int end = std::min(other->end, change.node + reach + 1);
+      const int place = all_lower_[static_cast<std::size_t>(part)].place_of(begin);
+      auto& asked = of_part[part];
+      asked.wanted.push_back({seen.update[c], {place, place + end - begin}});
+      asked.gaps.push_back(
+          {first_around + static_cast<std::size_t>(begin - (change.node - reach)), change.share});
     }
+    first_around += n_around;
   }
-  if (std::ranges::all_of(wanted, [](const auto& of_part) { return of_part.empty(); })) return seen;
-  std::size_t part = 0;
+  SLIPFRONT_ASSERT(seen.around.size() == first_around, "tractions around each onset");
+  std::vector<int> parts;
+  for (const auto& asked : of_part) parts.push_back(asked.first);
+  auto next = of_part.begin();
   ask(
-      PartCommand::tractions,
-      [&](int other) {
-        Parcel parcel;
-        parcel.put(wanted[static_cast<std::size_t>(other)]);
-        return parcel;
-      },
+      parts, PartCommand::tractions, [&](int part) { return std::move(Parcel().put(of_part[part].wanted)); },
       [&](Parcel& answer) {
-        for (std::size_t k = 0; k < wanted[part].size(); ++k) {
-          const auto& [update, nodes] = wanted[part][k];
-          const auto& gap = gaps[part][k];
-          for (int n = 0; n < nodes.end - nodes.begin; ++n) {
+        const auto& [wanted, gaps] = next->second;
+        for (std::size_t k = 0; k < wanted.size(); ++k)
+          for (int n = 0; n < wanted[k].nodes.end - wanted[k].nodes.begin; ++n) {
             const auto before = answer.take<record::Traction>();
             const auto after = answer.take<record::Traction>();
-            seen[gap.update].around[gap.at + static_cast<std::size_t>(n)] =
-                traction_between(before, after, gap.share);
+            seen.around[gaps[k].at + static_cast<std::size_t>(n)] =
+                traction_between(before, after, gaps[k].share);
           }
-        }
-        ++part;
+        ++next;
       });
-  return seen;
 }
 
 record::Energies PartedStepper::energies() {
-  auto answers = ask(PartCommand::energies);
-  auto sum = answers.front().take<record::Energies>();
-  for (auto& answer : std::span(answers).subspan(1)) add_terms(sum, answer.take<record::Energies>());
+  auto sum = all_told(PartCommand::energies).take<record::Energies>();
   sum.time_s = time_s();
   return sum;
 }
 
 std::vector<PartMeasures> PartedStepper::measures() const {
-  std::vector<PartMeasures> all;
-  for (auto& answer : ask(PartCommand::measures)) all.push_back(answer.take<PartMeasures>());
-  return all;
+  return all_told(PartCommand::measures).take_all<PartMeasures>();
 }
 
 std::vector<PartCost> PartedStepper::costs() const {

@@ -13,6 +13,8 @@
 
 namespace slipfront::motion {
 
+struct SlipsSeen;
+
 /// Places in Mesh::lower of the nodes in some columns.
 mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns);
 
@@ -72,6 +74,11 @@ class PartedStepper final : public TimeStepper {
   /// The same of some parts, in ascending order.
   void ask(std::span<const int> parts, PartCommand command, const std::function<Parcel(int part)>& given,
            const std::function<void(Parcel& answer)>& take) const;
+  /// Gives all parts a command for all.
+  /// @return see carry_out_with_others
+  /// @throws as ask
+  std::vector<Parcel> ask_all(PartCommand command, const Parcel& given) const;
+  Parcel all_told(PartCommand command) const;
   static Parcel nothing(int /*part*/) { return {}; }
   /// Gives the parts what processes keep of an equilibrium, one process's share after the other.
   void place(const statics::KeptDisplacement& u_m, const statics::KeptDisplacement& u_per_shear);
@@ -83,11 +90,12 @@ class PartedStepper final : public TimeStepper {
   Steps advance_surely(Recorder& recorder, std::int64_t n_steps, const Between& between);
   /// Nodes of a piece, by their numbers in the whole body.
   mesh::NodeColumns::Nodes nodes_of(const SnapshotPiece& piece) const;
-  /// What all parts have seen in the updates of a command, in the nodes' numbers along the whole interface;
-  /// tractions around onsets near a part's end are asked of the parts beside it.
-  std::vector<SlipSeen> joined(std::vector<Parcel> seen_by_part, std::size_t n_updates,
-                               std::size_t n_around) const;
+  /// Asks for tractions around onsets near a part's end, in the last command's updates, which the parts
+  /// beside it know.
+  void add_tractions_of_others(SlipsSeen& seen, std::size_t n_around) const;
   std::vector<double> probed(int which) const;
+  /// @param told  values of the probes as the parts tell them, one part after the other
+  void put_probes_in_order(std::span<const double> told, double* to) const;
   std::vector<PartMeasures> measures() const;
 
   Processes& processes_;
@@ -100,7 +108,7 @@ class PartedStepper final : public TimeStepper {
   std::vector<solid::Span> own_lower_;
   std::vector<SnapshotPiece> snapshot_pieces_;
   std::vector<Probe> probes_;
-  std::vector<int> part_of_probe_;
+  std::vector<std::size_t> told_probes_;  ///< the probes in the order in which parts tell of them
   bool has_finders_ = false;
   std::int64_t step_ = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -18,6 +19,13 @@ struct SlipRates {
   bool finite = true;
   double fastest_m_per_s = 0;
   double fastest_slipping_m_per_s = 0;  ///< of nodes in contact that slip
+
+  /// Those of other nodes.
+  void add(const SlipRates& more) {
+    finite &= more.finite;
+    fastest_m_per_s = std::max(fastest_m_per_s, more.fastest_m_per_s);
+    fastest_slipping_m_per_s = std::max(fastest_slipping_m_per_s, more.fastest_slipping_m_per_s);
+  }
 };
 
 /// Looks into a run between its steps. All are called in the order of steps, not always by the same thread,

@@ -44,14 +44,18 @@ class Patience {
   /// To poll for so long costs less than to fall asleep and to wake up.
   void polls_for_s(double poll_s) { poll_s_ = poll_s; }
 
-  void wait_all(std::span<MPI_Request> requests) const {
+  template <class F>
+  void wait_until(F&& is_done) const {
     const auto begin = Clock::now();
-    for (;;) {
+    while (!is_done())
+      if (seconds_since(begin) > poll_s_) std::this_thread::sleep_for(std::chrono::microseconds(10));
+  }
+  void wait_all(std::span<MPI_Request> requests) const {
+    wait_until([&] {
       int done = 0;
       MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
-      if (done != 0) return;
-      if (seconds_since(begin) > poll_s_) std::this_thread::sleep_for(std::chrono::microseconds(10));
-    }
+      return done != 0;
+    });
   }
   void wait(MPI_Request& request) const { wait_all({&request, 1}); }
 
@@ -163,6 +167,19 @@ class MpiProcesses final : public Processes {
       patience_.wait(request);
     }
     return Parcel(std::move(bytes));
+  }
+
+  Parcel receive_any() override {
+    MPI_Status status;
+    {
+      const Waiting waiting(counters_.command_s);
+      patience_.wait_until([&] {
+        int is_there = 0;
+        MPI_Iprobe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &is_there, &status);
+        return is_there != 0;
+      });
+    }
+    return receive(status.MPI_SOURCE);
   }
 
   std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) override {

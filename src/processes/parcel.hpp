@@ -44,8 +44,10 @@ class Parcel {
   }
   /// Makes room for so many bytes more.
   void reserve(std::size_t n) { bytes_.reserve(bytes_.size() + n); }
-  /// All that another parcel holds, to be taken as if it had been put here.
-  Parcel& append(const Parcel& parcel) { return put_bytes(parcel.bytes_.data(), parcel.bytes_.size()); }
+  /// What has not been taken from another parcel, to be taken as if it had been put here.
+  Parcel& append(const Parcel& parcel) {
+    return put_bytes(parcel.bytes_.data() + parcel.next_, parcel.bytes_.size() - parcel.next_);
+  }
   Parcel& put(const std::string& text) { return put(std::span<const char>(text)); }
 
   template <class T>

@@ -51,6 +51,8 @@ class Processes {
 
   virtual void send(int to, const Parcel& parcel) = 0;
   virtual Parcel receive(int from) = 0;
+  /// From whichever process sends one.
+  virtual Parcel receive_any() = 0;
   static constexpr std::size_t most_transferred_bytes = std::size_t{1} << 30;
   /// Of a transfer that sets out without an answer of the other end: below the 64 KiB of Open MPI's over TCP.
   static constexpr std::size_t prompt_bytes = std::size_t{48} << 10;
@@ -71,7 +73,7 @@ class Processes {
   Counters counters_;
 };
 
-/// What another process could not do, told in one line.
+/// What a process could not do, told in one line that names it.
 class ProcessError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

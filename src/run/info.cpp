@@ -261,7 +261,6 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
   };
   stepper.visit_columns(columns, add_to(work.bytes_per_column));
   stepper.visit_columns(columns, with_interface, true, add_to(work.interface_bytes_per_column));
-  work.updates_per_step = std::round(info.step_s / info.substep_s);
   work.steps = static_cast<double>(info.n_steps);
   work.advances = commands_of(info.needs);
   work.energies = std::max(info.needs.energy_rows, work.steps / steps_per_check);

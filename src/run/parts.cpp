@@ -13,6 +13,7 @@
 #include "input/friction_along_x.hpp"
 #include "input/schema.hpp"
 #include "mesh/plate.hpp"
+#include "processes/answers.hpp"
 #include "run/case_parcel.hpp"
 #include "run/checkpoint.hpp"
 #include "run/choices.hpp"
@@ -170,7 +171,7 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
   for (const auto& body : whole.bodies()) meshes.push_back(&body.mesh);
   plan.threads = execution.threads;
   std::unique_ptr<motion::PartedStepper> stepper;
-  try {
+  or_fail(processes, [&] {
     for (int rank = 1; rank < processes.size(); ++rank) {
       Parcel parcel;
       parcel.put(motion::PartCommand::build);
@@ -181,9 +182,7 @@ std::unique_ptr<motion::PartedStepper> new_parted_stepper(const input::Case& con
     }
     stepper = std::make_unique<motion::PartedStepper>(
         processes, plan.division, make_part(processes, config, plan, lower_of(whole, plan, 0), kept), meshes);
-  } catch (const std::exception& error) {
-    processes.fail(reason_of(error));  // the others wait for this part
-  }
+  });
   return stepper;
 }
 

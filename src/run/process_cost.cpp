@@ -16,6 +16,8 @@ constexpr double number_bytes = sizeof(double);
 constexpr double eager_bytes = 64 << 10;
 /// u_m, v_m_per_s of a snapshot.
 constexpr double bytes_of_snapshot = 4 * number_bytes;
+/// Of an interface node what SlipFinder knows of the last contact update.
+constexpr double bytes_of_memory = 3 * number_bytes + 1;
 /// Columns of the part that computes most.
 struct Widest {
   double own = 0, halo = 0;
@@ -67,18 +69,24 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
     cost.exchange_s = exchanges * (handling_s + waiting_s);
   }
 
-  const auto passed_s = [&](double bytes) {
-    const double by_parts = others > 0 ? 1 / n_parts : 0;
-    return bytes * (others / n_parts / network.bandwidth_bytes_per_s + (1 + by_parts) / handling.bytes_per_s);
+  const auto passed_s = [&](double bytes, double times_handled) {
+    return bytes * (others / n_parts / network.bandwidth_bytes_per_s + times_handled / handling.bytes_per_s);
   };
-  const double row_bytes = work.history_rows * work.values_per_row * number_bytes;
-  cost.gathering_s = passed_s(row_bytes + work.snapshots * bytes_of_snapshot * work.n_nodes);
+  const double by_leader_and_parts = others > 0 ? 1 + 1 / n_parts : 1;
+  const double by_tree = 2 - 1 / n_parts;  // all by the leader, half of it by one below, a quarter ...
+  const double told_bytes = work.history_rows * work.values_per_row * number_bytes +
+                            (others > 0 ? work.advances * bytes_of_memory * work.n_columns : 0);
+  cost.gathering_s = passed_s(told_bytes, by_tree) +
+                     passed_s(work.snapshots * bytes_of_snapshot * work.n_nodes, by_leader_and_parts);
   if (others > 0) {
-    cost.gathering_s += work.steps * work.updates_per_step * n_parts * handling.s_per_update;
+    const double levels = std::ceil(std::log2(n_parts));
     cost.command_s =
-        (work.advances + work.energies) * 2 * (network.latency_s + others * handling.s_per_message) +
-        work.advances * others * (latency_s(row_bytes / n_parts / work.advances) - network.latency_s);
-    cost.start_s = work.leads_by_interface ? 0 : passed_s(state_bytes_per_node * work.n_nodes);
+        (work.advances + work.energies) * 2 * levels * (network.latency_s + handling.s_per_message);
+    for (double parts = 1; parts < n_parts; parts *= 2)
+      cost.command_s +=
+          work.advances * (latency_s(parts * told_bytes / n_parts / work.advances) - network.latency_s);
+    cost.start_s =
+        work.leads_by_interface ? 0 : passed_s(state_bytes_per_node * work.n_nodes, by_leader_and_parts);
   }
   cost.statics_s = work.statics_s;
 

@@ -17,9 +17,8 @@ inline constexpr Network shared_memory = {0.5e-6, 10e9};
 
 /// What a core does to what is sent, measured on such a one.
 struct Handling {
-  double s_per_message = 2e-6;    ///< the leader's, to send a command or to receive an answer
-  double s_per_update = 0.3e-6;   ///< the leader's, to join what one part saw in one contact update
-  double bytes_per_s = 0.8e9;     ///< samples and snapshots, packed by each part and joined by the leader
+  double s_per_message = 2e-6;    ///< to send a command or to receive an answer
+  double bytes_per_s = 0.8e9;     ///< samples and snapshots, packed by each part and joined
   double halo_bytes_per_s = 5e9;  ///< packed or unpacked
 };
 
@@ -37,7 +36,6 @@ struct SharedWork {
   double bytes_per_column = 0;    ///< that an exchange sends
   /// Of these, and of a step's time the share, what goes with the interface, before other rows.
   double interface_bytes_per_column = 0, interface_share = 0;
-  double updates_per_step = 1;  ///< of the contact
   double steps = 0;
   double advances = 1;  ///< commands in which these steps are taken
   double energies = 0;  ///< sums over all nodes
@@ -58,8 +56,8 @@ struct ProcessCost {
   double own_s = 0;           ///< columns that the process accounts for
   double halo_s = 0;          ///< columns that others account for, computed as well
   double exchange_s = 0;      ///< of the halos: packing, and what no computing covers of their way
-  double command_s = 0;       ///< from the leader and back
-  double gathering_s = 0;     ///< of samples, of what each contact update saw, of snapshots
+  double command_s = 0;       ///< from the leader to all and back
+  double gathering_s = 0;     ///< of samples, of what is known of the last contact update, of snapshots
   double statics_s = 0;       ///< for which the others wait, or which they share
   double start_s = 0;         ///< meshes and initial motion, sent by the leader
   double bytes_per_step = 0;  ///< that the process with most neighbours sends in exchanges
@@ -78,12 +76,13 @@ struct ProcessCost {
 ///   k steps to an exchange in the time T, H included, a share f of it for what goes with the interface; m
 ///   bytes of a halo, i of these with the interface; rate b of packing, c processor time of a byte on its
 ///   way
-/// - commands: (A + e) (2 L + 2 (P - 1) o) + A (P - 1) (l(a) - L), o for each message of the leader, a bytes
-///   of an answer; answers are received one after the other
-/// - gathering: n q P j + G F, q contact updates in a step, j to join what a part saw in one, G bytes of
-///   samples and snapshots
+/// - commands: (A + e) 2 d (L + o) + A sum (l(2^i a) - L), i < d, d levels of the tree of processes, o for a
+///   message, a bytes of a part's answer
+/// - gathering: G ((1 - 1/P)/B + (2 - 1/P)/g) + S F, G bytes of what parts tell of the interface, joined
+/// level
+///   by level, S of snapshots
 /// - statics: as by one process; by PETSc, of the processes together
-/// - start: S F, S bytes of meshes and initial motion
+/// - start: I F, I bytes of initial motion
 ///
 /// l(m) = L up to 64 KiB and 3 L for more, which MPI sends when it is asked for them.
 ///

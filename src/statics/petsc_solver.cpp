@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "processes/answers.hpp"
 #include "statics/load_case.hpp"
 
 namespace slipfront::statics {
@@ -247,7 +248,7 @@ void PetscSolver::ask(Command command, const std::function<Parcel(int rank)>& gi
     take(0, answer);
   };
   if (processes_ == nullptr) return own();
-  try {
+  or_fail(*processes_, [&] {
     for (int rank = 1; rank < processes_->size(); ++rank)
       processes_->send(rank, Parcel().put(command).append(given(rank)));
     own();
@@ -255,9 +256,7 @@ void PetscSolver::ask(Command command, const std::function<Parcel(int rank)>& gi
       auto answer = processes_->receive(rank);
       take(rank, answer);
     }
-  } catch (const std::exception& error) {
-    processes_->fail(reason_of(error));  // the others wait for this process's share
-  }
+  });
 }
 
 void serve_statics(Processes& processes, KeptDisplacements& kept) try {

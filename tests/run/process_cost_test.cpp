@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <utility>
+
 #include "base/error.hpp"
 #include "cases.hpp"
 #include "run/choices.hpp"
@@ -40,7 +43,7 @@ motion::Division division(int n_columns, int n_parts, int halo, int steps_per_ex
 
 constexpr Network ethernet = {1e-4, 1e8};
 /// Nothing but computing takes time.
-constexpr Handling at_once = {0, 0, 1e300, 1e300};
+constexpr Handling at_once = {0, 1e300, 1e300};
 constexpr Network immediate = {1e-300, 1e300};
 
 TEST(ProcessCost, OfOneProcessIsItsComputing) {
@@ -78,7 +81,7 @@ TEST(ProcessCost, OfExchangesIsWhatNoComputingCovers) {
   EXPECT_NEAR(of({1e-4, 1e7}).exchange_s, 200 * (640e3 / 1e7 - steps_s), 1e-12);
   // Latency: the interface leaves after a quarter of the steps' time, in messages of 20,000 bytes.
   EXPECT_NEAR(of({2e-2, 1e8}).exchange_s, 200 * (2e-2 + 40e3 / 1e8 - 0.75 * steps_s), 1e-12);
-  const auto packed = process_cost(square(), division(1000, 4, 10, 5), 4, ethernet, {0, 0, 1e300, 1e9});
+  const auto packed = process_cost(square(), division(1000, 4, 10, 5), 4, ethernet, {0, 1e300, 1e9});
   EXPECT_NEAR(packed.exchange_s, 200 * 2 * 640e3 / 1e9, 1e-12);
   // A byte on its way takes a nanosecond from the computing, of two processors that four processes share two.
   EXPECT_NEAR(of({1e-4, 1e8, 1e-9}).exchange_s, 200 * 2 * 640e-6, 1e-12);
@@ -98,7 +101,7 @@ TEST(ProcessCost, OfEnergiesIsThatOfSteps) {
   work.energies = 10;
   const auto cost = process_cost(work, division(1000, 4, 10), 4, ethernet, at_once);
   EXPECT_DOUBLE_EQ(cost.own_s, 2.5 * 1.01);
-  EXPECT_DOUBLE_EQ(cost.command_s, 30 * 2 * 1e-4);
+  EXPECT_DOUBLE_EQ(cost.command_s, 30 * 2 * 2 * 1e-4);
 }
 
 TEST(ProcessCost, OfProcessorsThatAreSharedIsThatOfFewer) {
@@ -125,28 +128,26 @@ TEST(ProcessCost, GrowsWithLatencyAndFallsWithBandwidth) {
   }
 }
 
-TEST(ProcessCost, OfTheLeaderGrowsWithTheNumberOfProcesses) {
-  auto work = square();
-  work.updates_per_step = 18;
-  const Handling handling = {2e-6, 1e-7, 1e300, 1e300};
-  const auto cost = process_cost(work, division(1000, 10, 10), 10, {1e-4, 1e300}, handling);
-  EXPECT_DOUBLE_EQ(cost.command_s, 20 * 2 * (1e-4 + 9 * 2e-6));
-  EXPECT_NEAR(cost.gathering_s, 1000 * 18 * 10 * 1e-7, 1e-12);
-  const auto more = process_cost(work, division(1000, 100, 10), 100, {1e-4, 1e300}, handling);
-  EXPECT_NEAR(more.gathering_s, 10 * cost.gathering_s, 1e-12);
+TEST(ProcessCost, OfCommandsGrowsWithTheLevelsOfTheTree) {
+  const Handling handling = {2e-6, 1e300, 1e300};
+  constexpr std::array<std::pair<int, int>, 5> levels_of = {{{1, 0}, {2, 1}, {8, 3}, {10, 4}, {100, 7}}};
+  for (const auto& [n_parts, levels] : levels_of) {
+    const auto cost = process_cost(square(), division(1000, n_parts, 10), n_parts, {1e-4, 1e300}, handling);
+    EXPECT_DOUBLE_EQ(cost.command_s, 20 * 2 * levels * (1e-4 + 2e-6)) << n_parts;
+  }
 }
 
 TEST(ProcessCost, OfSamplesAndSnapshotsIsPackedSentAndJoined) {
   auto work = square();
-  const Handling handling = {0, 0, 1e9, 1e300};
+  const Handling handling = {0, 1e9, 1e300};
   const auto none = process_cost(work, division(1000, 4, 10), 4, ethernet, handling);
-  EXPECT_EQ(none.gathering_s, 0);
+  const double known = 20 * 25 * 1e3;  // of the last update of each command
+  EXPECT_NEAR(none.gathering_s, 0.75 * known / 1e8 + 1.75 * known / 1e9, 1e-12);
   work.history_rows = 100;
   work.values_per_row = 4e3;
   const auto rows = process_cost(work, division(1000, 4, 10), 4, ethernet, handling);
   const double bytes = 100 * 4e3 * 8;
-  EXPECT_NEAR(rows.gathering_s, 0.75 * bytes / 1e8 + 1.25 * bytes / 1e9, 1e-12);
-  EXPECT_EQ(rows.command_s, none.command_s);  // 40,000 bytes in an answer
+  EXPECT_NEAR(rows.gathering_s - none.gathering_s, 0.75 * bytes / 1e8 + 1.75 * bytes / 1e9, 1e-12);
   const auto alone = process_cost(work, division(1000, 1, 10), 1, ethernet, handling);
   EXPECT_NEAR(alone.gathering_s, bytes / 1e9, 1e-12);
   work.snapshots = 3;
@@ -155,13 +156,17 @@ TEST(ProcessCost, OfSamplesAndSnapshotsIsPackedSentAndJoined) {
   EXPECT_NEAR(both.gathering_s - rows.gathering_s, 0.75 * more / 1e8 + 1.25 * more / 1e9, 1e-9);
 }
 
-TEST(ProcessCost, OfLargeAnswersIsARoundTripEach) {
-  auto work = square();
-  work.values_per_row = 4e3;
-  work.history_rows = 1000;  // 400,000 bytes in an answer of four
+TEST(ProcessCost, OfLargeAnswersIsARoundTripOnEachLevel) {
   const auto small = process_cost(square(), division(1000, 4, 10), 4, ethernet);
-  const auto large = process_cost(work, division(1000, 4, 10), 4, ethernet);
-  EXPECT_NEAR(large.command_s - small.command_s, 20 * 3 * 2e-4, 1e-12);
+  const auto with_rows = [](double n) {
+    auto work = square();
+    work.values_per_row = 4e3;
+    work.history_rows = n;
+    return process_cost(work, division(1000, 4, 10), 4, ethernet);
+  };
+  // 46,250 bytes of a part and 92,500 of two.
+  EXPECT_NEAR(with_rows(100).command_s - small.command_s, 20 * 2e-4, 1e-12);
+  EXPECT_NEAR(with_rows(1000).command_s - small.command_s, 20 * 2 * 2e-4, 1e-12);
 }
 
 TEST(ProcessCost, OfMemoryFallsForAllButTheLeader) {

@@ -38,6 +38,20 @@ class Mailboxes {
     box.pop_front();
     return parcel;
   }
+  /// A parcel of whichever sender.
+  Parcel take_any(int to) {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      for (int from = 0; from < size_; ++from) {
+        auto& box = boxes_[{from, to, of_parcels}];
+        if (box.empty()) continue;
+        auto parcel = std::move(box.front());
+        box.pop_front();
+        return parcel;
+      }
+      changed_.wait(lock);
+    }
+  }
 
  private:
   int size_;
@@ -89,6 +103,7 @@ class ThreadProcess final : public Processes {
   int size() const override { return mail_.size(); }
   void send(int to, const Parcel& parcel) override { mail_.put(rank_, to, parcel); }
   Parcel receive(int from) override { return mail_.take(from, rank_); }
+  Parcel receive_any() override { return mail_.take_any(rank_); }
   std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) override {
     return std::make_unique<Sent>(mail_, rank_, rank, channel, bytes);
   }

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+namespace slipfront {
+
+// Processes as a tree: what one tells all others passes on from each process to some others, and answers come
+// back the same way, so that none has more neighbours than the number of processes has binary digits. Those
+// below a process, with itself, have numbers one after the other (a binomial tree).
+
+/// Of each but 0, which leads.
+inline int above_in_tree(int rank) {
+  return rank & (rank - 1);
+}
+
+/// Ascending; those below each of them come before the next one.
+inline std::vector<int> below_in_tree(int rank, int size) {
+  std::vector<int> below;
+  for (long distance = 1; rank + distance < size && (rank & distance) == 0; distance *= 2)
+    below.push_back(static_cast<int>(rank + distance));
+  return below;
+}
+
+}  // namespace slipfront
