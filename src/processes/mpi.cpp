@@ -48,7 +48,7 @@ class Patience {
   void wait_until(F&& is_done) const {
     const auto begin = Clock::now();
     while (!is_done())
-      if (seconds_since(begin) > poll_s_) std::this_thread::sleep_for(std::chrono::microseconds(10));
+      if (const double waited_s = seconds_since(begin); waited_s > poll_s_) sleep(waited_s / 8);
   }
   void wait_all(std::span<MPI_Request> requests) const {
     wait_until([&] {
@@ -60,6 +60,13 @@ class Patience {
   void wait(MPI_Request& request) const { wait_all({&request, 1}); }
 
  private:
+  /// Each look takes the processor from whoever computes on it: the longer it has been in vain, the later the
+  /// next one.
+  static void sleep(double s) {
+    constexpr double shortest_s = 10e-6, longest_s = 1e-3;
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(s, shortest_s, longest_s)));
+  }
+
   double poll_s_ = 2e-3;
 };
 
