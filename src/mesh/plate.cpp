@@ -251,7 +251,7 @@ class Maker {
   }
 
   Mesh make_lowest_row() && {
-    SLIPFRONT_ASSERT(plate_.corner == Corner::none, "the interface is a row");
+    SLIPFRONT_ASSERT(plate_.corner != Corner::fillet, "the interface is a row");
     const auto& block = blocks_.front();
     for (const int i : block.held) add_grid_node(block, i, 0);
     name_lower();
@@ -451,6 +451,18 @@ Mesh make_plate(const Plate& plate, std::string_view table) {
 
 Mesh make_interface(const Plate& plate, std::string_view table) {
   return Maker(plate, Subset(), table).make_lowest_row();
+}
+
+Mesh make_corners(const Plate& plate, int around) {
+  SLIPFRONT_ASSERT(plate.corner == Corner::relief && plate.coarsenings == 0, "corners of moved squares");
+  const Grid whole = make_grid(plate, true);
+  const auto cells = [&](double length_m) {
+    return static_cast<int>(std::ceil(length_m / whole.spacing_m)) + around + 1;
+  };
+  const int n = whole.stride(), columns = cells(plate.relief_length_m) + 1;
+  std::vector<Subset::Range> sides = {{0, n}};
+  if (2 * columns < n) sides = {{0, columns}, {n - columns, n}};
+  return Maker(plate, Subset(sides), "plate").make_rows(0, std::min(whole.rows, cells(plate.relief_depth_m)));
 }
 
 Mesh make_rows(const Plate& plate, int begin, int end, std::string_view table) {

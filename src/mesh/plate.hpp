@@ -75,9 +75,14 @@ struct Plate {
 /// @throws UserError for an impossible geometry, naming the quantity to change.
 Mesh make_plate(const Plate& plate, std::string_view table = "plate");
 
-/// Of a plate with right-angled corners the nodes of the lowest row alone, in the grids of the whole plate
-/// and without cells: what is known of a plate whose columns are held elsewhere.
+/// Of a plate without fillets the nodes of the lowest row alone, in the grids of the whole plate and without
+/// cells: what is known of a plate whose columns are held elsewhere.
 Mesh make_interface(const Plate& plate, std::string_view table = "plate");
+
+/// The cells of make_plate that are no squares since a relief moves their nodes, and so many more cells on
+/// their inner sides, with the places and the order that they have there: a mesh of its own, without edges.
+/// @pre elements are equal, the corners reliefs
+Mesh make_corners(const Plate& plate, int around);
 
 /// The nodes of make_plate in grid rows [begin, end], numbered from 0, with the cells between them: a mesh of
 /// its own for those who write a plate row after row. It has no edges.

@@ -48,8 +48,8 @@ BodyMotion motion_of(const BodySource& source) {
 }  // namespace
 
 BodySteps body_steps(const BodySource& body, const TimeStepping& time) {
-  const auto& [mesh, material, part] = body;
-  const double omega = mesh.is_interface() ? solid::frequency_bound_rad_per_s(mesh, material)
+  const auto& [mesh, material, part, corners] = body;
+  const double omega = mesh.is_interface() ? solid::frequency_bound_rad_per_s(mesh, material, corners)
                                            : solid::largest_frequency_rad_per_s(
                                                  mesh, material, solid::make_operator(mesh, material));
   return steps_of(body, omega, time);

@@ -37,6 +37,8 @@ struct BodySource {
   const mesh::Mesh& mesh;
   const solid::Material& material;
   const PartOfBody* part = nullptr;  ///< of a larger body; null for a whole one
+  /// Where the mesh is that of the interface alone, and has reliefs: see mesh::make_corners.
+  const mesh::Mesh* corners = nullptr;
 };
 
 /// What entries of a list in KeptMotion belong to: nodes, by their number; places along the interface;

@@ -87,18 +87,24 @@ bool has_snapshots(const input::Case& config) {
   return !config.output.snapshot_times_s.empty() || std::isfinite(config.output.snapshot_interval_s);
 }
 
-bool leads_by_interface(const input::Case& config, int n_processes) {
+bool leads_by_interface(const input::Case& config, int n_processes, bool may_keep) {
   const auto is_of_many_squares = [](const mesh::Plate& plate) {
-    if (plate.coarsenings != 0 || plate.corner != mesh::Corner::none) return false;
+    if (plate.coarsenings != 0 || plate.corner == mesh::Corner::fillet) return false;
     const double columns = std::round(plate.width_m / plate.element_size_m);
     const double rows = std::round(plate.height_m / plate.element_size_m);
     constexpr double most = std::numeric_limits<int>::max();
     if (!(columns > 0 && columns < most && rows > 0 && rows < most)) return false;  // refused elsewhere
+    // Above a relief there are squares in all columns.
+    if (plate.corner == mesh::Corner::relief &&
+        plate.relief_depth_m > plate.height_m - 2 * plate.element_size_m)
+      return false;
     const mesh::Grid grid{.columns = static_cast<int>(columns), .rows = static_cast<int>(rows)};
     const auto n_nodes = static_cast<std::int64_t>((columns + 1) * (rows + 1));
     return solid::takes_frequency_bound(n_nodes, std::span(&grid, 1));
   };
-  return n_processes > 1 && is_prestressed(config) && is_of_many_squares(config.plate) &&
+  const bool is_kept_elsewhere =
+      is_prestressed(config) || (may_keep && keeps_displacements(config, n_processes));
+  return n_processes > 1 && is_kept_elsewhere && is_of_many_squares(config.plate) &&
          (!input::has_base_body(config) || is_of_many_squares(input::base_plate(config)));
 }
 

@@ -48,9 +48,11 @@ bool is_prestressed(const input::Case& config);
 bool has_snapshots(const input::Case& config);
 
 /// Whether the process that leads several needs no more of the bodies than their interfaces (see
-/// mesh::make_interface): nothing is strained before the event, and all cells are squares, so many that the
-/// step follows from their side.
-bool leads_by_interface(const input::Case& config, int n_processes);
+/// mesh::make_interface) and the cells at their corners: nothing is strained before the event, or each
+/// process keeps its share of it, and all other cells are equal squares, so many that the step follows from
+/// their side.
+/// @param may_keep  see make_initial_state
+bool leads_by_interface(const input::Case& config, int n_processes, bool may_keep = true);
 
 /// Whether several processes, which solve the statics together, each keep their share of the displacements
 /// before the event, and the one that leads has no more than its own.

@@ -268,6 +268,7 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
   work.values_per_row = static_cast<double>(record::history_fields.size()) * n_columns;
   work.snapshots = info.needs.snapshots;
   work.leads_by_interface = leads_by_interface(config, sharing.n_processes);
+  work.corner_bytes = corner_bytes(config);
   work.keeps_displacements = keeps_displacements(config, sharing.n_processes);
   work.statics_s = expected_statics_s(info);
   work.statics_bytes = info.solver_bytes;
@@ -276,6 +277,7 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
     auto size = size_of(meshes, info);
     size.statics_share = 1.0 / sharing.n_processes;
     size.keeps_displacements = work.keeps_displacements;
+    size.leads_by_interface = work.leads_by_interface;
     work.statics_bytes = statics_bytes(config, size);
     work.shared_statics_bytes = info.solver_bytes / sharing.n_processes;
   }

@@ -169,7 +169,8 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
 
 Meshes check(const input::Case& config, const Processes* processes, bool may_keep) {
   require_memory_fits(config, processes, may_keep);
-  return checked_meshes(config, leads_by_interface(config, processes != nullptr ? processes->size() : 1));
+  const int n_processes = processes != nullptr ? processes->size() : 1;
+  return checked_meshes(config, leads_by_interface(config, n_processes, may_keep));
 }
 
 Meshes check_interfaces(const input::Case& config) {
@@ -218,10 +219,14 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   const SharedStatics helpers(is_shared ? processes : nullptr);
   if (may_keep && processes != nullptr && keeps_displacements(config, processes->size()))
     initial.kept = std::make_shared<statics::KeptDisplacements>();
+  statics::SharedBy shared{is_shared ? processes : nullptr, initial.kept.get()};
+  if (initial.mesh.is_interface()) {
+    shared.plates.push_back(config.plate);
+    if (base) shared.plates.push_back(input::base_plate(config));
+  }
   const statics::Statics statics(
       {initial.mesh, config.material}, base, config.loading, at_all_nodes(mu_s, initial.mesh),
-      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); },
-      statics::SharedBy{is_shared ? processes : nullptr, initial.kept.get()});
+      interface::static_coefficient_key(config.friction), [&] { return monitor(0, 0); }, shared);
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();

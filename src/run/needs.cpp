@@ -113,7 +113,7 @@ statics::StaticsBudget statics_budget(const input::Case& config, const Size& siz
   return statics::statics_budget({wanted_solver(config), 2 * (size.n_nodes - size.n_base_nodes),
                                   size.n_interface, 2 * size.n_base_nodes,
                                   config.loading.top_during_tilt == statics::TopEdge::free,
-                                  size.statics_share, size.keeps_displacements});
+                                  size.statics_share, size.keeps_displacements, size.leads_by_interface});
 }
 
 /// Bodies in motion. The process that leads several has the mesh and the state of all nodes as well while
@@ -125,7 +125,8 @@ double motion_bytes(const input::Case& config, const Size& size, double n_snapsh
   };
   if (!size.parts_share) return of(1, n_snapshots > 0);
   const double of_all_nodes = leaders_bytes_per_node(size.leads_by_interface, size.keeps_displacements);
-  return of(*size.parts_share, false) + of_all_nodes * size.n_nodes;
+  return of(*size.parts_share, false) + of_all_nodes * size.n_nodes +
+         (size.leads_by_interface ? corner_bytes(config) : 0);
 }
 
 /// The event while it is built and goes, with what is recorded of it and waits to be written.
@@ -208,7 +209,7 @@ Size held_here(const input::Case& config, Size size, const Processes* processes,
   const double width = size.n_interface / n_processes;
   const double halo = 2.0 * (config.time.interface_substeps + 2);
   size.parts_share = share_here(processes) * (1 + std::max(0.1, halo / width));
-  size.leads_by_interface = leads_by_interface(config, n_processes);
+  size.leads_by_interface = leads_by_interface(config, n_processes, may_keep);
   size.keeps_displacements = may_keep && keeps_displacements(config, n_processes);
   return size;
 }
@@ -305,6 +306,17 @@ double bytes_per_interface_node(const input::Case& config) {
   const double record = changes * (2 * number + around + 2 * number);
   // The recorder with the copy of its record in the order of time.
   return state + 2 * record;
+}
+
+double corner_bytes(const input::Case& config) {
+  const auto& plate = config.plate;
+  if (plate.corner != mesh::Corner::relief) return 0;
+  const auto cells = [&](double length_m) {
+    return length_m / plate.element_size_m + solid::rings_around_others + 2;
+  };
+  // Mesh, block rows and iterations.
+  constexpr double bytes_per_node = 500;
+  return 2 * cells(plate.relief_length_m) * cells(plate.relief_depth_m) * bytes_per_node;
 }
 
 double statics_bytes(const input::Case& config, const Size& size) {

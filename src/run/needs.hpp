@@ -68,6 +68,9 @@ struct Needs {
   double disk_bytes() const { return total_bytes(disk()); }
 };
 
+/// What the leader holds of the cells at reliefs where it leads_by_interface, while the event begins.
+double corner_bytes(const input::Case& config);
+
 /// The peak of the statics, 0 without any.
 double statics_bytes(const input::Case& config, const Size& size);
 

@@ -132,7 +132,9 @@ std::unique_ptr<motion::Part> take_part(Processes& processes, Parcel& given,
 WholeBodies::WholeBodies(const input::Case& config, const mesh::Mesh& plate,
                          const std::optional<mesh::Mesh>& base)
     : config_(config), base_material_(input::base_material(config)) {
-  bodies_.push_back({plate, config.material});
+  if (plate.is_interface() && config.plate.corner == mesh::Corner::relief)
+    corners_ = mesh::make_corners(config.plate, solid::rings_around_others);
+  bodies_.push_back({plate, config.material, nullptr, corners_ ? &*corners_ : nullptr});
   if (base) bodies_.push_back({*base, base_material_});
 }
 

@@ -45,6 +45,7 @@ class WholeBodies {
  private:
   const input::Case& config_;
   solid::Material base_material_;
+  std::optional<mesh::Mesh> corners_;  ///< of a plate of which the interface alone is held
   std::vector<motion::BodySource> bodies_;
 };
 

@@ -85,8 +85,8 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
     for (double parts = 1; parts < n_parts; parts *= 2)
       cost.command_s +=
           work.advances * (latency_s(parts * told_bytes / n_parts / work.advances) - network.latency_s);
-    cost.start_s =
-        work.leads_by_interface ? 0 : passed_s(state_bytes_per_node * work.n_nodes, by_leader_and_parts);
+    const bool is_unstrained = work.leads_by_interface && !work.keeps_displacements;
+    cost.start_s = is_unstrained ? 0 : passed_s(state_bytes_per_node * work.n_nodes, by_leader_and_parts);
   }
   cost.statics_s = work.statics_s;
 
@@ -100,7 +100,7 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   // less than the building of the leader's own part has taken.
   const double sent = n_parts > 1 ? share * state_bytes_per_node : 0;
   const double of_node = leaders_bytes_per_node(work.leads_by_interface, work.keeps_displacements);
-  const double starting = work.leads_by_interface ? 0 : (of_node + sent) * work.n_nodes;
+  const double starting = work.leads_by_interface ? work.corner_bytes : (of_node + sent) * work.n_nodes;
   cost.leader_memory_bytes =
       work.program_bytes + std::max(work.statics_bytes, of_part + starting + work.recorded_bytes +
                                                             work.bytes_per_interface_node * work.n_columns);

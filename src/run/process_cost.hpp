@@ -42,6 +42,7 @@ struct SharedWork {
   double history_rows = 0, values_per_row = 0;
   double snapshots = 0;
   bool leads_by_interface = false;          ///< the leader holds nothing of all nodes
+  double corner_bytes = 0;                  ///< but for the cells at the corners, while the event begins
   bool keeps_displacements = false;         ///< nor displacements before the event
   double statics_s = 0, statics_bytes = 0;  ///< of the leader
   double shared_statics_bytes = 0;          ///< of each other process, where they share the statics

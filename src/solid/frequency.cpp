@@ -13,9 +13,6 @@ namespace {
 /// Cells on the side of a block of squares that stands for all of them. One square alone has a frequency some
 /// 17 % higher, by a mode in which its neighbours hinder it.
 constexpr int block_side = 32;
-/// Rings of cells around those that are no squares.
-constexpr int rings = 16;
-
 bool is_square(const mesh::Mesh& mesh, const mesh::Cell& cell) {
   const auto c = cell_coordinates(mesh, cell);
   const double h = c[2] - c[0], tolerance = 1e-9 * std::abs(h);
@@ -63,8 +60,19 @@ mesh::Mesh square_block(int side, double spacing_m) {
   return block;
 }
 
-/// Of the squares on a row of nodes, as cell_coordinates has it.
-double smallest_side_m(const mesh::Mesh& interface) {
+/// Of the squares.
+double smallest_side_m(const mesh::Mesh& mesh) {
+  double smallest_m = std::numeric_limits<double>::infinity();
+  for (const auto& cell : mesh.cells) {
+    if (!is_square(mesh, cell)) continue;
+    const auto c = cell_coordinates(mesh, cell);
+    smallest_m = std::min(smallest_m, std::abs(c[2] - c[0]));
+  }
+  return smallest_m;
+}
+
+/// Of those on a row of nodes, as cell_coordinates has it.
+double smallest_side_of_interface_m(const mesh::Mesh& interface) {
   double smallest_m = std::numeric_limits<double>::infinity();
   const auto look_at = [&](mesh::Node n, mesh::Node next) {
     const double x_m = interface.x_m[n];
@@ -76,25 +84,16 @@ double smallest_side_m(const mesh::Mesh& interface) {
   return smallest_m;
 }
 
-}  // namespace
-
-double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material) {
-  if (mesh.is_interface()) return frequency_of_squares_rad_per_s(smallest_side_m(mesh), material);
+/// Of the cells that are no squares with those around them; 0 where all are squares.
+double frequency_of_others_rad_per_s(const mesh::Mesh& mesh, const Material& material) {
   std::vector<bool> near(mesh.cells.size(), false), of_near(mesh.n_nodes(), false);
-  double smallest_side_m = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     near[k] = !is_square(mesh, mesh.cells[k]);
-    if (near[k]) {
-      for (const auto n : mesh.cells[k]) of_near[n] = true;
-    } else {
-      const auto c = cell_coordinates(mesh, mesh.cells[k]);
-      smallest_side_m = std::min(smallest_side_m, std::abs(c[2] - c[0]));
-    }
+    if (!near[k]) continue;
+    for (const auto n : mesh.cells[k]) of_near[n] = true;
   }
-  double largest = 0;
-  if (std::isfinite(smallest_side_m)) largest = frequency_of_squares_rad_per_s(smallest_side_m, material);
-  if (std::ranges::find(near, true) == near.end()) return largest;
-  for (int ring = 0; ring < rings; ++ring) {
+  if (std::ranges::find(near, true) == near.end()) return 0;
+  for (int ring = 0; ring < rings_around_others; ++ring) {
     const auto reached = of_near;
     for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
       if (near[k] || std::ranges::none_of(mesh.cells[k], [&](mesh::Node n) { return reached[n]; })) continue;
@@ -102,7 +101,18 @@ double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& materia
       for (const auto n : mesh.cells[k]) of_near[n] = true;
     }
   }
-  return std::max(largest, largest_frequency_rad_per_s(make_operator(part_of(mesh, near), material)));
+  return largest_frequency_rad_per_s(make_operator(part_of(mesh, near), material));
+}
+
+}  // namespace
+
+double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material,
+                                 const mesh::Mesh* corners) {
+  const bool is_interface = mesh.is_interface();
+  const double side_m = is_interface ? smallest_side_of_interface_m(mesh) : smallest_side_m(mesh);
+  const double of_squares = std::isfinite(side_m) ? frequency_of_squares_rad_per_s(side_m, material) : 0;
+  if (is_interface && corners == nullptr) return of_squares;
+  return std::max(of_squares, frequency_of_others_rad_per_s(is_interface ? *corners : mesh, material));
 }
 
 double frequency_of_squares_rad_per_s(double side_m, const Material& material) {

@@ -205,8 +205,12 @@ double largest_frequency_rad_per_s(const Operator& op);
 /// those around them, free as well. A plate divided into parts, each with its own share of the mass, has no
 /// higher frequency than the highest of them; free blocks of 20 x 20 and more squares differ by less than
 /// 1e-3.
-/// @param mesh  of squares alone the interface is enough, see mesh::make_interface
-double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material);
+/// @param mesh     of a plate the interface is enough, see mesh::make_interface
+/// @param corners  of an interface, where not all cells are squares: these and rings_around_others of cells
+///                 around them
+double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material,
+                                 const mesh::Mesh* corners = nullptr);
+inline constexpr int rings_around_others = 16;
 
 /// The same of squares alone, with this smallest side.
 double frequency_of_squares_rad_per_s(double side_m, const Material& material);

@@ -35,11 +35,10 @@ class PetscLoadCase : public LoadCase {
   PetscLoadCase(PetscSolver& solver, TopConstraint constraint, const TopDisplacement& top, bool sheared,
                 const DisplacementOfBodies* start)
       : solver_(solver), is_sheared_(sheared) {
-    const auto& plate = solver.plate_;
-    const double x0_m = plate.x_m[plate.top.front()];
+    const auto& loaded = solver.loaded_;
     Parcel given;
     given.put(constraint).put(static_cast<std::uint8_t>(sheared)).put(start != nullptr ? start->kept : -1);
-    given.put(x0_m).put(plate.x_m[plate.top.back()] - x0_m).put(plate.y_m[plate.top.front()]);
+    given.put(loaded.from_m).put(loaded.to_m - loaded.from_m).put(loaded.y_m);
     given.put(top.u_x_m).put(top.u_y_m);
     solver.ask(PetscSolver::Command::begin, [&](int) { return given; });
   }
@@ -110,9 +109,9 @@ double petsc_bytes(double n_unknowns) {
   return 1300 * n_unknowns;
 }
 
-double divided_bytes(double n_unknowns, double share) {
+double divided_bytes(double n_unknowns, double share, bool are_held) {
   // Half of a node: meshes and numbers; a piece with its coordinates and cells, on its way, or a field.
-  return n_unknowns * (16 + 6 + share * 28);
+  return n_unknowns * ((16 + 6) * (are_held ? 1 : share) + share * 28);
 }
 
 void PetscShare::build(const Piece& piece) {
@@ -163,9 +162,11 @@ Parcel PetscShare::carry_out(Command command, Parcel& given) {
   Parcel answer;
   switch (command) {
     case Command::build: {
-      const auto piece = Piece::take(given);
+      const bool is_planned = given.take<bool>();
+      const auto piece = is_planned ? PiecePlan::take(given).make() : Piece::take(given);
       given = {};
       build(piece);
+      answer.put(piece.lower);
       break;
     }
     case Command::begin:
@@ -201,23 +202,41 @@ Parcel PetscShare::carry_out(Command command, Parcel& given) {
   return answer;
 }
 
+PetscSolver::Edge PetscSolver::loaded_edge(const mesh::Mesh& plate, std::span<const mesh::Plate> plates) {
+  const auto between = [](const mesh::Mesh& mesh, mesh::Node first, mesh::Node last) {
+    return Edge{mesh.x_m[first], mesh.x_m[last], mesh.y_m[first]};
+  };
+  if (!plate.is_interface()) return between(plate, plate.top.front(), plate.top.back());
+  const auto row = mesh::make_rows(plates.front(), plate.grid.rows, plate.grid.rows);
+  return between(row, 0, row.n_nodes() - 1);
+}
+
 PetscSolver::PetscSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base,
                          const SharedBy& shared)
     : plate_(plate.mesh),
-      divided_(plate, base, shared.processes != nullptr ? shared.processes->size() : 1),
+      divided_(plate, base, shared.processes != nullptr ? shared.processes->size() : 1, shared.plates),
       processes_(shared.processes),
       gathers_(shared.kept == nullptr),
-      share_(shared.kept != nullptr ? *shared.kept : own_kept_) {
-  std::size_t n_prescribed = plate.mesh.top.size() + (base ? base->mesh.top.size() : 0);
-  n_unknowns_ = 2 * (static_cast<std::int64_t>(divided_.n_pairs()) - static_cast<std::int64_t>(n_prescribed));
-  lower_.resize(static_cast<std::size_t>(divided_.n_pieces()));
-  ask(Command::build, [&](int rank) {
-    const auto piece = divided_.piece(rank);
-    for (const auto& place : piece.lower) lower_[static_cast<std::size_t>(rank)].push_back(place.place);
-    Parcel parcel;
-    piece.put(parcel);
-    return parcel;
-  });
+      share_(shared.kept != nullptr ? *shared.kept : own_kept_),
+      loaded_(loaded_edge(plate.mesh, shared.plates)) {
+  std::int64_t n_prescribed = std::ssize(loaded_nodes(plate.mesh));
+  if (base) n_prescribed += std::ssize(loaded_nodes(base->mesh));
+  n_unknowns_ = 2 * (static_cast<std::int64_t>(divided_.n_pairs()) - n_prescribed);
+  ask(
+      Command::build,
+      [&](int rank) {
+        Parcel parcel;
+        parcel.put(!divided_.are_held());
+        if (divided_.are_held())
+          divided_.piece(rank).put(parcel);
+        else
+          divided_.plan(rank).put(parcel);
+        return parcel;
+      },
+      [&](int, Parcel& answer) {
+        auto& places = lower_.emplace_back();
+        for (const auto& place : answer.take_all<Piece::Place>()) places.push_back(place.place);
+      });
 }
 
 // PETSc's objects go at the same time everywhere.

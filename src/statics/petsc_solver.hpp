@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,10 @@ namespace slipfront::statics {
 
 /// Bytes of the equations of so many unknowns at their peak, in all processes together; and of the leader
 /// besides, with the bodies that it divides. The equilibria found not.
-/// @param share  of the bodies, the largest piece
+/// @param share     of the bodies, the largest piece
+/// @param are_held  by the leader; else each process makes its piece itself
 double petsc_bytes(double n_unknowns);
-double divided_bytes(double n_unknowns, double share);
+double divided_bytes(double n_unknowns, double share, bool are_held);
 
 /// One process's share in PETSc's equations.
 class PetscShare {
@@ -64,6 +66,11 @@ class PetscSolver : public PlateSolver {
   friend class PetscLoadCase;
   using Command = PetscShare::Command;
 
+  struct Edge {
+    double from_m = 0, to_m = 0, y_m = 0;
+  };
+  static Edge loaded_edge(const mesh::Mesh& plate, std::span<const mesh::Plate> plates);
+
   /// Gives each process a parcel, carries out the own share and shows all answers, one by one.
   void ask(
       Command command, const std::function<Parcel(int rank)>& given,
@@ -75,6 +82,7 @@ class PetscSolver : public PlateSolver {
   bool gathers_;
   KeptDisplacements own_kept_;  ///< where it gathers
   PetscShare share_;
+  Edge loaded_;
   std::vector<std::vector<std::int32_t>> lower_;  ///< [pieces] places in mesh.lower of each
   std::int64_t n_unknowns_ = 0;
 };

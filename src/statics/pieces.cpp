@@ -61,7 +61,10 @@ namespace {
 /// The first column of each piece, and the number of columns.
 std::vector<int> first_columns(const std::vector<std::int64_t>& nodes_of_column, int n_pieces) {
   const auto n_nodes = std::reduce(nodes_of_column.begin(), nodes_of_column.end());
-  SLIPFRONT_ASSERT(n_nodes < std::numeric_limits<std::int32_t>::max() / 2, "too many unknowns");
+  constexpr auto most = std::numeric_limits<std::int32_t>::max() / 2;
+  if (n_nodes > most)
+    throw UserError("{} nodes are more than the {} whose unknowns PETSc can number; choose a larger {}",
+                    n_nodes, most, Key("plate.element_size_m"));
   std::vector<int> first = {0};
   std::int64_t before = 0;
   for (std::size_t column = 0; column < nodes_of_column.size(); ++column) {
@@ -73,59 +76,35 @@ std::vector<int> first_columns(const std::vector<std::int64_t>& nodes_of_column,
   return first;
 }
 
-}  // namespace
+/// A body, or some columns of it, with the pairs of its nodes.
+struct NumberedBody {
+  const mesh::Mesh& mesh;
+  const solid::Material& material;
+  std::vector<std::int32_t> pair;  ///< [nodes] -1 where there is no cell
+};
 
-DividedBodies::DividedBodies(const ElasticBody& plate, const std::optional<ElasticBody>& base, int n_pieces) {
-  Cut cut;
-  bodies_.push_back({&plate.mesh, &plate.material, {}});
-  if (base) {
-    bodies_.push_back({&base->mesh, &base->material, {}});
-    cut.base_is_relative = plate.material.youngs_modulus_Pa > base->material.youngs_modulus_Pa;
-  }
-  std::vector<mesh::NodeColumns> columns;
-  for (const auto& body : bodies_) columns.emplace_back(*body.mesh);
-  std::vector<std::int64_t> nodes_of_column(static_cast<std::size_t>(columns.front().n_columns()));
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    auto& orphans = cut.orphans.emplace_back();
-    const auto is_orphan = mesh::orphans(*bodies_[b].mesh);
-    for (mesh::Node n = 0; n < bodies_[b].mesh->n_nodes(); ++n)
-      if (is_orphan[n])
-        orphans.push_back(n);
-      else
-        ++nodes_of_column[columns[b].column_of(n)];
-  }
-  cut.first_column = first_columns(nodes_of_column, n_pieces);
-  first_ = {0};
-  for (auto& body : bodies_) body.pair.assign(static_cast<std::size_t>(body.mesh->n_nodes()), -1);
-  for (int k = 0; k < n_pieces; ++k) {
-    std::int32_t next = first_.back();
-    const auto nodes = cut.nodes_of_piece(columns, k);
-    for (std::size_t b = 0; b < bodies_.size(); ++b)
-      for (const auto n : nodes[b]) bodies_[b].pair[n] = next++;
-    first_.push_back(next);
-  }
-  cut_ = std::make_shared<const Cut>(std::move(cut));
-}
-
-std::vector<std::int32_t> DividedBodies::opposites(std::size_t body) const {
-  std::vector<std::int32_t> opposite(bodies_[body].pair.size(), -1);
-  if (bodies_.size() == 1 || &bodies_[body] != &relative()) return opposite;
-  const auto& lower = bodies_[body].mesh->lower;
-  const auto& other = bodies_[1 - body];
-  for (std::size_t k = 0; k < lower.size(); ++k) opposite[lower[k]] = other.pair[other.mesh->lower[k]];
+/// [nodes] The other body's pair at the nodes of the body whose pairs are relative.
+std::vector<std::int32_t> opposites(const NumberedBody& relative, const NumberedBody& other) {
+  std::vector<std::int32_t> opposite(relative.pair.size(), -1);
+  const auto& lower = relative.mesh.lower;
+  for (std::size_t k = 0; k < lower.size(); ++k) opposite[lower[k]] = other.pair[other.mesh.lower[k]];
   return opposite;
 }
 
-Piece DividedBodies::piece(int number) const {
+/// @param before  columns of the whole bodies to the left of these: so many places along their edges
+Piece piece_of(std::span<const NumberedBody> bodies, bool base_is_relative, std::int32_t first,
+               std::int32_t end, std::int32_t n_pairs, int before) {
   Piece piece;
-  piece.first = first_[number];
-  piece.count = first_[number + 1] - piece.first;
-  piece.n_pairs = n_pairs();
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const auto& pair = bodies_[b].pair;
-    const auto& mesh = *bodies_[b].mesh;
-    const auto opposite = opposites(b);
-    auto& body = piece.bodies.emplace_back(Piece::Body{*bodies_[b].material, b > 0, {}, {}});
+  piece.first = first;
+  piece.count = end - first;
+  piece.n_pairs = n_pairs;
+  const std::size_t of_relative = base_is_relative ? 1 : 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto& [mesh, material, pair] = bodies[b];
+    const bool is_relative = bodies.size() > 1 && b == of_relative;
+    const auto opposite =
+        is_relative ? opposites(bodies[b], bodies[1 - b]) : std::vector<std::int32_t>(pair.size(), -1);
+    auto& body = piece.bodies.emplace_back(Piece::Body{material, b > 0, {}, {}});
     std::vector<mesh::Node> local(pair.size(), -1);
     for (const auto& cell : mesh.cells) {
       const auto is_own = [&](mesh::Node n) { return piece.has(pair[n]) || piece.has(opposite[n]); };
@@ -140,38 +119,141 @@ Piece DividedBodies::piece(int number) const {
       }
     }
   }
-  const auto& relative = this->relative();
-  const auto gap_m = gaps_m(*bodies_.front().mesh, bodies_.size() > 1 ? bodies_.back().mesh : nullptr);
-  for (std::size_t k = 0; k < relative.mesh->lower.size(); ++k) {
-    const auto own = relative.pair[relative.mesh->lower[k]];
-    if (!piece.has(own)) continue;
-    piece.lower.push_back({own, static_cast<std::int32_t>(k)});
+  const auto for_own = [&](const NumberedBody& body, const std::vector<mesh::Node>& edge, auto&& take) {
+    for (std::size_t k = 0; k < edge.size(); ++k)
+      if (const auto pair = body.pair[edge[k]]; piece.has(pair))
+        take(Piece::Place{pair, static_cast<std::int32_t>(k) + before}, k);
+  };
+  const auto& relative = bodies[of_relative];
+  const auto gap_m = gaps_m(bodies.front().mesh, bodies.size() > 1 ? &bodies.back().mesh : nullptr);
+  for_own(relative, relative.mesh.lower, [&](const Piece::Place& place, std::size_t k) {
+    piece.lower.push_back(place);
     piece.gap_m.push_back(gap_m[k]);
-  }
-  const auto& plate = bodies_.front();
-  for (std::size_t k = 0; k < plate.mesh->top.size(); ++k)
-    if (const auto pair = plate.pair[plate.mesh->top[k]]; piece.has(pair))
-      piece.top.push_back({pair, static_cast<std::int32_t>(k)});
-  if (bodies_.size() > 1)
-    for (const auto n : bodies_.back().mesh->top)
-      if (const auto pair = bodies_.back().pair[n]; piece.has(pair)) piece.held.push_back(pair);
+  });
+  for_own(bodies.front(), bodies.front().mesh.top,
+          [&](const Piece::Place& place, std::size_t) { piece.top.push_back(place); });
+  if (bodies.size() > 1)
+    for_own(bodies.back(), bodies.back().mesh.top,
+            [&](const Piece::Place& place, std::size_t) { piece.held.push_back(place.pair); });
   return piece;
+}
+
+}  // namespace
+
+void PiecePlan::put(Parcel& to) const {
+  to.put(bodies).put(base_is_relative).put(first_column).put(first).put(number);
+}
+
+PiecePlan PiecePlan::take(Parcel& from) {
+  PiecePlan plan;
+  plan.bodies = from.take_all<Body>();
+  plan.base_is_relative = from.take<bool>();
+  plan.first_column = from.take_all<int>();
+  plan.first = from.take_all<std::int32_t>();
+  plan.number = from.take<std::int32_t>();
+  return plan;
+}
+
+Piece PiecePlan::make() const {
+  const auto k = static_cast<std::size_t>(number);
+  // Cells join neighbouring columns.
+  const int begin = std::max(first_column[k] - 1, 0);
+  const int end = std::min(first_column[k + 1] + 1, first_column.back());
+  std::vector<mesh::Mesh> meshes;
+  for (const auto& body : bodies)
+    meshes.push_back(mesh::make_columns(body.plate, mesh::Subset({{begin, end}})));
+  // A piece has the rows of one body after those of the other one, each from left to right.
+  struct Column {
+    std::int32_t lowest = 0, width = 0;  // pair of the lowest node, and columns of the piece
+  };
+  std::vector<Column> columns;
+  for (int i = begin; i < end; ++i) {
+    const auto p = std::ranges::upper_bound(first_column, i) - first_column.begin() - 1;
+    columns.push_back({first[p] + i - first_column[p], first_column[p + 1] - first_column[p]});
+  }
+  std::vector<NumberedBody> numbered;
+  std::int32_t row = 0;
+  for (std::size_t b = 0; b < meshes.size(); ++b) {
+    std::vector<std::int32_t> pair;
+    for (const auto end_row = row + meshes[b].grid.rows + 1; row < end_row; ++row)
+      for (const auto& [lowest, width] : columns) pair.push_back(lowest + row * width);
+    numbered.push_back({meshes[b], bodies[b].material, std::move(pair)});
+  }
+  return piece_of(numbered, base_is_relative, first[k], first[k + 1], first.back(), begin);
+}
+
+DividedBodies::DividedBodies(const ElasticBody& plate, const std::optional<ElasticBody>& base, int n_pieces,
+                             std::span<const mesh::Plate> plates)
+    : bodies_{plate}, plates_(plates.begin(), plates.end()) {
+  Cut cut;
+  if (base) {
+    bodies_.push_back(*base);
+    cut.base_is_relative = plate.material.youngs_modulus_Pa > base->material.youngs_modulus_Pa;
+  }
+  std::vector<mesh::NodeColumns> columns;
+  for (const auto& body : bodies_)
+    columns.push_back(are_held() ? mesh::NodeColumns(body.mesh) : mesh::NodeColumns(mesh::blocks(body.mesh)));
+  std::vector<std::int64_t> nodes_of_column(static_cast<std::size_t>(columns.front().n_columns()));
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    auto& orphans = cut.orphans.emplace_back();
+    if (!are_held()) {
+      for (auto& n : nodes_of_column) n += columns[b].n_rows();
+      continue;
+    }
+    const auto is_orphan = mesh::orphans(bodies_[b].mesh);
+    for (mesh::Node n = 0; n < bodies_[b].mesh.n_nodes(); ++n)
+      if (is_orphan[n])
+        orphans.push_back(n);
+      else
+        ++nodes_of_column[columns[b].column_of(n)];
+  }
+  cut.first_column = first_columns(nodes_of_column, n_pieces);
+  first_ = {0};
+  for (int k = 0; k < n_pieces; ++k) {
+    const auto begin = nodes_of_column.begin() + cut.first_column[k];
+    const auto end = nodes_of_column.begin() + cut.first_column[k + 1];
+    first_.push_back(first_.back() + static_cast<std::int32_t>(std::reduce(begin, end)));
+  }
+  if (are_held()) {
+    for (const auto& body : bodies_) pair_.emplace_back(static_cast<std::size_t>(body.mesh.n_nodes()), -1);
+    for (int k = 0; k < n_pieces; ++k) {
+      std::int32_t next = first_[k];
+      const auto nodes = cut.nodes_of_piece(columns, k);
+      for (std::size_t b = 0; b < bodies_.size(); ++b)
+        for (const auto n : nodes[b]) pair_[b][n] = next++;
+    }
+  }
+  cut_ = std::make_shared<const Cut>(std::move(cut));
+}
+
+Piece DividedBodies::piece(int number) const {
+  SLIPFRONT_ASSERT(are_held(), "bodies to cut");
+  std::vector<NumberedBody> numbered;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    numbered.push_back({bodies_[b].mesh, bodies_[b].material, pair_[b]});
+  return piece_of(numbered, cut_->base_is_relative, first_[number], first_[number + 1], n_pairs(), 0);
+}
+
+PiecePlan DividedBodies::plan(int number) const {
+  PiecePlan plan{{}, cut_->base_is_relative, cut_->first_column, first_, number};
+  for (std::size_t b = 0; b < bodies_.size(); ++b) plan.bodies.push_back({plates_[b], bodies_[b].material});
+  return plan;
 }
 
 Displacement DividedBodies::displacement(const std::vector<double>& unknowns) const {
   Displacement u;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     auto& field = b == 0 ? u.above : u.below;
-    field = solid::Field(bodies_[b].pair.size());
+    field = solid::Field(pair_[b].size());
     for (std::size_t n = 0; n < field.size(); ++n) {
-      const auto pair = bodies_[b].pair[n];
+      const auto pair = pair_[b][n];
       if (pair < 0) continue;
       field.x[n] = unknowns[2 * pair];
       field.y[n] = unknowns[2 * pair + 1];
     }
   }
   if (bodies_.size() > 1)
-    make_absolute(u.above, bodies_[0].mesh->lower, u.below, bodies_[1].mesh->lower, cut_->base_is_relative);
+    make_absolute(u.above, bodies_[0].mesh.lower, u.below, bodies_[1].mesh.lower, cut_->base_is_relative);
   return u;
 }
 

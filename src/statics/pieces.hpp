@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "mesh/plate.hpp"
 #include "processes/parcel.hpp"
 #include "statics/elastic_body.hpp"
 #include "statics/kept_displacements.hpp"
@@ -59,31 +60,47 @@ Terms terms_of(bool is_relative, bool is_base);
 void make_absolute(solid::Field& plate, std::span<const mesh::Node> plate_lower, solid::Field& base,
                    std::span<const mesh::Node> base_lower, bool base_is_relative);
 
+/// Of bodies of equal elements, which no process holds, what one needs to make its piece itself.
+struct PiecePlan {
+  struct Body {
+    mesh::Plate plate;
+    solid::Material material;
+  };
+  std::vector<Body> bodies;
+  bool base_is_relative = false;
+  std::vector<int> first_column;    ///< [pieces + 1]
+  std::vector<std::int32_t> first;  ///< [pieces + 1] pairs
+  std::int32_t number = 0;          ///< of the piece
+
+  void put(Parcel& to) const;
+  static PiecePlan take(Parcel& from);
+  Piece make() const;
+};
+
 /// A plate, and a base below it, cut across the interface into pieces of columns with about as many nodes
 /// each.
 class DividedBodies {
  public:
-  DividedBodies(const ElasticBody& plate, const std::optional<ElasticBody>& base, int n_pieces);
+  /// @param plates  where the meshes are those of the interfaces alone: of the bodies
+  DividedBodies(const ElasticBody& plate, const std::optional<ElasticBody>& base, int n_pieces,
+                std::span<const mesh::Plate> plates = {});
 
   int n_pieces() const { return cut_->n_pieces(); }
   const std::shared_ptr<const Cut>& cut() const { return cut_; }
   std::int32_t n_pairs() const { return first_.back(); }
+  /// Whether the bodies are held, so that pieces can be cut from them; else each is made by a plan.
+  bool are_held() const { return plates_.empty(); }
   Piece piece(int number) const;
+  PiecePlan plan(int number) const;
 
   /// Displacements of the bodies for all unknowns; 0 at numbers without a cell.
+  /// @pre the bodies are held
   Displacement displacement(const std::vector<double>& unknowns) const;
 
  private:
-  struct Body {
-    const mesh::Mesh* mesh;
-    const solid::Material* material;
-    std::vector<std::int32_t> pair;  ///< [nodes] -1 where there is no cell
-  };
-  const Body& relative() const { return bodies_[cut_->base_is_relative ? 1 : 0]; }
-  /// [nodes] The other body's pair at the nodes whose own one is relative; else -1.
-  std::vector<std::int32_t> opposites(std::size_t body) const;
-
-  std::vector<Body> bodies_;
+  std::vector<ElasticBody> bodies_;
+  std::vector<mesh::Plate> plates_;
+  std::vector<std::vector<std::int32_t>> pair_;  ///< [bodies][nodes] -1 where there is no cell
   std::shared_ptr<const Cut> cut_;
   std::vector<std::int32_t> first_;  ///< [pieces + 1]
 };

@@ -132,7 +132,8 @@ class DirectSolver : public PlateSolver {
 };
 
 void require_base_fits(const mesh::Mesh& plate, const mesh::Mesh& base) {
-  SLIPFRONT_ASSERT(!base.top.empty(), "a base that nothing holds cannot be in equilibrium");
+  SLIPFRONT_ASSERT(base.is_interface() || !base.top.empty(),
+                   "a base that nothing holds cannot be in equilibrium");
   SLIPFRONT_ASSERT(base.lower.size() == plate.lower.size(), "interfaces of different nodes");
   const double width_m = plate.x_m[plate.lower.back()] - plate.x_m[plate.lower.front()];
   for (std::size_t k = 0; k < plate.lower.size(); ++k)
@@ -151,6 +152,10 @@ std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base) {
   for (const auto n : plate.lower) gap_m.push_back(plate.y_m[n]);
   for (std::size_t k = 0; base != nullptr && k < gap_m.size(); ++k) gap_m[k] += base->y_m[base->lower[k]];
   return gap_m;
+}
+
+const std::vector<mesh::Node>& loaded_nodes(const mesh::Mesh& mesh) {
+  return mesh.is_interface() ? mesh.lower : mesh.top;
 }
 
 StaticSolver choose_solver(StaticSolver wanted, double n_unknowns) {
@@ -223,9 +228,9 @@ StaticsBudget statics_budget(const StaticsSize& size) {
   if (is_direct(size)) return direct_budget(size);
   const double n = size.n_unknowns + size.n_unknowns_base;
   if (size.solver == StaticSolver::petsc) {
-    const Budget shares = {
-        {"the static equations of PETSc", size.share * petsc_bytes(n), larger_elements()},
-        {"bodies on their way to the processes", divided_bytes(n, size.share), larger_elements()}};
+    const Budget shares = {{"the static equations of PETSc", size.share * petsc_bytes(n), larger_elements()},
+                           {"bodies on their way to the processes",
+                            divided_bytes(n, size.share, !size.is_made_by_all), larger_elements()}};
     const double n_kept = size.is_kept_by_all ? size.share * n : n;
     return {shares + Budget{equilibria(n_kept, all_equilibria)}, shares + Budget{equilibria(n_kept, 1)}};
   }

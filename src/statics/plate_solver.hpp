@@ -9,6 +9,7 @@
 
 #include "base/budget.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/plate.hpp"
 #include "processes/processes.hpp"
 #include "solid/operator.hpp"
 #include "statics/elastic_body.hpp"
@@ -41,6 +42,10 @@ struct Support {
 /// How far the interface of the undeformed bodies is open. [lower]
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base);
 
+/// Nodes of the loaded edge or, of a plate of equal elements whose interface alone is held, those of the
+/// interface below them: as many, at the same places along x.
+const std::vector<mesh::Node>& loaded_nodes(const mesh::Mesh& mesh);
+
 class LoadCase;           // load_case.hpp
 class KeptDisplacements;  // kept_displacements.hpp
 
@@ -49,6 +54,9 @@ struct SharedBy {
   Processes* processes = nullptr;  ///< all others are in serve_statics; null for this one alone
   /// Where this one keeps its share of what is found, which is gathered nowhere; null to gather it here.
   KeptDisplacements* kept = nullptr;
+  /// Where the meshes are those of the interfaces alone: the bodies of equal elements, of which each process
+  /// makes what it needs; displacements are kept then.
+  std::vector<mesh::Plate> plates = {};
 };
 
 /// Displacements of all nodes that are kept elsewhere: of the plate, and of the base where there is one; for
@@ -115,6 +123,7 @@ struct StaticsSize {
   bool top_free_in_tilt = false;           ///< the tilt then has a factorisation of its own
   double share = 1;                        ///< of PETSc's equations that this machine's processes have
   bool is_kept_by_all = false;             ///< each process keeps its share of PETSc's equilibria
+  bool is_made_by_all = false;             ///< and makes its share of the bodies
 };
 
 /// What the statics take at their peak, the meshes and the equilibria found included, and what they hold of

@@ -279,9 +279,10 @@ bool begin_on_coarse_levels(const mesh::Mesh& mesh, const mesh::Mesh* base, cons
 }
 
 TopDisplacement tilt_of(const mesh::Mesh& mesh, const Loading& loading) {
-  TopDisplacement tilt{std::vector<double>(mesh.top.size(), 0.0), {}};
-  const double x0 = mesh.x_m[mesh.top.front()], width = mesh.x_m[mesh.top.back()] - x0;
-  for (const auto n : mesh.top) {
+  const auto& loaded = loaded_nodes(mesh);
+  TopDisplacement tilt{std::vector<double>(loaded.size(), 0.0), {}};
+  const double x0 = mesh.x_m[loaded.front()], width = mesh.x_m[loaded.back()] - x0;
+  for (const auto n : loaded) {
     const double s = (mesh.x_m[n] - x0) / width;
     tilt.u_y_m.push_back(-((1 - s) * loading.tilt_left_m + s * loading.tilt_right_m));
   }

@@ -177,6 +177,48 @@ TEST(MakeInterface, MakesTheLowestRow) {
     }
 }
 
+TEST(MakeInterface, FollowsTheReliefs) {
+  auto relieved = plate(0);
+  relieved.corner = Corner::relief;
+  const auto whole = make_plate(relieved), interface = make_interface(relieved);
+  EXPECT_EQ(interface.lower, whole.lower);
+  EXPECT_EQ(tributary_lengths_m(interface), tributary_lengths_m(whole));
+  EXPECT_GT(interface.y_m.front(), 0);
+  for (const Node n : interface.lower) EXPECT_EQ(place(interface, n), place(whole, n));
+}
+
+TEST(MakeCorners, HaveAllCellsThatAreNoSquaresAndSomeAroundThem) {
+  constexpr int around = 3;
+  const Plate relieved{.width_m = 0.06,
+                       .height_m = 0.03,
+                       .element_size_m = 1e-3,
+                       .relief_length_m = 4.5e-3,
+                       .relief_depth_m = 6.2e-3};
+  const auto whole = make_plate(relieved), corners = make_corners(relieved, around);
+  EXPECT_LT(corners.n_nodes(), whole.n_nodes() / 3);
+  EXPECT_FALSE(corners.is_interface());
+  using Places = std::array<std::pair<double, double>, 4>;
+  const auto places_of = [](const Mesh& mesh, const Cell& cell) {
+    Places places;
+    std::ranges::transform(cell, places.begin(), [&](Node n) { return std::pair(mesh.x_m[n], mesh.y_m[n]); });
+    return places;
+  };
+  // Cells of the whole near the corners, in its order.
+  std::vector<Places> expected, found;
+  const double from_side_m = 1e-3 * (5 + around), from_base_m = 1e-3 * (7 + around);
+  for (const auto& cell : whole.cells) {
+    const auto places = places_of(whole, cell);
+    const double x_m = 0.5 * (places[0].first + places[1].first),
+                 y_m = 0.5 * (places[0].second + places[3].second);
+    if (std::min(x_m, relieved.width_m - x_m) < from_side_m && y_m < from_base_m) expected.push_back(places);
+  }
+  for (const auto& cell : corners.cells) found.push_back(places_of(corners, cell));
+  std::size_t k = 0;
+  for (const auto& places : found)
+    if (k < expected.size() && places == expected[k]) ++k;
+  EXPECT_EQ(k, expected.size());
+}
+
 TEST(MakeColumns, MakesThoseOfAPlateWithMoreNodesThanCanBeNumbered) {
   auto wide = plate(0);
   wide.width_m = 1000;

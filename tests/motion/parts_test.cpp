@@ -615,6 +615,26 @@ TEST(BodySteps, OfManySquaresFollowFromTheirInterface) {
   }
 }
 
+TEST(BodySteps, OfManySquaresAndReliefsFollowFromInterfaceAndCorners) {
+  // Distorted so much that the corners have the highest frequency, and so little that the squares have it.
+  for (const double height_m : {2e-3, 1e-5}) {
+    mesh::Plate plate{.width_m = 0.7,
+                      .element_size_m = 0.7 / 859,
+                      .relief_length_m = 5e-3,
+                      .relief_height_m = height_m,
+                      .relief_depth_m = 9e-3};
+    plate.height_m = 600 * plate.element_size_m;
+    const auto whole = mesh::make_plate(plate), interface = mesh::make_interface(plate);
+    const auto corners = mesh::make_corners(plate, solid::rings_around_others);
+    ASSERT_TRUE(solid::takes_frequency_bound(whole.n_nodes(), mesh::blocks(whole)));
+    const auto expected = body_steps({whole, pmma}, {});
+    EXPECT_EQ(body_steps({interface, pmma, nullptr, &corners}, {}).stable_step_s, expected.stable_step_s);
+    if (height_m > 1e-3) {
+      EXPECT_GT(body_steps({interface, pmma}, {}).stable_step_s, expected.stable_step_s);
+    }
+  }
+}
+
 TEST(Parts, DoNotEndAtARoundedCorner) {
   Problem problem;
   problem.plate.corner = mesh::Corner::fillet;

@@ -220,6 +220,54 @@ TEST(Contact, SettlesAsByTheFactorisation) {
     }
 }
 
+/// What statics find, the displacements of this process's piece included.
+struct Found {
+  Equilibrium tilted, sheared;
+  std::vector<double> tilted_m, sheared_m, per_shear;
+};
+
+Found found_by(const ElasticBody& plate, const std::optional<ElasticBody>& base,
+               const std::vector<mesh::Plate>& plates) {
+  KeptDisplacements kept;
+  Loading loading;
+  loading.solver = StaticSolver::petsc;
+  const std::vector<double> mu_s(plate.mesh.lower.size(), 0.8);
+  const Statics statics(plate, base, loading, mu_s, "friction.mu_s", [] { return true; },
+                        {processes.get(), &kept, plates});
+  Found found{statics.tilted(), statics.shear_to(1), {}, {}, {}};
+  found.tilted_m = kept.own(found.tilted.kept_u_m->number);
+  found.sheared_m = kept.own(found.sheared.kept_u_m->number);
+  found.per_shear = kept.own(found.sheared.kept_u_per_shear->number);
+  return found;
+}
+
+TEST(Contact, OfBodiesThatNoProcessHoldsIsTheSameToTheLastBit) {
+  const mesh::Plate plate{.width_m = 0.2, .height_m = 0.1, .element_size_m = 2e-3};
+  const mesh::Plate below{.width_m = 0.2, .height_m = 0.06, .element_size_m = 2e-3, .corner = Corner::none};
+  const auto mesh = mesh::make_plate(plate), base = mesh::make_plate(below);
+  const auto interface = mesh::make_interface(plate), of_base = mesh::make_interface(below);
+  for (const bool has_base : {false, true}) {
+    std::optional<ElasticBody> held_base, known_base;
+    if (has_base) {
+      held_base.emplace(ElasticBody{base, gel});
+      known_base.emplace(ElasticBody{of_base, gel});
+    }
+    std::vector<mesh::Plate> plates = {plate};
+    if (has_base) plates.push_back(below);
+    const auto expected = found_by({mesh, pmma}, held_base, {});
+    const auto found = found_by({interface, pmma}, known_base, plates);
+    EXPECT_GT(max_abs(expected.tilted_m), 0);
+    EXPECT_EQ(found.tilted_m, expected.tilted_m);
+    EXPECT_EQ(found.sheared_m, expected.sheared_m);
+    EXPECT_EQ(found.per_shear, expected.per_shear);
+    EXPECT_EQ(found.sheared.shear_m, expected.sheared.shear_m);
+    EXPECT_EQ(found.sheared.contact, expected.sheared.contact);
+    EXPECT_EQ(found.sheared.tractions.t_s_Pa, expected.sheared.tractions.t_s_Pa);
+    EXPECT_EQ(found.sheared.tractions.p_s_Pa, expected.sheared.tractions.p_s_Pa);
+    EXPECT_EQ(found.tilted.tractions.p_s_Pa, expected.tilted.tractions.p_s_Pa);
+  }
+}
+
 }  // namespace
 }  // namespace slipfront::statics
 

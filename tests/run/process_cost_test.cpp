@@ -203,6 +203,33 @@ TEST(ProcessCost, TheStateBeforeIsKeptByThoseWhoFindIt) {
   EXPECT_FALSE(keeps_displacements(ramp, 4));
 }
 
+TEST(ProcessCost, NoProcessHoldsManySquaresWhereAllKeepTheStateBefore) {
+  auto config = test::coarse_case();
+  config.loading.solver = statics::StaticSolver::petsc;
+  EXPECT_FALSE(leads_by_interface(config, 4));  // few nodes
+  config.plate.element_size_m = 0.1e-3;
+  ASSERT_EQ(config.plate.corner, mesh::Corner::relief);
+  EXPECT_TRUE(leads_by_interface(config, 4));
+  EXPECT_FALSE(leads_by_interface(config, 1));
+  EXPECT_FALSE(leads_by_interface(config, 4, false));
+  auto deep = config, fillet = config, graded = config;
+  deep.plate.relief_depth_m = deep.plate.height_m;
+  EXPECT_FALSE(leads_by_interface(deep, 4));
+  fillet.plate.corner = mesh::Corner::fillet;
+  EXPECT_FALSE(leads_by_interface(fillet, 4));
+  graded.plate.coarsenings = 1;
+  EXPECT_FALSE(leads_by_interface(graded, 4));
+  // Passed on by the leader nevertheless.
+  auto work = square();
+  work.keeps_displacements = true;
+  const auto held = process_cost(work, division(1000, 4, 10), 4, ethernet);
+  work.leads_by_interface = true;
+  work.corner_bytes = 1e6;
+  const auto cost = process_cost(work, division(1000, 4, 10), 4, ethernet);
+  EXPECT_EQ(cost.start_s, held.start_s);
+  EXPECT_LT(cost.leader_memory_bytes, held.leader_memory_bytes);
+}
+
 TEST(ProcessCost, FollowsFromACase) {
   auto config = test::coarse_case(interface::EventKind::left, 0.5e-3);
   config.time.interface_substeps = 1;

@@ -112,6 +112,63 @@ TEST(Pieces, OwnRowsMakeTheProductOfThePlate) {
   }
 }
 
+bool same_node(const Piece::Node& a, const Piece::Node& b) {
+  return a.x_m == b.x_m && a.y_m == b.y_m && a.pair == b.pair && a.opposite == b.opposite;
+}
+
+/// All of a piece, to the last bit.
+void expect_same(const Piece& a, const Piece& b) {
+  const auto same_place = [](const Piece::Place& p, const Piece::Place& q) {
+    return p.pair == q.pair && p.place == q.place;
+  };
+  EXPECT_EQ(a.first, b.first);
+  EXPECT_EQ(a.count, b.count);
+  EXPECT_EQ(a.n_pairs, b.n_pairs);
+  ASSERT_EQ(a.bodies.size(), b.bodies.size());
+  for (std::size_t k = 0; k < a.bodies.size(); ++k) {
+    EXPECT_EQ(a.bodies[k].is_base, b.bodies[k].is_base);
+    EXPECT_EQ(a.bodies[k].material.youngs_modulus_Pa, b.bodies[k].material.youngs_modulus_Pa);
+    EXPECT_TRUE(std::ranges::equal(a.bodies[k].nodes, b.bodies[k].nodes, same_node));
+    EXPECT_EQ(a.bodies[k].cells, b.bodies[k].cells);
+  }
+  EXPECT_TRUE(std::ranges::equal(a.lower, b.lower, same_place));
+  EXPECT_EQ(a.gap_m, b.gap_m);
+  EXPECT_TRUE(std::ranges::equal(a.top, b.top, same_place));
+  EXPECT_EQ(a.held, b.held);
+}
+
+TEST(Pieces, MadeByEachProcessAreThoseCutFromTheBodies) {
+  mesh::Plate above{.width_m = 0.021, .height_m = 0.02, .element_size_m = 1e-3, .relief_depth_m = 9e-3};
+  const mesh::Plate below{
+      .width_m = 0.021, .height_m = 0.015, .element_size_m = 1e-3, .corner = Corner::none};
+  for (const auto corner : {Corner::none, Corner::relief})
+    for (const bool has_base : {false, true})
+      for (const auto& of_base : {pmma, gel})
+        for (const int n : {2, 3, 7}) {
+          above.corner = corner;
+          const std::vector plates = {above, below};
+          const auto mesh = mesh::make_plate(above), base = mesh::make_plate(below);
+          const auto interface = mesh::make_interface(above), of_below = mesh::make_interface(below);
+          std::optional<ElasticBody> base_body, interface_of_base;
+          if (has_base) {
+            base_body.emplace(ElasticBody{base, of_base});
+            interface_of_base.emplace(ElasticBody{of_below, of_base});
+          }
+          const auto material = &of_base == &gel ? pmma : gel;
+          const DividedBodies held({mesh, material}, base_body, n);
+          const DividedBodies planned({interface, material}, interface_of_base, n,
+                                      std::span(plates).first(has_base ? 2 : 1));
+          EXPECT_EQ(planned.n_pairs(), held.n_pairs());
+          EXPECT_EQ(planned.cut()->first_column, held.cut()->first_column);
+          for (int k = 0; k < n; ++k) {
+            Parcel parcel;
+            planned.plan(k).put(parcel);
+            expect_same(PiecePlan::take(parcel).make(), held.piece(k));
+            EXPECT_TRUE(parcel.is_empty());
+          }
+        }
+}
+
 TEST(Pieces, HaveAsManyNodesEach) {
   const auto mesh = test::tiny_plate(Corner::relief);
   const DividedBodies divided({mesh, pmma}, std::nullopt, 4);
@@ -168,6 +225,10 @@ TEST(Pieces, BudgetIsOfTheMachinesShare) {
   EXPECT_GT(quarter, 0.25 * alone);  // the leader's own remains
   size.is_kept_by_all = true;
   EXPECT_NEAR(total_bytes(statics_budget(size).peak), quarter - 0.75 * 3 * 2 * 8 * 1e6, 1);
+  // Meshes and numbers of the other three quarters.
+  const double kept = total_bytes(statics_budget(size).peak);
+  size.is_made_by_all = true;
+  EXPECT_NEAR(total_bytes(statics_budget(size).peak), kept - 0.75 * 22 * 1e6, 1);
 }
 
 }  // namespace
