@@ -527,6 +527,15 @@ TEST(Parts, OfMeshesWithoutAGridWithEachCorner) {
   }
 }
 
+/// The layer of sub-steps goes up the arc: parts begin where only columns beyond their halo tell that it
+/// does.
+TEST(Parts, OfMeshesWithoutAGridEndWithinALayer) {
+  auto problem = without_grid();
+  problem.plate.corner = mesh::Corner::fillet;
+  problem.time.interface_rows = 10;
+  expect_parts_change_nothing(problem, {18, 22, 26});
+}
+
 TEST(Parts, OfMeshesOfThreeSizesWithoutAGridBetweenAbsorbingEdges) {
   auto problem = graded();
   problem.is_without_grid = true;
