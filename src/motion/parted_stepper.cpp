@@ -14,7 +14,7 @@
 namespace slipfront::motion {
 
 mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns) {
-  const mesh::NodeColumns of_nodes(mesh::blocks(mesh));
+  const mesh::NodeColumns of_nodes(mesh);
   std::vector<mesh::Subset::Range> ranges;
   for (int k = 0; k < std::ssize(mesh.lower); ++k) {
     if (!columns.has(of_nodes.column_of(mesh.lower[static_cast<std::size_t>(k)]))) continue;
@@ -80,7 +80,7 @@ std::vector<mesh::Subset::Range> rows_at_once(const mesh::NodeColumns& body) {
 PartedStepper::PartedStepper(Processes& processes, const Division& division, std::unique_ptr<Part> own,
                              std::span<const mesh::Mesh* const> bodies)
     : processes_(processes), division_(division), own_(std::move(own)) {
-  for (const auto* body : bodies) columns_.emplace_back(mesh::blocks(*body));
+  for (const auto* body : bodies) columns_.emplace_back(*body);
   for (int part = 0; part < division.n_parts(); ++part) {
     all_parts_.push_back(part);
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));

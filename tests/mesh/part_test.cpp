@@ -12,6 +12,8 @@
 
 #include "base/error.hpp"
 #include "mesh/plate.hpp"
+#include "mesh/reorder.hpp"
+#include "support/general_mesh.hpp"
 
 namespace slipfront::mesh {
 namespace {
@@ -83,10 +85,8 @@ TEST(NodeColumns, OfAPartAreThoseOfTheWhole) {
 }
 
 /// A part's nodes and cells, to the last bit and in the same order, are those of the whole.
-void expect_columns(const Plate& plate, const Subset& held) {
-  const auto whole = make_plate(plate);
-  const auto part = make_columns(plate, held);
-  const NodeColumns of_whole(whole), of_part(part, held, whole.grid.stride());
+void expect_part(const Mesh& whole, const Mesh& part, const Subset& held) {
+  const NodeColumns of_whole(whole), of_part(part, held, of_whole.n_columns());
   const auto is_held = [&](Node n) { return held.has(of_whole.column_of(n)); };
   std::vector<Node> nodes;
   for (Node n = 0; n < whole.n_nodes(); ++n)
@@ -120,6 +120,13 @@ void expect_columns(const Plate& plate, const Subset& held) {
   for (const auto& a : whole.absorbing)
     if (is_held(a.node)) expected_absorbing.emplace_back(a.node, a.side_m, a.top_m);
   EXPECT_EQ(absorbing, expected_absorbing);
+}
+
+void expect_columns(const Plate& plate, const Subset& held) {
+  const auto whole = make_plate(plate);
+  const auto part = make_columns(plate, held);
+  expect_part(whole, part, held);
+  const NodeColumns of_part(part, held, whole.grid.stride());
   const auto grids = blocks(part), grids_of_whole = blocks(whole);
   ASSERT_EQ(grids.size(), grids_of_whole.size());
   for (std::size_t k = 0; k < grids.size(); ++k) {
@@ -262,6 +269,140 @@ TEST(MakeColumns, NoCutThroughARoundedCorner) {
     EXPECT_DEATH(make_columns(rounded, Subset({{0, 2}})), "rounded corner");
   }
   EXPECT_EQ(columns_of_wrapped_cells(make_plate(plate(1))), 0);
+}
+
+/// Meshes without a grid: squares, squares of three sizes, an arc, all cells different.
+std::vector<Mesh> general_meshes() {
+  std::vector<Mesh> meshes;
+  for (const int coarsenings : {0, 2})
+    for (const auto corner : {Corner::none, Corner::relief, Corner::fillet})
+      for (const double moved_m : {0.0, 0.2e-3}) {
+        auto some = plate(coarsenings, corner == Corner::none ? Sides::absorbing : Sides::free);
+        some.corner = corner;
+        some.fillet_radius_m = 4e-3;
+        some.fine_height_m = 8e-3;
+        if (coarsenings == 2) some.height_m = 0.06;
+        meshes.push_back(test::without_grid(make_plate(some), moved_m));
+      }
+  return meshes;
+}
+
+TEST(NumberByColumns, LeavesEachCellInNeighbouringColumns) {
+  for (auto mesh : general_meshes()) {
+    const auto before = mesh;
+    number_by_columns(mesh);
+    EXPECT_EQ(mesh.cells.size(), before.cells.size());
+    ASSERT_EQ(nodes_by_place(mesh).size(), nodes_by_place(before).size());
+    for (std::size_t k = 0; k < mesh.cells.size(); ++k)
+      for (std::size_t a = 0; a < 4; ++a)
+        EXPECT_EQ(place(mesh, mesh.cells[k][a]), place(before, before.cells[k][a]));
+    const NodeColumns columns(mesh);
+    EXPECT_GT(columns.n_columns(), 10);
+    EXPECT_EQ(columns.n_nodes(), mesh.n_nodes());
+    EXPECT_EQ(columns.n_rows(), 1);
+    for (const auto& cell : mesh.cells) {
+      const auto [first, last] = std::minmax({columns.column_of(cell[0]), columns.column_of(cell[1]),
+                                              columns.column_of(cell[2]), columns.column_of(cell[3])});
+      EXPECT_LE(last - first, 1);
+    }
+    // Columns are ranges of numbers, from left to right, and so is their interface.
+    int reached = 0;
+    double left_m = -1, right_m = 0;
+    for (Node n = 0; n < mesh.n_nodes(); ++n) {
+      if (columns.column_of(n) > reached) {
+        ++reached;
+        left_m = right_m;
+      }
+      EXPECT_EQ(columns.column_of(n), reached);
+      EXPECT_GT(mesh.x_m[n], left_m);
+      right_m = std::max(right_m, mesh.x_m[n]);
+    }
+    EXPECT_EQ(reached, columns.n_columns() - 1);
+    for (std::size_t k = 0; k + 1 < mesh.lower.size(); ++k) {
+      const int step = columns.column_of(mesh.lower[k + 1]) - columns.column_of(mesh.lower[k]);
+      EXPECT_GE(step, 0);
+      EXPECT_LE(step, 1);
+    }
+  }
+}
+
+TEST(NumberByColumns, FindsThoseOfAGrid) {
+  for (const double moved_m : {0.0, 0.2e-3}) {
+    auto mesh = test::without_grid(make_plate(plate(0)), moved_m);
+    number_by_columns(mesh);
+    const NodeColumns columns(mesh);
+    EXPECT_EQ(columns.n_columns(), 49);
+    for (Node n = 0; n < mesh.n_nodes(); ++n)
+      EXPECT_EQ(columns.column_of(n), std::lround(mesh.x_m[n] / 1e-3));
+  }
+}
+
+TEST(NumberByColumns, GivesBodiesOnEachOtherTheSameColumns) {
+  auto above = test::without_grid(make_plate(plate(0)), 0.2e-3);
+  auto below = test::without_grid(make_plate(plate(1)), 0.1e-3);
+  for (auto& x_m : below.x_m) x_m *= 1 + 1e-15;
+  const Mesh* const bodies[] = {&above, &below};
+  const auto ends_m = column_ends_m(bodies);
+  for (auto* mesh : {&above, &below}) number_by_columns(*mesh, ends_m);
+  const NodeColumns of_above(above), of_below(below);
+  EXPECT_EQ(of_above.n_columns(), of_below.n_columns());
+  ASSERT_EQ(above.lower.size(), below.lower.size());
+  for (std::size_t k = 0; k < above.lower.size(); ++k)
+    EXPECT_EQ(of_above.column_of(above.lower[k]), of_below.column_of(below.lower[k]));
+  for (const auto* columns : {&of_above, &of_below})
+    for (const auto& cell : (columns == &of_above ? above : below).cells)
+      EXPECT_LE(std::abs(columns->column_of(cell[0]) - columns->column_of(cell[2])), 1);
+}
+
+TEST(NumberByColumns, HasNeighboursAlongAnInterfaceInNeighbouringColumns) {
+  auto mesh = make_plate(plate(0));
+  // Stands on its ends alone.
+  std::erase_if(mesh.lower, [&](Node n) { return mesh.x_m[n] > 0.0105 && mesh.x_m[n] < 0.0405; });
+  number_by_columns(mesh);
+  const NodeColumns columns(mesh);
+  for (std::size_t k = 0; k + 1 < mesh.lower.size(); ++k)
+    EXPECT_LE(columns.column_of(mesh.lower[k + 1]), columns.column_of(mesh.lower[k]) + 1);
+  EXPECT_EQ(columns.n_columns(), 49 - 30);
+}
+
+TEST(NumberByColumns, RefusesAPlateThatRepeats) {
+  auto mesh = make_plate(plate(0, Sides::periodic));
+  EXPECT_THROW(number_by_columns(mesh), UserError);
+}
+
+TEST(NodeColumns, OfAMeshThatIsNotNumberedByThemHaveANodeEach) {
+  auto mesh = test::without_grid(make_plate(plate(0)), 0);
+  EXPECT_EQ(NodeColumns(mesh).n_columns(), mesh.n_nodes());
+  number_by_columns(mesh);
+  EXPECT_EQ(NodeColumns(mesh).n_columns(), 49);
+  renumber(mesh, near_numbers(mesh));
+  EXPECT_EQ(NodeColumns(mesh).n_columns(), mesh.n_nodes());
+}
+
+TEST(TakeColumns, TakesTheNodesThereAndTheCellsBetweenThem) {
+  for (auto whole : general_meshes()) {
+    number_by_columns(whole);
+    const NodeColumns of_whole(whole);
+    const int n = of_whole.n_columns();
+    for (const auto& held : {Subset({{0, n / 2}}), Subset({{n / 3, n - 3}}), Subset({{n / 2, n}}),
+                             Subset({{0, n}}), Subset({{0, 3}, {n - 4, n}})}) {
+      const auto part = take_columns(whole, held);
+      expect_part(whole, part, held);
+      EXPECT_EQ(part.grid.columns, 0);
+      EXPECT_EQ(part.grid.spacing_m, whole.grid.spacing_m);
+      const NodeColumns of_part(part, held, n), told = of_whole.of_part(held);
+      for (Node k = 0; k < part.n_nodes(); ++k) {
+        const auto in_whole = of_part.number_in_whole(k);
+        EXPECT_EQ(told.node_of_whole(in_whole), k);
+        EXPECT_EQ(of_part.column_of(k), of_whole.column_of(static_cast<Node>(in_whole)));
+        EXPECT_EQ(of_part.column_of_whole(in_whole), of_part.column_of(k));
+      }
+      const auto last = held.ranges().back();
+      const auto nodes = of_part.nodes(0, {last.begin, last.end});
+      EXPECT_EQ(nodes.end(), part.n_nodes());
+      EXPECT_EQ(of_part.column_of(nodes.first), last.begin);
+    }
+  }
 }
 
 }  // namespace

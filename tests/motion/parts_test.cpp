@@ -14,10 +14,12 @@
 
 #include "base/error.hpp"
 #include "mesh/part.hpp"
+#include "mesh/reorder.hpp"
 #include "motion/event.hpp"
 #include "motion/parted_stepper.hpp"
 #include "motion/support.hpp"
 #include "statics/prestress.hpp"
+#include "support/general_mesh.hpp"
 #include "support/processes.hpp"
 
 namespace slipfront::motion {
@@ -37,6 +39,9 @@ const solid::Material gel{.youngs_modulus_Pa = 1.4e9,
 /// A rupture from a weakened patch under uniform tractions.
 struct Problem {
   mesh::Plate plate{.width_m = 0.2, .height_m = 0.03, .element_size_m = 1e-3, .corner = mesh::Corner::none};
+  /// Nodes moved and numbered at random, and then by columns.
+  bool is_without_grid = false;
+  bool is_strained = false;  ///< before the event
   const solid::Material* below = nullptr;
   double height_below_m = plate.height_m;
   double stiffness_damping_s = pmma.stiffness_damping_s;
@@ -54,7 +59,10 @@ struct Bodies {
   explicit Bodies(const Problem& problem) : above(mesh::make_plate(problem.plate)), material(pmma) {
     material.stiffness_damping_s = problem.stiffness_damping_s;
     plates.push_back(problem.plate);
-    if (problem.below == nullptr) return;
+    if (problem.below != nullptr) add_below(problem);
+    if (problem.is_without_grid) forget_grids();
+  }
+  void add_below(const Problem& problem) {
     auto plate = problem.plate;
     plate.corner = mesh::Corner::none;
     plate.coarsenings = problem.coarsenings_below;
@@ -63,6 +71,13 @@ struct Bodies {
     below = mesh::make_plate(plate);
     material_below = *problem.below;
     material_below.stiffness_damping_s = problem.stiffness_damping_s;
+  }
+  void forget_grids() {
+    std::vector<mesh::Mesh*> meshes = {&above};
+    if (below) meshes.push_back(&*below);
+    for (auto* mesh : meshes) *mesh = test::without_grid(*mesh, 0.2 * mesh->grid.spacing_m);
+    const auto ends_m = mesh::column_ends_m(std::vector<const mesh::Mesh*>(meshes.begin(), meshes.end()));
+    for (auto* mesh : meshes) mesh::number_by_columns(*mesh, ends_m);
   }
   std::vector<BodySource> sources() const {
     std::vector<BodySource> sources = {{above, material}};
@@ -95,6 +110,13 @@ Begin begin_of(const Problem& problem, const Bodies& bodies) {
   if (bodies.below)
     begin.state.below_u_m = begin.state.below_u_per_shear = solid::Field(bodies.below->n_nodes());
   begin.loads.intact.assign(n, 1.0);
+  if (problem.is_strained) {
+    begin.state.u_m = begin.state.u_per_shear = solid::Field(bodies.above.n_nodes());
+    for (mesh::Node k = 0; k < bodies.above.n_nodes(); ++k) {
+      begin.state.u_m.x[k] = 1e-8 * std::sin(300 * bodies.above.x_m[k] + 100 * bodies.above.y_m[k]);
+      begin.state.u_per_shear.x[k] = bodies.above.y_m[k] / problem.plate.height_m;
+    }
+  }
   const auto middle = static_cast<std::size_t>(problem.patch * static_cast<double>(n));
   for (std::size_t i = middle - 6; i < middle + 6; ++i) begin.loads.intact[i % n] = 0;
   return begin;
@@ -166,7 +188,8 @@ class OwnPart {
     meshes_.reserve(2);
     parts_.reserve(2);
     for (std::size_t b = 0; b < whole.size(); ++b) {
-      meshes_.push_back(mesh::make_columns(bodies.plates[b], all));
+      meshes_.push_back(problem.is_without_grid ? mesh::take_columns(whole[b].mesh, all)
+                                                : mesh::make_columns(bodies.plates[b], all));
       parts_.push_back({all, division.n_columns(), own, steps[b],
                         [&](std::span<double> values) { processes.take_largest(values); }});
       sources_.push_back({meshes_[b], whole[b].material, &parts_[b]});
@@ -478,6 +501,151 @@ TEST(Parts, OfTwoBodiesOneOrBothGraded) {
   }
 }
 
+Problem without_grid() {
+  Problem problem;
+  problem.is_without_grid = true;
+  return problem;
+}
+
+TEST(Parts, OfMeshesWithoutAGrid) {
+  for (const bool is_strained : {false, true})
+    for (const int substeps : {4, 1}) {
+      auto problem = without_grid();
+      problem.is_strained = is_strained;
+      problem.time.interface_substeps = substeps;
+      expect_parts_change_nothing(problem, {2, 3, 5});
+    }
+}
+
+TEST(Parts, OfMeshesWithoutAGridWithEachCorner) {
+  for (const auto corner : {mesh::Corner::relief, mesh::Corner::fillet}) {
+    SCOPED_TRACE(test::name_of(corner));
+    auto problem = without_grid();
+    problem.plate.corner = corner;
+    problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
+    expect_parts_change_nothing(problem, {2, 3, 5});
+  }
+}
+
+/// The layer of sub-steps goes up the arc: parts begin where only columns beyond their halo tell that it
+/// does.
+TEST(Parts, OfMeshesWithoutAGridEndWithinALayer) {
+  auto problem = without_grid();
+  problem.plate.corner = mesh::Corner::fillet;
+  problem.time.interface_rows = 10;
+  expect_parts_change_nothing(problem, {18, 22, 26});
+}
+
+TEST(Parts, OfMeshesOfThreeSizesWithoutAGridBetweenAbsorbingEdges) {
+  auto problem = graded();
+  problem.is_without_grid = true;
+  problem.plate.sides = mesh::Sides::absorbing;
+  problem.plate.top = mesh::Top::absorbing;
+  problem.contact.regularisation = {.relaxed = interface::Relaxed::strength, .time_s = 0.5e-6};
+  for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
+    problem.time.precision = precision;
+    problem.execution.threads = 2;
+    problem.time.interface_substeps = 2;
+    expect_parts_change_nothing(problem, {2, 3});
+  }
+}
+
+/// The lower body's slower waves let it take several steps at once, which makes a layer at the interface.
+TEST(Parts, OfTwoBodiesWithoutAGrid) {
+  for (const int substeps : {4, 1})
+    for (const auto algorithm :
+         {interface::ContactAlgorithm::direct, interface::ContactAlgorithm::predictor_corrector}) {
+      auto problem = without_grid();
+      problem.below = &gel;
+      problem.coarsenings_below = 1;
+      problem.time.interface_substeps = substeps;
+      problem.contact.algorithm = algorithm;
+      expect_parts_change_nothing(problem);
+    }
+}
+
+/// Columns of `left` cells on the left, and of `right` ones on the right, as many of each.
+mesh::Mesh stair(int columns, int left, int right) {
+  const double h = 1e-3;
+  mesh::Mesh mesh;
+  mesh.grid.spacing_m = h;
+  std::vector<mesh::Node> first;
+  const auto rows = [&](int column) { return 2 * column < columns ? left : right; };
+  for (int i = 0; i <= columns; ++i) {
+    first.push_back(mesh.n_nodes());
+    mesh.lower.push_back(mesh.n_nodes());
+    for (int j = 0; j <= std::max(rows(std::max(0, i - 1)), rows(std::min(i, columns - 1))); ++j) {
+      mesh.x_m.push_back(i * h);
+      mesh.y_m.push_back(j * h);
+    }
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i)
+    for (int j = 0; j < rows(static_cast<int>(i)); ++j)
+      mesh.cells.push_back({first[i] + j, first[i + 1] + j, first[i + 1] + j + 1, first[i] + j + 1});
+  mesh::number_by_columns(mesh);
+  return mesh;
+}
+
+TEST(Parts, OfAMeshWithoutAGridHaveEqualNumbersOfNodes) {
+  const auto mesh = stair(400, 40, 10);
+  const std::vector<BodySource> sources = {{mesh, pmma}};
+  const std::vector<BodySteps> steps = {body_steps(sources.front(), {})};
+  const TimeStepping plain{.interface_rows = 1, .interface_substeps = 1};
+  for (const int n : {2, 3, 5, 8}) {
+    const auto division = divide_bodies(sources, steps, plain, n);
+    ASSERT_EQ(division.n_parts(), n);
+    EXPECT_EQ(division.n_columns(), 401);
+    EXPECT_EQ(division.rim, 0);
+    for (int part = 0; part < n; ++part) {
+      const auto own = division.own(part);
+      EXPECT_GE(own.end - own.begin, division.halo);
+      const auto nodes = mesh.column_first[static_cast<std::size_t>(own.end)] -
+                         mesh.column_first[static_cast<std::size_t>(own.begin)];
+      EXPECT_NEAR(nodes, mesh.n_nodes() / n, 41);
+    }
+    EXPECT_LT(division.own(0).end, 2 * division.own(n - 1).end - 2 * division.own(n - 1).begin);
+  }
+  const auto division = divide_bodies(sources, steps, {.interface_rows = 3, .interface_substeps = 2}, 3);
+  EXPECT_EQ(division.rim, 3);
+  const auto held = division.all(1).ranges().front(), last = division.all(2).ranges().front();
+  EXPECT_EQ(held.begin, division.own(1).begin - division.halo - 3);
+  EXPECT_EQ(held.end, division.own(1).end + division.halo + 3);
+  EXPECT_EQ(last.end, 401);
+}
+
+TEST(Parts, OfMeshesWithoutAGridNeedColumns) {
+  const auto why_not = [](const std::vector<const mesh::Mesh*>& meshes, int n) -> std::string {
+    std::vector<BodySource> sources;
+    for (const auto* mesh : meshes) sources.push_back({*mesh, pmma});
+    const std::vector<BodySteps> steps(sources.size(), {1e-7, {1}});
+    try {
+      divide_bodies(sources, steps, {.interface_rows = 1, .interface_substeps = 1}, n);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const auto plate = mesh::make_plate(Problem{}.plate);
+  auto general = plate, numbered = plate, moved = plate;
+  for (auto& x_m : moved.x_m) x_m += 1e-3 * (x_m > 0.1005);
+  mesh::number_by_columns(numbered);
+  mesh::renumber(general, mesh::near_numbers(general));
+  const mesh::Mesh* const both[] = {&plate, &moved};
+  mesh::number_by_columns(moved, mesh::column_ends_m(both));
+  EXPECT_THAT(why_not({&general}, 2), testing::HasSubstr("numbered by columns"));
+  EXPECT_THAT(why_not({&numbered, &general}, 2), testing::HasSubstr("numbered by columns"));
+  EXPECT_THAT(why_not({&plate, &numbered}, 2), testing::HasSubstr("the same columns"));
+  EXPECT_THAT(why_not({&numbered, &plate}, 2), testing::HasSubstr("the same columns"));
+  EXPECT_EQ(why_not({&numbered, &numbered}, 2), "");
+  EXPECT_THAT(why_not({&numbered}, 150),
+              testing::HasSubstr("fewer than the 2 that they need; choose at most"));
+  EXPECT_EQ(why_not({&numbered}, 50), "");
+  // The right end hangs over.
+  std::erase_if(numbered.lower, [&](mesh::Node n) { return numbered.x_m[n] > 0.12; });
+  EXPECT_THAT(why_not({&numbered}, 5), testing::HasSubstr("no interface; choose at most 2"));
+  EXPECT_EQ(why_not({&numbered}, 2), "");
+}
+
 /// Wrong numbers put into the first columns of whole bodies, as far as they have come after a step.
 TEST(Parts, AreWrongNoFartherThanTheColumnsOfAStep) {
   auto even = graded(), of_one_step = graded(), of_two = graded(), without_sub_steps = graded();
@@ -486,7 +654,7 @@ TEST(Parts, AreWrongNoFartherThanTheColumnsOfAStep) {
   of_two.below = &gel;
   of_two.plate.coarsenings = 1;
   without_sub_steps.time.interface_substeps = without_sub_steps.time.interface_rows = 1;
-  for (const auto& problem : {even, graded(), of_one_step, of_two, without_sub_steps}) {
+  for (const auto& problem : {even, graded(), of_one_step, of_two, without_sub_steps, without_grid()}) {
     const Bodies bodies(problem);
     const auto sources = bodies.sources();
     const auto begin = begin_of(problem, bodies);
@@ -532,7 +700,10 @@ TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
     problem->plate.corner = mesh::Corner::relief;
   repeating.plate.sides = mesh::Sides::periodic;
   repeating.plate.top = mesh::Top::absorbing;
-  for (auto problem : {even, of_two, of_graded, of_two_graded, repeating}) {
+  auto of_two_without_grid = without_grid();
+  of_two_without_grid.below = &gel;
+  for (auto problem :
+       {even, of_two, of_graded, of_two_graded, repeating, without_grid(), of_two_without_grid}) {
     problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
     const auto one = run_by_one(problem, n_steps);
     Team two(2, problem), three(3, problem);
@@ -549,7 +720,7 @@ TEST(Parts, GoOnWithWhatAnyNumberOfThemKept) {
     const Bodies bodies(problem);
     Stepper by_one(bodies.sources(), problem.contact, problem.time, {});
     // The last column of a plate that repeats has no cells.
-    const int n_columns = bodies.above.grid.stride() - (bodies.above.period_m > 0 ? 1 : 0);
+    const int n_columns = mesh::NodeColumns(bodies.above).n_columns() - (bodies.above.period_m > 0 ? 1 : 0);
     const PlaceInWhole whole{.own = {0, n_columns}, .lower = {}};
     KeptMotion kept;
     for (auto& piece : pieces_of(three.stepper())) kept.add(std::move(piece), 3);
