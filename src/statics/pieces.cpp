@@ -191,8 +191,7 @@ DividedBodies::DividedBodies(const ElasticBody& plate, const std::optional<Elast
     cut.base_is_relative = plate.material.youngs_modulus_Pa > base->material.youngs_modulus_Pa;
   }
   std::vector<mesh::NodeColumns> columns;
-  for (const auto& body : bodies_)
-    columns.push_back(are_held() ? mesh::NodeColumns(body.mesh) : mesh::NodeColumns(mesh::blocks(body.mesh)));
+  for (const auto& body : bodies_) columns.emplace_back(body.mesh);
   std::vector<std::int64_t> nodes_of_column(static_cast<std::size_t>(columns.front().n_columns()));
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     auto& orphans = cut.orphans.emplace_back();

@@ -221,6 +221,7 @@ TEST(ProcessCost, NoProcessHoldsManySquaresWhereAllKeepTheStateBefore) {
   EXPECT_FALSE(leads_by_interface(graded, 4));
   // Passed on by the leader nevertheless.
   auto work = square();
+  work.statics_bytes = 0;
   work.keeps_displacements = true;
   const auto held = process_cost(work, division(1000, 4, 10), 4, ethernet);
   work.leads_by_interface = true;
