@@ -2,6 +2,7 @@
 #include "motion/division.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "base/error.hpp"
@@ -95,6 +96,22 @@ std::string reason_against(const Division& division, int widest_cell, int corner
   return {};
 }
 
+constexpr std::int64_t most_nodes = std::numeric_limits<mesh::Node>::max();
+
+/// Nodes of a column of the highest body of which no process has all; 0 where one has.
+std::int64_t nodes_of_column_in_parts(std::span<const BodySource> bodies) {
+  std::int64_t most = 0;
+  for (const auto& body : bodies)
+    if (body.mesh.is_interface()) most = std::max(most, std::int64_t{body.mesh.grid.rows} + 1);
+  return most;
+}
+
+std::int64_t columns_of_widest(const Division& division) {
+  int most = 0;
+  for (int part = 0; part < division.n_parts(); ++part) most = std::max(most, division.all(part).count());
+  return most;
+}
+
 }  // namespace
 
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
@@ -110,10 +127,25 @@ Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodyS
   const auto divided = [&](int n) { return divide_columns(bodies.front().mesh, n, per_step, widest_cell); };
   const auto why_not = [&](int n) { return reason_against(divided(n), widest_cell, corner); };
   const auto reason = why_not(n_parts);
-  if (reason.empty()) return divided(n_parts);
-  int most = n_parts - 1;
-  while (!why_not(most).empty()) --most;
-  throw UserError("{}; choose at most {}", reason, most);
+  if (!reason.empty()) {
+    int most = n_parts - 1;
+    while (!why_not(most).empty()) --most;
+    throw UserError("{}; choose at most {}", reason, most);
+  }
+  auto division = divided(n_parts);
+  const auto of_column = nodes_of_column_in_parts(bodies);
+  const auto can_number = [&](const Division& d) { return of_column * columns_of_widest(d) <= most_nodes; };
+  if (can_number(division)) return division;
+  const std::int64_t n_columns = division.n_columns();
+  auto least =
+      static_cast<int>(std::clamp(of_column * n_columns / most_nodes, std::int64_t{n_parts} + 1, n_columns));
+  while (why_not(least).empty() && !can_number(divided(least))) ++least;
+  throw UserError(
+      "each of {} processes would have up to {:.3g} nodes of a body, more than the {} that it can "
+      "number; use {}",
+      n_parts, static_cast<double>(of_column * columns_of_widest(division)), most_nodes,
+      why_not(least).empty() ? fmt::format("more processes, at least {}", least)
+                             : "larger elements: more processes would have too few columns");
 }
 
 }  // namespace slipfront::motion

@@ -49,8 +49,8 @@ int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySte
 Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach);
 /// The same for bodies.
 /// @param steps  of each body
-/// @throws UserError where the parts would be too narrow for their halo, or would end at a rounded corner; it
-///         tells how many are possible
+/// @throws UserError where the parts would be too narrow for their halo, would end at a rounded corner, or
+///         would have more nodes than can be numbered; it tells how many are possible
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
                        const TimeStepping& time, int n_parts);
 
