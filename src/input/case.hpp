@@ -139,6 +139,16 @@ inline mesh::Plate base_plate(const Case& config) {
   return plate;
 }
 
+/// Whether processes that share a run may each have some columns of the bodies while none has all: nothing is
+/// strained before the event, and all cells are squares.
+inline bool can_be_held_in_parts(const Case& config) {
+  const auto is_of_squares = [](const mesh::Plate& plate) {
+    return plate.coarsenings == 0 && plate.corner == mesh::Corner::none;
+  };
+  return config.loading.method == statics::LoadingMethod::prestress && is_of_squares(config.plate) &&
+         (!has_base_body(config) || is_of_squares(base_plate(config)));
+}
+
 /// The probes of a case with their names.
 inline std::vector<record::ProbePlace> probe_places(const Case& config) {
   const auto& [x_m, y_m, names, interval_s] = config.probes;

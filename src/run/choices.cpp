@@ -89,7 +89,6 @@ bool has_snapshots(const input::Case& config) {
 
 bool leads_by_interface(const input::Case& config, int n_processes) {
   const auto is_of_many_squares = [](const mesh::Plate& plate) {
-    if (plate.coarsenings != 0 || plate.corner != mesh::Corner::none) return false;
     const double columns = std::round(plate.width_m / plate.element_size_m);
     const double rows = std::round(plate.height_m / plate.element_size_m);
     constexpr double most = std::numeric_limits<int>::max();
@@ -98,7 +97,7 @@ bool leads_by_interface(const input::Case& config, int n_processes) {
     const auto n_nodes = static_cast<std::int64_t>((columns + 1) * (rows + 1));
     return solid::takes_frequency_bound(n_nodes, std::span(&grid, 1));
   };
-  return n_processes > 1 && is_prestressed(config) && is_of_many_squares(config.plate) &&
+  return n_processes > 1 && input::can_be_held_in_parts(config) && is_of_many_squares(config.plate) &&
          (!input::has_base_body(config) || is_of_many_squares(input::base_plate(config)));
 }
 
