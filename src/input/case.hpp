@@ -139,6 +139,21 @@ inline mesh::Plate base_plate(const Case& config) {
   return plate;
 }
 
+/// Whether there are neither coarser elements nor some that are wrapped around a corner: then a mesh can be
+/// made in rows, and in columns without the others.
+inline bool has_equal_elements(const Case& config) {
+  const auto are_equal = [](const mesh::Plate& plate) {
+    return plate.coarsenings == 0 && plate.corner != mesh::Corner::fillet;
+  };
+  return are_equal(config.plate) && (!has_base_body(config) || are_equal(base_plate(config)));
+}
+
+/// Whether processes that share a run may each have some columns of the bodies while none has all, so that
+/// these may have more nodes than can be numbered: nothing is strained before the event.
+inline bool can_be_held_in_parts(const Case& config) {
+  return config.loading.method == statics::LoadingMethod::prestress && has_equal_elements(config);
+}
+
 /// The probes of a case with their names.
 inline std::vector<record::ProbePlace> probe_places(const Case& config) {
   const auto& [x_m, y_m, names, interval_s] = config.probes;

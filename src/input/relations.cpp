@@ -40,13 +40,16 @@ void check_friction(const Case& config) {
   throw UserError("friction: {} ({})", problem, values).about("friction.law");
 }
 
-void check_element_size(const mesh::Plate& plate) {
+/// How many nodes processes can number that have some of them each follows when they are known.
+void check_element_size(const Case& config) {
   constexpr double most_nodes = std::numeric_limits<mesh::Node>::max();
+  const auto& plate = config.plate;
   const Key element_size("plate.element_size_m");
-  const double h = plate.element_size_m;
-  if ((plate.width_m / h + 1) * (plate.height_m / h + 1) > most_nodes)
-    throw UserError("{} is {} m; that makes more than {:.3g} nodes, choose a larger one", element_size, h,
-                    most_nodes)
+  const double h = plate.element_size_m, columns = plate.width_m / h + 1, rows = plate.height_m / h + 1;
+  const bool in_parts = can_be_held_in_parts(config);
+  if ((in_parts ? std::max(columns, rows) : columns * rows) > most_nodes)
+    throw UserError("{} is {} m; that makes more than {:.3g} nodes{}, choose a larger one", element_size, h,
+                    most_nodes, in_parts ? " in a row or a column" : "")
         .about("plate.width_m", "plate.height_m");
   const double shorter_m = std::min(plate.width_m, plate.height_m);
   if (h > shorter_m)
@@ -291,7 +294,7 @@ void check_duration(const Case& config) {
 
 void check_relations(const Case& config, const Document& document) {
   check_friction(config);
-  check_element_size(config.plate);
+  check_element_size(config);
   check_prestress(config, document);
   check_tilt(config);
   check_trigger_zone(config);

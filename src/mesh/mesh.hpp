@@ -7,6 +7,8 @@
 
 namespace slipfront::mesh {
 
+/// A node's number among those that a mesh holds. In a whole that no mesh holds numbers may be larger, see
+/// NodeColumns.
 using Node = std::int32_t;
 
 /// Four-node cells with their node numbers counterclockwise.
@@ -25,7 +27,7 @@ struct Grid {
   Node first = 0;        ///< number of the lowest left node
   int stride() const { return columns + 1; }
   Node node(int i, int j) const { return first + j * stride() + i; }
-  int n_nodes() const { return stride() * (rows + 1); }
+  std::int64_t n_nodes() const { return std::int64_t{stride()} * (rows + 1); }
 };
 
 /// A boundary node that lets waves out: length of its boundary with the normal along x, and along y.

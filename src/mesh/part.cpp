@@ -132,19 +132,19 @@ NodeColumns::Nodes NodeColumns::nodes(int row, Subset::Range columns) const {
   return {first + held.place_of(begin), end - begin};
 }
 
-int NodeColumns::row_of(Node n) const {
+int NodeColumns::row_of(std::int64_t n) const {
   const auto above = std::ranges::upper_bound(rows_, n, {}, &Row::first);
   return static_cast<int>(above - rows_.begin()) - 1;
 }
 
-int NodeColumns::column_of(Node n) const {
+int NodeColumns::column_of(std::int64_t n) const {
   const auto& row = rows_[row_of(n)];
-  return column_at(row.block, row.is_inner, row.held.number_at(n - row.first));
+  return column_at(row.block, row.is_inner, row.held.number_at(static_cast<int>(n - row.first)));
 }
 
-std::int64_t NodeColumns::number_in_whole(Node n) const {
+std::int64_t NodeColumns::number_in_whole(std::int64_t n) const {
   const auto& row = rows_[row_of(n)];
-  return row.first_in_whole + row.held.number_at(n - row.first);
+  return row.first_in_whole + row.held.number_at(static_cast<int>(n - row.first));
 }
 
 const NodeColumns::Row& NodeColumns::row_of_whole(std::int64_t number) const {
@@ -153,7 +153,7 @@ const NodeColumns::Row& NodeColumns::row_of_whole(std::int64_t number) const {
 
 Node NodeColumns::node_of_whole(std::int64_t number) const {
   const auto& row = row_of_whole(number);
-  return row.first + row.held.place_of(static_cast<int>(number - row.first_in_whole));
+  return static_cast<Node>(row.first + row.held.place_of(static_cast<int>(number - row.first_in_whole)));
 }
 
 int NodeColumns::column_of_whole(std::int64_t number) const {

@@ -37,7 +37,8 @@ class Subset {
 
 /// The columns of a plate's nodes, counted in the smallest squares: node i of a grid row of the k-th block
 /// upwards stands in column 2^k i, as does the inner node i of the transition above that block, where i is no
-/// multiple of 4. Of a mesh that holds some columns of a plate they are those of the plate, the whole.
+/// multiple of 4. Of a mesh that holds some columns of a plate they are those of the plate, the whole. Nodes
+/// are those of the mesh, or of a whole plate that need not be held and may have more than a Node can number.
 ///
 /// A mesh without a grid has one row. Its columns are those by which its nodes are numbered, each with nodes
 /// of any number; where they are not, each node stands in a column of its own.
@@ -55,22 +56,22 @@ class NodeColumns {
   NodeColumns of_part(const Subset& held) const;
 
   int n_columns() const { return n_columns_; }  ///< of the whole
-  Node n_nodes() const { return rows_.empty() ? 0 : row(n_rows() - 1).end(); }
+  std::int64_t n_nodes() const { return rows_.empty() ? 0 : row(n_rows() - 1).end(); }
   /// Rows of nodes, upwards: grid rows and, between blocks, the inner nodes of a transition.
   int n_rows() const { return static_cast<int>(rows_.size()); }
   /// Nodes with consecutive numbers, as many as the mesh has of a row.
   struct Nodes {
-    Node first = 0;
+    std::int64_t first = 0;
     int count = 0;
-    Node end() const { return first + count; }
+    std::int64_t end() const { return first + count; }
   };
   Nodes row(int row) const { return {rows_[row].first, rows_[row].held.count()}; }
   /// A row's nodes in some neighbouring columns of the whole. @pre the mesh holds these
   Nodes nodes(int row, Subset::Range columns) const;
-  int row_of(Node n) const;
-  int column_of(Node n) const;
+  int row_of(std::int64_t n) const;
+  int column_of(std::int64_t n) const;
   /// The number that a node of the mesh has in the whole, and back. @pre the mesh holds it
-  std::int64_t number_in_whole(Node n) const;
+  std::int64_t number_in_whole(std::int64_t n) const;
   Node node_of_whole(std::int64_t number) const;
   /// The column of a node of the whole, by its number there.
   int column_of_whole(std::int64_t number) const;
@@ -79,8 +80,7 @@ class NodeColumns {
   struct Row {
     int block = 0;
     bool is_inner = false;  ///< of a transition
-    Node first = 0;
-    std::int64_t first_in_whole = 0;
+    std::int64_t first = 0, first_in_whole = 0;
     Subset held;  ///< places in the row of the whole
   };
   /// Nodes of a row of the whole in columns below this one, and the column of the next one.

@@ -51,16 +51,19 @@ std::optional<double> size_that_fits(const Plate& plate, int step) {
       .about(width, height);
 }
 
-Grid make_grid(const Plate& plate, bool is_whole_plate) {
+constexpr auto most_nodes = std::numeric_limits<Node>::max();
+
+/// @param holds_all  whether a mesh holds all of its nodes
+Grid make_grid(const Plate& plate, bool holds_all) {
   require_positive(plate.width_m, "plate.width_m");
   require_positive(plate.height_m, "plate.height_m");
   require_positive(plate.element_size_m, "plate.element_size_m");
   const double columns = plate.width_m / plate.element_size_m;
   const double rows = plate.height_m / plate.element_size_m;
-  constexpr auto most = std::numeric_limits<Node>::max();
-  if (is_whole_plate ? (columns + 1) * (rows + 1) > most : std::max(columns, rows) >= most)
-    throw UserError("{} = {:.8g} makes more than {} nodes; use a larger size", Key("plate.element_size_m"),
-                    plate.element_size_m, most);
+  const double in_row = std::round(columns) + 1, in_column = std::round(rows) + 1;
+  if ((holds_all ? in_row * in_column : std::max(in_row, in_column)) > most_nodes)
+    throw UserError("{} = {:.8g} makes more than {} nodes{}; use a larger size", Key("plate.element_size_m"),
+                    plate.element_size_m, most_nodes, holds_all ? "" : " in a row or a column");
   if (!is_whole(columns) || !is_whole(rows)) throw_no_fit(plate);
   Grid grid;
   grid.columns = static_cast<int>(std::lround(columns));
@@ -147,12 +150,12 @@ class Block {
   Node node(int i, int j) const {
     return part_.first + j * part_.stride() + place_[static_cast<std::size_t>(i)];
   }
-  Node inner_node(int i) const {
-    return part_.first + part_.n_nodes() + inner_place_[static_cast<std::size_t>(i)];
-  }
-  Node first_above() const { return part_.first + part_.n_nodes() + n_inner_; }
+  Node inner_node(int i) const { return first_inner() + inner_place_[static_cast<std::size_t>(i)]; }
+  Node first_above() const { return first_inner() + n_inner_; }
 
  private:
+  Node first_inner() const { return part_.first + static_cast<Node>(part_.n_nodes()); }
+
   Grid part_;
   std::vector<int> place_, inner_place_;
   int n_inner_ = 0;
@@ -207,23 +210,27 @@ class Relief {
   double radius2_ = radius_m_ * radius_m_;
 };
 
-/// A plate, of whose nodes and cells a mesh holds some columns.
+/// Which rows of nodes a mesh holds.
+enum class Rows { all, some };
+
+/// A plate, of whose nodes and cells a mesh holds some columns, or some rows.
 class Maker {
  public:
-  Maker(const Plate& plate, const Subset& columns, std::string_view table)
+  Maker(const Plate& plate, const Subset& columns, Rows rows, std::string_view table)
       : plate_(plate),
-        whole_(make_grid(plate, columns.ranges().empty())),
+        whole_(make_grid(plate, columns.ranges().empty() && rows == Rows::all)),
         is_periodic_(plate.sides == Sides::periodic) {
     const auto grids = make_blocks(plate, whole_, table);
     double n_nodes = 0;
     Node first = 0;
     for (std::size_t k = 0; k < grids.size(); ++k) {
       const auto& block = blocks_.emplace_back(grids[k], static_cast<int>(k), columns, first);
-      n_nodes += static_cast<double>(block.held.size()) * (block.grid.rows + 2.0);
-      if (n_nodes > std::numeric_limits<Node>::max())
+      const bool is_highest = k + 1 == grids.size();
+      n_nodes += static_cast<double>(block.held.size()) * (block.grid.rows + (is_highest ? 1.0 : 2.0));
+      if (n_nodes > most_nodes && (rows == Rows::all || !is_highest))
         throw UserError("{} = {:g} makes more than {} nodes; choose a larger one",
-                        Key("plate.element_size_m"), plate.element_size_m, std::numeric_limits<Node>::max());
-      first = block.first_above();
+                        Key("plate.element_size_m"), plate.element_size_m, most_nodes);
+      if (!is_highest) first = block.first_above();
     }
     if (plate.sides != Sides::free && plate.corner != Corner::none)
       throw UserError("{} other than free needs right-angled corners; set {} = \"none\"", Key("plate.sides"),
@@ -262,6 +269,7 @@ class Maker {
     SLIPFRONT_ASSERT(blocks_.size() == 1 && !rounded_, "rows of one grid");
     const auto& block = blocks_.front();
     mesh_.grid.rows = end - begin;
+    SLIPFRONT_ASSERT(mesh_.grid.n_nodes() <= most_nodes, "rows of no more nodes than can be numbered");
     for (int j = begin; j <= end; ++j)
       for (const int i : block.held) add_grid_node(block, i, j);
     for (int j = 0; j < mesh_.grid.rows; ++j) add_row_of_squares(block, j);
@@ -269,7 +277,8 @@ class Maker {
   }
 
   Mesh make() && {
-    const auto n_nodes = static_cast<std::size_t>(blocks_.back().first_above());
+    const auto& highest = blocks_.back().part();
+    const auto n_nodes = static_cast<std::size_t>(highest.first + highest.n_nodes());
     mesh_.x_m.reserve(n_nodes);
     mesh_.y_m.reserve(n_nodes);
     mesh_.cells.reserve(n_nodes);
@@ -450,27 +459,28 @@ Mesh make_plate(const Plate& plate, std::string_view table) {
 }
 
 Mesh make_interface(const Plate& plate, std::string_view table) {
-  return Maker(plate, Subset(), table).make_lowest_row();
+  return Maker(plate, Subset(), Rows::some, table).make_lowest_row();
 }
 
 Mesh make_corners(const Plate& plate, int around) {
   SLIPFRONT_ASSERT(plate.corner == Corner::relief && plate.coarsenings == 0, "corners of moved squares");
-  const Grid whole = make_grid(plate, true);
+  const Grid whole = make_grid(plate, false);
   const auto cells = [&](double length_m) {
     return static_cast<int>(std::ceil(length_m / whole.spacing_m)) + around + 1;
   };
   const int n = whole.stride(), columns = cells(plate.relief_length_m) + 1;
   std::vector<Subset::Range> sides = {{0, n}};
   if (2 * columns < n) sides = {{0, columns}, {n - columns, n}};
-  return Maker(plate, Subset(sides), "plate").make_rows(0, std::min(whole.rows, cells(plate.relief_depth_m)));
+  return Maker(plate, Subset(sides), Rows::some, "plate")
+      .make_rows(0, std::min(whole.rows, cells(plate.relief_depth_m)));
 }
 
 Mesh make_rows(const Plate& plate, int begin, int end, std::string_view table) {
-  return Maker(plate, Subset(), table).make_rows(begin, end);
+  return Maker(plate, Subset(), Rows::some, table).make_rows(begin, end);
 }
 
 Mesh make_columns(const Plate& plate, const Subset& columns, std::string_view table) {
-  return Maker(plate, columns, table).make();
+  return Maker(plate, columns, Rows::all, table).make();
 }
 
 }  // namespace slipfront::mesh

@@ -76,7 +76,8 @@ struct Plate {
 Mesh make_plate(const Plate& plate, std::string_view table = "plate");
 
 /// Of a plate without fillets the nodes of the lowest row alone, in the grids of the whole plate and without
-/// cells: what is known of a plate whose columns are held elsewhere.
+/// cells: what is known of a plate whose columns are held elsewhere. The whole plate may have more nodes than
+/// can be numbered.
 Mesh make_interface(const Plate& plate, std::string_view table = "plate");
 
 /// The cells of make_plate that are no squares since a relief moves their nodes, and so many more cells on
@@ -85,7 +86,8 @@ Mesh make_interface(const Plate& plate, std::string_view table = "plate");
 Mesh make_corners(const Plate& plate, int around);
 
 /// The nodes of make_plate in grid rows [begin, end], numbered from 0, with the cells between them: a mesh of
-/// its own for those who write a plate row after row. It has no edges.
+/// its own for those who write a plate row after row. It has no edges. The whole plate may have more nodes
+/// than can be numbered.
 /// @pre elements are equal, corners not wrapped
 Mesh make_rows(const Plate& plate, int begin, int end, std::string_view table = "plate");
 

@@ -38,7 +38,7 @@ BodyMotion motion_of(const BodySource& source) {
   motion.is_own.resize(source.mesh.n_nodes());
   for (int r = 0; r < motion.columns.n_rows(); ++r) {
     const auto nodes = motion.columns.nodes(r, {part.own.begin, part.own.end});
-    const int begin = nodes.first - motion.columns.row(r).first;
+    const auto begin = static_cast<int>(nodes.first - motion.columns.row(r).first);
     motion.own.push_back({begin, begin + nodes.count});
     for (auto n = nodes.first; n < nodes.end(); ++n) motion.is_own[n] = true;
   }

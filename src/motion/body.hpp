@@ -149,7 +149,7 @@ class Body {
   template <class F>
   void for_own_nodes(F&& f) const {
     for (int r = 0; r < n_rows(); ++r) {
-      const auto first = motion_.columns.row(r).first;
+      const auto first = static_cast<mesh::Node>(motion_.columns.row(r).first);
       for (int i = motion_.own[r].begin; i < motion_.own[r].end; ++i) f(first + i);
     }
   }

@@ -2,6 +2,7 @@
 #include "motion/division.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "base/error.hpp"
@@ -211,6 +212,22 @@ Division divide(int n_parts, Divided&& divided, WhyNot&& why_not) {
   throw UserError("{}; choose at most {}", reason, most);
 }
 
+constexpr std::int64_t most_nodes = std::numeric_limits<mesh::Node>::max();
+
+/// Nodes of a column of the highest body of which no process has all; 0 where one has.
+std::int64_t nodes_of_column_in_parts(std::span<const BodySource> bodies) {
+  std::int64_t most = 0;
+  for (const auto& body : bodies)
+    if (body.mesh.is_interface()) most = std::max(most, std::int64_t{body.mesh.grid.rows} + 1);
+  return most;
+}
+
+std::int64_t columns_of_widest(const Division& division) {
+  int most = 0;
+  for (int part = 0; part < division.n_parts(); ++part) most = std::max(most, division.all(part).count());
+  return most;
+}
+
 }  // namespace
 
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
@@ -229,9 +246,23 @@ Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodyS
         {corner, mesh::columns_of_wrapped_cells(body.mesh), columns_of_rounded_layer(body.mesh, time)});
   }
   const int per_step = columns_per_step(bodies, steps, time);
-  return divide(
-      n_parts, [&](int n) { return divide_columns(bodies.front().mesh, n, per_step, widest_cell); },
-      [&](const Division& division) { return reason_against(division, widest_cell, corner); });
+  const auto divided = [&](int n) { return divide_columns(bodies.front().mesh, n, per_step, widest_cell); };
+  const auto why_not = [&](const Division& d) { return reason_against(d, widest_cell, corner); };
+  const auto division = divide(n_parts, divided, why_not);
+  const auto of_column = nodes_of_column_in_parts(bodies);
+  const auto can_number = [&](const Division& d) { return of_column * columns_of_widest(d) <= most_nodes; };
+  if (can_number(division)) return division;
+  const auto is_possible = [&](int n) { return why_not(divided(n)).empty(); };
+  const std::int64_t n_columns = division.n_columns();
+  auto least =
+      static_cast<int>(std::clamp(of_column * n_columns / most_nodes, std::int64_t{n_parts} + 1, n_columns));
+  while (is_possible(least) && !can_number(divided(least))) ++least;
+  throw UserError(
+      "each of {} processes would have up to {:.3g} nodes of a body, more than the {} that it can "
+      "number; use {}",
+      n_parts, static_cast<double>(of_column * columns_of_widest(division)), most_nodes,
+      is_possible(least) ? fmt::format("more processes, at least {}", least)
+                         : "larger elements: more processes would have too few columns");
 }
 
 }  // namespace slipfront::motion

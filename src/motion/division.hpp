@@ -55,7 +55,7 @@ Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_ste
 /// nodes.
 /// @param steps  of each body
 /// @throws UserError where the parts would be too narrow for their halo, would end at a rounded corner, or
-///         one would have no interface; it tells how many are possible
+///         one would have no interface, or more nodes than can be numbered; it tells how many are possible
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
                        const TimeStepping& time, int n_parts);
 

@@ -62,7 +62,7 @@ void Halo::make_stages(int columns, double stage_bytes) {
     n_rows.push_back(stepper_.bodies()[b].n_rows());
     n_first.push_back(stepper_.rows_moved(b, 0));
     most_above = std::max(most_above, n_rows[b] - n_first[b]);
-    nodes_above += (n_rows[b] - n_first[b]) * columns;
+    nodes_above += 1.0 * (n_rows[b] - n_first[b]) * columns;
   }
   const double suitable = std::ceil(nodes_above * bytes_of_node / stage_bytes);
   const int n = 1 + static_cast<int>(std::min({suitable, 1.0 * most_above, most_stages - 1.0}));
@@ -71,7 +71,9 @@ void Halo::make_stages(int columns, double stage_bytes) {
     stage.has_interface = k == 0;
     for (std::size_t b = 0; b < n_rows.size(); ++b) {
       const auto end_of = [&](int number) {
-        return n == 1 ? n_rows[b] : std::min(n_rows[b], n_first[b] + most_above * number / (n - 1));
+        return n == 1 ? n_rows[b]
+                      : std::min(n_rows[b],
+                                 n_first[b] + static_cast<int>(std::int64_t{most_above} * number / (n - 1)));
       };
       stage.rows.push_back({k == 0 ? 0 : end_of(k - 1), end_of(k)});
     }

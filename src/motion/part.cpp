@@ -97,7 +97,7 @@ void Part::carry_out(PartCommand command, Parcel& given, Parcel& answer) {
       std::vector<Probe> probes(given.take<std::uint64_t>());
       for (auto& probe : probes) {
         probe.body = given.take<std::size_t>();
-        probe.node = given.take<mesh::Cell>();
+        std::ranges::copy(given.take<mesh::Cell>(), probe.node.begin());
       }
       stepper_->watch(std::move(probes));
       break;
@@ -287,7 +287,8 @@ void Part::put_snapshot(const SnapshotPiece& piece, Parcel& answer) const {
   std::vector<double> own;
   for (int r = piece.first_row; r < piece.end_row; ++r) {
     const auto nodes = columns.nodes(r, {place_.own.begin, place_.own.end});
-    stepper_->append(piece.component, body, nodes.first, nodes.end(), own);
+    stepper_->append(piece.component, body, static_cast<mesh::Node>(nodes.first),
+                     static_cast<mesh::Node>(nodes.end()), own);
   }
   answer.put(own);
 }

@@ -94,6 +94,9 @@ struct TractionsWanted {
   solid::Span nodes;        ///< places along the part's interface
 };
 
+/// Most nodes of a piece of a snapshot, unless a single row has more.
+inline constexpr int nodes_of_snapshot_piece = 1 << 19;
+
 /// Some rows of nodes in a snapshot.
 struct SnapshotPiece {
   MotionComponent component = MotionComponent::u_x;

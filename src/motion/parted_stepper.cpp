@@ -14,6 +14,8 @@
 namespace slipfront::motion {
 
 mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns) {
+  // There each node has its own column; many processes ask for theirs.
+  if (mesh.is_interface()) return columns.below(static_cast<int>(std::ssize(mesh.lower)));
   const mesh::NodeColumns of_nodes(mesh);
   std::vector<mesh::Subset::Range> ranges;
   for (int k = 0; k < std::ssize(mesh.lower); ++k) {
@@ -58,14 +60,13 @@ void put_columns(const mesh::NodeColumns& body, const mesh::Subset& columns, con
   }
 }
 
-/// Rows of a body in groups of so many nodes, at most, or single ones.
+/// Rows of a body in groups of a piece's nodes, at most, or single ones.
 std::vector<mesh::Subset::Range> rows_at_once(const mesh::NodeColumns& body) {
-  constexpr int most_nodes = 1 << 19;
   std::vector<mesh::Subset::Range> groups;
-  int nodes = 0;
+  std::int64_t nodes = 0;
   for (int r = 0; r < body.n_rows(); ++r) {
     const int of_row = body.row(r).count;
-    if (groups.empty() || nodes + of_row > most_nodes) {
+    if (groups.empty() || nodes + of_row > nodes_of_snapshot_piece) {
       groups.push_back({r, r});
       nodes = 0;
     }
@@ -77,6 +78,21 @@ std::vector<mesh::Subset::Range> rows_at_once(const mesh::NodeColumns& body) {
 
 }  // namespace
 
+std::vector<SnapshotPiece> snapshot_pieces(std::span<const mesh::NodeColumns> bodies) {
+  std::vector<SnapshotPiece> pieces;
+  for (int component = 0; component < n_motion_components; ++component)
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      for (const auto& [first, end] : rows_at_once(bodies[b]))
+        pieces.push_back({MotionComponent{component}, static_cast<int>(b), first, end});
+  return pieces;
+}
+
+mesh::NodeColumns::Nodes nodes_of(const SnapshotPiece& piece, std::span<const mesh::NodeColumns> bodies) {
+  const auto& body = bodies[static_cast<std::size_t>(piece.body)];
+  const auto first = body.row(piece.first_row).first;
+  return {first, static_cast<int>(body.row(piece.end_row - 1).end() - first)};
+}
+
 PartedStepper::PartedStepper(Processes& processes, const Division& division, std::unique_ptr<Part> own,
                              std::span<const mesh::Mesh* const> bodies)
     : processes_(processes), division_(division), own_(std::move(own)) {
@@ -86,10 +102,7 @@ PartedStepper::PartedStepper(Processes& processes, const Division& division, std
     all_lower_.push_back(lower_in(*bodies.front(), division.all(part)));
     own_lower_.push_back(own_lower_in(*bodies.front(), division.own(part)));
   }
-  for (int component = 0; component < n_motion_components; ++component)
-    for (std::size_t b = 0; b < columns_.size(); ++b)
-      for (const auto& [first, end] : rows_at_once(columns_[b]))
-        snapshot_pieces_.push_back({MotionComponent{component}, static_cast<int>(b), first, end});
+  snapshot_pieces_ = snapshot_pieces(columns_);
 }
 
 PartedStepper::~PartedStepper() {
@@ -212,8 +225,8 @@ void PartedStepper::watch(std::vector<Probe> probes) {
     const int part = std::min(static_cast<int>(after - division_.first.begin()) - 1, division_.n_parts() - 1);
     part_of_probe.push_back(part);
     const auto held = body.of_part(division_.all(part));
-    auto node = probe.node;
-    for (auto& n : node) n = held.node_of_whole(n);
+    mesh::Cell node{};
+    std::ranges::transform(probe.node, node.begin(), [&](std::int64_t n) { return held.node_of_whole(n); });
     of_part[static_cast<std::size_t>(part)].emplace_back(probe.body, node);
   }
   told_probes_.resize(probes_.size());
@@ -420,22 +433,16 @@ std::int64_t PartedStepper::n_nodes() const {
   return n;
 }
 
-mesh::NodeColumns::Nodes PartedStepper::nodes_of(const SnapshotPiece& piece) const {
-  const auto& body = columns_[static_cast<std::size_t>(piece.body)];
-  const auto first = body.row(piece.first_row).first;
-  return {first, body.row(piece.end_row - 1).end() - first};
-}
-
 std::size_t PartedStepper::snapshot_piece_bytes() const {
   int most = 0;
-  for (const auto& piece : snapshot_pieces_) most = std::max(most, nodes_of(piece).count);
+  for (const auto& piece : snapshot_pieces_) most = std::max(most, nodes_of(piece, columns_).count);
   return sizeof(double) * static_cast<std::size_t>(most);
 }
 
 std::vector<double> PartedStepper::snapshot_piece(int k) const {
   const auto& piece = snapshot_pieces_[static_cast<std::size_t>(k)];
   const auto& body = columns_[static_cast<std::size_t>(piece.body)];
-  const auto all = nodes_of(piece);
+  const auto all = nodes_of(piece, columns_);
   std::vector<double> values(static_cast<std::size_t>(all.count));
   int part = 0;
   ask(

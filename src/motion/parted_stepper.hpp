@@ -18,6 +18,11 @@ struct SlipsSeen;
 /// Places in Mesh::lower of the nodes in some columns.
 mesh::Subset lower_in(const mesh::Mesh& mesh, const mesh::Subset& columns);
 
+/// The pieces of a snapshot of whole bodies, in its order.
+std::vector<SnapshotPiece> snapshot_pieces(std::span<const mesh::NodeColumns> bodies);
+/// Nodes of a piece, by their numbers in its whole body.
+mesh::NodeColumns::Nodes nodes_of(const SnapshotPiece& piece, std::span<const mesh::NodeColumns> bodies);
+
 /// Steps the bodies of an event with several processes, each of which has a Part; the one that leads has this
 /// as well. What is computed of a node does not depend on the part that it lies in: displacements, tractions
 /// and onsets are those of one process, to the last bit; energies but for the order of summation.
@@ -88,8 +93,6 @@ class PartedStepper final : public TimeStepper {
   };
   /// Steps before which go_on does not refuse a motion that is physical.
   Steps advance_surely(Recorder& recorder, std::int64_t n_steps, const Between& between);
-  /// Nodes of a piece, by their numbers in the whole body.
-  mesh::NodeColumns::Nodes nodes_of(const SnapshotPiece& piece) const;
   /// Asks for tractions around onsets near a part's end, in the last command's updates, which the parts
   /// beside it know.
   void add_tractions_of_others(SlipsSeen& seen, std::size_t n_around) const;

@@ -63,7 +63,7 @@ void locate_in(const BodySource& source, std::size_t body, std::span<const recor
       const auto k = in.place[at];
       if (found[k]) continue;
       if (const auto shape = shape_in(source.mesh, c, places[k].x_m, in.y_m[at]))
-        found[k] = Probe{body, cell, *shape, source.material};
+        found[k] = Probe{body, {cell[0], cell[1], cell[2], cell[3]}, *shape, source.material};
     }
   }
 }

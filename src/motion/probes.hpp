@@ -53,9 +53,9 @@ struct PlaceInWhole {
 
 /// A place within a cell of a body, at which its motion, strain and stress are recorded.
 struct Probe {
-  std::size_t body = 0;  ///< 0 above, 1 below
-  mesh::Cell node{};
-  solid::CellShape shape;  ///< in the body's own axes: those of a body below are upside down
+  std::size_t body = 0;                ///< 0 above, 1 below
+  std::array<std::int64_t, 4> node{};  ///< of a cell, by their numbers in the whole body
+  solid::CellShape shape;              ///< in the body's own axes: those of a body below are upside down
   solid::Material material;
 };
 

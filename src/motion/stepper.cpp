@@ -149,7 +149,7 @@ void Stepper::watch(std::vector<Probe> probes) {
   for (std::size_t p = 0; p < probes_.size(); ++p)
     for (std::size_t a = 0; a < 4; ++a) {
       const auto b = probes_[p].body;
-      const auto node = probes_[p].node[a];
+      const auto node = static_cast<mesh::Node>(probes_[p].node[a]);
       watched_[leads(bodies_[b]) ? bodies_[b].band_of(node) : 0].push_back({b, node, 8 * p + 2 * a});
     }
 }

@@ -89,7 +89,6 @@ bool has_snapshots(const input::Case& config) {
 
 bool leads_by_interface(const input::Case& config, int n_processes, bool may_keep) {
   const auto is_of_many_squares = [](const mesh::Plate& plate) {
-    if (plate.coarsenings != 0 || plate.corner == mesh::Corner::fillet) return false;
     const double columns = std::round(plate.width_m / plate.element_size_m);
     const double rows = std::round(plate.height_m / plate.element_size_m);
     constexpr double most = std::numeric_limits<int>::max();
@@ -104,7 +103,8 @@ bool leads_by_interface(const input::Case& config, int n_processes, bool may_kee
   };
   const bool is_kept_elsewhere =
       is_prestressed(config) || (may_keep && keeps_displacements(config, n_processes));
-  return n_processes > 1 && is_kept_elsewhere && is_of_many_squares(config.plate) &&
+  return n_processes > 1 && is_kept_elsewhere && input::has_equal_elements(config) &&
+         is_of_many_squares(config.plate) &&
          (!input::has_base_body(config) || is_of_many_squares(input::base_plate(config)));
 }
 

@@ -164,7 +164,7 @@ void write_fields(const results::ResultFolder& folder, const input::Case& config
       results::read_snapshots(order.raw, static_cast<std::size_t>(bodies.n_nodes)).time_s.size();
   if (order.n_snapshots == 0) return;
   order.raw_bytes = std::filesystem::file_size(order.raw);
-  const bool is_in_rows = has_equal_elements(config);
+  const bool is_in_rows = input::has_equal_elements(config);
   if (is_in_rows && processes != nullptr) {
     if (begin_together(order, config, *processes)) return write_together(order, config, *processes);
     note(fmt::format("{} is written by process 0 alone: others do not see {}, or cannot write there",

@@ -121,7 +121,7 @@ std::vector<motion::Probe> probes_among_columns(const input::Case& config, const
     }
     auto probe = motion::locate_probes(std::span(&place, 1), bodies).front();
     const mesh::NodeColumns of_part(bodies[probe.body].mesh, columns, grid.stride());
-    for (auto& n : probe.node) n = static_cast<mesh::Node>(of_part.number_in_whole(n));
+    for (auto& n : probe.node) n = of_part.number_in_whole(n);
     probes.push_back(probe);
   }
   return probes;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <system_error>
 
 #include "base/error.hpp"
@@ -140,7 +141,7 @@ Budget event_budget(const input::Case& config, const Size& size, double n_snapsh
 /// fields.vtkhdf is made of one raw field at a time, beside its mesh or some rows of it.
 Budget snapshot_budget(const input::Case& config, const Size& size) {
   const double at_once = std::max(static_cast<double>(snapshot_nodes_at_once), 2 * size.n_interface);
-  const double n_nodes = has_equal_elements(config) ? std::min(size.n_nodes, at_once) : size.n_nodes;
+  const double n_nodes = input::has_equal_elements(config) ? std::min(size.n_nodes, at_once) : size.n_nodes;
   const double field = 2 * number, same_motion = number;
   return {
       {"fields and their mesh", (field + same_motion + mesh_bytes_per_node) * n_nodes, larger_elements()}};
@@ -371,7 +372,28 @@ Budget Needs::disk() const {
           {"energy.csv", energy_bytes, Message("a larger {}", Key("output.energy_interval_s"))}};
 }
 
+namespace {
+
+/// Nodes of a body that is held as a whole are numbered by one process.
+void require_numbers(const input::Case& config, int n_processes) {
+  if (!input::can_be_held_in_parts(config) || leads_by_interface(config, n_processes)) return;
+  constexpr double most_nodes = std::numeric_limits<mesh::Node>::max();
+  const double h = config.plate.element_size_m;
+  const double height_m =
+      std::max(config.plate.height_m, input::has_base_body(config) ? config.base.plate.height_m : 0);
+  const double n_nodes = (config.plate.width_m / h + 1) * (height_m / h + 1);
+  if (n_nodes > most_nodes)
+    throw UserError("{} is {} m; that makes {:.3g} nodes, more than the {:.3g} that one process can number{}",
+                    Key("plate.element_size_m"), h, n_nodes, most_nodes,
+                    leads_by_interface(config, 2) ? "; use more processes, or choose a larger one"
+                                                  : "; choose a larger one")
+        .about("plate.width_m", "plate.height_m");
+}
+
+}  // namespace
+
 void require_memory_fits(const input::Case& config, const Processes* processes, bool may_keep) {
+  require_numbers(config, processes != nullptr ? processes->size() : 1);
   const auto whole = estimated_mesh_size(config);
   const auto size = held_here(config, whole, processes, may_keep);
   const double n_snapshots = has_snapshots(config) ? 1 : 0;

@@ -77,8 +77,8 @@ double statics_bytes(const input::Case& config, const Size& size);
 /// @throws UserError where more steps are asked for than any machine takes.
 Needs needs(const input::Case& config, const Size& size);
 
-/// Refuses a case that would not fit into the memory, before anything is built; what grows with its steps is
-/// left out.
+/// Refuses a case that would not fit into the memory, or has more nodes than can be numbered, before anything
+/// is built; what grows with its steps is left out.
 /// @param processes  that share the run, of which this one leads; null for this one alone
 /// @param may_keep   see make_initial_state
 /// @throws UserError naming what to change.

@@ -82,6 +82,10 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
     const double levels = std::ceil(std::log2(n_parts));
     cost.command_s =
         (work.advances + work.energies) * 2 * levels * (network.latency_s + handling.s_per_message);
+    const double pieces =
+        motion::n_motion_components *
+        std::ceil(work.n_nodes / std::max<double>(motion::nodes_of_snapshot_piece, work.n_columns));
+    cost.command_s += work.snapshots * pieces * 2 * (network.latency_s + others * handling.s_per_message);
     for (double parts = 1; parts < n_parts; parts *= 2)
       cost.command_s +=
           work.advances * (latency_s(parts * told_bytes / n_parts / work.advances) - network.latency_s);

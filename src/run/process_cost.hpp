@@ -77,8 +77,9 @@ struct ProcessCost {
 ///   k steps to an exchange in the time T, H included, a share f of it for what goes with the interface; m
 ///   bytes of a halo, i of these with the interface; rate b of packing, c processor time of a byte on its
 ///   way
-/// - commands: (A + e) 2 d (L + o) + A sum (l(2^i a) - L), i < d, d levels of the tree of processes, o for a
-///   message, a bytes of a part's answer
+/// - commands: (A + e) 2 d (L + o) + A sum (l(2^i a) - L) + s 2 (L + (P - 1) o), i < d, d levels of the tree
+///   of processes, o for a message, a bytes of a part's answer, s pieces of snapshots, for which the leader
+///   asks all parts
 /// - gathering: G ((1 - 1/P)/B + (2 - 1/P)/g) + S F, G bytes of what parts tell of the interface, joined
 /// level
 ///   by level, S of snapshots

@@ -96,13 +96,6 @@ std::size_t n_squares(const mesh::Grid& grid) {
 
 }  // namespace
 
-bool has_equal_elements(const input::Case& config) {
-  const auto are_equal = [](const mesh::Plate& plate) {
-    return plate.coarsenings == 0 && plate.corner != mesh::Corner::fillet;
-  };
-  return are_equal(config.plate) && (!input::has_base_body(config) || are_equal(input::base_plate(config)));
-}
-
 SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, const mesh::Grid& plate,
                                    const std::optional<mesh::Grid>& base, int n_writers) {
   std::vector<RowsOfBody> bodies = {rows_of(config.plate, plate, false, n_writers)};

@@ -20,10 +20,6 @@ struct SnapshotMesh {
   std::size_t n_plate_cells = 0;
 };
 
-/// Whether there are neither coarser elements nor some that are wrapped around a corner: then the mesh can be
-/// made in rows.
-bool has_equal_elements(const input::Case& config);
-
 /// The mesh, some rows at a time. @param plate, base  the grids of the bodies
 /// @param n_writers  each of which may have a slab at least, as far as there are rows enough
 SnapshotMesh snapshot_mesh_in_rows(const input::Case& config, const mesh::Grid& plate,

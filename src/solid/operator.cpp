@@ -8,30 +8,13 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "solid/cells_of_nodes.hpp"
 #include "solid/element.hpp"
 #include "solid/kernels.hpp"
 
 namespace slipfront::solid {
 
 namespace {
-
-/// Cells around each node in compressed form: cells of node n are cell[first[n]] ... cell[first[n + 1] - 1].
-struct CellsOfNodes {
-  std::vector<std::int32_t> first, cell;
-};
-
-CellsOfNodes cells_of_nodes(const mesh::Mesh& mesh) {
-  CellsOfNodes c;
-  c.first.assign(mesh.n_nodes() + 1, 0);
-  for (const auto& nodes : mesh.cells)
-    for (const auto n : nodes) ++c.first[n + 1];
-  for (std::size_t n = 0; n + 1 < c.first.size(); ++n) c.first[n + 1] += c.first[n];
-  c.cell.resize(4 * mesh.cells.size());
-  auto next = c.first;
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k)
-    for (const auto n : mesh.cells[k]) c.cell[next[n]++] = static_cast<std::int32_t>(k);
-  return c;
-}
 
 /// The grids of the mesh's blocks, none where it knows no grid.
 std::vector<mesh::Grid> grids_of(const mesh::Mesh& mesh) {
@@ -44,7 +27,7 @@ std::vector<NodeRow> rows_of(const mesh::Mesh& mesh, std::span<const mesh::Grid>
   for (std::size_t k = 0; k < grids.size(); ++k) {
     const auto& grid = grids[k];
     for (int j = 0; j <= grid.rows; ++j) rows.push_back({grid.node(0, j), grid.stride()});
-    const auto end = grid.first + grid.n_nodes();
+    const auto end = grid.first + static_cast<mesh::Node>(grid.n_nodes());
     if (k + 1 < grids.size()) rows.push_back({end, grids[k + 1].first - end});
   }
   return rows;
@@ -182,7 +165,7 @@ class RowKinds {
         regular_cell_(mesh.cells.size()),
         is_general_(mesh.n_nodes(), false),
         is_boundary_(mesh::marked(mesh, mesh.lower)),
-        around_(cells_of_nodes(mesh)) {
+        around_(mesh) {
     const auto block_of = block_of_nodes(mesh, op.blocks);
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
       const auto& cell = mesh.cells[c];
@@ -203,8 +186,7 @@ class RowKinds {
   /// The squares of the part around a node with a stencil; nothing for a node that needs a block row.
   std::optional<Squares> squares_around(mesh::Node n, std::size_t block, int j) const {
     int above = 0, below = 0, right = 0, left = 0;
-    for (auto k = around_.first[n]; k < around_.first[n + 1]; ++k) {
-      const auto c = around_.cell[k];
+    for (const auto c : around_.of(n)) {
       if (!regular_cell_[c]) return std::nullopt;
       if (!in_part_[c]) continue;
       const auto& cell = mesh_.cells[c];
@@ -223,11 +205,9 @@ class RowKinds {
   }
 
  private:
-  int n_cells(mesh::Node n) const { return static_cast<int>(around_.first[n + 1] - around_.first[n]); }
+  std::size_t n_cells(mesh::Node n) const { return around_.of(n).size(); }
   bool touches_part(mesh::Node n) const {
-    for (auto k = around_.first[n]; k < around_.first[n + 1]; ++k)
-      if (in_part_[around_.cell[k]]) return true;
-    return false;
+    return std::ranges::any_of(around_.of(n), [&](std::int32_t c) { return in_part_[c]; });
   }
 
   const mesh::Mesh& mesh_;

@@ -13,7 +13,7 @@ std::vector<std::vector<mesh::Node>> Cut::nodes_of_piece(std::span<const mesh::N
     for (int r = 0; r < bodies[b].n_rows(); ++r) {
       const auto of_row = bodies[b].nodes(r, {first_column[k], first_column[k + 1]});
       for (auto n = of_row.first; n < of_row.end(); ++n)
-        if (!std::ranges::binary_search(orphans[b], n)) nodes[b].push_back(n);
+        if (!std::ranges::binary_search(orphans[b], n)) nodes[b].push_back(static_cast<mesh::Node>(n));
     }
   return nodes;
 }

@@ -94,6 +94,47 @@ def test_a_trigger_that_adds_nothing_is_refused(program, coarse, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+# Of 1e10 nodes.
+LARGE = {
+    "plate.width_m": 141.421,
+    "plate.height_m": 70.71,
+    "plate.element_size_m": 1e-3,
+    "prestress.t_Pa": 4e5,
+    "prestress.p_Pa": 1e6,
+    "output.snapshot_times_s": [1e-5],
+    "time.end_s": 1e-4,
+}
+
+
+def test_a_plate_that_no_process_holds_is_foretold(program, coarse):
+    sets = settings(PRESSED | LARGE)
+    result = program("info", coarse, *sets, "--processes", "1000")
+    assert result.returncode == 0, result.stderr
+    told = dict(re.findall(r"^ *(.+?) {2,}(.+)$", result.stdout, re.MULTILINE))
+    n_nodes = 141422 * 70711
+    assert told["nodes"] == f"{n_nodes} (141422 on the interface)"
+    assert told["cells"] == str(141421 * 70710)
+    assert told["columns of nodes of each"].startswith("141 to 142, ")
+    steps, updates = int(told["steps to the end"]), float(told["node updates"].split(" at ")[0])
+    assert updates > n_nodes * steps
+    snapshot_gb = float(re.search(r"1 snapshots ([\d.e+]+)", told["disk"])[1])
+    # Places and cells, raw displacements and velocities and those of the file, strain and stress.
+    assert snapshot_gb == pytest.approx(n_nodes * (24 + 41 + 32 + 48 + 56) * 1e-9, rel=0.01)
+
+
+@pytest.mark.parametrize("command", [["info"], ["run", "-o", "out"], ["validate"]], ids=lambda c: c[0])
+def test_one_process_does_not_number_so_many_nodes(program, coarse, tmp_path, command):
+    message = one_line(program(command[0], coarse, *command[1:], *settings(PRESSED | LARGE)), 2)
+    assert "plate.element_size_m is 0.001 m; that makes 1e+10 nodes" in message
+    assert "use more processes" in message
+    assert not (tmp_path / "out").exists()
+
+
+def test_few_processes_do_not_number_so_many_nodes(program, coarse):
+    sets = settings(PRESSED | LARGE)
+    assert "use more processes, at least 5" in one_line(program("info", coarse, *sets, "--processes", "2"), 2)
+
+
 def test_speeds_in_the_trigger_zone_are_undefined(program, coarse, tmp_path):
     result = program("run", coarse, "-o", "out", "--set", "event.kind=right")
     assert result.returncode == 0

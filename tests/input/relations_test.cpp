@@ -56,6 +56,11 @@ const Wrong wrong_cases[] = {
     {"Nodes", "[plate]\nwidth_m = 0.2\nelement_size_m = 1e-7 # here\n"},
     {"NodesOfAWidePlate", "[plate]\nelement_size_m = 1e-3\n", {{"plate.width_m", "1e6"}}},
     {"NodesOfAHighPlate", "[plate]\nheight_m = 1e6 # here\n"},
+    {"NodesOfARow", at_rest + square + "width_m = 3e6\nelement_size_m = 1e-3 # here\n"},
+    {"NodesOfAColumn", at_rest + square + "element_size_m = 1e-3 # here\nheight_m = 3e6\n"},
+    {"NodesUnderATilt", square + "width_m = 100\nheight_m = 100\nelement_size_m = 1e-3 # here\n"},
+    {"NodesOfAGradedPlate",
+     at_rest + square + "coarsenings = 1\nwidth_m = 100\nheight_m = 100\nelement_size_m = 1e-3 # here\n"},
     {"Element", "[plate]\nwidth_m = 3\n\nelement_size_m = 0.2 # here\n"},
     {"ElementOfALowerPlate", "[plate]\nelement_size_m = 1e-2\n", {{"plate.height_m", "1e-3"}}},
     // Loading

@@ -57,7 +57,7 @@ TEST(NodeColumns, AreCountedInTheSmallestSquares) {
     // A row's nodes in some columns are those that stand there.
     for (int r = 0; r < of_nodes.n_rows(); ++r) {
       const auto row = of_nodes.row(r), some = of_nodes.nodes(r, {7, 30});
-      for (Node n = row.first; n < row.end(); ++n) {
+      for (auto n = row.first; n < row.end(); ++n) {
         EXPECT_EQ(of_nodes.row_of(n), r);
         const int column = of_nodes.column_of(n);
         EXPECT_EQ(n >= some.first && n < some.end(), column >= 7 && column < 30);
@@ -80,6 +80,50 @@ TEST(NodeColumns, OfAPartAreThoseOfTheWhole) {
       EXPECT_EQ(of_nodes.column_of(n), of_whole.column_of(in_whole));
       EXPECT_EQ(of_nodes.column_of_whole(in_whole), of_whole.column_of(in_whole));
       EXPECT_EQ(told.node_of_whole(in_whole), n);
+    }
+  }
+}
+
+TEST(NodeColumns, OfAWholeThatNoneHoldsHaveNumbersOf64Bits) {
+  // 1e10 and 1e11 nodes, and a graded plate of 1e10.
+  const std::vector<std::vector<Grid>> wholes = {{{.columns = 141421, .rows = 70710}},
+                                                 {{.columns = 447213, .rows = 223606}},
+                                                 {{.columns = 141424, .rows = 60000},
+                                                  {.columns = 70712, .rows = 30000},
+                                                  {.columns = 35356, .rows = 4000}}};
+  for (const auto& grids : wholes) {
+    const NodeColumns whole(grids);
+    std::int64_t expected = 0;
+    for (std::size_t k = 0; k < grids.size(); ++k) {
+      expected += grids[k].n_nodes();
+      // Three of four between two blocks.
+      if (k + 1 < grids.size()) expected += grids[k].columns * 3 / 4;
+    }
+    EXPECT_GT(expected, std::int64_t{1} << 33);
+    EXPECT_EQ(whole.n_nodes(), expected);
+    const int last = whole.n_columns() - 1;
+    EXPECT_EQ(whole.column_of(expected - 1), last);
+    EXPECT_EQ(whole.row_of(expected - 1), whole.n_rows() - 1);
+    for (const auto& held : {Subset({{last - 15, last + 1}}), Subset({{0, 9}, {last - 7, last + 1}})}) {
+      const auto part = whole.of_part(held);
+      ASSERT_LT(part.n_nodes(), std::int64_t{1} << 31);
+      EXPECT_EQ(part.number_in_whole(part.n_nodes() - 1), expected - 1);
+      for (int r = 0; r < whole.n_rows(); r += 997) {
+        const auto row = part.row(r), of_whole = whole.row(r);
+        const auto some = whole.nodes(r, {last - 7, last + 1});
+        EXPECT_EQ(some.end(), of_whole.end());
+        EXPECT_EQ(part.nodes(r, {last - 7, last + 1}).count, some.count);
+        for (auto n = row.first; n < row.end(); ++n) {
+          const auto number = part.number_in_whole(n);
+          ASSERT_GE(number, of_whole.first);
+          ASSERT_LT(number, of_whole.end());
+          EXPECT_EQ(part.node_of_whole(number), n);
+          EXPECT_EQ(whole.row_of(number), r);
+          EXPECT_EQ(whole.column_of(number), part.column_of(n));
+          EXPECT_EQ(whole.column_of_whole(number), part.column_of(n));
+          EXPECT_TRUE(held.has(part.column_of(n)));
+        }
+      }
     }
   }
 }
@@ -234,6 +278,74 @@ TEST(MakeColumns, MakesThoseOfAPlateWithMoreNodesThanCanBeNumbered) {
   const auto part = make_columns(wide, Subset({{500000, 500004}}));
   EXPECT_EQ(part.n_nodes(), 4 * 30001);
   EXPECT_EQ(part.x_m[1], 500001 * wide.width_m / 1000000);
+}
+
+/// 1e10 nodes.
+Plate plate_of_1e10(Sides sides = Sides::free) {
+  auto large = plate(0, sides);
+  large.width_m = 141.421;
+  large.height_m = 70.71;
+  return large;
+}
+
+TEST(MakeColumns, MakesTheFarEndOfAPlateOf1e10Nodes) {
+  const auto large = plate_of_1e10();
+  const Subset held({{141417, 141422}});
+  const auto part = make_columns(large, held);
+  const NodeColumns of_part(part, held, 141422), whole(blocks(make_interface(large)));
+  ASSERT_EQ(part.n_nodes(), 5 * 70711);
+  ASSERT_EQ(part.cells.size(), 4U * 70710);
+  EXPECT_EQ(part.top.size(), 5U);
+  for (Node n = 0; n < part.n_nodes(); ++n) {
+    const auto number = of_part.number_in_whole(n);
+    const auto i = number % 141422, j = number / 141422;
+    ASSERT_EQ(part.x_m[n], static_cast<double>(i) * large.width_m / 141421);
+    ASSERT_EQ(part.y_m[n], static_cast<double>(j) * large.height_m / 70710);
+    ASSERT_EQ(whole.column_of(number), i);
+  }
+  EXPECT_EQ(of_part.number_in_whole(part.n_nodes() - 1), whole.n_nodes() - 1);
+  for (std::size_t k = 0; k < part.cells.size(); ++k) {
+    const auto [a, b, c, d] = part.cells[k];
+    const auto corner = static_cast<std::int64_t>(k / 4) * 141422 + 141417 + static_cast<std::int64_t>(k % 4);
+    ASSERT_EQ(of_part.number_in_whole(a), corner);
+    ASSERT_EQ(of_part.number_in_whole(b), corner + 1);
+    ASSERT_EQ(of_part.number_in_whole(c), corner + 141422 + 1);
+    ASSERT_EQ(of_part.number_in_whole(d), corner + 141422);
+  }
+}
+
+TEST(MakeInterface, OfAPlateOf1e10NodesIsARow) {
+  for (const auto sides : {Sides::free, Sides::periodic}) {
+    const auto interface = make_interface(plate_of_1e10(sides));
+    EXPECT_TRUE(interface.is_interface());
+    EXPECT_EQ(interface.n_nodes(), 141422);
+    EXPECT_EQ(interface.grid.n_nodes(), 10'000'091'042);
+  }
+  // Nodes of further blocks are numbered on from those below.
+  auto graded = plate_of_1e10();
+  graded.width_m = 141.424;
+  graded.coarsenings = 1;
+  graded.fine_height_m = 40;
+  EXPECT_THROW(make_interface(graded), UserError);
+}
+
+TEST(MakeRows, MakesTheHighestOfAPlateOf1e10Nodes) {
+  const auto large = plate_of_1e10();
+  const auto rows = make_rows(large, 70709, 70710);
+  ASSERT_EQ(rows.n_nodes(), 2 * 141422);
+  ASSERT_EQ(rows.cells.size(), 141421U);
+  EXPECT_EQ(rows.y_m.back(), large.height_m);
+  EXPECT_EQ(rows.x_m.back(), large.width_m);
+  EXPECT_EQ(rows.cells.back(), (Cell{141420, 141421, 2 * 141422 - 1, 2 * 141422 - 2}));
+}
+
+TEST(MakeColumns, RefusesMoreNodesThanAMeshCanNumber) {
+  const auto large = plate_of_1e10();
+  EXPECT_THROW(make_plate(large), UserError);
+  EXPECT_THROW(make_columns(large, Subset({{0, 30371}})), UserError);  // 2^31 + 80,000
+  auto wide = plate(0);
+  wide.width_m = 2147483.647;  // a node more than a row may have
+  EXPECT_THROW(make_interface(wide), UserError);
 }
 
 TEST(MakeColumns, TwoRangesHoldTheCellsThatJoinTheSides) {

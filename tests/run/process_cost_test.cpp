@@ -156,6 +156,15 @@ TEST(ProcessCost, OfSamplesAndSnapshotsIsPackedSentAndJoined) {
   EXPECT_NEAR(both.gathering_s - rows.gathering_s, 0.75 * more / 1e8 + 1.25 * more / 1e9, 1e-9);
 }
 
+TEST(ProcessCost, OfSnapshotsCountsTheMessagesForTheirPieces) {
+  auto work = square();
+  const auto none = process_cost(work, division(1000, 100, 2), 100, ethernet, {2e-6, 1e9, 1e9});
+  work.snapshots = 3;
+  const auto some = process_cost(work, division(1000, 100, 2), 100, ethernet, {2e-6, 1e9, 1e9});
+  // Of a million nodes each of four components in two pieces.
+  EXPECT_NEAR(some.command_s - none.command_s, 3 * 8 * 2 * (1e-4 + 99 * 2e-6), 1e-12);
+}
+
 TEST(ProcessCost, OfLargeAnswersIsARoundTripOnEachLevel) {
   const auto small = process_cost(square(), division(1000, 4, 10), 4, ethernet);
   const auto with_rows = [](double n) {
