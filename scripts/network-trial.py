@@ -219,8 +219,6 @@ class Trial:
         if processes == 1:
             return call([self.program, *words])
         mpirun = [*network.mpirun(processes), "--oversubscribe", "--bind-to", "none"]
-        if processes > PROCESSORS:
-            mpirun += ["--mca", "mpi_yield_when_idle", "1"]
         return call([*mpirun, self.program, *words])
 
     def link(self, network: Network) -> Link:

@@ -48,7 +48,7 @@ class Patience {
   void wait_until(F&& is_done) const {
     const auto begin = Clock::now();
     while (!is_done())
-      if (const double waited_s = seconds_since(begin); waited_s > poll_s_) sleep(waited_s / 8);
+      if (const double waited_s = seconds_since(begin); waited_s > poll_s_) sleep(waited_s / 64);
   }
   void wait_all(std::span<MPI_Request> requests) const {
     wait_until([&] {
@@ -136,7 +136,8 @@ class MpiProcesses final : public Processes {
     if (size_ == 1) return;
     // Else the kernel adds 50 us to each sleep.
     ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
-    if (on_machine_ > static_cast<int>(std::thread::hardware_concurrency())) patience_.polls_for_s(0);
+    share_processors_ = on_machine_ > static_cast<int>(std::thread::hardware_concurrency());
+    if (share_processors_) patience_.polls_for_s(0);
   }
   MpiProcesses(const MpiProcesses&) = delete;
   MpiProcesses& operator=(const MpiProcesses&) = delete;
@@ -202,6 +203,8 @@ class MpiProcesses final : public Processes {
     return transfer;
   }
   void attend() override {
+    // The library may give the processor away in each call, and what was computed leaves its cache.
+    if (share_processors_) return;
     int is_there = 0;
     MPI_Iprobe(MPI_ANY_SOURCE, no_tag, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
   }
@@ -237,6 +240,7 @@ class MpiProcesses final : public Processes {
   }
 
   int rank_ = 0, size_ = 1, on_machine_ = 1;
+  bool share_processors_ = false;  ///< there are fewer than processes on this machine
   Patience patience_;
   /// MPI_Abort takes memory, of which there may be none left.
   std::vector<std::byte> reserve_ = std::vector<std::byte>(std::size_t{1} << 20);
