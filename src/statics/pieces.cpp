@@ -80,7 +80,7 @@ std::vector<int> first_columns(const std::vector<std::int64_t>& nodes_of_column,
 struct NumberedBody {
   const mesh::Mesh& mesh;
   const solid::Material& material;
-  std::vector<std::int32_t> pair;  ///< [nodes] -1 where there is no cell
+  std::span<const std::int32_t> pair;  ///< [nodes] -1 where there is no cell
 };
 
 /// [nodes] The other body's pair at the nodes of the body whose pairs are relative.
@@ -171,13 +171,13 @@ Piece PiecePlan::make() const {
     const auto p = std::ranges::upper_bound(first_column, i) - first_column.begin() - 1;
     columns.push_back({first[p] + i - first_column[p], first_column[p + 1] - first_column[p]});
   }
+  std::vector<std::vector<std::int32_t>> pairs(meshes.size());
   std::vector<NumberedBody> numbered;
   std::int32_t row = 0;
   for (std::size_t b = 0; b < meshes.size(); ++b) {
-    std::vector<std::int32_t> pair;
     for (const auto end_row = row + meshes[b].grid.rows + 1; row < end_row; ++row)
-      for (const auto& [lowest, width] : columns) pair.push_back(lowest + row * width);
-    numbered.push_back({meshes[b], bodies[b].material, std::move(pair)});
+      for (const auto& [lowest, width] : columns) pairs[b].push_back(lowest + row * width);
+    numbered.push_back({meshes[b], bodies[b].material, pairs[b]});
   }
   return piece_of(numbered, base_is_relative, first[k], first[k + 1], first.back(), begin);
 }

@@ -802,147 +802,150 @@ TEST(BodySteps, OfManySquaresAndReliefsFollowFromInterfaceAndCorners) {
     EXPECT_EQ(body_steps({interface, pmma, nullptr, &corners}, {}).stable_step_s, expected.stable_step_s);
     if (height_m > 1e-3) {
       EXPECT_GT(body_steps({interface, pmma}, {}).stable_step_s, expected.stable_step_s);
-      /// How 1e10 nodes are divided that no process has, of plates of other measures as many as they have.
-      Division divided(const mesh::Plate& plate, int n_parts) {
-        const auto interface = mesh::make_interface(plate);
-        const TimeStepping time{.interface_rows = 1, .interface_substeps = 1};
-        const std::vector<BodySource> bodies = {{interface, pmma}};
-        return divide_bodies(bodies, std::vector{body_steps(bodies.front(), time)}, time, n_parts);
-      }
+    }
+  }
+}
 
-      TEST(Division, OfAPlateThatNoneHoldsHasPartsThatCanBeNumbered) {
-        const mesh::Plate plate{
-            .width_m = 141.421, .height_m = 70.71, .element_size_m = 1e-3, .corner = mesh::Corner::none};
-        for (const int n_parts : {5, 1000, 10000}) {
-          const auto division = divided(plate, n_parts);
-          EXPECT_EQ(division.n_columns(), 141422);
-          for (int part = 0; part < n_parts; ++part)
-            ASSERT_LT(division.all(part).count() * std::int64_t{70711}, std::int64_t{1} << 31);
+/// How 1e10 nodes are divided that no process has, of plates of other measures as many as they have.
+Division divided(const mesh::Plate& plate, int n_parts) {
+  const auto interface = mesh::make_interface(plate);
+  const TimeStepping time{.interface_rows = 1, .interface_substeps = 1};
+  const std::vector<BodySource> bodies = {{interface, pmma}};
+  return divide_bodies(bodies, std::vector{body_steps(bodies.front(), time)}, time, n_parts);
+}
+
+TEST(Division, OfAPlateThatNoneHoldsHasPartsThatCanBeNumbered) {
+  const mesh::Plate plate{
+      .width_m = 141.421, .height_m = 70.71, .element_size_m = 1e-3, .corner = mesh::Corner::none};
+  for (const int n_parts : {5, 1000, 10000}) {
+    const auto division = divided(plate, n_parts);
+    EXPECT_EQ(division.n_columns(), 141422);
+    for (int part = 0; part < n_parts; ++part)
+      ASSERT_LT(division.all(part).count() * std::int64_t{70711}, std::int64_t{1} << 31);
+  }
+  const auto refusal = [](const mesh::Plate& of, int n_parts) -> std::string {
+    try {
+      divided(of, n_parts);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  for (const int n_parts : {2, 4})
+    EXPECT_THAT(refusal(plate, n_parts), testing::HasSubstr("number; use more processes, at least 5"));
+  // No narrower than their halos, parts of 1e9 nodes to a column have too many.
+  auto high = plate;
+  high.width_m = 0.04;
+  high.height_m = 1e6;
+  EXPECT_THAT(refusal(high, 2), testing::HasSubstr("more processes would have too few columns"));
+}
+
+TEST(SnapshotPieces, AreAllOfTheNodesOneAfterTheOther) {
+  // 1e11 nodes, a body of as many columns below; rows of half a million, and of almost as many as there
+  // may be.
+  const std::vector<std::vector<mesh::Grid>> bodies = {
+      {{.columns = 447213, .rows = 223606}, {.columns = 447213, .rows = 1000}},
+      {{.columns = 5000, .rows = 500000}},
+      {{.columns = 2147483645, .rows = 3}}};
+  for (const auto& grids : bodies) {
+    std::vector<mesh::NodeColumns> columns;
+    for (const auto& grid : grids) columns.emplace_back(std::span(&grid, 1));
+    const auto pieces = snapshot_pieces(columns);
+    auto piece = pieces.begin();
+    for (int component = 0; component < n_motion_components; ++component)
+      for (std::size_t b = 0; b < grids.size(); ++b) {
+        std::int64_t next = 0;
+        for (int row = 0; row <= grids[b].rows; row = (piece++)->end_row) {
+          ASSERT_EQ(piece->component, MotionComponent{component});
+          ASSERT_EQ(piece->body, static_cast<int>(b));
+          ASSERT_EQ(piece->first_row, row);
+          const auto nodes = nodes_of(*piece, columns);
+          ASSERT_EQ(nodes.first, next);
+          ASSERT_EQ(nodes.count, std::int64_t{grids[b].stride()} * (piece->end_row - row));
+          ASSERT_LE(nodes.count, std::max(nodes_of_snapshot_piece, grids[b].stride()));
+          next = nodes.end();
         }
-        const auto refusal = [](const mesh::Plate& of, int n_parts) -> std::string {
-          try {
-            divided(of, n_parts);
-          } catch (const UserError& error) {
-            return error.what();
-          }
-          return {};
-        };
-        for (const int n_parts : {2, 4})
-          EXPECT_THAT(refusal(plate, n_parts), testing::HasSubstr("number; use more processes, at least 5"));
-        // No narrower than their halos, parts of 1e9 nodes to a column have too many.
-        auto high = plate;
-        high.width_m = 0.04;
-        high.height_m = 1e6;
-        EXPECT_THAT(refusal(high, 2), testing::HasSubstr("more processes would have too few columns"));
+        EXPECT_EQ(next, grids[b].n_nodes());
       }
+    EXPECT_EQ(piece, pieces.end());
+  }
+}
 
-      TEST(SnapshotPieces, AreAllOfTheNodesOneAfterTheOther) {
-        // 1e11 nodes, a body of as many columns below; rows of half a million, and of almost as many as there
-        // may be.
-        const std::vector<std::vector<mesh::Grid>> bodies = {
-            {{.columns = 447213, .rows = 223606}, {.columns = 447213, .rows = 1000}},
-            {{.columns = 5000, .rows = 500000}},
-            {{.columns = 2147483645, .rows = 3}}};
-        for (const auto& grids : bodies) {
-          std::vector<mesh::NodeColumns> columns;
-          for (const auto& grid : grids) columns.emplace_back(std::span(&grid, 1));
-          const auto pieces = snapshot_pieces(columns);
-          auto piece = pieces.begin();
-          for (int component = 0; component < n_motion_components; ++component)
-            for (std::size_t b = 0; b < grids.size(); ++b) {
-              std::int64_t next = 0;
-              for (int row = 0; row <= grids[b].rows; row = (piece++)->end_row) {
-                ASSERT_EQ(piece->component, MotionComponent{component});
-                ASSERT_EQ(piece->body, static_cast<int>(b));
-                ASSERT_EQ(piece->first_row, row);
-                const auto nodes = nodes_of(*piece, columns);
-                ASSERT_EQ(nodes.first, next);
-                ASSERT_EQ(nodes.count, std::int64_t{grids[b].stride()} * (piece->end_row - row));
-                ASSERT_LE(nodes.count, std::max(nodes_of_snapshot_piece, grids[b].stride()));
-                next = nodes.end();
-              }
-              EXPECT_EQ(next, grids[b].n_nodes());
-            }
-          EXPECT_EQ(piece, pieces.end());
-        }
-      }
+TEST(LowerIn, OfAnInterfaceIsThatOfThePlate) {
+  for (const auto sides : {mesh::Sides::free, mesh::Sides::periodic}) {
+    const mesh::Plate plate{.width_m = 0.05,
+                            .height_m = 0.01,
+                            .element_size_m = 1e-3,
+                            .corner = mesh::Corner::none,
+                            .sides = sides};
+    const auto whole = mesh::make_plate(plate), interface = mesh::make_interface(plate);
+    for (const auto& columns : {mesh::Subset({{0, 20}}), mesh::Subset({{17, 51}}), mesh::Subset({{3, 4}}),
+                                mesh::Subset({{0, 9}, {40, 51}})}) {
+      const auto of_whole = lower_in(whole, columns), of_interface = lower_in(interface, columns);
+      ASSERT_EQ(of_interface.count(), of_whole.count());
+      for (int k = 0; k < of_whole.count(); ++k) EXPECT_EQ(of_interface.number_at(k), of_whole.number_at(k));
+    }
+  }
+}
 
-      TEST(LowerIn, OfAnInterfaceIsThatOfThePlate) {
-        for (const auto sides : {mesh::Sides::free, mesh::Sides::periodic}) {
-          const mesh::Plate plate{.width_m = 0.05,
-                                  .height_m = 0.01,
-                                  .element_size_m = 1e-3,
-                                  .corner = mesh::Corner::none,
-                                  .sides = sides};
-          const auto whole = mesh::make_plate(plate), interface = mesh::make_interface(plate);
-          for (const auto& columns : {mesh::Subset({{0, 20}}), mesh::Subset({{17, 51}}),
-                                      mesh::Subset({{3, 4}}), mesh::Subset({{0, 9}, {40, 51}})}) {
-            const auto of_whole = lower_in(whole, columns), of_interface = lower_in(interface, columns);
-            ASSERT_EQ(of_interface.count(), of_whole.count());
-            for (int k = 0; k < of_whole.count(); ++k)
-              EXPECT_EQ(of_interface.number_at(k), of_whole.number_at(k));
-          }
-        }
-      }
+TEST(Parts, DoNotEndAtARoundedCorner) {
+  Problem problem;
+  problem.plate.corner = mesh::Corner::fillet;
+  int n_refused = 0;
+  for (const int interface_rows : {2, 10}) {
+    problem.time.interface_rows = interface_rows;
+    const auto one = run_by_one(problem, n_steps);
+    std::set<int> same;
+    for (const int n : {6, 7, 8, 9, 10, 11, 12, 13, 14, 15}) {
+      const int allowed = allowed_instead(n, problem, "rounded corner");
+      SCOPED_TRACE(fmt::format("{} processes, {} rows", allowed, interface_rows));
+      ASSERT_GT(allowed, 0);
+      n_refused += allowed < n ? 1 : 0;
+      if (!same.insert(allowed).second) continue;
+      Team team(allowed, problem);
+      expect_same(one, run(team.stepper(), team.begin(), n_steps), 1e-13);
+    }
+    EXPECT_GT(same.size(), 1U);
+  }
+  EXPECT_GT(n_refused, 1);
+}
 
-      TEST(Parts, DoNotEndAtARoundedCorner) {
-        Problem problem;
-        problem.plate.corner = mesh::Corner::fillet;
-        int n_refused = 0;
-        for (const int interface_rows : {2, 10}) {
-          problem.time.interface_rows = interface_rows;
-          const auto one = run_by_one(problem, n_steps);
-          std::set<int> same;
-          for (const int n : {6, 7, 8, 9, 10, 11, 12, 13, 14, 15}) {
-            const int allowed = allowed_instead(n, problem, "rounded corner");
-            SCOPED_TRACE(fmt::format("{} processes, {} rows", allowed, interface_rows));
-            ASSERT_GT(allowed, 0);
-            n_refused += allowed < n ? 1 : 0;
-            if (!same.insert(allowed).second) continue;
-            Team team(allowed, problem);
-            expect_same(one, run(team.stepper(), team.begin(), n_steps), 1e-13);
-          }
-          EXPECT_GT(same.size(), 1U);
-        }
-        EXPECT_GT(n_refused, 1);
-      }
+TEST(Parts, OfARingHaveHalosThatDoNotMeet) {
+  Problem problem;
+  problem.plate.sides = mesh::Sides::periodic;
+  problem.plate.coarsenings = 3;
+  problem.plate.height_m = 0.12;
+  problem.plate.fine_height_m = 6e-3;
+  problem.time.interface_substeps = 1;
+  std::set<int> allowed_of_all;
+  for (const int columns : {128, 192, 208, 256}) {
+    problem.plate.width_m = columns * problem.plate.element_size_m;
+    const auto one = run_by_one(problem, n_steps);
+    for (const int n : {2, 3, 4}) {
+      const int allowed = allowed_instead(n, problem, "fewer than");
+      SCOPED_TRACE(fmt::format("{} columns, {} processes", columns, allowed));
+      ASSERT_GT(allowed, 0);
+      allowed_of_all.insert(allowed);
+      Team team(allowed, problem);
+      expect_same(one, run(team.stepper(), team.begin(), n_steps), 1e-13);
+    }
+  }
+  EXPECT_GT(allowed_of_all.size(), 2U);
+}
 
-      TEST(Parts, OfARingHaveHalosThatDoNotMeet) {
-        Problem problem;
-        problem.plate.sides = mesh::Sides::periodic;
-        problem.plate.coarsenings = 3;
-        problem.plate.height_m = 0.12;
-        problem.plate.fine_height_m = 6e-3;
-        problem.time.interface_substeps = 1;
-        std::set<int> allowed_of_all;
-        for (const int columns : {128, 192, 208, 256}) {
-          problem.plate.width_m = columns * problem.plate.element_size_m;
-          const auto one = run_by_one(problem, n_steps);
-          for (const int n : {2, 3, 4}) {
-            const int allowed = allowed_instead(n, problem, "fewer than");
-            SCOPED_TRACE(fmt::format("{} columns, {} processes", columns, allowed));
-            ASSERT_GT(allowed, 0);
-            allowed_of_all.insert(allowed);
-            Team team(allowed, problem);
-            expect_same(one, run(team.stepper(), team.begin(), n_steps), 1e-13);
-          }
-        }
-        EXPECT_GT(allowed_of_all.size(), 2U);
-      }
+TEST(Parts, AreNoNarrowerThanTheirHalo) {
+  const Problem problem;
+  const int most = allowed_instead(40, problem, "fewer than");
+  EXPECT_LT(most, 40);
+  EXPECT_EQ(allowed_instead(most, problem, ""), most);
+  mesh::Mesh mesh;
+  mesh.grid.columns = 2000;
+  const auto division = divide_columns(mesh, 8, 5, 3);
+  for (int part = 0; part < 8; ++part) {
+    EXPECT_GE(division.own(part).end - division.own(part).begin, division.halo);
+    EXPECT_GE(division.halo, 5 * division.steps_per_exchange + 3);
+  }
+}
 
-      TEST(Parts, AreNoNarrowerThanTheirHalo) {
-        const Problem problem;
-        const int most = allowed_instead(40, problem, "fewer than");
-        EXPECT_LT(most, 40);
-        EXPECT_EQ(allowed_instead(most, problem, ""), most);
-        mesh::Mesh mesh;
-        mesh.grid.columns = 2000;
-        const auto division = divide_columns(mesh, 8, 5, 3);
-        for (int part = 0; part < 8; ++part) {
-          EXPECT_GE(division.own(part).end - division.own(part).begin, division.halo);
-          EXPECT_GE(division.halo, 5 * division.steps_per_exchange + 3);
-        }
-      }
-
-    }  // namespace
-  }    // namespace slipfront::motion
+}  // namespace
+}  // namespace slipfront::motion

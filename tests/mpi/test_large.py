@@ -17,7 +17,7 @@ title = "large"
 width_m = 1.0
 height_m = 0.6
 element_size_m = 1e-3
-corner = "{corner}"
+corner = "none"
 {plate}
 [loading]
 method = "prestress"
@@ -59,11 +59,6 @@ CASES = {
         "plate": 'sides = "absorbing"\ntop = "absorbing"',
         "output": "snapshot_times_s = [0, 2.9e-5]",
     },
-    "reliefs": {
-        "corner": "relief",
-        "plate": "relief_length_m = 0.02\nrelief_height_m = 2e-3\nrelief_depth_m = 0.03",
-        "output": "snapshot_times_s = [2.9e-5]",
-    },
     "loaded edge": {"time": "interface_substeps = 4", "prestress": 'file = "prestress.csv"'},
     # The rupture passes the sides.
     "periodic, two bodies": {
@@ -79,7 +74,6 @@ CASES = {
 
 def write_case(folder, name, **changes):
     values = {
-        "corner": "none",
         "plate": "",
         "prestress": UNIFORM,
         "x_m": 0.5,

@@ -76,10 +76,6 @@ TEST(LargePlate, NeedsSeveralProcesses) {
   auto graded = config;
   graded.plate.coarsenings = 1;
   EXPECT_FALSE(input::can_be_held_in_parts(graded));
-  auto relieved = config;
-  relieved.plate.corner = mesh::Corner::relief;
-  EXPECT_TRUE(input::can_be_held_in_parts(relieved));
-  EXPECT_TRUE(leads_by_interface(relieved, 5));
   auto rounded = config;
   rounded.plate.corner = mesh::Corner::fillet;
   EXPECT_FALSE(input::can_be_held_in_parts(rounded));
