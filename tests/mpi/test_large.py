@@ -176,3 +176,42 @@ def test_the_leader_holds_its_part_alone(tmp_path, mpirun):
     assert peak_mb(1) - by_four > mesh_and_state_mb
     # Fields of all nodes, and their mesh, pass through the leader some rows at a time.
     assert peak_mb(4, "snapshot_times_s = [1e-6, 2e-6]") - by_four < 0.5 * mesh_and_state_mb
+
+
+STATICS = """\
+title = "statics that no process holds"
+[plate]
+width_m = 2.0
+height_m = 0.064
+element_size_m = 0.5e-3
+relief_length_m = 5e-3
+relief_height_m = 0.5e-3
+relief_depth_m = 10e-3
+[loading]
+solver = "petsc"
+[event]
+kind = "left"
+[time]
+end_s = 2e-6
+[output]
+snapshot_times_s = [1e-6]
+"""
+
+
+def test_statics_of_what_no_process_holds(tmp_path, mpirun):
+    """516,129 nodes. Where the state before the event is to be used again, the leader makes and holds all."""
+    case = tmp_path / "statics.toml"
+    case.write_text(STATICS)
+    told = told_by_info(mpirun, case, "--processes", 2)
+    assert told["nodes"] == f"{4001 * 129} (4001 on the interface)"
+    assert "irregular" not in told["nodes"]
+    require_done(mpirun(2, "run", case, "-o", "kept", "-q", timeout_s=400))
+    states = ("--state-dir", tmp_path / "states")
+    require_done(mpirun(2, "run", case, "-o", "gathered", "-q", *states, timeout_s=400))
+    require_same(tmp_path / "gathered", tmp_path / "kept", 0)
+    statics = [
+        json.loads((tmp_path / name / "run.json").read_text())["statics"] for name in ("kept", "gathered")
+    ]
+    for of_run in statics:
+        del of_run["wall_s"]
+    assert statics[0] == statics[1]
