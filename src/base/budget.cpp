@@ -38,10 +38,10 @@ void require_room(const Budget& budget, double available, std::string_view work,
                   needed * 1e-9, where, largest.bytes * 1e-9, largest.what, room, largest.remedy, instead);
 }
 
-void require_memory(const Budget& budget, std::string_view work) {
+void require_memory(const Budget& budget, std::string_view work, std::string_view instead) {
   const double available = available_memory_bytes();
   require_room(budget, 0.9 * available, work, "of memory",
-               fmt::format("{:.3g} GB are available", available * 1e-9));
+               fmt::format("{:.3g} GB are available", available * 1e-9), instead);
 }
 
 }  // namespace slipfront

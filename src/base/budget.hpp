@@ -40,6 +40,6 @@ void require_room(const Budget& budget, double available, std::string_view work,
                   std::string_view room, std::string_view instead = "");
 
 /// The same of nine tenths of the memory that can be allocated without swapping.
-void require_memory(const Budget& budget, std::string_view work);
+void require_memory(const Budget& budget, std::string_view work, std::string_view instead = "");
 
 }  // namespace slipfront

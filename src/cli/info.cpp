@@ -165,6 +165,10 @@ void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, st
     memory += fmt::format(", {:.3g} GB of each other process", cost.memory_bytes * 1e-9);
   }
   list.add("  memory", memory);
+  if (cost.record_bytes > 0.2 * cost.leader_memory_bytes)
+    list.add("  of the leader's", fmt::format("{:.3g} GB for the record of slip; less with a smaller "
+                                              "fronts.l_star_m",
+                                              cost.record_bytes * 1e-9));
   add_s("  time: own columns", cost.own_s);
   add_s("  time: halo", cost.halo_s);
   add_s("  time: exchange", cost.exchange_s);
@@ -174,6 +178,10 @@ void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, st
         cost.statics_s);
   add_s("  time: start", cost.start_s);
   add_s("  time in all", cost.total_s());
+  list.add("  own columns, of the event", fmt::format("{:.0f} %", 100 * cost.own_s / cost.event_s()));
+  list.add("  not in it", fmt::format("reading the case, meshes, the last files, and {:.3g} s for each "
+                                      "checkpoint besides what the disk takes",
+                                      cost.checkpoint_s));
 }
 
 run::Info info_of(const CaseArguments& arguments, const input::Case& config,

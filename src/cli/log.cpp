@@ -33,10 +33,11 @@ std::string duration_text(double seconds) {
   return fmt::format("{}:{:02}", minutes, whole % 60);
 }
 
-Progress::Progress(std::string label, std::int64_t total, bool quiet, std::string unit)
+Progress::Progress(std::string label, std::int64_t total, bool quiet, std::string unit, std::int64_t first)
     : label_(std::move(label)),
       unit_(std::move(unit)),
       total_(std::max<std::int64_t>(total, 1)),
+      first_(first),
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
       start_(Clock::now()),
@@ -49,9 +50,9 @@ Progress::~Progress() {
 
 std::string Progress::state(Clock::time_point now) const {
   const double elapsed_s = std::max(seconds_between(start_, now), 1e-9);
-  const double per_s = static_cast<double>(step_) / elapsed_s;
+  const double per_s = static_cast<double>(step_ - first_) / elapsed_s;
   std::string text = fmt::format("{}: {} %, {:.3g} {}/s", label_, 100 * step_ / total_, per_s, unit_);
-  if (step_ > 0)
+  if (step_ > first_)
     text += fmt::format(", {} to go", duration_text(static_cast<double>(total_ - step_) / per_s));
   return text;
 }

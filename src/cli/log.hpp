@@ -13,7 +13,9 @@ namespace slipfront::cli {
 /// most 10 times a second; silent where `quiet`.
 class Progress {
  public:
-  Progress(std::string label, std::int64_t total, bool quiet = false, std::string unit = "steps");
+  /// @param first  steps that were done before: the rate is that of those since
+  Progress(std::string label, std::int64_t total, bool quiet = false, std::string unit = "steps",
+           std::int64_t first = 0);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -29,7 +31,7 @@ class Progress {
   std::string state(Clock::time_point now) const;
 
   std::string label_, unit_;
-  std::int64_t total_, step_ = 0;
+  std::int64_t total_, first_, step_ = first_;
   bool quiet_, terminal_, finished_ = false;
   bool line_open_ = false;  ///< the terminal's line waits to be redrawn
   Clock::time_point start_, drawn_;

@@ -104,7 +104,8 @@ run::SessionHooks hooks(bool quiet) {
   run::SessionHooks hooks;
   // The total is known only when the first step is done.
   hooks.progress = [quiet, shown](const char* part, std::int64_t step, std::int64_t total) {
-    if (shown->part != part) shown->progress = std::make_unique<cli::Progress>(part, total, quiet);
+    if (shown->part != part)
+      shown->progress = std::make_unique<cli::Progress>(part, total, quiet, "steps", step);
     shown->part = part;
     shown->progress->update(step);
   };

@@ -48,8 +48,9 @@ void check_element_size(const Case& config) {
   const double h = plate.element_size_m, columns = plate.width_m / h + 1, rows = plate.height_m / h + 1;
   const bool in_parts = can_be_held_in_parts(config);
   if ((in_parts ? std::max(columns, rows) : columns * rows) > most_nodes)
-    throw UserError("{} is {} m; that makes more than {:.3g} nodes{}, choose a larger one", element_size, h,
-                    most_nodes, in_parts ? " in a row or a column" : "")
+    throw UserError("{} is {} m; that makes more than {:.3g} nodes{}, choose a larger one{}", element_size, h,
+                    most_nodes, in_parts ? " in a row or a column" : "",
+                    is_tilted(config) ? "; under prescribed tractions several processes can share more" : "")
         .about("plate.width_m", "plate.height_m");
   const double shorter_m = std::min(plate.width_m, plate.height_m);
   if (h > shorter_m)

@@ -204,7 +204,7 @@ class GeneralBodies {
 /// @param why_not(d)   see reason_against
 template <class Divided, class WhyNot>
 Division divide(int n_parts, Divided&& divided, WhyNot&& why_not) {
-  const auto division = divided(n_parts);
+  auto division = divided(n_parts);
   const std::string reason = why_not(division);
   if (reason.empty()) return division;
   int most = n_parts - 1;
@@ -248,7 +248,7 @@ Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodyS
   const int per_step = columns_per_step(bodies, steps, time);
   const auto divided = [&](int n) { return divide_columns(bodies.front().mesh, n, per_step, widest_cell); };
   const auto why_not = [&](const Division& d) { return reason_against(d, widest_cell, corner); };
-  const auto division = divide(n_parts, divided, why_not);
+  auto division = divide(n_parts, divided, why_not);
   const auto of_column = nodes_of_column_in_parts(bodies);
   const auto can_number = [&](const Division& d) { return of_column * columns_of_widest(d) <= most_nodes; };
   if (can_number(division)) return division;

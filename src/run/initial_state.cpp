@@ -168,12 +168,14 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
 }  // namespace
 
 Meshes check(const input::Case& config, const Processes* processes, bool may_keep) {
+  require_numbers_of_petsc(config);
   require_memory_fits(config, processes, may_keep);
   const int n_processes = processes != nullptr ? processes->size() : 1;
   return checked_meshes(config, leads_by_interface(config, n_processes, may_keep));
 }
 
 Meshes check_interfaces(const input::Case& config) {
+  require_numbers_of_petsc(config);
   return checked_meshes(config, true);
 }
 

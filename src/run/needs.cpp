@@ -88,7 +88,7 @@ std::filesystem::path existing_parent(const std::filesystem::path& folder) {
 }
 
 /// Of a node while several processes keep a checkpoint: what each keeps, and the message with it.
-constexpr double kept_node_bytes = 2 * 40;
+constexpr double kept_node_bytes = 2 * kept_bytes_per_node;
 
 /// glibc keeps up to two freed arrays as long as the largest that it has taken from its heap, of 32 MB at
 /// most: beyond that it gives memory back.
@@ -213,6 +213,10 @@ Size held_here(const input::Case& config, Size size, const Processes* processes,
   size.leads_by_interface = leads_by_interface(config, n_processes, may_keep);
   size.keeps_displacements = may_keep && keeps_displacements(config, n_processes);
   return size;
+}
+
+const char* instead_of(const Processes* processes) {
+  return processes != nullptr ? ", or more machines" : "";
 }
 
 std::string work_of(const Size& size) {
@@ -392,12 +396,26 @@ void require_numbers(const input::Case& config, int n_processes) {
 
 }  // namespace
 
+void require_numbers_of_petsc(const input::Case& config) {
+  if (is_prestressed(config) || config.loading.solver != statics::StaticSolver::petsc) return;
+  const auto unknowns = approximate_unknowns(config);
+  const double n_nodes = 0.5 * (unknowns.of_plate + unknowns.of_base);
+  if (n_nodes > statics::most_petsc_nodes)
+    throw UserError(
+        "{} is {} m; that makes {:.3g} nodes, more than the {:.3g} whose unknowns PETSc can "
+        "number; choose a larger one, or {} = prestress, which needs no statics",
+        Key("plate.element_size_m"), config.plate.element_size_m, n_nodes,
+        static_cast<double>(statics::most_petsc_nodes), Key("loading.method"))
+        .about("loading.solver");
+}
+
 void require_memory_fits(const input::Case& config, const Processes* processes, bool may_keep) {
   require_numbers(config, processes != nullptr ? processes->size() : 1);
   const auto whole = estimated_mesh_size(config);
   const auto size = held_here(config, whole, processes, may_keep);
   const double n_snapshots = has_snapshots(config) ? 1 : 0;
-  require_memory(largest_of(memory_stages(config, size, n_snapshots, 0, 0)), work_of(whole));
+  require_memory(largest_of(memory_stages(config, size, n_snapshots, 0, 0)), work_of(whole),
+                 instead_of(processes));
 }
 
 void require_fit(const input::Case& config, const std::filesystem::path& folder, const Processes* processes,
@@ -413,7 +431,7 @@ void require_fit(const input::Case& config, const std::filesystem::path& folder,
         {"a checkpoint of the processes", kept * kept_node_bytes * whole.n_nodes, larger_elements()});
     n.checkpoint_bytes *= shared_checkpoint_bytes;
   }
-  require_memory(memory, work_of(whole));
+  require_memory(memory, work_of(whole), instead_of(processes));
   require_disk(n, folder);
 }
 

@@ -10,6 +10,7 @@
 #include "base/budget.hpp"
 #include "input/case.hpp"
 #include "processes/processes.hpp"
+#include "statics/petsc_equations.hpp"
 
 namespace slipfront::run {
 
@@ -43,8 +44,9 @@ struct Size {
 /// which is shorter, and of a graded plate, which may be longer.
 Size estimated_size(const input::Case& config);
 
-/// The program, its libraries and its threads, before it has a case.
-inline constexpr double program_bytes = 26e6;
+/// The program, its libraries and its threads, before it has a case; those of MPI and PETSc take as much
+/// again.
+inline const double program_bytes = statics::petsc_version().empty() ? 26e6 : 48e6;
 
 /// Of a node of the interface: its state, and the record of its slip.
 double bytes_per_interface_node(const input::Case& config);
@@ -76,6 +78,10 @@ double statics_bytes(const input::Case& config, const Size& size);
 
 /// @throws UserError where more steps are asked for than any machine takes.
 Needs needs(const input::Case& config, const Size& size);
+
+/// Refuses statics by PETSc of more nodes than it can number the unknowns of.
+/// @throws UserError
+void require_numbers_of_petsc(const input::Case& config);
 
 /// Refuses a case that would not fit into the memory, or has more nodes than can be numbered, before anything
 /// is built; what grows with its steps is left out.

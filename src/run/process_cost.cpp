@@ -93,6 +93,7 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
     cost.start_s = is_unstrained ? 0 : passed_s(state_bytes_per_node * work.n_nodes, by_leader_and_parts);
   }
   cost.statics_s = work.statics_s;
+  cost.checkpoint_s = passed_s(kept_bytes_per_node * work.n_nodes, by_leader_and_parts);
 
   const double share = (part.own + part.halo) / work.n_columns;
   const double messages = 3 * part.n_sides * halo_bytes;  // two that are sent, one that comes
@@ -105,9 +106,10 @@ ProcessCost process_cost(const SharedWork& work, const motion::Division& divisio
   const double sent = n_parts > 1 ? share * state_bytes_per_node : 0;
   const double of_node = leaders_bytes_per_node(work.leads_by_interface, work.keeps_displacements);
   const double starting = work.leads_by_interface ? work.corner_bytes : (of_node + sent) * work.n_nodes;
+  cost.record_bytes = work.bytes_per_interface_node * work.n_columns;
   cost.leader_memory_bytes =
-      work.program_bytes + std::max(work.statics_bytes, of_part + starting + work.recorded_bytes +
-                                                            work.bytes_per_interface_node * work.n_columns);
+      work.program_bytes +
+      std::max(work.statics_bytes, of_part + starting + work.recorded_bytes + cost.record_bytes);
   return cost;
 }
 

@@ -25,6 +25,9 @@ struct Handling {
 /// Of a node: its place and its share of the cells; u_m and u_per_shear before the event.
 inline constexpr double mesh_bytes_per_node = 2 * sizeof(double) + sizeof(mesh::Cell),
                         state_bytes_per_node = 4 * sizeof(double);
+/// Of a node, what processes keep of it in a checkpoint, with its number.
+inline constexpr double kept_bytes_per_node = 40;
+
 /// What the process that leads several has of every node of the bodies while the event begins.
 double leaders_bytes_per_node(bool leads_by_interface, bool keeps_displacements);
 
@@ -61,7 +64,9 @@ struct ProcessCost {
   double gathering_s = 0;     ///< of samples, of what is known of the last contact update, of snapshots
   double statics_s = 0;       ///< for which the others wait, or which they share
   double start_s = 0;         ///< meshes and initial motion, sent by the leader
+  double checkpoint_s = 0;    ///< of each, in no sum: passed on by the leader, besides what the disk takes
   double bytes_per_step = 0;  ///< that the process with most neighbours sends in exchanges
+  double record_bytes = 0;    ///< of the leader's: what is recorded at all interface nodes
   double memory_bytes = 0, leader_memory_bytes = 0;
 
   double event_s() const { return own_s + halo_s + exchange_s + command_s + gathering_s; }

@@ -61,10 +61,7 @@ namespace {
 /// The first column of each piece, and the number of columns.
 std::vector<int> first_columns(const std::vector<std::int64_t>& nodes_of_column, int n_pieces) {
   const auto n_nodes = std::reduce(nodes_of_column.begin(), nodes_of_column.end());
-  constexpr auto most = std::numeric_limits<std::int32_t>::max() / 2;
-  if (n_nodes > most)
-    throw UserError("{} nodes are more than the {} whose unknowns PETSc can number; choose a larger {}",
-                    n_nodes, most, Key("plate.element_size_m"));
+  SLIPFRONT_ASSERT(n_nodes <= most_petsc_nodes, "too many unknowns");
   std::vector<int> first = {0};
   std::int64_t before = 0;
   for (std::size_t column = 0; column < nodes_of_column.size(); ++column) {
@@ -100,11 +97,12 @@ Piece piece_of(std::span<const NumberedBody> bodies, bool base_is_relative, std:
   piece.n_pairs = n_pairs;
   const std::size_t of_relative = base_is_relative ? 1 : 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const auto& [mesh, material, pair] = bodies[b];
+    const auto& mesh = bodies[b].mesh;
+    const auto pair = bodies[b].pair;
     const bool is_relative = bodies.size() > 1 && b == of_relative;
     const auto opposite =
         is_relative ? opposites(bodies[b], bodies[1 - b]) : std::vector<std::int32_t>(pair.size(), -1);
-    auto& body = piece.bodies.emplace_back(Piece::Body{material, b > 0, {}, {}});
+    auto& body = piece.bodies.emplace_back(Piece::Body{bodies[b].material, b > 0, {}, {}});
     std::vector<mesh::Node> local(pair.size(), -1);
     for (const auto& cell : mesh.cells) {
       const auto is_own = [&](mesh::Node n) { return piece.has(pair[n]) || piece.has(opposite[n]); };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -107,6 +108,9 @@ struct Shape {
 /// a factorisation is cheap. On a long interface its dense part is not.
 StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate,
                                const std::optional<Shape>& base = std::nullopt);
+
+/// Two unknowns of each have numbers of 32 bits.
+inline constexpr std::int64_t most_petsc_nodes = std::numeric_limits<std::int32_t>::max() / 2;
 
 /// Rows over columns, and of one body over the other's, up to which automatic takes multigrid, and columns up
 /// to which it takes a factorisation.

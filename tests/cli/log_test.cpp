@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <string>
 #include <thread>
 
 namespace slipfront::cli {
@@ -31,6 +32,17 @@ TEST(Progress, WritesPlainLinesWhereThereIsNoTerminal) {
   const std::string text = testing::internal::GetCapturedStderr();
   EXPECT_THAT(text, ContainsRegex("^left: 50 %, [0-9.e+]+ steps/s, 0\\.[0-9] s to go\n"
                                   "left: 1000 steps in 0\\.[0-9] s\n$"));
+}
+
+TEST(Progress, OfWorkThatGoesOnHasItsOwnRate) {
+  testing::internal::CaptureStderr();
+  Progress progress("event", 1'000'000'000, false, "steps", 999'999'000);
+  std::this_thread::sleep_for(std::chrono::milliseconds(110));
+  progress.update(999'999'500);
+  const std::string text = testing::internal::GetCapturedStderr();
+  // 500 steps in more than 0.1 s, and as many to go.
+  EXPECT_THAT(text, ContainsRegex("^event: 99 %, [0-9.e+]+ steps/s, [0-9.]+ s to go\n$"));
+  EXPECT_LT(std::stod(text.substr(text.find(", ") + 2)), 5000);
 }
 
 TEST(Progress, NotesAreLinesOfTheirOwn) {

@@ -182,6 +182,11 @@ def require_predicted(lines, cost):
     sent = float(lines["bytes sent per step"].split()[0])
     # Commands and answers are not in it.
     assert sent <= cost["bytes_per_step_of_busiest"] < 1.5 * sent
+    share = float(lines["own columns, of the event"].removesuffix(" %"))
+    event = ("own columns", "halo", "exchange", "commands of the leader", "samples, snapshots")
+    event_s = sum(seconds(lines[f"time: {part}"]) for part in event)
+    assert share == pytest.approx(100 * seconds(lines["time: own columns"]) / event_s, abs=1.5)
+    assert re.search(r"the last files, and \S+ s for each checkpoint", lines["not in it"])
     parts = [seconds(text) for name, text in lines.items() if name.startswith("time: ")]
     assert len(parts) == 7
     assert sum(parts) == pytest.approx(seconds(lines["time in all"]), rel=0.02)  # printed to 3 digits

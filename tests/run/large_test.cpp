@@ -84,6 +84,21 @@ TEST(LargePlate, NeedsSeveralProcesses) {
   EXPECT_FALSE(input::can_be_held_in_parts(tilted));
 }
 
+TEST(LargePlate, HasNoMoreUnknownsThanPetscCanNumber) {
+  auto config = test::coarse_case();
+  config.loading.solver = statics::StaticSolver::petsc;
+  config.plate.corner = mesh::Corner::none;
+  config.plate.width_m = config.plate.height_m = 0.9;
+  config.plate.element_size_m = 3e-5;  // 9e8 nodes
+  EXPECT_EQ(refusal([&] { check_interfaces(config); }), "");
+  config.plate.element_size_m = 2.4e-5;  // 1.4e9
+  const auto refused =
+      AllOf(HasSubstr("1.41e+09 nodes"), HasSubstr("1.07e+09 whose unknowns PETSc can number"));
+  EXPECT_THAT(refusal([&] { check_interfaces(config); }), refused);
+  EXPECT_THAT(refusal([&] { check(config); }), refused);
+  EXPECT_THAT(refusal([&] { info(config, Sharing{1000, 1000, shared_memory}); }), refused);
+}
+
 TEST(LargePlate, InfoCountsItsNodes) {
   const auto info = run::info(two_bodies(), Sharing{10000, 10000, shared_memory});
   EXPECT_EQ(info.n_nodes, 2 * n_columns * of_column);
