@@ -283,7 +283,7 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
   }
   work.precision = config.time.precision;
   work.bytes_per_interface_node = bytes_per_interface_node(config);
-  work.program_bytes = program_bytes;
+  work.program_bytes = program_bytes();
   work.recorded_bytes = info.needs.recorded_bytes;
   shared.cost = process_cost(work, shared.division, sharing.n_processors, sharing.network);
   return shared;

@@ -17,6 +17,7 @@
 #include "run/snapshot_mesh.hpp"
 #include "solid/operator.hpp"
 #include "stability/verdict.hpp"
+#include "statics/petsc_equations.hpp"
 #include "statics/plate_solver.hpp"
 
 namespace slipfront::run {
@@ -149,7 +150,7 @@ Budget snapshot_budget(const input::Case& config, const Size& size) {
 
 /// What every stage has besides. @param array_bytes  of the arrays that are freed in it
 Budget with_program(const Budget& stage, double array_bytes) {
-  return Budget{{"the program", program_bytes, larger_elements()}, kept_by_allocator(array_bytes)} + stage;
+  return Budget{{"the program", program_bytes(), larger_elements()}, kept_by_allocator(array_bytes)} + stage;
 }
 
 std::vector<Budget> memory_stages(const input::Case& config, const Size& size, double n_snapshots,
@@ -300,6 +301,10 @@ Size estimated_size(const input::Case& config) {
     size.step_s =
         std::min(size.step_s, config.time.step_factor * stable_step_s(input::base_material(config)));
   return size;
+}
+
+double program_bytes() {
+  return statics::petsc_version().empty() ? 26e6 : 48e6;
 }
 
 double bytes_per_interface_node(const input::Case& config) {

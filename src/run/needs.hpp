@@ -10,7 +10,6 @@
 #include "base/budget.hpp"
 #include "input/case.hpp"
 #include "processes/processes.hpp"
-#include "statics/petsc_equations.hpp"
 
 namespace slipfront::run {
 
@@ -46,7 +45,7 @@ Size estimated_size(const input::Case& config);
 
 /// The program, its libraries and its threads, before it has a case; those of MPI and PETSc take as much
 /// again.
-inline const double program_bytes = statics::petsc_version().empty() ? 26e6 : 48e6;
+double program_bytes();
 
 /// Of a node of the interface: its state, and the record of its slip.
 double bytes_per_interface_node(const input::Case& config);
