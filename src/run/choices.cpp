@@ -93,7 +93,11 @@ bool leads_by_interface(const input::Case& config, int n_processes, bool may_kee
     const double rows = std::round(plate.height_m / plate.element_size_m);
     constexpr double most = std::numeric_limits<int>::max();
     if (!(columns > 0 && columns < most && rows > 0 && rows < most)) return false;  // refused elsewhere
-    // Above a relief there are squares in all columns.
+    // Both as the whole mesh finds it: that all are squares, to 1e-9 of a side and what rounding adds, and
+    // that above a relief there are some in all columns.
+    const double stretch = plate.width_m / columns / (plate.height_m / rows);
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(columns, rows);
+    if (!(std::abs(stretch - 1) + rounding <= 0.9 * solid::square_tolerance)) return false;
     if (plate.corner == mesh::Corner::relief &&
         plate.relief_depth_m > plate.height_m - 2 * plate.element_size_m)
       return false;

@@ -15,7 +15,7 @@ namespace {
 constexpr int block_side = 32;
 bool is_square(const mesh::Mesh& mesh, const mesh::Cell& cell) {
   const auto c = cell_coordinates(mesh, cell);
-  const double h = c[2] - c[0], tolerance = 1e-9 * std::abs(h);
+  const double h = c[2] - c[0], tolerance = square_tolerance * std::abs(h);
   const CellCoordinates square = {0, 0, h, 0, h, h, 0, h};
   for (int k = 0; k < 8; ++k)
     if (std::abs(c[k] - c[k % 2] - square[k]) > tolerance) return false;

@@ -211,6 +211,8 @@ double largest_frequency_rad_per_s(const Operator& op);
 double frequency_bound_rad_per_s(const mesh::Mesh& mesh, const Material& material,
                                  const mesh::Mesh* corners = nullptr);
 inline constexpr int rings_around_others = 16;
+/// By which part of its side a cell may be no square, and still count as one.
+inline constexpr double square_tolerance = 1e-9;
 
 /// The same of squares alone, with this smallest side.
 double frequency_of_squares_rad_per_s(double side_m, const Material& material);

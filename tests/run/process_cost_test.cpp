@@ -221,7 +221,11 @@ TEST(ProcessCost, NoProcessHoldsManySquaresWhereAllKeepTheStateBefore) {
   EXPECT_TRUE(leads_by_interface(config, 4));
   EXPECT_FALSE(leads_by_interface(config, 1));
   EXPECT_FALSE(leads_by_interface(config, 4, false));
-  auto deep = config, fillet = config, graded = config;
+  auto deep = config, fillet = config, graded = config, stretched = config;
+  stretched.plate.width_m *= 1 + 2e-9;
+  EXPECT_FALSE(leads_by_interface(stretched, 4));
+  stretched.plate.width_m = config.plate.width_m * (1 + 1e-11);
+  EXPECT_TRUE(leads_by_interface(stretched, 4));
   deep.plate.relief_depth_m = deep.plate.height_m;
   EXPECT_FALSE(leads_by_interface(deep, 4));
   fillet.plate.corner = mesh::Corner::fillet;
