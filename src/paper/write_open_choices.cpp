@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
@@ -10,6 +11,7 @@
 #include "files/checksum.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
+#include "fronts/measures.hpp"
 #include "paper/open_choices.hpp"
 #include "paper/undefined.hpp"
 
@@ -35,22 +37,26 @@ std::string csv(const OpenChoicesResult& result) {
   std::string text = "set";
   for (const auto& choice : result.choices) text += fmt::format(",{}", choice.name);
   text +=
-      ",constraints,distance,share_in_band,extremity,a,a_low,a_high,b,b_low,b_high,c,c_low,c_high,"
-      "rms_over_c_L,left_max_over_c_L,spontaneous_max_over_c_L,right_max_over_c_L";
+      ",constraints,fig6,distance,share_in_band,extremity,a,a_low,a_high,b,b_low,b_high,c,c_low,c_high,"
+      "rms_over_c_L,spread_at_energy_rise,spread_at_t_d_over_p_d,spread_at_t_s_over_p_s,"
+      "difference_of_kinds_over_c_L,left_max_over_c_L,spontaneous_max_over_c_L,right_max_over_c_L";
   for (const auto& id : result.claims) text += fmt::format(",{}", id);
   text += "\n";
   for (const auto& o : result.outcomes) {
     text += name(o.sample.set);
     for (std::size_t k = 0; k < result.choices.size(); ++k)
       text += fmt::format(",{}", result.choices[k].text(o.sample.values[k]));
-    text += fmt::format(",{},{},{},{}", o.is_constrained ? "hold" : "do not", cell(o.distance),
-                        cell(o.share_in_band), cell(o.extremity));
+    text += fmt::format(",{},{},{},{},{}", o.is_constrained ? "hold" : "do not",
+                        o.agrees_with_fig6 ? "holds" : "does not", cell(o.distance), cell(o.share_in_band),
+                        cell(o.extremity));
     const auto fit = o.fit.value_or(fronts::ExponentialFit{});
     for (const auto* e : {&fit.a, &fit.b, &fit.c})
       for (const double value : {e->value, e->low, e->high})
         text += fmt::format(",{}", o.fit ? cell(value) : "");
-    text += fmt::format(",{},{},{},{}", o.fit ? cell(fit.rms) : "", cell(o.left_max), cell(o.spontaneous_max),
-                        cell(o.right_max));
+    text += fmt::format(",{}", o.fit ? cell(fit.rms) : "");
+    for (const double value : {o.spread_at_energy_rise, o.spread_at_dynamic_ratio, o.spread_at_static_ratio,
+                               o.difference_of_kinds, o.left_max, o.spontaneous_max, o.right_max})
+      text += fmt::format(",{}", cell(value));
     for (const auto holds : o.holds) text += fmt::format(",{}", verdict_text(holds));
     text += "\n";
   }
@@ -103,7 +109,7 @@ Json matrix_json(const OpenChoicesResult& result) {
   Json list = Json::array();
   const auto& standard = result.outcomes.front();
   for (std::size_t claim = 0; claim < result.claims.size(); ++claim) {
-    if (!standard.holds[claim]) continue;
+    if (!standard.holds[claim]) continue;  // those that need studies
     const auto turns_about = [&](Sample::Set set, const SampleOutcome& centre) {
       Json turns = Json::array();
       for (const auto& o : result.outcomes) {
@@ -138,6 +144,7 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
   Json json = {{"set", name(o.sample.set)},
                {"values", values},
                {"constraints_hold", o.is_constrained},
+               {"agrees_with_fig6", o.agrees_with_fig6},
                {"distance", number(o.distance)},
                {"share_in_band", number(o.share_in_band)},
                {"extremity", number(o.extremity)},
@@ -148,6 +155,55 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
                    {"c", number(o.fit->c)},
                    {"rms_over_c_L", o.fit->rms}};
   return json;
+}
+
+/// What was not used to choose, of some of the samples: how often each claim holds of those for which it was
+/// tested, how often the paper's a, b and c lie inside our intervals, and the spreads of V_tip, least, median
+/// and largest.
+Json evidence_json(const OpenChoicesResult& result, const std::function<bool(const SampleOutcome&)>& picked) {
+  std::vector<const SampleOutcome*> list;
+  for (const auto& o : result.outcomes)
+    if (picked(o)) list.push_back(&o);
+  Json holding = Json::object();
+  for (std::size_t claim = 0; claim < result.claims.size(); ++claim) {
+    const auto& id = result.claims[claim];
+    const auto tested =
+        std::ranges::count_if(list, [&](const auto* o) { return o->holds[claim].has_value(); });
+    const auto n =
+        std::ranges::count_if(list, [&](const auto* o) { return o->holds[claim].value_or(false); });
+    if (tested > 0) holding[id] = {{"n", tested}, {"n_holding", n}};
+  }
+  const auto range = [&](double SampleOutcome::*member) -> Json {
+    std::vector<double> values;
+    for (const auto* o : list)
+      if (std::isfinite(o->*member)) values.push_back(o->*member);
+    if (values.empty()) return nullptr;
+    return {std::ranges::min(values), fronts::median(values), std::ranges::max(values)};
+  };
+  return {{"n", list.size()},
+          {"n_paper_fit_in_intervals",
+           std::ranges::count_if(list, [](const auto* o) { return o->distance <= 1; })},
+          {"claims", holding},
+          {"spread_at_energy_rise", range(&SampleOutcome::spread_at_energy_rise)},
+          {"spread_at_t_d_over_p_d", range(&SampleOutcome::spread_at_dynamic_ratio)},
+          {"spread_at_t_s_over_p_s", range(&SampleOutcome::spread_at_static_ratio)},
+          {"difference_of_kinds_over_c_L", range(&SampleOutcome::difference_of_kinds)}};
+}
+
+/// In the region; where all constraining claims hold but Fig. 6 does not agree; and in the region with the
+/// left trigger held and with it taken away.
+Json evidence_json(const OpenChoicesResult& result) {
+  const auto duration = static_cast<std::size_t>(
+      std::ranges::find(result.choices, "left_duration_s", &OpenChoice::name) - result.choices.begin());
+  const auto in_region = [](const SampleOutcome& o) { return o.is_constrained && o.agrees_with_fig6; };
+  const auto is_held = [&](const SampleOutcome& o) { return std::isinf(o.sample.values[duration]); };
+  return {
+      {"region", evidence_json(result, in_region)},
+      {"constraining claims alone", evidence_json(result, [](const auto& o) { return o.is_constrained; })},
+      {"region, trigger held",
+       evidence_json(result, [&](const auto& o) { return in_region(o) && is_held(o); })},
+      {"region, trigger taken away",
+       evidence_json(result, [&](const auto& o) { return in_region(o) && !is_held(o); })}};
 }
 
 /// Least and largest value in use of each choice in the region, numbers only; words that occur.
@@ -189,12 +245,9 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
                   return o.sample.set == Sample::Set::triggers && starts_fronts(o);
                 })},
                {"n_triggers_slow_left", result.triggers.n_holding},
+               {"n_constrained", count([](const SampleOutcome& o) { return o.is_constrained; })},
                {"n_region", result.region.size()},
-               {"n_region_with_paper_fit",
-                count([](const SampleOutcome& o) { return o.is_constrained && o.distance <= 1; })},
-               {"n_region_in_paper_band", count([](const SampleOutcome& o) {
-                  return o.is_constrained && o.share_in_band >= wanted_share_in_band;
-                })},
+               {"evidence", evidence_json(result)},
                {"region", region_json(result)},
                {"standard", outcome_json(result, result.outcomes.front())},
                {"chosen", nullptr}};
