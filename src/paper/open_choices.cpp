@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "fronts/measures.hpp"
 #include "input/schema.hpp"
 #include "paper/main_fronts.hpp"
 #include "run/batch.hpp"
@@ -380,25 +381,6 @@ bool has_slow_left(const SampleOutcome& o, const std::vector<std::string>& ids) 
   return true;
 }
 
-/// The outcomes whose constraining claims hold; where some of them agree with Fig. 6, these.
-std::vector<std::size_t> region_of(const std::vector<SampleOutcome>& outcomes) {
-  std::vector<std::size_t> constrained, agreeing;
-  for (std::size_t k = 0; k < outcomes.size(); ++k) {
-    if (!outcomes[k].is_constrained) continue;
-    constrained.push_back(k);
-    if (outcomes[k].agrees_with_fig6) agreeing.push_back(k);
-  }
-  return agreeing.empty() ? constrained : agreeing;
-}
-
-/// The first of the least extreme ones; -1: there is none.
-int least_extreme(const std::vector<SampleOutcome>& outcomes) {
-  const auto region = region_of(outcomes);
-  const auto least =
-      std::ranges::min_element(region, {}, [&](std::size_t k) { return outcomes[k].extremity; });
-  return least == region.end() ? -1 : static_cast<int>(*least);
-}
-
 /// The scorecard's study of mu_k with a sample's choices.
 Study mu_k_study(const std::vector<OpenChoice>& choices, const Sample& sample) {
   const auto all = studies(false);
@@ -434,6 +416,10 @@ void judge_kinds_of_slip(OpenChoicesResult& result, Events& events) {
     list.push_back(std::move(judged));
   }
   events.run();
+  for (const char* id : {"C20+", "C21+"}) {  // rows that only this study has
+    result.claims.emplace_back(id);
+    for (auto& o : result.outcomes) o.holds.emplace_back();
+  }
   for (auto& judged : list) {
     StudyOutcome study{std::move(judged.study), {}};
     for (const auto& point : judged.points) {
@@ -513,8 +499,8 @@ std::string_view name(Sample::Set set) {
 }
 
 const std::vector<std::string>& constraining_claims() {
-  static const std::vector<std::string> ids = {"C2",  "C3",  "C4",  "C5",  "C6",  "C7",  "C8",  "C9",
-                                               "C10", "C11", "C12", "C13", "C15", "C16", "C17", "C23"};
+  static const std::vector<std::string> ids = {"C2", "C3",  "C4",  "C5",  "C6",  "C7", "C8",
+                                               "C9", "C10", "C11", "C12", "C13", "C23"};
   return ids;
 }
 
@@ -561,6 +547,66 @@ std::vector<Sample> samples(const std::vector<OpenChoice>& choices, bool quick) 
       choices, [](const OpenChoice&) { return true; }, Sample::Set::all, quick ? n_quick : n_all, list);
   add_left_triggers(choices, quick ? n_quick : n_left_trigger, list);
   return list;
+}
+
+std::vector<std::size_t> region_of(const std::vector<SampleOutcome>& outcomes) {
+  std::vector<std::size_t> constrained, agreeing;
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    if (!outcomes[k].is_constrained) continue;
+    constrained.push_back(k);
+    if (outcomes[k].agrees_with_fig6) agreeing.push_back(k);
+  }
+  return agreeing.empty() ? constrained : agreeing;
+}
+
+int least_extreme(const std::vector<SampleOutcome>& outcomes) {
+  const auto region = region_of(outcomes);
+  const auto least =
+      std::ranges::min_element(region, {}, [&](std::size_t k) { return outcomes[k].extremity; });
+  return least == region.end() ? -1 : static_cast<int>(*least);
+}
+
+std::vector<Evidence> evidence(const OpenChoicesResult& result) {
+  const auto duration = static_cast<std::size_t>(
+      std::ranges::find(result.choices, "left_duration_s", &OpenChoice::name) - result.choices.begin());
+  const auto is_held = [&](const SampleOutcome& o) { return std::isinf(o.sample.values[duration]); };
+  const auto gather = [&](const std::string& name, const std::function<bool(const SampleOutcome&)>& picked) {
+    std::vector<const SampleOutcome*> list;
+    for (const auto& o : result.outcomes)
+      if (o.is_constrained && picked(o)) list.push_back(&o);
+    const auto count = [&](const std::function<bool(const SampleOutcome&)>& predicate) {
+      return static_cast<std::size_t>(
+          std::ranges::count_if(list, [&](const auto* o) { return predicate(*o); }));
+    };
+    const auto range = [&](double SampleOutcome::*member) -> Evidence::Range {
+      std::vector<double> values;
+      for (const auto* o : list)
+        if (std::isfinite(o->*member)) values.push_back(o->*member);
+      if (values.empty()) return {fronts::undefined, fronts::undefined, fronts::undefined};
+      return {std::ranges::min(values), fronts::median(values), std::ranges::max(values)};
+    };
+    Evidence e{.name = name,
+               .n = list.size(),
+               .n_paper_fit_in_intervals = count([](const auto& o) { return o.distance <= 1; }),
+               .shares = {},
+               .spread_at_energy_rise = range(&SampleOutcome::spread_at_energy_rise),
+               .spread_at_dynamic_ratio = range(&SampleOutcome::spread_at_dynamic_ratio),
+               .spread_at_static_ratio = range(&SampleOutcome::spread_at_static_ratio),
+               .difference_of_kinds = range(&SampleOutcome::difference_of_kinds)};
+    for (std::size_t claim = 0; claim < result.claims.size(); ++claim) {
+      const auto tested = count([&](const auto& o) { return o.holds[claim].has_value(); });
+      const auto holding = count([&](const auto& o) { return o.holds[claim].value_or(false); });
+      if (tested > 0) e.shares.push_back({result.claims[claim], tested, holding});
+    }
+    return e;
+  };
+  const auto agrees = [](const SampleOutcome& o) { return o.agrees_with_fig6; };
+  return {gather("constraints and Fig. 6", agrees),
+          gather("constraints alone", [](const SampleOutcome&) { return true; }),
+          gather("constraints and Fig. 6, left trigger held",
+                 [&](const auto& o) { return agrees(o) && is_held(o); }),
+          gather("constraints and Fig. 6, left trigger taken away",
+                 [&](const auto& o) { return agrees(o) && !is_held(o); })};
 }
 
 OpenChoicesResult study_open_choices(

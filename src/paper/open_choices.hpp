@@ -95,20 +95,45 @@ struct SampleOutcome {
 /// paper's conclusions, C14 to C22, are none; of C18b the two numbers that the text gives decide, too.
 const std::vector<std::string>& constraining_claims();
 
+/// The outcomes whose constraining claims hold; where some of them agree with Fig. 6, these.
+std::vector<std::size_t> region_of(const std::vector<SampleOutcome>& outcomes);
+
+/// The first of the least extreme outcomes of the region; -1: it is empty.
+int least_extreme(const std::vector<SampleOutcome>& outcomes);
+
 struct OpenChoicesResult {
   bool quick = false;
   std::vector<OpenChoice> choices;
   std::vector<std::string> claims;      ///< their ids
   std::vector<SampleOutcome> outcomes;  ///< the standard one first
-  /// Outcomes for which all constraining claims hold and, where there are such, that agree with Fig. 6.
   std::vector<std::size_t> region;
-  /// The least extreme of the region before the samples about it were added; -1: it was empty.
-  int chosen = -1;
+  int chosen = -1;  ///< least_extreme, before the samples about it were added
   /// C11b: of the trigger samples, those for which C1 to C11 hold.
   TriggerSample triggers;
   std::size_t n_impossible = 0;  ///< samples left out: fillets too small for their elements
   run::Counts counts;
 };
+
+/// What was not used to choose, of some of the samples.
+struct Evidence {
+  struct Share {
+    std::string claim;
+    std::size_t n_tested = 0, n_holding = 0;
+  };
+  struct Range {
+    double least = 0, median = 0, largest = 0;  ///< NaN without samples
+  };
+  std::string name;
+  std::size_t n = 0;
+  std::size_t n_paper_fit_in_intervals = 0;  ///< the paper's a, b and c lie inside ours
+  std::vector<Share> shares;                 ///< of the claims that were tested for any of them
+  Range spread_at_energy_rise, spread_at_dynamic_ratio, spread_at_static_ratio;  ///< see SampleOutcome
+  Range difference_of_kinds;                                                     ///< V_tip/c_L, see C21+
+};
+
+/// For the samples whose constraining claims hold and that agree with Fig. 6; for all whose constraining
+/// claims hold; and for those of the former with the left trigger held and taken away.
+std::vector<Evidence> evidence(const OpenChoicesResult& result);
 
 /// Runs the four events of every sample (equal ones once) and judges them; those for which all constraining
 /// claims hold by the kinds of slip over mu_k (C20, C21), too.

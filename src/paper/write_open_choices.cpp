@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
@@ -11,7 +10,6 @@
 #include "files/checksum.hpp"
 #include "files/files.hpp"
 #include "files/text.hpp"
-#include "fronts/measures.hpp"
 #include "paper/open_choices.hpp"
 #include "paper/undefined.hpp"
 
@@ -157,53 +155,25 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
   return json;
 }
 
-/// What was not used to choose, of some of the samples: how often each claim holds of those for which it was
-/// tested, how often the paper's a, b and c lie inside our intervals, and the spreads of V_tip, least, median
-/// and largest.
-Json evidence_json(const OpenChoicesResult& result, const std::function<bool(const SampleOutcome&)>& picked) {
-  std::vector<const SampleOutcome*> list;
-  for (const auto& o : result.outcomes)
-    if (picked(o)) list.push_back(&o);
-  Json holding = Json::object();
-  for (std::size_t claim = 0; claim < result.claims.size(); ++claim) {
-    const auto& id = result.claims[claim];
-    const auto tested =
-        std::ranges::count_if(list, [&](const auto* o) { return o->holds[claim].has_value(); });
-    const auto n =
-        std::ranges::count_if(list, [&](const auto* o) { return o->holds[claim].value_or(false); });
-    if (tested > 0) holding[id] = {{"n", tested}, {"n_holding", n}};
-  }
-  const auto range = [&](double SampleOutcome::*member) -> Json {
-    std::vector<double> values;
-    for (const auto* o : list)
-      if (std::isfinite(o->*member)) values.push_back(o->*member);
-    if (values.empty()) return nullptr;
-    return {std::ranges::min(values), fronts::median(values), std::ranges::max(values)};
-  };
-  return {{"n", list.size()},
-          {"n_paper_fit_in_intervals",
-           std::ranges::count_if(list, [](const auto* o) { return o->distance <= 1; })},
-          {"claims", holding},
-          {"spread_at_energy_rise", range(&SampleOutcome::spread_at_energy_rise)},
-          {"spread_at_t_d_over_p_d", range(&SampleOutcome::spread_at_dynamic_ratio)},
-          {"spread_at_t_s_over_p_s", range(&SampleOutcome::spread_at_static_ratio)},
-          {"difference_of_kinds_over_c_L", range(&SampleOutcome::difference_of_kinds)}};
-}
-
-/// In the region; where all constraining claims hold but Fig. 6 does not agree; and in the region with the
-/// left trigger held and with it taken away.
 Json evidence_json(const OpenChoicesResult& result) {
-  const auto duration = static_cast<std::size_t>(
-      std::ranges::find(result.choices, "left_duration_s", &OpenChoice::name) - result.choices.begin());
-  const auto in_region = [](const SampleOutcome& o) { return o.is_constrained && o.agrees_with_fig6; };
-  const auto is_held = [&](const SampleOutcome& o) { return std::isinf(o.sample.values[duration]); };
-  return {
-      {"region", evidence_json(result, in_region)},
-      {"constraining claims alone", evidence_json(result, [](const auto& o) { return o.is_constrained; })},
-      {"region, trigger held",
-       evidence_json(result, [&](const auto& o) { return in_region(o) && is_held(o); })},
-      {"region, trigger taken away",
-       evidence_json(result, [&](const auto& o) { return in_region(o) && !is_held(o); })}};
+  const auto range = [](const Evidence::Range& r) -> Json {
+    return {number(r.least), number(r.median), number(r.largest)};
+  };
+  Json json = Json::array();
+  for (const auto& e : evidence(result)) {
+    Json holding = Json::object();
+    for (const auto& share : e.shares)
+      holding[share.claim] = {{"n", share.n_tested}, {"n_holding", share.n_holding}};
+    json.push_back({{"samples", e.name},
+                    {"n", e.n},
+                    {"n_paper_fit_in_intervals", e.n_paper_fit_in_intervals},
+                    {"claims", holding},
+                    {"spread_at_energy_rise", range(e.spread_at_energy_rise)},
+                    {"spread_at_t_d_over_p_d", range(e.spread_at_dynamic_ratio)},
+                    {"spread_at_t_s_over_p_s", range(e.spread_at_static_ratio)},
+                    {"difference_of_kinds_over_c_L", range(e.difference_of_kinds)}});
+  }
+  return json;
 }
 
 /// Least and largest value in use of each choice in the region, numbers only; words that occur.
