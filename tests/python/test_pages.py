@@ -17,7 +17,7 @@ from synthetic_study import write_open_choices
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 OLD = "x" * 8192 + "\n"  # of a page's text: more than a file may have on the full disk below
-TEXTS = ("stale", "kept", "stale", "kept")  # within and behind a pair of marks
+TEXTS = 3 * ("stale", "kept")  # within and behind a pair of marks
 
 
 @dataclass
