@@ -13,7 +13,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from shared import DataError, between_marks, read_result, renew, run, write_figure
+from shared import DataError, between_marks, expecting, read_result, renew, run, write_figure
 from slipfront.figures import style
 from slipfront.figures.main_fronts import counted, main_fronts, tail
 from slipfront.files import read_table
@@ -23,7 +23,13 @@ from slipfront.read import Front, Run, read_run
 AMOUNTS = ("2", "5", "10", "20", "40")
 WEAK, CHOSEN = "2", "20"
 COLOURS = dict(zip(AMOUNTS, ("#d55e00", "#e69f00", "#009e73", "#0072b2", "#332288"), strict=True))
-SPEED_LENGTHS_MM = ("0.67", "1.33", "2.67", "5.33")
+#: Line by l* in mm.
+SPEED_LENGTH_LINES: dict[str, style.Line] = {
+    "0.67": "-",
+    "1.33": "--",
+    "2.67": (0, (6, 1.5, 1, 1.5)),
+    "5.33": ":",
+}
 BINS = 20  # of a criterion's range, as in the scorecard
 CRITERIA = {"energy": "energy_rise", "t_d/p_d": "dynamic_ratio", "t_s/p_s": "static_ratio"}
 
@@ -155,7 +161,7 @@ def draw_over_x(speeds: Axes, pressures: Axes, lefts: dict[str, MainFront]) -> N
     peak_mm = style.mm(run.static_x_m[np.nanargmax(np.where(run.static_x_m > 0.1, run.static_ratio, np.nan))])
     for ax in (speeds, pressures):
         style.x_axis(ax, run)
-        ax.axvline(peak_mm, **style.REFERENCE)
+        ax.axvline(float(peak_mm), **style.REFERENCE)
     speeds.set(ylabel=style.V_LABEL)
     speeds.legend()
     pressures.set(ylabel="$p_d / p_s$", yscale="log")
@@ -203,13 +209,12 @@ def draw_over_rise(
 
 
 def draw_speed_lengths(ax: Axes, results: Path) -> None:
-    markers = dict(zip(SPEED_LENGTHS_MM, ("-", "--", "-.", ":"), strict=True))
-    for length, line in markers.items():
+    for length, line in SPEED_LENGTH_LINES.items():
         for event, colour in (("spontaneous", "black"), ("left", COLOURS[CHOSEN])):
             folder = results / "studies/l_star" / f"{1e-3 * float(length):.5f}" / event
             front = read_main_fronts(folder)[0]
             part = front.counts
-            ax.plot(front.front.energy_rise[part], front.speed[part], line, color=colour)
+            ax.plot(front.front.energy_rise[part], front.speed[part], linestyle=line, color=colour)
     ax.set(xlabel=style.ENERGY_LABEL, ylabel=style.V_LABEL, xscale="log")
     ax.axhline(1, **style.REFERENCE)
     ax.legend(
@@ -217,7 +222,7 @@ def draw_speed_lengths(ax: Axes, results: Path) -> None:
         handles=[
             *(
                 Line2D([], [], color="0.4", linestyle=line, label=f"$l^\\ast$ = {mm} mm")
-                for mm, line in markers.items()
+                for mm, line in SPEED_LENGTH_LINES.items()
             ),
             Line2D([], [], color="black", label="spontaneous, to $-x$"),
             Line2D([], [], color=COLOURS[CHOSEN], label=f"left, amount {CHOSEN}"),
@@ -226,21 +231,21 @@ def draw_speed_lengths(ax: Axes, results: Path) -> None:
 
 
 def write(results: Path, page: Path, picture: Path) -> None:
-    others = [front for event in ("spontaneous", "right") for front in read_main_fronts(results / event)]
-    folders = {amount: results / "studies/trigger_amount" / amount / "left" for amount in AMOUNTS}
-    lefts = {amount: read_main_fronts(folder)[0] for amount, folder in folders.items()}
-    check_against(results / "scorecard.json", others, lefts[CHOSEN])
-    fit = read_result(results / "analysis.json")["paper_fit"]
-    with matplotlib.rc_context(style.RC):
+    with expecting("results of a reproduction", results), matplotlib.rc_context(style.RC):
+        others = [front for event in ("spontaneous", "right") for front in read_main_fronts(results / event)]
+        folders = {amount: results / "studies/trigger_amount" / amount / "left" for amount in AMOUNTS}
+        lefts = {amount: read_main_fronts(folder)[0] for amount, folder in folders.items()}
+        check_against(results / "scorecard.json", others, lefts[CHOSEN])
         figure = style.new_figure(style.PAGE_MM, 140)
         axes = figure.subplots(2, 2)
         draw_over_x(axes[0, 0], axes[0, 1], lefts)
-        draw_over_rise(axes[1, 0], others, lefts, fit)
+        draw_over_rise(axes[1, 0], others, lefts, read_result(results / "analysis.json")["paper_fit"])
         draw_speed_lengths(axes[1, 1], results)
         for ax, letter in zip(axes.flat, "abcd", strict=True):
             ax.set_title(f"({letter})", loc="left")
         write_figure(picture, figure)
-    renew(page, lambda text: between_marks(page, text, "table", table(others, lefts)))
+        content = table(others, lefts)
+    renew(page, lambda text: between_marks(page, text, "table", content))
 
 
 if __name__ == "__main__":

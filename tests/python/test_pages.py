@@ -163,7 +163,9 @@ def test_a_full_disk_leaves_the_page_as_it_was(pages):
     )
 
 
-@pytest.mark.parametrize("script", ["open-choices-page.py", "scorecard-page.py", "verification-pages.py"])
+@pytest.mark.parametrize(
+    "script", ["energy-criterion.py", "open-choices-page.py", "scorecard-page.py", "verification-pages.py"]
+)
 def test_without_arguments_the_usage_is_told(script):
     done = subprocess.run([sys.executable, SCRIPTS / script], capture_output=True, text=True, timeout=120)
     assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
