@@ -209,6 +209,7 @@ site-links: $(VENV)/.installed-docs  ## fail where a link of the documentation t
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
 	$(PYTHON) scripts/scorecard-page.py $(RESULTS) docs/scorecard.md
+	$(PYTHON) scripts/energy-criterion.py $(RESULTS) docs/energy-criterion.md docs/figures/energy_criterion.png
 	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png $(RESULTS)/figures/energy_balance.png docs/figures/
 
 SOURCES = $(shell git ls-files 'src/*.cpp' 'src/*.hpp' 'tests/*.cpp' 'tests/*.hpp')

@@ -18,13 +18,13 @@ namespace {
 void print_report(const paper::ReproduceReport& report, const std::string& dir) {
   print("\nScorecard of Kammer, Yastrebov, Spijker, Molinari (2012)\n\n");
   for (const auto& c : report.claims) {
-    print("{:<6}{:<15}{} [{}]\n{:21}{}\n", c.id, verdict(c), c.claim, c.paper, "", c.measured);
+    print("{:<7}{:<15}{} [{}]\n{:22}{}\n", c.id, verdict(c), c.claim, c.paper, "", c.measured);
     if (!c.second_test_of.empty())
-      print("{:21}second test of {}{}: {}\n", "", c.second_test_of, c.counts ? ", counts in its place" : "",
+      print("{:22}second test of {}{}: {}\n", "", c.second_test_of, c.counts ? ", counts in its place" : "",
             c.why);
     for (const auto& v : c.variations) {
       const std::string moves = describe(c, v);
-      if (!moves.empty()) print("{:21}at {} = {:g} it moves by: {}\n", "", v.key, v.value, moves);
+      if (!moves.empty()) print("{:22}at {} = {:g} it moves by: {}\n", "", v.key, v.value, moves);
     }
   }
   print("\n{}\n\n", paper::summary(report.claims));

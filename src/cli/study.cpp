@@ -178,10 +178,18 @@ void print_table(const paper::OpenChoicesResult& result, const std::string& dir)
   print("standard choices\n");
   print_outcome(result, standard);
   print("C1 to C11 hold for {} of {} triggers\n", result.triggers.n_holding, result.triggers.n_triggers);
-  print("all constraints hold for {} samples\n", result.region.size());
   if (result.chosen >= 0) {
-    print("least extreme of them:\n");
+    print("least extreme of the {} samples of the region:\n", result.region.size());
     print_outcome(result, result.outcomes[result.chosen]);
+  }
+  for (const auto& e : paper::evidence(result)) {
+    print("{}: {} samples", e.name, e.n);
+    if (e.n > 0)
+      print("; spread of V_tip {} at equal energy rise, {} at equal t_d/p_d, {} at equal t_s/p_s (medians)",
+            number(e.spread_at_energy_rise.median, " %", 100),
+            number(e.spread_at_dynamic_ratio.median, " %", 100),
+            number(e.spread_at_static_ratio.median, " %", 100));
+    print("\n");
   }
   print("results: {}\n", dir);
 }

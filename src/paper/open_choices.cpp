@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "fronts/measures.hpp"
 #include "input/schema.hpp"
 #include "paper/main_fronts.hpp"
 #include "run/batch.hpp"
@@ -29,7 +30,7 @@ using interface::TriggerForm;
 
 constexpr double plate_width_m = 0.2;
 constexpr double quick_element_m = 4e-3;
-constexpr std::size_t n_triggers = 512, n_all = 256, n_quick = 4;
+constexpr std::size_t n_triggers = 512, n_all = 256, n_left_trigger = 256, n_quick = 4;
 
 /// Choices of the trigger at one edge.
 void add_trigger(std::vector<OpenChoice>& list, EventKind event, const std::string& edge) {
@@ -198,18 +199,41 @@ void add_pairs(const std::vector<OpenChoice>& choices, std::vector<Sample>& list
 }
 
 /// Points of Sobol's sequence, from its first one behind the origin on.
-void add_space_filling(const std::vector<OpenChoice>& choices, Sample::Set set, std::size_t n,
+/// @param sampled  the choices, each with the range in which it is sampled
+/// @param varied   those of them that are
+void add_space_filling(const std::vector<OpenChoice>& sampled,
+                       const std::function<bool(const OpenChoice&)>& varied, Sample::Set set, std::size_t n,
                        std::vector<Sample>& list) {
-  std::vector<std::size_t> varied;
-  for (std::size_t k = 0; k < choices.size(); ++k)
-    if (set == Sample::Set::all || choices[k].event) varied.push_back(k);
-  boost::random::sobol sequence(varied.size());
+  const auto dimensions = static_cast<std::size_t>(std::ranges::count_if(sampled, varied));
+  boost::random::sobol sequence(dimensions);
   constexpr double range = 1 + static_cast<double>(boost::random::sobol::max());
   for (std::size_t point = 0; point < n; ++point) {
-    Sample sample{set, standard_values(choices)};
-    for (const auto k : varied) sample.values[k] = choices[k].at(static_cast<double>(sequence()) / range);
+    Sample sample{set, standard_values(sampled)};
+    for (std::size_t k = 0; k < sampled.size(); ++k)
+      if (varied(sampled[k])) sample.values[k] = sampled[k].at(static_cast<double>(sequence()) / range);
     list.push_back(std::move(sample));
   }
+}
+
+double two_digits(double value) {
+  return std::stod(fmt::format("{:.2g}", value));
+}
+
+/// Left triggers about those that agree with Fig. 6 in the other sets: wide, strong, not weakened. Two
+/// digits, so that a case file can state what is chosen.
+void add_left_triggers(std::vector<OpenChoice> choices, std::size_t n, std::vector<Sample>& list) {
+  const std::map<std::string, std::vector<double>> ranges = {{"left_form", {0, 1}},
+                                                             {"left_zone_m", {10e-3, 20e-3}},
+                                                             {"left_added", {5, 40}},
+                                                             {"left_raised", {2, 4}}};
+  for (auto& choice : choices)
+    if (const auto found = ranges.find(choice.name); found != ranges.end()) choice.levels = found->second;
+  const auto varied = [](const OpenChoice& choice) { return choice.event == EventKind::left; };
+  const std::size_t first = list.size();
+  add_space_filling(choices, varied, Sample::Set::left_trigger, n, list);
+  for (auto& sample : std::span(list).subspan(first))
+    for (std::size_t k = 0; k < choices.size(); ++k)
+      if (varied(choices[k])) sample.values[k] = two_digits(sample.values[k]);
 }
 
 /// The four events of a sample.
@@ -231,19 +255,43 @@ std::array<input::Case, 4> cases_of(const std::vector<OpenChoice>& choices, cons
   return cases;
 }
 
-/// Events, by the text of their case, each once.
+/// Runs events, by the text of their case each once, and keeps what analysis needs of them.
 class Events {
  public:
+  Events(const OpenChoicesOptions& options,
+         const std::function<bool(std::size_t done, std::size_t total)>& monitor)
+      : batch_(
+            options.threads, [this, &monitor] { return monitor(done_, cases_.size()); },
+            "interrupted; the runs that were done are kept: give the same command again to go on",
+            options.kept) {}
+
   std::size_t place(const input::Case& config) {
     const auto [found, is_new] = places_.try_emplace(input::to_toml(config), cases_.size());
     if (is_new) cases_.push_back(config);
     return found->second;
   }
-  const std::vector<input::Case>& cases() const { return cases_; }
+
+  /// Runs those placed since the last call. Outcomes of earlier ones move.
+  void run() {
+    const std::size_t first = outcomes_.size();
+    outcomes_.resize(cases_.size());
+    batch_.run(std::span(cases_).subspan(first),
+               [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
+                 auto& outcome = outcomes_[first + k] = make_outcome("", r, initial);
+                 if (r.event.end == motion::EventEnd::blow_up) outcome.fronts.clear();
+                 ++done_;
+               });
+  }
+
+  const Outcome& at(std::size_t place) const { return outcomes_[place]; }
+  const run::Counts& counts() const { return batch_.counts(); }
 
  private:
   std::map<std::string, std::size_t> places_;
   std::vector<input::Case> cases_;
+  std::vector<Outcome> outcomes_;
+  std::atomic<std::size_t> done_ = 0;
+  run::Batch batch_;
 };
 
 /// Whether a sample's plate can be meshed: small fillets need small elements.
@@ -289,8 +337,9 @@ double distance_from_paper(const fronts::ExponentialFit& fit) {
 double extremity(const std::vector<OpenChoice>& choices, const Sample& sample) {
   double largest = 0;
   for (std::size_t k = 0; k < choices.size(); ++k)
-    largest = std::max(
-        largest, std::abs(choices[k].share_of(sample.values[k]) - choices[k].share_of(choices[k].standard)));
+    if (is_in_use(choices, k, sample.values))
+      largest = std::max(largest, std::abs(choices[k].share_of(sample.values[k]) -
+                                           choices[k].share_of(choices[k].standard)));
   return largest;
 }
 
@@ -311,10 +360,15 @@ SampleOutcome judge(const std::vector<OpenChoice>& choices, const Sample& sample
   o.is_constrained = std::ranges::all_of(constraining_claims(), [&](const std::string& id) {
     return verdict(claims, id) == std::optional(true);
   });
+  o.agrees_with_fig6 = verdict(claims, "C18b") == std::optional(true);
   const auto main = collapse_without_tails(main_fronts(three));
   o.share_in_band = main.share_in_paper_band;
   if (main.fitted) o.fit = main.fit;
   o.distance = main.fitted ? distance_from_paper(main.fit) : fronts::undefined;
+  o.spread_at_energy_rise = main.energy_rise.fronts.median_relative;
+  o.spread_at_dynamic_ratio = main.dynamic_ratio.fronts.median_relative;
+  o.spread_at_static_ratio = main.static_ratio.fronts.median_relative;
+  o.difference_of_kinds = fronts::undefined;
   return o;
 }
 
@@ -327,17 +381,58 @@ bool has_slow_left(const SampleOutcome& o, const std::vector<std::string>& ids) 
   return true;
 }
 
-void choose(OpenChoicesResult& result) {
-  for (std::size_t k = 0; k < result.outcomes.size(); ++k) {
-    const auto& o = result.outcomes[k];
-    if (o.is_constrained && (result.chosen < 0 || o.extremity < result.outcomes[result.chosen].extremity))
-      result.chosen = static_cast<int>(k);
+/// The scorecard's study of mu_k with a sample's choices.
+Study mu_k_study(const std::vector<OpenChoice>& choices, const Sample& sample) {
+  const auto all = studies(false);
+  Study study = *std::ranges::find(all, "mu_k", &Study::name);
+  for (auto& point : study.points) {
+    const auto cases = cases_of(choices, sample);
+    for (std::size_t e = 0; e < point.cases.size(); ++e) {
+      point.cases[e].config = cases[e];
+      point.cases[e].config.friction.parameter("mu_k") = point.number;
+    }
   }
+  return study;
 }
 
-void find_region(OpenChoicesResult& result) {
-  for (std::size_t k = 0; k < result.outcomes.size(); ++k)
-    if (result.outcomes[k].is_constrained) result.region.push_back(k);
+/// The kinds of slip over mu_k (C20, C21) of the samples whose constraining claims hold.
+void judge_kinds_of_slip(OpenChoicesResult& result, Events& events) {
+  struct Judged {
+    std::size_t outcome;
+    Study study;
+    std::array<std::size_t, 4> places;               ///< of the sample's four events
+    std::vector<std::array<std::size_t, 3>> points;  ///< of the study's events
+  };
+  std::vector<Judged> list;
+  for (std::size_t k = 0; k < result.outcomes.size(); ++k) {
+    const auto& o = result.outcomes[k];
+    if (!o.is_constrained) continue;
+    Judged judged{k, mu_k_study(result.choices, o.sample), {}, {}};
+    std::ranges::transform(cases_of(result.choices, o.sample), judged.places.begin(),
+                           [&](const input::Case& c) { return events.place(c); });
+    for (const auto& point : judged.study.points)
+      std::ranges::transform(point.cases, judged.points.emplace_back().begin(),
+                             [&](const NamedCase& c) { return events.place(c.config); });
+    list.push_back(std::move(judged));
+  }
+  events.run();
+  for (const char* id : {"C20+", "C21+"}) {  // rows that only this study has
+    result.claims.emplace_back(id);
+    for (auto& o : result.outcomes) o.holds.emplace_back();
+  }
+  for (auto& judged : list) {
+    StudyOutcome study{std::move(judged.study), {}};
+    for (const auto& point : judged.points) {
+      auto& outcomes = study.outcomes.emplace_back();
+      for (const auto place : point) outcomes.push_back(events.at(place));
+    }
+    const auto& [spontaneous, left, right, mu_k_1] = judged.places;
+    const auto claims = scorecard(
+        {events.at(spontaneous), events.at(left), events.at(right), events.at(mu_k_1), {study}, {}, {}});
+    auto& o = result.outcomes[judged.outcome];
+    for (std::size_t k = 0; k < result.claims.size(); ++k) o.holds[k] = verdict(claims, result.claims[k]);
+    o.difference_of_kinds = figure(claims, "C21+", "difference");
+  }
 }
 
 }  // namespace
@@ -395,6 +490,8 @@ std::string_view name(Sample::Set set) {
       return "triggers";
     case Sample::Set::all:
       return "all";
+    case Sample::Set::left_trigger:
+      return "left trigger";
     case Sample::Set::about_chosen:
       return "about the chosen";
   }
@@ -402,8 +499,8 @@ std::string_view name(Sample::Set set) {
 }
 
 const std::vector<std::string>& constraining_claims() {
-  static const std::vector<std::string> ids = {"C2",  "C3",  "C4",  "C5",  "C6",  "C7",  "C8",  "C9",
-                                               "C10", "C11", "C12", "C13", "C15", "C16", "C17", "C23"};
+  static const std::vector<std::string> ids = {"C2", "C3",  "C4",  "C5",  "C6",  "C7", "C8",
+                                               "C9", "C10", "C11", "C12", "C13", "C23"};
   return ids;
 }
 
@@ -443,9 +540,73 @@ std::vector<Sample> samples(const std::vector<OpenChoice>& choices, bool quick) 
     list.insert(list.end(), one_at_a_time.begin(), one_at_a_time.end());
     add_pairs(choices, list);
   }
-  add_space_filling(choices, Sample::Set::triggers, quick ? n_quick : n_triggers, list);
-  add_space_filling(choices, Sample::Set::all, quick ? n_quick : n_all, list);
+  add_space_filling(
+      choices, [](const OpenChoice& choice) { return choice.event.has_value(); }, Sample::Set::triggers,
+      quick ? n_quick : n_triggers, list);
+  add_space_filling(
+      choices, [](const OpenChoice&) { return true; }, Sample::Set::all, quick ? n_quick : n_all, list);
+  add_left_triggers(choices, quick ? n_quick : n_left_trigger, list);
   return list;
+}
+
+std::vector<std::size_t> region_of(const std::vector<SampleOutcome>& outcomes) {
+  std::vector<std::size_t> constrained, agreeing;
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    if (!outcomes[k].is_constrained) continue;
+    constrained.push_back(k);
+    if (outcomes[k].agrees_with_fig6) agreeing.push_back(k);
+  }
+  return agreeing.empty() ? constrained : agreeing;
+}
+
+int least_extreme(const std::vector<SampleOutcome>& outcomes) {
+  const auto region = region_of(outcomes);
+  const auto least =
+      std::ranges::min_element(region, {}, [&](std::size_t k) { return outcomes[k].extremity; });
+  return least == region.end() ? -1 : static_cast<int>(*least);
+}
+
+std::vector<Evidence> evidence(const OpenChoicesResult& result) {
+  const auto duration = static_cast<std::size_t>(
+      std::ranges::find(result.choices, "left_duration_s", &OpenChoice::name) - result.choices.begin());
+  const auto is_held = [&](const SampleOutcome& o) { return std::isinf(o.sample.values[duration]); };
+  const auto gather = [&](const std::string& name, const std::function<bool(const SampleOutcome&)>& picked) {
+    std::vector<const SampleOutcome*> list;
+    for (const auto& o : result.outcomes)
+      if (o.is_constrained && picked(o)) list.push_back(&o);
+    const auto count = [&](const std::function<bool(const SampleOutcome&)>& predicate) {
+      return static_cast<std::size_t>(
+          std::ranges::count_if(list, [&](const auto* o) { return predicate(*o); }));
+    };
+    const auto range = [&](double SampleOutcome::*member) -> Evidence::Range {
+      std::vector<double> values;
+      for (const auto* o : list)
+        if (std::isfinite(o->*member)) values.push_back(o->*member);
+      if (values.empty()) return {fronts::undefined, fronts::undefined, fronts::undefined};
+      return {std::ranges::min(values), fronts::median(values), std::ranges::max(values)};
+    };
+    Evidence e{.name = name,
+               .n = list.size(),
+               .n_paper_fit_in_intervals = count([](const auto& o) { return o.distance <= 1; }),
+               .shares = {},
+               .spread_at_energy_rise = range(&SampleOutcome::spread_at_energy_rise),
+               .spread_at_dynamic_ratio = range(&SampleOutcome::spread_at_dynamic_ratio),
+               .spread_at_static_ratio = range(&SampleOutcome::spread_at_static_ratio),
+               .difference_of_kinds = range(&SampleOutcome::difference_of_kinds)};
+    for (std::size_t claim = 0; claim < result.claims.size(); ++claim) {
+      const auto tested = count([&](const auto& o) { return o.holds[claim].has_value(); });
+      const auto holding = count([&](const auto& o) { return o.holds[claim].value_or(false); });
+      if (tested > 0) e.shares.push_back({result.claims[claim], tested, holding});
+    }
+    return e;
+  };
+  const auto agrees = [](const SampleOutcome& o) { return o.agrees_with_fig6; };
+  return {gather("constraints and Fig. 6", agrees),
+          gather("constraints alone", [](const SampleOutcome&) { return true; }),
+          gather("constraints and Fig. 6, left trigger held",
+                 [&](const auto& o) { return agrees(o) && is_held(o); }),
+          gather("constraints and Fig. 6, left trigger taken away",
+                 [&](const auto& o) { return agrees(o) && !is_held(o); })};
 }
 
 OpenChoicesResult study_open_choices(
@@ -454,13 +615,8 @@ OpenChoicesResult study_open_choices(
   OpenChoicesResult result;
   result.quick = options.quick;
   result.choices = open_choices(options.quick);
-  std::atomic<std::size_t> done = 0, total = 0;
-  run::Batch batch(
-      options.threads, [&] { return monitor(done, total); },
-      "interrupted; the runs that were done are kept: give the same command again to go on", options.kept);
-  Events events;
+  Events events(options, monitor);
   Possible is_possible;
-  std::vector<Outcome> outcomes;
   const auto run_and_judge = [&](const std::vector<Sample>& list) {
     std::vector<std::pair<Sample, std::array<std::size_t, 4>>> possible;
     for (const auto& sample : list) {
@@ -472,21 +628,11 @@ OpenChoicesResult study_open_choices(
       auto& [kept, places] = possible.emplace_back(sample, std::array<std::size_t, 4>{});
       for (std::size_t e = 0; e < cases.size(); ++e) places[e] = events.place(cases[e]);
     }
-    const std::size_t first = outcomes.size();
-    total = events.cases().size();
-    outcomes.resize(total);
-    batch.run(std::span(events.cases()).subspan(first),
-              [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
-                outcomes[first + k] = make_outcome("", r, initial);
-                if (r.event.end == motion::EventEnd::blow_up) outcomes[first + k].fronts.clear();
-                ++done;
-              });
+    events.run();
     for (const auto& [sample, places] : possible) {
-      const auto event = [&outcomes, &places = places](std::size_t e) -> const Outcome& {
-        return outcomes[places[e]];
-      };
-      const std::array<const Outcome*, 3> three = {&event(0), &event(1), &event(2)};
-      const auto claims = scorecard({event(0), event(1), event(2), event(3), {}, {}, {}});
+      const auto& [spontaneous, left, right, mu_k_1] = places;
+      const std::array three = {&events.at(spontaneous), &events.at(left), &events.at(right)};
+      const auto claims = scorecard({*three[0], *three[1], *three[2], events.at(mu_k_1), {}, {}, {}});
       if (result.claims.empty())
         std::ranges::transform(claims, std::back_inserter(result.claims), &Claim::id);
       result.outcomes.push_back(judge(result.choices, sample, three, claims));
@@ -496,12 +642,13 @@ OpenChoicesResult study_open_choices(
     }
   };
   run_and_judge(samples(result.choices, options.quick));
-  choose(result);
+  result.chosen = least_extreme(result.outcomes);
   if (result.chosen >= 0)
     run_and_judge(samples_about(result.choices, Sample::Set::about_chosen,
                                 result.outcomes[result.chosen].sample.values));
-  find_region(result);
-  result.counts = batch.counts();
+  result.region = region_of(result.outcomes);
+  judge_kinds_of_slip(result, events);
+  result.counts = events.counts();
   return result;
 }
 

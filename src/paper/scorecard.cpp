@@ -372,8 +372,8 @@ class Scorecard {
       const double mu_s = interface::static_coefficient(o->config.friction);
       for (const auto& front : o->fronts) {
         for (const auto& p : front.points) {
-          if (!counts(*o, front, p) || !std::isfinite(p.t_d_Pa)) continue;
           const double s = p.t_s_Pa / p.p_s_Pa, d = p.t_d_Pa / p.p_d_Pa;
+          if (!counts(*o, front, p) || !std::isfinite(s) || !std::isfinite(d)) continue;  // no pressure
           difference += std::abs(d - s) / s;
           below += d < far_over_mu_s * mu_s ? 1 : 0;
           n += 1;

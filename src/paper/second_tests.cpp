@@ -39,9 +39,11 @@ void append(std::string& text, const std::string& part) {
 }
 
 /// A second test that has not been done yet.
-Claim second_test(std::span<const Claim> first, const char* of, const char* why, std::string how) {
+/// @param suffix  of its id
+Claim second_test(std::span<const Claim> first, const char* of, const char* why, std::string how,
+                  const char* suffix = "b") {
   Claim row = *std::ranges::find(first, of, &Claim::id);
-  row.id = std::string(of) + "b";
+  row.id = std::string(of) + suffix;
   row.second_test_of = of;
   row.why = why;
   row.how = std::move(how);
@@ -70,36 +72,42 @@ Claim trigger_choice(const std::optional<TriggerSample>& sample, std::span<const
   return row;
 }
 
-// C18b
+// C18b and C18c
 
-Claim collapse_of_main_fronts(std::span<const MainFront> mains, std::span<const Claim> first) {
-  Claim row = second_test(
-      first, "C18", "its points are those of late fronts in the wake of others, too",
-      fmt::format(
-          "main fronts without their last {:g} mm: (a) and (b) as C18; (c) the median relative spread "
-          "between the fronts is smaller at equal (U_r-U_s)/U_s than at equal t_d/p_d and at equal "
-          "t_s/p_s",
-          tail_m * mm));
+/// Fit and share in the band; then the spreads.
+std::array<Claim, 2> collapse_of_main_fronts(std::span<const MainFront> mains, std::span<const Claim> first) {
+  Claim fit =
+      second_test(first, "C18", "its points are those of late fronts in the wake of others, too",
+                  fmt::format("main fronts without their last {:g} mm: (a) and (b) as C18", tail_m * mm));
+  fit.used_to_choose = true;
+  Claim order = second_test(
+      first, "C18",
+      "its points are those of late fronts in the wake of others, too; (a) and (b) are numbers of the text, "
+      "used to choose the trigger that it does not give",
+      fmt::format("main fronts without their last {:g} mm: the median relative spread of V_tip between the "
+                  "fronts is smaller at equal (U_r-U_s)/U_s than at equal t_d/p_d and at equal t_s/p_s",
+                  tail_m * mm),
+      "c");
   const Collapse c = collapse_without_tails(mains);
   if (!c.fitted) {
-    row.measured = "too few points for a fit";
-    return row;
+    fit.measured = order.measured = "too few points for a fit";
+    return {fit, order};
   }
   const double by_energy = c.energy_rise.fronts.median_relative,
                by_dynamic = c.dynamic_ratio.fronts.median_relative,
                by_static = c.static_ratio.fronts.median_relative;
   const PaperFit paper;
-  row.measured = fmt::format(
-      "{}; (c) spread {} at equal (U_r-U_s)/U_s, {} at equal t_d/p_d, {} at equal t_s/p_s; the paper: "
-      "a = {:.2f}, b = {:.2f}, c = {:.2f}",
-      describe(c), percent(by_energy), percent(by_dynamic), percent(by_static), paper.a, paper.b, paper.c);
-  row.figures = figures_of(c);
-  row.figures.insert(row.figures.end(), {{"energy", 100 * by_energy, "%"},
-                                         {"t_d/p_d", 100 * by_dynamic, "%"},
-                                         {"t_s/p_s", 100 * by_static, "%"}});
-  row.holds = c.fit.rms <= paper.band && c.share_in_paper_band >= wanted_share_in_band &&
-              by_energy < by_dynamic && by_energy < by_static;
-  return row;
+  fit.measured = fmt::format("{}; the paper: a = {:.2f}, b = {:.2f}, c = {:.2f}", describe(c), paper.a,
+                             paper.b, paper.c);
+  fit.figures = figures_of(c);
+  fit.holds = c.fit.rms <= paper.band && c.share_in_paper_band >= wanted_share_in_band;
+  order.measured = fmt::format("spread {} at equal (U_r-U_s)/U_s, {} at equal t_d/p_d, {} at equal t_s/p_s",
+                               percent(by_energy), percent(by_dynamic), percent(by_static));
+  order.figures = {{"energy", 100 * by_energy, "%"},
+                   {"t_d/p_d", 100 * by_dynamic, "%"},
+                   {"t_s/p_s", 100 * by_static, "%"}};
+  order.holds = by_energy < by_dynamic && by_energy < by_static;
+  return {fit, order};
 }
 
 // C19b
@@ -272,45 +280,70 @@ bool state_mean_speeds(const StudyOutcome& alpha, Claim& row) {
   return falls;
 }
 
-Claim drops_with_alpha(const Reproduction& runs, std::span<const Claim> first) {
-  Claim row = second_test(
-      first, "C22",
+/// The claim as a whole, and its two halves for comparison.
+std::array<Claim, 3> drops_with_alpha(const Reproduction& runs, std::span<const Claim> first) {
+  const char* why =
       "a slower front arrests earlier, so that the same fifth of two fronts' own paths lies at different "
-      "stresses",
-      fmt::format("spontaneous, from the least to the largest alpha, at equal x on the stretch that both "
-                  "fronts cover, in each direction: the median relative drop of V_tip is larger in the first "
-                  "{:g} mm and in the last {:g} mm before the slower front's end than in the middle third; "
-                  "mean V_tip falls at every step of alpha",
-                  initiation_m * mm, arrest_m * mm));
+      "stresses";
+  const auto compared = fmt::format(
+      "spontaneous, from the least to the largest alpha, at equal x on the stretch that both "
+      "fronts cover, in each direction: the median relative drop of V_tip is larger ");
+  const auto at_initiation = fmt::format("in the first {:g} mm", initiation_m * mm),
+             at_arrest = fmt::format("in the last {:g} mm before the slower front's end", arrest_m * mm);
+  Claim whole = second_test(first, "C22", why,
+                            fmt::format("{}{} and {} than in the middle third; mean V_tip falls at every "
+                                        "step of alpha",
+                                        compared, at_initiation, at_arrest));
+  const auto half = [&](const char* suffix, const char* claim, const std::string& where) {
+    Claim row =
+        second_test(first, "C22", why, fmt::format("{}{} than in the middle third", compared, where), suffix);
+    row.claim = claim;
+    row.second_test_of.clear();
+    row.why.clear();
+    return row;
+  };
+  Claim initiation = half("b1+", "higher alpha: slower, above all at initiation", at_initiation),
+        arrest = half("b2+", "higher alpha: slower, above all at arrest", at_arrest);
+  const auto not_tested = [&](const char* reason) {
+    for (auto* row : {&whole, &initiation, &arrest}) {
+      row->measured = reason;
+      row->figures.clear();
+    }
+    return std::array{whole, initiation, arrest};
+  };
   const auto* alpha = find_study(runs, "alpha");
-  row.measured = "not tested: no studies";
-  if (alpha == nullptr) return row;
+  if (alpha == nullptr) return not_tested("not tested: no studies");
   const Outcome* least = spontaneous_event(alpha->outcomes.front());
   const Outcome* largest = spontaneous_event(alpha->outcomes.back());
-  row.measured.clear();
-  bool at_ends = true;
+  for (auto* row : {&whole, &initiation, &arrest}) row->measured.clear();
+  bool first_drops = true, last_drops = true;
   for (const auto& [direction, name] : {std::pair{-1, "against"}, {1, "along"}}) {
     const Front* fast = least != nullptr ? first_front(*least, direction) : nullptr;
     const Front* slow = largest != nullptr ? first_front(*largest, direction) : nullptr;
-    if (fast == nullptr || slow == nullptr) {
-      row.measured = "not tested: no fronts to compare";
-      row.figures.clear();
-      return row;
-    }
+    if (fast == nullptr || slow == nullptr) return not_tested("not tested: no fronts to compare");
     const Drops drops = drops_at_equal_x(*fast, *slow);
-    at_ends = at_ends && drops.initiation > drops.middle && drops.arrest > drops.middle;
-    append(row.measured,
-           fmt::format(
-               "drop {} the shear: {} in the first {:g} mm, {} in the middle third, {} in the last {:g} mm",
-               name, percent(drops.initiation), initiation_m * mm, percent(drops.middle),
-               percent(drops.arrest), arrest_m * mm));
-    row.figures.insert(row.figures.end(), {{std::string(name) + " first", 100 * drops.initiation, "%"},
-                                           {std::string(name) + " middle", 100 * drops.middle, "%"},
-                                           {std::string(name) + " last", 100 * drops.arrest, "%"}});
+    first_drops = first_drops && drops.initiation > drops.middle;
+    last_drops = last_drops && drops.arrest > drops.middle;
+    const auto state = [&, name = name](Claim& row, bool with_first, bool with_last) {
+      const auto part = [&](const char* figure_name, double drop, const std::string& where) {
+        row.measured += fmt::format("{} {}", row.measured.ends_with(':') ? "" : ",", percent(drop)) + where;
+        row.figures.push_back({std::string(name) + " " + figure_name, 100 * drop, "%"});
+      };
+      append(row.measured, fmt::format("drop {} the shear:", name));
+      if (with_first)
+        part("first", drops.initiation, fmt::format(" in the first {:g} mm", initiation_m * mm));
+      part("middle", drops.middle, " in the middle third");
+      if (with_last) part("last", drops.arrest, fmt::format(" in the last {:g} mm", arrest_m * mm));
+    };
+    state(whole, true, true);
+    state(initiation, true, false);
+    state(arrest, false, true);
   }
-  const bool falls = state_mean_speeds(*alpha, row);
-  row.holds = falls && at_ends;
-  return row;
+  const bool falls = state_mean_speeds(*alpha, whole);
+  whole.holds = falls && first_drops && last_drops;
+  initiation.holds = first_drops;
+  arrest.holds = last_drops;
+  return {whole, initiation, arrest};
 }
 
 }  // namespace
@@ -322,15 +355,18 @@ bool is_first_test(const Claim& claim) {
 std::vector<Claim> second_tests(const Reproduction& runs, std::span<const Claim> first) {
   const std::array<const Outcome*, 3> three = {&runs.spontaneous, &runs.left, &runs.right};
   const auto mains = main_fronts(three);
-  return {trigger_choice(runs.triggers, first), collapse_of_main_fronts(mains, first),
-          points_outside_the_band(mains, first), trend_of_crack_share(runs, first),
-          drops_with_alpha(runs, first)};
+  std::vector<Claim> rows = {trigger_choice(runs.triggers, first)};
+  std::ranges::move(collapse_of_main_fronts(mains, first), std::back_inserter(rows));
+  rows.push_back(points_outside_the_band(mains, first));
+  rows.push_back(trend_of_crack_share(runs, first));
+  std::ranges::move(drops_with_alpha(runs, first), std::back_inserter(rows));
+  return rows;
 }
 
 void choose_verdicts(std::span<Claim> claims) {
   for (auto& claim : claims) claim.counts = is_first_test(claim);
   for (auto& second : claims) {
-    if (second.second_test_of.empty() || !second.holds) continue;
+    if (second.second_test_of.empty() || !second.holds || second.used_to_choose) continue;
     second.counts = true;
     std::ranges::find(claims, second.second_test_of, &Claim::id)->counts = false;
   }

@@ -8,8 +8,8 @@
 
 namespace slipfront::paper {
 
-/// Better tests of claims that the first one misjudges: C11b, C18b, C19b, C20b, C22b. Each names its first
-/// test and why that misjudges the claim.
+/// Better tests of claims that the first one misjudges: C11b, C18b and C18c, C19b, C20b, C22b. Each names its
+/// first test and why that misjudges the claim. With C22b stand the halves of its sentence, for comparison.
 /// @param first  rows of the first tests, for the claims' wording
 std::vector<Claim> second_tests(const Reproduction& runs, std::span<const Claim> first);
 
@@ -17,7 +17,7 @@ std::vector<Claim> second_tests(const Reproduction& runs, std::span<const Claim>
 bool is_first_test(const Claim& claim);
 
 /// Decides which row's verdict counts for its claim: that of the second test where it was tested, else that
-/// of the first. Rows that are only further tests do not count.
+/// of the first. Rows that are only further tests do not count, nor do second tests that were used to choose.
 void choose_verdicts(std::span<Claim> claims);
 
 }  // namespace slipfront::paper

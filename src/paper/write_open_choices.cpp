@@ -35,22 +35,26 @@ std::string csv(const OpenChoicesResult& result) {
   std::string text = "set";
   for (const auto& choice : result.choices) text += fmt::format(",{}", choice.name);
   text +=
-      ",constraints,distance,share_in_band,extremity,a,a_low,a_high,b,b_low,b_high,c,c_low,c_high,"
-      "rms_over_c_L,left_max_over_c_L,spontaneous_max_over_c_L,right_max_over_c_L";
+      ",constraints,fig6,distance,share_in_band,extremity,a,a_low,a_high,b,b_low,b_high,c,c_low,c_high,"
+      "rms_over_c_L,spread_at_energy_rise,spread_at_t_d_over_p_d,spread_at_t_s_over_p_s,"
+      "difference_of_kinds_over_c_L,left_max_over_c_L,spontaneous_max_over_c_L,right_max_over_c_L";
   for (const auto& id : result.claims) text += fmt::format(",{}", id);
   text += "\n";
   for (const auto& o : result.outcomes) {
     text += name(o.sample.set);
     for (std::size_t k = 0; k < result.choices.size(); ++k)
       text += fmt::format(",{}", result.choices[k].text(o.sample.values[k]));
-    text += fmt::format(",{},{},{},{}", o.is_constrained ? "hold" : "do not", cell(o.distance),
-                        cell(o.share_in_band), cell(o.extremity));
+    text += fmt::format(",{},{},{},{},{}", o.is_constrained ? "hold" : "do not",
+                        o.agrees_with_fig6 ? "holds" : "does not", cell(o.distance), cell(o.share_in_band),
+                        cell(o.extremity));
     const auto fit = o.fit.value_or(fronts::ExponentialFit{});
     for (const auto* e : {&fit.a, &fit.b, &fit.c})
       for (const double value : {e->value, e->low, e->high})
         text += fmt::format(",{}", o.fit ? cell(value) : "");
-    text += fmt::format(",{},{},{},{}", o.fit ? cell(fit.rms) : "", cell(o.left_max), cell(o.spontaneous_max),
-                        cell(o.right_max));
+    text += fmt::format(",{}", o.fit ? cell(fit.rms) : "");
+    for (const double value : {o.spread_at_energy_rise, o.spread_at_dynamic_ratio, o.spread_at_static_ratio,
+                               o.difference_of_kinds, o.left_max, o.spontaneous_max, o.right_max})
+      text += fmt::format(",{}", cell(value));
     for (const auto holds : o.holds) text += fmt::format(",{}", verdict_text(holds));
     text += "\n";
   }
@@ -103,7 +107,7 @@ Json matrix_json(const OpenChoicesResult& result) {
   Json list = Json::array();
   const auto& standard = result.outcomes.front();
   for (std::size_t claim = 0; claim < result.claims.size(); ++claim) {
-    if (!standard.holds[claim]) continue;
+    if (!standard.holds[claim]) continue;  // those that need studies
     const auto turns_about = [&](Sample::Set set, const SampleOutcome& centre) {
       Json turns = Json::array();
       for (const auto& o : result.outcomes) {
@@ -138,6 +142,7 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
   Json json = {{"set", name(o.sample.set)},
                {"values", values},
                {"constraints_hold", o.is_constrained},
+               {"agrees_with_fig6", o.agrees_with_fig6},
                {"distance", number(o.distance)},
                {"share_in_band", number(o.share_in_band)},
                {"extremity", number(o.extremity)},
@@ -147,6 +152,27 @@ Json outcome_json(const OpenChoicesResult& result, const SampleOutcome& o) {
                    {"b", number(o.fit->b)},
                    {"c", number(o.fit->c)},
                    {"rms_over_c_L", o.fit->rms}};
+  return json;
+}
+
+Json evidence_json(const OpenChoicesResult& result) {
+  const auto range = [](const Evidence::Range& r) -> Json {
+    return {number(r.least), number(r.median), number(r.largest)};
+  };
+  Json json = Json::array();
+  for (const auto& e : evidence(result)) {
+    Json holding = Json::object();
+    for (const auto& share : e.shares)
+      holding[share.claim] = {{"n", share.n_tested}, {"n_holding", share.n_holding}};
+    json.push_back({{"samples", e.name},
+                    {"n", e.n},
+                    {"n_paper_fit_in_intervals", e.n_paper_fit_in_intervals},
+                    {"claims", holding},
+                    {"spread_at_energy_rise", range(e.spread_at_energy_rise)},
+                    {"spread_at_t_d_over_p_d", range(e.spread_at_dynamic_ratio)},
+                    {"spread_at_t_s_over_p_s", range(e.spread_at_static_ratio)},
+                    {"difference_of_kinds_over_c_L", range(e.difference_of_kinds)}});
+  }
   return json;
 }
 
@@ -189,12 +215,9 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
                   return o.sample.set == Sample::Set::triggers && starts_fronts(o);
                 })},
                {"n_triggers_slow_left", result.triggers.n_holding},
+               {"n_constrained", count([](const SampleOutcome& o) { return o.is_constrained; })},
                {"n_region", result.region.size()},
-               {"n_region_with_paper_fit",
-                count([](const SampleOutcome& o) { return o.is_constrained && o.distance <= 1; })},
-               {"n_region_in_paper_band", count([](const SampleOutcome& o) {
-                  return o.is_constrained && o.share_in_band >= wanted_share_in_band;
-                })},
+               {"evidence", evidence_json(result)},
                {"region", region_json(result)},
                {"standard", outcome_json(result, result.outcomes.front())},
                {"chosen", nullptr}};

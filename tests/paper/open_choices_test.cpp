@@ -87,7 +87,20 @@ TEST(OpenChoices, SamplesAreWhatTheirSetSays) {
     if (sample.set == Sample::Set::pairs) {
       EXPECT_EQ(changed, 2U);
     }
+    if (sample.set == Sample::Set::left_trigger) {
+      const auto value = [&](const char* name) {
+        return sample.values[static_cast<std::size_t>(std::ranges::find(choices, name, &OpenChoice::name) -
+                                                      choices.begin())];
+      };
+      EXPECT_NE(choices.front().text(value("left_form")), "weakened");
+      EXPECT_GE(value("left_zone_m"), 10e-3);
+      EXPECT_GE(value("left_added"), 5);
+      EXPECT_GE(value("left_raised"), 2);
+    }
     for (std::size_t k = 0; k < choices.size(); ++k) {
+      if (sample.set == Sample::Set::left_trigger && choices[k].event != interface::EventKind::left) {
+        EXPECT_EQ(sample.values[k], choices[k].standard) << choices[k].name;
+      }
       if (sample.set == Sample::Set::triggers && !choices[k].event) {
         EXPECT_EQ(sample.values[k], choices[k].standard) << choices[k].name;
       }
@@ -98,6 +111,7 @@ TEST(OpenChoices, SamplesAreWhatTheirSetSays) {
   EXPECT_EQ(n[Sample::Set::standard], 1U);
   EXPECT_EQ(n[Sample::Set::triggers], 512U);
   EXPECT_EQ(n[Sample::Set::all], 256U);
+  EXPECT_EQ(n[Sample::Set::left_trigger], 256U);
   EXPECT_EQ(different.size(), samples(choices, false).size());
 }
 
@@ -113,11 +127,63 @@ TEST(OpenChoices, SpaceFillingReachesEveryTenthOfEveryRange) {
   }
 }
 
+TEST(OpenChoices, TheRegionAgreesWithFig6WhereThereIsSuchASample) {
+  std::vector<SampleOutcome> outcomes(5);
+  EXPECT_THAT(region_of(outcomes), testing::IsEmpty());
+  EXPECT_EQ(least_extreme(outcomes), -1);
+  outcomes[0].agrees_with_fig6 = true;  // though another claim fails
+  for (const std::size_t k : {1, 2, 3, 4}) outcomes[k].is_constrained = true;
+  for (const std::size_t k : {1, 2, 3, 4}) outcomes[k].extremity = k == 2 ? 0.2 : 0.3;
+  EXPECT_THAT(region_of(outcomes), testing::ElementsAre(1, 2, 3, 4));
+  EXPECT_EQ(least_extreme(outcomes), 2);
+  outcomes[3].agrees_with_fig6 = outcomes[4].agrees_with_fig6 = true;
+  EXPECT_THAT(region_of(outcomes), testing::ElementsAre(3, 4));
+  EXPECT_EQ(least_extreme(outcomes), 3);  // the first of two
+}
+
+TEST(OpenChoices, EvidenceIsOfTheSamplesWhoseConstrainingClaimsHold) {
+  OpenChoicesResult result;
+  result.choices = open_choices();
+  result.claims = {"C14", "C21"};
+  const auto duration = static_cast<std::size_t>(
+      std::ranges::find(result.choices, "left_duration_s", &OpenChoice::name) - result.choices.begin());
+  const auto add = [&](bool is_constrained, bool agrees, bool is_held, double spread) {
+    auto& o = result.outcomes.emplace_back();
+    for (const auto& choice : result.choices) o.sample.values.push_back(choice.standard);
+    if (!is_held) o.sample.values[duration] = 15e-6;
+    o.is_constrained = is_constrained;
+    o.agrees_with_fig6 = agrees;
+    o.spread_at_energy_rise = spread;
+    o.distance = spread < 0.05 ? 1 : 1.5;
+    o.difference_of_kinds = std::numeric_limits<double>::quiet_NaN();
+    o.holds = {spread < 0.1, std::nullopt};
+  };
+  add(false, true, true, 0.9);
+  add(true, true, true, 0.04);
+  add(true, true, false, 0.06);
+  add(true, true, false, 0.12);
+  add(true, false, true, 0.2);
+  const auto groups = evidence(result);
+  std::vector<std::size_t> n;
+  for (const auto& e : groups) n.push_back(e.n);
+  EXPECT_THAT(n, testing::ElementsAre(3, 4, 1, 2));
+  const auto& agreeing = groups[0];
+  EXPECT_EQ(agreeing.n_paper_fit_in_intervals, 1);
+  EXPECT_EQ(agreeing.spread_at_energy_rise.least, 0.04);
+  EXPECT_EQ(agreeing.spread_at_energy_rise.median, 0.06);
+  EXPECT_EQ(agreeing.spread_at_energy_rise.largest, 0.12);
+  EXPECT_TRUE(std::isnan(agreeing.difference_of_kinds.median));
+  ASSERT_EQ(agreeing.shares.size(), 1U);  // C21 was not tested
+  EXPECT_EQ(agreeing.shares[0].claim, "C14");
+  EXPECT_EQ(agreeing.shares[0].n_tested, 3);
+  EXPECT_EQ(agreeing.shares[0].n_holding, 2);
+}
+
 TEST(OpenChoices, AStudyIsTheSameForAnyNumberOfThreadsAndBeginsWithTheStandard) {
   const auto go_on = [](std::size_t, std::size_t) { return true; };
   const auto once = study_open_choices({.quick = true, .threads = 1, .kept = {}}, go_on);
   const auto again = study_open_choices({.quick = true, .threads = 2, .kept = {}}, go_on);
-  ASSERT_EQ(once.outcomes.size() + once.n_impossible, 9U);
+  ASSERT_EQ(once.outcomes.size() + once.n_impossible, 13U);
   EXPECT_EQ(once.counts.n_runs, again.counts.n_runs);
   EXPECT_EQ(once.triggers.n_triggers, 4);
   EXPECT_EQ(once.triggers.n_holding, again.triggers.n_holding);

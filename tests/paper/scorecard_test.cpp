@@ -103,6 +103,16 @@ TEST(Scorecard, FiguresAreTheNumbersOfTheText) {
   }
 }
 
+TEST(Scorecard, RatiosWithoutPressureAreLeftOut) {
+  auto runs = make_good();
+  const auto before = claims_of(runs).at("C13");
+  auto& point = runs.left.fronts[0].points[100];
+  point.t_d_Pa = point.p_d_Pa = 0;
+  const auto after = claims_of(runs).at("C13");
+  EXPECT_EQ(after.holds, std::optional(true)) << after.measured;
+  EXPECT_EQ(after.measured, before.measured);
+}
+
 Variation named(const char* name) {
   return {name, "plate.element_size_m", 1e-3, {}, {}};
 }

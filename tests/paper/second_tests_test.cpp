@@ -46,7 +46,7 @@ const std::optional<bool> holds = true, does_not_hold = false, not_tested = std:
 
 TEST(SecondTests, HoldForGoodRuns) {
   const auto claims = scorecard(make_good());
-  for (const char* id : {"C18b", "C19b", "C20b", "C21+", "C22b"})
+  for (const char* id : {"C18b", "C18c", "C19b", "C20b", "C21+", "C22b", "C22b1+", "C22b2+"})
     EXPECT_EQ(row(claims, id).holds, holds) << id << ": " << row(claims, id).measured;
 }
 
@@ -62,15 +62,15 @@ TEST(SecondTests, NameTheirFirstTestAndWhyItMisjudges) {
     EXPECT_NE(row(claims, claim.second_test_of).how, claim.how);
     EXPECT_TRUE(claims[k - 1].id.starts_with(claim.second_test_of)) << claim.id << " behind its first test";
   }
-  EXPECT_THAT(ids, testing::ElementsAre("C11b", "C18b", "C19b", "C20b", "C21+", "C22b"));
+  EXPECT_THAT(ids, testing::ElementsAre("C11b", "C18b", "C18c", "C19b", "C20b", "C21+", "C22b"));
 }
 
 TEST(SecondTests, CountWhereTheyWereDone) {
   auto runs = make_good();
   const auto counts = [&](const char* id) { return row(scorecard(runs), id).counts; };
-  for (const char* id : {"C1", "C11", "C18b", "C19b", "C20b", "C21+", "C22b", "E1"})
+  for (const char* id : {"C1", "C11", "C18c", "C19b", "C20b", "C21+", "C22b", "E1"})
     EXPECT_TRUE(counts(id)) << id;
-  for (const char* id : {"C11b", "C12+", "C18", "C18+", "C19", "C20", "C20+", "C21", "C22"})
+  for (const char* id : {"C11b", "C12+", "C18", "C18+", "C18b", "C19", "C20", "C20+", "C21", "C22", "C22b1+"})
     EXPECT_FALSE(counts(id)) << id;
   runs.triggers = {{10, 0}};
   EXPECT_TRUE(counts("C11b"));
@@ -113,6 +113,8 @@ TEST(SecondTests, WhatWasUsedToChooseConfirmsNothing) {
   auto claims = scorecard(runs);
   EXPECT_EQ(verdict(row(claims, "C11")), "used to choose");
   EXPECT_EQ(verdict(row(claims, "C11b")), "holds");
+  EXPECT_EQ(verdict(row(claims, "C18b")), "used to choose");
+  EXPECT_EQ(verdict(row(claims, "C18c")), "holds");
   EXPECT_EQ(verdict(row(claims, "C10")), "holds");
   runs.left.fronts = runs.right.fronts;  // as fast as the right-triggered ones
   claims = scorecard(runs);
@@ -126,7 +128,7 @@ TEST(SecondTests, ProveNothingWithoutFronts) {
     for (auto& point : study.outcomes)
       for (auto& o : point) o.fronts.clear();
   const auto claims = scorecard(runs);
-  for (const char* id : {"C18b", "C19b", "C20b", "C22b"}) {
+  for (const char* id : {"C18b", "C18c", "C19b", "C20b", "C22b", "C22b1+", "C22b2+"}) {
     EXPECT_EQ(row(claims, id).holds, not_tested) << id;
     EXPECT_TRUE(row(claims, id).figures.empty()) << id;
     EXPECT_FALSE(row(claims, id).counts) << id;
@@ -148,7 +150,7 @@ TEST(TriggerChoice, IsJudgedByTheTriggersThatWereSampled) {
   EXPECT_DOUBLE_EQ(figure(row(scorecard(runs), "C11b"), "share"), 1.5);
 }
 
-// C18b
+// C18b and C18c
 
 TEST(CollapseOfMainFronts, LeavesOutFrontsInTheWake) {
   auto runs = make_good();
@@ -195,23 +197,35 @@ TEST(CollapseOfMainFronts, IsJudgedByTheScatter) {
   }
 }
 
-TEST(CollapseOfMainFronts, IsJudgedByTheSpreadAgainstBothRatios) {
+TEST(OrderOfMainFronts, IsJudgedByTheSpreadAgainstBothRatios) {
   // Speeds of the left event lie a little, within the band, above those of the others at equal energy rise.
   auto runs = make_good();
   for_three(runs, [](const Outcome& o, const Front&, FrontPoint& p) {
     if (o.config.event == EventKind::left) p.v_tip_m_per_s += 0.02 * o.speeds.c_L;
   });
-  EXPECT_EQ(verdict(runs, "C18b"), holds);
+  EXPECT_EQ(verdict(runs, "C18c"), holds);
   auto dynamic = runs;
   for_three(dynamic, [](const Outcome& o, const Front&, FrontPoint& p) {
     if (std::isfinite(p.t_d_Pa)) set_dynamic_ratio(p, 0.5 * p.v_tip_m_per_s / o.speeds.c_L);
   });
-  EXPECT_EQ(verdict(dynamic, "C18b"), does_not_hold);
+  EXPECT_EQ(verdict(dynamic, "C18c"), does_not_hold);
   auto by_static = runs;
   for_three(by_static, [](const Outcome& o, const Front&, FrontPoint& p) {
     p.t_s_Pa = 0.5 * p.v_tip_m_per_s / o.speeds.c_L * p.p_s_Pa;
   });
-  EXPECT_EQ(verdict(by_static, "C18b"), does_not_hold);
+  EXPECT_EQ(verdict(by_static, "C18c"), does_not_hold);
+  EXPECT_EQ(verdict(dynamic, "C18b"), holds);  // which the ratios do not touch
+}
+
+TEST(OrderOfMainFronts, CountsWhateverTheBandSays) {
+  auto runs = make_good();
+  for_three(runs,
+            [](const Outcome& o, const Front&, FrontPoint& p) { p.v_tip_m_per_s += 0.2 * o.speeds.c_L; });
+  const auto claims = scorecard(runs);
+  EXPECT_EQ(row(claims, "C18b").holds, does_not_hold);
+  EXPECT_FALSE(row(claims, "C18b").counts);
+  EXPECT_EQ(row(claims, "C18c").holds, holds);
+  EXPECT_TRUE(row(claims, "C18c").counts);
 }
 
 // C19b
@@ -366,7 +380,11 @@ TEST(DropsWithAlpha, AreComparedAtEqualPlaces) {
 
 TEST(DropsWithAlpha, HaveToBeLargerAtBothEndsInEachDirection) {
   EXPECT_EQ(verdict(with_drops({.initiation = 0.04}), "C22b"), does_not_hold);
+  EXPECT_EQ(verdict(with_drops({.initiation = 0.04}), "C22b1+"), does_not_hold);
+  EXPECT_EQ(verdict(with_drops({.initiation = 0.04}), "C22b2+"), holds);
   EXPECT_EQ(verdict(with_drops({.arrest = 0.04}), "C22b"), does_not_hold);
+  EXPECT_EQ(verdict(with_drops({.arrest = 0.04}), "C22b1+"), holds);
+  EXPECT_EQ(verdict(with_drops({.arrest = 0.04}), "C22b2+"), does_not_hold);
   for (const int direction : {-1, 1})
     EXPECT_EQ(verdict(with_drops({.only_direction = direction}), "C22b"), does_not_hold) << direction;
 }

@@ -109,10 +109,12 @@ def test_every_sample_with_fronts_at_both_edges_is_a_point(study):
         "standard": [[0.9, 66]],
         "one at a time": [[0, 84], [0.75, 70]],
         "triggers": np.empty((0, 2)),
+        "left trigger": np.empty((0, 2)),
         "pairs": np.empty((0, 2)),
         "all": [[1.6, 31], [np.nan, 35]],
         "about the chosen": [[0, 83], [0.9, 66]],
-        "hold": [[0.5, 75], [0.55, 76], [0.45, 80]],
+        "hold": [[0.5, 75], [0.55, 76]],
+        "region": [[0.45, 80]],
         "chosen": [[0.5, 75]],
     }
     assert points.keys() == expected.keys()
@@ -120,6 +122,25 @@ def test_every_sample_with_fronts_at_both_edges_is_a_point(study):
         np.testing.assert_allclose(points[name], xy, err_msg=name)
     left, right = figure.axes[1].get_xlim()
     assert left < 0 and right > 1.6
+
+
+def test_left_triggers_that_add_a_traction_are_points_of_their_zone_and_amount(study):
+    file = study / "open_choices.csv"
+    text = file.read_text()
+    file.write_text(text.replace("triggers,added,0.012346,10,relief,weakened,0.01,hold,does not",
+                                 "triggers,added,0.012346,10,relief,weakened,0.01,hold,holds"))  # fmt: skip
+    assert file.read_text() != text
+    lines = open_choices.draw(study).figure.axes[2].lines
+    points = {line.get_gid(): line.get_xydata() for line in lines}
+    expected = {
+        "left:fail": [[10, 5]],  # the standard; of the other sets more than the triggers varies
+        "left:hold": np.empty((0, 2)),
+        "left:region": [[12.346, 10]],
+        "left:chosen": [[10, 10]],
+    }
+    assert points.keys() == expected.keys()
+    for name, xy in expected.items():
+        np.testing.assert_allclose(points[name], xy, err_msg=name)
 
 
 def test_the_legend_names_the_chosen_trigger_and_hides_no_point(study):

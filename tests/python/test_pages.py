@@ -17,7 +17,7 @@ from synthetic_study import write_open_choices
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 OLD = "x" * 8192 + "\n"  # of a page's text: more than a file may have on the full disk below
-TEXTS = ("stale", "kept", "stale", "kept")  # within and behind a pair of marks
+TEXTS = 3 * ("stale", "kept")  # within and behind a pair of marks
 
 
 @dataclass
@@ -48,7 +48,8 @@ class Pages:
 
 def open_choices(folder: Path) -> Pages:
     results, page = write_open_choices(folder / "results"), folder / "page.md"
-    marks = ["<!-- choices -->", "<!-- end of choices -->", "<!-- outcomes -->", "<!-- end of outcomes -->"]
+    tables = ("choices", "outcomes", "evidence")
+    marks = [mark for table in tables for mark in (f"<!-- {table} -->", f"<!-- end of {table} -->")]
     return Pages("open-choices-page.py", results, "open_choices.json", page, page, marks)
 
 
@@ -102,7 +103,11 @@ def test_the_tables_of_the_open_choices(tmp_path):
     assert "| `left_added` | `event.left_added` | 5, 10 | open | 5 | 9 to 10 | 10 |" in lines
     assert "| `corner` | `event.corner` | relief, fillet 10 mm | open | relief | - | relief |" in lines
     fit = "0.80 [0.70, 0.90] | 2.00 [1.90, 2.10] | 3.00 [2.90, 3.10] | 75 %"
-    assert f"| standard | {fit} | do not all hold |" in lines and f"| chosen | {fit} | hold |" in lines
+    assert f"| standard | {fit} | do not all hold, Fig. 6 does not agree |" in lines
+    assert f"| chosen | {fit} | hold, Fig. 6 does not agree |" in lines
+    assert "| spread of V_tip at equal t_d/p_d | 4 % (2 to 5) | - |" in lines
+    assert "| C18c holds | 1 of 2 | - |" in lines
+    assert "| difference between kinds of slip (C21+) | 0.20 c_L (0.10 to 0.30) | - |" in lines
 
 
 def test_all_pages_of_the_problems_are_renewed(tmp_path):
@@ -158,7 +163,9 @@ def test_a_full_disk_leaves_the_page_as_it_was(pages):
     )
 
 
-@pytest.mark.parametrize("script", ["open-choices-page.py", "scorecard-page.py", "verification-pages.py"])
+@pytest.mark.parametrize(
+    "script", ["energy-criterion.py", "open-choices-page.py", "scorecard-page.py", "verification-pages.py"]
+)
 def test_without_arguments_the_usage_is_told(script):
     done = subprocess.run([sys.executable, SCRIPTS / script], capture_output=True, text=True, timeout=120)
     assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr

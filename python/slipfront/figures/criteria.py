@@ -26,7 +26,7 @@ from slipfront.figures.main_fronts import (
     main_fronts,
     tail,
 )
-from slipfront.figures.results import HIGH_MU_K, Fit, JudgingFit, Results
+from slipfront.figures.results import HIGH_MU_K, Fit, MainFrontsFit, Results
 from slipfront.read import Front, Run
 
 SELECTION = (
@@ -283,20 +283,19 @@ def draw_own_fit(ax: Axes, results: Results, fit: Fit, r: np.ndarray) -> tuple[A
     return Patch(**shade), Line2D([], [], label="fit to all points (C18)", **look)
 
 
-def draw_judging_fit(ax: Axes, judging: JudgingFit, r: np.ndarray) -> Line2D:
+def draw_main_fronts_fit(ax: Axes, main_fit: MainFrontsFit, r: np.ndarray) -> Line2D:
     """The curve of the second test; returns its legend entry."""
     look: style.Look = {"color": FIT_COLOUR, "linestyle": "-", "linewidth": 1.0}
-    ax.plot(r, judging.fit(r), gid="judging_fit", zorder=2.3, **look)
-    return Line2D([], [], label=f"fit to main fronts ({judging.id})", **look)
+    ax.plot(r, main_fit.fit(r), gid="main_fronts_fit", zorder=2.3, **look)
+    return Line2D([], [], label=f"fit to main fronts ({main_fit.id})", **look)
 
 
-def judging_sentence(judging: JudgingFit | None) -> str:
-    if judging is None:
+def main_fronts_sentence(main_fit: MainFrontsFit | None) -> str:
+    if main_fit is None:
         return ""
-    role = ", the test that counts" if judging.counts else ""
     return (
-        f" Solid: fitted to the main fronts without their last {1e3 * TAIL_M:g} mm ({judging.id}{role}): "
-        f"{escape(judging.measured)}."
+        f" Solid: fitted to the main fronts without their last {1e3 * TAIL_M:g} mm ({main_fit.id}): "
+        f"{escape(main_fit.measured)}."
     )
 
 
@@ -317,7 +316,7 @@ def fit_sentence(results: Results) -> str:
     return (
         f"{text}Dotted: the same law fitted to all points of the program's fronts, those of the thin lines "
         f"too (C18, the first test), {', '.join(values)}; shaded: the curve's bootstrap interval."
-        f"{judging_sentence(results.judging_fit)}"
+        f"{main_fronts_sentence(results.main_fronts_fit)}"
     )
 
 
@@ -331,8 +330,8 @@ def energy(results: Results) -> Drawing:
     fits: list[Any] = [draw_paper_fit(ax, results, r)]
     if results.fit is not None:
         fits.append(draw_own_fit(ax, results, results.fit, r))
-    if results.fit is not None and results.judging_fit is not None:
-        fits.append(draw_judging_fit(ax, results.judging_fit, r))
+    if results.fit is not None and results.main_fronts_fit is not None:
+        fits.append(draw_main_fronts_fit(ax, results.main_fronts_fit, r))
     ax.set(xlabel=style.ENERGY_LABEL, ylabel=style.V_LABEL)
     ax.set_xlim(0, right)
     outside = finish(ax, results.events[0])

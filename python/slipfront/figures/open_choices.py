@@ -41,11 +41,23 @@ SAMPLES_MM, REST_MM = 62.0, 78.0  # the samples; headings, legends and labels
 SETS = {
     "all": ("x", "0.6", "all choices, space-filling"),
     "triggers": (".", "#d55e00", "triggers, space-filling"),
+    "left trigger": ("1", "#e69f00", "strong left triggers, space-filling"),
     "pairs": ("+", "#117733", "pairs"),
     "one at a time": ("v", "#882255", "one choice at a time"),
     "about the chosen": ("^", "#44aa99", "one at a time about the chosen"),
 }
-HOLDING: Look = {"marker": "o", "color": "#0072b2", "markersize": 3.0, "label": "all constraints hold"}
+HOLDING: Look = {
+    "marker": "o",
+    "color": "#0072b2",
+    "markersize": 3.5,
+    "markerfacecolor": "none",
+    "markeredgewidth": 0.8,
+    "label": "constraining claims hold",
+}
+REGION: Look = {"marker": "o", "color": "#0072b2", "markersize": 3.5, "label": "Fig. 6 agrees, too"}
+AMOUNT_TICKS = (2, 5, 10, 20, 40)
+#: Sets whose left triggers are drawn: in the others more than the triggers varies.
+SETS_OF_TRIGGERS = ("standard", "pairs", "triggers", "left trigger")
 STANDARD: Look = {"marker": "*", "color": "black", "markersize": 7.0, "label": "the study's standard"}
 CHOSEN: Look = {
     "marker": "D",
@@ -199,6 +211,12 @@ def chosen_row(table: Table, chosen: dict[str, Any]) -> int:
     raise DataError(f"{table.file}: has no row of the chosen sample of {SUMMARY}")
 
 
+def kept(table: Table) -> tuple[np.ndarray, np.ndarray]:
+    """Rows whose constraining claims hold, and those that agree with Fig. 6 as well."""
+    hold = np.array(table.texts("constraints")) == "hold"
+    return hold, hold & (np.array(table.texts("fig6")) == "holds")
+
+
 def draw_samples(ax: Axes, table: Table, summary: dict[str, Any]) -> list[Line2D]:
     """The left-triggered maximum over the smaller of the other two against the share within the band.
 
@@ -214,11 +232,12 @@ def draw_samples(ax: Axes, table: Table, summary: dict[str, Any]) -> list[Line2D
     def draw_rows(rows: Any, gid: str, **look: Any) -> None:
         handles.extend(ax.plot(ratio[rows], share[rows], linestyle="none", gid=gid, **look))
 
-    hold = np.array(table.texts("constraints")) == "hold"
+    hold, region = kept(table)
     sets = np.array(table.texts("set"))
     for name, (marker, colour, words) in SETS.items():
         draw_rows((sets == name) & ~hold, name, marker=marker, color=colour, markersize=2.5, label=words)
-    draw_rows(hold, "hold", **HOLDING)
+    draw_rows(hold & ~region, "hold", **HOLDING)
+    draw_rows(region, "region", **REGION)
     draw_rows([0], "standard", **STANDARD)
     if chosen := summary["chosen"]:
         words = ", ".join(trigger(chosen["values"], edge) for edge in ("left", "right"))
@@ -241,15 +260,37 @@ def draw_samples(ax: Axes, table: Table, summary: dict[str, Any]) -> list[Line2D
     return handles[::-1]
 
 
+def draw_left_triggers(ax: Axes, table: Table, summary: dict[str, Any]) -> None:
+    """Zone and amount of the left triggers that add a traction."""
+    hold, region = kept(table)
+    is_added = np.array(table.texts("left_form")) == "added"
+    shown = np.isin(np.array(table.texts("set")), SETS_OF_TRIGGERS) & is_added
+    zone, amount = 1e3 * table.numbers("left_zone_m"), table.numbers("left_added")
+    looks: list[tuple[str, np.ndarray, Look]] = [
+        ("fail", ~hold, {"marker": ".", "color": "0.6", "markersize": 2.5}),
+        ("hold", hold & ~region, HOLDING),
+        ("region", region, REGION),
+    ]
+    for name, rows, look in looks:
+        ax.plot(zone[shown & rows], amount[shown & rows], linestyle="none", gid=f"left:{name}", **look)
+    if chosen := summary["chosen"]:
+        row = chosen_row(table, chosen)
+        ax.plot(zone[row], amount[row], linestyle="none", gid="left:chosen", **CHOSEN)
+    ax.set(xlabel="zone of the left trigger (mm)", ylabel="amount that it adds", yscale="log")
+    ax.set_yticks(AMOUNT_TICKS, labels=[f"{amount:g}" for amount in AMOUNT_TICKS])
+    ax.minorticks_off()
+
+
 def draw(folder: Path) -> Drawing:
-    """Matrix of claims and choices above, all samples below."""
+    """Matrix of claims and choices above; below, all samples, and those of the left trigger."""
     summary = read_json_table(result_file(folder / SUMMARY))
     table = read_table(result_file(folder / TABLE))
     matrix_mm = row_edges_mm(summary)[-1]
     figure = new_figure(PAGE_MM, matrix_mm + SAMPLES_MM + REST_MM)
-    grid = figure.add_gridspec(2, 1, height_ratios=(matrix_mm, SAMPLES_MM))
-    draw_matrix(figure.add_subplot(grid[0]), summary, varied_choices(table, summary))
-    handles = draw_samples(figure.add_subplot(grid[1]), table, summary)
+    grid = figure.add_gridspec(2, 2, height_ratios=(matrix_mm, SAMPLES_MM), width_ratios=(3, 2))
+    draw_matrix(figure.add_subplot(grid[0, :]), summary, varied_choices(table, summary))
+    handles = draw_samples(figure.add_subplot(grid[1, 0]), table, summary)
+    draw_left_triggers(figure.add_subplot(grid[1, 1]), table, summary)
     figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=TYPE_PT)
     return Drawing("open_choices", figure, "")
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from slipfront.figures.drawing import Drawing
 from slipfront.figures.main_fronts import TAIL_M
-from slipfront.figures.results import VARIATIONS, JudgingFit, Results
+from slipfront.figures.results import VARIATIONS, MainFrontsFit, Results
 from slipfront.figures.statements import STATEMENTS
 from slipfront.figures.studies import is_another, paper_values
 from slipfront.figures.study import SPREADS
@@ -160,16 +160,15 @@ def scorecard_summary(scorecard: list[dict[str, Any]]) -> str:
     return summary
 
 
-def judging_note(judging: JudgingFit) -> str:
+def main_fronts_note(main_fit: MainFrontsFit) -> str:
     """The intervals of the second test's fit are in the scorecard's words alone."""
-    role = " This test counts." if judging.counts else ""
-    return f'<p>{escape(judging.id)} in the scorecard: "{escape(judging.measured)}".{role}</p>'
+    return f'<p>{escape(main_fit.id)} in the scorecard: "{escape(main_fit.measured)}".</p>'
 
 
 def fit_table(results: Results) -> str:
     """The fit to all points and the second test's beside the paper's."""
     fit = results.analysis["fit"] or {}  # its numbers were read already
-    judging = results.judging_fit
+    main_fit = results.main_fronts_fit
     rows = []
     for name in ("a", "b", "c"):
         own = fit.get(name)
@@ -179,16 +178,16 @@ def fit_table(results: Results) -> str:
         if name == "a":
             paper += f" ± {results.paper_a_band:.2f}"
         rows.append([f"<i>{name}</i>", formatted(own.get("value"), ".3f"), interval, paper])
-        if judging is not None:
-            rows[-1].append(formatted(getattr(judging.fit, name), ".3f"))
+        if main_fit is not None:
+            rows[-1].append(formatted(getattr(main_fit.fit, name), ".3f"))
     header = ["", "All points (C18)", "Confidence interval", "Paper"]
-    if judging is not None:
-        header.append(f"Main fronts without their last {1e3 * TAIL_M:g} mm ({escape(judging.id)})")
+    if main_fit is not None:
+        header.append(f"Main fronts without their last {1e3 * TAIL_M:g} mm ({escape(main_fit.id)})")
     return (
         table(header, rows) + f"<p>All points (C18). Points: {text(fit.get('n_points'))}; rms about the fit: "
         f"{formatted(fit.get('rms_over_c_L'), '.3f')} c<sub>L</sub>; within the paper's band: "
         f"{formatted(results.analysis.get('share_in_paper_band'), '.0f', 100)} % of the points.</p>"
-        + (judging_note(judging) if judging is not None else "")
+        + (main_fronts_note(main_fit) if main_fit is not None else "")
     )
 
 

@@ -35,16 +35,15 @@ class Fit:
 
 
 @dataclass(frozen=True)
-class JudgingFit:
+class MainFrontsFit:
     """The fit to the main fronts without their ends, of the scorecard's second test."""
 
     id: str
     fit: Fit
     measured: str  # the same with intervals, as the scorecard words it
-    counts: bool
 
 
-def read_judging_fit(row: dict[str, Any]) -> JudgingFit | None:
+def read_main_fronts_fit(row: dict[str, Any]) -> MainFrontsFit | None:
     """From a scorecard's row, where it has all three numbers."""
     figures = row.get("figures")
     entries = [entry for entry in figures if isinstance(entry, dict)] if isinstance(figures, list) else []
@@ -52,7 +51,7 @@ def read_judging_fit(row: dict[str, Any]) -> JudgingFit | None:
     if not {"a", "b", "c"} <= values.keys():
         return None
     fit = Fit(values["a"], values["b"], values["c"])
-    return JudgingFit(row["id"], fit, str(row["measured"]), row.get("counts", False))
+    return MainFrontsFit(row["id"], fit, str(row["measured"]))
 
 
 @dataclass(frozen=True)
@@ -85,10 +84,10 @@ class Results:
         return [row for row in self.scorecard if name in (row["id"], row.get("second_test_of"))]
 
     @property
-    def judging_fit(self) -> JudgingFit | None:
+    def main_fronts_fit(self) -> MainFrontsFit | None:
         """The fit of the second test of the energy criterion; None where it was not done."""
         rows = [row for row in self.scorecard if row.get("second_test_of") == FITTED_CLAIM]
-        return read_judging_fit(rows[0]) if rows else None
+        return read_main_fronts_fit(rows[0]) if rows else None
 
     @property
     def mark(self) -> str:

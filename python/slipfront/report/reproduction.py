@@ -72,9 +72,9 @@ def fit_curves(results: Results) -> list[dict[str, Any]]:
     found = [curve("the paper's fit", results.paper_fit, "#888888", "solid")]
     if results.fit is not None:
         found.append(curve("fit to all points", results.fit, FIT_COLOUR, "dot"))
-    if results.judging_fit is not None:
-        judging = results.judging_fit
-        found.append(curve(f"fit to main fronts ({judging.id})", judging.fit, FIT_COLOUR, "solid"))
+    if results.main_fronts_fit is not None:
+        main_fit = results.main_fronts_fit
+        found.append(curve(f"fit to main fronts ({main_fit.id})", main_fit.fit, FIT_COLOUR, "solid"))
     return found
 
 
