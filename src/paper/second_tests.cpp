@@ -81,13 +81,13 @@ std::array<Claim, 2> collapse_of_main_fronts(std::span<const MainFront> mains, s
                   fmt::format("main fronts without their last {:g} mm: (a) and (b) as C18", tail_m * mm));
   fit.used_to_choose = true;
   Claim order = second_test(
-      first, "C18",
-      "its points are those of late fronts in the wake of others, too; (a) and (b) are numbers of the text, "
-      "used to choose the trigger that it does not give",
+      first, "C18", "(a) and (b) choose the trigger that the text does not give; this does not",
       fmt::format("main fronts without their last {:g} mm: the median relative spread of V_tip between the "
                   "fronts is smaller at equal (U_r-U_s)/U_s than at equal t_d/p_d and at equal t_s/p_s",
                   tail_m * mm),
       "c");
+  order.claim = "the energy rise orders the speeds of fronts, the ratios of the tractions do not";
+  order.paper = "Conclusions";
   const Collapse c = collapse_without_tails(mains);
   if (!c.fitted) {
     fit.measured = order.measured = "too few points for a fit";
@@ -366,9 +366,11 @@ std::vector<Claim> second_tests(const Reproduction& runs, std::span<const Claim>
 void choose_verdicts(std::span<Claim> claims) {
   for (auto& claim : claims) claim.counts = is_first_test(claim);
   for (auto& second : claims) {
-    if (second.second_test_of.empty() || !second.holds || second.used_to_choose) continue;
+    if (second.second_test_of.empty() || !second.holds) continue;
+    auto& claim = *std::ranges::find(claims, second.second_test_of, &Claim::id);
+    if (!claim.counts) continue;  // another second test counts already
     second.counts = true;
-    std::ranges::find(claims, second.second_test_of, &Claim::id)->counts = false;
+    claim.counts = false;
   }
 }
 

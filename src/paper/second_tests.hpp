@@ -16,8 +16,8 @@ std::vector<Claim> second_tests(const Reproduction& runs, std::span<const Claim>
 /// Whether a row is the test that was there first for its claim.
 bool is_first_test(const Claim& claim);
 
-/// Decides which row's verdict counts for its claim: that of the second test where it was tested, else that
-/// of the first. Rows that are only further tests do not count, nor do second tests that were used to choose.
+/// Decides which row's verdict counts for its claim: that of the first of its second tests that was done,
+/// else that of the first test. Rows that are only further tests do not count.
 void choose_verdicts(std::span<Claim> claims);
 
 }  // namespace slipfront::paper

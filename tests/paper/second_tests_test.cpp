@@ -58,7 +58,9 @@ TEST(SecondTests, NameTheirFirstTestAndWhyItMisjudges) {
     EXPECT_EQ(claim.why.empty(), claim.second_test_of.empty()) << claim.id;
     if (claim.second_test_of.empty()) continue;
     ids.push_back(claim.id);
-    EXPECT_EQ(row(claims, claim.second_test_of).claim, claim.claim);
+    if (claim.id != "C18c") {  // of another sentence
+      EXPECT_EQ(row(claims, claim.second_test_of).claim, claim.claim);
+    }
     EXPECT_NE(row(claims, claim.second_test_of).how, claim.how);
     EXPECT_TRUE(claims[k - 1].id.starts_with(claim.second_test_of)) << claim.id << " behind its first test";
   }
@@ -68,9 +70,9 @@ TEST(SecondTests, NameTheirFirstTestAndWhyItMisjudges) {
 TEST(SecondTests, CountWhereTheyWereDone) {
   auto runs = make_good();
   const auto counts = [&](const char* id) { return row(scorecard(runs), id).counts; };
-  for (const char* id : {"C1", "C11", "C18c", "C19b", "C20b", "C21+", "C22b", "E1"})
+  for (const char* id : {"C1", "C11", "C18b", "C19b", "C20b", "C21+", "C22b", "E1"})
     EXPECT_TRUE(counts(id)) << id;
-  for (const char* id : {"C11b", "C12+", "C18", "C18+", "C18b", "C19", "C20", "C20+", "C21", "C22", "C22b1+"})
+  for (const char* id : {"C11b", "C12+", "C18", "C18+", "C18c", "C19", "C20", "C20+", "C21", "C22", "C22b1+"})
     EXPECT_FALSE(counts(id)) << id;
   runs.triggers = {{10, 0}};
   EXPECT_TRUE(counts("C11b"));
@@ -96,15 +98,16 @@ TEST(SecondTests, SummaryCountsWithAndWithoutThem) {
   auto runs = make_good();
   EXPECT_EQ(
       summary(scorecard(runs)),
-      "Of the paper's 23 claims 22 hold, 0 do not, 0 not tested, 1 used to choose, where second tests "
+      "Of the paper's 23 claims 21 hold, 0 do not, 0 not tested, 2 used to choose, where second tests "
       "take the place of first ones; by the first tests alone 22 hold, 0 do not, 0 not tested, 1 used to "
       "choose.");
   runs.studies[0] = make_mu_k_study({0.9, 0.6, 0.7, 0.3, 0.2});  // C20 alone falls
   runs.studies.pop_back();                                       // of C22
   runs.triggers = {{10, 0}};                                     // C11b alone falls
-  EXPECT_EQ(summary(scorecard(runs)),
-            "Of the paper's 23 claims 21 hold, 1 do not, 1 not tested, where second tests take the place of "
-            "first ones; by the first tests alone 20 hold, 1 do not, 1 not tested, 1 used to choose.");
+  EXPECT_EQ(
+      summary(scorecard(runs)),
+      "Of the paper's 23 claims 20 hold, 1 do not, 1 not tested, 1 used to choose, where second tests take "
+      "the place of first ones; by the first tests alone 20 hold, 1 do not, 1 not tested, 1 used to choose.");
 }
 
 TEST(SecondTests, WhatWasUsedToChooseConfirmsNothing) {
@@ -217,15 +220,15 @@ TEST(OrderOfMainFronts, IsJudgedByTheSpreadAgainstBothRatios) {
   EXPECT_EQ(verdict(dynamic, "C18b"), holds);  // which the ratios do not touch
 }
 
-TEST(OrderOfMainFronts, CountsWhateverTheBandSays) {
+TEST(OrderOfMainFronts, HasItsOwnVerdictAndDoesNotCount) {
   auto runs = make_good();
   for_three(runs,
             [](const Outcome& o, const Front&, FrontPoint& p) { p.v_tip_m_per_s += 0.2 * o.speeds.c_L; });
   const auto claims = scorecard(runs);
   EXPECT_EQ(row(claims, "C18b").holds, does_not_hold);
-  EXPECT_FALSE(row(claims, "C18b").counts);
+  EXPECT_TRUE(row(claims, "C18b").counts);
   EXPECT_EQ(row(claims, "C18c").holds, holds);
-  EXPECT_TRUE(row(claims, "C18c").counts);
+  EXPECT_FALSE(row(claims, "C18c").counts);
 }
 
 // C19b
