@@ -13,7 +13,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
-from shared import DataError, between_marks, expecting, read_result, renew, run, write_figure
+from shared import DataError, between_marks, checked, expecting, read_result, renew, run, write_figure
 from slipfront.figures import style
 from slipfront.figures.main_fronts import counted, main_fronts, tail
 from slipfront.files import read_table
@@ -67,6 +67,16 @@ def read_main_fronts(folder: Path) -> list[MainFront]:
     with np.errstate(invalid="ignore"):  # no pressure at the ends of contact
         ratio = table.numbers("p_d_Pa") / table.numbers("p_s_Pa")
     return [MainFront(run, f, ratio[(ids == f.id) & (ways == f.direction)]) for f in main_fronts(run)]
+
+
+def first_front(folder: Path, parameter: str, value: float) -> MainFront:
+    """The first main front of a study's run.
+
+    :raises DataError: where there is none, or the run has another value of the parameter"""
+    fronts = read_main_fronts(folder)
+    if not fronts or not np.isclose(fronts[0].run.parameter(parameter), value):
+        raise DataError(f"{folder}: not a run with a main front and {parameter} = {value:g}")
+    return fronts[0]
 
 
 def bins_of(fronts: list[MainFront], criterion: str) -> list[dict[int, float]]:
@@ -211,8 +221,10 @@ def draw_over_rise(
 def draw_speed_lengths(ax: Axes, results: Path) -> None:
     for length, line in SPEED_LENGTH_LINES.items():
         for event, colour in (("spontaneous", "black"), ("left", COLOURS[CHOSEN])):
-            folder = results / "studies/l_star" / f"{1e-3 * float(length):.5f}" / event
-            front = read_main_fronts(folder)[0]
+            length_m = 1e-3 * float(length)
+            front = first_front(
+                results / "studies/l_star" / f"{length_m:.5f}" / event, "fronts.l_star_m", length_m
+            )
             part = front.counts
             ax.plot(front.front.energy_rise[part], front.speed[part], linestyle=line, color=colour)
     ax.set(xlabel=style.ENERGY_LABEL, ylabel=style.V_LABEL, xscale="log")
@@ -231,10 +243,14 @@ def draw_speed_lengths(ax: Axes, results: Path) -> None:
 
 
 def write(results: Path, page: Path, picture: Path) -> None:
+    checked(picture)
     with expecting("results of a reproduction", results), matplotlib.rc_context(style.RC):
         others = [front for event in ("spontaneous", "right") for front in read_main_fronts(results / event)]
         folders = {amount: results / "studies/trigger_amount" / amount / "left" for amount in AMOUNTS}
-        lefts = {amount: read_main_fronts(folder)[0] for amount, folder in folders.items()}
+        lefts = {
+            amount: first_front(folder, "event.trigger_amount", float(amount))
+            for amount, folder in folders.items()
+        }
         check_against(results / "scorecard.json", others, lefts[CHOSEN])
         figure = style.new_figure(style.PAGE_MM, 140)
         axes = figure.subplots(2, 2)
@@ -243,9 +259,15 @@ def write(results: Path, page: Path, picture: Path) -> None:
         draw_speed_lengths(axes[1, 1], results)
         for ax, letter in zip(axes.flat, "abcd", strict=True):
             ax.set_title(f"({letter})", loc="left")
-        write_figure(picture, figure)
         content = table(others, lefts)
-    renew(page, lambda text: between_marks(page, text, "table", content))
+
+    def change(text: str) -> str:
+        changed = between_marks(page, text, "table", content)
+        with matplotlib.rc_context(style.RC):
+            write_figure(picture, figure)
+        return changed
+
+    renew(page, change)
 
 
 if __name__ == "__main__":
