@@ -12,6 +12,7 @@
 #include "files/text.hpp"
 #include "paper/open_choices.hpp"
 #include "paper/undefined.hpp"
+#include "results/folder.hpp"
 
 namespace slipfront::paper {
 
@@ -228,12 +229,16 @@ void write_open_choices(const std::filesystem::path& dir, const OpenChoicesResul
 
 TriggerSample read_trigger_sample(const std::filesystem::path& dir, bool quick) {
   const auto file = dir / summary_file;
-  if (!files::is_there(file))
+  if (!files::is_there(results::published(dir, summary_file)))
     throw UserError("{}: holds no {}; give the folder of slipfront study open-choices", dir.string(),
                     summary_file);
-  if (!files::is_there(dir / files::checksum_list))
+  if (!files::is_there(results::published(dir, files::checksum_list)))
     throw UserError("{}: holds no {}; make it anew by slipfront study open-choices", dir.string(),
                     files::checksum_list);
+  if (results::published(dir, files::checksum_list) != dir / files::checksum_list)
+    throw UserError(
+        "{}: its results are still on their way into it; slipfront study open-choices -o {} ends that",
+        dir.string(), dir.string());
   files::require_listed(file);
   files::require_intact(dir);
   constexpr std::size_t most_bytes = 64U << 20U;

@@ -232,6 +232,10 @@ TEST(OpenChoices, TriggersAreReadFromTheFolderOfAStudy) {
   EXPECT_THAT(error(), testing::HasSubstr("holds no checksums.sha256"));
   seal();
   EXPECT_THAT(error(true), testing::HasSubstr("is a full study"));
+  std::filesystem::create_directory(folder / "publishing");  // a newer set whose publication was cut off
+  std::filesystem::copy(folder / "checksums.sha256", folder / "publishing/checksums.sha256");
+  EXPECT_THAT(error(), testing::HasSubstr("still on their way"));
+  std::filesystem::remove_all(folder / "publishing");
   const auto triggers = read_trigger_sample(folder.path(), false);
   EXPECT_EQ(triggers.n_triggers, 7);
   EXPECT_EQ(triggers.n_holding, 3);
