@@ -24,6 +24,8 @@ VENV := .venv
 PYTHON := $(VENV)/bin/python
 PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
 PROGRAM := build/release/slipfront
+# Whether warnings are errors: ON in continuous integration, whose compilers are known.
+WERROR ?= OFF
 
 .PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
 
@@ -51,7 +53,7 @@ $(VENV)/.installed-lint: $(VENV)/.installed
 	@touch $@
 
 # The Python module stays configured once it is, unless the environment that it is built with has gone.
-CONFIGURE = cmake --preset release $(if $(wildcard $(VENV)/.installed),,-D SLIPFRONT_PYTHON=OFF)
+CONFIGURE = cmake --preset release -D SLIPFRONT_WERROR=$(WERROR) $(if $(wildcard $(VENV)/.installed),,-D SLIPFRONT_PYTHON=OFF)
 
 program: packages  ## build the program alone: build/release/slipfront
 	@echo "== Building $(PROGRAM)"
@@ -75,7 +77,7 @@ build: packages  ## build the program and all tests
 build-mpi: packages  ## the program whose runs several processes of MPI can share: build/mpi/slipfront
 	@scripts/install-packages $(MPI_PACKAGES)
 	@echo "== Building build/mpi/slipfront"
-	cmake --preset mpi
+	cmake --preset mpi -D SLIPFRONT_WERROR=$(WERROR)
 	cmake --build --preset mpi
 
 module: program $(VENV)/.installed  ## build the Python module as well: python/slipfront/_core
@@ -272,7 +274,7 @@ package: packages  ## the program and libslipfront for any x86-64 processor, to 
 install-trial: package  ## install it into build/install-trial and use program and library from there
 	@scripts/install-trial build/package build/install-trial
 
-.PHONY: package install-trial deb deb-trial source-archive
+.PHONY: package install-trial deb deb-trial debian-trial source-archive
 deb: package  ## a Debian package: build/package/slipfront_VERSION_amd64.deb, looked over by lintian
 	@scripts/install-packages $(PACKAGING_PACKAGES)
 	cd build/package && rm -f slipfront_*.deb && cpack -G DEB
@@ -281,6 +283,11 @@ deb: package  ## a Debian package: build/package/slipfront_VERSION_amd64.deb, lo
 deb-trial: deb  ## install, run and remove it on a bare Debian 12; as root
 	@scripts/install-packages $(TRIAL_PACKAGES)
 	@scripts/deb-trial build/package/slipfront_*.deb build/deb-trial
+
+DEBIAN ?= trixie
+debian-trial: packages  ## program and tests of the last commit on a bare Debian 13, or DEBIAN=bookworm; as root
+	@scripts/install-packages $(TRIAL_PACKAGES)
+	@scripts/debian-trial $(DEBIAN) build/debian-trial
 
 VERSION = $(shell sed -nE 's/^project.slipfront VERSION ([0-9.]+).*/\1/p' CMakeLists.txt)
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#define H5_USE_110_API  // which later versions keep
 #include <hdf5.h>
 
 #include <cstdint>
