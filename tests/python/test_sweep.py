@@ -799,6 +799,7 @@ def runs_under_way(out):
     return [p.with_name("run.json") for p in out.glob("points/*/unfinished/energy.csv")]
 
 
+@pytest.mark.slow
 def test_an_interrupted_sweep_goes_on_with_its_checkpoints(case, tmp_path):
     """Ctrl-C as a terminal sends it, to the whole group; points half done are kept and gone on with."""
     process = started(case, case, *LONG, "-o", "out", "--workers", "2")
