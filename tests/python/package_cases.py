@@ -26,7 +26,7 @@ snapshot_times_s = [20e-6, 60e-6]
 
 def program(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     path = Path(os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")).resolve()
-    return subprocess.run([path, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=60)
+    return subprocess.run([path, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=900)
 
 
 def write_case(folder: Path, text: str = CASE) -> Path:

@@ -18,37 +18,16 @@ CONTACT_FROM_M, CONTACT_TO_M, EDGE_MARGIN_M = 0.005, 0.2, 10e-3
 E_PA, NU = 2.6e9, 0.37
 
 FRONTS_HEADER = [
-    "front_id",
-    "x_m",
-    "onset_s",
-    "direction",
-    "v_tip_m_per_s",
-    "t_s_Pa",
-    "p_s_Pa",
-    "t_d_Pa",
-    "p_d_Pa",
-    "t_r_Pa",
-    "p_r_Pa",
-    "U_s_J_per_m3",
-    "U_r_J_per_m3",
-    "speed_kind",
-]
+    "front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s", "t_s_Pa", "p_s_Pa", "t_d_Pa", "p_d_Pa",
+    "t_r_Pa", "p_r_Pa", "U_s_J_per_m3", "U_r_J_per_m3", "speed_kind",
+]  # fmt: skip
 
 
 ENERGY_HEADER = [
-    "time_s",
-    "strain_J_per_m",
-    "kinetic_J_per_m",
-    "top_work_J_per_m",
-    "trigger_work_J_per_m",
-    "prestress_work_J_per_m",
-    "friction_work_J_per_m",
-    "contact_work_J_per_m",
-    "damping_work_J_per_m",
-    "boundary_work_J_per_m",
-    "coupling_work_J_per_m",
-    "imbalance_J_per_m",
-]
+    "time_s", "strain_J_per_m", "kinetic_J_per_m", "top_work_J_per_m", "trigger_work_J_per_m",
+    "prestress_work_J_per_m", "friction_work_J_per_m", "contact_work_J_per_m", "damping_work_J_per_m",
+    "boundary_work_J_per_m", "coupling_work_J_per_m", "imbalance_J_per_m",
+]  # fmt: skip
 
 
 def energy_rows(n: int = 6) -> list[list[float]]:
@@ -346,40 +325,14 @@ def write_output(
         ("spontaneous_mu_k_1.0", "spontaneous", 1.0),
     ):
         write_run(folder / name, kind, mu_k, columns, rows, n_times, snapshots)
-    scorecard = [
-        {
-            "id": "C1",
-            "claim": "c_L < 1600 m/s & more",
-            "paper": "1584, 890",
-            "measured": "1584.2, 888.9",
-            "holds": True,
-            "how": "each within 1 m/s",
-        },
-        {
-            "id": "C1+",
-            "claim": "claim one, other test",
-            "paper": "1584, 890",
-            "measured": "1584.2",
-            "holds": True,
-            "how": "otherwise",
-        },
-        {
-            "id": "C2",
-            "claim": "claim two",
-            "paper": 0.6,
-            "measured": 0.712345,
-            "holds": False,
-            "how": "ratio",
-        },
-        {
-            "id": "E1",
-            "claim": "claim three",
-            "paper": "agrees",
-            "measured": None,
-            "holds": None,
-            "how": "not tested",
-        },
+    names = ("id", "claim", "paper", "measured", "holds", "how")
+    rows = [
+        ("C1", "c_L < 1600 m/s & more", "1584, 890", "1584.2, 888.9", True, "each within 1 m/s"),
+        ("C1+", "claim one, other test", "1584, 890", "1584.2", True, "otherwise"),
+        ("C2", "claim two", 0.6, 0.712345, False, "ratio"),
+        ("E1", "claim three", "agrees", None, None, "not tested"),
     ]
+    scorecard = [dict(zip(names, row, strict=True)) for row in rows]
     (folder / "scorecard.json").write_text(json.dumps(scorecard))
     analysis = {
         "fit": {

@@ -13,15 +13,9 @@ C_L = 1500.0
 X_LEFT_M, X_RIGHT_M = 2e-3 * np.arange(10, 60), 2e-3 * np.arange(75, 95)
 SIZES, OWN = [2e-3, 1e-3, 0.5e-3], 1
 HEADER = [
-    "x_m",
-    "direction",
-    "parameter",
-    "value",
-    "v_tip_m_per_s",
-    "extrapolated_m_per_s",
-    "error_m_per_s",
+    "x_m", "direction", "parameter", "value", "v_tip_m_per_s", "extrapolated_m_per_s", "error_m_per_s",
     "order",
-]
+]  # fmt: skip
 WITHOUT = {
     "verdict": "too few stations",
     "median_relative_error": None,

@@ -26,7 +26,7 @@ from synthetic_study import (
 
 @pytest.fixture(autouse=True)
 def coarse_pictures(monkeypatch):
-    monkeypatch.setitem(RC, "savefig.dpi", 60)
+    monkeypatch.setitem(RC, "savefig.dpi", 30)
 
 
 @pytest.fixture
@@ -62,8 +62,6 @@ def test_speeds_are_drawn_by_value_and_direction(study):
         np.testing.assert_allclose(line.get_xdata(), 1e3 * X_LEFT_M)
         np.testing.assert_allclose(line.get_ydata(), (limit_left(X_LEFT_M) + 1e5 * h) / C_L)
         np.testing.assert_allclose(artist(right, f"speed:1:{k}").get_ydata(), (1000 + 200 * k) / C_L)
-    widths = [artist(left, f"speed:-1:{k}").get_linewidth() for k in range(3)]
-    assert widths[OWN] > max(widths[0], widths[2])
     assert [t.get_text() for t in left.get_legend().get_texts()] == ["2 mm", "1 mm", "0.5 mm", "extrapolated"]
 
 

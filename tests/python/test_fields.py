@@ -12,15 +12,14 @@ import pytest
 from PIL import Image
 from slipfront.figures import fields
 from slipfront.files import DataError
-from synthetic import seal, write_output
+from synthetic import seal, write_run
 
 
 @pytest.fixture
 def run(tmp_path):
-    output = tmp_path / "output"
-    write_output(output)
-    seal(output)
-    return output / "left"
+    write_run(tmp_path / "output/left", "left", 0.6, 20, 10, 11, 8)
+    seal(tmp_path / "output")
+    return tmp_path / "output/left"
 
 
 def test_every_panel_shows_the_speeds_of_its_step(run):

@@ -12,6 +12,7 @@ import pytest
 from slipfront import read
 from slipfront.figures import balance, events, plate
 from slipfront.figures.__main__ import draw_all, main
+from slipfront.figures.report import figure_html, write_report
 from slipfront.figures.results import read_results
 from slipfront.figures.style import RC
 from slipfront.files import DataError
@@ -37,7 +38,7 @@ def pristine(tmp_path_factory):
 
 @pytest.fixture(autouse=True)
 def coarse_pictures(monkeypatch):
-    monkeypatch.setitem(RC, "savefig.dpi", 40)
+    monkeypatch.setitem(RC, "savefig.dpi", 20)
 
 
 @pytest.fixture
@@ -73,43 +74,24 @@ def test_a_sealed_reproduction_is_read(output, capsys):
     assert "note:" not in capsys.readouterr().out
 
 
+RUN_FILES = "run.json case.resolved.toml static.csv fronts.csv energy.csv interface.h5 fields.vtkhdf"
+
+
 @pytest.mark.parametrize(
     "name",
-    [
-        "analysis.json",
-        "scorecard.json",
-        "timings.json",
-        *(
-            f"right/{name}"
-            for name in (
-                "run.json",
-                "case.resolved.toml",
-                "static.csv",
-                "fronts.csv",
-                "energy.csv",
-                "interface.h5",
-                "fields.vtkhdf",
-            )
-        ),
-    ],
+    ["analysis.json", "scorecard.json", "timings.json", *(f"right/{name}" for name in RUN_FILES.split())],
 )
-@pytest.mark.parametrize(
-    "damage, says", [(flip, "does not match checksums"), (lambda f: f.unlink(), "missing")]
-)
-def test_a_file_that_is_not_as_listed_is_refused(output, capsys, name, damage, says):
+def test_a_file_that_is_not_as_listed_is_refused(output, capsys, name):
     seal(output)
-    damage(output / name)
-    assert main([str(output)]) == 2
-    error = one_error(capsys)
-    assert f"{output / name}: {says}" in error and "run the case again" in error
-    assert not (output / "figures").exists()
-
-
-def test_a_single_run_is_verified(run, capsys):
-    seal(run.parent)
-    flip(run / "energy.csv")
-    assert main([str(run)]) == 2
-    assert "energy.csv: does not match" in one_error(capsys)
+    for damage, says in ((flip, "does not match checksums"), (lambda file: file.unlink(), "missing")):
+        damage(output / name)
+        assert main([str(output)]) == 2
+        error = one_error(capsys)
+        assert f"{output / name}: {says}" in error and "run the case again" in error
+        assert not (output / "figures").exists()
+    if name == "right/energy.csv":  # of a single run as well
+        assert main([str(output / "right")]) == 2
+        assert "energy.csv: missing" in one_error(capsys)
 
 
 def test_a_file_of_another_set_is_left_alone(run):
@@ -137,10 +119,7 @@ def test_a_damaged_list_is_refused(run, change):
 
 def test_the_lists_are_those_of_sha256sum(output):
     seal(output)
-    assert (
-        subprocess.run(["sha256sum", "--quiet", "-c", "checksums.sha256"], cwd=output / "left").returncode
-        == 0
-    )
+    subprocess.run(["sha256sum", "--quiet", "-c", "checksums.sha256"], cwd=output / "left", check=True)
 
 
 def test_checksums_of_all_folders_are_compared(output, capsys):
@@ -148,13 +127,11 @@ def test_checksums_of_all_folders_are_compared(output, capsys):
     assert verify_checksums(output) == []
     assert read.main([str(output)]) == 0
     assert "all files match" in capsys.readouterr().out
-    flip(output / "left/fields.vtkhdf")
-    (output / "right/energy.csv").unlink()
+    files = [output / "left/fields.vtkhdf", output / "right/energy.csv"]
+    flip(files[0])
+    files[1].unlink()
     problems = verify_checksums(output)
-    assert [p.split(":")[0] for p in problems] == [
-        str(output / "left/fields.vtkhdf"),
-        str(output / "right/energy.csv"),
-    ]
+    assert [p.split(":")[0] for p in problems] == [str(file) for file in files]
     assert read.main([str(output)]) == 1
     assert capsys.readouterr().out.splitlines() == problems
 
@@ -227,26 +204,21 @@ def test_an_unfinished_run_is_read_and_marked(pristine, output, capsys, status, 
     assert balance.balance_of_run(output / "left")[0].mark == f"{words} µs"
 
 
-def test_unfinished_runs_are_marked_in_every_figure_of_a_reproduction(output, capsys):
+def test_unfinished_runs_are_marked_in_every_figure_of_a_reproduction(pristine, output):
     interrupt(output / "left", "blew_up", "why")
     interrupt(output / "right", "running")
-    assert main([str(output)]) == 0
-    assert [
-        line.split(": ")[1] for line in capsys.readouterr().out.splitlines() if line.startswith("note: ")
-    ] == [
-        str(output / "left/unfinished"),
-        str(output / "right/unfinished"),
-    ]
+    results = read_results(output)
+    places = [str(output / run / "unfinished") for run in ("left", "right")]
+    assert [remark.split(": ")[0] for remark in results.remarks] == places
     marks = ["left: blew up at t = 250 µs", "right: still running or killed, results up to t = 250 µs"]
-    html = (output / "figures/index.html").read_text(encoding="utf-8")
-    assert html.count(f'<span class="mark">{"; ".join(marks)}.</span>') == html.count("<figure ")
-    assert html.count('<p class="mark">') == 2
-    for drawing in draw_all(read_results(output)):
+    for drawing in draw_all(results):
+        assert drawing.mark == "\n".join(marks)
         assert "\n".join(marks) in [text.get_text() for text in drawing.figure.texts]
-
-
-def test_complete_runs_have_no_mark(pristine):
-    assert not any(drawing.mark for drawing in draw_all(read_results(pristine)))
+    html = figure_html(drawing, results, b"")
+    assert f'<span class="mark">{"; ".join(marks)}.</span>' in html
+    html = write_report(results, [], output).read_text(encoding="utf-8")
+    assert html.count('<p class="mark">') == 2
+    assert read_results(pristine).mark == ""
 
 
 @pytest.mark.parametrize(
@@ -269,11 +241,7 @@ def test_complete_results_win_over_an_unfinished_run(output, capsys):
     set_status(output / "left/unfinished", "running", "")
     assert read_run(output / "left").mark == ""
     assert main([str(output / "left")]) == 0
-    out = capsys.readouterr().out
-    assert (
-        f"note: {output / 'left/unfinished'}: another run, not finished: the figures show the complete one"
-        in out
-    )
+    assert f"note: {output / 'left/unfinished'}: another run, not finished" in capsys.readouterr().out
 
 
 def test_a_list_without_its_files_does_not_hide_behind_an_unfinished_run(output):
@@ -303,16 +271,13 @@ def test_a_cut_row_of_a_complete_run_is_refused(run):
         read_run(run)
 
 
-def test_a_run_that_has_only_begun_is_refused(run):
+def test_a_run_that_has_only_begun(run):
     unfinished = interrupt(run, "running")
+    (unfinished / "fronts.csv").unlink()
+    assert read_run(run).fronts == []
     (unfinished / "state/history.raw").write_bytes(b"")
     with pytest.raises(DataError, match="history.raw: fewer than two times"):
         read_run(run)
-
-
-def test_a_killed_run_without_fronts_yet_is_read(run):
-    (interrupt(run, "running") / "fronts.csv").unlink()
-    assert read_run(run).fronts == []
 
 
 def test_an_interrupted_run_prefers_its_finished_history(run):

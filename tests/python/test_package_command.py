@@ -100,19 +100,9 @@ def test_mistakes_are_one_line(onsets, capsys, text, options, message):
 
 def test_other_commands_are_the_programs(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
-    done = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "from slipfront.__main__ import console; exit(console())",
-            "validate",
-            "nowhere.toml",
-        ],
-        cwd=tmp_path,
-        env=environment,
-        capture_output=True,
-        text=True,
-    )
+    code = "from slipfront.__main__ import console; exit(console())"
+    command = [sys.executable, "-c", code, "validate", "nowhere.toml"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 2
     assert done.stderr.startswith("nowhere.toml: ")
 

@@ -4,7 +4,7 @@ are printed with names, values and units."""
 
 from __future__ import annotations
 
-import csv
+import re
 
 import numpy as np
 import pytest
@@ -129,6 +129,8 @@ def test_arrays_that_are_none(x_m, onset_s, said):
         ({"settings": slipfront.FrontSettings(l_star_m=None)}, "l_star_m is None; it must be a number"),
         ({"settings": slipfront.FrontSettings(l_star_m=np.nan)}, "l_star_m is nan"),
         ({"settings": slipfront.FrontSettings(mu_s="a")}, "mu_s is 'a'"),
+        ({"settings": slipfront.FrontSettings(l_star_m=0)}, "l_star_m is 0; it must be above 0"),
+        ({"settings": slipfront.FrontSettings(speed_interval="left")}, "speed_interval is 'left'"),
         ({"settings": slipfront.FrontSettings(crack_share=0.1)}, "pulse_share 0.2 is above crack_share 0.1"),
     ],
 )
@@ -210,18 +212,14 @@ def test_masked_values_are_not_taken_for_data():
     assert float(found.x_m.max()) <= 0.15
 
 
-@pytest.mark.parametrize("column", ["front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s"])
-def test_fronts_without_a_column(tmp_path, column):
+def test_fronts_without_a_column(tmp_path):
     run = slipfront.run(CASE, output=tmp_path / "out")
     (tmp_path / "out/checksums.sha256").unlink()
     file = tmp_path / "out/fronts.csv"
-    with open(file, newline="") as stream:
-        rows = [{k: v for k, v in row.items() if k != column} for row in csv.DictReader(stream)]
-    with open(file, "w", newline="") as stream:
-        writer = csv.DictWriter(stream, list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
-    assert f"no column '{column}'" in refusal(lambda: slipfront.open(run.folder).fronts)
+    whole = file.read_text()
+    for column in ("front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s"):
+        file.write_text(re.sub(rf"\b{column}\b", "other", whole, count=1))
+        assert f"no column '{column}'" in refusal(lambda: slipfront.open(run.folder).fronts)
 
 
 def test_bytes_of_a_name_that_are_no_text_are_told(tmp_path):
@@ -278,28 +276,6 @@ def test_every_number_of_an_info_is_printed_with_its_unit():
     assert told["node_updates_per_s"][1] == "1/s"
     assert told["memory_bytes"][1] == "bytes"
     assert " ".join(told["statement"]) == info.well_posedness.statement
-
-
-def test_a_fit_and_a_spread_are_printed():
-    x = np.linspace(0.05, 3, 60)
-    series = [(x, 0.7 + 1.9 * np.exp(-2.5 * np.sqrt(x)))]
-    lines = repr(slipfront.fit_exponential(series, resamples=0)).splitlines()
-    assert lines[0] == "ExponentialFit"
-    assert lines[1].split()[:2] == ["a", "0.7"]
-    assert repr(slipfront.spread_at_equal_x(series, bins=4)).startswith("Spread\n  median_relative")
-
-
-def test_claims_events_and_fronts_are_printed_in_a_line_each():
-    run = slipfront.run(CASE)
-    event = slipfront.outcome(run.case, run.history, run.tractions, name="left")
-    assert repr(event).startswith(f"<event 'left': {len(event.fronts)} fronts of at least 10 mm")
-    assert repr(event.fronts[0]).startswith("<front ")
-    claims = slipfront.scorecard(spontaneous=event, left=event, right=event, spontaneous_mu_k_1=event)
-    for claim in claims:
-        verdict = {True: "holds", False: "does not hold", None: "not tested"}[claim.holds]
-        assert repr(claim).startswith(f"<{claim.id} {verdict}: {claim.claim}")
-        assert "\n" not in repr(claim)
-    assert repr(slipfront.collapse([event])).startswith("Collapse\n  static_ratio")
 
 
 def test_no_result_is_printed_as_an_address():

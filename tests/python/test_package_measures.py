@@ -54,26 +54,6 @@ def test_no_slip_no_fronts():
     assert found.sizes == {"point": 0, "front": 0}
 
 
-@pytest.mark.parametrize(
-    "arguments, message",
-    [
-        ((X_M, X_M[1:]), "onset_s has 100 values, not 101"),
-        ((X_M[::-1], X_M), "x_m must ascend strictly"),
-        (([0.0], [0.0]), "x_m has fewer than two values"),
-    ],
-)
-def test_arrays_that_do_not_fit(arguments, message):
-    with pytest.raises(slipfront.CaseError, match=message):
-        slipfront.find_fronts(*arguments)
-
-
-def test_settings_that_cannot_be():
-    with pytest.raises(ValueError, match="l_star_m is 0; it must be above 0"):
-        slipfront.find_fronts(X_M, X_M, settings=slipfront.FrontSettings(l_star_m=0))
-    with pytest.raises(ValueError, match="speed_interval is 'left'"):
-        slipfront.find_fronts(X_M, X_M, settings=slipfront.FrontSettings(speed_interval="left"))
-
-
 @pytest.fixture(scope="module")
 def run():
     """A run whose history is as fine as its steps, so that its onsets can be found in it again."""

@@ -89,9 +89,9 @@ def test_snapshots(folder):
     assert snapshots.cell_nodes.sizes == {"cell": 40 * 20, "corner": 4}
 
 
-def test_a_run_without_snapshots(tmp_path):
+def test_a_run_without_snapshots_and_probes(tmp_path):
     run = slipfront.run(CASE.replace("[20e-6, 60e-6]", "[]"), output=tmp_path / "out")
-    assert run.snapshots is None
+    assert run.snapshots is None and run.probes is None
     assert float(run.history.slip_m.max()) > 0
 
 
@@ -115,16 +115,8 @@ def test_damage_is_refused_when_the_file_is_used(tmp_path):
 
 
 def test_units_of_names():
-    assert [
-        unit_of(n) for n in ("U_s_J_per_m3", "friction_work_J_per_m", "v_m_per_s", "t_Pa", "d_c_m", "mu_s")
-    ] == [
-        "J/m3",
-        "J/m",
-        "m/s",
-        "Pa",
-        "m",
-        "1",
-    ]
+    names = ("U_s_J_per_m3", "friction_work_J_per_m", "v_m_per_s", "t_Pa", "d_c_m", "mu_s")
+    assert [unit_of(name) for name in names] == ["J/m3", "J/m", "m/s", "Pa", "m", "1"]
 
 
 def test_probes(tmp_path):
@@ -137,7 +129,3 @@ def test_probes(tmp_path):
         assert np.array_equal(probes.stress_xy_Pa, file["stress_xy_Pa"])
         assert np.array_equal(probes.time_s, file["time_s"])
     assert probes.stress_xy_Pa.sel(probe="middle").attrs["unit"] == "Pa"
-
-
-def test_without_probes_there_are_none(folder):
-    assert slipfront.open(folder).probes is None

@@ -45,14 +45,6 @@ def test_rooms_include_what_they_are_named_and_nothing_else():
     }
 
 
-def test_the_readme_has_the_rooms_in_their_order():
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    block = text.split("## Structure of the code", 1)[1].split("```")[1]
-    columns = [re.split(r"  +", line) for line in block.strip().splitlines()]
-    named = [room for column in columns for room in column[1].split(", ")]
-    assert named == list(built())
-
-
 def test_the_way_is_one_way():
     above: set[str] = set()
     for room, sees in built().items():

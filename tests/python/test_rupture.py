@@ -6,16 +6,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from slipfront.figures.rupture import main, rupture, unit
-from slipfront.figures.style import DIRECTION_WORDS
 from slipfront.read import read_run
-from synthetic import write_output
+from synthetic import write_run
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    results = tmp_path_factory.mktemp("results")
-    write_output(results)
-    return results / "left"
+    folder = tmp_path_factory.mktemp("results") / "left"
+    write_run(folder, "left", 0.6, 40, 20, 26, 2)
+    return folder
 
 
 def test_fronts_and_speeds_are_those_of_the_run(folder):
@@ -39,31 +38,6 @@ def test_fronts_and_speeds_are_those_of_the_run(folder):
 )
 def test_units_have_few_digits(largest, expected):
     assert unit(largest, "m") == expected
-
-
-def test_the_legend_tells_what_is_drawn(folder):
-    run = read_run(folder.parent / "spontaneous")
-    figure = rupture(run).figure
-    left, right, bar, *_ = figure.axes
-    legend = figure.legends[0]
-    told = dict(zip((text.get_text() for text in legend.get_texts()), legend.legend_handles, strict=True))
-    for way, words in DIRECTION_WORDS.items():
-        colours = {
-            line.get_color()
-            for front in run.fronts
-            if front.direction == way
-            for ax, part in ((left, "front"), (right, "speed"))
-            for line in ax.lines
-            if line.get_gid() == f"{part}:{front.id}"
-        }
-        assert colours == {told[f"fronts {words}"].get_color()}
-    run.history.p_Pa[:] = 5e6
-    closed = rupture(run).figure.legends[0].get_texts()
-    assert "contact open" in told and "contact open" not in [text.get_text() for text in closed]
-    assert "m/s" in bar.get_ylabel()
-    highest = right.get_ylim()[1] * run.fact("wave_speeds.c_S_m_per_s")
-    above = sum(int((front.v_tip_m_per_s > highest).sum()) for front in run.fronts)
-    assert right.get_title(loc="right") == (f"{above} nodes above the axis" if above else "")
 
 
 def test_nodes_faster_than_the_axis_are_counted(folder):

@@ -19,10 +19,6 @@ def claim(name: str, holds: bool | None, **more) -> dict:
     return row | more
 
 
-def varied(parameter: str, value: float, moves: str) -> dict:
-    return {"parameter": parameter, "value": value, "moves": moves}
-
-
 @pytest.fixture
 def write_page(tmp_path):
     def write(scorecard: list[dict]) -> list[str]:
@@ -38,13 +34,15 @@ def write_page(tmp_path):
     return write
 
 
-def test_table_without_variations(write_page):
-    assert write_page([claim("C1", True), claim("C2", False), claim("E1", None)]) == [
-        "| id | claim | our figure | verdict | test |",
-        "|---|---|---|---|---|",
-        "| C1 | a\\|b (Fig. 1) | 0.79 | holds | x |",
-        "| C2 | a\\|b (Fig. 1) | 0.79 | **does not hold** | x |",
-        "| E1 | a\\|b (Fig. 1) | 0.79 | not tested | x |",
+def test_table_of_claims_and_variations(write_page):
+    mesh = {"parameter": "plate.element_size_m", "value": 1e-3, "moves": "0.11; there does not hold"}
+    rows = write_page([claim("C1", True, mesh_variation=mesh), claim("C2", False), claim("E1", None)])
+    assert rows == [
+        "| id | claim | our figure | verdict | moves by, at plate.element_size_m = 0.001 | test |",
+        "|---|---|---|---|---|---|",
+        "| C1 | a\\|b (Fig. 1) | 0.79 | holds | 0.11; **there does not hold** | x |",
+        "| C2 | a\\|b (Fig. 1) | 0.79 | **does not hold** | - | x |",
+        "| E1 | a\\|b (Fig. 1) | 0.79 | not tested | - | x |",
     ]
 
 
@@ -65,23 +63,4 @@ def test_table_tells_which_of_two_verdicts_counts(write_page):
         "| C2 | a\\|b (Fig. 1) | 0.79 | **does not hold**; C2b counts | x |",
         "| C2+ | a\\|b (Fig. 1) | 0.79 | **does not hold** | x |",
         "| C2b | a\\|b (Fig. 1) | 0.79 | holds | x. Instead of C2: the first \\| was blunt |",
-    ]
-
-
-def test_table_with_variations(write_page):
-    mesh = varied("plate.element_size_m", 1e-3, "0.11; there does not hold")
-    step = varied("time.interface_substeps", 9, "0.02")
-    nothing = varied("plate.element_size_m", 1e-3, "")
-    rows = write_page(
-        [
-            claim("C1", True, mesh_variation=mesh, step_variation=step),
-            claim("E1", None, mesh_variation=nothing),
-        ]
-    )
-    assert rows == [
-        "| id | claim | our figure | verdict | moves by, at plate.element_size_m = 0.001 | "
-        "moves by, at time.interface_substeps = 9 | test |",
-        "|---|---|---|---|---|---|---|",
-        "| C1 | a\\|b (Fig. 1) | 0.79 | holds | 0.11; **there does not hold** | 0.02 | x |",
-        "| E1 | a\\|b (Fig. 1) | 0.79 | not tested | - | - | x |",
     ]

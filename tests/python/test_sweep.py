@@ -15,8 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
-from slipfront.files import DataError, Table
+from slipfront.files import DataError
 from slipfront.folder import verify_checksums
 from slipfront.sweep import engine, maps, notebook, report
 from slipfront.sweep.command import main, share_of
@@ -27,7 +26,7 @@ from slipfront.sweep.lines import lines_of
 from slipfront.sweep.needs import Needs, matters, require_disk, require_memory
 from slipfront.sweep.outcome import QUANTITIES, read_outcome
 from slipfront.sweep.points import Point, folder_name, grid, sample, zipped
-from slipfront.sweep.reading import Results, read_results
+from slipfront.sweep.reading import read_results
 from slipfront.sweep.tables import Row, table_text
 from slipfront.sweep.values import Range, range_of, values_of
 
@@ -47,6 +46,7 @@ mu_k = 0.6
 """
 TWO_BY_TWO = {"friction.mu_k": [0.5, 0.7], "friction.alpha_m2_per_s2": [0.05, 0.1]}
 VARY = ["--vary", "friction.mu_k=0.5,0.7", "--vary", "friction.alpha_m2_per_s2=0.05,0.1"]
+TWO = VARY[:2]
 
 
 @pytest.fixture
@@ -125,9 +125,8 @@ def test_names_of_folders_hold_no_path_and_are_unlike_for_unlike_values():
     names = {folder_name({"friction.file": value}) for value in ("../a.csv", "b/c", "x" * 300)}
     assert len(names) == 3
     assert all("/" not in name and len(name) <= 120 for name in names)
-    assert (
-        folder_name({"plate.height_m": 0.1, "base.height_m": 0.2}) == "plate.height_m=0.1,base.height_m=0.2"
-    )
+    two = {"plate.height_m": 0.1, "base.height_m": 0.2}
+    assert folder_name(two) == "plate.height_m=0.1,base.height_m=0.2"
 
 
 @pytest.mark.parametrize(
@@ -151,8 +150,6 @@ def test_names_of_points_have_numbers_as_they_were_written(spec, names):
 def test_names_have_all_digits_where_short_ones_would_be_the_same():
     close = values_of("a.x", "1:1.000001:3")
     assert [point.name for point in grid({"a.x": close})] == ["x=1", "x=1.0000005", "x=1.000001"]
-    names = [point.name for point in sample({"a.x": Range(1.0, 1.0 + 1e-7, False)}, 50, seed=1)]
-    assert len(set(names)) == 50
 
 
 def test_numbers_that_are_equal_are_one_value():
@@ -160,7 +157,7 @@ def test_numbers_that_are_equal_are_one_value():
         with pytest.raises(DataError, match="is there twice"):
             values_of("a.x", spec)
     with pytest.raises(DataError, match="the point a.x = 0.5, b.y = 1 is there twice"):
-        zipped({"a.x": values_of("a.x", "0.5")[:1] * 2, "b.y": [1, 1]})
+        zipped({"a.x": values_of("a.x", "0.5") * 2, "b.y": [1, 1]})
 
 
 def test_zipped_lists_go_together():
@@ -200,24 +197,6 @@ def test_a_file_says_what_the_command_line_says(tmp_path):
     assert sweep.settings() == ["output.snapshot_times_s=[]"]
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("[vary]\na.b = [1]", "case names the case file"),
-        ('case = "c"\nvaries = 1', "unknown entry 'varies'"),
-        ('case = "c"\n[sample]\nseed = 1', "needs count"),
-        ('case = "c"\n[sample]\nnumber = 1', "unknown entry 'number' in .sample."),
-        ('case = "c"\ncombine = "zip"\n[sample]\ncount = 1', "exclude each other"),
-        ('case = "c"\nstop_after_failures = "one"', "is a whole number"),
-    ],
-)
-def test_a_file_that_makes_no_sense_is_refused(tmp_path, text, said):
-    file = tmp_path / "sweep.toml"
-    file.write_text(text)
-    with pytest.raises(DataError, match=said):
-        read_sweep(file)
-
-
 FILE = """\
 # runs of a case
 case = "case.toml"
@@ -240,19 +219,6 @@ friction.mu_k = "0.4:1.2:9"
 
 
 def test_lines_of_a_file_are_those_of_its_keys():
-    assert lines_of(FILE) == {
-        "case": 2,
-        "keep": 3,
-        "set": 5,
-        "set.time": 6,
-        "set.time.end_s": 6,
-        "set.output": 7,
-        "set.output.snapshot_times_s": 7,
-        "vary": 12,
-        "vary.friction": 13,
-        "vary.friction.mu_k": 13,
-        "vary.event.kind": 14,
-    }
     assert lines_of('a = {b = 1}\nt = """\nb = 2\n[c]\n"""\n[[d.e]]\nf = 3') == {
         "a": 1,
         "a.b": 1,
@@ -275,7 +241,6 @@ def test_lines_of_a_file_are_those_of_its_keys():
         ('"case.toml"', '"none.toml"', 2, "none.toml: No such file or directory"),
         ('"case.toml"', "5", 2, "case is a text"),
         ('keep = "tables"', "stop_after_failures = 0", 3, "stop_after_failures is a whole number from 1 on"),
-        ('keep = "tables"', "vary = 5\n[x]", 3, "[vary] is a table"),
         ('"0.4:1.2:9"', '"0.4:1.2"', 13, "values are A,B,C or FROM:TO:COUNT"),
         ('"0.4:1.2:9"', "[0.5, 0.50]", 13, "the value 0.5 is there twice"),
         ("friction.mu_k", "time.end_s", 6, "time.end_s both varies and is set"),
@@ -285,21 +250,31 @@ def test_lines_of_a_file_are_those_of_its_keys():
         ('keep = "tables"', 'combine = "zip"', 12, "lists that go together have as many values each"),
     ],
 )
-def test_mistakes_of_a_file_are_told_with_their_line(tmp_path, old, new, line, said):
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_mistakes_of_a_file_are_told_with_their_line(tmp_path, newline, old, new, line, said):
     (tmp_path / "case.toml").write_text(COARSE)
     file = tmp_path / "sweep.toml"
     assert old in FILE
-    text = FILE.replace(old, new, 1)
-    if new == "vary = 5\n[x]":
-        text = text[: text.index("[x]")]
-    file.write_text(text)
+    file.write_bytes(FILE.replace(old, new, 1).replace("\n", newline).encode())
     with pytest.raises(DataError) as error:
         require_sound(read_sweep(file))
     assert str(error.value).startswith(f"{file}:{line}: ")
     assert said in str(error.value)
-    file.write_bytes(text.replace("\n", "\r\n").encode())  # of other systems
-    with pytest.raises(DataError, match=f"^{re.escape(str(file))}:{line}: "):
-        require_sound(read_sweep(file))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[vary]\na.b = [1]", "case names the case file"),
+        ('case = "c"\ncombine = "zip"\n[sample]\ncount = 1', "exclude each other"),
+        ('case = "c"\nvary = 5', r"\[vary\] is a table"),
+    ],
+)
+def test_a_file_that_makes_no_sense_is_refused(tmp_path, text, said):
+    file = tmp_path / "sweep.toml"
+    file.write_text(text)
+    with pytest.raises(DataError, match=said):
+        read_sweep(file)
 
 
 @pytest.mark.parametrize("text", ["0/4", "5/4", "1", "a/b"])
@@ -378,12 +353,10 @@ def test_what_the_command_line_says_is_not_the_files(case, capsys):
     ("arguments", "said"),
     [
         (["--vary", "friction.mk=0.6"], "friction.mk"),
-        (["--vary", "friction.mu_k=0.6,0.7", "--set", "friction.mu_k=1"], "both varies and is set"),
         (["--vary", "friction.mu_k"], "is not KEY=VALUE"),
         (["--vary", "friction.mu_k=0.6", "--vary", "friction.mu_k=0.7"], "is there twice"),
         ([], "nothing varies"),
         (["--vary", "friction.mu_k=0.6", "--zip", "--sample", "3"], "exclude each other"),
-        (["--vary", "friction.mu_k=0.6,0.7", "--sample", "3"], "a sample takes ranges"),
         (["--vary", "friction.mu_k=0.6:0.7", "--sample", "3", "--seed", "-1"], "seed is a whole number"),
     ],
 )
@@ -423,25 +396,24 @@ def test_a_sweep_by_dask_and_its_tables(case, tmp_path):
 
 
 def test_points_are_the_runs_of_the_program(case, tmp_path, in_this_process):
-    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
-    settings = ["--set", "friction.mu_k=0.5", "--set", "friction.alpha_m2_per_s2=0.1"]
+    assert main([str(case), *TWO, "-o", "out", "-q"]) == 0
     program = os.environ["SLIPFRONT_PROGRAM"]
-    subprocess.run([program, "run", case, *settings, "-o", "alone", "-q"], check=True)
-    place = tmp_path / "out/points/mu_k=0.5,alpha_m2_per_s2=0.1"
+    command = [program, "run", case, "--set", "friction.mu_k=0.5", "-o", "alone", "-q"]
+    subprocess.run(command, check=True)
     for name in ("case.resolved.toml", "fronts.csv", "energy.csv", "interface.h5", "static.csv"):
+        place = tmp_path / "out/points/mu_k=0.5"
         assert (place / name).read_bytes() == (tmp_path / "alone" / name).read_bytes()
 
 
 def test_a_sweep_that_is_done_runs_nothing_again_and_more_values_only_theirs(case, tmp_path, in_this_process):
-    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
+    assert main([str(case), *TWO, "-o", "out", "-q"]) == 0
     before = states_of(tmp_path / "out")
     assert main(["--restart", "out", "-q"]) == 0
     assert states_of(tmp_path / "out") == before
-    more = ["--vary", "friction.mu_k=0.5,0.6,0.7", "--vary", "friction.alpha_m2_per_s2=0.05,0.1"]
-    assert main([str(case), *more, "-o", "out", "-q"]) == 0
+    assert main([str(case), "--vary", "friction.mu_k=0.5,0.6,0.7", "-o", "out", "-q"]) == 0
     after = states_of(tmp_path / "out")
     assert {path: after[path] for path in before} == before
-    assert len(rows_of(tmp_path / "out")) == 6
+    assert len(rows_of(tmp_path / "out")) == 3
 
 
 def test_a_sweep_goes_on_by_the_names_of_its_points(case, tmp_path, in_this_process):
@@ -463,7 +435,7 @@ def test_a_sweep_goes_on_by_the_names_of_its_points(case, tmp_path, in_this_proc
     "other", [["--vary", "friction.alpha_m2_per_s2=0.2,0.3"], ["--vary", "friction.mu_k=0.5"]]
 )
 def test_a_sweep_that_would_lose_points_is_refused(case, tmp_path, capsys, in_this_process, other):
-    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
+    assert main([str(case), *TWO, "-o", "out", "-q"]) == 0
     table = (tmp_path / "out/sweep.csv").read_bytes()
     assert "which this one has not" in refused(capsys, case, *other, "-o", "out")
     assert (tmp_path / "out/sweep.csv").read_bytes() == table
@@ -477,8 +449,8 @@ def test_points_of_one_name_and_two_values_are_two(case, tmp_path, capsys, in_th
 
 
 def test_damaged_results_are_run_again(case, tmp_path, in_this_process):
-    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
-    file = tmp_path / "out/points/mu_k=0.5,alpha_m2_per_s2=0.1/fronts.csv"
+    assert main([str(case), *TWO, "-o", "out", "-q"]) == 0
+    file = tmp_path / "out/points/mu_k=0.5/fronts.csv"
     whole = file.read_bytes()
     file.write_bytes(whole[:-10])
     assert verify_checksums(tmp_path / "out") != []
@@ -488,10 +460,10 @@ def test_damaged_results_are_run_again(case, tmp_path, in_this_process):
 
 
 def test_another_case_is_refused_a_sweeps_folder(case, tmp_path, capsys, in_this_process):
-    assert main([str(case), *VARY, "-o", "out", "-q"]) == 0
-    assert "of other settings" in refused(capsys, case, *VARY, "--set", "time.end_s=1e-4", "-o", "out")
+    assert main([str(case), *TWO, "-o", "out", "-q"]) == 0
+    assert "of other settings" in refused(capsys, case, *TWO, "--set", "time.end_s=1e-4", "-o", "out")
     case.write_text(COARSE.replace("mu_s = 1.3", "mu_s = 1.2"))
-    assert "of another case file" in refused(capsys, case, *VARY, "-o", "out")
+    assert "of another case file" in refused(capsys, case, *TWO, "-o", "out")
 
 
 def test_one_point_that_fails_leaves_the_others(case, tmp_path, capsys, in_this_process):
@@ -516,22 +488,17 @@ def test_one_point_that_fails_leaves_the_others(case, tmp_path, capsys, in_this_
 
 
 def test_what_cannot_be_printed_costs_no_results(case, tmp_path, capsys, in_this_process, monkeypatch):
-    for arguments in ([str(case), *VARY, "-o", "out"], ["--restart", "out"]):
+    for arguments in ([str(case), *TWO, "-o", "out"], ["--restart", "out"]):
         with open("/dev/full", "w") as full, monkeypatch.context() as patched:
             patched.setattr(sys, "stdout", full)
             assert main(arguments) == 1
         told = "slipfront sweep: error: standard output: No space left on device"
         assert capsys.readouterr().err.splitlines()[-1] == told
-        assert len(rows_of(tmp_path / "out")) == 4
+        assert len(rows_of(tmp_path / "out")) == 2
     assert main(["--restart", "out", "-q"]) == 0
     assert capsys.readouterr().out == ""
     assert main(["--restart", "out"]) == 0
-    assert [line.split()[:2] for line in capsys.readouterr().out.splitlines()[2:-1]] == [
-        ["0.5", "0.05"],
-        ["0.5", "0.1"],
-        ["0.7", "0.05"],
-        ["0.7", "0.1"],
-    ]
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()[2:-1]] == ["0.5", "0.7"]
 
 
 def test_no_point_is_begun_after_so_many_failures(case, tmp_path, capsys, in_this_process):
@@ -542,26 +509,28 @@ def test_no_point_is_begun_after_so_many_failures(case, tmp_path, capsys, in_thi
 
 
 def test_kept_tables_are_what_is_kept(case, tmp_path, in_this_process):
-    assert main([str(case), *VARY, "-o", "out", "-q", "--keep", "tables"]) == 0
+    assert main([str(case), *TWO, "-o", "out", "-q", "--keep", "tables"]) == 0
     out = tmp_path / "out"
     assert not list(out.rglob("interface.h5"))
-    assert len(list(out.rglob("fronts.csv"))) == 4
+    assert len(list(out.rglob("fronts.csv"))) == 2
     assert verify_checksums(out) == []
     before = states_of(out)
     assert main(["--restart", "out", "-q"]) == 0
     assert states_of(out) == before
 
 
-def test_shares_make_a_whole(case, tmp_path):
-    for k in (1, 2, 3):
-        assert main([str(case), *VARY, "-o", "out", "-q", "--share", f"{k}/3"]) == 0
+def test_shares_make_a_whole(case, tmp_path, capsys):
+    for k in (1, 2):
+        assert main([str(case), *TWO, "-o", "out", "-q", "--share", f"{k}/2"]) == 0
     out = tmp_path / "out"
     assert not (out / "sweep.csv").exists()
+    assert maps.main(["map.png", "out"]) == 2
+    assert "the sweep is not done; slipfront sweep --restart out" in capsys.readouterr().err
     before = states_of(out)
-    assert len(list(out.rglob("run.json"))) == 4
+    assert len(list(out.rglob("run.json"))) == 2
     assert main(["--restart", "out", "-q"]) == 0  # makes the tables
     assert states_of(out) == before
-    assert [row["status"] for row in rows_of(out)] == ["done"] * 4
+    assert [row["status"] for row in rows_of(out)] == ["done"] * 2
 
 
 # --- Results of a run
@@ -661,7 +630,6 @@ RIGHT = (50, 90, "contact_end")
     [
         (SPONTANEOUS, [RIGHT, (50, 10, "contact_end")], "both"),
         (SPONTANEOUS, [RIGHT, (50, 11, "arrest")], "right"),
-        (SPONTANEOUS, [RIGHT, (50, 11, "record_end")], "right"),
         # Met by a front from the edge, in neighbouring nodes, and with a node between.
         (SPONTANEOUS, [RIGHT, (50, 16, "meets_front"), (10, 15, "meets_front")], "both"),
         (SPONTANEOUS, [RIGHT, (50, 16, "arrest"), (10, 15, "arrest")], "both"),
@@ -783,7 +751,7 @@ def test_a_small_table_tells_what_is_asked_first():
 
 
 def test_a_small_table_stays_small():
-    """At most 30 rows; keys that find no room are left out, long words show their end."""
+    """At most 30 rows of at most 120 signs; what is left out is told."""
     rows = [done_row({"a.x": k}) for k in range(31)]
     assert len(table_lines(rows[:30], Path("out"))) == 32
     lines = table_lines(rows, Path("out"))
@@ -792,21 +760,11 @@ def test_a_small_table_stays_small():
     keys = {f"friction.key_of_a_very_long_name_{k}": f"/a/long/folder/of/tables/{k}.csv" for k in range(9)}
     *lines, last = table_lines([done_row(keys), failed_row(keys)], Path("out"))
     assert max(map(len, lines)) <= 120
-    assert lines[1].split()[:2] == ["..._very_long_name_0", "..._very_long_name_1"]
-    assert lines[2].split()[:2] == ["...r/of/tables/0.csv", "...r/of/tables/1.csv"]
-    assert lines[2].split()[2] == "2" and lines[3].split()[2:] == ["failed"]
     assert last == f"2 of 9 keys find room, all are in {Path('out/sweep.csv')}"
-
-
-def test_values_that_look_alike_have_all_digits_in_the_small_table():
-    rows = [done_row({"a.x": value}) for value in values_of("a.x", "1:1.000001:5")]
-    assert [line.split()[0] for line in table_lines(rows, Path("out"))[2:]] == [
-        "1",
-        "1.00000025",
-        "1.0000005",
-        "1.00000075",
-        "1.000001",
-    ]
+    # Values that look alike have all their digits.
+    rows = [done_row({"a.x": value}) for value in values_of("a.x", "1:1.000001:3")]
+    told = [line.split()[0] for line in table_lines(rows, Path("out"))[2:]]
+    assert told == ["1", "1.0000005", "1.000001"]
 
 
 # --- Interruptions
@@ -828,8 +786,9 @@ def started(case, *arguments):
     )
 
 
-def wait_until(condition, timeout_s=120):
-    end = time.monotonic() + timeout_s
+def wait_until(condition):
+    """A limit of 900 s catches what hangs."""
+    end = time.monotonic() + 900
     while not condition():
         assert time.monotonic() < end, "waited too long"
         time.sleep(0.02)
@@ -840,13 +799,14 @@ def runs_under_way(out):
     return [p.with_name("run.json") for p in out.glob("points/*/unfinished/energy.csv")]
 
 
+@pytest.mark.slow
 def test_an_interrupted_sweep_goes_on_with_its_checkpoints(case, tmp_path):
     """Ctrl-C as a terminal sends it, to the whole group; points half done are kept and gone on with."""
     process = started(case, case, *LONG, "-o", "out", "--workers", "2")
     out = tmp_path / "out"
     wait_until(lambda: len(runs_under_way(out)) == 2)
     os.killpg(process.pid, signal.SIGINT)
-    errors = process.communicate(timeout=60)[1]
+    errors = process.communicate(timeout=900)[1]
     assert process.returncode == 130
     assert errors.splitlines()[-1] == (
         "slipfront sweep: error: interrupted, 2 points are left; slipfront sweep --restart out"
@@ -859,7 +819,7 @@ def test_an_interrupted_sweep_goes_on_with_its_checkpoints(case, tmp_path):
     wait_until(lambda: all('"sessions": 2' in p.read_text() for p in runs_under_way(out)))
     assert process.poll() is None
     os.killpg(process.pid, signal.SIGINT)
-    assert process.wait(timeout=60) == 130
+    assert process.wait(timeout=900) == 130
 
 
 def test_runs_end_when_their_sweep_is_killed(case, tmp_path):
@@ -898,12 +858,11 @@ def test_a_map_has_the_numbers_of_the_table(done):
     assert np.isfinite(cells[0]).all() and np.isnan(cells[1]).all()
 
 
-def test_a_map_is_drawn_into_a_picture(done, capsys):
+def test_a_map_is_drawn_into_a_picture(done):
     assert maps.main(["map.png", str(done)]) == 0
     assert Path("map.png").read_bytes().startswith(b"\x89PNG")
-    drawing = maps.draw(done)
-    names = {c.get_gid() for ax in drawing.figure.axes for c in ax.collections}
-    assert set(maps.SHOWN) <= names
+    shutil.rmtree(done / "points")  # without runs no wave speed is known
+    assert read_results(done).waves_over_c_L == {} and maps.draw(done)
 
 
 def test_wave_speeds_are_marked_in_scales_of_speeds(done):
@@ -914,54 +873,10 @@ def test_wave_speeds_are_marked_in_scales_of_speeds(done):
     assert waves["c_S"] == pytest.approx(np.sqrt((1 - nu) / 2)) and 0.9 < waves["c_R"] / waves["c_S"] < 0.96
     speeds = {q.name for q in results.quantities if results.waves_of(q)}
     assert len(speeds) == 3 and all(name.endswith("_over_c_L") for name in speeds)
-    ax = Figure().subplots()
-    maps.mark_waves(ax, waves, 0.54, 1.2)
-    marked = {line.get_gid(): line.get_ydata()[0] for line in ax.lines}
-    assert marked == {name: waves[name] for name in ("c_S", "c_L")}
     (data,) = (q for q in report.sweep_data(results)["quantities"] if q["name"] == "v_tip_largest_over_c_L")
     assert {wave["name"]: wave["level"] for wave in data["waves"]} == waves
-
-
-def test_no_wave_speed_is_marked_where_the_material_varies(done):
-    vary = {"material.poissons_ratio": "0.3,0.4"}
-    results = replace(read_results(done), definition={"vary": vary, "combine": "grid"})
-    assert results.waves_over_c_L == {}
-
-
-def test_without_runs_no_wave_speed_is_marked(done):
-    shutil.rmtree(done / "points")
-    assert read_results(done).waves_over_c_L == {} and maps.draw(done)
-
-
-def test_a_scale_of_speeds_goes_out_to_the_next_wave_speeds():
-    waves = {"c_R": 0.52, "c_S": 0.56, "c_L": 1.0}
-    assert maps.with_waves(0.7, 0.9, waves) == (0.56, 1.0)
-    assert maps.with_waves(0.54, 1.5, waves) == (0.52, 1.5)
-    assert maps.with_waves(5.0, 50.0, waves) == (1.0, 50.0)
-    assert maps.with_waves(0.2, 0.4, {}) == (0.2, 0.4)
-
-
-def test_marks_close_to_each_other_have_one_label():
-    waves = {"c_R": 0.52, "c_S": 0.56, "c_L": 1.0}
-    names = [label.count("c_") for _, label in maps.merged(waves, 0.4, 1.4)]
-    assert names == [2, 1]
-    assert [level for level, _ in maps.merged(waves, 0.5, 0.9)] == [0.52, 0.56]
-    assert maps.merged(waves, 5, 50) == []
-
-
-@pytest.mark.parametrize(
-    ("values", "logarithmic"),
-    [
-        ([2e-6, 4e-6, 8e-6], True),
-        ([0.01, 0.03, 0.1], True),
-        ([0.4, 0.6, 0.8, 1.0], False),
-        ([-1.0, 1.0, 3.0], False),
-        ([0.5, 1.0], False),
-        ([0.01, 1.0], True),
-    ],
-)
-def test_an_axis_is_logarithmic_where_values_are_more_even_there(values, logarithmic):
-    assert maps.is_logarithmic(np.array(values)) == logarithmic
+    vary = {"material.poissons_ratio": "0.3,0.4"}  # each point has its own
+    assert replace(results, definition={"vary": vary, "combine": "grid"}).waves_over_c_L == {}
 
 
 def test_edges_lie_half_way_between_centres():
@@ -978,36 +893,7 @@ def test_a_page_has_the_table_and_what_failed(done):
         text = row["v_tip_largest_over_c_L"]
         assert point["cells"]["v_tip_largest_over_c_L"] == (float(text) if text else None)
         assert point["status"] == row["status"]
-    assert data["first"] == SPEED
     html = report.sweep_section(done, with_plotly=False)
-    assert "2 runs, 2 without results" in html
-    assert html.count("<script") == 2 and "src=" not in html
+    assert "2 runs, 2 without results" in html and "src=" not in html
     assert report.is_kind(done) and not report.is_kind(done / "points")
-
-
-SPEED, SLIP = "longest_front_v_tip_median_over_c_L", "longest_front_slip"
-
-
-@pytest.mark.parametrize(
-    ("columns", "first"),
-    [
-        ({"n_fronts": "123", SPEED: ["0.5", "0.6", ""], SLIP: ["crack", "pulse", "none"]}, SPEED),
-        ({"n_fronts": "222", SPEED: ["0.5", "0.5", ""], SLIP: ["crack", "pulse", "none"]}, SLIP),
-        ({SLIP: ["crack"] * 3, "n_fronts": "222", "end_s": ["1e-3", "1e-3", "2e-3"]}, "end_s"),
-        ({"n_fronts": "222", SPEED: ["0.5", "0.5", ""], SLIP: ["crack", "crack", ""]}, SPEED),
-    ],
-)
-def test_a_page_opens_on_a_result_that_varies(columns, first):
-    rows = [(k, list(cells)) for k, cells in enumerate(zip(*columns.values(), strict=True))]
-    results = Results(Path("out"), {"vary": {}}, Table(Path("sweep.csv"), list(columns), rows))
-    assert report.first_shown(results) == first
-
-
-def test_no_text_of_a_case_ends_a_script():
     assert "</script>" not in report.embedded({"message": "</script><script>"})
-
-
-def test_a_sweep_that_is_not_done_has_no_map(case, capsys):
-    assert main([str(case), *VARY, "-o", "out", "-q", "--share", "1/2"]) == 0
-    assert maps.main(["map.png", "out"]) == 2
-    assert "the sweep is not done; slipfront sweep --restart out" in capsys.readouterr().err
