@@ -27,7 +27,6 @@ class EventRun : public ::testing::Test {
   mesh::Mesh mesh_ = support::make_plate(0.2, 0.1, 5e-3, Corner::none);
   solid::Material material_;
   statics::Statics statics_{mesh_, material_, {}, mu_s};
-  statics::Equilibrium common_ = statics_.shear_to(0.999);
   statics::Equilibrium calm_ = statics_.shear_to(0.5);
   double c_L_ = solid::longitudinal_speed_m_per_s(material_);
   Waves waves_{c_L_, solid::shear_modulus_Pa(material_) / solid::shear_speed_m_per_s(material_)};
@@ -48,7 +47,6 @@ class EventRun : public ::testing::Test {
 TEST_F(EventRun, EndsAtItsEnd) {
   const Event event = run(calm_);
   EXPECT_EQ(event.end, EventEnd::end_time);
-  EXPECT_EQ(event.blow_up, "");
   EXPECT_EQ(event.steps, static_cast<std::int64_t>(std::ceil(60e-6 / step_s())));
   EXPECT_DOUBLE_EQ(event.time_s, static_cast<double>(event.steps) * step_s());
   EXPECT_GE(event.time_s, 60e-6);
@@ -151,7 +149,7 @@ TEST_F(EventRun, EndsWhenItBlowsUp) {
   const Event event = run(calm_);
   EXPECT_EQ(event.end, EventEnd::blow_up);
   EXPECT_THAT(event.blow_up, HasSubstr(fmt::format("the run blew up at step {} (t = ", event.steps)));
-  EXPECT_THAT(event.blow_up, HasSubstr("reduce time.step_factor"));
+  EXPECT_THAT(event.blow_up, HasSubstr("time.step_factor"));
   EXPECT_LT(event.steps, 1000);
   // Seen before the numbers are lost.
   for (const double slip : event.history.slip_m) ASSERT_TRUE(std::isfinite(slip));
@@ -287,28 +285,6 @@ TEST_F(EventRun, TopWorkIsTheReactionTimesThePath) {
     reaction += spontaneous.tractions.t_s_Pa[k] * tributary[k];
   // The ramp of shear adds 1e-4 to the force in this time.
   EXPECT_NEAR(event.energies.back().top_work / (reaction * 1e-6 * c_L_ * event.time_s), 1, 1e-3);
-}
-
-TEST_F(EventRun, TriggersNucleateAtTheirEdge) {
-  const auto tributary = mesh::tributary_lengths_m(mesh_);
-  time_.end_s = 40e-6;
-  for (const auto kind : {interface::EventKind::left, interface::EventKind::right}) {
-    Stepper stepper(mesh_, material_, support::paper_law, time_);
-    const interface::Trigger trigger;
-    stepper.start(common_, 1e-6 * c_L_,
-                  {.trigger_force_N_per_m = trigger_forces(common_, tributary, kind, trigger, mu_s)});
-    const Event event = run_event(stepper, common_, mu_s, waves_, trigger, time_, sampling_, 2,
-                                  [](auto, auto) { return true; });
-    EXPECT_EQ(event.end, EventEnd::end_time);
-    ASSERT_FALSE(event.record.onsets.empty());
-    const double x = event.record.x_m[event.record.onsets[0].node];
-    if (kind == interface::EventKind::left) {
-      EXPECT_LT(x, 0.03);
-    } else {
-      EXPECT_GT(x, 0.17);
-    }
-    EXPECT_GT(event.energies.back().trigger_work, 0);
-  }
 }
 
 /// Six nodes 10 mm apart, the outermost two open; mu_s p_s - t_s = 3, 6, 9, 12 Pa inside.

@@ -364,7 +364,7 @@ TEST(Recorder, LeavesOutWhatNoFrontNeeds) {
   options.elasticity = {1e9, 0.3, false};
   options.l_star_m = 1e-3;
   options.arrest_time_s = 20;
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     RandomSlip slip(seed);
     Recorder recorder(slip.before, mu_s, 2);
     EveryChange every(slip.before, 2);
@@ -384,8 +384,7 @@ TEST(Recorder, LeavesOutWhatNoFrontNeeds) {
 }
 
 TEST(Recorder, StaysBoundedInLongUndampedRuns) {
-  for (const auto& [element_m, load] :
-       {std::pair(4e-3, 1.001), std::pair(5e-3, 1.001), std::pair(5e-3, 1.02)}) {
+  for (const auto& [element_m, load] : {std::pair(4e-3, 1.001), std::pair(5e-3, 1.02)}) {
     const auto mesh = support::make_plate(0.2, 0.1, element_m, mesh::Corner::none);
     solid::Material material;
     material.stiffness_damping_s = 0;
@@ -446,7 +445,7 @@ class NumberList {
 };
 
 TEST(Recorder, GoesOnFromWhatItHasWritten) {
-  for (const int stop : {0, 1, 30, 100, 500}) {
+  for (const int stop : {0, 100}) {
     RandomSlip slip(7);
     Recorder whole(slip.before, mu_s, 2), second(slip.before, mu_s, 2);
     for (int step = 0; step < 600; ++step) {

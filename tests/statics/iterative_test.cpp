@@ -14,7 +14,7 @@
 #include "statics/load_case.hpp"
 #include "statics/statics.hpp"
 #include "support/files.hpp"
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {

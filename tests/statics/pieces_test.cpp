@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {

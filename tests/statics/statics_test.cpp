@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {
