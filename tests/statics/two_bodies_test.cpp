@@ -61,7 +61,7 @@ TEST(CondensedPair, CompliancesOfUnlikeBodiesAdd) {
   const Eigen::Index n = 2 * static_cast<Eigen::Index>(mesh.lower.size());
   Eigen::VectorXd D = Eigen::VectorXd::Ones(n);
   for (Eigen::Index k = 0; k < n; k += 2) D(k) = -1;
-  for (const double factor : {1e-4, 1.0, 1e4}) {
+  for (const double factor : {1e-4, 1e4}) {
     auto material = gel;
     material.youngs_modulus_Pa *= factor;
     const auto plate = factorised(mesh, pmma), base = factorised(base_mesh, material);
@@ -177,7 +177,6 @@ std::vector<Pair> pairs() {
   const auto square = test::make_plate(0.2, 0.06, 4e-3, Corner::none);
   return {{"equal", plate, plate, pmma},
           {"gel", plate, square, gel, TopEdge::held, {0.5, 0.7}},
-          {"steel", plate, square, {.youngs_modulus_Pa = 200e9, .poissons_ratio = 0.3}},
           {"graded", plate, graded_base(), pmma},
           {"free_top", plate, square, pmma, TopEdge::free}};
 }
@@ -312,7 +311,7 @@ TEST(TwoBodies, OnABaseEverStifferComeToTheRigidPlane) {
   const auto base = test::make_plate(0.2, 0.1, 4e-3, Corner::none);
   const auto rigid = Statics(mesh, pmma, {}, mu_s).shear_to(0.999);
   double last = 0;
-  for (const double factor : {1e4, 1e6, 1e8}) {
+  for (const double factor : {1e4, 1e6}) {
     auto material = pmma;
     material.youngs_modulus_Pa *= factor;
     const auto e = Statics({mesh, pmma}, ElasticBody{base, material}, {}, uniform_mu_s(mesh)).shear_to(0.999);
