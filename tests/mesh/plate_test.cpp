@@ -126,20 +126,6 @@ TEST(Plate, ReliefFadesOutWithHeight) {
   }
 }
 
-TEST(Plate, ReliefTakesThePolygonUnderTheArcAway) {
-  const Plate plate = small_plate(Corner::relief);
-  const Mesh mesh = make_plate(plate);
-  const double radius = 25.25e-3, h = 0.02 / 30;
-  const auto rise = [&](int i) {
-    const double d = std::max(0.0, 5e-3 - i * h);
-    return radius - std::sqrt(radius * radius - d * d);
-  };
-  double removed = 0;
-  for (int i = 0; i < 8; ++i) removed += h * (rise(i) + rise(i + 1)) / 2;
-  const double expected = 0.04 * 0.02 - 2 * removed;
-  EXPECT_NEAR(area_m2(mesh), expected, static_cast<double>(mesh.cells.size()) * eps * expected);
-}
-
 class WellFormed : public ::testing::TestWithParam<Corner> {};
 
 TEST_P(WellFormed, OneConformingSymmetricPiece) {
