@@ -177,10 +177,7 @@ TEST(FrictionAlongX, ATiltedPlateBeginsToSlipWhereItsStrengthIsReachedFirst) {
 TEST(FrictionAlongX, AWeakenedPatchNeedsANodeThatWeakens) {
   auto c = rupture();
   test::set_table(c, "x_m,mu_k\n0,0.6\n0.09,0.6\n0.11,0.3\n0.2,0.3\n");
-  EXPECT_EQ(
-      error_of([&] { check(c); }),
-      "nucleation.form = weakened does nothing where friction does not weaken at any node; choose another "
-      "form");
+  EXPECT_THAT(error_of([&] { check(c); }), HasSubstr("nucleation.form = weakened does nothing"));
   c.nucleation.x_m = 0.12;
   check(c);
   c.event = EventKind::left;
