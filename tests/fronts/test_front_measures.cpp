@@ -34,15 +34,9 @@ void expect_constant_speed(int n, double spacing_m, double l_star_m) {
 
 TEST(TipSpeed, ConstantSpeedIsExact) {
   expect_constant_speed(301, h, 0.67e-3);
-}
-TEST(TipSpeed, LStarNotAMultipleOfTheSpacing) {
-  expect_constant_speed(301, h, 1.15e-3);
-}
-TEST(TipSpeed, FineMesh) {
+  expect_constant_speed(301, h, 1.15e-3);  // no multiple of the spacing
   expect_constant_speed(601, 0.2 / 600, 0.67e-3);
-}
-TEST(TipSpeed, CoarseMeshUsesOneElement) {
-  expect_constant_speed(101, 2e-3, 0.67e-3);
+  expect_constant_speed(101, 2e-3, 0.67e-3);  // one element
 }
 
 TEST(TipSpeed, AcceleratingFront) {

@@ -706,40 +706,5 @@ TEST(CaseFile, PlacesOfLaterErrors) {
                "--set plate.width_m=3: plate.element_size_m does not divide plate.width_m");
 }
 
-TEST(CaseFile, ThePapersRuns) {
-  const std::filesystem::path folder = std::filesystem::path(SLIPFRONT_SOURCE_DIR) / "cases" / "kammer2012";
-  std::set<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    if (file.path().extension() != ".toml") continue;
-    SCOPED_TRACE(file.path());
-    names.insert(file.path().stem().string());
-    const Case c = read_case(file.path());
-    EXPECT_FALSE(c.title.empty());
-    EXPECT_EQ(c.plate.width_m, 0.2);
-    EXPECT_EQ(c.plate.height_m, 0.1);
-    EXPECT_DOUBLE_EQ(c.plate.element_size_m, 0.2 / 300);
-    EXPECT_EQ(c.material.youngs_modulus_Pa, 2.6e9);
-    EXPECT_EQ(c.material.poissons_ratio, 0.37);
-    EXPECT_EQ(c.material.density_kg_per_m3, 1200);
-    EXPECT_EQ(c.material.plane, solid::Plane::stress);
-    EXPECT_EQ(c.material.stiffness_damping_s, 0.1e-6);
-    EXPECT_EQ(c.loading.tilt_left_m, 0.37e-3);
-    EXPECT_EQ(c.loading.tilt_right_m, 0.037e-3);
-    EXPECT_EQ(c.loading.shear_speed_over_c_L, 1e-6);
-    const auto friction = c.friction.as<interface::VelocityWeakening>();
-    EXPECT_EQ(friction.mu_s, 1.3);
-    EXPECT_EQ(friction.alpha_m2_per_s2, 0.1);
-    const std::string stem = file.path().stem().string();
-    EXPECT_EQ(friction.mu_k, stem == "spontaneous_mu_k_1.0" ? 1.0 : 0.6);
-    EXPECT_EQ(c.event, stem == "left"    ? interface::EventKind::left
-                       : stem == "right" ? interface::EventKind::right
-                                         : interface::EventKind::spontaneous);
-    ASSERT_EQ(c.output.snapshot_times_s.size(), 20u);
-    for (int k = 0; k < 20; ++k)
-      EXPECT_DOUBLE_EQ(c.output.snapshot_times_s[static_cast<std::size_t>(k)], (k + 1) * 1e-5);
-  }
-  EXPECT_EQ(names, (std::set<std::string>{"left", "right", "spontaneous", "spontaneous_mu_k_1.0"}));
-}
-
 }  // namespace
 }  // namespace slipfront::input
