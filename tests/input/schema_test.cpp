@@ -267,39 +267,14 @@ TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
                  "--set nucleation.x_m=0.1: nucleation.x_m applies only with", "");
 }
 
-TEST(Schema, ABodyBelowAsksForItsKeysOfThePlate) {
+TEST(Schema, ABodyBelowHasItsKeys) {
   const std::string steel =
       "[base]\nkind = \"body\"\nheight_m = 0.1\nyoungs_modulus_Pa = 2.1e11\npoissons_ratio = 0.3\n"
       "density_kg_per_m3 = 7850\n";
-  expect_message(parse_error("[base]\nkind = \"body\"\nsides = \"periodic\""),
-                 "c.toml:3: ", "both be periodic");
   expect_message(parse_error(steel), "c.toml:2: ", "needs base.stiffness_damping_s; set it");
-  expect_message(parse_error(steel + "stiffness_damping_s = 0\n[plate]\ncorner = \"fillet\""),
-                 "c.toml:9: ", "choose none or relief");
   EXPECT_EQ(parse_case(steel + "stiffness_damping_s = 0", "c.toml").base.material.density_kg_per_m3, 7850);
   const Case rigid = parse_case(to_toml(changed_prestress()), "c.toml", {{"base.kind", "rigid"}});
   EXPECT_TRUE(members(rigid.base) == members(Case{}.base));
-}
-
-TEST(Schema, WhatPrescribedTractionsAskOfOtherKeys) {
-  constexpr Refused cases[] = {
-      {"[loading]\nmethod = \"prestress\"\n", "c.toml:2: ", "needs prestress.t_Pa and prestress.p_Pa"},
-      {"[loading]\nshear_speed_over_c_L = 0\n", "c.toml:2: ", "prestress"}};
-  expect_refused(cases);
-  const std::string good = to_toml(changed_prestress());
-  constexpr RefusedOverride overrides[] = {{"plate.corner", "relief", "", "needs plate.corner = none"},
-                                           {"event.kind", "spontaneous", "", "choose nucleation"},
-                                           {"prestress.p_Pa", "0", "", "greater than 0"},
-                                           {"nucleation.x_m", "1", "", "it must be on the interface"},
-                                           {"nucleation.half_length_m", "0", "", "give the patch a length"}};
-  expect_refused(good, overrides);
-  const auto error = [&](const std::vector<Override>& several) { return parse_error(good, several); };
-  expect_message(error({{"event.kind", "left"}, {"plate.sides", "periodic"}}), "", "does not have");
-  expect_message(
-      error({{"plate.sides", "periodic"}, {"base.sides", "periodic"}, {"nucleation.taper_m", "0.2"}}), "",
-      "at most half of plate.width_m");
-  expect_message(error({{"friction.law", "coulomb"}, {"nucleation.form", "weakened"}}), "",
-                 "choose overstress");
 }
 
 TEST(Schema, AWeakenedTriggerNeedsALawThatWeakensAndHasNoAmount) {
@@ -316,12 +291,7 @@ TEST(Schema, AWeakenedTriggerNeedsALawThatWeakensAndHasNoAmount) {
                  "--set event.trigger_amount=3: event.trigger_amount applies only with", "");
 }
 
-TEST(Schema, SolversKnowTheirLimits) {
-  constexpr Refused cases[] = {
-      {"[plate]\ncoarsenings = 1\nfine_height_m = 0.02\n[loading]\nsolver = \"iterative\"\n",
-       "c.toml:", "knows no graded plates"}};
-  expect_refused(cases);
-  // Without PETSc the program says how to be built with it.
+TEST(Schema, StaticsByPetscAreRefusedWithoutIt) {
   const std::string message = parse_error("[loading]\nsolver = \"petsc\"\n");
   if (message != "(nothing thrown)") expect_message(message, "", "built without PETSc");
 }
@@ -529,29 +499,9 @@ TEST(Schema, NoNumberMayBeNanAndOnlyOpenEndedTimesInfinite) {
                                                 "output.snapshot_interval_s"}));
 }
 
-TEST(Schema, RelationsBetweenKeys) {
-  constexpr Refused cases[] = {
-      {"[plate]\nwidth_m = 3\n\nelement_size_m = 0.2", "c.toml:4: plate.element_size_m is 0.2 m", "0.1 m"},
-      {"[loading]\ntilt_right_m = 0.1", "c.toml:2: loading.tilt_left_m and tilt_right_m"},
-      {"[loading]\nedge_margin_m = 0.1", "c.toml:2: loading.edge_margin_m is 0.1 m"},
-      {"[event]\ntrigger_zone_m = 0.3", "c.toml:2: event.trigger_zone_m is 0.3 m"},
-      {"[time]\nstep_factor = 1.5", "c.toml:2: time.step_factor is 1.5, beyond the stable step",
-       "time.allow_unstable = true"},
-      {"[fronts]\npulse_share = 0.9", "c.toml:2: fronts.pulse_share is 0.9", "fronts.crack_share, 0.5"},
-      {"[output]\nsnapshot_times_s = [0, 2e-5, 2e-5]", "c.toml:2: output.snapshot_times_s",
-       "ascending order"}};
-  expect_refused(cases);
+// What is refused is in relations_test.
+TEST(Schema, RelationsThatAreAllowed) {
   EXPECT_EQ(parse_case("[time]\nstep_factor = 1.5\nallow_unstable = true", "c.toml").time.step_factor, 1.5);
-}
-
-TEST(Schema, ARegularisationNeedsItsScale) {
-  constexpr Refused cases[] = {
-      {"[friction]\nregularisation = \"strength\"",
-       "c.toml:2: friction.regularisation needs a finite friction.relaxation_length_m or"},
-      {"[friction]\nregularisation = \"pressure\"\nrelaxation_time_s = 1e-6\nrelaxation_slip_rate_m_per_s = "
-       "0.1",
-       "c.toml:4: friction.relaxation_slip_rate_m_per_s does nothing without"}};
-  expect_refused(cases);
   for (const std::string scale : {"relaxation_length_m = 1e-5", "relaxation_time_s = 1e-6"})
     EXPECT_EQ(
         parse_case("[friction]\nregularisation = \"strength\"\n" + scale, "c.toml").regularisation.relaxed,

@@ -119,12 +119,6 @@ TEST(VelocityWeakening, SlopeAtRestIsTheSteepest) {
   EXPECT_NEAR((mu(1e-6, 0) - mu(0, 0)) / 1e-6, -std::pow(0.3, 1.5) / std::sqrt(0.1), 1e-5);
 }
 
-TEST(VelocityWeakening, EqualCoefficientsAreCoulombs) {
-  const VelocityWeakening law{.mu_s = 0.7, .mu_k = 0.7, .alpha_m2_per_s2 = 0.1};
-  EXPECT_EQ(law.inconsistency().text, "");
-  for (const double v : {0.0, 0.1, 10.0}) EXPECT_EQ(law.evaluator()(v, 0), 0.7);
-}
-
 TEST(VelocityWeakening, RefusesAKineticCoefficientAboveTheStaticOne) {
   const VelocityWeakening law{.mu_s = 0.7, .mu_k = 0.8, .alpha_m2_per_s2 = 0.1};
   EXPECT_EQ(law.inconsistency().text, "mu_k must be at most mu_s");

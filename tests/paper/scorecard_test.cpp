@@ -216,15 +216,6 @@ TEST(Scorecard, CollapseIsJudgedByTheScatterToo) {
   EXPECT_EQ(claim_of(runs, "C18").holds, std::optional(false));
 }
 
-class ScorecardVariant : public testing::TestWithParam<Variant> {};
-
-TEST_P(ScorecardVariant, DoesNotHold) {
-  auto runs = make_good();
-  GetParam().change(runs);
-  const auto claim = claim_of(runs, GetParam().id);
-  EXPECT_EQ(claim.holds, std::optional(false)) << claim.measured;
-}
-
 const Variant variants[] = {
     {"C1", "longitudinal waves too fast", [](Reproduction& r) { r.spontaneous.speeds.c_L = 1586; }},
     {"C1", "shear waves too slow", [](Reproduction& r) { r.spontaneous.speeds.c_S = 888; }},
@@ -351,18 +342,16 @@ const Variant variants[] = {
      }},
 };
 
-INSTANTIATE_TEST_SUITE_P(, ScorecardVariant, testing::ValuesIn(variants),
-                         [](const testing::TestParamInfo<Variant>& one) {
-                           std::string name = std::string(one.param.id) + "_" + one.param.what;
-                           std::ranges::replace_if(
-                               name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
-                           return name;
-                         });
-
-TEST(ScorecardVariants, CoverEveryClaim) {
+TEST(Scorecard, ClaimsDoNotHoldForOtherRuns) {
   std::set<std::string> ids = {"C18"};  // above
-  for (const auto& variant : variants) ids.insert(variant.id);
-  EXPECT_THAT(ids, testing::UnorderedElementsAreArray(paper_claims));
+  for (const auto& [id, what, change] : variants) {
+    auto runs = make_good();
+    change(runs);
+    const auto claim = claim_of(runs, id);
+    EXPECT_EQ(claim.holds, std::optional(false)) << id << ", " << what << ": " << claim.measured;
+    ids.insert(id);
+  }
+  EXPECT_EQ(ids, std::set<std::string>(paper_claims.begin(), paper_claims.end()));
 }
 
 }  // namespace

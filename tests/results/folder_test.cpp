@@ -315,7 +315,7 @@ TEST(ResultFolder, OfManyThatWantItAtOnceEachHasItOrIsToldWhoHas) {
   std::vector<std::thread> threads;
   for (auto& refusal : refusals)
     threads.emplace_back([&folder, &refusal] {
-      for (int k = 0; k < 2000 && refusal.empty(); ++k) {
+      for (int k = 0; k < 200 && refusal.empty(); ++k) {
         const auto error = error_of([&] { ResultFolder(folder.path(), "test"); });
         if (error != "(nothing thrown)" && error.find("is in use by") == std::string::npos) refusal = error;
       }
