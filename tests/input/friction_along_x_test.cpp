@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "input/schema.hpp"
@@ -19,7 +18,6 @@
 namespace slipfront::input {
 namespace {
 
-using interface::SlipWeakening;
 using interface::VelocityWeakening;
 using test::error_of;
 using ::testing::HasSubstr;

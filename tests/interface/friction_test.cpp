@@ -3,12 +3,10 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "interface/friction/registry.hpp"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 
 #include "base/error.hpp"
@@ -20,7 +19,6 @@ namespace slipfront::motion {
 namespace {
 
 using mesh::Corner;
-using support::max_abs;
 using support::max_difference;
 
 constexpr double mu_s = 1.3;
@@ -102,19 +100,6 @@ TEST_P(GradedPlate, TheBooksCloseWithEverythingOn) {
     EXPECT_EQ(now.coupling_work != 0, !is_plain());
     EXPECT_LE(worst_J, 1e-12 * largest_J);  // as on plain plates, see energies_test
   }
-}
-
-TEST_P(GradedPlate, AtRestStaysAtRest) {
-  const statics::Statics statics(
-      mesh_, {}, {.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3, .edge_margin_m = 2e-3}, mu_s);
-  const auto e = statics.shear_by(0.02e-3);
-  Stepper stepper(mesh_, {}, support::paper_law, time_);
-  stepper.start(e, 0);
-  Recorder recorder(e, mu_s, 0);
-  for (int step = 0; step < 500; ++step) stepper.advance(recorder);
-  EXPECT_EQ(recorder.take(0).onsets.size(), 0);
-  // The static solution's residual (1e-11 of the forces) is all that moves.
-  EXPECT_LE(max_difference(stepper.u_m(), e.u_m), 1e-10 * max_abs(e.u_m));
 }
 
 TEST_P(GradedPlate, FlightDoesNotGrow) {

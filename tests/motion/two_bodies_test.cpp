@@ -308,39 +308,5 @@ TEST_P(AtRest, StaticEquilibriumOfTwoBodiesStaysAtRest) {
   }
 }
 
-TEST(TwoBodies, LoadedStaticallyFollowTheTop) {
-  // Started with the static motion under a moving edge, the bonded bodies keep to the static solution.
-  auto soft = gel;
-  soft.stiffness_damping_s = pmma.stiffness_damping_s;
-  const auto mesh = loaded_plate(0.02, mesh::Corner::none), base = loaded_plate(0.016, mesh::Corner::none);
-  const statics::Statics statics({mesh, pmma}, statics::ElasticBody{base, soft},
-                                 {.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3},
-                                 std::vector<double>(mesh.lower.size(), mu_s));
-  const auto e = statics.shear_by(0.01e-3);
-  ASSERT_EQ(std::ranges::count(e.contact, statics::Contact::stick), 41);
-  for (const int substeps : {1, 6}) {
-    Stepper stepper(BodySource{mesh, pmma}, BodySource{base, soft}, support::paper_law, stepping(substeps));
-    const double speed = 1e-3;
-    stepper.start(e, speed);
-    Recorder recorder(e, mu_s, 0);
-    for (int step = 0; step < 300; ++step) stepper.advance(recorder);
-    // As in StuckPlateFollowsTheTop; about the place to which a sudden force shifts it, the softer pair
-    // swings by as much.
-    const double lag_s = pmma.stiffness_damping_s + (substeps > 1 ? stepper.step_s() : 0);
-    const auto expect_static = [&](const solid::Field& u, const solid::Field& from,
-                                   const solid::Field& slope) {
-      auto expected = from;
-      for (std::size_t n = 0; n < u.size(); ++n) {
-        expected.x[n] += speed * stepper.time_s() * slope.x[n];
-        expected.y[n] += speed * stepper.time_s() * slope.y[n];
-      }
-      EXPECT_LE(support::max_difference(u, expected), 2 * speed * lag_s) << substeps;
-    };
-    expect_static(stepper.bodies()[0].u_m(), e.u_m, e.u_per_shear);
-    expect_static(stepper.bodies()[1].u_m(), e.below_u_m, e.below_u_per_shear);
-    EXPECT_GT(speed * stepper.time_s(), 100 * speed * lag_s);
-  }
-}
-
 }  // namespace
 }  // namespace slipfront::motion

@@ -251,25 +251,6 @@ TEST(OpenChoices, TriggersAreReadFromTheFolderOfAStudy) {
   }
 }
 
-TEST(OpenChoices, AQuickStudySaysSoAndNamesItsElements) {
-  OpenChoicesResult result;
-  result.quick = true;
-  result.choices = open_choices(true);
-  Sample standard;
-  for (const auto& choice : result.choices) standard.values.push_back(choice.standard);
-  result.outcomes.emplace_back().sample = standard;
-  const TemporaryFolder folder;
-  write_open_choices(folder.path(), result);
-  const auto json = nlohmann::json::parse(test::read_file(folder / "open_choices.json"));
-  EXPECT_EQ(json["quick"], true);
-  EXPECT_EQ(json["standard"]["values"]["element_size_m"], 4e-3);
-  for (const auto& sample : samples(result.choices, true)) {
-    const auto place =
-        std::ranges::find(result.choices, "element_size_m", &OpenChoice::name) - result.choices.begin();
-    EXPECT_EQ(sample.values[static_cast<std::size_t>(place)], 4e-3);
-  }
-}
-
 TEST(OpenChoices, SamplesAboutAnotherChangeOneChoiceOrAnAmountWithItsForm) {
   const auto choices = open_choices();
   std::vector<double> values;

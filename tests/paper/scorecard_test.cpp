@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paper/scorecard.hpp"
 
-#include <fmt/core.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -143,10 +141,6 @@ TEST(ScorecardVariation, MatchesFiguresByNameAndRowsById) {
   other.id = "C2";
   add_variation(claims, named("step"), std::vector<Claim>{other});
   EXPECT_EQ(claims[0].variations.size(), 1U);
-}
-
-TEST(Scorecard, ExperimentsAreNotTestedWithoutData) {
-  EXPECT_EQ(claim_of(make_good(), "E1").holds, std::nullopt);
 }
 
 TEST(Scorecard, StudiesAreNotTestedWithoutTheirRuns) {

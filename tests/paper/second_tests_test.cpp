@@ -50,23 +50,6 @@ TEST(SecondTests, HoldForGoodRuns) {
     EXPECT_EQ(row(claims, id).holds, holds) << id << ": " << row(claims, id).measured;
 }
 
-TEST(SecondTests, NameTheirFirstTestAndWhyItMisjudges) {
-  const auto claims = scorecard(make_good());
-  std::vector<std::string> ids;
-  for (std::size_t k = 0; k < claims.size(); ++k) {
-    const auto& claim = claims[k];
-    EXPECT_EQ(claim.why.empty(), claim.second_test_of.empty()) << claim.id;
-    if (claim.second_test_of.empty()) continue;
-    ids.push_back(claim.id);
-    if (claim.id != "C18c") {  // of another sentence
-      EXPECT_EQ(row(claims, claim.second_test_of).claim, claim.claim);
-    }
-    EXPECT_NE(row(claims, claim.second_test_of).how, claim.how);
-    EXPECT_TRUE(claims[k - 1].id.starts_with(claim.second_test_of)) << claim.id << " behind its first test";
-  }
-  EXPECT_THAT(ids, testing::ElementsAre("C11b", "C18b", "C18c", "C19b", "C20b", "C21+", "C22b"));
-}
-
 TEST(SecondTests, CountWhereTheyWereDone) {
   auto runs = make_good();
   const auto counts = [&](const char* id) { return row(scorecard(runs), id).counts; };
@@ -185,17 +168,6 @@ TEST(CollapseOfMainFronts, IsJudgedByTheBand) {
       p.v_tip_m_per_s += by * o.speeds.c_L;
     });
     EXPECT_EQ(verdict(runs, "C18b"), expected) << shift;
-  }
-}
-
-TEST(CollapseOfMainFronts, IsJudgedByTheScatter) {
-  for (const auto& [off, expected] : {std::pair{0.2, holds}, {0.4, does_not_hold}}) {  // rms 0.06, 0.12
-    auto runs = make_good();
-    int n = 0;
-    for_three(runs, [&, by = off](const Outcome& o, const Front&, FrontPoint& p) {
-      if (++n % 10 == 0) p.v_tip_m_per_s += by * o.speeds.c_L;
-    });
-    EXPECT_EQ(verdict(runs, "C18b"), expected) << off;
   }
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 #include "base/error.hpp"
 #include "cases.hpp"

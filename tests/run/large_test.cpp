@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "cases.hpp"
 #include "interface/friction/slip_weakening.hpp"

@@ -13,7 +13,6 @@
 #include <limits>
 #include <map>
 #include <string>
-#include <vector>
 
 #include "base/error.hpp"
 #include "cases.hpp"
