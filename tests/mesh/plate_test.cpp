@@ -147,11 +147,6 @@ TEST_P(WellFormed, OneConformingSymmetricPiece) {
 INSTANTIATE_TEST_SUITE_P(Corners, WellFormed,
                          ::testing::Values(Corner::none, Corner::relief, Corner::fillet));
 
-TEST(Plate, ReliefHardlyShortensTheStableStep) {
-  // The lowest cells keep 1 - 0.5 mm/10 mm of their height.
-  EXPECT_GT(relative_stable_step(make_plate(small_plate(Corner::relief))), 0.94);
-}
-
 TEST(Plate, OrphansAreNodesWithoutCells) {
   Mesh mesh = make_plate(small_plate(Corner::none));
   std::vector<bool> orphan = orphans(mesh);

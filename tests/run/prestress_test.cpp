@@ -365,11 +365,5 @@ TEST(Prestress, ATableGivesTheStateBeforeTheEvent) {
   EXPECT_EQ(initial_state_key(c), uniform);
 }
 
-TEST(Prestress, InfoTakesItsPressure) {
-  const auto a = info(problem_a(2e-3));
-  EXPECT_EQ(a.solver_bytes, 0);
-  EXPECT_DOUBLE_EQ(a.well_posedness.sliding.pressure_Pa, 5e6);
-}
-
 }  // namespace
 }  // namespace slipfront::run

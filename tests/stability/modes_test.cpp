@@ -78,12 +78,6 @@ TEST(HalfSpace, LongWavesFollowTheShearWaveImpedance) {
               8 / damped.stiffness_damping_s * 1e-5);
 }
 
-TEST(HalfSpace, DelayAndDampingEndGrowthAtShortWaves) {
-  const Sliding plain{.mu = 1.3, .pressure_Pa = 5e6};
-  EXPECT_TRUE(fastest_growing_mode(solid::Material{}, plain, 10).has_value());
-  EXPECT_TRUE(growing_modes(solid::Material{}, plain, 1e6).empty());
-}
-
 TEST(HalfSpace, NoModeIsMissed) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);

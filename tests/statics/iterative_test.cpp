@@ -286,22 +286,6 @@ TEST_P(Corners, ResultIsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST_P(Corners, CyclesDoNotGrowWithTheMesh) {
-  int least = 1000, most = 0;
-  for (const double element_m : {4e-3, 1e-3, 0.5e-3}) {
-    const auto mesh = test::make_plate(0.2, 0.1, element_m, GetParam());
-    IterativeSolver solver({mesh, pmma}, std::nullopt);
-    const TopDisplacement top{std::vector<double>(mesh.top.size(), 1e-4),
-                              std::vector<double>(mesh.top.size(), -1e-4)};
-    auto plate = solver.load_case(TopConstraint::both, top, false, nullptr, 0);
-    plate->solve(mixed_support(mesh, false), 1e-10);
-    least = std::min(least, solver.multigrid().n_cycles());
-    most = std::max(most, solver.multigrid().n_cycles());
-  }
-  EXPECT_LE(most, least + 4);
-  EXPECT_LE(most, 24);  // a reduction of the error to 0.4 in each
-}
-
 void expect_same(const Equilibrium& a, const Equilibrium& b) {
   EXPECT_EQ(a.contact, b.contact);
   const Eigen::VectorXd u = flat(a.u_m), v = flat(a.u_per_shear);
