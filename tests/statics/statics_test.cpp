@@ -123,24 +123,24 @@ TEST(Statics, UniformCompressionIsExact) {
 
 class PaperTilt : public ::testing::Test {
  protected:
-  const mesh::Mesh mesh = paper_plate(4e-3);
-  const Statics statics{mesh, {}, {}, mu_s};
+  const mesh::Mesh mesh_ = paper_plate(4e-3);
+  const Statics statics_{mesh_, {}, {}, mu_s};
 };
 
 TEST_F(PaperTilt, StatesObeyContactAndEquilibrium) {
-  expect_equilibrium(mesh, statics.tilted());
-  expect_complementarity(mesh, statics.tilted(), std::vector<double>(mesh.lower.size(), 0.0), mu_s);
-  const auto put_down = lower_x(mesh, statics.tilted());
+  expect_equilibrium(mesh_, statics_.tilted());
+  expect_complementarity(mesh_, statics_.tilted(), std::vector<double>(mesh_.lower.size(), 0.0), mu_s);
+  const auto put_down = lower_x(mesh_, statics_.tilted());
   for (const double ratio : {0.9 * mu_s, 0.999 * mu_s, 1.001 * mu_s}) {
     SCOPED_TRACE(ratio);
-    const auto e = statics.shear_to(ratio / mu_s);
-    expect_equilibrium(mesh, e);
-    expect_complementarity(mesh, e, put_down, ratio);
+    const auto e = statics_.shear_to(ratio / mu_s);
+    expect_equilibrium(mesh_, e);
+    expect_complementarity(mesh_, e, put_down, ratio);
     // All kinds of states are there to be checked; slip only at an edge of contact, near the critical shear.
     EXPECT_GT(std::ranges::count(e.contact, Contact::open), 0);
     EXPECT_GT(std::ranges::count(e.contact, Contact::stick), 0);
     EXPECT_EQ(std::ranges::count(e.contact, Contact::slip) > 0, ratio > 0.9 * mu_s);
-    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
       if (e.contact[k] != Contact::slip) continue;
       EXPECT_FALSE(e.tractions.x_m[k] >= e.inside_from_m && e.tractions.x_m[k] <= e.inside_to_m);
     }
@@ -150,10 +150,10 @@ TEST_F(PaperTilt, StatesObeyContactAndEquilibrium) {
 TEST_F(PaperTilt, ShearEndsAtTheRatioAskedFor) {
   double shear = 0;
   for (const double ratio : {0.8, 1.0, 0.999 * mu_s, 1.001 * mu_s}) {
-    const auto e = statics.shear_to(ratio / mu_s);
+    const auto e = statics_.shear_to(ratio / mu_s);
     EXPECT_NEAR(e.peak_ratio, ratio, 1e-11);
     double peak = 0, peak_x = 0;
-    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
       const double x = e.tractions.x_m[k];
       if (e.contact[k] == Contact::open || x < e.inside_from_m || x > e.inside_to_m) continue;
       const double here = e.tractions.t_s_Pa[k] / e.tractions.p_s_Pa[k];
@@ -165,22 +165,22 @@ TEST_F(PaperTilt, ShearEndsAtTheRatioAskedFor) {
     shear = e.shear_m;
 
     // The same state by its shear.
-    const auto same = statics.shear_by(e.shear_m);
+    const auto same = statics_.shear_by(e.shear_m);
     EXPECT_LE(max_abs(flat(same.u_m) - flat(e.u_m)), 1e-11 * shear);
     EXPECT_EQ(same.contact, e.contact);
   }
 }
 
 TEST_F(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
-  const auto e = statics.shear_to(0.999);
+  const auto e = statics_.shear_to(0.999);
   // So small an increment that no contact state changes.
   const double increment = 1e-6 * e.shear_m;
-  const auto further = statics.shear_by(e.shear_m + increment);
+  const auto further = statics_.shear_by(e.shear_m + increment);
   ASSERT_EQ(further.contact, e.contact);
   const Eigen::VectorXd slope = (flat(further.u_m) - flat(e.u_m)) / increment;
   // Affine between: only the rounding of u, magnified by u over the increment.
   EXPECT_LE(max_abs(slope - flat(e.u_per_shear)), 1e-11 * 1e6);
-  for (const auto n : mesh.top) {
+  for (const auto n : mesh_.top) {
     EXPECT_EQ(e.u_per_shear.x[n], 1);
     EXPECT_EQ(e.u_per_shear.y[n], 0);
   }
