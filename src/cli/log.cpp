@@ -33,14 +33,16 @@ std::string duration_text(double seconds) {
   return fmt::format("{}:{:02}", minutes, whole % 60);
 }
 
-Progress::Progress(std::string label, std::int64_t total, bool quiet, std::string unit, std::int64_t first)
+Progress::Progress(std::string label, std::int64_t total, bool quiet, std::string unit, std::int64_t first,
+                   std::function<Clock::time_point()> now)
     : label_(std::move(label)),
       unit_(std::move(unit)),
+      now_(std::move(now)),
       total_(std::max<std::int64_t>(total, 1)),
       first_(first),
       quiet_(quiet),
       terminal_(::isatty(STDERR_FILENO) == 1),
-      start_(Clock::now()),
+      start_(now_()),
       drawn_(start_) {}
 
 Progress::~Progress() {
@@ -62,7 +64,7 @@ void Progress::update(std::int64_t step) {
   if (quiet_ || finished_) return;
   const std::int64_t tenth = 10 * step_ / total_;
   if (!terminal_ && (tenth <= tenth_ || tenth >= 10)) return;
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = now_();
   if (now - drawn_ < least_interval) return;
   drawn_ = now;
   tenth_ = tenth;
@@ -80,7 +82,7 @@ void Progress::finish() {
   if (quiet_ || finished_) return;
   finished_ = true;
   show(fmt::format("{}{}: {} {} in {}\n", terminal_ ? clear_line : "", label_, step_, unit_,
-                   duration_text(seconds_between(start_, Clock::now()))));
+                   duration_text(seconds_between(start_, now_()))));
   line_open_ = false;
 }
 

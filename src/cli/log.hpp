@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "base/clock.hpp"
@@ -14,8 +15,9 @@ namespace slipfront::cli {
 class Progress {
  public:
   /// @param first  steps that were done before: the rate is that of those since
+  /// @param now    the clock
   Progress(std::string label, std::int64_t total, bool quiet = false, std::string unit = "steps",
-           std::int64_t first = 0);
+           std::int64_t first = 0, std::function<Clock::time_point()> now = Clock::now);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -31,6 +33,7 @@ class Progress {
   std::string state(Clock::time_point now) const;
 
   std::string label_, unit_;
+  std::function<Clock::time_point()> now_;
   std::int64_t total_, first_, step_ = first_;
   bool quiet_, terminal_, finished_ = false;
   bool line_open_ = false;  ///< the terminal's line waits to be redrawn

@@ -1,93 +1,77 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/log.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <string>
-#include <thread>
 
 namespace slipfront::cli {
 namespace {
 
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using std::chrono::milliseconds;
 
-// The test's standard error is captured to a file, so it is no terminal.
-TEST(Progress, WritesPlainLinesWhereThereIsNoTerminal) {
-  testing::internal::CaptureStderr();
-  {
-    Progress progress("left", 1000);
-    progress.update(5);
-    std::this_thread::sleep_for(std::chrono::milliseconds(110));
-    progress.update(50);   // under 10 %
-    progress.update(500);  // half
-    progress.update(501);  // no further 10 %
-    progress.update(1000);
-    progress.finish();
-    progress.finish();
+/// What is written to standard error, a file here and no terminal, by a clock that is set by hand.
+class ProgressLines : public testing::Test {
+ protected:
+  ProgressLines() { testing::internal::CaptureStderr(); }
+  Progress progress(const char* label, std::int64_t total, bool quiet = false, std::int64_t first = 0) {
+    return Progress(label, total, quiet, "steps", first, [this] { return now_; });
   }
-  const std::string text = testing::internal::GetCapturedStderr();
-  EXPECT_THAT(text, ContainsRegex("^left: 50 %, [0-9.e+]+ steps/s, 0\\.[0-9] s to go\n"
-                                  "left: 1000 steps in 0\\.[0-9] s\n$"));
+  std::string text() { return testing::internal::GetCapturedStderr(); }
+
+  Clock::time_point now_;
+};
+
+TEST_F(ProgressLines, ArePlainWhereThereIsNoTerminal) {
+  auto shown = progress("left", 1000);
+  shown.update(5);
+  now_ += milliseconds(200);
+  shown.update(50);   // under 10 %
+  shown.update(500);  // half
+  shown.update(501);  // no further 10 %
+  now_ += milliseconds(200);
+  shown.update(1000);
+  shown.finish();
+  shown.finish();
+  EXPECT_EQ(text(), "left: 50 %, 2.5e+03 steps/s, 0.2 s to go\nleft: 1000 steps in 0.4 s\n");
 }
 
-TEST(Progress, OfWorkThatGoesOnHasItsOwnRate) {
-  testing::internal::CaptureStderr();
-  Progress progress("event", 1'000'000'000, false, "steps", 999'999'000);
-  std::this_thread::sleep_for(std::chrono::milliseconds(110));
-  progress.update(999'999'500);
-  const std::string text = testing::internal::GetCapturedStderr();
-  // 500 steps in more than 0.1 s, and as many to go.
-  EXPECT_THAT(text, ContainsRegex("^event: 99 %, [0-9.e+]+ steps/s, [0-9.]+ s to go\n$"));
-  EXPECT_LT(std::stod(text.substr(text.find(", ") + 2)), 5000);
+TEST_F(ProgressLines, OfWorkThatGoesOnHaveItsOwnRate) {
+  auto shown = progress("event", 1'000'000'000, false, 999'999'000);
+  now_ += milliseconds(500);
+  shown.update(999'999'500);
+  EXPECT_EQ(text(), "event: 99 %, 1e+03 steps/s, 0.5 s to go\n");
 }
 
-TEST(Progress, NotesAreLinesOfTheirOwn) {
-  testing::internal::CaptureStderr();
-  Progress progress("left", 1000);
-  progress.update(5);
-  progress.note("note: kept");
-  Progress("left", 1000, true).note("nobody sees it");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "note: kept\n");
-}
-
-TEST(Progress, DrawsAtMostTenTimesASecond) {
-  testing::internal::CaptureStderr();
-  {
-    Progress progress("fast", 100);
-    for (int step = 1; step <= 100; ++step) progress.update(step);  // far less than 0.1 s
+TEST_F(ProgressLines, AreDrawnAtMostTenTimesASecond) {
+  auto shown = progress("fast", 100);
+  for (int step = 1; step <= 50; ++step) {
+    now_ += milliseconds(1);
+    shown.update(step);
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  now_ += milliseconds(50);
+  shown.update(60);
+  EXPECT_EQ(text(), "fast: 60 %, 600 steps/s, 0.1 s to go\n");
 }
 
-TEST(Progress, IsSilentWhereQuiet) {
-  testing::internal::CaptureStderr();
-  {
-    Progress progress("quiet", 10, true);
-    std::this_thread::sleep_for(std::chrono::milliseconds(110));
-    progress.update(5);
-    progress.finish();
-  }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+TEST_F(ProgressLines, DoNotAppearWhereQuiet) {
+  auto shown = progress("quiet", 10, true);
+  now_ += milliseconds(200);
+  shown.update(5);
+  shown.note("nobody sees it");
+  shown.finish();
+  EXPECT_EQ(text(), "");
 }
 
-TEST(Progress, SaysWhereWorkEndedEarly) {
-  testing::internal::CaptureStderr();
-  Progress progress("event", 1000);
-  progress.update(400);
-  progress.finish();
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("event: 400 steps in "));
-}
-
-TEST(Progress, NoStepsAtAllDoNoHarm) {
-  testing::internal::CaptureStderr();
-  Progress progress("none", 0);
-  progress.update(0);
-  progress.finish();
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("none: 0 steps in "));
+TEST_F(ProgressLines, SayWhereWorkEndedEarly) {
+  auto shown = progress("event", 1000), none = progress("none", 0);
+  shown.update(400);
+  shown.note("note: kept");
+  shown.finish();
+  none.update(0);
+  none.finish();
+  EXPECT_EQ(text(), "note: kept\nevent: 400 steps in 0.0 s\nnone: 0 steps in 0.0 s\n");
 }
 
 TEST(Durations, AreReadable) {

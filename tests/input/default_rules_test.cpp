@@ -10,7 +10,6 @@
 namespace slipfront::input {
 namespace {
 
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 double value_of(const Case& config, const std::string& key) {
@@ -68,12 +67,6 @@ TEST(DefaultRules, PrescribedTractionsAreAllTheLoad) {
   EXPECT_EQ(
       parse_case(text, "c.toml", {{"loading.shear_speed_over_c_L", "1e-6"}}).loading.shear_speed_over_c_L,
       1e-6);
-}
-
-TEST(DefaultRules, AreInTheReference) {
-  const auto reference = schema_reference();
-  EXPECT_THAT(reference, HasSubstr("| `trigger_zone_m` | number | m | 0.05 width_m |"));
-  EXPECT_THAT(reference, HasSubstr("| `quiet_s` | number | s | 0.1334 width_m / c_S |"));
 }
 
 TEST(DefaultRules, AreNotOfKeysWithAConstantDefault) {

@@ -1,35 +1,55 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input/schema.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
+#include <span>
+#include <string>
+#include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "input/entries.hpp"
 #include "interface/friction/registry.hpp"
 #include "interface/friction/velocity_weakening.hpp"
-#include "statics/petsc_equations.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::input {
 namespace {
 
 using test::error_of;
-using ::testing::AllOf;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 std::string parse_error(const std::string& text, const std::vector<Override>& overrides = {}) {
   const std::string message = error_of([&] { parse_case(text, "c.toml", overrides); });
   EXPECT_EQ(message.find('\n'), std::string::npos) << "more than one line: " << message;
   return message;
+}
+
+void expect_message(const std::string& message, const char* begins, const char* contains) {
+  EXPECT_TRUE(message.starts_with(begins)) << message << "\ndoes not begin with " << begins;
+  EXPECT_TRUE(message.find(contains) != std::string::npos) << message << "\nlacks " << contains;
+}
+
+/// A case that is refused, with the beginning of the message and what else it says.
+struct Refused {
+  const char *text, *begins, *contains = "";
+};
+
+void expect_refused(std::span<const Refused> cases) {
+  for (const auto& [text, begins, contains] : cases) expect_message(parse_error(text), begins, contains);
+}
+
+/// The same by an override.
+struct RefusedOverride {
+  const char *key, *value, *begins, *contains = "";
+};
+
+void expect_refused(const std::string& text, std::span<const RefusedOverride> overrides) {
+  for (const auto& [key, value, begins, contains] : overrides)
+    expect_message(parse_error(text, {{key, value}}), begins, contains);
 }
 
 // Structured bindings name every member: one more member of a struct does not compile here until it is
@@ -104,23 +124,23 @@ void expect_equal(const Case& a, const Case& b) {
   const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, regularisation,
                contact, event, trigger, nucleation, time, fronts, output, probes] = b;
   EXPECT_EQ(a.title, title);
-  EXPECT_EQ(members(a.plate), members(plate));
-  EXPECT_EQ(members(a.material), members(material));
-  EXPECT_EQ(members(a.base), members(base));
-  EXPECT_EQ(members(a.loading), members(loading));
-  EXPECT_EQ(members(a.prestress), members(prestress));
+  EXPECT_TRUE(members(a.plate) == members(plate));
+  EXPECT_TRUE(members(a.material) == members(material));
+  EXPECT_TRUE(members(a.base) == members(base));
+  EXPECT_TRUE(members(a.loading) == members(loading));
+  EXPECT_TRUE(members(a.prestress) == members(prestress));
   EXPECT_EQ(a.friction.name(), friction.name());
-  EXPECT_EQ(members(a.friction), members(friction));
-  EXPECT_EQ(members(a.friction_along_x), members(friction_along_x));
-  EXPECT_EQ(members(a.regularisation), members(regularisation));
+  EXPECT_TRUE(members(a.friction) == members(friction));
+  EXPECT_TRUE(members(a.friction_along_x) == members(friction_along_x));
+  EXPECT_TRUE(members(a.regularisation) == members(regularisation));
   EXPECT_EQ(a.contact, contact);
   EXPECT_EQ(a.event, event);
-  EXPECT_EQ(members(a.trigger), members(trigger));
-  EXPECT_EQ(members(a.nucleation), members(nucleation));
-  EXPECT_EQ(members(a.time), members(time));
-  EXPECT_EQ(members(a.fronts), members(fronts));
-  EXPECT_EQ(members(a.output), members(output));
-  EXPECT_EQ(members(a.probes), members(probes));
+  EXPECT_TRUE(members(a.trigger) == members(trigger));
+  EXPECT_TRUE(members(a.nucleation) == members(nucleation));
+  EXPECT_TRUE(members(a.time) == members(time));
+  EXPECT_TRUE(members(a.fronts) == members(fronts));
+  EXPECT_TRUE(members(a.output) == members(output));
+  EXPECT_TRUE(members(a.probes) == members(probes));
 }
 
 /// A case in which no member has its default.
@@ -193,8 +213,8 @@ TEST(Schema, EveryKeyReadsBackFromToml) {
     if (entry.key != "friction.law") {
       EXPECT_NE(toml_text(entry.get(changed)), toml_text(entry.get(defaults)))
           << entry.key << " is not changed";
-      expect_equal(parse_case(to_toml(changed), "c.toml"), changed);
     }
+  expect_equal(parse_case(to_toml(changed), "c.toml"), changed);
 }
 
 TEST(Schema, PrestressAndNucleationReadBackFromToml) {
@@ -216,141 +236,63 @@ TEST(Schema, PrestressAndNucleationReadBackFromToml) {
   expect_equal(parse_case(to_toml(table), "c.toml"), table);
 }
 
-TEST(Schema, PrestressAndNucleationKeysStandForTheirMembers) {
-  const Case c = parse_case(R"(
-[plate]
-corner = "none"
-sides = "periodic"
-[loading]
-method = "prestress"
-[prestress]
-t_Pa = 2e6
-p_Pa = 5e6
-[event]
-kind = "nucleation"
-[nucleation]
-form = "overstress"
-x_m = 0.12
-half_length_m = 0.02
-taper_m = 0.01
-overstress_Pa = 3e6
-)",
-                            "c.toml");
-  Case expected;
-  expected.plate.corner = mesh::Corner::none;
-  expected.plate.sides = mesh::Sides::periodic;
-  expected.loading.method = statics::LoadingMethod::prestress;
-  expected.loading.shear_speed_over_c_L = 0;  // no load but the tractions
-  expected.prestress = {2e6, 5e6, ""};
-  expected.event = interface::EventKind::nucleation;
-  expected.nucleation = {interface::NucleationForm::overstress, 0.12, 0.02, 0.01, 3e6};
-  expect_equal(c, expected);
-}
-
 TEST(Schema, KeysThatDoNotApplyAreRefused) {
-  EXPECT_EQ(parse_error("[prestress]\nt_Pa = 1\n"),
-            "c.toml:2: prestress.t_Pa applies only with loading.method = prestress and no prestress.file; "
-            "remove the key or set that");
-  EXPECT_EQ(parse_error("[nucleation]\nx_m = 0.1\n"),
-            "c.toml:2: nucleation.x_m applies only with event.kind = nucleation; remove the key or set that");
-  EXPECT_EQ(parse_error("[event]\nkind = \"nucleation\"\n[nucleation]\noverstress_Pa = 1\n"),
-            "c.toml:4: nucleation.overstress_Pa applies only with event.kind = nucleation and "
-            "nucleation.form = overstress; remove the key or set that");
-  EXPECT_EQ(parse_error("[loading]\ntilt_left_m = 0\nmethod = \"prestress\"\n"),
-            "c.toml:2: loading.tilt_left_m applies only with loading.method = direct or ramp; remove the key "
-            "or set that");
-  EXPECT_THAT(parse_error("[loading]\nmethod = \"prestress\"\n[prestress]\nt_Pa = 1\np_Pa = 1\n"
-                          "file = \"a.csv\"\n"),
-              StartsWith("c.toml:4: prestress.t_Pa applies only with"));
+  constexpr Refused cases[] = {
+      {"[prestress]\nt_Pa = 1\n", "c.toml:2: prestress.t_Pa applies only with loading.method = prestress"},
+      {"[nucleation]\nx_m = 0.1\n", "c.toml:2: nucleation.x_m applies only with event.kind = nucleation"},
+      {"[event]\nkind = \"nucleation\"\n[nucleation]\noverstress_Pa = 1\n",
+       "c.toml:4: nucleation.overstress_Pa", "and nucleation.form = overstress"},
+      {"[loading]\ntilt_left_m = 0\nmethod = \"prestress\"\n", "c.toml:2: loading.tilt_left_m",
+       "loading.method = direct or ramp"},
+      {"[loading]\nmethod = \"prestress\"\n[prestress]\nt_Pa = 1\np_Pa = 1\nfile = \"a.csv\"\n",
+       "c.toml:4: prestress.t_Pa applies only with"},
+      {"[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\ntrigger_amount = 5\n",
+       "c.toml:4: event.trigger_amount", "event.trigger_form = added or raised"},
+      {"[base]\nheight_m = 1", "c.toml:2: base.height_m applies only with base.kind"}};
+  expect_refused(cases);
 }
 
 TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
   const std::string nucleated = to_toml(changed_prestress());
   const Case left = parse_case(nucleated, "c.toml", {{"event.kind", "left"}});
-  EXPECT_EQ(members(left.nucleation), members(Case{}.nucleation));
+  EXPECT_TRUE(members(left.nucleation) == members(Case{}.nucleation));
   EXPECT_EQ(left.event, interface::EventKind::left);
   const Case table = parse_case(nucleated, "c.toml", {{"prestress.file", "t.csv"}});
   EXPECT_EQ(table.prestress.p_Pa, Case{}.prestress.p_Pa);
   const Case weakened = parse_case(nucleated, "c.toml", {{"nucleation.form", "weakened"}});
   EXPECT_EQ(weakened.nucleation.overstress_Pa, Case{}.nucleation.overstress_Pa);
   // An override of a key that does not apply is wrong all the same.
-  EXPECT_THAT(parse_error(nucleated, {{"event.kind", "left"}, {"nucleation.x_m", "0.1"}}),
-              StartsWith("--set nucleation.x_m=0.1: nucleation.x_m applies only with"));
+  expect_message(parse_error(nucleated, {{"event.kind", "left"}, {"nucleation.x_m", "0.1"}}),
+                 "--set nucleation.x_m=0.1: nucleation.x_m applies only with", "");
 }
 
-TEST(Schema, ABodyBelowAsksForItsKeysOfThePlate) {
-  EXPECT_THAT(parse_error("[base]\nheight_m = 1"),
-              StartsWith("c.toml:2: base.height_m applies only with base.kind"));
-  EXPECT_THAT(parse_error("[base]\nkind = \"body\"\nsides = \"periodic\""),
-              AllOf(StartsWith("c.toml:3: "), HasSubstr("both be periodic")));
+TEST(Schema, ABodyBelowHasItsKeys) {
   const std::string steel =
       "[base]\nkind = \"body\"\nheight_m = 0.1\nyoungs_modulus_Pa = 2.1e11\npoissons_ratio = 0.3\n"
       "density_kg_per_m3 = 7850\n";
-  EXPECT_THAT(parse_error(steel),
-              AllOf(StartsWith("c.toml:2: "), HasSubstr("needs base.stiffness_damping_s; set it")));
-  EXPECT_THAT(parse_error(steel + "stiffness_damping_s = 0\n[plate]\ncorner = \"fillet\""),
-              AllOf(StartsWith("c.toml:9: "), HasSubstr("choose none or relief")));
+  expect_message(parse_error(steel), "c.toml:2: ", "needs base.stiffness_damping_s; set it");
   EXPECT_EQ(parse_case(steel + "stiffness_damping_s = 0", "c.toml").base.material.density_kg_per_m3, 7850);
   const Case rigid = parse_case(to_toml(changed_prestress()), "c.toml", {{"base.kind", "rigid"}});
-  EXPECT_EQ(members(rigid.base), members(Case{}.base));
+  EXPECT_TRUE(members(rigid.base) == members(Case{}.base));
 }
 
-TEST(Schema, WhatPrescribedTractionsAskOfOtherKeys) {
-  const std::string good = to_toml(changed_prestress());
-  EXPECT_THAT(parse_error("[loading]\nmethod = \"prestress\"\n"),
-              AllOf(StartsWith("c.toml:2: "), HasSubstr("needs prestress.t_Pa and prestress.p_Pa")));
-  EXPECT_THAT(parse_error(good, {{"plate.corner", "relief"}}), HasSubstr("needs plate.corner = none"));
-  EXPECT_THAT(parse_error(good, {{"event.kind", "spontaneous"}}), HasSubstr("choose nucleation"));
-  EXPECT_THAT(parse_error(good, {{"event.kind", "left"}, {"plate.sides", "periodic"}}),
-              HasSubstr("does not have"));
-  EXPECT_THAT(parse_error(good, {{"prestress.p_Pa", "0"}}), HasSubstr("greater than 0"));
-  EXPECT_THAT(parse_error(good, {{"nucleation.x_m", "1"}}), HasSubstr("it must be on the interface"));
-  EXPECT_THAT(parse_error(good, {{"nucleation.half_length_m", "0"}}), HasSubstr("give the patch a length"));
-  EXPECT_THAT(
-      parse_error(good,
-                  {{"plate.sides", "periodic"}, {"base.sides", "periodic"}, {"nucleation.taper_m", "0.2"}}),
-      HasSubstr("at most half of plate.width_m"));
-  EXPECT_THAT(parse_error(good, {{"friction.law", "coulomb"}, {"nucleation.form", "weakened"}}),
-              HasSubstr("choose overstress"));
-  EXPECT_THAT(parse_error("[loading]\nshear_speed_over_c_L = 0\n"),
-              AllOf(StartsWith("c.toml:2: "), HasSubstr("prestress")));
-}
-
-TEST(Schema, AWeakenedTriggerNeedsALawThatWeakens) {
+TEST(Schema, AWeakenedTriggerNeedsALawThatWeakensAndHasNoAmount) {
   const std::vector<Override> weakened = {{"event.kind", "left"}, {"event.trigger_form", "weakened"}};
-  EXPECT_EQ(parse_case("title = 'a'\n", "c.toml", weakened).trigger.form, interface::TriggerForm::weakened);
-  auto coulomb = weakened;
+  EXPECT_EQ(parse_case("", "c.toml", weakened).trigger.form, interface::TriggerForm::weakened);
+  auto coulomb = weakened, with_amount = weakened;
   coulomb.push_back({"friction.law", "coulomb"});
-  EXPECT_THAT(parse_error("title = 'a'\n", coulomb), HasSubstr("choose added or raised"));
-}
-
-TEST(Schema, AWeakenedTriggerHasNoAmount) {
-  EXPECT_EQ(
-      parse_error("[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\ntrigger_amount = 5\n"),
-      "c.toml:4: event.trigger_amount applies only with event.trigger_form = added or raised; remove the "
-      "key or set that");
+  expect_message(parse_error("", coulomb), "", "choose added or raised");
   const std::string pushed = "[event]\nkind = \"left\"\ntrigger_amount = 7\n";
-  const std::vector<Override> weakened = {{"event.trigger_form", "weakened"}};
   EXPECT_EQ(parse_case(pushed, "c.toml", weakened).trigger.amount, interface::Trigger{}.amount);
   EXPECT_EQ(parse_case(pushed, "c.toml", {{"event.trigger_form", "raised"}}).trigger.amount, 7);
-  EXPECT_THAT(parse_error(pushed, {weakened[0], {"event.trigger_amount", "3"}}),
-              StartsWith("--set event.trigger_amount=3: event.trigger_amount applies only with"));
-}
-
-TEST(Schema, IterativeStaticsKnowNoGradedPlates) {
-  EXPECT_THAT(
-      parse_error("[plate]\ncoarsenings = 1\nfine_height_m = 0.02\n[loading]\nsolver = \"iterative\"\n"),
-      HasSubstr("knows no graded plates"));
+  with_amount.push_back({"event.trigger_amount", "3"});
+  expect_message(parse_error(pushed, with_amount),
+                 "--set event.trigger_amount=3: event.trigger_amount applies only with", "");
 }
 
 TEST(Schema, StaticsByPetscAreRefusedWithoutIt) {
-  const std::string text = "[loading]\nsolver = \"petsc\"\n";
-  if (statics::petsc_version().empty()) {
-    EXPECT_THAT(parse_error(text), HasSubstr("loading.solver = petsc: this program was built without PETSc; "
-                                             "build it with make build-mpi"));
-  } else {
-    EXPECT_EQ(parse_case(text, "c.toml").loading.solver, statics::StaticSolver::petsc);
-  }
+  const std::string message = parse_error("[loading]\nsolver = \"petsc\"\n");
+  if (message != "(nothing thrown)") expect_message(message, "", "built without PETSc");
 }
 
 TEST(Schema, TheKeysStandForTheirMembers) {
@@ -471,93 +413,54 @@ TEST(Schema, EveryLawOfTheRegistryIsReadByItsName) {
     for (const Entry& entry : law.entries) {
       const std::string too_small = toml_text(Value(entry.range.min - 1));
       const std::string written = entry.kind == Kind::numbers ? "[" + too_small + "]" : too_small;
-      EXPECT_THAT(
-          parse_error("friction.law = \"" + law.name + "\"\n" + entry.key + " = " + written),
-          AllOf(StartsWith("c.toml:2: " + entry.key + " is " + too_small), HasSubstr("it must be at least")));
+      expect_message(parse_error("friction.law = \"" + law.name + "\"\n" + entry.key + " = " + written),
+                     ("c.toml:2: " + entry.key + " is " + too_small).c_str(), "it must be at least");
     }
   }
 }
 
-TEST(Schema, AnUnknownLawIsNamed) {
-  EXPECT_THAT(parse_error("[friction]\nlaw = \"coulom\""),
-              AllOf(StartsWith("c.toml:2: friction.law is \"coulom\"; it must be one of "),
-                    HasSubstr("velocity_weakening"), EndsWith("(did you mean coulomb?)")));
-}
-
-TEST(Schema, AParameterOfAnotherLawIsNamedAsSuch) {
-  EXPECT_EQ(
-      parse_error("[friction]\nlaw = \"coulomb\"\nmu_k = 0.5"),
-      "c.toml:3: friction.mu_k belongs to the friction law velocity_weakening, but friction.law is coulomb; "
-      "remove the key or set the law");
-}
-
-TEST(Schema, ParametersThatDoNotFitTogetherAreRefused) {
-  EXPECT_EQ(parse_error("[friction]\nmu_s = 0.5\nmu_k = 0.7"),
-            "c.toml:2: friction: mu_k must be at most mu_s (mu_s = 0.5, mu_k = 0.7, alpha_m2_per_s2 = 0.1)");
-  EXPECT_THAT(parse_error("[friction]\nmu_s = 0.9", {{"friction.mu_k", "1"}}),
-              StartsWith("--set friction.mu_k=1: friction: mu_k must be at most mu_s"));
-}
-
-TEST(Schema, UnknownKeysAreAnsweredWithTheNearestOne) {
-  EXPECT_EQ(parse_error("[plate]\n\nwidht_m = 0.2"),
-            "c.toml:3: unknown key plate.widht_m; did you mean plate.width_m?");
-  EXPECT_EQ(parse_error("titel = \"x\""), "c.toml:1: unknown key titel; did you mean title?");
-  EXPECT_EQ(parse_error("[friction]\nmus = 1"),
-            "c.toml:2: unknown key friction.mus; did you mean friction.mu_s?");
-  EXPECT_EQ(parse_error("[time]\nunheard_of_quantity = 1"),
-            "c.toml:2: unknown key time.unheard_of_quantity; `slipfront keys` lists all keys");
-}
-
-TEST(Schema, AKeyInTheWrongTableIsAnsweredWithTheRightOne) {
-  EXPECT_EQ(parse_error("[material]\nwidth_m = 1"),
-            "c.toml:2: unknown key material.width_m; did you mean plate.width_m?");
-  EXPECT_EQ(parse_error("width_m = 1"), "c.toml:1: unknown key width_m; did you mean plate.width_m?");
-}
-
-TEST(Schema, UnknownTables) {
-  EXPECT_EQ(parse_error("[plat]\nwidth_m = 1"), "c.toml:1: unknown table [plat]; did you mean [plate]?");
-  EXPECT_EQ(parse_error("title = \"\"\n[contacts]"),
-            "c.toml:2: unknown table [contacts]; did you mean [contact]?");
-  EXPECT_EQ(parse_error("title = \"\"\n[boundaries]"),
-            "c.toml:2: unknown table [boundaries]; tables are plate, material, base, loading, prestress, "
-            "friction, contact, event, nucleation, time, fronts, output, probes");
-  EXPECT_THAT(parse_error("[plate.inner]\nwidth_m = 1"), StartsWith("c.toml:1: unknown table [plate.inner]"));
-}
-
-TEST(Schema, TablesAndKeysAreNotMixedUp) {
-  EXPECT_EQ(parse_error("plate = 3"),
-            "c.toml:1: plate is a table, not a key; set its keys, plate.NAME, one by one");
-  EXPECT_EQ(parse_error("[[plate]]\nwidth_m = 1"),
-            "c.toml:1: plate is a table, not a key; set its keys, plate.NAME, one by one");
-  EXPECT_EQ(parse_error("[plate.width_m]\nvalue = 1"),
-            "c.toml:1: plate.width_m must be a number, is a table; write it as a key");
+TEST(Schema, WrongNamesAreAnsweredWithTheNearestOnes) {
+  constexpr Refused cases[] = {
+      {"[plate]\n\nwidht_m = 0.2", "c.toml:3: unknown key plate.widht_m; did you mean plate.width_m?"},
+      {"titel = \"x\"", "c.toml:1: unknown key titel; did you mean title?"},
+      {"[friction]\nmus = 1", "c.toml:2: unknown key friction.mus; did you mean friction.mu_s?"},
+      {"[time]\nunheard_of_quantity = 1", "c.toml:2: unknown key time.unheard_of_quantity", "slipfront keys"},
+      {"[material]\nwidth_m = 1", "c.toml:2: unknown key material.width_m; did you mean plate.width_m?"},
+      {"width_m = 1", "c.toml:1: unknown key width_m; did you mean plate.width_m?"},
+      {"[plat]\nwidth_m = 1", "c.toml:1: unknown table [plat]; did you mean [plate]?"},
+      {"title = \"\"\n[boundaries]", "c.toml:2: unknown table [boundaries]", "nucleation, time, fronts"},
+      {"[plate.inner]\nwidth_m = 1", "c.toml:1: unknown table [plate.inner]"},
+      {"plate = 3", "c.toml:1: plate is a table, not a key"},
+      {"[[plate]]\nwidth_m = 1", "c.toml:1: plate is a table, not a key"},
+      {"[event]\nkind = \"lft\"", "c.toml:2: event.kind is \"lft\"; it must be one of none, spontaneous",
+       "did you mean left?"},
+      {"[friction]\nlaw = \"coulom\"", "c.toml:2: friction.law is \"coulom\"; it must be one of ",
+       "did you mean coulomb?"},
+      {"[friction]\nlaw = \"coulomb\"\nmu_k = 0.5", "c.toml:3: friction.mu_k belongs to the friction law",
+       "friction.law is coulomb"},
+      {"[friction]\nmu_s = 0.5\nmu_k = 0.7", "c.toml:2: friction: mu_k must be at most mu_s",
+       "mu_s = 0.5, mu_k = 0.7"}};
+  expect_refused(cases);
+  expect_message(parse_error("[friction]\nmu_s = 0.9", {{"friction.mu_k", "1"}}),
+                 "--set friction.mu_k=1: friction: mu_k must be at most mu_s", "");
 }
 
 TEST(Schema, WrongTypes) {
-  EXPECT_EQ(parse_error("[plate]\nwidth_m = \"0.2\""),
-            "c.toml:2: plate.width_m must be a number, is a string; write for example width_m = 0.2");
-  EXPECT_EQ(parse_error("[plate]\nwidth_m = true"),
-            "c.toml:2: plate.width_m must be a number, is a boolean; write for example width_m = 0.2");
-  EXPECT_EQ(parse_error("[plate]\nwidth_m = 1979-05-27"),
-            "c.toml:2: plate.width_m must be a number, is a date or time; write for example width_m = 0.2");
-  EXPECT_EQ(
-      parse_error("[time]\ninterface_rows = 4.5"),
-      "c.toml:2: time.interface_rows must be an integer, is a number; write for example interface_rows = 4");
-  EXPECT_EQ(parse_error("[time]\nallow_unstable = 1"),
-            "c.toml:2: time.allow_unstable must be true or false, is an integer; write for example "
-            "allow_unstable = false");
-  EXPECT_EQ(parse_error("title = 5"),
-            "c.toml:1: title must be a string, is an integer; write for example title = \"\"");
-  EXPECT_EQ(parse_error("[event]\nkind = 1"),
-            "c.toml:2: event.kind must be a word in quotes, is an integer; write for example kind = "
-            "\"spontaneous\"");
-  EXPECT_EQ(parse_error("[output]\nsnapshot_times_s = 1e-5"),
-            "c.toml:2: output.snapshot_times_s must be a list of numbers, is a number; write for example "
-            "snapshot_times_s = [1e-5, 2e-5]");
-  EXPECT_THAT(
-      parse_error("[output]\nsnapshot_times_s = [0, \"a\"]"),
-      StartsWith(
-          "c.toml:2: output.snapshot_times_s must be a list of numbers, is a list with something else"));
+  constexpr Refused cases[] = {
+      {"[plate]\nwidth_m = \"0.2\"", "c.toml:2: plate.width_m must be a number, is a string",
+       "width_m = 0.2"},
+      {"[plate]\nwidth_m = true", "c.toml:2: plate.width_m must be a number, is a boolean"},
+      {"[plate]\nwidth_m = 1979-05-27", "c.toml:2: plate.width_m must be a number, is a date"},
+      {"[plate.width_m]\nvalue = 1", "c.toml:1: plate.width_m must be a number, is a table"},
+      {"[time]\ninterface_rows = 4.5", "c.toml:2: time.interface_rows must be an integer, is a number"},
+      {"[time]\nallow_unstable = 1", "c.toml:2: time.allow_unstable must be true or false, is an integer"},
+      {"title = 5", "c.toml:1: title must be a string, is an integer"},
+      {"[event]\nkind = 1", "c.toml:2: event.kind must be a word in quotes, is an integer"},
+      {"[output]\nsnapshot_times_s = 1e-5", "c.toml:2: output.snapshot_times_s must be a list of numbers",
+       "[1e-5, 2e-5]"},
+      {"[output]\nsnapshot_times_s = [0, \"a\"]",
+       "c.toml:2: output.snapshot_times_s must be a list of numbers", "is a list with something else"}};
+  expect_refused(cases);
 }
 
 TEST(Schema, AnIntegerDoesForANumber) {
@@ -567,107 +470,62 @@ TEST(Schema, AnIntegerDoesForANumber) {
 }
 
 TEST(Schema, ValuesOutOfRange) {
-  EXPECT_EQ(parse_error("[plate]\nheight_m = 0.0"),
-            "c.toml:2: plate.height_m is 0 m; it must be greater than 0 m");
-  EXPECT_EQ(parse_error("[material]\npoissons_ratio = 0.5"),
-            "c.toml:2: material.poissons_ratio is 0.5; it must be greater than -1 and less than 0.5");
-  EXPECT_EQ(parse_error("[material]\ndensity_kg_per_m3 = -1"),
-            "c.toml:2: material.density_kg_per_m3 is -1 kg/m3; it must be greater than 0 kg/m3");
-  EXPECT_EQ(parse_error("[time]\ninterface_substeps = 0"),
-            "c.toml:2: time.interface_substeps is 0; it must be at least 1 and at most 1000000");
-  EXPECT_EQ(parse_error("[time]\nend_s = inf"),
-            "c.toml:2: time.end_s is inf s; it must be a finite number greater than 0 s");
-  EXPECT_EQ(parse_error("[plate]\nwidth_m = nan"),
-            "c.toml:2: plate.width_m is nan m; it must be a finite number greater than 0 m");
-  EXPECT_EQ(parse_error("[event]\ntrigger_duration_s = -1"),
-            "c.toml:2: event.trigger_duration_s is -1 s; it must be greater than 0 s and may be inf");
-  EXPECT_EQ(parse_error("[output]\nsnapshot_times_s = [0, -1]"),
-            "c.toml:2: output.snapshot_times_s is -1 s; it must be at least 0 s");
-  EXPECT_EQ(parse_error("[event]\nkind = \"lft\""),
-            "c.toml:2: event.kind is \"lft\"; it must be one of none, spontaneous, left, right, nucleation "
-            "(did you mean left?)");
+  constexpr Refused cases[] = {
+      {"[plate]\nheight_m = 0.0", "c.toml:2: plate.height_m is 0 m; it must be greater than 0 m"},
+      {"[material]\npoissons_ratio = 0.5", "c.toml:2: material.poissons_ratio is 0.5",
+       "greater than -1 and less than 0.5"},
+      {"[material]\ndensity_kg_per_m3 = -1", "c.toml:2: material.density_kg_per_m3 is -1 kg/m3"},
+      {"[time]\ninterface_substeps = 0", "c.toml:2: time.interface_substeps is 0",
+       "at least 1 and at most 1000000"},
+      {"[time]\nend_s = inf", "c.toml:2: time.end_s is inf s; it must be a finite number"},
+      {"[plate]\nwidth_m = nan", "c.toml:2: plate.width_m is nan m; it must be a finite number"},
+      {"[event]\ntrigger_duration_s = -1", "c.toml:2: event.trigger_duration_s is -1 s", "may be inf"},
+      {"[output]\nsnapshot_times_s = [0, -1]", "c.toml:2: output.snapshot_times_s is -1 s"},
+      // The first error of the file is reported.
+      {"[time]\nend_s = -1\n[material]\ndensity_kg_per_m3 = -1", "c.toml:2: time.end_s"}};
+  expect_refused(cases);
 }
 
-TEST(Schema, NoNumberMayBeNan) {
-  for (const Entry& entry : entries_of(Case{}))
-    if (entry.kind == Kind::number) {
-      EXPECT_THAT(parse_error(entry.key + " = nan"), HasSubstr("is nan")) << entry.key;
-    }
-}
-
-TEST(Schema, OnlyOpenEndedTimesMayBeInfinite) {
+TEST(Schema, NoNumberMayBeNanAndOnlyOpenEndedTimesInfinite) {
   std::vector<std::string> infinite;
-  for (const Entry& entry : entries_of(Case{}))
-    if (entry.kind == Kind::number && parse_error(entry.key + " = inf") == "(nothing thrown)")
-      infinite.push_back(entry.key);
-  EXPECT_THAT(infinite, ::testing::ElementsAre("friction.relaxation_length_m", "friction.relaxation_time_s",
-                                               "event.trigger_duration_s", "time.quiet_s",
-                                               "output.snapshot_interval_s"));
+  for (const Entry& entry : entries_of(Case{})) {
+    if (entry.kind != Kind::number) continue;
+    expect_message(parse_error(entry.key + " = nan"), "", "is nan");
+    if (parse_error(entry.key + " = inf") == "(nothing thrown)") infinite.push_back(entry.key);
+  }
+  EXPECT_EQ(infinite, (std::vector<std::string>{"friction.relaxation_length_m", "friction.relaxation_time_s",
+                                                "event.trigger_duration_s", "time.quiet_s",
+                                                "output.snapshot_interval_s"}));
 }
 
-TEST(Schema, RelationsBetweenKeys) {
-  EXPECT_EQ(parse_error("[plate]\nwidth_m = 3\n\nelement_size_m = 0.2"),
-            "c.toml:4: plate.element_size_m is 0.2 m; it must be at most the plate's shorter side, 0.1 m");
-  EXPECT_THAT(parse_error("[loading]\ntilt_right_m = 0.1"),
-              StartsWith("c.toml:2: loading.tilt_left_m and tilt_right_m"));
-  EXPECT_THAT(parse_error("[loading]\nedge_margin_m = 0.1"),
-              StartsWith("c.toml:2: loading.edge_margin_m is 0.1 m"));
-  EXPECT_THAT(parse_error("[event]\ntrigger_zone_m = 0.3"),
-              StartsWith("c.toml:2: event.trigger_zone_m is 0.3 m"));
-  EXPECT_EQ(parse_error("[time]\nstep_factor = 1.5"),
-            "c.toml:2: time.step_factor is 1.5, beyond the stable step; use at most 1, or set "
-            "time.allow_unstable = true");
+// What is refused is in relations_test.
+TEST(Schema, RelationsThatAreAllowed) {
   EXPECT_EQ(parse_case("[time]\nstep_factor = 1.5\nallow_unstable = true", "c.toml").time.step_factor, 1.5);
-  EXPECT_EQ(parse_error("[fronts]\npulse_share = 0.9"),
-            "c.toml:2: fronts.pulse_share is 0.9; it must be at most fronts.crack_share, 0.5");
-  EXPECT_EQ(
-      parse_error("[output]\nsnapshot_times_s = [0, 2e-5, 2e-5]"),
-      "c.toml:2: output.snapshot_times_s has 2e-05 s before 2e-05 s; write the times in ascending order");
-}
-
-TEST(Schema, ARegularisationNeedsItsScale) {
-  EXPECT_EQ(parse_error("[friction]\nregularisation = \"strength\""),
-            "c.toml:2: friction.regularisation needs a finite friction.relaxation_length_m or "
-            "relaxation_time_s; set one");
   for (const std::string scale : {"relaxation_length_m = 1e-5", "relaxation_time_s = 1e-6"})
     EXPECT_EQ(
         parse_case("[friction]\nregularisation = \"strength\"\n" + scale, "c.toml").regularisation.relaxed,
         interface::Relaxed::strength);
-  EXPECT_EQ(parse_error("[friction]\nregularisation = \"pressure\"\nrelaxation_time_s = 1e-6\n"
-                        "relaxation_slip_rate_m_per_s = 0.1"),
-            "c.toml:4: friction.relaxation_slip_rate_m_per_s does nothing without a finite "
-            "friction.relaxation_length_m; set that, or remove it");
   // Without a regularisation its scale may stay in the file, for comparisons by overrides.
   EXPECT_EQ(parse_case("[friction]\nrelaxation_length_m = 1e-5", "c.toml").regularisation.length_m, 1e-5);
 }
 
 TEST(Schema, SyntaxErrorsHaveTheirLine) {
-  EXPECT_THAT(parse_error("title = \"x\"\n\n[plate\n"),
-              AllOf(StartsWith("c.toml:3: "), EndsWith("; correct the TOML there")));
-  EXPECT_THAT(parse_error("[plate]\nwidth_m = 0.2.1"), StartsWith("c.toml:2: "));
-  EXPECT_THAT(parse_error("[plate]\nwidth_m =\n"), StartsWith("c.toml:2: "));
-  EXPECT_THAT(parse_error("\n\ntitle = \"\xff\""), AllOf(StartsWith("c.toml:3: "), HasSubstr("utf-8")));
-}
-
-TEST(Schema, DuplicatesAreRefused) {
-  EXPECT_THAT(parse_error("[plate]\nwidth_m = 0.2\nwidth_m = 0.3"),
-              AllOf(StartsWith("c.toml:3: "), HasSubstr("width_m"), EndsWith("; keep only one of the two")));
-  EXPECT_THAT(parse_error("[plate]\n[plate]"),
-              AllOf(StartsWith("c.toml:2: "), EndsWith("; keep only one of the two")));
-}
-
-TEST(Schema, TheFirstErrorOfTheFileIsReported) {
-  EXPECT_THAT(parse_error("[time]\nend_s = -1\n[material]\ndensity_kg_per_m3 = -1"),
-              StartsWith("c.toml:2: time.end_s"));
+  constexpr Refused cases[] = {{"title = \"x\"\n\n[plate\n", "c.toml:3: ", "; correct the TOML there"},
+                               {"[plate]\nwidth_m = 0.2.1", "c.toml:2: "},
+                               {"[plate]\nwidth_m =\n", "c.toml:2: "},
+                               {"\n\ntitle = \"\xff\"", "c.toml:3: ", "utf-8"},
+                               {"[plate]\nwidth_m = 0.2\nwidth_m = 0.3", "c.toml:3: ", "width_m"},
+                               {"[plate]\n[plate]", "c.toml:2: ", "; keep only one of the two"}};
+  expect_refused(cases);
 }
 
 TEST(Overrides, AreSplitAtTheFirstEqualsSign) {
   EXPECT_EQ(parse_override("title=a=b"), Override("title", "a=b"));
   EXPECT_EQ(parse_override(" plate.width_m = 0.4 "), Override("plate.width_m", "0.4"));
   EXPECT_EQ(parse_override("title="), Override("title", ""));
-  EXPECT_EQ(error_of([] { parse_override("plate.width_m"); }),
-            "--set plate.width_m: is not of the form key=value; write for example --set friction.mu_k=1.0");
-  EXPECT_THAT(error_of([] { parse_override("=1"); }), StartsWith("--set =1: is not of the form key=value"));
+  expect_message(error_of([] { parse_override("plate.width_m"); }),
+                 "--set plate.width_m: is not of the form key=value", "");
+  expect_message(error_of([] { parse_override("=1"); }), "--set =1: is not of the form key=value", "");
 }
 
 TEST(Overrides, WinOverTheFileAndTheLastOverEarlierOnes) {
@@ -677,9 +535,7 @@ TEST(Overrides, WinOverTheFileAndTheLastOverEarlierOnes) {
   EXPECT_EQ(c.plate.width_m, 0.5);
   EXPECT_EQ(c.plate.height_m, 0.2);
   EXPECT_EQ(c.time.interface_rows, 6);
-}
-
-TEST(Overrides, MendAnErrorOfTheFile) {
+  // They mend an error of the file.
   EXPECT_EQ(parse_case("[plate]\nwidth_m = -1", "c.toml", {{"plate.width_m", "0.4"}}).plate.width_m, 0.4);
 }
 
@@ -702,20 +558,16 @@ TEST(Overrides, TakeListsFlagsAndInfinity) {
 }
 
 TEST(Overrides, ErrorsNameTheOverride) {
-  EXPECT_EQ(parse_error("", {{"plate.widht_m", "1"}}),
-            "--set plate.widht_m=1: unknown key plate.widht_m; did you mean plate.width_m?");
-  EXPECT_EQ(parse_error("", {{"plate.width_m", "0,2"}}),
-            "--set plate.width_m=0,2: plate.width_m must be a number, is a string; write for example --set "
-            "plate.width_m=0.2");
-  EXPECT_EQ(parse_error("", {{"plate.width_m", "-1"}}),
-            "--set plate.width_m=-1: plate.width_m is -1 m; it must be greater than 0 m");
-  EXPECT_THAT(parse_error("", {{"event.kind", "lft"}}),
-              StartsWith("--set event.kind=lft: event.kind is \"lft\""));
-  EXPECT_THAT(parse_error("", {{"plate.width_m", "0.2\nheight_m = 3"}}),
-              StartsWith("--set plate.width_m=0.2"));
-  EXPECT_THAT(parse_error("", {{"plate", "3"}}), StartsWith("--set plate=3: plate is a table"));
-  EXPECT_THAT(parse_error("[plate]\nelement_size_m = 0.1", {{"plate.height_m", "0.01"}}),
-              StartsWith("--set plate.height_m=0.01: plate.element_size_m is 0.1 m"));
+  constexpr RefusedOverride overrides[] = {
+      {"plate.widht_m", "1", "--set plate.widht_m=1: unknown key plate.widht_m; did you mean plate.width_m?"},
+      {"plate.width_m", "0,2", "--set plate.width_m=0,2: plate.width_m must be a number, is a string"},
+      {"plate.width_m", "-1", "--set plate.width_m=-1: plate.width_m is -1 m"},
+      {"event.kind", "lft", "--set event.kind=lft: event.kind is \"lft\""},
+      {"plate.width_m", "0.2\nheight_m = 3", "--set plate.width_m=0.2"},
+      {"plate", "3", "--set plate=3: plate is a table"}};
+  expect_refused("", overrides);
+  expect_message(parse_error("[plate]\nelement_size_m = 0.1", {{"plate.height_m", "0.01"}}),
+                 "--set plate.height_m=0.01: plate.element_size_m is 0.1 m", "");
 }
 
 TEST(Overrides, ChangeTheFrictionLaw) {
@@ -724,34 +576,29 @@ TEST(Overrides, ChangeTheFrictionLaw) {
   ASSERT_TRUE(c.friction.name() == "coulomb");
   EXPECT_EQ(c.friction.as<interface::Coulomb>().mu, 0.75);
 
-  EXPECT_THAT(
-      parse_error(file, {{"friction.law", "coulomb"}, {"friction.mu_k", "1"}}),
-      StartsWith("--set friction.mu_k=1: friction.mu_k belongs to the friction law velocity_weakening"));
-  EXPECT_EQ(parse_error(file + "\nmuk = 1", {{"friction.law", "coulomb"}}),
-            "c.toml:5: unknown key friction.muk; did you mean friction.mu?");
+  expect_message(parse_error(file, {{"friction.law", "coulomb"}, {"friction.mu_k", "1"}}),
+                 "--set friction.mu_k=1: friction.mu_k belongs to the friction law velocity_weakening", "");
+  expect_message(parse_error(file + "\nmuk = 1", {{"friction.law", "coulomb"}}),
+                 "c.toml:5: unknown key friction.muk; did you mean friction.mu?", "");
 }
 
-TEST(Reference, NamesEveryKeyWithUnitDefaultRangeAndHelp) {
+TEST(Reference, NamesEveryKeyWithUnitDefaultAndRange) {
   const std::string reference = schema_reference();
-  for (const Entry& entry : common_entries())
-    EXPECT_THAT(reference, HasSubstr("| `" + leaf_of(entry.key) + "` |"));
+  const auto expect_in = [&](const std::string& text) {
+    EXPECT_TRUE(reference.find(text) != std::string::npos) << text;
+  };
+  for (const Entry& entry : common_entries()) expect_in("| `" + leaf_of(entry.key) + "` |");
   for (const LawEntries& law : friction_laws()) {
-    EXPECT_THAT(reference, HasSubstr("With `law = \"" + law.name + "\"`"));
-    for (const Entry& entry : law.entries)
-      EXPECT_THAT(reference, HasSubstr("| `" + leaf_of(entry.key) + "` |"));
+    expect_in("With `law = \"" + law.name + "\"`");
+    for (const Entry& entry : law.entries) expect_in("| `" + leaf_of(entry.key) + "` |");
   }
-  EXPECT_THAT(reference, HasSubstr("\n## [plate]\n"));
-  EXPECT_THAT(reference,
-              HasSubstr("| `width_m` | number | m | `0.2` | greater than 0 | along the interface |\n"));
-  EXPECT_THAT(reference, HasSubstr("| `plane` | word |  | `\"stress\"` | `\"stress\"`, `\"strain\"` |"));
+  expect_in("| `width_m` | number | m | `0.2` | greater than 0 |");
+  expect_in("| `plane` | word |  | `\"stress\"` | `\"stress\"`, `\"strain\"` |");
 }
 
-TEST(Entries, KeysAreUniqueAndHaveHelp) {
+TEST(Entries, KeysAreUnique) {
   std::set<std::string> keys;
-  for (const Entry& entry : common_entries()) {
-    EXPECT_TRUE(keys.insert(entry.key).second) << entry.key;
-    EXPECT_FALSE(entry.help.empty()) << entry.key;
-  }
+  for (const Entry& entry : common_entries()) EXPECT_TRUE(keys.insert(entry.key).second) << entry.key;
 }
 
 TEST(Entries, DefaultsAreInRange) {
@@ -776,19 +623,15 @@ TEST(Entries, UnitsComeFromTheKey) {
   EXPECT_EQ(unit_of("friction.rate_per_s"), "1/s");
 }
 
-TEST(CaseFile, MissingFileAndFolderAreRefused) {
-  const test::TemporaryFolder folder;
-  EXPECT_EQ(error_of([&] { read_case(folder / "none.toml"); }),
-            (folder / "none.toml").string() + ": cannot be read (No such file or directory); check the path");
-  EXPECT_THAT(error_of([&] { read_case(folder.path()); }),
-              EndsWith(": is a folder; name the case file in it"));
-}
-
 TEST(CaseFile, MessagesNameTheFile) {
   const test::TemporaryFolder folder;
   const auto file = folder / "my case.toml";
+  const std::string missing = file.string() + ": cannot be read (No such file or directory)";
+  expect_message(error_of([&] { read_case(file); }), missing.c_str(), "");
+  expect_message(error_of([&] { read_case(folder.path()); }), "", ": is a folder");
   test::write_file(file, "\xef\xbb\xbf# with a byte order mark\r\n[plate]\r\nwidth_m = -1\r\n");
-  EXPECT_THAT(error_of([&] { read_case(file); }), StartsWith(file.string() + ":3: plate.width_m is -1 m"));
+  const std::string place = file.string() + ":3: plate.width_m is -1 m";
+  expect_message(error_of([&] { read_case(file); }), place.c_str(), "");
 }
 
 TEST(CaseFile, PlacesOfLaterErrors) {
@@ -810,41 +653,6 @@ TEST(CaseFile, PlacesOfLaterErrors) {
                "--set plate.width_m=3: plate.width_m is odd");
   EXPECT_STREQ(overridden.with_place(UserError("{} does not divide {}", element_size, width)).what(),
                "--set plate.width_m=3: plate.element_size_m does not divide plate.width_m");
-}
-
-TEST(CaseFile, ThePapersRuns) {
-  const std::filesystem::path folder = std::filesystem::path(SLIPFRONT_SOURCE_DIR) / "cases" / "kammer2012";
-  std::set<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    if (file.path().extension() != ".toml") continue;
-    SCOPED_TRACE(file.path());
-    names.insert(file.path().stem().string());
-    const Case c = read_case(file.path());
-    EXPECT_FALSE(c.title.empty());
-    EXPECT_EQ(c.plate.width_m, 0.2);
-    EXPECT_EQ(c.plate.height_m, 0.1);
-    EXPECT_DOUBLE_EQ(c.plate.element_size_m, 0.2 / 300);
-    EXPECT_EQ(c.material.youngs_modulus_Pa, 2.6e9);
-    EXPECT_EQ(c.material.poissons_ratio, 0.37);
-    EXPECT_EQ(c.material.density_kg_per_m3, 1200);
-    EXPECT_EQ(c.material.plane, solid::Plane::stress);
-    EXPECT_EQ(c.material.stiffness_damping_s, 0.1e-6);
-    EXPECT_EQ(c.loading.tilt_left_m, 0.37e-3);
-    EXPECT_EQ(c.loading.tilt_right_m, 0.037e-3);
-    EXPECT_EQ(c.loading.shear_speed_over_c_L, 1e-6);
-    const auto friction = c.friction.as<interface::VelocityWeakening>();
-    EXPECT_EQ(friction.mu_s, 1.3);
-    EXPECT_EQ(friction.alpha_m2_per_s2, 0.1);
-    const std::string stem = file.path().stem().string();
-    EXPECT_EQ(friction.mu_k, stem == "spontaneous_mu_k_1.0" ? 1.0 : 0.6);
-    EXPECT_EQ(c.event, stem == "left"    ? interface::EventKind::left
-                       : stem == "right" ? interface::EventKind::right
-                                         : interface::EventKind::spontaneous);
-    ASSERT_EQ(c.output.snapshot_times_s.size(), 20u);
-    for (int k = 0; k < 20; ++k)
-      EXPECT_DOUBLE_EQ(c.output.snapshot_times_s[static_cast<std::size_t>(k)], (k + 1) * 1e-5);
-  }
-  EXPECT_THAT(names, ::testing::ElementsAre("left", "right", "spontaneous", "spontaneous_mu_k_1.0"));
 }
 
 }  // namespace

@@ -112,19 +112,6 @@ TEST(Contact, AGapClosesExactlyAtTheStepsEnd) {
   EXPECT_NEAR(s.v_y_m_per_s[0], 0, 1e-15);
 }
 
-TEST(Contact, AGapThatStaysOpenCarriesNothing) {
-  auto s = one_node(0, 0);
-  s.initial_gap_m[0] = 3e-7;
-  s.v_y_m_per_s[0] = -0.29;
-  s.v_x_m_per_s[0] = 1;
-  EXPECT_FALSE(update_contact({weakening}, dt, s));
-  EXPECT_EQ(s.p_Pa[0], 0);
-  EXPECT_EQ(s.t_Pa[0], 0);
-  EXPECT_EQ(s.v_y_m_per_s[0], -0.29);
-  EXPECT_EQ(s.v_x_m_per_s[0], 1);
-  EXPECT_EQ(s.slipping[0], 0);
-}
-
 TEST(Contact, AReturningNodeSlipsAtTheSpeedItHas) {
   auto s = one_node(0, 0);
   s.v_x_m_per_s[0] = 2;
@@ -183,18 +170,6 @@ TEST(Contact, TellsWhetherAnyNodeChanged) {
   }
   EXPECT_TRUE(update_contact({weakening}, dt, s));
   EXPECT_EQ(s.slipping, (std::vector<std::uint8_t>{0, 1, 1}));
-}
-
-TEST(Contact, CoulombsLawDoesNotWeaken) {
-  auto s = one_node(0.5e6, 1e6);
-  update_contact({Coulomb{.mu = 0.4}}, dt, s);
-  EXPECT_EQ(s.slipping[0], 1);
-  for (int k = 0; k < 2; ++k) {
-    s.v_x_m_per_s[0] = 0.5e6 / impedance;
-    s.v_y_m_per_s[0] = -1e6 / impedance;
-    update_contact({Coulomb{.mu = 0.4}}, dt, s);
-    EXPECT_NEAR(s.t_Pa[0], 0.4e6, 1e-8);
-  }
 }
 
 TEST(Contact, ObeysItsConditionsWhateverTheTrial) {

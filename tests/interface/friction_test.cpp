@@ -3,12 +3,10 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "interface/friction/registry.hpp"
@@ -117,12 +115,6 @@ TEST(VelocityWeakening, SlopeAtRestIsTheSteepest) {
   const auto mu = law.evaluator();
   EXPECT_DOUBLE_EQ(mu.slope_s_per_m(0, 0), -std::pow(0.3, 1.5) / std::sqrt(0.1));
   EXPECT_NEAR((mu(1e-6, 0) - mu(0, 0)) / 1e-6, -std::pow(0.3, 1.5) / std::sqrt(0.1), 1e-5);
-}
-
-TEST(VelocityWeakening, EqualCoefficientsAreCoulombs) {
-  const VelocityWeakening law{.mu_s = 0.7, .mu_k = 0.7, .alpha_m2_per_s2 = 0.1};
-  EXPECT_EQ(law.inconsistency().text, "");
-  for (const double v : {0.0, 0.1, 10.0}) EXPECT_EQ(law.evaluator()(v, 0), 0.7);
 }
 
 TEST(VelocityWeakening, RefusesAKineticCoefficientAboveTheStaticOne) {

@@ -21,29 +21,6 @@ ContactModel with(const FrictionLaw& law) {
   return {law, {}, ContactAlgorithm::predictor_corrector};
 }
 
-TEST(PredictorCorrector, LocksTheNormalVelocityWhilePressed) {
-  auto s = resting_node(with(weakening), 1e6);
-  pull(s, 0.5e6, 2e6);
-  EXPECT_FALSE(update_contact(with(weakening), dt, s));
-  EXPECT_NEAR(s.p_Pa[0], 2e6, rounding_Pa);
-  EXPECT_EQ(s.v_y_m_per_s[0], 0);
-  EXPECT_EQ(s.u_y_m[0], 0);
-  EXPECT_EQ(s.v_x_m_per_s[0], 0);
-  EXPECT_NEAR(s.t_Pa[0], 0.5e6, rounding_Pa);
-}
-
-TEST(PredictorCorrector, ReleasesATensileNode) {
-  auto s = resting_node(with(weakening), 1e6);
-  s.v_x_m_per_s[0] = 0.3;
-  s.v_y_m_per_s[0] = 0.01;
-  update_contact(with(weakening), dt, s);
-  EXPECT_EQ(s.p_Pa[0], 0);
-  EXPECT_EQ(s.t_Pa[0], 0);
-  EXPECT_EQ(s.v_x_m_per_s[0], 0.3);
-  EXPECT_EQ(s.v_y_m_per_s[0], 0.01);
-  EXPECT_EQ(s.locked[0], 0);
-}
-
 TEST(PredictorCorrector, ALandingNodeIsPutOntoThePlane) {
   auto s = resting_node(with(weakening), 0);
   s.initial_gap_m[0] = 0.3e-6;

@@ -126,20 +126,6 @@ TEST(Plate, ReliefFadesOutWithHeight) {
   }
 }
 
-TEST(Plate, ReliefTakesThePolygonUnderTheArcAway) {
-  const Plate plate = small_plate(Corner::relief);
-  const Mesh mesh = make_plate(plate);
-  const double radius = 25.25e-3, h = 0.02 / 30;
-  const auto rise = [&](int i) {
-    const double d = std::max(0.0, 5e-3 - i * h);
-    return radius - std::sqrt(radius * radius - d * d);
-  };
-  double removed = 0;
-  for (int i = 0; i < 8; ++i) removed += h * (rise(i) + rise(i + 1)) / 2;
-  const double expected = 0.04 * 0.02 - 2 * removed;
-  EXPECT_NEAR(area_m2(mesh), expected, static_cast<double>(mesh.cells.size()) * eps * expected);
-}
-
 class WellFormed : public ::testing::TestWithParam<Corner> {};
 
 TEST_P(WellFormed, OneConformingSymmetricPiece) {
@@ -160,11 +146,6 @@ TEST_P(WellFormed, OneConformingSymmetricPiece) {
 
 INSTANTIATE_TEST_SUITE_P(Corners, WellFormed,
                          ::testing::Values(Corner::none, Corner::relief, Corner::fillet));
-
-TEST(Plate, ReliefHardlyShortensTheStableStep) {
-  // The lowest cells keep 1 - 0.5 mm/10 mm of their height.
-  EXPECT_GT(relative_stable_step(make_plate(small_plate(Corner::relief))), 0.94);
-}
 
 TEST(Plate, OrphansAreNodesWithoutCells) {
   Mesh mesh = make_plate(small_plate(Corner::none));

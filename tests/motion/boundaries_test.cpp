@@ -133,39 +133,5 @@ TEST(Periodic, PlateHasNoSeam) {
   EXPECT_LT(difference, 1e-9 * largest);
 }
 
-TEST(Prestress, ColumnSlidesAtTheRateOfItsImpedance) {
-  // Before the wave is back from the top, rho c_S v = t0 - mu p0; the books close meanwhile.
-  const auto mesh = mesh::make_plate({.width_m = 4e-3,
-                                      .height_m = 0.06,
-                                      .element_size_m = 1e-3,
-                                      .corner = Corner::none,
-                                      .sides = Sides::periodic,
-                                      .top = Top::absorbing});
-  const solid::Material material;
-  const double rho_c = material.density_kg_per_m3 * solid::shear_speed_m_per_s(material);
-  constexpr double p0 = 1e6, mu = 0.5;
-  for (const double t0 : {0.4e6, 0.7e6}) {
-    SCOPED_TRACE(t0);
-    TimeStepping time;
-    time.interface_substeps = 5;
-    Stepper stepper(mesh, material, {interface::Coulomb{mu}}, time);
-    auto e = support::in_flight(mesh, solid::Field(mesh.n_nodes()), solid::Field(mesh.n_nodes()));
-    const std::size_t n = mesh.lower.size();
-    e.contact.assign(n, statics::Contact::stick);
-    e.tractions.t_s_Pa.assign(n, t0);
-    e.tractions.p_s_Pa.assign(n, p0);
-    stepper.start(e, 0, {std::vector<double>(n, t0), std::vector<double>(n, p0)});
-    Recorder recorder(e, mu, 0);
-    while (stepper.time_s() < 40e-6) stepper.advance(recorder);
-    const double v = std::max(0.0, t0 - mu * p0) / rho_c;
-    // What is left after the start, of the grid's ringing: less than a per cent of 0.1 MPa.
-    for (const double rate : stepper.interface_state().slip_rate_m_per_s)
-      EXPECT_NEAR(rate, v, 0.01 * 0.1e6 / rho_c);
-    const record::Energies now = stepper.energies();
-    EXPECT_EQ(now.prestress_work > 1e-3, v > 0);
-    EXPECT_NEAR(now.stored(), now.work(), 1e-9 * std::max(std::abs(now.prestress_work), 1e-3));
-  }
-}
-
 }  // namespace
 }  // namespace slipfront::motion

@@ -27,7 +27,6 @@ class EventRun : public ::testing::Test {
   mesh::Mesh mesh_ = support::make_plate(0.2, 0.1, 5e-3, Corner::none);
   solid::Material material_;
   statics::Statics statics_{mesh_, material_, {}, mu_s};
-  statics::Equilibrium common_ = statics_.shear_to(0.999);
   statics::Equilibrium calm_ = statics_.shear_to(0.5);
   double c_L_ = solid::longitudinal_speed_m_per_s(material_);
   Waves waves_{c_L_, solid::shear_modulus_Pa(material_) / solid::shear_speed_m_per_s(material_)};
@@ -48,7 +47,6 @@ class EventRun : public ::testing::Test {
 TEST_F(EventRun, EndsAtItsEnd) {
   const Event event = run(calm_);
   EXPECT_EQ(event.end, EventEnd::end_time);
-  EXPECT_EQ(event.blow_up, "");
   EXPECT_EQ(event.steps, static_cast<std::int64_t>(std::ceil(60e-6 / step_s())));
   EXPECT_DOUBLE_EQ(event.time_s, static_cast<double>(event.steps) * step_s());
   EXPECT_GE(event.time_s, 60e-6);
@@ -87,24 +85,6 @@ TEST_F(EventRun, EndsWhenNothingMoves) {
   // No node slips, so the time counts from the ramp's end; to the next step.
   EXPECT_GT(event.time_s, 27e-6);
   EXPECT_LE(event.time_s, 27e-6 + step_s() * (1 + 1e-9));
-}
-
-TEST_F(EventRun, SlippingKeepsItGoing) {
-  time_.quiet_s = 20e-6;
-  time_.end_s = 1;
-  material_.stiffness_damping_s = 1e-5;  // waves die within milliseconds
-  none_.ramp_s = 0;
-  const Event event = run(statics_.shear_to(1.001));
-  EXPECT_EQ(event.end, EventEnd::quiet);
-  ASSERT_FALSE(event.record.onsets.empty());
-  // Slip faster than ten times the loading: the event goes on for 20 us after the last of it, to within a
-  // sample.
-  double last_s = 0;
-  for (std::size_t k = 0; k < event.history.slip_rate_m_per_s.size(); ++k)
-    if (std::abs(event.history.slip_rate_m_per_s[k]) > 10e-6 * c_L_ && event.history.p_Pa[k] > 0)
-      last_s = event.history.time_s[k / event.history.x_m.size()];
-  EXPECT_GT(last_s, 1e-6);
-  EXPECT_GT(event.time_s, last_s + 20e-6 - sampling_.history_interval_s - step_s());
 }
 
 TEST_F(EventRun, WavesKeepItGoing) {
@@ -151,7 +131,7 @@ TEST_F(EventRun, EndsWhenItBlowsUp) {
   const Event event = run(calm_);
   EXPECT_EQ(event.end, EventEnd::blow_up);
   EXPECT_THAT(event.blow_up, HasSubstr(fmt::format("the run blew up at step {} (t = ", event.steps)));
-  EXPECT_THAT(event.blow_up, HasSubstr("reduce time.step_factor"));
+  EXPECT_THAT(event.blow_up, HasSubstr("time.step_factor"));
   EXPECT_LT(event.steps, 1000);
   // Seen before the numbers are lost.
   for (const double slip : event.history.slip_m) ASSERT_TRUE(std::isfinite(slip));
@@ -259,24 +239,6 @@ TEST_F(EventRun, AFailingSinkEndsTheEvent) {
   EXPECT_EQ(sink.history_.time_s.size(), 5U);
 }
 
-TEST_F(EventRun, SlipReleasesEnergyAndTheBooksShowIt) {
-  const auto spontaneous = statics_.shear_to(1.001);
-  time_.end_s = 100e-6;
-  const Event event = run(spontaneous);
-  EXPECT_EQ(event.end, EventEnd::end_time);
-  EXPECT_GT(event.record.onsets.size(), 10);
-  // Nucleation is where t/p had its maximum.
-  EXPECT_NEAR(event.record.x_m[event.record.onsets[0].node], spontaneous.peak_x_m, 1e-12);
-  const auto& a = event.energies.front();
-  const auto& b = event.energies.back();
-  EXPECT_EQ(a.top_work, 0);
-  EXPECT_EQ(b.trigger_work, 0);
-  EXPECT_GT(b.top_work, 0);  // the edge pushes to +x and moves there
-  EXPECT_LT(b.strain, a.strain);
-  EXPECT_GT(b.kinetic, a.kinetic);
-  EXPECT_LT(b.strain + b.kinetic, a.strain + a.kinetic + b.top_work);  // friction and damping only take
-}
-
 TEST_F(EventRun, TopWorkIsTheReactionTimesThePath) {
   // Until the first wave reaches the loaded edge (0.1 m / c_L = 63 us) its force is the static one.
   const auto spontaneous = statics_.shear_to(1.001);
@@ -287,28 +249,6 @@ TEST_F(EventRun, TopWorkIsTheReactionTimesThePath) {
     reaction += spontaneous.tractions.t_s_Pa[k] * tributary[k];
   // The ramp of shear adds 1e-4 to the force in this time.
   EXPECT_NEAR(event.energies.back().top_work / (reaction * 1e-6 * c_L_ * event.time_s), 1, 1e-3);
-}
-
-TEST_F(EventRun, TriggersNucleateAtTheirEdge) {
-  const auto tributary = mesh::tributary_lengths_m(mesh_);
-  time_.end_s = 40e-6;
-  for (const auto kind : {interface::EventKind::left, interface::EventKind::right}) {
-    Stepper stepper(mesh_, material_, support::paper_law, time_);
-    const interface::Trigger trigger;
-    stepper.start(common_, 1e-6 * c_L_,
-                  {.trigger_force_N_per_m = trigger_forces(common_, tributary, kind, trigger, mu_s)});
-    const Event event = run_event(stepper, common_, mu_s, waves_, trigger, time_, sampling_, 2,
-                                  [](auto, auto) { return true; });
-    EXPECT_EQ(event.end, EventEnd::end_time);
-    ASSERT_FALSE(event.record.onsets.empty());
-    const double x = event.record.x_m[event.record.onsets[0].node];
-    if (kind == interface::EventKind::left) {
-      EXPECT_LT(x, 0.03);
-    } else {
-      EXPECT_GT(x, 0.17);
-    }
-    EXPECT_GT(event.energies.back().trigger_work, 0);
-  }
 }
 
 /// Six nodes 10 mm apart, the outermost two open; mu_s p_s - t_s = 3, 6, 9, 12 Pa inside.

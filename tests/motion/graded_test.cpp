@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 
 #include "base/error.hpp"
@@ -20,8 +19,7 @@ namespace slipfront::motion {
 namespace {
 
 using mesh::Corner;
-using support::flat;
-using support::max_abs;
+using support::max_difference;
 
 constexpr double mu_s = 1.3;
 
@@ -57,8 +55,10 @@ class GradedPlate : public ::testing::TestWithParam<std::tuple<Corner, int, bool
 };
 
 INSTANTIATE_TEST_SUITE_P(Levels, GradedPlate,
-                         ::testing::Combine(::testing::Values(Corner::none, Corner::relief),
-                                            ::testing::Values(1, 5), ::testing::Bool()));
+                         ::testing::Values(std::tuple(Corner::none, 1, false),
+                                           std::tuple(Corner::none, 5, true),
+                                           std::tuple(Corner::relief, 5, false),
+                                           std::tuple(Corner::relief, 1, true)));
 
 TEST_P(GradedPlate, LargerElementsTakeLargerSteps) {
   for (const double damping_s : {0.0, 1e-7}) {
@@ -100,19 +100,6 @@ TEST_P(GradedPlate, TheBooksCloseWithEverythingOn) {
     EXPECT_EQ(now.coupling_work != 0, !is_plain());
     EXPECT_LE(worst_J, 1e-12 * largest_J);  // as on plain plates, see energies_test
   }
-}
-
-TEST_P(GradedPlate, AtRestStaysAtRest) {
-  const statics::Statics statics(
-      mesh_, {}, {.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3, .edge_margin_m = 2e-3}, mu_s);
-  const auto e = statics.shear_by(0.02e-3);
-  Stepper stepper(mesh_, {}, support::paper_law, time_);
-  stepper.start(e, 0);
-  Recorder recorder(e, mu_s, 0);
-  for (int step = 0; step < 500; ++step) stepper.advance(recorder);
-  EXPECT_EQ(recorder.take(0).onsets.size(), 0);
-  // The static solution's residual (1e-11 of the forces) is all that moves.
-  EXPECT_LE(max_abs(flat(stepper.u_m()) - flat(e.u_m)), 1e-10 * max_abs(flat(e.u_m)));
 }
 
 TEST_P(GradedPlate, FlightDoesNotGrow) {
@@ -185,7 +172,7 @@ TEST(Graded, SinglePrecisionOfTheCoarsestBlockDiffersByRounding) {
     v[k] = stepper.v_m_per_s();
   }
   // Rounding of u (20 um, turned into velocities by 1/dt) and v (1 m/s), 6e-8 of each in every step.
-  const double dt = 8e-7, difference = max_abs(flat(v[1]) - flat(v[0]));
+  const double dt = 8e-7, difference = max_difference(v[1], v[0]);
   EXPECT_LE(difference, n_steps * 6e-8 * (1 + 20e-6 / dt));
   EXPECT_GT(difference, 1e-10);
 }
@@ -196,32 +183,6 @@ TEST(Graded, RefusesAnInterfaceLayerAboveTheSmallestElements) {
   const auto mesh = mesh::make_plate(graded_plate(Corner::none));
   EXPECT_THAT([&] { Stepper(mesh, {}, support::paper_law, time); },
               ::testing::ThrowsMessage<UserError>(::testing::HasSubstr("plate.fine_height_m")));
-}
-
-TEST(Graded, StaticsAreNearThoseOfTheUniformPlate) {
-  const statics::Loading loading{.tilt_left_m = 0.12e-3, .tilt_right_m = 0.09e-3, .edge_margin_m = 2e-3};
-  auto plate = graded_plate(Corner::relief);
-  const auto tractions = [&](const mesh::Plate& p) {
-    const auto mesh = mesh::make_plate(p);
-    return statics::Statics(mesh, {}, loading, mu_s).shear_by(0.02e-3).tractions;
-  };
-  const auto coarse_above = tractions(plate);
-  plate.coarsenings = 0;
-  const auto uniform = tractions(plate);
-  plate.element_size_m *= 2;
-  const auto coarse = tractions(plate);
-  const auto difference = [&](const record::StaticState& a, std::size_t stride) {
-    double worst = 0;
-    for (std::size_t k = 4; k + 4 < uniform.x_m.size(); k += 2)  // away from the edges
-      worst = std::max(worst, std::abs(a.p_s_Pa[k / stride] / uniform.p_s_Pa[k] - 1));
-    return worst;
-  };
-  const double graded = difference(coarse_above, 1), doubled = difference(coarse, 2);
-  fmt::print("pressure against the uniform plate: graded {:.2g}, all elements doubled {:.2g}\n", graded,
-             doubled);
-  // Larger elements away from the interface must cost less than larger ones everywhere.
-  EXPECT_LT(graded, doubled);
-  EXPECT_GT(graded, 1e-6);
 }
 
 /// Largest difference, in the lower part of a plate of 1 mm elements, between a plate that is coarsened above

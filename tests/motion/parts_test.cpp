@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -306,27 +305,110 @@ void expect_parts_change_nothing(const Problem& problem, std::vector<int> number
   }
 }
 
-TEST(Parts, LeaveTheMotionAsItIs) {
-  expect_parts_change_nothing(Problem{}, {2, 3, 4, 5});
+/// Three sizes of elements; local steps need the damping.
+Problem graded() {
+  Problem problem;
+  problem.plate.coarsenings = problem.coarsenings_below = 2;
+  problem.plate.fine_height_m = 4e-3;
+  problem.stiffness_damping_s = 1e-7;
+  problem.probes = {{"a", 0.0501, 0.0049}, {"b", 0.1004, 0.0102}, {"c", 0.0672, 0.0201}};
+  return problem;
 }
 
-TEST(Parts, WithoutSubSteps) {
-  Problem problem;
-  problem.time.interface_substeps = 1;
-  problem.time.interface_rows = 1;
-  expect_parts_change_nothing(problem);
+struct Variant {
+  const char* name;
+  void (*change)(Problem&);
+  std::vector<int> numbers = {2, 3};
+};
+
+void without_substeps(Problem& p) {
+  p.time.interface_substeps = p.time.interface_rows = 1;
 }
 
-TEST(Parts, ByThreads) {
+void with_threads(Problem& p) {
+  p.plate.height_m = 0.2;
+  p.execution.threads = 2;
+  without_substeps(p);
+}
+
+void between_absorbing_edges(Problem& p) {
+  p.plate.sides = mesh::Sides::absorbing;
+  p.plate.top = mesh::Top::absorbing;
+}
+
+/// The rupture passes the sides.
+void repeating(Problem& p) {
+  p.below = &gel;
+  p.plate.sides = mesh::Sides::periodic;
+  p.plate.top = mesh::Top::absorbing;
+  p.patch = 0.97;
+}
+
+void of_heights(Problem& p, double height_m, double height_below_m) {
+  p.below = &pmma;
+  p.plate.height_m = height_m;
+  p.height_below_m = height_below_m;
+  p.probes.clear();
+  without_substeps(p);
+}
+
+void graded_bodies(Problem& p, const solid::Material& below, int coarsenings, int coarsenings_below) {
+  p = graded();
+  p.below = &below;
+  p.plate.width_m = 0.4;
+  p.plate.coarsenings = coarsenings;
+  p.coarsenings_below = coarsenings_below;
+}
+
+constexpr auto single = Precision::single_precision;
+constexpr auto predictor_corrector = interface::ContactAlgorithm::predictor_corrector;
+
+const Variant variants[] = {
+    {"Plain", [](Problem&) {}, {2, 3, 4, 5}},
+    {"Threads", with_threads},
+    {"ThreadsSingle", [](Problem& p) { with_threads(p), p.time.precision = single; }},
+    {"Relief", [](Problem& p) { p.plate.corner = mesh::Corner::relief; }},
+    {"ReliefSingle", [](Problem& p) { p.plate.corner = mesh::Corner::relief, p.time.precision = single; }},
+    {"Fillet", [](Problem& p) { p.plate.corner = mesh::Corner::fillet; }},
+    {"AbsorbingEdges", between_absorbing_edges},
+    {"Repeating", repeating, {2, 3, 4}},
+    {"TwoBodies", [](Problem& p) { p.below = &gel, p.contact.algorithm = predictor_corrector; }},
+    {"LowOnLow", [](Problem& p) { of_heights(p, 7e-3, 6e-3); }, {2}},
+    {"LowOnHigh", [](Problem& p) { of_heights(p, 9e-3, 60e-3); }, {2}},
+    {"Regularised",
+     [](Problem& p) {
+       p.contact.regularisation = {.relaxed = interface::Relaxed::strength, .time_s = 0.5e-6};
+     }},
+    {"Graded", [](Problem& p) { p = graded(); }, {2, 3, 4, 5}},
+    {"GradedOneStep", [](Problem& p) { p = graded(), p.time.local_steps = false, without_substeps(p); }},
+    {"GradedFillet",
+     [](Problem& p) {
+       p = graded();
+       p.plate.corner = mesh::Corner::fillet;
+       p.plate.fine_height_m = 9e-3;
+       p.plate.coarsenings = 1;
+     }},
+    {"GradedHalfUnits",
+     [](Problem& p) { p = graded(), p.plate.width_m = 0.204, between_absorbing_edges(p); }},
+    {"GradedRepeating", [](Problem& p) { graded_bodies(p, gel, 2, 2), repeating(p); }, {2, 3, 4}},
+    {"GradedSingle", [](Problem& p) { p = graded(), p.plate.height_m = 0.1, p.time.precision = single; }},
+    {"EvenOnGradedOneStep",
+     [](Problem& p) { graded_bodies(p, pmma, 0, 2), p.time.local_steps = false; },
+     {2}},
+    {"GradedOnEven",
+     [](Problem& p) { graded_bodies(p, gel, 2, 0), p.contact.algorithm = predictor_corrector; }},
+    {"GradedOnMoreGraded",
+     [](Problem& p) { graded_bodies(p, gel, 1, 2), p.contact.algorithm = predictor_corrector; }},
+};
+
+class PartsOf : public ::testing::TestWithParam<Variant> {};
+INSTANTIATE_TEST_SUITE_P(Variants, PartsOf, ::testing::ValuesIn(variants),
+                         [](const auto& variant) { return variant.param.name; });
+
+TEST_P(PartsOf, ABodyMoveAsItDoes) {
   Problem problem;
-  problem.plate.height_m = 0.2;
-  problem.time.interface_substeps = 1;
-  problem.time.interface_rows = 1;
-  problem.execution.threads = 2;
-  for (const auto precision : {Precision::double_precision, Precision::single_precision}) {
-    problem.time.precision = precision;
-    expect_parts_change_nothing(problem);
-  }
+  GetParam().change(problem);
+  expect_parts_change_nothing(problem, GetParam().numbers);
 }
 
 TEST(Parts, ShareTheStepsBetweenExchangesAmongThreads) {
@@ -338,166 +420,6 @@ TEST(Parts, ShareTheStepsBetweenExchangesAmongThreads) {
     const Execution execution{.threads = 2, .steps_per_sweep = 16, .most_steps = most_steps};
     EXPECT_EQ(Stepper(bodies.sources(), problem.contact, problem.time, execution).steps_per_sweep(),
               per_sweep);
-  }
-}
-
-TEST(Parts, WithEachCorner) {
-  for (const auto corner : {mesh::Corner::relief, mesh::Corner::fillet}) {
-    SCOPED_TRACE(test::name_of(corner));
-    Problem problem;
-    problem.plate.corner = corner;
-    expect_parts_change_nothing(problem);
-  }
-}
-
-TEST(Parts, BetweenAbsorbingEdges) {
-  Problem problem;
-  problem.plate.sides = mesh::Sides::absorbing;
-  problem.plate.top = mesh::Top::absorbing;
-  expect_parts_change_nothing(problem);
-}
-
-TEST(Parts, OfAPlateThatRepeats) {
-  for (const auto* below : {static_cast<const solid::Material*>(nullptr), &gel}) {
-    Problem problem;
-    problem.below = below;
-    problem.plate.sides = mesh::Sides::periodic;
-    problem.plate.top = mesh::Top::absorbing;
-    // The rupture passes the sides.
-    problem.patch = 0.97;
-    expect_parts_change_nothing(problem, {2, 3, 4});
-  }
-}
-
-TEST(Parts, InSinglePrecision) {
-  for (const auto corner : {mesh::Corner::none, mesh::Corner::relief}) {
-    Problem problem;
-    problem.plate.corner = corner;
-    problem.time.precision = Precision::single_precision;
-    expect_parts_change_nothing(problem);
-  }
-}
-
-TEST(Parts, OfTwoBodies) {
-  for (const auto algorithm :
-       {interface::ContactAlgorithm::direct, interface::ContactAlgorithm::predictor_corrector}) {
-    Problem problem;
-    problem.below = &gel;
-    problem.contact.algorithm = algorithm;
-    expect_parts_change_nothing(problem);
-  }
-}
-
-TEST(Parts, OfBodiesOfDifferentHeights) {
-  for (const double height_m : {6e-3, 7e-3, 9e-3, 60e-3})
-    for (const double height_below_m : {6e-3, 8e-3, 60e-3}) {
-      SCOPED_TRACE(fmt::format("{} m on {} m", height_m, height_below_m));
-      Problem problem;
-      problem.below = &pmma;
-      problem.plate.height_m = height_m;
-      problem.height_below_m = height_below_m;
-      problem.time.interface_substeps = 1;
-      problem.time.interface_rows = 1;
-      problem.probes.clear();
-      expect_parts_change_nothing(problem, {2});
-    }
-}
-
-TEST(Parts, WithAPredictorCorrector) {
-  Problem problem;
-  problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
-  expect_parts_change_nothing(problem);
-}
-
-TEST(Parts, WithRegularisedFriction) {
-  Problem problem;
-  problem.contact.regularisation = {.relaxed = interface::Relaxed::strength, .time_s = 0.5e-6};
-  expect_parts_change_nothing(problem);
-}
-
-/// Three sizes of elements; local steps need the damping.
-Problem graded() {
-  Problem problem;
-  problem.plate.coarsenings = problem.coarsenings_below = 2;
-  problem.plate.fine_height_m = 4e-3;
-  problem.stiffness_damping_s = 1e-7;
-  problem.probes = {{"a", 0.0501, 0.0049}, {"b", 0.1004, 0.0102}, {"c", 0.0672, 0.0201}};
-  return problem;
-}
-
-TEST(Parts, OfGradedPlates) {
-  for (const bool local_steps : {true, false}) {
-    auto problem = graded();
-    problem.time.local_steps = local_steps;
-    expect_parts_change_nothing(problem, {2, 3, 4, 5});
-    problem.time.interface_substeps = 1;
-    problem.time.interface_rows = 1;
-    expect_parts_change_nothing(problem);
-  }
-}
-
-TEST(Parts, OfAGradedBodyOnAnotherOne) {
-  for (const auto& [above, below] : {std::pair{0, 1}, std::pair{1, 0}, std::pair{0, 2}}) {
-    SCOPED_TRACE(fmt::format("{} on {} coarsenings", above, below));
-    auto problem = graded();
-    problem.below = &pmma;
-    problem.plate.width_m = 0.4;
-    problem.plate.coarsenings = above;
-    problem.coarsenings_below = below;
-    problem.time.local_steps = false;
-    expect_parts_change_nothing(problem, {2});
-  }
-}
-
-TEST(Parts, OfGradedPlatesWithEachCorner) {
-  for (const auto corner : {mesh::Corner::relief, mesh::Corner::fillet}) {
-    SCOPED_TRACE(test::name_of(corner));
-    auto problem = graded();
-    problem.plate.corner = corner;
-    problem.plate.fine_height_m = 9e-3;
-    problem.plate.coarsenings = 1;
-    expect_parts_change_nothing(problem);
-  }
-}
-
-TEST(Parts, OfGradedPlatesOfHalfUnitsBetweenAbsorbingEdges) {
-  auto problem = graded();
-  problem.plate.coarsenings = 2;
-  problem.plate.width_m = 0.204;
-  problem.plate.sides = mesh::Sides::absorbing;
-  problem.plate.top = mesh::Top::absorbing;
-  expect_parts_change_nothing(problem);
-}
-
-TEST(Parts, OfGradedPlatesThatRepeat) {
-  for (const auto* below : {static_cast<const solid::Material*>(nullptr), &gel}) {
-    auto problem = graded();
-    problem.below = below;
-    problem.plate.width_m = 0.4;
-    problem.plate.sides = mesh::Sides::periodic;
-    problem.plate.top = mesh::Top::absorbing;
-    problem.patch = 0.97;
-    expect_parts_change_nothing(problem, {2, 3, 4});
-  }
-}
-
-TEST(Parts, OfGradedPlatesInSinglePrecision) {
-  auto problem = graded();
-  problem.plate.height_m = 0.1;
-  problem.time.precision = Precision::single_precision;
-  expect_parts_change_nothing(problem);
-}
-
-TEST(Parts, OfTwoBodiesOneOrBothGraded) {
-  for (const auto& [above, below] : {std::pair{2, 2}, std::pair{0, 2}, std::pair{2, 0}, std::pair{1, 2}}) {
-    SCOPED_TRACE(fmt::format("{} and {}", above, below));
-    auto problem = graded();
-    problem.below = &gel;
-    problem.plate.width_m = 0.4;
-    problem.plate.coarsenings = above;
-    problem.coarsenings_below = below;
-    problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
-    expect_parts_change_nothing(problem);
   }
 }
 
@@ -760,7 +682,7 @@ int allowed_instead(int n, const Problem& problem, const std::string& why) {
 }
 
 TEST(Parts, RecordTractionsAroundOnsetsAsFarAsTheyReach) {
-  for (const int reach : {0, 12, 60})
+  for (const int reach : {0, 60})
     for (const auto sides : {mesh::Sides::free, mesh::Sides::periodic}) {
       Problem problem;
       problem.halo = reach;
@@ -896,7 +818,7 @@ TEST(Parts, DoNotEndAtARoundedCorner) {
     problem.time.interface_rows = interface_rows;
     const auto one = run_by_one(problem, n_steps);
     std::set<int> same;
-    for (const int n : {6, 7, 8, 9, 10, 11, 12, 13, 14, 15}) {
+    for (const int n : {6, 7, 9, 11, 13, 15}) {
       const int allowed = allowed_instead(n, problem, "rounded corner");
       SCOPED_TRACE(fmt::format("{} processes, {} rows", allowed, interface_rows));
       ASSERT_GT(allowed, 0);
@@ -918,7 +840,7 @@ TEST(Parts, OfARingHaveHalosThatDoNotMeet) {
   problem.plate.fine_height_m = 6e-3;
   problem.time.interface_substeps = 1;
   std::set<int> allowed_of_all;
-  for (const int columns : {128, 192, 208, 256}) {
+  for (const int columns : {128, 208, 256}) {
     problem.plate.width_m = columns * problem.plate.element_size_m;
     const auto one = run_by_one(problem, n_steps);
     for (const int n : {2, 3, 4}) {

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 #include <tuple>
 
@@ -17,10 +16,10 @@ namespace slipfront::motion {
 namespace {
 
 using mesh::Corner;
-using support::flat;
 using support::gentle_law;
 using support::in_flight;
 using support::max_abs;
+using support::max_difference;
 using support::one_substep;
 using support::paper_law;
 using support::tiny_plate;
@@ -71,7 +70,7 @@ bool touches(const Stepper& stepper) {
 }
 
 class FreeFlight : public ::testing::TestWithParam<Corner> {};
-INSTANTIATE_TEST_SUITE_P(Corners, FreeFlight, ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+INSTANTIATE_TEST_SUITE_P(Corners, FreeFlight, ::testing::Values(Corner::relief, Corner::fillet),
                          [](const auto& corner) { return support::name_of(corner.param); });
 
 TEST_P(FreeFlight, UndampedFlightConservesTheLeapfrogEnergy) {
@@ -93,29 +92,10 @@ TEST_P(FreeFlight, UndampedFlightConservesTheLeapfrogEnergy) {
   EXPECT_LE(worst, 1e-12);  // exactly conserved but for rounding
 }
 
-TEST_P(FreeFlight, UndampedFlightIsReversible) {
-  const auto mesh = tiny_plate(GetParam());
-  Stepper stepper(mesh, undamped(), paper_law, one_substep());
-  const auto e = random_flight(mesh, 1e-6, 1);
-  stepper.start(e, 1);
-  Recorder recorder(e, mu_s, 0);
-  const int n_steps = 1000;
-  for (int step = 0; step < n_steps; ++step) stepper.advance(recorder);
-  const solid::Field u = stepper.u_m();
-  stepper.advance(recorder);
-  solid::Field v = stepper.v_m_per_s();
-  for (auto* component : {&v.x, &v.y})
-    for (double& value : *component) value = -value;
-  stepper.start(in_flight(mesh, u, v), 1);
-  for (int step = 0; step < n_steps; ++step) stepper.advance(recorder);
-  EXPECT_LE(max_abs(flat(stepper.u_m()) - flat(e.u_m)), 1e-6 * 1e-9);  // rounding of a thousand steps
-  EXPECT_GT(max_abs(flat(u) - flat(e.u_m)), 1e-6);
-}
-
 TEST_P(FreeFlight, TheStableStepIsSharp) {
   // The step is a lower bound within 0.05 %.
   const auto mesh = tiny_plate(GetParam());
-  for (const double damping_s : {0.0, 0.1e-6, 1e-6}) {
+  for (const double damping_s : {0.0, 1e-6}) {
     for (const double factor : {0.999, 1.005}) {
       Stepper stepper(mesh, {.stiffness_damping_s = damping_s}, paper_law, one_substep(factor));
       const auto e = random_flight(mesh, 1e-6, 1, 1e-2);
@@ -138,7 +118,7 @@ TEST(SubcycledFlight, EnergyStaysBounded) {
   // A symplectic scheme conserves an energy near its own, which shows as a swing without growth. The swing is
   // that of a leapfrog whose displacements and velocities are half a step apart, omega dt/2 = 0.031 for the
   // lowest mode, which the smooth start excites most; a random start swings more but not increasingly.
-  for (const auto corner : {Corner::none, Corner::relief, Corner::fillet}) {
+  for (const auto corner : {Corner::relief, Corner::fillet}) {
     SCOPED_TRACE(support::name_of(corner));
     const auto mesh = tiny_plate(corner);
     Stepper stepper(mesh, undamped(), paper_law, {});
@@ -183,65 +163,7 @@ TEST(SubcycledFlight, EnergyStaysBounded) {
   }
 }
 
-TEST(OneSubstep, IsTheLeapfrogScheme) {
-  // A triggered event by whole-plate accelerations and contact updates.
-  const auto mesh = tiny_plate(Corner::relief);
-  const solid::Material material;
-  const statics::Statics statics(
-      mesh, material, {.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3}, mu_s);
-  const auto e = statics.shear_to(0.9);
-  const auto tributary = mesh::tributary_lengths_m(mesh);
-  const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
-  const auto force = trigger_forces(e, tributary, interface::EventKind::right, trigger, mu_s);
-  for (const int rows : {1, 4}) {
-    auto time = one_substep();
-    time.interface_rows = rows;
-    Stepper stepper(mesh, material, gentle_law, time);
-    stepper.start(e, 0, {.trigger_force_N_per_m = force, .trigger = trigger});
-    Recorder recorder(e, mu_s, 0);
-
-    const solid::Operator plate = solid::make_operator(mesh, material);
-    const double dt = stepper.step_s();
-    solid::Field u = e.u_m, v(u.size()), w(u.size()), a(u.size());
-    interface::Interface s(mesh.lower.size());
-    for (std::size_t k = 0; k < s.size(); ++k) {
-      s.initial_gap_m[k] = mesh.y_m[mesh.lower[k]];
-      s.mass_per_length_kg_m2[k] = plate.mass_kg[mesh.lower[k]] / tributary[k];
-      s.slipping[k] = e.contact[k] == statics::Contact::slip;
-    }
-    double u_worst = 0, v_worst = 0;
-    for (int step = 0; step < 40; ++step) {
-      for (std::size_t n = 0; n < u.size(); ++n) {
-        w.x[n] = u.x[n] + material.stiffness_damping_s * v.x[n];
-        w.y[n] = u.y[n] + material.stiffness_damping_s * v.y[n];
-      }
-      solid::apply(plate, w, a);
-      for (std::size_t n = 0; n < u.size(); ++n) v.x[n] -= dt * a.x[n], v.y[n] -= dt * a.y[n];
-      for (std::size_t k = 0; k < s.size(); ++k) {
-        const auto n = mesh.lower[k];
-        s.v_x_m_per_s[k] =
-            v.x[n] + dt * interface::trigger_factor(trigger, step * dt) * force[k] / plate.mass_kg[n];
-        s.v_y_m_per_s[k] = v.y[n];
-        s.u_y_m[k] = u.y[n];
-      }
-      interface::update_contact(gentle_law, dt, s);
-      for (std::size_t k = 0; k < s.size(); ++k) {
-        v.x[mesh.lower[k]] = s.v_x_m_per_s[k];
-        v.y[mesh.lower[k]] = s.v_y_m_per_s[k];
-      }
-      for (std::size_t n = 0; n < u.size(); ++n) u.x[n] += dt * v.x[n], u.y[n] += dt * v.y[n];
-      stepper.advance(recorder);
-      u_worst = std::max(u_worst, max_abs(flat(stepper.u_m()) - flat(u)));
-      v_worst = std::max(v_worst, max_abs(flat(stepper.v_m_per_s()) - flat(v)));
-    }
-    EXPECT_GT(recorder.take(0).onsets.size(), 5);
-    EXPECT_EQ(stepper.interface_state().slipping, s.slipping);
-    EXPECT_LE(u_worst, rounding_m);
-    EXPECT_LE(v_worst, rounding_m_per_s);
-  }
-}
-
-/// The scheme written down plainly: whole matrices, one for each kind of cells. The coarse cells push at the
+/// The scheme written down plainly: stiffnesses of whole cells, of two kinds. The coarse cells push at the
 /// beginning of each step; nodes between the two kinds feel the coarse cells' force at the start in all
 /// sub-steps and its change in the pushes, and count for the coarse cells' damping with their mean velocity.
 class PlainScheme {
@@ -264,17 +186,14 @@ class PlainScheme {
         for (const auto a : cell)
           for (const auto b : cell) distance[a] = std::min(distance[a], last[b] + 1);
     }
-    std::vector<bool> fine_cell, coarse_cell;
     std::vector<bool> has_fine(mesh.n_nodes()), has_coarse(mesh.n_nodes());
     for (const auto& cell : mesh.cells) {
       int nearest = 1000;
       for (const auto n : cell) nearest = std::min(nearest, distance[n]);
-      fine_cell.push_back(nearest < settings.interface_rows && substeps_ > 1);
-      coarse_cell.push_back(!fine_cell.back());
-      for (const auto n : cell) (fine_cell.back() ? has_fine : has_coarse)[n] = true;
+      is_fine_.push_back(nearest < settings.interface_rows && substeps_ > 1);
+      stiffness_.push_back(solid::cell_stiffness(solid::cell_coordinates(mesh, cell), material));
+      for (const auto n : cell) (is_fine_.back() ? has_fine : has_coarse)[n] = true;
     }
-    K_fine_ = support::assembled_stiffness(mesh, material, fine_cell);
-    K_coarse_ = support::assembled_stiffness(mesh, material, coarse_cell);
     for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
       if (has_fine[n]) kind_[n] = has_coarse[n] ? shared : fine;
       if (mass_[n] == 0) kind_[n] = none;
@@ -284,70 +203,95 @@ class PlainScheme {
   }
 
   void start(const statics::Equilibrium& e, double top_speed) {
-    u = flat(e.u_m);
-    v = top_speed * flat(e.u_per_shear);
-    u_before_ = u - step_s_ * v;
-    steady_ = K_coarse_ * (u + damping_s_ * v);
+    u = u_before_ = e.u_m;
+    v = e.u_per_shear;
+    for (const auto component : components) {
+      for (double& value : v.*component) value *= top_speed;
+      for (std::size_t n = 0; n < u.size(); ++n) (u_before_.*component)[n] -= step_s_ * (v.*component)[n];
+    }
+    steady_ = force(false, v);
     trigger_force.assign(mesh_.lower.size(), 0);
   }
 
   void advance() {
-    Eigen::VectorXd v_coarse = v;
-    for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n)
-      if (kind_[n] == shared) v_coarse.segment<2>(2 * n) = (u - u_before_).segment<2>(2 * n) / step_s_;
+    solid::Field v_coarse = v;
+    for (const auto component : components)
+      for (std::size_t n = 0; n < u.size(); ++n)
+        if (kind_[n] == shared)
+          (v_coarse.*component)[n] = ((u.*component)[n] - (u_before_.*component)[n]) / step_s_;
     u_before_ = u;
-    const Eigen::VectorXd f_coarse = K_coarse_ * (u + damping_s_ * v_coarse);
+    const auto f_coarse = force(false, v_coarse);
     const double dt = step_s_ / substeps_;
     for (int k = 0; k < substeps_; ++k) {
-      const Eigen::VectorXd f = K_fine_ * (u + damping_s_ * v);
-      for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {
-        if (kind_[n] == top) u(2 * n) += dt * v(2 * n);
-        if (kind_[n] == none || kind_[n] == top) continue;
-        const auto at = [&](const Eigen::VectorXd& field) { return field.segment<2>(2 * n); };
-        v.segment<2>(2 * n) -= dt / mass_[n] * at(f);
-        if (kind_[n] == shared) v.segment<2>(2 * n) -= dt / mass_[n] * at(steady_);
-        const Eigen::Vector2d held =
-            kind_[n] == shared ? Eigen::Vector2d(at(steady_)) : Eigen::Vector2d(0, 0);
-        if (k == 0) v.segment<2>(2 * n) -= step_s_ / mass_[n] * (at(f_coarse) - held);
-        if (kind_[n] != contact) u.segment<2>(2 * n) += dt * at(v);
-      }
+      const auto f = force(true, v);
+      for (const auto component : components)
+        for (std::size_t n = 0; n < u.size(); ++n) {
+          auto &u_n = (u.*component)[n], &v_n = (v.*component)[n];
+          if (kind_[n] == top && component == &solid::Field::x) u_n += dt * v_n;
+          if (kind_[n] == none || kind_[n] == top) continue;
+          const double held = kind_[n] == shared ? (steady_.*component)[n] : 0;
+          v_n -= dt / mass_[n] * ((f.*component)[n] + held);
+          if (k == 0) v_n -= step_s_ / mass_[n] * ((f_coarse.*component)[n] - held);
+          if (kind_[n] != contact) u_n += dt * v_n;
+        }
       touch(dt, time_s + k * dt);
     }
     time_s += step_s_;
   }
 
-  Eigen::VectorXd u, v;
+  solid::Field u, v;
   double time_s = 0;
   std::vector<double> trigger_force, slip_rate = std::vector<double>(1000, 0.0);
   interface::Trigger trigger;
 
  private:
+  enum Kind { coarse, shared, fine, contact, top, none };
+  static constexpr auto components = {&solid::Field::x, &solid::Field::y};
+
+  /// K (u + beta v) of the fine or of the coarse cells.
+  solid::Field force(bool of_fine, const solid::Field& velocity) const {
+    solid::Field f(u.size());
+    for (std::size_t c = 0; c < mesh_.cells.size(); ++c) {
+      if (is_fine_[c] != of_fine) continue;
+      const auto& cell = mesh_.cells[c];
+      for (std::size_t a = 0; a < 8; ++a)
+        for (std::size_t b = 0; b < 8; ++b) {
+          const auto n = cell[b / 2];
+          const double w =
+              b % 2 == 0 ? u.x[n] + damping_s_ * velocity.x[n] : u.y[n] + damping_s_ * velocity.y[n];
+          (a % 2 == 0 ? f.x : f.y)[cell[a / 2]] += stiffness_[c][8 * a + b] * w;
+        }
+    }
+    return f;
+  }
+
   void touch(double dt, double now) {
     const auto mu = gentle_law.law.as<interface::VelocityWeakening>().evaluator();
     for (std::size_t i = 0; i < mesh_.lower.size(); ++i) {
       const auto n = mesh_.lower[i];
       const double m = mass_[n], B = tributary_[i];
-      const double x = v(2 * n) + dt * trigger_factor(trigger, now) * trigger_force[i] / m, y = v(2 * n + 1);
-      const double gap = mesh_.y_m[n] + u(2 * n + 1);
+      const double x = v.x[n] + dt * trigger_factor(trigger, now) * trigger_force[i] / m, y = v.y[n];
+      const double gap = mesh_.y_m[n] + u.y[n];
       const double p = std::max(0.0, -(y + gap / dt) * m / (dt * B));
       const double stop = x * m / (dt * B);
       double mean = slip_rate[i];
       for (int evaluation = 0; evaluation < 3; ++evaluation) {
         const double strength = mu(std::abs(mean), 0) * p;
         const bool sticks = std::abs(stop) <= strength;
-        v(2 * n) = sticks ? 0 : x - dt * B * std::copysign(strength, stop) / m;
-        mean = 0.5 * (slip_rate[i] + v(2 * n));
+        v.x[n] = sticks ? 0 : x - dt * B * std::copysign(strength, stop) / m;
+        mean = 0.5 * (slip_rate[i] + v.x[n]);
       }
-      v(2 * n + 1) = y + dt * B * p / m;
-      slip_rate[i] = v(2 * n);
-      u.segment<2>(2 * n) += dt * v.segment<2>(2 * n);
+      v.y[n] = y + dt * B * p / m;
+      slip_rate[i] = v.x[n];
+      u.x[n] += dt * v.x[n];
+      u.y[n] += dt * v.y[n];
     }
   }
 
-  enum Kind { coarse, shared, fine, contact, top, none };
   const mesh::Mesh& mesh_;
-  support::Sparse K_fine_, K_coarse_;
-  Eigen::VectorXd u_before_, steady_;
+  std::vector<solid::CellStiffness> stiffness_;
+  std::vector<bool> is_fine_;
+  solid::Field u_before_, steady_;
   std::vector<double> mass_;
   double damping_s_, step_s_;
   int substeps_;
@@ -357,8 +301,8 @@ class PlainScheme {
 
 class Scheme : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {};
 INSTANTIATE_TEST_SUITE_P(Layers, Scheme,
-                         ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
-                                            ::testing::Values(1, 4, 8), ::testing::Values(1, 5)),
+                         ::testing::Combine(::testing::Values(Corner::relief, Corner::fillet),
+                                            ::testing::Values(1, 8), ::testing::Values(1, 5)),
                          [](const auto& p) {
                            return support::name_of(std::get<0>(p.param)) + "_" +
                                   std::to_string(std::get<1>(p.param)) + "rows_" +
@@ -391,8 +335,8 @@ TEST_P(Scheme, EqualsThePlainAlgorithm) {
   for (int step = 0; step < 40; ++step) {
     stepper.advance(recorder);
     plain.advance();
-    u_worst = std::max(u_worst, max_abs(flat(stepper.u_m()) - plain.u));
-    v_worst = std::max(v_worst, max_abs(flat(stepper.v_m_per_s()) - plain.v));
+    u_worst = std::max(u_worst, max_difference(stepper.u_m(), plain.u));
+    v_worst = std::max(v_worst, max_difference(stepper.v_m_per_s(), plain.v));
   }
   const auto record = recorder.take(stepper.time_s());
   EXPECT_GT(record.onsets.size(), 5);
@@ -452,7 +396,7 @@ TEST_P(Substeps, APlateAtRestStaysAtRest) {
     EXPECT_NEAR(s.t_Pa[k], e.tractions.t_s_Pa[k], 1e-9 * p_max) << k;
     EXPECT_NEAR(s.p_Pa[k], e.tractions.p_s_Pa[k], 1e-9 * p_max) << k;
   }
-  EXPECT_LE(max_abs(flat(stepper.u_m()) - flat(e.u_m)), 1e-10 * max_abs(flat(e.u_m)));
+  EXPECT_LE(max_difference(stepper.u_m(), e.u_m), 1e-10 * max_abs(e.u_m));
 }
 
 TEST_P(Substeps, StuckPlateFollowsTheTop) {
@@ -469,97 +413,17 @@ TEST_P(Substeps, StuckPlateFollowsTheTop) {
   stepper.start(e, speed);
   Recorder recorder(e, mu_s, 0);
   for (int step = 0; step < 500; ++step) stepper.advance(recorder);
-  const Eigen::VectorXd expected = flat(e.u_m) + speed * stepper.time_s() * flat(e.u_per_shear);
+  auto expected = e.u_m;
+  for (std::size_t n = 0; n < expected.size(); ++n) {
+    expected.x[n] += speed * stepper.time_s() * e.u_per_shear.x[n];
+    expected.y[n] += speed * stepper.time_s() * e.u_per_shear.y[n];
+  }
   // A uniform motion from the start would be exact; the stiffness damping shifts the force by beta_R v, which
   // the stress takes up within the displacement v beta_R. Between two pushes, the force of the coarse cells
   // lags by up to a step: v step.
   const double lag_s = material.stiffness_damping_s + (GetParam() > 1 ? stepper.step_s() : 0);
-  EXPECT_LE(max_abs(flat(stepper.u_m()) - expected), speed * lag_s);
+  EXPECT_LE(max_difference(stepper.u_m(), expected), speed * lag_s);
   EXPECT_GT(speed * stepper.time_s(), 200 * speed * lag_s);
-}
-
-TEST(Stepper, DampingDissipates) {
-  const auto mesh = tiny_plate(Corner::fillet);
-  for (const int substeps : {1, 18}) {
-    TimeStepping time;
-    time.interface_substeps = substeps;
-    Stepper stepper(mesh, {}, paper_law, time);
-    const auto e = random_flight(mesh, 1e-6, 1);
-    stepper.start(e, 1);
-    Recorder recorder(e, mu_s, 0);
-    // Energy at one instant fluctuates by the half step between u and v, and between pushes; its largest
-    // value in 400 steps falls.
-    double last = stepper.energy_J_per_m();
-    for (int block = 0; block < 6; ++block) {
-      double largest = 0;
-      for (int step = 0; step < 400; ++step) {
-        stepper.advance(recorder);
-        if (step >= 200) largest = std::max(largest, stepper.energy_J_per_m());
-      }
-      EXPECT_LT(largest, last) << substeps << " " << block;
-      last = largest;
-    }
-    ASSERT_FALSE(touches(stepper));
-  }
-}
-
-TEST(Stepper, MirroredPlateMovesMirrored) {
-  const auto mesh = support::make_plate(0.04, 0.02, 1e-3, Corner::relief);
-  const solid::Material material;
-  const statics::Statics statics(
-      mesh, material, {.tilt_left_m = 0.1e-3, .tilt_right_m = 0.04e-3, .edge_margin_m = 4e-3}, mu_s);
-  const auto e = statics.shear_to(0.95);
-  const int stride = mesh.grid.stride();
-  const auto mirror = [&](solid::Field u) {
-    const solid::Field old = u;
-    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
-      const mesh::Node image = n / stride * stride + stride - 1 - n % stride;
-      u.x[image] = -old.x[n];
-      u.y[image] = old.y[n];
-    }
-    return u;
-  };
-  statics::Equilibrium m = e;
-  m.u_m = mirror(e.u_m);
-  m.u_per_shear = mirror(e.u_per_shear);
-  std::ranges::reverse(m.contact);
-  std::ranges::reverse(m.tractions.p_s_Pa);
-  std::ranges::reverse(m.tractions.t_s_Pa);
-  for (double& t : m.tractions.t_s_Pa) t = -t;
-
-  const interface::Trigger trigger { .zone_m = 4e-3, .ramp_s = 1e-6 };
-  auto force = trigger_forces(e, mesh::tributary_lengths_m(mesh), interface::EventKind::right, trigger, mu_s);
-  const TimeStepping time;
-  Stepper one(mesh, material, paper_law, time), other(mesh, material, paper_law, time);
-  one.start(e, 1e-3, {.trigger_force_N_per_m = force, .trigger = trigger});
-  std::ranges::reverse(force);
-  for (double& f : force) f = -f;
-  other.start(m, 1e-3, {.trigger_force_N_per_m = force, .trigger = trigger});
-  Recorder of_one(e, mu_s, 1), of_other(m, mu_s, 1);
-  for (int step = 0; step < 60; ++step) {
-    one.advance(of_one);
-    other.advance(of_other);
-  }
-  const double duration = one.time_s();
-  const auto a = of_one.take(duration), b = of_other.take(duration);
-  ASSERT_GT(a.onsets.size(), 10);
-  ASSERT_EQ(a.onsets.size(), b.onsets.size());
-  ASSERT_EQ(a.stops.size(), b.stops.size());
-  // Only the order of sums differs; friction amplifies rounding, by far less than this within the event.
-  const auto by_node = [](auto list) {
-    std::ranges::sort(list, {}, [](const auto& o) { return std::pair(o.node, o.time_s); });
-    return list;
-  };
-  auto mirrored = b.onsets;
-  for (auto& onset : mirrored) onset.node = stride - 1 - onset.node;
-  const auto left = by_node(a.onsets), right = by_node(mirrored);
-  for (std::size_t k = 0; k < left.size(); ++k) {
-    EXPECT_EQ(left[k].node, right[k].node);
-    EXPECT_NEAR(left[k].time_s, right[k].time_s, 1e-9 * duration);
-  }
-  EXPECT_LE(max_abs(flat(one.u_m()) - flat(mirror(other.u_m()))), 1e-9 * max_abs(flat(one.u_m())));
-  EXPECT_LE(max_abs(flat(one.v_m_per_s()) - flat(mirror(other.v_m_per_s()))),
-            1e-7 * max_abs(flat(one.v_m_per_s())));
 }
 
 TEST(Stepper, TriggerWorkIsForceTimesPath) {
@@ -601,11 +465,13 @@ class Execute
     : public ::testing::TestWithParam<std::tuple<Corner, int, interface::ContactAlgorithm, Precision>> {};
 INSTANTIATE_TEST_SUITE_P(
     Cases, Execute,
-    ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
-                       ::testing::Values(1, 4),
-                       ::testing::Values(interface::ContactAlgorithm::direct,
-                                         interface::ContactAlgorithm::predictor_corrector),
-                       ::testing::Values(Precision::double_precision, Precision::single_precision)));
+    ::testing::Values(
+        std::tuple(Corner::none, 1, interface::ContactAlgorithm::direct, Precision::single_precision),
+        std::tuple(Corner::relief, 4, interface::ContactAlgorithm::direct, Precision::double_precision),
+        std::tuple(Corner::fillet, 1, interface::ContactAlgorithm::predictor_corrector,
+                   Precision::double_precision),
+        std::tuple(Corner::fillet, 4, interface::ContactAlgorithm::predictor_corrector,
+                   Precision::single_precision)));
 
 TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
   const auto corner = std::get<0>(GetParam());
@@ -656,8 +522,7 @@ TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
 
 class SinglePrecision : public ::testing::TestWithParam<std::tuple<Corner, int>> {};
 INSTANTIATE_TEST_SUITE_P(Cases, SinglePrecision,
-                         ::testing::Combine(::testing::Values(Corner::none, Corner::relief, Corner::fillet),
-                                            ::testing::Values(1, 4)));
+                         ::testing::Values(std::tuple(Corner::none, 1), std::tuple(Corner::fillet, 4)));
 
 TEST_P(SinglePrecision, MovesAsDoublePrecisionDoesButForRounding) {
   const auto corner = std::get<0>(GetParam());
@@ -683,10 +548,10 @@ TEST_P(SinglePrecision, MovesAsDoublePrecisionDoesButForRounding) {
   // over the steps, and forces turn errors of u into errors of v by 1/dt.
   const double eps = 6e-8, dt = 1e-7;
   const double limit_v = n_steps * eps * (speed_m_per_s + 20e-6 / dt);
-  EXPECT_LE(max_abs(flat(v[1]) - flat(v[0])), limit_v);
-  EXPECT_LE(max_abs(flat(u[1]) - flat(u[0])), n_steps * dt * limit_v + n_steps * eps * 20e-6);
+  EXPECT_LE(max_difference(v[1], v[0]), limit_v);
+  EXPECT_LE(max_difference(u[1], u[0]), n_steps * dt * limit_v + n_steps * eps * 20e-6);
   // And it is another computation.
-  EXPECT_GT(max_abs(flat(v[1]) - flat(v[0])), 1e-9 * speed_m_per_s);
+  EXPECT_GT(max_difference(v[1], v[0]), 1e-9 * speed_m_per_s);
   const double stored = start[0].stored();
   EXPECT_LE(std::abs(record::imbalance_J_per_m(energies[0], start[0])), 1e-12 * stored);
   EXPECT_LE(std::abs(record::imbalance_J_per_m(energies[1], start[1])), n_steps * 10 * eps * stored);

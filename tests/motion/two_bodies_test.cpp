@@ -175,16 +175,15 @@ TEST(TwoBodies, OnABaseEverStifferAndDenserComeToTheRigidPlane) {
   };
   const auto rigid = slip_of(0);
   std::vector<double> errors;
-  for (const double factor : {10, 100, 1000}) {
+  for (const double factor : {100, 1000}) {
     const auto slip_m = slip_of(factor);
     double error = 0;
     for (std::size_t i = 0; i < rigid.size(); ++i) error = std::max(error, std::abs(slip_m[i] - rigid[i]));
     errors.push_back(error / largest(rigid));
   }
   // The base's compliance is the plate's over the factor, and so is its part in the slip.
-  EXPECT_LT(errors[1], 3.0 / 100);
-  EXPECT_LT(errors[2], 3.0 / 1000);
-  EXPECT_NEAR(errors[1] / errors[2], 10, 1);
+  EXPECT_LT(errors[0], 3.0 / 100);
+  EXPECT_NEAR(errors[0] / errors[1], 10, 1);
 }
 
 /// A plane pulse that falls from above onto the bonded interface of two tall bodies.
@@ -271,8 +270,7 @@ void PrintTo(const Base& base, std::ostream* to) {
 /// A tilted and sheared plate on a base of another height, without slip.
 class AtRest : public ::testing::TestWithParam<std::tuple<Base, int>> {};
 INSTANTIATE_TEST_SUITE_P(Bases, AtRest,
-                         ::testing::Combine(::testing::Values(Base{"equal", pmma}, Base{"gel", gel},
-                                                              Base{"graded", pmma, 2}),
+                         ::testing::Combine(::testing::Values(Base{"gel", gel}, Base{"graded", pmma, 2}),
                                             ::testing::Values(1, 6)),
                          [](const auto& test) {
                            return std::string(std::get<0>(test.param).name) + "_" +
@@ -307,36 +305,6 @@ TEST_P(AtRest, StaticEquilibriumOfTwoBodiesStaysAtRest) {
   for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
     EXPECT_NEAR(s.t_Pa[k], e.tractions.t_s_Pa[k], 1e-9 * p_max) << k;
     EXPECT_NEAR(s.p_Pa[k], e.tractions.p_s_Pa[k], 1e-9 * p_max) << k;
-  }
-}
-
-TEST(TwoBodies, LoadedStaticallyFollowTheTop) {
-  // Started with the static motion under a moving edge, the bonded bodies keep to the static solution.
-  auto soft = gel;
-  soft.stiffness_damping_s = pmma.stiffness_damping_s;
-  const auto mesh = loaded_plate(0.02, mesh::Corner::none), base = loaded_plate(0.016, mesh::Corner::none);
-  const statics::Statics statics({mesh, pmma}, statics::ElasticBody{base, soft},
-                                 {.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3},
-                                 std::vector<double>(mesh.lower.size(), mu_s));
-  const auto e = statics.shear_by(0.01e-3);
-  ASSERT_EQ(std::ranges::count(e.contact, statics::Contact::stick), 41);
-  for (const int substeps : {1, 6}) {
-    Stepper stepper(BodySource{mesh, pmma}, BodySource{base, soft}, support::paper_law, stepping(substeps));
-    const double speed = 1e-3;
-    stepper.start(e, speed);
-    Recorder recorder(e, mu_s, 0);
-    for (int step = 0; step < 300; ++step) stepper.advance(recorder);
-    // As in StuckPlateFollowsTheTop; about the place to which a sudden force shifts it, the softer pair
-    // swings by as much.
-    const double lag_s = pmma.stiffness_damping_s + (substeps > 1 ? stepper.step_s() : 0);
-    const auto expect_static = [&](const solid::Field& u, const solid::Field& from,
-                                   const solid::Field& slope) {
-      const Eigen::VectorXd expected = support::flat(from) + speed * stepper.time_s() * support::flat(slope);
-      EXPECT_LE(support::max_abs(support::flat(u) - expected), 2 * speed * lag_s) << substeps;
-    };
-    expect_static(stepper.bodies()[0].u_m(), e.u_m, e.u_per_shear);
-    expect_static(stepper.bodies()[1].u_m(), e.below_u_m, e.below_u_per_shear);
-    EXPECT_GT(speed * stepper.time_s(), 100 * speed * lag_s);
   }
 }
 

@@ -120,7 +120,7 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
     int mode;
     double damping_s;
   };
-  for (const Case& c : {Case{0, 0}, Case{3, 0}, Case{0, 1e-7}, Case{3, 1e-7}, Case{0, 1e-6}}) {
+  for (const Case& c : {Case{3, 0}, Case{0, 1e-7}, Case{3, 1e-7}, Case{0, 1e-6}}) {
     SCOPED_TRACE(testing::Message() << "mode " << c.mode << ", damping " << c.damping_s << " s");
     const solid::Material material{.poissons_ratio = 0, .stiffness_damping_s = c.damping_s};
     Stepper stepper(mesh, material, support::paper_law, one_substep());

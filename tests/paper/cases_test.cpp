@@ -95,14 +95,6 @@ TEST(Studies, HaveTheScorecardsValues) {
       EXPECT_THAT(names(point), UnorderedElementsAre("spontaneous", "left", "right")) << name;
 }
 
-TEST(Studies, CoverMeshStepDampingCornersAndTrigger) {
-  const auto list = studies(false);
-  for (const char* key : {"plate.element_size_m", "time.interface_substeps", "material.stiffness_damping_s",
-                          "plate.corner", "loading.top_during_tilt", "loading.method", "event.trigger_amount",
-                          "event.trigger_zone_m", "event.trigger_ramp_s", "fronts.l_star_m"})
-    EXPECT_TRUE(std::ranges::any_of(list, [&](const Study& s) { return s.key == key; })) << key;
-}
-
 /// Line of a key in the resolved case.
 std::string line_of(const std::string& toml, const std::string& leaf) {
   const auto begin = toml.find("\n" + leaf + " = ");

@@ -115,12 +115,6 @@ TEST(MainFronts, MayStartInTheMarginOfTheTriggerZone) {
   EXPECT_TRUE(mains_of(o).empty());
 }
 
-TEST(MainFronts, TheLongestOfSeveralCounts) {
-  Outcome o = make_left(constant);
-  o.fronts.insert(o.fronts.begin(), make_front(0.01, 0.06, constant, o.speeds.c_L));
-  EXPECT_EQ(mains_of(o).at(0).front, &o.fronts[1]);
-}
-
 TEST(MainFronts, EndWhereTheSpeedStaysLow) {
   EXPECT_NEAR(counted(left_ending_with({0.11, 0.099, 0.01, 0.05})).second, left_end_m - 3e-3, 1e-9);
   // Slow for a while only.

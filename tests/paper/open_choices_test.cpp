@@ -31,7 +31,6 @@ std::size_t n_changed(const std::vector<OpenChoice>& choices, const Sample& samp
 TEST(OpenChoices, RangesHoldTheStandardAndGoBackAndForth) {
   for (const auto& choice : open_choices()) {
     SCOPED_TRACE(choice.name);
-    EXPECT_FALSE(choice.why.empty());
     EXPECT_TRUE(std::ranges::is_sorted(choice.levels));
     if (!choice.words.empty()) {
       EXPECT_EQ(choice.words.size(), choice.levels.size());
@@ -249,25 +248,6 @@ TEST(OpenChoices, TriggersAreReadFromTheFolderOfAStudy) {
     test::write_file(folder / "open_choices.json", fmt::format("{{\"n_triggers\": {}}}", counts));
     seal();
     EXPECT_THAT(error(), testing::HasSubstr("cannot be")) << counts;
-  }
-}
-
-TEST(OpenChoices, AQuickStudySaysSoAndNamesItsElements) {
-  OpenChoicesResult result;
-  result.quick = true;
-  result.choices = open_choices(true);
-  Sample standard;
-  for (const auto& choice : result.choices) standard.values.push_back(choice.standard);
-  result.outcomes.emplace_back().sample = standard;
-  const TemporaryFolder folder;
-  write_open_choices(folder.path(), result);
-  const auto json = nlohmann::json::parse(test::read_file(folder / "open_choices.json"));
-  EXPECT_EQ(json["quick"], true);
-  EXPECT_EQ(json["standard"]["values"]["element_size_m"], 4e-3);
-  for (const auto& sample : samples(result.choices, true)) {
-    const auto place =
-        std::ranges::find(result.choices, "element_size_m", &OpenChoice::name) - result.choices.begin();
-    EXPECT_EQ(sample.values[static_cast<std::size_t>(place)], 4e-3);
   }
 }
 

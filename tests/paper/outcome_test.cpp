@@ -123,16 +123,6 @@ TEST(Collapse, OfNothing) {
   EXPECT_TRUE(std::isnan(c.share_in_paper_band));
 }
 
-TEST(SpeedChange, OfARunWithItselfIsZero) {
-  const auto o = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
-  const auto change = speed_change(o, o);
-  EXPECT_EQ(change.median, 0);
-  EXPECT_EQ(change.median_absolute, 0);
-  EXPECT_EQ(change.largest, 0);
-  // Both fronts, 135 and 49 points after the start, without the 4 nearest (5 mm are left out).
-  EXPECT_NEAR(static_cast<double>(change.n_points), 135 + 49 - 2 * 4, 2);
-}
-
 TEST(SpeedChange, OfAScaledRunIsTheScale) {
   const auto reference = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
   auto run = reference;
@@ -209,9 +199,6 @@ TEST(MakeOutcome, OfSeveralFirstOnsetsTakesTheFarthestFromThePeak) {
   const auto o =
       make_outcome("run", make_result({{145, 1e-6}, {147, 1e-6}, {144, 1e-6}, {170, 2e-6}}), make_initial());
   EXPECT_DOUBLE_EQ(o.first_onset_x_m, 0.147);
-}
-
-TEST(MakeOutcome, WithoutOnsetsHasNone) {
   EXPECT_TRUE(std::isnan(make_outcome("run", make_result({{5, 0}}), make_initial()).first_onset_x_m));
 }
 

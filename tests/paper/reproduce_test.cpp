@@ -101,73 +101,84 @@ class QuickReproduction : public testing::Test {
   const Shared& s = *shared;
 };
 
-TEST_F(QuickReproduction, WritesEveryRun) {
-  for (const auto& name : run_folders()) {
-    for (const char* file : {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv"})
-      EXPECT_TRUE(fs::is_regular_file(s.folder.path() / name / file)) << name << '/' << file;
-    EXPECT_NE(json::parse(test::read_file(s.folder.path() / name / "run.json"))["end"], "interrupted");
+// One test: the shared reproduction is made once for each process of the test program.
+TEST_F(QuickReproduction, WritesAllOfItAndTheSameForAnyNumberOfThreads) {
+  {
+    SCOPED_TRACE("WritesEveryRun");
+    for (const auto& name : run_folders()) {
+      for (const char* file : {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv"})
+        EXPECT_TRUE(fs::is_regular_file(s.folder.path() / name / file)) << name << '/' << file;
+      EXPECT_NE(json::parse(test::read_file(s.folder.path() / name / "run.json"))["end"], "interrupted");
+    }
+    for (const auto& c : paper_cases(true))
+      EXPECT_TRUE(fs::is_regular_file(s.folder.path() / c.name / "fields.vtkhdf")) << c.name;
   }
-  for (const auto& c : paper_cases(true))
-    EXPECT_TRUE(fs::is_regular_file(s.folder.path() / c.name / "fields.vtkhdf")) << c.name;
-}
-
-TEST_F(QuickReproduction, TellsOfEveryRunOnce) {
-  EXPECT_THAT(s.done, testing::UnorderedElementsAreArray(run_folders()));
-  EXPECT_EQ(s.total, run_folders().size());
-  EXPECT_EQ(s.last_done, s.total);
-}
-
-TEST_F(QuickReproduction, ScorecardListsEveryClaim) {
-  const json list = json::parse(test::read_file(s.folder / "scorecard.json"));
-  ASSERT_TRUE(list.is_array());
-  ASSERT_EQ(list.size(), s.report.claims.size());
-  std::set<std::string> ids;
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const auto& row = list[k];
-    for (const char* key : {"id", "claim", "paper", "measured", "how"})
-      EXPECT_TRUE(row[key].is_string() && !row[key].get<std::string>().empty()) << row.dump();
-    EXPECT_TRUE(row["holds"].is_boolean() || row["holds"].is_null()) << row.dump();
-    EXPECT_TRUE(ids.insert(row["id"]).second) << row["id"];
-    const auto& claim = s.report.claims[k];
-    EXPECT_EQ(row["id"], claim.id);
-    EXPECT_EQ(row["measured"], claim.measured);
-    EXPECT_EQ(row["counts"], claim.counts);
-    EXPECT_EQ(row.value("second_test_of", ""), claim.second_test_of);
-    EXPECT_EQ(row.value("why", ""), claim.why);
-    EXPECT_EQ(row["holds"], claim.holds ? json(*claim.holds) : json(nullptr));
+  {
+    SCOPED_TRACE("TellsOfEveryRunOnce");
+    EXPECT_THAT(s.done, testing::UnorderedElementsAreArray(run_folders()));
+    EXPECT_EQ(s.total, run_folders().size());
+    EXPECT_EQ(s.last_done, s.total);
   }
-  for (int k = 1; k <= 23; ++k) EXPECT_TRUE(ids.contains(fmt::format("C{}", k))) << k;
-  EXPECT_TRUE(ids.contains("E1"));
-}
-
-TEST_F(QuickReproduction, AnalysisAndTimingsAreComplete) {
-  const json analysis = json::parse(test::read_file(s.folder / "analysis.json"));
-  for (const char* key :
-       {"fit", "fit_curve", "paper_fit", "share_in_paper_band", "n_points", "spread", "studies"})
-    EXPECT_TRUE(analysis.contains(key)) << key;
-  EXPECT_EQ(analysis["paper_fit"]["a"], 0.76);
-  EXPECT_EQ(analysis["paper_fit"]["b"], 1.80);
-  EXPECT_EQ(analysis["paper_fit"]["c"], 3.05);
-  ASSERT_EQ(analysis["studies"].size(), studies(true).size());
-  for (std::size_t k = 0; k < studies(true).size(); ++k) {
-    EXPECT_EQ(analysis["studies"][k]["name"], studies(true)[k].name);
-    EXPECT_EQ(analysis["studies"][k]["points"].size(), studies(true)[k].points.size());
+  {
+    SCOPED_TRACE("ScorecardListsEveryClaim");
+    const json list = json::parse(test::read_file(s.folder / "scorecard.json"));
+    ASSERT_TRUE(list.is_array());
+    ASSERT_EQ(list.size(), s.report.claims.size());
+    std::set<std::string> ids;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const auto& row = list[k];
+      for (const char* key : {"id", "claim", "paper", "measured", "how"})
+        EXPECT_TRUE(row[key].is_string() && !row[key].get<std::string>().empty()) << row.dump();
+      EXPECT_TRUE(row["holds"].is_boolean() || row["holds"].is_null()) << row.dump();
+      EXPECT_TRUE(ids.insert(row["id"]).second) << row["id"];
+      const auto& claim = s.report.claims[k];
+      EXPECT_EQ(row["id"], claim.id);
+      EXPECT_EQ(row["measured"], claim.measured);
+      EXPECT_EQ(row["counts"], claim.counts);
+      EXPECT_EQ(row.value("second_test_of", ""), claim.second_test_of);
+      EXPECT_EQ(row.value("why", ""), claim.why);
+      EXPECT_EQ(row["holds"], claim.holds ? json(*claim.holds) : json(nullptr));
+    }
+    for (int k = 1; k <= 23; ++k) EXPECT_TRUE(ids.contains(fmt::format("C{}", k))) << k;
+    EXPECT_TRUE(ids.contains("E1"));
   }
-  const json timings = json::parse(test::read_file(s.folder / "timings.json"));
-  ASSERT_EQ(timings.size(), s.report.timings.size());
-  for (const auto& t : timings) EXPECT_GE(t["wall_s"].get<double>(), 0);
-}
-
-TEST_F(QuickReproduction, EveryFileIsBitwiseTheSameForAnyNumberOfThreadsAndInEveryRun) {
-  const auto expected = reproducible_files(s.folder.path());
-  EXPECT_GT(expected.size(), 5 * run_folders().size());  // five files a run, and those of the whole
-  for (const int threads : {1, 2}) {
+  {
+    SCOPED_TRACE("AnalysisAndTimingsAreComplete");
+    const json analysis = json::parse(test::read_file(s.folder / "analysis.json"));
+    for (const char* key :
+         {"fit", "fit_curve", "paper_fit", "share_in_paper_band", "n_points", "spread", "studies"})
+      EXPECT_TRUE(analysis.contains(key)) << key;
+    EXPECT_EQ(analysis["paper_fit"]["a"], 0.76);
+    EXPECT_EQ(analysis["paper_fit"]["b"], 1.80);
+    EXPECT_EQ(analysis["paper_fit"]["c"], 3.05);
+    ASSERT_EQ(analysis["studies"].size(), studies(true).size());
+    for (std::size_t k = 0; k < studies(true).size(); ++k) {
+      EXPECT_EQ(analysis["studies"][k]["name"], studies(true)[k].name);
+      EXPECT_EQ(analysis["studies"][k]["points"].size(), studies(true)[k].points.size());
+    }
+    const json timings = json::parse(test::read_file(s.folder / "timings.json"));
+    ASSERT_EQ(timings.size(), s.report.timings.size());
+    for (const auto& t : timings) EXPECT_GE(t["wall_s"].get<double>(), 0);
+  }
+  {
+    SCOPED_TRACE("EveryFileIsBitwiseTheSameForAnyNumberOfThreadsAndOverwrites");
+    const auto expected = reproducible_files(s.folder.path());
+    EXPECT_GT(expected.size(), 5 * run_folders().size());  // five files a run, and those of the whole
+    // Over earlier results; what is no result stays.
     const TemporaryFolder folder;
-    reproduce(quick(folder.path(), threads), go_on);
-    const auto files = reproducible_files(folder.path());
+    fs::create_directories(folder / "spontaneous");
+    for (const char* file : {"scorecard.json", "spontaneous/fronts.csv"})
+      test::write_file(folder / file, "old");
+    for (const char* file : {"notes.txt", "spontaneous/notes.txt"}) test::write_file(folder / file, "mine");
+    reproduce(quick(folder.path(), 1, true), go_on);
+    auto files = reproducible_files(folder.path());
+    for (const char* file : {"notes.txt", "spontaneous/notes.txt"}) {
+      EXPECT_EQ(files[file], "mine") << file;
+      files.erase(file);
+    }
     ASSERT_EQ(files.size(), expected.size());
     for (const auto& [name, text] : expected)
-      EXPECT_TRUE(files.contains(name) && files.at(name) == text) << name << ", threads: " << threads;
+      EXPECT_TRUE(files.contains(name) && files.at(name) == text) << name;
   }
 }
 
@@ -211,39 +222,23 @@ TEST(Reproduce, RefusesAFolderThatHoldsAnything) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
 }
 
-TEST(Reproduce, OverwriteReplacesResultsAndNothingElse) {
-  const TemporaryFolder folder;
-  test::write_file(folder / "notes.txt", "mine");
-  test::write_file(folder / "scorecard.json", "old");
-  fs::create_directories(folder / "spontaneous");
-  test::write_file(folder / "spontaneous/fronts.csv", "old");
-  test::write_file(folder / "spontaneous/notes.txt", "mine");
-  reproduce(quick(folder.path(), 2, true), go_on);
-  EXPECT_EQ(test::read_file(folder / "notes.txt"), "mine");
-  EXPECT_EQ(test::read_file(folder / "spontaneous/notes.txt"), "mine");
-  EXPECT_NE(test::read_file(folder / "spontaneous/fronts.csv"), "old");
-  EXPECT_TRUE(json::parse(test::read_file(folder / "scorecard.json")).is_array());
-}
-
 TEST(Reproduce, InterruptionKeepsTheRunsThatWereDone) {
-  for (const int threads : {1, 2}) {
-    const TemporaryFolder folder;
-    std::vector<std::string> done;
-    EXPECT_THROW(reproduce(quick(folder.path(), threads),
-                           [&](std::size_t n, std::size_t, const std::string& name) {
-                             if (!name.empty() && n <= 3) done.push_back(name);
-                             return n < 3;
-                           }),
-                 Interrupted);
-    ASSERT_EQ(done.size(), 3U);
-    const auto unfinished = folder / "unfinished";
-    for (const auto& name : done) {
-      EXPECT_EQ(json::parse(test::read_file(unfinished / name / "run.json"))["status"], "complete") << name;
-      EXPECT_TRUE(fs::is_regular_file(unfinished / name / "fronts.csv"));
-    }
-    EXPECT_FALSE(fs::exists(unfinished / "scorecard.json"));
-    EXPECT_FALSE(fs::exists(unfinished / "studies"));
+  const TemporaryFolder folder;
+  std::vector<std::string> done;
+  EXPECT_THROW(reproduce(quick(folder.path(), 2),
+                         [&](std::size_t n, std::size_t, const std::string& name) {
+                           if (!name.empty() && n <= 3) done.push_back(name);
+                           return n < 3;
+                         }),
+               Interrupted);
+  ASSERT_EQ(done.size(), 3U);
+  const auto unfinished = folder / "unfinished";
+  for (const auto& name : done) {
+    EXPECT_EQ(json::parse(test::read_file(unfinished / name / "run.json"))["status"], "complete") << name;
+    EXPECT_TRUE(fs::is_regular_file(unfinished / name / "fronts.csv"));
   }
+  EXPECT_FALSE(fs::exists(unfinished / "scorecard.json"));
+  EXPECT_FALSE(fs::exists(unfinished / "studies"));
 }
 
 TEST_F(QuickReproduction, GoesOnBehindTheRunsThatWereDone) {
@@ -271,14 +266,6 @@ TEST(Reproduce, InterruptionLeavesEarlierResultsAsTheyWere) {
                Interrupted);
   for (const char* name : names)
     EXPECT_EQ(test::read_file(folder / name), "of an earlier reproduction") << name;
-}
-
-TEST(Reproduce, CanBeInterruptedAtOnce) {
-  const TemporaryFolder folder;
-  EXPECT_THROW(
-      reproduce(quick(folder.path(), 2), [](std::size_t, std::size_t, const std::string&) { return false; }),
-      Interrupted);
-  EXPECT_FALSE(fs::exists(folder / "scorecard.json"));
 }
 
 }  // namespace

@@ -83,31 +83,6 @@ TEST(ResultFolder, UnfinishedWorkIsNotLostByAccident) {
   EXPECT_EQ(test::read_file(again.unfinished() / "run.json"), "so far");
 }
 
-TEST(ResultFolder, WhatGoesOnWithUnfinishedWorkIsTold) {
-  for (const auto& [work, way] : {std::pair("run", "(slipfront run --restart)"),
-                                  std::pair("study open-choices --quick with program 7",
-                                            "(slipfront study open-choices --quick, of the same program)")}) {
-    const test::TemporaryFolder folder;
-    {
-      ResultFolder left(folder.path(), work);
-      left.begin();
-      files::write_text(left.unfinished() / "run.json", "so far");
-    }
-    ResultFolder other(folder.path(), "another");
-    EXPECT_THAT(error_of([&] { other.require_empty(false, true); }), HasSubstr(way));
-  }
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "run.json", "old");
-  {
-    ResultFolder left(folder.path(), "one");
-    left.begin();
-    files::write_text(left.unfinished() / "run.json", "so far");
-  }
-  ResultFolder again(folder.path(), "one");
-  EXPECT_THAT(error_of([&] { again.require_empty(false, true); }), HasSubstr("--overwrite to go on with it"));
-  EXPECT_EQ(error_of([&] { again.require_empty(true, true); }), "(nothing thrown)");
-}
-
 TEST(ResultFolder, APipeIsNoKindOfWork) {
   const test::TemporaryFolder folder;
   {
@@ -315,7 +290,7 @@ TEST(ResultFolder, OfManyThatWantItAtOnceEachHasItOrIsToldWhoHas) {
   std::vector<std::thread> threads;
   for (auto& refusal : refusals)
     threads.emplace_back([&folder, &refusal] {
-      for (int k = 0; k < 2000 && refusal.empty(); ++k) {
+      for (int k = 0; k < 200 && refusal.empty(); ++k) {
         const auto error = error_of([&] { ResultFolder(folder.path(), "test"); });
         if (error != "(nothing thrown)" && error.find("is in use by") == std::string::npos) refusal = error;
       }

@@ -21,7 +21,6 @@ namespace {
 using test::error_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 std::set<std::string> names_in(const std::filesystem::path& dir) {
   std::set<std::string> names;
@@ -90,24 +89,6 @@ TEST_F(Stream, KeepsAllItWasGiven) {
   EXPECT_EQ(hdf5::read(file, "/VTKHDF/Steps/Values").values.size(), n_snapshots);
 }
 
-TEST_F(Stream, MakesTheFilesOfTheSameDataInMemory) {
-  record::History whole = row(0);
-  whole.x_m = x_m_;
-  {
-    ResultStream stream(folder_.path());
-    stream.sample(row(0));
-    stream.snapshot(*stepper_);
-    stream.keep();
-  }
-  write_history(folder_ / "a.h5", ResultStream::history_file(folder_.path()), x_m_);
-  write_history(folder_ / "b.h5", whole);
-  EXPECT_EQ(test::read_file(folder_ / "a.h5"), test::read_file(folder_ / "b.h5"));
-  write_snapshots(folder_ / "a.vtkhdf", mesh_,
-                  read_snapshots(ResultStream::snapshot_file(folder_.path()), mesh_.n_nodes));
-  write_snapshots(folder_ / "b.vtkhdf", mesh_, series_of(std::vector{stepper_->snapshot()}));
-  EXPECT_EQ(test::read_file(folder_ / "a.vtkhdf"), test::read_file(folder_ / "b.vtkhdf"));
-}
-
 TEST_F(Stream, GoesOnWhereItWasKept) {
   ResultStream::Extents lengths;
   {
@@ -169,15 +150,6 @@ TEST_F(Stream, AFullDiskIsToldByTheFilesName) {
   EXPECT_EQ(error, ResultStream::history_file(folder_.path()).string() +
                        ": cannot be written (File too large); free space there");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-}
-
-TEST_F(Stream, AFullDiskIsToldForSnapshots) {
-  const test::FileSizeLimit limit(256 * 1024);
-  ResultStream stream(folder_.path());
-  EXPECT_THAT(error_of([&] {
-                for (;;) stream.snapshot(*stepper_);
-              }),
-              StartsWith(ResultStream::snapshot_file(folder_.path()).string() + ": cannot be written"));
 }
 
 TEST_F(Stream, AFileThatIsThereOrALinkIsNotReplaced) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 #include "base/error.hpp"
 #include "cases.hpp"
@@ -35,20 +34,17 @@ input::Case problem_f(double element_size_m) {
 TEST(ProblemF, ArrivalsConvergeToThoseOfAnotherCode) {
   const auto expected = test::reference_arrivals(reference / "data/bimaterial_f_arrivals.csv");
   const auto largest_s = [&](double h) {
-    return test::largest_difference_s(run(problem_f(h)).event.history, 0.25, expected);
+    const auto result = run(problem_f(h));
+    const auto& energies = result.event.energies;
+    EXPECT_LT(std::abs(record::imbalance_J_per_m(energies.back(), energies.front())),
+              1e-12 * energies.back().prestress_work);
+    EXPECT_LT(energies.back().friction_work, -0.1 * energies.back().prestress_work);
+    return test::largest_difference_s(result.event.history, 0.25, expected);
   };
   // Measured down to h = 0.25 mm (docs/two-bodies.md): 0.17 us at 0.5 mm, where the limit is 0.5 us.
   const double coarse_s = largest_s(2e-3), fine_s = largest_s(1e-3);
   EXPECT_GT(coarse_s / fine_s, 2);
   EXPECT_LT(fine_s, 0.5e-6);
-}
-
-TEST(ProblemF, TheBooksClose) {
-  const auto result = run(problem_f(2e-3));
-  const auto& energies = result.event.energies;
-  EXPECT_LT(std::abs(record::imbalance_J_per_m(energies.back(), energies.front())),
-            1e-12 * energies.back().prestress_work);
-  EXPECT_LT(energies.back().friction_work, -0.1 * energies.back().prestress_work);
 }
 
 TEST(Tpv205, FinalSlipIsThatOfOtherCodes) {
@@ -124,7 +120,7 @@ TEST(Base, InfoKnowsBothBodies) {
 }
 
 TEST(Base, SingleRowsAgreeWithDoubleOnesWhateverTheWaveSpeeds) {
-  for (const double E_Pa : {0.5e9, 5e9, 30e9}) {
+  for (const double E_Pa : {0.5e9, 30e9}) {
     auto config = problem_f(2e-3);
     config.plate.sides = config.base.plate.sides = mesh::Sides::free;
     config.base.material.youngs_modulus_Pa = E_Pa;

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include "cases.hpp"
 #include "fronts/front.hpp"
@@ -153,34 +151,10 @@ TEST(FrictionAlongX, ARampEndsWhereTheStrengthIsReachedFirst) {
   EXPECT_GE(record.onsets.back().time_s, record.end_time_s - 2 * step_s);
 }
 
-TEST(FrictionAlongX, ATiltedPlateBeginsToSlipWhereItsStrengthIsReachedFirst) {
-  auto c = test::coarse_case();
-  test::law(c).mu_k = 0.05;
-  const auto uniform = make_initial_state(c, go_on);
-  // A place away from the peak of t/p that has 0.8 of the strength that it would need.
-  const double weak_m = 0.06;
-  const auto& s = uniform.common.tractions;
-  const auto at = static_cast<std::size_t>(std::lround(weak_m / c.plate.element_size_m));
-  const double weak = 0.8 * s.t_s_Pa[at] / s.p_s_Pa[at];
-  EXPECT_NEAR(s.x_m[at], weak_m, 1e-9);
-  EXPECT_LT(weak, 1);
-  test::set_table(c, fmt::format("x_m,mu_s\n0,1.3\n0.055,1.3\n0.06,{}\n0.065,1.3\n0.2,1.3\n", weak));
-  const auto initial = make_initial_state(c, go_on);
-  EXPECT_LT(initial.critical_shear_m, uniform.critical_shear_m);
-  EXPECT_NEAR(initial.common.peak_x_m, weak_m, 1e-9);
-  EXPECT_NEAR(initial.common.peak_ratio, weak * (1 - c.loading.critical_margin), 1e-6);
-  const auto result = run_from(c, initial, go_on);
-  const auto& first = result.event.record.onsets.front();
-  EXPECT_NEAR(result.event.record.x_m[first.node], weak_m, 1e-9);
-}
-
 TEST(FrictionAlongX, AWeakenedPatchNeedsANodeThatWeakens) {
   auto c = rupture();
   test::set_table(c, "x_m,mu_k\n0,0.6\n0.09,0.6\n0.11,0.3\n0.2,0.3\n");
-  EXPECT_EQ(
-      error_of([&] { check(c); }),
-      "nucleation.form = weakened does nothing where friction does not weaken at any node; choose another "
-      "form");
+  EXPECT_THAT(error_of([&] { check(c); }), HasSubstr("nucleation.form = weakened does nothing"));
   c.nucleation.x_m = 0.12;
   check(c);
   c.event = EventKind::left;

@@ -9,16 +9,7 @@ namespace slipfront::solid {
 namespace {
 
 using mesh::Corner;
-
-mesh::Mesh tiny_plate(Corner corner) {
-  mesh::Plate plate;
-  plate.width_m = 0.02;
-  plate.height_m = 0.01;
-  plate.element_size_m = 1e-3;
-  plate.corner = corner;
-  plate.fillet_radius_m = 3e-3;
-  return mesh::make_plate(plate);
-}
+using test::tiny_plate;
 
 /// Largest eigenfrequency of K u = omega^2 M u with the loaded edge held, from all eigenvalues.
 double dense_largest_frequency(const mesh::Mesh& mesh, const Material& m) {
@@ -37,22 +28,21 @@ double dense_largest_frequency(const mesh::Mesh& mesh, const Material& m) {
 }
 
 TEST(LargestFrequency, BoundsTheExactOneFromAboveClosely) {
-  for (const auto corner : {Corner::none, Corner::relief, Corner::fillet}) {
-    for (const auto plane : {Plane::stress, Plane::strain}) {
-      SCOPED_TRACE(reference::name_of(corner));
-      const Material m{.plane = plane};
-      const auto mesh = tiny_plate(corner);
-      const double exact = dense_largest_frequency(mesh, m);
-      const double estimate = largest_frequency_rad_per_s(make_operator(mesh, m));
-      // The residual tolerance of 1e-3 holds for the square of the frequency.
-      EXPECT_GE(estimate, exact * (1 - 1e-12));
-      EXPECT_LE(estimate, exact * (1 + 0.5e-3));
-    }
+  for (const auto& [corner, plane] :
+       {std::pair(Corner::relief, Plane::stress), std::pair(Corner::fillet, Plane::strain)}) {
+    SCOPED_TRACE(reference::name_of(corner));
+    const Material m{.plane = plane};
+    const auto mesh = tiny_plate(corner);
+    const double exact = dense_largest_frequency(mesh, m);
+    const double estimate = largest_frequency_rad_per_s(make_operator(mesh, m));
+    // The residual tolerance of 1e-3 holds for the square of the frequency.
+    EXPECT_GE(estimate, exact * (1 - 1e-12));
+    EXPECT_LE(estimate, exact * (1 + 0.5e-3));
   }
 }
 
 TEST(FrequencyBound, LiesCloselyAboveTheFrequency) {
-  for (const auto corner : {Corner::none, Corner::relief, Corner::fillet}) {
+  for (const auto corner : {Corner::relief, Corner::fillet}) {
     SCOPED_TRACE(reference::name_of(corner));
     const Material m;
     double above[2];

@@ -33,9 +33,7 @@ class PushRow : public ::testing::TestWithParam<Span> {
   std::vector<double> v_x_ = std::vector<double>(columns), v_y_ = v_x_, u_x_ = v_x_, u_y_ = v_x_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Spans, PushRow,
-                         ::testing::Values(Span{1, 39}, Span{1, 2}, Span{1, 9}, Span{1, 17}, Span{5, 5},
-                                           Span{3, 20}, Span{30, 39}),
+INSTANTIATE_TEST_SUITE_P(Spans, PushRow, ::testing::Values(Span{1, 39}, Span{1, 2}, Span{5, 5}, Span{3, 20}),
                          [](const auto& p) {
                            return "from" + std::to_string(p.param.begin) + "to" + std::to_string(p.param.end);
                          });

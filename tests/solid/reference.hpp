@@ -16,7 +16,7 @@
 #include "solid/element.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 // The finite elements written a second time, with B matrices and any number of Gauss points, slow and plain.
 namespace slipfront::solid::reference {

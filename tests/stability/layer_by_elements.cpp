@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <numbers>
 
 namespace slipfront::stability {
 
@@ -76,6 +77,17 @@ std::vector<complex<double>> layer_eigenvalues_by_elements(const solid::Material
   std::vector<complex<double>> s(solver.eigenvalues().begin(), solver.eigenvalues().end());
   std::ranges::sort(s, [](auto x, auto y) { return x.real() > y.real(); });
   return s;
+}
+
+double smallest_stiffness(int n) {
+  const double e = 1.0 / n;  // half an element
+  Eigen::MatrixXd stiffness(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double d = 2 * e * (i - j);
+      stiffness(i, j) = (1 / (d + e) - 1 / (d - e)) / (2 * std::numbers::pi);
+    }
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(stiffness).eigenvalues()(0);
 }
 
 }  // namespace slipfront::stability

@@ -16,4 +16,8 @@ std::vector<std::complex<double>> layer_eigenvalues_by_elements(const solid::Mat
                                                                 double wavenumber_per_m, double height_m,
                                                                 int n);
 
+/// Smallest eigenvalue of the static stiffness of a slip zone of half-length 1 under mu* = 1, in elements of
+/// constant slip.
+double smallest_stiffness(int n_elements);
+
 }  // namespace slipfront::stability

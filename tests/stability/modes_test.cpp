@@ -78,12 +78,6 @@ TEST(HalfSpace, LongWavesFollowTheShearWaveImpedance) {
               8 / damped.stiffness_damping_s * 1e-5);
 }
 
-TEST(HalfSpace, DelayAndDampingEndGrowthAtShortWaves) {
-  const Sliding plain{.mu = 1.3, .pressure_Pa = 5e6};
-  EXPECT_TRUE(fastest_growing_mode(solid::Material{}, plain, 10).has_value());
-  EXPECT_TRUE(growing_modes(solid::Material{}, plain, 1e6).empty());
-}
-
 TEST(HalfSpace, NoModeIsMissed) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -212,9 +206,7 @@ TEST_P(LayerByElements, SameModes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, LayerByElements,
-                         testing::Values(LayerCase{"constant_low", 2, 0.5, 0, 0, 0, 0, Relaxed::none},
-                                         LayerCase{"constant_high", 3, 1.3, 0, 0, 0, 0, Relaxed::none},
-                                         LayerCase{"weakening", 1, 0.6, -0.4, 0, 0, 0, Relaxed::none},
+                         testing::Values(LayerCase{"constant_high", 3, 1.3, 0, 0, 0, 0, Relaxed::none},
                                          LayerCase{"weakening_damped", 2, 1.3, -0.7, 0, 0, 0.05,
                                                    Relaxed::none},
                                          LayerCase{"strength", 2, 1.3, -2, 0, 2, 0.02, Relaxed::strength},

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <utility>
 #include <vector>
 
@@ -80,37 +79,19 @@ TEST(TwoHalfSpaces, ConstantCoefficientGrowsAsInTheReference) {
 }
 
 TEST(TwoHalfSpaces, BaseEverStifferAndDenserIsTheRigidPlane) {
-  for (const double mu : {1.3, 2.0})
-    for (const double m : {0.0, 0.5}) {
-      const auto sliding = weakening(pmma, mu, m);
-      const Complex rigid = fastest_growing_mode(pmma, sliding, 100)->s_per_s;
-      const auto error = [&](double factor) {
-        auto base = stiffer;
-        base.youngs_modulus_Pa *= factor;
-        base.density_kg_per_m3 *= factor;
-        return std::abs(fastest_growing_mode({pmma, base}, sliding, 100)->s_per_s / rigid - 1.0);
-      };
-      // In proportion to the base's compliance, but for terms of second order.
-      EXPECT_NEAR(error(1e4) / error(1e5), 10, 0.01);
-      EXPECT_LT(error(1e13), 1e-11);
-    }
-}
-
-TEST(TwoHalfSpaces, TurnedByHalfATurnAreTheSame) {
-  // The other body is then above and slides to +x, and waves run the other way.
-  std::size_t n_modes = 0;
-  for (const auto& [a, b] : {std::pair{pmma, stiffer}, {pmma, steel}, {stiffer, aluminium}})
-    for (const double mu : {0.3, 1.3})
-      for (const double m : {0.0, 0.5}) {
-        const auto sliding = weakening({a, b}, mu, m);
-        const auto modes = growing_modes({a, b}, sliding, 100), turned = growing_modes({b, a}, sliding, 100);
-        n_modes += modes.size();
-        ASSERT_EQ(modes.size(), turned.size());
-        for (std::size_t j = 0; j < modes.size(); ++j)
-          EXPECT_LT(std::abs(std::conj(turned[j].s_per_s) - modes[j].s_per_s),
-                    1e-9 * std::abs(modes[j].s_per_s));
-      }
-  EXPECT_GT(n_modes, 12u) << "the trials say little";
+  for (const double m : {0.0, 0.5}) {
+    const auto sliding = weakening(pmma, 1.3, m);
+    const Complex rigid = fastest_growing_mode(pmma, sliding, 100)->s_per_s;
+    const auto error = [&](double factor) {
+      auto base = stiffer;
+      base.youngs_modulus_Pa *= factor;
+      base.density_kg_per_m3 *= factor;
+      return std::abs(fastest_growing_mode({pmma, base}, sliding, 100)->s_per_s / rigid - 1.0);
+    };
+    // In proportion to the base's compliance, but for terms of second order.
+    EXPECT_NEAR(error(1e4) / error(1e5), 10, 0.01);
+    EXPECT_LT(error(1e13), 1e-11);
+  }
 }
 
 TEST(TwoHalfSpaces, OfOneKindLeaveThePressureUnchanged) {
@@ -125,17 +106,6 @@ TEST(TwoHalfSpaces, OfOneKindLeaveThePressureUnchanged) {
   for (const auto& mode : low)
     EXPECT_LT(std::min(std::abs(high[0].s_per_s - mode.s_per_s), std::abs(high[1].s_per_s - mode.s_per_s)),
               1e-9 * std::abs(mode.s_per_s));
-}
-
-TEST(TwoHalfSpaces, LongWavesFollowTheShearWaveImpedances) {
-  // As on the rigid plane: s = r (m - 1), with an error of second order in k c_S/r = 9e-4, c_S/r = 3e-3 for
-  // steel.
-  for (const auto& below : {stiffer, steel}) {
-    auto sliding = weakening({pmma, below}, 0, 3);
-    sliding.relaxed = Relaxed::strength;
-    sliding.relaxation_rate_per_s = 1e6;
-    EXPECT_NEAR(fastest_growing_mode({pmma, below}, sliding, 1)->s_per_s.real(), 2e6, 2e6 * 1e-5);
-  }
 }
 
 struct PairCase {
@@ -177,15 +147,11 @@ TEST_P(SecondWay, HasTheSameModes) {
 INSTANTIATE_TEST_SUITE_P(
     Pairs, SecondWay,
     testing::Values(PairCase{"alike_constant", {pmma, stiffer}, 0.3, 0},
-                    PairCase{"alike_high", {pmma, stiffer}, 1.3, 0},
-                    PairCase{"alike_weakening", {pmma, stiffer}, 0.3, 0.3},
                     PairCase{"alike_drop", {pmma, stiffer}, 0.6, 2},
                     PairCase{"alike_damped", {pmma, stiffer}, 1.3, 0.5, Relaxed::none, 0.02},
                     PairCase{"alike_pressure", {pmma, stiffer}, 0.6, 0.5, Relaxed::pressure, 0.01},
-                    PairCase{"on_steel_constant", {pmma, steel}, 1.3, 0},
                     PairCase{"on_steel_weakening", {pmma, steel}, 1.0, 0.3},
                     PairCase{"on_steel_strength", {pmma, steel}, 1.3, 2, Relaxed::strength, 0.01},
-                    PairCase{"above_stiffer_constant", {aluminium, pmma}, 1.3, 0},
                     PairCase{"above_stiffer_weakening", {aluminium, pmma}, 0.9, 0.3},
                     PairCase{"above_stiffer_slip", {aluminium, pmma}, 0.6, 0, Relaxed::none, 0, 0.05}),
     [](const auto& instance) { return instance.param.name; });
@@ -228,8 +194,7 @@ TEST(TwoHalfSpaces, AtConstantFrictionAreIllPosedUnlessEqualOrDamped) {
 
 TEST(TwoHalfSpaces, LimitsAgreeWithGrowthFollowedToShortWaves) {
   for (const auto relaxed : {Relaxed::none, Relaxed::strength, Relaxed::pressure})
-    for (const auto& [beta_above, beta_below] :
-         {std::pair{0.0, 0.0}, {1e-7, 1e-7}, {1e-7, 3e-8}, {1e-7, 0.0}, {0.0, 1e-7}})
+    for (const auto& [beta_above, beta_below] : {std::pair{0.0, 0.0}, {1e-7, 3e-8}, {0.0, 1e-7}})
       for (const double mu : {0.3, 1.3})
         for (const double m : {0.0, 0.5, 2.0}) {
           Bodies bodies{pmma, stiffer};

@@ -14,7 +14,6 @@ namespace slipfront::stability {
 namespace {
 
 using interface::Coulomb;
-using interface::Regularisation;
 using interface::Relaxed;
 using interface::VelocityWeakening;
 using testing::StartsWith;
@@ -109,17 +108,6 @@ TEST(WellPosedness, DampingAloneDoesNotResolveStrongWeakening) {
   EXPECT_DOUBLE_EQ(w.growth_in_crossing, w.fastest_growth_per_s * h / solid::longitudinal_speed_m_per_s(m));
   EXPECT_GT(w.growth_in_crossing, 1);
   EXPECT_THAT(w.statement, StartsWith("bounded, not resolved"));
-}
-
-TEST(WellPosedness, DelayOfTheStrengthBoundsGrowth) {
-  const Regularisation delay{.relaxed = Relaxed::strength, .time_s = 2e-6};
-  const auto w = well_posedness(undamped(), VelocityWeakening{}, 4.3e6, h, width, delay);
-  EXPECT_FALSE(w.unbounded);
-  EXPECT_DOUBLE_EQ(w.sliding.relaxation_rate_per_s, 5e5);
-  // Of the order of the 1D motion's r (|m| - 1).
-  const double uniform = 5e5 * (w.weakening_over_radiation - 1);
-  EXPECT_GT(w.fastest_growth_per_s, 0.5 * uniform);
-  EXPECT_LT(w.fastest_growth_per_s, 2 * uniform);
 }
 
 TEST(NominalPressure, IsThatOfAFreeColumn) {

@@ -3,14 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
-#include <set>
 #include <thread>
 
 #include "statics/dissection.hpp"
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {
@@ -62,8 +60,7 @@ class FactorisedPlate : public ::testing::TestWithParam<Corner> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Corners, FactorisedPlate,
-                         ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+INSTANTIATE_TEST_SUITE_P(Corners, FactorisedPlate, ::testing::Values(Corner::relief, Corner::fillet),
                          [](const auto& corner) { return test::name_of(corner.param); });
 
 TEST_P(FactorisedPlate, DissectionIsAPermutationWithTheInterfaceLast) {
@@ -92,22 +89,6 @@ TEST_P(FactorisedPlate, CondensedStiffnessIsTheSchurComplement) {
   }
 }
 
-TEST_P(FactorisedPlate, CondensedStiffnessIsDefiniteWhereTheLoadedEdgeIsHeld) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> held(
-      Factorisation(mesh_, material_, TopConstraint::both).condensed_stiffness());
-  EXPECT_GT(held.eigenvalues()(0), 1e-4 * held.eigenvalues()(n_interface_ - 1));
-
-  // Free along x: that translation alone costs nothing.
-  const Factorisation f(mesh_, material_, TopConstraint::vertical);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rolling(f.condensed_stiffness());
-  const double largest = rolling.eigenvalues()(n_interface_ - 1);
-  EXPECT_NEAR(rolling.eigenvalues()(0), 0, 1e-12 * largest);
-  EXPECT_GT(rolling.eigenvalues()(1), 1e-4 * largest);
-  Eigen::VectorXd along = Eigen::VectorXd::Zero(n_interface_);
-  for (Eigen::Index k = 0; k < n_interface_; k += 2) along(k) = 1;
-  EXPECT_LE(max_abs(f.condensed_stiffness() * along), 1e-12 * largest);
-}
-
 TEST_P(FactorisedPlate, DisplacementIsInEquilibrium) {
   for (const auto top : {TopConstraint::both, TopConstraint::vertical}) {
     const Factorisation f(mesh_, material_, top);
@@ -129,25 +110,6 @@ TEST_P(FactorisedPlate, DisplacementIsInEquilibrium) {
       if (top == TopConstraint::both) {
         EXPECT_EQ(u.x[mesh_.top[k]], load.top.u_x_m[k]);
       }
-    }
-  }
-}
-
-TEST_P(FactorisedPlate, RigidTranslationTakesNoForce) {
-  for (const auto top : {TopConstraint::both, TopConstraint::vertical}) {
-    const Factorisation f(mesh_, material_, top);
-    const auto load =
-        f.load({std::vector<double>(mesh_.top.size(), 0.3), std::vector<double>(mesh_.top.size(), -0.7)});
-    Eigen::VectorXd u_i(n_interface_);
-    for (Eigen::Index k = 0; k < n_interface_; k += 2) u_i(k) = 0.3, u_i(k + 1) = -0.7;
-    const Eigen::VectorXd force = f.condensed_stiffness() * u_i - load.g_N;
-    EXPECT_LE(max_abs(force), 1e-11 * material_.youngs_modulus_Pa);
-    const solid::Field u = f.displacement(load, u_i);
-    const auto orphan = mesh::orphans(mesh_);
-    for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {
-      if (orphan[n]) continue;
-      EXPECT_NEAR(u.x[n], 0.3, 1e-11);
-      EXPECT_NEAR(u.y[n], -0.7, 1e-11);
     }
   }
 }
@@ -177,7 +139,7 @@ TEST(Factorisation, OfSeveralThreadsAtOnceIsThatOfOne) {
   std::vector<std::jthread> threads;
   for (int thread = 0; thread < 4; ++thread)
     threads.emplace_back([&] {
-      for (int k = 0; k < 8; ++k)
+      for (int k = 0; k < 2; ++k)
         if (solved() != alone) ++differing;
     });
   threads.clear();  // waits for them

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {

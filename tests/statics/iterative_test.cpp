@@ -14,7 +14,7 @@
 #include "statics/load_case.hpp"
 #include "statics/statics.hpp"
 #include "support/files.hpp"
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {
@@ -73,10 +73,8 @@ mesh::Mesh plate_of(const PlateShape& s) {
 
 class Levels : public ::testing::TestWithParam<PlateShape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, Levels,
-                         ::testing::Values(PlateShape{24, 12, Corner::none}, PlateShape{23, 13, Corner::none},
+                         ::testing::Values(PlateShape{23, 13, Corner::none},
                                            PlateShape{24, 12, Corner::relief},
-                                           PlateShape{25, 15, Corner::relief},
-                                           PlateShape{24, 12, Corner::fillet},
                                            PlateShape{25, 13, Corner::fillet}),
                          [](const auto& s) {
                            return test::name_of(s.param.corner) + std::to_string(s.param.columns) + "x" +
@@ -139,8 +137,7 @@ class PairLevels : public ::testing::TestWithParam<PairShape> {
   const mesh::Mesh upper_ = plate_of(GetParam().upper), lower_ = plate_of(GetParam().lower);
 };
 INSTANTIATE_TEST_SUITE_P(Shapes, PairLevels,
-                         ::testing::Values(PairShape{{24, 12, Corner::none}, {24, 16, Corner::none}},
-                                           PairShape{{25, 13, Corner::relief}, {25, 11, Corner::none}},
+                         ::testing::Values(PairShape{{25, 13, Corner::relief}, {25, 11, Corner::none}},
                                            PairShape{{24, 15, Corner::relief}, {24, 10, Corner::relief}}),
                          [](const auto& s) {
                            return std::to_string(s.param.upper.rows) + "_on_" +
@@ -242,7 +239,7 @@ void expect_same_interface(const LoadCase& a, const LoadCase& b, double toleranc
 }
 
 class Corners : public ::testing::TestWithParam<Corner> {};
-INSTANTIATE_TEST_SUITE_P(AllOfThem, Corners, ::testing::Values(Corner::none, Corner::relief, Corner::fillet),
+INSTANTIATE_TEST_SUITE_P(AllOfThem, Corners, ::testing::Values(Corner::relief, Corner::fillet),
                          [](const auto& corner) { return test::name_of(corner.param); });
 
 TEST_P(Corners, EquilibriumIsThatOfTheFactorisation) {
@@ -281,28 +278,12 @@ TEST_P(Corners, ResultIsTheSameForAnyNumberOfThreads) {
       return plate->displacement(0).above;
     };
     const auto one = solved(1);
-    for (const int threads : {2, 3, 7}) {
+    for (const int threads : {2, 7}) {
       const auto several = solved(threads);
       EXPECT_EQ(one.x, several.x) << threads;
       EXPECT_EQ(one.y, several.y) << threads;
     }
   }
-}
-
-TEST_P(Corners, CyclesDoNotGrowWithTheMesh) {
-  int least = 1000, most = 0;
-  for (const double element_m : {4e-3, 2e-3, 1e-3, 0.5e-3, 0.25e-3}) {
-    const auto mesh = test::make_plate(0.2, 0.1, element_m, GetParam());
-    IterativeSolver solver({mesh, pmma}, std::nullopt);
-    const TopDisplacement top{std::vector<double>(mesh.top.size(), 1e-4),
-                              std::vector<double>(mesh.top.size(), -1e-4)};
-    auto plate = solver.load_case(TopConstraint::both, top, false, nullptr, 0);
-    plate->solve(mixed_support(mesh, false), 1e-10);
-    least = std::min(least, solver.multigrid().n_cycles());
-    most = std::max(most, solver.multigrid().n_cycles());
-  }
-  EXPECT_LE(most, least + 4);
-  EXPECT_LE(most, 24);  // a reduction of the error to 0.4 in each
 }
 
 void expect_same(const Equilibrium& a, const Equilibrium& b) {
@@ -324,8 +305,7 @@ TEST_P(Corners, LoadedPlateIsThatOfTheFactorisation) {
     const Statics direct(mesh, {}, {.top_during_tilt = edge, .solver = StaticSolver::direct}, mu_s);
     const Statics iterative(mesh, {}, {.top_during_tilt = edge, .solver = StaticSolver::iterative}, mu_s);
     expect_same(direct.tilted(), iterative.tilted());
-    for (const double share : {1.0, 0.9, 1.001})
-      expect_same(direct.shear_to(share), iterative.shear_to(share));
+    for (const double share : {0.9, 1.001}) expect_same(direct.shear_to(share), iterative.shear_to(share));
   }
 }
 
@@ -353,9 +333,7 @@ class OnABaseByMultigrid : public ::testing::TestWithParam<BaseCase> {
 INSTANTIATE_TEST_SUITE_P(
     Bases, OnABaseByMultigrid,
     ::testing::Values(BaseCase{"equal", pmma, Corner::relief, 0.1},
-                      BaseCase{"gel", {.youngs_modulus_Pa = 0.3e9, .poissons_ratio = 0.45}},
                       BaseCase{"rubber", {.youngs_modulus_Pa = 2e6, .poissons_ratio = 0.4}},
-                      BaseCase{"steel", steel, Corner::none, 0.16},
                       BaseCase{"almost_rigid", {.youngs_modulus_Pa = 5e15, .poissons_ratio = 0.3}}),
     [](const auto& base) { return base.param.name; });
 
@@ -390,7 +368,7 @@ TEST_P(OnABaseByMultigrid, EquilibriumIsThatOfTheFactorisation) {
 TEST_P(OnABaseByMultigrid, CyclesDoNotGrowWithTheMesh) {
   for (const bool slip : {false, true}) {
     int least = 1000, most = 0;
-    for (const double element_m : {4e-3, 2e-3, 1e-3, 0.5e-3}) {
+    for (const double element_m : {4e-3, 1e-3, 0.5e-3}) {
       const auto mesh = test::make_plate(0.2, 0.1, element_m, Corner::relief), base_mesh = base_of(element_m);
       IterativeSolver solver({mesh, pmma}, ElasticBody{base_mesh, GetParam().material});
       const TopDisplacement top{std::vector<double>(mesh.top.size(), 1e-4),
@@ -416,12 +394,9 @@ TEST_P(OnABaseByMultigrid, ResultIsTheSameForAnyNumberOfThreads) {
     plate->solve(mixed_support(mesh, true), 1e-8);
     return plate->displacement(0);
   };
-  const auto one = solved(1);
-  for (const int threads : {2, 5}) {
-    const auto several = solved(threads);
-    EXPECT_EQ(flat(one.above), flat(several.above)) << threads;
-    EXPECT_EQ(flat(one.below), flat(several.below)) << threads;
-  }
+  const auto one = solved(1), several = solved(5);
+  EXPECT_EQ(flat(one.above), flat(several.above));
+  EXPECT_EQ(flat(one.below), flat(several.below));
 }
 
 TEST(VaryingFriction, IsThatOfTheFactorisation) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "statics/pieces.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {
@@ -98,11 +97,11 @@ Eigen::VectorXd product(const mesh::Mesh& mesh, const solid::Material& material,
 }
 
 TEST(Pieces, OwnRowsMakeTheProductOfThePlate) {
-  for (const auto corner : {Corner::none, Corner::relief, Corner::fillet}) {
+  for (const auto corner : {Corner::relief, Corner::fillet}) {
     const auto mesh = test::tiny_plate(corner);
     const auto u = some_field(mesh, 0.3);
     const Eigen::VectorXd expected = product(mesh, pmma, u);
-    for (const int n : {1, 2, 3, 7}) {
+    for (const int n : {1, 3}) {
       const DividedBodies divided({mesh, pmma}, std::nullopt, n);
       const auto unknowns = unknowns_of(divided, {&mesh}, {&u});
       const Eigen::VectorXd f = product_of_pieces(divided, unknowns);
@@ -138,35 +137,33 @@ void expect_same(const Piece& a, const Piece& b) {
 }
 
 TEST(Pieces, MadeByEachProcessAreThoseCutFromTheBodies) {
-  mesh::Plate above{.width_m = 0.021, .height_m = 0.02, .element_size_m = 1e-3, .relief_depth_m = 9e-3};
+  const mesh::Plate above{.width_m = 0.021, .height_m = 0.02, .element_size_m = 1e-3, .relief_depth_m = 9e-3};
   const mesh::Plate below{
       .width_m = 0.021, .height_m = 0.015, .element_size_m = 1e-3, .corner = Corner::none};
-  for (const auto corner : {Corner::none, Corner::relief})
-    for (const bool has_base : {false, true})
-      for (const auto& of_base : {pmma, gel})
-        for (const int n : {2, 3, 7}) {
-          above.corner = corner;
-          const std::vector plates = {above, below};
-          const auto mesh = mesh::make_plate(above), base = mesh::make_plate(below);
-          const auto interface = mesh::make_interface(above), of_below = mesh::make_interface(below);
-          std::optional<ElasticBody> base_body, interface_of_base;
-          if (has_base) {
-            base_body.emplace(ElasticBody{base, of_base});
-            interface_of_base.emplace(ElasticBody{of_below, of_base});
-          }
-          const auto material = &of_base == &gel ? pmma : gel;
-          const DividedBodies held({mesh, material}, base_body, n);
-          const DividedBodies planned({interface, material}, interface_of_base, n,
-                                      std::span(plates).first(has_base ? 2 : 1));
-          EXPECT_EQ(planned.n_pairs(), held.n_pairs());
-          EXPECT_EQ(planned.cut()->first_column, held.cut()->first_column);
-          for (int k = 0; k < n; ++k) {
-            Parcel parcel;
-            planned.plan(k).put(parcel);
-            expect_same(PiecePlan::take(parcel).make(), held.piece(k));
-            EXPECT_TRUE(parcel.is_empty());
-          }
+  for (const bool has_base : {false, true})
+    for (const auto& of_base : {pmma, gel})
+      for (const int n : {2, 7}) {
+        const std::vector plates = {above, below};
+        const auto mesh = mesh::make_plate(above), base = mesh::make_plate(below);
+        const auto interface = mesh::make_interface(above), of_below = mesh::make_interface(below);
+        std::optional<ElasticBody> base_body, interface_of_base;
+        if (has_base) {
+          base_body.emplace(ElasticBody{base, of_base});
+          interface_of_base.emplace(ElasticBody{of_below, of_base});
         }
+        const auto material = &of_base == &gel ? pmma : gel;
+        const DividedBodies held({mesh, material}, base_body, n);
+        const DividedBodies planned({interface, material}, interface_of_base, n,
+                                    std::span(plates).first(has_base ? 2 : 1));
+        EXPECT_EQ(planned.n_pairs(), held.n_pairs());
+        EXPECT_EQ(planned.cut()->first_column, held.cut()->first_column);
+        for (int k = 0; k < n; ++k) {
+          Parcel parcel;
+          planned.plan(k).put(parcel);
+          expect_same(PiecePlan::take(parcel).make(), held.piece(k));
+          EXPECT_TRUE(parcel.is_empty());
+        }
+      }
 }
 
 TEST(Pieces, HaveAsManyNodesEach) {

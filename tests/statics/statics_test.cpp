@@ -9,13 +9,14 @@
 #include <optional>
 #include <vector>
 
-#include "base/error.hpp"
-#include "support/plate.hpp"
+#include "support/files.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {
 
 using mesh::Corner;
+using test::error_of;
 using test::flat;
 using test::max_abs;
 using ::testing::HasSubstr;
@@ -24,15 +25,6 @@ constexpr double mu_s = 1.3;
 
 mesh::Mesh paper_plate(double element_m, Corner corner = Corner::relief) {
   return test::make_plate(0.2, 0.1, element_m, corner);
-}
-
-std::string error_of(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 double largest_pressure(const Equilibrium& e) {
@@ -129,42 +121,39 @@ TEST(Statics, UniformCompressionIsExact) {
   }
 }
 
-class PaperTilt : public ::testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(Elements, PaperTilt, ::testing::Values(4e-3, 2e-3), [](const auto& size) {
-  return std::to_string(std::lround(size.param * 1e3)) + "mm";
-});
+class PaperTilt : public ::testing::Test {
+ protected:
+  const mesh::Mesh mesh_ = paper_plate(4e-3);
+  const Statics statics_{mesh_, {}, {}, mu_s};
+};
 
-TEST_P(PaperTilt, StatesObeyContactAndEquilibrium) {
-  const auto mesh = paper_plate(GetParam());
-  const Statics statics(mesh, {}, {}, mu_s);
-  expect_equilibrium(mesh, statics.tilted());
-  expect_complementarity(mesh, statics.tilted(), std::vector<double>(mesh.lower.size(), 0.0), mu_s);
-  const auto put_down = lower_x(mesh, statics.tilted());
+TEST_F(PaperTilt, StatesObeyContactAndEquilibrium) {
+  expect_equilibrium(mesh_, statics_.tilted());
+  expect_complementarity(mesh_, statics_.tilted(), std::vector<double>(mesh_.lower.size(), 0.0), mu_s);
+  const auto put_down = lower_x(mesh_, statics_.tilted());
   for (const double ratio : {0.9 * mu_s, 0.999 * mu_s, 1.001 * mu_s}) {
     SCOPED_TRACE(ratio);
-    const auto e = statics.shear_to(ratio / mu_s);
-    expect_equilibrium(mesh, e);
-    expect_complementarity(mesh, e, put_down, ratio);
+    const auto e = statics_.shear_to(ratio / mu_s);
+    expect_equilibrium(mesh_, e);
+    expect_complementarity(mesh_, e, put_down, ratio);
     // All kinds of states are there to be checked; slip only at an edge of contact, near the critical shear.
     EXPECT_GT(std::ranges::count(e.contact, Contact::open), 0);
     EXPECT_GT(std::ranges::count(e.contact, Contact::stick), 0);
     EXPECT_EQ(std::ranges::count(e.contact, Contact::slip) > 0, ratio > 0.9 * mu_s);
-    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
       if (e.contact[k] != Contact::slip) continue;
       EXPECT_FALSE(e.tractions.x_m[k] >= e.inside_from_m && e.tractions.x_m[k] <= e.inside_to_m);
     }
   }
 }
 
-TEST_P(PaperTilt, ShearEndsAtTheRatioAskedFor) {
-  const auto mesh = paper_plate(GetParam());
-  const Statics statics(mesh, {}, {}, mu_s);
+TEST_F(PaperTilt, ShearEndsAtTheRatioAskedFor) {
   double shear = 0;
   for (const double ratio : {0.8, 1.0, 0.999 * mu_s, 1.001 * mu_s}) {
-    const auto e = statics.shear_to(ratio / mu_s);
+    const auto e = statics_.shear_to(ratio / mu_s);
     EXPECT_NEAR(e.peak_ratio, ratio, 1e-11);
     double peak = 0, peak_x = 0;
-    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
       const double x = e.tractions.x_m[k];
       if (e.contact[k] == Contact::open || x < e.inside_from_m || x > e.inside_to_m) continue;
       const double here = e.tractions.t_s_Pa[k] / e.tractions.p_s_Pa[k];
@@ -176,24 +165,22 @@ TEST_P(PaperTilt, ShearEndsAtTheRatioAskedFor) {
     shear = e.shear_m;
 
     // The same state by its shear.
-    const auto same = statics.shear_by(e.shear_m);
+    const auto same = statics_.shear_by(e.shear_m);
     EXPECT_LE(max_abs(flat(same.u_m) - flat(e.u_m)), 1e-11 * shear);
     EXPECT_EQ(same.contact, e.contact);
   }
 }
 
-TEST_P(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
-  const auto mesh = paper_plate(GetParam());
-  const Statics statics(mesh, {}, {}, mu_s);
-  const auto e = statics.shear_to(0.999);
+TEST_F(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
+  const auto e = statics_.shear_to(0.999);
   // So small an increment that no contact state changes.
   const double increment = 1e-6 * e.shear_m;
-  const auto further = statics.shear_by(e.shear_m + increment);
+  const auto further = statics_.shear_by(e.shear_m + increment);
   ASSERT_EQ(further.contact, e.contact);
   const Eigen::VectorXd slope = (flat(further.u_m) - flat(e.u_m)) / increment;
   // Affine between: only the rounding of u, magnified by u over the increment.
   EXPECT_LE(max_abs(slope - flat(e.u_per_shear)), 1e-11 * 1e6);
-  for (const auto n : mesh.top) {
+  for (const auto n : mesh_.top) {
     EXPECT_EQ(e.u_per_shear.x[n], 1);
     EXPECT_EQ(e.u_per_shear.y[n], 0);
   }
@@ -328,7 +315,7 @@ TEST(VaryingFriction, OfOneValueIsTheUniformOne) {
   const Statics uniform(mesh, {}, {}, mu_s);
   const Statics varying({mesh, solid::Material{}}, std::nullopt, {},
                         std::vector<double>(mesh.lower.size(), mu_s));
-  for (const double share : {0.9, 0.999, 1.001}) {
+  for (const double share : {0.9, 1.001}) {
     const auto a = uniform.shear_to(share), b = varying.shear_to(share);
     EXPECT_EQ(a.shear_m, b.shear_m);
     EXPECT_EQ(a.u_m.x, b.u_m.x);
@@ -368,7 +355,7 @@ class FrictionAlong : public ::testing::Test {
 TEST_F(FrictionAlong, AWeakPatchIsWhereSlipBegins) {
   const double strong = statics([](double) { return mu_s; }).shear_to(1).shear_m;
   const double weak = statics([](double) { return 0.5 * mu_s; }).shear_to(1).shear_m;
-  for (const double from_m : {0.04, 0.1, 0.15}) {
+  for (const double from_m : {0.04, 0.15}) {
     const auto in_patch = [from_m](double x) { return x >= from_m && x <= from_m + 0.02; };
     const auto patched = statics([&](double x) { return (in_patch(x) ? 0.5 : 1) * mu_s; });
     const auto e = patched.shear_to(1);

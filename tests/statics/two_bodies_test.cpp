@@ -14,7 +14,7 @@
 #include "statics/condensed_interface.hpp"
 #include "statics/statics.hpp"
 #include "support/files.hpp"
-#include "support/plate.hpp"
+#include "support/matrices.hpp"
 
 namespace slipfront::statics {
 namespace {
@@ -36,32 +36,13 @@ std::shared_ptr<const Factorisation> factorised(const mesh::Mesh& mesh, const so
   return std::make_shared<Factorisation>(mesh, material, top);
 }
 
-/// Along one axis at both places; 0: x, 1: y.
-Eigen::MatrixXd components(const Eigen::MatrixXd& all, int to, int from) {
-  return all(Eigen::seq(to, Eigen::last, 2), Eigen::seq(from, Eigen::last, 2));
-}
-
-TEST(CondensedPair, OfTwoEqualBodiesIsTwiceAsCompliant) {
-  // Mirror images of each other: tangential forces do not open the interface, and both bodies give alike.
-  const auto mesh = test::tiny_plate(Corner::none);
-  const auto plate = factorised(mesh, pmma);
-  const CondensedInterface pair(plate, factorised(mesh, pmma));
-  EXPECT_EQ(max_abs(pair.stiffness() - pair.stiffness().transpose()), 0);
-  const Eigen::MatrixXd one = plate->condensed_stiffness().inverse(), two = pair.stiffness().inverse();
-  for (int d = 0; d < 2; ++d) {
-    EXPECT_LE(max_abs(components(two, d, d) - 2 * components(one, d, d)), 1e-11 * max_abs(one));
-    EXPECT_LE(max_abs(components(two, d, 1 - d)), 1e-11 * max_abs(one));
-  }
-  EXPECT_GT(max_abs(components(one, 0, 1)), 0.1 * max_abs(one));
-}
-
 TEST(CondensedPair, CompliancesOfUnlikeBodiesAdd) {
   const auto mesh = test::tiny_plate(Corner::relief);
   const auto base_mesh = test::make_plate(0.02, 0.014, 1e-3, Corner::none);
   const Eigen::Index n = 2 * static_cast<Eigen::Index>(mesh.lower.size());
   Eigen::VectorXd D = Eigen::VectorXd::Ones(n);
   for (Eigen::Index k = 0; k < n; k += 2) D(k) = -1;
-  for (const double factor : {1e-4, 1.0, 1e4}) {
+  for (const double factor : {1e-4, 1e4}) {
     auto material = gel;
     material.youngs_modulus_Pa *= factor;
     const auto plate = factorised(mesh, pmma), base = factorised(base_mesh, material);
@@ -177,7 +158,6 @@ std::vector<Pair> pairs() {
   const auto square = test::make_plate(0.2, 0.06, 4e-3, Corner::none);
   return {{"equal", plate, plate, pmma},
           {"gel", plate, square, gel, TopEdge::held, {0.5, 0.7}},
-          {"steel", plate, square, {.youngs_modulus_Pa = 200e9, .poissons_ratio = 0.3}},
           {"graded", plate, graded_base(), pmma},
           {"free_top", plate, square, pmma, TopEdge::free}};
 }

@@ -48,72 +48,76 @@ class CoarseStudy : public ::testing::Test {
   }
 };
 
-TEST_F(CoarseStudy, TriesThePlainSchemeThePairsThatFitAndTheirExtrapolation) {
-  EXPECT_EQ(of(Kind::plain).size(), 4U);
-  EXPECT_EQ(of(Kind::layer).size(), 4U);
-  EXPECT_EQ(of(Kind::extrapolated).size(), 2U);
-  EXPECT_EQ(study().counts.n_runs, 3U + 4U + 4U);
-  EXPECT_GE(study().stations.size(), 10U);
-  EXPECT_EQ(study().stations.size(), study().v_tip_m_per_s.size());
-}
-
-TEST_F(CoarseStudy, CountsTheCostInNodeUpdates) {
-  const auto plain = of(Kind::plain);
-  for (int k = 0; k < 4; ++k) EXPECT_NEAR(plain[k]->cost, std::exp2(k), 1e-12);
-  const auto layer = of(Kind::layer);
-  // 2 rows of cells hold three rows of nodes of 40 that move: 3 (n - 1)/40 more, corners and sides alike.
-  EXPECT_NEAR(layer[0]->cost, 1 + 3 * 3 / 40.0, 1e-3);
-  EXPECT_NEAR(layer[1]->cost, 1 + 3 * 7 / 40.0, 1e-3);
-}
-
-TEST_F(CoarseStudy, SmallerStepsComeNearerToTheLimit) {
-  const auto plain = of(Kind::plain);
-  EXPECT_GT(plain[0]->median_error, 0.02);
-  for (int k = 1; k < 4; ++k) EXPECT_LT(plain[k]->median_error, plain[k - 1]->median_error);
-  for (const auto& s : study().all) EXPECT_LE(s.median_error, s.p90_error);
-  EXPECT_GT(study().median_order, 1);
-}
-
-TEST_F(CoarseStudy, ExtrapolatesLinearlyInTheSubStep) {
-  const auto layer = of(Kind::layer);
-  const auto both = of(Kind::extrapolated);
-  EXPECT_EQ(both[0]->cost, layer[0]->cost + layer[1]->cost);
-  for (std::size_t k = 0; k < study().stations.size(); ++k) {
-    const double expected = 2 * layer[1]->v_tip_m_per_s[k] - layer[0]->v_tip_m_per_s[k];
-    if (std::isfinite(expected)) {
-      EXPECT_EQ(both[0]->v_tip_m_per_s[k], expected);
+// One test: the study is made once for each process of the test program.
+TEST_F(CoarseStudy, ChoosesTheCheapestOfWhatItTries) {
+  {
+    SCOPED_TRACE("TriesThePlainSchemeThePairsThatFitAndTheirExtrapolation");
+    EXPECT_EQ(of(Kind::plain).size(), 4U);
+    EXPECT_EQ(of(Kind::layer).size(), 4U);
+    EXPECT_EQ(of(Kind::extrapolated).size(), 2U);
+    EXPECT_EQ(study().counts.n_runs, 3U + 4U + 4U);
+    EXPECT_GE(study().stations.size(), 10U);
+    EXPECT_EQ(study().stations.size(), study().v_tip_m_per_s.size());
+  }
+  {
+    SCOPED_TRACE("CountsTheCostInNodeUpdates");
+    const auto plain = of(Kind::plain);
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(plain[k]->cost, std::exp2(k), 1e-12);
+    const auto layer = of(Kind::layer);
+    // 2 rows of cells hold three rows of nodes of 40 that move: 3 (n - 1)/40 more, corners and sides alike.
+    EXPECT_NEAR(layer[0]->cost, 1 + 3 * 3 / 40.0, 1e-3);
+    EXPECT_NEAR(layer[1]->cost, 1 + 3 * 7 / 40.0, 1e-3);
+  }
+  {
+    SCOPED_TRACE("SmallerStepsComeNearerToTheLimit");
+    const auto plain = of(Kind::plain);
+    EXPECT_GT(plain[0]->median_error, 0.02);
+    for (int k = 1; k < 4; ++k) EXPECT_LT(plain[k]->median_error, plain[k - 1]->median_error);
+    for (const auto& s : study().all) EXPECT_LE(s.median_error, s.p90_error);
+    EXPECT_GT(study().median_order, 1);
+  }
+  {
+    SCOPED_TRACE("ExtrapolatesLinearlyInTheSubStep");
+    const auto layer = of(Kind::layer);
+    const auto both = of(Kind::extrapolated);
+    EXPECT_EQ(both[0]->cost, layer[0]->cost + layer[1]->cost);
+    for (std::size_t k = 0; k < study().stations.size(); ++k) {
+      const double expected = 2 * layer[1]->v_tip_m_per_s[k] - layer[0]->v_tip_m_per_s[k];
+      if (std::isfinite(expected)) {
+        EXPECT_EQ(both[0]->v_tip_m_per_s[k], expected);
+      }
     }
   }
-}
-
-TEST_F(CoarseStudy, ChoosesTheCheapestWithinTheTolerance) {
-  ASSERT_GE(study().chosen, 0);
-  const auto& chosen = study().all[study().chosen];
-  EXPECT_NE(chosen.kind, Kind::extrapolated);
-  EXPECT_LE(chosen.p90_error, 0.1);
-  for (const auto& s : study().all) {
-    if (s.kind == Kind::extrapolated || s.cost >= chosen.cost) continue;
-    EXPECT_TRUE(s.p90_error > 0.1 || 10 * s.n_stations < 9 * static_cast<int>(study().stations.size()));
+  {
+    SCOPED_TRACE("ChoosesTheCheapestWithinTheTolerance");
+    ASSERT_GE(study().chosen, 0);
+    const auto& chosen = study().all[study().chosen];
+    EXPECT_NE(chosen.kind, Kind::extrapolated);
+    EXPECT_LE(chosen.p90_error, 0.1);
+    for (const auto& s : study().all) {
+      if (s.kind == Kind::extrapolated || s.cost >= chosen.cost) continue;
+      EXPECT_TRUE(s.p90_error > 0.1 || 10 * s.n_stations < 9 * static_cast<int>(study().stations.size()));
+    }
   }
-}
+  {
+    SCOPED_TRACE("WritesTheCaseItChose");
+    test::TemporaryFolder folder;
+    write_interface_step(folder.path(), coarse_case(), study());
+    const auto& chosen = study().all[study().chosen];
+    const auto config = input::read_case(folder.path() / "chosen.toml", {});
+    EXPECT_EQ(config.time.interface_substeps, chosen.substeps);
+    EXPECT_EQ(config.time.step_factor, chosen.step_factor);
+    EXPECT_EQ(config.event, interface::EventKind::left);
+    std::ifstream csv(folder.path() / "interface_step.csv");
+    const auto lines = std::count(std::istreambuf_iterator<char>(csv), {}, '\n');
+    EXPECT_EQ(lines, 1 + static_cast<std::int64_t>(study().all.size()));
 
-TEST_F(CoarseStudy, WritesTheCaseItChose) {
-  test::TemporaryFolder folder;
-  write_interface_step(folder.path(), coarse_case(), study());
-  const auto& chosen = study().all[study().chosen];
-  const auto config = input::read_case(folder.path() / "chosen.toml", {});
-  EXPECT_EQ(config.time.interface_substeps, chosen.substeps);
-  EXPECT_EQ(config.time.step_factor, chosen.step_factor);
-  EXPECT_EQ(config.event, interface::EventKind::left);
-  std::ifstream csv(folder.path() / "interface_step.csv");
-  const auto lines = std::count(std::istreambuf_iterator<char>(csv), {}, '\n');
-  EXPECT_EQ(lines, 1 + static_cast<std::int64_t>(study().all.size()));
-
-  // A study that chooses nothing leaves no case of an earlier one.
-  auto none = study();
-  none.chosen = -1;
-  write_interface_step(folder.path(), coarse_case(), none);
-  EXPECT_FALSE(std::filesystem::exists(folder.path() / "chosen.toml"));
+    // A study that chooses nothing leaves no case of an earlier one.
+    auto none = study();
+    none.chosen = -1;
+    write_interface_step(folder.path(), coarse_case(), none);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "chosen.toml"));
+  }
 }
 
 TEST(InterfaceStepStudy, CanBeInterrupted) {

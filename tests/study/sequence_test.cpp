@@ -125,14 +125,6 @@ TEST(Verdict, NoiseOnAFirstOrderSequenceDoesNotTurnIt) {
   EXPECT_NEAR(s.median_relative_error, 0.1 / 1.1, 0.01);
 }
 
-TEST(Verdict, NoiseAloneWithinTheToleranceIsConverged) {
-  std::mt19937 random(2);
-  std::normal_distribution<double> noise(0, 0.002);
-  const auto noisy = [&](int) { return Three{1 + noise(random), 1 + noise(random), 1 + noise(random)}; };
-  EXPECT_EQ(summary_of(80, {2, 1, 0.5}, noisy, 0.02).verdict, Verdict::converged);
-  EXPECT_NE(summary_of(80, {2, 1, 0.5}, noisy, 0.0005).verdict, Verdict::converged);
-}
-
 TEST(Verdict, NeedsEnoughStations) {
   const Three q{2, 1, 0.5};
   const auto good = [&](int) { return power_law(q, 1, 0.01, 2); };

@@ -5,19 +5,16 @@
 
 #include <atomic>
 #include <stdexcept>
-#include <tuple>
 #include <vector>
 
 namespace slipfront::threads {
 namespace {
 
-/// Threads, depth, units, steps.
-using Shape = std::tuple<int, int, int, int>;
-
-class AnyWavefront : public ::testing::TestWithParam<Shape> {};
-INSTANTIATE_TEST_SUITE_P(Shapes, AnyWavefront,
-                         ::testing::Combine(::testing::Values(1, 2, 3), ::testing::Values(1, 2, 5),
-                                            ::testing::Values(1, 2, 7), ::testing::Values(0, 1, 4, 23)));
+struct Shape {
+  int threads, depth, units, steps;
+};
+constexpr Shape shapes[] = {{1, 1, 1, 4}, {1, 5, 7, 23}, {2, 1, 2, 23}, {2, 5, 1, 4},
+                            {2, 2, 7, 0}, {3, 2, 7, 1},  {3, 5, 7, 23}, {3, 1, 2, 4}};
 
 /// A chain of cells whose next value depends on both neighbours' present ones, updated in place: a step that
 /// comes too early or too late on any unit leaves other numbers.
@@ -40,38 +37,42 @@ std::vector<double> diffused(int threads, int depth, int units, int steps) {
   return value;
 }
 
-TEST_P(AnyWavefront, ComputesWhatStepAfterStepDoes) {
-  const auto [threads, depth, units, steps] = GetParam();
-  EXPECT_EQ(diffused(threads, depth, units, steps), diffused(1, 1, units, steps));
+TEST(Wavefront, ComputesWhatStepAfterStepDoes) {
+  for (const auto& [threads, depth, units, steps] : shapes)
+    EXPECT_EQ(diffused(threads, depth, units, steps), diffused(1, 1, units, steps));
 }
 
-TEST_P(AnyWavefront, EndsAfterTheStepThatAsksForIt) {
-  const auto [threads, depth, units, steps] = GetParam();
-  Wavefront wavefront(threads, depth);
-  for (int last = 10; last < 10 + steps; ++last) {
-    std::vector<std::atomic<int>> done(static_cast<std::size_t>(steps));
-    const auto taken = wavefront.run(10, steps, units, [&](std::int64_t step, int) {
-      ++done[static_cast<std::size_t>(step - 10)];
-      return step < last;
-    });
-    EXPECT_EQ(taken, last - 10 + 1);
-    for (int step = 0; step < steps; ++step)
-      EXPECT_EQ(done[static_cast<std::size_t>(step)], step <= last - 10 ? units : 0);
+TEST(Wavefront, EndsAfterTheStepThatAsksForIt) {
+  for (const auto& shape : shapes) {
+    const int threads = shape.threads, depth = shape.depth, units = shape.units, steps = shape.steps;
+    Wavefront wavefront(threads, depth);
+    for (int last = 10; last < 10 + steps; ++last) {
+      std::vector<std::atomic<int>> done(static_cast<std::size_t>(steps));
+      const auto taken = wavefront.run(10, steps, units, [&](std::int64_t step, int) {
+        ++done[static_cast<std::size_t>(step - 10)];
+        return step < last;
+      });
+      EXPECT_EQ(taken, last - 10 + 1);
+      for (int step = 0; step < steps; ++step)
+        EXPECT_EQ(done[static_cast<std::size_t>(step)], step <= last - 10 ? units : 0);
+    }
   }
 }
 
-TEST_P(AnyWavefront, PassesOnWhatAUnitThrows) {
-  const auto [threads, depth, units, steps] = GetParam();
-  Wavefront wavefront(threads, depth);
-  const auto failing = [](std::int64_t step, int unit) -> bool {
-    if (step == 3 && unit == 0) throw std::runtime_error("no more");
-    return true;
-  };
-  if (steps > 3) {
-    EXPECT_THROW(wavefront.run(0, steps, units, failing), std::runtime_error);
+TEST(Wavefront, PassesOnWhatAUnitThrows) {
+  for (const auto& shape : shapes) {
+    const int threads = shape.threads, depth = shape.depth, units = shape.units, steps = shape.steps;
+    Wavefront wavefront(threads, depth);
+    const auto failing = [](std::int64_t step, int unit) -> bool {
+      if (step == 3 && unit == 0) throw std::runtime_error("no more");
+      return true;
+    };
+    if (steps > 3) {
+      EXPECT_THROW(wavefront.run(0, steps, units, failing), std::runtime_error);
+    }
+    // And is of use again.
+    EXPECT_EQ(wavefront.run(0, steps, units, [](std::int64_t, int) { return true; }), steps);
   }
-  // And is of use again.
-  EXPECT_EQ(wavefront.run(0, steps, units, [](std::int64_t, int) { return true; }), steps);
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "threads/writer.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <future>
+#include <memory>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 #include "base/error.hpp"
@@ -50,18 +51,20 @@ TEST(Writer, HoldsNoMoreThanItMay) {
 
 TEST(Writer, LetsTheCallerWaitForRoom) {
   std::promise<void> go;
-  std::atomic<bool> second_put = false;
+  std::atomic<bool> first_done = false;
+  bool was_done = false;
   Writer writer(100);
-  writer.put(80, [&] { go.get_future().wait(); });
+  writer.put(80, [&] {
+    go.get_future().wait();
+    first_done = true;
+  });
   std::thread caller([&] {
     writer.put(80, [] {});
-    second_put = true;
+    was_done = first_done;
   });
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_FALSE(second_put);
   go.set_value();
   caller.join();
-  EXPECT_TRUE(second_put);
+  EXPECT_TRUE(was_done);
   writer.finish();
 }
 
@@ -104,7 +107,6 @@ TEST(Writer, AnErrorWakesACallerThatWaits) {
 TEST(Writer, AtItsEndDropsWhatHasNotBegun) {
   std::promise<void> begun, go;
   bool first = false, second = false;
-  std::thread release;
   {
     Writer writer(100);
     writer.put(1, [&] {
@@ -112,14 +114,11 @@ TEST(Writer, AtItsEndDropsWhatHasNotBegun) {
       go.get_future().wait();
       first = true;
     });
-    writer.put(1, [&] { second = true; });
+    // The first job goes on once the second one is dropped.
+    std::shared_ptr<void> dropped(nullptr, [&](void*) { go.set_value(); });
+    writer.put(1, [&second, kept = std::move(dropped)] { second = true; });
     begun.get_future().wait();
-    release = std::thread([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      go.set_value();
-    });
   }
-  release.join();
   EXPECT_TRUE(first);
   EXPECT_FALSE(second);
 }
