@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from hostile.trials import as_from_a_terminal
+from hostile.trials import HANG_S, as_from_a_terminal
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -36,6 +36,12 @@ print(1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """
 
 
+def settings(values):
+    """Options that set keys of a case."""
+    text = {key: f'"{value}"' if isinstance(value, str) else repr(value) for key, value in values.items()}
+    return [part for key, value in text.items() for part in ("--set", f"{key}={value}")]
+
+
 class Program:
     """Runs the program in a folder of its own."""
 
@@ -43,7 +49,7 @@ class Program:
         self.path = path
         self.folder = folder
 
-    def __call__(self, *arguments, timeout_s=60, memory_bytes=None, file_bytes=None):
+    def __call__(self, *arguments, memory_bytes=None, file_bytes=None):
         def limit():
             if memory_bytes:
                 resource.setrlimit(resource.RLIMIT_AS, (memory_bytes, memory_bytes))
@@ -56,7 +62,7 @@ class Program:
             cwd=self.folder,
             capture_output=True,
             text=True,
-            timeout=timeout_s,
+            timeout=HANG_S,
             stdin=subprocess.DEVNULL,
             preexec_fn=limit,
         )
@@ -76,6 +82,7 @@ class Program:
             stdout=subprocess.PIPE,
             text=True,
             check=True,
+            timeout=HANG_S,
         )
         return int(told.stdout.splitlines()[-1])
 
