@@ -85,13 +85,6 @@ def test_run_json_tells_what_processes_cost(runs, n):
     assert 1 / n <= cost["messages_per_step_of_busiest"] / cost["messages_per_step"] < 0.6
 
 
-def test_all_else_is_the_same(runs):
-    one, *others = runs
-    for other in others:
-        for key in ("steps", "onsets", "fronts", "mesh", "warnings"):
-            assert other[key] == one[key]
-
-
 def test_bench_measures_between_neighbours_and_from_the_leader():
     n = 3
     result = together(n, "bench", "--network", "--json")
@@ -176,9 +169,10 @@ def test_info_follows_the_network():
     def exchange_s(*options):
         return float(re.fullmatch(r"(\S+) s", predicted(3, *options)["time: exchange"])[1])
 
-    assert exchange_s("--latency-s", 1e-1) > exchange_s("--latency-s", 1e-6)
-    assert exchange_s("--processor-s-per-byte", 1e-6) > exchange_s("--processor-s-per-byte", 0)
-    assert exchange_s("--bandwidth-bytes-per-s", 1e6) > exchange_s("--bandwidth-bytes-per-s", 1e9)
+    # So slow that no computing meanwhile hides it.
+    assert exchange_s("--latency-s", 1e3) > exchange_s("--latency-s", 1e-6)
+    assert exchange_s("--processor-s-per-byte", 1) > exchange_s("--processor-s-per-byte", 0)
+    assert exchange_s("--bandwidth-bytes-per-s", 1) > exchange_s("--bandwidth-bytes-per-s", 1e9)
 
 
 @pytest.mark.parametrize(
