@@ -48,6 +48,7 @@ class Program:
     def __init__(self, path, folder):
         self.path = path
         self.folder = folder
+        self.started = []
 
     def __call__(self, *arguments, memory_bytes=None, file_bytes=None):
         def limit():
@@ -68,9 +69,12 @@ class Program:
         )
 
     def start(self, *arguments, **options):
-        return subprocess.Popen(
+        """What has not ended by the end of the test is killed."""
+        process = subprocess.Popen(
             [self.path, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL, **options
         )
+        self.started.append(process)
+        return process
 
     def peak_bytes(self, *arguments) -> int:
         """Resident memory of a run at its peak. A process counts what its parent held when it was forked as
@@ -96,7 +100,11 @@ def program(tmp_path):
             "or set SLIPFRONT to its path",
             pytrace=False,
         )
-    return Program(path, tmp_path)
+    program = Program(path, tmp_path)
+    yield program
+    for process in program.started:
+        process.kill()
+        process.wait()
 
 
 @pytest.fixture

@@ -53,20 +53,12 @@ def catches_interrupts(pid):
     return bool(caught >> (signal.SIGINT - 1) & 1)
 
 
-def wait_until(condition):
+def wait_until(condition, process):
     end = time.monotonic() + HANG_S
     while not condition():
+        assert process.poll() is None, "ended before"
         assert time.monotonic() < end, "waited in vain"
         time.sleep(0.01)
-
-
-def ended(process):
-    """What a process printed until its end, or None for each stream that is no pipe."""
-    try:
-        return process.communicate(timeout=HANG_S)
-    finally:
-        process.kill()
-        process.wait()
 
 
 def test_run_writes_its_folder(program, coarse, tmp_path):
@@ -244,9 +236,9 @@ def test_interruption_keeps_what_there_is(program, coarse, tmp_path, sent):
     process = program.start(
         "run", coarse, "-o", "out", *LONG, *often, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    wait_until(lambda: any((tmp_path / "out/unfinished/state").glob("checkpoint-*.bin")))
+    wait_until(lambda: any((tmp_path / "out/unfinished/state").glob("checkpoint-*.bin")), process)
     process.send_signal(sent)
-    output, errors = ended(process)
+    output, errors = process.communicate(timeout=HANG_S)
     assert process.returncode == 128 + sent
     assert output == ""
     last = errors.splitlines()[-1]
@@ -271,9 +263,9 @@ def test_interruption_of_a_ramp(program, coarse, tmp_path):
         "run", coarse, "-o", "out", "-q", "--set", "loading.method=ramp", "--set", "time.step_factor=1e-4",
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    wait_until((tmp_path / "out/unfinished/run.json").exists)
+    wait_until((tmp_path / "out/unfinished/run.json").exists, process)
     process.send_signal(signal.SIGINT)
-    output, errors = ended(process)
+    output, errors = process.communicate(timeout=HANG_S)
     assert process.returncode == 130
     assert output == ""
     assert len(errors.splitlines()) == 1
@@ -286,10 +278,10 @@ def test_interruption_of_the_statics(program, coarse, tmp_path):
         "--set", "plate.element_size_m=2.5e-4", "--set", "loading.solver=iterative",
         *LONG, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
-    wait_until(lambda: catches_interrupts(process.pid))
+    wait_until(lambda: catches_interrupts(process.pid), process)
     process.send_signal(signal.SIGUSR1)
     process.send_signal(signal.SIGTERM)
-    output, errors = ended(process)
+    output, errors = process.communicate(timeout=HANG_S)
     assert process.returncode == 128 + signal.SIGTERM
     assert output == ""
     # The statics take seconds; where they were over before, it is the event.
@@ -299,24 +291,23 @@ def test_interruption_of_the_statics(program, coarse, tmp_path):
 
 def test_a_checkpoint_on_demand_is_told(program, coarse, tmp_path):
     process = program.start("run", coarse, "-o", "out", *LONG, stderr=subprocess.PIPE, text=True)
-    wait_until((tmp_path / "out/unfinished/energy.csv").exists)  # the event has begun
+    wait_until((tmp_path / "out/unfinished/energy.csv").exists, process)  # the event has begun
     process.send_signal(signal.SIGUSR1)
-    wait_until(lambda: any((tmp_path / "out/unfinished/state").glob("checkpoint-*.bin")))
+    wait_until(lambda: any((tmp_path / "out/unfinished/state").glob("checkpoint-*.bin")), process)
     process.send_signal(signal.SIGTERM)
-    _, errors = ended(process)
+    _, errors = process.communicate(timeout=HANG_S)
     assert len(re.findall(r"^note: checkpoint at t = \S+ s of the event$", errors, re.MULTILINE)) == 1
 
 
 def test_second_interrupt_ends_the_program(program, coarse):
     """Both wait for its main thread while it stands still: that of the lower number comes first."""
     process = program.start("run", coarse, "-o", "out", "-q", *LONG)
-    wait_until(lambda: catches_interrupts(process.pid))
+    wait_until(lambda: catches_interrupts(process.pid), process)
     assert freeze(process)
     for sent in (signal.SIGINT, signal.SIGTERM):
         assert ctypes.CDLL(None).tgkill(process.pid, process.pid, sent) == 0
     process.send_signal(signal.SIGCONT)
-    ended(process)
-    assert process.returncode == -signal.SIGTERM
+    assert process.wait(timeout=HANG_S) == -signal.SIGTERM
 
 
 def test_progress_without_a_terminal_is_plain_lines(program, coarse):
@@ -349,8 +340,6 @@ def test_progress_on_a_terminal(program, coarse):
             shown += chunk
         assert process.wait(timeout=HANG_S) == 0
     finally:
-        process.kill()
-        process.wait()
         os.close(master)
     text = shown.decode()
     assert "\r\x1b[Kevent" in text
@@ -404,9 +393,10 @@ def test_reproduce_can_be_interrupted(program, tmp_path):
         "reproduce", "-o", "out", stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     # Its list of checksums is a run's last file.
-    wait_until(lambda: process.poll() is not None or all((e / "checksums.sha256").exists() for e in events))
+    while process.poll() is None and not all((e / "checksums.sha256").exists() for e in events):
+        time.sleep(0.01)
     process.send_signal(signal.SIGINT)
-    output, errors = ended(process)
+    output, errors = process.communicate(timeout=HANG_S)
     if process.returncode == 0:  # it was done before
         assert (tmp_path / "out/scorecard.json").exists()
         return
