@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+from hostile.trials import HANG_S
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
@@ -40,7 +41,12 @@ MARK = (
 def call(*arguments):
     environment = {**os.environ, "SLIPFRONT_PYTHON": sys.executable}
     subprocess.run(
-        [PROGRAM, *map(str, arguments)], cwd=ROOT, env=environment, check=True, capture_output=True
+        [PROGRAM, *map(str, arguments)],
+        cwd=ROOT,
+        env=environment,
+        check=True,
+        capture_output=True,
+        timeout=HANG_S,
     )
 
 
@@ -72,6 +78,8 @@ def browser():
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(options=options, service=Service("/usr/bin/chromedriver"))
+    driver.set_page_load_timeout(HANG_S)
+    driver.set_script_timeout(HANG_S)
     yield driver
     driver.quit()
 
@@ -83,15 +91,15 @@ def opened(browser, pages):
     def open_page(name):
         browser.get_log("browser")
         browser.get(pages[name].as_uri())
-        wait(browser, lambda: browser.execute_script("return document.body.dataset.drawn"))
+        wait(lambda: browser.execute_script("return document.body.dataset.drawn"))
         assert browser.execute_script("return document.body.dataset.drawn") == "all"
         return browser
 
     return open_page
 
 
-def wait(browser, condition, seconds=20):
-    end = time.monotonic() + seconds
+def wait(condition):
+    end = time.monotonic() + HANG_S
     while not condition():
         assert time.monotonic() < end, "waited in vain"
         time.sleep(0.05)
@@ -104,7 +112,7 @@ def screenshot(browser, name):
     Path(folder).mkdir(parents=True, exist_ok=True)
     height = browser.execute_script("return document.documentElement.scrollHeight")
     browser.set_window_size(1366, min(height, 12000) + 150)
-    time.sleep(1)
+    browser.execute_async_script("const done = arguments[0]; requestAnimationFrame(() => setTimeout(done))")
     browser.save_screenshot(str(Path(folder) / f"{name.replace(' ', '_')}.png"))
     browser.set_window_size(1366, 900)
 
@@ -150,7 +158,7 @@ def test_a_node_that_is_pointed_at_is_marked_everywhere(opened):
         "const k = t[0].y.findLastIndex(v => v > 0.7); return t.map(t => [t.x[k], t.y[k]])"
     )
     point_in(browser, "criteria-plot", *front[0]).perform()
-    wait(browser, lambda: browser.execute_script(MARK, "criteria-plot")[0][0] is not None)
+    wait(lambda: browser.execute_script(MARK, "criteria-plot")[0][0] is not None)
     marks = browser.execute_script(MARK, "criteria-plot")
     words = browser.find_element(By.ID, "criteria-point").text
     assert len(marks) == 4 and len({y for _, y in marks}) == 1 and "V_tip" in words
@@ -197,14 +205,14 @@ def test_the_slider_changes_the_curves_and_the_line_in_the_diagram(opened):
     assert browser.execute_script("return document.getElementById('profiles-plot').data.length") == kept - 2
 
 
-@pytest.mark.parametrize("field", ["ratio", "p", "slip", "slip_rate"])
-def test_the_diagram_shows_the_field_that_is_chosen(opened, field):
+def test_the_diagram_shows_the_field_that_is_chosen(opened):
     browser = opened("two bodies")
-    browser.find_element(By.CSS_SELECTOR, f"[data-field={field}]").click()
     name = "return document.getElementById('space-time-plot').data[0].name"
-    wait(browser, lambda: browser.execute_script(name) == field)
-    pressed = browser.find_elements(By.CSS_SELECTOR, "[aria-pressed=true]")
-    assert [button.get_attribute("data-field") for button in pressed] == [field]
+    for field in ("ratio", "p", "slip", "slip_rate"):
+        browser.find_element(By.CSS_SELECTOR, f"[data-field={field}]").click()
+        wait(lambda field=field: browser.execute_script(name) == field)
+        pressed = browser.find_elements(By.CSS_SELECTOR, "[aria-pressed=true]")
+        assert [button.get_attribute("data-field") for button in pressed] == [field]
     assert browser.get_log("browser") == []
 
 
@@ -220,7 +228,7 @@ def test_the_snapshots_play_and_show_both_bodies(opened):
     before = now.text
     button = browser.find_element(By.ID, "snapshots-play")
     browser.execute_script("arguments[0].click()", button)
-    wait(browser, lambda: now.text != before, 5)
+    wait(lambda: now.text != before)
     browser.execute_script("arguments[0].click()", button)
     assert button.text == "play"
 
@@ -234,12 +242,12 @@ def test_the_records_of_probes_are_chosen(opened):
     assert "v<sub>x</sub> (m/s)" in browser.execute_script(title)
     button = browser.find_element(By.CSS_SELECTOR, "[data-probes=stress]")
     browser.execute_script("arguments[0].click()", button)
-    wait(browser, lambda: "σ<sub>xx</sub> (MPa)" in browser.execute_script(title))
+    wait(lambda: "σ<sub>xx</sub> (MPa)" in browser.execute_script(title))
     assert button.get_attribute("aria-pressed") == "true"
     before = browser.execute_script(first)
     assert len(before) == 5 and all(abs(value) > 0.1 for value in before)
     browser.execute_script("document.getElementById('probes-change').click()")
-    wait(browser, lambda: browser.execute_script(first) == [0] * 5)
+    wait(lambda: browser.execute_script(first) == [0] * 5)
     assert browser.get_log("browser") == []
 
 
@@ -272,5 +280,5 @@ def test_another_run_of_a_reproduction_is_shown(opened):
     browser.execute_script(
         "const s = document.getElementById('run'); s.value = '2'; s.dispatchEvent(new Event('change'))"
     )
-    wait(browser, lambda: browser.execute_script(x) > 100)
+    wait(lambda: browser.execute_script(x) > 100)
     assert left < 50 and browser.get_log("browser") == []

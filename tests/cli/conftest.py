@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from hostile.trials import as_from_a_terminal
+from hostile.trials import HANG_S, as_from_a_terminal
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -36,14 +36,21 @@ print(1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """
 
 
+def settings(values):
+    """Options that set keys of a case."""
+    text = {key: f'"{value}"' if isinstance(value, str) else repr(value) for key, value in values.items()}
+    return [part for key, value in text.items() for part in ("--set", f"{key}={value}")]
+
+
 class Program:
     """Runs the program in a folder of its own."""
 
     def __init__(self, path, folder):
         self.path = path
         self.folder = folder
+        self.started = []
 
-    def __call__(self, *arguments, timeout_s=60, memory_bytes=None, file_bytes=None):
+    def __call__(self, *arguments, memory_bytes=None, file_bytes=None):
         def limit():
             if memory_bytes:
                 resource.setrlimit(resource.RLIMIT_AS, (memory_bytes, memory_bytes))
@@ -56,15 +63,18 @@ class Program:
             cwd=self.folder,
             capture_output=True,
             text=True,
-            timeout=timeout_s,
+            timeout=HANG_S,
             stdin=subprocess.DEVNULL,
             preexec_fn=limit,
         )
 
     def start(self, *arguments, **options):
-        return subprocess.Popen(
+        """What has not ended by the end of the test is killed."""
+        process = subprocess.Popen(
             [self.path, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL, **options
         )
+        self.started.append(process)
+        return process
 
     def peak_bytes(self, *arguments) -> int:
         """Resident memory of a run at its peak. A process counts what its parent held when it was forked as
@@ -76,6 +86,7 @@ class Program:
             stdout=subprocess.PIPE,
             text=True,
             check=True,
+            timeout=HANG_S,
         )
         return int(told.stdout.splitlines()[-1])
 
@@ -89,7 +100,11 @@ def program(tmp_path):
             "or set SLIPFRONT to its path",
             pytrace=False,
         )
-    return Program(path, tmp_path)
+    program = Program(path, tmp_path)
+    yield program
+    for process in program.started:
+        process.kill()
+        process.wait()
 
 
 @pytest.fixture

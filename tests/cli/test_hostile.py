@@ -6,6 +6,8 @@ import pytest
 from hostile import damage, disk, energy, faults, folders, kills, repeats
 from hostile.trials import Bench, hold, remove, scratch_folder
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def bench(program):

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 
 import pytest
+from hostile.trials import HANG_S
 from test_commands import COMMANDS, PYTHON_COMMANDS
 
 STUDIES = ["convergence", "interface-step", "open-choices", "base"]
@@ -40,7 +41,7 @@ def complete(page):
         _slipfront
         printf '%s\\n' "${{COMPREPLY[@]}}"
         """
-        result = subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=60)
+        result = subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=HANG_S)
         assert result.returncode == 0, result
         assert result.stderr == ""
         return set(result.stdout.split())
@@ -82,7 +83,7 @@ def test_man_finds_nothing_to_warn_of(page):
         ["man", "--warnings", "-l", str(file)],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=HANG_S,
         env={"MANROFFSEQ": "", "MANWIDTH": "80", "LC_ALL": "C.UTF-8", "PATH": "/usr/bin:/bin"},
     )
     assert result.returncode == 0

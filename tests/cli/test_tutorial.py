@@ -12,11 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from hostile.trials import HANG_S
 from slipfront.read import read_run
+
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[2]
 TUTORIAL = ROOT / "docs/tutorial.md"
-HEADER = "src/interface/friction/slip_exponential.hpp"
 
 CHECK = """\
 #include "interface/friction/slip_exponential.hpp"
@@ -51,18 +53,6 @@ def blocks() -> list[Block]:
     return found
 
 
-def test_every_block_is_known():
-    kinds = [b.language for b in blocks()]
-    assert set(kinds) == {"sh", "toml", "python", "cpp", "text"}
-    assert [b.file for b in blocks() if b.language in ("toml", "python", "cpp")] == [
-        "my.toml",
-        "picture.py",
-        "tail.toml",
-        HEADER,
-    ]
-    assert sum(b.left_out for b in blocks()) == 3 < kinds.count("sh") - 3
-
-
 @pytest.fixture
 def shell(program, tmp_path):
     """Runs commands with the names that the tutorial uses."""
@@ -87,7 +77,7 @@ def shell(program, tmp_path):
             env=environment,
             capture_output=True,
             text=True,
-            timeout=120,
+            timeout=HANG_S,
         )
 
     run.folder = work
@@ -152,6 +142,8 @@ def test_the_law_in_cpp_compiles(tmp_path):
         f"-I{ROOT}/src",
         tmp_path / "check.cpp",
     ]
-    done = subprocess.run([*command, "-o", tmp_path / "check"], capture_output=True, text=True, timeout=300)
+    done = subprocess.run(
+        [*command, "-o", tmp_path / "check"], capture_output=True, text=True, timeout=HANG_S
+    )
     assert done.returncode == 0, done.stderr
-    assert subprocess.run([tmp_path / "check"], timeout=60).returncode == 0
+    assert subprocess.run([tmp_path / "check"], timeout=HANG_S).returncode == 0

@@ -9,7 +9,7 @@ import signal
 import time
 
 from .cases import long
-from .trials import Trial, Wrong, alone, one_line, remove, require, require_same
+from .trials import TRIES, Trial, Wrong, alone, freeze, one_line, remove, require, require_same
 
 SUM_DIGITS = 64  # at the end of a checkpoint
 FEW = ("--checkpoint-every", "1e9", "--checkpoint-every-simulated")
@@ -38,7 +38,7 @@ def cut(dice):
 
 def interrupted(bench, case):
     """The folder of a run that has two checkpoints; again where it was over before it could be stopped."""
-    for _ in range(50):
+    for _ in range(TRIES):
         folder = bench.folder()
         process = bench.start("run", case, "-o", folder, "-q", *FEW, "2e-5")
         while process.poll() is None and not (folder / "unfinished/state/checkpoint-000002.bin").exists():
@@ -202,7 +202,7 @@ def meddlings():
 
 def stopped_under_way(setting):
     """The folder and process of a run that stands still; again where it was over before it was stopped."""
-    for _ in range(50):
+    for _ in range(TRIES):
         folder = setting.bench.folder()
         process = setting.bench.start("run", setting.case, "-o", folder, "-q")
         state = folder / "unfinished/state"
@@ -215,8 +215,7 @@ def stopped_under_way(setting):
         try:
             while process.poll() is None and not is_under_way():
                 time.sleep(0.001)
-            process.send_signal(signal.SIGSTOP)
-            if is_under_way() and process.poll() is None:
+            if freeze(process) and is_under_way():
                 return folder, process
         except FileNotFoundError:  # published between two looks
             pass

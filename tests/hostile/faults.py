@@ -9,7 +9,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from .cases import COARSE, EARLIER, long
-from .trials import LOCK, Bench, Trial, alone, difference, one_line, remove, require, require_same, visible
+from .trials import (
+    LOCK,
+    TRIES,
+    Bench,
+    Trial,
+    alone,
+    difference,
+    one_line,
+    remove,
+    require,
+    require_same,
+    visible,
+)
 
 CHECKPOINTS = ("--checkpoint-every-simulated", "1e-4")
 #: Mode and errno: what the n-th call does.
@@ -134,12 +146,16 @@ def run_setting(bench, overwrites):
 def run_over_work_setting(bench):
     """Results, and an unfinished run, all to be replaced."""
     old_folder = bench.result(bench.case(EARLIER))
-    process = bench.start("run", bench.case(long("triggered")), "-o", old_folder, "-q", "--overwrite")
-    while process.poll() is None and not (old_folder / "unfinished/state/history.raw").exists():
-        time.sleep(0.005)
-    process.terminate()
-    process.communicate()
-    require((old_folder / "unfinished/state/checkpoint-000001.bin").exists(), "it has come to its end")
+    case, state = bench.case(long("triggered")), old_folder / "unfinished/state"
+    for _ in range(TRIES):
+        process = bench.start("run", case, "-o", old_folder, "-q", "--overwrite")
+        while process.poll() is None and not (state / "history.raw").exists():
+            time.sleep(0.005)
+        process.terminate()
+        process.communicate()
+        if (state / "checkpoint-000001.bin").exists():
+            break
+    require((state / "checkpoint-000001.bin").exists(), "over too soon, each time")
     command = ["run", bench.case(COARSE), "-q", "--overwrite"]
     return Setting(bench, "run over unfinished work", command, old_folder)
 

@@ -9,7 +9,7 @@ import subprocess
 import time
 
 from .cases import COARSE, EARLIER, long
-from .trials import LOCK, Trial, alone, one_line, remove, require, require_same
+from .trials import HANG_S, LOCK, TRIES, Trial, Wrong, alone, freeze, one_line, remove, require, require_same
 
 RESERVED = ("unfinished", "publishing", LOCK)
 
@@ -35,7 +35,7 @@ def two_at_once(setting, overwrites):
     command = ("run", setting.case, "-o", folder, "-q", *(["--overwrite"] if overwrites else []))
     both = [setting.bench.start(*command) for _ in range(2)]
     for process in both:
-        _, process.stderr_text = process.communicate(timeout=120)
+        _, process.stderr_text = process.communicate(timeout=HANG_S)
     require(0 in [p.returncode for p in both], f"neither is done: {[p.stderr_text for p in both]}")
     for process in both:
         if process.returncode == 0:
@@ -47,15 +47,28 @@ def two_at_once(setting, overwrites):
     remove(folder.parent)
 
 
+def frozen_in_event(bench, case):
+    """The process and folder of a run that stands still in its event; again where it was over before."""
+    for _ in range(TRIES):
+        folder = bench.folder()
+        history = folder / "unfinished/state/history.raw"
+        process = bench.start("run", case, "-o", folder, "-q")
+        while process.poll() is None and not history.exists():
+            time.sleep(0.005)
+        if freeze(process) and history.exists():
+            return process, folder
+        process.send_signal(signal.SIGCONT)
+        process.communicate()
+        remove(folder.parent)
+    raise Wrong("over too soon, each time")
+
+
 def while_one_runs(setting):
     """Every command that would write there is refused while a run goes on."""
     bench = setting.bench
-    case, folder = bench.case(long("triggered")), bench.folder()
-    process = bench.start("run", case, "-o", folder, "-q")
+    case = bench.case(long("triggered"))
+    process, folder = frozen_in_event(bench, case)
     try:
-        while not (folder / "unfinished/state/history.raw").exists() and process.poll() is None:
-            time.sleep(0.01)
-        process.send_signal(signal.SIGSTOP)
         for command in (
             ("run", case, "-o", folder, "--overwrite"),
             ("run", "--restart", folder),
@@ -190,7 +203,7 @@ class Long:
         process = self.bench.start("run", self.case, "-o", folder, "-q")
         while process.poll() is None and not (catches_signals(process.pid) and (folder / until).exists()):
             time.sleep(0.005)
-        time.sleep(0.1)
+        time.sleep(0.1)  # some way into it, or to its end
         return process, folder
 
 
@@ -205,7 +218,7 @@ def stopped(run, until, name):
     number = getattr(signal, f"SIG{name}")
     process, folder = run.start(until)
     process.send_signal(number)
-    _, process.stderr_text = process.communicate(timeout=120)
+    _, process.stderr_text = process.communicate(timeout=HANG_S)
     if process.returncode != 0:  # else it was done before
         require(process.returncode == 128 + number, f"exit {process.returncode}: {process.stderr_text}")
         require("interrupted" in one_line(process), process.stderr_text)
@@ -216,18 +229,22 @@ def stopped(run, until, name):
 
 
 def asked_to_keep(run, until):
-    """USR1 makes a checkpoint, and the run goes on."""
-    process, folder = run.start(until)
+    """USR1 makes a checkpoint, and the run goes on; again where it was over before one was seen."""
     seen = False
-    while process.poll() is None:
-        if not seen:
-            process.send_signal(signal.SIGUSR1)
-        seen = seen or (folder / "unfinished/state/checkpoint-000001.bin").exists()
-        time.sleep(0.005)
-    _, errors = process.communicate()
-    require(process.returncode == 0 and seen, f"exit {process.returncode}, checkpoint {seen}: {errors}")
-    require_same(alone(folder), run.expected, "other results")
-    remove(folder.parent)
+    for _ in range(TRIES):
+        process, folder = run.start(until)
+        while process.poll() is None:
+            if not seen:
+                process.send_signal(signal.SIGUSR1)
+            seen = seen or (folder / "unfinished/state/checkpoint-000001.bin").exists()
+            time.sleep(0.005)
+        _, errors = process.communicate()
+        require(process.returncode == 0, f"exit {process.returncode}: {errors}")
+        require_same(alone(folder), run.expected, "other results")
+        remove(folder.parent)
+        if seen:
+            return
+    raise Wrong("no checkpoint was seen")
 
 
 # --- Streams
@@ -250,7 +267,7 @@ def closed(setting, name, streams):
         cwd=setting.bench.scratch,
         preexec_fn=lambda: [os.close(stream) for stream in streams],
         capture_output=True,
-        timeout=120,
+        timeout=HANG_S,
     )
     require(process.returncode in (0, 1), f"exit {process.returncode}: {process.stderr}")
     require(name != "run" or process.returncode == 0, f"exit {process.returncode}: {process.stderr}")
@@ -267,7 +284,7 @@ def reader_goes(setting, name, lines):
         process.stdout.readline()
     process.stdout.close()
     errors = process.stderr.read()
-    process.wait(timeout=120)
+    process.wait(timeout=HANG_S)
     process.stderr.close()
     require(process.returncode in (0, 1, -signal.SIGPIPE), f"exit {process.returncode}: {errors}")
     if name == "run":

@@ -6,7 +6,7 @@ import signal
 import time
 
 from .cases import COARSE
-from .trials import Trial, alone, remove, require, require_same
+from .trials import HANG_S, Trial, alone, remove, require, require_same
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 KINDS = ("reproduce", "study", "verify")
@@ -40,7 +40,7 @@ class Setting:
         time.sleep(dice.uniform(0, self.duration_s))
         sent = dice.choice(SIGNALS)
         process.send_signal(sent)
-        _, process.stderr_text = process.communicate(timeout=120)
+        _, process.stderr_text = process.communicate(timeout=HANG_S)
         # By the signal itself before the program has taken it into its own hands.
         if process.returncode in (128 + sent, -sent):
             return False

@@ -15,6 +15,10 @@ from pathlib import Path
 
 CHECKSUMS = "checksums.sha256"
 LOCK = ".slipfront.lock"
+#: What takes longer hangs.
+HANG_S = 900
+#: Of a run that is to be met under way: it may be over before.
+TRIES = 1000
 #: What run.json, and the files of studies and verifications, say of the computation but not of its results.
 MEASURED = {"wall_s", "node_updates_per_s", "process", "processes", "host", "sessions"}
 
@@ -33,6 +37,15 @@ def as_from_a_terminal():
     signal.signal(signal.SIGINT, signal.default_int_handler)
     for each in (signal.SIGQUIT, signal.SIGHUP, signal.SIGTERM):
         signal.signal(each, signal.SIG_DFL)
+
+
+def freeze(process):
+    """Lets a process stand still, with all its threads, until SIGCONT. @return False where it is over"""
+    process.send_signal(signal.SIGSTOP)
+    if process.returncode is not None:
+        return False
+    state = os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+    return state.si_code == os.CLD_STOPPED
 
 
 @dataclass
@@ -68,10 +81,10 @@ class Bench:
             [self.program, *map(str, arguments)], env=environment, cwd=self.scratch, text=True, **options
         )
 
-    def run(self, *arguments, disturbance=None, timeout_s=300):
+    def run(self, *arguments, disturbance=None):
         with self.start(*arguments, disturbance=disturbance) as process:
             try:
-                process.stdout_text, process.stderr_text = process.communicate(timeout=timeout_s)
+                process.stdout_text, process.stderr_text = process.communicate(timeout=HANG_S)
             except subprocess.TimeoutExpired:
                 process.kill()
                 raise Wrong(f"does not end: {process.args}") from None

@@ -2,13 +2,14 @@
 """The program that is built with MPI, started as several processes. Its path is the environment variable
 SLIPFRONT_MPI."""
 
+import contextlib
 import os
 import signal
 import subprocess
 from pathlib import Path
 
 import pytest
-from hostile.trials import as_from_a_terminal
+from hostile.trials import HANG_S, as_from_a_terminal
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -25,11 +26,11 @@ class Mpirun:
         self.program = program
         self.folder = folder
 
-    def __call__(self, n, *arguments, timeout_s=60, **options):
-        """@return as of subprocess.run, with text; what does not end in time is ended, and fails the test"""
+    def __call__(self, n, *arguments, **options):
+        """@return as of subprocess.run, with text; what hangs is ended, and fails the test"""
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
         with self.start(n, *arguments, **options) as process:
-            return finished(process, timeout_s)
+            return finished(process)
 
     def start(self, n, *arguments, programs=None, starter=(), **options):
         """`starter` are options of mpirun. Of `programs`, its own options before it, each is one process."""
@@ -47,14 +48,14 @@ class Mpirun:
             **options,
         )
 
-    def alone(self, *arguments, timeout_s=60):
+    def alone(self, *arguments):
         """The same program, as one process without mpirun."""
         return subprocess.run(
             [self.program, *map(str, arguments)],
             cwd=self.folder,
             capture_output=True,
             text=True,
-            timeout=timeout_s,
+            timeout=HANG_S,
             stdin=subprocess.DEVNULL,
         )
 
@@ -72,10 +73,10 @@ class Mpirun:
         return found
 
 
-def finished(process, timeout_s=60):
-    """Waits for an mpirun; fails the test if it does not end in time."""
+def finished(process):
+    """Waits for an mpirun; fails the test if it hangs."""
     try:
-        out, err = process.communicate(timeout=timeout_s)
+        out, err = process.communicate(timeout=HANG_S)
     except subprocess.TimeoutExpired:
         process.send_signal(signal.SIGTERM)  # ends its processes, too
         try:
@@ -83,8 +84,15 @@ def finished(process, timeout_s=60):
         except subprocess.TimeoutExpired:
             process.kill()
             out, err = process.communicate()
-        pytest.fail(f"did not end within {timeout_s} s\n{out}\n{err}", pytrace=False)
+        pytest.fail(f"did not end within {HANG_S} s\n{out}\n{err}", pytrace=False)
     return subprocess.CompletedProcess(process.args, process.returncode, out, err)
+
+
+def send(pid, signal_number):
+    """To a process that may have ended; to none where there was none."""
+    if pid is not None:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal_number)
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ import subprocess
 
 import pytest
 from conftest import AS_ROOT
+from hostile.trials import HANG_S
 from test_same import require_done, require_same, stop_after_checkpoint
 
 # 600,000 nodes.
@@ -59,7 +60,10 @@ CASES = {
         "plate": 'sides = "absorbing"\ntop = "absorbing"',
         "output": "snapshot_times_s = [0, 2.9e-5]",
     },
-    "loaded edge": {"time": "interface_substeps = 4", "prestress": 'file = "prestress.csv"'},
+    "loaded edge, single precision": {
+        "time": 'interface_substeps = 4\nprecision = "single"',
+        "prestress": 'file = "prestress.csv"',
+    },
     # The rupture passes the sides.
     "periodic, two bodies": {
         "plate": 'sides = "periodic"',
@@ -67,11 +71,15 @@ CASES = {
         "x_m": 0.99,
         "y_m": -0.2,
         "output": "snapshot_interval_s = 1.6e-5",
+        "end_s": 2e-5,
     },
     # Then the leader has to know all cells: they are no squares, to the accuracy of these.
-    "not quite squares": {"width_m": 1.0000003},
-    "single precision": {"time": 'precision = "single"'},
+    "not quite squares": {"width_m": 1.0000003, "end_s": 6e-6},
 }
+
+
+# Where two parts meet in the patch of the event.
+PROCESSES = dict.fromkeys(CASES, 3) | {"periodic, two bodies": 2}
 
 
 def write_case(folder, name, **changes):
@@ -79,7 +87,7 @@ def write_case(folder, name, **changes):
         "width_m": 1.0,
         "plate": "",
         "prestress": UNIFORM,
-        "x_m": 0.5,
+        "x_m": 0.34,
         "end_s": 3e-5,
         "time": "",
         "output": "",
@@ -97,23 +105,21 @@ def test_processes_change_nothing(name, tmp_path, mpirun):
     one = tmp_path / "one"
     require_done(mpirun.alone("run", case, "-o", one, "-q"))
     assert (one / "fronts.csv").read_text().count("\n") > 20
-    for n in (2, 3):
-        several = tmp_path / f"by-{n}"
-        require_done(mpirun(n, "run", case, "-o", several, "-q"))
-        require_same(one, several, 1e-7 if "single" in name else 1e-13)
+    several = tmp_path / "several"
+    require_done(mpirun(PROCESSES[name], "run", case, "-o", several, "-q"))
+    require_same(one, several, 1e-7 if "single" in name else 1e-13)
 
 
 def test_any_number_of_processes_goes_on(tmp_path, mpirun):
     """Other than with few nodes a checkpoint of several processes has no displacements before the event."""
-    case = write_case(tmp_path, "absorbing edges", end_s=2e-4)
+    case = write_case(tmp_path, "absorbing edges", end_s=1e-4)
     one, several = tmp_path / "one", tmp_path / "several"
     states = ("--state-dir", tmp_path / "states")
     often = ("--checkpoint-every-simulated", "20e-6")
     stop_after_checkpoint(mpirun, 2, several, "run", case, "-o", several, *states, *often)
     # One process begins with the state that two have left in the folder, and then with that of a checkpoint.
     require_done(mpirun.alone("run", case, "-o", one, "-q", *states))
-    for n in (3, 1, 2):
-        stop_after_checkpoint(mpirun, n, several, "run", "--restart", several, *often)
+    stop_after_checkpoint(mpirun, 1, several, "run", "--restart", several, *often)
     require_done(mpirun(3, "run", "--restart", several))
     require_same(one, several)
 
@@ -139,17 +145,6 @@ def test_info_is_of_the_run(tmp_path, mpirun):
     assert shared["exchange every"] == f"{run['processes']['steps_per_exchange']} steps"
 
 
-def test_info_of_what_no_machine_holds(tmp_path, mpirun):
-    case = write_case(tmp_path, "absorbing edges")
-    sizes = ("--set", "plate.element_size_m=2.5e-5", "--set", "plate.height_m=1.0")
-    refused = mpirun.alone("info", case, *sizes)
-    assert refused.returncode == 2
-    assert "needs about" in refused.stderr
-    told = told_by_info(mpirun, case, *sizes, "--processes", 100)
-    assert told["nodes"] == f"{40001 * 40001} (40001 on the interface)"
-    assert told["columns of nodes of each"].startswith("400 to 401, ")
-
-
 def peak_mb_of_leader(mpirun, case, n_processes, out):
     """The starter of its only child is measured."""
     measured = (
@@ -163,7 +158,12 @@ def peak_mb_of_leader(mpirun, case, n_processes, out):
         *((":", "-n", n_processes - 1, *program) if n_processes > 1 else ()),
     ]
     result = subprocess.run(
-        list(map(str, command)), cwd=mpirun.folder, env=os.environ | AS_ROOT, capture_output=True, text=True
+        list(map(str, command)),
+        cwd=mpirun.folder,
+        env=os.environ | AS_ROOT,
+        capture_output=True,
+        text=True,
+        timeout=HANG_S,
     )
     require_done(result)
     return float(result.stdout)
@@ -208,9 +208,9 @@ def test_statics_of_what_no_process_holds(tmp_path, mpirun):
     told = told_by_info(mpirun, case, "--processes", 2)
     assert told["nodes"] == f"{4001 * 129} (4001 on the interface)"
     assert "irregular" not in told["nodes"]
-    require_done(mpirun(2, "run", case, "-o", "kept", "-q", timeout_s=400))
+    require_done(mpirun(2, "run", case, "-o", "kept", "-q"))
     states = ("--state-dir", tmp_path / "states")
-    require_done(mpirun(2, "run", case, "-o", "gathered", "-q", *states, timeout_s=400))
+    require_done(mpirun(2, "run", case, "-o", "gathered", "-q", *states))
     require_same(tmp_path / "gathered", tmp_path / "kept", 0)
     statics = [
         json.loads((tmp_path / name / "run.json").read_text())["statics"] for name in ("kept", "gathered")

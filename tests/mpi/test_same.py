@@ -3,13 +3,12 @@
 
 import csv
 import json
-import os
 import signal
 import subprocess
 import time
 
 import pytest
-from conftest import finished
+from conftest import finished, send
 
 # Elements of 2 mm: a run takes a tenth of a second.
 PLATE = """\
@@ -64,9 +63,7 @@ half_length_m = 8e-3
 
 CASES = {
     "relieved corners": RELIEF,
-    "right angles": {"plate": 'corner = "none"'},
     "rounded corners": {"plate": 'corner = "fillet"\nfillet_radius_m = 6e-3'},
-    "event at the right": {"rest": '[event]\nkind = "right"'},
     "spontaneous": {"rest": '[event]\nkind = "spontaneous"'},
     "ramp": {
         "rest": '[event]\nkind = "spontaneous"\n[loading]\nmethod = "ramp"\nshear_speed_over_c_L = 1e-3'
@@ -96,7 +93,6 @@ CASES = {
         "plate": 'corner = "none"',
         "rest": NUCLEATION.format(form="weakened", x_m=0.0667),
     },
-    "graded": {"plate": GRADED + 'corner = "none"', "time": FEW_SUB_STEPS, "rest": DAMPED},
     "graded, relieved corners": {
         "plate": GRADED + 'corner = "relief"',
         "time": FEW_SUB_STEPS,
@@ -111,7 +107,6 @@ CASES = {
         "time": FEW_SUB_STEPS,
         "rest": BASE + "coarsenings = 2\nfine_height_m = 8e-3\n" + DAMPED,
     },
-    "graded base": {"time": FEW_SUB_STEPS, "rest": BASE + "coarsenings = 1\nfine_height_m = 8e-3\n"},
     "graded, absorbing edges": {
         "plate": GRADED + 'corner = "none"\nsides = "absorbing"\ntop = "absorbing"',
         "time": FEW_SUB_STEPS,
@@ -128,6 +123,13 @@ CASES = {
         "rest": '[event]\nkind = "right"',
     },
 }  # fmt: skip
+# Of three processes the middle one has two neighbours; of two with periodic sides each has the other twice.
+PROCESSES = dict.fromkeys(CASES, (3,)) | {
+    "relieved corners": (2, 3),
+    "periodic": (2, 3),
+    "two bodies": (2, 3),
+    "weakened between two": (2,),
+}
 
 
 def write_case(folder, name):
@@ -162,16 +164,18 @@ def require_same(one, several, rounding=1e-13):
 
 
 def stop_after_checkpoint(mpirun, n, folder, *arguments):
-    """Begins or goes on, and ends it once there is a checkpoint more."""
+    """Begins or goes on, and ends it once there is a checkpoint more.
+    @return whether it was stopped; else it was done before"""
     state = folder / "unfinished/state"
     before = set(state.glob("*checkpoint*"))
     with mpirun.start(n, *arguments, "-q", stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        while not set(state.glob("*checkpoint*")) - before:
-            assert process.poll() is None, process.communicate()
+        while process.poll() is None and not set(state.glob("*checkpoint*")) - before:
             time.sleep(0.002)
         # The leader and not mpirun, which takes a second to end its processes.
-        os.kill(mpirun.processes()[0], signal.SIGTERM)
-        assert finished(process).returncode == 128 + signal.SIGTERM
+        send(mpirun.processes().get(0), signal.SIGTERM)
+        result = finished(process)
+        assert result.returncode in (0, 128 + signal.SIGTERM), result.stderr
+        return result.returncode != 0
 
 
 def require_done(run):
@@ -187,25 +191,24 @@ def test_processes_change_nothing(name, tmp_path, mpirun):
         assert len(stream.readlines()) > 10
     # Where a step is single precision's, so are its sums.
     rounding = 1e-7 if "single" in name else 1e-13
-    for n in (2, 3):
+    for n in PROCESSES[name]:
         several = tmp_path / f"by-{n}"
         require_done(mpirun(n, "run", case, "-o", several, "-q"))
         require_same(one, several, rounding)
 
 
-@pytest.mark.parametrize("name", ["two bodies", "graded, two bodies"])
-def test_any_number_of_processes_goes_on(name, tmp_path, mpirun):
+def test_any_number_of_processes_goes_on(tmp_path, mpirun):
     """A run that is stopped once there is a checkpoint, and gone on with by other numbers of processes."""
-    case = write_case(tmp_path, name)
+    case = write_case(tmp_path, "graded, two bodies")
     # Long enough to be stopped again and again.
-    text = case.read_text().replace("end_s = 60e-6", "end_s = 3e-3\nquiet_s = inf")
+    text = case.read_text().replace("end_s = 60e-6", "end_s = 1.5e-3\nquiet_s = inf")
     case.write_text(text.replace("element_size_m = 2e-3", "element_size_m = 1e-3"))
     one, several = tmp_path / "one", tmp_path / "several"
     require_done(mpirun.alone("run", case, "-o", one, "-q"))
     often = ("--checkpoint-every-simulated", "50e-6")
-    stop_after_checkpoint(mpirun, 2, several, "run", case, "-o", several, *often)
-    for n in (3, 1, 2):
-        stop_after_checkpoint(mpirun, n, several, "run", "--restart", several, *often)
-    require_done(mpirun(3, "run", "--restart", several, *often))
+    stops = stop_after_checkpoint(mpirun, 2, several, "run", case, "-o", several, *often)
+    for n in (3, 1):
+        stops += stop_after_checkpoint(mpirun, n, several, "run", "--restart", several, *often)
+    require_done(mpirun(2, "run", "--restart", several, *often))
     require_same(one, several)
-    assert json.loads((several / "run.json").read_text())["sessions"] == 5
+    assert json.loads((several / "run.json").read_text())["sessions"] == 1 + stops
