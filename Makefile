@@ -11,7 +11,6 @@ MPI_PACKAGES := libopenmpi-dev openmpi-bin libpetsc-real-dev
 SLURM_PACKAGES := slurm-wlm munge
 LINT_PACKAGES := clang-format-14 clang-tidy-14
 SANITIZER_PACKAGES := clang-14 libclang-rt-14-dev
-FUZZ_PACKAGES := clang-14 libclang-rt-14-dev
 PACKAGING_PACKAGES := dpkg-dev lintian file
 TRIAL_PACKAGES := debootstrap
 EMULATOR_PACKAGES := qemu-user
@@ -23,11 +22,14 @@ EXPERIMENT ?=
 VENV := .venv
 PYTHON := $(VENV)/bin/python
 PIP_INSTALL := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-compile -r /dev/stdin
-PROGRAM := build/release/slipfront
+# Of CMakePresets.json: release, or mpi, whose program several processes can share and which runs alone as well.
+PRESET ?= release
+BUILD := build/$(PRESET)
+PROGRAM := $(BUILD)/slipfront
 # Whether warnings are errors: ON in continuous integration, whose compilers are known.
 WERROR ?= OFF
 
-.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy hostile report-trial fuzz sanitize coverage clean
+.PHONY: help setup program build build-mpi module stubs wheel wheel-trial test test-slow test-mpi examples site site-links reproduce sensitivity quick regularised convergence interface-step open-choices bases sweep slurm-trial slurm-mpi-trial reference contact-algorithms bench docs format format-check lint verify verification-pages tidy tidy-recent hostile report-trial fuzz sanitize coverage clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -36,7 +38,7 @@ setup: packages $(VENV)/.installed  ## install the Debian packages that are miss
 
 .PHONY: packages
 packages:
-	@scripts/install-packages $(APT_PACKAGES)
+	@scripts/install-packages $(APT_PACKAGES) $(if $(filter mpi,$(PRESET)),$(MPI_PACKAGES))
 
 $(VENV)/.installed: pyproject.toml | packages
 	@echo "== Python environment $(VENV)"
@@ -53,12 +55,12 @@ $(VENV)/.installed-lint: $(VENV)/.installed
 	@touch $@
 
 # The Python module stays configured once it is, unless the environment that it is built with has gone.
-CONFIGURE = cmake --preset release -D SLIPFRONT_WERROR=$(WERROR) $(if $(wildcard $(VENV)/.installed),,-D SLIPFRONT_PYTHON=OFF)
+CONFIGURE = cmake --preset $(PRESET) -D SLIPFRONT_WERROR=$(WERROR) $(if $(wildcard $(VENV)/.installed),,-D SLIPFRONT_PYTHON=OFF)
 
 program: packages  ## build the program alone: build/release/slipfront
 	@echo "== Building $(PROGRAM)"
 	$(CONFIGURE)
-	cmake --build --preset release --target slipfront
+	cmake --build --preset $(PRESET) --target slipfront
 
 # What the targets below need, the downloads beside the compilation.
 .PHONY: ready ready-to-test
@@ -72,17 +74,17 @@ ready-to-test: packages
 build: packages  ## build the program and all tests
 	@echo "== Building everything"
 	$(CONFIGURE)
-	cmake --build --preset release
+	cmake --build --preset $(PRESET)
 
 build-mpi: packages  ## the program whose runs several processes of MPI can share: build/mpi/slipfront
 	@scripts/install-packages $(MPI_PACKAGES)
 	@echo "== Building build/mpi/slipfront"
 	cmake --preset mpi -D SLIPFRONT_WERROR=$(WERROR)
-	cmake --build --preset mpi
+	cmake --build --preset mpi --target slipfront
 
 module: program $(VENV)/.installed  ## build the Python module as well: python/slipfront/_core
-	cmake --preset release -D SLIPFRONT_PYTHON=ON -D Python_EXECUTABLE=$(abspath $(PYTHON))
-	cmake --build --preset release --target slipfront_core
+	cmake --preset $(PRESET) -D SLIPFRONT_PYTHON=ON -D Python_EXECUTABLE=$(abspath $(PYTHON))
+	cmake --build --preset $(PRESET) --target slipfront_core
 
 stubs: module  ## renew the types of the module, python/slipfront/_core.pyi
 	PYTHONPATH=python $(PYTHON) -m nanobind.stubgen -q -m slipfront._core -o python/slipfront/_core.pyi
@@ -96,11 +98,13 @@ wheel-trial: wheel program  ## try it in an empty environment, and on an old pro
 	rm -rf build/wheel-trial
 	scripts/try-wheel build/slipfront-*.whl build/wheel-trial $(PROGRAM)
 
-test: ready-to-test  ## all tests, C++ and Python
-	@scripts/run-tests build/release $(PYTHON)
+test: ready-to-test  ## the tests, C++ and Python
+	@scripts/run-tests $(BUILD) $(PYTHON)
+
+test-slow: ready-to-test  ## the tests in Python that take longest: trials, tutorial, examples, notebooks
+	@scripts/run-tests $(BUILD) $(PYTHON) slow
 
 test-mpi: build-mpi $(VENV)/.installed  ## what processes share: as one process, with 2 and 3 of them
-	cmake --preset mpi -D SLIPFRONT_TESTS=ON
 	cmake --build --preset mpi --target test_petsc
 	SLIPFRONT_MPI=$(abspath build/mpi/slipfront) $(PYTHON) -m pytest -q tests/mpi
 
@@ -125,7 +129,7 @@ quick: ready  ## the same in a second, on a coarse mesh, into results-quick/
 verify: ready-to-test  ## problems with known answers, with their pictures, and the energy balance over a million steps
 	$(PROGRAM) verify -o $(RESULTS)-verify
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.verification $(RESULTS)-verify $(RESULTS)-verify/figures
-	build/release/test_motion --gtest_also_run_disabled_tests --gtest_filter='*Million*'
+	$(BUILD)/test_motion --gtest_also_run_disabled_tests --gtest_filter='*Million*'
 
 verification-pages: verify  ## renew the numbers and pictures of docs/verification
 	$(PYTHON) scripts/verification-pages.py $(RESULTS)-verify docs/verification
@@ -233,12 +237,20 @@ lint: $(VENV)/.installed-lint  ## fail where Python is not formatted, or ruff or
 	$(VENV)/bin/mypy
 
 TIDY ?= src
+SINCE ?= 2 days ago
 
-# In a folder of its own: clang cannot read what gcc has precompiled.
+# In a folder of its own: clang cannot read what gcc has precompiled, and each file has to name what it uses.
+define CLANG_TIDY
+cmake --preset release -B build/tidy -D SLIPFRONT_TOGETHER=OFF
+run-clang-tidy-14 -quiet -extra-arg=-Wno-unknown-warning-option -p build/tidy $(1) > build/tidy.log 2>&1 || { grep -E '(error|warning): ' build/tidy.log | sort -u; exit 1; }
+@echo "clang-tidy: no findings"
+endef
+
 tidy: packages lint-packages  ## clang-tidy over src, or TIDY=src/ROOM alone; fails at any finding
-	cmake --preset release -B build/tidy -D SLIPFRONT_TOGETHER=OFF
-	run-clang-tidy-14 -quiet -extra-arg=-Wno-unknown-warning-option -p build/tidy '^$(CURDIR)/$(TIDY)/.*' > build/tidy.log 2>&1 || { grep -E '(error|warning): ' build/tidy.log | sort -u; exit 1; }
-	@echo "clang-tidy: no findings"
+	$(call CLANG_TIDY,'^$(CURDIR)/$(TIDY)/.*')
+
+tidy-recent: packages lint-packages  ## the same over what the commits since SINCE="2 days ago" have changed
+	$(call CLANG_TIDY,$$(scripts/changed-sources '$(SINCE)'))
 
 hostile: ready-to-test  ## runs that are killed, damaged, signalled, or fail at any call: results are right or refused
 	PYTHONPATH=tests $(PYTHON) -m hostile $(PROGRAM)
@@ -256,10 +268,10 @@ sanitize: packages  ## the C++ tests and coarse runs under the address, undefine
 	@scripts/run-sanitizers build/asan build/tsan
 
 fuzz: packages  ## files that are made up, for every reader of files, FUZZ_SECONDS each
-	@scripts/install-packages $(FUZZ_PACKAGES)
-	cmake --preset fuzz
-	cmake --build --preset fuzz
-	@scripts/run-fuzzers build/fuzz $(FUZZ_SECONDS)
+	@scripts/install-packages $(SANITIZER_PACKAGES)
+	cmake --preset asan
+	cmake --build --preset asan --target fuzzers
+	@scripts/run-fuzzers build/asan $(FUZZ_SECONDS)
 
 coverage: packages  ## lines of the numerical core that the C++ tests run: table, and page build/coverage/index.html
 	@scripts/install-packages $(COVERAGE_PACKAGES)
