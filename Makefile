@@ -225,11 +225,11 @@ lint-packages:
 
 .PHONY: lint-packages
 format: lint-packages $(VENV)/.installed-lint  ## format all C++ and Python sources
-	clang-format-14 -i $(SOURCES)
+	@clang-format-14 -i $(SOURCES)
 	$(VENV)/bin/ruff format --quiet
 
 format-check: lint-packages  ## fail where a C++ source is not formatted
-	clang-format-14 --dry-run --Werror $(SOURCES)
+	@clang-format-14 --dry-run --Werror $(SOURCES)
 
 lint: $(VENV)/.installed-lint  ## fail where Python is not formatted, or ruff or mypy finds anything
 	$(VENV)/bin/ruff format --check
