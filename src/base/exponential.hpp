@@ -17,7 +17,7 @@ struct Decay {
 /// x = k ln 2 - r with |r| <= ln 2 / 2, so that exp(-x) = 2^-k (1 + q), q = exp(r) - 1 = r + r^2/2! + ... +
 /// r^13/13!; the next term is below 5e-18.
 template <class V>
-SLIPFRONT_HOST_DEVICE inline Decay<V> decay(V x) {
+inline Decay<V> decay(V x) {
   // Adding 1.5 * 2^52 rounds to a whole number, which then stands in the lowest bits.
   constexpr double shift = 0x1.8p52;
   const V shifted = x * 1.4426950408889634 + shift;
@@ -39,7 +39,7 @@ SLIPFRONT_HOST_DEVICE inline Decay<V> decay(V x) {
 
 /// exp(-x), x >= 0; see decay.
 template <class V>
-SLIPFRONT_HOST_DEVICE inline V exp_minus(V x) {
+inline V exp_minus(V x) {
   return decay(x).left;
 }
 

@@ -12,33 +12,29 @@
 #include <type_traits>
 #include <utility>
 
-#include "base/host_device.hpp"
-
 // Arithmetic that is written once for a value type V: a number, or the processor's vector of them, Lanes of
 // doubles or LanesOf<float>. The operators are the compiler's; the functions here stand in for what they
 // lack. Both branches of a select are evaluated.
 namespace slipfront {
 
-SLIPFRONT_HOST_DEVICE inline double select(bool condition, double yes, double no) {
+inline double select(bool condition, double yes, double no) {
   return condition ? yes : no;
 }
-SLIPFRONT_HOST_DEVICE inline bool any(bool condition) {
+inline bool any(bool condition) {
   return condition;
 }
-SLIPFRONT_HOST_DEVICE inline double absolute(double a) {
+inline double absolute(double a) {
   return std::fabs(a);
 }
-SLIPFRONT_HOST_DEVICE inline double copy_sign(double magnitude, double sign) {
+inline double copy_sign(double magnitude, double sign) {
   return std::copysign(magnitude, sign);
 }
-SLIPFRONT_HOST_DEVICE inline std::uint64_t bits_of(double a) {
+inline std::uint64_t bits_of(double a) {
   return __builtin_bit_cast(std::uint64_t, a);
 }
-SLIPFRONT_HOST_DEVICE inline double from_bits(std::uint64_t bits) {
+inline double from_bits(std::uint64_t bits) {
   return __builtin_bit_cast(double, bits);
 }
-
-#ifndef __CUDACC__
 
 #ifdef __AVX512F__
 inline constexpr int vector_bytes = 64;
@@ -203,15 +199,13 @@ inline std::pair<V, V> interleaved(const V& even, const V& odd) {
   return {interleaved_from<0>(even, odd, all), interleaved_from<length<V>>(even, odd, all)};
 }
 
-#endif
-
 /// What a comparison of two V gives.
 template <class V>
 using Mask = decltype(V{} < V{});
 
 /// max(0, a); 0 where a is not a number.
 template <class V>
-SLIPFRONT_HOST_DEVICE inline V positive_part(V a) {
+inline V positive_part(V a) {
   return select(a > 0, a, V{});
 }
 

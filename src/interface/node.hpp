@@ -24,13 +24,13 @@ struct Node {
 
 /// The coefficient of a node that may be weakened; exactly the law's where intact is 1.
 template <class V, class Constant>
-SLIPFRONT_HOST_DEVICE inline V weakened(V mu, Constant mu_k, V intact) {
+inline V weakened(V mu, Constant mu_k, V intact) {
   return mu - (1 - intact) * (mu - mu_k);
 }
 
 /// Pressure of the direct algorithm: what the gap at the step's end needs to be closed.
 template <class V>
-SLIPFRONT_HOST_DEVICE inline void press_direct(Node<V>& n, V impedance, double per_step) {
+inline void press_direct(Node<V>& n, V impedance, double per_step) {
   const V gap_rate = (n.initial_gap_m + n.u_y_m) * per_step;
   n.p_Pa = positive_part(-(n.v_y_m_per_s + gap_rate) * impedance);
   n.v_y_m_per_s += n.p_Pa / impedance;
@@ -38,7 +38,7 @@ SLIPFRONT_HOST_DEVICE inline void press_direct(Node<V>& n, V impedance, double p
 
 /// Pressure of the predictor-corrector algorithm: what keeps the normal velocity of a locked node at zero.
 template <class V>
-SLIPFRONT_HOST_DEVICE inline void press_locked(Node<V>& n, V impedance, double per_step) {
+inline void press_locked(Node<V>& n, V impedance, double per_step) {
   const V v_y = n.v_y_m_per_s;
   const Mask<V> stays = n.locked && v_y <= 0;
   const Mask<V> lands = !n.locked && v_y + (n.initial_gap_m + n.u_y_m) * per_step < 0;
@@ -68,8 +68,7 @@ Update(Coefficient, Constant, Constant, Form, double) -> Update<Coefficient, Con
 /// @return whether the node began or ceased to slip.
 template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Coefficient, class Constant, class Form,
           class V>
-SLIPFRONT_HOST_DEVICE inline Mask<V> update_node(const Update<Coefficient, Constant, Form>& update,
-                                                 Node<V>& n) {
+inline Mask<V> update_node(const Update<Coefficient, Constant, Form>& update, Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
   const auto& [mu, mu_at_rest, mu_k, form, dt_s] = update;

@@ -35,15 +35,14 @@ inline double relaxation_rate_per_s(const Regularisation& r, double speed_m_per_
 template <class V>
 struct Following {
   V left, lag;
-  SLIPFRONT_HOST_DEVICE explicit Following(V x) {
+  explicit Following(V x) {
     const auto parts = decay(x);
     const auto takes_time = x > 0;
     left = parts.left;
     lag = select(takes_time, parts.lost, V{} + 1) / select(takes_time, x, V{} + 1);
   }
   template <class Pressure>
-  SLIPFRONT_HOST_DEVICE Pressure operator()(Pressure from_Pa, Pressure target_before_Pa,
-                                            Pressure target_Pa) const {
+  Pressure operator()(Pressure from_Pa, Pressure target_before_Pa, Pressure target_Pa) const {
     return target_Pa - lag * (target_Pa - target_before_Pa) + left * (from_Pa - target_before_Pa);
   }
 };
@@ -52,7 +51,7 @@ struct ConstantRate {
   Following<double> following;
   ConstantRate(const Regularisation& r, double dt_s) : following(dt_s * relaxation_rate_per_s(r, 0)) {}
   template <class V>
-  SLIPFRONT_HOST_DEVICE Following<double> operator()(V /*speed_m_per_s*/) const {
+  Following<double> operator()(V /*speed_m_per_s*/) const {
     return following;
   }
 };
@@ -62,7 +61,7 @@ struct SlipRateDependent {
   SlipRateDependent(const Regularisation& r, double dt_s)
       : at_rest(dt_s * relaxation_rate_per_s(r, 0)), dt_per_length_s_per_m(dt_s / r.length_m) {}
   template <class V>
-  SLIPFRONT_HOST_DEVICE Following<V> operator()(V speed_m_per_s) const {
+  Following<V> operator()(V speed_m_per_s) const {
     return Following<V>(at_rest + speed_m_per_s * dt_per_length_s_per_m);
   }
 };
@@ -83,15 +82,15 @@ struct Immediate {
   static constexpr bool remembers = false;
   struct Step {};
   template <class V>
-  SLIPFRONT_HOST_DEVICE Step step(V /*speed_m_per_s*/) const {
+  Step step(V /*speed_m_per_s*/) const {
     return {};
   }
   template <class V>
-  SLIPFRONT_HOST_DEVICE static Memory<V> now(Step, const Memory<V>& /*before*/, V /*mu*/, V /*p_Pa*/) {
+  static Memory<V> now(Step, const Memory<V>& /*before*/, V /*mu*/, V /*p_Pa*/) {
     return {};
   }
   template <class V>
-  SLIPFRONT_HOST_DEVICE static V strength(V mu, V p_Pa, const Memory<V>& /*now*/) {
+  static V strength(V mu, V p_Pa, const Memory<V>& /*now*/) {
     return mu * p_Pa;
   }
   static Memory<double> initial(double /*mu*/, double /*p_Pa*/) { return {}; }
@@ -103,15 +102,15 @@ struct RelaxedStrength {
   static constexpr bool remembers = true;
   Rate rate;
   template <class V>
-  SLIPFRONT_HOST_DEVICE auto step(V speed_m_per_s) const {
+  auto step(V speed_m_per_s) const {
     return rate(speed_m_per_s);
   }
   template <class V, class F>
-  SLIPFRONT_HOST_DEVICE static Memory<V> now(const F& following, const Memory<V>& before, V mu, V p_Pa) {
+  static Memory<V> now(const F& following, const Memory<V>& before, V mu, V p_Pa) {
     return {following(before.relaxed_Pa, before.target_Pa, mu * p_Pa), mu * p_Pa};
   }
   template <class V>
-  SLIPFRONT_HOST_DEVICE static V strength(V /*mu*/, V p_Pa, const Memory<V>& now) {
+  static V strength(V /*mu*/, V p_Pa, const Memory<V>& now) {
     return select(p_Pa > 0, now.relaxed_Pa, V{});
   }
   static Memory<double> initial(double mu, double p_Pa) { return {mu * p_Pa, mu * p_Pa}; }
@@ -123,15 +122,15 @@ struct RelaxedPressure {
   static constexpr bool remembers = true;
   Rate rate;
   template <class V>
-  SLIPFRONT_HOST_DEVICE auto step(V speed_m_per_s) const {
+  auto step(V speed_m_per_s) const {
     return rate(speed_m_per_s);
   }
   template <class V, class F>
-  SLIPFRONT_HOST_DEVICE static Memory<V> now(const F& following, const Memory<V>& before, V /*mu*/, V p_Pa) {
+  static Memory<V> now(const F& following, const Memory<V>& before, V /*mu*/, V p_Pa) {
     return {following(before.relaxed_Pa, before.target_Pa, p_Pa), p_Pa};
   }
   template <class V>
-  SLIPFRONT_HOST_DEVICE static V strength(V mu, V p_Pa, const Memory<V>& now) {
+  static V strength(V mu, V p_Pa, const Memory<V>& now) {
     return select(p_Pa > 0, mu * now.relaxed_Pa, V{});
   }
   static Memory<double> initial(double /*mu*/, double p_Pa) { return {p_Pa, p_Pa}; }

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/host_device.hpp"
 #include "base/lanes.hpp"
 #include "solid/operator.hpp"
 #include "solid/stencil_product.hpp"
@@ -50,8 +49,7 @@ void convert_row(int n, const From* __restrict from, To* __restrict to) {
 }
 
 /// Kick of a node amid four squares.
-SLIPFRONT_HOST_DEVICE inline Pair interior_kick(const InteriorStencil& s, int i, ConstRow south,
-                                                ConstRow middle, ConstRow north) {
+inline Pair interior_kick(const InteriorStencil& s, int i, ConstRow south, ConstRow middle, ConstRow north) {
   const double corners_x = (south.x[i - 1] + south.x[i + 1]) + (north.x[i - 1] + north.x[i + 1]);
   const double corners_y = (south.y[i - 1] + south.y[i + 1]) + (north.y[i - 1] + north.y[i + 1]);
   const double twist_x = (north.x[i + 1] - north.x[i - 1]) - (south.x[i + 1] - south.x[i - 1]);
@@ -155,7 +153,7 @@ class RollingRowsOf {
 using RollingRows = RollingRowsOf<double>;
 
 /// Kick of a node on an edge; `north` is the row on the side of the squares.
-SLIPFRONT_HOST_DEVICE inline Pair edge_kick(const EdgeStencil& s, int i, ConstRow middle, ConstRow north) {
+inline Pair edge_kick(const EdgeStencil& s, int i, ConstRow middle, ConstRow north) {
   return {s.centre_x * middle.x[i] + s.side_x * (middle.x[i - 1] + middle.x[i + 1]) + s.up_x * north.x[i] +
               s.corner_x * (north.x[i - 1] + north.x[i + 1]) + s.shear * (middle.y[i + 1] - middle.y[i - 1]) +
               s.twist * (north.y[i + 1] - north.y[i - 1]),
@@ -191,8 +189,8 @@ inline Pair kick_edge_row(const EdgeStencil& s, Span span, ConstRow middle, Cons
 
 /// Kick of a node with squares to the right (inner = 1) or to the left (inner = -1, mirrored stencil) of it.
 template <class Real>
-SLIPFRONT_HOST_DEVICE Pair side_kick(const EdgeStencil& s, int i, int inner, ConstRowOf<Real> south,
-                                     ConstRowOf<Real> middle, ConstRowOf<Real> north) {
+Pair side_kick(const EdgeStencil& s, int i, int inner, ConstRowOf<Real> south, ConstRowOf<Real> middle,
+               ConstRowOf<Real> north) {
   const int k = i + inner;
   return {s.centre_y * middle.x[i] + s.side_y * (south.x[i] + north.x[i]) + s.up_y * middle.x[k] +
               s.corner_y * (south.x[k] + north.x[k]) - s.shear * (north.y[i] - south.y[i]) +

@@ -194,12 +194,13 @@ class TestStandardOutput:
 
 @pytest.mark.parametrize("megabytes", [60, 100, 200])
 def test_little_memory(program, write_case, megabytes):
-    """Each ends by its work or with one line. Below some 70 MB no library is loaded."""
+    """Each ends by its work or with one line. Below some 70 MB, or 150 with MPI and PETSc, no library
+    is loaded."""
     case = write_case('[plate]\ncorner = "none"\n[time]\nend_s = 2e-6\n')
     for command in (["info", case], ["run", case, "-o", f"out{megabytes}", "-q"]):
         result = program(*command, memory_bytes=megabytes * 10**6)
         loaded = "while loading shared libraries" not in result.stderr
-        assert loaded or megabytes == 60
+        assert loaded or megabytes < 200
         assert result.returncode in ((0, 1, 2) if loaded else (127,)), result
         assert len(result.stderr.splitlines()) == (0 if result.returncode == 0 else 1)
 

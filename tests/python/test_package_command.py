@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -99,8 +100,13 @@ def test_mistakes_are_one_line(onsets, capsys, text, options, message):
 
 
 def test_other_commands_are_the_programs(tmp_path):
+    """Of the program that is tested, wherever it was built."""
+    program = Path(os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")).resolve()
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
-    code = "from slipfront.__main__ import console; exit(console())"
+    code = (
+        f"import slipfront.program; slipfront.program.PLACES = ({str(program)!r},); "
+        "from slipfront.__main__ import console; exit(console())"
+    )
     command = [sys.executable, "-c", code, "validate", "nowhere.toml"]
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 2

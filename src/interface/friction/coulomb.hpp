@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include "base/host_device.hpp"
 #include "base/message.hpp"
 #include "interface/friction/parameter.hpp"
 
@@ -29,9 +28,9 @@ struct Coulomb {
   template <class V, class Constant = double>
   struct Evaluator {
     Constant mu;
-    SLIPFRONT_HOST_DEVICE V operator()(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{} + mu; }
+    V operator()(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{} + mu; }
     /// d mu / d|v|
-    SLIPFRONT_HOST_DEVICE V slope_s_per_m(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{}; }
+    V slope_s_per_m(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{}; }
   };
   template <class V = double>
   Evaluator<V> evaluator() const {

@@ -40,10 +40,10 @@ struct LinearSlipWeakening {
   template <class V, class Constant = double>
   struct Evaluator {
     Constant kinetic, drop, per_slip_per_m;
-    SLIPFRONT_HOST_DEVICE V operator()(V /*speed_m_per_s*/, V slip_m) const {
+    V operator()(V /*speed_m_per_s*/, V slip_m) const {
       return kinetic + drop * positive_part(1 - slip_m * per_slip_per_m);
     }
-    SLIPFRONT_HOST_DEVICE V slope_s_per_m(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{}; }
+    V slope_s_per_m(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{}; }
   };
   template <class V = double>
   Evaluator<V> evaluator() const {

@@ -70,7 +70,7 @@ struct FrictionTableLaw {
     Constant at_rest, least;
     Rows from, per_width, drop;
 
-    SLIPFRONT_HOST_DEVICE V operator()(V speed_m_per_s, V slip_m) const {
+    V operator()(V speed_m_per_s, V slip_m) const {
       const V x = over_slip ? slip_m : speed_m_per_s;
       V value = V{} + at_rest;
       for (std::size_t k = 0; k < from.size(); ++k) {
@@ -79,7 +79,7 @@ struct FrictionTableLaw {
       }
       return select(value < least, V{} + least, value);  // by rounding alone
     }
-    SLIPFRONT_HOST_DEVICE V slope_s_per_m(V speed_m_per_s, V /*slip_m*/) const {
+    V slope_s_per_m(V speed_m_per_s, V /*slip_m*/) const {
       V slope{};
       if constexpr (!over_slip)
         for (std::size_t k = 0; k < from.size(); ++k) {

@@ -38,11 +38,11 @@ struct VelocityWeakening {
   template <class V, class Constant = double>
   struct Evaluator {
     Constant kinetic, drop, rate_s_per_m;
-    SLIPFRONT_HOST_DEVICE V operator()(V speed_m_per_s, V /*slip_m*/) const {
+    V operator()(V speed_m_per_s, V /*slip_m*/) const {
       return kinetic + drop * exp_minus(speed_m_per_s * rate_s_per_m);
     }
     /// d mu / d|v|
-    SLIPFRONT_HOST_DEVICE V slope_s_per_m(V speed_m_per_s, V /*slip_m*/) const {
+    V slope_s_per_m(V speed_m_per_s, V /*slip_m*/) const {
       return -drop * rate_s_per_m * exp_minus(speed_m_per_s * rate_s_per_m);
     }
   };
