@@ -324,7 +324,7 @@ COLUMNS = {
 
 
 def print_table(rows: list[dict[str, Any]]) -> None:
-    """As docs/processes-cost.md has it."""
+    """As docs/measured/network.md has it, with more columns."""
     print("| " + " | ".join(COLUMNS.values()) + " |\n|" + "---|" * len(COLUMNS))
     for row in rows:
         cells = [f"{v:.3g}" if isinstance(v := row[key], float) and v < 100 else v for key in COLUMNS]
