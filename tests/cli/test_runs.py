@@ -310,6 +310,19 @@ def test_second_interrupt_ends_the_program(program, coarse):
     assert process.wait(timeout=HANG_S) == -signal.SIGTERM
 
 
+def test_what_is_ignored_from_the_start_stays_so(program, coarse):
+    """As under nohup."""
+    process = program.start(
+        "run", coarse, "-o", "out", "-q", *LONG,
+        preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN),
+        restore_signals=False, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    wait_until(lambda: catches_interrupts(process.pid), process)
+    process.send_signal(signal.SIGHUP)
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(timeout=HANG_S) == 128 + signal.SIGTERM
+
+
 def test_progress_without_a_terminal_is_plain_lines(program, coarse):
     result = program("run", coarse, "-o", "out", *with_end(0.1))
     assert result.returncode == 0

@@ -172,6 +172,17 @@ TEST(Plate, FreeTopIsNeitherLoadedNorAbsorbs) {
   EXPECT_NEAR(side_m, 2 * plate.height_m, 100 * eps);
 }
 
+TEST(Plate, AbsorbsAlongItsWholeTop) {
+  for (const Sides sides : {Sides::free, Sides::periodic}) {
+    auto plate = small_plate(Corner::none);
+    plate.top = Top::absorbing;
+    plate.sides = sides;
+    double top_m = 0;
+    for (const auto& a : make_plate(plate).absorbing) top_m += a.top_m;
+    EXPECT_NEAR(top_m, plate.width_m, 100 * eps);
+  }
+}
+
 TEST(Quality, OfAHandMadeCell) {
   // A right trapezoid: base 2, top 1, left side 1, so 45 and 135 degrees on the right.
   Mesh mesh;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "files/files.hpp"
 #include "mesh/plate.hpp"
 #include "results/hdf5.hpp"
 #include "results/history.hpp"
@@ -218,6 +219,20 @@ TEST(Writing, AFullDiskIsNoticed) {
   EXPECT_THAT(history_error, HasSubstr("check that the disk is not full"));
   EXPECT_THAT(static_error,
               HasSubstr("static.csv.new: cannot be written (File too large); free space there"));
+}
+
+TEST(Writing, OfTextThatFailsLeavesWhatWasThere) {
+  const test::TemporaryFolder folder;
+  files::write_text(folder / "a.csv", "earlier");
+  const auto write = [&] {
+    files::write_text(folder / "a.csv", [](files::OutputFile& output) {
+      output.write("half");
+      throw WriteError("a full disk");
+    });
+  };
+  EXPECT_EQ(error_of(write), "a full disk");
+  EXPECT_EQ(test::read_file(folder / "a.csv"), "earlier");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.csv.new"));
 }
 
 TEST(StaticFile, HasARowPerNodeAtFullPrecision) {

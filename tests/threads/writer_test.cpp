@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <future>
 #include <memory>
 #include <numeric>
@@ -31,6 +32,25 @@ TEST(Writer, DoesJobsInTheirOrderInAThreadOfItsOwn) {
   writer.finish();
   EXPECT_EQ(done, expected);
   EXPECT_NE(thread, std::this_thread::get_id());
+}
+
+TEST(Writer, IsFinishedWhenTheJobUnderWayIs) {
+  std::promise<void> begun, go;
+  std::atomic<bool> done = false;
+  Writer writer(100);
+  writer.put(1, [&] {
+    begun.set_value();
+    go.get_future().wait();
+    done = true;
+  });
+  begun.get_future().wait();
+  auto finished = std::async(std::launch::async, [&] {
+    writer.finish();
+    return done.load();
+  });
+  finished.wait_for(std::chrono::milliseconds(50));  // for one that does not wait
+  go.set_value();
+  EXPECT_TRUE(finished.get());
 }
 
 TEST(Writer, HoldsNoMoreThanItMay) {

@@ -33,8 +33,10 @@ INSTANTIATE_TEST_SUITE_P(Verifications, Quick, ::testing::ValuesIn(verifications
 TEST(Check, HoldsWithinItsToleranceOnly) {
   Check check{.quantity = "q", .measured = 1.5, .expected = 1, .tolerance = 0.5};
   EXPECT_TRUE(check.holds());
-  check.measured = 1.6;
-  EXPECT_FALSE(check.holds());
+  for (const double outside : {1.6, 0.4}) {
+    check.measured = outside;
+    EXPECT_FALSE(check.holds());
+  }
   check.measured = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(check.holds());
 }
