@@ -19,7 +19,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import ROOT, settings
-from hostile.trials import HANG_S, freeze
+from hostile.trials import HANG_S, freeze, wait_until
 from slipfront.figures import interface_step
 from slipfront.figures.convergence import read_study
 from slipfront.read import ENERGY_TERMS, HISTORY_FIELDS
@@ -51,14 +51,6 @@ def catches_interrupts(pid):
     with open(f"/proc/{pid}/status") as status:
         caught = int(re.search(r"^SigCgt:\s*([0-9a-f]+)", status.read(), re.MULTILINE)[1], 16)
     return bool(caught >> (signal.SIGINT - 1) & 1)
-
-
-def wait_until(condition, process):
-    end = time.monotonic() + HANG_S
-    while not condition():
-        assert process.poll() is None, "ended before"
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.01)
 
 
 def test_run_writes_its_folder(program, coarse, tmp_path):

@@ -9,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -37,6 +38,15 @@ def as_from_a_terminal():
     signal.signal(signal.SIGINT, signal.default_int_handler)
     for each in (signal.SIGQUIT, signal.SIGHUP, signal.SIGTERM):
         signal.signal(each, signal.SIG_DFL)
+
+
+def wait_until(condition, process=None):
+    """Without the process, if there is one, ending before."""
+    end = time.monotonic() + HANG_S
+    while not condition():
+        assert process is None or process.poll() is None, "ended before"
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.002)
 
 
 def freeze(process):

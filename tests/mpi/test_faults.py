@@ -9,12 +9,11 @@ import resource
 import shutil
 import signal
 import subprocess
-import time
 from pathlib import Path
 
 import pytest
 from conftest import AS_ROOT, ROOT, finished, send
-from hostile.trials import HANG_S, TRIES, alone, difference, remove
+from hostile.trials import HANG_S, TRIES, alone, difference, remove, wait_until
 
 # Elements of 4 mm and 2000 steps: some tenths of a second on idle processors.
 CASE = """\
@@ -81,12 +80,8 @@ def one_line(result, code):
     return lines[0]
 
 
-def wait_until(condition, process):
-    """Or until the process has ended."""
-    end = time.monotonic() + HANG_S
-    while process.poll() is None and not condition():
-        assert time.monotonic() < end, "nothing has come"
-        time.sleep(0.002)
+def wait_until_or_over(condition, process):
+    wait_until(lambda: process.poll() is not None or condition())
 
 
 def met(mpirun, condition, *arguments):
@@ -96,7 +91,7 @@ def met(mpirun, condition, *arguments):
         process = mpirun.start(
             2, "run", *arguments, "-o", "out", "-q", stdout=subprocess.PIPE, stderr=subprocess.PIPE
         )
-        wait_until(condition, process)
+        wait_until_or_over(condition, process)
         pids = mpirun.processes()
         if len(pids) == 2:
             return process, pids
@@ -138,10 +133,7 @@ def is_ended(pid):
 
 def require_ended(pids):
     """No process is left that waits for one that has gone."""
-    end = time.monotonic() + HANG_S
-    while not all(is_ended(pid) for pid in pids):
-        assert time.monotonic() < end, "processes are left"
-        time.sleep(0.02)
+    wait_until(lambda: all(is_ended(pid) for pid in pids))
 
 
 def require_goes_on(mpirun, case, undisturbed):
@@ -302,7 +294,7 @@ def test_checkpoint_on_request(mpirun, case, undisturbed):
     state = mpirun.folder / "out/unfinished/state"
     for _ in range(TRIES):
         process = mpirun.start(2, "run", case, "-o", "out", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        wait_until((state / "history.raw").exists, process)
+        wait_until_or_over((state / "history.raw").exists, process)
         process.send_signal(signal.SIGUSR1)
         result = finished(process)
         assert result.returncode == 0, result.stderr

@@ -7,6 +7,8 @@ import os
 import subprocess
 from pathlib import Path
 
+from hostile.trials import HANG_S
+
 ROOT = Path(__file__).resolve().parents[2]
 
 # A few hundredths of a second.
@@ -26,7 +28,9 @@ snapshot_times_s = [20e-6, 60e-6]
 
 def program(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
     path = Path(os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")).resolve()
-    return subprocess.run([path, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=900)
+    return subprocess.run(
+        [path, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=HANG_S
+    )
 
 
 def write_case(folder: Path, text: str = CASE) -> Path:

@@ -7,6 +7,7 @@ import json
 
 import numpy as np
 import pytest
+from refusals import one_error, replace
 from slipfront.figures import convergence
 from slipfront.figures.__main__ import main
 from slipfront.figures.style import RC
@@ -156,12 +157,9 @@ def test_command_draws_the_figure(study, capsys):
     ],
 )
 def test_damaged_folder_gives_one_line(study, capsys, file, old, new, says):
-    text = (study / file).read_text()
-    assert old in text
-    (study / file).write_text(text.replace(old, new, 1))
-    assert main([str(study)]) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and str(study / file) in error and says in error
+    replace(study / file, old, new)
+    error = one_error(capsys, study)
+    assert str(study / file) in error and says in error
     assert not (study / "figures").exists()
 
 

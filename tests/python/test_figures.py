@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from refusals import one_error, replace
 from slipfront.figures import __main__ as command
 from slipfront.figures import balance, criteria, events, studies
 from slipfront.figures.__main__ import draw_all, main
@@ -654,19 +655,6 @@ def test_without_a_file_no_experiment_is_drawn(drawn):
 
 
 # Errors: one clear line, exit code 2
-
-
-def replace(file, old, new) -> None:
-    text = file.read_text()
-    assert old in text
-    file.write_text(text.replace(old, new, 1))
-
-
-def one_error(capsys, *arguments) -> str:
-    assert main([str(a) for a in arguments]) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and error.startswith("slipfront.figures: error: ")
-    return error
 
 
 MISSING = [

@@ -9,6 +9,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from refusals import one_error
 from slipfront import read
 from slipfront.figures import balance, events, plate
 from slipfront.figures.__main__ import draw_all, main
@@ -57,12 +58,6 @@ def flip(file, offset=None) -> None:
     file.write_bytes(data)
 
 
-def one_error(capsys) -> str:
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and error.startswith("slipfront.figures: error: ")
-    return error
-
-
 # Checksums
 
 
@@ -85,13 +80,11 @@ def test_a_file_that_is_not_as_listed_is_refused(output, capsys, name):
     seal(output)
     for damage, says in ((flip, "does not match checksums"), (lambda file: file.unlink(), "missing")):
         damage(output / name)
-        assert main([str(output)]) == 2
-        error = one_error(capsys)
+        error = one_error(capsys, output)
         assert f"{output / name}: {says}" in error and "run the case again" in error
         assert not (output / "figures").exists()
     if name == "right/energy.csv":  # of a single run as well
-        assert main([str(output / "right")]) == 2
-        assert "energy.csv: missing" in one_error(capsys)
+        assert "energy.csv: missing" in one_error(capsys, output / "right")
 
 
 def test_a_file_of_another_set_is_left_alone(run):

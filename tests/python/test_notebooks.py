@@ -8,6 +8,7 @@ import json
 from pathlib import Path
 
 import pytest
+from hostile.trials import HANG_S
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs/notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
@@ -42,4 +43,4 @@ def test_it_runs(notebook, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(PYTHON))
     book = nbformat.read(notebook, as_version=4)
     where = {"metadata": {"path": str(FOLDER)}}
-    nbclient.NotebookClient(book, timeout=900, kernel_name="python3", resources=where).execute()
+    nbclient.NotebookClient(book, timeout=HANG_S, kernel_name="python3", resources=where).execute()

@@ -15,6 +15,7 @@ import tomllib
 import numpy as np
 import pytest
 import slipfront
+from hostile.trials import HANG_S
 from package_cases import CASE, ROOT, program, write_case
 from slipfront.running import flattened, toml_text
 
@@ -204,7 +205,7 @@ def test_ctrl_c_keeps_a_checkpoint_and_resume_goes_on(tmp_path, threads):
     while not process.stdout.readline().startswith("event"):
         assert process.poll() is None
     process.send_signal(signal.SIGINT)
-    last = process.communicate(timeout=900)[0].splitlines()[-1]
+    last = process.communicate(timeout=HANG_S)[0].splitlines()[-1]
     assert process.returncode == 0
     assert last.startswith("KeyboardInterrupt: interrupted at t = ")
     assert last.endswith(f"slipfront run --restart {tmp_path / 'out'} goes on with it")

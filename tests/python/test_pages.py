@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from hostile.trials import HANG_S
 from synthetic import write_checksums
 from synthetic_study import write_open_choices
 
@@ -33,7 +34,7 @@ class Pages:
 
     def run(self, **options) -> subprocess.CompletedProcess:
         command = [sys.executable, SCRIPTS / self.script, self.results, self.target]
-        return subprocess.run(command, capture_output=True, text=True, timeout=900, **options)
+        return subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, **options)
 
     def refused(self, *says: str, code: int = 2, **options) -> None:
         before = self.page.read_bytes()
@@ -165,7 +166,7 @@ def test_a_full_disk_leaves_the_page_as_it_was(pages):
     "script", ["energy-criterion.py", "open-choices-page.py", "scorecard-page.py", "verification-pages.py"]
 )
 def test_without_arguments_the_usage_is_told(script):
-    done = subprocess.run([sys.executable, SCRIPTS / script], capture_output=True, text=True, timeout=900)
+    done = subprocess.run([sys.executable, SCRIPTS / script], capture_output=True, text=True, timeout=HANG_S)
     assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
 
 
@@ -175,6 +176,6 @@ def test_scripts_that_draw_replace_pictures_alone(tmp_path, script, name, says):
     (tmp_path / "mine").write_text("mine")
     (tmp_path / name).symlink_to(tmp_path / "mine")
     command = [sys.executable, SCRIPTS / script, tmp_path / "table.csv", tmp_path / name]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=900)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
     assert done.returncode == 2 and done.stderr.count("\n") == 1 and says in done.stderr
     assert (tmp_path / name).is_symlink() and (tmp_path / "mine").read_text() == "mine"

@@ -9,12 +9,12 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hostile.trials import HANG_S, wait_until
 from slipfront.files import DataError
 from slipfront.folder import verify_checksums
 from slipfront.sweep import engine, maps, notebook, report
@@ -786,14 +786,6 @@ def started(case, *arguments):
     )
 
 
-def wait_until(condition):
-    """A limit of 900 s catches what hangs."""
-    end = time.monotonic() + 900
-    while not condition():
-        assert time.monotonic() < end, "waited too long"
-        time.sleep(0.02)
-
-
 def runs_under_way(out):
     """run.json of each run that has come to its event."""
     return [p.with_name("run.json") for p in out.glob("points/*/unfinished/energy.csv")]
@@ -806,7 +798,7 @@ def test_an_interrupted_sweep_goes_on_with_its_checkpoints(case, tmp_path):
     out = tmp_path / "out"
     wait_until(lambda: len(runs_under_way(out)) == 2)
     os.killpg(process.pid, signal.SIGINT)
-    errors = process.communicate(timeout=900)[1]
+    errors = process.communicate(timeout=HANG_S)[1]
     assert process.returncode == 130
     assert errors.splitlines()[-1] == (
         "slipfront sweep: error: interrupted, 2 points are left; slipfront sweep --restart out"
@@ -819,7 +811,7 @@ def test_an_interrupted_sweep_goes_on_with_its_checkpoints(case, tmp_path):
     wait_until(lambda: all('"sessions": 2' in p.read_text() for p in runs_under_way(out)))
     assert process.poll() is None
     os.killpg(process.pid, signal.SIGINT)
-    assert process.wait(timeout=900) == 130
+    assert process.wait(timeout=HANG_S) == 130
 
 
 def test_runs_end_when_their_sweep_is_killed(case, tmp_path):
