@@ -17,6 +17,7 @@ EMULATOR_PACKAGES := qemu-user
 FUZZ_SECONDS ?= 60
 COVERAGE_PACKAGES := gcovr
 BROWSER_PACKAGES := chromium chromium-driver fonts-dejavu-core
+PAPER := papers/kammer2012
 RESULTS ?= results
 EXPERIMENT ?=
 VENV := .venv
@@ -131,15 +132,15 @@ verify: ready-to-test  ## problems with known answers, with their pictures, and 
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.verification $(RESULTS)-verify $(RESULTS)-verify/figures
 	$(BUILD)/test_motion --gtest_also_run_disabled_tests --gtest_filter='*Million*'
 
-verification-pages: verify  ## renew the numbers and pictures of docs/verification
-	$(PYTHON) scripts/verification-pages.py $(RESULTS)-verify docs/verification
-	cp $(RESULTS)-verify/figures/*.png docs/figures/
+verification-pages: verify  ## renew the numbers and pictures of verification
+	$(PYTHON) scripts/verification-pages.py $(RESULTS)-verify verification
+	cp $(RESULTS)-verify/figures/*.png verification/figures/
 
 bench: program  ## node updates per second against the machine's bandwidth
 	$(PROGRAM) bench
 
-contact-algorithms: ready  ## the paper's events with each contact algorithm: renews docs/contact-algorithms.md
-	PYTHONPATH=python $(PYTHON) scripts/contact-algorithms.py $(PROGRAM) cases/kammer2012 $(RESULTS)-contact docs/contact-algorithms.md docs/figures/contact_algorithms.png
+contact-algorithms: ready  ## the paper's events with each contact algorithm: renews papers/kammer2012/contact-algorithms.md
+	PYTHONPATH=python $(PYTHON) scripts/contact-algorithms.py $(PROGRAM) $(PAPER) $(RESULTS)-contact $(PAPER)/contact-algorithms.md $(PAPER)/figures/contact_algorithms.png
 
 regularised: ready  ## the same events with friction that has a length scale, into results-regularised/
 	$(PROGRAM) reproduce --regularised -o $(RESULTS)-regularised --overwrite
@@ -148,8 +149,8 @@ regularised: ready  ## the same events with friction that has a length scale, in
 
 # An event's studies, without and with a length scale in the friction, and their figures.
 define CONVERGENCE
-$(PROGRAM) study convergence cases/kammer2012/$(1).toml -o $(RESULTS)-convergence/plain/$(1) --overwrite $(2)
-$(PROGRAM) study convergence cases/kammer2012/$(1).toml -o $(RESULTS)-convergence/regularised/$(1) --overwrite $(2) $(DELAYED) \
+$(PROGRAM) study convergence $(PAPER)/$(1).toml -o $(RESULTS)-convergence/plain/$(1) --overwrite $(2)
+$(PROGRAM) study convergence $(PAPER)/$(1).toml -o $(RESULTS)-convergence/regularised/$(1) --overwrite $(2) $(DELAYED) \
   --set 'title="$(1), mu_k = 0.6, strength relaxed over 0.5 us"'
 PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-convergence/plain/$(1)
 PYTHONPATH=python $(PYTHON) -m slipfront.figures $(RESULTS)-convergence/regularised/$(1)
@@ -165,18 +166,18 @@ convergence: ready  ## front speeds over mesh, step and damping, into results-co
 	cp $(RESULTS)-convergence/regularised/spontaneous/figures/convergence.png docs/figures/convergence_regularised.png
 
 interface-step: ready  ## error of front speeds against the cost of sub-cycling, into results-interface-step/ and docs/figures
-	for event in left spontaneous right; do $(PROGRAM) study interface-step cases/kammer2012/$$event.toml -o $(RESULTS)-interface-step/$$event --overwrite; done
+	for event in left spontaneous right; do $(PROGRAM) study interface-step $(PAPER)/$$event.toml -o $(RESULTS)-interface-step/$$event --overwrite; done
 	PYTHONPATH=python $(PYTHON) -m slipfront.figures.interface_step docs/figures/interface_step.png $(RESULTS)-interface-step/{left,spontaneous,right}
 
-open-choices: ready  ## what the paper leaves open, varied: renews docs/open-choices.md and its figure
+open-choices: ready  ## what the paper leaves open, varied: renews papers/kammer2012/open-choices.md and its figure
 	$(PROGRAM) study open-choices -o $(RESULTS)-open-choices --overwrite
-	PYTHONPATH=python $(PYTHON) -m slipfront.figures.open_choices docs/figures/open_choices.png $(RESULTS)-open-choices
-	$(PYTHON) scripts/open-choices-page.py $(RESULTS)-open-choices docs/open-choices.md
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures.open_choices $(PAPER)/figures/open_choices.png $(RESULTS)-open-choices
+	$(PYTHON) scripts/open-choices-page.py $(RESULTS)-open-choices $(PAPER)/open-choices.md
 
-bases: ready  ## the paper's events on deformable bases: renews docs/bases.md and its figure
+bases: ready  ## the paper's events on deformable bases: renews papers/kammer2012/bases.md and its figure
 	$(PROGRAM) study base -o $(RESULTS)-bases --overwrite
-	PYTHONPATH=python $(PYTHON) -m slipfront.figures.bases docs/figures/bases.png $(RESULTS)-bases
-	$(PYTHON) scripts/bases-page.py $(RESULTS)-bases docs/bases.md
+	PYTHONPATH=python $(PYTHON) -m slipfront.figures.bases $(PAPER)/figures/bases.png $(RESULTS)-bases
+	$(PYTHON) scripts/bases-page.py $(RESULTS)-bases $(PAPER)/bases.md
 
 sweep: ready  ## 400 runs over the friction law's parameters, and their map, into results-sweep/ and docs/figures
 	$(PROGRAM) sweep examples/sweeps/mu_k_alpha.toml -o $(RESULTS)-sweep
@@ -214,11 +215,12 @@ site-links: $(VENV)/.installed-docs  ## fail where a link of the documentation t
 
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
 	$(PROGRAM) keys > docs/case-reference.md
-	$(PYTHON) scripts/scorecard-page.py $(RESULTS) docs/scorecard.md
-	$(PYTHON) scripts/energy-criterion.py $(RESULTS) docs/energy-criterion.md docs/figures/energy_criterion.png
-	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png $(RESULTS)/figures/energy_balance.png docs/figures/
+	$(PYTHON) scripts/scorecard-page.py $(RESULTS) $(PAPER)/scorecard.md
+	$(PYTHON) scripts/energy-criterion.py $(RESULTS) $(PAPER)/energy-criterion.md $(PAPER)/figures/energy_criterion.png
+	cp $(RESULTS)/figures/fig3_three_events.png $(RESULTS)/figures/fig6_energy.png $(PAPER)/figures/
+	cp $(RESULTS)/figures/energy_balance.png docs/figures/
 
-SOURCES = $(shell git ls-files 'src/*.cpp' 'src/*.hpp' 'tests/*.cpp' 'tests/*.hpp')
+SOURCES = $(shell git ls-files '*.cpp' '*.hpp')
 
 lint-packages:
 	@scripts/install-packages $(LINT_PACKAGES)
@@ -236,7 +238,7 @@ lint: $(VENV)/.installed-lint  ## fail where Python is not formatted, or ruff or
 	$(VENV)/bin/ruff check
 	$(VENV)/bin/mypy
 
-TIDY ?= src
+TIDY ?= (src|papers|verification)
 SINCE ?= 2 days ago
 
 # In a folder of its own: clang cannot read what gcc has precompiled, and each file has to name what it uses.
@@ -246,7 +248,7 @@ run-clang-tidy-14 -quiet -extra-arg=-Wno-unknown-warning-option -p build/tidy $(
 @echo "clang-tidy: no findings"
 endef
 
-tidy: packages lint-packages  ## clang-tidy over src, or TIDY=src/ROOM alone; fails at any finding
+tidy: packages lint-packages  ## clang-tidy over the program's sources, or TIDY=src/ROOM alone; fails at any finding
 	$(call CLANG_TIDY,'^$(CURDIR)/$(TIDY)/.*')
 
 tidy-recent: packages lint-packages  ## the same over what the commits since SINCE="2 days ago" have changed

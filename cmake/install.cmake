@@ -7,8 +7,11 @@ set(doc_folder ${CMAKE_INSTALL_DATADIR}/doc/slipfront)
 install(TARGETS slipfront COMPONENT runtime)
 install(FILES CITATION.cff README.md DESTINATION ${doc_folder} COMPONENT runtime)
 install(FILES packaging/copyright DESTINATION ${doc_folder} COMPONENT runtime)
-install(DIRECTORY docs DESTINATION ${doc_folder} COMPONENT runtime)
+install(DIRECTORY docs papers verification DESTINATION ${doc_folder} COMPONENT runtime
+        PATTERN *.cpp EXCLUDE PATTERN *.hpp EXCLUDE PATTERN *.toml EXCLUDE)
 install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/slipfront COMPONENT runtime)
+install(DIRECTORY papers DESTINATION ${CMAKE_INSTALL_DATADIR}/slipfront COMPONENT runtime
+        FILES_MATCHING PATTERN *.toml PATTERN figures EXCLUDE)
 
 # Written by the program, so that they have what it has. The loader may take any of the libraries.
 set(libraries "")

@@ -23,7 +23,7 @@ extensions = [
     "sphinx_copybutton",
     "mathml",
 ]
-include_patterns = ["docs/**", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
+include_patterns = ["docs/**", "papers/**", "verification/**", "README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
 exclude_patterns = ["docs/_site"]
 root_doc = "docs/index"
 external_toc_path = "docs/_toc.yml"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Renews the table of docs/bases.md from the results of `slipfront study base`."""
+"""Renews the table of papers/kammer2012/bases.md from the results of `slipfront study base`."""
 
 from __future__ import annotations
 
@@ -48,4 +48,4 @@ def write(results: Path, page: Path) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(renew_page(__file__, __doc__, "slipfront study base", "docs/bases.md", write))
+    sys.exit(renew_page(__file__, __doc__, "slipfront study base", "papers/kammer2012/bases.md", write))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A row of masses falls onto a plane with several ways to resolve the landing. Prints the tables of
-docs/contact-algorithms.md.
+papers/kammer2012/contact-algorithms.md.
 
 The row is a column of square elements with lumped masses, of height, density and wave speed 1, falling with
-speed 1: docs/verification/impact.md. Half a mass at either end.
+speed 1: verification/impact.md. Half a mass at either end.
 
 direct       closes the gap at the step's end by a pressure
 reflection   a node that would pass the plane gets the opposite of its last velocity

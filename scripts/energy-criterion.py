@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws what the energy criterion orders, and renews the table of docs/energy-criterion.md."""
+"""Draws what the energy criterion orders, and renews the table of papers/kammer2012/energy-criterion.md."""
 
 from __future__ import annotations
 
@@ -273,7 +273,7 @@ def write(results: Path, page: Path, picture: Path) -> None:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("results", type=Path, help="output folder of `slipfront reproduce`")
-    parser.add_argument("page", type=Path, help="docs/energy-criterion.md")
-    parser.add_argument("picture", type=Path, help="docs/figures/energy_criterion.png")
+    parser.add_argument("page", type=Path, help="papers/kammer2012/energy-criterion.md")
+    parser.add_argument("picture", type=Path, help="papers/kammer2012/figures/energy_criterion.png")
     options = parser.parse_args()
     sys.exit(run(__file__, lambda: write(options.results, options.page, options.picture)))

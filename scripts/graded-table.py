@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The table of docs/graded.md: V_tip of an event on graded plates against a uniform one, processor time.
 
-    scripts/graded-table.py build/release/slipfront cases/kammer2012/left.toml
+    scripts/graded-table.py build/release/slipfront papers/kammer2012/left.toml
 
 V_tip is compared node by node along the main front, away from the trigger and the edges. Times are the least
 of the repetitions: of the whole command (statics, event, files) and, from run.json, of the event's steps.

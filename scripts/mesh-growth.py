@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Growth of the shortest waves that the mesh carries, on uniform sliding with a constant friction
-coefficient below 1, where the half-space is stable. Prints the table of docs/verification/growing_modes.md.
+coefficient below 1, where the half-space is stable. Prints the table of verification/growing_modes.md.
 
 usage: mesh-growth.py PROGRAM
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A switch between tap devices, for scripts/network-trial.py: carries each Ethernet frame to the device of its
-// address 02:00:00:00:00:K, or to all others, after a latency and in order. Until it is killed.
+// A switch between tap devices, for scripts/network-trial.py: carries each Ethernet frame to the device of
+// its address 02:00:00:00:00:K, or to all others, after a latency and in order. Until it is killed.
 //
 //     network-switch LATENCY_S FD...     as root; FD number K is that of device K, which does not block
 #include <poll.h>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the tables of docs/open-choices.md anew from a study of the open choices; the text stays."""
+"""Renews the tables of papers/kammer2012/open-choices.md from a study of the open choices; the text stays."""
 
 from __future__ import annotations
 
@@ -146,4 +146,8 @@ def write(results: Path, page: Path) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(renew_page(__file__, __doc__, "slipfront study open-choices", "docs/open-choices.md", write))
+    sys.exit(
+        renew_page(
+            __file__, __doc__, "slipfront study open-choices", "papers/kammer2012/open-choices.md", write
+        )
+    )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the table of docs/scorecard.md anew from a reproduction's scorecard.json; the text below it stays.
+"""Renews the table of papers/kammer2012/scorecard.md from a reproduction's scorecard.json; the text stays.
 
 A first test whose claim is judged by a second one says so beside its verdict. The columns of the variations
 are there where `slipfront reproduce --sensitivity` has written them."""
@@ -66,4 +66,4 @@ def write(results: Path, page: Path) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(renew_page(__file__, __doc__, "slipfront reproduce", "docs/scorecard.md", write))
+    sys.exit(renew_page(__file__, __doc__, "slipfront reproduce", "papers/kammer2012/scorecard.md", write))

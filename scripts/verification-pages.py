@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Puts numbers and picture of `slipfront verify -o DIR` at the end of each page of docs/verification."""
+"""Puts numbers and picture of `slipfront verify -o DIR` at the end of each page of verification."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MARK = "<!-- numbers -->"
 
 def numbers(results: dict[str, Any]) -> str:
     lines = [
-        f"![{results['title']}](../figures/verify_{results['name']}.png)",
+        f"![{results['title']}](figures/{results['name']}.png)",
         "",
         "| quantity | measured | expected | tolerance | its reason |",
         "|---|---|---|---|---|",
@@ -57,6 +57,6 @@ def write(results_dir: Path, pages: Path) -> None:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("results", metavar="DIR", type=Path, help="output folder of `slipfront verify`")
-    parser.add_argument("pages", type=Path, help="docs/verification")
+    parser.add_argument("pages", type=Path, help="verification")
     options = parser.parse_args()
     sys.exit(run(__file__, lambda: write(options.results, options.pages)))

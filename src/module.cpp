@@ -11,5 +11,5 @@ NB_MODULE(_core, module) {
   slipfront::python::bind_cases(module);
   slipfront::python::bind_fronts(module);
   slipfront::python::bind_fits(module);
-  slipfront::python::bind_paper(module);
+  slipfront::python::bind_kammer2012(module);
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The claims of Kammer et al. 2012 tested on events from anywhere. Their tests: docs/scorecard.md."""
+"""The claims of Kammer et al. 2012 tested on events from anywhere: papers/kammer2012/scorecard.md."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "paper/reproduce.hpp"
+#include "papers/kammer2012/reproduce.hpp"
 
 #include <fmt/core.h>
 
@@ -15,7 +15,7 @@
 namespace slipfront::cli {
 namespace {
 
-void print_report(const paper::ReproduceReport& report, const std::string& dir) {
+void print_report(const kammer2012::ReproduceReport& report, const std::string& dir) {
   print("\nScorecard of Kammer, Yastrebov, Spijker, Molinari (2012)\n\n");
   for (const auto& c : report.claims) {
     print("{:<7}{:<15}{} [{}]\n{:22}{}\n", c.id, verdict(c), c.claim, c.paper, "", c.measured);
@@ -27,7 +27,7 @@ void print_report(const paper::ReproduceReport& report, const std::string& dir) 
       if (!moves.empty()) print("{:22}at {} = {:g} it moves by: {}\n", "", v.key, v.value, moves);
     }
   }
-  print("\n{}\n\n", paper::summary(report.claims));
+  print("\n{}\n\n", kammer2012::summary(report.claims));
   for (const auto& t : report.timings) print("{:8.2f} s  {}\n", t.wall_s, t.part);
   print_ends(report.counts);
   for (const auto& warning : report.warnings) print("warning: {}\n", warning);
@@ -38,7 +38,7 @@ void print_report(const paper::ReproduceReport& report, const std::string& dir) 
 
 void add_reproduce(Command& app) {
   Command* command = app.add_subcommand("reproduce", "Run everything behind the paper and test its claims");
-  auto options = std::make_shared<paper::ReproduceOptions>();
+  auto options = std::make_shared<kammer2012::ReproduceOptions>();
   auto dir = std::make_shared<std::string>("results");
   auto experiment = std::make_shared<std::string>();
   auto open_choices = std::make_shared<std::string>();
@@ -77,7 +77,7 @@ void add_reproduce(Command& app) {
     catch_interrupts();
     std::optional<cli::Progress> progress;
     const auto report =
-        paper::reproduce(*options, [&](std::size_t done, std::size_t total, const std::string&) {
+        kammer2012::reproduce(*options, [&](std::size_t done, std::size_t total, const std::string&) {
           if (!progress) progress.emplace("reproduce", static_cast<std::int64_t>(total), false, "runs");
           progress->update(static_cast<std::int64_t>(done));
           return !interrupt_wanted();

@@ -11,8 +11,8 @@
 #include "cli/interrupt.hpp"
 #include "cli/log.hpp"
 #include "cli/print.hpp"
-#include "paper/bases.hpp"
-#include "paper/open_choices.hpp"
+#include "papers/kammer2012/bases.hpp"
+#include "papers/kammer2012/open_choices.hpp"
 #include "results/folder.hpp"
 #include "run/checkpoint.hpp"
 #include "study/convergence.hpp"
@@ -156,7 +156,7 @@ void study_interface_step(const CaseArguments& arguments, const InterfaceStepArg
   if (!study.target.quiet) print_table(result, study.target.dir);
 }
 
-void print_outcome(const paper::OpenChoicesResult& result, const paper::SampleOutcome& o) {
+void print_outcome(const kammer2012::OpenChoicesResult& result, const kammer2012::SampleOutcome& o) {
   for (std::size_t k = 0; k < result.choices.size(); ++k) {
     const auto& choice = result.choices[k];
     if (o.sample.values[k] != choice.standard)
@@ -171,7 +171,7 @@ void print_outcome(const paper::OpenChoicesResult& result, const paper::SampleOu
         o.fit->c.value, o.fit->c.low, o.fit->c.high, number(o.share_in_band, " %", 100));
 }
 
-void print_table(const paper::OpenChoicesResult& result, const std::string& dir) {
+void print_table(const kammer2012::OpenChoicesResult& result, const std::string& dir) {
   const auto& standard = result.outcomes.front();
   print("{} samples of {} choices\n", result.outcomes.size(), result.choices.size());
   print_ends(result.counts);
@@ -182,7 +182,7 @@ void print_table(const paper::OpenChoicesResult& result, const std::string& dir)
     print("least extreme of the {} samples of the region:\n", result.region.size());
     print_outcome(result, result.outcomes[result.chosen]);
   }
-  for (const auto& e : paper::evidence(result)) {
+  for (const auto& e : kammer2012::evidence(result)) {
     print("{}: {} samples", e.name, e.n);
     if (e.n > 0)
       print("; spread of V_tip {} at equal energy rise, {} at equal t_d/p_d, {} at equal t_s/p_s (medians)",
@@ -196,17 +196,17 @@ void print_table(const paper::OpenChoicesResult& result, const std::string& dir)
 
 struct OpenChoicesArguments {
   Target target;
-  paper::OpenChoicesOptions options;
+  kammer2012::OpenChoicesOptions options;
 };
 
 void study_open_choices(const OpenChoicesArguments& study) {
-  paper::OpenChoicesResult result;
+  kammer2012::OpenChoicesResult result;
   run_study(study.options.quick ? "open-choices --quick" : "open-choices", nullptr, study.target,
             [&](const study::StudyMonitor& monitor, const auto& dir, const auto& kept) {
               auto options = study.options;
               options.kept = kept;
-              result = paper::study_open_choices(options, monitor);
-              paper::write_open_choices(dir, result);
+              result = kammer2012::study_open_choices(options, monitor);
+              kammer2012::write_open_choices(dir, result);
             });
   if (!study.target.quiet) print_table(result, study.target.dir);
 }
@@ -227,10 +227,10 @@ void add_open_choices(Command& group) {
 
 struct BasesArguments {
   Target target;
-  paper::BasesOptions options;
+  kammer2012::BasesOptions options;
 };
 
-void print_table(const paper::BasesResult& result, const std::string& dir) {
+void print_table(const kammer2012::BasesResult& result, const std::string& dir) {
   print("{:<10} {:>26} {:>22} {:>8} {:>20}\n", "base", "V against / along (range)", "pressure along, against",
         "in band", "spread: t/p, energy");
   for (const auto& on : result.bases) {
@@ -250,13 +250,13 @@ void print_table(const paper::BasesResult& result, const std::string& dir) {
 }
 
 void study_base(const BasesArguments& study) {
-  paper::BasesResult result;
+  kammer2012::BasesResult result;
   run_study(study.options.quick ? "base --quick" : "base", nullptr, study.target,
             [&](const study::StudyMonitor& monitor, const auto& dir, const auto& kept) {
               auto options = study.options;
               options.kept = kept;
-              result = paper::study_bases(options, monitor);
-              paper::write_bases(dir, result);
+              result = kammer2012::study_bases(options, monitor);
+              kammer2012::write_bases(dir, result);
             });
   if (!study.target.quiet) print_table(result, study.target.dir);
 }

@@ -12,7 +12,7 @@
 #include "results/archive.hpp"
 #include "results/folder.hpp"
 #include "run/checkpoint.hpp"
-#include "verify/verification.hpp"
+#include "verification/verification.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -23,12 +23,12 @@ struct VerifyArguments {
   bool quick = false, list = false;
 };
 
-std::vector<verify::Verification> chosen(const std::vector<std::string>& names) {
-  const auto all = verify::verifications();
+std::vector<verification::Verification> chosen(const std::vector<std::string>& names) {
+  const auto all = verification::verifications();
   if (names.empty()) return {all.begin(), all.end()};
-  std::vector<verify::Verification> some;
+  std::vector<verification::Verification> some;
   for (const auto& name : names) {
-    const auto found = std::ranges::find(all, name, &verify::Verification::name);
+    const auto found = std::ranges::find(all, name, &verification::Verification::name);
     if (found == all.end())
       throw UserError("slipfront: no verification named {}; see slipfront verify --list", name);
     some.push_back(*found);
@@ -38,11 +38,11 @@ std::vector<verify::Verification> chosen(const std::vector<std::string>& names) 
 
 /// The outcome of a problem, or what an interrupted verification has found of it.
 /// @param folder  where outcomes are kept, or null
-verify::Outcome outcome_of(const verify::Verification& problem, verify::Effort effort,
-                           const results::ResultFolder* folder) {
+verification::Outcome outcome_of(const verification::Verification& problem, verification::Effort effort,
+                                 const results::ResultFolder* folder) {
   if (folder == nullptr) return problem.run(effort);
   const auto file = folder->state() / (problem.name + ".bin");
-  verify::Outcome outcome;
+  verification::Outcome outcome;
   if (files::is_there(file)) {
     results::InputArchive archive(file);
     archive(outcome);
@@ -50,7 +50,7 @@ verify::Outcome outcome_of(const verify::Verification& problem, verify::Effort e
     return outcome;
   }
   outcome = problem.run(effort);
-  verify::write_outcome(folder->unfinished(), problem, effort, outcome);
+  verification::write_outcome(folder->unfinished(), problem, effort, outcome);
   results::OutputArchive archive(file);
   archive(outcome);
   archive.close();
@@ -70,7 +70,7 @@ void run_verifications(const VerifyArguments& arguments) {
     folder->begin_or_resume();
     catch_interrupts();
   }
-  const auto effort = arguments.quick ? verify::Effort::quick : verify::Effort::full;
+  const auto effort = arguments.quick ? verification::Effort::quick : verification::Effort::full;
   std::size_t n_checks = 0, n_failed = 0;
   for (const auto& v : some) {
     print("{}: {}\n", v.name, v.title);

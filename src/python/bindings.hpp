@@ -11,6 +11,6 @@ void bind_errors(nanobind::module_& module);
 void bind_cases(nanobind::module_& module);
 void bind_fronts(nanobind::module_& module);
 void bind_fits(nanobind::module_& module);
-void bind_paper(nanobind::module_& module);
+void bind_kammer2012(nanobind::module_& module);
 
 }  // namespace slipfront::python

@@ -20,7 +20,7 @@ PROGRAM = os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")
 CASES = {
     "probes": ("cases/reference/gauges.toml", []),
     "one body": (
-        "cases/kammer2012/left.toml",
+        "papers/kammer2012/left.toml",
         ["plate.element_size_m=2e-3", "fronts.l_star_m=2e-3"],
     ),
     "two bodies": (

@@ -9,7 +9,7 @@ from conftest import ROOT
 
 COMMANDS = ["run", "reproduce", "study", "verify", "info", "bench", "validate", "keys"]
 PYTHON_COMMANDS = ["report", "fronts", "sweep"]
-CASES = sorted((ROOT / "cases/kammer2012").glob("*.toml"))
+CASES = sorted((ROOT / "papers/kammer2012").glob("*.toml"))
 
 
 def one_line(result):
@@ -102,7 +102,7 @@ def test_case_with_other_line_ends_is_valid(program, write_case):
 
 
 def test_info_tells_what_follows(program):
-    result = program("info", ROOT / "cases/kammer2012/left.toml")
+    result = program("info", ROOT / "papers/kammer2012/left.toml")
     assert (result.returncode, result.stderr) == (0, "")
     # Kammer et al. (2012), Table 1: c_L = 1584 m/s, c_S = 890 m/s.
     speed = {name: float(v) for name, v in re.findall(r"(c_[LSR]) +([0-9.]+) m/s", result.stdout)}

@@ -138,7 +138,7 @@ def test_quiet_prints_nothing(program, coarse):
 
 
 def test_resolved_case_runs_to_the_same_fronts(program, tmp_path):
-    case = ROOT / "cases/kammer2012/left.toml"
+    case = ROOT / "papers/kammer2012/left.toml"
     overrides = ["--set", "plate.element_size_m=4e-3", "--set", "friction.mu_k=0.7"]
     assert program("run", case, "-o", "a", "-q", *overrides).returncode == 0
     assert program("run", tmp_path / "a/case.resolved.toml", "-o", "b", "-q").returncode == 0

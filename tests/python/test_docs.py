@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DOCS = [ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *DOCS]
-PROBLEMS = sorted(page.stem for page in (ROOT / "docs/verification").glob("*.md") if page.stem != "README")
+PROBLEMS = sorted(page.stem for page in (ROOT / "verification").glob("*.md") if page.stem != "README")
 
 
 def anchors(page: Path) -> set[str]:
@@ -88,12 +88,12 @@ def test_a_broken_link_is_found(tmp_path):
 
 
 def test_every_problem_has_its_page_its_picture_and_its_row():
-    problems = (ROOT / "src/verify/verification.cpp").read_text(encoding="utf-8")
+    problems = (ROOT / "verification/verification.cpp").read_text(encoding="utf-8")
     assert sorted(re.findall(r'Verification\{"(\w+)"', problems)) == PROBLEMS
     trust = (ROOT / "docs/trust.md").read_text(encoding="utf-8")
-    index = (ROOT / "docs/verification/README.md").read_text(encoding="utf-8")
+    index = (ROOT / "verification/README.md").read_text(encoding="utf-8")
     for name in PROBLEMS:
         assert f"]({name}.md) |" in index
-        assert f"](verification/{name}.md) |" in trust
-        page = (ROOT / f"docs/verification/{name}.md").read_text(encoding="utf-8")
-        assert f"figures/verify_{name}.png" in page
+        assert f"](../verification/{name}.md) |" in trust
+        page = (ROOT / f"verification/{name}.md").read_text(encoding="utf-8")
+        assert f"figures/{name}.png" in page

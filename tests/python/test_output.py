@@ -202,7 +202,7 @@ def test_a_folder_of_any_name_is_drawn(run):
 def test_pictures_of_verify_are_written(tmp_path, capsys):
     folder = write_verification(tmp_path / "verify")
     assert verification.main(folder, tmp_path / "a/b") == 0
-    assert [f.name for f in (tmp_path / "a/b").iterdir()] == ["verify_column.png"]
+    assert [f.name for f in (tmp_path / "a/b").iterdir()] == ["column.png"]
     assert "(1)" in capsys.readouterr().out
 
 

@@ -94,7 +94,7 @@ def draw(file: Path) -> Drawing:
         raise DataError(f"{file}: not a file of `slipfront verify`: {error}") from None
     if name != file.stem:
         raise DataError(f"{file}: not a file of `slipfront verify`: its name is '{name}'")
-    return Drawing(f"verify_{name}", figure, str(title))
+    return Drawing(name, figure, str(title))
 
 
 def draw_all(results: Path, figures: Path) -> list[str]:
@@ -119,7 +119,7 @@ def main(results: Path, figures: Path) -> int:
 def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m slipfront.figures.verification",
-        description="Draws the charts of `slipfront verify -o DIR` as FIGURES/verify_NAME.png.",
+        description="Draws the charts of `slipfront verify -o DIR` as FIGURES/NAME.png.",
     )
     parser.add_argument("dir", metavar="DIR", type=Path, help="output folder of `slipfront verify`")
     parser.add_argument("figures", metavar="FIGURES", type=Path, help="folder for the pictures")

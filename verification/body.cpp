@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verification/body.hpp"
+
+namespace slipfront::verification {
+
+namespace {
+
+void set_motion(const motion::Body& body, const mesh::Mesh& mesh, const NodeMotion& u_x_m,
+                const NodeMotion& u_y_m, solid::Field& u_m, solid::Field& v_m_per_s) {
+  u_m = v_m_per_s = solid::Field(static_cast<std::size_t>(mesh.n_nodes()));
+  const auto orphan = mesh::orphans(mesh);
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+    if (orphan[n]) continue;
+    const double dt = body.step_s(n);
+    const auto set = [&](const auto& motion, std::vector<double>& u, std::vector<double>& v) {
+      if (!motion) return;
+      u[n] = motion(n, 0);
+      v[n] = (motion(n, 0) - motion(n, -dt)) / dt;
+    };
+    set(u_x_m, u_m.x, v_m_per_s.x);
+    set(u_y_m, u_m.y, v_m_per_s.y);
+  }
+}
+
+}  // namespace
+
+statics::Equilibrium start(motion::Stepper& stepper, const mesh::Mesh& mesh, const Start& start) {
+  statics::Equilibrium state;
+  // u_per_shear holds the velocities.
+  set_motion(stepper.bodies().front(), mesh, start.u_x_m, start.u_y_m, state.u_m, state.u_per_shear);
+  if (const auto& below = start.below; below.mesh)
+    set_motion(stepper.bodies().back(), *below.mesh, below.u_x_m, below.u_y_m, state.below_u_m,
+               state.below_u_per_shear);
+  state.contact.assign(mesh.lower.size(), start.contact);
+  for (const auto n : mesh.lower) state.tractions.x_m.push_back(mesh.x_m[n]);
+  state.tractions.t_s_Pa.assign(mesh.lower.size(), start.t_Pa);
+  state.tractions.p_s_Pa.assign(mesh.lower.size(), start.p_Pa);
+  stepper.start(state, 1, start.loads);
+  return state;
+}
+
+}  // namespace slipfront::verification

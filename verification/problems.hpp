@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "verification/verification.hpp"
+
+/// The problems, a file each.
+namespace slipfront::verification {
+
+Outcome plane_waves(Effort effort);
+Outcome manufactured(Effort effort);
+Outcome rayleigh_wave(Effort effort);
+Outcome lamb(Effort effort);
+Outcome column(Effort effort);
+Outcome time_reversal(Effort effort);
+Outcome subcycling(Effort effort);
+Outcome symmetry(Effort effort);
+Outcome growing_modes(Effort effort);
+Outcome growing_modes_of_two(Effort effort);
+Outcome slip_patch(Effort effort);
+Outcome crack(Effort effort);
+Outcome layer_spectrum(Effort effort);
+Outcome impact(Effort effort);
+Outcome block(Effort effort);
+Outcome bonded_waves(Effort effort);
+
+}  // namespace slipfront::verification

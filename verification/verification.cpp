@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verification/verification.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/version.hpp"
+#include "files/files.hpp"
+#include "verification/problems.hpp"
+
+namespace slipfront::verification {
+
+bool Check::holds() const {
+  return std::abs(measured - expected) <= tolerance;
+}
+
+bool Outcome::holds() const {
+  return !checks.empty() && std::ranges::all_of(checks, [](const Check& check) { return check.holds(); });
+}
+
+std::span<const Verification> verifications() {
+  static const std::array all = {
+      Verification{"plane_waves", "Speed and dispersion of plane longitudinal and shear waves", plane_waves},
+      Verification{"bonded_waves", "Waves that fall at an angle onto the bond of two bodies", bonded_waves},
+      Verification{"manufactured", "Convergence towards exact waves of a layer on its plane", manufactured},
+      Verification{"subcycling", "Join between a sub-cycled layer and the other cells", subcycling},
+      Verification{"rayleigh_wave", "Speed and shape of the Rayleigh wave on the free lower edge",
+                   rayleigh_wave},
+      Verification{"lamb", "Line loads on the edge of a half-plane", lamb},
+      Verification{"column", "Sliding of a column with velocity-weakening friction", column},
+      Verification{"time_reversal", "Motion there and back", time_reversal},
+      Verification{"symmetry", "Turned cells and mirrored plates", symmetry},
+      Verification{"growing_modes", "Growth of waves on uniform sliding", growing_modes},
+      Verification{"growing_modes_of_two", "Growth of waves between two sliding bodies",
+                   growing_modes_of_two},
+      Verification{"layer_spectrum", "Growth of waves on a sliding layer", layer_spectrum},
+      Verification{"slip_patch", "Slip of a patch without strength", slip_patch},
+      Verification{"impact", "Impact of a free body on the plane", impact},
+      Verification{"block", "Stick-slip of a block", block},
+      Verification{"crack", "A crack under friction that weakens with slip", crack},
+  };
+  return all;
+}
+
+void write_outcome(const std::filesystem::path& dir, const Verification& verification, Effort effort,
+                   const Outcome& outcome) {
+  using nlohmann::ordered_json;
+  ordered_json checks = ordered_json::array(), charts = ordered_json::array();
+  for (const auto& c : outcome.checks)
+    checks.push_back({{"quantity", c.quantity},
+                      {"unit", c.unit},
+                      {"measured", c.measured},
+                      {"expected", c.expected},
+                      {"tolerance", c.tolerance},
+                      {"reason", c.reason},
+                      {"holds", c.holds()}});
+  for (const auto& chart : outcome.charts) {
+    ordered_json curves = ordered_json::array();
+    for (const auto& c : chart.curves)
+      curves.push_back({{"label", c.label},
+                        {"kind", c.kind == Curve::Kind::theory ? "theory" : "program"},
+                        {"x", c.x},
+                        {"y", c.y}});
+    charts.push_back({{"x_label", chart.x_label},
+                      {"y_label", chart.y_label},
+                      {"log_x", chart.log_x},
+                      {"log_y", chart.log_y},
+                      {"curves", curves}});
+  }
+  const ordered_json all = {{"version", version_line()},
+                            {"name", verification.name},
+                            {"title", verification.title},
+                            {"effort", effort == Effort::quick ? "quick" : "full"},
+                            {"holds", outcome.holds()},
+                            {"checks", checks},
+                            {"charts", charts}};
+  files::write_text(dir / (verification.name + ".json"), all.dump(1) + "\n");
+}
+
+}  // namespace slipfront::verification
