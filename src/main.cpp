@@ -105,17 +105,17 @@ int run(int argc, char** argv) {
   slipfront::cli::become_python_command(argc, argv);
   slipfront::cli::Program program("slipfront", "Slip fronts at frictional interfaces",
                                   slipfront::cli::version_text());
-  auto& command = program.command();
-  slipfront::cli::add_run(command, processes.get());
-  slipfront::cli::add_reproduce(command);
-  slipfront::cli::add_study(command);
-  slipfront::cli::add_verify(command);
-  slipfront::cli::add_info(command);
-  slipfront::cli::add_bench(command, processes.get());
-  slipfront::cli::add_validate(command);
-  slipfront::cli::add_keys(command);
-  slipfront::cli::add_python_commands(command);
-  slipfront::cli::add_page(command, program);
+  auto& app = program.app();
+  slipfront::cli::add_run(app, processes.get());
+  slipfront::cli::add_reproduce(app);
+  slipfront::cli::add_study(app);
+  slipfront::cli::add_verify(app);
+  slipfront::cli::add_info(app);
+  slipfront::cli::add_bench(app, processes.get());
+  slipfront::cli::add_validate(app);
+  slipfront::cli::add_keys(app);
+  slipfront::cli::add_python_commands(app);
+  slipfront::cli::add_page(app, program);
   program.run(argc, argv);
   return done;
 }

@@ -15,6 +15,7 @@
 
 #include "base/error.hpp"
 #include "base/version.hpp"
+#include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/print.hpp"
@@ -188,22 +189,23 @@ struct BenchArguments {
 
 }  // namespace
 
-void add_bench(Command& app, Processes* processes) {
-  Command* command =
+void add_bench(CLI::App& app, Processes* processes) {
+  CLI::App* command =
       app.add_subcommand("bench", "Measure node updates per second against the machine's bounds");
   auto arguments = std::make_shared<BenchArguments>();
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON, for comparison between versions");
-  command->add_option("--threads", arguments->threads, "The most threads to measure with")->range(1, 1024);
+  command->add_option("--threads", arguments->threads, "The most threads to measure with")
+      ->check(CLI::Range(1, 1024));
   command->add_flag("--large", arguments->large, "Also 10,000 x 5,000 cells, some 7 GB");
   command
       ->add_option("--statics", arguments->columns,
                    "Measure the statics of a plate of so many columns instead")
-      ->range(2, 100'000);
+      ->check(CLI::Range(2, 100'000));
   command
       ->add_option("--solver", arguments->solver,
                    "... by this solver: auto, direct, iterative (default) or petsc")
-      ->one_of({"auto", "direct", "iterative", "petsc"});
+      ->check(CLI::IsMember({"auto", "direct", "iterative", "petsc"}));
   command->add_flag("--network", arguments->network,
                     "Measure latency, bandwidth and processor time between processes instead, started by "
                     "mpirun -n 2 or more");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "cli/command.hpp"
 #include "cli/commands.hpp"
 
 namespace slipfront::cli {
@@ -12,7 +13,7 @@ const input::CaseFile& CaseArguments::case_file() const {
   return *case_file_;
 }
 
-std::shared_ptr<CaseArguments> add_case_arguments(Command& command) {
+std::shared_ptr<CaseArguments> add_case_arguments(CLI::App& command) {
   auto arguments = std::make_shared<CaseArguments>();
   command.add_option("CASE", arguments->file, "Case file (TOML)")->required()->type_name("FILE");
   command

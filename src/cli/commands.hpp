@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.hpp"
+#include "cli/program.hpp"
 #include "input/schema.hpp"
 #include "processes/processes.hpp"
 
@@ -15,17 +15,17 @@
 namespace slipfront::cli {
 
 /// @param processes  that share a run with this one; null where it is alone
-void add_run(Command& app, Processes* processes);
-void add_reproduce(Command& app);
-void add_study(Command& app);
-void add_verify(Command& app);
-void add_info(Command& app);
+void add_run(CLI::App& app, Processes* processes);
+void add_reproduce(CLI::App& app);
+void add_study(CLI::App& app);
+void add_verify(CLI::App& app);
+void add_info(CLI::App& app);
 /// @param processes  between which it may measure; null where this one is alone
-void add_bench(Command& app, Processes* processes);
-void add_validate(Command& app);
-void add_keys(Command& app);
+void add_bench(CLI::App& app, Processes* processes);
+void add_validate(CLI::App& app);
+void add_keys(CLI::App& app);
 /// Hidden: prints what the installation takes from the program. @param program  with all its subcommands
-void add_page(Command& app, const Program& program);
+void add_page(CLI::App& app, const Program& program);
 
 /// What --version prints: the version line and how the program was built.
 std::string version_text();
@@ -48,6 +48,6 @@ class CaseArguments {
 
 /// Adds them to a subcommand; filled when the command line is parsed. The subcommand's callback must keep the
 /// result alive by capturing it.
-std::shared_ptr<CaseArguments> add_case_arguments(Command& command);
+std::shared_ptr<CaseArguments> add_case_arguments(CLI::App& command);
 
 }  // namespace slipfront::cli

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "files/text.hpp"
@@ -237,8 +238,8 @@ void print_info(const CaseArguments& arguments, const std::optional<run::Sharing
 
 }  // namespace
 
-void add_info(Command& app) {
-  Command* command = app.add_subcommand(
+void add_info(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
       "info",
       "Print what follows from a case: wave speeds, step, size, memory, expected time, stability of sliding");
   const auto arguments = add_case_arguments(*command);
@@ -246,28 +247,28 @@ void add_info(Command& app) {
   command
       ->add_option("--processes", shared->n_processes,
                    "Also predict time and memory of a run that so many processes share")
-      ->range(1, 10'000'000);
+      ->check(CLI::Range(1, 10'000'000));
   command
       ->add_option("--processors", shared->n_processors,
                    "Processors of all machines that the processes share; by default one for each")
-      ->range(1, 10'000'000);
+      ->check(CLI::Range(1, 10'000'000));
   command
       ->add_option("--latency-s", shared->latency_s,
                    "Between processes, as bench --network tells it; by default that of shared memory")
-      ->positive()
-      ->finite()
+      ->check(positive())
+      ->check(finite())
       ->type_name("S");
   command
       ->add_option("--bandwidth-bytes-per-s", shared->bandwidth_bytes_per_s,
                    "Between processes, each way; by default that of shared memory")
-      ->positive()
-      ->finite()
+      ->check(positive())
+      ->check(finite())
       ->type_name("B");
   command
       ->add_option("--processor-s-per-byte", shared->processor_s_per_byte,
                    "By which a byte between processes holds up computing; by default 0, of shared memory")
-      ->non_negative()
-      ->finite()
+      ->check(non_negative())
+      ->check(finite())
       ->type_name("S");
   command->callback([arguments, shared] { print_info(*arguments, shared->sharing()); });
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/version.hpp"
+#include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "input/entries.hpp"
@@ -197,11 +198,11 @@ complete -o default -F _{0} {0}
       bash_words(program, ""), bash_values(program, ""));
 }
 
-void add_page(Command& app, const Program& program) {
-  Command* command = app.add_subcommand("page", "Print the manual page, or the completion for bash");
-  command->hide();
+void add_page(CLI::App& app, const Program& program) {
+  CLI::App* command = app.add_subcommand("page", "Print the manual page, or the completion for bash");
+  command->group("");
   auto page = std::make_shared<std::string>();
-  command->add_option("PAGE", *page, "Which")->required()->one_of({"man", "bash"});
+  command->add_option("PAGE", *page, "Which")->required()->check(CLI::IsMember({"man", "bash"}));
   command->callback([page, &program] {
     const auto description = program.description();
     print_output(*page == "man" ? man_page(description) : bash_completion(description, all_keys()));

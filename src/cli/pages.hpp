@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/command.hpp"
+#include "cli/program.hpp"
 
 /// What is made of the command line's own declarations and installed with the program.
 namespace slipfront::cli {

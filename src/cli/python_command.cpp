@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "cli/command.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -76,7 +77,7 @@ void put_first_on_python_path(const fs::path& folder) {
 
 }  // namespace
 
-void add_python_commands(Command& app) {
+void add_python_commands(CLI::App& app) {
   for (const PythonCommand& command : python_commands) app.add_subcommand(command.name, command.description);
 }
 

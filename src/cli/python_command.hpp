@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "cli/command.hpp"
+#include "cli/program.hpp"
 
 /// Subcommands that are modules of the Python package slipfront. The program becomes the interpreter (exec),
 /// so that signals and exit codes are the module's own; only the module knows its arguments.
 namespace slipfront::cli {
 
 /// Registers them for the help. Their work is `become_python_command`, before the command line is parsed.
-void add_python_commands(Command& app);
+void add_python_commands(CLI::App& app);
 
 /// Whether the first argument names such a subcommand.
 bool is_python_command(int argc, char** argv);

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log.hpp"
@@ -36,8 +37,8 @@ void print_report(const kammer2012::ReproduceReport& report, const std::string& 
 
 }  // namespace
 
-void add_reproduce(Command& app) {
-  Command* command = app.add_subcommand("reproduce", "Run everything behind the paper and test its claims");
+void add_reproduce(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("reproduce", "Run everything behind the paper and test its claims");
   auto options = std::make_shared<kammer2012::ReproduceOptions>();
   auto dir = std::make_shared<std::string>("results");
   auto experiment = std::make_shared<std::string>();
@@ -60,15 +61,15 @@ void add_reproduce(Command& app) {
       ->add_option("--experiment", *experiment,
                    "CSV of measured points for claim E1: static_ratio, v_over_c_L (or v_m_per_s)")
       ->type_name("FILE")
-      ->not_empty();
+      ->check(not_empty());
   command
       ->add_option("--open-choices", *open_choices,
                    "Folder of slipfront study open-choices, for claim C11b: the share of its triggers")
       ->type_name("DIR")
-      ->not_empty();
+      ->check(not_empty());
   options->threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   command->add_option("--threads", options->threads, "Runs side by side")
-      ->range(1, 1024)
+      ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->callback([options, dir, experiment, open_choices] {
     options->dir = *dir;

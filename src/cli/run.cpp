@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log.hpp"
@@ -182,8 +183,8 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
 
 }  // namespace
 
-void add_run(Command& app, Processes* processes) {
-  Command* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
+void add_run(CLI::App& app, Processes* processes) {
+  CLI::App* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
   const auto arguments = add_case_arguments(*command);
   auto options = std::make_shared<RunArguments>();
   options->session.processes = processes;
@@ -199,17 +200,17 @@ void add_run(Command& app, Processes* processes) {
       ->add_option("--threads", session.threads,
                    "Threads of the run; the results do not depend on them. They wait for each other: give no "
                    "more than are idle. By default one for every 20,000 nodes, up to 4 and the processors")
-      ->range(1, 1024);
+      ->check(CLI::Range(1, 1024));
   command
       ->add_option("--checkpoint-every", session.keep_every_wall_s,
                    "Wall time between checkpoints, s; the signal USR1 asks for one at once")
-      ->non_negative()
+      ->check(non_negative())
       ->type_name("S")
       ->capture_default_str();
   command
       ->add_option("--checkpoint-every-simulated", session.keep_every_s,
                    "Simulated time between checkpoints, s; by default only wall time counts")
-      ->positive()
+      ->check(positive())
       ->type_name("S");
   command
       ->add_option(
@@ -217,7 +218,7 @@ void add_run(Command& app, Processes* processes) {
           "Folder in which runs share the state before the event: taken from there where a run of the "
           "same plate, loading and strength at rest has kept it, else solved and kept")
       ->type_name("DIR")
-      ->not_empty();
+      ->check(not_empty());
   command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
   command->callback([arguments, options] { run_case(*arguments, *options); });
 }

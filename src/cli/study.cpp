@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/log.hpp"
@@ -37,7 +38,7 @@ struct InterfaceStepArguments {
   study::InterfaceStepOptions options;
 };
 
-void add_target(Command& command, Target& target) {
+void add_target(CLI::App& command, Target& target) {
   command.add_option("-o,--output", target.dir, "Folder for the results")->required()->type_name("DIR");
   command.add_flag("--overwrite", target.overwrite, "Replace the results that the folder already holds");
   command.add_flag("-q,--quiet", target.quiet, "Print nothing but errors");
@@ -211,8 +212,8 @@ void study_open_choices(const OpenChoicesArguments& study) {
   if (!study.target.quiet) print_table(result, study.target.dir);
 }
 
-void add_open_choices(Command& group) {
-  Command* command = group.add_subcommand(
+void add_open_choices(CLI::App& group) {
+  CLI::App* command = group.add_subcommand(
       "open-choices", "What Kammer et al. (2012) leave open, varied: which of their statements depend on it");
   auto study = std::make_shared<OpenChoicesArguments>();
   auto& options = study->options;
@@ -220,7 +221,7 @@ void add_open_choices(Command& group) {
   add_target(*command, study->target);
   command->add_flag("--quick", options.quick, "A few samples on a coarse mesh, to try the command");
   command->add_option("--threads", options.threads, "Runs side by side")
-      ->range(1, 1024)
+      ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->callback([study] { study_open_choices(*study); });
 }
@@ -261,23 +262,23 @@ void study_base(const BasesArguments& study) {
   if (!study.target.quiet) print_table(result, study.target.dir);
 }
 
-void add_base(Command& group) {
-  Command* command = group.add_subcommand("base",
-                                          "The events of Kammer et al. (2012) on deformable bases: what "
-                                          "remains of direction and energy criterion");
+void add_base(CLI::App& group) {
+  CLI::App* command = group.add_subcommand("base",
+                                           "The events of Kammer et al. (2012) on deformable bases: what "
+                                           "remains of direction and energy criterion");
   auto study = std::make_shared<BasesArguments>();
   auto& options = study->options;
   options.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   add_target(*command, study->target);
   command->add_flag("--quick", options.quick, "Elements of 2 mm, to try the command");
   command->add_option("--threads", options.threads, "Runs side by side")
-      ->range(1, 1024)
+      ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->callback([study] { study_base(*study); });
 }
 
-void add_convergence(Command& group) {
-  Command* command = group.add_subcommand(
+void add_convergence(CLI::App& group) {
+  CLI::App* command = group.add_subcommand(
       "convergence", "Front speeds over element size, interface step and damping, with their limits");
   const auto arguments = add_case_arguments(*command);
   auto study = std::make_shared<StudyArguments>();
@@ -290,51 +291,51 @@ void add_convergence(Command& group) {
       ->type_name("H,H,H")
       ->delimiter(',');
   command->add_option("--station-spacing", options.station_spacing_m, "Distance of the stations, m")
-      ->positive()
+      ->check(positive())
       ->capture_default_str();
   command->add_option("--tolerance", options.tolerance, "Median relative error that counts as converged")
-      ->positive()
+      ->check(positive())
       ->capture_default_str();
   command->add_option("--threads", options.threads, "Runs side by side")
-      ->range(1, 1024)
+      ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->callback([arguments, study] { study_convergence(*arguments, *study); });
 }
 
-void add_interface_step(Command& group) {
-  Command* command = group.add_subcommand("interface-step",
-                                          "Error of the front speeds against the cost of sub-cycling the "
-                                          "interface; the cheapest way within a tolerance");
+void add_interface_step(CLI::App& group) {
+  CLI::App* command = group.add_subcommand("interface-step",
+                                           "Error of the front speeds against the cost of sub-cycling the "
+                                           "interface; the cheapest way within a tolerance");
   const auto arguments = add_case_arguments(*command);
   auto study = std::make_shared<InterfaceStepArguments>();
   auto& options = study->options;
   add_target(*command, study->target);
   command
       ->add_option("--tolerance", options.tolerance, "Relative error of V_tip that nine of ten stations keep")
-      ->positive()
+      ->check(positive())
       ->capture_default_str();
   command->add_option("--rows", options.rows, "Rows of cells to try")
       ->delimiter(',')
-      ->range(1, 1000000)
+      ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command->add_option("--substeps", options.substeps, "Sub-steps to try")
       ->delimiter(',')
-      ->range(2, 10000)
+      ->check(CLI::Range(2, 10000))
       ->capture_default_str();
   command->add_option("--station-spacing", options.station_spacing_m, "Distance of the stations, m")
-      ->positive()
+      ->check(positive())
       ->capture_default_str();
   command->add_option("--threads", options.threads, "Runs side by side; more than one falsifies the times")
-      ->range(1, 1024)
+      ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->callback([arguments, study] { study_interface_step(*arguments, *study); });
 }
 
 }  // namespace
 
-void add_study(Command& app) {
-  Command* group = app.add_subcommand("study", "Vary the numerical parameters of a case");
-  group->require_subcommand();
+void add_study(CLI::App& app) {
+  CLI::App* group = app.add_subcommand("study", "Vary the numerical parameters of a case");
+  group->require_subcommand(1);
   add_convergence(*group);
   add_interface_step(*group);
   add_open_choices(*group);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "run/needs.hpp"
@@ -34,8 +35,8 @@ void validate(const CaseArguments& arguments) {
 
 }  // namespace
 
-void add_validate(Command& app) {
-  Command* command = app.add_subcommand("validate", "Check a case file without running it");
+void add_validate(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("validate", "Check a case file without running it");
   const auto arguments = add_case_arguments(*command);
   command->callback([arguments] { validate(*arguments); });
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "cli/command.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/print.hpp"
@@ -94,8 +95,8 @@ void run_verifications(const VerifyArguments& arguments) {
 
 }  // namespace
 
-void add_verify(Command& app) {
-  Command* command = app.add_subcommand("verify", "Solve problems with known answers, compare");
+void add_verify(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("verify", "Solve problems with known answers, compare");
   auto arguments = std::make_shared<VerifyArguments>();
   command->add_option("names", arguments->names, "Which ones; by default all")->type_name("NAME");
   command->add_option("-o,--output", arguments->dir, "Folder for the numbers and curves, a file each")

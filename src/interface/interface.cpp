@@ -102,36 +102,14 @@ void write_nodes(const Node<Lanes>& n, Interface& s, Place at) {
   }
 }
 
-/// What an update takes besides the nodes: of one law for all.
-template <class Law, class Form>
-struct OneLaw {
-  using law_type = Law;
-  using form_type = Form;
-  Update<typename Law::template Evaluator<Lanes>, double, Form> constants;
-  OneLaw(const Law& law, const Form& form, double dt_s)
-      : constants{law.template evaluator<Lanes>(), law.evaluator()(0, 0), law.kinetic_coefficient(), form,
-                  dt_s} {}
-  const auto& at(std::size_t /*node*/) const { return constants; }
-};
-
-/// The constants of the laws of `lanes` nodes, as NodeLaws has them.
+/// A law of the registry, the same for all nodes or one for each.
 template <class Law>
-struct LawsInLanes {
-  typename Law::template Evaluator<Lanes, Lanes> mu;
-  Lanes mu_at_rest, mu_k;
-};
-
-/// Of a law for each node.
-template <class Law, class Form>
-struct LawPerNode {
-  using law_type = Law;
-  using form_type = Form;
-  const NodeLaws& laws;
-  Form form;
-  double dt_s;
-  auto at(std::size_t node) const {
-    const auto law = laws.constants<LawsInLanes<Law>>(node / lanes);
-    return Update{law.mu, law.mu_at_rest, law.mu_k, form, dt_s};
+struct RegistryLaw {
+  static constexpr SlipMemory memory = Law::memory;
+  const NodeLaws* of_nodes;  ///< null where all have the same
+  ConstantsOf<Law, Lanes> constants;
+  void go_to(std::size_t node) {
+    if (of_nodes) constants = of_nodes->constants<Law>(node / lanes);
   }
 };
 
@@ -146,10 +124,10 @@ struct Answers {
 /// The evaluator of one block of lanes: its k-th call takes the k-th answer, or asks.
 struct AskedInLanes {
   Answers* answers;
-  std::size_t node;
-  std::size_t* calls;  ///< of this block so far
+  std::size_t node = 0;
+  mutable std::size_t calls = 0;  ///< of this block so far
   Lanes operator()(Lanes speed_m_per_s, Lanes slip_m) const {
-    const std::size_t k = (*calls)++;
+    const std::size_t k = calls++;
     if (k < answers->mu.size()) return load(answers->mu[k].data() + node);
     if (k == answers->mu.size()) {
       store(answers->speed_m_per_s.data() + node, speed_m_per_s);
@@ -160,33 +138,22 @@ struct AskedInLanes {
   }
 };
 
-template <class Form>
 struct LawOverArrays {
-  struct law_type {
-    static constexpr SlipMemory memory = SlipMemory::lasting;  // the strength at rest is asked for as well
-  };
-  using form_type = Form;
-  Answers* answers;
-  std::size_t* calls;
-  double mu_k;
-  Form form;
-  double dt_s;
-  auto at(std::size_t node) const {
-    *calls = 0;
-    return Update{AskedInLanes{answers, node, calls}, mu_k, mu_k, form, dt_s};
-  }
+  static constexpr SlipMemory memory = SlipMemory::lasting;  // the strength at rest is asked for as well
+  LawConstants<AskedInLanes, Lanes> constants;
+  void go_to(std::size_t node) { constants.mu = {constants.mu.answers, node}; }
 };
 
 // Flattened: the compiler would keep the nodes in memory between these functions. The constants are copied:
 // what is written to the nodes cannot be theirs then, and they stay in registers.
-template <ContactAlgorithm algorithm, class Laws>
-[[gnu::flatten, gnu::noinline]] bool update(const Laws& given, Interface& s) {
-  const Laws laws = given;
-  constexpr bool remembers = Laws::form_type::remembers;
+template <ContactAlgorithm algorithm, class Law, class Form>
+[[gnu::flatten, gnu::noinline]] bool update(Law law, const Form form, double dt_s, Interface& s) {
+  constexpr bool remembers = Form::remembers;
   LanesMask changed{};
   const auto update_at = [&](auto at) {
     auto nodes = read_nodes<algorithm, remembers>(s, at);
-    changed |= update_node<algorithm, Laws::law_type::memory>(laws.at(at.begin), nodes);
+    law.go_to(at.begin);
+    changed |= update_node<algorithm, Law::memory>(law.constants, form, dt_s, nodes);
     write_nodes<algorithm, remembers>(nodes, s, at);
   };
   std::size_t i = 0;
@@ -201,13 +168,13 @@ template <ContactAlgorithm algorithm, class Form>
 bool update_by(const ArrayLaw& law, double mu_k, const Form& form, double dt_s, Interface& state) {
   const std::size_t padded = (state.size() + lanes - 1) / lanes * lanes;
   Answers answers;
-  std::size_t calls = 0;
+  const LawOverArrays asking{{{&answers}, Lanes{} + mu_k, Lanes{} + mu_k}};
   while (true) {
     answers.asked = false;
     answers.speed_m_per_s.assign(padded, 0);
     answers.slip_m.assign(padded, 0);
     Interface trial = state;
-    const bool changed = update<algorithm>(LawOverArrays<Form>{&answers, &calls, mu_k, form, dt_s}, trial);
+    const bool changed = update<algorithm>(asking, form, dt_s, trial);
     if (!answers.asked) {
       state = std::move(trial);
       return changed;
@@ -248,15 +215,12 @@ bool update_contact(const ContactModel& model, double dt_s, Interface& state) {
                  ? update_by<ContactAlgorithm::direct>(*law, mu_k, form, dt_s, state)
                  : update_by<ContactAlgorithm::predictor_corrector>(*law, mu_k, form, dt_s, state);
     });
-  return visit(model.law, [&]<class Law>(const Law& law) {
-    return with_form(model.regularisation, since_last_s, [&]<class Form>(const Form& form) {
-      const auto with = [&](const auto& laws) {
-        return model.algorithm == ContactAlgorithm::direct
-                   ? update<ContactAlgorithm::direct>(laws, state)
-                   : update<ContactAlgorithm::predictor_corrector>(laws, state);
-      };
-      return model.of_nodes.empty() ? with(OneLaw<Law, Form>(law, form, dt_s))
-                                    : with(LawPerNode<Law, Form>{model.of_nodes, form, dt_s});
+  return visit(model.law, [&]<class Law>(const Law& one) {
+    const RegistryLaw<Law> law{model.of_nodes.empty() ? nullptr : &model.of_nodes, in_lanes(one)};
+    return with_form(model.regularisation, since_last_s, [&](const auto& form) {
+      return model.algorithm == ContactAlgorithm::direct
+                 ? update<ContactAlgorithm::direct>(law, form, dt_s, state)
+                 : update<ContactAlgorithm::predictor_corrector>(law, form, dt_s, state);
     });
   });
 }

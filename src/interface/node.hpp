@@ -23,8 +23,8 @@ struct Node {
 };
 
 /// The coefficient of a node that may be weakened; exactly the law's where intact is 1.
-template <class V, class Constant>
-inline V weakened(V mu, Constant mu_k, V intact) {
+template <class V>
+inline V weakened(V mu, V mu_k, V intact) {
   return mu - (1 - intact) * (mu - mu_k);
 }
 
@@ -53,25 +53,14 @@ inline void press_locked(Node<V>& n, V impedance, double per_step) {
 /// second order, and the third is nearer the solution of the implicit equation where friction weakens fast.
 inline constexpr int rate_evaluations = 3;
 
-/// What decides besides the node's state: mu is the law's evaluator for V, form one of with_form's. Its
-/// constants are doubles where all nodes have one law, else of type V.
-template <class Coefficient, class Constant, class Form>
-struct Update {
-  Coefficient mu;
-  Constant mu_at_rest, mu_k;
-  Form form;
-  double dt_s;
-};
-template <class Coefficient, class Constant, class Form>
-Update(Coefficient, Constant, Constant, Form, double) -> Update<Coefficient, Constant, Form>;
-
+/// @param law   LawConstants of the node
+/// @param form  one of with_form's
 /// @return whether the node began or ceased to slip.
-template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Coefficient, class Constant, class Form,
-          class V>
-inline Mask<V> update_node(const Update<Coefficient, Constant, Form>& update, Node<V>& n) {
+template <ContactAlgorithm algorithm, SlipMemory slip_memory, class Law, class Form, class V>
+inline Mask<V> update_node(const Law& law, const Form& form, double dt_s, Node<V>& n) {
   constexpr bool predicts = algorithm == ContactAlgorithm::predictor_corrector;
   constexpr int n_evaluations = predicts ? 1 : rate_evaluations;
-  const auto& [mu, mu_at_rest, mu_k, form, dt_s] = update;
+  const auto& [mu, mu_at_rest, mu_k] = law;
   const double per_step = 1 / dt_s;
 
   const V impedance = n.mass_per_length_kg_m2 * per_step;
@@ -117,7 +106,7 @@ inline Mask<V> update_node(const Update<Coefficient, Constant, Form>& update, No
 
   V slip = n.slip_m + select(slipping, absolute(v_x) * dt_s, V{});
   if constexpr (slip_memory == SlipMemory::until_stick) slip = select(sticks && p != 0, V{}, slip);
-  V mu_stuck = V{} + mu_at_rest;
+  V mu_stuck = mu_at_rest;
   if constexpr (slip_memory != SlipMemory::none) mu_stuck = mu(V{}, slip);
   const V strength_at_rest = form.strength(weakened(mu_stuck, mu_k, n.intact), p, now);
 

@@ -11,6 +11,36 @@
 
 namespace slipfront::interface {
 
+/// A friction law as the update of a node, or of `lanes` of them, takes it. An aggregate of values V.
+/// @tparam Coefficient  the law's evaluator for V
+template <class Coefficient, class V>
+struct LawConstants {
+  Coefficient mu;
+  V mu_at_rest, mu_k;
+};
+template <class Law, class V>
+using ConstantsOf = LawConstants<typename Law::template Evaluator<V>, V>;
+
+template <class Law>
+ConstantsOf<Law, double> constants_of(const Law& law) {
+  const auto mu = law.evaluator();
+  return {mu, mu(0, 0), law.kinetic_coefficient()};
+}
+/// The values of an aggregate of them.
+template <class V, class Constants>
+auto values_of(const Constants& constants) {
+  static_assert(sizeof(Constants) % sizeof(V) == 0);
+  return std::bit_cast<std::array<V, sizeof(Constants) / sizeof(V)>>(constants);
+}
+/// The same law in all lanes.
+template <class Law>
+ConstantsOf<Law, Lanes> in_lanes(const Law& law) {
+  const auto values = values_of<double>(constants_of(law));
+  std::array<Lanes, values.size()> in_lanes;
+  for (std::size_t k = 0; k < values.size(); ++k) in_lanes[k] = Lanes{} + values[k];
+  return std::bit_cast<ConstantsOf<Law, Lanes>>(in_lanes);
+}
+
 /// A friction law per node, all of one type, and their constants as the loop over nodes takes them: those of
 /// `lanes` nodes side by side, in blocks.
 class NodeLaws {
@@ -24,15 +54,12 @@ class NodeLaws {
   const FrictionLaw& operator[](std::size_t node) const { return laws_[node]; }
 
   /// The constants of the nodes from lanes * block on, those of the last node in lanes left over.
-  /// @tparam Constants  the law's evaluator for Lanes with constants of Lanes, then its coefficient at rest
-  ///                    and its kinetic one
-  template <class Constants>
-  Constants constants(std::size_t block) const {
-    static_assert(sizeof(Constants) % sizeof(Lanes) == 0);
-    std::array<Lanes, sizeof(Constants) / sizeof(Lanes)> values;
+  template <class Law>
+  ConstantsOf<Law, Lanes> constants(std::size_t block) const {
+    std::array<Lanes, sizeof(ConstantsOf<Law, double>) / sizeof(double)> values;
     const double* from = constants_.data() + block * values.size() * lanes;
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = load(from + k * lanes);
-    return std::bit_cast<Constants>(values);
+    return std::bit_cast<ConstantsOf<Law, Lanes>>(values);
   }
 
  private:

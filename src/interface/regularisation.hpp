@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
 #include <limits>
 
 #include "base/exponential.hpp"
@@ -41,27 +40,18 @@ struct Following {
     left = parts.left;
     lag = select(takes_time, parts.lost, V{} + 1) / select(takes_time, x, V{} + 1);
   }
-  template <class Pressure>
-  Pressure operator()(Pressure from_Pa, Pressure target_before_Pa, Pressure target_Pa) const {
+  V operator()(V from_Pa, V target_before_Pa, V target_Pa) const {
     return target_Pa - lag * (target_Pa - target_before_Pa) + left * (from_Pa - target_before_Pa);
   }
 };
 
-struct ConstantRate {
-  Following<double> following;
-  ConstantRate(const Regularisation& r, double dt_s) : following(dt_s * relaxation_rate_per_s(r, 0)) {}
-  template <class V>
-  Following<double> operator()(V /*speed_m_per_s*/) const {
-    return following;
-  }
-};
-
-struct SlipRateDependent {
+/// The same at the slip rate of a node, through a time dt.
+struct Relaxation {
   double at_rest, dt_per_length_s_per_m;
-  SlipRateDependent(const Regularisation& r, double dt_s)
+  Relaxation(const Regularisation& r, double dt_s)
       : at_rest(dt_s * relaxation_rate_per_s(r, 0)), dt_per_length_s_per_m(dt_s / r.length_m) {}
   template <class V>
-  Following<V> operator()(V speed_m_per_s) const {
+  Following<V> at(V speed_m_per_s) const {
     return Following<V>(at_rest + speed_m_per_s * dt_per_length_s_per_m);
   }
 };
@@ -97,16 +87,15 @@ struct Immediate {
 };
 
 /// A stuck node keeps the strength with which it stuck and regains the static one at the rate for |v| = 0.
-template <class Rate>
 struct RelaxedStrength {
   static constexpr bool remembers = true;
-  Rate rate;
+  Relaxation relaxation;
   template <class V>
   auto step(V speed_m_per_s) const {
-    return rate(speed_m_per_s);
+    return relaxation.at(speed_m_per_s);
   }
-  template <class V, class F>
-  static Memory<V> now(const F& following, const Memory<V>& before, V mu, V p_Pa) {
+  template <class V>
+  static Memory<V> now(const Following<V>& following, const Memory<V>& before, V mu, V p_Pa) {
     return {following(before.relaxed_Pa, before.target_Pa, mu * p_Pa), mu * p_Pa};
   }
   template <class V>
@@ -117,16 +106,15 @@ struct RelaxedStrength {
 };
 
 /// The coefficient acts at once, so that a stuck node has the static coefficient times the relaxed pressure.
-template <class Rate>
 struct RelaxedPressure {
   static constexpr bool remembers = true;
-  Rate rate;
+  Relaxation relaxation;
   template <class V>
   auto step(V speed_m_per_s) const {
-    return rate(speed_m_per_s);
+    return relaxation.at(speed_m_per_s);
   }
-  template <class V, class F>
-  static Memory<V> now(const F& following, const Memory<V>& before, V /*mu*/, V p_Pa) {
+  template <class V>
+  static Memory<V> now(const Following<V>& following, const Memory<V>& before, V /*mu*/, V p_Pa) {
     return {following(before.relaxed_Pa, before.target_Pa, p_Pa), p_Pa};
   }
   template <class V>
@@ -139,13 +127,8 @@ struct RelaxedPressure {
 /// Calls f with the form that the settings name. The choice is made once per contact update.
 template <class F>
 auto with_form(const Regularisation& r, double dt_s, F&& f) {
-  const bool constant = std::isinf(r.length_m);
-  if (r.relaxed == Relaxed::strength)
-    return constant ? f(RelaxedStrength<ConstantRate>{{r, dt_s}})
-                    : f(RelaxedStrength<SlipRateDependent>{{r, dt_s}});
-  if (r.relaxed == Relaxed::pressure)
-    return constant ? f(RelaxedPressure<ConstantRate>{{r, dt_s}})
-                    : f(RelaxedPressure<SlipRateDependent>{{r, dt_s}});
+  if (r.relaxed == Relaxed::strength) return f(RelaxedStrength{{r, dt_s}});
+  if (r.relaxed == Relaxed::pressure) return f(RelaxedPressure{{r, dt_s}});
   return f(Immediate{});
 }
 

@@ -62,7 +62,7 @@ void expect_same_values(const Interface& a, const Interface& b) {
 /// The update as it would be written for one node at a time.
 template <ContactAlgorithm algorithm, class Law, class Form>
 bool update_one_by_one(const Law& law, const Form& form, Interface& s) {
-  const Update update{law.evaluator(), law.evaluator()(0, 0), law.kinetic_coefficient(), form, dt};
+  const auto constants = constants_of(law);
   bool changed = false;
   for (std::size_t i = 0; i < s.size(); ++i) {
     Node<double> n{s.initial_gap_m[i],
@@ -82,7 +82,7 @@ bool update_one_by_one(const Law& law, const Form& form, Interface& s) {
                    {s.relaxed_Pa[i], s.target_Pa[i]},
                    s.acceleration_m_per_s2[i],
                    s.locked[i] != 0};
-    changed = update_node<algorithm, Law::memory>(update, n) || changed;
+    changed = update_node<algorithm, Law::memory>(constants, form, dt, n) || changed;
     s.v_x_m_per_s[i] = n.v_x_m_per_s;
     s.v_y_m_per_s[i] = n.v_y_m_per_s;
     s.u_y_m[i] = n.u_y_m;

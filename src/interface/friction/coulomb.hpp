@@ -25,17 +25,14 @@ struct Coulomb {
   double static_coefficient() const { return mu; }
   double kinetic_coefficient() const { return mu; }
 
-  template <class V, class Constant = double>
+  template <class V>
   struct Evaluator {
-    Constant mu;
-    V operator()(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{} + mu; }
+    V mu;
+    V operator()(V /*speed_m_per_s*/, V /*slip_m*/) const { return mu; }
     /// d mu / d|v|
     V slope_s_per_m(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{}; }
   };
-  template <class V = double>
-  Evaluator<V> evaluator() const {
-    return {mu};
-  }
+  Evaluator<double> evaluator() const { return {mu}; }
 };
 
 }  // namespace slipfront::interface

@@ -37,18 +37,15 @@ struct LinearSlipWeakening {
   double kinetic_coefficient() const { return mu_k; }
   double weakening_slip_m() const { return d_c_m; }
 
-  template <class V, class Constant = double>
+  template <class V>
   struct Evaluator {
-    Constant kinetic, drop, per_slip_per_m;
+    V kinetic, drop, per_slip_per_m;
     V operator()(V /*speed_m_per_s*/, V slip_m) const {
       return kinetic + drop * positive_part(1 - slip_m * per_slip_per_m);
     }
     V slope_s_per_m(V /*speed_m_per_s*/, V /*slip_m*/) const { return V{}; }
   };
-  template <class V = double>
-  Evaluator<V> evaluator() const {
-    return {mu_k, mu_s - mu_k, 1 / d_c_m};
-  }
+  Evaluator<double> evaluator() const { return {mu_k, mu_s - mu_k, 1 / d_c_m}; }
 };
 
 using SlipWeakening = LinearSlipWeakening<SlipMemory::lasting>;

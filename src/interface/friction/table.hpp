@@ -64,34 +64,33 @@ struct FrictionTableLaw {
 
   /// Every row's share of the way to the next, from 0 to 1, times what mu loses there: without a search, the
   /// same for all nodes. Rows that the table has not lose nothing.
-  template <class V, class Constant = double>
+  template <class V>
   struct Evaluator {
-    using Rows = std::array<Constant, most_rows - 1>;
-    Constant at_rest, least;
+    using Rows = std::array<V, most_rows - 1>;
+    V at_rest, least;
     Rows from, per_width, drop;
 
     V operator()(V speed_m_per_s, V slip_m) const {
       const V x = over_slip ? slip_m : speed_m_per_s;
-      V value = V{} + at_rest;
+      V value = at_rest;
       for (std::size_t k = 0; k < from.size(); ++k) {
         const V share = positive_part((x - from[k]) * per_width[k]);
         value -= drop[k] * select(share < 1, share, V{} + 1);
       }
-      return select(value < least, V{} + least, value);  // by rounding alone
+      return select(value < least, least, value);  // by rounding alone
     }
     V slope_s_per_m(V speed_m_per_s, V /*slip_m*/) const {
       V slope{};
       if constexpr (!over_slip)
         for (std::size_t k = 0; k < from.size(); ++k) {
           const V share = (speed_m_per_s - from[k]) * per_width[k];
-          slope -= select(share >= 0 && share < 1, V{} + drop[k] * per_width[k], V{});
+          slope -= select(share >= 0 && share < 1, drop[k] * per_width[k], V{});
         }
       return slope;
     }
   };
-  template <class V = double>
-  Evaluator<V> evaluator() const {
-    Evaluator<V> e{static_coefficient(), kinetic_coefficient(), {}, {}, {}};
+  Evaluator<double> evaluator() const {
+    Evaluator<double> e{static_coefficient(), kinetic_coefficient(), {}, {}, {}};
     for (std::size_t k = 0; k + 1 < at.size(); ++k) {
       e.from[k] = at[k];
       e.per_width[k] = 1 / (at[k + 1] - at[k]);

@@ -35,9 +35,9 @@ struct VelocityWeakening {
   double kinetic_coefficient() const { return mu_k; }
 
   /// The law with its constants folded, for the loop over nodes.
-  template <class V, class Constant = double>
+  template <class V>
   struct Evaluator {
-    Constant kinetic, drop, rate_s_per_m;
+    V kinetic, drop, rate_s_per_m;
     V operator()(V speed_m_per_s, V /*slip_m*/) const {
       return kinetic + drop * exp_minus(speed_m_per_s * rate_s_per_m);
     }
@@ -46,8 +46,7 @@ struct VelocityWeakening {
       return -drop * rate_s_per_m * exp_minus(speed_m_per_s * rate_s_per_m);
     }
   };
-  template <class V = double>
-  Evaluator<V> evaluator() const {
+  Evaluator<double> evaluator() const {
     return {mu_k, mu_s - mu_k, std::sqrt((mu_s - mu_k) / alpha_m2_per_s2)};
   }
 };
