@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A row of masses falls onto a plane with several ways to resolve the landing. Prints the tables of
+"""A row of masses falls onto a plane with several ways to resolve the landing. Prints the numbers of
 papers/kammer2012/contact-algorithms.md.
 
 The row is a column of square elements with lumped masses, of height, density and wave speed 1, falling with

@@ -104,7 +104,7 @@ def told_range(values: list[float | None], factor: float, form: str, unit: str) 
 
 def evidence(study: dict[str, Any]) -> str:
     """What was not used to choose, a column for each group of samples."""
-    groups = study["evidence"]
+    groups = study["evidence"][:2]  # not those with the left trigger held and taken away
 
     def row(heading: str, cell: Callable[[dict[str, Any]], str]) -> list[str]:
         return [heading, *(cell(group) if group["n"] else "-" for group in groups)]

@@ -11,22 +11,47 @@ from typing import Any
 from shared import DataError, after_mark, expecting, read_result, read_text, run, write_pages
 
 MARK = "<!-- numbers -->"
+MOST_ROWS = 8  # of a table; `slipfront verify` prints every check
+
+
+def shown(checks: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """All that fail, and up to MOST_ROWS in all: of each reason in turn the one nearest to its tolerance."""
+    by_reason: dict[str, list[int]] = {}
+    for i, c in enumerate(checks):
+        by_reason.setdefault(c["reason"], []).append(i)
+
+    def distance(i: int) -> float:
+        c = checks[i]
+        return abs(c["measured"] - c["expected"]) / c["tolerance"] if c["tolerance"] else 0.0
+
+    turns = [
+        (turn, i)
+        for group in by_reason.values()
+        for turn, i in enumerate(sorted(group, key=distance, reverse=True))
+    ]
+    kept = {i for _, i in sorted(turns)[:MOST_ROWS]} | {i for i, c in enumerate(checks) if not c["holds"]}
+    return [checks[i] for group in by_reason.values() for i in group if i in kept]
 
 
 def numbers(results: dict[str, Any]) -> str:
-    lines = [
-        f"![{results['title']}](figures/{results['name']}.png)",
-        "",
-        "| quantity | measured | expected | tolerance | its reason |",
-        "|---|---|---|---|---|",
-    ]
-    for c in results["checks"]:
+    checks = results["checks"]
+    rows = shown(checks)
+    lines = [f"![{results['title']}](figures/{results['name']}.png)", ""]
+    if len(rows) < len(checks):
+        lines += [
+            f"The {len(rows)} of {len(checks)} checks that come nearest to their tolerances, by reason:",
+            "",
+        ]
+    lines += ["| quantity | measured | expected | tolerance | its reason |", "|---|---|---|---|---|"]
+    reason = None
+    for c in rows:
         unit = f" {c['unit']}" if c["unit"] else ""
         mark = "" if c["holds"] else " **does not hold**"
         lines.append(
             f"| {c['quantity']} | {c['measured']:.6g}{unit}{mark} | {c['expected']:.6g} | "
-            f"{c['tolerance']:.2g} | {c['reason']} |"
+            f"{c['tolerance']:.2g} | {c['reason'] if c['reason'] != reason else ''} |"
         )
+        reason = c["reason"]
     return "\n".join(lines) + "\n"
 
 

@@ -43,7 +43,7 @@ def commands(page: str) -> list[str]:
     return [line for block in blocks for line in block.replace("\\\n", " ").splitlines()]
 
 
-@pytest.mark.parametrize("page", ["docs/which-loading.md", "docs/paraview.md"])
+@pytest.mark.parametrize("page", ["docs/prestress.md", "docs/paraview.md"])
 def test_commands_on_the_tutorials_case_run(program, tmp_path, page):
     tutorial = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
     (tmp_path / "my.toml").write_text(
