@@ -26,44 +26,44 @@ namespace {
 
 constexpr double number = sizeof(double);
 
-// Bytes at the peak, each measured over runs of 5e3 to 5e6 nodes; forecasts stay within 30 % of these runs.
+// Bytes at the peak, measured over runs of 5e3 to 8e6 nodes; those of whole runs were within 20 %.
 
 /// The program and its libraries; those of MPI and PETSc take as much again.
 double program_bytes() {
   return statics::petsc_version().empty() ? 18e6 : 40e6;
 }
-/// Of a node of bodies whose motion is made: mesh, state before, mass, motion; of few nodes the largest
-/// frequency is found by iterations, with four fields more.
+/// Of a node of bodies whose motion is made: mesh, state before the event, mass and motion. In small meshes
+/// four fields more, with which the largest frequency is found.
 constexpr double in_motion = 135, in_motion_of_few = 180;
-/// Of a node while the plate is loaded by a ramp: four states besides.
-constexpr double in_ramp = 128;
-/// Of an unknown, equilibria included.
+constexpr double state_before = 32;  ///< of these u before and its change with the shear
+constexpr double in_ramp = 128;      ///< of a node under a ramp, besides: four states
+/// Of an unknown: what each solver takes, the equilibria included.
 constexpr double by_multigrid = 112, by_petsc = 1370;
-/// Of an unknown, times log2 of their number: the factor by nested dissection.
-constexpr double of_factor = 54;
-/// Of an unknown: indices of the factor. Of a pair of displacements of the interface: the dense end of the
-/// factor, its fronts and the equations of contact.
-constexpr double by_factor = 45, of_dense_pair = 56;
-/// Of an interface node: its state. Of what is recorded of it: five changes of contact, each with its time
-/// and place, and two tractions at all nodes around it as far as l*.
+/// Of an unknown: its place in the factor by nested dissection, times log2 of their number, and indices.
+constexpr double of_factor = 54, of_indices = 45;
+/// Of a pair of displacements of the interface: the dense end of the factor, fronts, equations of contact.
+constexpr double of_dense_pair = 56;
+/// Of an interface node: its state; of what is recorded of it five changes of contact, each with its time and
+/// place, and two tractions at all nodes around it as far as l*.
 constexpr double of_interface = 500, changes = 5, of_change = 32, of_node_around = 16;
-/// Of all nodes, what the leader of several processes has beside its part: the mesh, and the state before the
-/// event. Of an unknown, what it has beside PETSc's equations: mesh and numbers, and equilibria.
-constexpr double mesh_of_leader = 32, state_of_leader = 32, unknown_of_leader = 22, equilibria_of_leader = 48;
-/// Of a cell of a relief, which the leader has where it has no more than the interface.
+/// What the process that leads several has beside its part, of each node of the bodies: the mesh; and of each
+/// unknown beside PETSc's equations: mesh and numbers, equilibria.
+constexpr double mesh_of_leader = 32, unknown_of_leader = 22, equilibria_of_leader = 48;
+/// Of a cell of a relief, for the leader that has no more of the bodies than these and the interface.
 constexpr double in_relief = 1600;
 
-// Bytes on disk. Raw rows and fields lie there until the results are made of them.
-constexpr double of_snapshot_mesh = 65;      ///< of a node: place, cell
-constexpr double raw_and_written = 32 + 48;  ///< of a node: u, v; the same with z
-constexpr double in_checkpoint = 36;         ///< of a node: u and what moves it, 32; 40 with numbers
+// Bytes on disk of a node. Raw rows and fields lie there until the results are made of them.
+constexpr double of_snapshot_mesh = 65;      ///< place, cell
+constexpr double raw_and_written = 32 + 48;  ///< u and v, raw; the same with z
+constexpr double in_checkpoint = 36;         ///< u and what moves it, 32; 40 with numbers
 constexpr double checkpoints = 3;            ///< two, and one that is written
 constexpr double in_text = 20;               ///< of a number
 
-// Seconds of processor time by two threads, measured over 2e4 to 8e5 unknowns.
-constexpr double s_of_large_fronts = 1.6e-9;                              ///< times n^1.5
-constexpr double s_by_factor = 2.8e-6, s_by_petsc = 3e-5;                 ///< times n
-constexpr double s_by_multigrid = 1.1e-6, s_by_multigrid_of_many = 2e-6;  ///< times n; beyond the caches
+// Seconds, of a processor of 2023 with two threads, measured over 2e4 to 5e7 unknowns.
+constexpr double s_of_large_fronts = 1.6e-9;               ///< times n^1.5
+constexpr double s_by_factor = 2.8e-6, s_by_petsc = 3e-5;  ///< times n
+constexpr double s_by_multigrid = 1.1e-6,
+                 s_by_multigrid_of_many = 2e-6;  ///< times n, in caches or beyond them
 constexpr double many_for_caches = 3e6;
 
 /// A machine takes some 1e5 steps of the smallest plate in a second: these are four months.
@@ -137,9 +137,10 @@ Shares shares_of(const input::Case& config, const Size& size, const Holder& hold
 }
 
 double motion_bytes_of(const input::Case& config, const Size& size, const Shares& s) {
-  double bytes = motion_bytes(s.n_moving);
+  double bytes = s.n_moving / size.n_nodes * motion_bytes(size.n_nodes);
+  if (s.by_interface && is_prestressed(config)) bytes -= state_before * s.n_moving;  // there is none
   if (s.has_leader && !s.by_interface)
-    bytes += size.n_nodes * (mesh_of_leader + (s.keeps ? 0 : state_of_leader));
+    bytes += size.n_nodes * (mesh_of_leader + (s.keeps ? 0 : state_before));
   const auto& plate = config.plate;
   if (s.has_leader && s.by_interface && plate.corner == mesh::Corner::relief)
     bytes += 2 * in_relief * plate.relief_length_m * plate.relief_depth_m / std::pow(plate.element_size_m, 2);
@@ -263,7 +264,7 @@ double statics_bytes(statics::StaticSolver solver, double n, double n_interface)
   if (solver == statics::StaticSolver::petsc)
     return n * (by_petsc + unknown_of_leader + equilibria_of_leader);
   if (solver == statics::StaticSolver::iterative) return n * by_multigrid;
-  return n * (of_factor * std::log2(std::max(n, 2.0)) + by_factor) +
+  return n * (of_factor * std::log2(std::max(n, 2.0)) + of_indices) +
          of_dense_pair * std::pow(2 * n_interface, 2);
 }
 
