@@ -136,8 +136,12 @@ Shares shares_of(const input::Case& config, const Size& size, const Holder& hold
   return s;
 }
 
+double bytes_of_node(double of_all_nodes) {
+  return of_all_nodes < solid::many_nodes ? in_motion_of_few : in_motion;
+}
+
 double motion_bytes_of(const input::Case& config, const Size& size, const Shares& s) {
-  double bytes = s.n_moving / size.n_nodes * motion_bytes(size.n_nodes);
+  double bytes = s.n_moving * bytes_of_node(size.n_nodes);
   if (s.by_interface && is_prestressed(config)) bytes -= state_before * s.n_moving;  // there is none
   if (s.has_leader && !s.by_interface)
     bytes += size.n_nodes * (mesh_of_leader + (s.keeps ? 0 : state_before));
@@ -183,7 +187,7 @@ Budget memory(const input::Case& config, const Size& size, const Holder& holder,
       {"the rows of energies", energy_rows * sizeof(record::Energies),
        Message("a larger {}", Key("output.energy_interval_s"))}};
   if (is_ramp) event.push_back(statics);
-  Budget most = total_bytes(event) > statics.bytes ? event : Budget{statics};
+  Budget most = statics.bytes > total_bytes(event) ? Budget{statics} : event;
   most.push_back({"the program", holder.n_here * program_bytes(), larger_elements()});
   return most;
 }
@@ -257,7 +261,7 @@ Size estimated_size(const input::Case& config) {
 }
 
 double motion_bytes(double n_nodes) {
-  return n_nodes * (n_nodes < solid::many_nodes ? in_motion_of_few : in_motion);
+  return n_nodes * bytes_of_node(n_nodes);
 }
 
 double statics_bytes(statics::StaticSolver solver, double n, double n_interface) {
