@@ -20,15 +20,6 @@ double total_bytes(const Budget& budget) {
   return sum;
 }
 
-Budget operator+(Budget a, const Budget& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
-const Budget& largest_of(const std::vector<Budget>& budgets) {
-  return *std::ranges::max_element(budgets, {}, total_bytes);
-}
-
 void require_room(const Budget& budget, double available, std::string_view work, std::string_view where,
                   std::string_view room, std::string_view instead) {
   const double needed = total_bytes(budget);
@@ -40,8 +31,8 @@ void require_room(const Budget& budget, double available, std::string_view work,
 
 void require_memory(const Budget& budget, std::string_view work, std::string_view instead) {
   const double available = available_memory_bytes();
-  require_room(budget, 0.9 * available, work, "of memory",
-               fmt::format("{:.3g} GB are available", available * 1e-9), instead);
+  require_room(budget, available, work, "of memory", fmt::format("{:.3g} GB are available", available * 1e-9),
+               instead);
 }
 
 }  // namespace slipfront

@@ -24,12 +24,6 @@ using Budget = std::vector<BudgetItem>;
 
 double total_bytes(const Budget& budget);
 
-/// One after the other.
-Budget operator+(Budget a, const Budget& b);
-
-/// The one that takes most. @pre there is one
-const Budget& largest_of(const std::vector<Budget>& budgets);
-
 /// Refuses work that needs more than `available` bytes, by its largest item and that one's remedy.
 /// @param where  such as "of memory"
 /// @param room   who has how much, such as "2 GB are available"
@@ -39,7 +33,7 @@ const Budget& largest_of(const std::vector<Budget>& budgets);
 void require_room(const Budget& budget, double available, std::string_view work, std::string_view where,
                   std::string_view room, std::string_view instead = "");
 
-/// The same of nine tenths of the memory that can be allocated without swapping.
+/// The same of the memory that can be allocated without swapping.
 void require_memory(const Budget& budget, std::string_view work, std::string_view instead = "");
 
 }  // namespace slipfront

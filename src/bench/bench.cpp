@@ -20,6 +20,7 @@
 #include "mesh/plate.hpp"
 #include "mesh/reorder.hpp"
 #include "motion/stepper.hpp"
+#include "run/needs.hpp"
 #include "run/parts.hpp"
 #include "run/run.hpp"
 #include "solid/kernels.hpp"
@@ -158,9 +159,8 @@ Rate measure_path(const std::string& path, int columns, const motion::TimeSteppi
                   const motion::Execution& execution, const std::function<mesh::Mesh()>& make_mesh) {
   const int rows = columns / 2;
   const double nodes = (columns + 1.0) * (rows + 1.0);
-  require_memory(
-      {{"its motion", motion::event_bytes(nodes, nodes, false, time.precision), "a machine with more"}},
-      fmt::format("a plate of {:.4g} nodes", nodes));
+  require_memory({{"its motion", run::motion_bytes(nodes), "a machine with more"}},
+                 fmt::format("a plate of {:.4g} nodes", nodes));
   const double before = resident_bytes();
   SlippingPlate plate(make_mesh(), time, execution);
   auto& stepper = plate.stepper();
@@ -220,9 +220,10 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes*
   const auto plate = plate_of(columns);
   const int rows = columns / 2;
   const double n_unknowns = 2 * (columns + 1.0) * (rows + 1.0);
-  statics::StaticsSize size = {solver, n_unknowns, columns + 1.0};
-  size.is_kept_by_all = processes != nullptr;
-  statics::require_statics_memory(size);
+  const auto chosen = statics::choose_solver(solver, n_unknowns);
+  require_memory({{"the statics", run::statics_bytes(chosen, n_unknowns, columns + 1.0),
+                   "fewer columns, or a machine with more"}},
+                 fmt::format("a plate of {:.4g} static unknowns", n_unknowns));
   const auto mesh = mesh::make_plate(plate);
   const auto start = Clock::now();
   const auto processor_start = std::clock();
@@ -236,8 +237,7 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes*
   const statics::Statics statics({mesh, material}, std::nullopt, loading,
                                  std::vector<double>(mesh.lower.size(), mu_s), "friction.mu_s",
                                  [] { return true; }, {processes, processes != nullptr ? &kept : nullptr});
-  StaticsRun result{columns, mesh.grid.rows,
-                    std::string(statics::name_of(statics::choose_solver(solver, n_unknowns))), n_unknowns};
+  StaticsRun result{columns, mesh.grid.rows, std::string(statics::name_of(chosen)), n_unknowns};
   result.critical_shear_m = statics.shear_to(1).shear_m;
   const auto common = statics.shear_to(1 - loading.critical_margin);
   const auto spontaneous = statics.shear_to(1 + loading.critical_margin);
@@ -246,7 +246,6 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes*
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   result.peak_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
-  result.expected_bytes = total_bytes(statics::statics_budget(size).peak);
   result.cycles = statics.solver().n_cycles();
   return result;
 }

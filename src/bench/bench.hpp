@@ -50,7 +50,6 @@ struct StaticsRun {
   double wall_s = 0, processor_s = 0;
   std::int64_t cycles = 0;  ///< of the iterative solver
   double peak_bytes = 0;    ///< of the process
-  double expected_bytes = 0;
   double critical_shear_m = 0;
 };
 /// @param processes  that share it by PETSc, all in run::serve; null for this one alone

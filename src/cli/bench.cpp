@@ -141,8 +141,8 @@ void print_network(std::span<const Link> links, int n_processes, bool as_json) {
       "\nHalf a round trip of one number; 256 KiB both ways at once, in messages of 32 KiB; by how much a "
       "byte "
       "on its way\nholds up what both compute. Medians; the slower ones for\n"
-      "info --latency-s {:.4g} --bandwidth-bytes-per-s {:.4g} --processor-s-per-byte {:.4g}\n",
-      slower.latency_s, slower.bandwidth_bytes_per_s, slower.processor_s_per_byte);
+      "info --latency-s {:.4g} --bandwidth-bytes-per-s {:.4g}\n",
+      slower.latency_s, slower.bandwidth_bytes_per_s);
 }
 
 void print_statics(const bench::StaticsRun& r, bool as_json) {
@@ -155,15 +155,14 @@ void print_statics(const bench::StaticsRun& r, bool as_json) {
                                              {"processor_s", r.processor_s},
                                              {"cycles", r.cycles},
                                              {"peak_bytes", r.peak_bytes},
-                                             {"expected_bytes", r.expected_bytes},
                                              {"critical_shear_m", r.critical_shear_m}};
     return print_json(measured);
   }
   print(
       "{} x {}, {}, {:.3g} unknowns: {:.2f} s ({:.2f} s of processor), {} cycles, peak memory {:.2f} GB, "
-      "expected {:.2f} GB, critical shear {:.12g} m\n",
+      "critical shear {:.12g} m\n",
       r.columns, r.rows, r.solver, r.unknowns, r.wall_s, r.processor_s, r.cycles, r.peak_bytes * 1e-9,
-      r.expected_bytes * 1e-9, r.critical_shear_m);
+      r.critical_shear_m);
 }
 
 struct BenchArguments {

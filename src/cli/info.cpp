@@ -146,11 +146,8 @@ std::string columns_text(const motion::Division& division) {
   return least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
 }
 
-/// The prediction, a line for each part of the time.
-void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, statics::StaticSolver solver,
-                Listing& list) {
-  const auto& [division, cost] = shared;
-  const auto add_s = [&](const char* what, double s) { list.add(what, fmt::format("{:.3g} s", s)); };
+void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, Listing& list) {
+  const auto& division = shared.division;
   list.add("shared by",
            fmt::format("{} processes on {} processors, {:.3g} us and {:.3g} GB/s between them",
                        sharing.n_processes, sharing.n_processors, sharing.network.latency_s * 1e6,
@@ -158,31 +155,16 @@ void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, st
   list.add("  columns of nodes of each",
            fmt::format("{}, and {} beside them on either side", columns_text(division),
                        division.n_parts() > 1 ? division.halo : 0));
-  auto memory = fmt::format("{:.3g} GB of the leader", cost.leader_memory_bytes * 1e-9);
+  auto memory = fmt::format("{:.3g} GB of the leader", shared.leader_memory_bytes * 1e-9);
   if (division.n_parts() > 1) {
     list.add("  exchange every", fmt::format("{} steps", division.steps_per_exchange));
     list.add("  bytes sent per step",
-             fmt::format("{:.4g} by the process that sends most", cost.bytes_per_step));
-    memory += fmt::format(", {:.3g} GB of each other process", cost.memory_bytes * 1e-9);
+             fmt::format("{:.4g} by the process that sends most", shared.bytes_per_step));
+    memory += fmt::format(", {:.3g} GB of each other process", shared.memory_bytes * 1e-9);
   }
   list.add("  memory", memory);
-  if (cost.record_bytes > 0.2 * cost.leader_memory_bytes)
-    list.add("  of the leader's", fmt::format("{:.3g} GB for the record of slip; less with a smaller "
-                                              "fronts.l_star_m",
-                                              cost.record_bytes * 1e-9));
-  add_s("  time: own columns", cost.own_s);
-  add_s("  time: halo", cost.halo_s);
-  add_s("  time: exchange", cost.exchange_s);
-  add_s("  time: commands of the leader", cost.command_s);
-  add_s("  time: samples, snapshots", cost.gathering_s);
-  add_s(solver == statics::StaticSolver::petsc ? "  time: statics" : "  time: statics, leader alone",
-        cost.statics_s);
-  add_s("  time: start", cost.start_s);
-  add_s("  time in all", cost.total_s());
-  list.add("  own columns, of the event", fmt::format("{:.0f} %", 100 * cost.own_s / cost.event_s()));
-  list.add("  not in it", fmt::format("reading the case, meshes, the last files, and {:.3g} s for each "
-                                      "checkpoint besides what the disk takes",
-                                      cost.checkpoint_s));
+  list.add("  expected time", fmt::format("{:.2g} s", shared.expected_s));
+  list.add("  own columns, of the event", fmt::format("{:.0f} %", 100 * shared.efficiency));
 }
 
 run::Info info_of(const CaseArguments& arguments, const input::Case& config,
@@ -197,23 +179,21 @@ run::Info info_of(const CaseArguments& arguments, const input::Case& config,
 /// As it is given.
 struct SharingArguments {
   std::optional<int> n_processes, n_processors;
-  std::optional<double> latency_s, bandwidth_bytes_per_s, processor_s_per_byte;
+  std::optional<double> latency_s, bandwidth_bytes_per_s;
 
   std::optional<run::Sharing> sharing() const {
     if (!n_processes) {
-      if (n_processors || latency_s || bandwidth_bytes_per_s || processor_s_per_byte)
+      if (n_processors || latency_s || bandwidth_bytes_per_s)
         throw UserError(
-            "slipfront: --processors, --latency-s, --bandwidth-bytes-per-s and --processor-s-per-byte of "
-            "info "
-            "say something with --processes only");
+            "slipfront: --processors, --latency-s and --bandwidth-bytes-per-s of info say something with "
+            "--processes only");
       return {};
     }
-    const auto& known = run::shared_memory;
-    return run::Sharing{
-        *n_processes,
-        n_processors.value_or(*n_processes),
-        {latency_s.value_or(known.latency_s), bandwidth_bytes_per_s.value_or(known.bandwidth_bytes_per_s),
-         processor_s_per_byte.value_or(known.processor_s_per_byte)}};
+    const run::Network shared_memory;
+    return run::Sharing{*n_processes,
+                        n_processors.value_or(*n_processes),
+                        {latency_s.value_or(shared_memory.latency_s),
+                         bandwidth_bytes_per_s.value_or(shared_memory.bandwidth_bytes_per_s)}};
   }
 };
 
@@ -226,7 +206,7 @@ void print_info(const CaseArguments& arguments, const std::optional<run::Sharing
   add_size(info, list);
   add_steps(config, info, list);
   add_costs(info, list);
-  if (sharing) add_shared(*info.shared, *sharing, config.loading.solver, list);
+  if (sharing) add_shared(*info.shared, *sharing, list);
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
   for (const auto& note : arguments.notes()) list.text += fmt::format("note: {}\n", note);
@@ -264,12 +244,6 @@ void add_info(CLI::App& app) {
       ->check(positive())
       ->check(finite())
       ->type_name("B");
-  command
-      ->add_option("--processor-s-per-byte", shared->processor_s_per_byte,
-                   "By which a byte between processes holds up computing; by default 0, of shared memory")
-      ->check(non_negative())
-      ->check(finite())
-      ->type_name("S");
   command->callback([arguments, shared] { print_info(*arguments, shared->sharing()); });
 }
 

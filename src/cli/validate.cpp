@@ -9,6 +9,7 @@
 #include "cli/output.hpp"
 #include "run/needs.hpp"
 #include "run/run.hpp"
+#include "run/snapshot_plan.hpp"
 #include "run/warnings.hpp"
 
 namespace slipfront::cli {

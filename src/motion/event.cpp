@@ -112,19 +112,6 @@ int halo_for(const mesh::Mesh& mesh, double l_star_m) {
   return static_cast<int>(std::ceil(l_star_m / mesh.grid.spacing_m - 0.01)) + 1;
 }
 
-double event_bytes(double n_nodes, double n_cells, bool with_snapshots, Precision precision) {
-  constexpr double number = sizeof(double), field = 2 * number;
-  const double mesh = field * n_nodes + sizeof(mesh::Cell) * n_cells;
-  const double state = 2 * field * n_nodes;  // u_m, u_per_shear
-  const double single = precision == Precision::single_precision ? field * n_nodes : 0;
-  const double motion = (number + 2 * field) * n_nodes;  // mass, u, v
-  // The largest frequency by iterations, or the cells around each node.
-  const double building = (n_nodes < solid::many_nodes ? number + 4 * field : 28) * n_nodes;
-  const double stepping = 2 * n_nodes;  // of the stepper besides: levels, orphans
-  const double snapshot = with_snapshots ? 2 * field * n_nodes : 0;
-  return motion + std::max(mesh + state + std::max(building, single), single + stepping + snapshot);
-}
-
 EventRun::EventRun(TimeStepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s,
                    const Waves& waves, const interface::Trigger& trigger, const TimeStepping& time,
                    const Sampling& sampling, int halo)

@@ -43,12 +43,6 @@ class Sink {
   virtual void probe(const record::ProbeRecord& rows) = 0;
 };
 
-/// Bytes of a plate in motion: the larger of what its stepper takes while it is built, the mesh and the state
-/// before the event beside it, and of the event itself with the snapshot that waits to be written. But for
-/// the interface, the irregular nodes and the program itself.
-double event_bytes(double n_nodes, double n_cells, bool with_snapshots,
-                   Precision precision = Precision::double_precision);
-
 /// Why an event ended.
 enum class EventEnd { end_time, quiet, interrupted, blow_up };
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "fronts/fit.hpp"
 #include "input/friction_along_x.hpp"
 #include "mesh/part.hpp"
 #include "motion/stepper.hpp"
@@ -76,7 +75,6 @@ struct Timed {
   std::unique_ptr<motion::Stepper> stepper;
   const mesh::Mesh* plate = nullptr;
   const mesh::Mesh* base = nullptr;
-  int first_column = 0;
   double share = 1;  ///< of the whole
 };
 
@@ -106,14 +104,9 @@ void add_steps(const Timed& timed, Info& info) {
   info.substep_s = stepper.substep_s();
 }
 
-double n_unknowns_of(const Info& info) {
-  return 2.0 * static_cast<double>(info.n_nodes);
-}
-
 Size size_of(const Meshes& meshes, const Info& info) {
-  return {static_cast<double>(info.n_nodes), static_cast<double>(info.n_cells),
-          static_cast<double>(info.n_interface), info.step_s,
-          meshes.base ? static_cast<double>(n_nodes_of(*meshes.base)) : 0};
+  return {static_cast<double>(info.n_nodes), meshes.base ? static_cast<double>(n_nodes_of(*meshes.base)) : 0,
+          static_cast<double>(info.n_interface), info.step_s};
 }
 
 void add_needs(const input::Case& config, const Meshes& meshes, double node_updates_per_step, Info& info) {
@@ -124,34 +117,23 @@ void add_needs(const input::Case& config, const Meshes& meshes, double node_upda
   info.memory_bytes = info.needs.memory_bytes();
   info.solver_bytes = info.needs.statics_bytes;
   if (!is_prestressed(config))
-    info.solver = statics::choose_solver(wanted_solver(config), n_unknowns_of(info));
+    info.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(info.n_nodes));
 }
 
-constexpr double steps_per_look = 50, steps_per_check = 100;  // of motion::EventRun, motion::Watch
+/// Most steps that are taken without a look at the event.
+constexpr double steps_per_look = 50;
 
-/// Times at which an event is looked at: every so many steps, and for energies and snapshots.
-double commands_of(const Needs& needs) {
+/// Times at which the event is looked at: every so many steps, and for energies and snapshots.
+double looks_of(const input::Case& config, const Needs& needs) {
   const auto steps = static_cast<double>(needs.steps);
-  return std::min(steps, steps / steps_per_look + needs.energy_rows + needs.snapshots);
+  return std::min(steps, steps / steps_per_look + config.time.end_s / config.output.energy_interval_s +
+                             needs.snapshots + 1);
 }
 
-/// Steps between two of them, at least 1.
-int steps_of_command(const Needs& needs) {
-  return std::max(1, static_cast<int>(static_cast<double>(needs.steps) / commands_of(needs)));
-}
-
-struct MeasuredSteps {
-  double step_s = 0;
-  /// Of the time of a step, what goes with the interface, before other rows.
-  double interface_share = 0;
-};
-
-/// A few steps give this machine's rate: under the mean pressure, with half of the interface sliding, which
-/// takes longer than to stick.
-/// @param n_steps  of a command
-/// @param at_once  that no exchange interrupts
-MeasuredSteps measure_steps(const input::Case& config, const Timed& timed, std::int64_t n_steps,
-                            std::int64_t at_once) {
+/// Node updates/s of this machine, from a few steps: under the mean pressure, with half of the interface
+/// sliding, which takes longer than to stick; beside the programs that run now.
+/// @param n_steps  at once
+double measured_rate_per_s(const input::Case& config, const Timed& timed, std::int64_t n_steps) {
   constexpr double least_s = 20e-3, most_s = 0.5;
   const double mu_s = interface::static_coefficient(config.friction);
   auto& stepper = *timed.stepper;
@@ -165,34 +147,28 @@ MeasuredSteps measure_steps(const input::Case& config, const Timed& timed, std::
   const auto state = statics::prestressed(plate, tractions, timed.base);
   stepper.start(state, 0, {tractions.t_s_Pa, tractions.p_s_Pa});
   motion::Recorder recorder(state, mu_s, 0);
-  std::vector<double> times_s, shares;
+  stepper.advance(recorder, 1, {});  // makes its pages and fills the caches
   const auto start = Clock::now();
-  double spent_s = 0;
+  double times = 0, spent_s = 0;
   do {
-    const auto begin = Clock::now();
-    for (std::int64_t done = 0; done < n_steps; done += at_once)
-      stepper.advance(recorder, std::min(at_once, n_steps - done), {});
-    times_s.push_back(seconds_since(begin) / static_cast<double>(n_steps));
-    double with_interface_s = 0;
-    const auto one = Clock::now();
-    motion::AtBands at_bands;
-    at_bands.after_last = [&](int band) {
-      if (band == 0) with_interface_s = seconds_since(one);
-    };
-    stepper.advance(recorder, 1, {}, at_bands);
-    shares.push_back(with_interface_s / seconds_since(one));
+    stepper.advance(recorder, n_steps, {});
+    ++times;
     spent_s = seconds_since(start);
-  } while (spent_s < least_s || (times_s.size() < 3 && spent_s < most_s));
-  return {fronts::median(times_s), fronts::median(shares)};
+  } while (spent_s < least_s || (times < 3 && spent_s < most_s));
+  return times * static_cast<double>(n_steps) * stepper.node_updates_per_step() / spent_s;
 }
 
-/// Of the factorisation n^1.5 operations are those of large fronts, the rest of its assembly and small ones;
-/// rates measured with two threads over 2e4 to 8e5 unknowns. By PETSc of one process.
+/// Of the meshes and the state that the event begins from, and of the files, mostly sums and writing of
+/// fields.
+double expected_rest_s(const Info& info) {
+  constexpr double s_per_node = 0.25e-6, s_per_byte = 2.4e-9;
+  return s_per_node * static_cast<double>(info.n_nodes) +
+         s_per_byte * (info.needs.history_bytes + info.needs.snapshot_bytes);
+}
+
 double expected_statics_s(const Info& info) {
-  const double n = n_unknowns_of(info);
-  if (info.solver == statics::StaticSolver::direct) return 1.6e-9 * std::pow(n, 1.5) + 2.8e-6 * n;
-  if (info.solver == statics::StaticSolver::petsc) return 3e-5 * n;
-  return info.solver == statics::StaticSolver::iterative ? 1e-6 * n : 0;
+  if (info.solver == statics::StaticSolver::automatic) return 0;  // prescribed tractions
+  return statics_s(info.solver, 2.0 * static_cast<double>(info.n_nodes));
 }
 
 Timed whole_to_time(const input::Case& config, const Meshes& meshes) {
@@ -220,72 +196,57 @@ Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_pr
   timed.stepper = std::move(part.stepper);
   timed.plate = &part.plate;
   timed.base = part.base ? &*part.base : nullptr;
-  timed.first_column = own.begin;
   timed.share = static_cast<double>(width) / division.first.back();
   return timed;
 }
 
+/// A run of P processes on C processors takes the time of
+/// - the steps of a part's own columns and halo, at the measured rate, times P/C where that is more than 1;
+/// - exchanging halos, as if no computing hid it;
+/// - telling all processes, by a tree, where the steps of a look end, and hearing from all;
+/// - what passes through the leader: samples, snapshots and initial motion;
+/// - the statics, of the leader alone, or by PETSc of all.
 Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Timed& timed,
                        const Sharing& sharing, const Info& info) {
-  auto& stepper = *timed.stepper;
+  /// Of a node: u and v, as they are sent. Packed, passed on and joined by the leader, of each byte.
+  constexpr double sent_bytes_per_node = 32, s_per_byte = 1 / 0.8e9;
+  const int n_processes = sharing.n_processes;
   const WholeBodies whole(config, meshes.plate, meshes.base);
-  const auto bodies = whole.bodies();
-  std::vector<motion::BodySteps> steps;
-  for (const auto& body : stepper.bodies()) steps.push_back(body.steps());
-  const int n_columns = meshes.plate.grid.stride();
+  std::vector<motion::BodySteps> body_steps;
+  for (const auto& body : timed.stepper->bodies()) body_steps.push_back(body.steps());
   Info::Shared shared;
-  shared.division = whole.divided(sharing.n_processes, steps);
-  SharedWork work;
-  work.n_nodes = static_cast<double>(info.n_nodes);
-  work.n_cells = static_cast<double>(info.n_cells);
-  work.n_columns = n_columns;
-  work.node_updates_per_step = stepper.node_updates_per_step() / timed.share;
-  const int n_steps = steps_of_command(info.needs);
-  const int at_once = sharing.n_processes > 1 ? shared.division.steps_per_exchange : n_steps;
-  const auto measured = measure_steps(config, timed, n_steps, at_once);
-  work.node_updates_per_s = stepper.node_updates_per_step() / measured.step_s;
-  work.interface_share = measured.interface_share;
-  // Coarser blocks have nodes in some columns only, in the same ones of so many.
-  int period = 1;
-  for (const auto& body : bodies)
-    if (const auto n = body.mesh.coarser.size(); n > 0) period = std::max(period, 2 << n);
-  const int first = timed.share < 1 ? timed.first_column : n_columns / 2 / period * period;
-  std::vector<solid::Span> with_interface;
-  for (std::size_t b = 0; b < stepper.bodies().size(); ++b)
-    with_interface.push_back({0, stepper.rows_moved(b, 0)});
-  const solid::Span columns = {first, first + period};
-  const auto add_to = [period](double& bytes_per_column) {
-    return [&bytes_per_column, period](const auto* values, std::size_t n) {
-      bytes_per_column += static_cast<double>(n * sizeof(*values)) / period;
-    };
-  };
-  stepper.visit_columns(columns, add_to(work.bytes_per_column));
-  stepper.visit_columns(columns, with_interface, true, add_to(work.interface_bytes_per_column));
-  work.steps = static_cast<double>(info.n_steps);
-  work.advances = commands_of(info.needs);
-  work.energies = std::max(info.needs.energy_rows, work.steps / steps_per_check);
-  work.history_rows = info.needs.history_rows;
-  work.values_per_row = static_cast<double>(record::history_fields.size()) * n_columns;
-  work.snapshots = info.needs.snapshots;
-  work.leads_by_interface = leads_by_interface(config, sharing.n_processes);
-  work.corner_bytes = corner_bytes(config);
-  work.keeps_displacements = keeps_displacements(config, sharing.n_processes);
-  work.statics_s = expected_statics_s(info);
-  work.statics_bytes = info.solver_bytes;
-  if (info.solver == statics::StaticSolver::petsc) {
-    work.statics_s /= std::min(sharing.n_processes, sharing.n_processors);
-    auto size = size_of(meshes, info);
-    size.statics_share = 1.0 / sharing.n_processes;
-    size.keeps_displacements = work.keeps_displacements;
-    size.leads_by_interface = work.leads_by_interface;
-    work.statics_bytes = statics_bytes(config, size);
-    work.shared_statics_bytes = info.solver_bytes / sharing.n_processes;
-  }
-  work.precision = config.time.precision;
-  work.bytes_per_interface_node = bytes_per_interface_node(config);
-  work.program_bytes = program_bytes();
-  work.recorded_bytes = info.needs.recorded_bytes;
-  shared.cost = process_cost(work, shared.division, sharing.n_processors, sharing.network);
+  shared.division = whole.divided(n_processes, body_steps);
+
+  const auto& division = shared.division;
+  const int middle = n_processes / 2;  // with a neighbour on each side, where any part has
+  const double own_columns = division.own(middle).end - division.own(middle).begin;
+  const double halo_columns = division.halo_below(middle) + division.halo_above(middle);
+  const auto steps = static_cast<double>(info.n_steps), n_nodes = static_cast<double>(info.n_nodes);
+  const double n_columns = division.n_columns();
+  const double processes_each = std::max(1.0, static_cast<double>(n_processes) / sharing.n_processors);
+  const double column_s = info.node_updates / n_columns / info.node_updates_per_s * processes_each;
+  const double own_s = own_columns * column_s;
+  double event_s = own_s + halo_columns * column_s;
+  const double halo_bytes = halo_columns * n_nodes / n_columns * sent_bytes_per_node;
+  shared.bytes_per_step = halo_bytes / division.steps_per_exchange;
+  if (halo_columns > 0)
+    event_s += steps / division.steps_per_exchange *
+               (sharing.network.latency_s + halo_bytes / sharing.network.bandwidth_bytes_per_s);
+  const bool is_shared = n_processes > 1;
+  if (is_shared)
+    event_s +=
+        looks_of(config, info.needs) * 2 * std::ceil(std::log2(n_processes)) * sharing.network.latency_s;
+  const double passed_bytes = 0.5 * info.needs.history_bytes +
+                              (info.needs.snapshots + (is_shared ? 1 : 0)) * sent_bytes_per_node * n_nodes;
+  event_s += passed_bytes * (s_per_byte + (is_shared ? 1 / sharing.network.bandwidth_bytes_per_s : 0));
+  shared.efficiency = own_s / event_s;
+  const bool by_all = info.solver == statics::StaticSolver::petsc;
+  shared.expected_s = event_s + expected_rest_s(info) +
+                      expected_statics_s(info) / (by_all ? std::min(n_processes, sharing.n_processors) : 1);
+
+  const auto size = size_of(meshes, info);
+  shared.leader_memory_bytes = needs(config, size, {n_processes, 1, true}).memory_bytes();
+  shared.memory_bytes = needs(config, size, {n_processes, 1, false}).memory_bytes();
   return shared;
 }
 
@@ -309,11 +270,12 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   add_steps(timed, info);
   const double node_updates_per_step = timed.stepper->node_updates_per_step();
   add_needs(config, meshes, node_updates_per_step / timed.share, info);
-  const int n_steps = steps_of_command(info.needs);
-  info.node_updates_per_s = node_updates_per_step / measure_steps(config, timed, n_steps, n_steps).step_s;
-  info.expected_s = info.node_updates / info.node_updates_per_s + expected_statics_s(info);
+  // As many at once as between two looks.
+  const double steps = static_cast<double>(info.n_steps) / looks_of(config, info.needs);
+  info.node_updates_per_s = measured_rate_per_s(config, timed, std::max(1, static_cast<int>(steps)));
+  info.expected_s =
+      info.node_updates / info.node_updates_per_s + expected_statics_s(info) + expected_rest_s(info);
   if (sharing) info.shared = shared_by(config, meshes, timed, *sharing, info);
-  if (sharing && sharing->n_processes > 1) info.needs.checkpoint_bytes *= shared_checkpoint_bytes;
   return info;
 }
 

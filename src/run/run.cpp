@@ -13,7 +13,7 @@
 #include "motion/stepper.hpp"
 #include "run/begin.hpp"
 #include "run/choices.hpp"
-#include "run/needs.hpp"
+#include "run/snapshot_plan.hpp"
 #include "run/warnings.hpp"
 
 namespace slipfront::run {

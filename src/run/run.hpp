@@ -17,7 +17,6 @@
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
 #include "run/parts.hpp"
-#include "run/process_cost.hpp"
 #include "run/snapshot_mesh.hpp"
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
@@ -131,10 +130,14 @@ void write_status(const std::filesystem::path& dir, const input::Case& config, c
 
 /// Derived quantities of a case, found without solving anything.
 struct Info {
-  /// A division among processes and what it costs, for runs of several.
+  /// A division among processes, and what a run by them takes.
   struct Shared {
     motion::Division division;
-    ProcessCost cost;
+    double bytes_per_step = 0;  ///< that the process with most neighbours sends in exchanges
+    double expected_s = 0;
+    double efficiency =
+        0;  ///< share of the event's time that goes into columns which the process accounts for
+    double memory_bytes = 0, leader_memory_bytes = 0;  ///< of each other process
   };
 
   WaveSpeeds speeds;                                         ///< of the plate
@@ -159,10 +162,17 @@ struct Info {
   std::optional<Shared> shared;
 };
 
+/// What lies between two neighbouring processes, as `slipfront bench --network` measures it; by default those
+/// of one machine: Open MPI 4.1, two cores of an AMD EPYC (Zen 4).
+struct Network {
+  double latency_s = 0.5e-6;
+  double bandwidth_bytes_per_s = 10e9;  ///< each way at once
+};
+
 /// Processes that are to share a run.
 struct Sharing {
   int n_processes = 2, n_processors = 2;
-  Network network = shared_memory;
+  Network network = {};
 };
 /// Of a case that leads_by_interface only columns of one process are made.
 /// @throws UserError where the plate cannot be divided among so many

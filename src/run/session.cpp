@@ -15,6 +15,7 @@
 #include "run/choices.hpp"
 #include "run/fields.hpp"
 #include "run/shared_states.hpp"
+#include "run/snapshot_plan.hpp"
 
 namespace slipfront::run {
 namespace {

@@ -17,6 +17,7 @@
 #include "results/snapshots.hpp"
 #include "run/run.hpp"
 #include "run/snapshot_mesh.hpp"
+#include "run/snapshot_plan.hpp"
 
 namespace slipfront::run {
 

@@ -24,11 +24,6 @@ Eigen::MatrixXd mirrored(Eigen::MatrixXd S) {
 
 }  // namespace
 
-Budget pair_budget(double n_interface) {
-  return {{"the condensed stiffness of plate and base", 5 * sizeof(double) * dense_entries(n_interface),
-           larger_elements()}};
-}
-
 CondensedInterface::CondensedInterface(std::shared_ptr<const Factorisation> plate,
                                        std::shared_ptr<const Factorisation> base)
     : plate_(std::move(plate)), base_(std::move(base)) {

@@ -9,10 +9,6 @@
 
 namespace slipfront::statics {
 
-/// What a CondensedInterface of two bodies takes besides their factorisations while it is made: P, the factor
-/// of M, M^-1 P, S and the product that it is made of.
-Budget pair_budget(double n_interface);
-
 /// The interface of a factorised plate with what it stands on: the forces of the contact on the plate's
 /// interface nodes are f = S u - g, with u their displacements relative to the rigid plane or a base.
 ///

@@ -6,51 +6,13 @@
 #include <limits>
 #include <new>
 
+#include "base/budget.hpp"
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "solid/element.hpp"
 #include "statics/dissection.hpp"
 
 namespace slipfront::statics {
-
-double estimated_factor_bytes(double n_unknowns, double n_interface) {
-  // Nested dissection of a plane grid of four-node cells with two unknowns a node, the interface last: its
-  // dense square, and as much again in the rows of the separators that reach it. Of plates of 1e4 to 1e6
-  // unknowns, graded ones included, the first number is 5.7 to 6.9.
-  return sizeof(double) *
-         (7 * n_unknowns * std::log2(std::max(n_unknowns, 2.0)) + 2 * dense_entries(n_interface));
-}
-
-namespace {
-
-Message smaller_factor() {
-  return Message("{} = iterative or {}", Key("loading.solver"), larger_elements());
-}
-
-/// Numbers of the unknowns, the cells of each block and the rows of its front.
-double indices_bytes(double n_unknowns) {
-  return 45 * n_unknowns;
-}
-
-/// Fronts that are there at once: the largest ones, of what separates the plate's halves, have the interface
-/// among their rows.
-double estimated_front_bytes(double n_interface) {
-  return 5 * sizeof(double) * dense_entries(n_interface);
-}
-
-}  // namespace
-
-Budget factorisation_budget(double n_unknowns, double n_interface, double factor_bytes) {
-  return {{"the factor of the stiffness", factor_bytes, smaller_factor()},
-          {"indices of the factorisation", indices_bytes(n_unknowns), smaller_factor()},
-          {"the fronts of the factorisation", estimated_front_bytes(n_interface), smaller_factor()}};
-}
-
-Budget factor_budget(double n_unknowns, double n_interface, double factor_bytes) {
-  return {{"the factor of the stiffness", factor_bytes, smaller_factor()},
-          {"indices of the factorisation", indices_bytes(n_unknowns), smaller_factor()},
-          {"the condensed stiffness", sizeof(double) * dense_entries(n_interface), smaller_factor()}};
-}
 
 namespace {
 
@@ -105,9 +67,9 @@ void Factorisation::factorise(const solid::Material& material) {
   for (std::size_t k = 0; k < cells.size(); ++k)
     for (std::size_t a = 0; a < 8; ++a) cells[k][a] = unknown_[2 * mesh_.cells[k][a / 2] + a % 2];
   factor_.emplace(std::move(block_ends), std::move(cells));
-  require_memory({{"the factor of the stiffness", factor_->factor_bytes(), smaller_factor()},
-                  {"indices of the factorisation", indices_bytes(n_unknowns_), smaller_factor()},
-                  {"the fronts of the factorisation", factor_->front_bytes(), smaller_factor()}},
+  const Message smaller("{} = iterative or {}", Key("loading.solver"), larger_elements());
+  require_memory({{"the factor of the stiffness", factor_->factor_bytes(), smaller},
+                  {"the fronts of the factorisation", factor_->front_bytes(), smaller}},
                  fmt::format("the factorisation of {} static unknowns", n_unknowns_));
 
   solid::CellStiffness K{};

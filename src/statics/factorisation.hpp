@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "base/budget.hpp"
 #include "mesh/mesh.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
@@ -15,18 +14,6 @@
 #include "statics/plate_solver.hpp"
 
 namespace slipfront::statics {
-
-/// Entries of a dense square matrix of the displacements of the interface's nodes.
-inline double dense_entries(double n_interface) {
-  return 4 * n_interface * n_interface;
-}
-
-/// Of a factor that is not known yet.
-double estimated_factor_bytes(double n_unknowns, double n_interface);
-
-/// What making a Factorisation takes at its peak, the plate's mesh included, and what it holds.
-Budget factorisation_budget(double n_unknowns, double n_interface, double factor_bytes);
-Budget factor_budget(double n_unknowns, double n_interface, double factor_bytes);
 
 /// The plate's stiffness factorised once, with the interface condensed.
 ///

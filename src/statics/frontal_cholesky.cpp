@@ -30,13 +30,6 @@ FrontalCholesky::FrontalCholesky(std::vector<std::int32_t> block_ends, std::vect
   measure_fronts();
 }
 
-double FrontalCholesky::index_bytes() const {
-  const auto bytes_of = [](const auto& values) {
-    return static_cast<double>(values.size() * sizeof(values[0]));
-  };
-  return bytes_of(cells_) + bytes_of(cell_) + bytes_of(first_cell_) + bytes_of(blocks_) + bytes_of(rows_);
-}
-
 template <class Work>
 void FrontalCholesky::for_each_child(const Block& block, Work work) const {
   for (auto child = block.first_child; child >= 0; child = blocks_[child].next_sibling) work(child);

@@ -34,7 +34,6 @@ class FrontalCholesky {
   /// both.
   double factor_bytes() const { return sizeof(double) * static_cast<double>(n_values_); }
   double front_bytes() const { return front_bytes_; }
-  double index_bytes() const;
 
   /// Stiffness of a cell, by its place in `cells`; asked for each cell once.
   using StiffnessOf = std::function<const solid::CellStiffness&(std::size_t cell)>;

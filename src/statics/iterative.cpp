@@ -191,11 +191,11 @@ class IterativeLoadCase : public LoadCase {
 
 }  // namespace
 
-double iterative_bytes(double n_unknowns) {
+double IterativeSolver::bytes() const {
   // Of each unknown: the cycle's z, on coarser levels with a right-hand side; residual; direction, and two
   // more where nodes slip; two displacements of the load case; half the coordinates and numbers of a node.
   constexpr double single = 4, twice = 8;
-  return n_unknowns * (single + 2 * single / 3 + twice + 3 * single + 2 * twice + 16);
+  return static_cast<double>(n_unknowns_) * (single + 2 * single / 3 + twice + 3 * single + 2 * twice + 16);
 }
 
 IterativeSolver::IterativeSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base,

@@ -12,9 +12,6 @@
 
 namespace slipfront::statics {
 
-/// Bytes of the iterative statics at their peak, the mesh included, the equilibria found not: 59 an unknown.
-double iterative_bytes(double n_unknowns);
-
 /// Equations of the plate, and of a base below it, on one level of the multigrid, without any matrix:
 /// conjugate gradients with one multigrid cycle as preconditioner; where nodes slip, whose friction makes the
 /// equations unsymmetric, BiCGStab (van der Vorst, SIAM J. Sci. Stat. Comput. 13, 631-644, 1992) with the
@@ -106,7 +103,7 @@ class IterativeSolver : public PlateSolver {
   std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
                                       const DisplacementOfBodies* start, int level) override;
   std::int64_t n_unknowns() const override { return n_unknowns_; }
-  double bytes() const override { return iterative_bytes(static_cast<double>(n_unknowns_)); }
+  double bytes() const override;
   bool iterates() const override { return true; }
   int n_cycles() const override { return multigrid_.n_cycles(); }
   int n_levels() const override { return n_levels_; }

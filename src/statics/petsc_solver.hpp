@@ -17,13 +17,6 @@
 
 namespace slipfront::statics {
 
-/// Bytes of the equations of so many unknowns at their peak, in all processes together; and of the leader
-/// besides, with the bodies that it divides. The equilibria found not.
-/// @param share     of the bodies, the largest piece
-/// @param are_held  by the leader; else each process makes its piece itself
-double petsc_bytes(double n_unknowns);
-double divided_bytes(double n_unknowns, double share, bool are_held);
-
 /// One process's share in PETSc's equations.
 class PetscShare {
  public:

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "base/budget.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/plate.hpp"
 #include "processes/processes.hpp"
@@ -119,30 +118,7 @@ inline constexpr double most_iterative_slenderness = 10, most_iterative_height_r
 
 std::string_view name_of(StaticSolver solver);
 
-/// On what the memory of the statics depends.
-struct StaticsSize {
-  StaticSolver solver = StaticSolver::automatic;
-  double n_unknowns = 0, n_interface = 0;  ///< of the plate
-  double n_unknowns_base = 0;              ///< 0 on the rigid plane
-  bool top_free_in_tilt = false;           ///< the tilt then has a factorisation of its own
-  double share = 1;                        ///< of PETSc's equations that this machine's processes have
-  bool is_kept_by_all = false;             ///< each process keeps its share of PETSc's equilibria
-  bool is_made_by_all = false;             ///< and makes its share of the bodies
-};
-
-/// What the statics take at their peak, the meshes and the equilibria found included, and what they hold of
-/// it after the tilt.
-struct StaticsBudget {
-  Budget peak, held;
-};
-StaticsBudget statics_budget(const StaticsSize& size);
-
-/// Refuses statics that would not fit into the memory at hand.
-/// @throws UserError with the figures.
-void require_statics_memory(const StaticsSize& size);
-
-/// By the solver that the bodies' shapes leave of `solver`. Before it makes anything, see
-/// require_statics_memory.
+/// By the solver that the bodies' shapes leave of `solver`.
 /// @param shared  by whom, for PETSc
 std::unique_ptr<PlateSolver> make_plate_solver(const mesh::Mesh& mesh, const solid::Material& material,
                                                StaticSolver solver,

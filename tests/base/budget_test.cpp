@@ -28,13 +28,6 @@ TEST(Budget, IsRefusedByItsLargestItemAndThatOnesRemedy) {
   EXPECT_EQ(refusal({}, 0), "");
 }
 
-TEST(Budget, OfStagesIsThatOfTheLargest) {
-  const Budget one = {{"the factor", 4e9, "fewer unknowns"}};
-  EXPECT_EQ(total_bytes(two), 5e9);
-  EXPECT_EQ(total_bytes(two + one), 9e9);
-  EXPECT_EQ(largest_of({one, two, one}).size(), 2U);
-}
-
 TEST(Budget, OfMemoryIsComparedWithWhatThereIs) {
   require_memory({{"a page", 4096, "less"}}, "the test");
   EXPECT_THROW(require_memory({{"all of it", 1e18, "less"}}, "the test"), UserError);

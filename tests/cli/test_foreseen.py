@@ -222,7 +222,7 @@ SIZED = {
 def test_a_limit_of_the_process_counts(program, coarse):
     """`ulimit -v`."""
     sets = settings(SIZED["direct"])
-    told = one_line(program("run", coarse, "-o", "out", *sets, memory_bytes=400_000_000), 2)
+    told = one_line(program("run", coarse, "-o", "out", *sets, memory_bytes=300_000_000), 2)
     assert "needs about" in told
     available = re.search(r"(\S+) GB are available", told)
     assert 0.1 < float(available[1]) < 0.4

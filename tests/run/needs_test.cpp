@@ -4,11 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <thread>
-
+#include "base/error.hpp"
 #include "cases.hpp"
-#include "run/choices.hpp"
+#include "run/run.hpp"
 #include "support/files.hpp"
 
 namespace slipfront::run {
@@ -18,52 +16,10 @@ using test::coarse_case;
 using test::error_of;
 using test::go_on;
 using ::testing::AllOf;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 Needs needs_of(const input::Case& config) {
   return needs(config, estimated_size(config));
-}
-
-TEST(SnapshotPlan, LeavesOutWhatTheRunCannotTake) {
-  auto config = coarse_case();
-  config.time.end_s = 100e-6;
-  config.output.snapshot_times_s = {0, 10e-6, 10.5e-6, 11e-6, 100e-6, 101e-6, 1};
-  // Steps of 1 us: at 10, 11 and 11 us.
-  const auto plan = snapshot_plan(config, 1e-6);
-  EXPECT_THAT(plan.times_s, ElementsAre(0, 10e-6, 10.5e-6, 100e-6));
-  EXPECT_THAT(plan.notes, ElementsAre(AllOf(HasSubstr("2 of 7"), HasSubstr("time.end_s = 0.0001")),
-                                      AllOf(HasSubstr("1 of 7"), HasSubstr("into the step"))));
-  config.output.snapshot_times_s = {0, 10e-6};
-  EXPECT_THAT(snapshot_plan(config, 1e-6).notes, IsEmpty());
-}
-
-TEST(SnapshotPlan, IsWhatARunTakesAndTells) {
-  auto config = coarse_case();
-  config.time.quiet_s = 1;
-  config.output.snapshot_times_s = {0, 10e-6, 10.001e-6, 30e-6, 1};
-  const auto result = run_from(config, make_initial_state(config, go_on), go_on);
-  const auto plan = snapshot_plan(config, result.step_s);
-  EXPECT_THAT(plan.notes, testing::SizeIs(2));
-  EXPECT_EQ(result.event.snapshots.size(), 3U);
-  for (const auto& note : plan.notes) EXPECT_THAT(result.warnings, testing::Contains(note));
-}
-
-TEST(SnapshotPlan, TellsWhatAQuietEndLeavesOut) {
-  auto config = coarse_case(interface::EventKind::none);
-  // Nothing moves: tractions below the strength, the loaded edge still.
-  config.plate.corner = mesh::Corner::none;
-  config.loading.method = statics::LoadingMethod::prestress;
-  config.loading.shear_speed_over_c_L = 0;
-  config.prestress = {1e6, 5e6, "", {}};
-  config.time.end_s = 1;
-  config.output.snapshot_times_s = {0, 10e-6, 0.5, 1};
-  const auto result = run_from(config, make_initial_state(config, go_on), go_on);
-  ASSERT_EQ(result.event.end, motion::EventEnd::quiet);
-  EXPECT_EQ(result.event.snapshots.size(), 2U);
-  EXPECT_THAT(result.warnings,
-              testing::Contains(HasSubstr("2 of 4 output.snapshot_times_s are after the end")));
 }
 
 TEST(Needs, DiskIsWhatTheFilesTake) {
@@ -85,9 +41,7 @@ TEST(Needs, DiskIsWhatTheFilesTake) {
   // Besides the file, raw displacements and velocities.
   const double raw = 5 * 4 * 8.0 * static_cast<double>(initial.n_nodes);
   EXPECT_NEAR((n.snapshot_bytes - raw) / size_of("fields.vtkhdf"), 1, 0.3);
-  EXPECT_GT(n.energy_bytes, size_of("energy.csv"));
-  EXPECT_LT(n.energy_bytes, 3 * size_of("energy.csv"));
-  EXPECT_GT(n.checkpoint_bytes, 2 * 4 * 8.0 * static_cast<double>(initial.n_nodes));
+  EXPECT_NEAR(n.energy_bytes / size_of("energy.csv"), 1, 0.3);
 }
 
 TEST(Needs, EstimatesAgreeWithTheMesh) {
@@ -96,17 +50,29 @@ TEST(Needs, EstimatesAgreeWithTheMesh) {
   EXPECT_NEAR(estimated.memory_bytes() / exact.memory_bytes(), 1, 0.3);
   EXPECT_NEAR(static_cast<double>(estimated.steps) / static_cast<double>(exact.steps), 1, 0.3);
   EXPECT_NEAR(estimated.history_bytes / exact.history_bytes, 1, 0.3);
-  // While the base is factorised, the plate's factor is held.
   config.base.kind = input::BaseKind::body;
   config.base.plate.height_m = config.plate.height_m;
-  EXPECT_GT(needs_of(config).statics_bytes, estimated.statics_bytes);
+  EXPECT_NEAR(needs_of(config).statics_bytes / estimated.statics_bytes, 2, 0.3);
 }
 
-TEST(SuitableThreads, AreOneForSmallPlates) {
-  const int processors = static_cast<int>(std::thread::hardware_concurrency());
-  EXPECT_EQ(suitable_threads(coarse_case(interface::EventKind::left, 1e-3)), 1);
-  EXPECT_EQ(suitable_threads(coarse_case(interface::EventKind::left, 2.0 / 3e3)), std::min(2, processors));
-  EXPECT_EQ(suitable_threads(coarse_case(interface::EventKind::left, 1e-4)), std::min(4, processors));
+TEST(Needs, OfOneAmongManyIsItsPart) {
+  const auto config = coarse_case(interface::EventKind::left, 0.5e-3);
+  const auto size = estimated_size(config);
+  const auto of = [&](const Holder& holder) { return needs(config, size, holder).memory_bytes(); };
+  EXPECT_LT(of({4, 1, false}), 0.5 * of({}));
+  EXPECT_GT(of({4, 1, true}), needs(config, size).statics_bytes);  // which it solves alone
+  EXPECT_GT(of({4, 4, true}), of({4, 1, true}));
+}
+
+TEST(Info, OfProcessesFollowsTheirNetwork) {
+  const auto config = coarse_case(interface::EventKind::left, 1e-3);
+  const auto shared = [&](const Network& network) { return *info(config, Sharing{3, 3, network}).shared; };
+  EXPECT_EQ(shared({}).division.n_parts(), 3);
+  EXPECT_LT(shared({}).memory_bytes, shared({}).leader_memory_bytes);
+  // So slow that no computing meanwhile hides it.
+  EXPECT_GT(shared({1e3, 10e9}).expected_s, shared({}).expected_s);
+  EXPECT_GT(shared({0.5e-6, 1}).expected_s, shared({}).expected_s);
+  EXPECT_THROW(info(config, Sharing{1000, 4, {}}), UserError);
 }
 
 TEST(Needs, CountTheStepsOfTheRamp) {

@@ -114,18 +114,6 @@ TEST_P(FactorisedPlate, DisplacementIsInEquilibrium) {
   }
 }
 
-TEST(FactorBytes, AreForeseenWithinAFifth) {
-  for (const double element_m : {2e-3, 1e-3}) {
-    const auto mesh = test::make_plate(0.2, 0.1, element_m, Corner::relief);
-    const Factorisation f(mesh, {}, TopConstraint::both);
-    const double ratio =
-        estimated_factor_bytes(static_cast<double>(f.n_unknowns()), static_cast<double>(mesh.lower.size())) /
-        f.factor_bytes();
-    EXPECT_GT(ratio, 1) << element_m;
-    EXPECT_LT(ratio, 1.2) << element_m;
-  }
-}
-
 TEST(Factorisation, OfSeveralThreadsAtOnceIsThatOfOne) {
   const auto mesh = test::make_plate(0.2, 0.1, 2e-3, Corner::relief);
   const auto solved = [&] {

@@ -213,20 +213,5 @@ TEST(Pieces, OfTwoBodiesHaveTheRelativeDisplacement) {
   }
 }
 
-TEST(Pieces, BudgetIsOfTheMachinesShare) {
-  StaticsSize size{StaticSolver::petsc, 1e6, 1e3};
-  const double alone = total_bytes(statics_budget(size).peak);
-  size.share = 0.25;
-  const double quarter = total_bytes(statics_budget(size).peak);
-  EXPECT_LT(quarter, 0.4 * alone);
-  EXPECT_GT(quarter, 0.25 * alone);  // the leader's own remains
-  size.is_kept_by_all = true;
-  EXPECT_NEAR(total_bytes(statics_budget(size).peak), quarter - 0.75 * 3 * 2 * 8 * 1e6, 1);
-  // Meshes and numbers of the other three quarters.
-  const double kept = total_bytes(statics_budget(size).peak);
-  size.is_made_by_all = true;
-  EXPECT_NEAR(total_bytes(statics_budget(size).peak), kept - 0.75 * 22 * 1e6, 1);
-}
-
 }  // namespace
 }  // namespace slipfront::statics

@@ -321,12 +321,5 @@ TEST(TwoBodies, NeedABaseThatIsHeldAndFacesThePlate) {
   EXPECT_DEATH(solve(shorter), "different nodes");
 }
 
-TEST(TwoBodies, SayHowMuchMemoryTheyWouldNeed) {
-  EXPECT_THAT(test::error_of([] {
-                require_statics_memory({StaticSolver::direct, 1e11, 1e5, 3e11});
-              }),
-              testing::HasSubstr("the factorisation of 4e+11 static unknowns needs about"));
-}
-
 }  // namespace
 }  // namespace slipfront::statics
