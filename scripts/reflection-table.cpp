@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "../tests/motion/reflection.hpp"
+#include "motion/reflection.hpp"
 
 using namespace slipfront;
 using namespace slipfront::motion::test;

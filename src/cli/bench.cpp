@@ -97,27 +97,23 @@ void print_table(const bench::Results& results) {
 
 /// Of the links between neighbours, or of the leader's with all others.
 Link median_of(std::span<const Link> links, bool of_leader) {
-  std::vector<double> latencies_s, bandwidths_bytes_per_s, processor_s_per_byte;
+  std::vector<double> latencies_s, bandwidths_bytes_per_s;
   for (const auto& link : links) {
     if (of_leader ? link.from != 0 : link.to != link.from + 1) continue;
     latencies_s.push_back(link.latency_s);
     bandwidths_bytes_per_s.push_back(link.bandwidth_bytes_per_s);
-    processor_s_per_byte.push_back(link.processor_s_per_byte);
   }
-  return {0, 0, fronts::median(latencies_s), fronts::median(bandwidths_bytes_per_s),
-          fronts::median(processor_s_per_byte)};
+  return {0, 0, fronts::median(latencies_s), fronts::median(bandwidths_bytes_per_s)};
 }
 
 void print_network(std::span<const Link> links, int n_processes, bool as_json) {
   const auto neighbours = median_of(links, false), leader = median_of(links, true);
   const Link slower{0, 0, std::max(neighbours.latency_s, leader.latency_s),
-                    std::min(neighbours.bandwidth_bytes_per_s, leader.bandwidth_bytes_per_s),
-                    std::max(neighbours.processor_s_per_byte, leader.processor_s_per_byte)};
+                    std::min(neighbours.bandwidth_bytes_per_s, leader.bandwidth_bytes_per_s)};
   if (as_json) {
     const auto add_to = [](nlohmann::ordered_json& told, const Link& link) {
       told["latency_s"] = link.latency_s;
       told["bandwidth_bytes_per_s"] = link.bandwidth_bytes_per_s;
-      told["processor_s_per_byte"] = link.processor_s_per_byte;
     };
     nlohmann::ordered_json measured = {{"processes", n_processes}};
     add_to(measured, slower);
@@ -129,18 +125,16 @@ void print_network(std::span<const Link> links, int n_processes, bool as_json) {
     return print_json(measured);
   }
   print("{}, {}, {}\n\n", version_line(), processor(), compiler());
-  print("{:<26}{:>14}{:>18}{:>22}\n", "processes", "latency, us", "GB/s each way", "processor, ns/byte");
+  print("{:<26}{:>14}{:>18}\n", "processes", "latency, us", "GB/s each way");
   const auto print_link = [](const std::string& name, const Link& link) {
-    print("{:<26}{:>14.3g}{:>18.3g}{:>22.3g}\n", name, link.latency_s * 1e6,
-          link.bandwidth_bytes_per_s * 1e-9, link.processor_s_per_byte * 1e9);
+    print("{:<26}{:>14.3g}{:>18.3g}\n", name, link.latency_s * 1e6, link.bandwidth_bytes_per_s * 1e-9);
   };
   for (const auto& link : links) print_link(fmt::format("{} and {}", link.from, link.to), link);
   print_link("median of neighbours", neighbours);
   print_link("median of 0 and others", leader);
   print(
-      "\nHalf a round trip of one number; 256 KiB both ways at once, in messages of 32 KiB; by how much a "
-      "byte "
-      "on its way\nholds up what both compute. Medians; the slower ones for\n"
+      "\nHalf a round trip of one number; 256 KiB both ways at once, in messages of 32 KiB. Medians; the "
+      "slower ones for\n"
       "info --latency-s {:.4g} --bandwidth-bytes-per-s {:.4g}\n",
       slower.latency_s, slower.bandwidth_bytes_per_s);
 }

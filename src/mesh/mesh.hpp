@@ -53,10 +53,6 @@ struct Mesh {
   /// column 0, and the nodes of the right edge are orphans.
   double period_m = 0;
   std::vector<AbsorbingNode> absorbing;
-  /// Of a mesh without a grid whose nodes are numbered column by column (see number_by_columns): the first
-  /// node of each column, and the number of nodes; else empty. A mesh that holds some columns of a whole has
-  /// those of the whole here.
-  std::vector<Node> column_first = {};
 
   Node n_nodes() const { return static_cast<Node>(x_m.size()); }
   /// Whether only the lowest row is held, see make_interface.

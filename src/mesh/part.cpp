@@ -56,38 +56,22 @@ Subset Subset::below(int end) const {
 namespace {
 
 /// Nodes of a row of the whole in columns below `column`. Of a transition every fourth column has none.
-int n_below_in_grid(int block, bool is_inner, int column) {
+int n_below(int block, bool is_inner, int column) {
   const int size = 1 << block;
   const int n = (column + size - 1) / size;
   return is_inner ? n - (n + 3) / 4 : n;
 }
 
-int column_at_in_grid(int block, bool is_inner, int place) {
+int column_at(int block, bool is_inner, int place) {
   return (is_inner ? place + 1 + place / 3 : place) << block;
-}
-
-int n_columns_of(const Mesh& whole) {
-  if (whole.grid.columns > 0) return whole.grid.stride();
-  return whole.column_first.empty() ? whole.n_nodes() : static_cast<int>(whole.column_first.size()) - 1;
 }
 
 }  // namespace
 
-int NodeColumns::n_below(int block, bool is_inner, int column) const {
-  return column_first_.empty() ? n_below_in_grid(block, is_inner, column)
-                               : column_first_[static_cast<std::size_t>(column)];
-}
+NodeColumns::NodeColumns(const Mesh& whole)
+    : NodeColumns(whole, Subset(), whole.grid.columns > 0 ? whole.grid.stride() : whole.n_nodes()) {}
 
-int NodeColumns::column_at(int block, bool is_inner, int place) const {
-  if (column_first_.empty()) return column_at_in_grid(block, is_inner, place);
-  return static_cast<int>(std::ranges::upper_bound(column_first_, place) - column_first_.begin()) - 1;
-}
-
-NodeColumns::NodeColumns(const Mesh& whole) : NodeColumns(whole, Subset(), n_columns_of(whole)) {}
-
-NodeColumns::NodeColumns(const Mesh& part, const Subset& held, int n_columns)
-    : n_columns_(n_columns), column_first_(part.column_first) {
-  SLIPFRONT_ASSERT(column_first_.empty() || n_columns == n_columns_of(part), "columns of the whole");
+NodeColumns::NodeColumns(const Mesh& part, const Subset& held, int n_columns) : n_columns_(n_columns) {
   add_rows(blocks(part), held);
   SLIPFRONT_ASSERT(part.is_interface() || n_nodes() == part.n_nodes(), "columns of this mesh");
 }
@@ -107,7 +91,6 @@ void NodeColumns::add_rows(std::span<const Grid> blocks, const Subset& held) {
 NodeColumns NodeColumns::of_part(const Subset& held) const {
   NodeColumns part;
   part.n_columns_ = n_columns_;
-  part.column_first_ = column_first_;
   for (const auto& row : rows_) part.add_row(row.block, row.is_inner, held);
   return part;
 }
@@ -159,33 +142,6 @@ Node NodeColumns::node_of_whole(std::int64_t number) const {
 int NodeColumns::column_of_whole(std::int64_t number) const {
   const auto& row = row_of_whole(number);
   return column_at(row.block, row.is_inner, static_cast<int>(number - row.first_in_whole));
-}
-
-Mesh take_columns(const Mesh& whole, const Subset& columns) {
-  SLIPFRONT_ASSERT(!whole.column_first.empty(), "a mesh that is numbered by columns");
-  const auto held = NodeColumns(whole).of_part(columns);
-  Mesh part;
-  part.grid = whole.grid;
-  part.column_first = whole.column_first;
-  std::vector<Node> number(whole.x_m.size(), -1);
-  for (Node n = 0; n < held.n_nodes(); ++n) {
-    const auto in_whole = static_cast<std::size_t>(held.number_in_whole(n));
-    number[in_whole] = n;
-    part.x_m.push_back(whole.x_m[in_whole]);
-    part.y_m.push_back(whole.y_m[in_whole]);
-  }
-  const auto has = [&](Node n) { return number[n] >= 0; };
-  for (Cell cell : whole.cells) {
-    if (!std::ranges::all_of(cell, has)) continue;
-    for (Node& n : cell) n = number[n];
-    part.cells.push_back(cell);
-  }
-  for (const auto set : {&Mesh::lower, &Mesh::top})
-    for (const Node n : whole.*set)
-      if (has(n)) (part.*set).push_back(number[n]);
-  for (const auto& [n, side_m, top_m] : whole.absorbing)
-    if (has(n)) part.absorbing.push_back({number[n], side_m, top_m});
-  return part;
 }
 
 int columns_of_cells(const Mesh& mesh, int block) {

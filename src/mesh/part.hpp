@@ -40,8 +40,7 @@ class Subset {
 /// multiple of 4. Of a mesh that holds some columns of a plate they are those of the plate, the whole. Nodes
 /// are those of the mesh, or of a whole plate that need not be held and may have more than a Node can number.
 ///
-/// A mesh without a grid has one row. Its columns are those by which its nodes are numbered, each with nodes
-/// of any number; where they are not, each node stands in a column of its own.
+/// A mesh without a grid has one row, and each node stands in a column of its own.
 class NodeColumns {
  public:
   /// No nodes.
@@ -83,22 +82,13 @@ class NodeColumns {
     std::int64_t first = 0, first_in_whole = 0;
     Subset held;  ///< places in the row of the whole
   };
-  /// Nodes of a row of the whole in columns below this one, and the column of the next one.
-  int n_below(int block, bool is_inner, int column) const;
-  int column_at(int block, bool is_inner, int place) const;
   void add_rows(std::span<const Grid> blocks, const Subset& held);
   void add_row(int block, bool is_inner, const Subset& held);
   const Row& row_of_whole(std::int64_t number) const;
 
   int n_columns_ = 0;
-  std::vector<Node> column_first_;  ///< see Mesh
   std::vector<Row> rows_;
 };
-
-/// Some columns of a mesh without a grid that is numbered by columns, with the cells between them: a mesh of
-/// its own, with nodes, cells and named sets in the order of the whole's.
-/// @param columns  as NodeColumns counts them
-Mesh take_columns(const Mesh& whole, const Subset& columns);
 
 /// Columns over which the widest cells of a block, or of the transition above it, reach.
 int columns_of_cells(const Mesh& mesh, int block);

@@ -18,11 +18,8 @@ namespace slipfront::motion {
 /// wrong first in the outermost column, where cells are missing, and one column further in with each push;
 /// before that reaches a column which counts, the owners send the halo's motion (docs/processes.md).
 struct Division {
-  std::vector<int> first;  ///< [parts + 1] where the own columns of each begin
-  int halo = 0;            ///< columns beside them, as far as there are any
-  /// Columns beyond the halo of a mesh without a grid, in which a part cannot tell all cells that take
-  /// sub-steps: it holds them so that it knows those of its halo, and nobody sends them.
-  int rim = 0;
+  std::vector<int> first;      ///< [parts + 1] where the own columns of each begin
+  int halo = 0;                ///< columns beside them, as far as there are any
   int columns_per_step = 1;    ///< see the function of this name
   int steps_per_exchange = 1;  ///< after so many steps the halo is renewed
   /// Whether the plate repeats: the first part and the last one are neighbours, and the whole has a column of
@@ -32,9 +29,8 @@ struct Division {
   int n_parts() const { return static_cast<int>(first.size()) - 1; }
   int n_columns() const { return first.back() + (is_ring ? 1 : 0); }  ///< of nodes of the whole
   solid::Span own(int part) const { return {first[part], first[part + 1]}; }
-  /// Own columns, halo and rim.
+  /// Own columns and halo.
   mesh::Subset all(int part) const;
-  int narrowest() const;  ///< own columns of the part that has the fewest
   /// Columns of its halo on either side, 0 where it has no neighbour.
   int halo_below(int part) const { return n_parts() > 1 && (part > 0 || is_ring) ? halo : 0; }
   int halo_above(int part) const { return n_parts() > 1 && (part + 1 < n_parts() || is_ring) ? halo : 0; }
@@ -51,11 +47,10 @@ int columns_per_step(std::span<const BodySource> bodies, std::span<const BodySte
 /// @param columns_per_step  see there
 /// @param reach             columns beyond its own that a part looks at
 Division divide_columns(const mesh::Mesh& mesh, int n_parts, int columns_per_step, int reach);
-/// The same for bodies; of meshes without a grid, whose columns differ, parts with nearly equal numbers of
-/// nodes.
+/// The same for bodies with grids.
 /// @param steps  of each body
 /// @throws UserError where the parts would be too narrow for their halo, would end at a rounded corner, or
-///         one would have no interface, or more nodes than can be numbered; it tells how many are possible
+///         would have more nodes than can be numbered; it tells how many are possible
 Division divide_bodies(std::span<const BodySource> bodies, std::span<const BodySteps> steps,
                        const TimeStepping& time, int n_parts);
 

@@ -39,15 +39,12 @@ Halo::Halo(Processes& processes, const Division& division, Stepper& stepper, dou
     const int n = division.first.back(), begin = (first_column + n) % n;
     return solid::Span{begin, begin + count};
   };
-  const auto held = division.all(rank).ranges();
-  const auto rim = [&](int first, int end) { return division.rim > 0 ? end - first : 0; };
   make_stages(division.halo, stage_bytes);
   if (below > 0)
     add_neighbour((rank + n_parts - 1) % n_parts, true, {own.begin, own.begin + below},
-                  beyond(own.begin - below, below), rim(held.front().begin, own.begin - below));
+                  beyond(own.begin - below, below));
   if (above > 0)
-    add_neighbour((rank + 1) % n_parts, false, {own.end - above, own.end}, beyond(own.end, above),
-                  rim(own.end + above, held.back().end));
+    add_neighbour((rank + 1) % n_parts, false, {own.end - above, own.end}, beyond(own.end, above));
   n_put_in_ = n_stages();
 }
 
@@ -100,8 +97,8 @@ void Halo::make_stages(int columns, double stage_bytes) {
   SLIPFRONT_ASSERT(read_.back() == n && complete_.back() == n, "a step takes all rows");
 }
 
-void Halo::add_neighbour(int rank, bool is_below, solid::Span out, solid::Span in, int rim) {
-  auto& neighbour = neighbours_.emplace_back(Neighbour{out, in, rim, is_below});
+void Halo::add_neighbour(int rank, bool is_below, solid::Span out, solid::Span in) {
+  auto& neighbour = neighbours_.emplace_back(Neighbour{out, in, is_below});
   for (int k = 0; k < n_stages(); ++k) {
     const auto& stage = stages_[static_cast<std::size_t>(k)];
     const auto room_for = [&](solid::Span columns) {
@@ -262,8 +259,7 @@ void Halo::check(std::int64_t steps_since_exchange, bool is_sent) {
   for (const auto& neighbour : neighbours_) {
     const auto in = neighbour.in;
     const int end = neighbour.is_below ? in.begin + n_wrong : in.end - n_wrong;
-    const int rim = neighbour.rim;
-    const auto wrong = neighbour.is_below ? solid::Span{in.begin - rim, end} : solid::Span{end, in.end + rim};
+    const auto wrong = neighbour.is_below ? solid::Span{in.begin, end} : solid::Span{end, in.end};
     const auto right = neighbour.is_below ? solid::Span{end, in.end} : solid::Span{in.begin, end};
     SLIPFRONT_ASSERT(columns_in(right) > 0, "a halo is wider than what becomes wrong");
     if (stepper_.slip_rates().finite)

@@ -55,7 +55,6 @@ class Halo {
   /// neighbour that is late, the next one is packed.
   struct Neighbour {
     solid::Span out, in;  ///< columns
-    int rim = 0;          ///< columns beyond `in`, see Division
     bool is_below = false;
     std::array<std::vector<Message>, 2> to = {};  ///< of every other exchange
     std::vector<Message> from = {};
@@ -63,7 +62,7 @@ class Halo {
 
   int n_stages() const { return static_cast<int>(stages_.size()); }
   void make_stages(int columns, double stage_bytes);
-  void add_neighbour(int rank, bool is_below, solid::Span out, solid::Span in, int rim);
+  void add_neighbour(int rank, bool is_below, solid::Span out, solid::Span in);
   /// Steps between two exchanges, or fewer.
   void take_steps(UpdateObserver& observer, std::int64_t n_steps, const Between& between, bool exchanges);
   /// What is done beside steps. @param exchanges  whether the halo is sent with the last one of them

@@ -14,42 +14,17 @@ namespace slipfront {
 namespace {
 
 /// What the measuring process asks of the other one.
-constexpr double nothing_more = 0, an_answer = 1, an_exchange = 2, work_alone = 3, work_beside = 4;
+constexpr double nothing_more = 0, an_answer = 1, an_exchange = 2;
 
 /// As a halo goes, in stages.
 constexpr int n_stages = 8;
 constexpr std::size_t stage_bytes = Processes::prompt_bytes;
 
-/// Computing that takes about as long each time.
-class Work {
- public:
-  Work() {
-    const auto begin = Clock::now();
-    double pieces = 0;
-    while (seconds_since(begin) < 10e-3) {
-      compute();
-      ++pieces;
-    }
-    pieces_per_s_ = pieces / seconds_since(begin);
-  }
-  int pieces_in(double s) const { return std::max(1, static_cast<int>(s * pieces_per_s_)); }
-  /// A piece.
-  void compute() {
-    for (int k = 0; k < steps_of_piece; ++k) value_ = 0.5 * value_ + 1;
-  }
-
- private:
-  static constexpr int steps_of_piece = 50'000;  // some 100 us
-  double pieces_per_s_ = 0;
-  volatile double value_ = 0;
-};
-
 /// What two processes tell each other, and exchange both ways at once.
 class Talk {
  public:
   Talk(Processes& processes, int with)
-      : processes_(processes),
-        tell_(processes.transfer_to(with, 0, std::as_bytes(std::span(&told_, 1)))),
+      : tell_(processes.transfer_to(with, 0, std::as_bytes(std::span(&told_, 1)))),
         hear_(processes.transfer_from(with, 0, std::as_writable_bytes(std::span(&heard_, 1)))) {
     for (int k = 0; k < n_stages; ++k) {
       const auto stage = [k](std::vector<std::byte>& bytes) {
@@ -77,27 +52,8 @@ class Talk {
     for (const auto& stage : exchanged_) stage->begin();
     for (const auto& stage : exchanged_) stage->finish();
   }
-  /// Computes for so long, and exchanges meanwhile.
-  void exchange_beside(double work_s) {
-    const int n = work_.pieces_in(work_s);
-    for (const auto& stage : exchanged_) stage->begin();
-    for (int k = 0; k < n; ++k) {
-      work_.compute();
-      processes_.attend();
-    }
-    for (const auto& stage : exchanged_) stage->finish();
-  }
-  void compute(double work_s) {
-    const int n = work_.pieces_in(work_s);
-    for (int k = 0; k < n; ++k) {
-      work_.compute();
-      processes_.attend();
-    }
-  }
 
  private:
-  Processes& processes_;
-  Work work_;
   double told_ = 0, heard_ = 0;
   std::vector<std::byte> out_ = std::vector<std::byte>(n_stages * stage_bytes, std::byte{1});
   std::vector<std::byte> in_ = std::vector<std::byte>(n_stages * stage_bytes);
@@ -146,22 +102,6 @@ Link measure_link(Processes& processes, int with) {
   const double turn_s = exchanges_s / in_turn;
   const double transfer_s = std::max(turn_s - 2 * link.latency_s, 0.1 * turn_s);
   link.bandwidth_bytes_per_s = static_cast<double>(n_stages * stage_bytes) / transfer_s;
-  // Long enough for the bytes to have come before its end.
-  const double work_s = std::max(5e-3, 4 * turn_s);
-  const double beside_s = median_s(31, 1, [&] {
-    talk.tell(work_beside);
-    talk.tell(work_s);
-    talk.exchange_beside(work_s);
-    talk.hear();
-  });
-  const double alone_s = median_s(31, 1, [&] {
-    talk.tell(work_alone);
-    talk.tell(work_s);
-    talk.compute(work_s);
-    talk.hear();
-  });
-  const double bytes = 2.0 * n_stages * stage_bytes;
-  link.processor_s_per_byte = std::max(0.0, beside_s - alone_s) / bytes;
   talk.tell(nothing_more);
   return link;
 }
@@ -174,13 +114,7 @@ void answer_link(Processes& processes, int with) {
       talk.exchange();
     else if (wanted == an_answer)
       talk.tell(an_answer);
-    else if (wanted == work_beside) {
-      talk.exchange_beside(talk.hear());
-      talk.tell(an_answer);
-    } else if (wanted == work_alone) {
-      talk.compute(talk.hear());
-      talk.tell(an_answer);
-    } else
+    else
       return;
   }
 }

@@ -10,8 +10,6 @@ struct Link {
   int from = 0, to = 0;
   double latency_s = 0;              ///< half a round trip of one number
   double bandwidth_bytes_per_s = 0;  ///< each way, of several messages both ways at once
-  /// By which a byte that goes or comes holds up what both processes compute meanwhile.
-  double processor_s_per_byte = 0;
 };
 
 /// Measures while the other process is in answer_link; within a few seconds where latency is small.

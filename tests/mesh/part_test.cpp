@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
 #include "mesh/plate.hpp"
 #include "mesh/reorder.hpp"
-#include "support/general_mesh.hpp"
 
 namespace slipfront::mesh {
 namespace {
@@ -35,12 +34,6 @@ Plate plate(int coarsenings, Sides sides = Sides::free, int columns = 48) {
 using Place = std::pair<double, double>;
 Place place(const Mesh& mesh, Node n) {
   return {mesh.x_m[n], mesh.y_m[n]};
-}
-/// Of no two nodes the same.
-std::map<Place, Node> nodes_by_place(const Mesh& mesh) {
-  std::map<Place, Node> nodes;
-  for (Node n = 0; n < mesh.n_nodes(); ++n) nodes[place(mesh, n)] = n;
-  return nodes;
 }
 
 TEST(NodeColumns, AreCountedInTheSmallestSquares) {
@@ -66,22 +59,13 @@ TEST(NodeColumns, AreCountedInTheSmallestSquares) {
   }
 }
 
-TEST(NodeColumns, OfAPartAreThoseOfTheWhole) {
-  const auto whole = make_plate(plate(2, Sides::periodic));
-  const NodeColumns of_whole(whole);
-  for (const auto& held : {Subset({{5, 39}}), Subset({{0, 18}, {31, 49}})}) {
-    const auto part = make_columns(plate(2, Sides::periodic), held);
-    const auto nodes = nodes_by_place(whole);
-    const NodeColumns of_nodes(part, held, 49), told = of_whole.of_part(held);
-    ASSERT_EQ(told.n_nodes(), part.n_nodes());
-    for (Node n = 0; n < part.n_nodes(); ++n) {
-      const auto in_whole = nodes.at(place(part, n));
-      EXPECT_EQ(of_nodes.number_in_whole(n), in_whole);
-      EXPECT_EQ(of_nodes.column_of(n), of_whole.column_of(in_whole));
-      EXPECT_EQ(of_nodes.column_of_whole(in_whole), of_whole.column_of(in_whole));
-      EXPECT_EQ(told.node_of_whole(in_whole), n);
-    }
-  }
+TEST(NodeColumns, OfAMeshWithoutAGridHaveANodeEach) {
+  auto mesh = make_plate(plate(0));
+  renumber(mesh, near_numbers(mesh));
+  const NodeColumns columns(mesh);
+  EXPECT_EQ(columns.n_rows(), 1);
+  EXPECT_EQ(columns.n_columns(), mesh.n_nodes());
+  for (Node n = 0; n < mesh.n_nodes(); ++n) EXPECT_EQ(columns.column_of(n), n);
 }
 
 TEST(NodeColumns, OfAWholeThatNoneHoldsHaveNumbersOf64Bits) {
@@ -127,21 +111,29 @@ TEST(NodeColumns, OfAWholeThatNoneHoldsHaveNumbersOf64Bits) {
   }
 }
 
-/// A part's nodes and cells, to the last bit and in the same order, are those of the whole.
-void expect_part(const Mesh& whole, const Mesh& part, const Subset& held) {
-  const NodeColumns of_whole(whole), of_part(part, held, of_whole.n_columns());
+/// A part's nodes and cells, to the last bit and in the same order, are those of the whole; so are the
+/// columns of its nodes.
+void expect_columns(const Plate& plate, const Subset& held) {
+  SCOPED_TRACE(testing::Message() << plate.coarsenings << " coarsenings, width " << plate.width_m
+                                  << " m, corner " << static_cast<int>(plate.corner) << ", from column "
+                                  << held.ranges().front().begin);
+  const auto whole = make_plate(plate), part = make_columns(plate, held);
+  const NodeColumns of_whole(whole), of_part(part, held, of_whole.n_columns()), told = of_whole.of_part(held);
   const auto is_held = [&](Node n) { return held.has(of_whole.column_of(n)); };
   std::vector<Node> nodes;
   for (Node n = 0; n < whole.n_nodes(); ++n)
     if (is_held(n)) nodes.push_back(n);
   ASSERT_EQ(part.x_m.size(), nodes.size());
   ASSERT_EQ(part.y_m.size(), nodes.size());
-  for (Node n = 0; n < part.n_nodes(); ++n) {
-    const auto in_whole = nodes[static_cast<std::size_t>(n)];
-    EXPECT_EQ(of_part.number_in_whole(n), in_whole);
-    EXPECT_EQ(place(part, n), place(whole, in_whole));
-  }
+  ASSERT_EQ(told.n_nodes(), part.n_nodes());
   const auto in_whole = [&](Node n) { return nodes[static_cast<std::size_t>(n)]; };
+  for (Node n = 0; n < part.n_nodes(); ++n) {
+    EXPECT_EQ(place(part, n), place(whole, in_whole(n)));
+    EXPECT_EQ(of_part.number_in_whole(n), in_whole(n));
+    EXPECT_EQ(told.node_of_whole(in_whole(n)), n);
+    EXPECT_EQ(of_part.column_of(n), of_whole.column_of(in_whole(n)));
+    EXPECT_EQ(of_part.column_of_whole(in_whole(n)), of_part.column_of(n));
+  }
   std::vector<Cell> cells, expected_cells;
   for (auto cell : part.cells) {
     std::ranges::transform(cell, cell.begin(), in_whole);
@@ -163,13 +155,8 @@ void expect_part(const Mesh& whole, const Mesh& part, const Subset& held) {
   for (const auto& a : whole.absorbing)
     if (is_held(a.node)) expected_absorbing.emplace_back(a.node, a.side_m, a.top_m);
   EXPECT_EQ(absorbing, expected_absorbing);
-}
-
-void expect_columns(const Plate& plate, const Subset& held) {
-  const auto whole = make_plate(plate);
-  const auto part = make_columns(plate, held);
-  expect_part(whole, part, held);
-  const NodeColumns of_part(part, held, whole.grid.stride());
+  const bool has_both_sides = held.has(0) && held.has(of_whole.n_columns() - 1);
+  EXPECT_EQ(part.period_m, has_both_sides ? whole.period_m : 0);
   const auto grids = blocks(part), grids_of_whole = blocks(whole);
   ASSERT_EQ(grids.size(), grids_of_whole.size());
   for (std::size_t k = 0; k < grids.size(); ++k) {
@@ -192,56 +179,39 @@ TEST(MakeColumns, MakesTheNodesThereAndTheCellsBetweenThem) {
   for (const auto& form :
        {Form{0, 48, Sides::free, Corner::fillet}, Form{0, 44, Sides::absorbing, Corner::none},
         Form{1, 44, Sides::free, Corner::relief}, Form{1, 48, Sides::free, Corner::fillet},
-        Form{2, 44, Sides::absorbing, Corner::none}, Form{2, 48, Sides::free, Corner::relief}}) {
+        Form{2, 44, Sides::absorbing, Corner::none}, Form{2, 48, Sides::free, Corner::relief},
+        Form{0, 48, Sides::periodic, Corner::none}, Form{2, 48, Sides::periodic, Corner::none}}) {
     auto some = plate(form.coarsenings, form.sides, form.columns);
     some.corner = form.corner;
     some.fillet_radius_m = 4e-3;
     some.fine_height_m = 8e-3;
     if (form.coarsenings == 2) some.height_m = 0.06;
     // Cuts anywhere, within units of transitions, too.
-    for (const auto& range : {Subset::Range{0, 25}, {9, 33}, {18, form.columns + 1}, {15, 34}}) {
-      SCOPED_TRACE(testing::Message()
-                   << form.coarsenings << " coarsenings, " << form.columns << " columns, corner "
-                   << static_cast<int>(form.corner) << ", from " << range.begin);
+    for (const auto& range : {Subset::Range{0, 25}, {9, 33}, {18, form.columns + 1}, {15, 34}})
       expect_columns(some, Subset({range}));
+    if (form.sides == Sides::periodic) {
+      expect_columns(some, Subset({{0, 17}, {32, 49}}));
+      expect_columns(some, Subset({{0, 18}, {31, 49}}));
     }
-  }
-}
-
-TEST(MakeColumns, MakesThoseOfAPlateThatRepeats) {
-  const Subset of_both_sides({{0, 17}, {32, 49}}), of_one({{0, 20}});
-  for (const int coarsenings : {0, 2}) {
-    const auto repeating = plate(coarsenings, Sides::periodic);
-    for (const auto& held : {of_both_sides, of_one, Subset({{3, 41}})}) expect_columns(repeating, held);
-    EXPECT_EQ(make_columns(repeating, of_both_sides).period_m, make_plate(repeating).period_m);
-    EXPECT_EQ(make_columns(repeating, of_one).period_m, 0);
   }
 }
 
 TEST(MakeInterface, MakesTheLowestRow) {
-  for (const auto sides : {Sides::free, Sides::periodic})
-    for (const int coarsenings : {0, 2}) {
-      const auto whole = make_plate(plate(coarsenings, sides));
-      const auto interface = make_interface(plate(coarsenings, sides));
-      EXPECT_TRUE(interface.is_interface());
-      EXPECT_FALSE(whole.is_interface());
-      EXPECT_EQ(interface.lower, whole.lower);
-      EXPECT_EQ(interface.period_m, whole.period_m);
-      EXPECT_EQ(tributary_lengths_m(interface), tributary_lengths_m(whole));
-      ASSERT_EQ(interface.n_nodes(), whole.grid.stride());
-      for (Node n = 0; n < interface.n_nodes(); ++n) EXPECT_EQ(place(interface, n), place(whole, n));
-      EXPECT_EQ(NodeColumns(blocks(interface)).n_nodes(), whole.n_nodes());
-    }
-}
-
-TEST(MakeInterface, FollowsTheReliefs) {
   auto relieved = plate(0);
   relieved.corner = Corner::relief;
-  const auto whole = make_plate(relieved), interface = make_interface(relieved);
-  EXPECT_EQ(interface.lower, whole.lower);
-  EXPECT_EQ(tributary_lengths_m(interface), tributary_lengths_m(whole));
-  EXPECT_GT(interface.y_m.front(), 0);
-  for (const Node n : interface.lower) EXPECT_EQ(place(interface, n), place(whole, n));
+  for (const auto& of :
+       {plate(0), plate(2), plate(0, Sides::periodic), plate(2, Sides::periodic), relieved}) {
+    const auto whole = make_plate(of), interface = make_interface(of);
+    EXPECT_TRUE(interface.is_interface());
+    EXPECT_FALSE(whole.is_interface());
+    EXPECT_EQ(interface.lower, whole.lower);
+    EXPECT_EQ(interface.period_m, whole.period_m);
+    EXPECT_EQ(tributary_lengths_m(interface), tributary_lengths_m(whole));
+    ASSERT_EQ(interface.n_nodes(), whole.grid.stride());
+    for (Node n = 0; n < interface.n_nodes(); ++n) EXPECT_EQ(place(interface, n), place(whole, n));
+    EXPECT_EQ(NodeColumns(blocks(interface)).n_nodes(), whole.n_nodes());
+    EXPECT_EQ(interface.y_m.front() > 0, of.corner == Corner::relief);
+  }
 }
 
 TEST(MakeCorners, HaveAllCellsThatAreNoSquaresAndSomeAroundThem) {
@@ -362,140 +332,6 @@ TEST(MakeColumns, NoCutThroughARoundedCorner) {
     EXPECT_DEATH(make_columns(rounded, Subset({{0, 2}})), "rounded corner");
   }
   EXPECT_EQ(columns_of_wrapped_cells(make_plate(plate(1))), 0);
-}
-
-/// Meshes without a grid: squares, squares of three sizes, an arc, all cells different.
-std::vector<Mesh> general_meshes() {
-  std::vector<Mesh> meshes;
-  for (const int coarsenings : {0, 2})
-    for (const auto corner : {Corner::none, Corner::relief, Corner::fillet})
-      for (const double moved_m : {0.0, 0.2e-3}) {
-        auto some = plate(coarsenings, corner == Corner::none ? Sides::absorbing : Sides::free);
-        some.corner = corner;
-        some.fillet_radius_m = 4e-3;
-        some.fine_height_m = 8e-3;
-        if (coarsenings == 2) some.height_m = 0.06;
-        meshes.push_back(test::without_grid(make_plate(some), moved_m));
-      }
-  return meshes;
-}
-
-TEST(NumberByColumns, LeavesEachCellInNeighbouringColumns) {
-  for (auto mesh : general_meshes()) {
-    const auto before = mesh;
-    number_by_columns(mesh);
-    EXPECT_EQ(mesh.cells.size(), before.cells.size());
-    ASSERT_EQ(nodes_by_place(mesh).size(), nodes_by_place(before).size());
-    for (std::size_t k = 0; k < mesh.cells.size(); ++k)
-      for (std::size_t a = 0; a < 4; ++a)
-        EXPECT_EQ(place(mesh, mesh.cells[k][a]), place(before, before.cells[k][a]));
-    const NodeColumns columns(mesh);
-    EXPECT_GT(columns.n_columns(), 10);
-    EXPECT_EQ(columns.n_nodes(), mesh.n_nodes());
-    EXPECT_EQ(columns.n_rows(), 1);
-    for (const auto& cell : mesh.cells) {
-      const auto [first, last] = std::minmax({columns.column_of(cell[0]), columns.column_of(cell[1]),
-                                              columns.column_of(cell[2]), columns.column_of(cell[3])});
-      EXPECT_LE(last - first, 1);
-    }
-    // Columns are ranges of numbers, from left to right, and so is their interface.
-    int reached = 0;
-    double left_m = -1, right_m = 0;
-    for (Node n = 0; n < mesh.n_nodes(); ++n) {
-      if (columns.column_of(n) > reached) {
-        ++reached;
-        left_m = right_m;
-      }
-      EXPECT_EQ(columns.column_of(n), reached);
-      EXPECT_GT(mesh.x_m[n], left_m);
-      right_m = std::max(right_m, mesh.x_m[n]);
-    }
-    EXPECT_EQ(reached, columns.n_columns() - 1);
-    for (std::size_t k = 0; k + 1 < mesh.lower.size(); ++k) {
-      const int step = columns.column_of(mesh.lower[k + 1]) - columns.column_of(mesh.lower[k]);
-      EXPECT_GE(step, 0);
-      EXPECT_LE(step, 1);
-    }
-  }
-}
-
-TEST(NumberByColumns, FindsThoseOfAGrid) {
-  for (const double moved_m : {0.0, 0.2e-3}) {
-    auto mesh = test::without_grid(make_plate(plate(0)), moved_m);
-    number_by_columns(mesh);
-    const NodeColumns columns(mesh);
-    EXPECT_EQ(columns.n_columns(), 49);
-    for (Node n = 0; n < mesh.n_nodes(); ++n)
-      EXPECT_EQ(columns.column_of(n), std::lround(mesh.x_m[n] / 1e-3));
-  }
-}
-
-TEST(NumberByColumns, GivesBodiesOnEachOtherTheSameColumns) {
-  auto above = test::without_grid(make_plate(plate(0)), 0.2e-3);
-  auto below = test::without_grid(make_plate(plate(1)), 0.1e-3);
-  for (auto& x_m : below.x_m) x_m *= 1 + 1e-15;
-  const Mesh* const bodies[] = {&above, &below};
-  const auto ends_m = column_ends_m(bodies);
-  for (auto* mesh : {&above, &below}) number_by_columns(*mesh, ends_m);
-  const NodeColumns of_above(above), of_below(below);
-  EXPECT_EQ(of_above.n_columns(), of_below.n_columns());
-  ASSERT_EQ(above.lower.size(), below.lower.size());
-  for (std::size_t k = 0; k < above.lower.size(); ++k)
-    EXPECT_EQ(of_above.column_of(above.lower[k]), of_below.column_of(below.lower[k]));
-  for (const auto* columns : {&of_above, &of_below})
-    for (const auto& cell : (columns == &of_above ? above : below).cells)
-      EXPECT_LE(std::abs(columns->column_of(cell[0]) - columns->column_of(cell[2])), 1);
-}
-
-TEST(NumberByColumns, HasNeighboursAlongAnInterfaceInNeighbouringColumns) {
-  auto mesh = make_plate(plate(0));
-  // Stands on its ends alone.
-  std::erase_if(mesh.lower, [&](Node n) { return mesh.x_m[n] > 0.0105 && mesh.x_m[n] < 0.0405; });
-  number_by_columns(mesh);
-  const NodeColumns columns(mesh);
-  for (std::size_t k = 0; k + 1 < mesh.lower.size(); ++k)
-    EXPECT_LE(columns.column_of(mesh.lower[k + 1]), columns.column_of(mesh.lower[k]) + 1);
-  EXPECT_EQ(columns.n_columns(), 49 - 30);
-}
-
-TEST(NumberByColumns, RefusesAPlateThatRepeats) {
-  auto mesh = make_plate(plate(0, Sides::periodic));
-  EXPECT_THROW(number_by_columns(mesh), UserError);
-}
-
-TEST(NodeColumns, OfAMeshThatIsNotNumberedByThemHaveANodeEach) {
-  auto mesh = test::without_grid(make_plate(plate(0)), 0);
-  EXPECT_EQ(NodeColumns(mesh).n_columns(), mesh.n_nodes());
-  number_by_columns(mesh);
-  EXPECT_EQ(NodeColumns(mesh).n_columns(), 49);
-  renumber(mesh, near_numbers(mesh));
-  EXPECT_EQ(NodeColumns(mesh).n_columns(), mesh.n_nodes());
-}
-
-TEST(TakeColumns, TakesTheNodesThereAndTheCellsBetweenThem) {
-  for (auto whole : general_meshes()) {
-    number_by_columns(whole);
-    const NodeColumns of_whole(whole);
-    const int n = of_whole.n_columns();
-    for (const auto& held : {Subset({{0, n / 2}}), Subset({{n / 3, n - 3}}), Subset({{n / 2, n}}),
-                             Subset({{0, n}}), Subset({{0, 3}, {n - 4, n}})}) {
-      const auto part = take_columns(whole, held);
-      expect_part(whole, part, held);
-      EXPECT_EQ(part.grid.columns, 0);
-      EXPECT_EQ(part.grid.spacing_m, whole.grid.spacing_m);
-      const NodeColumns of_part(part, held, n), told = of_whole.of_part(held);
-      for (Node k = 0; k < part.n_nodes(); ++k) {
-        const auto in_whole = of_part.number_in_whole(k);
-        EXPECT_EQ(told.node_of_whole(in_whole), k);
-        EXPECT_EQ(of_part.column_of(k), of_whole.column_of(static_cast<Node>(in_whole)));
-        EXPECT_EQ(of_part.column_of_whole(in_whole), of_part.column_of(k));
-      }
-      const auto last = held.ranges().back();
-      const auto nodes = of_part.nodes(0, {last.begin, last.end});
-      EXPECT_EQ(nodes.end(), part.n_nodes());
-      EXPECT_EQ(of_part.column_of(nodes.first), last.begin);
-    }
-  }
 }
 
 }  // namespace
