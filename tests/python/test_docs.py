@@ -47,9 +47,6 @@ def test_nothing_is_taken_for_a_comment(page):
 def test_files_that_are_named_are_there():
     contributing = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     named = [ROOT / name for name in re.findall(r"`((?:src|tests|python|docs)/[\w./]+)`", contributing)]
-    glossary = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
-    places = re.findall(r"\| ([^|]*) \|$", glossary, re.MULTILINE)
-    named += [ROOT / "src" / name for place in places for name in re.findall(r"`([\w./]+)`", place)]
     assert named
     assert [path for path in named if not path.exists()] == []
 
