@@ -82,7 +82,7 @@ class Run:
 
     def speeds(self, front: Front) -> np.ndarray:
         """V_tip/c_L where something travels: where `speed_kind` says so, away from absorbing edges."""
-        is_speed = np.isin(front.speed_kind, (SPEED_KINDS[0], ""))  # empty in older files
+        is_speed = np.isin(front.speed_kind, (SPEED_KINDS[0], ""))  # empty where the file has none
         for from_m, to_m in self.heard_m:
             is_speed &= (front.x_m < from_m) | (front.x_m > to_m)
         found = front.v_tip_m_per_s[is_speed] / self.c_L_m_per_s
@@ -279,6 +279,13 @@ def heard_zones(case: dict[str, Any], file: Path, static: dict[str, np.ndarray])
     reach_m = max(number(file, case, "fronts.l_star_m"), float(np.diff(x_m).max()))
     reach_m += ROUNDING * float(x_m[-1] - x_m[0])
     return [(float(x_m[0]), float(x_m[0]) + reach_m), (float(x_m[-1]) - reach_m, float(x_m[-1]))]
+
+
+def waves_over_c_L(file: Path) -> dict[str, float]:
+    """The plate's wave speeds by run.json, ascending."""
+    info = read_json_table(result_file(file))
+    speeds = {wave: number(file, info, f"wave_speeds.{wave}_m_per_s") for wave in ("c_R", "c_S", "c_L")}
+    return {f"{wave}_over_c_L": speed / speeds["c_L"] for wave, speed in speeds.items()}
 
 
 def read_outcome(place: Path) -> dict[str, Cell]:
