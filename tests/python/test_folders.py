@@ -15,7 +15,6 @@ from slipfront.figures import balance, events, plate
 from slipfront.figures.__main__ import draw_all, main
 from slipfront.figures.report import figure_html, write_report
 from slipfront.figures.results import read_results
-from slipfront.figures.style import RC
 from slipfront.files import DataError
 from slipfront.read import read_run, verify_checksums
 from synthetic import (
@@ -35,11 +34,6 @@ def pristine(tmp_path_factory):
     return write_output(
         tmp_path_factory.mktemp("reproduction") / "out", columns=20, rows=10, n_times=11, snapshots=5
     )
-
-
-@pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    monkeypatch.setitem(RC, "savefig.dpi", 20)
 
 
 @pytest.fixture

@@ -16,7 +16,6 @@ import pytest
 import slipfront.command
 from slipfront.figures import interface_step, open_choices, verification
 from slipfront.figures.__main__ import main
-from slipfront.figures.style import RC
 from slipfront.files import DataError, read_json, read_table, read_toml
 from slipfront.read import read_experiment, read_fronts, read_history
 from synthetic import ENERGY_HEADER, energy_rows, write_csv, write_run
@@ -24,11 +23,6 @@ from synthetic_study import write_interface_step, write_open_choices, write_stud
 
 PACKAGE = Path(__file__).parents[2] / "python"
 NOBODY = 65534
-
-
-@pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    monkeypatch.setitem(RC, "savefig.dpi", 30)
 
 
 @pytest.fixture

@@ -112,10 +112,11 @@ def name_axis(ax: Axes, which: str, column: xr.DataArray) -> None:
 
 def mark_waves(ax: Axes, waves: dict[str, float]) -> None:
     """Lines in the scale of a speed; a name stands at the side that has room."""
+    is_bar = ax.get_label() == "<colorbar>"
     for wave, level in waves.items():
-        ax.axhline(level, color="white" if ax.get_label() == "<colorbar>" else "0.5", linewidth=0.8, gid=wave)
+        ax.axhline(level, color="white" if is_bar else "0.5", linewidth=0.8, gid=wave)
         name = rf"$c_\mathrm{{{wave[-1]}}}$"
-        ax.text(0, level, name, ha="right", va=WAVES[wave], transform=ax.get_yaxis_transform())
+        ax.text(-0.2 if is_bar else 0, level, name, ha="right", va=WAVES[wave], transform=ax.get_yaxis_transform())
 
 
 def draw_map(figure: Figure, ax: Axes, data: xr.Dataset, name: str, x: str, y: str) -> None:

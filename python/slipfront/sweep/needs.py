@@ -36,9 +36,10 @@ class Needs:
 
     @property
     def words(self) -> str:
-        minutes = self.time_s / max(self.n_at_once, 1) / 60
+        time_s = self.time_s / max(self.n_at_once, 1)
+        time = f"{time_s:.0f} s" if time_s < 100 else f"{time_s / 60:.0f} min"
         return (
-            f"{self.n_points} runs, {self.n_at_once} at a time: about {minutes:.2g} minutes, "
+            f"{self.n_points} runs, {self.n_at_once} at a time: about {time}, "
             f"{self.memory_bytes / GIGA:.2g} GB of memory, {self.disk_bytes / GIGA:.2g} GB on disk at most"
         )
 
