@@ -623,7 +623,7 @@ def test_a_small_table_tells_what_is_asked_first():
     rows = [{"folder": "", "friction.mu_k": str(k), "status": "done"} | cells for k in range(31)]
     _, heads, *lines, last = table_lines(pd.DataFrame(rows), Path("out"))
     assert heads.split() == ["mu_k", "fronts", "slip", "length_m", "V_tip/c_L", "end", "slipped", "reached"]
-    assert len(lines) == 30 and lines[-1].split() == "29 2 crack 0.15 - arrest 0.333 none".split()
+    assert len(lines) == 30 and lines[-1].split()[2:6] == ["crack", "0.15", "-", "arrest"]
     assert last == f"... 1 more in {Path('out/sweep.csv')}"
 
 

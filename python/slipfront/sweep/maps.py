@@ -116,7 +116,9 @@ def mark_waves(ax: Axes, waves: dict[str, float]) -> None:
     for wave, level in waves.items():
         ax.axhline(level, color="white" if is_bar else "0.5", linewidth=0.8, gid=wave)
         name = rf"$c_\mathrm{{{wave[-1]}}}$"
-        ax.text(-0.2 if is_bar else 0, level, name, ha="right", va=WAVES[wave], transform=ax.get_yaxis_transform())
+        ax.text(
+            -0.2 if is_bar else 0, level, name, ha="right", va=WAVES[wave], transform=ax.get_yaxis_transform()
+        )
 
 
 def draw_map(figure: Figure, ax: Axes, data: xr.Dataset, name: str, x: str, y: str) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from slipfront.report.page import Page, embedded, words
-from slipfront.sweep.maps import axis_of, numbers, waves_of
+from slipfront.sweep.maps import axis_of, waves_of
 from slipfront.sweep.outcome import QUANTITIES
 from slipfront.sweep.tables import TEXTS, is_sweep, keys_of, read_dataset
 from slipfront.sweep.work import DONE
@@ -18,8 +18,7 @@ from slipfront.sweep.work import DONE
 if TYPE_CHECKING:
     import xarray as xr
 
-MOST_FAILURES = 100  # that are listed
-PREFERRED = "longest_front_v_tip_median_over_c_L"
+FIRST = "longest_front_v_tip_median_over_c_L"
 COMBINED = {"grid": "all combinations", "zip": "values that go together", "sample": "a Latin hypercube"}
 
 CHOICES = """\
@@ -42,16 +41,6 @@ def shown(value: Any) -> Any:
     if isinstance(value, str):
         return value
     return float(value) if np.isfinite(value) else None
-
-
-def first_shown(data: xr.Dataset) -> str:
-    """The result that the page opens on: one that varies, the longest front's speed where that does."""
-    names = sorted((q.name for q in QUANTITIES), key=lambda name: name != PREFERRED)
-    for name in names:
-        column = numbers(data[name])
-        if len(np.unique(column[~np.isnan(column)])) > 1:
-            return name
-    return names[0]
 
 
 def sweep_data(data: xr.Dataset) -> dict[str, Any]:
@@ -81,7 +70,7 @@ def sweep_data(data: xr.Dataset) -> dict[str, Any]:
             }
             for q in QUANTITIES
         ],
-        "first": first_shown(data),
+        "first": FIRST,
         "points": points,
     }
 
@@ -97,13 +86,13 @@ def summary(data: xr.Dataset) -> str:
 def failures(data: xr.Dataset) -> str:
     """Points without results, and why."""
     texts = (data[name].to_numpy().ravel() for name in ("folder", "message", "status"))
-    rows = [(folder, message) for folder, message, status in zip(*texts, strict=True) if status != DONE]
-    if not rows:
-        return ""
-    cells = (f"<tr><td>{words(f)}</td><td>{words(message)}</td></tr>" for f, message in rows[:MOST_FAILURES])
-    more = f"<p>and {len(rows) - MOST_FAILURES} more</p>" if len(rows) > MOST_FAILURES else ""
+    cells = [
+        f"<tr><td>{words(f)}</td><td>{words(m)}</td></tr>"
+        for f, m, s in zip(*texts, strict=True)
+        if s != DONE
+    ]
     head = "<tr><th>Point</th><th>Why</th></tr>"
-    return f"<h3>Points without results</h3><table>{head}{''.join(cells)}</table>{more}"
+    return f"<h3>Points without results</h3><table>{head}{''.join(cells)}</table>" if cells else ""
 
 
 def sweep_section(data: xr.Dataset) -> str:
