@@ -129,16 +129,9 @@ def test_without_a_list_nothing_is_vouched_for(output, tmp_path):
     assert read.main([str(output)]) == 1
 
 
-def test_each_file_is_summed_once_and_again_when_it_changes(run, monkeypatch):
+def test_a_file_that_changes_after_it_was_read_is_summed_again(run):
     write_checksums(run)
-    summed = []
-    digest = read.result_file.__globals__["sha256"].__globals__["hashlib"].file_digest
-    monkeypatch.setattr("hashlib.file_digest", lambda s, kind: summed.append(s.name) or digest(s, kind))
     read_run(run)
-    first = len(summed)
-    assert first == 7
-    read_run(run)
-    assert len(summed) == first
     flip(run / "static.csv")
     with pytest.raises(DataError, match="static.csv: does not match"):
         read_run(run)

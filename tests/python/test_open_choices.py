@@ -49,42 +49,19 @@ def test_a_damaged_study_is_refused(study, capsys, name):
     assert not (study / "figures").exists()
 
 
-def assert_colours(study, colours: dict[str, str]) -> None:
-    """Of cells of the matrix, by claim and choice."""
+@pytest.mark.parametrize(
+    "is_chosen, colours", [(True, ("TURNS_OFF", "HOLDS")), (False, ("TURNS_ON", "FAILS"))]
+)
+def test_cells_tell_where_a_verdict_turns_about_the_chosen_sample_or_the_standard(study, is_chosen, colours):
+    if not is_chosen:
+        change_json(study / "open_choices.json", lambda s: s.update(chosen=None))
     figure = open_choices.draw(study).figure
-    for gid, colour in colours.items():
+    cells = dict(zip(("C11:left_added", "C11:left_zone_m"), colours, strict=True))
+    for gid, colour in ({"C2:left_form": "TURNS_OFF", "C2:left_zone_m": "HOLDS"} | cells).items():
         cell = artist(figure, gid)
-        assert to_hex(cell.get_facecolor()) == colour and not cell.get_hatch()
-
-
-def test_cells_tell_where_a_verdict_turns_about_the_chosen_sample(study):
-    colours = {
-        "C2:left_form": open_choices.TURNS_OFF,
-        "C2:left_zone_m": open_choices.HOLDS,
-        "C11:left_added": open_choices.TURNS_OFF,
-        "C11:left_zone_m": open_choices.HOLDS,
-    }
-    assert_colours(study, colours)
-
-
-def test_cells_tell_where_a_verdict_turns_about_the_standard_where_none_was_chosen(study):
-    change_json(study / "open_choices.json", lambda s: s.update(chosen=None))
-    colours = {
-        "C2:left_form": open_choices.TURNS_OFF,
-        "C2:left_zone_m": open_choices.HOLDS,
-        "C11:left_added": open_choices.TURNS_ON,
-        "C11:left_zone_m": open_choices.FAILS,
-    }
-    assert_colours(study, colours)
-    figure = open_choices.draw(study).figure
-    assert not any(line.get_gid() == "chosen" for line in figure.axes[1].lines)
-
-
-def test_what_was_not_varied_has_no_verdict(study):
-    figure = open_choices.draw(study).figure
-    for claim in ("C2", "C11"):
-        cell = artist(figure, f"{claim}:corner")
-        assert to_hex(cell.get_facecolor()) == "#ffffff" and cell.get_hatch()
+        assert to_hex(cell.get_facecolor()) == getattr(open_choices, colour) and not cell.get_hatch()
+    assert artist(figure, "C2:corner").get_hatch()  # was not varied
+    assert is_chosen == any(line.get_gid() == "chosen" for line in figure.axes[1].lines)
 
 
 def test_every_sample_with_fronts_at_both_edges_is_a_point(study):
