@@ -10,6 +10,10 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from slipfront.figures.style import RC
+
+# Fewer dots than in print: the tests look at what is drawn, not at its pixels.
+RC["savefig.dpi"] = 20
 
 WIDTH_M, HEIGHT_M = 0.2, 0.1
 WAVE_SPEEDS = {"c_L_m_per_s": 1584.0, "c_S_m_per_s": 889.0, "c_R_m_per_s": 820.0}

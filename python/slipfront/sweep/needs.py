@@ -15,7 +15,7 @@ from tqdm.auto import tqdm
 from slipfront.files import DataError
 from slipfront.sweep.definition import Sweep
 from slipfront.sweep.points import Point
-from slipfront.sweep.program import GIGA, Cost, cost_of, problem_of
+from slipfront.sweep.program import GIGA, Cost, answer, cost_of, with_settings
 from slipfront.sweep.values import text_of
 
 #: Keys on which size, memory and number of steps do not depend: one point's cost stands for all.
@@ -49,7 +49,11 @@ def require_valid(sweep: Sweep, program: Path, points: list[Point], quiet: bool)
     common = sweep.settings()
 
     def check(point: Point) -> str | None:
-        return problem_of(program, sweep.case, common + point.settings())
+        try:
+            answer(program, "validate", str(sweep.case), *with_settings(common + point.settings()))
+        except DataError as error:
+            return str(error)
+        return None
 
     hidden = True if quiet else None  # None: where there is no terminal
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:

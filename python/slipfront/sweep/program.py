@@ -61,15 +61,6 @@ def answer(program: Path, *arguments: str) -> str:
     return result.stdout
 
 
-def problem_of(program: Path, case: Path, settings: Iterable[str]) -> str | None:
-    """What `slipfront validate` says against a case, in one line; None where nothing."""
-    try:
-        answer(program, "validate", str(case), *with_settings(settings))
-    except DataError as error:
-        return str(error)
-    return None
-
-
 def version_of(program: Path) -> str:
     return one_line(answer(program, "--version").split("\n", 1)[0])
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FIRST = "longest_front_v_tip_median_over_c_L"
+is_kind = is_sweep  # of the folders of `slipfront report`
 COMBINED = {"grid": "all combinations", "zip": "values that go together", "sample": "a Latin hypercube"}
 
 CHOICES = """\
@@ -30,10 +31,6 @@ CHOICES = """\
 </p>
 <div id="sweep-plot" class="plot" role="img" aria-label="Map of a result over two keys of the case"></div>
 <div id="sweep-point" aria-live="polite"><p>Click on a point of the map for what is known of it.</p></div>"""
-
-
-def is_kind(folder: Path) -> bool:
-    return is_sweep(folder)
 
 
 def shown(value: Any) -> Any:
@@ -78,9 +75,8 @@ def sweep_data(data: xr.Dataset) -> dict[str, Any]:
 def summary(data: xr.Dataset) -> str:
     n_failed = int((data.status != DONE).sum())
     failed = f", {n_failed} without results" if n_failed else ""
-    kind = COMBINED[data.attrs["combine"]]
-    runs = f"{data.status.size} runs{failed}"
-    return f"<p>{words(title_of(data))}, {kind}: {runs}. Definitions: docs/theory.md.</p>"
+    told = f"{data.attrs['title']}, {COMBINED[data.attrs['combine']]}: {data.status.size} runs{failed}"
+    return f"<p>{words(told)}. Definitions: docs/theory.md.</p>"
 
 
 def failures(data: xr.Dataset) -> str:
@@ -114,11 +110,7 @@ def sweep_section(data: xr.Dataset) -> str:
     )
 
 
-def title_of(data: xr.Dataset) -> str:
-    return "S" + data.attrs["title"].removeprefix("s")
-
-
 def page(folder: Path) -> Page:
     """The page of `slipfront report DIR`."""
     data = read_dataset(folder)
-    return Page(title=title_of(data), parts=[sweep_section(data)])
+    return Page(title=data.attrs["title"], parts=[sweep_section(data)])
