@@ -2,7 +2,6 @@
 """Subcommands that are Python modules: the interpreter that is chosen, and what it gets and gives."""
 
 import os
-import re
 import shutil
 import signal
 import subprocess
@@ -141,11 +140,10 @@ def test_standard_output_that_cannot_be_written(telling, is_closed):
             os.close(reading)
         command = telling.start(*arguments, stdout=writing, stderr=subprocess.PIPE, text=True)
         os.close(writing)
-        *progress, last = command.communicate(timeout=HANG_S)[1].splitlines()
+        (line,) = command.communicate(timeout=HANG_S)[1].splitlines()
         assert command.returncode == 1, arguments
         why = "Broken pipe" if is_closed else "No space left on device"
-        assert last == f"slipfront {arguments[0]}: error: standard output: {why}"
-        assert all(re.match(r"(checked|done): \d+ of \d+", line) for line in progress)
+        assert line == f"slipfront {arguments[0]}: error: standard output: {why}"
     assert (telling.folder / "out/report.html").is_file()
     assert (telling.folder / "done/sweep.csv").is_file()
     assert len(list(telling.folder.glob("sweep/points/*/run.json"))) == 2

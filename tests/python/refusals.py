@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Results that are changed, and what `python -m slipfront.figures` says of them."""
+"""Results that are changed, what `python -m slipfront.figures` says of them, and what it draws."""
 
 from __future__ import annotations
 
+import json
+
+from matplotlib.figure import Figure
 from slipfront.figures.__main__ import main
 
 
@@ -13,8 +16,36 @@ def replace(file, old, new) -> None:
     file.write_text(text.replace(old, new, 1))
 
 
+def change_json(file, change) -> None:
+    """Rewrites a file after change(content)."""
+    content = json.loads(file.read_text())
+    change(content)
+    file.write_text(json.dumps(content))
+
+
+def one_line(capsys) -> str:
+    """The one line of an error on standard error."""
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    return error
+
+
 def one_error(capsys, *arguments) -> str:
     assert main([str(a) for a in arguments]) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and error.startswith("slipfront.figures: error: ")
+    error = one_line(capsys)
+    assert error.startswith("slipfront.figures: error: ")
     return error
+
+
+def gids(drawn, panel: int = 0) -> set[str]:
+    """Names of all that is drawn in a panel, or in one of a figure's."""
+    ax = drawn.axes[panel] if isinstance(drawn, Figure) else drawn
+    return {a.get_gid() for a in ax.findobj() if a.get_gid()}
+
+
+def artist(drawn, gid: str, panel: int = 0):
+    """The one of a name."""
+    ax = drawn.axes[panel] if isinstance(drawn, Figure) else drawn
+    found = ax.findobj(lambda a: a.get_gid() == gid)
+    assert len(found) == 1, f"{len(found)} artists named {gid}"
+    return found[0]

@@ -10,6 +10,10 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from slipfront.figures.style import RC
+
+# Fewer dots than in print: the tests look at what is drawn, not at its pixels.
+RC["savefig.dpi"] = 20
 
 WIDTH_M, HEIGHT_M = 0.2, 0.1
 WAVE_SPEEDS = {"c_L_m_per_s": 1584.0, "c_S_m_per_s": 889.0, "c_R_m_per_s": 820.0}
@@ -176,6 +180,14 @@ def write_fields(file: Path, columns: int, rows: int, times: np.ndarray, fronts:
             steps[f"PointDataOffsets/{name}"] = n * np.arange(len(times))
 
 
+def told_of(front: list) -> dict:
+    """What run.json tells of a front."""
+    (front_id, x_m, start_s, direction), (_, end_m, end_s) = front[0][:4], front[-1][:3]
+    end = "contact_end" if abs(end_m - 0.1) > 0.08 else "meets_front"
+    told = {"id": front_id, "direction": direction, "start_x_m": x_m, "start_s": start_s}
+    return told | {"end_x_m": end_m, "end_s": end_s, "end": end, "mode": "crack"}
+
+
 def write_run(
     folder: Path, kind: str, mu_k: float, columns: int, rows: int, n_times: int, snapshots: int
 ) -> None:
@@ -207,19 +219,7 @@ def write_run(
             "inside_from_m": CONTACT_FROM_M + EDGE_MARGIN_M,
             "inside_to_m": CONTACT_TO_M - EDGE_MARGIN_M,
         },
-        "fronts": [
-            {
-                "id": f[0][0],
-                "direction": f[0][3],
-                "start_x_m": f[0][1],
-                "start_s": f[0][2],
-                "end_x_m": f[-1][1],
-                "end_s": f[-1][2],
-                "end": "contact_end" if abs(f[-1][1] - 0.1) > 0.08 else "meets_front",
-                "mode": "crack",
-            }
-            for f in fronts
-        ],
+        "fronts": [told_of(front) for front in fronts],
     }
     (folder / "run.json").write_text(json.dumps(info))
     write_csv(folder / "energy.csv", ENERGY_HEADER, energy_rows())
@@ -247,17 +247,13 @@ def write_run(
     write_fields(folder / "fields.vtkhdf", columns, rows, np.linspace(5e-6, 245e-6, snapshots), fronts)
 
 
+FIT = {"a": (0.5, 0.45, 0.55), "b": (1.7, 1.5, 1.9), "c": (2.0, 1.8, 2.2)}
+
+
 def study_front(direction: int, start_m: float, largest: float) -> dict:
-    return {
-        "direction": direction,
-        "start_x_m": start_m,
-        "end_x_m": start_m + 0.04 * direction,
-        "end": "arrest",
-        "mode": "crack",
-        "mean_v_over_c_L": 0.6 * largest,
-        "max_v_over_c_L": largest,
-        "x_of_max_m": start_m,
-    }
+    place = {"direction": direction, "start_x_m": start_m, "end_x_m": start_m + 0.04 * direction}
+    speeds = {"mean_v_over_c_L": 0.6 * largest, "max_v_over_c_L": largest, "x_of_max_m": start_m}
+    return place | speeds | {"end": "arrest", "mode": "crack"}
 
 
 def study_point(value: str, number: float | None, change: float | None, events: dict[str, list]) -> dict:
@@ -285,32 +281,21 @@ def studies() -> list[dict]:
             "right": [study_front(-1, 0.190, 1.2 * largest)],
         }
 
+    elsewhere = {"left": [study_front(1, 0.14, 7.5)], "spontaneous": []}
+    friction = [
+        study_point("0.4", 0.4, 0.09, events(2.0)),
+        study_point("0.6", 0.6, 0.0, events(1.5)),
+        study_point("1.2", 1.2, None, elsewhere),
+    ]
+    mesh = [study_point("0.001", 0.001, -0.02, events(1.4))]
+    corner = [
+        study_point("relief", None, 0.0, events(1.5)),
+        study_point("fillet_2mm", 0.002, 0.01, events(1.6)),
+    ]
     return [
-        {
-            "name": "mu_k",
-            "parameter": "friction.mu_k",
-            "why": "kind of slip",
-            "points": [
-                study_point("0.4", 0.4, 0.09, events(2.0)),
-                study_point("0.6", 0.6, 0.0, events(1.5)),
-                study_point("1.2", 1.2, None, {"left": [study_front(1, 0.14, 7.5)], "spontaneous": []}),
-            ],
-        },
-        {
-            "name": "element_size",
-            "parameter": "plate.element_size_m",
-            "why": "mesh",
-            "points": [study_point("0.001", 0.001, -0.02, events(1.4))],
-        },
-        {
-            "name": "corner",
-            "parameter": "plate.corner",
-            "why": "rounding",
-            "points": [
-                study_point("relief", None, 0.0, events(1.5)),
-                study_point("fillet_2mm", 0.002, 0.01, events(1.6)),
-            ],
-        },
+        {"name": "mu_k", "parameter": "friction.mu_k", "why": "kind of slip", "points": friction},
+        {"name": "element_size", "parameter": "plate.element_size_m", "why": "mesh", "points": mesh},
+        {"name": "corner", "parameter": "plate.corner", "why": "rounding", "points": corner},
     ]
 
 
@@ -336,9 +321,7 @@ def write_output(
     (folder / "scorecard.json").write_text(json.dumps(scorecard))
     analysis = {
         "fit": {
-            "a": {"value": 0.5, "low": 0.45, "high": 0.55},
-            "b": {"value": 1.7, "low": 1.5, "high": 1.9},
-            "c": {"value": 2.0, "low": 1.8, "high": 2.2},
+            **{name: dict(zip(("value", "low", "high"), v, strict=True)) for name, v in FIT.items()},
             "rms_over_c_L": 0.081,
             "n_points": 512,
         },

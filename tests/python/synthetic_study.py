@@ -16,14 +16,8 @@ HEADER = [
     "x_m", "direction", "parameter", "value", "v_tip_m_per_s", "extrapolated_m_per_s", "error_m_per_s",
     "order",
 ]  # fmt: skip
-WITHOUT = {
-    "verdict": "too few stations",
-    "median_relative_error": None,
-    "median_order": None,
-    "growth": None,
-    "n_stations": 0,
-    "n_stations_of_case": 0,
-}
+SUMMARY = ("verdict", "median_relative_error", "median_order", "growth", "n_stations", "n_stations_of_case")
+WITHOUT = dict(zip(SUMMARY, ("too few stations", None, None, None, 0, 0), strict=True))
 
 
 def limit_left(x_m: float) -> float:
@@ -69,66 +63,34 @@ def rows_of_damping() -> list[list]:
 
 
 def summary(verdict: str, error: float, order: float | None, n: int) -> dict:
-    return {
-        "verdict": verdict,
-        "median_relative_error": error,
-        "median_order": order,
-        "growth": 0.5,
-        "n_stations": n,
-        "n_stations_of_case": n,
-    }
-
-
-def sequence(parameter: str, values: list, case_value: float, left: dict, right: dict) -> dict:
-    return {
-        "parameter": parameter,
-        "values": values,
-        "case_value": case_value,
-        "extrapolated_from": values[:3],
-        **left,
-        "direction_-1": left,
-        "direction_+1": right,
-    }
+    return dict(zip(SUMMARY, (verdict, error, order, 0.5, n, n), strict=True))
 
 
 def write_study(folder: Path) -> Path:
     """A convergence study whose speeds have known limits, and in one direction none."""
     folder.mkdir(exist_ok=True)
-    rows = rows_of_sizes() + rows_of_substeps() + rows_of_damping()
-    write_csv(folder / "convergence.csv", HEADER, rows)
-    result = {
-        "version": "0",
-        "title": "made up",
-        "tolerance": 0.02,
-        "station_spacing_m": 2e-3,
-        "l_star_m": 2e-3,
-        "c_L_m_per_s": C_L,
-        "n_runs": 9,
-        "sequences": [
-            sequence(
-                "plate.element_size_m",
-                SIZES,
-                1e-3,
-                summary("not converged", 0.08, 1, 50),
-                summary("no limit", 0.1667, None, 20),
-            ),
-            sequence(
-                "time.interface_substeps",
-                [9, 18, 36, 72],
-                18,
-                summary("converged", 0.0055, 1, 49),
-                summary("converged", 0.0055, 1, 19),
-            ),
-            sequence(
-                "material.stiffness_damping_s",
-                [2e-7, 1e-7, 5e-8, 0],
-                1e-7,
-                summary("converged", 0.0099, 2, 50),
-                WITHOUT,
-            ),
-        ],
-        "warnings": [],
-    }
+    write_csv(folder / "convergence.csv", HEADER, rows_of_sizes() + rows_of_substeps() + rows_of_damping())
+    mesh = (summary("not converged", 0.08, 1, 50), summary("no limit", 0.1667, None, 20))
+    step = (summary("converged", 0.0055, 1, 49), summary("converged", 0.0055, 1, 19))
+    damping = (summary("converged", 0.0099, 2, 50), WITHOUT)
+    sequences = [
+        {
+            "parameter": parameter,
+            "values": values,
+            "case_value": case_value,
+            "extrapolated_from": values[:3],
+            **left,
+            "direction_-1": left,
+            "direction_+1": right,
+        }
+        for parameter, values, case_value, (left, right) in (
+            ("plate.element_size_m", SIZES, 1e-3, mesh),
+            ("time.interface_substeps", [9, 18, 36, 72], 18, step),
+            ("material.stiffness_damping_s", [2e-7, 1e-7, 5e-8, 0], 1e-7, damping),
+        )
+    ]
+    result = {"version": "0", "title": "made up", "tolerance": 0.02, "station_spacing_m": 2e-3}
+    result |= {"l_star_m": 2e-3, "c_L_m_per_s": C_L, "n_runs": 9, "sequences": sequences, "warnings": []}
     (folder / "convergence.json").write_text(json.dumps(result))
     return folder
 
@@ -141,14 +103,8 @@ def write_verification(folder: Path) -> Path:
         {"label": "program", "kind": "program", "x": [1.0, 2.0, 4.0], "y": [1.1, 0.51, 0.26]},
     ]
     chart = {"x_label": "$n$", "y_label": "error", "log_x": True, "log_y": True, "curves": curves}
-    results = {
-        "version": "0",
-        "name": "column",
-        "title": "Column",
-        "holds": True,
-        "checks": [],
-        "charts": [chart],
-    }
+    results = {"version": "0", "name": "column", "title": "Column", "holds": True, "checks": []}
+    results["charts"] = [chart]
     (folder / "column.json").write_text(json.dumps(results))
     return folder
 
@@ -204,13 +160,8 @@ def write_open_choices(folder: Path) -> Path:
         ("about the chosen", chosen | {"left_zone_m": 0.015}, "hold", "holds", 0.9, 2.0, 3.0, 0.8),
         ("about the chosen", standard, "do not", "does not", 1.8, 2.0, 3.0, 0.66),
     ]
-    header = [
-        "set",
-        *standard,
-        "constraints",
-        "fig6",
-        *(f"{e}_max_over_c_L" for e in ("left", "spontaneous", "right")),
-    ]
+    largest = [f"{event}_max_over_c_L" for event in ("left", "spontaneous", "right")]
+    header = ["set", *standard, "constraints", "fig6", *largest]
     rows = [
         [name, *(v if isinstance(v, str) else f"{v:g}" for v in values.values()), *rest]
         for name, values, *rest in samples

@@ -3,14 +3,11 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
-from refusals import one_error, replace
+from refusals import artist, change_json, gids, one_error, replace
 from slipfront.figures import convergence
 from slipfront.figures.__main__ import main
-from slipfront.figures.style import RC
 from synthetic import write_csv
 from synthetic_study import (
     C_L,
@@ -25,24 +22,9 @@ from synthetic_study import (
 )
 
 
-@pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    monkeypatch.setitem(RC, "savefig.dpi", 30)
-
-
 @pytest.fixture
 def study(tmp_path):
     return write_study(tmp_path)
-
-
-def artist(ax, gid):
-    found = ax.findobj(lambda a: a.get_gid() == gid)
-    assert len(found) == 1, f"{len(found)} artists named {gid}"
-    return found[0]
-
-
-def gids(ax) -> set[str]:
-    return {a.get_gid() for a in ax.findobj() if a.get_gid()}
 
 
 def bars(ax, gid) -> np.ndarray:
@@ -63,7 +45,6 @@ def test_speeds_are_drawn_by_value_and_direction(study):
         np.testing.assert_allclose(line.get_xdata(), 1e3 * X_LEFT_M)
         np.testing.assert_allclose(line.get_ydata(), (limit_left(X_LEFT_M) + 1e5 * h) / C_L)
         np.testing.assert_allclose(artist(right, f"speed:1:{k}").get_ydata(), (1000 + 200 * k) / C_L)
-    assert [t.get_text() for t in left.get_legend().get_texts()] == ["2 mm", "1 mm", "0.5 mm", "extrapolated"]
 
 
 def test_error_bars_reach_from_the_cases_own_speed_to_the_limit(study):
@@ -99,18 +80,14 @@ def test_errors_fall_with_the_observed_order(study):
     np.testing.assert_allclose(artist(ax, "median:1").get_ydata(), 100 * np.array([400, 200, 400]) / 1200)
     assert "order:1" not in gids(ax)
     assert artist(ax, "tolerance").get_ydata()[0] == pytest.approx(2)
-    labels = [t.get_text() for t in ax.get_legend().get_texts()]
-    assert labels == ["to $-x$, order 1 (50 of 50)", "to $+x$, no order"]
 
 
 def test_step_size_falls_with_the_number_of_substeps(study):
     ax = panels(study)[1][2]
     np.testing.assert_allclose(artist(ax, "median:-1").get_xdata(), [1 / 9, 1 / 18, 1 / 36, 1 / 72])
-    assert [t.get_text() for t in ax.get_xticklabels()] == ["9", "18", "36", "72"]
     # The station without speeds counts in no median.
     own = 1000 * (1 + 0.1 / 18)
     np.testing.assert_allclose(artist(ax, "median:-1").get_ydata(), [1e4 / n / own for n in (9, 18, 36, 72)])
-    assert ax.get_legend().get_texts()[0].get_text() == "to $-x$, order 1 (49 of 50)"
 
 
 def test_the_limit_itself_has_no_place_on_the_axis_of_errors(study):
@@ -121,19 +98,12 @@ def test_the_limit_itself_has_no_place_on_the_axis_of_errors(study):
     np.testing.assert_allclose(artist(row[0], "speed:-1:3").get_ydata(), 1000 / C_L)
 
 
-def change(folder, act) -> None:
-    file = folder / "convergence.json"
-    result = json.loads(file.read_text())
-    act(result)
-    file.write_text(json.dumps(result))
-
-
 def test_a_direction_without_enough_stations_is_left_out(study):
     def forget(result):
         for s in result["sequences"]:
             s["direction_+1"] = WITHOUT
 
-    change(study, forget)
+    change_json(study / "convergence.json", forget)
     axes = convergence.convergence(study).figure.axes
     assert len(axes) == 6
     assert "median:1" not in gids(axes[1])
@@ -170,6 +140,6 @@ def test_study_without_fronts_gives_one_line(study, capsys):
         for s in result["sequences"]:
             s["direction_+1"] = s["direction_-1"] = WITHOUT
 
-    change(study, forget)
+    change_json(study / "convergence.json", forget)
     assert main([str(study)]) == 2
     assert "no front has a station" in capsys.readouterr().err

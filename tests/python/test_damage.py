@@ -18,7 +18,6 @@ import pytest
 from slipfront.figures import interface_step, open_choices, verification
 from slipfront.figures.__main__ import main
 from slipfront.figures.results import read_results
-from slipfront.figures.style import RC
 from slipfront.files import DataError
 from synthetic import interrupt, seal, write_output
 from synthetic_study import write_interface_step, write_open_choices, write_study, write_verification
@@ -27,11 +26,6 @@ FUZZ_N = int(os.environ.get("SLIPFRONT_FUZZ_N", "32"))
 SEED = int(os.environ.get("SLIPFRONT_FUZZ_SEED", "20120401"))
 LONGEST_S = 900  # catches what hangs
 TEXTS = b'\xff \0 nan inf -1 0 1e308 1e999 null [] {} " # \n'.split(b" ")
-
-
-@pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    monkeypatch.setitem(RC, "savefig.dpi", 20)
 
 
 @contextmanager

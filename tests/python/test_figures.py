@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from refusals import one_error, replace
+from refusals import artist, change_json, gids, one_error, replace
 from slipfront.figures import __main__ as command
 from slipfront.figures import balance, criteria, events, studies
 from slipfront.figures.__main__ import draw_all, main
@@ -21,8 +21,6 @@ from slipfront.figures.main_fronts import drawn_fronts, main_fronts
 from slipfront.figures.report import statements_table, write_report
 from slipfront.figures.results import read_results
 from slipfront.figures.statements import STATEMENTS
-from slipfront.figures.study import Study, StudyPoint
-from slipfront.figures.style import RC
 from synthetic import (
     CONTACT_FROM_M,
     CONTACT_TO_M,
@@ -42,14 +40,6 @@ FIGURES = [
     "fig5_dynamic_criterion", "fig6_energy", "space_time_left", "space_time_spontaneous", "space_time_right",
     "space_time_spontaneous_mu_k_1.0", "energy_balance", "studies", "studies_criteria",
 ]  # fmt: skip
-
-
-@pytest.fixture(scope="module", autouse=True)
-def coarse_pictures():
-    """Fewer dots than in print: the tests look at what is drawn, not at its pixels."""
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setitem(RC, "savefig.dpi", 30)
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -99,27 +89,11 @@ def counting(run: str, rows: dict[str, np.ndarray]) -> np.ndarray:
     return x <= CONTACT_TO_M - 0.02 if run == "right" else np.abs(x - x[0]) >= 5e-3
 
 
-def artist(figure: Figure, gid: str, panel: int = 0):
-    found = figure.axes[panel].findobj(lambda a: a.get_gid() == gid)
-    assert len(found) == 1, f"{len(found)} artists named {gid}"
-    return found[0]
-
-
-def gids(figure: Figure, panel: int = 0) -> set[str]:
-    return {a.get_gid() for a in figure.axes[panel].findobj() if a.get_gid()}
-
-
 def change_front_cells(file, change) -> None:
     """Rewrites fronts.csv with change(row), a dictionary, for each row; None drops the row."""
     with open(file, newline="") as stream:
         rows = [change(row) for row in csv.DictReader(stream)]
     write_csv(file, FRONTS_HEADER, [list(row.values()) for row in rows if row is not None])
-
-
-def change_json(file, change) -> None:
-    content = json.loads(file.read_text())
-    change(content)
-    file.write_text(json.dumps(content))
 
 
 def report_of(output) -> str:
@@ -136,13 +110,9 @@ def rows_under(html: str, heading: str) -> list[list[str]]:
 # The command
 
 
-@pytest.mark.parametrize("name", FIGURES)
-def test_each_figure_is_drawn(made, name):
-    assert (made / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
-
-
 def test_the_report_holds_all_and_needs_no_other_file(made):
     assert {file.name for file in made.iterdir()} == {"index.html", *(f"{name}.png" for name in FIGURES)}
+    assert all(file.read_bytes()[:4] == b"\x89PNG" for file in made.glob("*.png"))
     html = (made / "index.html").read_text(encoding="utf-8")
     assert re.findall(r'<figure id="([^"]+)"', html) == FIGURES
     assert html.count('src="data:image/png;base64,') == len(FIGURES)
@@ -155,20 +125,12 @@ def test_the_report_has_the_numbers_of_the_files(pristine, tmp_path):
     html = write_report(read_results(pristine), [], tmp_path).read_text(encoding="utf-8")
     scorecard = rows_under(html, "Scorecard")
     assert [row[0] for row in scorecard] == ["C1", "C1+", "C2", "E1"]
-    assert scorecard[0][1:] == [
-        "c_L &lt; 1600 m/s &amp; more",
-        "1584, 890",
-        "1584.2, 888.9",
-        "✓",
-        "each within 1 m/s",
-    ]
+    first = ["c_L &lt; 1600 m/s &amp; more", "1584, 890", "1584.2, 888.9", "✓", "each within 1 m/s"]
+    assert scorecard[0][1:] == first
     assert scorecard[2][3:5] == ["0.7123", "✗"] and scorecard[3][3:5] == ["–", "–"]
     assert "Of 3 statements 1 hold (✓), 1 do not (✗), 1 could not be decided (–)." in html
-    assert rows_under(html, "Fit of the energy criterion")[0][1:] == [
-        "0.500",
-        "0.450 to 0.550",
-        "0.76 ± 0.07",
-    ]
+    fit = rows_under(html, "Fit of the energy criterion")
+    assert fit[0][1:] == ["0.500", "0.450 to 0.550", "0.76 ± 0.07"]
     assert "Points: 512; rms about the fit: 0.081 c<sub>L</sub>; within the paper's band: 61 %" in html
     assert len(rows_under(html, "Fronts")) == 1 + 4 + 1 + 3
     assert "slipfront 0.1.0, commit abc1234" in html
@@ -420,16 +382,6 @@ def test_space_time_masks_open_contact(results, drawn):
     np.testing.assert_allclose(rate[fast], np.abs(history.slip_rate_m_per_s)[fast])
 
 
-def test_points_outside_the_axes_are_counted(output):
-    fast = {"v_tip_m_per_s": repr(3.5 * C_L)}
-    change_front_cells(
-        output / "left" / "fronts.csv", lambda row: row | fast if 0.079 < float(row["x_m"]) < 0.091 else row
-    )
-    assert re.search(
-        r" 3 of \d+ points lie outside the axes", criteria.dynamic_criterion(read_results(output)).caption
-    )
-
-
 # The report's tables
 
 
@@ -560,13 +512,7 @@ def test_studies_show_speeds_and_changes(drawn):
         ("other:left:1", [np.nan, np.nan, np.nan]),  # and lies above the axis
     ):
         np.testing.assert_allclose(artist(figure, gid, 0).get_ydata(), y)
-    assert artist(figure, "other:left:1:above", 0).get_text() == "7.5↑"
     np.testing.assert_allclose(artist(figure, "change:spontaneous", 1).get_ydata(), [9, 0, np.nan])
-    assert [label.get_text() for label in figure.axes[1].get_xticklabels()] == ["0.4", "0.6", "1.2"]
-    assert [figure.axes[2 * i].get_title(loc="left") for i in range(3)][1] == "element size (mm)"
-    # Of words, without lines.
-    assert artist(figure, "max:spontaneous:-1", 4).get_linestyle() == "None"
-    assert [label.get_text() for label in figure.axes[5].get_xticklabels()] == ["relief", "fillet\n2mm"]
 
 
 def test_studies_of_criteria_mark_the_papers_value(drawn):
@@ -600,20 +546,10 @@ def test_values_of_runs_that_differ_are_marked_by_run(output):
         assert not {"paper_value", "paper_value:spontaneous"} & gids(figure, 2)
         assert "paper_value" in gids(figure, 0)
     html = report_of(output)
-    assert '<td><b>15</b> <span class="note">left</span></td>' in html
-    assert '<td><b>5</b> <span class="note">right</span></td>' in html
-    assert "<td>10</td>" in html
-    assert "<td><b>0.6</b></td>" in html  # the same in all events
-
-
-def test_small_lengths_are_shown_in_micrometres():
-    def shown(*values_m):
-        points = [StudyPoint(f"{v}", v, {}, {}, None, None, {}) for v in values_m]
-        study = Study("relaxation_length", "friction.relaxation_length_m", "", points)
-        return study.unit[0], [study.shown(point) for point in points]
-
-    assert shown(1e-8, 3e-6) == ("µm", ["0.01", "3"])
-    assert shown(1e-8, 3e-3) == ("mm", ["1e-05", "3"])
+    assert all(
+        f'<td><b>{v}</b> <span class="note">{run}</span></td>' in html
+        for v, run in ((15, "left"), (5, "right"))
+    )
 
 
 # Missing data, experimental data
@@ -646,12 +582,6 @@ def test_experiment_is_drawn_over_figure_2(pristine, tmp_path, column, factor):
     points = artist(criteria.static_ratio_mu_k(read_results(pristine, file)).figure, "experiment")
     np.testing.assert_allclose(points.get_xdata(), [0.7, 1.1])
     np.testing.assert_allclose(points.get_ydata(), [0.25, 0.5])
-
-
-def test_without_a_file_no_experiment_is_drawn(drawn):
-    drawing = drawn["fig2_static_ratio_mu_k_1.0"]
-    assert "experiment" not in gids(drawing.figure)
-    assert "No file of experimental data was given" in drawing.caption
 
 
 # Errors: one clear line, exit code 2

@@ -15,7 +15,6 @@ from slipfront.figures import balance, events, plate
 from slipfront.figures.__main__ import draw_all, main
 from slipfront.figures.report import figure_html, write_report
 from slipfront.figures.results import read_results
-from slipfront.figures.style import RC
 from slipfront.files import DataError
 from slipfront.read import read_run, verify_checksums
 from synthetic import (
@@ -35,11 +34,6 @@ def pristine(tmp_path_factory):
     return write_output(
         tmp_path_factory.mktemp("reproduction") / "out", columns=20, rows=10, n_times=11, snapshots=5
     )
-
-
-@pytest.fixture(autouse=True)
-def coarse_pictures(monkeypatch):
-    monkeypatch.setitem(RC, "savefig.dpi", 20)
 
 
 @pytest.fixture
@@ -135,16 +129,9 @@ def test_without_a_list_nothing_is_vouched_for(output, tmp_path):
     assert read.main([str(output)]) == 1
 
 
-def test_each_file_is_summed_once_and_again_when_it_changes(run, monkeypatch):
+def test_a_file_that_changes_after_it_was_read_is_summed_again(run):
     write_checksums(run)
-    summed = []
-    digest = read.result_file.__globals__["sha256"].__globals__["hashlib"].file_digest
-    monkeypatch.setattr("hashlib.file_digest", lambda s, kind: summed.append(s.name) or digest(s, kind))
     read_run(run)
-    first = len(summed)
-    assert first == 7
-    read_run(run)
-    assert len(summed) == first
     flip(run / "static.csv")
     with pytest.raises(DataError, match="static.csv: does not match"):
         read_run(run)

@@ -42,20 +42,46 @@ def span_mm(run, front) -> tuple[float, float]:
     return round(x[0], 1), round(x[-1], 1)
 
 
-def test_left_front_counts_from_ten_millimetres_beyond_the_trigger_zone(run_of):
-    run = run_of("left", [make_front(1, X_M, 1, 0.008, 0.19, 1e-6)])
-    (front,) = main_fronts(run)
-    assert span_mm(run, front) == (25.3, 190.0)  # contact from 5 mm, zone 10 mm, margin 10 mm
+LEFT, RIGHT = (1, X_M, 1, 0.008, 0.19, 1e-6), (1, X_M, -1, 0.195, 0.02, 1e-6)
 
 
-def test_right_front_counts_from_ten_millimetres_beyond_the_trigger_zone(run_of):
-    run = run_of("right", [make_front(1, X_M, -1, 0.195, 0.02, 1e-6)])
-    (front,) = main_fronts(run)
-    assert span_mm(run, front) == (180.0, 20.0)
+@pytest.mark.parametrize(
+    "kind, fronts, spans",
+    [
+        # Contact from 5 mm, zone 10 mm, margin 10 mm; 5 mm beyond the nucleation.
+        ("left", [LEFT], [(25.3, 190.0)]),
+        ("right", [RIGHT], [(180.0, 20.0)]),
+        (
+            "spontaneous",
+            [(1, X_M, -1, PEAK_M, 0.02, 0.0), (2, X_M, 1, PEAK_M, 0.19, 0.0)],
+            [(139.3, 20.0), (150.0, 190.0)],
+        ),
+    ],
+)
+def test_fronts_count_from_some_way_beyond_where_they_begin(run_of, kind, fronts, spans):
+    run = run_of(kind, [make_front(*front) for front in fronts])
+    assert [span_mm(run, front) for front in main_fronts(run)] == spans
+
+
+@pytest.mark.parametrize(
+    "kind, fronts, main",
+    [
+        ("spontaneous", [], []),
+        # The longer one starts elsewhere.
+        ("spontaneous", [(1, X_M, -1, PEAK_M, 0.11, 0.0), (2, X_M, -1, 0.10, 0.01, 60e-6)], [1]),
+        # Of two from the trigger the longer one.
+        ("left", [(1, X_M, 1, 0.012, 0.05, 1e-6), (2, X_M, 1, 0.01, 0.15, 40e-6)], [2]),
+        # One stays at its trigger.
+        ("right", [(1, X_M, 1, 0.186, 0.19, 1e-6), (2, X_M, -1, 0.19, 0.1, 1e-6)], [2]),
+    ],
+)
+def test_main_fronts_are_the_longest_from_the_trigger(run_of, kind, fronts, main):
+    run = run_of(kind, [make_front(*front) for front in fronts])
+    assert [front.id for front in main_fronts(run)] == main
 
 
 def test_margin_and_zone_are_those_of_the_case(run_of):
-    run = run_of("left", [make_front(1, X_M, 1, 0.008, 0.19, 1e-6)])
+    run = run_of("left", [make_front(*LEFT)])
     text = case_text("left", 0.6, COLUMNS).replace("trigger_zone_m = 10e-3", "trigger_zone_m = 15e-3")
     folder = run.place.folder
     (folder / "case.resolved.toml").write_text(text.replace("margin_m = 10e-3\n", "margin_m = 4e-3\n"))
@@ -64,49 +90,19 @@ def test_margin_and_zone_are_those_of_the_case(run_of):
     assert span_mm(run, main_fronts(run)[0])[0] == pytest.approx(11 + 15 + 4, abs=0.7)
 
 
-def test_spontaneous_fronts_count_from_five_millimetres_beyond_the_nucleation(run_of):
-    fronts = [make_front(1, X_M, -1, PEAK_M, 0.02, 0.0), make_front(2, X_M, 1, PEAK_M, 0.19, 0.0)]
-    run = run_of("spontaneous", fronts)
-    against, along = main_fronts(run)
-    assert (against.id, along.id) == (1, 2)
-    assert span_mm(run, against) == (139.3, 20.0) and span_mm(run, along) == (150.0, 190.0)
-
-
-def test_fronts_that_start_elsewhere_are_no_main_fronts(run_of):
-    own = make_front(1, X_M, -1, PEAK_M, 0.11, 0.0)
-    longer = make_front(2, X_M, -1, 0.10, 0.01, 60e-6)
-    run = run_of("spontaneous", [own, longer])
-    assert [front.id for front in main_fronts(run)] == [1]
-
-
-def test_of_two_from_the_trigger_the_longer_one_is_main(run_of):
-    run = run_of("left", [make_front(1, X_M, 1, 0.012, 0.05, 1e-6), make_front(2, X_M, 1, 0.01, 0.15, 40e-6)])
-    assert [front.id for front in main_fronts(run)] == [2]
-
-
-def test_a_front_that_stays_at_its_trigger_is_none(run_of):
-    run = run_of("right", [make_front(1, X_M, 1, 0.186, 0.19, 1e-6), make_front(2, X_M, -1, 0.19, 0.1, 1e-6)])
-    assert [front.id for front in main_fronts(run)] == [2]
-
-
 def test_a_front_counts_up_to_where_it_stays_slow(run_of):
     """A slow stretch behind which it is fast again belongs to it."""
-    front = make_front(1, X_M, 1, 0.008, 0.19, 1e-6)
+    front = make_front(*LEFT)
     slow = {60.0: 0.05, 60.667: 0.05} | {1e3 * row[1]: 0.09 for row in front if row[1] > 0.1599}
+    slow |= {12.0: 0.01, 12.667: 0.01, 13.333: 0.01}  # a slow beginning at the trigger does not end it
     run = run_of("left", [with_speeds(front, slow)])
     (front,) = main_fronts(run)
     assert span_mm(run, front) == (25.3, 159.3)
     assert np.flatnonzero(np.diff(counted(run, front))).size == 2  # in one piece
 
 
-def test_a_slow_beginning_at_the_trigger_does_not_end_a_front(run_of):
-    slow = {12.0: 0.01, 12.667: 0.01, 13.333: 0.01}
-    run = run_of("left", [with_speeds(make_front(1, X_M, 1, 0.008, 0.19, 1e-6), slow)])
-    assert span_mm(run, main_fronts(run)[0]) == (25.3, 190.0)
-
-
 def test_undefined_speeds_decide_nothing(run_of):
-    front = make_front(1, X_M, 1, 0.008, 0.19, 1e-6)
+    front = make_front(*LEFT)
     for row in front[60:64]:
         row[4] = ""
     assert front[-1][4] == ""
@@ -115,7 +111,7 @@ def test_undefined_speeds_decide_nothing(run_of):
 
 
 def test_tail_is_the_last_stretch_that_counts(run_of):
-    front = make_front(1, X_M, 1, 0.008, 0.19, 1e-6)
+    front = make_front(*LEFT)
     slow = {1e3 * row[1]: 0.05 for row in front if row[1] > 0.0999}
     run = run_of("left", [with_speeds(front, slow)])
     (front,) = main_fronts(run)
@@ -132,7 +128,7 @@ def test_a_front_that_runs_when_the_record_ends_has_no_tail(run_of):
 
 
 def test_falls_are_stretches_of_five_millimetres_where_speed_falls_and_ratio_rises(run_of):
-    front = make_front(1, X_M, 1, 0.008, 0.19, 1e-6)
+    front = make_front(*LEFT)
     for row in front:
         x_mm = 1e3 * row[1]
         if row[7] != "":
@@ -144,10 +140,6 @@ def test_falls_are_stretches_of_five_millimetres_where_speed_falls_and_ratio_ris
     x = 1e3 * front.x_m[falls(run, front)]
     # The step up before 60.667 mm is none, the step down behind 70 mm is; the second stretch is too short.
     assert (x[0], x[-1]) == pytest.approx((60.667, 70.667), abs=0.01) and len(x) == 16
-
-
-def test_a_run_without_fronts_has_none(run_of):
-    assert main_fronts(run_of("spontaneous", [])) == []
 
 
 def test_short_fronts_of_their_own_are_no_main_fronts(tmp_path):

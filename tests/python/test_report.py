@@ -14,7 +14,6 @@ import h5py
 import numpy as np
 import pytest
 from slipfront import __main__ as package
-from slipfront.figures.style import RC
 from slipfront.read import PROBE_FIELDS, Fields, read_balance
 from slipfront.report import history, picture_grid, run_data
 from slipfront.report.command import main
@@ -236,8 +235,7 @@ def test_wrong_shapes_are_refused(run, capsys):
 # Other kinds of folders
 
 
-def test_the_page_of_a_reproduction(tmp_path, monkeypatch):
-    monkeypatch.setitem(RC, "savefig.dpi", 20)
+def test_the_page_of_a_reproduction(tmp_path):
     write_output(tmp_path / "out", columns=20, rows=10, n_times=8, snapshots=2)
     text = page_of(tmp_path / "out")
     data = data_of(text)

@@ -3,15 +3,6 @@
 
 `slipfront sweep --help` and docs/sweeps.md say how; `run` and `open_sweep` do the same in a notebook."""
 
-from __future__ import annotations
-
 from slipfront.sweep.notebook import open_sweep, run
 
-__all__ = ["main", "open_sweep", "run"]
-
-
-def main(arguments: list[str]) -> int:
-    """Exit code of `slipfront sweep`: 0 done, 1 some points failed, 2 refused, 130 interrupted."""
-    from slipfront.sweep.command import main as command
-
-    return command(arguments)
+__all__ = ["open_sweep", "run"]

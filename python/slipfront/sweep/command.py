@@ -7,92 +7,85 @@ import argparse
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from slipfront import command
 from slipfront.files import DataError
-from slipfront.sweep.definition import KEEPS, Sweep, is_sweep_file, read_sweep, setting
+from slipfront.sweep.definition import KEEPS, Sweep, is_sweep_file, read_sweep
 from slipfront.sweep.engine import default_workers
 from slipfront.sweep.folder import read_definition
 from slipfront.sweep.slurm import array_script
-from slipfront.sweep.sweeping import Finished, How, carry_out, told
+from slipfront.sweep.sweeping import How, carry_out
 from slipfront.sweep.values import value_of
 
 NAME = "slipfront sweep"
 SOME_FAILED = 1
-DESCRIPTION = "Runs a case over values of its keys, side by side, and makes one table of what came out."
-VALUES = "VALUES: A,B,C or FROM:TO:COUNT or FROM:TO:COUNT:log; with --sample FROM:TO or FROM:TO:log."
-CODES = (
-    "Exit code 0: all points are done; 1: some failed, the tables list them; 2: refused; 130: interrupted."
-)
+DESCRIPTION = """Runs a case over values of its keys, side by side, and makes one table of what came out.
+VALUES: A,B,C or FROM:TO:COUNT or FROM:TO:COUNT:log; with --sample FROM:TO or FROM:TO:log. Exit code 0: all
+points are done; 1: some failed, the tables list them; 2: refused; 130: interrupted."""
 
 
 def make_parser() -> command.Parser:
-    parser = command.Parser(prog=NAME, description=f"{DESCRIPTION} {VALUES} {CODES}")
-    add = parser.add_argument
+    parser = command.Parser(prog=NAME, description=DESCRIPTION)
+
+    def add(*names: str, **options: Any) -> None:
+        parser.add_argument(*names, **options)
+
+    several: dict[str, Any] = {"action": "append", "default": []}
     add("file", metavar="FILE", type=Path, nargs="?", help="a sweep (TOML), or a case with --vary")
     add("-o", "--output", metavar="DIR", type=Path, help="folder of the sweep; one that was begun goes on")
     add("--restart", metavar="DIR", type=Path, help="go on with the sweep in this folder")
-    add("--vary", metavar="KEY=VALUES", action="append", default=[], help="a key and its values; repeat")
-    add("--set", metavar="KEY=VALUE", action="append", default=[], help="set a key of all points; repeat")
+    add("--vary", metavar="KEY=VALUES", help="a key and its values; repeat", **several)
+    add("--set", metavar="KEY=VALUE", help="set a key of all points; repeat", **several)
     add("--zip", action="store_true", help="first values of all keys together, second ones, ...: no grid")
     add("--sample", metavar="N", type=int, help="N points of a Latin hypercube over the ranges")
     add("--seed", metavar="S", type=int, help="of the sample (default: 0)")
     add("--keep", choices=KEEPS, help="all results of each run, or only the tables (default: all)")
-    add("--stop-after-failures", metavar="N", type=int, help="begin no point after so many failures")
     add("--workers", metavar="N", type=int, help="runs at a time, one thread each (default: processors)")
-    add(
-        "--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers see DIR, instead of local ones"
-    )
-    add("--share", metavar="K/N", help="run only every N-th point from the K-th, for a job array; no tables")
-    add(
-        "--slurm",
-        metavar="FILE",
-        type=Path,
-        help="write a script for an array of Slurm jobs, and run nothing",
-    )
+    add("--scheduler", metavar="ADDRESS", help="a Dask scheduler whose workers see DIR, not local ones")
+    add("--share", metavar="K/N", help="only every N-th point from the K-th, for a job array; no tables")
+    add("--slurm", metavar="FILE", type=Path, help="write a script for an array of Slurm jobs; run nothing")
     add("-q", "--quiet", action="store_true", help="print nothing but errors")
     return parser
 
 
 def once_each(settings: list[str], option: str) -> dict[str, str]:
+    """KEY=VALUE of the command line by key."""
     by_key: dict[str, str] = {}
     for text in settings:
-        key, value = setting(text, option)
+        key, _, value = (part.strip() for part in text.partition("="))
+        if not key or not value:
+            raise DataError(f"{option} {text}: is not KEY=VALUE")
         if key in by_key:
             raise DataError(f"{option} {key} is there twice")
         by_key[key] = value
     return by_key
 
 
-def combination(options: argparse.Namespace, sweep: Sweep) -> Sweep:
-    """What the command line says of how values come together wins over the file."""
-    if options.zip and options.sample is not None:
-        raise DataError("--zip and --sample exclude each other")
-    if options.zip:
-        return replace(sweep, combine="zip")
-    if options.sample is not None:
-        sweep = replace(sweep, combine="sample", count=options.sample)
-    if options.seed is not None:
-        if sweep.combine != "sample":
-            raise DataError("--seed is of a sample: give --sample N as well")
-        sweep = replace(sweep, seed=options.seed)
-    return sweep
-
-
 def sweep_of(options: argparse.Namespace) -> Sweep:
-    """Of a file of a sweep or a case, with what the command line adds."""
+    """Of a file of a sweep or a case, with what the command line adds, which wins over the file."""
     sweep = read_sweep(options.file) if is_sweep_file(options.file) else Sweep(options.file, {})
     vary = once_each(options.vary, "--vary")
     common = {key: value_of(text) for key, text in once_each(options.set, "--set").items()}
     said = {*(f"vary.{key}" for key in vary), *(f"set.{key}" for key in common)}
-    lines = {entry: line for entry, line in sweep.lines.items() if entry not in said}
-    sweep = replace(sweep, vary=sweep.vary | vary, set=sweep.set | common, lines=lines)
-    sweep = combination(options, sweep)
+    changes: dict[str, Any] = {
+        "vary": sweep.vary | vary,
+        "set": sweep.set | common,
+        "lines": {entry: line for entry, line in sweep.lines.items() if entry not in said},
+    }
+    if options.zip and options.sample is not None:
+        raise DataError("--zip and --sample exclude each other")
+    if options.zip:
+        changes["combine"] = "zip"
+    if options.sample is not None:
+        changes |= {"combine": "sample", "count": options.sample}
+    if options.seed is not None:
+        if changes.get("combine", sweep.combine) != "sample":
+            raise DataError("--seed is of a sample: give --sample N as well")
+        changes["seed"] = options.seed
     if options.keep:
-        sweep = replace(sweep, keep=options.keep)
-    if options.stop_after_failures is not None:
-        sweep = replace(sweep, stop_after_failures=options.stop_after_failures)
-    return sweep
+        changes["keep"] = options.keep
+    return replace(sweep, **changes)
 
 
 def share_of(text: str) -> tuple[int, int]:
@@ -112,46 +105,27 @@ def asked_for(options: argparse.Namespace) -> tuple[Sweep, Path]:
     return sweep_of(options), options.output
 
 
-def how_of(options: argparse.Namespace, output: command.Output) -> How:
-    if options.workers is not None and options.workers < 1:
-        raise DataError("--workers is a whole number from 1 on")
-    return How(
-        workers=1 if options.share else options.workers or default_workers(),
-        scheduler=options.scheduler,
-        share=share_of(options.share) if options.share else None,
-        quiet=options.quiet,
-        say=output.say,
-    )
-
-
-def exit_code(finished: Finished) -> int:
-    if finished.is_interrupted:
-        return command.INTERRUPTED
-    return SOME_FAILED if finished.failures or finished.n_left else command.DONE
-
-
-def main(arguments: list[str] | None = None) -> int:
+def main(arguments: list[str]) -> int:
     options = make_parser().parse_args(arguments)
-    codes = [command.DONE]
+    code = command.DONE
     output = command.Output()
 
     def work() -> list[str]:
+        nonlocal code
         sweep, folder = asked_for(options)
         if options.slurm is not None:
             return array_script(sweep, folder, options.slurm)
-        finished = carry_out(sweep, folder, how_of(options, output))
-        codes[0] = exit_code(finished)
+        if options.workers is not None and options.workers < 1:
+            raise DataError("--workers is a whole number from 1 on")
+        share = share_of(options.share) if options.share else None
+        workers = 1 if share else options.workers or default_workers()
+        finished = carry_out(sweep, folder, How(workers, options.scheduler, share, options.quiet, output.say))
         if finished.is_interrupted:
-            raise_interrupted(finished)
-        return [] if options.quiet else told(finished)
+            left = f"interrupted, {finished.n_left} points are left; {NAME} --restart {folder}"
+            command.report_error(NAME, left)
+            code = command.INTERRUPTED
+        elif finished.failures or finished.n_left:
+            code = SOME_FAILED
+        return [] if options.quiet else finished.told()
 
-    def raise_interrupted(finished: Finished) -> None:
-        command.report_error(
-            NAME, f"interrupted, {finished.n_left} points are left; {NAME} --restart {folder_of(finished)}"
-        )
-
-    return command.run(NAME, work, output) or codes[0]
-
-
-def folder_of(finished: Finished) -> Path:
-    return finished.folder
+    return command.run(NAME, work, output) or code

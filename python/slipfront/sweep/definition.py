@@ -1,25 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a sweep is: its case, what varies, and what is kept. From a file SWEEP.toml or from the command line.
-
-case = "left.toml"                    # path, relative to this file
-combine = "grid"                      # all combinations; or "zip": first values together, second, ...
-keep = "tables"                       # or "all": histories and snapshots, too
-stop_after_failures = 10              # no new point is begun then
-
-[set]                                 # of all points, beside what the case says
-output.snapshot_times_s = []
-
-[vary]
-friction.mu_k = "0.4:1.2:9"           # from, to, count
-friction.alpha_m2_per_s2 = [0.01, 0.03, 0.1]
-
-[sample]                              # instead of combine: a Latin hypercube over ranges "FROM:TO[:log]"
-count = 50
-seed = 1
-"""
+"""What a sweep is: its case, what varies, and what is kept."""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -27,14 +11,15 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from slipfront.files import DataError, exists, parse_toml, read_text, read_toml
-from slipfront.sweep.lines import lines_of
 from slipfront.sweep.points import Point, grid, sample, zipped
-from slipfront.sweep.values import Value, Written, range_of, text_of, values_of
+from slipfront.sweep.values import Value, range_of, text_of, values_of
 
 COMBINATIONS = ("grid", "zip", "sample")
 KEEPS = ("all", "tables")
-ENTRIES = ("case", "combine", "keep", "stop_after_failures", "set", "vary", "sample")
-SAMPLE_ENTRIES = ("count", "seed")
+#: Of a file, by their dotted names.
+ENTRIES = {"case": str, "combine": str, "keep": str, "set": dict, "vary": dict, "sample": dict,
+           "sample.count": int, "sample.seed": int}  # fmt: skip
+KINDS = {str: "a text", int: "a whole number", dict: "a table"}
 
 
 @dataclass(frozen=True)
@@ -48,157 +33,118 @@ class Sweep:
     count: int = 0  # of a sample
     seed: int = 0
     keep: str = "all"
-    stop_after_failures: int | None = None
     #: FILE:LINE by dotted entry, of what a file says.
     lines: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
-
-    def place(self, entry: str) -> str:
-        """Where an entry is said, for messages."""
-        return self.lines.get(entry, "sweep")
-
-    @property
-    def keys(self) -> list[str]:
-        return list(self.vary)
 
     def settings(self) -> list[str]:
         """Those of all points, as `--set` takes them."""
         return [f"{key}={text_of(value)}" for key, value in self.set.items()]
 
+    @contextmanager
+    def at(self, entry: str) -> Iterator[None]:
+        """Puts the place of an entry before what is refused meanwhile."""
+        try:
+            yield
+        except DataError as error:
+            raise DataError(f"{self.lines.get(entry, 'sweep')}: {error}") from None
+
+    def refuse(self, entry: str, what: str) -> NoReturn:
+        with self.at(entry):
+            raise DataError(what)
+        raise AssertionError
+
     def points(self) -> list[Point]:
-        if self.combine == "sample":
-            ranges = {key: range_of(key, str(text)) for key, text in self.vary.items()}
-            return sample(ranges, self.count, self.seed)
-        values = {key: values_of(key, spec) for key, spec in self.vary.items()}
-        return zipped(values) if self.combine == "zip" else grid(values)
+        values: dict[str, Any] = {}
+        for key, spec in self.vary.items():
+            with self.at(f"vary.{key}"):
+                values[key] = range_of(key, str(spec)) if self.combine == "sample" else values_of(key, spec)
+        with self.at("sample" if self.combine == "sample" else "vary"):
+            if self.combine == "sample":
+                return sample(values, self.count, self.seed)
+            return zipped(values) if self.combine == "zip" else grid(values)
 
-
-@contextmanager
-def told_at(place: str) -> Iterator[None]:
-    """Puts a place before what is refused meanwhile."""
-    try:
-        yield
-    except DataError as error:
-        raise DataError(f"{place}: {error}") from None
-
-
-def require_sound(sweep: Sweep) -> Sweep:
-    """Refuses what contradicts itself, before anything is run; keys and values are the program's to judge."""
-    at = sweep.place
-    if not sweep.vary:
-        raise DataError(f"{at('vary')}: nothing varies: name at least one key with its values")
-    if sweep.combine not in COMBINATIONS:
-        words = ", ".join(COMBINATIONS)
-        raise DataError(f"{at('combine')}: combine is one of {words}, not '{sweep.combine}'")
-    if sweep.keep not in KEEPS:
-        raise DataError(f"{at('keep')}: keep is one of {', '.join(KEEPS)}, not '{sweep.keep}'")
-    if sweep.stop_after_failures is not None and sweep.stop_after_failures < 1:
-        raise DataError(f"{at('stop_after_failures')}: stop_after_failures is a whole number from 1 on")
-    if sweep.seed < 0:
-        raise DataError(f"{at('sample.seed')}: seed is a whole number from 0 on")
-    for key in sweep.vary:
-        if key in sweep.set:
-            raise DataError(f"{at(f'set.{key}')}: {key} both varies and is set")
-    if not exists(sweep.case):
-        place = f"{at('case')}: " if "case" in sweep.lines else ""
-        raise DataError(f"{place}{sweep.case}: No such file or directory")
-    for key, spec in sweep.vary.items():
-        with told_at(at(f"vary.{key}")):
-            if sweep.combine == "sample":
-                range_of(key, str(spec))
-            else:
-                values_of(key, spec)
-    with told_at(at("sample" if sweep.combine == "sample" else "vary")):
-        sweep.points()
-    return sweep
+    def require_sound(self) -> None:
+        """Refuses what contradicts itself; keys and their values are the program's to judge."""
+        if not self.vary:
+            self.refuse("vary", "nothing varies: name at least one key with its values")
+        for entry, value, known in (("combine", self.combine, COMBINATIONS), ("keep", self.keep, KEEPS)):
+            if value not in known:
+                self.refuse(entry, f"{entry} is one of {', '.join(known)}, not '{value}'")
+        if self.seed < 0:
+            self.refuse("sample.seed", "seed is a whole number from 0 on")
+        for key in self.vary.keys() & self.set.keys():
+            self.refuse(f"set.{key}", f"{key} both varies and is set")
+        if not exists(self.case):
+            self.refuse("case", f"{self.case}: No such file or directory")
+        self.points()
 
 
 def flattened(table: dict[str, Any], before: str = "") -> dict[str, Any]:
     """Values of tables in tables by dotted keys."""
     flat: dict[str, Any] = {}
     for name, value in table.items():
-        if isinstance(value, dict):
-            flat |= flattened(value, f"{before}{name}.")
-        else:
-            flat[before + name] = value
+        flat |= flattened(value, f"{before}{name}.") if isinstance(value, dict) else {before + name: value}
     return flat
 
 
-@dataclass(frozen=True)
-class Entries:
-    """A table of a file, whose mistakes are told with their lines."""
+def keys_of(table: dict[str, Any], before: str = "") -> Iterator[str]:
+    """Dotted keys of a table and of those in it, the outer ones first."""
+    for name, value in table.items():
+        yield before + name
+        if isinstance(value, dict):
+            yield from keys_of(value, f"{before}{name}.")
 
-    file: Path
-    lines: dict[str, str]  # FILE:LINE by dotted entry
-    table: dict[str, Any]
-    name: str = ""  # of a table in the file
 
-    def refuse(self, entry: str, what: str) -> NoReturn:
-        whole = f"{self.name}.{entry}" if self.name else entry
-        raise DataError(f"{self.lines.get(whole, self.lines.get(self.name, str(self.file)))}: {what}")
-
-    def require_known(self, known: tuple[str, ...]) -> None:
-        where = f" in [{self.name}]" if self.name else ""
-        for entry in self.table:
-            if entry not in known:
-                self.refuse(entry, f"unknown entry '{entry}'{where}; known are {', '.join(known)}")
-
-    def inner(self, name: str) -> Entries:
-        table = self.table.get(name, {})
-        if not isinstance(table, dict):
-            self.refuse(name, f"[{name}] is a table")
-        return Entries(self.file, self.lines, table, name)
-
-    def text(self, entry: str, default: str) -> str:
-        value = self.table.get(entry, default)
-        if not isinstance(value, str) or not value:
-            self.refuse(entry, f"{entry} is a text")
-        return value
-
-    def whole_number(self, entry: str, default: int | None) -> int | None:
-        value = self.table.get(entry, default)
-        if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
-            self.refuse(entry, f"{entry} is a whole number")
-        return value
+def lines_of(text: str) -> dict[str, int]:
+    """The line of each dotted key of a text that is TOML. `tomllib` tells no lines."""
+    found: dict[str, int] = {}
+    header, begun, statement = "", 1, ""
+    for number, line in enumerate(text.split("\n"), start=1):
+        statement += line + "\n"
+        try:
+            keys = list(keys_of(tomllib.loads(statement)))
+        except tomllib.TOMLDecodeError:
+            continue  # a bracket or a quotation is still open
+        if statement.lstrip().startswith("["):
+            header = ""
+        for key in keys:
+            found.setdefault(header + key, begun)
+        if statement.lstrip().startswith("[") and keys:
+            header = keys[-1] + "."
+        begun, statement = number + 1, ""
+    return found
 
 
 def is_sweep_file(file: Path) -> bool:
     """Whether a file of TOML is a sweep's, not a case: that has no entry `case` and no [vary]."""
-    table = read_toml(file)
-    return "case" in table or "vary" in table
+    return not {"case", "vary"}.isdisjoint(read_toml(file))
 
 
 def read_sweep(file: Path) -> Sweep:
     text = read_text(file).replace("\r\n", "\n")
     table = parse_toml(file, text)
-    entries = Entries(file, {entry: f"{file}:{line}" for entry, line in lines_of(text).items()}, table)
-    entries.require_known(ENTRIES)
-    of_sample, common = entries.inner("sample"), entries.inner("set")
-    entries.inner("vary")
-    of_sample.require_known(SAMPLE_ENTRIES)
-    if "case" not in table:
-        entries.refuse("case", "case names the case file, relative to this one")
-    if of_sample.table and table.get("combine", "sample") != "sample":
-        entries.refuse("combine", f"combine = '{table['combine']}' and [sample] exclude each other")
-    count = of_sample.whole_number("count", 0)
-    if "sample" in table and not count:
-        of_sample.refuse("count", "[sample] needs count, the number of points")
-    as_written = parse_toml(file, text, Written).get("vary", {})
+    lines = {entry: f"{file}:{line}" for entry, line in lines_of(text).items()}
+    of_sample = table.get("sample", {})
+    entries = dict(table)
+    if isinstance(of_sample, dict):
+        entries |= {f"sample.{name}": value for name, value in of_sample.items()}
+    for entry, value in entries.items():
+        kind = ENTRIES.get(entry)
+        if kind is None:
+            raise DataError(f"{lines[entry]}: unknown entry '{entry}'; known are {', '.join(ENTRIES)}")
+        if type(value) is not kind:
+            raise DataError(f"{lines[entry]}: {entry} is {KINDS[kind]}")
+    if not table.get("case"):
+        raise DataError(f"{lines.get('case', file)}: case names the case file, relative to this one")
+    if "sample" in table and table.get("combine", "sample") != "sample":
+        raise DataError(f"{lines['combine']}: combine = '{table['combine']}' and [sample] exclude each other")
     return Sweep(
-        case=file.parent / entries.text("case", ""),
-        vary=flattened(as_written),
-        set=flattened(common.table),
-        combine="sample" if of_sample.table else entries.text("combine", "grid"),
-        count=count or 0,
-        seed=of_sample.whole_number("seed", 0) or 0,
-        keep=entries.text("keep", "all"),
-        stop_after_failures=entries.whole_number("stop_after_failures", None),
-        lines=entries.lines,
+        case=file.parent / table["case"],
+        vary=flattened(table.get("vary", {})),
+        set=flattened(table.get("set", {})),
+        combine="sample" if "sample" in table else table.get("combine", "grid"),
+        count=of_sample.get("count", 0),
+        seed=of_sample.get("seed", 0),
+        keep=table.get("keep", "all"),
+        lines=lines,
     )
-
-
-def setting(text: str, option: str) -> tuple[str, str]:
-    """KEY=VALUE of the command line."""
-    key, equals, value = text.partition("=")
-    if not equals or not key.strip() or not value.strip():
-        raise DataError(f"{option} {text}: is not KEY=VALUE")
-    return key.strip(), value.strip()

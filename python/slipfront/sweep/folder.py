@@ -13,7 +13,7 @@ import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,7 @@ from slipfront.folder import LIST, UNFINISHED, problem, read_list, sha256
 from slipfront.sweep.definition import Sweep, flattened
 from slipfront.sweep.points import Point
 from slipfront.sweep.program import version_of
-from slipfront.sweep.values import Value, Written, text_of, value_of
+from slipfront.sweep.values import Value, text_of, value_of
 
 DEFINITION = "sweep.json"
 POINTS = "points"
@@ -41,31 +41,30 @@ LOCK = ".sweep.lock"
 CASE = "case.resolved.toml"
 LEFT_OUT = ("interface.h5", "fields.vtkhdf")  # with keep = "tables"
 
-
-@dataclass(frozen=True)
-class Identity:
-    """What points of one folder have in common; those of another case or program do not belong to it."""
-
-    program: str
-    program_sha256: str
-    case_sha256: str  # of the case file and the tables that it names
-    set: list[str]
+#: What points of one folder have in common, and what is said of a folder where it is otherwise.
+IDENTITY = {
+    "program": "begun by another program",
+    "program_sha256": "begun by another build of the program",
+    "case_sha256": "of another case file, or its tables have changed",
+    "set": "of other settings in [set] or --set",
+}
 
 
 def named_files(case: Path, values: list[Any]) -> list[Path]:
     """Files beside the case that texts in it name."""
-    texts = [v for v in values if isinstance(v, str) and v]
-    found = [case.parent / text for text in texts if "\0" not in text and len(text) < 4096]
-    return sorted({file for file in found if file.is_file()})
+    texts = [v for v in values if isinstance(v, str) and 0 < len(v) < 4096 and "\0" not in v]
+    return sorted({file for file in (case.parent / text for text in texts) if file.is_file()})
 
 
-def identity_of(sweep: Sweep, program: Path) -> Identity:
+def identity_of(sweep: Sweep, program: Path) -> dict[str, Any]:
+    """By the names of IDENTITY. The case's checksum is also that of the files it names."""
     case = flattened(read_toml(sweep.case))
     varied = [value for point in sweep.points() for value in point.values.values()]
     sums = hashlib.sha256(read_bytes(sweep.case))
     for file in named_files(sweep.case, [*case.values(), *sweep.set.values(), *varied]):
         sums.update(sha256(file).encode())
-    return Identity(version_of(program), sha256(program), sums.hexdigest(), sweep.settings())
+    values = (version_of(program), sha256(program), sums.hexdigest(), sweep.settings())
+    return dict(zip(IDENTITY, values, strict=True))
 
 
 @contextmanager
@@ -73,10 +72,9 @@ def held(folder: Path, shared: bool = False) -> Iterator[None]:
     """A sweep's folder, made where it is missing; refused where another sweep works in it.
 
     Those that take shares of one sweep hold it together."""
-    made = not exists(folder)
     try:
-        (folder / POINTS).mkdir(parents=True, exist_ok=True)
-        (folder / STATES).mkdir(exist_ok=True)
+        for name in (POINTS, STATES):
+            (folder / name).mkdir(parents=True, exist_ok=True)
         lock = open(folder / LOCK, "a")  # noqa: SIM115
     except OSError as error:
         raise DataError(f"{folder}: cannot be written: {error.strerror}") from None
@@ -85,29 +83,13 @@ def held(folder: Path, shared: bool = False) -> Iterator[None]:
             fcntl.flock(lock, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
         except OSError:
             raise DataError(f"{folder}: another sweep is at work in it") from None
-        try:
-            yield
-        finally:
-            if made:
-                remove_if_empty(folder)
+        yield
 
 
-def remove_if_empty(folder: Path) -> None:
-    """A folder that nothing came into goes again."""
-    if exists(folder / DEFINITION) or any((folder / POINTS).iterdir()):
-        return
-    with suppress(OSError):
-        (folder / LOCK).unlink(missing_ok=True)
-        for name in (POINTS, STATES):
-            (folder / name).rmdir()
-        folder.rmdir()
-
-
-def require_usable(folder: Path, sweep: Sweep, identity: Identity) -> None:
+def require_usable(folder: Path, sweep: Sweep, identity: dict[str, Any]) -> None:
     """Refuses a folder of something else, or of a sweep whose points are other runs.
 
-    Also one with points that this sweep has not: its tables would lose them.
-    """
+    Also one with points that this sweep has not: its tables would lose them."""
     file = folder / DEFINITION
     if not exists(file):
         if is_folder(folder) and any(entry.name not in (POINTS, STATES, LOCK) for entry in folder.iterdir()):
@@ -116,18 +98,12 @@ def require_usable(folder: Path, sweep: Sweep, identity: Identity) -> None:
     found = read_json_table(file).get("identity")
     if not isinstance(found, dict):
         raise DataError(f"{file}: no entry 'identity'")
-    words = {
-        "program": "begun by another program",
-        "program_sha256": "begun by another build of the program",
-        "case_sha256": "of another case file, or its tables have changed",
-        "set": "of other settings in [set] or --set",
-    }
-    for name, wanted in asdict(identity).items():
-        if found.get(name) != wanted:
-            raise DataError(f"{folder}: holds a sweep {words[name]}; choose another folder")
-    points = {point.name: point for point in sweep.points()}
+    for name, otherwise in IDENTITY.items():
+        if found.get(name) != identity[name]:
+            raise DataError(f"{folder}: holds a sweep {otherwise}; choose another folder")
+    points = {point.words for point in sweep.points()}
     for point in read_definition(folder).points():
-        if point.name not in points or points[point.name].numbers() != point.numbers():
+        if point.words not in points:
             lost = f"holds a sweep with the point {point.name}, which this one has not"
             raise DataError(f"{folder}: {lost}; choose another folder")
 
@@ -145,19 +121,17 @@ def write_whole(file: Path, text: str) -> None:
 
 
 def as_json(value: Any) -> Any:
-    """JSON has no infinity, and no second way to write a number: their texts."""
+    """JSON has no infinity: its text."""
     if isinstance(value, dict):
         return {key: as_json(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
+    if isinstance(value, list):
         return [as_json(inner) for inner in value]
-    if isinstance(value, Written):
-        return value.text
     return text_of(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def write_definition(folder: Path, sweep: Sweep, identity: Identity) -> None:
+def write_definition(folder: Path, sweep: Sweep, identity: dict[str, Any]) -> None:
     own = {name: value for name, value in asdict(sweep).items() if name != "lines"}
-    entries = as_json(own | {"case": str(sweep.case.resolve()), "identity": asdict(identity)})
+    entries = as_json(own | {"case": str(sweep.case.resolve()), "identity": identity})
     write_whole(folder / DEFINITION, json.dumps(entries, indent=2, allow_nan=False) + "\n")
 
 
@@ -173,11 +147,6 @@ def read_definition(folder: Path) -> Sweep:
         raise DataError(f"{file}: not the definition of a sweep, or of another version") from None
 
 
-def stop_file(folder: Path, share: tuple[int, int] | None) -> Path:
-    """What asks the runs of a sweep, or of one share of it, to stop."""
-    return folder / ("stop" if share is None else f"stop-{share[0]}-of-{share[1]}")
-
-
 def place_of(folder: Path, point: Point) -> Path:
     return folder / POINTS / point.name
 
@@ -186,17 +155,10 @@ def error_file(folder: Path, point: Point) -> Path:
     return folder / POINTS / f"{point.name}.error"
 
 
-def compared(value: Any) -> Any:
-    """A value in the form in which 1 is 1.0 and `inf` is a number."""
-    if isinstance(value, list):
-        return [compared(part) for part in value]
-    plain: Any = value_of(value) if isinstance(value, str) else value
-    return plain if isinstance(plain, bool | str) else float(plain)
-
-
 def has_value(case: dict[str, Any], key: str, value: Value) -> bool:
-    """Whether a resolved case has a key's value."""
-    return key in case and bool(compared(case[key]) == compared(value))
+    """Whether a resolved case has a key's value; 1 is 1.0, and `inf` a number."""
+    wanted = value_of(value) if isinstance(value, str) else value
+    return case.get(key) in (wanted, value)
 
 
 def what_is_wrong(place: Path, point: Point) -> str | None:
@@ -240,10 +202,8 @@ def failure_of(folder: Path, point: Point) -> str | None:
 def blew_up(place: Path) -> str | None:
     """The reason of a run that blew up, and would do so again."""
     file = place / UNFINISHED / "run.json"
-    if not exists(file):
-        return None
     try:
-        info = read_json_table(file)
+        info = read_json_table(file) if exists(file) else {}
     except DataError:
         return None
     return str(info.get("reason")) if info.get("status") == "blew_up" else None

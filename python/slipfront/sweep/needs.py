@@ -1,28 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a sweep will need, known before its first run: points checked, memory, disk and time added up."""
+"""What is known before the first run: whether all points are valid, and memory, disk and time added up."""
 
 from __future__ import annotations
 
 import os
 import re
 import shutil
-from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from tqdm.auto import tqdm
+
 from slipfront.files import DataError
 from slipfront.sweep.definition import Sweep
 from slipfront.sweep.points import Point
-from slipfront.sweep.program import GIGA, Cost, cost_of, problem_of
+from slipfront.sweep.program import GIGA, Cost, answer, cost_of, with_settings
 from slipfront.sweep.values import text_of
 
 #: Keys on which size, memory and number of steps do not depend: one point's cost stands for all.
-CHEAP_TABLES = ("friction", "event", "fronts", "contact")
-CHEAP_KEYS = ("title", "loading.tilt_left_m", "loading.tilt_right_m")
+CHEAP = re.compile(r"(friction|event|fronts|contact)\..*|title|loading\.tilt_\w+_m")
 WORKER_BYTES = 0.15 * GIGA  # of a Dask worker beside its run
-TABLE_BYTES = 4000.0  # of all tables of a run, by nodes of the interface
-LEAST_BYTES = 1e5
+TABLE_BYTES = 2e6  # of all tables of a run
 
 
 @dataclass(frozen=True)
@@ -30,56 +29,39 @@ class Needs:
     """Of all points that are still to be run."""
 
     n_points: int
-    memory_bytes: float  # of the largest run
-    disk_bytes: float  # what stays, and what lies there while runs go
-    expected_s: float  # of all runs one after the other
+    n_at_once: int
+    memory_bytes: float  # of the runs at a time
+    disk_bytes: float
+    time_s: float  # of all runs one after the other
 
-    def words(self, workers: int) -> str:
-        time = duration_words(self.expected_s / min(workers, max(self.n_points, 1)))
-        memory = min(workers, self.n_points) * self.memory_bytes / GIGA
+    @property
+    def words(self) -> str:
+        time_s = self.time_s / max(self.n_at_once, 1)
+        time = f"{time_s:.0f} s" if time_s < 100 else f"{time_s / 60:.0f} min"
         return (
-            f"{self.n_points} runs, {min(workers, self.n_points)} at a time: about {time}, "
-            f"{memory:.2g} GB of memory, {self.disk_bytes / GIGA:.2g} GB on disk at most"
+            f"{self.n_points} runs, {self.n_at_once} at a time: about {time}, "
+            f"{self.memory_bytes / GIGA:.2g} GB of memory, {self.disk_bytes / GIGA:.2g} GB on disk at most"
         )
 
 
-def duration_words(seconds: float) -> str:
-    if seconds < 100:
-        return f"{seconds:.0f} s"
-    if seconds < 6000:
-        return f"{seconds / 60:.0f} min"
-    return f"{seconds / 3600:.1f} h"
-
-
-def matters(key: str) -> bool:
-    return key not in CHEAP_KEYS and key.split(".")[0] not in CHEAP_TABLES
-
-
-def first_problem(
-    sweep: Sweep, program: Path, points: list[Point], tell: Callable[[int], None]
-) -> tuple[Point, str] | None:
-    """The first point that the program refuses, and why; none is run before all are checked."""
+def require_valid(sweep: Sweep, program: Path, points: list[Point], quiet: bool) -> None:
+    """Refuses the first point that the program refuses; none is run before all are checked."""
     common = sweep.settings()
 
     def check(point: Point) -> str | None:
-        return problem_of(program, sweep.case, common + point.settings())
-
-    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        answers = pool.map(check, points)
         try:
-            for n, (point, problem) in enumerate(zip(points, answers, strict=True), start=1):
-                tell(n)
-                if problem is not None:
-                    return point, problem
-        finally:
-            pool.shutdown(cancel_futures=True)
-    return None
+            answer(program, "validate", str(sweep.case), *with_settings(common + point.settings()))
+        except DataError as error:
+            return str(error)
+        return None
 
-
-def require_valid(sweep: Sweep, program: Path, points: list[Point], tell: Callable[[int], None]) -> None:
-    found = first_problem(sweep, program, points, tell)
-    if found is not None:
-        raise DataError(told_of(sweep, *found))
+    hidden = True if quiet else None  # None: where there is no terminal
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        answers = tqdm(pool.map(check, points), "checked", len(points), leave=False, disable=hidden)
+        for point, problem in zip(points, answers, strict=True):
+            if problem is not None:
+                pool.shutdown(cancel_futures=True)
+                raise DataError(told_of(sweep, point, problem))
 
 
 def told_of(sweep: Sweep, point: Point, problem: str) -> str:
@@ -93,32 +75,22 @@ def told_of(sweep: Sweep, point: Point, problem: str) -> str:
     return f"point {point.words}: {problem}"
 
 
-def costs(sweep: Sweep, program: Path, points: Iterable[Point]) -> list[Cost]:
-    """Of each point; asked once for those that can only cost the same. [points]"""
-    known: dict[tuple[str, ...], Cost] = {}
-    answers = []
-    for point in points:
-        key = tuple(text_of(value) for name, value in point.values.items() if matters(name))
-        if key not in known:
-            known[key] = cost_of(program, sweep.case, sweep.settings() + point.settings())
-        answers.append(known[key])
-    return answers
-
-
-def kept_bytes(cost: Cost, keep: str) -> float:
-    """What lies there of a run that is done."""
-    return LEAST_BYTES + TABLE_BYTES * cost.n_nodes + (cost.result_bytes if keep == "all" else 0)
-
-
 def needs_of(sweep: Sweep, program: Path, points: list[Point], workers: int) -> Needs:
-    each = costs(sweep, program, points)
-    kept = sum(kept_bytes(cost, sweep.keep) for cost in each)
-    at_work = sum(sorted((cost.peak_disk_bytes for cost in each), reverse=True)[:workers])
+    known: dict[tuple[str, ...], Cost] = {}
+    each = []
+    for point in points:
+        kind = tuple(text_of(value) for key, value in point.values.items() if not CHEAP.fullmatch(key))
+        if kind not in known:
+            known[kind] = cost_of(program, sweep.case, sweep.settings() + point.settings())
+        each.append(known[kind])
+    n = min(workers, len(points))
+    disk = sorted((cost.disk_bytes for cost in each), reverse=True)
     return Needs(
         n_points=len(points),
-        memory_bytes=max((cost.memory_bytes for cost in each), default=0) + WORKER_BYTES,
-        disk_bytes=kept + at_work,
-        expected_s=sum(cost.expected_s for cost in each),
+        n_at_once=n,
+        memory_bytes=n * (max((cost.memory_bytes for cost in each), default=0) + WORKER_BYTES),
+        disk_bytes=sum(disk if sweep.keep == "all" else disk[:n]) + TABLE_BYTES * len(points),
+        time_s=sum(cost.time_s for cost in each),
     )
 
 
@@ -127,34 +99,30 @@ def available_memory_bytes() -> float:
     limits = [float("inf")]
     try:
         found = re.search(r"^MemAvailable:\s+(\d+) kB", Path("/proc/meminfo").read_text(), re.MULTILINE)
-        if found:
-            limits.append(float(found[1]) * 1024)
+        limits.append(float(found[1]) * 1024 if found else float("inf"))
         group = Path("/sys/fs/cgroup")
-        limits.append(
-            float((group / "memory.max").read_text()) - float((group / "memory.current").read_text())
-        )
+        limit, used = ((group / f"memory.{name}").read_text() for name in ("max", "current"))
+        limits.append(float(limit) - float(used))
     except (OSError, ValueError):
         pass
     return min(limits)
 
 
-def require_memory(needs: Needs, workers: int) -> None:
+def require_memory(needs: Needs) -> None:
     """Refuses more runs at a time on this machine than its memory holds."""
     available = available_memory_bytes()
-    if min(workers, needs.n_points) * needs.memory_bytes <= available:
+    if needs.memory_bytes <= available:
         return
-    fit = int(available // needs.memory_bytes)
+    fit = int(available // (needs.memory_bytes / needs.n_at_once))
     how = f"--workers {fit}" if fit > 0 else "larger elements, or another machine"
     raise DataError(
-        f"{workers} runs at a time need {workers * needs.memory_bytes / GIGA:.3g} GB of memory, "
+        f"{needs.n_at_once} runs at a time need {needs.memory_bytes / GIGA:.3g} GB of memory, "
         f"{available / GIGA:.3g} GB are free: {how}"
     )
 
 
 def require_disk(needs: Needs, folder: Path) -> None:
-    place = folder.resolve()
-    while not place.exists():
-        place = place.parent
+    place = next(place for place in (folder.resolve(), *folder.resolve().parents) if place.exists())
     free = shutil.disk_usage(place).free
     if needs.disk_bytes > free:
         raise DataError(

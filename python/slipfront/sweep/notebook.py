@@ -20,9 +20,7 @@ def plain(value: Any, key: str) -> Any:
     """A value, or a list of them, as a file of TOML could have it."""
     if hasattr(value, "__array__"):
         value = np.asarray(value).tolist()
-    if isinstance(value, str):
-        return text(value, key)
-    if isinstance(value, Path):
+    if isinstance(value, str | Path):
         return text(str(value), key)
     if isinstance(value, list | tuple | range):
         return [plain(each, key) for each in value]
@@ -47,7 +45,6 @@ def run(
     keep: str = "all",
     workers: int | None = None,
     scheduler: str | None = None,
-    stop_after_failures: int | None = None,
     quiet: bool = False,
 ) -> xr.Dataset:
     """Runs a case over values of its keys, goes on with a sweep that was begun, and returns its table.
@@ -62,7 +59,7 @@ def run(
     """
     from slipfront.sweep.definition import Sweep
     from slipfront.sweep.engine import default_workers
-    from slipfront.sweep.sweeping import How, carry_out, told
+    from slipfront.sweep.sweeping import How, carry_out
 
     sweep = Sweep(
         case=path(case, "case"),
@@ -72,9 +69,6 @@ def run(
         count=samples,
         seed=whole(seed, "seed", least=0),
         keep=text(keep, "keep"),
-        stop_after_failures=None
-        if stop_after_failures is None
-        else whole(stop_after_failures, "stop_after_failures", least=1),
     )
     how = How(
         workers=default_workers() if workers is None else whole(workers, "workers", least=1),
@@ -84,7 +78,7 @@ def run(
     finished = carry_out(sweep, path(output, "output"), how)
     if finished.is_interrupted:
         raise KeyboardInterrupt
-    for line in told(finished):
+    for line in finished.told():
         how.tell(line)
     return open_sweep(output)
 

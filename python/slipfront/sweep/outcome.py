@@ -4,7 +4,6 @@ definitions of docs/theory.md. Fronts count from where they leave the trigger zo
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -82,7 +81,7 @@ class Run:
 
     def speeds(self, front: Front) -> np.ndarray:
         """V_tip/c_L where something travels: where `speed_kind` says so, away from absorbing edges."""
-        is_speed = np.isin(front.speed_kind, (SPEED_KINDS[0], ""))  # empty in older files
+        is_speed = np.isin(front.speed_kind, (SPEED_KINDS[0], ""))  # empty where the file has none
         for from_m, to_m in self.heard_m:
             is_speed &= (front.x_m < from_m) | (front.x_m > to_m)
         found = front.v_tip_m_per_s[is_speed] / self.c_L_m_per_s
@@ -133,118 +132,94 @@ class Quantity:
     name: str
     unit: str
     long_name: str
-    of: Callable[[Run], Cell]
     words: tuple[str, ...] = ()
 
 
-def largest(values: np.ndarray) -> float:
-    return float(values.max()) if len(values) else np.nan
-
-
-def median(values: np.ndarray) -> float:
-    return float(np.median(values)) if len(values) else np.nan
-
-
-def of_longest(measure: Callable[[Run, Front], Cell], otherwise: Cell) -> Callable[[Run], Cell]:
-    """A measure of the longest front; `otherwise` where there is none."""
-
-    def value(run: Run) -> Cell:
-        front = run.longest
-        return otherwise if front is None else measure(run, front)
-
-    return value
-
-
-def largest_of_all(run: Run) -> float:
-    return largest(np.concatenate([np.empty(0), *map(run.speeds, run.fronts)]))
-
-
-def slipped_length_m(run: Run) -> float:
-    return length_of([part for front in run.fronts for part in run.path(front)])
-
-
-def slipped_share(run: Run) -> float:
-    whole_m = length_of(without(run.contact_m, run.driven_m))
-    return slipped_length_m(run) / whole_m if whole_m > 0 else np.nan
-
-
-def reached_ends(run: Run) -> str:
-    """Ends of the contact that slip has come to without a gap."""
-    ends = [name for name, direction in (("left", -1), ("right", 1)) if run.is_reached(direction)]
-    return BOTH if len(ends) == 2 else (*ends, NONE)[0]
-
-
-def expected(key: str) -> Callable[[Run], Cell]:
-    """What the tractions before the event let expect, by run.json; NaN where undefined or not told."""
-
-    def value(run: Run) -> Cell:
-        found: Any = run.info.get("rupture")
-        for part in key.split("."):
-            found = found.get(part) if isinstance(found, dict) else None
-        return float(found) if is_number(found) else np.nan
-
-    return value
-
-
-def n_that(entry: str, word: str) -> Callable[[Run], Cell]:
-    return lambda run: sum(run.told(front, entry) == word for front in run.fronts)
-
-
-def energy(term: str) -> Callable[[Run], Cell]:
-    return lambda run: run.fact(f"energy_at_end.{term}_J_per_m")
-
-
-def energy_change(term: str) -> Callable[[Run], Cell]:
-    key = f"{term}_J_per_m"
-    return lambda run: run.fact(f"energy_at_end.{key}") - run.fact(f"energy_at_start.{key}")
-
-
-def work(name: str, meaning: str) -> Quantity:
-    return Quantity(f"{name}_J_per_m", "J m-1", meaning, energy(name))
-
-
-MODES = ("crack", "pulse", "mixed", NONE)
-ENDS = ("arrest", "meets_front", "contact_end", "record_end", NONE)
-
 QUANTITIES = (
-    Quantity("n_fronts", "1", "fronts that run beyond the trigger zone", lambda run: len(run.fronts)),
-    Quantity("n_arrested", "1", "fronts that end by arrest", n_that("end", "arrest")),
-    Quantity("v_tip_largest_over_c_L", "1", "largest V_tip/c_L at any node of any front", largest_of_all),
-    Quantity("longest_front_v_tip_largest_over_c_L", "1", "largest V_tip/c_L of the longest front",
-             of_longest(lambda run, f: largest(run.speeds(f)), np.nan)),
-    Quantity("longest_front_v_tip_median_over_c_L", "1", "median V_tip/c_L of the longest front's nodes",
-             of_longest(lambda run, f: median(run.speeds(f)), np.nan)),
+    Quantity("n_fronts", "1", "fronts that run beyond the trigger zone"),
+    Quantity("n_arrested", "1", "fronts that end by arrest"),
+    Quantity("v_tip_largest_over_c_L", "1", "largest V_tip/c_L at any node of any front"),
+    Quantity("longest_front_v_tip_largest_over_c_L", "1", "largest V_tip/c_L of the longest front"),
+    Quantity("longest_front_v_tip_median_over_c_L", "1", "median V_tip/c_L of the longest front's nodes"),
     Quantity("longest_front_slip", "", "kind of slip of the longest front",
-             of_longest(lambda run, f: run.told(f, "mode"), NONE), MODES),
+             ("crack", "pulse", "mixed", NONE)),
     Quantity("longest_front_end", "", "how the longest front ends",
-             of_longest(lambda run, f: run.told(f, "end"), NONE), ENDS),
-    Quantity("longest_front_length_m", "m", "length of the longest front's path beyond the trigger zone",
-             of_longest(lambda run, f: run.length_m(f), 0.0)),
-    Quantity("longest_front_direction", "1", "direction of the longest front along x, +1 or -1",
-             of_longest(lambda run, f: f.direction, np.nan)),
-    Quantity("longest_front_start_x_m", "m", "where the longest front starts",
-             of_longest(lambda run, f: float(f.x_m[0]), np.nan)),
-    Quantity("slipped_length_m", "m", "length beyond the trigger zone that fronts have run over",
-             slipped_length_m),
-    Quantity("slipped_share", "1", "slipped share beyond the trigger zone", slipped_share),
-    Quantity("reached_ends", "", "ends of the contact that slip has reached without a gap", reached_ends,
+             ("arrest", "meets_front", "contact_end", "record_end", NONE)),
+    Quantity("longest_front_length_m", "m", "length of the longest front's path beyond the trigger zone"),
+    Quantity("longest_front_direction", "1", "direction of the longest front along x, +1 or -1"),
+    Quantity("longest_front_start_x_m", "m", "where the longest front starts"),
+    Quantity("slipped_length_m", "m", "length beyond the trigger zone that fronts have run over"),
+    Quantity("slipped_share", "1", "slipped share beyond the trigger zone"),
+    Quantity("reached_ends", "", "ends of the contact that slip has reached without a gap",
              ("left", "right", BOTH, NONE)),
-    Quantity("strength_excess_S_median", "1", "median strength excess S before the event",
-             expected("strength_excess_S.median")),
-    Quantity("nucleation_length_m", "m", "nucleation length expected before the event",
-             expected("nucleation_length_m")),
-    Quantity("griffith_half_length_m", "m", "half the critical crack length expected before the event",
-             expected("griffith_half_length_m")),
-    Quantity("strain_energy_change_J_per_m", "J m-1", "strain energy at the end less that at the start",
-             energy_change("strain")),
-    Quantity("kinetic_energy_J_per_m", "J m-1", "kinetic energy at the end", energy("kinetic")),
-    work("friction_work", "work of friction"),
-    work("trigger_work", "work of the trigger's forces"),
-    work("damping_work", "work of the stiffness damping"),
-    Quantity("end_s", "s", "time at the end of the event", lambda run: run.fact("time_s")),
-    Quantity("end_reason", "", "why the event ended", lambda run: str(run.info.get("end", "")),
-             ("end_time", "quiet")),
+    Quantity("strength_excess_S_median", "1", "median strength excess S before the event"),
+    Quantity("nucleation_length_m", "m", "nucleation length expected before the event"),
+    Quantity("griffith_half_length_m", "m", "half the critical crack length expected before the event"),
+    Quantity("strain_energy_change_J_per_m", "J m-1", "strain energy at the end less that at the start"),
+    Quantity("kinetic_energy_J_per_m", "J m-1", "kinetic energy at the end"),
+    Quantity("friction_work_J_per_m", "J m-1", "work of friction"),
+    Quantity("trigger_work_J_per_m", "J m-1", "work of the trigger's forces"),
+    Quantity("damping_work_J_per_m", "J m-1", "work of the stiffness damping"),
+    Quantity("end_s", "s", "time at the end of the event"),
+    Quantity("end_reason", "", "why the event ended", ("end_time", "quiet")),
 )  # fmt: skip
+
+
+def undefined_or(found: Any) -> float:
+    return float(found) if is_number(found) else np.nan
+
+
+def of_longest(run: Run) -> dict[str, Cell]:
+    """What there is without a front, and of the longest one."""
+    front = run.longest
+    if front is None:
+        return {"longest_front_slip": NONE, "longest_front_end": NONE, "longest_front_length_m": 0.0}
+    speeds = run.speeds(front)
+    measured: dict[str, Cell] = {
+        "longest_front_slip": run.told(front, "mode"),
+        "longest_front_end": run.told(front, "end"),
+        "longest_front_length_m": run.length_m(front),
+        "longest_front_direction": front.direction,
+        "longest_front_start_x_m": float(front.x_m[0]),
+    }
+    if len(speeds):
+        measured["longest_front_v_tip_largest_over_c_L"] = float(speeds.max())
+        measured["longest_front_v_tip_median_over_c_L"] = float(np.median(speeds))
+    return measured
+
+
+def measured(run: Run) -> dict[str, Cell]:
+    """By the names of QUANTITIES; NaN where undefined."""
+    slipped_m = length_of([part for front in run.fronts for part in run.path(front)])
+    whole_m = length_of(without(run.contact_m, run.driven_m))
+    ends = [name for name, direction in (("left", -1), ("right", 1)) if run.is_reached(direction)]
+    speeds = np.concatenate([np.empty(0), *map(run.speeds, run.fronts)])
+    expected = run.info.get("rupture") or {}  # null lengths under a law that does not weaken over a slip
+    at_end = {
+        term: run.fact(f"energy_at_end.{term}_J_per_m")
+        for term in ("strain", "kinetic", "friction_work", "trigger_work", "damping_work")
+    }
+    cells: dict[str, Cell] = {
+        **{quantity.name: np.nan for quantity in QUANTITIES},
+        **of_longest(run),
+        "n_fronts": len(run.fronts),
+        "n_arrested": sum(run.told(front, "end") == "arrest" for front in run.fronts),
+        "v_tip_largest_over_c_L": float(speeds.max()) if len(speeds) else np.nan,
+        "slipped_length_m": slipped_m,
+        "slipped_share": slipped_m / whole_m if whole_m > 0 else np.nan,
+        "reached_ends": BOTH if len(ends) == 2 else (*ends, NONE)[0],
+        "strength_excess_S_median": undefined_or((expected.get("strength_excess_S") or {}).get("median")),
+        "nucleation_length_m": undefined_or(expected.get("nucleation_length_m")),
+        "griffith_half_length_m": undefined_or(expected.get("griffith_half_length_m")),
+        "strain_energy_change_J_per_m": at_end["strain"] - run.fact("energy_at_start.strain_J_per_m"),
+        "kinetic_energy_J_per_m": at_end["kinetic"],
+        "friction_work_J_per_m": at_end["friction_work"],
+        "trigger_work_J_per_m": at_end["trigger_work"],
+        "damping_work_J_per_m": at_end["damping_work"],
+        "end_s": run.fact("time_s"),
+        "end_reason": str(run.info.get("end", "")),
+    }
+    return cells
 
 
 def contact_of(columns: dict[str, np.ndarray], file: Path) -> tuple[float, float]:
@@ -281,6 +256,13 @@ def heard_zones(case: dict[str, Any], file: Path, static: dict[str, np.ndarray])
     return [(float(x_m[0]), float(x_m[0]) + reach_m), (float(x_m[-1]) - reach_m, float(x_m[-1]))]
 
 
+def waves_over_c_L(file: Path) -> dict[str, float]:
+    """The plate's wave speeds by run.json, ascending."""
+    info = read_json_table(result_file(file))
+    speeds = {wave: number(file, info, f"wave_speeds.{wave}_m_per_s") for wave in ("c_R", "c_S", "c_L")}
+    return {f"{wave}_over_c_L": speed / speeds["c_L"] for wave, speed in speeds.items()}
+
+
 def read_outcome(place: Path) -> dict[str, Cell]:
     """By the names of QUANTITIES."""
     file = place / "case.resolved.toml"
@@ -296,4 +278,4 @@ def read_outcome(place: Path) -> dict[str, Cell]:
         driven_m=driven_zones(case, file, contact_m),
         heard_m=heard_zones(case, file, static),
     )
-    return {quantity.name: quantity.of(run) for quantity in QUANTITIES}
+    return measured(run)

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import hashlib
 import itertools
+import math
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from slipfront.files import DataError
-from slipfront.sweep.values import MOST_POINTS, Range, Value, name_text, same, text_of
+from slipfront.sweep.values import MOST_POINTS, Range, Value, text_of
 
 LONGEST_NAME = 120
 
@@ -25,12 +26,7 @@ class Point:
 
     @property
     def words(self) -> str:
-        """Its values, to tell it by."""
         return ", ".join(f"{key} = {text_of(value)}" for key, value in self.values.items())
-
-    def numbers(self) -> dict[str, str]:
-        """Equal for points with equal values."""
-        return {key: same(value) for key, value in self.values.items()}
 
     def settings(self) -> list[str]:
         return [f"{key}={text_of(value)}" for key, value in self.values.items()]
@@ -42,48 +38,38 @@ def short_names(keys: list[str]) -> dict[str, str]:
     return {key: leaf if leaves.count(leaf) == 1 else key for key, leaf in zip(keys, leaves, strict=True)}
 
 
-def folder_name(values: Mapping[str, Value], text: Callable[[Value], str] = name_text) -> str:
-    """`mu_k=0.6,alpha_m2_per_s2=1e-3`; of what no folder's name should hold, or long, a checksum."""
+def folder_name(values: Mapping[str, Value]) -> str:
+    """`mu_k=0.6,alpha_m2_per_s2=0.001`; of what no folder's name should hold, or long, a checksum."""
     short = short_names(list(values))
-    name = ",".join(f"{short[key]}={text(value)}" for key, value in values.items())
+    name = ",".join(f"{short[key]}={text_of(value)}" for key, value in values.items())
     if len(name) <= LONGEST_NAME and re.fullmatch(r"[\w.,=+-]+", name, re.ASCII) and not name.startswith("."):
         return name
     whole = "\n".join(f"{key}={text_of(value)}" for key, value in values.items())
     return "point-" + hashlib.sha256(whole.encode()).hexdigest()[:24]
 
 
-def made(keys: list[str], rows: list[tuple[Value, ...]]) -> list[Point]:
-    """Points with short names, and with all digits where short ones would be the same."""
+def made(keys: Iterable[str], rows: Iterable[Iterable[Value]]) -> list[Point]:
     all_values = [dict(zip(keys, row, strict=True)) for row in rows]
-    names = [folder_name(values) for values in all_values]
-    n_of = Counter(names)
-    return [
-        Point(name if n_of[name] == 1 else folder_name(values, text_of), values)
-        for name, values in zip(names, all_values, strict=True)
-    ]
+    return [Point(folder_name(values), values) for values in all_values]
 
 
 def grid(vary: Mapping[str, list[Value]]) -> list[Point]:
     """All combinations; the last key varies fastest."""
-    n = 1
-    for values in vary.values():
-        n *= len(values)
+    n = math.prod(map(len, vary.values()))
     if n > MOST_POINTS:
         raise DataError(f"{n} points are more than {MOST_POINTS}")
-    return made(list(vary), list(itertools.product(*vary.values())))
+    return made(vary, itertools.product(*vary.values()))
 
 
 def zipped(vary: Mapping[str, list[Value]]) -> list[Point]:
     """The first values of all keys, the second ones, and so on."""
-    lengths = {key: len(values) for key, values in vary.items()}
-    if len(set(lengths.values())) > 1:
-        told = ", ".join(f"{key} has {n}" for key, n in lengths.items())
+    if len(set(map(len, vary.values()))) > 1:
+        told = ", ".join(f"{key} has {len(values)}" for key, values in vary.items())
         raise DataError(f"lists that go together have as many values each: {told}")
-    points = made(list(vary), list(zip(*vary.values(), strict=True)))
-    n_of = Counter(tuple(point.numbers().values()) for point in points)
-    for point in points:
-        if n_of[tuple(point.numbers().values())] > 1:
-            raise DataError(f"the point {point.words} is there twice")
+    points = made(vary, zip(*vary.values(), strict=True))
+    n_of = Counter(point.words for point in points)
+    if twice := next((words for words, n in n_of.items() if n > 1), None):
+        raise DataError(f"the point {twice} is there twice")
     return points
 
 
@@ -92,9 +78,6 @@ def sample(vary: Mapping[str, Range], count: int, seed: int) -> list[Point]:
     from scipy.stats import qmc
 
     if not 1 <= count <= MOST_POINTS:
-        raise DataError(f"a sample has from 1 to {MOST_POINTS} points, not {count}")
+        raise DataError(f"a sample has a count of 1 to {MOST_POINTS} points, not {count}")
     shares = qmc.LatinHypercube(d=len(vary), rng=seed).random(count)
-    rows: list[tuple[Value, ...]] = [
-        tuple(r.at(share) for r, share in zip(vary.values(), row, strict=True)) for row in shares
-    ]
-    return made(list(vary), rows)
+    return made(vary, ([r.at(s) for r, s in zip(vary.values(), row, strict=True)] for row in shares))

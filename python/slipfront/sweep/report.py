@@ -1,20 +1,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sweep as part of a page of HTML: maps to choose and to point at, facts of each point, failures."""
+"""A sweep as a page of HTML: maps to choose and to point at, facts of each point, failures."""
 
 from __future__ import annotations
 
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from slipfront.report.page import Page, embedded, words
-from slipfront.sweep.reading import Results, is_sweep, read_results
+from slipfront.sweep.maps import axis_of, waves_of
+from slipfront.sweep.outcome import QUANTITIES
+from slipfront.sweep.tables import TEXTS, is_sweep, keys_of, read_dataset
 from slipfront.sweep.work import DONE
 
-MOST_FAILURES = 100  # that are listed
-PREFERRED = "longest_front_v_tip_median_over_c_L"
+if TYPE_CHECKING:
+    import xarray as xr
+
+FIRST = "longest_front_v_tip_median_over_c_L"
+is_kind = is_sweep  # of the folders of `slipfront report`
+COMBINED = {"grid": "all combinations", "zip": "values that go together", "sample": "a Latin hypercube"}
 
 CHOICES = """\
 <p class="choices">
@@ -27,120 +33,84 @@ CHOICES = """\
 <div id="sweep-point" aria-live="polite"><p>Click on a point of the map for what is known of it.</p></div>"""
 
 
-def is_kind(folder: Path) -> bool:
-    return is_sweep(folder)
-
-
 def shown(value: Any) -> Any:
     """A number, text, or null for what JSON does not have."""
     if isinstance(value, str):
         return value
-    number = float(value)
-    return number if np.isfinite(number) else None
+    return float(value) if np.isfinite(value) else None
 
 
-def first_shown(results: Results) -> str:
-    """The result that the page opens on: one that varies, the longest front's speed where that does."""
-    by_name = {quantity.name: quantity for quantity in results.quantities}
-    names = sorted(by_name, key=lambda name: name != PREFERRED)  # else in the order of the table
-    for name in names:
-        column = results.column(by_name[name])
-        if len(np.unique(column[~np.isnan(column)])) > 1:
-            return name
-    return names[0]
-
-
-def sweep_data(results: Results) -> dict[str, Any]:
+def sweep_data(data: xr.Dataset) -> dict[str, Any]:
     """All that the maps are drawn from, as JSON has it."""
-    texts = {name: results.table.texts(name) for name in ("folder", "status", "message")}
-    cells = {
-        q.name: results.table.texts(q.name) if q.words else results.table.numbers(q.name)
-        for q in results.quantities
-    }
+    keys = keys_of(data)
     points = [
         {
             "index": k,
-            "values": {key: shown(values[k]) for key, values in results.values.items()},
-            "cells": {name: shown(column[k]) for name, column in cells.items()},
-            **{name: column[k] for name, column in texts.items()},
+            "values": {key: shown(row[name]) for name, key in keys.items()},
+            "cells": {q.name: shown(row[q.name]) for q in QUANTITIES},
+            **{name: row[name] for name in TEXTS},
         }
-        for k in range(len(results.table.rows))
+        for k, row in enumerate(data.to_dataframe().reset_index().to_dict("records"))
     ]
     return {
-        "is_grid": results.is_grid,
-        "keys": [{"name": key, "axis": [shown(v) for v in results.axis(key)]} for key in results.keys],
+        "is_grid": "point" not in data.dims,
+        "keys": [
+            {"name": key, "axis": [shown(v) for v in axis_of(data[name])]} for name, key in keys.items()
+        ],
         "quantities": [
             {
                 "name": q.name,
                 "long_name": q.long_name,
                 "unit": q.unit,
                 "words": list(q.words),
-                "waves": [{"name": name, "level": level} for name, level in results.waves_of(q).items()],
+                "waves": [{"name": name, "level": level} for name, level in waves_of(data, q.name).items()],
             }
-            for q in results.quantities
+            for q in QUANTITIES
         ],
-        "first": first_shown(results),
+        "first": FIRST,
         "points": points,
     }
 
 
-def summary(results: Results) -> str:
-    status = results.table.texts("status")
-    n_done = status.count(DONE)
-    keys = ", ".join(f"<code>{words(key)}</code>" for key in results.keys)
-    case = words(Path(results.definition["case"]).name)
-    failed = f", {len(status) - n_done} without results" if n_done < len(status) else ""
-    how = {"grid": "all combinations", "zip": "values that go together", "sample": "a Latin hypercube"}
-    kind = how[results.definition["combine"]]
-    return f"<p>{case} over {keys}, {kind}: {n_done} runs{failed}. Definitions: docs/theory.md.</p>"
+def summary(data: xr.Dataset) -> str:
+    n_failed = int((data.status != DONE).sum())
+    failed = f", {n_failed} without results" if n_failed else ""
+    told = f"{data.attrs['title']}, {COMBINED[data.attrs['combine']]}: {data.status.size} runs{failed}"
+    return f"<p>{words(told)}. Definitions: docs/theory.md.</p>"
 
 
-def failures(results: Results) -> str:
+def failures(data: xr.Dataset) -> str:
     """Points without results, and why."""
-    rows = [
-        (folder, message)
-        for folder, status, message in zip(
-            *(results.table.texts(name) for name in ("folder", "status", "message")), strict=True
-        )
-        if status != DONE
+    texts = (data[name].to_numpy().ravel() for name in ("folder", "message", "status"))
+    cells = [
+        f"<tr><td>{words(f)}</td><td>{words(m)}</td></tr>"
+        for f, m, s in zip(*texts, strict=True)
+        if s != DONE
     ]
-    if not rows:
-        return ""
-    body = "".join(
-        f"<tr><td>{words(folder)}</td><td>{words(message)}</td></tr>"
-        for folder, message in rows[:MOST_FAILURES]
-    )
-    more = f"<p>and {len(rows) - MOST_FAILURES} more</p>" if len(rows) > MOST_FAILURES else ""
-    return f"<h3>Points without results</h3><table><tr><th>Point</th><th>Why</th></tr>{body}</table>{more}"
+    head = "<tr><th>Point</th><th>Why</th></tr>"
+    return f"<h3>Points without results</h3><table>{head}{''.join(cells)}</table>" if cells else ""
 
 
-def script() -> str:
+def sweep_section(data: xr.Dataset) -> str:
+    """A piece of HTML that draws itself."""
+    from plotly.offline import get_plotlyjs
+
     own = (resources.files("slipfront.sweep") / "page" / "sweep.js").read_text(encoding="utf-8")
-    return f"<script>(() => {{\n'use strict';\n{own}\n}})();</script>"
-
-
-def sweep_section(folder: Path, with_plotly: bool = True) -> str:
-    """A piece of HTML that draws itself. Without its own Plotly the page loads Plotly before this piece."""
-    results = read_results(folder)
-    parts = [
-        '<section id="sweep"><h2>Sweep</h2>',
-        summary(results),
-        CHOICES,
-        failures(results),
-        f'<script type="application/json" id="sweep-data">{embedded(sweep_data(results))}</script>',
-    ]
-    if with_plotly:
-        from plotly.offline import get_plotlyjs
-
-        parts.append(f"<script>{get_plotlyjs()}</script>")
-    return "\n".join([*parts, script(), "</section>"])
-
-
-def title_of(folder: Path) -> str:
-    results = read_results(folder)
-    return f"Sweep of {Path(results.definition['case']).name} over {', '.join(results.keys)}"
+    return "\n".join(
+        [
+            '<section id="sweep"><h2>Sweep</h2>',
+            summary(data),
+            CHOICES,
+            failures(data),
+            f'<script type="application/json" id="sweep-data">{embedded(sweep_data(data))}</script>',
+            f"<script>{get_plotlyjs()}</script>",
+            f"<script>(() => {{\n'use strict';\n{own}\n}})();</script>",
+            "</section>",
+        ]
+    )
 
 
 def page(folder: Path) -> Page:
     """The page of `slipfront report DIR`."""
-    return Page(title=title_of(folder), parts=[sweep_section(folder)])
+    data = read_dataset(folder)
+    return Page(title=data.attrs["title"], parts=[sweep_section(data)])

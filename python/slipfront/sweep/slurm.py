@@ -8,10 +8,9 @@ import sys
 from pathlib import Path
 
 from slipfront.sweep import folder as places
-from slipfront.sweep.definition import Sweep, require_sound
+from slipfront.sweep.definition import Sweep
 from slipfront.sweep.needs import WORKER_BYTES, needs_of, require_disk, require_valid
 from slipfront.sweep.program import VARIABLE, find_program
-from slipfront.sweep.progress import Progress
 
 MOST_JOBS = 100
 SPARE = 3  # times the expected time, since machines differ
@@ -34,36 +33,37 @@ TEXT = """\
 #SBATCH --signal=B:TERM@60
 #SBATCH --requeue
 export {variable}={program}
-{pythonpath}# exec: Slurm's warning 60 s before the time is up is the sweep's; a job that runs again goes on.
+export PYTHONPATH={package}
+# exec: Slurm's warning 60 s before the time is up is the sweep's; a job that runs again goes on.
 exec {share}
 """
 
 
 def array_script(sweep: Sweep, folder: Path, script: Path) -> list[str]:
     """Checks all points, writes the folder's definition and the script; returns what to print."""
-    require_sound(sweep)
+    sweep.require_sound()
     program = find_program()
     identity = places.identity_of(sweep, program)
     places.require_usable(folder, sweep, identity)
     points = sweep.points()
-    require_valid(sweep, program, points, Progress("checked", len(points)).update)
+    require_valid(sweep, program, points, quiet=False)
     n_jobs = min(MOST_JOBS, len(points))
     needs = needs_of(sweep, program, points, n_jobs)
     require_disk(needs, folder)
-    python = [sys.executable, "-m", "slipfront.sweep", "--restart", str(folder.resolve())]
-    package = str(Path(__file__).resolve().parents[2])
+    python = [sys.executable, "-m", "slipfront", "sweep", "--restart", str(folder.resolve())]
+    package = shlex.quote(str(Path(__file__).resolve().parents[2]))
     text = TEXT.format(
         title=sweep.case.name,
         n_points=len(points),
         n_jobs=n_jobs,
         script=script,
-        collect=f"PYTHONPATH={shlex.quote(package)} {shlex.join(python)}",
-        memory_mb=int((needs.memory_bytes + WORKER_BYTES) / MEGA) + 1,
-        minutes=max(LEAST_MINUTES, int(SPARE * needs.expected_s / n_jobs / 60) + 1),
+        collect=f"PYTHONPATH={package} {shlex.join(python)}",
+        memory_mb=int((needs.memory_bytes / n_jobs + WORKER_BYTES) / MEGA) + 1,
+        minutes=max(LEAST_MINUTES, int(SPARE * needs.time_s / n_jobs / 60) + 1),
         log=shlex.quote(str(folder.resolve() / "slurm-%a.log")),
         variable=VARIABLE,
         program=shlex.quote(str(program)),
-        pythonpath=f"export PYTHONPATH={shlex.quote(package)}\n",
+        package=package,
         share=f'{shlex.join(python)} --quiet --share "$SLURM_ARRAY_TASK_ID/{n_jobs}"',
     )
     with places.held(folder):

@@ -4,19 +4,21 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from tqdm.auto import tqdm
 
 from slipfront.sweep import engine
 from slipfront.sweep import folder as places
-from slipfront.sweep.definition import Sweep, require_sound
-from slipfront.sweep.glance import table_lines
+from slipfront.sweep.definition import Sweep
 from slipfront.sweep.needs import needs_of, require_disk, require_memory, require_valid
 from slipfront.sweep.points import Point
-from slipfront.sweep.program import find_program, key_facts
-from slipfront.sweep.progress import Progress
-from slipfront.sweep.tables import Row, collect
+from slipfront.sweep.program import find_program
+from slipfront.sweep.tables import collect, table_lines
 from slipfront.sweep.work import DONE, FAILED, Outcome, Task
 
 MOST_TOLD = 10  # failures that are listed
@@ -39,30 +41,36 @@ class How:
 
 @dataclass(frozen=True)
 class Finished:
-    """How a sweep, or a share of one, ended. `rows` are there where its tables are."""
+    """How a sweep, or a share of one, ended."""
 
     folder: Path
-    rows: list[Row]
-    n_done: int
-    failures: list[tuple[str, str]]  # a point's words, and why
-    n_left: int
+    outcomes: list[Outcome]
+    table: Any  # a DataFrame; None without tables
     is_interrupted: bool
 
+    @property
+    def failures(self) -> list[Outcome]:
+        return [outcome for outcome in self.outcomes if outcome.status == FAILED]
 
-def tasks_of(sweep: Sweep, folder: Path, program: Path, points: list[Point], how: How) -> list[Task]:
-    where = folder.resolve()
-    case, stop = str(sweep.case.resolve()), str(places.stop_file(where, how.share))
-    return [Task(str(program), case, sweep.settings(), str(where), stop, p, sweep.keep) for p in points]
+    @property
+    def n_left(self) -> int:
+        return sum(outcome.status not in (DONE, FAILED) for outcome in self.outcomes)
+
+    def told(self) -> list[str]:
+        """What to print at the end."""
+        lines = [] if self.table is None else table_lines(self.table, self.folder)
+        failures = self.failures
+        lines += [f"failed: {one.point.words}: {one.message}" for one in failures[:MOST_TOLD]]
+        if len(failures) > MOST_TOLD:
+            lines.append(f"and {len(failures) - MOST_TOLD} more; the tables list all")
+        return lines if self.table is None else [*lines, f"results: {self.folder}"]
 
 
 def missing_of(sweep: Sweep, folder: Path, how: How) -> list[Point]:
     """Points of this share that have no results yet; what is done is thinned out as `keep` says."""
-    points = sweep.points()
-    if how.share is not None:
-        k, n = how.share
-        points = points[k - 1 :: n]
+    k, n = how.share or (1, 1)
     missing = []
-    for point in points:
+    for point in sweep.points()[k - 1 :: n]:
         if not places.is_done(folder, point):
             missing.append(point)
         elif sweep.keep == "tables":
@@ -72,72 +80,57 @@ def missing_of(sweep: Sweep, folder: Path, how: How) -> list[Point]:
 
 def check(sweep: Sweep, folder: Path, program: Path, missing: list[Point], how: How) -> None:
     """Refuses a sweep before its first run, and says what it will take."""
-    if not missing:
-        return
-    checking = Progress("checked", len(missing), how.quiet)
-    require_valid(sweep, program, missing, checking.update)
+    require_valid(sweep, program, missing, how.quiet)
     needs = needs_of(sweep, program, missing, how.workers)
     if how.scheduler is None:
-        require_memory(needs, how.workers)
+        require_memory(needs)
     require_disk(needs, folder)
-    how.tell(needs.words(how.workers))
+    how.tell(needs.words)
 
 
 def run_missing(sweep: Sweep, folder: Path, tasks: list[Task], how: How) -> tuple[list[Outcome], bool]:
-    stop = engine.Stop(places.stop_file(folder, how.share))
-    progress = Progress("done", len(tasks), how.quiet)
-    if how.share is not None or not tasks:
+    """Outcomes of all tasks, and whether a signal has ended them. Why one has failed is kept beside it."""
+    if not tasks:
+        return [], False
+    stop = engine.Stop(tasks[0].stop)
+    if how.share is not None:
         found = engine.one_by_one(tasks)
     else:
         found = engine.outcomes(tasks, how.scheduler, min(how.workers, len(tasks)))
-    try:
-        outcomes = engine.run_all(found, stop, sweep.stop_after_failures, progress.update)
-    finally:
-        progress.close()
-        stop.forget()
-    return outcomes, stop.is_interrupt
+    done = []
+    hidden = True if how.quiet or sys.stderr is None else None  # None: where there is no terminal
+    with stop.catching():
+        for outcome in tqdm(found, "done", len(tasks), disable=hidden):
+            done.append(outcome)
+            file = places.error_file(folder, outcome.point)
+            if outcome.status == FAILED:
+                places.write_whole(file, outcome.message + "\n")
+            elif outcome.status == DONE:
+                file.unlink(missing_ok=True)
+    return done, stop.is_wanted
 
 
 def carry_out(sweep: Sweep, folder: Path, how: How) -> Finished:
     """Runs what is missing, and makes the tables where nothing is left to be run.
 
     Raises DataError for what is refused; points that fail are told by the result."""
-    require_sound(sweep)
+    sweep.require_sound()
     program = find_program()
     identity = places.identity_of(sweep, program)
     places.require_usable(folder, sweep, identity)
     missing = missing_of(sweep, folder, how)
-    check(sweep, folder, program, missing, how)
+    if missing:
+        check(sweep, folder, program, missing, how)
     with places.held(folder, shared=how.share is not None):
         places.write_definition(folder, sweep, identity)
-        tasks = tasks_of(sweep, folder, program, missing, how)
+        where, case = folder.resolve(), str(sweep.case.resolve())
+        stop = where / ("stop" if how.share is None else "stop-{}-of-{}".format(*how.share))
+        settings = sweep.settings()
+        tasks = [Task(str(program), case, settings, where, stop, p, sweep.keep) for p in missing]
         outcomes, is_interrupted = run_missing(sweep, folder, tasks, how)
-        return ending(sweep, folder, program, how, outcomes, is_interrupted)
-
-
-def ending(
-    sweep: Sweep, folder: Path, program: Path, how: How, outcomes: list[Outcome], is_interrupted: bool
-) -> Finished:
-    words = {point.name: point.words for point in sweep.points()}
-    failures = [(words[o.name], o.message) for o in outcomes if o.status == FAILED]
-    n_done = sum(o.status == DONE for o in outcomes)
-    n_left = len(outcomes) - n_done - len(failures)
-    rows: list[Row] = []
-    if how.share is None and not is_interrupted:
-        rows = collect(folder, sweep, program, key_facts(program))
-        if all(row.status == DONE for row in rows):
-            shutil.rmtree(folder / places.STATES, ignore_errors=True)
-    return Finished(folder, rows, n_done, failures, n_left, is_interrupted)
-
-
-def told(finished: Finished) -> list[str]:
-    """What to print at the end."""
-    lines = table_lines(finished.rows, finished.folder)
-    lines += [f"failed: {words}: {message}" for words, message in finished.failures[:MOST_TOLD]]
-    if len(finished.failures) > MOST_TOLD:
-        lines.append(f"and {len(finished.failures) - MOST_TOLD} more; the tables list all")
-    if finished.n_left and not finished.is_interrupted:
-        lines.append(f"{finished.n_left} points were not begun after {len(finished.failures)} failures")
-    if finished.rows:
-        lines.append(f"results: {finished.folder}")
-    return lines
+        table = None
+        if how.share is None and not is_interrupted:
+            table = collect(folder, sweep, identity["program"])
+            if (table.status == DONE).all():
+                shutil.rmtree(folder / places.STATES, ignore_errors=True)
+        return Finished(folder, outcomes, table, is_interrupted)

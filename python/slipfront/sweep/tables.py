@@ -3,25 +3,22 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 import shutil
-from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 
-from slipfront.files import DataError, is_folder
+from slipfront.files import DataError, exists, is_folder
 from slipfront.folder import LIST, PUBLISHING, UNFINISHED, located, result_file, sha256
+from slipfront.opened import unit_of
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
-from slipfront.sweep.outcome import QUANTITIES, Cell, Quantity, read_outcome
+from slipfront.sweep.outcome import QUANTITIES, Cell, read_outcome, waves_over_c_L
 from slipfront.sweep.points import Point, short_names
-from slipfront.sweep.program import KeyFacts, version_of
-from slipfront.sweep.values import as_array, short_text, text_of, values_of
+from slipfront.sweep.values import as_array, text_of, values_of
 from slipfront.sweep.work import DONE, FAILED
 
 if TYPE_CHECKING:
@@ -30,120 +27,108 @@ if TYPE_CHECKING:
 TABLE = "sweep.csv"
 DATA = "sweep.nc"
 MISSING = "missing"
+MOST_ROWS = 30  # that are printed
+#: Printed results by the head of their column.
+PRINTED = {
+    "n_fronts": "fronts",
+    "longest_front_slip": "slip",
+    "longest_front_length_m": "length_m",
+    "longest_front_v_tip_median_over_c_L": "V_tip/c_L",
+    "longest_front_end": "end",
+    "slipped_share": "slipped",
+    "reached_ends": "reached",
+}
+TEXTS = {
+    "status": "whether the run came to its end",
+    "message": "why a point has no results",
+    "folder": "results of the run",
+}
 
 
-@dataclass(frozen=True)
-class Row:
-    """A point and what came out of it; without results, `message` says why."""
-
-    point: Point
-    status: str
-    message: str
-    cells: dict[str, Cell]
-
-
-def row_of(folder: Path, point: Point) -> Row:
+def row_of(folder: Path, point: Point) -> dict[str, Cell]:
+    """A point's values as texts and what came out of it; without results, `message` says why."""
     place = places.place_of(folder, point)
+    values: dict[str, Cell] = {key: text_of(value) for key, value in point.values.items()}
+    row = values | {"folder": f"{places.POINTS}/{point.name}"}
     try:
         wrong = places.what_is_wrong(place, point)
         if wrong is None:
-            return Row(point, DONE, "", read_outcome(place))
+            return row | {"status": DONE, "message": ""} | read_outcome(place)
     except DataError as error:
         wrong = str(error)
     failure = places.failure_of(folder, point)
-    return Row(point, MISSING if failure is None else FAILED, failure or wrong, {})
+    return row | {"status": MISSING if failure is None else FAILED, "message": failure or wrong}
 
 
-def without(quantity: Quantity) -> Cell:
-    """What stands for a quantity of a point without results."""
-    return "" if quantity.words else np.nan
+def table_of(sweep: Sweep, rows: list[dict[str, Cell]]) -> pd.DataFrame:
+    """A row per point: folder, values of the keys, status, quantities, message."""
+    names = ["folder", *sweep.vary, "status", *(q.name for q in QUANTITIES), "message"]
+    table = pd.DataFrame(rows, columns=names)
+    for q in QUANTITIES:
+        cells = [row.get(q.name, "" if q.words else np.nan) for row in rows]
+        table[q.name] = pd.Series(cells, dtype=object if q.words else float)
+    return table
 
 
-def csv_text(cell: Cell) -> str:
-    if isinstance(cell, float):
-        return "" if np.isnan(cell) else short_text(cell)
-    return text_of(cell)
-
-
-def table_text(sweep: Sweep, rows: list[Row]) -> str:
-    """sweep.csv: keys with their values, status, quantities; a row per point, undefined cells empty."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["folder", *sweep.keys, "status", *(q.name for q in QUANTITIES), "message"])
-    for row in rows:
-        cells = [row.cells.get(q.name, without(q)) for q in QUANTITIES]
-        folder = f"{places.POINTS}/{row.point.name}"
-        values = [text_of(value) for value in row.point.values.values()]
-        writer.writerow([folder, *values, row.status, *map(csv_text, cells), row.message])
-    return text.getvalue()
-
-
-def column(quantity: Quantity, rows: list[Row]) -> np.ndarray:
-    cells = [row.cells.get(quantity.name, without(quantity)) for row in rows]
-    return np.array(cells, dtype=object if quantity.words else float)
+def table_lines(table: pd.DataFrame, folder: Path) -> list[str]:
+    """The keys that vary and what is asked first, a line per point of the first ones."""
+    keys = list(table.columns[1 : table.columns.get_loc("status")])
+    heads = short_names(keys) | {"status": "status"} | PRINTED
+    if (table.status == DONE).all():
+        del heads["status"]
+    shown = table[list(heads)].rename(columns=heads).head(MOST_ROWS)
+    text = shown.to_string(
+        index=False, na_rep="-", float_format="{:.3g}".format, line_width=120, max_colwidth=24
+    )
+    lines = ["slip, length_m, V_tip/c_L (median) and end are of the longest front:", *text.split("\n")]
+    if len(table) > MOST_ROWS:
+        lines.append(f"... {len(table) - MOST_ROWS} more in {folder / TABLE}")
+    return lines
 
 
 def attributes(unit: str, long_name: str, **others: str) -> dict[str, str]:
     return {"units": unit or "1", "long_name": long_name} | others
 
 
-def coordinate_attributes(key: str, facts: dict[str, KeyFacts]) -> dict[str, str]:
-    known = facts.get(key, KeyFacts("", key))
-    return attributes(known.unit, known.meaning, key=key)
-
-
-def dataset(sweep: Sweep, rows: list[Row], facts: dict[str, KeyFacts], program: str) -> xr.Dataset:
+def dataset(sweep: Sweep, table: pd.DataFrame, program: str, waves: dict[str, float]) -> xr.Dataset:
     """A grid has a dimension for each key that varies, other sweeps the dimension `point`."""
     import xarray as xr
 
-    short = short_names(sweep.keys)
-    is_grid = sweep.combine == "grid"
-    arrays = {q.name: (column(q, rows), attributes(q.unit, q.long_name, **flags(q))) for q in QUANTITIES}
-    texts = {
-        "status": ([row.status for row in rows], "whether the run came to its end"),
-        "message": ([row.message for row in rows], "why a point has no results"),
-        "folder": ([f"{places.POINTS}/{row.point.name}" for row in rows], "results of the run"),
-    }
-    for name, (cells, long_name) in texts.items():
-        arrays[name] = (np.array(cells, dtype=object), attributes("", long_name))
-    if is_grid:
-        axes = {key: as_array(values_of(key, spec)) for key, spec in sweep.vary.items()}
-        dims = [short[key] for key in axes]
-        shape = [len(values) for values in axes.values()]
-        coords = {short[k]: (short[k], v, coordinate_attributes(k, facts)) for k, v in axes.items()}
+    short = short_names(list(sweep.vary))
+    points = sweep.points()
+    if is_grid := sweep.combine == "grid":
+        columns = {key: as_array(values_of(key, spec)) for key, spec in sweep.vary.items()}
     else:
-        dims, shape = ["point"], [len(rows)]
-        columns = {key: as_array([row.point.values[key] for row in rows]) for key in sweep.keys}
-        coords = {short[k]: ("point", v, coordinate_attributes(k, facts)) for k, v in columns.items()}
-    variables = {name: (dims, cells.reshape(shape), attrs) for name, (cells, attrs) in arrays.items()}
-    about = {
-        "title": f"sweep of {sweep.case.name} over {', '.join(sweep.keys)}",
+        columns = {key: as_array([point.values[key] for point in points]) for key in sweep.vary}
+    dims = list(short.values()) if is_grid else ["point"]
+    shape = [len(values) for values in columns.values()] if is_grid else [len(points)]
+    coords = {
+        name: (name if is_grid else "point", columns[key], attributes(unit_of(key), key, key=key))
+        for key, name in short.items()
+    }
+    attrs = {q.name: attributes(q.unit, q.long_name, words=" ".join(q.words)) for q in QUANTITIES}
+    attrs |= {name: attributes("", long_name) for name, long_name in TEXTS.items()}
+    variables = {}
+    for name, told in attrs.items():
+        cells = np.array(table[name], dtype=float if table[name].dtype == float else object)
+        variables[name] = (dims, cells.reshape(shape), {k: text for k, text in told.items() if text})
+    about: dict[str, Any] = {
+        "title": f"sweep of {sweep.case.name} over {', '.join(sweep.vary)}",
         "source": program,
+        "combine": sweep.combine,
         "set": ", ".join(sweep.settings()),
         "definitions": "docs/theory.md",
     }
-    return xr.Dataset(variables, coords, about)
+    return xr.Dataset(variables, coords, about | waves)
 
 
-def flags(quantity: Quantity) -> dict[str, str]:
-    return {"words": " ".join(quantity.words)} if quantity.words else {}
-
-
-def listed(folder: Path, made: Path, rows: list[Row]) -> str:
+def listed(folder: Path, made: Path, table: pd.DataFrame) -> str:
     """checksums.sha256 of the sweep's own files, and of the lists of the points that are done."""
     sums = {name: sha256(made / name) for name in (TABLE, DATA)}
     sums[places.DEFINITION] = sha256(folder / places.DEFINITION)
-    for row in rows:
-        if row.status == DONE:
-            sums[f"{places.POINTS}/{row.point.name}/{LIST}"] = sha256(
-                places.place_of(folder, row.point) / LIST
-            )
+    for place in table.folder[table.status == DONE]:
+        sums[f"{place}/{LIST}"] = sha256(folder / place / LIST)
     return "".join(f"{value}  {name}\n" for name, value in sums.items())
-
-
-def synced(file: Path) -> None:
-    with open(file, "rb") as stream:
-        os.fsync(stream.fileno())
 
 
 def end_publication(folder: Path) -> None:
@@ -156,42 +141,58 @@ def end_publication(folder: Path) -> None:
     publishing.rmdir()
 
 
-def publish(folder: Path, sweep: Sweep, rows: list[Row], data: xr.Dataset) -> None:
+def publish(folder: Path, table: pd.DataFrame, data: xr.Dataset) -> None:
     """Both files and their list appear together; earlier ones stay until then."""
     made = folder / UNFINISHED
     try:
         end_publication(folder)
-        with suppress(FileNotFoundError):
-            shutil.rmtree(made)
+        shutil.rmtree(made, ignore_errors=True)
         made.mkdir()
-        (made / TABLE).write_text(table_text(sweep, rows), encoding="utf-8")
+        table.to_csv(made / TABLE, index=False, float_format="%.12g", lineterminator="\n")
         data.to_netcdf(made / DATA, engine="h5netcdf")
-        (made / LIST).write_text(listed(folder, made, rows), encoding="utf-8")
+        (made / LIST).write_text(listed(folder, made, table), encoding="utf-8")
         for file in made.iterdir():
-            synced(file)
+            with open(file, "rb") as stream:
+                os.fsync(stream.fileno())
         os.rename(made, folder / PUBLISHING)
         end_publication(folder)
     except OSError as error:
         raise DataError(f"{folder}: cannot be written: {error.strerror or error}") from None
 
 
-def collect(folder: Path, sweep: Sweep, program: Path, facts: dict[str, KeyFacts]) -> list[Row]:
+def collect(folder: Path, sweep: Sweep, program: str) -> pd.DataFrame:
     """Reads all points and publishes the tables."""
-    rows = [row_of(folder, point) for point in sweep.points()]
-    publish(folder, sweep, rows, dataset(sweep, rows, facts, version_of(program)))
-    return rows
+    table = table_of(sweep, [row_of(folder, point) for point in sweep.points()])
+    done = table.folder[table.status == DONE]
+    varies = any(key.startswith("material.") for key in sweep.vary)
+    waves = {} if varies or done.empty else waves_over_c_L(folder / done.iloc[0] / "run.json")
+    publish(folder, table, dataset(sweep, table, program, waves))
+    return table
+
+
+def is_sweep(folder: Path) -> bool:
+    return exists(folder / places.DEFINITION) and exists(located(folder / DATA))
 
 
 def read_dataset(folder: Path) -> xr.Dataset:
     """sweep.nc in memory, compared with its checksum."""
     import xarray as xr
 
+    if not is_sweep(folder):
+        begun = exists(folder / places.DEFINITION)
+        hint = f"the sweep is not done; slipfront sweep --restart {folder}" if begun else "holds no sweep"
+        raise DataError(f"{folder}: {hint}")
     file = result_file(folder / DATA)
-    if not located(file).exists():
-        raise DataError(f"{folder}: holds no sweep that is done")
     try:
         with xr.open_dataset(file, engine="h5netcdf") as data:
             found: Any = data.load()
     except (OSError, ValueError, KeyError) as error:
         raise DataError(f"{file}: damaged, or not of a sweep: {error}") from None
+    if not keys_of(found):
+        raise DataError(f"{file}: not of a sweep")
     return found
+
+
+def keys_of(data: xr.Dataset) -> dict[str, str]:
+    """Keys that vary, by the names of their coordinates."""
+    return {str(name): column.attrs["key"] for name, column in data.coords.items() if "key" in column.attrs}

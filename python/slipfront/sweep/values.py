@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections import Counter
 from dataclasses import dataclass
 from typing import Any
@@ -15,43 +14,10 @@ import numpy as np
 from slipfront.files import DataError, is_number
 
 MOST_POINTS = 1_000_000
-
-DIGITS = 12  # of values between the ends of a range and of results: 0.6, not 0.6000000000000001
-NAME_DIGITS = 6  # of these in names, where that tells them apart
 LOG = "log"
 
-#: What a key of a case file may be set to: a number, a word, a flag, or a list of numbers.
+#: What a key of a case file may be set to: a number, a word, a flag, or a list of these.
 Value = float | int | bool | str | list[Any]
-
-
-@dataclass(frozen=True)
-class Range:
-    """A key's range from which samples are drawn; `is_log`: evenly in the logarithm."""
-
-    from_: float
-    to: float
-    is_log: bool
-
-    def at(self, share: float) -> Written:
-        """The value at a share in [0, 1] of the way."""
-        if self.is_log:
-            return rounded(math.exp(math.log(self.from_) + share * math.log(self.to / self.from_)))
-        return rounded(self.from_ + share * (self.to - self.from_))
-
-
-class Written(float):
-    """A number and how it is written in names: as the user did, or short."""
-
-    text: str
-
-    def __new__(cls, value: float | str, text: str | None = None) -> Written:
-        made = super().__new__(cls, value)
-        made.text = str(value).strip() if text is None else text
-        return made
-
-
-def rounded(value: float) -> Written:
-    return Written(f"{value:.{DIGITS}g}", f"{value:.{NAME_DIGITS}g}")
 
 
 def value_of(text: str) -> Value:
@@ -59,100 +25,82 @@ def value_of(text: str) -> Value:
     text = text.strip()
     if text in ("true", "false"):
         return text == "true"
-    try:
-        return int(text)
-    except ValueError:
-        pass
-    try:
-        return float(text)
-    except ValueError:
-        return text
-
-
-def as_written(text: str) -> Value:
-    """The same, a number with its text."""
-    value = value_of(text)
-    return Written(text) if isinstance(value, float) and math.isfinite(value) else value
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    return text
 
 
 def text_of(value: Value) -> str:
-    """A value as the right side of `--set KEY=VALUE`; one text for one number, however it was written."""
+    """A value as the right side of `--set KEY=VALUE`; one text for one number, such as 1 for 1.0."""
     if isinstance(value, str):
         return value
-    if isinstance(value, float):
-        return float.__repr__(value)
-    return json.dumps(value)
+    if isinstance(value, list):
+        return f"[{', '.join(json.dumps(v) if isinstance(v, str) else text_of(v) for v in value)}]"
+    if isinstance(value, bool | int):
+        return str(value).lower()
+    return str(int(value)) if value.is_integer() and abs(value) < 1e15 else float.__repr__(value)
 
 
-def short_text(value: float) -> str:
-    """The shortest text of a number within DIGITS digits."""
-    return text_of(float(f"{value:.{DIGITS}g}"))
+@dataclass(frozen=True)
+class Range:
+    """A key's values from one end to the other; `is_log`: evenly in the logarithm."""
+
+    from_: float
+    to: float
+    is_log: bool
+
+    def at(self, share: float) -> float:
+        """The value at a share in [0, 1] of the way, without digits of rounding."""
+        if self.is_log:
+            value = math.exp(math.log(self.from_) + share * math.log(self.to / self.from_))
+        else:
+            value = self.from_ + share * (self.to - self.from_)
+        return float(f"{value:.12g}")
 
 
-def name_text(value: Value) -> str:
-    """A value as it is in the name of a point: 1e-5, not 1e-05."""
-    text = value.text if isinstance(value, Written) else text_of(value)
-    return re.sub(r"(?<=\d)e([+-]?)0*(?=\d)", r"e\1", text) if isinstance(value, float) else text
-
-
-def same(value: Value) -> str:
-    """Equal for equal values, such as 1 and 1.0."""
-    return text_of(float(value)) if is_number(value) else text_of(value)  # type: ignore[arg-type]
-
-
-def bounds(key: str, text: str, parts: list[str]) -> tuple[float, float, bool]:
-    is_log = parts[-1] == LOG
-    ends = [value_of(part) for part in parts[:2]]
-    if len(ends) != 2 or not all(is_number(end) for end in ends):
+def range_of(key: str, text: str, parts: list[str] | None = None) -> Range:
+    """FROM:TO or FROM:TO:log."""
+    parts = [part.strip() for part in text.split(":")] if parts is None else parts
+    is_log = parts[2:] == [LOG]
+    if len(parts) != 2 and not is_log:
+        raise DataError(f"{key}={text}: a sample takes ranges, FROM:TO or FROM:TO:log")
+    from_, to = (value_of(part) for part in parts[:2])
+    if not (is_number(from_) and is_number(to)):
         raise DataError(f"{key}={text}: the ends of a range are numbers")
-    from_, to = (float(end) for end in ends)  # type: ignore[arg-type]
     if from_ == to:
         raise DataError(f"{key}={text}: the ends of the range are equal")
-    if is_log and min(from_, to) <= 0:
+    if is_log and min(from_, to) <= 0:  # type: ignore[operator]
         raise DataError(f"{key}={text}: the ends of a logarithmic range are greater than 0")
-    return from_, to, is_log
-
-
-def range_of(key: str, text: str) -> Range:
-    """FROM:TO or FROM:TO:log."""
-    parts = [part.strip() for part in text.split(":")]
-    if len(parts) != 2 and not (len(parts) == 3 and parts[2] == LOG):
-        raise DataError(f"{key}={text}: a sample takes ranges, FROM:TO or FROM:TO:log")
-    return Range(*bounds(key, text, parts))
+    return Range(float(from_), float(to), is_log)  # type: ignore[arg-type]
 
 
 def steps_of(key: str, text: str) -> list[Value]:
     """FROM:TO:COUNT or FROM:TO:COUNT:log, both ends included."""
     parts = [part.strip() for part in text.split(":")]
-    n = value_of(parts[2]) if len(parts) > 2 else 0
-    if len(parts) not in (3, 4) or (len(parts) == 4 and parts[3] != LOG):
+    if len(parts) < 3 or parts[3:] not in ([], [LOG]):
         raise DataError(f"{key}={text}: values are A,B,C or FROM:TO:COUNT or FROM:TO:COUNT:log")
-    if isinstance(n, bool) or not isinstance(n, int) or n < 2:
-        raise DataError(f"{key}={text}: the count of values is a whole number from 2 on")
-    if n > MOST_POINTS:
-        raise DataError(f"{key}={text}: {n} values are more than {MOST_POINTS}")
-    whole = Range(*bounds(key, text, parts))
-    ends = [as_written(part) for part in parts[:2]]
-    inside: list[Value] = [whole.at(k / (n - 1)) for k in range(1, n - 1)]
-    values = [ends[0], *inside, ends[1]]
-    if not whole.is_log and all(isinstance(end, int) for end in ends):
-        values = [int(v) if isinstance(v, float) and v.is_integer() else v for v in values]
-    return values
+    n = value_of(parts[2])
+    if not isinstance(n, int) or not 2 <= n <= MOST_POINTS:
+        raise DataError(f"{key}={text}: the count of values is a whole number from 2 to {MOST_POINTS}")
+    whole = range_of(key, text, parts[:2] + parts[3:])
+    inside = [whole.at(k / (n - 1)) for k in range(1, n - 1)]
+    return [value_of(parts[0]), *inside, value_of(parts[1])]
 
 
 def values_of(key: str, spec: Any) -> list[Value]:
-    """The values that a text or a list of TOML stands for, in its order; none twice."""
-    if isinstance(spec, list):
-        values = [as_written(value) if isinstance(value, str) else value for value in spec]
-    elif isinstance(spec, str) and ":" in spec:
-        values = steps_of(key, spec)
-    elif isinstance(spec, str):
-        values = [as_written(part) for part in spec.split(",")]
+    """The values that a text or a list stands for, in its order; none twice."""
+    if isinstance(spec, str):
+        values = steps_of(key, spec) if ":" in spec else [value_of(part) for part in spec.split(",")]
     else:
-        values = [spec]
-    if not values or any(value == "" for value in values):
+        values = [
+            value_of(v) if isinstance(v, str) else v for v in (spec if isinstance(spec, list) else [spec])
+        ]
+    if not values or "" in values:
         raise DataError(f"{key}: a value is missing")
-    for text, n in Counter(map(same, values)).items():
+    for text, n in Counter(map(text_of, values)).items():
         if n > 1:
             raise DataError(f"{key}: the value {text} is there twice")
     return values

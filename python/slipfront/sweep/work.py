@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import time
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -31,43 +30,36 @@ class Task:
     program: str
     case: str
     settings: list[str]  # of all points
-    folder: str
-    stop: str  # a file that asks to stop when it is there
+    folder: Path
+    stop: Path  # a file that asks to stop when it is there
     point: Point
     keep: str
+
+    @property
+    def place(self) -> Path:
+        return places.place_of(self.folder, self.point)
+
+    @property
+    def command(self) -> list[str]:
+        """Begins a run, or goes on with one that has come as far as its case."""
+        begun = exists(self.place / UNFINISHED / places.CASE)
+        how = ["--restart", str(self.place)] if begun else ["--overwrite", "-o", str(self.place)]
+        settings = with_settings(self.settings + self.point.settings())
+        run = [self.program, "run", self.case, *settings, *how, "--threads", "1", "--quiet"]
+        # Asked to stop when its worker is killed, where the system can do that.
+        setpriv = shutil.which("setpriv")
+        parent = [setpriv, "--pdeathsig", "TERM"] if setpriv else []
+        return [*parent, *run, "--state-dir", str(self.folder / places.STATES)]
 
 
 @dataclass(frozen=True)
 class Outcome:
-    name: str
+    point: Point
     status: str  # DONE, FAILED, STOPPED
     message: str = ""
-    wall_s: float = 0
 
 
-def begun_with_parent(arguments: list[str]) -> list[str]:
-    """The command, asked to stop when its worker is killed, where the system can do that."""
-    setpriv = shutil.which("setpriv")
-    return [setpriv, "--pdeathsig", "TERM", *arguments] if setpriv else arguments
-
-
-def command_of(task: Task) -> list[str]:
-    """Begins a run, or goes on with one that has come as far as its case."""
-    place = places.place_of(Path(task.folder), task.point)
-    begun = exists(place / UNFINISHED / places.CASE)
-    how = ["--restart", str(place)] if begun else ["--overwrite", "-o", str(place)]
-    states = str(Path(task.folder) / places.STATES)
-    return begun_with_parent(
-        [task.program, "run", task.case, *with_settings(task.settings + task.point.settings()), *how,
-         "--threads", "1", "--quiet", "--state-dir", states]
-    )  # fmt: skip
-
-
-def is_stop_wanted(task: Task) -> bool:
-    return exists(Path(task.stop))
-
-
-def finish(process: subprocess.Popen[str], task: Task) -> tuple[int, str]:
+def finish(process: subprocess.Popen[str], stop: Path) -> tuple[int, str]:
     """Waits for a run; asks it to stop where that is wanted. Returns its exit code and its last line."""
     asked_at = None
     while True:
@@ -76,30 +68,28 @@ def finish(process: subprocess.Popen[str], task: Task) -> tuple[int, str]:
             return process.returncode, last_line(errors)
         except subprocess.TimeoutExpired:
             pass
-        if asked_at is None and is_stop_wanted(task):
+        if asked_at is None and exists(stop):
             asked_at = time.monotonic()
             process.terminate()
         elif asked_at is not None and time.monotonic() - asked_at > PATIENCE_S:
             process.kill()
 
 
-def outcome_of(code: int, message: str, point: Point, stop_wanted: bool, wall_s: float) -> Outcome:
-    ended_by = -code if code < 0 else code - SIGNALLED
+def outcome_of(code: int, message: str, point: Point, stop_wanted: bool) -> Outcome:
     if code == 0:
-        return Outcome(point.name, DONE, wall_s=wall_s)
+        return Outcome(point, DONE)
+    ended_by = -code if code < 0 else code - SIGNALLED
     if stop_wanted and ended_by in (signal.SIGTERM, signal.SIGKILL):
-        return Outcome(point.name, STOPPED)
+        return Outcome(point, STOPPED)
     if code < 0:
-        name = signal.Signals(-code).name
         hint = ", perhaps for want of memory" if -code == signal.SIGKILL else ""
-        return Outcome(point.name, FAILED, f"the program was ended by {name}{hint}", wall_s)
-    return Outcome(point.name, FAILED, message, wall_s)
+        message = f"the program was ended by {signal.Signals(-code).name}{hint}"
+    return Outcome(point, FAILED, message)
 
 
 def run_program(task: Task) -> Outcome:
-    start = time.monotonic()
     process = subprocess.Popen(
-        command_of(task),
+        task.command,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
@@ -108,35 +98,27 @@ def run_program(task: Task) -> Outcome:
         start_new_session=True,  # Ctrl-C is the sweep's
     )
     try:
-        code, message = finish(process, task)
+        code, message = finish(process, task.stop)
     except BaseException:
         process.terminate()
         process.wait()
         raise
-    return outcome_of(code, message, task.point, is_stop_wanted(task), time.monotonic() - start)
+    return outcome_of(code, message, task.point, exists(task.stop))
 
 
 def run_point(task: Task) -> Outcome:
     """Runs a point, goes on with it, or finds it done. Errors are told by the outcome."""
-    folder, point = Path(task.folder), task.point
-    if is_stop_wanted(task):
-        return Outcome(point.name, STOPPED)
-    error = places.error_file(folder, point)
     try:
-        if places.is_done(folder, point):
-            outcome = Outcome(point.name, DONE)
-        elif reason := places.blew_up(places.place_of(folder, point)):
-            outcome = Outcome(point.name, FAILED, reason)
+        if exists(task.stop):
+            return Outcome(task.point, STOPPED)
+        if places.is_done(task.folder, task.point):
+            outcome = Outcome(task.point, DONE)
+        elif reason := places.blew_up(task.place):
+            outcome = Outcome(task.point, FAILED, reason)
         else:
             outcome = run_program(task)
         if outcome.status == DONE and task.keep == "tables":
-            places.thin_out(places.place_of(folder, point))
-        if outcome.status == FAILED:
-            places.write_whole(error, outcome.message + "\n")
-        elif outcome.status == DONE:
-            error.unlink(missing_ok=True)
-    except (DataError, OSError) as reason:
-        outcome = Outcome(point.name, FAILED, str(reason))
-        with suppress(DataError):
-            places.write_whole(error, str(reason) + "\n")
+            places.thin_out(task.place)
+    except (DataError, OSError) as error:
+        outcome = Outcome(task.point, FAILED, str(error))
     return outcome
