@@ -656,7 +656,7 @@ def test_an_interrupted_sweep_goes_on_with_its_checkpoints(case, tmp_path):
     """Ctrl-C as a terminal sends it, to the whole group; points half done are kept and gone on with."""
     process = started(case, case, *LONG, "-o", "out", "--workers", "2")
     out = tmp_path / "out"
-    wait_until(lambda: len(runs_under_way(out)) == 2)
+    wait_until(lambda: len(runs_under_way(out)) == 2, process)
     os.killpg(process.pid, signal.SIGINT)
     errors = process.communicate(timeout=HANG_S)[1]
     assert process.returncode == 130
@@ -668,7 +668,7 @@ def test_an_interrupted_sweep_goes_on_with_its_checkpoints(case, tmp_path):
     assert len(list(out.glob("points/*/unfinished/state/checkpoint-*.bin"))) == 2
 
     process = started(case, "--restart", "out", "--workers", "2")
-    wait_until(lambda: all('"sessions": 2' in p.read_text() for p in runs_under_way(out)))
+    wait_until(lambda: all('"sessions": 2' in p.read_text() for p in runs_under_way(out)), process)
     assert process.poll() is None
     os.killpg(process.pid, signal.SIGINT)
     assert process.wait(timeout=HANG_S) == 130
@@ -678,7 +678,7 @@ def test_runs_end_when_their_sweep_is_killed(case, tmp_path):
     """A kill leaves no run behind, and the folder can be gone on with at once."""
     process = started(case, case, *LONG, "-o", "out", "--share", "1/2")
     out = tmp_path / "out"
-    wait_until(lambda: len(runs_under_way(out)) == 1)
+    wait_until(lambda: len(runs_under_way(out)) == 1, process)
     process.kill()
     process.communicate()
     (place,) = (out / "points").iterdir()
