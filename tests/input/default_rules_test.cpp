@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input/default_rules.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "input/entries.hpp"
@@ -9,8 +8,6 @@
 
 namespace slipfront::input {
 namespace {
-
-using ::testing::StartsWith;
 
 double value_of(const Case& config, const std::string& key) {
   for (const Entry& entry : common_entries())
@@ -64,11 +61,6 @@ TEST(DefaultRules, PrescribedTractionsAreAllTheLoad) {
       "[event]\nkind = 'nucleation'\n";
   EXPECT_EQ(parsed(text).loading.shear_speed_over_c_L, 0);
   EXPECT_EQ(parsed(text, {{"loading.shear_speed_over_c_L", "1e-6"}}).loading.shear_speed_over_c_L, 1e-6);
-}
-
-TEST(DefaultRules, AreNotOfKeysWithAConstantDefault) {
-  EXPECT_THAT(default_rule_of("time.end_s")->text, StartsWith("1.112 width_m"));
-  EXPECT_EQ(default_rule_of("plate.width_m"), nullptr);
 }
 
 }  // namespace

@@ -16,7 +16,9 @@ inline Case parsed(const std::string& text, const std::vector<Override>& overrid
 }
 
 inline std::string parse_error(const std::string& text, const std::vector<Override>& overrides = {}) {
-  return test::error_of([&] { parsed(text, overrides); });
+  const auto message = test::error_of([&] { parsed(text, overrides); });
+  EXPECT_EQ(message.find('\n'), std::string::npos) << "more than one line: " << message;
+  return message;
 }
 
 /// How a message of one line begins, and what else it says.

@@ -395,14 +395,10 @@ TEST(Overrides, WinOverTheFileAndTheLastOverEarlierOnes) {
 }
 
 TEST(Overrides, WordsAndTextNeedNoQuotes) {
-  EXPECT_EQ(parsed("", {{"event.kind", "left"}}).event, interface::EventKind::left);
-  EXPECT_EQ(parsed("", {{"event.kind", "\"left\""}}).event, interface::EventKind::left);
-  EXPECT_EQ(parsed("", {{"title", "my run"}}).title, "my run");
-  EXPECT_EQ(parsed("", {{"title", "12"}}).title, "12");
-  EXPECT_EQ(parsed("", {{"title", "'12'"}}).title, "12");
-}
-
-TEST(Overrides, TakeListsFlagsAndInfinity) {
+  for (const char* left : {"left", "\"left\""})
+    EXPECT_EQ(parsed("", {{"event.kind", left}}).event, interface::EventKind::left);
+  for (const auto& [value, title] : {std::pair{"my run", "my run"}, {"12", "12"}, {"'12'", "12"}})
+    EXPECT_EQ(parsed("", {{"title", value}}).title, title);
   const Case c = parsed("", {{"output.snapshot_times_s", "[1e-5, 2e-5]"},
                              {"time.allow_unstable", "true"},
                              {"event.trigger_duration_s", "inf"}});
@@ -435,20 +431,6 @@ TEST(Overrides, ChangeTheFrictionLaw) {
                  "c.toml:5: unknown key friction.muk; did you mean friction.mu?");
 }
 
-TEST(Reference, NamesEveryKeyWithUnitDefaultAndRange) {
-  const std::string reference = schema_reference();
-  const auto expect_in = [&](const std::string& text) {
-    EXPECT_TRUE(reference.find(text) != std::string::npos) << text;
-  };
-  for (const Entry& entry : common_entries()) expect_in("| `" + leaf_of(entry.key) + "` |");
-  for (const LawEntries& law : friction_laws()) {
-    expect_in("With `law = \"" + law.name + "\"`");
-    for (const Entry& entry : law.entries) expect_in("| `" + leaf_of(entry.key) + "` |");
-  }
-  expect_in("| `width_m` | number | m | `0.2` | greater than 0 |");
-  expect_in("| `plane` | word |  | `\"stress\"` | `\"stress\"`, `\"strain\"` |");
-}
-
 TEST(Entries, KeysAreUniqueAndDefaultsInRange) {
   std::set<std::string> keys;
   for (const Entry& entry : common_entries()) EXPECT_TRUE(keys.insert(entry.key).second) << entry.key;
@@ -461,17 +443,6 @@ TEST(Entries, KeysAreUniqueAndDefaultsInRange) {
       EXPECT_TRUE(contains(entry.range, static_cast<double>(*integer))) << entry.key;
     }
   }
-}
-
-TEST(Entries, UnitsComeFromTheKey) {
-  for (const auto& [key, unit] : {std::pair{"plate.width_m", "m"},
-                                  {"material.density_kg_per_m3", "kg/m3"},
-                                  {"friction.alpha_m2_per_s2", "m2/s2"},
-                                  {"event.trigger_amount", ""},
-                                  {"friction.mu_s", ""},
-                                  {"loading.shear_speed_over_c_L", ""},
-                                  {"friction.rate_per_s", "1/s"}})
-    EXPECT_EQ(unit_of(key), unit);
 }
 
 TEST(CaseFile, MessagesNameTheFile) {

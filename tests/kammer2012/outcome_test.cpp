@@ -76,23 +76,6 @@ TEST(CriterionSeries, HasTheSamePointsForEveryCriterion) {
   }
 }
 
-TEST(Collapse, RecoversThePapersCurve) {
-  const auto s = make_spontaneous();
-  const auto left = make_left(square(0.8, 0.4)), right = make_right(square(0.8, 1.6));
-  const std::array<const Outcome*, 3> three = {&s, &left, &right};
-  const auto c = collapse(three);
-  ASSERT_TRUE(c.fitted);
-  EXPECT_EQ(c.share_in_paper_band, 1);
-  // Exact data: what is left is the bisection on c, which ends at rounding.
-  EXPECT_NEAR(c.fit.a.value, 0.76, 1e-6);
-  EXPECT_NEAR(c.fit.b.value, 1.80, 1e-6);
-  EXPECT_NEAR(c.fit.c.value, 3.05, 1e-6);
-  EXPECT_LT(c.fit.rms, 1e-6);
-  EXPECT_EQ(c.n_points, c.fit.n_points);
-  // One curve, so the spread over the fronts is what a bin's width leaves.
-  EXPECT_LT(c.energy_rise.cases.median_relative, c.static_ratio.cases.median_relative);
-}
-
 TEST(Collapse, CountsTheShareWithinTheBand) {
   auto o = make_spontaneous();
   std::size_t n = 0, n_off = 0;
@@ -110,14 +93,6 @@ TEST(Collapse, CountsTheShareWithinTheBand) {
   const auto c = collapse(only(o));
   EXPECT_EQ(c.n_points, n);
   EXPECT_DOUBLE_EQ(c.share_in_paper_band, static_cast<double>(n - n_off) / static_cast<double>(n));
-}
-
-TEST(Collapse, OfNothing) {
-  const auto o = make_event("spontaneous", EventKind::spontaneous);
-  const auto c = collapse(only(o));
-  EXPECT_FALSE(c.fitted);
-  EXPECT_EQ(c.n_points, 0U);
-  EXPECT_TRUE(std::isnan(c.share_in_paper_band));
 }
 
 TEST(SpeedChange, OfAScaledRunIsTheScale) {

@@ -129,7 +129,7 @@ TEST(CollapseOfMainFronts, LeavesOutFrontsInTheWake) {
 TEST(CollapseOfMainFronts, LeavesOutTheirLastTwentyMillimetres) {
   for (const auto& [length_m, expected] : {std::pair{20.5e-3, holds}, {45e-3, does_not_hold}}) {
     auto runs = make_good();
-    for_three(runs, [&, within_m = length_m](const Outcome&, const Front& front, FrontPoint& p) {
+    for_three(runs, [&, within_m = length_m](auto&, auto& front, auto& p) {
       if (distance_to_end(front, p) <= within_m) p.v_tip_m_per_s *= 0.5;
     });
     expect_verdicts(runs, {{"C18b", expected}});
@@ -139,9 +139,7 @@ TEST(CollapseOfMainFronts, LeavesOutTheirLastTwentyMillimetres) {
 TEST(CollapseOfMainFronts, IsJudgedByTheBand) {
   for (const auto& [shift, expected] : {std::pair{0.06, holds}, {0.08, does_not_hold}}) {
     auto runs = make_good();
-    for_three(runs, [&, by = shift](const Outcome& o, const Front&, FrontPoint& p) {
-      p.v_tip_m_per_s += by * o.speeds.c_L;
-    });
+    for_three(runs, [&, by = shift](auto& o, auto&, auto& p) { p.v_tip_m_per_s += by * o.speeds.c_L; });
     expect_verdicts(runs, {{"C18", expected}, {"C18b", expected}});
   }
 }
@@ -149,19 +147,18 @@ TEST(CollapseOfMainFronts, IsJudgedByTheBand) {
 TEST(OrderOfMainFronts, IsJudgedByTheSpreadAgainstBothRatios) {
   // Speeds of the left event lie a little, within the band, above those of the others at equal energy rise.
   auto runs = make_good();
-  for_three(runs, [](const Outcome& o, const Front&, FrontPoint& p) {
+  for_three(runs, [](auto& o, auto&, auto& p) {
     if (o.config.event == EventKind::left) p.v_tip_m_per_s += 0.02 * o.speeds.c_L;
   });
   expect_verdicts(runs, {{"C18c", holds}});
   auto dynamic = runs;
-  for_three(dynamic, [](const Outcome& o, const Front&, FrontPoint& p) {
+  for_three(dynamic, [](auto& o, auto&, auto& p) {
     if (std::isfinite(p.t_d_Pa)) set_dynamic_ratio(p, 0.5 * p.v_tip_m_per_s / o.speeds.c_L);
   });
   expect_verdicts(dynamic, {{"C18c", does_not_hold}, {"C18b", holds}});  // C18b the ratios do not touch
   auto by_static = runs;
-  for_three(by_static, [](const Outcome& o, const Front&, FrontPoint& p) {
-    p.t_s_Pa = 0.5 * p.v_tip_m_per_s / o.speeds.c_L * p.p_s_Pa;
-  });
+  for_three(by_static,
+            [](auto& o, auto&, auto& p) { p.t_s_Pa = 0.5 * p.v_tip_m_per_s / o.speeds.c_L * p.p_s_Pa; });
   expect_verdicts(by_static, {{"C18c", does_not_hold}});
 }
 
@@ -188,7 +185,7 @@ TEST(PointsOutsideTheBand, MayLieWhereTheSpeedFallsRapidly) {
 TEST(PointsOutsideTheBand, MayLieBeforeAnEnd) {
   for (const double factor : {0.8, 1.3}) {  // where V_tip falls, and where it does not
     auto runs = make_good();
-    for_three(runs, [&](const Outcome&, const Front& front, FrontPoint& p) {
+    for_three(runs, [&](auto&, auto& front, auto& p) {
       if (distance_to_end(front, p) < 15e-3) p.v_tip_m_per_s *= factor;
     });
     const char* id = factor < 1 ? "C19" : "C19b";

@@ -98,19 +98,6 @@ TEST(FrictionAlongX, FrontsAreMeasuredByEachNodesStrength) {
   EXPECT_GT(n, 20);
 }
 
-TEST(FrictionAlongX, OfAMeshIsThatOfAnother) {
-  auto coarse = rupture(), fine = rupture();
-  for (auto* c : {&coarse, &fine}) {
-    c->friction_along_x.random_key = "mu_s";
-    c->friction_along_x.random_share = 0.05;
-  }
-  fine.plate.element_size_m = 1e-3;
-  const auto mu_s = make_initial_state(coarse, go_on).mu_s;
-  const auto of_fine = make_initial_state(fine, go_on).mu_s;
-  ASSERT_EQ(of_fine.size(), 2 * mu_s.size() - 1);
-  for (std::size_t i = 0; i < mu_s.size(); ++i) EXPECT_NEAR(of_fine[2 * i], mu_s[i], 1e-12);
-}
-
 TEST(FrictionAlongX, StatesBeforeAreSharedByEqualFrictionOnly) {
   auto b = rupture();
   const auto a = rupture("x_m,mu_s\n0,0.6\n0.2,0.7\n");

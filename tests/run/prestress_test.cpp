@@ -16,7 +16,6 @@
 #include "input/schema.hpp"
 #include "interface/friction/coulomb.hpp"
 #include "interface/friction/slip_weakening.hpp"
-#include "interface/friction/velocity_weakening.hpp"
 #include "reference.hpp"
 
 namespace slipfront::run {
@@ -44,51 +43,6 @@ input::Case column(mesh::Top top) {
   c.time.quiet_s = std::numeric_limits<double>::infinity();
   c.output.history_interval_s = 1e-9;
   return c;
-}
-
-/// Mean slip rate of the first node over the last part of the history, from the slip itself.
-double mean_rate(const record::History& h, double from_s) {
-  const std::size_t n = h.x_m.size(), last = h.time_s.size() - 1;
-  const auto first = static_cast<std::size_t>(std::ranges::lower_bound(h.time_s, from_s) - h.time_s.begin());
-  return (h.slip_m[last * n] - h.slip_m[first * n]) / (h.time_s[last] - h.time_s[first]);
-}
-
-TEST(PrestressColumn, SlidesAtTheRateOfItsImpedance) {
-  // Before the wave is back, rho c_S v = t0 - p mu(v); the roots were found by themselves.
-  struct Example {
-    double mu_s, mu_k, t0, v;
-  };
-  for (const auto& [mu_s, mu_k, t0, v] :
-       {Example{0.9, 0.5, 0.91e6, 0.03405}, Example{1.3, 1.0, 1.40e6, 0.16279}}) {
-    SCOPED_TRACE(t0);
-    for (const auto top : {mesh::Top::absorbing, mesh::Top::loaded}) {
-      auto c = column(top);
-      c.plate.element_size_m = 0.5e-3;
-      c.friction = interface::VelocityWeakening { mu_s, mu_k, 0.1 };
-      c.prestress = {t0, 1e6, ""};
-      // The elements' impedance falls towards the shortest waves, below the weakening mu' p: they are damped.
-      c.material.stiffness_damping_s = 0.3e-6;
-      // The wave is back after 2 H/c_S = 135 us, blurred by sqrt(beta_R t) = 6 us; the rate has settled
-      // by 60.
-      c.time.end_s = 105e-6;
-      const auto result = run_case(c);
-      ASSERT_EQ(result.event.end, motion::EventEnd::end_time) << result.event.blow_up;
-      EXPECT_NEAR(mean_rate(result.event.history, 60e-6), v, 1e-3 * v);  // the start's remainder: 3e-4
-      EXPECT_THAT(result.warnings, ::testing::Contains(::testing::HasSubstr("they slip at once")));
-    }
-  }
-}
-
-TEST(PrestressColumn, OfALoadedTopStopsWithTheWaveThatComesBack) {
-  // The held top sends the wave back with opposite velocity: -v on top of v. The slip is then (t0 - mu p)/G
-  // H.
-  auto c = column(mesh::Top::loaded);
-  c.friction = interface::Coulomb { 0.5 };
-  c.prestress = {0.7e6, 1e6, ""};
-  c.time.end_s = 200e-6;
-  const auto result = run_case(c);
-  const double static_slip_m = 0.2e6 / solid::shear_modulus_Pa(c.material) * c.plate.height_m;
-  EXPECT_NEAR(result.event.history.slip_m.back(), 2 * static_slip_m, 0.03 * static_slip_m);
 }
 
 TEST(PrestressColumn, BelowTheStrengthNothingMoves) {

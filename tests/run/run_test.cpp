@@ -16,7 +16,6 @@
 
 #include "base/error.hpp"
 #include "cases.hpp"
-#include "fronts/from_history.hpp"
 #include "fronts/measures.hpp"
 #include "interface/friction/coulomb.hpp"
 
@@ -243,23 +242,6 @@ TEST(Event, NothingSlipsInTheCommonStateLeftToItself) {
   EXPECT_TRUE(result.fronts.empty());
 }
 
-TEST(Event, TwoRunsAreBitwiseEqual) {
-  const auto config = coarse_case(EventKind::left);
-  const auto again = make_initial_state(config, go_on);
-  EXPECT_TRUE(same_bits(again.common.u_m, coarse_state().common.u_m));
-  const auto a = run(config), b = run_from(config, again, go_on);
-  EXPECT_EQ(a.event.steps, b.event.steps);
-  EXPECT_TRUE(same_bits(a.event.history.time_s, b.event.history.time_s));
-  for (const auto& field : record::history_fields)
-    EXPECT_TRUE(same_bits(a.event.history.*field.member, b.event.history.*field.member)) << field.name;
-  const auto &r = a.event.record, &s = b.event.record;
-  ASSERT_GT(r.onsets.size(), 10U);
-  const auto values = [](const auto& of) { return std::pair(of.node, of.time_s); };
-  EXPECT_TRUE(std::ranges::equal(r.onsets, s.onsets, {}, values, values));
-  EXPECT_TRUE(std::ranges::equal(r.stops, s.stops, {}, values, values));
-  EXPECT_TRUE(same_bits(r.around, s.around));
-}
-
 TEST(Event, SnapshotsAndHistoryDoNotDisturbTheMotion) {
   auto config = coarse_case();
   const auto plain = run(config);
@@ -276,15 +258,14 @@ TEST(Event, EnergiesKeepTheirSpacingAndBalance) {
   const auto result = run(config);
   const auto& energies = result.event.energies;
   ASSERT_GT(energies.size(), 5U);
-  EXPECT_EQ(energies.front().time_s, 0);
   EXPECT_EQ(energies.back().time_s, result.event.time_s);
   double largest = 0, worst = 0;
   for (std::size_t k = 0; k < energies.size(); ++k) {
     const auto& e = energies[k];
-    if (k + 1 < energies.size()) {
-      EXPECT_GE(e.time_s, static_cast<double>(k) * 10e-6 * (1 - 1e-12));
-      EXPECT_LT(e.time_s, static_cast<double>(k) * 10e-6 + result.step_s);
-    }
+    const double asked_s = static_cast<double>(k) * 10e-6;
+    EXPECT_TRUE(k + 1 == energies.size() ||
+                (e.time_s >= asked_s * (1 - 1e-12) && e.time_s < asked_s + result.step_s))
+        << e.time_s;
     for (const double term : {e.strain, e.kinetic, e.top_work, e.trigger_work, e.friction_work})
       largest = std::max(largest, std::abs(term));
     worst = std::max(worst, std::abs(record::imbalance_J_per_m(e, energies.front())));
@@ -307,29 +288,6 @@ TEST(FrontOptions, KnowTheTriggerZone) {
       EXPECT_EQ(fronts::is_driven(options, initial.common.tractions.x_m[k]), forces[k] != 0) << k;
     EXPECT_EQ(std::ranges::count_if(forces, [](double force) { return force != 0; }), n);
   }
-}
-
-TEST(Trigger, AWeakenedZoneSlipsByItself) {
-  // t/p next to the edge is above so low a mu_k.
-  auto config = coarse_case(EventKind::right);
-  law(config).mu_k = 0.2;
-  config.trigger.form = interface::TriggerForm::weakened;
-  config.time.end_s = 20e-6;
-  const auto initial = make_initial_state(config, go_on);
-  const auto result = run_from(config, initial, go_on);
-  const auto zone = motion::trigger_zone(initial.common, EventKind::right, config.trigger.zone_m);
-  ASSERT_FALSE(zone.empty());
-  const auto& s = initial.common.tractions;
-  std::size_t n_beyond = 0;
-  for (const auto k : zone) {
-    if (s.t_s_Pa[k] <= 1.001 * law(config).mu_k * s.p_s_Pa[k]) continue;
-    ++n_beyond;
-    EXPECT_TRUE(std::ranges::any_of(result.event.record.onsets, [&](const auto& onset) {
-      return std::cmp_equal(onset.node, k);
-    })) << k;
-  }
-  EXPECT_GT(n_beyond, 0U);
-  EXPECT_EQ(result.event.energies.back().trigger_work, 0);
 }
 
 TEST(Info, AgreesWithTheRun) {
@@ -390,40 +348,6 @@ TEST(Memory, AnEventHoldsWhatIsSaid) {
   EXPECT_LT(asked, held + 136 * n);
 }
 #endif
-
-TEST(Record, RebuiltFromTheHistoryGivesTheSameFronts) {
-  auto config = coarse_case(EventKind::spontaneous, 2e-3);
-  config.output.history_interval_s = 1e-12;  // a row at every step
-  const auto initial = make_initial_state(config, go_on);
-  const auto result = run_from(config, initial, go_on);
-  // A sticking node rests exactly; a slipping one moves at about 1 m/s.
-  const auto record = fronts::record_from_history(result.event.history, 1e-3, result.event.record.halo);
-  const auto rebuilt = fronts::find_fronts(record, initial.common.tractions, front_options(config, initial));
-  // Both onsets of a node lie between the same two rows, or the rate passes the threshold a sub-step later.
-  const double tolerance_s = result.step_s * (1 + 1.0 / 18);
-  for (const int direction : {-1, 1}) {
-    const auto *a = longest(result.fronts, direction), *b = longest(rebuilt, direction);
-    ASSERT_NE(a, nullptr);
-    ASSERT_NE(b, nullptr);
-    EXPECT_EQ(a->points.back().node, b->points.back().node);
-    // Which of the nodes that begin within one interval is the first, the history cannot tell.
-    std::ptrdiff_t n_common = 0;
-    for (const auto& p : b->points) {
-      const auto original = std::ranges::find(a->points, p.node, &fronts::FrontPoint::node);
-      if (original == a->points.end()) {
-        EXPECT_LE(p.onset_s, b->points.front().onset_s + tolerance_s) << p.node;
-        continue;
-      }
-      ++n_common;
-      EXPECT_NEAR(original->onset_s, p.onset_s, tolerance_s) << p.node;
-    }
-    const auto n_late = std::ranges::count_if(a->points, [&](const fronts::FrontPoint& p) {
-      return p.onset_s > a->points.front().onset_s + 2 * tolerance_s;
-    });
-    EXPECT_GT(n_late, 10);
-    EXPECT_GE(n_common, n_late);
-  }
-}
 
 TEST(Ramp, ReachesTheDirectCriticalShear) {
   const auto config = test::ramped_case();

@@ -281,12 +281,6 @@ TEST(StreamedRun, EqualsTheOneKeptInMemory) {
   }
 }
 
-TEST(StreamedRun, TwoOfThemMakeEqualFiles) {
-  const test::TemporaryFolder a, b;
-  for (const auto* folder : {&a, &b}) run_streamed(coarse_case(), folder->path(), go_on);
-  EXPECT_EQ(test::read_file(a / "interface.h5"), test::read_file(b / "interface.h5"));
-}
-
 TEST(Write, OfARampTellsBothWays) {
   const auto config = test::ramped_case();
   const auto initial = make_initial_state(config, go_on);
