@@ -304,19 +304,20 @@ TEST(Session, ThereMustBeARunToGoOnWith) {
 
 TEST(Session, TellsHowItStands) {
   const test::TemporaryFolder folder;
-  results::ResultFolder held(folder.path(), run_work);
+  const auto summary = [&] {
+    const auto file = folder / "unfinished/run.json";
+    return fs::exists(file) ? nlohmann::json::parse(test::read_file(file)) : nlohmann::json{{"status", ""}};
+  };
   auto hooks = stopping_at("event", 50);
   std::string status;
   hooks.request = [&, inner = hooks.request] {
-    const auto file = held.unfinished() / "run.json";
-    if (fs::exists(file)) status = nlohmann::json::parse(test::read_file(file))["status"];
+    status = summary()["status"];
     return inner();
   };
-  run_into(held, coarse_case(), with_threads(1), hooks);
+  start(folder.path(), coarse_case(), hooks);
   EXPECT_EQ(status, "running");
-  const auto run = nlohmann::json::parse(test::read_file(held.unfinished() / "run.json"));
-  EXPECT_EQ(run["status"], "interrupted");
-  EXPECT_THAT(run["reason"].get<std::string>(), StartsWith("interrupted at t = "));
+  EXPECT_EQ(summary()["status"], "interrupted");
+  EXPECT_THAT(summary()["reason"].get<std::string>(), StartsWith("interrupted at t = "));
 }
 
 }  // namespace
