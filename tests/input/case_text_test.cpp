@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "input/entries.hpp"
-#include "input/schema.hpp"
-#include "support/files.hpp"
+#include "messages.hpp"
 
 namespace slipfront::input {
 namespace {
@@ -17,12 +16,6 @@ using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-std::string parse_error(const std::string& text, const std::vector<Override>& overrides = {}) {
-  const std::string message = error_of([&] { parse_case(text, "c.toml", overrides); });
-  EXPECT_EQ(message.find('\n'), std::string::npos) << "more than one line: " << message;
-  return message;
-}
 
 std::string repeated(const std::string& part, int n) {
   std::string text;
@@ -42,7 +35,7 @@ TEST(CaseText, BytesThatAreNoUtf8AreRefused) {
     EXPECT_THAT(parse_error("", {{"ti" + bytes + "tle", "1"}}), HasSubstr("no utf-8"));
   }
   const std::string good = "\xc2\xb5 \xe2\x82\xac \xf0\x9f\x98\x80";
-  EXPECT_EQ(parse_case("title = \"" + good + "\"", "c.toml").title, good);
+  EXPECT_EQ(parsed("title = \"" + good + "\"").title, good);
 }
 
 TEST(CaseText, DeepNestingIsRefused) {
@@ -64,12 +57,9 @@ TEST(CaseText, DeepNestingIsRefused) {
 TEST(CaseText, StringsAndCommentsAreNotTakenForNesting) {
   const std::string dots = repeated(".[{", 50);
   for (const std::string quote : {"\"", "'", "\"\"\"", "'''"})
-    EXPECT_EQ(parse_case("title = " + quote + dots + quote + " # " + dots, "c.toml").title, dots);
-  EXPECT_EQ(parse_case("title = \"\"\"a\"\"\\\"\"" + dots + "\"\"\"\"", "c.toml").title,
-            "a\"\"\"\"" + dots + "\"");
-  EXPECT_EQ(
-      parse_case("[output]\nsnapshot_times_s = [0.25, 0.5,\n 0.75]", "c.toml").output.snapshot_times_s.size(),
-      3U);
+    EXPECT_EQ(parsed("title = " + quote + dots + quote + " # " + dots).title, dots);
+  EXPECT_EQ(parsed("title = \"\"\"a\"\"\\\"\"" + dots + "\"\"\"\"").title, "a\"\"\"\"" + dots + "\"");
+  EXPECT_EQ(parsed("[output]\nsnapshot_times_s = [0.25, 0.5,\n 0.75]").output.snapshot_times_s.size(), 3U);
 }
 
 TEST(CaseText, AQuotedKeyIsNoDottedOne) {
@@ -83,21 +73,19 @@ TEST(CaseText, MessagesStayShort) {
   for (const std::string& text : {"[plate]\n" + long_text + " = 1", "[" + long_text + "]\na = 1",
                                   "[event]\nkind = \"" + long_text + "\"", "a = " + long_text})
     EXPECT_LT(parse_error(text).size(), most);
-  EXPECT_LT(parse_error("", {{"event.kind", long_text}}).size(), most);
-  EXPECT_LT(parse_error("", {{long_text, "1"}}).size(), most);
+  for (const auto& [key, value] :
+       {std::pair<std::string, std::string>{"event.kind", long_text}, {long_text, "1"}})
+    EXPECT_LT(parse_error("", {{key, value}}).size(), most);
   EXPECT_LT(error_of([&] { parse_override(long_text); }).size(), most);
 }
 
 TEST(CaseText, AFileNeedsAKey) {
   const test::TemporaryFolder folder;
   const auto file = folder / "c.toml";
+  const std::vector<Override> overrides = {{"plate.width_m", "0.4"}};
   for (const std::string text : {"", "\n \n", "# a comment\n", "[plate]\n"}) {
     test::write_file(file, text);
-    EXPECT_THAT(error_of([&] {
-                  read_case(file, {{"plate.width_m", "0.4"}});
-                }),
-                StartsWith(file.string() + ": sets no key; write at least one"))
-        << text;
+    EXPECT_THAT(error_of([&] { read_case(file, overrides); }), StartsWith(file.string() + ": sets no key"));
   }
 }
 
@@ -128,7 +116,7 @@ x_m = 0.1
 
 TEST(Magnitudes, EveryNumberHasThem) {
   for (const std::string& text : {std::string("title = \"\""), prestressed}) {
-    const Case config = parse_case(text, "c.toml");
+    const Case config = parsed(text);
     for (const Entry& entry : entries_of(config)) {
       if (entry.kind != Kind::number) continue;
       for (const std::string extreme : {"1e300", "1e-300", "-1e300", "-1e-300"})

@@ -15,7 +15,7 @@ constexpr int n_seeds = 2000;
 /// Chances of a wrong alarm below 1e-6 each.
 constexpr double n_deviations = 5;
 
-/// Mean over the seeds of f(0)^a f(x)^b.
+/// Mean over the seeds.
 template <class F>
 double mean(double period_m, F&& of_field) {
   double sum = 0;

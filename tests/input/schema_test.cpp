@@ -6,181 +6,146 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <span>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <vector>
 
 #include "input/entries.hpp"
 #include "interface/friction/registry.hpp"
 #include "interface/friction/velocity_weakening.hpp"
-#include "support/files.hpp"
+#include "messages.hpp"
 
 namespace slipfront::input {
 namespace {
 
 using test::error_of;
 
-std::string parse_error(const std::string& text, const std::vector<Override>& overrides = {}) {
-  const std::string message = error_of([&] { parse_case(text, "c.toml", overrides); });
-  EXPECT_EQ(message.find('\n'), std::string::npos) << "more than one line: " << message;
-  return message;
-}
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
-void expect_message(const std::string& message, const char* begins, const char* contains) {
-  EXPECT_TRUE(message.starts_with(begins)) << message << "\ndoes not begin with " << begins;
-  EXPECT_TRUE(message.find(contains) != std::string::npos) << message << "\nlacks " << contains;
-}
-
-/// A case that is refused, with the beginning of the message and what else it says.
-struct Refused {
-  const char *text, *begins, *contains = "";
-};
-
-void expect_refused(std::span<const Refused> cases) {
-  for (const auto& [text, begins, contains] : cases) expect_message(parse_error(text), begins, contains);
-}
-
-/// The same by an override.
-struct RefusedOverride {
-  const char *key, *value, *begins, *contains = "";
-};
-
-void expect_refused(const std::string& text, std::span<const RefusedOverride> overrides) {
-  for (const auto& [key, value, begins, contains] : overrides)
-    expect_message(parse_error(text, {{key, value}}), begins, contains);
-}
-
-// Structured bindings name every member: one more member of a struct does not compile here until it is
-// listed, which reminds of its entry in the schema.
-auto members(const mesh::Plate& p) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l] = p;
-  return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l);
-}
-auto members(const solid::Material& m) {
-  const auto& [a, b, c, d, e] = m;
-  return std::tuple(a, b, c, d, e);
+// Structured bindings name every member: with one more member of a struct its number below does not compile,
+// which reminds of its entry in the schema.
+template <int n, class Struct>
+auto members(const Struct& s) {
+  if constexpr (n == 4) {
+    const auto& [a, b, c, d] = s;
+    return std::tuple(a, b, c, d);
+  } else if constexpr (n == 5) {
+    const auto& [a, b, c, d, e] = s;
+    return std::tuple(a, b, c, d, e);
+  } else if constexpr (n == 7) {
+    const auto& [a, b, c, d, e, f, g] = s;
+    return std::tuple(a, b, c, d, e, f, g);
+  } else if constexpr (n == 8) {
+    const auto& [a, b, c, d, e, f, g, h] = s;
+    return std::tuple(a, b, c, d, e, f, g, h);
+  } else {
+    static_assert(n == 12);
+    const auto& [a, b, c, d, e, f, g, h, i, j, k, l] = s;
+    return std::tuple(a, b, c, d, e, f, g, h, i, j, k, l);
+  }
 }
 auto members(const Base& base) {
   const auto& [kind, plate, material] = base;
-  return std::tuple(kind, members(plate), members(material));
-}
-auto members(const statics::Loading& l) {
-  const auto& [a, b, c, d, e, f, g, h] = l;
-  return std::tuple(a, b, c, d, e, f, g, h);
-}
-auto members(const interface::Regularisation& r) {
-  const auto& [a, b, c, d] = r;
-  return std::tuple(a, b, c, d);
-}
-auto members(const interface::Trigger& t) {
-  const auto& [a, b, c, d, e] = t;
-  return std::tuple(a, b, c, d, e);
+  return std::tuple(kind, members<12>(plate), members<5>(material));
 }
 auto members(const Prestress& p) {
   const auto& [a, b, c, table] = p;
-  return std::tuple(a, b, c, table.text, table.rows.x_m, table.rows.t_s_Pa, table.rows.p_s_Pa);
+  return std::tuple(a, b, c, table.text);
 }
-auto members(const interface::Nucleation& n) {
-  const auto& [a, b, c, d, e] = n;
-  return std::tuple(a, b, c, d, e);
-}
-auto members(const motion::TimeStepping& t) {
-  const auto& [a, b, c, d, e, f, g, h] = t;
-  return std::tuple(a, b, c, d, e, f, g, h);
-}
-auto members(const FrontSettings& s) {
-  const auto& [a, b, c, d, e, f, g] = s;
-  return std::tuple(a, b, c, d, e, f, g);
-}
-auto members(const Output& o) {
-  const auto& [a, b, c, d, e] = o;
-  return std::tuple(a, b, c, d, e);
-}
-auto members(const Probes& p) {
-  const auto& [a, b, c, d] = p;
-  return std::tuple(a, b, c, d);
-}
-
 auto members(const FrictionAlongX& f) {
-  const auto& [a, b, c, d, e, g, h] = f;
-  return std::tuple(a, b.text, c, d, e, g, h);
+  const auto& [a, table, c, d, e, g, h] = f;
+  return std::tuple(a, table.text, c, d, e, g, h);
 }
 
-/// Members of a friction law, by its own list of parameters.
-std::vector<double> members(const interface::FrictionLaw& friction) {
-  return interface::visit(friction, [](const auto& law) {
+/// A friction law's name and members, by its own list of parameters.
+auto members(const interface::FrictionLaw& friction) {
+  return interface::visit(friction, [&](const auto& law) {
     std::vector<double> values;
     for (const auto& parameter : law.parameters()) values.push_back(law.*parameter.member);
     if constexpr (requires { law.lists(); })
       for (const auto& list : law.lists())
         values.insert(values.end(), (law.*list.member).begin(), (law.*list.member).end());
-    return values;
+    return std::pair(std::string(friction.name()), values);
   });
+}
+auto members(const Case& c) {
+  const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, regularisation,
+               contact, event, trigger, nucleation, time, fronts, output, probes] = c;
+  return std::tuple(title, members<12>(plate), members<5>(material), members(base), members<8>(loading),
+                    members(prestress), members(friction), members(friction_along_x),
+                    members<4>(regularisation), contact, event, members<5>(trigger), members<5>(nucleation),
+                    members<8>(time), members<7>(fronts), members<5>(output), members<4>(probes));
 }
 
 void expect_equal(const Case& a, const Case& b) {
-  const auto& [title, plate, material, base, loading, prestress, friction, friction_along_x, regularisation,
-               contact, event, trigger, nucleation, time, fronts, output, probes] = b;
-  EXPECT_EQ(a.title, title);
-  EXPECT_TRUE(members(a.plate) == members(plate));
-  EXPECT_TRUE(members(a.material) == members(material));
-  EXPECT_TRUE(members(a.base) == members(base));
-  EXPECT_TRUE(members(a.loading) == members(loading));
-  EXPECT_TRUE(members(a.prestress) == members(prestress));
-  EXPECT_EQ(a.friction.name(), friction.name());
-  EXPECT_TRUE(members(a.friction) == members(friction));
-  EXPECT_TRUE(members(a.friction_along_x) == members(friction_along_x));
-  EXPECT_TRUE(members(a.regularisation) == members(regularisation));
-  EXPECT_EQ(a.contact, contact);
-  EXPECT_EQ(a.event, event);
-  EXPECT_TRUE(members(a.trigger) == members(trigger));
-  EXPECT_TRUE(members(a.nucleation) == members(nucleation));
-  EXPECT_TRUE(members(a.time) == members(time));
-  EXPECT_TRUE(members(a.fronts) == members(fronts));
-  EXPECT_TRUE(members(a.output) == members(output));
-  EXPECT_TRUE(members(a.probes) == members(probes));
+  EXPECT_TRUE(members(a) == members(b)) << to_toml(a) << "\nis not\n\n" << to_toml(b);
 }
 
-/// A case in which no member has its default.
+/// A case in which no member has its default, as a file has it.
+const std::string changed_text =
+    "title = \"a \\\"title\\\" with \\\\ and\\ttab, \\u00b5\"\n"
+    "plate = {width_m = 0.30000000000000004, height_m = 0.3333333333333333, element_size_m = 1.5e-4,"
+    " coarsenings = 2, fine_height_m = 1.25e-3, corner = 'none', relief_length_m = 4e-3,"
+    " relief_height_m = 3e-4, relief_depth_m = 8e-3, fillet_radius_m = 3e-3, sides = 'absorbing',"
+    " top = 'absorbing'}\n"
+    "material = {youngs_modulus_Pa = 3.3e8, poissons_ratio = -0.25, density_kg_per_m3 = 1.1e3,"
+    " plane = 'strain', stiffness_damping_s = 0}\n"
+    "base = {kind = 'body', height_m = 0.285, coarsenings = 1, fine_height_m = 2.5e-3, sides = 'absorbing',"
+    " bottom = 'free', youngs_modulus_Pa = 6.7e10, poissons_ratio = 0.125, density_kg_per_m3 = 7.8e3,"
+    " stiffness_damping_s = 3e-9}\n"
+    "loading = {tilt_left_m = 1e-4, tilt_right_m = 2e-4, top_during_tilt = 'free', method = 'ramp',"
+    " solver = 'direct', shear_speed_over_c_L = 1e-5, edge_margin_m = 0.02, critical_margin = 3e-4}\n"
+    "friction = {law = 'velocity_weakening', mu_s = 1.25, mu_k = 0.75, alpha_m2_per_s2 = 0.3,"
+    " regularisation = 'strength', relaxation_length_m = 4e-6, relaxation_slip_rate_m_per_s = 0.5,"
+    " relaxation_time_s = 2e-6, file = 'table.csv', between_rows = 'stepwise', random_key = 'mu_k',"
+    " random_share = 0.05, random_correlation_length_m = 6e-3, random_seed = 7}\n"
+    "contact.algorithm = 'predictor_corrector'\n"
+    "event = {kind = 'right', trigger_form = 'raised', trigger_zone_m = 7e-3, trigger_amount = 2.5,"
+    " trigger_ramp_s = 0, trigger_duration_s = 3e-5}\n"
+    "time = {step_factor = 1.5, allow_unstable = true, precision = 'single', interface_rows = 7,"
+    " interface_substeps = 11, local_steps = false, end_s = 1e-4, quiet_s = inf}\n"
+    "fronts = {l_star_m = 1e-3, speed_interval = 'approach', arrest_time_s = 1e-5, min_length_m = 3e-3,"
+    " crack_share = 0.625, pulse_share = 0.25, trigger_margin_m = 5e-3}\n"
+    "output = {history_interval_s = 1e-7, snapshot_times_s = [0, 1e-5, 3.3e-5], snapshot_interval_s = 4e-5,"
+    " snapshot_stress = false, energy_interval_s = 3e-5}\n"
+    "probes = {x_m = [0.01, 0.02], y_m = [0.03, 0.05], names = ['left', 'b \\'], interval_s = 2e-6}\n";
+
 Case changed_case() {
   Case c;
   c.title = "a \"title\" with \\ and\ttab, \xc2\xb5";
   c.plate = {0.1 + 0.2,
              1.0 / 3,
-             1e-3 / 7,
+             1.5e-4,
              2,
-             4e-3 / 3,
+             1.25e-3,
              mesh::Corner::none,
              4e-3,
-             0.3e-3,
+             3e-4,
              8e-3,
              3e-3,
              mesh::Sides::absorbing,
              mesh::Top::absorbing};
-  c.material = {1.0e9 / 3, -0.25, 1.1e3, solid::Plane::strain, 0};
+  c.material = {3.3e8, -0.25, 1.1e3, solid::Plane::strain, 0};
   c.base.kind = BaseKind::body;
-  c.base.plate.height_m = 2.0 / 7;
+  c.base.plate.height_m = 0.285;
   c.base.plate.coarsenings = 1;
-  c.base.plate.fine_height_m = 7e-3 / 3;
+  c.base.plate.fine_height_m = 2.5e-3;
   c.base.plate.sides = mesh::Sides::absorbing;
   c.base.plate.top = mesh::Top::free;
-  c.base.material = {2.0e11 / 3, 0.125, 7.8e3, solid::Plane::stress, 1e-8 / 3};
+  c.base.material = {6.7e10, 0.125, 7.8e3, solid::Plane::stress, 3e-9};
   c.loading = {
       1e-4, 2e-4, statics::TopEdge::free, statics::LoadingMethod::ramp, statics::StaticSolver::direct, 1e-5,
-      0,    1e-4};
-  c.friction = interface::VelocityWeakening { 1.25, 0.75, 1.0 / 3 };
-  c.friction_along_x = {"table.csv", {}, BetweenRows::stepwise, "mu_k", 0.05, 1e-2 / 3, 7};
-  c.regularisation = {interface::Relaxed::strength, 1e-5 / 3, 0.25, 2e-6};
+      0.02, 3e-4};
+  c.friction = interface::VelocityWeakening { 1.25, 0.75, 0.3 };
+  c.friction_along_x = {"table.csv", {}, BetweenRows::stepwise, "mu_k", 0.05, 6e-3, 7};
+  c.regularisation = {interface::Relaxed::strength, 4e-6, 0.5, 2e-6};
   c.contact = interface::ContactAlgorithm::predictor_corrector;
   c.event = interface::EventKind::right;
   c.trigger = {interface::TriggerForm::raised, 7e-3, 2.5, 0, 3e-5};
-  c.time = {1.5,   true, motion::Precision::single_precision,    7, 11,
-            false, 1e-4, std::numeric_limits<double>::infinity()};
+  c.time = {1.5, true, motion::Precision::single_precision, 7, 11, false, 1e-4, infinity};
   c.fronts = {1e-3, fronts::SpeedInterval::approach, 1e-5, 3e-3, 0.625, 0.25, 5e-3};
-  c.output = {1e-7, {0, 1e-5, 1.0 / 3 * 1e-4}, 1e-4 / 3, false, 3e-5};
-  c.probes = {{0.01, 0.02}, {0.03, 0.05 / 3}, {"left", "right"}, 1e-6 / 3};
+  c.output = {1e-7, {0, 1e-5, 3.3e-5}, 4e-5, false, 3e-5};
+  c.probes = {{0.01, 0.02}, {0.03, 0.05}, {"left", "b \\"}, 2e-6};
   return c;
 }
 
@@ -198,72 +163,54 @@ Case changed_prestress() {
   return c;
 }
 
-TEST(Schema, EmptyFileGivesTheDefaults) {
-  expect_equal(parse_case("", "c.toml"), Case{});
-}
-
 TEST(Schema, DefaultsReadBackFromToml) {
-  expect_equal(parse_case(to_toml(Case{}), "c.toml"), Case{});
+  expect_equal(parsed(""), Case{});
+  expect_equal(parsed(to_toml(Case{})), Case{});
 }
 
-TEST(Schema, EveryKeyReadsBackFromToml) {
+TEST(Schema, TheKeysStandForTheirMembers) {
   const Case changed = changed_case();
-  const Case defaults;
   for (const Entry& entry : entries_of(changed))
     if (entry.key != "friction.law") {
-      EXPECT_NE(toml_text(entry.get(changed)), toml_text(entry.get(defaults)))
+      EXPECT_NE(toml_text(entry.get(changed)), toml_text(entry.get(Case{})))
           << entry.key << " is not changed";
     }
-  expect_equal(parse_case(to_toml(changed), "c.toml"), changed);
+  expect_equal(parsed(changed_text), changed);
+  expect_equal(parsed(to_toml(changed)), changed);
 }
 
 TEST(Schema, PrestressAndNucleationReadBackFromToml) {
   const Case uniform = changed_prestress();
   std::set<std::string> keys;
-  for (const Entry& entry : entries_of(uniform)) keys.insert(entry.key);
-  for (const Entry& entry : entries_of(uniform))
+  for (const Entry& entry : entries_of(uniform)) {
+    keys.insert(entry.key);
     if (entry.key.starts_with("prestress.") || entry.key.starts_with("nucleation.")) {
       EXPECT_EQ(toml_text(entry.get(uniform)) != toml_text(entry.get(Case{})), entry.key != "prestress.file")
           << entry.key;
     }
+  }
   EXPECT_TRUE(keys.contains("nucleation.overstress_Pa"));
   EXPECT_FALSE(keys.contains("loading.tilt_left_m"));
-  expect_equal(parse_case(to_toml(uniform), "c.toml"), uniform);
+  expect_equal(parsed(to_toml(uniform)), uniform);
 
   Case table = uniform;
   table.prestress = {};
   table.prestress.file = "table.csv";
-  expect_equal(parse_case(to_toml(table), "c.toml"), table);
-}
-
-TEST(Schema, KeysThatDoNotApplyAreRefused) {
-  constexpr Refused cases[] = {
-      {"[prestress]\nt_Pa = 1\n", "c.toml:2: prestress.t_Pa applies only with loading.method = prestress"},
-      {"[nucleation]\nx_m = 0.1\n", "c.toml:2: nucleation.x_m applies only with event.kind = nucleation"},
-      {"[event]\nkind = \"nucleation\"\n[nucleation]\noverstress_Pa = 1\n",
-       "c.toml:4: nucleation.overstress_Pa", "and nucleation.form = overstress"},
-      {"[loading]\ntilt_left_m = 0\nmethod = \"prestress\"\n", "c.toml:2: loading.tilt_left_m",
-       "loading.method = direct or ramp"},
-      {"[loading]\nmethod = \"prestress\"\n[prestress]\nt_Pa = 1\np_Pa = 1\nfile = \"a.csv\"\n",
-       "c.toml:4: prestress.t_Pa applies only with"},
-      {"[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\ntrigger_amount = 5\n",
-       "c.toml:4: event.trigger_amount", "event.trigger_form = added or raised"},
-      {"[base]\nheight_m = 1", "c.toml:2: base.height_m applies only with base.kind"}};
-  expect_refused(cases);
+  expect_equal(parsed(to_toml(table)), table);
 }
 
 TEST(Schema, KeysThatAnOverrideExcludesAreDropped) {
   const std::string nucleated = to_toml(changed_prestress());
-  const Case left = parse_case(nucleated, "c.toml", {{"event.kind", "left"}});
-  EXPECT_TRUE(members(left.nucleation) == members(Case{}.nucleation));
+  const Case left = parsed(nucleated, {{"event.kind", "left"}});
+  EXPECT_TRUE(members<5>(left.nucleation) == members<5>(Case{}.nucleation));
   EXPECT_EQ(left.event, interface::EventKind::left);
-  const Case table = parse_case(nucleated, "c.toml", {{"prestress.file", "t.csv"}});
+  const Case table = parsed(nucleated, {{"prestress.file", "t.csv"}});
   EXPECT_EQ(table.prestress.p_Pa, Case{}.prestress.p_Pa);
-  const Case weakened = parse_case(nucleated, "c.toml", {{"nucleation.form", "weakened"}});
+  const Case weakened = parsed(nucleated, {{"nucleation.form", "weakened"}});
   EXPECT_EQ(weakened.nucleation.overstress_Pa, Case{}.nucleation.overstress_Pa);
   // An override of a key that does not apply is wrong all the same.
   expect_message(parse_error(nucleated, {{"event.kind", "left"}, {"nucleation.x_m", "0.1"}}),
-                 "--set nucleation.x_m=0.1: nucleation.x_m applies only with", "");
+                 "--set nucleation.x_m=0.1: nucleation.x_m applies only with");
 }
 
 TEST(Schema, ABodyBelowHasItsKeys) {
@@ -271,125 +218,26 @@ TEST(Schema, ABodyBelowHasItsKeys) {
       "[base]\nkind = \"body\"\nheight_m = 0.1\nyoungs_modulus_Pa = 2.1e11\npoissons_ratio = 0.3\n"
       "density_kg_per_m3 = 7850\n";
   expect_message(parse_error(steel), "c.toml:2: ", "needs base.stiffness_damping_s; set it");
-  EXPECT_EQ(parse_case(steel + "stiffness_damping_s = 0", "c.toml").base.material.density_kg_per_m3, 7850);
-  const Case rigid = parse_case(to_toml(changed_prestress()), "c.toml", {{"base.kind", "rigid"}});
+  EXPECT_EQ(parsed(steel + "stiffness_damping_s = 0").base.material.density_kg_per_m3, 7850);
+  const Case rigid = parsed(to_toml(changed_prestress()), {{"base.kind", "rigid"}});
   EXPECT_TRUE(members(rigid.base) == members(Case{}.base));
 }
 
-TEST(Schema, AWeakenedTriggerNeedsALawThatWeakensAndHasNoAmount) {
-  const std::vector<Override> weakened = {{"event.kind", "left"}, {"event.trigger_form", "weakened"}};
-  EXPECT_EQ(parse_case("", "c.toml", weakened).trigger.form, interface::TriggerForm::weakened);
-  auto coulomb = weakened, with_amount = weakened;
-  coulomb.push_back({"friction.law", "coulomb"});
-  expect_message(parse_error("", coulomb), "", "choose added or raised");
+TEST(Schema, AWeakenedTriggerHasNoAmount) {
   const std::string pushed = "[event]\nkind = \"left\"\ntrigger_amount = 7\n";
-  EXPECT_EQ(parse_case(pushed, "c.toml", weakened).trigger.amount, interface::Trigger{}.amount);
-  EXPECT_EQ(parse_case(pushed, "c.toml", {{"event.trigger_form", "raised"}}).trigger.amount, 7);
-  with_amount.push_back({"event.trigger_amount", "3"});
-  expect_message(parse_error(pushed, with_amount),
-                 "--set event.trigger_amount=3: event.trigger_amount applies only with", "");
+  std::vector<Override> overrides = {{"event.trigger_form", "raised"}};
+  EXPECT_EQ(parsed(pushed, overrides).trigger.amount, 7);
+  overrides[0].second = "weakened";
+  EXPECT_EQ(parsed(pushed, overrides).trigger.form, interface::TriggerForm::weakened);
+  EXPECT_EQ(parsed(pushed, overrides).trigger.amount, interface::Trigger{}.amount);
+  overrides.push_back({"event.trigger_amount", "3"});
+  expect_message(parse_error(pushed, overrides),
+                 "--set event.trigger_amount=3: event.trigger_amount applies only with");
 }
 
 TEST(Schema, StaticsByPetscAreRefusedWithoutIt) {
   const std::string message = parse_error("[loading]\nsolver = \"petsc\"\n");
   if (message != "(nothing thrown)") expect_message(message, "", "built without PETSc");
-}
-
-TEST(Schema, TheKeysStandForTheirMembers) {
-  const Case c = parse_case(R"(
-title = "run"
-[plate]
-width_m = 1
-height_m = 0.5
-element_size_m = 0.01
-coarsenings = 1
-fine_height_m = 0.03
-corner = "none"
-relief_length_m = 2e-3
-relief_height_m = 3e-4
-relief_depth_m = 4e-3
-fillet_radius_m = 6e-3
-[material]
-youngs_modulus_Pa = 1e9
-poissons_ratio = 0.25
-density_kg_per_m3 = 1000
-plane = "strain"
-stiffness_damping_s = 2e-7
-[loading]
-tilt_left_m = 1e-4
-tilt_right_m = 2e-4
-top_during_tilt = "free"
-method = "ramp"
-solver = "direct"
-shear_speed_over_c_L = 1e-5
-edge_margin_m = 0.02
-critical_margin = 0.01
-[friction]
-law = "velocity_weakening"
-mu_s = 0.9
-mu_k = 0.5
-alpha_m2_per_s2 = 0.2
-regularisation = "pressure"
-relaxation_length_m = 2e-5
-relaxation_slip_rate_m_per_s = 0.5
-relaxation_time_s = inf
-[contact]
-algorithm = "predictor_corrector"
-[event]
-kind = "left"
-trigger_form = "raised"
-trigger_zone_m = 0.03
-trigger_amount = 4
-trigger_ramp_s = 6e-6
-trigger_duration_s = inf
-[time]
-step_factor = 0.5
-allow_unstable = true
-precision = "single"
-interface_rows = 3
-interface_substeps = 9
-local_steps = false
-end_s = 1e-4
-quiet_s = 2e-5
-[fronts]
-l_star_m = 2e-3
-arrest_time_s = 3e-5
-min_length_m = 4e-3
-crack_share = 0.6
-pulse_share = 0.1
-trigger_margin_m = 5e-3
-speed_interval = "approach"
-[output]
-history_interval_s = 1e-6
-energy_interval_s = 1e-5
-snapshot_times_s = [1e-5, 2e-5]
-snapshot_interval_s = 3e-5
-snapshot_stress = false
-[probes]
-x_m = [0.1, 0.2]
-y_m = [0.3, 0.4]
-names = ["a", "b \\"]
-interval_s = 2e-6
-)",
-                            "c.toml");
-  Case expected;
-  expected.title = "run";
-  expected.plate = {1, 0.5, 0.01, 1, 0.03, mesh::Corner::none, 2e-3, 3e-4, 4e-3, 6e-3};
-  expected.material = {1e9, 0.25, 1000, solid::Plane::strain, 2e-7};
-  expected.loading = {
-      1e-4, 2e-4, statics::TopEdge::free, statics::LoadingMethod::ramp, statics::StaticSolver::direct, 1e-5,
-      0.02, 0.01};
-  expected.friction = interface::VelocityWeakening { 0.9, 0.5, 0.2 };
-  expected.regularisation = {interface::Relaxed::pressure, 2e-5, 0.5,
-                             std::numeric_limits<double>::infinity()};
-  expected.contact = interface::ContactAlgorithm::predictor_corrector;
-  expected.event = interface::EventKind::left;
-  expected.trigger = {interface::TriggerForm::raised, 0.03, 4, 6e-6, std::numeric_limits<double>::infinity()};
-  expected.time = {0.5, true, motion::Precision::single_precision, 3, 9, false, 1e-4, 2e-5};
-  expected.fronts = {2e-3, fronts::SpeedInterval::approach, 3e-5, 4e-3, 0.6, 0.1, 5e-3};
-  expected.output = {1e-6, {1e-5, 2e-5}, 3e-5, false, 1e-5};
-  expected.probes = {{0.1, 0.2}, {0.3, 0.4}, {"a", "b \\"}, 2e-6};
-  expect_equal(c, expected);
 }
 
 TEST(Schema, EveryLawOfTheRegistryIsReadByItsName) {
@@ -398,8 +246,7 @@ TEST(Schema, EveryLawOfTheRegistryIsReadByItsName) {
   for (const LawEntries& law : friction_laws()) {
     SCOPED_TRACE(law.name);
     EXPECT_TRUE(names.insert(law.name).second) << "two laws of one name";
-    const Case plain = parse_case("friction.law = \"" + law.name + "\"", "c.toml");
-    EXPECT_EQ(plain.friction.name(), law.defaults.name());
+    const Case plain = parsed("friction.law = \"" + law.name + "\"");
     EXPECT_EQ(members(plain.friction), members(law.defaults));
 
     // A common factor keeps relations between parameters, e.g. mu_k <= mu_s.
@@ -408,115 +255,110 @@ TEST(Schema, EveryLawOfTheRegistryIsReadByItsName) {
     for (const auto& parameter : interface::description_of(scaled.friction).parameters)
       scaled.friction.parameter(parameter.key) *= 0.75;
     EXPECT_NE(members(scaled.friction), members(law.defaults));
-    expect_equal(parse_case(to_toml(scaled), "c.toml"), scaled);
+    expect_equal(parsed(to_toml(scaled)), scaled);
 
     for (const Entry& entry : law.entries) {
       const std::string too_small = toml_text(Value(entry.range.min - 1));
       const std::string written = entry.kind == Kind::numbers ? "[" + too_small + "]" : too_small;
       expect_message(parse_error("friction.law = \"" + law.name + "\"\n" + entry.key + " = " + written),
-                     ("c.toml:2: " + entry.key + " is " + too_small).c_str(), "it must be at least");
+                     "c.toml:2: " + entry.key + " is " + too_small, "it must be at least");
     }
   }
 }
 
-TEST(Schema, WrongNamesAreAnsweredWithTheNearestOnes) {
-  constexpr Refused cases[] = {
-      {"[plate]\n\nwidht_m = 0.2", "c.toml:3: unknown key plate.widht_m; did you mean plate.width_m?"},
-      {"titel = \"x\"", "c.toml:1: unknown key titel; did you mean title?"},
-      {"[friction]\nmus = 1", "c.toml:2: unknown key friction.mus; did you mean friction.mu_s?"},
-      {"[time]\nunheard_of_quantity = 1", "c.toml:2: unknown key time.unheard_of_quantity", "slipfront keys"},
-      {"[material]\nwidth_m = 1", "c.toml:2: unknown key material.width_m; did you mean plate.width_m?"},
-      {"width_m = 1", "c.toml:1: unknown key width_m; did you mean plate.width_m?"},
-      {"[plat]\nwidth_m = 1", "c.toml:1: unknown table [plat]; did you mean [plate]?"},
-      {"title = \"\"\n[boundaries]", "c.toml:2: unknown table [boundaries]", "nucleation, time, fronts"},
-      {"[plate.inner]\nwidth_m = 1", "c.toml:1: unknown table [plate.inner]"},
-      {"plate = 3", "c.toml:1: plate is a table, not a key"},
-      {"[[plate]]\nwidth_m = 1", "c.toml:1: plate is a table, not a key"},
-      {"[event]\nkind = \"lft\"", "c.toml:2: event.kind is \"lft\"; it must be one of none, spontaneous",
-       "did you mean left?"},
-      {"[friction]\nlaw = \"coulom\"", "c.toml:2: friction.law is \"coulom\"; it must be one of ",
-       "did you mean coulomb?"},
-      {"[friction]\nlaw = \"coulomb\"\nmu_k = 0.5", "c.toml:3: friction.mu_k belongs to the friction law",
-       "friction.law is coulomb"},
-      {"[friction]\nmu_s = 0.5\nmu_k = 0.7", "c.toml:2: friction: mu_k must be at most mu_s",
-       "mu_s = 0.5, mu_k = 0.7"}};
-  expect_refused(cases);
-  expect_message(parse_error("[friction]\nmu_s = 0.9", {{"friction.mu_k", "1"}}),
-                 "--set friction.mu_k=1: friction: mu_k must be at most mu_s", "");
-}
+/// A case that is refused, with the beginning of the message and what else it says.
+struct Refused {
+  const char *text, *begins, *contains = "";
+};
 
-TEST(Schema, WrongTypes) {
-  constexpr Refused cases[] = {
-      {"[plate]\nwidth_m = \"0.2\"", "c.toml:2: plate.width_m must be a number, is a string",
-       "width_m = 0.2"},
-      {"[plate]\nwidth_m = true", "c.toml:2: plate.width_m must be a number, is a boolean"},
-      {"[plate]\nwidth_m = 1979-05-27", "c.toml:2: plate.width_m must be a number, is a date"},
-      {"[plate.width_m]\nvalue = 1", "c.toml:1: plate.width_m must be a number, is a table"},
-      {"[time]\ninterface_rows = 4.5", "c.toml:2: time.interface_rows must be an integer, is a number"},
-      {"[time]\nallow_unstable = 1", "c.toml:2: time.allow_unstable must be true or false, is an integer"},
-      {"title = 5", "c.toml:1: title must be a string, is an integer"},
-      {"[event]\nkind = 1", "c.toml:2: event.kind must be a word in quotes, is an integer"},
-      {"[output]\nsnapshot_times_s = 1e-5", "c.toml:2: output.snapshot_times_s must be a list of numbers",
-       "[1e-5, 2e-5]"},
-      {"[output]\nsnapshot_times_s = [0, \"a\"]",
-       "c.toml:2: output.snapshot_times_s must be a list of numbers", "is a list with something else"}};
-  expect_refused(cases);
+constexpr Refused refused[] = {
+    // Names
+    {"[plate]\n\nwidht_m = 0.2", "c.toml:3: unknown key plate.widht_m; did you mean plate.width_m?"},
+    {"[time]\nunheard_of_quantity = 1", "c.toml:2: unknown key time.unheard_of_quantity"},
+    {"[material]\nwidth_m = 1", "c.toml:2: unknown key material.width_m; did you mean plate.width_m?"},
+    {"width_m = 1", "c.toml:1: unknown key width_m"},
+    {"title = \"\"\n[boundaries]", "c.toml:2: unknown table [boundaries]"},
+    {"[plate.inner]\nwidth_m = 1", "c.toml:1: unknown table [plate.inner]"},
+    {"plate = 3", "c.toml:1: plate is a table, not a key"},
+    {"[[plate]]\nwidth_m = 1", "c.toml:1: plate is a table, not a key"},
+    {"[event]\nkind = \"lft\"", "c.toml:2: event.kind is \"lft\"; it must be one of none",
+     "did you mean left?"},
+    {"[friction]\nlaw = \"coulom\"", "c.toml:2: friction.law is \"coulom\"; it must be one of "},
+    {"[friction]\nlaw = \"coulomb\"\nmu_k = 0.5", "c.toml:3: friction.mu_k belongs to the friction law",
+     "friction.law is coulomb"},
+    // Types
+    {"[plate]\nwidth_m = \"0.2\"", "c.toml:2: plate.width_m must be a number, is a string"},
+    {"[plate]\nwidth_m = true", "c.toml:2: plate.width_m must be a number, is a boolean"},
+    {"[plate]\nwidth_m = 1979-05-27", "c.toml:2: plate.width_m must be a number, is a date"},
+    {"[plate.width_m]\nvalue = 1", "c.toml:1: plate.width_m must be a number, is a table"},
+    {"[time]\ninterface_rows = 4.5", "c.toml:2: time.interface_rows must be an integer, is a number"},
+    {"[time]\nallow_unstable = 1", "c.toml:2: time.allow_unstable must be true or false, is an integer"},
+    {"title = 5", "c.toml:1: title must be a string, is an integer"},
+    {"[event]\nkind = 1", "c.toml:2: event.kind must be a word in quotes, is an integer"},
+    {"[output]\nsnapshot_times_s = 1e-5", "c.toml:2: output.snapshot_times_s must be a list of numbers"},
+    {"[output]\nsnapshot_times_s = [0, \"a\"]",
+     "c.toml:2: output.snapshot_times_s must be a list of numbers"},
+    // Ranges
+    {"[plate]\nheight_m = 0.0", "c.toml:2: plate.height_m is 0 m; it must be greater than 0 m"},
+    {"[material]\npoissons_ratio = 0.5", "c.toml:2: material.poissons_ratio is 0.5",
+     "greater than -1 and less than 0.5"},
+    {"[material]\ndensity_kg_per_m3 = -1", "c.toml:2: material.density_kg_per_m3 is -1 kg/m3"},
+    {"[time]\ninterface_substeps = 0", "c.toml:2: time.interface_substeps is 0",
+     "at least 1 and at most 1000000"},
+    {"[event]\ntrigger_duration_s = -1", "c.toml:2: event.trigger_duration_s is -1 s", "may be inf"},
+    {"[output]\nsnapshot_times_s = [0, -1]", "c.toml:2: output.snapshot_times_s is -1 s"},
+    // The first error of the file is reported.
+    {"[time]\nend_s = -1\n[material]\ndensity_kg_per_m3 = -1", "c.toml:2: time.end_s"},
+    // Keys that do not apply
+    {"[prestress]\nt_Pa = 1\n", "c.toml:2: prestress.t_Pa applies only with loading.method = prestress"},
+    {"[nucleation]\nx_m = 0.1\n", "c.toml:2: nucleation.x_m applies only with event.kind = nucleation"},
+    {"[event]\nkind = \"nucleation\"\n[nucleation]\noverstress_Pa = 1\n",
+     "c.toml:4: nucleation.overstress_Pa", "and nucleation.form = overstress"},
+    {"[loading]\ntilt_left_m = 0\nmethod = \"prestress\"\n", "c.toml:2: loading.tilt_left_m",
+     "loading.method = direct or ramp"},
+    {"[loading]\nmethod = \"prestress\"\n[prestress]\nt_Pa = 1\np_Pa = 1\nfile = \"a.csv\"\n",
+     "c.toml:4: prestress.t_Pa applies only with"},
+    {"[event]\nkind = \"left\"\ntrigger_form = \"weakened\"\ntrigger_amount = 5\n",
+     "c.toml:4: event.trigger_amount", "event.trigger_form = added or raised"},
+    {"[base]\nheight_m = 1", "c.toml:2: base.height_m applies only with base.kind"},
+    // Syntax
+    {"title = \"x\"\n\n[plate\n", "c.toml:3: ", "; correct the TOML there"},
+    {"[plate]\nwidth_m = 0.2.1", "c.toml:2: "},
+    {"[plate]\nwidth_m =\n", "c.toml:2: "},
+    {"[plate]\nwidth_m = 0.2\nwidth_m = 0.3", "c.toml:3: ", "width_m"},
+    {"[plate]\n[plate]", "c.toml:2: ", "; keep only one of the two"},
+};
+
+TEST(Schema, WhatIsWrongIsRefusedWithItsLine) {
+  for (const auto& [text, begins, contains] : refused) expect_message(parse_error(text), begins, contains);
 }
 
 TEST(Schema, AnIntegerDoesForANumber) {
-  EXPECT_EQ(parse_case("[plate]\nwidth_m = 2", "c.toml").plate.width_m, 2.0);
-  EXPECT_EQ(parse_case("[output]\nsnapshot_times_s = [0, 1.5, 2]", "c.toml").output.snapshot_times_s,
+  EXPECT_EQ(parsed("[plate]\nwidth_m = 2").plate.width_m, 2.0);
+  EXPECT_EQ(parsed("[output]\nsnapshot_times_s = [0, 1.5, 2]").output.snapshot_times_s,
             (std::vector<double>{0, 1.5, 2}));
 }
 
-TEST(Schema, ValuesOutOfRange) {
-  constexpr Refused cases[] = {
-      {"[plate]\nheight_m = 0.0", "c.toml:2: plate.height_m is 0 m; it must be greater than 0 m"},
-      {"[material]\npoissons_ratio = 0.5", "c.toml:2: material.poissons_ratio is 0.5",
-       "greater than -1 and less than 0.5"},
-      {"[material]\ndensity_kg_per_m3 = -1", "c.toml:2: material.density_kg_per_m3 is -1 kg/m3"},
-      {"[time]\ninterface_substeps = 0", "c.toml:2: time.interface_substeps is 0",
-       "at least 1 and at most 1000000"},
-      {"[time]\nend_s = inf", "c.toml:2: time.end_s is inf s; it must be a finite number"},
-      {"[plate]\nwidth_m = nan", "c.toml:2: plate.width_m is nan m; it must be a finite number"},
-      {"[event]\ntrigger_duration_s = -1", "c.toml:2: event.trigger_duration_s is -1 s", "may be inf"},
-      {"[output]\nsnapshot_times_s = [0, -1]", "c.toml:2: output.snapshot_times_s is -1 s"},
-      // The first error of the file is reported.
-      {"[time]\nend_s = -1\n[material]\ndensity_kg_per_m3 = -1", "c.toml:2: time.end_s"}};
-  expect_refused(cases);
-}
-
 TEST(Schema, NoNumberMayBeNanAndOnlyOpenEndedTimesInfinite) {
-  std::vector<std::string> infinite;
+  std::vector<std::string> may_be_infinite;
   for (const Entry& entry : entries_of(Case{})) {
     if (entry.kind != Kind::number) continue;
     expect_message(parse_error(entry.key + " = nan"), "", "is nan");
-    if (parse_error(entry.key + " = inf") == "(nothing thrown)") infinite.push_back(entry.key);
+    if (parse_error(entry.key + " = inf") == "(nothing thrown)") may_be_infinite.push_back(entry.key);
   }
-  EXPECT_EQ(infinite, (std::vector<std::string>{"friction.relaxation_length_m", "friction.relaxation_time_s",
-                                                "event.trigger_duration_s", "time.quiet_s",
-                                                "output.snapshot_interval_s"}));
+  EXPECT_EQ(may_be_infinite, (std::vector<std::string>{
+                                 "friction.relaxation_length_m", "friction.relaxation_time_s",
+                                 "event.trigger_duration_s", "time.quiet_s", "output.snapshot_interval_s"}));
 }
 
 // What is refused is in relations_test.
 TEST(Schema, RelationsThatAreAllowed) {
-  EXPECT_EQ(parse_case("[time]\nstep_factor = 1.5\nallow_unstable = true", "c.toml").time.step_factor, 1.5);
+  EXPECT_EQ(parsed("[time]\nstep_factor = 1.5\nallow_unstable = true").time.step_factor, 1.5);
   for (const std::string scale : {"relaxation_length_m = 1e-5", "relaxation_time_s = 1e-6"})
-    EXPECT_EQ(
-        parse_case("[friction]\nregularisation = \"strength\"\n" + scale, "c.toml").regularisation.relaxed,
-        interface::Relaxed::strength);
+    EXPECT_EQ(parsed("[friction]\nregularisation = \"strength\"\n" + scale).regularisation.relaxed,
+              interface::Relaxed::strength);
   // Without a regularisation its scale may stay in the file, for comparisons by overrides.
-  EXPECT_EQ(parse_case("[friction]\nrelaxation_length_m = 1e-5", "c.toml").regularisation.length_m, 1e-5);
-}
-
-TEST(Schema, SyntaxErrorsHaveTheirLine) {
-  constexpr Refused cases[] = {{"title = \"x\"\n\n[plate\n", "c.toml:3: ", "; correct the TOML there"},
-                               {"[plate]\nwidth_m = 0.2.1", "c.toml:2: "},
-                               {"[plate]\nwidth_m =\n", "c.toml:2: "},
-                               {"\n\ntitle = \"\xff\"", "c.toml:3: ", "utf-8"},
-                               {"[plate]\nwidth_m = 0.2\nwidth_m = 0.3", "c.toml:3: ", "width_m"},
-                               {"[plate]\n[plate]", "c.toml:2: ", "; keep only one of the two"}};
-  expect_refused(cases);
+  EXPECT_EQ(parsed("[friction]\nrelaxation_length_m = 1e-5").regularisation.length_m, 1e-5);
 }
 
 TEST(Overrides, AreSplitAtTheFirstEqualsSign) {
@@ -524,32 +366,26 @@ TEST(Overrides, AreSplitAtTheFirstEqualsSign) {
   EXPECT_EQ(parse_override(" plate.width_m = 0.4 "), Override("plate.width_m", "0.4"));
   EXPECT_EQ(parse_override("title="), Override("title", ""));
   expect_message(error_of([] { parse_override("plate.width_m"); }),
-                 "--set plate.width_m: is not of the form key=value", "");
-  expect_message(error_of([] { parse_override("=1"); }), "--set =1: is not of the form key=value", "");
+                 "--set plate.width_m: is not of the form key=value");
+  expect_message(error_of([] { parse_override("=1"); }), "--set =1: is not of the form key=value");
 }
 
 TEST(Overrides, WinOverTheFileAndTheLastOverEarlierOnes) {
-  const Case c =
-      parse_case("[plate]\nwidth_m = 0.3\nheight_m = 0.2", "c.toml",
-                 {{"plate.width_m", "0.4"}, {"plate.width_m", "0.5"}, {"time.interface_rows", "6"}});
+  const Case c = parsed("[plate]\nwidth_m = 0.3\nheight_m = 0.2",
+                        {{"plate.width_m", "0.4"}, {"plate.width_m", "0.5"}, {"time.interface_rows", "6"}});
   EXPECT_EQ(c.plate.width_m, 0.5);
   EXPECT_EQ(c.plate.height_m, 0.2);
   EXPECT_EQ(c.time.interface_rows, 6);
   // They mend an error of the file.
-  EXPECT_EQ(parse_case("[plate]\nwidth_m = -1", "c.toml", {{"plate.width_m", "0.4"}}).plate.width_m, 0.4);
+  EXPECT_EQ(parsed("[plate]\nwidth_m = -1", {{"plate.width_m", "0.4"}}).plate.width_m, 0.4);
 }
 
 TEST(Overrides, WordsAndTextNeedNoQuotes) {
-  EXPECT_EQ(parse_case("", "c.toml", {{"event.kind", "left"}}).event, interface::EventKind::left);
-  EXPECT_EQ(parse_case("", "c.toml", {{"event.kind", "\"left\""}}).event, interface::EventKind::left);
-  EXPECT_EQ(parse_case("", "c.toml", {{"title", "my run"}}).title, "my run");
-  EXPECT_EQ(parse_case("", "c.toml", {{"title", "12"}}).title, "12");
-  EXPECT_EQ(parse_case("", "c.toml", {{"title", "'12'"}}).title, "12");
-}
-
-TEST(Overrides, TakeListsFlagsAndInfinity) {
-  const Case c = parse_case("", "c.toml",
-                            {{"output.snapshot_times_s", "[1e-5, 2e-5]"},
+  for (const char* left : {"left", "\"left\""})
+    EXPECT_EQ(parsed("", {{"event.kind", left}}).event, interface::EventKind::left);
+  for (const auto& [value, title] : {std::pair{"my run", "my run"}, {"12", "12"}, {"'12'", "12"}})
+    EXPECT_EQ(parsed("", {{"title", value}}).title, title);
+  const Case c = parsed("", {{"output.snapshot_times_s", "[1e-5, 2e-5]"},
                              {"time.allow_unstable", "true"},
                              {"event.trigger_duration_s", "inf"}});
   EXPECT_EQ(c.output.snapshot_times_s, (std::vector<double>{1e-5, 2e-5}));
@@ -558,50 +394,32 @@ TEST(Overrides, TakeListsFlagsAndInfinity) {
 }
 
 TEST(Overrides, ErrorsNameTheOverride) {
-  constexpr RefusedOverride overrides[] = {
-      {"plate.widht_m", "1", "--set plate.widht_m=1: unknown key plate.widht_m; did you mean plate.width_m?"},
-      {"plate.width_m", "0,2", "--set plate.width_m=0,2: plate.width_m must be a number, is a string"},
-      {"plate.width_m", "-1", "--set plate.width_m=-1: plate.width_m is -1 m"},
-      {"event.kind", "lft", "--set event.kind=lft: event.kind is \"lft\""},
-      {"plate.width_m", "0.2\nheight_m = 3", "--set plate.width_m=0.2"},
-      {"plate", "3", "--set plate=3: plate is a table"}};
-  expect_refused("", overrides);
-  expect_message(parse_error("[plate]\nelement_size_m = 0.1", {{"plate.height_m", "0.01"}}),
-                 "--set plate.height_m=0.01: plate.element_size_m is 0.1 m", "");
+  const std::tuple<const char*, const char*, const char*> overrides[] = {
+      {"plate.widht_m", "1", "=1: unknown key plate.widht_m; did you mean plate.width_m?"},
+      {"plate.width_m", "0,2", "=0,2: plate.width_m must be a number, is a string"},
+      {"plate.width_m", "-1", "=-1: plate.width_m is -1 m"},
+      {"event.kind", "lft", "=lft: event.kind is \"lft\""},
+      {"plate.width_m", "0.2\nheight_m = 3", "=0.2"},
+      {"plate", "3", "=3: plate is a table"}};
+  for (const auto& [key, value, error] : overrides)
+    expect_message(parse_error("", {{key, value}}), std::string("--set ") + key + error);
 }
 
 TEST(Overrides, ChangeTheFrictionLaw) {
   const std::string file = "[friction]\nlaw = \"velocity_weakening\"\nmu_s = 1.3\nmu_k = 0.6";
-  const Case c = parse_case(file, "c.toml", {{"friction.mu", "0.75"}, {"friction.law", "coulomb"}});
+  const Case c = parsed(file, {{"friction.mu", "0.75"}, {"friction.law", "coulomb"}});
   ASSERT_TRUE(c.friction.name() == "coulomb");
   EXPECT_EQ(c.friction.as<interface::Coulomb>().mu, 0.75);
 
   expect_message(parse_error(file, {{"friction.law", "coulomb"}, {"friction.mu_k", "1"}}),
-                 "--set friction.mu_k=1: friction.mu_k belongs to the friction law velocity_weakening", "");
+                 "--set friction.mu_k=1: friction.mu_k belongs to the friction law velocity_weakening");
   expect_message(parse_error(file + "\nmuk = 1", {{"friction.law", "coulomb"}}),
-                 "c.toml:5: unknown key friction.muk; did you mean friction.mu?", "");
+                 "c.toml:5: unknown key friction.muk; did you mean friction.mu?");
 }
 
-TEST(Reference, NamesEveryKeyWithUnitDefaultAndRange) {
-  const std::string reference = schema_reference();
-  const auto expect_in = [&](const std::string& text) {
-    EXPECT_TRUE(reference.find(text) != std::string::npos) << text;
-  };
-  for (const Entry& entry : common_entries()) expect_in("| `" + leaf_of(entry.key) + "` |");
-  for (const LawEntries& law : friction_laws()) {
-    expect_in("With `law = \"" + law.name + "\"`");
-    for (const Entry& entry : law.entries) expect_in("| `" + leaf_of(entry.key) + "` |");
-  }
-  expect_in("| `width_m` | number | m | `0.2` | greater than 0 |");
-  expect_in("| `plane` | word |  | `\"stress\"` | `\"stress\"`, `\"strain\"` |");
-}
-
-TEST(Entries, KeysAreUnique) {
+TEST(Entries, KeysAreUniqueAndDefaultsInRange) {
   std::set<std::string> keys;
   for (const Entry& entry : common_entries()) EXPECT_TRUE(keys.insert(entry.key).second) << entry.key;
-}
-
-TEST(Entries, DefaultsAreInRange) {
   for (const Entry& entry : entries_of(Case{})) {
     const Value value = entry.get(Case{});
     if (const auto* number = std::get_if<double>(&value)) {
@@ -613,25 +431,15 @@ TEST(Entries, DefaultsAreInRange) {
   }
 }
 
-TEST(Entries, UnitsComeFromTheKey) {
-  EXPECT_EQ(unit_of("plate.width_m"), "m");
-  EXPECT_EQ(unit_of("material.density_kg_per_m3"), "kg/m3");
-  EXPECT_EQ(unit_of("friction.alpha_m2_per_s2"), "m2/s2");
-  EXPECT_EQ(unit_of("event.trigger_amount"), "");
-  EXPECT_EQ(unit_of("friction.mu_s"), "");
-  EXPECT_EQ(unit_of("loading.shear_speed_over_c_L"), "");
-  EXPECT_EQ(unit_of("friction.rate_per_s"), "1/s");
-}
-
 TEST(CaseFile, MessagesNameTheFile) {
   const test::TemporaryFolder folder;
   const auto file = folder / "my case.toml";
   const std::string missing = file.string() + ": cannot be read (No such file or directory)";
-  expect_message(error_of([&] { read_case(file); }), missing.c_str(), "");
+  expect_message(error_of([&] { read_case(file); }), missing);
   expect_message(error_of([&] { read_case(folder.path()); }), "", ": is a folder");
   test::write_file(file, "\xef\xbb\xbf# with a byte order mark\r\n[plate]\r\nwidth_m = -1\r\n");
   const std::string place = file.string() + ":3: plate.width_m is -1 m";
-  expect_message(error_of([&] { read_case(file); }), place.c_str(), "");
+  expect_message(error_of([&] { read_case(file); }), place);
 }
 
 TEST(CaseFile, PlacesOfLaterErrors) {

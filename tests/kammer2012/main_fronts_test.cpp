@@ -54,12 +54,12 @@ TEST(MainFronts, AreOfEachEventThoseOfItsStart) {
   for (const auto& m : mains) EXPECT_EQ(&m.points.back(), &m.front->points.back());
 }
 
-TEST(MainFronts, NoneWithoutAFront) {
+TEST(MainFronts, NoneWithoutAFrontThatIsFast) {
   EXPECT_TRUE(mains_of(make_event("left", EventKind::left)).empty());
-  Outcome o = make_event("spontaneous", EventKind::spontaneous);
-  o.first_onset_x_m = fronts::undefined;
-  EXPECT_TRUE(mains_of(o).empty());
   EXPECT_EQ(first_front(make_left(constant), -1), nullptr);
+  EXPECT_TRUE(mains_of(make_left([](double) { return 0.09; })).empty());
+  // Fast in front of the points that count alone.
+  EXPECT_TRUE(mains_of(make_left([](double x) { return x < 0.02 ? 1.0 : 0.09; })).empty());
 }
 
 TEST(MainFronts, CountFromFiveMillimetresBeyondASpontaneousNucleation) {
@@ -98,17 +98,14 @@ TEST(MainFronts, AreNotThoseOfOtherStarts) {
   EXPECT_NEAR(counted(left).second, 0.09, 1e-9);
 }
 
-TEST(MainFronts, StartWithinReachOfTheFirstOnset) {
+TEST(MainFronts, StartWithinReachOfTheFirstOnsetOrInTheMarginOfTheTriggerZone) {
   Outcome o = make_spontaneous(constant, constant);
-  o.first_onset_x_m = peak_x_m + 4.9e-3;
-  EXPECT_EQ(mains_of(o).size(), 2U);
-  o.first_onset_x_m = peak_x_m + 5.1e-3;
-  EXPECT_TRUE(mains_of(o).empty());
-}
-
-TEST(MainFronts, MayStartInTheMarginOfTheTriggerZone) {
+  for (const auto& [distance_m, n] : {std::pair{4.9e-3, 2U}, {5.1e-3, 0U}, {fronts::undefined, 0U}}) {
+    o.first_onset_x_m = peak_x_m + distance_m;
+    EXPECT_EQ(mains_of(o).size(), n) << distance_m;
+  }
   const double margin_end_m = contact_from_m + 20e-3;
-  Outcome o = make_left(constant);
+  o = make_left(constant);
   o.fronts[0] = make_front(margin_end_m - 0.5e-3, 0.1, constant, o.speeds.c_L);
   EXPECT_NEAR(counted(o).first, margin_end_m + 0.5e-3, 1e-9);
   o.fronts[0] = make_front(margin_end_m + 0.5e-3, 0.1, constant, o.speeds.c_L);
@@ -116,25 +113,17 @@ TEST(MainFronts, MayStartInTheMarginOfTheTriggerZone) {
 }
 
 TEST(MainFronts, EndWhereTheSpeedStaysLow) {
-  EXPECT_NEAR(counted(left_ending_with({0.11, 0.099, 0.01, 0.05})).second, left_end_m - 3e-3, 1e-9);
-  // Slow for a while only.
-  EXPECT_NEAR(counted(left_ending_with({0.05, 0.05, 0.05, 0.11})).second, left_end_m, 1e-9);
-  // And slow again, for good.
-  EXPECT_NEAR(counted(left_ending_with({0.05, 0.11, 0.05, 0.05})).second, left_end_m - 2e-3, 1e-9);
-}
-
-TEST(MainFronts, UndefinedSpeedsAreNeitherLowNorHigh) {
   const double none = fronts::undefined;
-  EXPECT_NEAR(counted(left_ending_with({none, none, none})).second, left_end_m, 1e-9);
-  EXPECT_NEAR(counted(left_ending_with({0.05, none, 0.05, none})).second, left_end_m - 4e-3, 1e-9);
-  // Not known to be slow until the point behind it.
-  EXPECT_NEAR(counted(left_ending_with({0.5, none, 0.05})).second, left_end_m - 1e-3, 1e-9);
-}
-
-TEST(MainFronts, NoneWhereNoPointIsFast) {
-  EXPECT_TRUE(mains_of(make_left([](double) { return 0.09; })).empty());
-  // Fast in front of the points that count alone.
-  EXPECT_TRUE(mains_of(make_left([](double x) { return x < 0.02 ? 1.0 : 0.09; })).empty());
+  const std::pair<std::vector<double>, double> examples[] = {
+      {{0.11, 0.099, 0.01, 0.05}, 3e-3},
+      {{0.05, 0.05, 0.05, 0.11}, 0},  // slow for a while only
+      {{0.05, 0.11, 0.05, 0.05}, 2e-3},
+      {{none, none, none}, 0},  // neither low nor high
+      {{0.05, none, 0.05, none}, 4e-3},
+      {{0.5, none, 0.05}, 1e-3}};  // not known to be slow until the point behind it
+  for (const auto& [speeds, cut_m] : examples)
+    EXPECT_NEAR(counted(left_ending_with(speeds)).second, left_end_m - cut_m, 1e-9)
+        << testing::PrintToString(speeds);
 }
 
 TEST(MainFronts, TailIsTheLastTwentyMillimetresThatCount) {

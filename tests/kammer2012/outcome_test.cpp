@@ -14,6 +14,10 @@ namespace {
 
 using namespace synthetic;
 
+std::array<const Outcome*, 1> only(const Outcome& o) {
+  return {&o};
+}
+
 TEST(CriterionValue, OfEachCriterion) {
   fronts::FrontPoint p;
   p.t_s_Pa = 4e6;
@@ -31,44 +35,39 @@ TEST(CriterionValue, OfEachCriterion) {
 }
 
 TEST(Counts, LeavesOutTheTriggerZoneAndItsMargin) {
-  // Zone and margin of 10 mm each, from the edge of contact.
-  const auto at = [](double x) {
+  auto left = make_left(linear(0.8, 0.4));
+  const auto right = make_right(linear(0.8, 0.4));
+  const auto counts_at = [](const Outcome& o, double x_m) {
     fronts::FrontPoint p;
-    p.x_m = x;
-    return p;
+    p.x_m = x_m;
+    return counts(o, o.fronts[0], p);
   };
-  const auto left = make_left(linear(0.8, 0.4)), right = make_right(linear(0.8, 0.4));
-  EXPECT_FALSE(counts(left, left.fronts[0], at(contact_from_m + 19.9e-3)));
-  EXPECT_TRUE(counts(left, left.fronts[0], at(contact_from_m + 20.1e-3)));
-  EXPECT_TRUE(counts(left, left.fronts[0], at(contact_to_m)));
-  EXPECT_FALSE(counts(right, right.fronts[0], at(contact_to_m - 19.9e-3)));
-  EXPECT_TRUE(counts(right, right.fronts[0], at(contact_to_m - 20.1e-3)));
-  EXPECT_TRUE(counts(right, right.fronts[0], at(contact_from_m)));
-
-  auto wide = left;
-  wide.config.trigger.zone_m = 30e-3;
-  EXPECT_FALSE(counts(wide, wide.fronts[0], at(contact_from_m + 39e-3)));
-  wide.config.fronts.trigger_margin_m = 0;
-  EXPECT_TRUE(counts(wide, wide.fronts[0], at(contact_from_m + 31e-3)));
+  // Zone and margin of 10 mm each, from the edge of contact.
+  for (const double at_m : {19.9e-3, 20.1e-3, contact_to_m - contact_from_m}) {
+    EXPECT_EQ(counts_at(left, contact_from_m + at_m), at_m > 20e-3) << at_m;
+    EXPECT_EQ(counts_at(right, contact_to_m - at_m), at_m > 20e-3) << at_m;
+  }
+  left.config.trigger.zone_m = 30e-3;
+  EXPECT_FALSE(counts_at(left, contact_from_m + 39e-3));
+  left.config.fronts.trigger_margin_m = 0;
+  EXPECT_TRUE(counts_at(left, contact_from_m + 31e-3));
 }
 
 TEST(Counts, LeavesOutTheNeighbourhoodOfSpontaneousNucleationOnly) {
-  const auto o = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
+  const auto o = make_spontaneous(), right = make_right(linear(0.8, 1.5));
   const auto& front = o.fronts[0];
   EXPECT_TRUE(counts(o, front, front.points[0]));
   EXPECT_FALSE(counts(o, front, front.points[4], 5e-3 + 1e-9));
   EXPECT_TRUE(counts(o, front, front.points[6], 5e-3 + 1e-9));
-  const auto right = make_right(linear(0.8, 1.5));
   EXPECT_TRUE(counts(right, right.fronts[0], right.fronts[0].points[30], 50e-3));
 }
 
 TEST(CriterionSeries, HasTheSamePointsForEveryCriterion) {
-  auto o = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
+  auto o = make_spontaneous();
   o.fronts[0].points[10].v_tip_m_per_s = fronts::undefined;
   o.fronts[0].points[20].U_s_J_per_m3 = fronts::undefined;
-  const std::array<const Outcome*, 1> one = {&o};
   for (const auto criterion : {Criterion::static_ratio, Criterion::dynamic_ratio, Criterion::energy_rise}) {
-    const auto series = criterion_series(one, criterion);
+    const auto series = criterion_series(only(o), criterion);
     ASSERT_EQ(series.size(), 2U);
     EXPECT_EQ(series[0].x.size(), o.fronts[0].points.size() - 3);  // nor the first point
     EXPECT_EQ(series[1].x.size(), o.fronts[1].points.size() - 1);
@@ -77,25 +76,8 @@ TEST(CriterionSeries, HasTheSamePointsForEveryCriterion) {
   }
 }
 
-TEST(Collapse, RecoversThePapersCurve) {
-  const auto s = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
-  const auto left = make_left(square(0.8, 0.4)), right = make_right(square(0.8, 1.6));
-  const std::array<const Outcome*, 3> three = {&s, &left, &right};
-  const auto c = collapse(three);
-  ASSERT_TRUE(c.fitted);
-  EXPECT_EQ(c.share_in_paper_band, 1);
-  // Exact data: what is left is the bisection on c, which ends at rounding.
-  EXPECT_NEAR(c.fit.a.value, 0.76, 1e-6);
-  EXPECT_NEAR(c.fit.b.value, 1.80, 1e-6);
-  EXPECT_NEAR(c.fit.c.value, 3.05, 1e-6);
-  EXPECT_LT(c.fit.rms, 1e-6);
-  EXPECT_EQ(c.n_points, c.fit.n_points);
-  // One curve, so the spread over the fronts is what a bin's width leaves.
-  EXPECT_LT(c.energy_rise.cases.median_relative, c.static_ratio.cases.median_relative);
-}
-
 TEST(Collapse, CountsTheShareWithinTheBand) {
-  auto o = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
+  auto o = make_spontaneous();
   std::size_t n = 0, n_off = 0;
   for (auto& front : o.fronts) {
     for (auto& p : front.points) {
@@ -108,23 +90,13 @@ TEST(Collapse, CountsTheShareWithinTheBand) {
       n_off += kind >= 2;
     }
   }
-  const std::array<const Outcome*, 1> one = {&o};
-  const auto c = collapse(one);
+  const auto c = collapse(only(o));
   EXPECT_EQ(c.n_points, n);
   EXPECT_DOUBLE_EQ(c.share_in_paper_band, static_cast<double>(n - n_off) / static_cast<double>(n));
 }
 
-TEST(Collapse, OfNothing) {
-  const auto o = make_event("spontaneous", EventKind::spontaneous);
-  const std::array<const Outcome*, 1> one = {&o};
-  const auto c = collapse(one);
-  EXPECT_FALSE(c.fitted);
-  EXPECT_EQ(c.n_points, 0U);
-  EXPECT_TRUE(std::isnan(c.share_in_paper_band));
-}
-
 TEST(SpeedChange, OfAScaledRunIsTheScale) {
-  const auto reference = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
+  const auto reference = make_spontaneous();
   auto run = reference;
   for (auto& front : run.fronts)
     for (auto& p : front.points) p.v_tip_m_per_s *= front.direction > 0 ? 1.2 : 0.7;
@@ -133,29 +105,23 @@ TEST(SpeedChange, OfAScaledRunIsTheScale) {
   EXPECT_NEAR(change.median, -0.3, 1e-12);
   EXPECT_NEAR(change.median_absolute, 0.3, 1e-12);
   EXPECT_NEAR(change.largest, 0.3, 1e-12);
-}
 
-TEST(SpeedChange, InterpolatesBetweenTheNodesOfAnotherMesh) {
-  const auto reference = make_left(linear(0.8, 0.4));
-  auto run = reference;
   // Every second node: the speed is linear in x on both sides of the peak, so interpolation is exact there.
+  const auto left = make_left(linear(0.8, 0.4));
+  run = left;
   std::erase_if(run.fronts[0].points, [k = 0](const fronts::FrontPoint&) mutable { return k++ % 2 != 0; });
   for (auto& p : run.fronts[0].points) p.v_tip_m_per_s *= 1.1;
-  const auto change = speed_change(run, reference);
-  EXPECT_NEAR(change.median, 0.1, 1e-12);
-  EXPECT_GT(change.n_points, 100U);
-}
+  EXPECT_NEAR(speed_change(run, left).median, 0.1, 1e-12);
+  EXPECT_GT(speed_change(run, left).n_points, 100U);
 
-TEST(SpeedChange, WithoutCommonPointsIsUndefined) {
-  const auto left = make_left(linear(0.8, 0.4)), right = make_right(linear(0.8, 0.4));
-  const auto change = speed_change(left, right);
-  EXPECT_EQ(change.n_points, 0U);
-  EXPECT_TRUE(std::isnan(change.median));
-  EXPECT_TRUE(std::isnan(change.largest));
+  // No place is common to these.
+  const auto none = speed_change(left, make_right(linear(0.8, 0.4)));
+  EXPECT_EQ(none.n_points, 0U);
+  EXPECT_TRUE(std::isnan(none.median) && std::isnan(none.largest));
 }
 
 TEST(MainFront, IsTheLongestInItsDirection) {
-  auto o = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
+  auto o = make_spontaneous();
   o.fronts.insert(o.fronts.begin(), make_front(0.05, 0.03, linear(0.8, 1), o.speeds.c_L));
   EXPECT_EQ(main_front(o, -1), &o.fronts[1]);
   EXPECT_EQ(main_front(o, 1), &o.fronts[2]);
@@ -167,47 +133,38 @@ TEST(MainFront, IsTheLongestInItsDirection) {
   EXPECT_EQ(longest_front(o), nullptr);
 }
 
-/// A run with the given onsets, of which only what make_outcome reads is there.
-run::Result make_result(const std::vector<record::Onset>& onsets) {
+/// What make_outcome takes from a run with the given onsets; node k lies at k mm.
+Outcome outcome_of(const std::vector<record::Onset>& onsets, const std::vector<fronts::Front>& fronts = {}) {
+  const auto state = make_event("", EventKind::spontaneous).common;
   run::Result result;
-  result.event.record.x_m = make_event("", EventKind::spontaneous).common.x_m;
+  result.event.record.x_m = state.x_m;
   result.event.record.onsets = onsets;
-  return result;
-}
-
-run::InitialState make_initial() {
+  result.fronts = fronts;
   run::InitialState initial;
-  initial.common.tractions = make_event("", EventKind::spontaneous).common;
+  initial.common.tractions = state;
   initial.common.peak_x_m = peak_x_m;
   initial.common.inside_from_m = contact_from_m + 10e-3;
   initial.common.inside_to_m = contact_to_m - 10e-3;
   initial.critical_shear_m = 0.47e-3;
-  return initial;
+  return make_outcome("run", result, initial);
 }
 
 TEST(MakeOutcome, TakesTheFirstOnsetInside) {
-  // Node k at k mm; node 5 is outside.
-  const auto o = make_outcome("run", make_result({{5, 0}, {150, 2e-6}, {144, 1e-6}}), make_initial());
+  const auto o = outcome_of({{5, 0}, {150, 2e-6}, {144, 1e-6}});  // node 5 is outside
   EXPECT_DOUBLE_EQ(o.first_onset_x_m, 0.144);
   EXPECT_DOUBLE_EQ(o.contact_from_m, contact_from_m);
   EXPECT_DOUBLE_EQ(o.contact_to_m, contact_to_m);
   EXPECT_EQ(o.peak_x_m, peak_x_m);
   EXPECT_TRUE(std::isnan(o.ramp_critical_shear_m));
-}
-
-TEST(MakeOutcome, OfSeveralFirstOnsetsTakesTheFarthestFromThePeak) {
-  const auto o =
-      make_outcome("run", make_result({{145, 1e-6}, {147, 1e-6}, {144, 1e-6}, {170, 2e-6}}), make_initial());
-  EXPECT_DOUBLE_EQ(o.first_onset_x_m, 0.147);
-  EXPECT_TRUE(std::isnan(make_outcome("run", make_result({{5, 0}}), make_initial()).first_onset_x_m));
+  // Of several the farthest from the peak.
+  EXPECT_DOUBLE_EQ(outcome_of({{145, 1e-6}, {147, 1e-6}, {144, 1e-6}, {170, 2e-6}}).first_onset_x_m, 0.147);
+  EXPECT_TRUE(std::isnan(outcome_of({{5, 0}}).first_onset_x_m));
 }
 
 TEST(MakeOutcome, LeavesOutShortFronts) {
-  auto result = make_result({{145, 0}});
-  const double c_L = 1584;
-  result.fronts = {make_front(0.1, 0.109, linear(0.8, 1), c_L), make_front(0.1, 0.11, linear(0.8, 1), c_L),
-                   make_front(0.1, 0.05, linear(0.8, 1), c_L)};
-  const auto o = make_outcome("run", result, make_initial());
+  std::vector<fronts::Front> fronts;
+  for (const double to_m : {0.109, 0.11, 0.05}) fronts.push_back(make_front(0.1, to_m, linear(0.8, 1), 1584));
+  const auto o = outcome_of({{145, 0}}, fronts);
   ASSERT_EQ(o.fronts.size(), 2U);
   for (const auto& front : o.fronts) EXPECT_GE(fronts::length_m(front), criteria_length_m * (1 - 1e-9));
 }

@@ -30,9 +30,11 @@ Claim claim_of(const Reproduction& runs, const std::string& id) {
   return claims.at(id);
 }
 
-const std::vector<std::string> paper_claims = {"C1",  "C2",  "C3",  "C4",  "C5",  "C6",  "C7",  "C8",
-                                               "C9",  "C10", "C11", "C12", "C13", "C14", "C15", "C16",
-                                               "C17", "C18", "C19", "C20", "C21", "C22", "C23"};
+std::set<std::string> paper_claims() {
+  std::set<std::string> ids;
+  for (int k = 1; k <= 23; ++k) ids.insert(fmt::format("C{}", k));
+  return ids;
+}
 
 /// What makes a claim fail, or undecided, in runs for which it held.
 struct Variant {
@@ -51,27 +53,22 @@ void replace_front(Outcome& o, std::size_t k, const Profile& v, double against =
   o.fronts[k] = front;
 }
 
-void for_three(Reproduction& r,
-               const std::function<void(const Outcome&, fronts::Front&, fronts::FrontPoint&)>& f) {
-  for (auto* o : {&r.spontaneous, &r.left, &r.right})
-    for (auto& front : o->fronts)
-      for (auto& p : front.points) f(*o, front, p);
+/// All points of the study of mu_k.
+void for_study(Reproduction& r, const std::function<void(const Outcome&, fronts::FrontPoint&)>& f) {
+  for (auto& point : r.studies[0].outcomes)
+    for (auto& front : point[0].fronts)
+      for (auto& p : front.points) f(point[0], p);
 }
 
 TEST(Scorecard, GoodRunsHoldEveryClaim) {
   const auto claims = claims_of(make_good());
-  for (const auto& id : paper_claims) {
+  for (const auto& id : paper_claims()) {
     ASSERT_TRUE(claims.contains(id)) << id;
-    const auto& claim = claims.at(id);
-    EXPECT_EQ(claim.holds, std::optional(true)) << id << ": " << claim.measured;
-    EXPECT_FALSE(claim.claim.empty() || claim.paper.empty() || claim.measured.empty() || claim.how.empty())
-        << id;
-    EXPECT_EQ(claim.measured.find("nan"), std::string::npos) << id << ": " << claim.measured;
+    EXPECT_EQ(claims.at(id).holds, std::optional(true)) << id << ": " << claims.at(id).measured;
+    EXPECT_EQ(claims.at(id).measured.find("nan"), std::string::npos) << id << ": " << claims.at(id).measured;
   }
-}
-
-TEST(Scorecard, EveryTestedRowStatesItsFigures) {
-  for (const auto& [id, claim] : claims_of(make_good())) {
+  // Every tested row states its figures.
+  for (const auto& [id, claim] : claims) {
     EXPECT_EQ(claim.figures.empty(), !claim.holds.has_value()) << id;
     std::set<std::string> names;
     for (const auto& figure : claim.figures) {
@@ -94,32 +91,6 @@ TEST(Scorecard, RatiosWithoutPressureAreLeftOut) {
 
 Variation named(const char* name) {
   return {name, "plate.element_size_m", 1e-3, {}, {}};
-}
-
-TEST(ScorecardVariation, TellsByHowMuchTheFiguresDiffer) {
-  const auto good = make_good();
-  auto changed = good;
-  replace_front(changed.left, 0, square(0.8, 0.5));  // the maximum rises by a tenth
-  auto claims = scorecard(good);
-  add_variation(claims, named("mesh"), scorecard(changed));
-  add_variation(claims, named("step"), scorecard(good));
-  for (const auto& claim : claims) {
-    ASSERT_EQ(claim.variations.size(), 2U) << claim.id;
-    EXPECT_EQ(claim.variations[0].name, "mesh");
-    EXPECT_EQ(claim.variations[1].name, "step");
-    for (const auto& variation : claim.variations)
-      EXPECT_EQ(variation.differences.size(), claim.figures.size()) << claim.id;
-    // The same runs: no difference.
-    EXPECT_EQ(claim.variations[1].measured, claim.measured);
-    EXPECT_EQ(claim.variations[1].holds, claim.holds);
-    for (const double d : claim.variations[1].differences) EXPECT_TRUE(d == 0 || std::isnan(d)) << claim.id;
-  }
-  const auto& c11 = *std::ranges::find(claims, "C11", &Claim::id);
-  ASSERT_EQ(c11.figures[0].name, "left");
-  const double shape_max = shape(peak_x_m);
-  EXPECT_NEAR(c11.variations[0].differences[0], 0.1 * shape_max * shape_max, 1e-3);  // a point each 1 mm
-  EXPECT_EQ(c11.variations[0].differences[1], 0);                                    // spontaneous
-  EXPECT_EQ(c11.variations[0].differences[2], 0);                                    // right
 }
 
 Claim with_figures(std::vector<Figure> figures, std::optional<bool> holds) {
@@ -159,9 +130,15 @@ TEST(Scorecard, RunsWithoutFrontsProveNothing) {
   for (auto& study : runs.studies)
     for (auto& point : study.outcomes)
       for (auto& o : point) o.fronts.clear();
-  for (const auto& [id, claim] : claims_of(runs)) {
+  const auto claims = claims_of(runs);
+  for (const auto& [id, claim] : claims) {
     if (id == "C1" || id == "C2") continue;  // of the material and the statics
     EXPECT_NE(claim.holds, std::optional(true)) << id << ": " << claim.measured;
+  }
+  for (const char* id : {"C18b", "C18c", "C19b", "C20b", "C22b", "C22b1+", "C22b2+"}) {
+    EXPECT_EQ(claims.at(id).holds, std::nullopt) << id;
+    EXPECT_TRUE(claims.at(id).figures.empty()) << id;
+    EXPECT_FALSE(claims.at(id).counts) << id;
   }
 }
 
@@ -173,171 +150,128 @@ TEST(Scorecard, ASlowStretchOfTenMillimetresIsAllowed) {
   EXPECT_EQ(claim_of(runs, "C7").holds, std::optional(true));
 }
 
-TEST(Scorecard, PointsOutsideTheBandBeforeArrestAreThePapersTails) {
-  auto runs = make_good();
-  for_three(runs, [](const Outcome&, const fronts::Front& front, fronts::FrontPoint& p) {
-    if (std::abs(p.x_m - front.points.back().x_m) < 15e-3) p.v_tip_m_per_s *= 0.8;
-  });
-  EXPECT_EQ(claim_of(runs, "C19").holds, std::optional(true));
-  // The same points are no tail of a front that may still run.
-  for (auto* o : {&runs.spontaneous, &runs.left, &runs.right})
-    for (auto& front : o->fronts) front.end = fronts::End::record_end;
-  EXPECT_EQ(claim_of(runs, "C19").holds, std::optional(false));
-}
-
-TEST(Scorecard, CollapseIsJudgedByTheBandToo) {
-  // A common shift by more than the band leaves our own fit exact.
-  auto runs = make_good();
-  for_three(runs, [](const Outcome& o, const fronts::Front&, fronts::FrontPoint& p) {
-    p.v_tip_m_per_s += 0.08 * o.speeds.c_L;
-  });
-  EXPECT_EQ(claim_of(runs, "C18").holds, std::optional(false));
-  // The same shift within the band does no harm.
-  runs = make_good();
-  for_three(runs, [](const Outcome& o, const fronts::Front&, fronts::FrontPoint& p) {
-    p.v_tip_m_per_s += 0.06 * o.speeds.c_L;
-  });
-  EXPECT_EQ(claim_of(runs, "C18").holds, std::optional(true));
-}
-
-TEST(Scorecard, CollapseIsJudgedByTheScatterToo) {
-  // Every tenth point far off: 90 % stay within the band, but the rms is sqrt(0.1) 0.4 = 0.13 c_L.
-  auto runs = make_good();
-  int n = 0;
-  for_three(runs, [&](const Outcome& o, const fronts::Front&, fronts::FrontPoint& p) {
-    if (++n % 10 == 0) p.v_tip_m_per_s += 0.4 * o.speeds.c_L;
-  });
-  EXPECT_EQ(claim_of(runs, "C18").holds, std::optional(false));
+void make_ratios_equal(Reproduction& r) {
+  for_three(r, [](auto&, auto&, auto& p) { set_dynamic_ratio(p, static_ratio(p.x_m)); });
 }
 
 const Variant variants[] = {
-    {"C1", "longitudinal waves too fast", [](Reproduction& r) { r.spontaneous.speeds.c_L = 1586; }},
-    {"C1", "shear waves too slow", [](Reproduction& r) { r.spontaneous.speeds.c_S = 888; }},
-    {"C2", "maximum near an edge", [](Reproduction& r) { r.spontaneous.peak_x_m = 0.165; }},
+    {"C1", "longitudinal waves too fast", [](auto& r) { r.spontaneous.speeds.c_L = 1586; }},
+    {"C1", "shear waves too slow", [](auto& r) { r.spontaneous.speeds.c_S = 888; }},
+    {"C2", "maximum near an edge", [](auto& r) { r.spontaneous.peak_x_m = 0.165; }},
     {"C2", "nearly uniform",
-     [](Reproduction& r) {
+     [](auto& r) {
        for (double& t : r.spontaneous.common.t_s_Pa) t = 0.5 * (t + 1.3 * pressure_Pa);
      }},
-    {"C3", "nucleation elsewhere", [](Reproduction& r) { r.spontaneous.first_onset_x_m = peak_x_m - 3e-3; }},
+    {"C3", "nucleation elsewhere", [](auto& r) { r.spontaneous.first_onset_x_m = peak_x_m - 3e-3; }},
     {"C4", "slower against the shear at higher ratio",
-     [](Reproduction& r) { replace_front(r.spontaneous_mu_k_1, 0, linear(1.9, -0.5)); }},
+     [](auto& r) { replace_front(r.spontaneous_mu_k_1, 0, linear(1.9, -0.5)); }},
     {"C5", "only a little slower",
-     [](Reproduction& r) { replace_front(r.spontaneous_mu_k_1, 1, linear(0.95 * 0.8, 0.95 * 1.0)); }},
-    {"C6", "no arrest",
-     [](Reproduction& r) { r.spontaneous_mu_k_1.fronts[0].end = fronts::End::contact_end; }},
+     [](auto& r) { replace_front(r.spontaneous_mu_k_1, 1, linear(0.95 * 0.8, 0.95 * 1.0)); }},
+    {"C6", "no arrest", [](auto& r) { r.spontaneous_mu_k_1.fronts[0].end = fronts::End::contact_end; }},
     {"C6", "arrest far away",
-     [](Reproduction& r) {
+     [](auto& r) {
        auto& o = r.spontaneous_mu_k_1;
        o.fronts[0] = make_front(peak_x_m, peak_x_m - 51e-3, linear(0.8, 1.0), o.speeds.c_L);
      }},
     {"C7", "slow over 12 mm",
-     [](Reproduction& r) {
+     [](auto& r) {
        replace_front(r.right, 0, [](double x) {
          return x > 0.0395 && x < 0.0525 ? 0.05 : 0.8 + 1.6 * shape(x) * shape(x);
        });
      }},
     {"C8", "against the shear faster at lower ratio",
-     [](Reproduction& r) { replace_front(r.spontaneous, 0, linear(2.3, -1.4)); }},
+     [](auto& r) { replace_front(r.spontaneous, 0, linear(2.3, -1.4)); }},
     {"C9", "all below c_L",
-     [](Reproduction& r) {
-       for_three(r, [](const Outcome& o, const fronts::Front&, fronts::FrontPoint& p) {
+     [](auto& r) {
+       for_three(r, [](auto& o, auto&, auto& p) {
          p.v_tip_m_per_s = std::min(p.v_tip_m_per_s, 0.99 * o.speeds.c_L);
        });
      }},
     {"C9", "above c_L only within 10 mm of nucleation",
-     [](Reproduction& r) {
-       for_three(r, [](const Outcome& o, const fronts::Front&, fronts::FrontPoint& p) {
+     [](auto& r) {
+       for_three(r, [](auto& o, auto&, auto& p) {
          if (o.triggered() || std::abs(p.x_m - peak_x_m) > 10e-3)
            p.v_tip_m_per_s = std::min(p.v_tip_m_per_s, 0.99 * o.speeds.c_L);
        });
      }},
     {"C10", "left front fastest elsewhere",
-     [](Reproduction& r) {
-       replace_front(r.left, 0, [](double x) { return 1.2 - 4 * std::abs(x - 0.11); });
-     }},
+     [](auto& r) { replace_front(r.left, 0, [](double x) { return 1.2 - 4 * std::abs(x - 0.11); }); }},
     {"C10", "right front starts fast",
-     [](Reproduction& r) {
+     [](auto& r) {
        replace_front(r.right, 0, [](double x) { return x > peak_x_m ? 2.35 : 0.8 + 1.6 * shape(x); });
      }},
     {"C10", "left front does not decelerate",
-     [](Reproduction& r) {
+     [](auto& r) {
        replace_front(r.left, 0, [](double x) { return x > peak_x_m ? 1.15 : 0.8 + 0.4 * shape(x); });
      }},
-    {"C11", "right too slow", [](Reproduction& r) { replace_front(r.right, 0, square(0.8, 1.0)); }},
+    {"C11", "right too slow", [](auto& r) { replace_front(r.right, 0, square(0.8, 1.0)); }},
     {"C12", "one speed for each ratio",
-     [](Reproduction& r) {
-       for_three(r, [](const Outcome& o, const fronts::Front&, fronts::FrontPoint& p) {
-         p.v_tip_m_per_s = (0.8 + shape(p.x_m)) * o.speeds.c_L;
-       });
+     [](auto& r) {
+       for_three(r, [](auto& o, auto&, auto& p) { p.v_tip_m_per_s = (0.8 + shape(p.x_m)) * o.speeds.c_L; });
      }},
-    {"C13", "dynamic ratio as the static one",
-     [](Reproduction& r) {
-       for_three(r, [](const Outcome&, const fronts::Front&, fronts::FrontPoint& p) {
-         set_dynamic_ratio(p, static_ratio(p.x_m));
-       });
-     }},
-    {"C14", "the same spread against both",
-     [](Reproduction& r) {
-       for_three(r, [](const Outcome&, const fronts::Front&, fronts::FrontPoint& p) {
-         set_dynamic_ratio(p, static_ratio(p.x_m));
-       });
-     }},
+    {"C13", "dynamic ratio as the static one", make_ratios_equal},
+    {"C14", "the same spread against both", make_ratios_equal},
     {"C15", "faster along the shear",
-     [](Reproduction& r) {
+     [](auto& r) {
        replace_front(r.spontaneous, 0, linear(0.8, 1.5), 1 / 1.1);
        replace_front(r.right, 0, square(0.8, 1.6), 1 / 1.1);
      }},
     {"C16", "left: slower while accelerating",
-     [](Reproduction& r) { replace_front(r.left, 0, square(0.8, 0.4), 1.1, 1 / 1.05); }},
+     [](auto& r) { replace_front(r.left, 0, square(0.8, 0.4), 1.1, 1 / 1.05); }},
     {"C17", "found along the shear too",
-     [](Reproduction& r) { let_ratio_rise(r.spontaneous.fronts[1], 0.16, 0.18); }},
+     [](auto& r) { let_ratio_rise(r.spontaneous.fronts[1], 0.16, 0.18); }},
     {"C17", "not found against the shear",
-     [](Reproduction& r) { replace_front(r.spontaneous, 0, linear(0.8, 1.5)); }},
+     [](auto& r) { replace_front(r.spontaneous, 0, linear(0.8, 1.5)); }},
+    // 90 % stay within the band, but the rms is sqrt(0.1) 0.4 = 0.13 c_L.
+    {"C18", "every tenth point far off",
+     [](auto& r) {
+       for_three(r, [n = 0](auto& o, auto&, auto& p) mutable {
+         if (++n % 10 == 0) p.v_tip_m_per_s += 0.4 * o.speeds.c_L;
+       });
+     }},
     {"C19", "points outside far from any arrest",
-     [](Reproduction& r) {
-       for_three(r, [](const Outcome&, const fronts::Front&, fronts::FrontPoint& p) {
+     [](auto& r) {
+       for_three(r, [](auto&, auto&, auto& p) {
          if (p.x_m > 0.08 && p.x_m < 0.1) p.v_tip_m_per_s *= 1.2;
        });
      }},
     {"C20", "share of cracks rises once",
-     [](Reproduction& r) {
+     [](auto& r) {
        r.studies[0] = make_mu_k_study({0.9, 0.6, 0.7, 0.3});
      }},
     {"C20", "no pulses",
-     [](Reproduction& r) {
-       for (auto& point : r.studies[0].outcomes)
-         for (auto& front : point[0].fronts)
-           for (auto& p : front.points)
-             if (p.slipping_share < 0.2) p.slipping_share = 0.35;
+     [](auto& r) {
+       for_study(r, [](auto&, auto& p) {
+         if (p.slipping_share < 0.2) p.slipping_share = 0.35;
+       });
      }},
     {"C21", "pulses faster",
-     [](Reproduction& r) {
-       for (auto& point : r.studies[0].outcomes)
-         for (auto& front : point[0].fronts)
-           for (auto& p : front.points)
-             if (p.slipping_share < 0.2) p.v_tip_m_per_s += 0.3 * point[0].speeds.c_L;
+     [](auto& r) {
+       for_study(r, [](auto& o, auto& p) {
+         if (p.slipping_share < 0.2) p.v_tip_m_per_s += 0.3 * o.speeds.c_L;
+       });
      }},
     {"C22", "not slower at every step",
-     [](Reproduction& r) {
+     [](auto& r) {
        r.studies[1] = make_alpha_study({0, 0.06, 0.05}, 2);
      }},
     {"C22", "slowed in the middle",
-     [](Reproduction& r) {
+     [](auto& r) {
        r.studies[1] = make_alpha_study({0, 0.02, 0.05}, 0.5);
      }},
     {"C23", "tip ahead of the wave",
-     [](Reproduction& r) {
+     [](auto& r) {
        for (auto& p : r.left.fronts[0].points) p.onset_s -= 30e-6;
      }},
     {"C23", "no super-shear",
-     [](Reproduction& r) {
+     [](auto& r) {
        for (auto& p : r.left.fronts[0].points)
          p.v_tip_m_per_s = std::min(p.v_tip_m_per_s, 0.99 * r.left.speeds.c_S);
      }},
 };
 
 TEST(Scorecard, ClaimsDoNotHoldForOtherRuns) {
-  std::set<std::string> ids = {"C18"};  // above
+  std::set<std::string> ids;
   for (const auto& [id, what, change] : variants) {
     auto runs = make_good();
     change(runs);
@@ -345,7 +279,7 @@ TEST(Scorecard, ClaimsDoNotHoldForOtherRuns) {
     EXPECT_EQ(claim.holds, std::optional(false)) << id << ", " << what << ": " << claim.measured;
     ids.insert(id);
   }
-  EXPECT_EQ(ids, std::set<std::string>(paper_claims.begin(), paper_claims.end()));
+  EXPECT_EQ(ids, paper_claims());
 }
 
 }  // namespace

@@ -110,8 +110,16 @@ inline Outcome make_event(const std::string& name, EventKind kind, double mu_k =
   return o;
 }
 
+inline Profile linear(double base, double rise) {
+  return [=](double x) { return base + rise * shape(x); };
+}
+inline Profile square(double base, double rise) {
+  return [=](double x) { return base + rise * shape(x) * shape(x); };
+}
+
 /// The spontaneous event with fronts of these speeds to both sides.
-inline Outcome make_spontaneous(const Profile& against, const Profile& along, double to_left_m = 0.01,
+inline Outcome make_spontaneous(const Profile& against = linear(0.8, 1.5),
+                                const Profile& along = linear(0.8, 1.2), double to_left_m = 0.01,
                                 double to_right_m = 0.194) {
   Outcome o = make_event("spontaneous", EventKind::spontaneous);
   o.fronts = {make_front(peak_x_m, to_left_m, against, o.speeds.c_L),
@@ -129,13 +137,6 @@ inline Outcome make_right(const Profile& v) {
   Outcome o = make_event("right", EventKind::right);
   o.fronts = {make_front(contact_to_m, 0.01, v, o.speeds.c_L)};
   return o;
-}
-
-inline Profile linear(double base, double rise) {
-  return [=](double x) { return base + rise * shape(x); };
-}
-inline Profile square(double base, double rise) {
-  return [=](double x) { return base + rise * shape(x) * shape(x); };
 }
 
 /// From x = 80 to 50 mm the dynamic ratio rises while the speed goes on falling.
@@ -168,7 +169,7 @@ inline StudyOutcome make_mu_k_study(const std::vector<double>& crack_shares) {
   for (std::size_t k = 0; k < crack_shares.size(); ++k) {
     const double mu_k = 0.4 + 0.2 * static_cast<double>(k);
     result.study.points.push_back({fmt::format("{:g}", mu_k), mu_k, {}});
-    Outcome o = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
+    Outcome o = make_spontaneous();
     set_kinds(o, crack_shares[k]);
     result.outcomes.push_back({o});
   }
@@ -196,10 +197,23 @@ inline StudyOutcome make_alpha_study(const std::vector<double>& drop, double end
   return result;
 }
 
+inline void for_three(Reproduction& r,
+                      const std::function<void(const Outcome&, fronts::Front&, fronts::FrontPoint&)>& f) {
+  for (auto* o : {&r.spontaneous, &r.left, &r.right})
+    for (auto& front : o->fronts)
+      for (auto& p : front.points) f(*o, front, p);
+}
+
+/// All fronts may still run.
+inline void leave_running(Reproduction& r) {
+  for (auto* o : {&r.spontaneous, &r.left, &r.right})
+    for (auto& front : o->fronts) front.end = fronts::End::record_end;
+}
+
 /// Runs for which every claim of the paper holds.
 inline Reproduction make_good() {
   Reproduction r;
-  r.spontaneous = make_spontaneous(linear(0.8, 1.5), linear(0.8, 1.2));
+  r.spontaneous = make_spontaneous();
   let_ratio_rise(r.spontaneous.fronts[0]);
   r.left = make_left(square(0.8, 0.4));
   r.right = make_right(square(0.8, 1.6));

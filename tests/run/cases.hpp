@@ -17,6 +17,24 @@ inline input::Case coarse_case(interface::EventKind event = interface::EventKind
   return config;
 }
 
+/// A plate under uniform tractions, without ends, whose event starts at a patch.
+inline input::Case prestressed_case(double element_size_m = 2e-3) {
+  auto config = coarse_case(interface::EventKind::nucleation, element_size_m);
+  config.plate.corner = mesh::Corner::none;
+  config.plate.sides = mesh::Sides::periodic;
+  config.loading.method = statics::LoadingMethod::prestress;
+  config.prestress = {4e6, 5e6, ""};
+  config.nucleation.x_m = 0.1;
+  return config;
+}
+
+/// The paper's plate loaded by an explicit ramp.
+inline input::Case ramped_case() {
+  auto config = coarse_case(interface::EventKind::spontaneous, 5e-3);
+  config.loading.method = statics::LoadingMethod::ramp;
+  return config;
+}
+
 /// Parameters of a case's velocity weakening.
 struct LawOfCase {
   double &mu_s, &mu_k, &alpha_m2_per_s2;
@@ -37,6 +55,17 @@ inline void set_table(input::Case& config, const std::string& text) {
 
 inline bool go_on(std::int64_t, std::int64_t) {
   return true;
+}
+
+inline run::Result run_case(const input::Case& config) {
+  return run::run_from(config, run::make_initial_state(config, go_on), go_on);
+}
+
+inline constexpr const char* accepted = "(nothing thrown)";
+
+/// What is wrong with a case before anything is solved, or that it is accepted.
+inline std::string check_error(const input::Case& config) {
+  return error_of([&] { run::check(config); });
 }
 
 }  // namespace slipfront::test

@@ -18,6 +18,9 @@
 // Arrivals of another code, see cases/reference/data/README.md.
 namespace slipfront::test {
 
+inline const std::filesystem::path reference =
+    std::filesystem::path(SLIPFRONT_SOURCE_DIR) / "cases/reference";
+
 /// First time at which the slip rate at each node passes 1 mm/s, linear between the samples.
 inline std::vector<double> arrivals(const record::History& h) {
   const std::size_t n = h.x_m.size();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <vector>
 
 #ifdef __GLIBC__  // known from the headers above
@@ -15,7 +16,6 @@
 
 #include "base/error.hpp"
 #include "cases.hpp"
-#include "fronts/from_history.hpp"
 #include "fronts/measures.hpp"
 #include "interface/friction/coulomb.hpp"
 
@@ -35,13 +35,15 @@ const InitialState& coarse_state() {
   return initial;
 }
 
+/// A run from the coarse state.
 Result run(const input::Case& config) {
   return run_from(config, coarse_state(), go_on);
 }
 
 /// The same bits, so that an undefined value equals itself.
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 bool same_bits(const solid::Field& a, const solid::Field& b) {
@@ -68,98 +70,105 @@ const fronts::Front* longest(const std::vector<fronts::Front>& fronts, int direc
   return found;
 }
 
-TEST(InitialState, CommonIsBelowAndSpontaneousAboveTheStrength) {
-  const auto& initial = coarse_state();
-  EXPECT_NEAR(initial.common.peak_ratio, (1 - 1e-3) * 1.3, 1.3 * solve_error);
-  EXPECT_NEAR(initial.spontaneous.peak_ratio, (1 + 1e-3) * 1.3, 1.3 * solve_error);
-  EXPECT_DOUBLE_EQ(largest_ratio(initial.common), initial.common.peak_ratio);
-  EXPECT_DOUBLE_EQ(largest_ratio(initial.spontaneous), initial.spontaneous.peak_ratio);
-  EXPECT_LT(initial.common.shear_m, initial.critical_shear_m);
-  EXPECT_GT(initial.spontaneous.shear_m, initial.critical_shear_m);
+TEST(InitialState, IsAtItsRatioOrRefused) {
+  // At high strength the heavy side lifts off and slips first; a state that is not what it says must not
+  // pass.
+  int reached = 0;
+  for (const auto& [mu_s, margin] : {std::pair{0.6, 1e-3},
+                                     {1.0, 1e-3},
+                                     {1.3, 1e-3},
+                                     {1.3, 0.02},
+                                     {2.0, 1e-3},
+                                     {10.0, 1e-3},
+                                     {100.0, 1e-3}}) {
+    SCOPED_TRACE(mu_s);
+    auto config = coarse_case();
+    law(config).mu_s = mu_s;
+    law(config).mu_k = 0.1;
+    config.loading.critical_margin = margin;
+    try {
+      const auto initial = make_initial_state(config, go_on);
+      EXPECT_NEAR(initial.common.peak_ratio, (1 - margin) * mu_s, mu_s * solve_error);
+      EXPECT_NEAR(initial.spontaneous.peak_ratio, (1 + margin) * mu_s, mu_s * solve_error);
+      EXPECT_LT(initial.common.shear_m, initial.spontaneous.shear_m);
+      if (mu_s == 1.3) {
+        EXPECT_DOUBLE_EQ(largest_ratio(initial.common), initial.common.peak_ratio);
+        EXPECT_DOUBLE_EQ(largest_ratio(initial.spontaneous), initial.spontaneous.peak_ratio);
+        EXPECT_LT(initial.common.shear_m, initial.critical_shear_m);
+        EXPECT_GT(initial.spontaneous.shear_m, initial.critical_shear_m);
+        EXPECT_EQ(initial.critical_shear_m, coarse_state().critical_shear_m);
+      }
+      ++reached;
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find("friction.mu_s"), std::string::npos) << error.what();
+      EXPECT_GT(mu_s, 1.3) << error.what();
+    }
+  }
+  EXPECT_GE(reached, 4);
 }
 
-TEST(InitialState, FollowsTheMargin) {
-  auto config = coarse_case();
-  config.loading.critical_margin = 0.02;
-  const auto initial = make_initial_state(config, go_on);
-  EXPECT_NEAR(initial.common.peak_ratio, 0.98 * 1.3, 1.3 * solve_error);
-  EXPECT_NEAR(initial.spontaneous.peak_ratio, 1.02 * 1.3, 1.3 * solve_error);
-  EXPECT_EQ(initial.critical_shear_m, coarse_state().critical_shear_m);
+TEST(InitialState, NeedsContactAndAnInside) {
+  auto margin = coarse_case(), tilt = coarse_case();
+  margin.loading.edge_margin_m = 0.12;
+  EXPECT_THROW(make_initial_state(margin, go_on), UserError);
+  tilt.loading.tilt_left_m = tilt.loading.tilt_right_m = 0;
+  EXPECT_THROW(make_initial_state(tilt, go_on), UserError);
 }
 
-struct Change {
-  const char* what;
-  void (*make)(input::Case&);
-};
+using Change = std::pair<const char*, void (*)(input::Case&)>;
+
+/// Whether each change tells the initial state apart.
+void expect_keys(const input::Case& config, std::span<const Change> changes, bool differ) {
+  for (const auto& [what, make] : changes) {
+    auto changed = config;
+    make(changed);
+    EXPECT_EQ(initial_state_key(changed) != initial_state_key(config), differ) << what;
+  }
+}
 
 TEST(InitialStateKey, IgnoresWhatOnlyConcernsTheEvent) {
-  const Change changes[] = {{"mu_k", [](input::Case& c) { law(c).mu_k = 1.0; }},
-                            {"alpha", [](input::Case& c) { law(c).alpha_m2_per_s2 = 1.0; }},
-                            {"law",
-                             [](input::Case& c) {
-                               c.friction = interface::Coulomb { 1.3 };
-                             }},
-                            {"event", [](input::Case& c) { c.event = EventKind::right; }},
-                            {"trigger",
-                             [](input::Case& c) {
-                               c.trigger = {interface::TriggerForm::raised, 1e-3, 2, 1e-6, 1e-5};
-                             }},
-                            {"time", [](input::Case& c) { c.time.step_factor = 0.1; }},
-                            {"l*", [](input::Case& c) { c.fronts.l_star_m = 5e-3; }},
-                            {"output",
-                             [](input::Case& c) {
-                               c.output = {1e-6, {1e-5}};
-                             }},
-                            {"title", [](input::Case& c) { c.title = "another"; }},
-                            {"density", [](input::Case& c) { c.material.density_kg_per_m3 = 2400; }},
-                            {"damping", [](input::Case& c) { c.material.stiffness_damping_s = 0; }}};
-  for (const auto& [what, make] : changes) {
-    auto config = coarse_case();
-    make(config);
-    EXPECT_EQ(initial_state_key(config), initial_state_key(coarse_case())) << what;
-  }
+  const Change changes[] = {{"mu_k", [](auto& c) { law(c).mu_k = 1.0; }},
+                            {"alpha", [](auto& c) { law(c).alpha_m2_per_s2 = 1.0; }},
+                            {"law", [](auto& c) { c.friction = interface::Coulomb(1.3); }},
+                            {"event", [](auto& c) { c.event = EventKind::right; }},
+                            {"trigger", [](auto& c) { c.trigger.amount = 2; }},
+                            {"time", [](auto& c) { c.time.step_factor = 0.1; }},
+                            {"l*", [](auto& c) { c.fronts.l_star_m = 5e-3; }},
+                            {"output", [](auto& c) { c.output.snapshot_times_s = {1e-5}; }},
+                            {"title", [](auto& c) { c.title = "another"; }},
+                            {"density", [](auto& c) { c.material.density_kg_per_m3 = 2400; }},
+                            {"damping", [](auto& c) { c.material.stiffness_damping_s = 0; }}};
+  expect_keys(coarse_case(), changes, false);
 }
 
 TEST(InitialStateKey, TellsApartWhatChangesTheStatics) {
-  const Change changes[] = {
-      {"width", [](input::Case& c) { c.plate.width_m = 0.4; }},
-      {"height", [](input::Case& c) { c.plate.height_m = 0.2; }},
-      {"element", [](input::Case& c) { c.plate.element_size_m = 2e-3; }},
-      {"corner", [](input::Case& c) { c.plate.corner = mesh::Corner::none; }},
-      {"relief", [](input::Case& c) { c.plate.relief_height_m = 0.4e-3; }},
-      {"E", [](input::Case& c) { c.material.youngs_modulus_Pa = 2.7e9; }},
-      {"nu", [](input::Case& c) { c.material.poissons_ratio = 0.3; }},
-      {"plane", [](input::Case& c) { c.material.plane = solid::Plane::strain; }},
-      {"tilt, left", [](input::Case& c) { c.loading.tilt_left_m = 0.38e-3; }},
-      {"tilt, right", [](input::Case& c) { c.loading.tilt_right_m = 0.04e-3; }},
-      {"top", [](input::Case& c) { c.loading.top_during_tilt = statics::TopEdge::free; }},
-      {"edge margin", [](input::Case& c) { c.loading.edge_margin_m = 5e-3; }},
-      {"critical margin", [](input::Case& c) { c.loading.critical_margin = 2e-3; }},
-      {"method", [](input::Case& c) { c.loading.method = statics::LoadingMethod::ramp; }},
-      {"mu_s", [](input::Case& c) { law(c).mu_s = 1.2; }},
-      // Neighbouring doubles are two cases.
-      {"last bit", [](input::Case& c) { law(c).mu_s = std::nextafter(1.3, 2.0); }}};
-  for (const auto& [what, make] : changes) {
-    auto config = coarse_case();
-    make(config);
-    EXPECT_NE(initial_state_key(config), initial_state_key(coarse_case())) << what;
-  }
+  const Change changes[] = {{"width", [](auto& c) { c.plate.width_m = 0.4; }},
+                            {"height", [](auto& c) { c.plate.height_m = 0.2; }},
+                            {"element", [](auto& c) { c.plate.element_size_m = 2e-3; }},
+                            {"corner", [](auto& c) { c.plate.corner = mesh::Corner::none; }},
+                            {"relief", [](auto& c) { c.plate.relief_height_m = 0.4e-3; }},
+                            {"E", [](auto& c) { c.material.youngs_modulus_Pa = 2.7e9; }},
+                            {"nu", [](auto& c) { c.material.poissons_ratio = 0.3; }},
+                            {"plane", [](auto& c) { c.material.plane = solid::Plane::strain; }},
+                            {"tilt, left", [](auto& c) { c.loading.tilt_left_m = 0.38e-3; }},
+                            {"tilt, right", [](auto& c) { c.loading.tilt_right_m = 0.04e-3; }},
+                            {"top", [](auto& c) { c.loading.top_during_tilt = statics::TopEdge::free; }},
+                            {"edge margin", [](auto& c) { c.loading.edge_margin_m = 5e-3; }},
+                            {"critical margin", [](auto& c) { c.loading.critical_margin = 2e-3; }},
+                            {"method", [](auto& c) { c.loading.method = statics::LoadingMethod::ramp; }},
+                            {"mu_s", [](auto& c) { law(c).mu_s = 1.2; }},
+                            // Neighbouring doubles are two cases.
+                            {"last bit", [](auto& c) { law(c).mu_s = std::nextafter(1.3, 2.0); }}};
+  expect_keys(coarse_case(), changes, true);
 }
 
 TEST(InitialStateKey, OfARampHoldsTheLawAndTheStep) {
-  auto ramp = coarse_case();
-  ramp.loading.method = statics::LoadingMethod::ramp;
-  const Change changes[] = {{"mu_k", [](input::Case& c) { law(c).mu_k = 1.0; }},
-                            {"step", [](input::Case& c) { c.time.step_factor = 0.5; }},
-                            {"density", [](input::Case& c) { c.material.density_kg_per_m3 = 2400; }}};
-  for (const auto& [what, make] : changes) {
-    auto other = ramp;
-    make(other);
-    EXPECT_NE(initial_state_key(other), initial_state_key(ramp)) << what;
-  }
-  auto other = ramp;
-  other.event = EventKind::left;
-  EXPECT_EQ(initial_state_key(other), initial_state_key(ramp));
+  const Change changes[] = {{"mu_k", [](auto& c) { law(c).mu_k = 1.0; }},
+                            {"step", [](auto& c) { c.time.step_factor = 0.5; }},
+                            {"density", [](auto& c) { c.material.density_kg_per_m3 = 2400; }}};
+  expect_keys(test::ramped_case(), changes, true);
+  const Change event[] = {{"event", [](auto& c) { c.event = EventKind::left; }}};
+  expect_keys(test::ramped_case(), event, false);
 }
 
 TEST(InitialStateKey, EqualKeysMeanEqualStates) {
@@ -197,36 +206,30 @@ TEST(Event, SpontaneousFrontsRunBothWaysFromThePeak) {
 
 TEST(Event, TriggersStartAFrontAtTheirEdge) {
   for (const auto event : {EventKind::left, EventKind::right}) {
+    SCOPED_TRACE(event == EventKind::left ? "left" : "right");
     const auto config = coarse_case(event);
     const auto result = run(config);
-    const int inward = event == EventKind::left ? 1 : -1;
-    const auto* front = longest(result.fronts, inward);
-    ASSERT_NE(front, nullptr) << inward;
     const auto& common = coarse_state().common;
-    const double edge = event == EventKind::left ? common.inside_from_m - config.loading.edge_margin_m
-                                                 : common.inside_to_m + config.loading.edge_margin_m;
-    EXPECT_LE(std::abs(front->points.front().x_m - edge), config.trigger.zone_m * (1 + 1e-9)) << inward;
+    const int inward = event == EventKind::left ? 1 : -1;
+    const double edge_m = event == EventKind::left ? common.inside_from_m - config.loading.edge_margin_m
+                                                   : common.inside_to_m + config.loading.edge_margin_m;
+    const auto* front = longest(result.fronts, inward);
+    ASSERT_NE(front, nullptr);
+    EXPECT_LE(std::abs(front->points.front().x_m - edge_m), config.trigger.zone_m * (1 + 1e-9));
     // It leaves the zone by itself and reaches the place of the largest t/p.
-    EXPECT_GT(inward * (front->points.back().x_m - common.peak_x_m), 0) << inward;
+    EXPECT_GT(inward * (front->points.back().x_m - common.peak_x_m), 0);
     EXPECT_GT(result.event.energies.back().trigger_work, 0);
+    // Dynamic tractions are left out within the zone and its margin, of 10 mm each.
+    int n_left_out = 0, n_known = 0;
+    for (const auto& p : front->points) {
+      const bool is_near = inward * (p.x_m - edge_m) < 19.9e-3;
+      EXPECT_TRUE(!is_near || std::isnan(p.t_d_Pa)) << p.x_m;
+      n_left_out += is_near;
+      n_known += !is_near && std::isfinite(p.t_d_Pa);
+    }
+    EXPECT_GT(n_left_out, 0);
+    EXPECT_GT(n_known, 0);
   }
-}
-
-TEST(Event, DynamicTractionsAreLeftOutNextToTheTrigger) {
-  const auto config = coarse_case(EventKind::left);
-  const auto result = run(config);
-  const double inner =
-      coarse_state().common.inside_from_m - config.loading.edge_margin_m + 20e-3;  // zone and margin
-  const auto* front = longest(result.fronts, 1);
-  ASSERT_NE(front, nullptr);
-  int inside = 0, outside = 0;
-  for (const auto& p : front->points) {
-    EXPECT_TRUE(p.x_m >= inner || std::isnan(p.t_d_Pa)) << p.x_m;
-    inside += p.x_m < inner;
-    outside += p.x_m >= inner && std::isfinite(p.t_d_Pa);
-  }
-  EXPECT_GT(inside, 0);
-  EXPECT_GT(outside, 0);
 }
 
 TEST(Event, NothingSlipsInTheCommonStateLeftToItself) {
@@ -239,37 +242,14 @@ TEST(Event, NothingSlipsInTheCommonStateLeftToItself) {
   EXPECT_TRUE(result.fronts.empty());
 }
 
-TEST(Event, TwoRunsAreBitwiseEqual) {
-  const auto config = coarse_case(EventKind::left);
-  const auto again = make_initial_state(config, go_on);
-  EXPECT_TRUE(same_bits(again.common.u_m, coarse_state().common.u_m));
-  const auto a = run(config), b = run_from(config, again, go_on);
-  EXPECT_EQ(a.event.steps, b.event.steps);
-  EXPECT_TRUE(same_bits(a.event.history.time_s, b.event.history.time_s));
-  for (const auto& field : record::history_fields)
-    EXPECT_TRUE(same_bits(a.event.history.*field.member, b.event.history.*field.member)) << field.name;
-  const auto &r = a.event.record, &s = b.event.record;
-  ASSERT_GT(r.onsets.size(), 10U);
-  ASSERT_EQ(r.onsets.size(), s.onsets.size());
-  ASSERT_EQ(r.stops.size(), s.stops.size());
-  for (std::size_t k = 0; k < r.onsets.size(); ++k) {
-    EXPECT_EQ(r.onsets[k].node, s.onsets[k].node);
-    EXPECT_EQ(r.onsets[k].time_s, s.onsets[k].time_s);
-  }
-  for (std::size_t k = 0; k < r.stops.size(); ++k) EXPECT_EQ(r.stops[k].time_s, s.stops[k].time_s);
-  EXPECT_EQ(std::memcmp(r.around.data(), s.around.data(), r.around.size() * sizeof(r.around[0])), 0);
-}
-
 TEST(Event, SnapshotsAndHistoryDoNotDisturbTheMotion) {
   auto config = coarse_case();
   const auto plain = run(config);
   config.output = {1e-6, {0, 20e-6, 60e-6}};
   const auto other = run(config);
   EXPECT_EQ(other.event.snapshots.size(), 3U);
-  EXPECT_NE(plain.event.history.time_s.size(), 0U);
-  ASSERT_EQ(plain.event.record.onsets.size(), other.event.record.onsets.size());
-  for (std::size_t k = 0; k < plain.event.record.onsets.size(); ++k)
-    EXPECT_EQ(plain.event.record.onsets[k].time_s, other.event.record.onsets[k].time_s);
+  EXPECT_TRUE(std::ranges::equal(plain.event.record.onsets, other.event.record.onsets, {},
+                                 &record::Onset::time_s, &record::Onset::time_s));
 }
 
 TEST(Event, EnergiesKeepTheirSpacingAndBalance) {
@@ -278,15 +258,14 @@ TEST(Event, EnergiesKeepTheirSpacingAndBalance) {
   const auto result = run(config);
   const auto& energies = result.event.energies;
   ASSERT_GT(energies.size(), 5U);
-  EXPECT_EQ(energies.front().time_s, 0);
   EXPECT_EQ(energies.back().time_s, result.event.time_s);
   double largest = 0, worst = 0;
   for (std::size_t k = 0; k < energies.size(); ++k) {
     const auto& e = energies[k];
-    if (k + 1 < energies.size()) {
-      EXPECT_GE(e.time_s, static_cast<double>(k) * 10e-6 * (1 - 1e-12));
-      EXPECT_LT(e.time_s, static_cast<double>(k) * 10e-6 + result.step_s);
-    }
+    const double asked_s = static_cast<double>(k) * 10e-6;
+    EXPECT_TRUE(k + 1 == energies.size() ||
+                (e.time_s >= asked_s * (1 - 1e-12) && e.time_s < asked_s + result.step_s))
+        << e.time_s;
     for (const double term : {e.strain, e.kinetic, e.top_work, e.trigger_work, e.friction_work})
       largest = std::max(largest, std::abs(term));
     worst = std::max(worst, std::abs(record::imbalance_J_per_m(e, energies.front())));
@@ -297,49 +276,18 @@ TEST(Event, EnergiesKeepTheirSpacingAndBalance) {
 }
 
 TEST(FrontOptions, KnowTheTriggerZone) {
-  const auto driven = [](interface::EventKind kind) {
+  for (const auto& [kind, n] :
+       {std::pair{EventKind::spontaneous, 0}, {EventKind::left, 3}, {EventKind::right, 3}}) {
     const auto config = coarse_case(kind);
-    const auto initial = make_initial_state(config, go_on);
-    const auto zones = front_options(config, initial).driven;
-    // What the trigger pushes.
+    const auto& initial = coarse_state();
+    const auto options = front_options(config, initial);
+    EXPECT_EQ(options.driven.size(), n == 0 ? 0U : 1U);
     const auto forces =
         motion::trigger_forces(initial.common, initial.tributary_m, kind, config.trigger, 1.3);
-    const auto options = front_options(config, initial);
-    std::size_t n = 0;
-    for (std::size_t k = 0; k < forces.size(); ++k) {
+    for (std::size_t k = 0; k < forces.size(); ++k)
       EXPECT_EQ(fronts::is_driven(options, initial.common.tractions.x_m[k]), forces[k] != 0) << k;
-      n += forces[k] != 0;
-    }
-    return std::pair(zones.size(), n);
-  };
-  EXPECT_EQ(driven(EventKind::spontaneous), std::pair(std::size_t{0}, std::size_t{0}));
-  EXPECT_EQ(driven(EventKind::left), std::pair(std::size_t{1}, std::size_t{3}));
-  EXPECT_EQ(driven(EventKind::right), std::pair(std::size_t{1}, std::size_t{3}));
-}
-
-TEST(Trigger, AWeakenedZoneSlipsByItself) {
-  // t/p next to the edge is above so low a mu_k.
-  auto config = coarse_case(EventKind::right);
-  law(config).mu_k = 0.2;
-  config.trigger.form = interface::TriggerForm::weakened;
-  config.time.end_s = 20e-6;
-  const auto initial = make_initial_state(config, go_on);
-  const auto result = run_from(config, initial, go_on);
-  const auto zone = motion::trigger_zone(initial.common, EventKind::right, config.trigger.zone_m);
-  ASSERT_FALSE(zone.empty());
-  const auto& s = initial.common.tractions;
-  std::size_t n_beyond = 0;
-  for (const auto k : zone) {
-    const bool is_beyond = s.t_s_Pa[k] > 1.001 * law(config).mu_k * s.p_s_Pa[k];
-    n_beyond += is_beyond ? 1 : 0;
-    const bool has_slipped = std::ranges::any_of(
-        result.event.record.onsets, [&](const auto& onset) { return std::cmp_equal(onset.node, k); });
-    if (is_beyond) {
-      EXPECT_TRUE(has_slipped) << k;
-    }
+    EXPECT_EQ(std::ranges::count_if(forces, [](double force) { return force != 0; }), n);
   }
-  EXPECT_GT(n_beyond, 0U);
-  EXPECT_EQ(result.event.energies.back().trigger_work, 0);
 }
 
 TEST(Info, AgreesWithTheRun) {
@@ -396,45 +344,8 @@ TEST(Memory, AnEventHoldsWhatIsSaid) {
 }
 #endif
 
-TEST(Record, RebuiltFromTheHistoryGivesTheSameFronts) {
-  auto config = coarse_case(EventKind::spontaneous, 2e-3);
-  config.output.history_interval_s = 1e-12;  // a row at every step
-  const auto initial = make_initial_state(config, go_on);
-  const auto result = run_from(config, initial, go_on);
-  // A sticking node rests exactly; a slipping one moves at about 1 m/s.
-  const auto record = fronts::record_from_history(result.event.history, 1e-3, result.event.record.halo);
-  const auto rebuilt = fronts::find_fronts(record, initial.common.tractions, front_options(config, initial));
-  for (const int direction : {-1, 1}) {
-    const auto *a = longest(result.fronts, direction), *b = longest(rebuilt, direction);
-    ASSERT_NE(a, nullptr);
-    ASSERT_NE(b, nullptr);
-    // Both onsets of a node lie between the same two rows, or the rate passes the threshold a sub-step later.
-    const double tolerance_s = result.step_s * (1 + 1.0 / 18);
-    EXPECT_EQ(a->points.back().node, b->points.back().node);
-    // Which of the nodes that begin within one interval is the first, the history cannot tell.
-    const auto in_a = [&](int node) { return std::ranges::find(a->points, node, &fronts::FrontPoint::node); };
-    std::size_t n_common = 0;
-    for (const auto& p : b->points) {
-      const auto original = in_a(p.node);
-      if (original == a->points.end()) {
-        EXPECT_LE(p.onset_s, b->points.front().onset_s + tolerance_s) << direction << ' ' << p.node;
-        continue;
-      }
-      ++n_common;
-      EXPECT_NEAR(original->onset_s, p.onset_s, tolerance_s) << direction << ' ' << p.node;
-    }
-    const auto late = std::ranges::count_if(a->points, [&](const fronts::FrontPoint& p) {
-      return p.onset_s > a->points.front().onset_s + 2 * tolerance_s;
-    });
-    EXPECT_GT(late, 10);
-    EXPECT_GE(std::ssize(b->points), late);
-    EXPECT_GE(n_common, late);
-  }
-}
-
 TEST(Ramp, ReachesTheDirectCriticalShear) {
-  auto config = coarse_case(EventKind::spontaneous, 5e-3);
-  config.loading.method = statics::LoadingMethod::ramp;
+  const auto config = test::ramped_case();
   std::int64_t asked = 0;
   const auto initial = make_initial_state(config, [&](std::int64_t, std::int64_t) { return ++asked > 0; });
   ASSERT_TRUE(initial.ramp.has_value());
@@ -447,8 +358,7 @@ TEST(Ramp, ReachesTheDirectCriticalShear) {
   EXPECT_GE(initial.spontaneous.peak_ratio, (1 - motion::ramp_handover) * 1.3);
 
   const auto result = run_from(config, initial, go_on);
-  const auto direct_config = coarse_case(EventKind::spontaneous, 5e-3);
-  const auto direct = make_initial_state(direct_config, go_on);
+  const auto direct = make_initial_state(coarse_case(EventKind::spontaneous, 5e-3), go_on);
   EXPECT_EQ(direct.critical_shear_m, initial.critical_shear_m);
   EXPECT_EQ(direct.common.peak_x_m, initial.common.peak_x_m);
   for (const int direction : {-1, 1}) {
@@ -458,54 +368,12 @@ TEST(Ramp, ReachesTheDirectCriticalShear) {
   }
 }
 
-TEST(Ramp, CanBeInterrupted) {
-  auto config = coarse_case(EventKind::spontaneous, 5e-3);
-  config.loading.method = statics::LoadingMethod::ramp;
-  EXPECT_THROW(make_initial_state(config, [](std::int64_t, std::int64_t) { return false; }), Interrupted);
-}
-
-TEST(InitialState, IsAtItsRatioOrRefused) {
-  // At high strength the heavy side lifts off and slips first; a state that is not what it says must not
-  // pass.
-  int reached = 0;
-  for (const double mu_s : {0.6, 1.0, 1.3, 2.0, 10.0, 100.0}) {
-    auto config = coarse_case();
-    law(config).mu_s = mu_s;
-    law(config).mu_k = 0.1;
-    try {
-      const auto initial = make_initial_state(config, go_on);
-      EXPECT_NEAR(initial.common.peak_ratio, (1 - 1e-3) * mu_s, mu_s * solve_error) << mu_s;
-      EXPECT_NEAR(initial.spontaneous.peak_ratio, (1 + 1e-3) * mu_s, mu_s * solve_error) << mu_s;
-      EXPECT_LT(initial.common.shear_m, initial.spontaneous.shear_m) << mu_s;
-      ++reached;
-    } catch (const UserError& error) {
-      EXPECT_NE(std::string(error.what()).find("friction.mu_s"), std::string::npos) << error.what();
-      EXPECT_GT(mu_s, 1.3) << error.what();
-    }
-  }
-  EXPECT_GE(reached, 3);
-}
-
-TEST(InitialState, RefusesMarginsThatLeaveNoInside) {
-  auto config = coarse_case();
-  config.loading.edge_margin_m = 0.12;
-  EXPECT_THROW(make_initial_state(config, go_on), UserError);
-}
-
 TEST(Check, SinglePrecisionNeedsFreeSides) {
-  auto config = coarse_case(EventKind::nucleation);
-  config.plate.corner = mesh::Corner::none;
+  auto config = test::prestressed_case();
   config.plate.sides = mesh::Sides::absorbing;
-  config.loading.method = statics::LoadingMethod::prestress;
-  EXPECT_NO_THROW(check(config));
+  EXPECT_EQ(test::check_error(config), test::accepted);
   config.time.precision = motion::Precision::single_precision;
-  EXPECT_THROW(check(config), UserError);
-}
-
-TEST(InitialState, RefusesATiltWithoutContact) {
-  auto config = coarse_case();
-  config.loading.tilt_left_m = config.loading.tilt_right_m = 0;
-  EXPECT_THROW(make_initial_state(config, go_on), UserError);
+  EXPECT_NE(test::check_error(config), test::accepted);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::coarse_case;
 using test::error_of;
+using test::prestressed_case;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -55,29 +56,30 @@ SessionHooks stopping_at(const std::string& part, std::int64_t stop_at) {
           [=] { return *stop ? Request::stop : Request::none; }, [](const std::string&) {}};
 }
 
+const SessionHooks undisturbed = stopping_at("", -1);
+
 SessionOptions with_threads(int threads) {
   SessionOptions options;
   options.threads = threads;
   return options;
 }
 
-/// A whole run, undisturbed.
-std::map<std::string, std::string> undisturbed(const input::Case& config) {
-  const test::TemporaryFolder folder;
-  results::ResultFolder held(folder.path(), run_work);
-  run_into(held, config, with_threads(1), stopping_at("", -1));
-  return results_in(folder.path());
+Finished start(const fs::path& dir, const input::Case& config, const SessionHooks& hooks = undisturbed) {
+  results::ResultFolder held(dir, run_work);
+  return run_into(held, config, with_threads(1), hooks);
 }
 
-input::Case prestressed_case() {
-  auto config = coarse_case(interface::EventKind::nucleation, 2e-3);
-  config.plate.corner = mesh::Corner::none;
-  config.plate.sides = mesh::Sides::periodic;
-  config.loading.method = statics::LoadingMethod::prestress;
-  config.prestress.t_Pa = 4e6;
-  config.prestress.p_Pa = 5e6;
-  config.nucleation.x_m = 0.1;
-  return config;
+Finished go_on(const fs::path& dir, const SessionHooks& hooks = undisturbed,
+               const input::Case* expected = nullptr, int threads = 1) {
+  results::ResultFolder held(dir, run_work);
+  return run::go_on(held, expected, with_threads(threads), hooks);
+}
+
+/// Results of a whole run.
+std::map<std::string, std::string> results_of(const input::Case& config) {
+  const test::TemporaryFolder folder;
+  start(folder.path(), config);
+  return results_in(folder.path());
 }
 
 /// One case of each kind of state that has to be kept.
@@ -148,62 +150,31 @@ std::vector<std::pair<const char*, input::Case>> kinds() {
 TEST(Session, GoesOnAsIfItHadNeverStopped) {
   for (const auto& [name, config] : kinds()) {
     SCOPED_TRACE(name);
-    const auto expected = undisturbed(config);
     const test::TemporaryFolder folder;
-    {
-      results::ResultFolder held(folder.path(), run_work);
-      const auto run = run_into(held, config, with_threads(1), stopping_at("event", 50));
-      EXPECT_EQ(run.result.event.end, motion::EventEnd::interrupted);
-    }
-    {
-      results::ResultFolder held(folder.path(), run_work);
-      const auto run = go_on(held, nullptr, with_threads(2), stopping_at("event", 100));
-      EXPECT_EQ(run.result.event.end, motion::EventEnd::interrupted);
-      EXPECT_EQ(run.result.event.steps, 100);
-    }
-    results::ResultFolder held(folder.path(), run_work);
-    go_on(held, &config, with_threads(1), stopping_at("", -1));
-    expect_same(results_in(folder.path()), expected);
+    EXPECT_EQ(start(folder.path(), config, stopping_at("event", 50)).result.event.end,
+              motion::EventEnd::interrupted);
+    EXPECT_EQ(go_on(folder.path(), stopping_at("event", 100), nullptr, 2).result.event.steps, 100);
+    go_on(folder.path(), undisturbed, &config);
+    expect_same(results_in(folder.path()), results_of(config));
     EXPECT_EQ(nlohmann::json::parse(test::read_file(folder / "run.json"))["sessions"], 3);
     files::require_intact(folder.path());
   }
 }
 
 TEST(Session, GoesOnWithARamp) {
-  auto config = coarse_case(interface::EventKind::spontaneous, 5e-3);
-  config.loading.method = statics::LoadingMethod::ramp;
-  const auto expected = undisturbed(config);
+  const auto config = test::ramped_case();
   const test::TemporaryFolder folder;
   std::int64_t total = 0;
-  {
-    results::ResultFolder held(folder.path(), run_work);
-    auto hooks = stopping_at("ramp", 2000);
-    hooks.progress = [&, inner = hooks.progress](const char* part, std::int64_t step, std::int64_t n) {
-      total = n;
-      inner(part, step, n);
-    };
-    EXPECT_THROW(run_into(held, config, with_threads(1), hooks), Interrupted);
-  }
+  auto hooks = stopping_at("ramp", 2000);
+  hooks.progress = [&, inner = hooks.progress](const char* part, std::int64_t step, std::int64_t n) {
+    total = n;
+    inner(part, step, n);
+  };
+  EXPECT_THROW(start(folder.path(), config, hooks), Interrupted);
   // Behind the common state, which then has to be kept as well.
-  {
-    results::ResultFolder held(folder.path(), run_work);
-    EXPECT_THROW(go_on(held, nullptr, with_threads(1), stopping_at("ramp", total - 1000)), Interrupted);
-  }
-  results::ResultFolder held(folder.path(), run_work);
-  go_on(held, nullptr, with_threads(1), stopping_at("", -1));
-  expect_same(results_in(folder.path()), expected);
-}
-
-TEST(Session, KeepsTheLastTwoCheckpoints) {
-  auto options = with_threads(1);
-  options.keep_every_s = 20e-6;
-  const test::TemporaryFolder folder;
-  results::ResultFolder held(folder.path(), run_work);
-  run_into(held, coarse_case(), options, stopping_at("event", 100));
-  int n = 0;
-  for (const auto& entry : fs::directory_iterator(held.state()))
-    n += entry.path().filename().string().starts_with("checkpoint-") ? 1 : 0;
-  EXPECT_EQ(n, 2);
+  EXPECT_THROW(go_on(folder.path(), stopping_at("ramp", total - 1000)), Interrupted);
+  go_on(folder.path());
+  expect_same(results_in(folder.path()), results_of(config));
 }
 
 /// An interrupted run with two checkpoints.
@@ -215,42 +186,40 @@ class InterruptedRun : public testing::Test {
     options.keep_every_s = 20e-6;
     run_into(held, config_, options, stopping_at("event", 100));
   }
-  fs::path last_checkpoint() const {
-    std::map<std::string, fs::path> files;
+  std::vector<fs::path> checkpoints() const {
+    std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(folder_ / "unfinished/state"))
-      if (entry.path().extension() == ".bin") files[entry.path().filename().string()] = entry.path();
-    return files.rbegin()->second;
+      if (entry.path().filename().string().starts_with("checkpoint-")) files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
   }
   std::string go_on_error(const input::Case* expected = nullptr) {
     return error_of([&] {
-      results::ResultFolder held(folder_.path(), run_work);
-      auto hooks = stopping_at("", -1);
+      auto hooks = undisturbed;
       hooks.note = [&](const std::string& note) { notes_ += note; };
-      go_on(held, expected, with_threads(1), hooks);
+      go_on(folder_.path(), hooks, expected);
     });
   }
-  static void flip_byte(const fs::path& file, std::size_t at) {
-    auto bytes = test::read_file(file);
-    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-    test::write_file(file, bytes);
-  }
-
   input::Case config_ = coarse_case();
   test::TemporaryFolder folder_;
   std::string notes_;
 };
 
 TEST_F(InterruptedRun, TakesTheCheckpointBeforeADamagedOne) {
-  flip_byte(last_checkpoint(), fs::file_size(last_checkpoint()) / 2);
-  EXPECT_EQ(go_on_error(), "(nothing thrown)");
+  ASSERT_EQ(checkpoints().size(), 2U);  // the last ones
+  const auto last = checkpoints().back();
+  auto bytes = test::read_file(last);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x10);
+  test::write_file(last, bytes);
+  EXPECT_EQ(go_on_error(), test::accepted);
   EXPECT_THAT(notes_, HasSubstr("is damaged"));
-  expect_same(results_in(folder_.path()), undisturbed(config_));
+  expect_same(results_in(folder_.path()), results_of(config_));
 }
 
 TEST_F(InterruptedRun, BeginsAnewWithoutAnyCheckpoint) {
-  for (int k = 0; k < 2; ++k) fs::remove(last_checkpoint());
-  EXPECT_EQ(go_on_error(), "(nothing thrown)");
-  expect_same(results_in(folder_.path()), undisturbed(config_));
+  for (const auto& file : checkpoints()) fs::remove(file);
+  EXPECT_EQ(go_on_error(), test::accepted);
+  expect_same(results_in(folder_.path()), results_of(config_));
 }
 
 TEST_F(InterruptedRun, RefusesAnotherCase) {
@@ -267,13 +236,12 @@ TEST(Session, RefusesAnotherTableOfFriction) {
   const test::TemporaryFolder folder;
   auto config = prestressed_case();
   test::set_table(config, "x_m,mu_k\n0,0.6\n0.2,0.7\n");
-  results::ResultFolder held(folder.path(), run_work);
-  run_into(held, config, with_threads(1), stopping_at("event", 50));
-  const auto file = held.unfinished() / friction_file;
+  start(folder.path(), config, stopping_at("event", 50));
+  const auto unfinished = folder / "unfinished", file = unfinished / friction_file;
   test::write_file(file, "x_m,mu_k\n0,0.6\n0.2,0.8\n");
-  EXPECT_EQ(error_of([&] { go_on(held, nullptr, with_threads(1), stopping_at("", -1)); }),
+  EXPECT_EQ(error_of([&] { go_on(folder.path()); }),
             file.string() + ": was changed since the run was begun; put it back, or begin anew");
-  EXPECT_THAT(error_of([&] { require_same_case(config, held.unfinished()); }),
+  EXPECT_THAT(error_of([&] { require_same_case(config, unfinished); }),
               HasSubstr("the table of its friction: is another case"));
 }
 
@@ -286,47 +254,29 @@ TEST_F(InterruptedRun, RefusesAnotherProgram) {
 }
 
 TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
-  // Another plate's state under this case's name.
-  auto other = config_;
-  other.plate.element_size_m = 4e-3;
-  const test::TemporaryFolder elsewhere;
-  {
-    results::ResultFolder held(elsewhere.path(), run_work);
-    run_into(held, other, with_threads(1), stopping_at("event", 50));
-  }
-  auto foreign = Checkpoints(elsewhere / "unfinished/state").last([](const std::string&) {});
-  ASSERT_TRUE(foreign);
-  CheckpointHead head = foreign->head;
-  head.case_text = resolved_text(config_);
-  InitialState initial;
-  foreign->rest(initial);
-  Checkpoints(folder_ / "unfinished/state").keep(head, [&](results::OutputArchive& archive) {
-    archive(initial, std::vector<double>(7));
-  });
-  EXPECT_NE(go_on_error(), "(nothing thrown)");
-}
-
-TEST_F(InterruptedRun, RefusesAStateBeforeTheEventWithoutAllOfItsNodes) {
   auto kept = Checkpoints(folder_ / "unfinished/state").last([](const std::string&) {});
   ASSERT_TRUE(kept);
   const InitialState whole = read_initial_state(kept->rest, config_);
-  const auto refused = [&](auto change) {
+  const auto keep = [&](auto... parts) {
+    Checkpoints(folder_ / "unfinished/state").keep(kept->head, [&](results::OutputArchive& archive) {
+      archive(parts...);
+    });
+  };
+  const std::function<void(InitialState&)> changes[] = {
+      [](InitialState& s) { s.tributary_m.pop_back(); }, [](InitialState& s) { s.common.contact.pop_back(); },
+      [](InitialState& s) { s.spontaneous.tractions.p_s_Pa.pop_back(); },
+      [](InitialState& s) {
+        s.ramp.emplace(motion::Ramp{s.common, s.spontaneous, {}, 0, false});
+        s.ramp->record.onsets.push_back({7, 0});
+      }};
+  for (const auto& change : changes) {
     InitialState initial = whole;
     change(initial);
-    Checkpoints(folder_ / "unfinished/state").keep(kept->head, [&](results::OutputArchive& archive) {
-      archive(initial);
-    });
-    return go_on_error();
-  };
-  const auto message = "the state before the event that was kept is of another plate";
-  EXPECT_EQ(refused([](InitialState& s) { s.tributary_m.pop_back(); }), message);
-  EXPECT_EQ(refused([](InitialState& s) { s.common.contact.pop_back(); }), message);
-  EXPECT_EQ(refused([](InitialState& s) { s.spontaneous.tractions.p_s_Pa.pop_back(); }), message);
-  EXPECT_EQ(refused([](InitialState& s) {
-              s.ramp.emplace(motion::Ramp{s.common, s.spontaneous, {}, 0, false});
-              s.ramp->record.onsets.push_back({7, 0});
-            }),
-            message);
+    keep(initial);
+    EXPECT_EQ(go_on_error(), "the state before the event that was kept is of another plate");
+  }
+  keep(whole, std::vector<double>(7));  // another event's state
+  EXPECT_NE(go_on_error(), test::accepted);
 }
 
 TEST_F(InterruptedRun, RefusesAHistoryThatIsShorterThanItWas) {
@@ -336,24 +286,21 @@ TEST_F(InterruptedRun, RefusesAHistoryThatIsShorterThanItWas) {
 
 TEST(Session, ThereMustBeARunToGoOnWith) {
   const test::TemporaryFolder folder;
-  results::ResultFolder held(folder.path(), run_work);
-  EXPECT_THAT(error_of([&] { go_on(held, nullptr, with_threads(1), stopping_at("", -1)); }),
-              HasSubstr("holds no unfinished run"));
+  EXPECT_THAT(error_of([&] { go_on(folder.path()); }), HasSubstr("holds no unfinished run"));
 }
 
 TEST(Session, TellsHowItStands) {
   const test::TemporaryFolder folder;
-  results::ResultFolder held(folder.path(), run_work);
+  const auto file = folder / "unfinished/run.json";
   auto hooks = stopping_at("event", 50);
   std::string status;
   hooks.request = [&, inner = hooks.request] {
-    const auto file = held.unfinished() / "run.json";
     if (fs::exists(file)) status = nlohmann::json::parse(test::read_file(file))["status"];
     return inner();
   };
-  run_into(held, coarse_case(), with_threads(1), hooks);
+  start(folder.path(), coarse_case(), hooks);
   EXPECT_EQ(status, "running");
-  const auto run = nlohmann::json::parse(test::read_file(held.unfinished() / "run.json"));
+  const auto run = nlohmann::json::parse(test::read_file(file));
   EXPECT_EQ(run["status"], "interrupted");
   EXPECT_THAT(run["reason"].get<std::string>(), StartsWith("interrupted at t = "));
 }
