@@ -62,8 +62,8 @@ if(SLIPFRONT_PYTHON)
   endforeach()
 endif()
 
-foreach(room base files record mesh solid interface stability fronts threads statics motion input results run)
-  install(DIRECTORY src/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipfront COMPONENT development
+foreach(module base files record mesh solid interface stability fronts threads statics motion input results run)
+  install(DIRECTORY src/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipfront COMPONENT development
           FILES_MATCHING PATTERN *.hpp)
 endforeach()
 include(CMakePackageConfigHelpers)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# All rooms as one library, slipfront::slipfront. Packages have it shared, once for each kind of processor: the loader
+# All modules as one library, slipfront::slipfront. Packages have it shared, once for each kind of processor: the loader
 # takes the one in glibc-hwcaps/KIND beside the library where the processor can run it (glibc 2.33 or later).
 if(NOT SLIPFRONT_SHARED)
   add_library(libslipfront INTERFACE)
@@ -10,7 +10,7 @@ endif()
 
 set(symbols ${CMAKE_CURRENT_SOURCE_DIR}/library.map)
 foreach(kind IN LISTS kinds)
-  list(TRANSFORM rooms PREPEND ${kind}_ OUTPUT_VARIABLE all)
+  list(TRANSFORM modules PREPEND ${kind}_ OUTPUT_VARIABLE all)
   list(TRANSFORM all REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)
   add_library(lib${kind} SHARED ${objects})
   target_link_libraries(lib${kind} PRIVATE ${all} PUBLIC fmt::fmt)

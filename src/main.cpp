@@ -17,7 +17,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/python_command.hpp"
 #include "processes/processes.hpp"
-#include "run/parts.hpp"
+#include "run/subdomains.hpp"
 
 namespace {
 

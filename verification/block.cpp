@@ -69,21 +69,21 @@ History program(const Drive& drive, const solid::Material& material, int rows, d
   motion::Stepper stepper(mesh, material, {law, {.relaxed = interface::Relaxed::pressure}},
                           plain_stepping(step_factor));
   const double strain = drive.first_traction * drop_Pa / solid::shear_modulus_Pa(material);
-  const auto state = start(
-      stepper, mesh,
-      {.u_x_m =
-           [&](mesh::Node n, double time) {
-             return mesh.y_m[n] * (strain + drive.top_speed * v_m_per_s * time / H_m);
-           },
-       .contact = statics::Contact::stick,
-       .t_Pa = drive.first_traction * drop_Pa,
-       .p_Pa = p_Pa,
-       .loads = {std::vector<double>(mesh.lower.size(), 0.0), std::vector<double>(mesh.lower.size(), p_Pa)}});
+  const auto state = start(stepper, mesh,
+                           {.u_x_m =
+                                [&](mesh::Node n, double time) {
+                                  return mesh.y_m[n] * (strain + drive.top_speed * v_m_per_s * time / H_m);
+                                },
+                            .contact = statics::Contact::stick,
+                            .t_Pa = drive.first_traction * drop_Pa,
+                            .p_Pa = p_Pa,
+                            .loads = {std::vector<double>(mesh.interface_nodes.size(), 0.0),
+                                      std::vector<double>(mesh.interface_nodes.size(), p_Pa)}});
   motion::Recorder recorder(state, mu_s, 0);
   History h;
   while (stepper.time_s() < drive.end * T_s) {
     // The tractions of a step belong to the places at its beginning.
-    const double slip_m = stepper.u_m().x[mesh.lower[0]];
+    const double slip_m = stepper.u_m().x[mesh.interface_nodes[0]];
     h.time.push_back(stepper.time_s() / T_s);
     stepper.advance(recorder);
     h.traction.push_back(stepper.interface_state().t_Pa[0] / drop_Pa);

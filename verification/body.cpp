@@ -31,10 +31,10 @@ statics::Equilibrium start(motion::Stepper& stepper, const mesh::Mesh& mesh, con
   if (const auto& below = start.below; below.mesh)
     set_motion(stepper.bodies().back(), *below.mesh, below.u_x_m, below.u_y_m, state.below_u_m,
                state.below_u_per_shear);
-  state.contact.assign(mesh.lower.size(), start.contact);
-  for (const auto n : mesh.lower) state.tractions.x_m.push_back(mesh.x_m[n]);
-  state.tractions.t_s_Pa.assign(mesh.lower.size(), start.t_Pa);
-  state.tractions.p_s_Pa.assign(mesh.lower.size(), start.p_Pa);
+  state.contact.assign(mesh.interface_nodes.size(), start.contact);
+  for (const auto n : mesh.interface_nodes) state.tractions.x_m.push_back(mesh.x_m[n]);
+  state.tractions.t_s_Pa.assign(mesh.interface_nodes.size(), start.t_Pa);
+  state.tractions.p_s_Pa.assign(mesh.interface_nodes.size(), start.p_Pa);
   stepper.start(state, 1, start.loads);
   return state;
 }

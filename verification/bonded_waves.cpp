@@ -236,9 +236,9 @@ Motion motion_of(const Packet& packet, const mesh::Mesh& mesh, const MeshWaves& 
 /// Two bodies that stick to each other under a uniform pressure, the one above with a motion.
 statics::Equilibrium bonded(const std::array<mesh::Mesh, 2>& meshes, Motion motion) {
   record::StaticState tractions;
-  for (const auto n : meshes[0].lower) tractions.x_m.push_back(meshes[0].x_m[n]);
-  tractions.t_s_Pa.assign(meshes[0].lower.size(), 0.0);
-  tractions.p_s_Pa.assign(meshes[0].lower.size(), pressure_Pa);
+  for (const auto n : meshes[0].interface_nodes) tractions.x_m.push_back(meshes[0].x_m[n]);
+  tractions.t_s_Pa.assign(meshes[0].interface_nodes.size(), 0.0);
+  tractions.p_s_Pa.assign(meshes[0].interface_nodes.size(), pressure_Pa);
   auto state = statics::prestressed(meshes[0], std::move(tractions), &meshes[1]);
   state.u_m = std::move(motion.u_m);
   state.u_per_shear = std::move(motion.v_m_per_s);

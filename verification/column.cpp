@@ -69,7 +69,7 @@ class Fall {
   };
   /// Moves on, taking down the slip rate of a node.
   Place to(double time_s) {
-    const auto node = column_.mesh.lower[1];
+    const auto node = column_.mesh.interface_nodes[1];
     while (stepper_.time_s() < time_s) {
       stepper_.advance(recorder_);
       if (stepper_.time_s() < next_s_) continue;
@@ -94,7 +94,7 @@ class Fall {
   };
   Range slips_m() const {
     Range range;
-    for (const auto n : column_.mesh.lower) {
+    for (const auto n : column_.mesh.interface_nodes) {
       range.least = std::min(range.least, stepper_.u_m().x[n]);
       range.most = std::max(range.most, stepper_.u_m().x[n]);
     }

@@ -75,14 +75,14 @@ constexpr int finest = 64, finest_for_order = 128;
 
 /// The rate with which the program carries a mode.
 Complex carried(const interface::ContactModel& contact, Complex p, int elements) {
-  return carry({.bodies = material(),
-                .contact = contact,
-                .pressure_Pa = p_Pa,
-                .speed_m_per_s = V_m_per_s,
-                .wavenumber_per_m = k_per_m,
-                .s_per_s = p * rate_unit_per_s(),
-                .elements_per_wave = elements,
-                .end_s = 2 / rate_unit_per_s()})
+  return simulate({.bodies = material(),
+                   .contact = contact,
+                   .pressure_Pa = p_Pa,
+                   .speed_m_per_s = V_m_per_s,
+                   .wavenumber_per_m = k_per_m,
+                   .s_per_s = p * rate_unit_per_s(),
+                   .elements_per_wave = elements,
+                   .end_s = 2 / rate_unit_per_s()})
              .rate_per_s() /
          rate_unit_per_s();
 }

@@ -69,14 +69,14 @@ Complex mode_per_s(const Pair& pair, const interface::ContactModel& contact) {
 
 Complex carried_per_s(const Pair& pair, const interface::ContactModel& contact, Complex s_per_s,
                       int elements) {
-  return carry({.bodies = pair.bodies,
-                .contact = contact,
-                .pressure_Pa = p_Pa,
-                .speed_m_per_s = V_m_per_s,
-                .wavenumber_per_m = k_per_m,
-                .s_per_s = s_per_s,
-                .elements_per_wave = elements,
-                .end_s = 2 / pair.rate_unit_per_s()})
+  return simulate({.bodies = pair.bodies,
+                   .contact = contact,
+                   .pressure_Pa = p_Pa,
+                   .speed_m_per_s = V_m_per_s,
+                   .wavenumber_per_m = k_per_m,
+                   .s_per_s = s_per_s,
+                   .elements_per_wave = elements,
+                   .end_s = 2 / pair.rate_unit_per_s()})
       .rate_per_s();
 }
 

@@ -46,7 +46,7 @@ class Fall {
 
   /// External pressure that pulls the lower face down.
   void pull(double p_Pa) {
-    const auto n = mesh_.lower.size();
+    const auto n = mesh_.interface_nodes.size();
     stepper_.set_prestress(std::vector<double>(n, 0.0), std::vector<double>(n, p_Pa));
   }
 

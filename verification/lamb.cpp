@@ -106,7 +106,7 @@ Seismogram run(Load load, double h_m, double end_s, double coarsest_h_m, const s
   motion::Recorder recorder(state, 1, 0);
   const auto at = [&](double x) { return static_cast<int>(std::lround((0.5 * width_m + x) / h_m)); };
   Seismogram s;
-  std::vector<double> none(mesh.lower.size(), 0.0), traction = none;
+  std::vector<double> none(mesh.interface_nodes.size(), 0.0), traction = none;
   for (int step = 0; step < steps.n; ++step) {
     traction[at(0)] = force_N_per_m * course(stepper.time_s()) / h_m;
     if (load == normal) traction[at(0)] *= -1;  // p0 presses down

@@ -55,15 +55,15 @@ struct Layer {
     std::array<Complex, 3> at;
     for (int level = 0; level < 3; ++level)
       at[level] =
-          carry({.bodies = material,
-                 .contact = law.contact,
-                 .pressure_Pa = p_Pa,
-                 .speed_m_per_s = V_m_per_s,
-                 .wavenumber_per_m = k,
-                 .s_per_s = s_per_s,
-                 .height_m = H_m,
-                 .elements_per_wave = static_cast<int>(std::lround(24 / waves_in_H * std::exp2(level))),
-                 .end_s = end_s})
+          simulate({.bodies = material,
+                    .contact = law.contact,
+                    .pressure_Pa = p_Pa,
+                    .speed_m_per_s = V_m_per_s,
+                    .wavenumber_per_m = k,
+                    .s_per_s = s_per_s,
+                    .height_m = H_m,
+                    .elements_per_wave = static_cast<int>(std::lround(24 / waves_in_H * std::exp2(level))),
+                    .end_s = end_s})
               .rate_per_s() /
           unit_per_s;
     return limit(at, law.order, law.next_order);

@@ -20,7 +20,7 @@ mesh::Mesh make_mesh(const LoadedPlane& plane) {
 /// Of the interface nodes from its middle.
 std::vector<double> places_m(const mesh::Mesh& mesh, double width_m) {
   std::vector<double> x_m;
-  for (const auto n : mesh.lower) x_m.push_back(mesh.x_m[n] - 0.5 * width_m);
+  for (const auto n : mesh.interface_nodes) x_m.push_back(mesh.x_m[n] - 0.5 * width_m);
   return x_m;
 }
 

@@ -31,8 +31,8 @@ class LoadedBody {
   const motion::Stepper& stepper() const { return stepper_; }
   double time_s() const { return stepper_.time_s(); }
   const interface::Interface& interface_state() const { return stepper_.interface_state(); }
-  const std::vector<double>& x_m() const { return x_m_; }  ///< [lower]
-  double slip_m(std::size_t i) const { return stepper_.u_m().x[mesh_.lower[i]]; }
+  const std::vector<double>& x_m() const { return x_m_; }  ///< [interface nodes]
+  double slip_m(std::size_t i) const { return stepper_.u_m().x[mesh_.interface_nodes[i]]; }
   const record::SlipRecord& record() const { return recorder_.record(); }
 
  private:

@@ -209,8 +209,8 @@ Errors run(const LayerWave& wave, Edge edge, double time_s, double h_m, double c
   for (int step = 0; step < steps.n; ++step) {
     stepper.advance(recorder);
     const double then = stepper.time_s() - stepper.substep_s();  // of the last contact update
-    for (std::size_t i = 0; i < mesh.lower.size() && edge != Edge::free; ++i) {
-      const double phase = k_rad_per_m * mesh.x_m[mesh.lower[i]];
+    for (std::size_t i = 0; i < mesh.interface_nodes.size() && edge != Edge::free; ++i) {
+      const double phase = k_rad_per_m * mesh.x_m[mesh.interface_nodes[i]];
       const double course = std::sin(wave.omega_rad_per_s * then);
       if (edge == Edge::stuck) t.add(stepper.interface_state().t_Pa[i], stress(0) * std::sin(phase) * course);
       p.add(stepper.interface_state().p_Pa[i] - pressure_Pa, -stress(1) * std::cos(phase) * course);

@@ -120,7 +120,7 @@ class Carried {
   /// Phase of the edge's motion along y.
   double angle() const {
     std::complex<double> sum = 0;
-    for (const auto node : mesh_.lower)
+    for (const auto node : mesh_.interface_nodes)
       sum += (stepper_.u_m().y[node] - lift_m) * std::polar(1.0, -k_rad_per_m * mesh_.x_m[node]);
     return std::arg(sum);
   }

@@ -217,16 +217,16 @@ statics::Equilibrium start_sliding(motion::Stepper& stepper, const SlidingWave& 
              .t_Pa = mu * w.pressure_Pa,
              .p_Pa = w.pressure_Pa};
   if (w.bodies.below) from.below = {&bodies[1].mesh, u_x(bodies[1]), u_y(bodies[1])};
-  const std::size_t n_lower = above.mesh.lower.size();
-  from.loads = {std::vector<double>(n_lower, mu * w.pressure_Pa),
-                std::vector<double>(n_lower, w.pressure_Pa)};
+  const std::size_t n_interface_nodes = above.mesh.interface_nodes.size();
+  from.loads = {std::vector<double>(n_interface_nodes, mu * w.pressure_Pa),
+                std::vector<double>(n_interface_nodes, w.pressure_Pa)};
   auto state = start(stepper, above.mesh, from);
   // A delayed response has a part of the wave in its memory.
   if (w.contact.regularisation.relaxed != interface::Relaxed::none) {
     const double rate = interface::relaxation_rate_per_s(w.contact.regularisation, w.speed_m_per_s);
     const Complex delayed = above.shape.pressure_Pa_per_m() * rate / (rate + w.s_per_s);
-    for (std::size_t i = 0; i < n_lower; ++i)
-      state.tractions.p_s_Pa[i] += (phase(above.mesh.x_m[above.mesh.lower[i]], 0) * delayed).real();
+    for (std::size_t i = 0; i < n_interface_nodes; ++i)
+      state.tractions.p_s_Pa[i] += (phase(above.mesh.x_m[above.mesh.interface_nodes[i]], 0) * delayed).real();
     stepper.start(state, 1, from.loads);
   }
   return state;
@@ -234,7 +234,7 @@ statics::Equilibrium start_sliding(motion::Stepper& stepper, const SlidingWave& 
 
 }  // namespace
 
-Growth carry(const SlidingWave& w) {
+Growth simulate(const SlidingWave& w) {
   const auto bodies = parts(w);
   const auto steps = steps_of(w, bodies);
   auto stepper = make_stepper(bodies, w.contact, plain_stepping(steps.factor));
@@ -245,7 +245,7 @@ Growth carry(const SlidingWave& w) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const double moved_m = bodies[b].speed_m_per_s * stepper.time_s();
       const auto& mesh = bodies[b].mesh;
-      for (const auto n : mesh.lower)
+      for (const auto n : mesh.interface_nodes)
         sum += (b == 0 ? 1.0 : -1.0) * (stepper.bodies()[b].u_m().x[n] - moved_m) *
                std::exp(-i_unit * w.wavenumber_per_m * mesh.x_m[n]);
     }

@@ -80,8 +80,8 @@ struct RateCharts {
   void add(const RateCurves& curves);
 };
 
-/// Lets the program carry the wave. A half-space is as high as a longitudinal wave from its far edge needs to
+/// Simulates the wave. A half-space is as high as a longitudinal wave from its far edge needs to
 /// arrive at the end; a layer's height is rounded to whole elements beforehand.
-Growth carry(const SlidingWave& wave);
+Growth simulate(const SlidingWave& wave);
 
 }  // namespace slipfront::verification

@@ -70,8 +70,8 @@ Run run(const mesh::Mesh& mesh, const solid::Material& material, bool mirrored, 
   stepper.start(run.state, sign * 1e-6 * solid::longitudinal_speed_m_per_s(material), loads);
   motion::Recorder recorder(run.state, mu_s, 0);
   while (stepper.time_s() < end_s) stepper.advance(recorder);
-  run.onsets = recorder.take(end_s).onsets;
-  const auto last = static_cast<std::int32_t>(mesh.lower.size()) - 1;
+  run.onsets = recorder.record_until(end_s).onsets;
+  const auto last = static_cast<std::int32_t>(mesh.interface_nodes.size()) - 1;
   for (auto& onset : run.onsets) onset.node = mirrored ? last - onset.node : onset.node;
   std::ranges::sort(run.onsets, {}, [](const auto& o) { return std::pair(o.node, o.time_s); });
   run.u_m = stepper.u_m();
@@ -123,9 +123,9 @@ Outcome symmetry(Effort effort) {
                               (a.onsets[k].node == b.onsets[k].node ? 0 : 1));
     // The picture shows the first slip of every other node.
     if (a.onsets[k].node % 2 != 0 || (k > 0 && a.onsets[k].node == a.onsets[k - 1].node)) continue;
-    original.x.push_back(1e3 * mesh.x_m[mesh.lower[a.onsets[k].node]]);
+    original.x.push_back(1e3 * mesh.x_m[mesh.interface_nodes[a.onsets[k].node]]);
     original.y.push_back(1e6 * a.onsets[k].time_s);
-    image.x.push_back(1e3 * mesh.x_m[mesh.lower[b.onsets[k].node]]);
+    image.x.push_back(1e3 * mesh.x_m[mesh.interface_nodes[b.onsets[k].node]]);
     image.y.push_back(1e6 * b.onsets[k].time_s);
   }
   outcome.checks.push_back({"largest difference of onset times over the sub-step", "", late / a.substep_s, 0,

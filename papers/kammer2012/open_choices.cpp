@@ -262,8 +262,7 @@ class Events {
          const std::function<bool(std::size_t done, std::size_t total)>& monitor)
       : batch_(
             options.threads, [this, &monitor] { return monitor(done_, cases_.size()); },
-            "interrupted; the runs that were done are kept: give the same command again to go on",
-            options.kept) {}
+            "interrupted; completed runs are saved: repeat the command to continue", options.kept) {}
 
   std::size_t place(const input::Case& config) {
     const auto [found, is_new] = places_.try_emplace(input::to_toml(config), cases_.size());
@@ -559,7 +558,7 @@ std::vector<std::size_t> region_of(const std::vector<SampleOutcome>& outcomes) {
   return agreeing.empty() ? constrained : agreeing;
 }
 
-int least_extreme(const std::vector<SampleOutcome>& outcomes) {
+int min_extreme(const std::vector<SampleOutcome>& outcomes) {
   const auto region = region_of(outcomes);
   const auto least =
       std::ranges::min_element(region, {}, [&](std::size_t k) { return outcomes[k].extremity; });
@@ -642,7 +641,7 @@ OpenChoicesResult study_open_choices(
     }
   };
   run_and_judge(samples(result.choices, options.quick));
-  result.chosen = least_extreme(result.outcomes);
+  result.chosen = min_extreme(result.outcomes);
   if (result.chosen >= 0)
     run_and_judge(samples_about(result.choices, Sample::Set::about_chosen,
                                 result.outcomes[result.chosen].sample.values));

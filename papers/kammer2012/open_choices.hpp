@@ -99,7 +99,7 @@ const std::vector<std::string>& constraining_claims();
 std::vector<std::size_t> region_of(const std::vector<SampleOutcome>& outcomes);
 
 /// The first of the least extreme outcomes of the region; -1: it is empty.
-int least_extreme(const std::vector<SampleOutcome>& outcomes);
+int min_extreme(const std::vector<SampleOutcome>& outcomes);
 
 struct OpenChoicesResult {
   bool quick = false;
@@ -107,7 +107,7 @@ struct OpenChoicesResult {
   std::vector<std::string> claims;      ///< their ids
   std::vector<SampleOutcome> outcomes;  ///< the standard one first
   std::vector<std::size_t> region;
-  int chosen = -1;  ///< least_extreme, before the samples about it were added
+  int chosen = -1;  ///< min_extreme, before the samples about it were added
   /// C11b: of the trigger samples, those for which C1 to C11 hold.
   TriggerSample triggers;
   std::size_t n_impossible = 0;  ///< samples left out: fillets too small for their elements

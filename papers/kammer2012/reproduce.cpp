@@ -31,9 +31,8 @@ class Runner {
         total_(total),
         batch_(
             options.threads, [this] { return wanted({}); },
-            fmt::format(
-                "interrupted; the runs that were done are in {}: give the same command again to go on",
-                folder.unfinished().string()),
+            fmt::format("interrupted; completed runs are in {}: repeat the command to continue",
+                        folder.unfinished().string()),
             folder.state() / "runs") {}
 
   /// The outcomes, in the order of the cases.
@@ -86,7 +85,7 @@ class Runner {
     std::error_code error;
     std::filesystem::remove_all(dir, error);  // what an interruption has left
     if (!error) std::filesystem::create_directories(dir, error);
-    if (error) throw WriteError("{}: cannot be made ({})", dir.string(), error.message());
+    if (error) throw WriteError("{}: cannot be created ({})", dir.string(), error.message());
     run::write(dir, result, initial);
   }
 

@@ -22,7 +22,7 @@ namespace {
 using fronts::Front;
 using fronts::FrontPoint;
 
-constexpr double least_spread = 0.2;  ///< of V_tip at equal t_s/p_s that leaves no unique one
+constexpr double min_spread = 0.2;  ///< of V_tip at equal t_s/p_s that leaves no unique one
 
 std::string share(double part, double whole) {
   return whole > 0 ? percent(part / whole) : "no share";
@@ -141,14 +141,14 @@ class Scorecard {
       most = std::max(most, ratio);
     }
     const double from_edge = std::min(o.peak_x_m, w - o.peak_x_m);
-    constexpr double far_over_w = 0.2, most_of_maximum = 0.6;
+    constexpr double far_over_w = 0.2, max_of_maximum = 0.6;
     add("C2", "t_s/p_s is nonuniform with its maximum far from the edges", "Set-up",
         fmt::format("maximum {:.1f} mm from the nearer edge, minimum inside {} of it", from_edge * mm,
                     percent(least / most)),
         {{"maximum", from_edge * mm, "mm"}, {"minimum", 100 * least / most, "%"}},
-        from_edge > far_over_w * w && least < most_of_maximum * most,
+        from_edge > far_over_w * w && least < max_of_maximum * most,
         fmt::format("maximum more than {} w from both edges; minimum inside below {} of it", far_over_w,
-                    most_of_maximum));
+                    max_of_maximum));
     nucleation_at_the_maximum(o);
   }
 
@@ -175,8 +175,8 @@ class Scorecard {
     add("C4", "mu_k = 1.0: V_tip grows with t_s/p_s", "Fig. 2",
         fmt::format("rank correlation {:.2f} against the shear, {:.2f} along", c_against, c_along),
         {{"against", c_against, ""}, {"along", c_along, ""}},
-        c_against > least_correlation && c_along > least_correlation,
-        fmt::format("rank correlation above {} for each direction", least_correlation));
+        c_against > min_correlation && c_along > min_correlation,
+        fmt::format("rank correlation above {} for each direction", min_correlation));
   }
 
   void asymmetry_at_mu_k_1(const Outcome& o) {
@@ -244,8 +244,8 @@ class Scorecard {
     add("C8", "mu_k = 0.6, spontaneous: fast toward both edges, slower as t_s/p_s falls", "Fig. 3d",
         fmt::format("rank correlation {:.2f} against the shear, {:.2f} along", against, along),
         {{"against", against, ""}, {"along", along, ""}},
-        against > least_correlation && along > least_correlation,
-        fmt::format("rank correlation of V_tip and t_s/p_s above {}, both directions", least_correlation));
+        against > min_correlation && along > min_correlation,
+        fmt::format("rank correlation of V_tip and t_s/p_s above {}, both directions", min_correlation));
   }
 
   void supersonic_fronts() {
@@ -332,7 +332,7 @@ class Scorecard {
         "C12", "C14", [](const Collapse::Spreads& s) { return s.cases; },
         fmt::format("spread at equal t_s/p_s over the three cases above {}: (largest - smallest median of a "
                     "case) / mean of the medians, median over bins",
-                    percent(least_spread)),
+                    percent(min_spread)),
         "same measure as C12, smaller");
     spread_claims(
         "C12+", "C14+", [](const Collapse::Spreads& s) { return s.fronts; },
@@ -353,7 +353,7 @@ class Scorecard {
     add(c12, "no unique V_tip for a given t_s/p_s", "Fig. 3d",
         fmt::format("median relative spread {} over {} bins", percent(of_static.median_relative),
                     of_static.n_bins),
-        {{"spread", 100 * of_static.median_relative, "%"}}, of_static.median_relative > least_spread,
+        {{"spread", 100 * of_static.median_relative, "%"}}, of_static.median_relative > min_spread,
         std::move(how12));
     add(c14, "the spread of V_tip is smaller against t_d/p_d than against t_s/p_s", "Fig. 5",
         fmt::format(
@@ -366,7 +366,7 @@ class Scorecard {
   }
 
   void distance_of_dynamic_ratio() {
-    constexpr double far_over_mu_s = 0.9, least_difference = 0.1;
+    constexpr double far_over_mu_s = 0.9, min_difference = 0.1;
     double difference = 0, n = 0, below = 0;
     for (const auto* o : three_) {
       const double mu_s = interface::static_coefficient(o->config.friction);
@@ -385,9 +385,9 @@ class Scorecard {
         fmt::format("mean relative difference {}, below {} mu_s over {} of the path", percent(difference / n),
                     far_over_mu_s, percent(below / n)),
         {{"difference", 100 * difference / n, "%"}, {"below", 100 * below / n, "%"}},
-        difference / n > least_difference && below / n > 0.5,
+        difference / n > min_difference && below / n > 0.5,
         fmt::format("mean relative difference above {}; below {} mu_s over more than half the path",
-                    percent(least_difference), far_over_mu_s));
+                    percent(min_difference), far_over_mu_s));
   }
 
   void faster_against_the_sliding() {
@@ -562,12 +562,12 @@ class Scorecard {
   }
 
   void independence_of_slip_mode(const StudyOutcome* mu_k) {
-    constexpr double most_over_c_L = 2 * PaperFit{}.band;
+    constexpr double max_over_c_L = 2 * PaperFit{}.band;
     const char* independent = "V_tip against the stress state does not depend on the type of slip";
     const auto how = fmt::format(
         "over the mu_k study: at equal (U_r-U_s)/U_s the largest difference of the kinds' medians, median "
         "over bins, below the band's full width, {:.2f} c_L",
-        most_over_c_L);
+        max_over_c_L);
     if (mu_k == nullptr) {
       add("C21", independent, "Results", "not tested: no studies", {}, std::nullopt, how);
       return;
@@ -578,7 +578,7 @@ class Scorecard {
           known ? fmt::format("median difference between kinds {:.3f} c_L{}", difference, text)
                 : "only one kind of slip",
           {{"difference", difference, "c_L"}},
-          known ? std::optional(difference < most_over_c_L) : std::nullopt, std::move(test));
+          known ? std::optional(difference < max_over_c_L) : std::nullopt, std::move(test));
     };
     std::vector<const Outcome*> all;
     std::vector<double> differences;
@@ -706,11 +706,11 @@ class Scorecard {
 
   void experiment() {
     const char* claim = "mu_k = 1.0 agrees quantitatively with the experiments";
-    constexpr double most_deviation = 0.2, near_ratio = 0.02;
+    constexpr double max_deviation = 0.2, near_ratio = 0.02;
     const auto how = fmt::format(
         "only with a user's file of points: median over the points of |V - V_measured| / V_measured at most "
         "{}, V the median speed of the mu_k = 1.0 run within {} of the point's t_s/p_s",
-        percent(most_deviation), near_ratio);
+        percent(max_deviation), near_ratio);
     if (!r_.experiment) {
       add("E1", claim, "Fig. 2", "not tested: no data", {}, std::nullopt, how);
       return;
@@ -732,20 +732,20 @@ class Scorecard {
             "median relative deviation {} over the {} of {} points within the range of t_s/p_s of our fronts",
             percent(deviation), deviations.size(), r_.experiment->static_ratio.size()),
         {{"deviation", 100 * deviation, "%"}},
-        deviations.empty() ? std::nullopt : std::optional(deviation <= most_deviation), how);
+        deviations.empty() ? std::nullopt : std::optional(deviation <= max_deviation), how);
   }
 
   void longitudinal_wave() {
     const auto& o = r_.left;
     const auto* front = main_front(o, 1);
     double supershear = 0, behind = 0;
-    double least_lag = std::numeric_limits<double>::infinity();
+    double min_lag = std::numeric_limits<double>::infinity();
     if (front != nullptr) {
       const double source = o.contact_from_m + o.config.trigger.zone_m;
       for (const auto* p : speed_points(o, *front)) {
         if (p->v_tip_m_per_s <= o.speeds.c_S) continue;
         const double lag = source + o.speeds.c_L * p->onset_s - p->x_m;
-        least_lag = std::min(least_lag, lag);
+        min_lag = std::min(min_lag, lag);
         supershear += 1;
         behind += lag > 0 ? 1 : 0;
       }
@@ -754,10 +754,10 @@ class Scorecard {
         supershear > 0
             ? fmt::format(
                   "tip behind c_L (t - t_trigger) at {} of the super-shear points, by at least {:.1f} mm",
-                  percent(behind / supershear), least_lag * mm)
+                  percent(behind / supershear), min_lag * mm)
             : "no super-shear points",
         supershear > 0 ? std::vector<Figure>{{"share", 100 * behind / supershear, "%"},
-                                             {"least distance", least_lag * mm, "mm"}}
+                                             {"least distance", min_lag * mm, "mm"}}
                        : std::vector<Figure>{},
         supershear > 0 && behind == supershear,
         "left-triggered: wherever V_tip exceeds c_S the tip is behind the wave from the trigger zone's inner "

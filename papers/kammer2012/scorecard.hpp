@@ -46,7 +46,7 @@ struct Claim {
 };
 
 // What tests of claims ask for where more than one test does.
-inline constexpr double least_correlation = 0.8;  ///< rank correlation that is a tendency
+inline constexpr double min_correlation = 0.8;  ///< rank correlation that is a tendency
 inline constexpr double most_left_over_others =
     0.6;  ///< C11: left-triggered maximum of speed over the others'
 inline constexpr double wanted_share_in_band = 0.8;   ///< C18: of the points, in the paper's band

@@ -172,7 +172,7 @@ Claim trend_of_crack_share(const Reproduction& runs, std::span<const Claim> firs
       fmt::format(
           "spontaneous events: rank correlation of mu_k with the share of crack-like path at most {}; "
           "each kind occurs over the study",
-          -least_correlation));
+          -min_correlation));
   const auto* study = find_study(runs, "mu_k");
   row.measured = "not tested: no studies";
   if (study == nullptr) return row;
@@ -207,7 +207,7 @@ Claim trend_of_crack_share(const Reproduction& runs, std::span<const Claim> firs
                                          {"crack", 100.0 * total[0] / sum, "%"},
                                          {"pulse", 100.0 * total[1] / sum, "%"},
                                          {"mixed", 100.0 * total[2] / sum, "%"}});
-  row.holds = trend <= -least_correlation && std::ranges::min(total) > 0;
+  row.holds = trend <= -min_correlation && std::ranges::min(total) > 0;
   return row;
 }
 

@@ -233,7 +233,7 @@ TriggerSample read_trigger_sample(const std::filesystem::path& dir, bool quick) 
     throw UserError("{}: holds no {}; give the folder of slipfront study open-choices", dir.string(),
                     summary_file);
   if (!files::is_there(results::published(dir, files::checksum_list)))
-    throw UserError("{}: holds no {}; make it anew by slipfront study open-choices", dir.string(),
+    throw UserError("{}: holds no {}; create it again with slipfront study open-choices", dir.string(),
                     files::checksum_list);
   if (results::published(dir, files::checksum_list) != dir / files::checksum_list)
     throw UserError(
@@ -241,22 +241,22 @@ TriggerSample read_trigger_sample(const std::filesystem::path& dir, bool quick) 
         dir.string(), dir.string());
   files::require_listed(file);
   files::require_intact(dir);
-  constexpr std::size_t most_bytes = 64U << 20U;
+  constexpr std::size_t max_bytes = 64U << 20U;
   const auto json =
-      Json::parse(files::read_text(file, file.string(), "summary of the study", most_bytes), nullptr, false);
+      Json::parse(files::read_text(file, file.string(), "summary of the study", max_bytes), nullptr, false);
   if (json.is_object() && json.contains("quick") && json["quick"].is_boolean() && json["quick"] != quick)
     throw UserError("{}: is a {} study, which does not suit a {} reproduction; give one made {}--quick",
                     dir.string(), quick ? "full" : "quick", quick ? "quick" : "full",
                     quick ? "with " : "without ");
   const auto count = [&](const char* key) -> int {
     if (!json.is_object() || !json.contains(key) || !json[key].is_number_unsigned() || json[key] > 1000000000)
-      throw UserError("{}: has no count \"{}\"; make it anew by slipfront study open-choices", file.string(),
-                      key);
+      throw UserError("{}: has no count \"{}\"; create it again with slipfront study open-choices",
+                      file.string(), key);
     return json[key];
   };
   const TriggerSample sample{count("n_triggers"), count("n_triggers_slow_left")};
   if (sample.n_triggers == 0 || sample.n_holding > sample.n_triggers)
-    throw UserError("{}: {} of {} triggers cannot be; make it anew by slipfront study open-choices",
+    throw UserError("{}: {} of {} triggers cannot be; create it again with slipfront study open-choices",
                     file.string(), sample.n_holding, sample.n_triggers);
   return sample;
 }

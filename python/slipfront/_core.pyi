@@ -251,7 +251,7 @@ def run_by_law(case: Case, dir: str | os.PathLike, mu_of: Callable, progress: ob
     Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes].
     """
 
-def go_on(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: float, progress: object | None) -> None:
+def resume(dir: str | os.PathLike, threads: int | None, checkpoint_every_s: float, progress: object | None) -> None:
     """
     Goes on with the unfinished run of a folder; does nothing where it is complete.
     """

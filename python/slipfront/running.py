@@ -212,7 +212,7 @@ def resume(
     A run that is complete is opened. Raises as `run` does."""
     folder, n_threads = path(output, "output"), threads_of(threads)
     every_s = number(checkpoint_every_s, "checkpoint_every_s", least=0)
-    compute(lambda show: _core.go_on(folder, n_threads, every_s, show), progress)
+    compute(lambda show: _core.resume(folder, n_threads, every_s, show), progress)
     return OpenRun(read_place(folder))
 
 

@@ -14,7 +14,7 @@ namespace slipfront {
 
 /// The user's input cannot be used. The message is one line that says where and what to do; exit code 2. It
 /// is about the keys that it names,
-///     throw UserError("{} is {} m; it must be at most {} m", Key("plate.width_m"), width_m, most_m);
+///     throw UserError("{} is {} m; it must be at most {} m", Key("plate.width_m"), width_m, max_m);
 /// and where they were set is added by whoever has read the case.
 class UserError : public std::runtime_error {
  public:

@@ -12,9 +12,9 @@
 #include <type_traits>
 #include <utility>
 
-// Arithmetic that is written once for a value type V: a number, or the processor's vector of them, Lanes of
-// doubles or LanesOf<float>. The operators are the compiler's; the functions here stand in for what they
-// lack. Both branches of a select are evaluated.
+// Arithmetic that is written once for a value type V: a number, or the processor's vector of them, SimdVector
+// of doubles or SimdVectorOf<float>. The operators are the compiler's; the functions here stand in for what
+// they lack. Both branches of a select are evaluated.
 namespace slipfront {
 
 inline double select(bool condition, double yes, double no) {
@@ -60,13 +60,13 @@ inline constexpr int length = sizeof(V) / sizeof(std::declval<V>()[0]);
 template <class Real>
 inline constexpr int lanes_of = vector_bytes / static_cast<int>(sizeof(Real));
 template <class Real>
-using LanesOf = Vector<Real, lanes_of<Real>>;
+using SimdVectorOf = Vector<Real, lanes_of<Real>>;
 
 inline constexpr int lanes = lanes_of<double>;
-using Lanes = LanesOf<double>;
-/// What a comparison of Lanes gives: all bits of a lane where it is true, none where not.
-using LanesMask = Vector<std::int64_t, lanes>;
-using LanesBits = Vector<std::uint64_t, lanes>;
+using SimdVector = SimdVectorOf<double>;
+/// What a comparison of SimdVector gives: all bits of a lane where it is true, none where not.
+using SimdMask = Vector<std::int64_t, lanes>;
+using SimdBits = Vector<std::uint64_t, lanes>;
 
 /// Consecutive values of an array in the type V: a vector, or one number.
 template <class V, std::floating_point From>
@@ -79,8 +79,8 @@ inline V load_as(const From* from) {
   }
 }
 template <std::floating_point Real>
-inline LanesOf<Real> load(const Real* from) {
-  return load_as<LanesOf<Real>>(from);
+inline SimdVectorOf<Real> load(const Real* from) {
+  return load_as<SimdVectorOf<Real>>(from);
 }
 template <std::floating_point To, class V>
 inline void store(To* to, const V& values) {
@@ -93,17 +93,17 @@ inline void store(To* to, const V& values) {
 }
 
 /// The first `count` values, 1 <= count < lanes, and their last one in the other lanes.
-inline Lanes load_part(const double* from, int count) {
+inline SimdVector load_partial(const double* from, int count) {
 #ifdef __AVX512F__
   const auto which = static_cast<__mmask8>((1 << count) - 1);
   return _mm512_mask_loadu_pd(_mm512_set1_pd(from[count - 1]), which, from);
 #else
-  Lanes values;
+  SimdVector values;
   for (int k = 0; k < lanes; ++k) values[k] = from[std::min(k, count - 1)];
   return values;
 #endif
 }
-inline void store_part(double* to, Lanes values, int count) {
+inline void store_partial(double* to, SimdVector values, int count) {
 #ifdef __AVX512F__
   _mm512_mask_storeu_pd(to, static_cast<__mmask8>((1 << count) - 1), values);
 #else
@@ -112,37 +112,37 @@ inline void store_part(double* to, Lanes values, int count) {
 }
 
 /// Flags 0 or 1 as a mask, and back.
-inline LanesMask load(const std::uint8_t* from) {
+inline SimdMask load(const std::uint8_t* from) {
 #ifdef __AVX512F__
-  return LanesMask(_mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)))) != 0;
+  return SimdMask(_mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)))) != 0;
 #else
-  LanesMask flags;
+  SimdMask flags;
   for (int k = 0; k < lanes; ++k) flags[k] = from[k];
   return flags != 0;
 #endif
 }
-inline void store(std::uint8_t* to, LanesMask mask) {
+inline void store(std::uint8_t* to, SimdMask mask) {
 #ifdef __AVX512F__
   _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm512_cvtepi64_epi8(reinterpret_cast<__m512i>(mask & 1)));
 #else
   for (int k = 0; k < lanes; ++k) to[k] = mask[k] & 1;
 #endif
 }
-inline LanesMask load_part(const std::uint8_t* from, int count) {
+inline SimdMask load_partial(const std::uint8_t* from, int count) {
   std::uint8_t flags[lanes];
   for (int k = 0; k < lanes; ++k) flags[k] = from[std::min(k, count - 1)];
   return load(flags);
 }
-inline void store_part(std::uint8_t* to, LanesMask mask, int count) {
+inline void store_partial(std::uint8_t* to, SimdMask mask, int count) {
   std::uint8_t flags[lanes];
   store(flags, mask);
   std::copy_n(flags, count, to);
 }
 
-inline Lanes select(LanesMask condition, Lanes yes, Lanes no) {
+inline SimdVector select(SimdMask condition, SimdVector yes, SimdVector no) {
   return condition ? yes : no;
 }
-inline bool any(LanesMask condition) {
+inline bool any(SimdMask condition) {
 #ifdef __AVX512F__
   return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(condition), reinterpret_cast<__m512i>(condition)) !=
          0;
@@ -152,16 +152,16 @@ inline bool any(LanesMask condition) {
   return found != 0;
 #endif
 }
-inline LanesBits bits_of(Lanes a) {
-  return reinterpret_cast<LanesBits>(a);
+inline SimdBits bits_of(SimdVector a) {
+  return reinterpret_cast<SimdBits>(a);
 }
-inline Lanes from_bits(LanesBits bits) {
-  return reinterpret_cast<Lanes>(bits);
+inline SimdVector from_bits(SimdBits bits) {
+  return reinterpret_cast<SimdVector>(bits);
 }
-inline Lanes absolute(Lanes a) {
+inline SimdVector absolute(SimdVector a) {
   return from_bits(bits_of(a) & ~(std::uint64_t{1} << 63));
 }
-inline Lanes copy_sign(Lanes magnitude, Lanes sign) {
+inline SimdVector copy_sign(SimdVector magnitude, SimdVector sign) {
   constexpr std::uint64_t sign_bit = std::uint64_t{1} << 63;
   return from_bits((bits_of(magnitude) & ~sign_bit) | (bits_of(sign) & sign_bit));
 }

@@ -14,7 +14,8 @@ template <class Archive, class T>
 void archive_vector(Archive& archive, std::vector<T>& values, std::size_t length) {
   archive(values);
   if (values.size() != length)
-    throw UserError("the state that was kept has {} values where the case has {}", values.size(), length);
+    throw UserError("the saved state has {} values, this case has {}: it belongs to another case",
+                    values.size(), length);
 }
 
 /// The same with its present length.

@@ -21,8 +21,8 @@
 #include "mesh/reorder.hpp"
 #include "motion/stepper.hpp"
 #include "run/needs.hpp"
-#include "run/parts.hpp"
 #include "run/run.hpp"
+#include "run/subdomains.hpp"
 #include "solid/kernels.hpp"
 #include "statics/prestress.hpp"
 #include "statics/statics.hpp"
@@ -141,10 +141,10 @@ class SlippingPlate {
  private:
   motion::Recorder start(const mesh::Mesh& mesh) {
     record::StaticState tractions;
-    for (const auto n : mesh.lower) tractions.x_m.push_back(mesh.x_m[n]);
-    tractions.p_s_Pa.assign(mesh.lower.size(), 1e6);
-    tractions.t_s_Pa.assign(mesh.lower.size(), 0.7e6);
-    std::fill_n(tractions.t_s_Pa.begin(), mesh.lower.size() / 2, 1.4e6);
+    for (const auto n : mesh.interface_nodes) tractions.x_m.push_back(mesh.x_m[n]);
+    tractions.p_s_Pa.assign(mesh.interface_nodes.size(), 1e6);
+    tractions.t_s_Pa.assign(mesh.interface_nodes.size(), 0.7e6);
+    std::fill_n(tractions.t_s_Pa.begin(), mesh.interface_nodes.size() / 2, 1.4e6);
     const auto state = statics::prestressed(mesh, tractions);
     stepper_.start(state, 0, {tractions.t_s_Pa, tractions.p_s_Pa});
     return {state, interface::VelocityWeakening{}.mu_s, 1};
@@ -165,9 +165,9 @@ Rate measure_path(const std::string& path, int columns, const motion::TimeSteppi
   SlippingPlate plate(make_mesh(), time, execution);
   auto& stepper = plate.stepper();
   constexpr double updates_per_call = 2e7;
-  const auto least_steps = std::int64_t{2} * execution.threads * stepper.steps_per_sweep();
+  const auto min_steps = std::int64_t{2} * execution.threads * stepper.steps_per_sweep();
   const auto steps =
-      std::max(least_steps, static_cast<std::int64_t>(updates_per_call / stepper.node_updates_per_step()));
+      std::max(min_steps, static_cast<std::int64_t>(updates_per_call / stepper.node_updates_per_step()));
   const double updates = static_cast<double>(steps) * stepper.node_updates_per_step();
   Rate result{path, columns, columns / 2, execution.threads, stepper.steps_per_sweep()};
   result.node_updates_per_s = rate(updates, [&] { stepper.advance(plate.recorder(), steps, {}); });
@@ -232,10 +232,10 @@ StaticsRun measure_statics(int columns, statics::StaticSolver solver, Processes*
   const double mu_s = interface::VelocityWeakening {
   }.mu_s;
   const run::SharedStatics helpers(processes);
-  statics::KeptDisplacements kept;
+  statics::DistributedFields kept;
   const solid::Material material;
   const statics::Statics statics({mesh, material}, std::nullopt, loading,
-                                 std::vector<double>(mesh.lower.size(), mu_s), "friction.mu_s",
+                                 std::vector<double>(mesh.interface_nodes.size(), mu_s), "friction.mu_s",
                                  [] { return true; }, {processes, processes != nullptr ? &kept : nullptr});
   StaticsRun result{columns, mesh.grid.rows, std::string(statics::name_of(chosen)), n_unknowns};
   result.critical_shear_m = statics.shear_to(1).shear_m;

@@ -30,7 +30,7 @@ struct Rate {
   /// What bounds it: the bandwidth for one step per sweep of a plate in memory, otherwise the stencil alone
   /// on rows in the nearest cache.
   double bound_per_s = 0;
-  /// Growth of the process by this plate over its nodes; 0 where too small to be told.
+  /// Growth of the process by this plate over its nodes; 0 where too small to measure.
   double bytes_per_node = 0;
 };
 
@@ -64,7 +64,7 @@ struct Results {
   std::vector<PaperRun> paper_runs;
 };
 
-/// Measures all of it; medians of 5. `progress` is told what comes next.
+/// Measures all of it; medians of 5. `progress` receives the name of what comes next.
 /// @throws UserError where the memory does not suffice.
 Results measure(const Options& options, const std::function<void(const std::string&)>& progress);
 

@@ -20,7 +20,7 @@
 #include "cli/output.hpp"
 #include "cli/print.hpp"
 #include "fronts/fit.hpp"
-#include "run/parts.hpp"
+#include "run/subdomains.hpp"
 #include "statics/petsc_equations.hpp"
 #include "statics/plate_solver.hpp"
 

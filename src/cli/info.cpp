@@ -26,7 +26,7 @@ std::string fastest_wavelength(const stability::WellPosedness& w) {
                      longest ? ", the longest on the interface" : "");
 }
 
-/// Lines of what is told, each a name and a value.
+/// Lines of output, each a name and a value.
 struct Listing {
   std::string text;
   void add(const char* what, const std::string& value) { text += fmt::format("{:<32}{}\n", what, value); }
@@ -112,7 +112,7 @@ void add_lengths(const run::RuptureOutlook& rupture, Listing& list) {
 
 void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {
   if (rupture.nominal) {
-    list.add("rupture", "at t = mu_s p under the nominal pressure; `run` tells S along the interface");
+    list.add("rupture", "at t = mu_s p under the nominal pressure; `run` gives S along the interface");
   } else {
     list.add("strength excess S", text_of(rupture.of_nodes.S) + " (least, median, largest)");
     list.add("seismic ratio 1/(1 + S)", text_of(rupture.of_nodes.drop_ratio));
@@ -136,10 +136,10 @@ void add_stability_of_sliding(const run::Info& info, Listing& list) {
     list.add("  with the friction at", fmt::format("x = {:.4g} m, the worst node", info.well_posedness_x_m));
 }
 
-std::string columns_text(const motion::Division& division) {
+std::string columns_text(const motion::Partition& partition) {
   int least = std::numeric_limits<int>::max(), most = 0;
-  for (int part = 0; part < division.n_parts(); ++part) {
-    const auto own = division.own(part);
+  for (int part = 0; part < partition.n_subdomains(); ++part) {
+    const auto own = partition.own(part);
     least = std::min(least, own.end - own.begin);
     most = std::max(most, own.end - own.begin);
   }
@@ -147,17 +147,17 @@ std::string columns_text(const motion::Division& division) {
 }
 
 void add_shared(const run::Info::Shared& shared, const run::Sharing& sharing, Listing& list) {
-  const auto& division = shared.division;
+  const auto& partition = shared.partition;
   list.add("shared by",
            fmt::format("{} processes on {} processors, {:.3g} us and {:.3g} GB/s between them",
                        sharing.n_processes, sharing.n_processors, sharing.network.latency_s * 1e6,
                        sharing.network.bandwidth_bytes_per_s * 1e-9));
   list.add("  columns of nodes of each",
-           fmt::format("{}, and {} beside them on either side", columns_text(division),
-                       division.n_parts() > 1 ? division.halo : 0));
+           fmt::format("{}, and {} beside them on either side", columns_text(partition),
+                       partition.n_subdomains() > 1 ? partition.halo : 0));
   auto memory = fmt::format("{:.3g} GB of the leader", shared.leader_memory_bytes * 1e-9);
-  if (division.n_parts() > 1) {
-    list.add("  exchange every", fmt::format("{} steps", division.steps_per_exchange));
+  if (partition.n_subdomains() > 1) {
+    list.add("  exchange every", fmt::format("{} steps", partition.steps_per_exchange));
     list.add("  bytes sent per step",
              fmt::format("{:.4g} by the process that sends most", shared.bytes_per_step));
     memory += fmt::format(", {:.3g} GB of each other process", shared.memory_bytes * 1e-9);
@@ -234,7 +234,7 @@ void add_info(CLI::App& app) {
       ->check(CLI::Range(1, 10'000'000));
   command
       ->add_option("--latency-s", shared->latency_s,
-                   "Between processes, as bench --network tells it; by default that of shared memory")
+                   "Between processes, as bench --network measures it; by default that of shared memory")
       ->check(positive())
       ->check(finite())
       ->type_name("S");

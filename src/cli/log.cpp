@@ -13,7 +13,7 @@
 namespace slipfront::cli {
 namespace {
 
-constexpr std::chrono::milliseconds least_interval{100};
+constexpr std::chrono::milliseconds min_interval{100};
 /// Nobody need be there to see it.
 void show(const std::string& text) {
   std::fputs(text.c_str(), stderr);
@@ -46,7 +46,7 @@ Progress::Progress(std::string label, std::int64_t total, bool quiet, std::strin
       drawn_(start_) {}
 
 Progress::~Progress() {
-  // Left by an exception: its message starts on a line of its own.
+  // Left by an exception: its message starts on a separate line.
   if (line_open_) std::fputc('\n', stderr);
 }
 
@@ -65,7 +65,7 @@ void Progress::update(std::int64_t step) {
   const std::int64_t tenth = 10 * step_ / total_;
   if (!terminal_ && (tenth <= tenth_ || tenth >= 10)) return;
   const Clock::time_point now = now_();
-  if (now - drawn_ < least_interval) return;
+  if (now - drawn_ < min_interval) return;
   drawn_ = now;
   tenth_ = tenth;
   show(fmt::format("{}{}{}", terminal_ ? clear_line : "", state(now), terminal_ ? "" : "\n"));

@@ -24,7 +24,7 @@ class Progress {
 
   /// `step` steps are done. Cheap enough to be called every step.
   void update(std::int64_t step);
-  /// Writes a line of its own, on a terminal above that of the progress.
+  /// Writes a separate line, on a terminal above that of the progress.
   void note(const std::string& line);
   /// The work is done, perhaps before the last step; says how long it took.
   void finish();

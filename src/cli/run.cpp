@@ -124,7 +124,7 @@ run::SessionHooks hooks(bool quiet) {
 run::Finished run_or_go_on(const CaseArguments& arguments, const RunArguments& options,
                            results::ResultFolder& folder, const std::optional<input::Case>& config) {
   const auto hooks = cli::hooks(options.quiet);
-  if (options.restart) return run::go_on(folder, config ? &*config : nullptr, options.session, hooks);
+  if (options.restart) return run::resume(folder, config ? &*config : nullptr, options.session, hooks);
   try {
     return run::run_into(folder, *config, options.session, hooks);
   } catch (const UserError& error) {
@@ -177,7 +177,7 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
     print_summary(result, initial, folder.dir().string());
   } catch (const WriteError& error) {
     if (!folder.has_unfinished()) throw;
-    throw WriteError("{}; {}", error.what(), run::how_to_go_on(folder));
+    throw WriteError("{}; {}", error.what(), run::how_to_resume(folder));
   }
 }
 

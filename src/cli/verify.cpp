@@ -84,9 +84,8 @@ void run_verifications(const VerifyArguments& arguments) {
     }
     std::fflush(stdout);
     if (interrupt_wanted())
-      throw Interrupted(
-          fmt::format("interrupted; what was solved is in {}: give the same command again to go on",
-                      folder->unfinished().string()));
+      throw Interrupted(fmt::format("interrupted; solved problems are in {}: repeat the command to continue",
+                                    folder->unfinished().string()));
   }
   if (folder) folder->publish(true);
   if (n_failed > 0) throw VerificationFailed(fmt::format("{} of {} checks do not hold", n_failed, n_checks));

@@ -85,7 +85,8 @@ std::string sha256_of_file(const std::filesystem::path& file) {
     throw UserError("{}: cannot be read ({}); check that it is there", file.string(), std::strerror(errno));
   };
   if (!opened.valid()) refuse();
-  if (!is_file(file)) throw UserError("{}: is no file; put back what was there", file.string());
+  if (!is_file(file))
+    throw UserError("{}: is not a regular file; restore it from the original results", file.string());
   Sha256 sum;
   std::vector<std::byte> piece(bytes_at_once);
   for (;;) {

@@ -16,7 +16,7 @@ namespace slipfront::files {
 namespace {
 
 /// Largest piece handed to the system at once; Linux takes no more than 2 GiB.
-constexpr std::size_t most_bytes_at_once = std::size_t{1} << 30U;
+constexpr std::size_t max_bytes_at_once = std::size_t{1} << 30U;
 
 [[noreturn]] void throw_write(const std::filesystem::path& file, const char* what) {
   const int error = errno;
@@ -33,7 +33,7 @@ Descriptor open(const std::filesystem::path& path, int flags) {
 template <class F>
 void write_all(const std::filesystem::path& path, std::span<const std::byte> bytes, F&& write) {
   while (!bytes.empty()) {
-    const ssize_t n = write(bytes.data(), std::min(bytes.size(), most_bytes_at_once));
+    const ssize_t n = write(bytes.data(), std::min(bytes.size(), max_bytes_at_once));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) {
       if (n == 0) errno = ENOSPC;
@@ -66,17 +66,17 @@ bool Descriptor::close() {
 
 OutputFile OutputFile::create(const std::filesystem::path& path) {
   Descriptor file = open(path, O_WRONLY | O_CREAT | O_EXCL);
-  if (!file.valid()) throw_write(path, "made");
+  if (!file.valid()) throw_write(path, "created");
   return {path, std::move(file), 0};
 }
 
-OutputFile OutputFile::go_on(const std::filesystem::path& path, std::uint64_t length) {
+OutputFile OutputFile::resume(const std::filesystem::path& path, std::uint64_t length) {
   Descriptor file = open(path, O_WRONLY);
   struct stat now {};
-  if (!file.valid() && errno == ENOENT) throw UserError("{}: is missing; begin the run again", path.string());
+  if (!file.valid() && errno == ENOENT) throw UserError("{}: is missing; start the run again", path.string());
   if (!file.valid() || ::fstat(file.get(), &now) != 0) throw_write(path, "continued");
   if (!S_ISREG(now.st_mode) || static_cast<std::uint64_t>(now.st_size) < length)
-    throw UserError("{}: is shorter than when the run was kept; begin the run again", path.string());
+    throw UserError("{}: is shorter than at the last checkpoint; start the run again", path.string());
   if (::ftruncate(file.get(), static_cast<off_t>(length)) != 0 ||
       ::lseek(file.get(), static_cast<off_t>(length), SEEK_SET) < 0)
     throw_write(path, "continued");
@@ -160,7 +160,7 @@ void remove_file(const std::filesystem::path& file) {
 }
 
 void make_folder(const std::filesystem::path& dir) {
-  if (::mkdir(dir.c_str(), 0777) != 0) throw_write(dir, "made");
+  if (::mkdir(dir.c_str(), 0777) != 0) throw_write(dir, "created");
 }
 
 bool is_there(const std::filesystem::path& path) {

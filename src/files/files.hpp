@@ -38,7 +38,7 @@ class OutputFile {
   static OutputFile create(const std::filesystem::path& path);
   /// Goes on at `length` in a file of this program's own; what it holds beyond is cut off.
   /// @throws UserError where it is missing or shorter
-  static OutputFile go_on(const std::filesystem::path& path, std::uint64_t length);
+  static OutputFile resume(const std::filesystem::path& path, std::uint64_t length);
 
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }

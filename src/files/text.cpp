@@ -46,7 +46,7 @@ std::size_t bytes_of_character(std::string_view text) {
 }  // namespace
 
 std::string read_text(const std::filesystem::path& file, const Message& shown, std::string_view what,
-                      std::size_t most_bytes) {
+                      std::size_t max_bytes) {
   const Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (!opened.valid()) throw_unreadable(shown, what);
   std::string text;
@@ -57,9 +57,9 @@ std::string read_text(const std::filesystem::path& file, const Message& shown, s
     if (count < 0) throw_unreadable(shown, what);
     if (count == 0) break;
     text.append(part.data(), static_cast<std::size_t>(count));
-    if (text.size() > most_bytes)
+    if (text.size() > max_bytes)
       throw UserError("{}: is larger than {} MB; check that it is the {} that is meant", shown,
-                      most_bytes >> 20U, what);
+                      max_bytes >> 20U, what);
   }
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());

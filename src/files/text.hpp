@@ -13,10 +13,10 @@ namespace slipfront::files {
 /// Reads a file from its beginning to its end, once: it may be a pipe. A byte order mark is left out.
 /// @param shown       the file in messages
 /// @param what        it is, for messages: "case file"
-/// @param most_bytes  larger files are refused
+/// @param max_bytes  larger files are refused
 /// @throws UserError
 std::string read_text(const std::filesystem::path& file, const Message& shown, std::string_view what,
-                      std::size_t most_bytes);
+                      std::size_t max_bytes);
 
 /// The line, from 1, of the first byte that is no UTF-8; 0 where all are.
 int line_outside_utf8(std::string_view text);

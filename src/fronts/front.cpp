@@ -148,7 +148,7 @@ bool is_any_driven(const record::SlipRecord& record, const Path& path, const Poi
 }
 
 /// Time in which information passes from one point to the other at the earliest.
-double least_time_s(const record::SlipRecord& record, const Path& path, const Points& points) {
+double min_time_s(const record::SlipRecord& record, const Path& path, const Points& points) {
   const int n_elements = std::abs(path.nodes[points.last] - path.nodes[points.first]);
   return std::max(n_elements - 1, 1) * record.resolution_s;
 }
@@ -169,7 +169,7 @@ void set_speed(FrontPoint& point, const record::SlipRecord& record, const Path& 
   }
   const double time_s = time_at(tip, to) - time_at(tip, from);
   const bool is_resolved =
-      tip.time_s[points.last] - tip.time_s[points.first] >= least_time_s(record, path, points);
+      tip.time_s[points.last] - tip.time_s[points.first] >= min_time_s(record, path, points);
   point.speed_kind = is_resolved && time_s > 0.0 ? SpeedKind::front : SpeedKind::simultaneous;
   if (point.speed_kind == SpeedKind::front) point.v_tip_m_per_s = l_star_m / time_s;
 }

@@ -18,7 +18,7 @@ namespace {
 
 /// Levels that tables and lists may be nested; keys need two. The parser calls itself for each of them, and
 /// some thousands exhaust the stack.
-constexpr int most_levels = 32;
+constexpr int max_levels = 32;
 
 /// Where the string that begins at `i` ends, one past its last quote. A string that is not closed ends with
 /// its line, or with the text; the parser finds it.
@@ -59,7 +59,7 @@ std::optional<std::ptrdiff_t> line_nested_too_deeply(std::string_view text) {
       ++dots;
     else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == '{')
       dots = 0;
-    if (brackets > most_levels || dots >= most_levels) return 1 + std::ranges::count(text.substr(0, i), '\n');
+    if (brackets > max_levels || dots >= max_levels) return 1 + std::ranges::count(text.substr(0, i), '\n');
     ++i;
   }
   return std::nullopt;
@@ -134,7 +134,7 @@ Document parse_document(const std::string& text, const std::string& name) {
     throw UserError("{}:{}: holds bytes that are no utf-8; save the file in that encoding", name, line);
   if (const auto line = line_nested_too_deeply(text))
     throw UserError("{}:{}: is nested more than {} levels deep; keys are of the form table.key = value", name,
-                    *line, most_levels);
+                    *line, max_levels);
   Document document;
   try {
     flatten(toml::parse(text, name), "", name, document);
@@ -152,7 +152,7 @@ Document parse_document(const std::string& text, const std::string& name) {
 
 Value parse_value(const std::string& text) {
   if (line_nested_too_deeply(text))
-    return Unsupported{fmt::format("nested more than {} levels deep", most_levels)};
+    return Unsupported{fmt::format("nested more than {} levels deep", max_levels)};
   try {
     const toml::table table = toml::parse("value = " + text);
     if (table.size() == 1) return to_value(table.begin()->second);

@@ -48,11 +48,11 @@ double value_in(const Fields& fields, std::size_t column, const Columns& columns
 }  // namespace
 
 Experiment read_experiment(const std::filesystem::path& file, double c_L_m_per_s) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 26U;
+  constexpr std::size_t max_bytes = std::size_t{1} << 26U;
   const std::string name = files::one_line(file.native());
   Experiment experiment;
   Columns columns;
-  const std::string text = files::read_text(file, name, "table", most_bytes);
+  const std::string text = files::read_text(file, name, "table", max_bytes);
   files::for_each_row(text, [&](int line, const Fields& fields) {
     const std::string at = fmt::format("{}:{}", name, line);
     if (columns.header.empty()) {

@@ -150,8 +150,8 @@ void require_allowed(const FrictionAlongX& along_x, const std::vector<double>& x
 }  // namespace
 
 FrictionTable read_friction_table(const std::filesystem::path& file, const FrictionLaw& law) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 30U;
-  FrictionTable table{files::read_text(file, in_friction_file(file), "table", most_bytes), {}, {}, {}};
+  constexpr std::size_t max_bytes = std::size_t{1} << 30U;
+  FrictionTable table{files::read_text(file, in_friction_file(file), "table", max_bytes), {}, {}, {}};
   files::for_each_row(table.text, [&](int line, const std::vector<std::string_view>& fields) {
     const Message at("{}:{}", in_friction_file(file), line);
     if (!table.keys.empty()) return append_row(fields, law, at, table);

@@ -40,8 +40,8 @@ void append(const Row& row, const Message& at, record::StaticState& rows) {
   require_ascending(x_m, rows.x_m, at);
   if (p_Pa <= 0)
     throw UserError("{}: p_Pa is {}; it must be greater than 0, the interface starts in contact", at, p_Pa);
-  const double least_Pa = magnitudes_of("Pa").least;
-  if (p_Pa < least_Pa) throw UserError("{}: p_Pa is {}; it must be at least {:g}", at, p_Pa, least_Pa);
+  const double min_Pa = magnitudes_of("Pa").least;
+  if (p_Pa < min_Pa) throw UserError("{}: p_Pa is {}; it must be at least {:g}", at, p_Pa, min_Pa);
   rows.x_m.push_back(x_m);
   rows.t_s_Pa.push_back(t_Pa);
   rows.p_s_Pa.push_back(p_Pa);
@@ -50,8 +50,8 @@ void append(const Row& row, const Message& at, record::StaticState& rows) {
 }  // namespace
 
 PrestressTable read_prestress(const std::filesystem::path& file) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 30U;
-  PrestressTable table{files::read_text(file, in_prestress_file(file), "table", most_bytes), {}};
+  constexpr std::size_t max_bytes = std::size_t{1} << 30U;
+  PrestressTable table{files::read_text(file, in_prestress_file(file), "table", max_bytes), {}};
   bool have_header = false;
   files::for_each_row(table.text, [&](int line, const std::vector<std::string_view>& fields) {
     const Message at("{}:{}", in_prestress_file(file), line);

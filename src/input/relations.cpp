@@ -42,14 +42,14 @@ void check_friction(const Case& config) {
 
 /// How many nodes processes can number that have some of them each follows when they are known.
 void check_element_size(const Case& config) {
-  constexpr double most_nodes = std::numeric_limits<mesh::Node>::max();
+  constexpr double max_nodes = std::numeric_limits<mesh::Node>::max();
   const auto& plate = config.plate;
   const Key element_size("plate.element_size_m");
   const double h = plate.element_size_m, columns = plate.width_m / h + 1, rows = plate.height_m / h + 1;
   const bool in_parts = can_be_held_in_parts(config);
-  if ((in_parts ? std::max(columns, rows) : columns * rows) > most_nodes)
+  if ((in_parts ? std::max(columns, rows) : columns * rows) > max_nodes)
     throw UserError("{} is {} m; that makes more than {:.3g} nodes{}, choose a larger one{}", element_size, h,
-                    most_nodes, in_parts ? " in a row or a column" : "",
+                    max_nodes, in_parts ? " in a row or a column" : "",
                     is_tilted(config) ? "; under prescribed tractions several processes can share more" : "")
         .about("plate.width_m", "plate.height_m");
   const double shorter_m = std::min(plate.width_m, plate.height_m);
@@ -76,7 +76,7 @@ void check_prestress(const Case& config, const Document& document) {
                     Key("plate.corner"), method);
   if (config.event == EventKind::spontaneous)
     throw UserError(
-        "{} = spontaneous raises the shear past the critical one, which {} = prestress does not know; choose "
+        "{} = spontaneous raises the shear past the critical one, which {} = prestress does not have; choose "
         "nucleation, left, right or none",
         kind, method);
   if (interface::is_at_edge(config.event) && config.plate.sides == Sides::periodic)
@@ -119,14 +119,14 @@ void check_solver(const Case& config) {
   const Key solver("loading.solver");
   const auto& plate = config.plate;
   if (plate.coarsenings > 0)
-    throw UserError("{} = iterative knows no graded plates; choose auto or direct, or {} = 0", solver,
+    throw UserError("{} = iterative does not support graded meshes; choose auto or direct, or {} = 0", solver,
                     Key("plate.coarsenings"));
   const bool has_base = has_base_body(config);
   if (has_base && config.base.plate.coarsenings > 0)
-    throw UserError("{} = iterative knows no graded base; choose auto or direct, or {} = 0", solver,
+    throw UserError("{} = iterative does not support a graded base; choose auto or direct, or {} = 0", solver,
                     Key("base.coarsenings"));
   const double height_m = plate.height_m + (has_base ? config.base.plate.height_m : 0);
-  if (is_tilted(config) && height_m > 2 * statics::most_iterative_slenderness * plate.width_m)
+  if (is_tilted(config) && height_m > 2 * statics::max_iterative_slenderness * plate.width_m)
     throw UserError(
         "{} = iterative does not converge on a plate so much higher than wide; choose auto or direct", solver)
         .about("plate.height_m", "plate.width_m");
@@ -234,9 +234,11 @@ void check_probes(const Case& config) {
   const auto& [x_m, y_m, names, interval_s] = config.probes;
   const Key x("probes.x_m"), y("probes.y_m"), name("probes.names");
   if (x_m.size() != y_m.size())
-    throw UserError("{} has {} places and {} has {}; write as many of both", x, x_m.size(), y, y_m.size());
+    throw UserError("{} has {} places and {} has {}; give both the same number of values", x, x_m.size(), y,
+                    y_m.size());
   if (!names.empty() && names.size() != x_m.size())
-    throw UserError("{} has {} names for {} places; write as many, or none", name, names.size(), x_m.size());
+    throw UserError("{} has {} names for {} places; give one name per place, or none", name, names.size(),
+                    x_m.size());
   for (auto at = names.begin(); at != names.end(); ++at)
     if (at->empty() || std::find(names.begin(), at, *at) != at)
       throw UserError("{} has the name \"{}\" {}; give each place a name of its own", name, *at,
@@ -277,7 +279,7 @@ void check_magnitudes(const Case& config) {
 /// Refuses more steps than can be taken or counted. The step is estimated from the time in which a wave
 /// crosses an element.
 void check_duration(const Case& config) {
-  constexpr double most_steps = 1e12;
+  constexpr double max_steps = 1e12;
   const auto stable_step_s = [&](const solid::Material& material) {
     const double crossing_s = config.plate.element_size_m / solid::longitudinal_speed_m_per_s(material);
     return solid::stable_step_s(2 / crossing_s, material.stiffness_damping_s);
@@ -286,9 +288,9 @@ void check_duration(const Case& config) {
   if (has_base_body(config))
     step_s = std::min(step_s, config.time.step_factor * stable_step_s(base_material(config)));
   const double steps = config.time.end_s / step_s;
-  if (steps > most_steps)
+  if (steps > max_steps)
     throw UserError("{} = {:g} s takes about {:.3g} steps of {:.3g} s, more than {:g}; choose an earlier end",
-                    Key("time.end_s"), config.time.end_s, steps, step_s, most_steps);
+                    Key("time.end_s"), config.time.end_s, steps, step_s, max_steps);
 }
 
 }  // namespace

@@ -471,8 +471,8 @@ Case parse_case(const std::string& text, const std::string& name, const std::vec
 
 CaseFile::CaseFile(const std::filesystem::path& file, const std::vector<Override>& overrides)
     : name_(file.empty() ? "CASE" : files::one_line(file.native())) {
-  constexpr std::size_t most_bytes = std::size_t{64} << 20U;
-  document_ = parse_document(files::read_text(file, name_, "case file", most_bytes), name_);
+  constexpr std::size_t max_bytes = std::size_t{64} << 20U;
+  document_ = parse_document(files::read_text(file, name_, "case file", max_bytes), name_);
   require_a_key();
   read(file.parent_path(), overrides);
 }

@@ -26,7 +26,7 @@ using ArrayLaw = std::function<void(std::span<const double> speed_m_per_s, std::
 /// A law of the registry: its name in the case file, its parameters and its lists of numbers.
 class FrictionLaw {
  public:
-  static constexpr std::size_t most_parameters = 4;
+  static constexpr std::size_t max_parameters = 4;
   using Lists = std::vector<std::vector<double>>;
 
   /// The registry's first law with its defaults.
@@ -35,7 +35,7 @@ class FrictionLaw {
   template <class Law>
   requires requires { Law::parameters(); }
   FrictionLaw(const Law& law) : name_(Law::name) {
-    static_assert(Law::parameters().size() <= most_parameters);
+    static_assert(Law::parameters().size() <= max_parameters);
     auto value = values_.begin();
     for (const auto& p : Law::parameters()) *value++ = law.*p.member;
     if constexpr (requires { Law::lists(); }) {
@@ -77,8 +77,8 @@ class FrictionLaw {
 
  private:
   std::string_view name_;
-  std::array<double, most_parameters> values_{};  ///< in the order of the law's parameters
-  std::shared_ptr<const Lists> lists_;            ///< in the order of the law's lists; null where it has none
+  std::array<double, max_parameters> values_{};  ///< in the order of the law's parameters
+  std::shared_ptr<const Lists> lists_;           ///< in the order of the law's lists; null where it has none
   std::shared_ptr<const ArrayLaw> function_;
 };
 

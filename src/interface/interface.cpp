@@ -21,7 +21,7 @@ Interface::Interface(std::size_t n)
       slip_rate_m_per_s(n),
       t_Pa(n),
       p_Pa(n),
-      demand_Pa(n),
+      trial_traction_Pa(n),
       strength_Pa(n),
       slipping(n),
       slip_m(n),
@@ -51,17 +51,17 @@ struct SomeLanes {
   int count;
   template <class T>
   auto read(const std::vector<T>& from) const {
-    return load_part(from.data() + begin, count);
+    return load_partial(from.data() + begin, count);
   }
   template <class T, class V>
   void write(std::vector<T>& to, V values) const {
-    store_part(to.data() + begin, values, count);
+    store_partial(to.data() + begin, values, count);
   }
 };
 
 template <ContactAlgorithm algorithm, bool remembers, class Place>
-Node<Lanes> read_nodes(const Interface& s, Place at) {
-  Node<Lanes> n{};
+Node<SimdVector> read_nodes(const Interface& s, Place at) {
+  Node<SimdVector> n{};
   n.initial_gap_m = at.read(s.initial_gap_m);
   n.mass_per_length_kg_m2 = at.read(s.mass_per_length_kg_m2);
   n.tangential_mass_ratio = at.read(s.tangential_mass_ratio);
@@ -81,13 +81,13 @@ Node<Lanes> read_nodes(const Interface& s, Place at) {
 }
 
 template <ContactAlgorithm algorithm, bool remembers, class Place>
-void write_nodes(const Node<Lanes>& n, Interface& s, Place at) {
+void write_nodes(const Node<SimdVector>& n, Interface& s, Place at) {
   at.write(s.v_x_m_per_s, n.v_x_m_per_s);
   at.write(s.v_y_m_per_s, n.v_y_m_per_s);
   at.write(s.slip_rate_m_per_s, n.slip_rate_m_per_s);
   at.write(s.t_Pa, n.t_Pa);
   at.write(s.p_Pa, n.p_Pa);
-  at.write(s.demand_Pa, n.demand_Pa);
+  at.write(s.trial_traction_Pa, n.trial_traction_Pa);
   at.write(s.strength_Pa, n.strength_Pa);
   at.write(s.slipping, n.slipping);
   at.write(s.slip_m, n.slip_m);
@@ -107,7 +107,7 @@ template <class Law>
 struct RegistryLaw {
   static constexpr SlipMemory memory = Law::memory;
   const NodeLaws* of_nodes;  ///< null where all have the same
-  ConstantsOf<Law, Lanes> constants;
+  ConstantsOf<Law, SimdVector> constants;
   void go_to(std::size_t node) {
     if (of_nodes) constants = of_nodes->constants<Law>(node / lanes);
   }
@@ -126,7 +126,7 @@ struct AskedInLanes {
   Answers* answers;
   std::size_t node = 0;
   mutable std::size_t calls = 0;  ///< of this block so far
-  Lanes operator()(Lanes speed_m_per_s, Lanes slip_m) const {
+  SimdVector operator()(SimdVector speed_m_per_s, SimdVector slip_m) const {
     const std::size_t k = calls++;
     if (k < answers->mu.size()) return load(answers->mu[k].data() + node);
     if (k == answers->mu.size()) {
@@ -134,13 +134,13 @@ struct AskedInLanes {
       store(answers->slip_m.data() + node, slip_m);
       answers->asked = true;
     }
-    return Lanes{};
+    return SimdVector{};
   }
 };
 
 struct LawOverArrays {
   static constexpr SlipMemory memory = SlipMemory::lasting;  // the strength at rest is asked for as well
-  LawConstants<AskedInLanes, Lanes> constants;
+  LawConstants<AskedInLanes, SimdVector> constants;
   void go_to(std::size_t node) { constants.mu = {constants.mu.answers, node}; }
 };
 
@@ -149,7 +149,7 @@ struct LawOverArrays {
 template <ContactAlgorithm algorithm, class Law, class Form>
 [[gnu::flatten, gnu::noinline]] bool update(Law law, const Form form, double dt_s, Interface& s) {
   constexpr bool remembers = Form::remembers;
-  LanesMask changed{};
+  SimdMask changed{};
   const auto update_at = [&](auto at) {
     auto nodes = read_nodes<algorithm, remembers>(s, at);
     law.go_to(at.begin);
@@ -168,7 +168,7 @@ template <ContactAlgorithm algorithm, class Form>
 bool update_by(const ArrayLaw& law, double mu_k, const Form& form, double dt_s, Interface& state) {
   const std::size_t padded = (state.size() + lanes - 1) / lanes * lanes;
   Answers answers;
-  const LawOverArrays asking{{{&answers}, Lanes{} + mu_k, Lanes{} + mu_k}};
+  const LawOverArrays asking{{{&answers}, SimdVector{} + mu_k, SimdVector{} + mu_k}};
   while (true) {
     answers.asked = false;
     answers.speed_m_per_s.assign(padded, 0);

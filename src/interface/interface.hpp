@@ -53,7 +53,7 @@ struct Interface {
   // The result of the contact update.
   std::vector<double> slip_rate_m_per_s;  ///< last half-step velocity along x; 0 where the node sticks
   std::vector<double> t_Pa, p_Pa;
-  std::vector<double> demand_Pa;  ///< |t| that would stop the node
+  std::vector<double> trial_traction_Pa;  ///< |t| that would stop the node
   /// Strength in the last update; of a node that begins to slip the one that it has overcome, of a node that
   /// sticks the one at rest, of an open node 0.
   std::vector<double> strength_Pa;
@@ -72,8 +72,9 @@ struct Interface {
   /// All that changes.
   template <class Archive>
   void serialize(Archive& archive) {
-    for (auto* values : {&intact, &v_x_m_per_s, &v_y_m_per_s, &u_y_m, &slip_rate_m_per_s, &t_Pa, &p_Pa,
-                         &demand_Pa, &strength_Pa, &slip_m, &relaxed_Pa, &target_Pa, &acceleration_m_per_s2})
+    for (auto* values :
+         {&intact, &v_x_m_per_s, &v_y_m_per_s, &u_y_m, &slip_rate_m_per_s, &t_Pa, &p_Pa, &trial_traction_Pa,
+          &strength_Pa, &slip_m, &relaxed_Pa, &target_Pa, &acceleration_m_per_s2})
       archive_vector(archive, *values);
     archive_vector(archive, slipping);
     archive_vector(archive, locked);

@@ -14,7 +14,7 @@ template <class V>
 struct Node {
   V initial_gap_m, mass_per_length_kg_m2, tangential_mass_ratio, intact;
   V v_x_m_per_s, v_y_m_per_s, u_y_m;
-  V slip_rate_m_per_s, t_Pa, p_Pa, demand_Pa, strength_Pa;
+  V slip_rate_m_per_s, t_Pa, p_Pa, trial_traction_Pa, strength_Pa;
   Mask<V> slipping;
   V slip_m;
   Memory<V> memory;
@@ -76,15 +76,15 @@ inline Mask<V> update_node(const Law& law, const Form& form, double dt_s, Node<V
   const V impedance_x = impedance * n.tangential_mass_ratio;
   const V v_trial = n.v_x_m_per_s;
   const V t_stop = v_trial * impedance_x;
-  n.demand_Pa = absolute(t_stop);
-  V rate = last_rate, direction = t_stop, along = n.demand_Pa;
+  n.trial_traction_Pa = absolute(t_stop);
+  V rate = last_rate, direction = t_stop, along = n.trial_traction_Pa;
   if constexpr (predicts) {
     // Newmark's predictor v + a dt of the velocity at the step's beginning.
     rate = last_rate + 0.5 * dt_s * n.acceleration_m_per_s2;
     // Friction opposes the motion: that of the trial, or, by the predictor, that of a node under way.
     const Mask<V> under_way = rate != 0 && p > 0;
     direction = select(under_way, rate, t_stop);
-    along = select(under_way, copy_sign(V{} + 1, rate) * t_stop, n.demand_Pa);
+    along = select(under_way, copy_sign(V{} + 1, rate) * t_stop, n.trial_traction_Pa);
   }
   V strength{}, first_strength{}, t{}, v_x{};
   Mask<V> sticks{};

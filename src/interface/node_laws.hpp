@@ -34,11 +34,11 @@ auto values_of(const Constants& constants) {
 }
 /// The same law in all lanes.
 template <class Law>
-ConstantsOf<Law, Lanes> in_lanes(const Law& law) {
+ConstantsOf<Law, SimdVector> in_lanes(const Law& law) {
   const auto values = values_of<double>(constants_of(law));
-  std::array<Lanes, values.size()> in_lanes;
-  for (std::size_t k = 0; k < values.size(); ++k) in_lanes[k] = Lanes{} + values[k];
-  return std::bit_cast<ConstantsOf<Law, Lanes>>(in_lanes);
+  std::array<SimdVector, values.size()> in_lanes;
+  for (std::size_t k = 0; k < values.size(); ++k) in_lanes[k] = SimdVector{} + values[k];
+  return std::bit_cast<ConstantsOf<Law, SimdVector>>(in_lanes);
 }
 
 /// A friction law per node, all of one type, and their constants as the loop over nodes takes them: those of
@@ -55,11 +55,11 @@ class NodeLaws {
 
   /// The constants of the nodes from lanes * block on, those of the last node in lanes left over.
   template <class Law>
-  ConstantsOf<Law, Lanes> constants(std::size_t block) const {
-    std::array<Lanes, sizeof(ConstantsOf<Law, double>) / sizeof(double)> values;
+  ConstantsOf<Law, SimdVector> constants(std::size_t block) const {
+    std::array<SimdVector, sizeof(ConstantsOf<Law, double>) / sizeof(double)> values;
     const double* from = constants_.data() + block * values.size() * lanes;
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = load(from + k * lanes);
-    return std::bit_cast<ConstantsOf<Law, Lanes>>(values);
+    return std::bit_cast<ConstantsOf<Law, SimdVector>>(values);
   }
 
  private:

@@ -30,16 +30,17 @@ std::vector<bool> orphans(const Mesh& mesh) {
 }
 
 std::vector<double> tributary_lengths_m(const Mesh& mesh) {
-  std::vector<double> length_m(mesh.lower.size(), 0.0);
-  for (std::size_t i = 0; i + 1 < mesh.lower.size(); ++i) {
-    const Node a = mesh.lower[i];
-    const Node b = mesh.lower[i + 1];
+  std::vector<double> length_m(mesh.interface_nodes.size(), 0.0);
+  for (std::size_t i = 0; i + 1 < mesh.interface_nodes.size(); ++i) {
+    const Node a = mesh.interface_nodes[i];
+    const Node b = mesh.interface_nodes[i + 1];
     const double half = 0.5 * std::hypot(mesh.x_m[b] - mesh.x_m[a], mesh.y_m[b] - mesh.y_m[a]);
     length_m[i] += half;
     length_m[i + 1] += half;
   }
   if (mesh.period_m > 0) {
-    const double half = 0.5 * (mesh.x_m[mesh.lower.front()] + mesh.period_m - mesh.x_m[mesh.lower.back()]);
+    const double half = 0.5 * (mesh.x_m[mesh.interface_nodes.front()] + mesh.period_m -
+                               mesh.x_m[mesh.interface_nodes.back()]);
     length_m.front() += half;
     length_m.back() += half;
   }

@@ -19,7 +19,8 @@ using Cell = std::array<Node, 4>;
 ///
 /// A plate's nodes are numbered by such a grid, whatever is done to its corners; cells may be moved,
 /// folded or taken away, and a grid number without a cell is an orphan (see orphans). The two lower corners
-/// of a fillet are such, so take the plate's width from `top`. A graded plate has one grid per block.
+/// of a fillet are such, so take the plate's width from `far_edge_nodes`. A graded plate has one grid per
+/// block.
 struct Grid {
   int columns = 0;       ///< cells along x
   int rows = 0;          ///< cells along y
@@ -45,10 +46,10 @@ struct Mesh {
   Grid grid;                  ///< of the lowest block, which holds the interface; of the whole plain plate
   std::vector<Grid> coarser;  ///< of the blocks above, upwards; none unless the plate is graded
   std::vector<double> x_m;    ///< [nodes] along the interface, from the left edge
-  std::vector<double> y_m;    ///< [nodes] up from the rigid plane; the gap of a lower node
+  std::vector<double> y_m;    ///< [nodes] up from the rigid plane; the gap of an interface node
   std::vector<Cell> cells;
-  std::vector<Node> lower;  ///< candidates for contact, x ascending, rounded corners included
-  std::vector<Node> top;  ///< nodes of the loaded edge, left to right; none where the top is free or absorbs
+  std::vector<Node> interface_nodes;  ///< candidates for contact, x ascending, rounded corners included
+  std::vector<Node> far_edge_nodes;   ///< the loaded edge, left to right; none where it is free or absorbs
   /// Length after which the plate repeats along x, or 0. Cells of the last column then use the nodes of
   /// column 0, and the nodes of the right edge are orphans.
   double period_m = 0;
@@ -56,7 +57,7 @@ struct Mesh {
 
   Node n_nodes() const { return static_cast<Node>(x_m.size()); }
   /// Whether only the lowest row is held, see make_interface.
-  bool is_interface() const { return cells.empty() && !lower.empty(); }
+  bool is_interface() const { return cells.empty() && !interface_nodes.empty(); }
 };
 
 /// The grids of all blocks, upwards.
@@ -72,9 +73,9 @@ std::vector<bool> orphans(const Mesh& mesh);
 /// the plate is periodic.
 double distance_x_m(const Mesh& mesh, Node from, Node to);
 
-/// Length of lower boundary that belongs to each node of `mesh.lower`: half of each adjoining segment,
-/// measured along the arcs' chords. The first and the last node have one segment only, unless the plate is
-/// periodic. [lower], m.
+/// Length of lower boundary that belongs to each node of `mesh.interface_nodes`: half of each adjoining
+/// segment, measured along the arcs' chords. The first and the last node have one segment only, unless the
+/// plate is periodic. [interface nodes], m.
 std::vector<double> tributary_lengths_m(const Mesh& mesh);
 
 /// Smallest and largest interior angle over all cells (degrees), smallest cell side (m).

@@ -51,7 +51,7 @@ std::optional<double> size_that_fits(const Plate& plate, int step) {
       .about(width, height);
 }
 
-constexpr auto most_nodes = std::numeric_limits<Node>::max();
+constexpr auto max_nodes = std::numeric_limits<Node>::max();
 
 /// @param holds_all  whether a mesh holds all of its nodes
 Grid make_grid(const Plate& plate, bool holds_all) {
@@ -61,9 +61,9 @@ Grid make_grid(const Plate& plate, bool holds_all) {
   const double columns = plate.width_m / plate.element_size_m;
   const double rows = plate.height_m / plate.element_size_m;
   const double in_row = std::round(columns) + 1, in_column = std::round(rows) + 1;
-  if ((holds_all ? in_row * in_column : std::max(in_row, in_column)) > most_nodes)
+  if ((holds_all ? in_row * in_column : std::max(in_row, in_column)) > max_nodes)
     throw UserError("{} = {:.8g} makes more than {} nodes{}; use a larger size", Key("plate.element_size_m"),
-                    plate.element_size_m, most_nodes, holds_all ? "" : " in a row or a column");
+                    plate.element_size_m, max_nodes, holds_all ? "" : " in a row or a column");
   if (!is_whole(columns) || !is_whole(rows)) throw_no_fit(plate);
   Grid grid;
   grid.columns = static_cast<int>(std::lround(columns));
@@ -99,8 +99,8 @@ std::vector<Grid> make_blocks(const Plate& plate, const Grid& whole, std::string
             "times: choose fewer, or another {}",
             coarsenings, plate.coarsenings, periodic ? " and stay even, the sides being periodic" : "",
             whole.columns, k, Key("plate.element_size_m"));
-      const double least_m = k == 0 ? plate.fine_height_m : below_m;
-      const double least = std::max(1.0, std::ceil(least_m / block.spacing_m - whole_tolerance));
+      const double min_m = k == 0 ? plate.fine_height_m : below_m;
+      const double least = std::max(1.0, std::ceil(min_m / block.spacing_m - whole_tolerance));
       if (least + 4 > rows_left)
         throw UserError("{} = {} leaves no room for the largest elements; choose fewer, or a {} below {:g}",
                         coarsenings, plate.coarsenings, Key(fmt::format("{}.fine_height_m", table)),
@@ -227,9 +227,9 @@ class Maker {
       const auto& block = blocks_.emplace_back(grids[k], static_cast<int>(k), columns, first);
       const bool is_highest = k + 1 == grids.size();
       n_nodes += static_cast<double>(block.held.size()) * (block.grid.rows + (is_highest ? 1.0 : 2.0));
-      if (n_nodes > most_nodes && (rows == Rows::all || !is_highest))
+      if (n_nodes > max_nodes && (rows == Rows::all || !is_highest))
         throw UserError("{} = {:g} makes more than {} nodes; choose a larger one",
-                        Key("plate.element_size_m"), plate.element_size_m, most_nodes);
+                        Key("plate.element_size_m"), plate.element_size_m, max_nodes);
       if (!is_highest) first = block.first_above();
     }
     if (plate.sides != Sides::free && plate.corner != Corner::none)
@@ -261,7 +261,7 @@ class Maker {
     SLIPFRONT_ASSERT(plate_.corner != Corner::fillet, "the interface is a row");
     const auto& block = blocks_.front();
     for (const int i : block.held) add_grid_node(block, i, 0);
-    name_lower();
+    name_interface_nodes();
     return std::move(mesh_);
   }
 
@@ -269,7 +269,7 @@ class Maker {
     SLIPFRONT_ASSERT(blocks_.size() == 1 && !rounded_, "rows of one grid");
     const auto& block = blocks_.front();
     mesh_.grid.rows = end - begin;
-    SLIPFRONT_ASSERT(mesh_.grid.n_nodes() <= most_nodes, "rows of no more nodes than can be numbered");
+    SLIPFRONT_ASSERT(mesh_.grid.n_nodes() <= max_nodes, "rows of no more nodes than can be numbered");
     for (int j = begin; j <= end; ++j)
       for (const int i : block.held) add_grid_node(block, i, j);
     for (int j = 0; j < mesh_.grid.rows; ++j) add_row_of_squares(block, j);
@@ -296,7 +296,7 @@ class Maker {
       level += block.size;
     }
     if (rounded_) move_to_arcs();
-    name_lower();
+    name_interface_nodes();
     name_top();
     absorb();
     return std::move(mesh_);
@@ -395,14 +395,14 @@ class Maker {
 
   bool is_orphan(const Block& block, int i) const { return is_periodic_ && i == block.grid.columns; }
 
-  void name_lower() {
+  void name_interface_nodes() {
     const auto& block = blocks_.front();
     if (rounded_) {
       for (const auto [i, j] : rounded_->lower())
-        if (block.has(i)) mesh_.lower.push_back(block.node(i, j));
+        if (block.has(i)) mesh_.interface_nodes.push_back(block.node(i, j));
     } else {
       for (const int i : block.held)
-        if (!is_orphan(block, i)) mesh_.lower.push_back(block.node(i, 0));
+        if (!is_orphan(block, i)) mesh_.interface_nodes.push_back(block.node(i, 0));
     }
   }
 
@@ -410,7 +410,7 @@ class Maker {
     if (plate_.top != Top::loaded) return;
     const auto& highest = blocks_.back();
     for (const int i : highest.held)
-      if (!is_orphan(highest, i)) mesh_.top.push_back(highest.node(i, highest.grid.rows));
+      if (!is_orphan(highest, i)) mesh_.far_edge_nodes.push_back(highest.node(i, highest.grid.rows));
   }
 
   /// Every edge between two nodes gives half of its length to each.

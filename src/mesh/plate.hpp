@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "mesh/mesh.hpp"
-#include "mesh/part.hpp"
+#include "mesh/node_columns.hpp"
 
 namespace slipfront::mesh {
 
@@ -81,7 +81,7 @@ Mesh make_plate(const Plate& plate, std::string_view table = "plate");
 Mesh make_interface(const Plate& plate, std::string_view table = "plate");
 
 /// The cells of make_plate that are no squares since a relief moves their nodes, and so many more cells on
-/// their inner sides, with the places and the order that they have there: a mesh of its own, without edges.
+/// their inner sides, with the places and the order that they have there: a separate mesh, without edges.
 /// @pre elements are equal, the corners reliefs
 Mesh make_corners(const Plate& plate, int around);
 
@@ -91,7 +91,7 @@ Mesh make_corners(const Plate& plate, int around);
 /// @pre elements are equal, corners not wrapped
 Mesh make_rows(const Plate& plate, int begin, int end, std::string_view table = "plate");
 
-/// The nodes of make_plate in some columns, with the cells between them: a mesh of its own, whose nodes and
+/// The nodes of make_plate in some columns, with the cells between them: a separate mesh, whose nodes and
 /// cells have the order and the places of the whole plate's, to the last bit. The whole plate may have more
 /// nodes than can be numbered.
 ///

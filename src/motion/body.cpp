@@ -63,41 +63,42 @@ Body::Body(const BodySource& source, const TimeStepping& time)
                             solid::largest_frequency_rad_per_s(source.mesh, source.material, motion_.op),
                             time)),
       finer_w_(rolling_columns(motion_.op)),
-      lower_(source.mesh.lower),
-      lower_runs_(runs_of(source.mesh.lower, motion_)),
+      interface_nodes_(source.mesh.interface_nodes),
+      interface_runs_(runs_of(source.mesh.interface_nodes, motion_)),
       tributary_m_(mesh::tributary_lengths_m(source.mesh)) {
-  for (const auto n : lower_) {
-    lower_mass_kg_.push_back(motion_.op.mass_kg[n]);
-    lower_y_m_.push_back(source.mesh.y_m[n]);
+  for (const auto n : interface_nodes_) {
+    interface_mass_kg_.push_back(motion_.op.mass_kg[n]);
+    interface_y_m_.push_back(source.mesh.y_m[n]);
   }
-  own_lower_ =
-      source.part != nullptr ? lower_in(source.part->own) : solid::Span{0, static_cast<int>(lower_.size())};
+  own_interface_nodes_ = source.part != nullptr ? interface_nodes_in(source.part->own)
+                                                : solid::Span{0, static_cast<int>(interface_nodes_.size())};
 }
 
-solid::Span Body::lower_in(solid::Span columns) const {
+solid::Span Body::interface_nodes_in(solid::Span columns) const {
   const auto is_in = [&](mesh::Node n) {
     const int column = motion_.columns.column_of(n);
     return column >= columns.begin && column < columns.end;
   };
-  const auto begin = std::ranges::find_if(lower_, is_in);
-  const auto end = std::find_if_not(begin, lower_.end(), is_in);
-  return {static_cast<int>(begin - lower_.begin()), static_cast<int>(end - lower_.begin())};
+  const auto begin = std::ranges::find_if(interface_nodes_, is_in);
+  const auto end = std::find_if_not(begin, interface_nodes_.end(), is_in);
+  return {static_cast<int>(begin - interface_nodes_.begin()),
+          static_cast<int>(end - interface_nodes_.begin())};
 }
 
 void Body::divide(const BodySource& source, const TimeStepping& time, double step_s, int substeps) {
   auto stepping = time;
   stepping.interface_substeps = substeps;
   levels_ = make_levels(source.mesh, source.material, motion_, stepping, step_s, steps_.multiples,
-                        source.part == nullptr ? LargestOfParts{} : source.part->largest);
+                        source.part == nullptr ? MaxOverSubdomains{} : source.part->largest);
   if (time.precision == Precision::single_precision)
     single_ = make_single_rows(levels_.level.front(), motion_.op);
 }
 
-void Body::expect_steps_under_way(int n) {
+void Body::reserve_steps_in_flight(int n) {
   const int columns = rolling_columns(motion_.op);
   const bool has_single = single_.bands.begin < single_.bands.end;
   for (int k = 0; k < n; ++k)
-    under_way_.push_back(
+    steps_in_flight_.push_back(
         {solid::RollingRows(columns), solid::RollingRowsOf<float>(has_single ? columns : 0), {}, {}});
 }
 
@@ -108,7 +109,7 @@ std::size_t Body::band_of(mesh::Node n) const {
   return static_cast<std::size_t>(band - bands.begin());
 }
 
-solid::Pair Body::u_under_way_m(mesh::Node n) const {
+solid::Pair Body::u_in_flight_m(mesh::Node n) const {
   if (!single_.u_x_m.empty()) {
     const auto at = n - motion_.op.rows[single_.first_row].first;
     if (at >= 0 && at < std::ssize(single_.u_x_m)) return {single_.u_x_m[at], single_.u_y_m[at]};
@@ -124,19 +125,19 @@ void Body::start(const solid::Field& u_m, const solid::Field& u_per_shear, doubl
   const bool is_strained = u_m.size() > 0;
   motion_.u_m = is_strained ? u_m : solid::Field(motion_.v_m_per_s.size());
   for (std::size_t n = 0; n < motion_.v_m_per_s.size(); ++n) {
-    const double of_top = motion_.op.is_top[n] ? 1 : 0;
+    const double of_top = motion_.op.is_far_edge[n] ? 1 : 0;
     motion_.v_m_per_s.x[n] = top_speed_m_per_s * (is_strained ? u_per_shear.x[n] : of_top);
     motion_.v_m_per_s.y[n] = is_strained ? top_speed_m_per_s * u_per_shear.y[n] : 0;
   }
   for (auto& level : levels_.level)
-    if (!level.shared.node.empty()) find_steady_force(level);
+    if (!level.shared.node.empty()) find_equilibrium_load(level);
   to_single(motion_, single_);
   works_ = {};
   if (motion_.damping_s > 0) begin_damping_work();
 }
 
-void Body::find_steady_force(StepLevel& level) {
-  // A push that is taken back: its kicks on the shared nodes are the level's force on them.
+void Body::find_equilibrium_load(StepLevel& level) {
+  // An impulse that is taken back: its kicks on the shared nodes are the level's force on them.
   auto& u = motion_.u_m;
   auto& v = motion_.v_m_per_s;
   auto& shared = level.shared;
@@ -149,23 +150,23 @@ void Body::find_steady_force(StepLevel& level) {
   const std::vector<double> before[] = {first_nodes(u.x), first_nodes(u.y), first_nodes(v.x),
                                         first_nodes(v.y)};
   const auto zero = solid::Field(shared.node.size());
-  shared.steady_m_per_s2 = shared.v_last_m_per_s = shared.v_mean_before_m_per_s = zero;
+  shared.equilibrium_load_m_per_s2 = shared.v_last_m_per_s = shared.v_mean_before_m_per_s = zero;
   shared.a_m_per_s2 = zero;
   set_motion_before(level, motion_);
-  PushProducts products;
+  ImpulseProducts products;
   record::Energies works;
-  begin_push(level, motion_, works);
-  push_band(level, band, motion_, finer_w_, products, works);
-  end_push(level, motion_);
+  begin_impulse(level, motion_, works);
+  apply_band_impulse(level, band, motion_, finer_w_, products, works);
+  end_impulse(level, motion_);
   for (std::size_t k = 0; k < shared.node.size(); ++k) {
-    shared.steady_m_per_s2.x[k] = shared.push_m_per_s.x[k] / level.step_s;
-    shared.steady_m_per_s2.y[k] = shared.push_m_per_s.y[k] / level.step_s;
+    shared.equilibrium_load_m_per_s2.x[k] = shared.impulse_m_per_s.x[k] / level.step_s;
+    shared.equilibrium_load_m_per_s2.y[k] = shared.impulse_m_per_s.y[k] / level.step_s;
   }
   std::ranges::copy(before[0], u.x.begin());
   std::ranges::copy(before[1], u.y.begin());
   std::ranges::copy(before[2], v.x.begin());
   std::ranges::copy(before[3], v.y.begin());
-  shared.push_m_per_s = shared.a_m_per_s2 = zero;
+  shared.impulse_m_per_s = shared.a_m_per_s2 = zero;
   set_motion_before(level, motion_);
 }
 
@@ -175,48 +176,48 @@ void Body::begin_damping_work() {
     level.damping_work.begin(stiffness_product_before(level, motion_, level.step_s));
 }
 
-void Body::take_landing(const StepLevel& level, PushProducts& products) {
+void Body::take_landing(const StepLevel& level, ImpulseProducts& products) {
   if (&level != &levels_.level.back()) return;
   landing_.add_to(products);
   landing_.clear();
 }
 
-void Body::push(StepLevel& level, record::Energies& works) {
-  PushProducts products;
+void Body::apply_impulse(StepLevel& level, record::Energies& works) {
+  ImpulseProducts products;
   take_landing(level, products);
-  begin_push(level, motion_, works);
-  for (const auto& band : level.bands) push_band(level, band, motion_, finer_w_, products, works);
-  end_push(level, motion_);
+  begin_impulse(level, motion_, works);
+  for (const auto& band : level.bands) apply_band_impulse(level, band, motion_, finer_w_, products, works);
+  end_impulse(level, motion_);
   if (motion_.damping_s > 0) works.damping_work += level.damping_work.add(products);
 }
 
-void Body::push_due(BodyStep& step, int k, bool leads) {
+void Body::apply_due_impulses(BodyStep& step, int k, bool has_global_step) {
   auto& levels = levels_.level;
   auto& coarsest = levels.front();
   const auto is_due = [&](const StepLevel& level) { return k % level.period == 0; };
   if (is_due(coarsest)) {
-    if (leads) {
+    if (has_global_step) {
       take_landing(coarsest, step.products);
-      begin_push(coarsest, motion_, step.works);
-      push_band(coarsest, coarsest.bands.front(), motion_, step.w, step.products, step.works);
-      end_push(coarsest, motion_);
+      begin_impulse(coarsest, motion_, step.works);
+      apply_band_impulse(coarsest, coarsest.bands.front(), motion_, step.w, step.products, step.works);
+      end_impulse(coarsest, motion_);
     } else {
-      push(coarsest, step.works);
+      apply_impulse(coarsest, step.works);
     }
   }
   for (std::size_t l = 1; l < levels.size(); ++l)
-    if (is_due(levels[l])) push(levels[l], step.works);
+    if (is_due(levels[l])) apply_impulse(levels[l], step.works);
   for (std::size_t l = 1; l < levels.size(); ++l)
     if (is_due(levels[l])) move_shared(levels[l - 1], motion_, levels[l].step_s, step.works);
 }
 
-void Body::push_later_band(BodyStep& step, std::size_t band) {
+void Body::apply_later_band_impulse(BodyStep& step, std::size_t band) {
   auto& coarsest = levels_.level.front();
   const auto& rows = coarsest.bands[band];
   if (static_cast<int>(band) >= single_.bands.begin && static_cast<int>(band) < single_.bands.end)
-    push_band(coarsest, rows, motion_, single_, step.w, step.w_single, step.products);
+    apply_band_impulse(coarsest, rows, motion_, single_, step.w, step.w_single, step.products);
   else if (band > 0)
-    push_band(coarsest, rows, motion_, step.w, step.products, step.works);
+    apply_band_impulse(coarsest, rows, motion_, step.w, step.products, step.works);
   if (band + 1 == coarsest.bands.size() && motion_.damping_s > 0)
     step.works.damping_work += coarsest.damping_work.add(step.products);
 }
@@ -234,8 +235,9 @@ record::Energies Body::energies() {
     e.strain += 0.5 * (u_K_u - level.step_s * v_K_u);  // 1/2 u K u' between the level's last two places
     e.coupling_work += coupling_work(level, motion_);
     if (motion_.damping_s > 0) {
-      PushProducts since_last;
-      for (const auto& band : level.bands) since_last.late_K_w += late_product(level, band, motion_);
+      ImpulseProducts since_last;
+      for (const auto& band : level.bands)
+        since_last.next_velocity_K_w += next_velocity_product(level, band, motion_);
       if (&level == &levels_.level.back()) landing_.add_to(since_last);
       e.damping_work += level.damping_work.of_last_push(since_last, u_K_u, v_K_u);
     }

@@ -17,20 +17,19 @@
 
 namespace slipfront::motion {
 
-/// What a step under way has of its own in a body.
+/// Workspace of one step in flight for one body.
 struct BodyStep {
   solid::RollingRows w;                  ///< of u + beta_R v, of the coarsest level's sweep
   solid::RollingRowsOf<float> w_single;  ///< the same in single precision, if it is asked for
-  PushProducts products;
+  ImpulseProducts products;
   record::Energies works;
 };
 
 /// Of a whole body.
 BodySteps body_steps(const BodySource& body, const TimeStepping& time);
 
-/// A deformable body on its own: its cells in levels, each with a step of its own, and its motion. It knows
-/// nothing of contact: the velocities of its interface nodes are kicked by its cells, and someone else moves
-/// them.
+/// A deformable body without contact: its cells in levels with different time steps, and its motion. Its
+/// cells kick the velocities of the interface nodes; the coupling moves them.
 ///
 /// Every body lies above its interface, y pointing away from it: a body below is described upside down, with
 /// u_y and y reversed.
@@ -48,9 +47,9 @@ class Body {
   /// @param step_s      of the coarsest level
   /// @param substeps    of the last level in a step of the lowest block
   void divide(const BodySource& source, const TimeStepping& time, double step_s, int substeps);
-  /// Rows in single precision are stepped band by band alone; a body that does not lead keeps to double.
-  void keep_to_double() { single_ = {}; }
-  void expect_steps_under_way(int n);
+  /// Single precision needs stepping band by band, which only a body with the global step has.
+  void disable_single_precision() { single_ = {}; }
+  void reserve_steps_in_flight(int n);
 
   const solid::Operator& op() const { return motion_.op; }
   const mesh::NodeColumns& columns() const { return motion_.columns; }
@@ -67,45 +66,48 @@ class Body {
   /// interface does so with the first one.
   std::size_t band_of(mesh::Node n) const;
   /// Displacement of a node while steps are taken, after its band.
-  solid::Pair u_under_way_m(mesh::Node n) const;
+  solid::Pair u_in_flight_m(mesh::Node n) const;
   /// Sub-steps in a step of the coarsest level.
   int period() const { return levels_.level.front().period; }
   /// With which a node moves.
   double step_s(mesh::Node n) const;
 
   /// Begins the motion at a place of equilibrium, with the velocity that the top's gives to u_per_shear: what
-  /// the levels do to each other there is kept as a steady force, without which a stressed body at rest would
-  /// not stay at rest. Without displacements nothing is strained, and nothing but the loaded edge moves.
+  /// the levels do to each other there is kept as an equilibrium force, without which a stressed body at rest
+  /// would not stay at rest. Without displacements nothing is strained, and nothing but the loaded edge
+  /// moves.
   void start(const solid::Field& u_m, const solid::Field& u_per_shear, double top_speed_m_per_s);
 
-  /// What a step of the stepper has of its own while it is under way; several are, see threads::Wavefront.
-  BodyStep& under_way(std::int64_t step) { return under_way_[step % std::ssize(under_way_)]; }
-  /// Pushes every level whose step begins with sub-step k, and moves the nodes that are due, but for those of
-  /// the interface. Where the body `leads` (see Stepper::leads), only the first band of the coarsest level is
-  /// pushed here.
-  void push_due(BodyStep& step, int k, bool leads);
-  /// The other bands of the coarsest level of a body that leads, one by one.
-  void push_later_band(BodyStep& step, std::size_t band);
+  /// Workspace of a step of the stepper; several steps are in flight at a time, see threads::Wavefront.
+  BodyStep& step_in_flight(std::int64_t step) {
+    return steps_in_flight_[step % std::ssize(steps_in_flight_)];
+  }
+  /// Applies the impulse of every level whose step begins with sub-step k, and moves the nodes that are due,
+  /// except those of the interface. Where the body has the global step (Stepper::has_global_step), only the
+  /// first band of the coarsest level is treated here.
+  void apply_due_impulses(BodyStep& step, int k, bool has_global_step);
+  /// One later band of the coarsest level of a body with the global step.
+  void apply_later_band_impulse(BodyStep& step, std::size_t band);
   /// Adds the works of a step that is done to the body's.
   void complete(const BodyStep& step);
-  /// Makes u_m and v_m_per_s those after the last step in all rows: before anyone looks at them.
-  void settle() { to_double(single_, motion_); }
+  /// Copies rows in single precision into u_m and v_m_per_s; needed before these are read.
+  void sync_to_double() { to_double(single_, motion_); }
 
-  /// Interface nodes, and what the contact has to know of them. [lower]
-  const std::vector<mesh::Node>& lower() const { return lower_; }
-  const std::vector<NodeRun>& lower_runs() const { return lower_runs_; }
-  /// Those that count in energies and works, see BodyMotion.
-  solid::Span own_lower() const { return own_lower_; }
-  const std::vector<double>& lower_mass_kg() const { return lower_mass_kg_; }
-  const std::vector<double>& lower_y_m() const { return lower_y_m_; }
+  /// Interface nodes, and their data for the contact. [interface nodes]
+  const std::vector<mesh::Node>& interface_nodes() const { return interface_nodes_; }
+  const std::vector<NodeRun>& interface_runs() const { return interface_runs_; }
+  /// Owned nodes, which enter energies and works; see BodyMotion.
+  solid::Span own_interface_nodes() const { return own_interface_nodes_; }
+  const std::vector<double>& interface_mass_kg() const { return interface_mass_kg_; }
+  const std::vector<double>& interface_y_m() const { return interface_y_m_; }
   const std::vector<double>& tributary_m() const { return tributary_m_; }
   const std::vector<Dashpot>& contact_dashpots() const { return levels_.contact_dashpots; }
   /// Motion of the interface nodes, which the contact moves.
   solid::Field& u_m() { return motion_.u_m; }
   solid::Field& v_m_per_s() { return motion_.v_m_per_s; }
-  /// Work of shifts that the contact has made, see Landing.
+  /// Prepares the work of shifts by the contact, see Landing.
   void expect_landings(const mesh::Mesh& mesh, const solid::Material& material) {
-    landing_ = Landing(mesh, material, lower_, own_lower_);
+    landing_ = Landing(mesh, material, interface_nodes_, own_interface_nodes_);
   }
   Landing& landing() { return landing_; }
 
@@ -114,9 +116,9 @@ class Body {
   template <class Visit>
   void visit_columns(solid::Span columns, solid::Span rows, bool with_shared, Visit&& visit);
   /// After other values have been put into u_m, v_m_per_s.
-  void take_state() { to_single(motion_, single_); }
-  /// Places in lower() of the nodes in some columns.
-  solid::Span lower_in(solid::Span columns) const;
+  void update_after_restore() { to_single(motion_, single_); }
+  /// Places in interface_nodes() of the nodes in some columns.
+  solid::Span interface_nodes_in(solid::Span columns) const;
 
   /// See Stepper::visit_state. @param b  number of the body
   template <class Visitor>
@@ -153,23 +155,23 @@ class Body {
       for (int i = motion_.own[r].begin; i < motion_.own[r].end; ++i) f(first + i);
     }
   }
-  void push(StepLevel& level, record::Energies& works);
-  /// Products of the landings since the last push of a level, if it is the last one.
-  void take_landing(const StepLevel& level, PushProducts& products);
+  void apply_impulse(StepLevel& level, record::Energies& works);
+  /// Products of the landings since the last impulse of a level, if it is the last one.
+  void take_landing(const StepLevel& level, ImpulseProducts& products);
   void begin_damping_work();
-  void find_steady_force(StepLevel& level);
+  void find_equilibrium_load(StepLevel& level);
 
   BodyMotion motion_;
   BodySteps steps_;
   StepLevels levels_;
   SingleRows single_;           ///< none unless time.precision is single
   solid::RollingRows finer_w_;  ///< of u + beta_R v, of the other levels' sweeps
-  std::vector<BodyStep> under_way_;
+  std::vector<BodyStep> steps_in_flight_;
 
-  std::vector<mesh::Node> lower_;
-  std::vector<NodeRun> lower_runs_;
-  solid::Span own_lower_;
-  std::vector<double> tributary_m_, lower_mass_kg_, lower_y_m_;  ///< [lower]
+  std::vector<mesh::Node> interface_nodes_;
+  std::vector<NodeRun> interface_runs_;
+  solid::Span own_interface_nodes_;
+  std::vector<double> tributary_m_, interface_mass_kg_, interface_y_m_;  ///< [interface nodes]
   Landing landing_;
   record::Energies works_;  ///< the works alone
 };
@@ -201,7 +203,8 @@ void Body::visit_columns(solid::Span columns, solid::Span rows, bool with_shared
       const auto begin = std::lower_bound(next, s.node.end(), nodes.first);
       const auto end = std::lower_bound(begin, s.node.end(), nodes.end());
       const auto at = begin - s.node.begin();
-      for (auto* field : {&s.u_before_m, &s.push_m_per_s, &s.steady_m_per_s2, &s.v_last_m_per_s}) {
+      for (auto* field :
+           {&s.u_before_m, &s.impulse_m_per_s, &s.equilibrium_load_m_per_s2, &s.v_last_m_per_s}) {
         visit(field->x.data() + at, static_cast<std::size_t>(end - begin));
         visit(field->y.data() + at, static_cast<std::size_t>(end - begin));
       }
@@ -215,7 +218,7 @@ void Body::visit_state(Visitor& visitor, std::size_t b) {
   const auto& columns = motion_.columns;
   const auto list_of_nodes = [&](std::size_t n, auto&& node_of, auto&& each) {
     visitor.list(
-        KeptBy::node, b, n, [&](std::size_t k) { return columns.number_in_whole(node_of(k)); },
+        StateKey::node, b, n, [&](std::size_t k) { return columns.global_number(node_of(k)); },
         [&](std::size_t k) { return columns.column_of(node_of(k)); }, each);
   };
   auto& u = motion_.u_m;
@@ -239,8 +242,8 @@ void Body::visit_state(Visitor& visitor, std::size_t b) {
     list_of_nodes(
         s.node.size(), [&](std::size_t k) { return s.node[k]; },
         [&](std::size_t k, auto&& f) {
-          for (auto* field : {&s.u_before_m, &s.push_m_per_s, &s.steady_m_per_s2, &s.v_last_m_per_s,
-                              &s.a_m_per_s2, &s.v_mean_before_m_per_s}) {
+          for (auto* field : {&s.u_before_m, &s.impulse_m_per_s, &s.equilibrium_load_m_per_s2,
+                              &s.v_last_m_per_s, &s.a_m_per_s2, &s.v_mean_before_m_per_s}) {
             f(field->x[k]);
             f(field->y[k]);
           }
@@ -257,7 +260,7 @@ void Body::visit_state(Visitor& visitor, std::size_t b) {
       return columns.column_of(static_cast<mesh::Node>(k % width));
     };
     visitor.list(
-        KeptBy::column, b, level.edge_kick_m_per_s.size() * width,
+        StateKey::column, b, level.edge_kick_m_per_s.size() * width,
         [&](std::size_t k) {
           return static_cast<std::int64_t>(k / width) * columns.n_columns() + column_of(k);
         },

@@ -19,21 +19,21 @@ double dashpot_work(const Dashpot& dashpot, double mass_kg, double mean_x, doubl
 
 Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body> bodies)
     : contact_(contact),
-      face_(bodies.front().lower().size()),
+      interface_(bodies.front().interface_nodes().size()),
       tributary_m_(bodies.front().tributary_m()),
-      v_x_before_(face_.size()),
-      v_y_before_(face_.size()),
-      v_x_trial_(face_.size()),
-      v_y_trial_(face_.size()),
-      trigger_force_N_(face_.size(), 0.0),
-      start_u_x_m_(face_.size()),
-      own_begin_(static_cast<std::size_t>(bodies.front().own_lower().begin)),
-      own_end_(static_cast<std::size_t>(bodies.front().own_lower().end)) {
+      v_x_before_(interface_.size()),
+      v_y_before_(interface_.size()),
+      v_x_trial_(interface_.size()),
+      v_y_trial_(interface_.size()),
+      trigger_force_N_(interface_.size(), 0.0),
+      start_u_x_m_(interface_.size()),
+      own_begin_(static_cast<std::size_t>(bodies.front().own_interface_nodes().begin)),
+      own_end_(static_cast<std::size_t>(bodies.front().own_interface_nodes().end)) {
   // Effective masses along x and y of each body.
   std::vector<std::vector<double>> mass_x, mass_y;
   for (const auto& body : bodies) {
-    SLIPFRONT_ASSERT(body.lower().size() == face_.size(), "interfaces of different nodes");
-    auto x = body.lower_mass_kg();
+    SLIPFRONT_ASSERT(body.interface_nodes().size() == interface_.size(), "interfaces of different nodes");
+    auto x = body.interface_mass_kg();
     auto y = x;
     for (const auto& dashpot : body.contact_dashpots()) {
       x[dashpot.at] *= 1 + dashpot.d_x;
@@ -43,13 +43,13 @@ Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body>
     mass_y.push_back(std::move(y));
   }
   contact_mass_kg_ = mass_y.front();
-  for (std::size_t i = 0; i < face_.size(); ++i) {
-    face_.initial_gap_m[i] = bodies.front().lower_y_m()[i];
-    face_.mass_per_length_kg_m2[i] = bodies.front().lower_mass_kg()[i] / tributary_m_[i];
+  for (std::size_t i = 0; i < interface_.size(); ++i) {
+    interface_.initial_gap_m[i] = bodies.front().interface_y_m()[i];
+    interface_.mass_per_length_kg_m2[i] = bodies.front().interface_mass_kg()[i] / tributary_m_[i];
   }
   for (const auto& dashpot : bodies.front().contact_dashpots()) {
-    face_.mass_per_length_kg_m2[dashpot.at] *= 1 + dashpot.d_y;
-    face_.tangential_mass_ratio[dashpot.at] = (1 + dashpot.d_x) / (1 + dashpot.d_y);
+    interface_.mass_per_length_kg_m2[dashpot.at] *= 1 + dashpot.d_y;
+    interface_.tangential_mass_ratio[dashpot.at] = (1 + dashpot.d_x) / (1 + dashpot.d_y);
   }
   if (bodies.size() == 1) return;
   const auto of_pair = [](double a, double b) { return a * b / (a + b); };
@@ -57,61 +57,61 @@ Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body>
     Side side;
     side.sign = s == 0 ? 1 : -1;
     for (auto* values : {&side.v_x, &side.v_y, &side.v_x_before, &side.v_y_before})
-      values->resize(face_.size());
-    for (std::size_t i = 0; i < face_.size(); ++i) {
+      values->resize(interface_.size());
+    for (std::size_t i = 0; i < interface_.size(); ++i) {
       side.share_x.push_back(mass_x[1 - s][i] / (mass_x[0][i] + mass_x[1][i]));
       side.share_y.push_back(mass_y[1 - s][i] / (mass_y[0][i] + mass_y[1][i]));
     }
     sides_.push_back(std::move(side));
   }
-  for (std::size_t i = 0; i < face_.size(); ++i) {
-    face_.initial_gap_m[i] += bodies[1].lower_y_m()[i];
+  for (std::size_t i = 0; i < interface_.size(); ++i) {
+    interface_.initial_gap_m[i] += bodies[1].interface_y_m()[i];
     contact_mass_kg_[i] = of_pair(mass_y[0][i], mass_y[1][i]);
-    face_.mass_per_length_kg_m2[i] = contact_mass_kg_[i] / tributary_m_[i];
-    face_.tangential_mass_ratio[i] = of_pair(mass_x[0][i], mass_x[1][i]) / contact_mass_kg_[i];
+    interface_.mass_per_length_kg_m2[i] = contact_mass_kg_[i] / tributary_m_[i];
+    interface_.tangential_mass_ratio[i] = of_pair(mass_x[0][i], mass_x[1][i]) / contact_mass_kg_[i];
   }
 }
 
 double Coupling::relative_u_x_m(std::span<const Body> bodies, std::size_t i) const {
-  const double above = bodies[0].u_m().x[bodies[0].lower()[i]];
-  return bodies.size() == 1 ? above : above - bodies[1].u_m().x[bodies[1].lower()[i]];
+  const double above = bodies[0].u_m().x[bodies[0].interface_nodes()[i]];
+  return bodies.size() == 1 ? above : above - bodies[1].u_m().x[bodies[1].interface_nodes()[i]];
 }
 
 void Coupling::start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium, Loads loads) {
   const auto& above = bodies.front();
-  for (std::size_t i = 0; i < face_.size(); ++i) {
+  for (std::size_t i = 0; i < interface_.size(); ++i) {
     start_u_x_m_[i] = relative_u_x_m(bodies, i);
-    face_.v_x_m_per_s[i] = above.v_m_per_s().x[above.lower()[i]];
-    face_.v_y_m_per_s[i] = above.v_m_per_s().y[above.lower()[i]];
+    interface_.v_x_m_per_s[i] = above.v_m_per_s().x[above.interface_nodes()[i]];
+    interface_.v_y_m_per_s[i] = above.v_m_per_s().y[above.interface_nodes()[i]];
   }
   for (std::size_t s = 0; s < sides_.size(); ++s) {
-    for (std::size_t i = 0; i < face_.size(); ++i) {
-      sides_[s].v_x[i] = bodies[s].v_m_per_s().x[bodies[s].lower()[i]];
-      sides_[s].v_y[i] = bodies[s].v_m_per_s().y[bodies[s].lower()[i]];
+    for (std::size_t i = 0; i < interface_.size(); ++i) {
+      sides_[s].v_x[i] = bodies[s].v_m_per_s().x[bodies[s].interface_nodes()[i]];
+      sides_[s].v_y[i] = bodies[s].v_m_per_s().y[bodies[s].interface_nodes()[i]];
     }
     if (s == 0) continue;
-    for (std::size_t i = 0; i < face_.size(); ++i) {
-      face_.v_x_m_per_s[i] -= sides_[s].v_x[i];
-      face_.v_y_m_per_s[i] += sides_[s].v_y[i];
+    for (std::size_t i = 0; i < interface_.size(); ++i) {
+      interface_.v_x_m_per_s[i] -= sides_[s].v_x[i];
+      interface_.v_y_m_per_s[i] += sides_[s].v_y[i];
     }
   }
-  for (std::size_t i = 0; i < face_.size(); ++i) {
-    face_.slip_rate_m_per_s[i] = face_.v_x_m_per_s[i];
-    face_.t_Pa[i] = equilibrium.tractions.t_s_Pa[i];
-    face_.p_Pa[i] = equilibrium.tractions.p_s_Pa[i];
-    face_.slipping[i] = equilibrium.contact[i] == statics::Contact::slip;
+  for (std::size_t i = 0; i < interface_.size(); ++i) {
+    interface_.slip_rate_m_per_s[i] = interface_.v_x_m_per_s[i];
+    interface_.t_Pa[i] = equilibrium.tractions.t_s_Pa[i];
+    interface_.p_Pa[i] = equilibrium.tractions.p_s_Pa[i];
+    interface_.slipping[i] = equilibrium.contact[i] == statics::Contact::slip;
   }
-  std::ranges::fill(face_.intact, 1.0);
-  start_contact(contact_, face_);
-  if (loads.trigger_force_N_per_m.empty()) loads.trigger_force_N_per_m.assign(face_.size(), 0.0);
+  std::ranges::fill(interface_.intact, 1.0);
+  start_contact(contact_, interface_);
+  if (loads.trigger_force_N_per_m.empty()) loads.trigger_force_N_per_m.assign(interface_.size(), 0.0);
   set_trigger(loads.trigger, std::move(loads.trigger_force_N_per_m));
   prestress_t_Pa_.clear();
   prestress_p_Pa_.clear();
   if (!loads.prestress_t_Pa.empty())
     set_prestress(std::move(loads.prestress_t_Pa), std::move(loads.prestress_p_Pa));
   // A patch that is weakened now loses its strength at the rate of the regularisation.
-  SLIPFRONT_ASSERT(loads.intact.empty() || loads.intact.size() == face_.size(), "intact of other nodes");
-  if (!loads.intact.empty()) face_.intact = std::move(loads.intact);
+  SLIPFRONT_ASSERT(loads.intact.empty() || loads.intact.size() == interface_.size(), "intact of other nodes");
+  if (!loads.intact.empty()) interface_.intact = std::move(loads.intact);
 }
 
 void Coupling::set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m) {
@@ -123,7 +123,8 @@ void Coupling::set_trigger(const interface::Trigger& trigger, std::vector<double
 }
 
 void Coupling::set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa) {
-  SLIPFRONT_ASSERT(t_Pa.size() == face_.size() && p_Pa.size() == face_.size(), "prestress of other nodes");
+  SLIPFRONT_ASSERT(t_Pa.size() == interface_.size() && p_Pa.size() == interface_.size(),
+                   "prestress of other nodes");
   prestress_t_Pa_ = std::move(t_Pa);
   prestress_p_Pa_ = std::move(p_Pa);
 }
@@ -131,15 +132,15 @@ void Coupling::set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa)
 void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, UpdateObserver& observer,
                       record::History* sample, record::Energies& works) {
   const double impulse_s = dt_s * trigger_factor(trigger_, time_s);
-  std::swap(face_.v_x_m_per_s, v_x_before_);
-  std::swap(face_.v_y_m_per_s, v_y_before_);
+  std::swap(interface_.v_x_m_per_s, v_x_before_);
+  std::swap(interface_.v_y_m_per_s, v_y_before_);
   if (sides_.empty())
     gather(bodies.front(), dt_s, impulse_s);
   else
     gather_both(bodies, dt_s, impulse_s);
-  std::ranges::copy(face_.v_y_m_per_s, v_y_trial_.begin());
-  const bool changed = interface::update_contact(contact_, dt_s, face_);
-  observer.observe(time_s, face_, changed);
+  std::ranges::copy(interface_.v_y_m_per_s, v_y_trial_.begin());
+  const bool changed = interface::update_contact(contact_, dt_s, interface_);
+  observer.observe(time_s, interface_, changed);
   if (sample != nullptr) append_sample(bodies, time_s, *sample);
   if (sides_.empty())
     scatter(bodies.front(), dt_s, works);
@@ -151,10 +152,11 @@ void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, Update
 SlipRates Coupling::slip_rates() const {
   SlipRates rates;
   for (std::size_t i = own_begin_; i < own_end_; ++i) {
-    const double v = std::abs(face_.slip_rate_m_per_s[i]);
+    const double v = std::abs(interface_.slip_rate_m_per_s[i]);
     rates.finite &= std::isfinite(v);
     rates.fastest_m_per_s = std::max(rates.fastest_m_per_s, v);
-    if (face_.slipping[i] != 0) rates.fastest_slipping_m_per_s = std::max(rates.fastest_slipping_m_per_s, v);
+    if (interface_.slipping[i] != 0)
+      rates.fastest_slipping_m_per_s = std::max(rates.fastest_slipping_m_per_s, v);
   }
   return rates;
 }
@@ -162,19 +164,19 @@ SlipRates Coupling::slip_rates() const {
 double Coupling::largest_acceleration_m_per_s2() const {
   double a = 0;
   for (std::size_t i = own_begin_; i < own_end_; ++i)
-    a = std::max(a,
-                 std::max(std::abs(face_.t_Pa[i]), std::abs(face_.p_Pa[i])) / face_.mass_per_length_kg_m2[i]);
+    a = std::max(a, std::max(std::abs(interface_.t_Pa[i]), std::abs(interface_.p_Pa[i])) /
+                        interface_.mass_per_length_kg_m2[i]);
   return a;
 }
 
 void Coupling::take_trial(const Body& body, double sign, double dt_s, double impulse_s,
                           const std::vector<double>& v_x_before, const std::vector<double>& v_y_before,
                           std::vector<double>& v_x, std::vector<double>& v_y) const {
-  for (const auto& run : body.lower_runs()) {
+  for (const auto& run : body.interface_runs()) {
     std::copy_n(&body.v_m_per_s().x[run.first], run.count, &v_x[run.at]);
     std::copy_n(&body.v_m_per_s().y[run.first], run.count, &v_y[run.at]);
   }
-  const auto& mass = body.lower_mass_kg();
+  const auto& mass = body.interface_mass_kg();
   for (const auto i : trigger_nodes_) v_x[i] += sign * impulse_s * trigger_force_N_[i] / mass[i];
   for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i) {
     const double per_pressure = dt_s * tributary_m_[i] / mass[i];
@@ -189,9 +191,10 @@ void Coupling::take_trial(const Body& body, double sign, double dt_s, double imp
 }
 
 void Coupling::gather(const Body& body, double dt_s, double impulse_s) {
-  for (const auto& run : body.lower_runs())
-    std::copy_n(&body.u_m().y[run.first], run.count, &face_.u_y_m[run.at]);
-  take_trial(body, 1, dt_s, impulse_s, v_x_before_, v_y_before_, face_.v_x_m_per_s, face_.v_y_m_per_s);
+  for (const auto& run : body.interface_runs())
+    std::copy_n(&body.u_m().y[run.first], run.count, &interface_.u_y_m[run.at]);
+  take_trial(body, 1, dt_s, impulse_s, v_x_before_, v_y_before_, interface_.v_x_m_per_s,
+             interface_.v_y_m_per_s);
 }
 
 void Coupling::gather_both(std::span<const Body> bodies, double dt_s, double impulse_s) {
@@ -201,10 +204,11 @@ void Coupling::gather_both(std::span<const Body> bodies, double dt_s, double imp
     std::swap(side.v_y, side.v_y_before);
     take_trial(bodies[s], side.sign, dt_s, impulse_s, side.v_x_before, side.v_y_before, side.v_x, side.v_y);
   }
-  for (std::size_t i = 0; i < face_.size(); ++i) {
-    face_.v_x_m_per_s[i] = v_x_trial_[i] = sides_[0].v_x[i] - sides_[1].v_x[i];
-    face_.v_y_m_per_s[i] = sides_[0].v_y[i] + sides_[1].v_y[i];
-    face_.u_y_m[i] = bodies[0].u_m().y[bodies[0].lower()[i]] + bodies[1].u_m().y[bodies[1].lower()[i]];
+  for (std::size_t i = 0; i < interface_.size(); ++i) {
+    interface_.v_x_m_per_s[i] = v_x_trial_[i] = sides_[0].v_x[i] - sides_[1].v_x[i];
+    interface_.v_y_m_per_s[i] = sides_[0].v_y[i] + sides_[1].v_y[i];
+    interface_.u_y_m[i] =
+        bodies[0].u_m().y[bodies[0].interface_nodes()[i]] + bodies[1].u_m().y[bodies[1].interface_nodes()[i]];
   }
 }
 
@@ -212,20 +216,20 @@ void Coupling::scatter(Body& body, double dt_s, record::Energies& works) {
   auto& u = body.u_m();
   auto& v = body.v_m_per_s();
   if (contact_.algorithm == interface::ContactAlgorithm::predictor_corrector) {
-    for (std::size_t i = 0; i < face_.size(); ++i) {
-      const double shift_m = face_.u_y_m[i] - u.y[body.lower()[i]];
+    for (std::size_t i = 0; i < interface_.size(); ++i) {
+      const double shift_m = interface_.u_y_m[i] - u.y[body.interface_nodes()[i]];
       if (shift_m != 0) body.landing().add(i, shift_m);
     }
   }
   double all_contact_work = 0, all_friction_work = 0;
-  for (const auto& run : body.lower_runs()) {
+  for (const auto& run : body.interface_runs()) {
     double contact_work = all_contact_work, friction_work = all_friction_work;
     const auto at = run.at, count = run.count;
     const auto first = run.first;
-    const double* v_x_now = &face_.v_x_m_per_s[at];
-    const double* v_y_now = &face_.v_y_m_per_s[at];
-    const double* u_y_now = &face_.u_y_m[at];
-    const double* t = &face_.t_Pa[at];
+    const double* v_x_now = &interface_.v_x_m_per_s[at];
+    const double* v_y_now = &interface_.v_y_m_per_s[at];
+    const double* u_y_now = &interface_.u_y_m[at];
+    const double* t = &interface_.t_Pa[at];
     const double* v_x_before = &v_x_before_[at];
     const double* v_y_before = &v_y_before_[at];
     const double* v_y_trial = &v_y_trial_[at];
@@ -245,7 +249,7 @@ void Coupling::scatter(Body& body, double dt_s, record::Energies& works) {
       u_x[k] += dt_s * v_x_now[k];
       u_y[k] = u_y_now[k] + dt_s * v_y_now[k];
     }
-    if (!run.counts) continue;
+    if (!run.is_owned) continue;
     all_contact_work = contact_work;
     all_friction_work = friction_work;
   }
@@ -255,22 +259,22 @@ void Coupling::scatter(Body& body, double dt_s, record::Energies& works) {
 
 void Coupling::scatter_both(std::span<Body> bodies, double dt_s, record::Energies& works) {
   const bool shifts = contact_.algorithm == interface::ContactAlgorithm::predictor_corrector;
-  for (std::size_t i = 0; i < face_.size(); ++i) {
+  for (std::size_t i = 0; i < interface_.size(); ++i) {
     if (is_own(i)) {
-      works.contact_work += 0.5 * contact_mass_kg_[i] * (face_.v_y_m_per_s[i] - v_y_trial_[i]) *
-                            (face_.v_y_m_per_s[i] + v_y_before_[i]);
+      works.contact_work += 0.5 * contact_mass_kg_[i] * (interface_.v_y_m_per_s[i] - v_y_trial_[i]) *
+                            (interface_.v_y_m_per_s[i] + v_y_before_[i]);
       works.friction_work -=
-          0.5 * dt_s * tributary_m_[i] * face_.t_Pa[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]);
+          0.5 * dt_s * tributary_m_[i] * interface_.t_Pa[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
     }
-    const double shift_m = shifts ? face_.u_y_m[i] - (bodies[0].u_m().y[bodies[0].lower()[i]] +
-                                                      bodies[1].u_m().y[bodies[1].lower()[i]])
+    const double shift_m = shifts ? interface_.u_y_m[i] - (bodies[0].u_m().y[bodies[0].interface_nodes()[i]] +
+                                                           bodies[1].u_m().y[bodies[1].interface_nodes()[i]])
                                   : 0;
-    const double change_x = face_.v_x_m_per_s[i] - v_x_trial_[i];
-    const double change_y = face_.v_y_m_per_s[i] - v_y_trial_[i];
+    const double change_x = interface_.v_x_m_per_s[i] - v_x_trial_[i];
+    const double change_y = interface_.v_y_m_per_s[i] - v_y_trial_[i];
     for (std::size_t s = 0; s < 2; ++s) {
       auto& side = sides_[s];
       auto& body = bodies[s];
-      const auto n = body.lower()[i];
+      const auto n = body.interface_nodes()[i];
       side.v_x[i] += side.sign * side.share_x[i] * change_x;
       side.v_y[i] += side.share_y[i] * change_y;
       body.v_m_per_s().x[n] = side.v_x[i];
@@ -290,41 +294,42 @@ void Coupling::add_works_of_loads(std::span<const Body> bodies, double dt_s, dou
     for (const auto& dashpot : body.contact_dashpots()) {
       const auto i = dashpot.at;
       if (!is_own(i)) continue;
-      works.boundary_work += dashpot_work(dashpot, body.lower_mass_kg()[i], 0.5 * (v_x[i] + v_x_before[i]),
-                                          0.5 * (v_y[i] + v_y_before[i]));
+      works.boundary_work += dashpot_work(dashpot, body.interface_mass_kg()[i],
+                                          0.5 * (v_x[i] + v_x_before[i]), 0.5 * (v_y[i] + v_y_before[i]));
     }
   };
   if (sides_.empty())
-    add_dashpots(bodies.front(), face_.v_x_m_per_s, face_.v_y_m_per_s, v_x_before_, v_y_before_);
+    add_dashpots(bodies.front(), interface_.v_x_m_per_s, interface_.v_y_m_per_s, v_x_before_, v_y_before_);
   for (std::size_t s = 0; s < sides_.size(); ++s)
     add_dashpots(bodies[s], sides_[s].v_x, sides_[s].v_y, sides_[s].v_x_before, sides_[s].v_y_before);
   for (std::size_t i = own_begin_; i < std::min(own_end_, prestress_t_Pa_.size()); ++i)
     works.prestress_work += 0.5 * dt_s * tributary_m_[i] *
-                            (prestress_t_Pa_[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]) -
-                             prestress_p_Pa_[i] * (face_.v_y_m_per_s[i] + v_y_before_[i]));
+                            (prestress_t_Pa_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]) -
+                             prestress_p_Pa_[i] * (interface_.v_y_m_per_s[i] + v_y_before_[i]));
   for (const auto i : trigger_nodes_)
     if (is_own(i))
-      works.trigger_work += 0.5 * impulse_s * trigger_force_N_[i] * (face_.v_x_m_per_s[i] + v_x_before_[i]);
+      works.trigger_work +=
+          0.5 * impulse_s * trigger_force_N_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
 }
 
 void Coupling::append_sample(std::span<const Body> bodies, double time_s, record::History& history) const {
   history.time_s.push_back(time_s);
-  for (std::size_t i = 0; i < face_.size(); ++i)
+  for (std::size_t i = 0; i < interface_.size(); ++i)
     history.slip_m.push_back(relative_u_x_m(bodies, i) - start_u_x_m_[i]);
   const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
   };
-  append(history.slip_rate_m_per_s, face_.slip_rate_m_per_s);
-  append(history.t_Pa, face_.t_Pa);
-  append(history.p_Pa, face_.p_Pa);
+  append(history.slip_rate_m_per_s, interface_.slip_rate_m_per_s);
+  append(history.t_Pa, interface_.t_Pa);
+  append(history.p_Pa, interface_.p_Pa);
 }
 
 void Coupling::reverse() {
   const auto negate = [](std::vector<double>& values) {
     for (double& value : values) value = -value;
   };
-  for (auto* v :
-       {&face_.v_x_m_per_s, &face_.v_y_m_per_s, &face_.slip_rate_m_per_s, &face_.acceleration_m_per_s2})
+  for (auto* v : {&interface_.v_x_m_per_s, &interface_.v_y_m_per_s, &interface_.slip_rate_m_per_s,
+                  &interface_.acceleration_m_per_s2})
     negate(*v);
   for (auto& side : sides_)
     for (auto* v : {&side.v_x, &side.v_y}) negate(*v);

@@ -17,8 +17,8 @@
 
 namespace slipfront::motion {
 
-/// What acts on the interface of a state that begins to move, besides the state itself. All [lower], or empty
-/// for none.
+/// What acts on the interface of a state that begins to move, besides the state itself. All [interface
+/// nodes], or empty for none.
 struct Loads {
   /// External tractions: t drives the plate to +x, p presses it down; those on a body below are opposite.
   std::vector<double> prestress_t_Pa = {}, prestress_p_Pa = {};
@@ -54,19 +54,19 @@ class Coupling {
   /// Turns the relative motion round.
   void reverse();
 
-  const interface::Interface& state() const { return face_; }
+  const interface::Interface& state() const { return interface_; }
   /// See Stepper::visit_columns. @param nodes  places along the interface
   template <class Visit>
   void visit_nodes(solid::Span nodes, Visit&& visit) {
     const auto n = static_cast<std::size_t>(nodes.end - nodes.begin);
     const auto visit_all = [&](auto& values) { visit(values.data() + nodes.begin, n); };
-    for (auto* values :
-         {&face_.intact, &face_.v_x_m_per_s, &face_.v_y_m_per_s, &face_.u_y_m, &face_.slip_rate_m_per_s,
-          &face_.t_Pa, &face_.p_Pa, &face_.demand_Pa, &face_.strength_Pa, &face_.slip_m, &face_.relaxed_Pa,
-          &face_.target_Pa, &face_.acceleration_m_per_s2})
+    for (auto* values : {&interface_.intact, &interface_.v_x_m_per_s, &interface_.v_y_m_per_s,
+                         &interface_.u_y_m, &interface_.slip_rate_m_per_s, &interface_.t_Pa, &interface_.p_Pa,
+                         &interface_.trial_traction_Pa, &interface_.strength_Pa, &interface_.slip_m,
+                         &interface_.relaxed_Pa, &interface_.target_Pa, &interface_.acceleration_m_per_s2})
       visit_all(*values);
-    visit_all(face_.slipping);
-    visit_all(face_.locked);
+    visit_all(interface_.slipping);
+    visit_all(interface_.locked);
     for (auto& side : sides_) {
       visit_all(side.v_x);
       visit_all(side.v_y);
@@ -78,12 +78,12 @@ class Coupling {
 
   /// See Stepper::visit_state.
   template <class Visitor>
-  void visit_state(Visitor& visitor, const Body& plate, const PlaceInWhole& place);
-  void take_state() { set_trigger(trigger_, std::vector<double>(trigger_force_N_)); }
+  void visit_state(Visitor& visitor, const Body& plate, const SubdomainPlace& place);
+  void update_after_restore() { set_trigger(trigger_, std::vector<double>(trigger_force_N_)); }
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(face_);
+    archive(interface_);
     for (auto* values : {&v_x_before_, &v_y_before_, &v_y_trial_, &trigger_force_N_, &start_u_x_m_})
       archive_vector(archive, *values);
     for (auto& side : sides_)
@@ -92,8 +92,8 @@ class Coupling {
     archive(prestress_t_Pa_, prestress_p_Pa_, trigger_);
     if constexpr (Archive::is_loading::value) {
       if (prestress_t_Pa_.size() != prestress_p_Pa_.size() ||
-          (!prestress_t_Pa_.empty() && prestress_t_Pa_.size() != face_.size()))
-        throw UserError("the state that was kept has tractions of another interface");
+          (!prestress_t_Pa_.empty() && prestress_t_Pa_.size() != interface_.size()))
+        throw UserError("the saved state has tractions of another interface");
       set_trigger(trigger_, std::vector<double>(trigger_force_N_));
     }
   }
@@ -124,7 +124,7 @@ class Coupling {
   void append_sample(std::span<const Body> bodies, double time_s, record::History& history) const;
 
   interface::ContactModel contact_;
-  interface::Interface face_;
+  interface::Interface interface_;
   std::vector<double> tributary_m_;      ///< [nodes]
   std::vector<double> contact_mass_kg_;  ///< along y, effective; see Dashpot. [nodes]
   std::vector<double> v_x_before_, v_y_before_, v_x_trial_, v_y_trial_;  ///< relative. [nodes]
@@ -138,26 +138,27 @@ class Coupling {
 };
 
 template <class Visitor>
-void Coupling::visit_state(Visitor& visitor, const Body& plate, const PlaceInWhole& place) {
+void Coupling::visit_state(Visitor& visitor, const Body& plate, const SubdomainPlace& place) {
   bool has_prestress = !prestress_t_Pa_.empty();
   visitor.flag(has_prestress);
   if (has_prestress) {
-    prestress_t_Pa_.resize(face_.size());
-    prestress_p_Pa_.resize(face_.size());
+    prestress_t_Pa_.resize(interface_.size());
+    prestress_p_Pa_.resize(interface_.size());
   }
   visitor.list(
-      KeptBy::place, 0, face_.size(),
-      [&](std::size_t k) { return place.lower.number_at(static_cast<int>(k)); },
-      [&](std::size_t k) { return plate.columns().column_of(plate.lower()[k]); },
+      StateKey::place, 0, interface_.size(),
+      [&](std::size_t k) { return place.interface_nodes.number_at(static_cast<int>(k)); },
+      [&](std::size_t k) { return plate.columns().column_of(plate.interface_nodes()[k]); },
       [&](std::size_t k, auto&& f) {
         for (auto* values :
-             {&face_.intact, &face_.v_x_m_per_s, &face_.v_y_m_per_s, &face_.u_y_m, &face_.slip_rate_m_per_s,
-              &face_.t_Pa, &face_.p_Pa, &face_.demand_Pa, &face_.strength_Pa, &face_.slip_m,
-              &face_.relaxed_Pa, &face_.target_Pa, &face_.acceleration_m_per_s2, &v_x_before_, &v_y_before_,
-              &v_y_trial_, &trigger_force_N_, &start_u_x_m_})
+             {&interface_.intact, &interface_.v_x_m_per_s, &interface_.v_y_m_per_s, &interface_.u_y_m,
+              &interface_.slip_rate_m_per_s, &interface_.t_Pa, &interface_.p_Pa,
+              &interface_.trial_traction_Pa, &interface_.strength_Pa, &interface_.slip_m,
+              &interface_.relaxed_Pa, &interface_.target_Pa, &interface_.acceleration_m_per_s2, &v_x_before_,
+              &v_y_before_, &v_y_trial_, &trigger_force_N_, &start_u_x_m_})
           f((*values)[k]);
-        f(face_.slipping[k]);
-        f(face_.locked[k]);
+        f(interface_.slipping[k]);
+        f(interface_.locked[k]);
         for (auto& side : sides_)
           for (auto* values : {&side.v_x, &side.v_y, &side.v_x_before, &side.v_y_before}) f((*values)[k]);
         if (has_prestress) {
@@ -165,7 +166,7 @@ void Coupling::visit_state(Visitor& visitor, const Body& plate, const PlaceInWho
           f(prestress_p_Pa_[k]);
         }
       });
-  visitor.flag(face_.begun);
+  visitor.flag(interface_.begun);
   visitor.trigger(trigger_);
 }
 

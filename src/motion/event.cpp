@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "motion/watch.hpp"
+#include "motion/blow_up_monitor.hpp"
 
 namespace slipfront::motion {
 
@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t monitor_interval = 50;
 
 /// More rows of energies than that, 9 GB of them, are no more than asked for.
-constexpr double most_rows_in_advance = 1e8;
+constexpr double max_rows_in_advance = 1e8;
 
 /// Empties a history but for its places; the memory stays for the next rows.
 void clear_rows(record::History& history) {
@@ -121,21 +121,21 @@ EventRun::EventRun(TimeStepper& stepper, const statics::Equilibrium& state, cons
       snapshot_times_s_(sampling.snapshot_times_s),
       sample_interval_s_(std::max(sampling.history_interval_s, stepper.step_s())),
       energy_interval_s_(std::max(sampling.energy_interval_s, stepper.step_s())),
-      recorder_(state, mu_s, halo, quiet_part * slip_rate_scale_m_per_s(state, mu_s, waves)),
-      quiet_(stepper, slip_rate_scale_m_per_s(state, mu_s, waves), last_change_s(trigger)),
-      watch_(std::in_place, stepper, waves.c_L_m_per_s) {
+      recorder_(state, mu_s, halo, rest_slip_fraction * slip_rate_scale_m_per_s(state, mu_s, waves)),
+      rest_criterion_(stepper, slip_rate_scale_m_per_s(state, mu_s, waves), last_change_s(trigger)),
+      blow_up_monitor_(std::in_place, stepper, waves.c_L_m_per_s) {
   const double all_steps = std::ceil(time.end_s / stepper.step_s() * (1 - 1e-12));
   if (all_steps > 1e12)
     throw UserError("{} = {:g} takes {:g} steps of {:.4g} s; choose an earlier end", Key("time.end_s"),
                     time.end_s, all_steps, stepper.step_s());
   n_steps_ = static_cast<std::int64_t>(all_steps);
-  event_.quiet_slip_rate_m_per_s = quiet_part * slip_rate_scale_m_per_s(state, mu_s, waves);
+  event_.quiet_slip_rate_m_per_s = rest_slip_fraction * slip_rate_scale_m_per_s(state, mu_s, waves);
   event_.history.x_m = state.tractions.x_m;
   if (!stepper.probes().empty()) probes_.emplace(probe_recorder(stepper, sampling.probe_interval_s));
   // All that may come at once: while it grew, the rows would be there twice.
   event_.energies.reserve(
-      static_cast<std::size_t>(std::min(time.end_s / energy_interval_s_ + 3, most_rows_in_advance)));
-  event_.energies.push_back(watch_->start());
+      static_cast<std::size_t>(std::min(time.end_s / energy_interval_s_ + 3, max_rows_in_advance)));
+  event_.energies.push_back(blow_up_monitor_->start());
 }
 
 void EventRun::require_possible(std::int64_t checked_step) const {
@@ -143,130 +143,130 @@ void EventRun::require_possible(std::int64_t checked_step) const {
   const auto is_count = [step](std::int64_t rows) { return rows >= 0 && rows <= step + 2; };
   if (step < 0 || step > n_steps_ || checked_step < 0 || checked_step > step || !is_count(n_samples_) ||
       !is_count(n_energies_) || next_snapshot_ > snapshot_times_s_.size() || event_.energies.empty())
-    throw UserError("the state that was kept is of another event");
+    throw UserError("this checkpoint belongs to another case (number of steps differs); start a new run");
 }
 
-void EventRun::take_snapshots(Sink* sink) {
+void EventRun::take_snapshots(EventObserver* observer) {
   while (next_snapshot_ < snapshot_times_s_.size() &&
          stepper_.time_s() >= snapshot_times_s_[next_snapshot_]) {
-    if (sink != nullptr)
-      sink->snapshot(stepper_);
+    if (observer != nullptr)
+      observer->snapshot(stepper_);
     else
       event_.snapshots.push_back(stepper_.snapshot());
     ++next_snapshot_;
   }
 }
 
-void EventRun::take_probe_rows(Sink* sink) {
+void EventRun::take_probe_rows(EventObserver* observer) {
   if (!probes_) return;
-  if (sink == nullptr) return probes_->take_rows(stepper_.step(), event_.probes);
+  if (observer == nullptr) return probes_->take_rows(stepper_.step(), event_.probes);
   record::ProbeRecord rows;
   probes_->take_rows(stepper_.step(), rows);
-  if (!rows.time_s.empty()) sink->probe(rows);
+  if (!rows.time_s.empty()) observer->probe(rows);
 }
 
 double EventRun::moved_s() const {
-  return std::max({quiet_.since_s(), recorder_.last_motion_s(), recorder_.last_onset_s()});
+  return std::max({rest_criterion_.since_s(), recorder_.last_motion_s(), recorder_.last_onset_s()});
 }
 
-bool EventRun::is_quiet() const {
+bool EventRun::is_at_rest() const {
   return stepper_.time_s() - moved_s() > time_.quiet_s;
 }
 
-bool EventRun::is_quiet_all_over() {
-  if (watch_->checked_step() == stepper_.step() && watch_->last())
-    quiet_.see_kinetic_energy(stepper_.time_s(), watch_->last()->kinetic);
-  else if (is_quiet())
-    quiet_.see_kinetic_energy(stepper_.time_s(), stepper_.kinetic_energy_J_per_m());
-  return is_quiet();
+bool EventRun::is_at_rest_everywhere() {
+  if (blow_up_monitor_->checked_step() == stepper_.step() && blow_up_monitor_->last())
+    rest_criterion_.see_kinetic_energy(stepper_.time_s(), blow_up_monitor_->last()->kinetic);
+  else if (is_at_rest())
+    rest_criterion_.see_kinetic_energy(stepper_.time_s(), stepper_.kinetic_energy_J_per_m());
+  return is_at_rest();
 }
 
 double EventRun::energy_time_s() const {
   return static_cast<double>(n_energies_) * energy_interval_s_;
 }
 
-Between EventRun::between(Sink* sink, record::History& row) {
-  Between between;
-  between.sample = [this, sink, &row]() -> record::History* {
+StepCallbacks EventRun::callbacks(EventObserver* observer, record::History& row) {
+  StepCallbacks callbacks;
+  callbacks.sample = [this, observer, &row]() -> record::History* {
     if (stepper_.time_s() < static_cast<double>(n_samples_) * sample_interval_s_) return nullptr;
     n_samples_ = next_row(n_samples_, stepper_.time_s(), sample_interval_s_);
-    return sink != nullptr ? &row : &event_.history;
+    return observer != nullptr ? &row : &event_.history;
   };
-  if (probes_) between.displacements = [this](std::int64_t step) { return probes_->room_for(step); };
-  between.go_on = [this, sink, &row](const SlipRates& rates) {
+  if (probes_) callbacks.displacements = [this](std::int64_t step) { return probes_->room_for(step); };
+  callbacks.may_continue = [this, observer, &row](const SlipRates& rates) {
     if (!row.time_s.empty()) {
-      sink->sample(row);
+      observer->sample(row);
       clear_rows(row);
     }
-    const bool physical = watch_->look(rates);
-    quiet_.see_slip_rate(stepper_.time_s(), watch_->fastest_slip_m_per_s());
-    return physical && !is_quiet();
+    const bool physical = blow_up_monitor_->check(rates);
+    rest_criterion_.see_slip_rate(stepper_.time_s(), blow_up_monitor_->fastest_slip_m_per_s());
+    return physical && !is_at_rest();
   };
   // A step less, since the sum may be rounded up.
-  between.sure_steps = [this] {
+  callbacks.guaranteed_steps = [this] {
     return std::max<std::int64_t>(steps_until(stepper_, moved_s() + time_.quiet_s) - 1, 1);
   };
-  return between;
+  return callbacks;
 }
 
-std::int64_t EventRun::steps_to_next_look() const {
+std::int64_t EventRun::steps_to_next_check() const {
   const std::int64_t steps =
       std::min({n_steps_ - stepper_.step(), monitor_interval - stepper_.step() % monitor_interval,
-                watch_->steps_to_check(), steps_until(stepper_, energy_time_s())});
+                blow_up_monitor_->steps_to_check(), steps_until(stepper_, energy_time_s())});
   if (next_snapshot_ == snapshot_times_s_.size()) return steps;
   return std::min(steps, steps_until(stepper_, snapshot_times_s_[next_snapshot_]));
 }
 
-bool EventRun::look() {
+bool EventRun::check_motion() {
   const bool energies = stepper_.time_s() >= energy_time_s();
   if (energies) {
     n_energies_ = next_row(n_energies_, stepper_.time_s(), energy_interval_s_);
     event_.energies.push_back(stepper_.energies());
   }
-  if (auto trouble = watch_->trouble(energies ? &event_.energies.back() : nullptr); !trouble.empty()) {
+  if (auto failure = blow_up_monitor_->failure(energies ? &event_.energies.back() : nullptr);
+      !failure.empty()) {
     event_.end = EventEnd::blow_up;
-    event_.blow_up = blow_up_message(stepper_, trouble);
+    event_.blow_up = blow_up_message(stepper_, failure);
     return false;
   }
-  if (!is_quiet_all_over()) return true;
+  if (!is_at_rest_everywhere()) return true;
   event_.end = EventEnd::quiet;
   return false;
 }
 
-Event EventRun::run(const Monitor& monitor, Sink* sink) {
+Event EventRun::run(const Monitor& monitor, EventObserver* observer) {
   record::History row;
-  const auto samples = between(sink, row);
+  const auto samples = callbacks(observer, row);
   while (stepper_.step() < n_steps_) {
-    take_snapshots(sink);
-    const auto most_steps = steps_to_next_look();
-    if (probes_) probes_->expect(stepper_.step(), most_steps);
-    stepper_.advance(recorder_, most_steps, samples);
-    take_probe_rows(sink);
-    if (!look()) break;
+    take_snapshots(observer);
+    const auto max_steps = steps_to_next_check();
+    if (probes_) probes_->expect(stepper_.step(), max_steps);
+    stepper_.advance(recorder_, max_steps, samples);
+    take_probe_rows(observer);
+    if (!check_motion()) break;
     if (stepper_.step() % monitor_interval == 0 && !monitor(stepper_.step(), n_steps_)) {
       event_.end = EventEnd::interrupted;
       break;
     }
   }
-  take_snapshots(sink);
+  take_snapshots(observer);
   event_.steps = stepper_.step();
   event_.time_s = stepper_.time_s();
   if (event_.energies.back().time_s < event_.time_s) event_.energies.push_back(stepper_.energies());
-  event_.record = recorder_.take(event_.time_s);
+  event_.record = recorder_.record_until(event_.time_s);
   return std::move(event_);
 }
 
 Event run_event(TimeStepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s,
                 const Waves& waves, const interface::Trigger& trigger, const TimeStepping& time,
-                const Sampling& sampling, int halo, const Monitor& monitor, Sink* sink) {
-  return EventRun(stepper, state, mu_s, waves, trigger, time, sampling, halo).run(monitor, sink);
+                const Sampling& sampling, int halo, const Monitor& monitor, EventObserver* observer) {
+  return EventRun(stepper, state, mu_s, waves, trigger, time, sampling, halo).run(monitor, observer);
 }
 
 namespace {
 
 /// Of a ramp that is expected to end at a shear: twice as many as to that.
-std::int64_t most_steps(const Stepper& stepper, double shear_m, double top_speed_m_per_s,
-                        double c_L_m_per_s) {
+std::int64_t max_steps(const Stepper& stepper, double shear_m, double top_speed_m_per_s, double c_L_m_per_s) {
   const double steps = 2 * shear_m / (top_speed_m_per_s * stepper.step_s());
   if (!(steps <= 2e12))
     throw UserError("the ramp with {} = {:g} takes {:g} steps; choose a higher speed, or {} = direct",
@@ -286,19 +286,19 @@ RampRun::RampRun(Stepper& stepper, const statics::Equilibrium& tilted, const sta
       top_speed_m_per_s_(top_speed_m_per_s),
       c_L_m_per_s_(c_L_m_per_s),
       expected_shear_m_(expected_shear_m),
-      most_steps_(most_steps(stepper, expected_shear_m, top_speed_m_per_s, c_L_m_per_s)),
+      max_steps_(max_steps(stepper, expected_shear_m, top_speed_m_per_s, c_L_m_per_s)),
       recorder_(tilted, mu_s, 0),
-      watch_(std::in_place, stepper, c_L_m_per_s),
+      blow_up_monitor_(std::in_place, stepper, c_L_m_per_s),
       from_m_(tilted.inside_from_m),
       to_m_(tilted.inside_to_m) {}
 
 void RampRun::require_possible(std::int64_t checked_step) const {
   const auto step = stepper_.step();
   const auto& u_m = ramp_.common.u_m;
-  if (step < 0 || step > most_steps_ + 1 || checked_step < 0 || checked_step > step ||
-      (have_common_ && (!statics::has_nodes(ramp_.common, tilted_.contact.size()) ||
-                        u_m.size() != tilted_.u_m.size() || u_m.y.size() != u_m.x.size())))
-    throw UserError("the state that was kept is of another ramp");
+  if (step < 0 || step > max_steps_ + 1 || checked_step < 0 || checked_step > step ||
+      (has_common_ && (!statics::has_nodes(ramp_.common, tilted_.contact.size()) ||
+                       u_m.size() != tilted_.u_m.size() || u_m.y.size() != u_m.x.size())))
+    throw UserError("this checkpoint belongs to another case (ramp or mesh differs); start a new run");
 }
 
 /// The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.
@@ -361,27 +361,27 @@ bool RampRun::reaches(double share) const {
 Ramp RampRun::run(const Monitor& monitor) {
   constexpr std::int64_t renewal_interval = 1000;
   bool reaches_common = false, reaches_handover = false;
-  Between between;
-  between.go_on = [&](const SlipRates& rates) {
+  StepCallbacks callbacks;
+  callbacks.may_continue = [&](const SlipRates& rates) {
     reaches_common = reaches(1 - loading_.critical_margin);
     reaches_handover = reaches_common && reaches(1 - ramp_handover);
-    return watch_->look(rates) && !(have_common_ ? reaches_handover : reaches_common);
+    return blow_up_monitor_->check(rates) && !(has_common_ ? reaches_handover : reaches_common);
   };
   for (;;) {
-    if (stepper_.step() > most_steps_)
+    if (stepper_.step() > max_steps_)
       throw UserError(
           "the ramp does not bring t/p inside the interface to mu_s within a shear of {:.4g} m, twice the "
           "one found directly; choose another {}, or {} = direct",
           2 * expected_shear_m_, Key("loading.shear_speed_over_c_L"), Key("loading.method"));
     stepper_.advance(recorder_,
                      std::min({renewal_interval - stepper_.step() % renewal_interval,
-                               watch_->steps_to_check(), most_steps_ + 1 - stepper_.step()}),
-                     between);
-    if (auto trouble = watch_->trouble(nullptr); !trouble.empty())
-      throw BlowUp(blow_up_message(stepper_, trouble));
-    if (!have_common_ && reaches_common) {
+                               blow_up_monitor_->steps_to_check(), max_steps_ + 1 - stepper_.step()}),
+                     callbacks);
+    if (auto failure = blow_up_monitor_->failure(nullptr); !failure.empty())
+      throw BlowUp(blow_up_message(stepper_, failure));
+    if (!has_common_ && reaches_common) {
       ramp_.common = state_now();
-      have_common_ = true;
+      has_common_ = true;
     }
     if (reaches_handover) {
       ramp_.spontaneous = state_now();
@@ -398,7 +398,7 @@ Ramp RampRun::run(const Monitor& monitor) {
     }
   }
   ramp_.steps = stepper_.step();
-  ramp_.record = recorder_.take(stepper_.time_s());
+  ramp_.record = recorder_.record_until(stepper_.time_s());
   return std::move(ramp_);
 }
 

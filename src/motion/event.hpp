@@ -9,11 +9,11 @@
 
 #include "interface/trigger.hpp"
 #include "mesh/mesh.hpp"
-#include "motion/quiet.hpp"
+#include "motion/blow_up_monitor.hpp"
 #include "motion/recorder.hpp"
+#include "motion/rest_criterion.hpp"
 #include "motion/stepper.hpp"
 #include "motion/time_stepper.hpp"
-#include "motion/watch.hpp"
 #include "record/record.hpp"
 #include "statics/statics.hpp"
 
@@ -31,10 +31,10 @@ struct Sampling {
   double probe_interval_s = 0.5e-6;      ///< of the stepper's probes; one step where that is longer
 };
 
-/// Takes what an event is to keep of its motion, while it goes.
-class Sink {
+/// Observes an event under way.
+class EventObserver {
  public:
-  virtual ~Sink() = default;
+  virtual ~EventObserver() = default;
   /// One row of the history; x_m is empty.
   virtual void sample(const record::History& row) = 0;
   /// It is time for a snapshot.
@@ -52,14 +52,14 @@ struct Event {
   std::string blow_up;  ///< which step, and why
   std::int64_t steps = 0;
   double time_s = 0;
-  double quiet_slip_rate_m_per_s = 0;  ///< slower slip that does not grow counts as none, see Quiet
+  double quiet_slip_rate_m_per_s = 0;  ///< slower slip that does not grow counts as none, see RestCriterion
   record::SlipRecord record;
-  record::History history;                 ///< without a sink
-  std::vector<Snapshot> snapshots;         ///< without a sink
-  record::ProbeRecord probes;              ///< without a sink
+  record::History history;                 ///< without an observer
+  std::vector<Snapshot> snapshots;         ///< without an observer
+  record::ProbeRecord probes;              ///< without an observer
   std::vector<record::Energies> energies;  ///< at the start, at the given interval, and at the end
 
-  /// Without what a sink would take.
+  /// Without what an observer would take.
   template <class Archive>
   void serialize(Archive& archive) {
     archive(end, blow_up, steps, time_s, quiet_slip_rate_m_per_s, record, energies);
@@ -74,7 +74,8 @@ std::vector<std::size_t> trigger_zone(const statics::Equilibrium& state, interfa
 double load_direction(const statics::Equilibrium& state, std::span<const double> tributary_m,
                       std::span<const std::size_t> zone);
 
-/// Forces on the interface nodes that the trigger adds, see TriggerForm, N per unit thickness. [lower]
+/// Forces on the interface nodes that the trigger adds, see TriggerForm, N per unit thickness. [interface
+/// nodes]
 std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<const double> tributary_m,
                                    interface::EventKind kind, const interface::Trigger& trigger,
                                    const PerNode& mu_s);
@@ -83,9 +84,10 @@ std::vector<double> trigger_forces(const statics::Equilibrium& state, std::span<
 int halo_for(const mesh::Mesh& mesh, double l_star_m);
 
 /// An event under way: steps a started stepper until the end time, or until nothing has moved for
-/// time.quiet_s (see Quiet) after the trigger's loads last changed. The motion is checked: in every step
-/// numbers finite and slip rates below c_L, with each of the energies and at least every 100 steps energy not
-/// above what there was at the start plus what the loaded edge and the trigger have added, by more than 1 %.
+/// time.quiet_s (see RestCriterion) after the trigger's loads last changed. The motion is checked: in every
+/// step numbers finite and slip rates below c_L, with each of the energies and at least every 100 steps
+/// energy not above what there was at the start plus what the loaded edge and the trigger have added, by more
+/// than 1 %.
 class EventRun {
  public:
   /// @param state  tractions and contact before the event; its displacements are not needed
@@ -93,43 +95,44 @@ class EventRun {
            const interface::Trigger& trigger, const TimeStepping& time, const Sampling& sampling, int halo);
 
   /// To the end, or until the monitor interrupts it, which it may do for good.
-  /// @param sink  takes samples and snapshots; without one the event keeps them all
-  Event run(const Monitor& monitor, Sink* sink = nullptr);
+  /// @param observer  takes samples and snapshots; without one the event keeps them all
+  Event run(const Monitor& monitor, EventObserver* observer = nullptr);
 
   std::int64_t n_steps() const { return n_steps_; }  ///< to the end time
   const std::vector<record::Energies>& energies() const { return event_.energies; }
   /// Of what has happened so far.
-  record::SlipRecord record() { return recorder_.take(stepper_.time_s()); }
+  record::SlipRecord record() { return recorder_.record_until(stepper_.time_s()); }
 
-  /// All that changes while the monitor is asked, but for the stepper and what a sink would take.
+  /// All that changes while the monitor is asked, but for the stepper and what an observer would take.
   template <class Archive>
   void serialize(Archive& archive) {
-    auto start = watch_->start();
-    auto checked_step = watch_->checked_step();
-    archive(recorder_, quiet_, start, checked_step, event_.energies, n_samples_, n_energies_, next_snapshot_);
+    auto start = blow_up_monitor_->start();
+    auto checked_step = blow_up_monitor_->checked_step();
+    archive(recorder_, rest_criterion_, start, checked_step, event_.energies, n_samples_, n_energies_,
+            next_snapshot_);
     if (probes_) archive(*probes_);
     if constexpr (Archive::is_loading::value) {
       require_possible(checked_step);
-      watch_.emplace(stepper_, waves_.c_L_m_per_s, start, checked_step);
+      blow_up_monitor_.emplace(stepper_, waves_.c_L_m_per_s, start, checked_step);
     }
   }
 
  private:
   /// Refuses counts that no event of this length comes to.
   void require_possible(std::int64_t checked_step) const;
-  void take_snapshots(Sink* sink);
-  void take_probe_rows(Sink* sink);
+  void take_snapshots(EventObserver* observer);
+  void take_probe_rows(EventObserver* observer);
   /// When something has last moved, as far as the interface tells.
   double moved_s() const;
   /// As far as the interface tells.
-  bool is_quiet() const;
+  bool is_at_rest() const;
   /// As far as the energies that are known tell as well; where they are not, they are computed.
-  bool is_quiet_all_over();
-  Between between(Sink* sink, record::History& row);
-  std::int64_t steps_to_next_look() const;
+  bool is_at_rest_everywhere();
+  StepCallbacks callbacks(EventObserver* observer, record::History& row);
+  std::int64_t steps_to_next_check() const;
   double energy_time_s() const;
-  /// Looks at the motion. @return whether the event goes on
-  bool look();
+  /// Checks the motion. @return whether the event continues
+  bool check_motion();
 
   TimeStepper& stepper_;
   Waves waves_;
@@ -138,8 +141,8 @@ class EventRun {
   double sample_interval_s_, energy_interval_s_;
   std::int64_t n_steps_ = 0;
   Recorder recorder_;
-  Quiet quiet_;
-  std::optional<Watch> watch_;  ///< always there
+  RestCriterion rest_criterion_;
+  std::optional<BlowUpMonitor> blow_up_monitor_;  ///< always there
   std::optional<ProbeRecorder> probes_;
   Event event_;
   std::int64_t n_samples_ = 0, n_energies_ = 1;
@@ -147,7 +150,8 @@ class EventRun {
 };
 Event run_event(TimeStepper& stepper, const statics::Equilibrium& state, const PerNode& mu_s,
                 const Waves& waves, const interface::Trigger& trigger, const TimeStepping& time,
-                const Sampling& sampling, int halo, const Monitor& monitor, Sink* sink = nullptr);
+                const Sampling& sampling, int halo, const Monitor& monitor,
+                EventObserver* observer = nullptr);
 
 /// States that the explicit ramp reaches, and what happened on the way.
 struct Ramp {
@@ -183,17 +187,17 @@ class RampRun {
   /// @throws BlowUp, and UserError where mu_s is not reached within twice the shear `expected_shear_m`.
   Ramp run(const Monitor& monitor);
 
-  std::int64_t expected_steps() const { return most_steps_ / 2; }
+  std::int64_t expected_steps() const { return max_steps_ / 2; }
 
   /// All that changes while the monitor is asked, but for the stepper.
   template <class Archive>
   void serialize(Archive& archive) {
-    auto start = watch_->start();
-    auto checked_step = watch_->checked_step();
-    archive(recorder_, start, checked_step, ramp_, have_common_, from_m_, to_m_);
+    auto start = blow_up_monitor_->start();
+    auto checked_step = blow_up_monitor_->checked_step();
+    archive(recorder_, start, checked_step, ramp_, has_common_, from_m_, to_m_);
     if constexpr (Archive::is_loading::value) {
       require_possible(checked_step);
-      watch_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+      blow_up_monitor_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
     }
   }
 
@@ -209,11 +213,11 @@ class RampRun {
   const statics::Loading& loading_;
   PerNode mu_s_;
   double top_speed_m_per_s_, c_L_m_per_s_, expected_shear_m_;
-  std::int64_t most_steps_;
+  std::int64_t max_steps_;
   Recorder recorder_;
-  std::optional<Watch> watch_;  ///< always there
+  std::optional<BlowUpMonitor> blow_up_monitor_;  ///< always there
   Ramp ramp_;
-  bool have_common_ = false;
+  bool has_common_ = false;
   /// The contact's extent changes slowly; the peak is looked for between bounds that are renewed at times.
   double from_m_, to_m_;
 };

@@ -15,7 +15,7 @@ namespace slipfront::motion {
 namespace {
 
 /// More stages leave more of a halo's way to the time in which steps are computed, and are more messages.
-constexpr int most_stages = 8;
+constexpr int max_stages = 8;
 constexpr int attended_in_sweep = 16;
 constexpr double bytes_of_node = 4 * sizeof(double);
 
@@ -25,44 +25,44 @@ int columns_in(solid::Span columns) {
 
 }  // namespace
 
-Halo::Halo(Processes& processes, const Division& division, Stepper& stepper, double stage_bytes)
+Halo::Halo(Processes& processes, const Partition& partition, Stepper& stepper, double stage_bytes)
     : processes_(processes),
       stepper_(stepper),
-      columns_per_step_(division.columns_per_step),
-      steps_per_exchange_(division.steps_per_exchange) {
-  const int rank = processes.rank(), n_parts = division.n_parts();
-  SLIPFRONT_ASSERT(n_parts > 1, "a part has a neighbour");
-  const int below = division.halo_below(rank), above = division.halo_above(rank);
-  const auto own = division.own(rank);
+      columns_per_step_(partition.columns_per_step),
+      steps_per_exchange_(partition.steps_per_exchange) {
+  const int rank = processes.rank(), n_subdomains = partition.n_subdomains();
+  SLIPFRONT_ASSERT(n_subdomains > 1, "a subdomain has a neighbour");
+  const int below = partition.halo_below(rank), above = partition.halo_above(rank);
+  const auto own = partition.own(rank);
   // Beyond the sides of a plate that repeats lie the columns of its other end.
   const auto beyond = [&](int first_column, int count) {
-    const int n = division.first.back(), begin = (first_column + n) % n;
+    const int n = partition.first.back(), begin = (first_column + n) % n;
     return solid::Span{begin, begin + count};
   };
-  make_stages(division.halo, stage_bytes);
+  make_stages(partition.halo, stage_bytes);
   if (below > 0)
-    add_neighbour((rank + n_parts - 1) % n_parts, true, {own.begin, own.begin + below},
+    add_neighbour((rank + n_subdomains - 1) % n_subdomains, true, {own.begin, own.begin + below},
                   beyond(own.begin - below, below));
   if (above > 0)
-    add_neighbour((rank + 1) % n_parts, false, {own.end - above, own.end}, beyond(own.end, above));
+    add_neighbour((rank + 1) % n_subdomains, false, {own.end - above, own.end}, beyond(own.end, above));
   n_put_in_ = n_stages();
 }
 
 void Halo::make_stages(int columns, double stage_bytes) {
-  // The same for all parts: of rows alone, and of the halo's width. Bodies move row beside row, and are cut
-  // at the same ones, a body that has less of them in fewer stages.
+  // The same for all subdomains: of rows alone, and of the halo's width. Bodies move row beside row, and are
+  // cut at the same ones, a body that has less of them in fewer stages.
   const int n_bands = stepper_.n_bands();
   std::vector<int> n_rows, n_first;
-  int most_above = 0;
+  int max_above = 0;
   double nodes_above = 0;
   for (std::size_t b = 0; b < stepper_.bodies().size(); ++b) {
     n_rows.push_back(stepper_.bodies()[b].n_rows());
     n_first.push_back(stepper_.rows_moved(b, 0));
-    most_above = std::max(most_above, n_rows[b] - n_first[b]);
+    max_above = std::max(max_above, n_rows[b] - n_first[b]);
     nodes_above += 1.0 * (n_rows[b] - n_first[b]) * columns;
   }
   const double suitable = std::ceil(nodes_above * bytes_of_node / stage_bytes);
-  const int n = 1 + static_cast<int>(std::min({suitable, 1.0 * most_above, most_stages - 1.0}));
+  const int n = 1 + static_cast<int>(std::min({suitable, 1.0 * max_above, max_stages - 1.0}));
   for (int k = 0; k < n; ++k) {
     Stage stage;
     stage.has_interface = k == 0;
@@ -70,7 +70,7 @@ void Halo::make_stages(int columns, double stage_bytes) {
       const auto end_of = [&](int number) {
         return n == 1 ? n_rows[b]
                       : std::min(n_rows[b],
-                                 n_first[b] + static_cast<int>(std::int64_t{most_above} * number / (n - 1)));
+                                 n_first[b] + static_cast<int>(std::int64_t{max_above} * number / (n - 1)));
       };
       stage.rows.push_back({k == 0 ? 0 : end_of(k - 1), end_of(k)});
     }
@@ -105,12 +105,12 @@ void Halo::add_neighbour(int rank, bool is_below, solid::Span out, solid::Span i
       std::size_t bytes = 0;
       stepper_.visit_columns(columns, stage.rows, stage.has_interface,
                              [&](const auto* values, std::size_t n) { bytes += n * sizeof(*values); });
-      if (bytes > Processes::most_transferred_bytes)
+      if (bytes > Processes::max_transfer_bytes)
         throw UserError("a halo of {:.3g} bytes is too large for a message; use more processes",
                         static_cast<double>(bytes));
       return std::vector<std::byte>(bytes);
     };
-    // Two parts of a plate that repeats are neighbours on both sides.
+    // Two subdomains of a plate that repeats are neighbours on both sides.
     const int upwards = 2 * k, downwards = upwards + 1;
     for (auto& to : neighbour.to) {
       auto& message = to.emplace_back(Message{room_for(out), nullptr});
@@ -135,20 +135,20 @@ void Halo::renew() {
   put_in_rest();
 }
 
-void Halo::advance(UpdateObserver& observer, std::int64_t n_steps, const Between& between) {
+void Halo::advance(UpdateObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks) {
   const auto begin = Clock::now();
   const double waited_before_s = processes_.counters().exchange_s;
   while (n_steps > 0) {
     const auto n = std::min(steps_per_exchange_ - steps_since_exchange_, n_steps);
     const bool exchanges = steps_since_exchange_ + n == steps_per_exchange_;
-    take_steps(observer, n, between, exchanges);
+    take_steps(observer, n, callbacks, exchanges);
     steps_since_exchange_ = exchanges ? 0 : steps_since_exchange_ + n;
     n_steps -= n;
   }
   computing_s_ += seconds_since(begin) - (processes_.counters().exchange_s - waited_before_s);
 }
 
-void Halo::take_steps(UpdateObserver& observer, std::int64_t n_steps, const Between& between,
+void Halo::take_steps(UpdateObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks,
                       bool exchanges) {
 #ifdef NDEBUG
   constexpr bool are_checked = false;
@@ -160,28 +160,28 @@ void Halo::take_steps(UpdateObserver& observer, std::int64_t n_steps, const Betw
     done += at_once;
     const bool is_sent = exchanges && done == n_steps;
     if (is_sent) begin_sends();
-    stepper_.advance(observer, at_once, between, at_bands(is_sent));
+    stepper_.advance(observer, at_once, callbacks, band_callbacks(is_sent));
     if (is_sent) end_sends();
     if (are_checked) check(steps_since_exchange_ + done, is_sent);
   }
 }
 
-AtBands Halo::at_bands(bool exchanges) {
-  AtBands at_bands;
+BandCallbacks Halo::band_callbacks(bool exchanges) {
+  BandCallbacks band_callbacks;
   // Often enough for what is under way, seldom enough for what is computed.
   const int attended = std::max(1, stepper_.n_bands() / attended_in_sweep);
-  at_bands.before = [this, attended](std::int64_t step, int band) {
+  band_callbacks.before = [this, attended](std::int64_t step, int band) {
     if (step == 0)
       while (n_put_in_ < read_[static_cast<std::size_t>(band)]) put_in(n_put_in_++);
     send_packed();
     // What has been sent in the call before may still be on its way in its first step.
-    if (band % attended == 0 && (step == 0 || n_sent_ > 0)) processes_.attend();
+    if (band % attended == 0 && (step == 0 || n_sent_ > 0)) processes_.make_progress();
   };
   if (exchanges)
-    at_bands.after_last = [this](int band) {
+    band_callbacks.after_last = [this](int band) {
       for (int k = n_packed_; k < complete_[static_cast<std::size_t>(band)]; ++k) pack(k);
     };
-  return at_bands;
+  return band_callbacks;
 }
 
 void Halo::begin_sends() {
@@ -240,7 +240,7 @@ void Halo::put_in(int stage) {
 void Halo::finish() {
   if (n_put_in_ == n_stages()) return;
   put_in_rest();
-  stepper_.settle();
+  stepper_.sync_to_double();
 }
 
 void Halo::put_in_rest() {
@@ -263,7 +263,7 @@ void Halo::check(std::int64_t steps_since_exchange, bool is_sent) {
     const auto right = neighbour.is_below ? solid::Span{end, in.end} : solid::Span{in.begin, end};
     SLIPFRONT_ASSERT(columns_in(right) > 0, "a halo is wider than what becomes wrong");
     if (stepper_.slip_rates().finite)
-      SLIPFRONT_ASSERT(all_finite(right) && all_finite(neighbour.out), "a step reads beyond its part");
+      SLIPFRONT_ASSERT(all_finite(right) && all_finite(neighbour.out), "a step reads beyond its subdomain");
     // All of it is on its way where it is sent: no step may look at what is there.
     stepper_.visit_columns(is_sent ? in : wrong, []<class T>(T* values, std::size_t n) {
       if constexpr (std::is_floating_point_v<T>) std::fill_n(values, n, std::numeric_limits<T>::quiet_NaN());

@@ -8,14 +8,13 @@
 #include <memory>
 #include <vector>
 
-#include "motion/division.hpp"
+#include "motion/partition.hpp"
 #include "motion/stepper.hpp"
 #include "processes/processes.hpp"
 
 namespace slipfront::motion {
 
-/// The columns that a part computes beside its own, see Division, and the steps between two exchanges of
-/// them.
+/// Ghost columns of a subdomain, see Partition, and the steps between two exchanges of them.
 ///
 /// They are exchanged in stages: first what moves with the interface, then the rows above it, some at a time.
 /// A stage is sent once the last step before the exchange has moved its rows, and put in when the first step
@@ -23,9 +22,9 @@ namespace slipfront::motion {
 /// taken; finish puts in all that is on its way.
 class Halo {
  public:
-  /// @param stepper      of the part
+  /// @param stepper      of the subdomain
   /// @param stage_bytes  of a stage above the first one, as far as there are not too many of them
-  Halo(Processes& processes, const Division& division, Stepper& stepper, double stage_bytes);
+  Halo(Processes& processes, const Partition& partition, Stepper& stepper, double stage_bytes);
   Halo(const Halo&) = delete;
   Halo& operator=(const Halo&) = delete;
   ~Halo() = default;
@@ -36,7 +35,7 @@ class Halo {
   /// The same without an exchange: it is right.
   void begin_anew();
   /// Takes steps, all of them, and exchanges the halo where it is due.
-  void advance(UpdateObserver& observer, std::int64_t n_steps, const Between& between);
+  void advance(UpdateObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks);
   void finish();
 
   /// Time of the steps since the last begin_anew or renew, without that of waiting.
@@ -64,9 +63,10 @@ class Halo {
   void make_stages(int columns, double stage_bytes);
   void add_neighbour(int rank, bool is_below, solid::Span out, solid::Span in);
   /// Steps between two exchanges, or fewer.
-  void take_steps(UpdateObserver& observer, std::int64_t n_steps, const Between& between, bool exchanges);
+  void take_steps(UpdateObserver& observer, std::int64_t n_steps, const StepCallbacks& callbacks,
+                  bool exchanges);
   /// What is done beside steps. @param exchanges  whether the halo is sent with the last one of them
-  AtBands at_bands(bool exchanges);
+  BandCallbacks band_callbacks(bool exchanges);
   void begin_sends();
   void end_sends();
   void pack(int stage);

@@ -4,14 +4,14 @@
 namespace slipfront::motion {
 
 Landing::Landing(const mesh::Mesh& mesh, const solid::Material& material,
-                 const std::vector<mesh::Node>& lower, solid::Span own)
-    : lower_(lower),
+                 const std::vector<mesh::Node>& interface_nodes, solid::Span own)
+    : interface_nodes_(interface_nodes),
       own_(own),
-      rows_(solid::assemble_rows(mesh, material, lower)),
+      rows_(solid::assemble_rows(mesh, material, interface_nodes)),
       shift_m_(mesh.n_nodes(), 0.0) {}
 
 void Landing::add(std::size_t i, double shift_m) {
-  shift_m_[lower_[i]] = shift_m;
+  shift_m_[interface_nodes_[i]] = shift_m;
   nodes_.push_back(i);
 }
 
@@ -31,12 +31,12 @@ double Landing::work(const solid::Field& u_m, const solid::Field& v_m_per_s, dou
       v += b[2] * v_m_per_s.x[n] + b[3] * v_m_per_s.y[n];
       s += b[3] * shift_m_[n];
     }
-    const double shift_m = shift_m_[lower_[i]];
+    const double shift_m = shift_m_[interface_nodes_[i]];
     s_K_u += shift_m * u;
     s_K_v += shift_m * v;
     s_K_s += shift_m * s;
   }
-  for (const auto i : nodes_) shift_m_[lower_[i]] = 0;
+  for (const auto i : nodes_) shift_m_[interface_nodes_[i]] = 0;
   nodes_.clear();
   K_v_ = s_K_v;
   K_u_ = 2 * s_K_u - s_K_s;

@@ -65,7 +65,7 @@ class RowsAround {
 double general_product(const StepLevel& level, const BodyMotion& body, const solid::Field& x) {
   double sum = 0;
   for (const auto& run : level.general_runs) {
-    if (!run.counts) continue;
+    if (!run.is_owned) continue;
     const auto at = run.at, count = run.count;
     const auto first = run.first;
     const double* mass = &body.op.mass_kg[first];
@@ -92,7 +92,7 @@ void move_general(const StepLevel& level, BodyMotion& body) {
     double* __restrict v_x = &body.v_m_per_s.x[first];
     double* __restrict v_y = &body.v_m_per_s.y[first];
     // Runs end where these change.
-    if (!level.takes_push[at]) continue;
+    if (!level.takes_impulse[at]) continue;
     const double moving_s = level.moves[at] ? dt : 0;
     for (std::size_t k = 0; k < count; ++k) {
       v_x[k] -= dt * a_x[k];
@@ -116,7 +116,7 @@ void compute_irregular(StepLevel& level, const Band& band, const BodyMotion& bod
   solid::for_each_row_product(level.top_rows, all, w, [&](std::size_t r, double x, double y) {
     level.top_force_N[r] = {x, y};
     const auto n = level.top_rows.node[r];
-    if (body.counts(n)) works.top_work += level.step_s * x * body.v_m_per_s.x[n];
+    if (body.is_owned(n)) works.top_work += level.step_s * x * body.v_m_per_s.x[n];
   });
 }
 
@@ -127,7 +127,7 @@ void add_kicks(solid::KickSums& to, const solid::KickSums& kicks, double mass) {
 }
 
 void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler, solid::RollingRows& w,
-           PushProducts& products) {
+           ImpulseProducts& products) {
   const int stride = body.op.grid.stride();
   const double dt = level.step_s;
   const bool with_products = body.damping_s > 0;
@@ -139,7 +139,7 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
   products.kicks = {};
   double kick_scale = 1;
   const auto sums_of = [&](int row, solid::Span span) -> solid::KickSums& {
-    return body.counts(row, span) ? kicks : not_counted;
+    return body.is_owned(row, span) ? kicks : not_counted;
   };
   int edge = band.edges.begin;
   for (int k = band.stencil.begin; k < band.stencil.end; ++k) {
@@ -161,7 +161,7 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
           solid::scaled(squares == solid::Squares::right ? right : solid::mirrored(right), scale);
       const int inner = squares == solid::Squares::right ? 1 : -1;
       for (const auto span : spans)
-        solid::push_side_node(side, span.begin, inner, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1),
+        solid::kick_side_node(side, span.begin, inner, dt, row_of(w, j + 2), row_of(w, j), row_of(w, j + 1),
                               v_x, v_y, u_x, u_y, sums_of(j, span));
       continue;
     }
@@ -181,14 +181,14 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
     for (const auto span : spans) {
       const auto [u_d, v_d] =
           solid::kick_edge_row(stencil, span, row_of(w, j), inner, {u_x, u_y}, {v_x, v_y}, kick_x, kick_y);
-      if (!body.counts(j, span)) continue;
+      if (!body.is_owned(j, span)) continue;
       // The nodes of an edge with a stencil have one mass.
       const double mass = body.op.mass_kg[o + span.begin];
       products.u_K_w -= mass / dt * u_d;
       products.v_K_w -= mass / dt * v_d;
     }
-    // Nodes shared with the next level get the kick as a push; the others wait for the contact update or for
-    // the level before.
+    // Nodes shared with the next level get the kick as an impulse; the others wait for the contact update or
+    // for the level before.
     if (squares == solid::Squares::above && j > 0) continue;
     for (const auto span : spans) solid::kick_row(span, kick_x, kick_y, v_x, v_y);
   }
@@ -197,12 +197,12 @@ void sweep(StepLevel& level, const Band& band, BodyMotion& body, Filler& filler,
 
 /// Products over a band's block rows and loaded edge.
 void add_irregular_products(const StepLevel& level, const Band& band, const BodyMotion& body,
-                            PushProducts& products) {
+                            ImpulseProducts& products) {
   const auto& u = body.u_m;
   const auto& v = body.v_m_per_s;
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
     const auto n = level.irregular[r];
-    if (!body.counts(n)) continue;
+    if (!body.is_owned(n)) continue;
     products.u_K_w += body.op.mass_kg[n] * (u.x[n] * level.a_x[r] + u.y[n] * level.a_y[r]);
     products.v_K_w += body.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
   }
@@ -213,7 +213,7 @@ void add_irregular_products(const StepLevel& level, const Band& band, const Body
   if (!band.has_top) return;
   for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
     const auto n = level.top_rows.node[r];
-    if (!body.counts(n)) continue;
+    if (!body.is_owned(n)) continue;
     products.u_K_w += u.x[n] * level.top_force_N[r].x + u.y[n] * level.top_force_N[r].y;
     products.v_K_w += v.x[n] * level.top_force_N[r].x + v.y[n] * level.top_force_N[r].y;
   }
@@ -229,14 +229,14 @@ void move_irregular(const StepLevel& level, const Band& band, BodyMotion& body, 
     const auto n = dashpot.node;
     const solid::Pair trial{v.x[n] - dt * level.a_x[dashpot.at], v.y[n] - dt * level.a_y[dashpot.at]};
     const auto after =
-        damp(dashpot, body.op.mass_kg[n], {v.x[n], v.y[n]}, trial, body.counts(n) ? works : not_counted);
+        damp(dashpot, body.op.mass_kg[n], {v.x[n], v.y[n]}, trial, body.is_owned(n) ? works : not_counted);
     v.x[n] = after.x;
     v.y[n] = after.y;
     u.x[n] += dt * after.x;
     u.y[n] += dt * after.y;
   }
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
-    if (!level.takes_push[r]) continue;
+    if (!level.takes_impulse[r]) continue;
     const auto n = level.irregular[r];
     v.x[n] -= dt * level.a_x[r];
     v.y[n] -= dt * level.a_y[r];
@@ -278,13 +278,13 @@ StiffnessProducts products_with(const StepLevel& level, const BodyMotion& body, 
                            a_x.data(), a_y.data());
     const solid::ConstRow a{a_x.data(), a_y.data()};
     for (const auto span : row.spans) {
-      if (!body.counts(row.row, span)) continue;
+      if (!body.is_owned(row.row, span)) continue;
       sums.u_K_u += solid::row_product(span, &mass[o], a, row_of(w, row.row));
       sums.v_K_u += solid::row_product(span, &mass[o], a, {&v.x[o], &v.y[o]});
     }
   }
   const auto add = [&](mesh::Node n, double m, double x, double y) {
-    if (!body.counts(n)) return;
+    if (!body.is_owned(n)) return;
     const solid::Pair at = w_of(n);
     sums.u_K_u += m * (at.x * x + at.y * y);
     sums.v_K_u += m * (v.x[n] * x + v.y[n] * y);
@@ -333,7 +333,7 @@ void set_motion_before(StepLevel& level, const BodyMotion& body) {
   }
 }
 
-void begin_push(StepLevel& level, BodyMotion& body, record::Energies& works) {
+void begin_impulse(StepLevel& level, BodyMotion& body, record::Energies& works) {
   auto& s = level.shared;
   exchange_velocities(level, body);
   works.coupling_work += coupling_work(level, body);
@@ -346,10 +346,10 @@ void begin_push(StepLevel& level, BodyMotion& body, record::Energies& works) {
   }
 }
 
-void push_band(StepLevel& level, const Band& band, BodyMotion& body, solid::RollingRows& w,
-               PushProducts& products, record::Energies& works) {
+void apply_band_impulse(StepLevel& level, const Band& band, BodyMotion& body, solid::RollingRows& w,
+                        ImpulseProducts& products, record::Energies& works) {
   const bool is_first = &band == &level.bands.front(), is_last = &band == &level.bands.back();
-  if (body.damping_s > 0) products.late_K_w += late_product(level, band, body);
+  if (body.damping_s > 0) products.next_velocity_K_w += next_velocity_product(level, band, body);
   if (is_first) {
     const auto w_now = [&](mesh::Node n) {
       return solid::Pair{body.u_m.x[n] + body.damping_s * body.v_m_per_s.x[n],
@@ -375,15 +375,15 @@ SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op
   const auto has_block_rows = [](const Band& band) {
     return band.has_block_rows || band.edges.begin < band.edges.end;
   };
-  int most_rows = 0;
+  int max_rows = 0;
   for (int begin = 1; begin < std::ssize(bands); ++begin) {
     int end = begin;
     while (end < std::ssize(bands) && !has_block_rows(bands[end])) ++end;
     // By rows, since parts of a body have other bands.
     const int n_rows = end > begin ? bands[end - 1].last_row - bands[begin].first_row + 1 : 0;
-    if (n_rows > most_rows) {
+    if (n_rows > max_rows) {
       single.bands = {begin, end};
-      most_rows = n_rows;
+      max_rows = n_rows;
     }
     begin = end;
   }
@@ -430,8 +430,9 @@ void to_double(const SingleRows& single, BodyMotion& body) {
   to_double(single, static_cast<int>(single.u_x_m.size()), body);
 }
 
-void push_band(const StepLevel& level, const Band& band, BodyMotion& body, SingleRows& single,
-               solid::RollingRows& w, solid::RollingRowsOf<float>& w_single, PushProducts& products) {
+void apply_band_impulse(const StepLevel& level, const Band& band, BodyMotion& body, SingleRows& single,
+                        solid::RollingRows& w, solid::RollingRowsOf<float>& w_single,
+                        ImpulseProducts& products) {
   const auto& rows = body.op.rows;
   const int count = rows[band.first_row].count;
   const double dt = level.step_s;
@@ -477,13 +478,13 @@ void push_band(const StepLevel& level, const Band& band, BodyMotion& body, Singl
       }
     }
     for (const auto span : row_of_stencil.spans) {
-      auto& sums = body.counts(j, span) ? kicks : not_counted;
+      auto& sums = body.is_owned(j, span) ? kicks : not_counted;
       if (squares == solid::Squares::all) {
         push_interior(interior, span, dt, row(j + 2), row(j), row(j + 1), v_x, v_y, u_x, u_y, sums);
       } else {
         const bool to_right = squares == solid::Squares::right;
         const auto side = to_right ? right : solid::mirrored(right);
-        solid::push_side_node(side, span.begin, to_right ? 1 : -1, dt, row(j + 2), row(j), row(j + 1), v_x,
+        solid::kick_side_node(side, span.begin, to_right ? 1 : -1, dt, row(j + 2), row(j), row(j + 1), v_x,
                               v_y, u_x, u_y, sums);
       }
     }
@@ -497,7 +498,7 @@ void push_band(const StepLevel& level, const Band& band, BodyMotion& body, Singl
   if (is_first) to_double(single, count, body);
 }
 
-void end_push(StepLevel& level, BodyMotion& body) {
+void end_impulse(StepLevel& level, BodyMotion& body) {
   const int stride = body.op.grid.stride();
   auto& s = level.shared;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
@@ -507,8 +508,8 @@ void end_push(StepLevel& level, BodyMotion& body) {
     const double y = r < 0 ? level.edge_kick_m_per_s[0][stride + column] : -level.step_s * level.a_y[r];
     s.a_m_per_s2.x[k] = -x / level.step_s;
     s.a_m_per_s2.y[k] = -y / level.step_s;
-    s.push_m_per_s.x[k] = x - level.step_s * s.steady_m_per_s2.x[k];
-    s.push_m_per_s.y[k] = y - level.step_s * s.steady_m_per_s2.y[k];
+    s.impulse_m_per_s.x[k] = x - level.step_s * s.equilibrium_load_m_per_s2.x[k];
+    s.impulse_m_per_s.y[k] = y - level.step_s * s.equilibrium_load_m_per_s2.y[k];
   }
   restore_velocities(level, body);
 }
@@ -521,11 +522,11 @@ void move_shared(StepLevel& coarser, BodyMotion& body, double dt, record::Energi
   for (const auto& dashpot : s.dashpots) {
     const auto k = dashpot.at;
     const auto n = dashpot.node;
-    const double kick_x = dt * s.steady_m_per_s2.x[k] + s.push_m_per_s.x[k];
-    const double kick_y = dt * s.steady_m_per_s2.y[k] + s.push_m_per_s.y[k];
+    const double kick_x = dt * s.equilibrium_load_m_per_s2.x[k] + s.impulse_m_per_s.x[k];
+    const double kick_y = dt * s.equilibrium_load_m_per_s2.y[k] + s.impulse_m_per_s.y[k];
     const solid::Pair before{s.v_last_m_per_s.x[k], s.v_last_m_per_s.y[k]};
     const auto after = damp(dashpot, body.op.mass_kg[n], before, {v.x[n] + kick_x, v.y[n] + kick_y},
-                            body.counts(n) ? works : not_counted);
+                            body.is_owned(n) ? works : not_counted);
     v.x[n] = after.x - kick_x;
     v.y[n] = after.y - kick_y;
   }
@@ -538,10 +539,10 @@ void move_shared(StepLevel& coarser, BodyMotion& body, double dt, record::Energi
     double* __restrict v_y = &v.y[first];
     double* __restrict v_last_x = &s.v_last_m_per_s.x[at];
     double* __restrict v_last_y = &s.v_last_m_per_s.y[at];
-    double* __restrict push_x = &s.push_m_per_s.x[at];
-    double* __restrict push_y = &s.push_m_per_s.y[at];
-    const double* steady_x = &s.steady_m_per_s2.x[at];
-    const double* steady_y = &s.steady_m_per_s2.y[at];
+    double* __restrict push_x = &s.impulse_m_per_s.x[at];
+    double* __restrict push_y = &s.impulse_m_per_s.y[at];
+    const double* steady_x = &s.equilibrium_load_m_per_s2.x[at];
+    const double* steady_y = &s.equilibrium_load_m_per_s2.y[at];
     const double* mass = &body.op.mass_kg[first];
     double work = 0;
 #pragma omp simd reduction(+ : work)
@@ -557,7 +558,7 @@ void move_shared(StepLevel& coarser, BodyMotion& body, double dt, record::Energi
       u_y[k] += dt * v_y[k];
       push_x[k] = push_y[k] = 0;
     }
-    if (run.counts) works.coupling_work += 0.5 * work;
+    if (run.is_owned) works.coupling_work += 0.5 * work;
   }
 }
 
@@ -584,7 +585,7 @@ double coupling_work(const StepLevel& level, const BodyMotion& body) {
   double work = 0;
   for (std::size_t k = 0; k < s.node.size(); ++k) {
     const auto n = s.node[k];
-    if (!body.counts(n)) continue;
+    if (!body.is_owned(n)) continue;
     const double impulse = 0.5 * level.step_s * body.op.mass_kg[n];
     work += impulse * (s.a_m_per_s2.x[k] * (s.v_mean_before_m_per_s.x[k] + v.x[n]) +
                        s.a_m_per_s2.y[k] * (s.v_mean_before_m_per_s.y[k] + v.y[n]));
@@ -592,12 +593,12 @@ double coupling_work(const StepLevel& level, const BodyMotion& body) {
   return work;
 }
 
-double late_product(const StepLevel& level, const Band& band, const BodyMotion& body) {
+double next_velocity_product(const StepLevel& level, const Band& band, const BodyMotion& body) {
   const auto& v = body.v_m_per_s;
   double sum = 0;
   for (int r = band.irregular.begin; r < band.irregular.end; ++r) {
     const auto n = level.irregular[r];
-    if (!body.counts(n)) continue;
+    if (!body.is_owned(n)) continue;
     sum += body.op.mass_kg[n] * (v.x[n] * level.a_x[r] + v.y[n] * level.a_y[r]);
   }
   if (&band == &level.bands.front()) sum += general_product(level, body, v);
@@ -609,13 +610,13 @@ double late_product(const StepLevel& level, const Band& band, const BodyMotion& 
     const double* kick_x = level.edge_kick_m_per_s[edge++].data();
     const solid::ConstRow kick{kick_x, kick_x + body.op.grid.stride()};
     for (const auto span : row.spans)
-      if (body.counts(row.row, span))
+      if (body.is_owned(row.row, span))
         sum -= solid::row_product(span, &body.op.mass_kg[o], kick, {&v.x[o], &v.y[o]}) / level.step_s;
   }
   if (band.has_top)
     for (std::size_t r = 0; r < level.top_rows.size(); ++r) {
       const auto n = level.top_rows.node[r];
-      if (!body.counts(n)) continue;
+      if (!body.is_owned(n)) continue;
       sum += v.x[n] * level.top_force_N[r].x + v.y[n] * level.top_force_N[r].y;
     }
   return sum;

@@ -9,7 +9,7 @@
 
 #include "base/state.hpp"
 #include "mesh/mesh.hpp"
-#include "mesh/part.hpp"
+#include "mesh/node_columns.hpp"
 #include "motion/damping_work.hpp"
 #include "motion/settings.hpp"
 #include "record/energies.hpp"
@@ -25,16 +25,16 @@ struct BodyMotion {
   double damping_s = 0;
   solid::Field u_m, v_m_per_s;
   mesh::NodeColumns columns;
-  /// Of a part of a larger body the nodes that count in energies and works: in each row, by their places
-  /// there, and for each node. A run, or a span of a stencil row, lies within them or outside. Empty for a
-  /// whole body, of which all count.
+  /// Of a part of a larger body the owned nodes, which enter energies and works: per row as places in it, and
+  /// per node. A run, or a span of a stencil row, is owned as a whole or not at all. Empty for a whole body,
+  /// which owns all its nodes.
   std::vector<solid::Span> own;
   std::vector<bool> is_own;
 
-  bool counts(int row, solid::Span nodes) const {
+  bool is_owned(int row, solid::Span nodes) const {
     return own.empty() || (nodes.begin >= own[row].begin && nodes.begin < own[row].end);
   }
-  bool counts(mesh::Node n) const { return is_own.empty() || is_own[n]; }
+  bool is_owned(mesh::Node n) const { return is_own.empty() || is_own[n]; }
 };
 
 /// Nodes with consecutive numbers in a list: node at + k is first + k for k < count.
@@ -42,7 +42,7 @@ struct NodeRun {
   std::size_t at = 0;
   mesh::Node first = 0;
   std::size_t count = 0;
-  bool counts = true;  ///< see BodyMotion
+  bool is_owned = true;  ///< see BodyMotion
 };
 std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body);
 
@@ -56,25 +56,25 @@ struct Dashpot {
 
 /// Nodes of a level's cells that belong to finer cells, too, and move with the finer level's steps. Of the
 /// force of the level's own cells on them, what it was in the equilibrium at the start acts as a constant
-/// load in each of these steps; the change since then comes as one kick per step of the level, a push.
+/// load in each of these steps; the change since then comes as one kick per step of the level, an impulse.
 struct Shared {
   std::vector<mesh::Node> node;  ///< ascending
   std::vector<NodeRun> runs;
   std::vector<Dashpot> dashpots;
   std::vector<std::int32_t> irregular_row;  ///< of the level; -1: in its stencil row
-  solid::Field u_before_m;                  ///< displacements at the level's last push
-  solid::Field push_m_per_s;                ///< the push, until the finer level's next step takes it
+  solid::Field u_before_m;                  ///< displacements at the level's last impulse
+  solid::Field impulse_m_per_s;             ///< the impulse, until the finer level's next step takes it
   /// The constant load, as an acceleration.
-  solid::Field steady_m_per_s2;
-  // For the energies: velocities after the finer level's last step; K w/m at the level's last push, and the
-  // mean velocity over the level's step before it.
+  solid::Field equilibrium_load_m_per_s2;
+  // For the energies: velocities after the finer level's last step; K w/m at the level's last impulse, and
+  // the mean velocity over the level's step before it.
   solid::Field v_last_m_per_s, a_m_per_s2, v_mean_before_m_per_s;
 
   /// All that changes.
   template <class Archive>
   void serialize(Archive& archive) {
-    for (auto* field :
-         {&u_before_m, &push_m_per_s, &steady_m_per_s2, &v_last_m_per_s, &a_m_per_s2, &v_mean_before_m_per_s})
+    for (auto* field : {&u_before_m, &impulse_m_per_s, &equilibrium_load_m_per_s2, &v_last_m_per_s,
+                        &a_m_per_s2, &v_mean_before_m_per_s})
       archive_field(archive, *field, node.size());
   }
 };
@@ -85,7 +85,7 @@ struct Shared {
 ///
 /// What reads or writes more is in a level's first band, which is taken with the interface: nodes of the
 /// interface, nodes shared with other levels, and those that have neighbours farther away than the next row.
-/// A row that has block rows is a band of its own. Levels but the coarsest have one band.
+/// A row that has block rows is a separate band. Levels but the coarsest have one band.
 struct Band {
   int first_row = 0, last_row = 0;
   // Ranges within the level's lists:
@@ -113,10 +113,10 @@ struct StepLevel {
   std::vector<mesh::Node> irregular;  ///< nodes of the block rows, then of the general rows
   solid::Span general;                ///< the latter, all of them in the first band
   solid::GeneralRows::Workspace general_space;
-  std::vector<NodeRun> general_runs;  ///< of the general rows; takes_push and moves do not change within one
+  std::vector<NodeRun> general_runs;  ///< of the general rows; takes_impulse, moves: uniform in each
   std::vector<Band> bands;            ///< rows ascending
   std::vector<Dashpot> dashpots;      ///< rows ascending
-  std::vector<bool> takes_push;       ///< [irregular rows] kicked at once: not shared, no dashpot
+  std::vector<bool> takes_impulse;    ///< [irregular rows] kicked at once: not shared, no dashpot
   std::vector<bool> moves;            ///< [irregular rows] moved at once: not shared, not in contact
   std::vector<double> a_x, a_y;       ///< [irregular rows]
   std::vector<mesh::Node> top;        ///< nodes of the loaded edge that move with this level
@@ -124,7 +124,7 @@ struct StepLevel {
   solid::BlockRows top_rows;  ///< K of the level's cells, N/m
   /// Kicks of the stencil's edge rows, x then y, in their order. [2 columns]
   std::vector<std::vector<double>> edge_kick_m_per_s;
-  std::vector<solid::Pair> top_force_N;  ///< K w of top_rows at the last push
+  std::vector<solid::Pair> top_force_N;  ///< K w of top_rows at the last impulse
   DampingWork damping_work;
 
   /// All that changes.
@@ -158,7 +158,7 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::str
 std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
                                 const TimeStepping& time, double stable_step_s);
 
-/// How often a level's cells push their nodes, in steps of the last level, and over how many columns they
+/// How often a level's cells kick their nodes, in steps of the last level, and over how many columns they
 /// reach.
 struct LevelReach {
   int period = 1, columns = 1;
@@ -171,15 +171,15 @@ std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeSteppi
 /// rounded corner; 0 where there are none.
 int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time);
 
-/// Replaces each of some numbers by the largest that any part of a body has there; empty for a whole body.
-using LargestOfParts = std::function<void(std::span<double>)>;
+/// Replaces each number by its maximum over the subdomains of a body; empty for a whole body.
+using MaxOverSubdomains = std::function<void(std::span<double>)>;
 
 /// @param step_s  of the coarsest level
 /// @param multiples  of step_multiples
 /// @param largest    asked as often by all parts of a body
 StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
                        const TimeStepping& time, double step_s, std::span<const int> multiples,
-                       const LargestOfParts& largest = {});
+                       const MaxOverSubdomains& largest = {});
 
 /// Velocity of a dashpot's node after a kick that alone would lead from `before` to `trial`; its work is
 /// added to `works`.
@@ -189,43 +189,44 @@ solid::Pair damp(const Dashpot& dashpot, double mass_kg, solid::Pair before, sol
 /// Sets what a level keeps of its shared nodes' motion before now, as if their velocities had been constant.
 void set_motion_before(StepLevel& level, const BodyMotion& body);
 
-/// Begins a push. At shared nodes the level's cells see the mean velocity since their last push; it replaces
-/// that of the finer steps until end_push.
-void begin_push(StepLevel& level, BodyMotion& body, record::Energies& works);
+/// Begins an impulse. At shared nodes the level's cells see the mean velocity since their last impulse; it
+/// replaces that of the finer steps until end_impulse.
+void begin_impulse(StepLevel& level, BodyMotion& body, record::Energies& works);
 /// Kicks the nodes of one band by the forces of the level's cells, and moves those that move with the level.
-/// Bands go from the first to the last, with the same `w`, which keeps w = u + beta_R v from before the push
-/// of rows that have moved already.
-void push_band(StepLevel& level, const Band& band, BodyMotion& body, solid::RollingRows& w,
-               PushProducts& products, record::Energies& works);
-/// Longest run of bands that can be pushed in single precision; none where all have block rows.
+/// Bands go from the first to the last, with the same `w`, which keeps w = u + beta_R v from before the
+/// impulse of rows that have moved already.
+void apply_band_impulse(StepLevel& level, const Band& band, BodyMotion& body, solid::RollingRows& w,
+                        ImpulseProducts& products, record::Energies& works);
+/// Longest run of bands that can be stepped in single precision; none where all have block rows.
 SingleRows make_single_rows(const StepLevel& coarsest, const solid::Operator& op);
 /// Nothing where there are no such rows.
 void to_single(const BodyMotion& body, SingleRows& single);
 void to_double(const SingleRows& single, BodyMotion& body);
-/// The same as push_band for one of these bands.
+/// The same as apply_band_impulse for one of these bands.
 /// @param w  holds the row below at the first of these bands, and after the last one its last row and the
 /// next
-void push_band(const StepLevel& level, const Band& band, BodyMotion& body, SingleRows& single,
-               solid::RollingRows& w, solid::RollingRowsOf<float>& w_single, PushProducts& products);
+void apply_band_impulse(const StepLevel& level, const Band& band, BodyMotion& body, SingleRows& single,
+                        solid::RollingRows& w, solid::RollingRowsOf<float>& w_single,
+                        ImpulseProducts& products);
 
-/// Puts the level's force on its shared nodes, less the constant load, into Shared::push_m_per_s. After the
-/// first band, which has all shared nodes.
-void end_push(StepLevel& level, BodyMotion& body);
+/// Puts the level's force on its shared nodes, less the constant load, into Shared::impulse_m_per_s. After
+/// the first band, which has all shared nodes.
+void end_impulse(StepLevel& level, BodyMotion& body);
 
-/// Kicks the shared nodes of a coarser level by its constant load and by the push that waits, if any, and
+/// Kicks the shared nodes of a coarser level by its equilibrium load and by the pending impulse, if any, and
 /// moves them by a step dt_s of the finer level.
 void move_shared(StepLevel& coarser, BodyMotion& body, double dt_s, record::Energies& works);
 
 // For the energies. Between exchange and restore, velocities of shared nodes are the mean ones that the level
-// sees, as between begin_push and end_push; the two functions after them need these.
+// sees, as between begin_impulse and end_impulse; the two functions after them need these.
 void exchange_velocities(const StepLevel& level, BodyMotion& body);
 void restore_velocities(const StepLevel& level, BodyMotion& body);
 /// Less the work of the level's last force on its shared nodes through the mean velocities before and after
 /// it: that much the level's own cells account for. The coupling's work is this and the work that load and
-/// pushes do through the velocities of the finer steps, which move_shared sums.
+/// impulses do through the velocities of the finer steps, which move_shared sums.
 double coupling_work(const StepLevel& level, const BodyMotion& body);
-/// PushProducts::late_K_w of a band, once all velocities after the last push are known.
-double late_product(const StepLevel& level, const Band& band, const BodyMotion& body);
+/// ImpulseProducts::next_velocity_K_w of a band, once all velocities after the last impulse are known.
+double next_velocity_product(const StepLevel& level, const Band& band, const BodyMotion& body);
 
 /// Of the displacements u and the velocities v, K the stiffness of a level's cells.
 struct StiffnessProducts {

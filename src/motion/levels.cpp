@@ -13,7 +13,7 @@ namespace {
 /// For each cell, whether it is among the `rows` rows of cells next to the interface, counted in cells.
 std::vector<bool> cells_next_to_interface(const mesh::Mesh& mesh, int rows) {
   std::vector<bool> near(mesh.cells.size(), false), reached(mesh.n_nodes(), false);
-  for (const auto n : mesh.lower) reached[n] = true;
+  for (const auto n : mesh.interface_nodes) reached[n] = true;
   for (int row = 0; row < rows; ++row) {
     const auto reached_before = reached;
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -29,7 +29,7 @@ std::vector<bool> cells_next_to_interface(const mesh::Mesh& mesh, int rows) {
 /// Least damping beta_R with which blocks take steps of their own, in steps of the lowest one. Undamped, the
 /// coupling feeds resonant modes, which grow by some thousandths in a step; 0.02 was enough wherever it was
 /// tried (docs/graded.md).
-constexpr double least_damping_in_steps = 0.05;
+constexpr double min_damping_in_steps = 0.05;
 
 /// The block to which each cell belongs; the transition between two blocks belongs to the lower one. All
 /// cells of a mesh that knows no grid are in one block.
@@ -111,7 +111,7 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
     auto& level = levels.level[l];
     const double factor = 0.5 * level.step_s * material.density_kg_per_m3 / body.op.mass_kg[n];
     Dashpot dashpot{0, n, factor * (c_L * side_m + c_S * top_m), factor * (c_S * side_m + c_L * top_m)};
-    if (const auto i = place(mesh.lower, n)) {
+    if (const auto i = place(mesh.interface_nodes, n)) {
       dashpot.at = *i;
       levels.contact_dashpots.push_back(dashpot);
     } else if (const auto k = l > 0 ? place(levels.level[l - 1].shared.node, n) : std::nullopt) {
@@ -121,7 +121,7 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
       const auto row = place(level.irregular, n);
       SLIPFRONT_ASSERT(row, "an absorbing node without a block row");
       dashpot.at = *row;
-      level.takes_push[*row] = false;
+      level.takes_impulse[*row] = false;
       level.dashpots.push_back(dashpot);
     }
   }
@@ -138,11 +138,11 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
 std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body) {
   std::vector<NodeRun> runs;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const bool counts = body.counts(nodes[k]);
-    if (k > 0 && nodes[k] == nodes[k - 1] + 1 && counts == runs.back().counts) {
+    const bool is_owned = body.is_owned(nodes[k]);
+    if (k > 0 && nodes[k] == nodes[k - 1] + 1 && is_owned == runs.back().is_owned) {
       ++runs.back().count;
     } else {
-      runs.push_back({k, nodes[k], 1, counts});
+      runs.push_back({k, nodes[k], 1, is_owned});
     }
   }
   return runs;
@@ -163,7 +163,7 @@ std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& m
                                 const TimeStepping& time, double stable_step_s) {
   const double damping_s = material.stiffness_damping_s;
   std::vector<int> multiples(1 + mesh.coarser.size(), 1);
-  const bool damped = damping_s >= least_damping_in_steps * time.step_factor * stable_step_s;
+  const bool damped = damping_s >= min_damping_in_steps * time.step_factor * stable_step_s;
   if (!time.local_steps || mesh.coarser.empty() || !damped) return multiples;
   // The largest frequency of its free cells bounds a block's from above. Squares do so the more closely the
   // more of them there are: what the lowest block's squares show is no more than what larger ones would.
@@ -185,7 +185,7 @@ std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& m
 
 namespace {
 
-/// Whether rows next to the interface have a level of their own.
+/// Whether rows next to the interface have a separate level.
 bool is_layered(const TimeStepping& time) {
   return time.interface_substeps > 1;
 }
@@ -278,8 +278,8 @@ void set_shared_nodes(StepLevel& level, const std::vector<bool>& shared, const B
     s.irregular_row.push_back(irregular_row[n]);
   }
   s.runs = runs_of(s.node, body);
-  for (auto* field : {&s.u_before_m, &s.push_m_per_s, &s.steady_m_per_s2, &s.v_last_m_per_s, &s.a_m_per_s2,
-                      &s.v_mean_before_m_per_s})
+  for (auto* field : {&s.u_before_m, &s.impulse_m_per_s, &s.equilibrium_load_m_per_s2, &s.v_last_m_per_s,
+                      &s.a_m_per_s2, &s.v_mean_before_m_per_s})
     *field = solid::Field(s.node.size());
 }
 
@@ -288,7 +288,7 @@ void set_loaded_edge(StepLevel& level, std::size_t l, const mesh::Mesh& mesh, co
                      const std::vector<std::uint8_t>& level_of_node, const std::vector<bool>& in_level,
                      const std::vector<bool>& in_cells) {
   std::vector<mesh::Node> top;
-  for (const auto n : mesh.top) {
+  for (const auto n : mesh.far_edge_nodes) {
     if (level_of_node[n] == l) level.top.push_back(n);
     if (in_cells[n]) top.push_back(n);
   }
@@ -299,15 +299,15 @@ void set_loaded_edge(StepLevel& level, std::size_t l, const mesh::Mesh& mesh, co
 /// Neighbouring general rows that are treated alike.
 void set_general_runs(StepLevel& level, const BodyMotion& body) {
   for (int r = level.general.begin; r < level.general.end; ++r) {
-    const bool counts = body.counts(level.irregular[r]);
+    const bool is_owned = body.is_owned(level.irregular[r]);
     const bool goes_on = r > level.general.begin && level.irregular[r] == level.irregular[r - 1] + 1 &&
-                         counts == level.general_runs.back().counts &&
-                         level.takes_push[r] == level.takes_push[r - 1] &&
+                         is_owned == level.general_runs.back().is_owned &&
+                         level.takes_impulse[r] == level.takes_impulse[r - 1] &&
                          level.moves[r] == level.moves[r - 1];
     if (goes_on) {
       ++level.general_runs.back().count;
     } else {
-      level.general_runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1, counts});
+      level.general_runs.push_back({static_cast<std::size_t>(r), level.irregular[r], 1, is_owned});
     }
   }
 }
@@ -315,11 +315,11 @@ void set_general_runs(StepLevel& level, const BodyMotion& body) {
 /// Sets the coarsest level's bands: the first one with all that the interface's part of a step needs, rows
 /// with irregular nodes alone. For all parts of a body they come from the same rows.
 void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLevels& levels,
-                        const LargestOfParts& largest) {
+                        const MaxOverSubdomains& largest) {
   const auto& op = body.op;
   auto& level = levels.level.front();
   // The work of landing nodes needs the places of their neighbours after the step.
-  const auto in_contact = mesh::marked(mesh, mesh.lower);
+  const auto in_contact = mesh::marked(mesh, mesh.interface_nodes);
   std::vector<bool> needed(mesh.n_nodes(), false);
   for (const auto& cell : mesh.cells)
     if (std::ranges::any_of(cell, [&](mesh::Node n) { return in_contact[n]; }))
@@ -330,8 +330,8 @@ void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLeve
   std::vector<double> single(op.rows.size(), 0);
   single[top_row] = 1;
   for (const auto n : level.stiffness.irregular.node)
-    if (body.counts(n)) single[op.row_of(n)] = 1;
-  const int most_rows = std::max(1, nodes_per_band / op.rows[top_row].count);
+    if (body.is_owned(n)) single[op.row_of(n)] = 1;
+  const int max_rows = std::max(1, nodes_per_band / op.rows[top_row].count);
   double last_of_first = last_row_of_first_band(level, op, needed);
   if (largest) {
     largest(single);
@@ -341,7 +341,7 @@ void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLeve
   std::vector<int> last_rows{row};
   while (row < top_row) {
     const int first = ++row;
-    while (row - first + 1 < most_rows && single[row] == 0 && single[row + 1] == 0) ++row;
+    while (row - first + 1 < max_rows && single[row] == 0 && single[row + 1] == 0) ++row;
     last_rows.push_back(row);
   }
   set_bands(level, op, last_rows);
@@ -364,7 +364,7 @@ std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeSteppi
 int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time) {
   const auto& grid = mesh.grid;
   const auto is_in_lowest_row = [&](mesh::Node n) { return n < grid.stride(); };
-  if (!is_layered(time) || std::ranges::all_of(mesh.lower, is_in_lowest_row)) return 0;
+  if (!is_layered(time) || std::ranges::all_of(mesh.interface_nodes, is_in_lowest_row)) return 0;
   const auto near = cells_next_to_interface(mesh, time.interface_rows);
   int columns = 0;
   for (std::size_t c = 0; c < near.size(); ++c) {
@@ -379,7 +379,7 @@ int columns_of_rounded_layer(const mesh::Mesh& mesh, const TimeStepping& time) {
 
 StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, const BodyMotion& body,
                        const TimeStepping& time, double step_s, std::span<const int> multiples,
-                       const LargestOfParts& largest) {
+                       const MaxOverSubdomains& largest) {
   require_rows_fit(mesh, time);
   const auto& op = body.op;
   const auto periods = periods_of_levels(time, multiples);
@@ -389,7 +389,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
   levels.level.resize(periods.size());
   levels.level_of_node = levels_of_nodes(mesh, level_of_cell);
   levels.is_orphan = mesh::orphans(mesh);
-  const auto in_contact = mesh::marked(mesh, mesh.lower);
+  const auto in_contact = mesh::marked(mesh, mesh.interface_nodes);
   std::vector<bool> is_shared(mesh.n_nodes(), false);  // by a coarser level or this one
   for (std::size_t l = 0; l < periods.size(); ++l) {
     auto& level = levels.level[l];
@@ -407,7 +407,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
     const auto in_cells = nodes_of(mesh, in_level);
     std::vector<bool> shared(mesh.n_nodes(), false);
     for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
-      shared[n] = in_cells[n] && levels.level_of_node[n] > l && !op.is_top[n];
+      shared[n] = in_cells[n] && levels.level_of_node[n] > l && !op.is_far_edge[n];
       is_shared[n] = is_shared[n] || shared[n];
     }
     set_shared_nodes(level, shared, body);
@@ -415,7 +415,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
       if (solid::is_horizontal_edge(row))
         level.edge_kick_m_per_s.emplace_back(2 * static_cast<std::size_t>(mesh.grid.stride()));
     for (const auto n : level.irregular) {
-      level.takes_push.push_back(!shared[n]);
+      level.takes_impulse.push_back(!shared[n]);
       level.moves.push_back(!in_contact[n] && !is_shared[n]);
     }
     set_loaded_edge(level, l, mesh, material, levels.level_of_node, in_level, in_cells);
@@ -425,7 +425,7 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
   set_coarsest_bands(mesh, body, levels, largest);
   for (auto& level : std::span(levels.level).subspan(1)) set_bands(level, op, {op.n_rows() - 1});
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
-    if (!levels.is_orphan[n] && !op.is_top[n] && body.counts(n)) {
+    if (!levels.is_orphan[n] && !op.is_far_edge[n] && body.is_owned(n)) {
       const int updates = substeps / levels.level[levels.level_of_node[n]].period;
       levels.node_updates_per_step += updates;
     }

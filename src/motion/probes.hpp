@@ -9,7 +9,7 @@
 
 #include "base/state.hpp"
 #include "mesh/mesh.hpp"
-#include "mesh/part.hpp"
+#include "mesh/node_columns.hpp"
 #include "motion/level.hpp"
 #include "record/probes.hpp"
 #include "solid/element.hpp"
@@ -23,32 +23,32 @@ struct BodySteps {
   std::vector<int> multiples;  ///< see step_multiples
 };
 
-/// What a part of a larger body, some columns of its mesh, has to know of the whole.
-struct PartOfBody {
-  mesh::Subset columns;         ///< of the whole body's, those that its mesh holds
-  int n_columns = 0;            ///< of the whole body
-  solid::Span own;              ///< columns that this part, and no other, accounts for
-  BodySteps steps;              ///< of the whole body
-  LargestOfParts largest = {};  ///< of all parts
+/// Data of the whole body that a subdomain, some columns of its mesh, needs.
+struct BodySubdomain {
+  mesh::Subset columns;            ///< of the whole body's, those that its mesh holds
+  int n_columns = 0;               ///< of the whole body
+  solid::Span own;                 ///< columns that this part, and no other, accounts for
+  BodySteps steps;                 ///< of the whole body
+  MaxOverSubdomains largest = {};  ///< of all subdomains
 };
 
 /// What a stepper makes a body of.
 struct BodySource {
   const mesh::Mesh& mesh;
   const solid::Material& material;
-  const PartOfBody* part = nullptr;  ///< of a larger body; null for a whole one
+  const BodySubdomain* part = nullptr;  ///< of a larger body; null for a whole one
   /// Where the mesh is that of the interface alone, and has reliefs: see mesh::make_corners.
   const mesh::Mesh* corners = nullptr;
 };
 
-/// What entries of a list in KeptMotion belong to: nodes, by their number; places along the interface;
+/// Key of a list's entries in StateByNode: nodes, by their number; places along the interface;
 /// columns of nodes.
-enum class KeptBy : std::uint8_t { node, place, column };
+enum class StateKey : std::uint8_t { node, place, column };
 
-/// Where a stepper of some columns of the bodies lies in the whole ones.
-struct PlaceInWhole {
+/// Place of a subdomain's stepper in the whole bodies.
+struct SubdomainPlace {
   solid::Span own = solid::all_columns;  ///< columns that it accounts for
-  mesh::Subset lower;                    ///< places of its nodes along the interface
+  mesh::Subset interface_nodes;          ///< places of its nodes along the interface
 };
 
 /// A place within a cell of a body, at which its motion, strain and stress are recorded.

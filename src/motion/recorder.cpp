@@ -14,14 +14,15 @@ namespace {
 
 bool any_slips_faster(double speed_m_per_s, const interface::Interface& s, std::size_t first,
                       std::size_t end) {
-  const auto in_lanes = [&](LanesMask slipping, Lanes slip_rate_m_per_s) {
+  const auto in_lanes = [&](SimdMask slipping, SimdVector slip_rate_m_per_s) {
     return any(slipping && absolute(slip_rate_m_per_s) > speed_m_per_s);
   };
   std::size_t i = first;
   for (; i + lanes <= end; i += lanes)
     if (in_lanes(load(&s.slipping[i]), load(&s.slip_rate_m_per_s[i]))) return true;
   const int rest = static_cast<int>(end - i);
-  return rest > 0 && in_lanes(load_part(&s.slipping[i], rest), load_part(&s.slip_rate_m_per_s[i], rest));
+  return rest > 0 &&
+         in_lanes(load_partial(&s.slipping[i], rest), load_partial(&s.slip_rate_m_per_s[i], rest));
 }
 
 }  // namespace
@@ -47,7 +48,7 @@ void SlipFinder::count_slipping() {
   for (std::size_t i = first_; i < end_; ++i) n_slipping_ += memory_.slipping[i];
 }
 
-void SlipFinder::find(double time_s, const interface::Interface& state, bool changed, SlipSeen& seen) {
+void SlipFinder::find(double time_s, const interface::Interface& state, bool changed, SlipUpdate& seen) {
   seen.time_s = time_s;
   seen.changes.clear();
   seen.around.clear();
@@ -80,7 +81,7 @@ void SlipFinder::locate_onset(SlipChange& onset, double time_s, const interface:
   const double strength_before = memory_.strength_Pa[node], strength_now = state.strength_Pa[node];
   if (strength_before > 0 && strength_now > 0 && time_s > memory_.time_s) {
     const double before = std::abs(memory_.t_Pa[node]) / strength_before;
-    const double now = state.demand_Pa[node] / strength_now;
+    const double now = state.trial_traction_Pa[node] / strength_now;
     if (now > before) part = std::clamp((1 - before) / (now - before), 0.0, 1.0);
   }
   for (int k = -halo_; k <= halo_; ++k) {
@@ -111,10 +112,10 @@ Recorder::Recorder(const statics::Equilibrium& before, const PerNode& mu_s, int 
 
 void Recorder::observe(double time_s, const interface::Interface& state, bool changed) {
   finder_.find(time_s, state, changed, seen_);
-  take(seen_);
+  consume(seen_);
 }
 
-void Recorder::take(const SlipSeen& seen) {
+void Recorder::consume(const SlipUpdate& seen) {
   record_.resolution_s = std::max(record_.resolution_s, seen.time_s - previous_time_s_);
   previous_time_s_ = seen.time_s;
   if (seen.moves) last_motion_s_ = seen.time_s;
@@ -180,7 +181,7 @@ void Recorder::add_waiting(std::size_t node, record::SlipRecord& record) const {
   record.around.insert(record.around.end(), first, first + static_cast<std::ptrdiff_t>(n_around()));
 }
 
-record::SlipRecord Recorder::take(double end_time_s) const {
+record::SlipRecord Recorder::record_until(double end_time_s) const {
   record::SlipRecord record = record_;
   for (std::size_t i = 0; i < waiting_.size(); ++i) add_waiting(i, record);
   record.end_time_s = end_time_s;

@@ -34,8 +34,8 @@ struct SlipChange {
   double share = 1;   ///< of the (sub-)step that has passed then
 };
 
-/// What a contact update shows of slip.
-struct SlipSeen {
+/// Changes of slip in one contact update.
+struct SlipUpdate {
   double time_s = 0;                     ///< to which its tractions belong
   bool moves = false;                    ///< whether a node slips faster than creep
   std::vector<SlipChange> changes;       ///< nodes ascending
@@ -64,7 +64,7 @@ class SlipFinder {
   /// @param first, end  nodes that it looks at; around onsets tractions of others are not numbers
   SlipFinder(Memory memory, std::size_t first, std::size_t end, int halo, double creep_m_per_s);
 
-  void find(double time_s, const interface::Interface& state, bool changed, SlipSeen& seen);
+  void find(double time_s, const interface::Interface& state, bool changed, SlipUpdate& seen);
 
   const Memory& memory() const { return memory_; }
   Memory& memory() { return memory_; }
@@ -110,7 +110,7 @@ class Recorder : public UpdateObserver {
 
   void observe(double time_s, const interface::Interface& state, bool changed) override;
   /// The same where what the update shows has been found elsewhere.
-  void take(const SlipSeen& seen);
+  void consume(const SlipUpdate& seen);
   SlipFinder& finder() { return finder_; }
   std::size_t n_slipping() const { return n_slipping_; }
 
@@ -122,7 +122,7 @@ class Recorder : public UpdateObserver {
   /// Without the last change of each node, which may yet be left out.
   const record::SlipRecord& record() const { return record_; }
   /// The whole record up to now.
-  record::SlipRecord take(double end_time_s) const;
+  record::SlipRecord record_until(double end_time_s) const;
 
   /// All that changes while a run goes.
   /// @throws UserError where what is read is of another interface
@@ -134,7 +134,7 @@ class Recorder : public UpdateObserver {
             finder_);
     if (Archive::is_loading::value &&
         (record_.x_m.size() != n_nodes || record_.halo != halo || !record::is_consistent(record_)))
-      throw UserError("the state that was kept has a record of another interface");
+      throw UserError("the saved state has the slip record of another interface");
     archive_vector(archive, has_slipped_);
     archive_vector(archive, waiting_);
     archive_vector(archive, around_waiting_);
@@ -159,7 +159,7 @@ class Recorder : public UpdateObserver {
   std::size_t n_around() const { return finder_.n_around(); }
 
   SlipFinder finder_;
-  SlipSeen seen_;                       ///< of the last update
+  SlipUpdate seen_;                     ///< of the last update
   std::vector<std::uint8_t> is_first_;  ///< its changes that are a node's first onset
   double last_motion_s_ = 0, last_onset_s_ = 0;
   record::SlipRecord record_;

@@ -13,16 +13,16 @@ namespace {
 
 /// Bytes of the last cache that may be counted on.
 constexpr double cache_bytes = 16e6;
-constexpr int most_steps_per_sweep = 16;
+constexpr int max_steps_per_sweep = 16;
 
 /// A mesh that fits into the cache itself gains nothing from several steps in one sweep, but what is on its
 /// way from one call to the next has most time in a single sweep.
 int suitable_steps_per_sweep(const mesh::Grid& grid, const Execution& execution) {
   const double motion = 4 * sizeof(double), rolling_rows = 6 * sizeof(double);
   const double rows = grid.rows + 1, columns = grid.stride();
-  if (execution.most_steps == 0 && motion * rows * columns < 0.5 * cache_bytes) return 1;
+  if (execution.max_steps == 0 && motion * rows * columns < 0.5 * cache_bytes) return 1;
   const double sweep = cache_bytes / ((2 * motion + rolling_rows) * columns * execution.threads);
-  return std::clamp(static_cast<int>(sweep), 1, most_steps_per_sweep);
+  return std::clamp(static_cast<int>(sweep), 1, max_steps_per_sweep);
 }
 
 /// Threads that can be at work at a time: each has a group of steps that are a band apart.
@@ -32,7 +32,7 @@ int useful_threads(int wanted, std::size_t n_bands, int steps_per_sweep) {
 
 /// Steps of the fastest body that a slower one takes at once: beyond this there is little left to save, and
 /// the common step would outgrow what is to be seen.
-constexpr double most_at_once = 16;
+constexpr double max_at_once = 16;
 
 /// Bodies as they are made, not yet divided.
 std::vector<Body> make_bodies(std::span<const BodySource> sources, const TimeStepping& time) {
@@ -48,7 +48,7 @@ double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, co
   for (const auto& body : bodies) stable_s = std::min(stable_s, body.stable_step_s());
   const double lowest_s = time.step_factor * stable_s;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const int at_once = steps_at_once(bodies[b].stable_step_s(), stable_s);
+    const int at_once = step_ratio(bodies[b].stable_step_s(), stable_s);
     bodies[b].divide(sources[b], time, lowest_s * (at_once * bodies[b].multiple()),
                      at_once * time.interface_substeps);
   }
@@ -57,9 +57,9 @@ double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, co
 
 }  // namespace
 
-int steps_at_once(double stable_step_s, double least_s) {
-  const double allowed = stable_step_s / least_s * (1 + 1e-9);
-  return static_cast<int>(std::clamp(allowed, 1.0, most_at_once));
+int step_ratio(double stable_step_s, double min_s) {
+  const double allowed = stable_step_s / min_s * (1 + 1e-9);
+  return static_cast<int>(std::clamp(allowed, 1.0, max_at_once));
 }
 
 Stepper::Stepper(const mesh::Mesh& mesh, const solid::Material& material,
@@ -83,17 +83,17 @@ Stepper::Stepper(std::span<const BodySource> sources, const interface::ContactMo
   const int lowest_steps = substeps_ / time.interface_substeps;
   step_s_ = lowest_step_s_ * lowest_steps;
   for (const auto& body : bodies_)
-    if (leads(body)) n_bands_ = std::max(n_bands_, static_cast<int>(body.n_bands()));
+    if (has_global_step(body)) n_bands_ = std::max(n_bands_, static_cast<int>(body.n_bands()));
   int depth = execution.steps_per_sweep > 0
                   ? execution.steps_per_sweep
                   : suitable_steps_per_sweep(mesh::blocks(sources.front().mesh).back(), execution);
-  if (execution.most_steps > 0)
-    depth = std::min(depth, (execution.most_steps + execution.threads - 1) / execution.threads);
+  if (execution.max_steps > 0)
+    depth = std::min(depth, (execution.max_steps + execution.threads - 1) / execution.threads);
   wavefront_ = std::make_unique<threads::Wavefront>(
       useful_threads(execution.threads, static_cast<std::size_t>(n_bands_), depth), depth);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (!leads(bodies_[b])) bodies_[b].keep_to_double();
-    bodies_[b].expect_steps_under_way(wavefront_->most_steps());
+    if (!has_global_step(bodies_[b])) bodies_[b].disable_single_precision();
+    bodies_[b].reserve_steps_in_flight(wavefront_->max_steps());
     if (contact.algorithm == interface::ContactAlgorithm::predictor_corrector)
       bodies_[b].expect_landings(sources[b].mesh, sources[b].material);
   }
@@ -120,46 +120,47 @@ void Stepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_
 void Stepper::advance_interface(std::int64_t step, int n_substeps, UpdateObserver& observer,
                                 record::History* sample) {
   for (auto& body : bodies_) {
-    body.under_way(step).products = {};
-    body.under_way(step).works = {};
+    body.step_in_flight(step).products = {};
+    body.step_in_flight(step).works = {};
   }
   for (int k = 0; k < n_substeps; ++k) {
     // All forces are those of the places and velocities before the sub-step.
-    for (auto& body : bodies_) body.push_due(body.under_way(step), k, leads(body));
+    for (auto& body : bodies_) body.apply_due_impulses(body.step_in_flight(step), k, has_global_step(body));
     coupling_.update(bodies_, time_s() + k * substep_s(), substep_s(), observer, k == 0 ? sample : nullptr,
-                     bodies_.front().under_way(step).works);
+                     bodies_.front().step_in_flight(step).works);
   }
   for (auto& body : bodies_)
-    if (!leads(body)) body.complete(body.under_way(step));
+    if (!has_global_step(body)) body.complete(body.step_in_flight(step));
 }
 
 void Stepper::advance_band(std::int64_t step, std::size_t band) {
   for (auto& body : bodies_) {
-    if (!leads(body) || band >= body.n_bands()) continue;
-    body.push_later_band(body.under_way(step), band);
-    if (band + 1 == body.n_bands()) body.complete(body.under_way(step));
+    if (!has_global_step(body) || band >= body.n_bands()) continue;
+    body.apply_later_band_impulse(body.step_in_flight(step), band);
+    if (band + 1 == body.n_bands()) body.complete(body.step_in_flight(step));
   }
 }
 
-void Stepper::watch(std::vector<Probe> probes) {
+void Stepper::set_probes(std::vector<Probe> probes) {
   probes_ = std::move(probes);
-  watched_.clear();
+  probed_nodes_.clear();
   if (probes_.empty()) return;
-  watched_.resize(static_cast<std::size_t>(n_bands_));
+  probed_nodes_.resize(static_cast<std::size_t>(n_bands_));
   for (std::size_t p = 0; p < probes_.size(); ++p)
     for (std::size_t a = 0; a < 4; ++a) {
       const auto b = probes_[p].body;
       const auto node = static_cast<mesh::Node>(probes_[p].node[a]);
-      watched_[leads(bodies_[b]) ? bodies_[b].band_of(node) : 0].push_back({b, node, 8 * p + 2 * a});
+      probed_nodes_[has_global_step(bodies_[b]) ? bodies_[b].band_of(node) : 0].push_back(
+          {b, node, 8 * p + 2 * a});
     }
 }
 
-void Stepper::show_watched(std::int64_t step, std::size_t band, const Between& between) const {
-  if (watched_[band].empty()) return;
-  double* to = between.displacements(step);
+void Stepper::store_probed(std::int64_t step, std::size_t band, const StepCallbacks& callbacks) const {
+  if (probed_nodes_[band].empty()) return;
+  double* to = callbacks.displacements(step);
   if (to == nullptr) return;
-  for (const auto& [body, node, at] : watched_[band]) {
-    const auto u_m = bodies_[body].u_under_way_m(node);
+  for (const auto& [body, node, at] : probed_nodes_[band]) {
+    const auto u_m = bodies_[body].u_in_flight_m(node);
     to[at] = u_m.x;
     to[at + 1] = u_m.y;
   }
@@ -185,29 +186,29 @@ std::vector<double> Stepper::probed_v_m_per_s() const {
   return values;
 }
 
-std::int64_t Stepper::advance(Recorder& recorder, std::int64_t most_steps, const Between& between) {
-  return advance(static_cast<UpdateObserver&>(recorder), most_steps, between);
+std::int64_t Stepper::advance(Recorder& recorder, std::int64_t max_steps, const StepCallbacks& callbacks) {
+  return advance(static_cast<UpdateObserver&>(recorder), max_steps, callbacks);
 }
 
-std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t most_steps, const Between& between,
-                              const AtBands& at_bands) {
-  const auto first = step_, last = first + most_steps - 1;
+std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t max_steps,
+                              const StepCallbacks& callbacks, const BandCallbacks& band_callbacks) {
+  const auto first = step_, last = first + max_steps - 1;
   const auto is_in_calling_thread = [&](std::int64_t number) {
     return (number - first) / wavefront_->depth() % wavefront_->threads() == 0;
   };
   const auto unit = [&](std::int64_t number, int band) {
-    if (at_bands.before && is_in_calling_thread(number)) at_bands.before(number - first, band);
-    if (band == 0) advance_interface(number, substeps_, observer, between.sample());
+    if (band_callbacks.before && is_in_calling_thread(number)) band_callbacks.before(number - first, band);
+    if (band == 0) advance_interface(number, substeps_, observer, callbacks.sample());
     advance_band(number, static_cast<std::size_t>(band));
-    if (!watched_.empty()) show_watched(number + 1, static_cast<std::size_t>(band), between);
-    if (number == last && at_bands.after_last) at_bands.after_last(band);
+    if (!probed_nodes_.empty()) store_probed(number + 1, static_cast<std::size_t>(band), callbacks);
+    if (number == last && band_callbacks.after_last) band_callbacks.after_last(band);
     if (band > 0) return true;
     ++step_;
-    return between.go_on(coupling_.slip_rates());
+    return callbacks.may_continue(coupling_.slip_rates());
   };
-  const auto taken = wavefront_->run(step_, most_steps, n_bands_, unit);
-  SLIPFRONT_ASSERT(!at_bands.after_last || taken == most_steps, "all steps are taken");
-  settle();
+  const auto taken = wavefront_->run(step_, max_steps, n_bands_, unit);
+  SLIPFRONT_ASSERT(!band_callbacks.after_last || taken == max_steps, "all steps are taken");
+  sync_to_double();
   return taken;
 }
 
@@ -216,15 +217,16 @@ void Stepper::advance(UpdateObserver& observer, record::History* sample) {
 }
 
 void Stepper::reverse(Recorder& recorder) {
-  // All cells push at the beginning of a step: the motion back begins with the velocities after these pushes,
-  // at the places before them. It keeps the steady forces on shared nodes, without which it would be another.
+  // All cells kick at the beginning of a step: the motion back begins with the velocities after these
+  // impulses, at the places before them. It keeps the steady forces on shared nodes, without which it would
+  // be another.
   std::vector<solid::Field> u;
   for (const auto& body : bodies_) u.push_back(body.u_m());
   advance_interface(step_, 1, recorder, nullptr);
   for (int band = 0; band < n_bands_; ++band) advance_band(step_, static_cast<std::size_t>(band));
   coupling_.reverse();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    bodies_[b].settle();
+    bodies_[b].sync_to_double();
     bodies_[b].reverse(u[b], time_s());
   }
 }
@@ -246,13 +248,13 @@ double Stepper::energy_of_tractions_J_per_m() const {
   return 0.5 * bodies_.front().mass_kg_per_m() * v * v;
 }
 
-std::size_t Stepper::snapshot_piece_bytes() const {
+std::size_t Stepper::snapshot_chunk_bytes() const {
   return n_motion_components * sizeof(double) * static_cast<std::size_t>(n_nodes());
 }
 
-std::vector<double> Stepper::snapshot_piece(int /*k*/) const {
+std::vector<double> Stepper::snapshot_chunk(int /*k*/) const {
   std::vector<double> all;
-  all.reserve(snapshot_piece_bytes() / sizeof(double));
+  all.reserve(snapshot_chunk_bytes() / sizeof(double));
   for (int component = 0; component < n_motion_components; ++component)
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       append(MotionComponent{component}, b, 0, static_cast<mesh::Node>(bodies_[b].u_m().size()), all);

@@ -30,13 +30,13 @@ struct Execution {
   /// Steps that a thread takes in one sweep through memory; 0 chooses by the size of the topmost block.
   int steps_per_sweep = 0;
   /// Most steps of a call of advance, which the threads share; 0 for many.
-  int most_steps = 0;
+  int max_steps = 0;
   /// Of a stage in which a part sends its halo, see Halo.
-  double halo_stage_bytes = Processes::prompt_bytes;
+  double halo_stage_bytes = Processes::eager_limit_bytes;
 };
 
-/// What is done while the bands of a step move, see Stepper::rows_moved.
-struct AtBands {
+/// Callbacks while the bands of a step move, see Stepper::rows_moved.
+struct BandCallbacks {
   /// Before a band moves in a step of a call, counted from 0, where the calling thread takes it; that it
   /// takes the first one, and later ones have not looked at the band yet.
   std::function<void(std::int64_t step, int band)> before;
@@ -46,19 +46,20 @@ struct AtBands {
 };
 
 /// Steps of the fastest body that one with this stable step takes at once.
-/// @param least_s  stable step of the fastest body
-int steps_at_once(double stable_step_s, double least_s);
+/// @param min_s  stable step of the fastest body
+int step_ratio(double stable_step_s, double min_s);
 
 /// Explicit motion of a plate on a rigid plane, or on another body: Newmark with beta = 0, gamma = 1/2
 /// (displacements at whole steps, velocities at half steps), damping force on the last half-step velocity.
 ///
-/// The rows of cells next to the interface are sub-cycled: every cell has its own step, and pushes its nodes
+/// The rows of cells next to the interface are sub-cycled: every cell has its own step, and kicks its nodes
 /// when its own time comes; in between the nodes move at constant velocity: the asynchronous variational
 /// integrator of Lew et al. (2003). The nodes between the two kinds of cells feel the coarse cells' force at
-/// the start of the event as a constant load in every sub-step, and its change since then in pushes; without
-/// this, a stressed plate at rest would not stay at rest. Reversible and symplectic where nothing dissipates.
-/// With one sub-step it is the plain scheme. The blocks of a graded plate are such levels, too, each with the
-/// step that its cells allow (step_multiples); a step of the stepper is that of the coarsest block.
+/// the start of the event as a constant load in every sub-step, and its change since then in impulses;
+/// without this, a stressed plate at rest would not stay at rest. Reversible and symplectic where nothing
+/// dissipates. With one sub-step it is the plain scheme. The blocks of a graded plate are such levels, too,
+/// each with the step that its cells allow (step_multiples); a step of the stepper is that of the coarsest
+/// block.
 ///
 /// Two bodies share their sub-step, the one that the faster of them allows. The other one's cells away from
 /// the interface take steps longer by the whole number that they allow, up to 16.
@@ -100,15 +101,15 @@ class Stepper : public TimeStepper {
   }
 
   /// Looks at the nodes of these probes from now on.
-  void watch(std::vector<Probe> probes);
+  void set_probes(std::vector<Probe> probes);
   const std::vector<Probe>& probes() const override { return probes_; }
   std::vector<double> probed_u_m() const override;
   std::vector<double> probed_v_m_per_s() const override;
 
-  std::int64_t advance(Recorder& recorder, std::int64_t most_steps, const Between& between) override;
+  std::int64_t advance(Recorder& recorder, std::int64_t max_steps, const StepCallbacks& callbacks) override;
   /// The same, seen by any observer.
-  std::int64_t advance(UpdateObserver& observer, std::int64_t most_steps, const Between& between,
-                       const AtBands& at_bands = {});
+  std::int64_t advance(UpdateObserver& observer, std::int64_t max_steps, const StepCallbacks& callbacks,
+                       const BandCallbacks& band_callbacks = {});
   /// One step; the state at its beginning is appended to `sample` where it is given.
   void advance(UpdateObserver& observer, record::History* sample = nullptr);
 
@@ -121,7 +122,7 @@ class Stepper : public TimeStepper {
   const solid::Field& u_m() const { return bodies_.front().u_m(); }
   const solid::Field& v_m_per_s() const { return bodies_.front().v_m_per_s(); }
   /// The same with the mean velocity over the last step at nodes between sub-cycled and other cells, which
-  /// the pushes set swinging within the step.
+  /// the impulses set swinging within the step.
   solid::Field mean_velocity_m_per_s() const { return bodies_.front().mean_velocity_m_per_s(); }
   const interface::Interface& interface_state() const { return coupling_.state(); }
 
@@ -133,9 +134,9 @@ class Stepper : public TimeStepper {
   double energy_of_tractions_J_per_m() const override;
   record::Energies energies() override;
 
-  int n_snapshot_pieces() const override { return 1; }
-  std::size_t snapshot_piece_bytes() const override;
-  std::vector<double> snapshot_piece(int k) const override;
+  int n_snapshot_chunks() const override { return 1; }
+  std::size_t snapshot_chunk_bytes() const override;
+  std::vector<double> snapshot_chunk(int k) const override;
   /// Of the nodes [first, end) of a body what a snapshot has.
   void append(MotionComponent component, std::size_t body, mesh::Node first, mesh::Node end,
               std::vector<double>& to) const;
@@ -144,8 +145,8 @@ class Stepper : public TimeStepper {
   /// Rows of a body's nodes that a step has moved for good when its band has: these, from 0. Of the others
   /// the first one has been read.
   int rows_moved(std::size_t body, int band) const {
-    return leads(bodies_[body]) ? bodies_[body].rows_moved(static_cast<std::size_t>(band))
-                                : bodies_[body].n_rows();
+    return has_global_step(bodies_[body]) ? bodies_[body].rows_moved(static_cast<std::size_t>(band))
+                                          : bodies_[body].n_rows();
   }
   /// Calls visit(values, n) with all that changes between two steps and decides on the motion of some
   /// neighbouring columns of nodes. Others may be put there.
@@ -156,7 +157,7 @@ class Stepper : public TimeStepper {
                      Visit&& visit) {
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       bodies_[b].visit_columns(columns, rows[b], and_interface, visit);
-    if (and_interface) coupling_.visit_nodes(bodies_.front().lower_in(columns), visit);
+    if (and_interface) coupling_.visit_nodes(bodies_.front().interface_nodes_in(columns), visit);
   }
   /// The same in all rows.
   template <class Visit>
@@ -166,20 +167,20 @@ class Stepper : public TimeStepper {
     visit_columns(columns, rows, true, visit);
   }
   /// After other values have been put there: before anyone but a step looks at them.
-  void settle() {
-    for (auto& body : bodies_) body.settle();
+  void sync_to_double() {
+    for (auto& body : bodies_) body.sync_to_double();
   }
 
-  /// Shows all that changes between two calls of advance to a visitor, see KeptMotion.
+  /// Shows all that changes between two calls of advance to a visitor, see StateByNode.
   template <class Visitor>
-  void visit_state(Visitor& visitor, const PlaceInWhole& place) {
+  void visit_state(Visitor& visitor, const SubdomainPlace& place) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].visit_state(visitor, b);
     coupling_.visit_state(visitor, bodies_.front(), place);
   }
   /// After other values have been put there.
-  void take_state(std::int64_t step) {
-    for (auto& body : bodies_) body.take_state();
-    coupling_.take_state();
+  void update_after_restore(std::int64_t step) {
+    for (auto& body : bodies_) body.update_after_restore();
+    coupling_.update_after_restore();
     step_ = step;
   }
 
@@ -194,13 +195,13 @@ class Stepper : public TimeStepper {
  private:
   /// Whether the wavefront takes the bands of a body's coarsest level; its other levels, and all of a body
   /// with a shorter step, go with the interface.
-  bool leads(const Body& body) const { return body.period() == substeps_; }
+  bool has_global_step(const Body& body) const { return body.period() == substeps_; }
   /// The part of a step that concerns the interface: all that is due in its sub-steps, or in the first
   /// n_substeps of them.
   void advance_interface(std::int64_t step, int n_substeps, UpdateObserver& observer,
                          record::History* sample);
   /// Copies the displacements of the watched nodes that the bands `band` have moved to where a step ends.
-  void show_watched(std::int64_t step, std::size_t band, const Between& between) const;
+  void store_probed(std::int64_t step, std::size_t band, const StepCallbacks& callbacks) const;
   /// One band of the bodies' coarsest levels.
   void advance_band(std::int64_t step, std::size_t band);
 
@@ -213,12 +214,12 @@ class Stepper : public TimeStepper {
   std::unique_ptr<threads::Wavefront> wavefront_;
   std::vector<Probe> probes_;
   /// A node of a probe, and where its displacement goes.
-  struct Watched {
+  struct ProbedNode {
     std::size_t body = 0;
     mesh::Node node = 0;
     std::size_t at = 0;
   };
-  std::vector<std::vector<Watched>> watched_;  ///< by the band with which they move; none without probes
+  std::vector<std::vector<ProbedNode>> probed_nodes_;  ///< by band; none without probes
   std::int64_t step_ = 0;
 };
 

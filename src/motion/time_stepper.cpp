@@ -6,10 +6,10 @@
 namespace slipfront::motion {
 
 Snapshot TimeStepper::snapshot() const {
-  auto values = snapshot_piece(0);
-  for (int k = 1; k < n_snapshot_pieces(); ++k) {
-    const auto piece = snapshot_piece(k);
-    values.insert(values.end(), piece.begin(), piece.end());
+  auto values = snapshot_chunk(0);
+  for (int k = 1; k < n_snapshot_chunks(); ++k) {
+    const auto chunk = snapshot_chunk(k);
+    values.insert(values.end(), chunk.begin(), chunk.end());
   }
   const auto n = static_cast<std::size_t>(n_nodes());
   Snapshot all{time_s(), solid::Field(n), solid::Field(n)};

@@ -28,18 +28,18 @@ struct SlipRates {
   }
 };
 
-/// Looks into a run between its steps. All are called in the order of steps, not always by the same thread,
-/// and may ask the stepper for its time and its step only.
-struct Between {
+/// Callbacks during a run. They are called in the order of steps, not always by the same thread, and may read
+/// only the stepper's time and step.
+struct StepCallbacks {
   /// Where to put the state at the beginning of the step that follows; null for nowhere.
   std::function<record::History*()> sample = [] { return nullptr; };
   /// After the interface's part of a step: whether another one may follow.
-  std::function<bool(const SlipRates& rates)> go_on = [](const SlipRates&) { return true; };
+  std::function<bool(const SlipRates& rates)> may_continue = [](const SlipRates&) { return true; };
   /// Where to put the displacements of the nodes of the stepper's probes at a step, see displacement_values;
   /// null for nowhere. Asked for in each part of the step, from the thread that takes it.
   std::function<double*(std::int64_t step)> displacements = [](std::int64_t) { return nullptr; };
-  /// Steps, at least one, after which go_on may first refuse a motion that is physical.
-  std::function<std::int64_t()> sure_steps = [] { return std::int64_t{1}; };
+  /// Steps, at least one, after which may_continue may first refuse a motion that is physical.
+  std::function<std::int64_t()> guaranteed_steps = [] { return std::int64_t{1}; };
 };
 
 /// Motion of all nodes at one instant, those of a body below after those of the plate, with u_y and v_y up.
@@ -49,11 +49,11 @@ struct Snapshot {
   solid::Field u_m, v_m_per_s;
 };
 
-/// What a snapshot tells of a node, in its order.
+/// Components of a snapshot, in its order.
 enum class MotionComponent : int { u_x, u_y, v_x, v_y };
 inline constexpr int n_motion_components = 4;
 
-/// Whoever steps the bodies of an event: one process, or several together.
+/// Interface of the steppers of an event's bodies: on one rank, or on several.
 class TimeStepper {
  public:
   virtual ~TimeStepper() = default;
@@ -78,11 +78,12 @@ class TimeStepper {
   virtual std::vector<double> probed_u_m() const = 0;
   virtual std::vector<double> probed_v_m_per_s() const = 0;
 
-  /// Takes at most `most_steps` steps, several of them in one sweep through memory. Every contact update is
+  /// Takes at most `max_steps` steps, several of them in one sweep through memory. Every contact update is
   /// shown to the recorder.
   /// @return the number of steps taken
   /// @throws what recorder and `between` throw; after that only start may follow.
-  virtual std::int64_t advance(Recorder& recorder, std::int64_t most_steps, const Between& between) = 0;
+  virtual std::int64_t advance(Recorder& recorder, std::int64_t max_steps,
+                               const StepCallbacks& callbacks) = 0;
 
   /// Energies and works up to the last half (sub-)step.
   virtual record::Energies energies() = 0;
@@ -92,12 +93,12 @@ class TimeStepper {
   /// tractions are not balanced. With h/c_L for the step it is near sigma^2/(2E) times the bodies' area.
   virtual double energy_of_tractions_J_per_m() const = 0;
 
-  /// A snapshot is told in pieces, so that none need hold all of it: u_x, u_y, v_x, v_y [nodes], one after
+  /// A snapshot is written in chunks, so that no rank holds all of it: u_x, u_y, v_x, v_y [nodes], one after
   /// the other, in so many.
-  virtual int n_snapshot_pieces() const = 0;
+  virtual int n_snapshot_chunks() const = 0;
   /// Bytes of the largest of them.
-  virtual std::size_t snapshot_piece_bytes() const = 0;
-  virtual std::vector<double> snapshot_piece(int k) const = 0;
+  virtual std::size_t snapshot_chunk_bytes() const = 0;
+  virtual std::vector<double> snapshot_chunk(int k) const = 0;
   /// All of it.
   Snapshot snapshot() const;
 

@@ -11,7 +11,7 @@
 
 namespace slipfront {
 
-/// Does what others wait for: where it fails there is no way back.
+/// Runs what other ranks wait for; a failure ends the program.
 template <class F>
 void or_fail(Processes& processes, F&& f) {
   try {
@@ -22,12 +22,12 @@ void or_fail(Processes& processes, F&& f) {
 }
 
 /// What work gives, or in one line why it failed, for the process that has asked for it.
-/// @param work  puts it into a parcel
+/// @param work  puts it into a buffer
 template <class F>
-Parcel answer_of(const Processes& processes, F&& work) {
-  const auto failed = [](const std::string& reason) { return std::move(Parcel().put(reason)); };
+MessageBuffer answer_of(const Processes& processes, F&& work) {
+  const auto failed = [](const std::string& reason) { return std::move(MessageBuffer().put(reason)); };
   try {
-    Parcel answer;
+    MessageBuffer answer;
     answer.put(std::string());
     work(answer);
     return answer;
@@ -56,7 +56,7 @@ class Answers {
   }
   template <class F>
   void take(int from, F&& f) {
-    Parcel answer;
+    MessageBuffer answer;
     or_fail(processes_, [&] { answer = processes_.receive(from); });
     unless_failed([&] {
       if (const auto failed = answer.take_text(); !failed.empty()) throw ProcessError(failed);

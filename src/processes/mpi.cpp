@@ -29,7 +29,7 @@ namespace slipfront {
 namespace {
 
 /// MPI counts with int.
-constexpr std::size_t most_bytes = Processes::most_transferred_bytes;
+constexpr std::size_t max_bytes = Processes::max_transfer_bytes;
 
 /// What starters of MPI set for each process: Open MPI, PMIx, PMI (MPICH, Slurm).
 bool is_started_by_mpi() {
@@ -147,37 +147,37 @@ class MpiProcesses final : public Processes {
   int size() const override { return size_; }
   int on_this_machine() const override { return on_machine_; }
 
-  void send(int to, const Parcel& parcel) override {
+  void send(int to, const MessageBuffer& buffer) override {
     const Waiting waiting(counters_.command_s);
-    const auto bytes = parcel.bytes();
+    const auto bytes = buffer.bytes();
     const auto n = static_cast<std::uint64_t>(bytes.size());
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Isend(&n, 1, MPI_UINT64_T, to, tag, MPI_COMM_WORLD, &request);
     patience_.wait(request);
-    for (std::size_t at = 0; at < bytes.size(); at += most_bytes) {
-      MPI_Isend(bytes.data() + at, static_cast<int>(std::min(most_bytes, bytes.size() - at)), MPI_BYTE, to,
+    for (std::size_t at = 0; at < bytes.size(); at += max_bytes) {
+      MPI_Isend(bytes.data() + at, static_cast<int>(std::min(max_bytes, bytes.size() - at)), MPI_BYTE, to,
                 tag, MPI_COMM_WORLD, &request);
       patience_.wait(request);
     }
     count(bytes.size());
   }
 
-  Parcel receive(int from) override {
+  MessageBuffer receive(int from) override {
     const Waiting waiting(counters_.command_s);
     std::uint64_t n = 0;
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Irecv(&n, 1, MPI_UINT64_T, from, tag, MPI_COMM_WORLD, &request);
     patience_.wait(request);
     std::vector<std::byte> bytes(n);
-    for (std::size_t at = 0; at < bytes.size(); at += most_bytes) {
-      MPI_Irecv(bytes.data() + at, static_cast<int>(std::min(most_bytes, bytes.size() - at)), MPI_BYTE, from,
+    for (std::size_t at = 0; at < bytes.size(); at += max_bytes) {
+      MPI_Irecv(bytes.data() + at, static_cast<int>(std::min(max_bytes, bytes.size() - at)), MPI_BYTE, from,
                 tag, MPI_COMM_WORLD, &request);
       patience_.wait(request);
     }
-    return Parcel(std::move(bytes));
+    return MessageBuffer(std::move(bytes));
   }
 
-  Parcel receive_any() override {
+  MessageBuffer receive_any() override {
     MPI_Status status;
     {
       const Waiting waiting(counters_.command_s);
@@ -202,14 +202,14 @@ class MpiProcesses final : public Processes {
                   MPI_COMM_WORLD, &transfer->request);
     return transfer;
   }
-  void attend() override {
+  void make_progress() override {
     // The library may give the processor away in each call, and what was computed leaves its cache.
     if (share_processors_) return;
     int is_there = 0;
     MPI_Iprobe(MPI_ANY_SOURCE, no_tag, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
   }
 
-  void take_largest(std::span<double> values) override {
+  void reduce_max(std::span<double> values) override {
     const Waiting waiting(counters_.command_s);
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX,
@@ -227,11 +227,11 @@ class MpiProcesses final : public Processes {
   }
 
  private:
-  /// Of parcels, and of nothing; those of channels come after them.
+  /// Of buffers, and of nothing; those of channels come after them.
   static constexpr int tag = 0, no_tag = 1, first_channel = 2;
 
   static int as_count(std::size_t bytes) {
-    SLIPFRONT_ASSERT(bytes <= most_bytes, "a halo is short");
+    SLIPFRONT_ASSERT(bytes <= max_bytes, "a halo is short");
     return static_cast<int>(bytes);
   }
   void count(std::size_t bytes) {

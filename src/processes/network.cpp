@@ -18,7 +18,7 @@ constexpr double nothing_more = 0, an_answer = 1, an_exchange = 2;
 
 /// As a halo goes, in stages.
 constexpr int n_stages = 8;
-constexpr std::size_t stage_bytes = Processes::prompt_bytes;
+constexpr std::size_t stage_bytes = Processes::eager_limit_bytes;
 
 /// What two processes tell each other, and exchange both ways at once.
 class Talk {
@@ -61,13 +61,13 @@ class Talk {
   std::vector<std::unique_ptr<Processes::Transfer>> exchanged_;
 };
 
-/// Median of what some calls take, after one for warming up; at least three, and others until most_s is over.
+/// Median of what some calls take, after one for warming up; at least three, and others until max_s is over.
 template <class Call>
-double median_s(int most_calls, double most_s, Call call) {
+double median_s(int max_calls, double max_s, Call call) {
   call();
   std::vector<double> times_s;
   const auto begin = Clock::now();
-  while (std::ssize(times_s) < 3 || (std::ssize(times_s) < most_calls && seconds_since(begin) < most_s)) {
+  while (std::ssize(times_s) < 3 || (std::ssize(times_s) < max_calls && seconds_since(begin) < max_s)) {
     const auto call_begin = Clock::now();
     call();
     times_s.push_back(seconds_since(call_begin));

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "processes/parcel.hpp"
+#include "processes/message_buffer.hpp"
 
 namespace slipfront {
 
@@ -46,23 +46,23 @@ class Processes {
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
-  /// How many of them share this one's machine and its memory, this one included.
+  /// Ranks that share this one's machine and memory, this one included.
   virtual int on_this_machine() const { return size(); }
 
-  virtual void send(int to, const Parcel& parcel) = 0;
-  virtual Parcel receive(int from) = 0;
+  virtual void send(int to, const MessageBuffer& buffer) = 0;
+  virtual MessageBuffer receive(int from) = 0;
   /// From whichever process sends one.
-  virtual Parcel receive_any() = 0;
-  static constexpr std::size_t most_transferred_bytes = std::size_t{1} << 30;
+  virtual MessageBuffer receive_any() = 0;
+  static constexpr std::size_t max_transfer_bytes = std::size_t{1} << 30;
   /// Of a transfer that sets out without an answer of the other end: below the 64 KiB of Open MPI's over TCP.
-  static constexpr std::size_t prompt_bytes = std::size_t{48} << 10;
+  static constexpr std::size_t eager_limit_bytes = std::size_t{48} << 10;
   /// @param channel  not negative, the same at both ends; no other transfer between the two goes that way
   virtual std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) = 0;
   virtual std::unique_ptr<Transfer> transfer_from(int rank, int channel, std::span<std::byte> bytes) = 0;
   /// Lets transfers go on while this process has something else to do.
-  virtual void attend() {}
+  virtual void make_progress() {}
   /// Replaces each number by the largest that any process has there; called by all.
-  virtual void take_largest(std::span<double> values) = 0;
+  virtual void reduce_max(std::span<double> values) = 0;
 
   /// Ends all processes at once, with exit code 1, where this one cannot go on while others wait for it.
   [[noreturn]] virtual void fail(const std::string& message) = 0;
@@ -73,13 +73,13 @@ class Processes {
   Counters counters_;
 };
 
-/// What a process could not do, told in one line that names it.
+/// Failure of a rank, in one line that names it.
 class ProcessError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What to tell other processes of an exception.
+/// Reason of an exception, for other ranks.
 inline std::string reason_of(const std::exception& error) {
   const bool is_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
   return is_memory ? "not enough memory; use larger elements, or fewer processes on a machine" : error.what();

@@ -10,12 +10,12 @@ namespace slipfront {
 // below a process, with itself, have numbers one after the other (a binomial tree).
 
 /// Of each but 0, which leads.
-inline int above_in_tree(int rank) {
+inline int parent_in_tree(int rank) {
   return rank & (rank - 1);
 }
 
 /// Ascending; those below each of them come before the next one.
-inline std::vector<int> below_in_tree(int rank, int size) {
+inline std::vector<int> children_in_tree(int rank, int size) {
   std::vector<int> below;
   for (long distance = 1; rank + distance < size && (rank & distance) == 0; distance *= 2)
     below.push_back(static_cast<int>(rank + distance));

@@ -3,8 +3,8 @@
 
 #include <nanobind/nanobind.h>
 
-/// The Python module slipfront._core, a function for each part. It gives the functions of the other rooms to
-/// Python as they are; what makes them convenient there is in python/slipfront.
+/// The Python module slipfront._core, a function for each part. It gives the functions of the other modules
+/// to Python as they are; what makes them convenient there is in python/slipfront.
 namespace slipfront::python {
 
 void bind_errors(nanobind::module_& module);

@@ -97,7 +97,7 @@ struct Session {
       throw;
     } catch (const WriteError& error) {
       if (!folder.has_unfinished()) throw;
-      throw WriteError("{}; {}", error.what(), run::how_to_go_on(folder));
+      throw WriteError("{}; {}", error.what(), run::how_to_resume(folder));
     }
   }
 };
@@ -147,11 +147,11 @@ void run_by_law(const input::CaseFile& given, const fs::path& dir, const nb::cal
   run_config(given, config, dir, false, 1, std::numeric_limits<double>::infinity(), std::move(progress));
 }
 
-void go_on(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress) {
+void resume(const fs::path& dir, std::optional<int> threads, double checkpoint_every_s, nb::object progress) {
   Session session(dir, threads, checkpoint_every_s, std::move(progress));
   if (!session.folder.has_unfinished() && run::is_complete(session.folder.dir())) return;
   session.complete(
-      [&] { return run::go_on(session.folder, nullptr, session.options, session.watcher.hooks()); });
+      [&] { return run::resume(session.folder, nullptr, session.options, session.watcher.hooks()); });
 }
 
 stability::Bodies bodies_of(const input::Case& config) {
@@ -169,7 +169,7 @@ stability::WellPosedness well_posedness(const input::CaseFile& given, double pre
 
 /// Of the case's material in squares, without its geometry.
 double stable_step_s(const input::CaseFile& given, double element_size_m) {
-  constexpr int squares_on_a_side = 2;  // enough for a mesh; the frequency is that of a block of its own
+  constexpr int squares_on_a_side = 2;  // enough for a mesh; the frequency is that of a separate block
   mesh::Plate plate;
   plate.corner = mesh::Corner::none;
   plate.element_size_m = element_size_m;
@@ -308,7 +308,7 @@ void bind_cases(nb::module_& module) {
            "Runs the case into a folder; progress(part, step, total) is called at times.");
   module.def("run_by_law", &run_by_law, "case"_a, "dir"_a, "mu_of"_a, "progress"_a.none(),
              "Runs a case whose coefficient is mu_of(slip_rate_m_per_s, slip_m), arrays [nodes].");
-  module.def("go_on", &go_on, "dir"_a, "threads"_a.none(), "checkpoint_every_s"_a, "progress"_a.none(),
+  module.def("resume", &resume, "dir"_a, "threads"_a.none(), "checkpoint_every_s"_a, "progress"_a.none(),
              "Goes on with the unfinished run of a folder; does nothing where it is complete.");
 }
 

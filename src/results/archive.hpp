@@ -16,7 +16,7 @@
 #include "files/checksum.hpp"
 #include "files/files.hpp"
 
-/// State of a program under way in a file of its own: numbers as they are in memory, so that what is read is
+/// State of a program under way in a separate file: numbers as they are in memory, so that what is read is
 /// what was written to the last bit, and behind them a checksum of everything. Types tell what belongs to
 /// their state by cereal's `serialize`.
 namespace slipfront::results {

@@ -244,7 +244,7 @@ void ResultFolder::make() {
   for (fs::path p = dir_; !p.empty() && !files::is_there(p); p = p.parent_path()) outermost = p;
   error.clear();
   fs::create_directories(dir_, error);
-  if (error) throw_unusable(dir_, "made", error.value());
+  if (error) throw_unusable(dir_, "created", error.value());
   outermost_made_ = outermost;
   if (::access(dir_.c_str(), R_OK | W_OK | X_OK) != 0) throw_unusable(dir_, "written", errno);
   auto names = std::vector<const char*>(unlisted_results.begin(), unlisted_results.end());
@@ -364,7 +364,7 @@ void ResultFolder::finish_publication() {
           if (name == files::checksum_list) return;
           std::error_code error;
           fs::create_directories((dir_ / name).parent_path(), error);
-          if (error) throw_unusable((dir_ / name).parent_path(), "made", error.value());
+          if (error) throw_unusable((dir_ / name).parent_path(), "created", error.value());
           files::move_file(publishing() / name, dir_ / name);
         },
         [&](const std::string& name) { files::remove_file(publishing() / name); });
@@ -378,7 +378,7 @@ void ResultFolder::finish_publication() {
 void seal(const fs::path& dir, const files::Checksums& others) {
   remove_cut_off(dir);
   files::Checksums checksums = others;
-  std::set<std::string> sealed;  // folders with a list of their own
+  std::set<std::string> sealed;  // folders with a separate list
   const auto is_below_sealed = [&](fs::path name) {
     while (!(name = name.parent_path()).empty())
       if (sealed.contains(name.string())) return true;

@@ -65,7 +65,7 @@ class ResultFolder {
   files::Descriptor lock_;
 };
 
-/// Writes the list of checksums of a folder's files; of a folder in it that has a list of its own only that
+/// Writes the list of checksums of a folder's files; of a folder in it that has a separate list only that
 /// list. Lists end the writing of a set: what has one is complete.
 /// @param others  of files elsewhere that belong to the set
 void seal(const std::filesystem::path& dir, const files::Checksums& others = {});

@@ -386,12 +386,12 @@ Dataset numbers(const File& file, const std::string& name) {
 
 /// Refuses a data set that claims more values than its file holds: before memory is taken for them.
 void require_held(const File& file, const std::string& name, const Handle& dataset, std::size_t n) {
-  constexpr hsize_t most_compression = 1100;  // of deflate, HDF5's own filter: 1032
+  constexpr hsize_t max_compression = 1100;  // of deflate, HDF5's own filter: 1032
   const Handle type(H5Dget_type(dataset.get()), H5Tclose);
   const Handle properties(H5Dget_create_plist(dataset.get()), H5Pclose);
   const hsize_t stored = H5Dget_storage_size(dataset.get()) / std::max<hsize_t>(H5Tget_size(type.get()), 1);
   const bool filtered = H5Pget_nfilters(properties.get()) > 0;
-  if (n > stored && (!filtered || n / most_compression > stored)) throw_read(file, name);
+  if (n > stored && (!filtered || n / max_compression > stored)) throw_read(file, name);
 }
 
 /// Whether a file has these bytes somewhere.

@@ -31,7 +31,7 @@ class Records {
       : path_(file), stream_(file, std::ios::binary), values_(values) {
     std::error_code error;
     const auto bytes = std::filesystem::file_size(file, error);
-    if (!stream_ || error) throw UserError("{}: cannot be read; begin the run again", path_.string());
+    if (!stream_ || error) throw UserError("{}: cannot be read; start the run again", path_.string());
     count_ = bytes / (sizeof(double) * values);
   }
   std::size_t count() const { return count_; }
@@ -50,7 +50,7 @@ class Records {
     std::vector<double> values(n);
     if (!stream_.read(reinterpret_cast<char*>(values.data()),
                       static_cast<std::streamsize>(sizeof(double) * values.size())))
-      throw UserError("{}: cannot be read; begin the run again", path_.string());
+      throw UserError("{}: cannot be read; start the run again", path_.string());
     return values;
   }
 
@@ -108,7 +108,7 @@ std::filesystem::path ResultStream::probe_file(const std::filesystem::path& dir)
 }
 
 ResultStream::Summed::Summed(const std::filesystem::path& path, const Extent& extent)
-    : file(files::OutputFile::go_on(path, extent.bytes)) {
+    : file(files::OutputFile::resume(path, extent.bytes)) {
   std::ifstream stream(path, std::ios::binary);
   std::vector<char> piece(piece_bytes);
   for (auto rest = extent.bytes; rest > 0;) {
@@ -118,7 +118,8 @@ ResultStream::Summed::Summed(const std::filesystem::path& path, const Extent& ex
     rest -= n;
   }
   if (sum.digest() != extent.checksum)
-    throw UserError("{}: was changed or damaged since the run was kept; begin the run again", path.string());
+    throw UserError("{}: was changed or damaged since the last checkpoint; start the run again",
+                    path.string());
 }
 
 void ResultStream::Summed::write(std::span<const double> values) {
@@ -132,14 +133,14 @@ ResultStream::Extent ResultStream::Summed::sync() {
 }
 
 ResultStream::ResultStream(const std::filesystem::path& dir, bool with_probes)
-    : history_(history_file(dir)), snapshots_(snapshot_file(dir)), writer_(most_bytes_waiting) {
+    : history_(history_file(dir)), snapshots_(snapshot_file(dir)), writer_(max_bytes_waiting) {
   if (with_probes) probes_.emplace(probe_file(dir));
 }
 
 ResultStream::ResultStream(const std::filesystem::path& dir, const Extents& extents, bool with_probes)
     : history_(history_file(dir), extents.history),
       snapshots_(snapshot_file(dir), extents.snapshots),
-      writer_(most_bytes_waiting) {
+      writer_(max_bytes_waiting) {
   if (with_probes) probes_.emplace(probe_file(dir), extents.probes);
 }
 
@@ -185,10 +186,10 @@ void ResultStream::hand_over() {
 void ResultStream::snapshot(motion::TimeStepper& stepper) {
   const double time_s = stepper.time_s();
   writer_.put(sizeof(double), [this, time_s] { snapshots_.write(std::span(&time_s, 1)); });
-  const auto most_bytes = stepper.snapshot_piece_bytes();
-  for (int k = 0; k < stepper.n_snapshot_pieces(); ++k) {
-    writer_.wait_for_room(most_bytes);
-    const auto piece = std::make_shared<const std::vector<double>>(stepper.snapshot_piece(k));
+  const auto max_bytes = stepper.snapshot_chunk_bytes();
+  for (int k = 0; k < stepper.n_snapshot_chunks(); ++k) {
+    writer_.wait_for_room(max_bytes);
+    const auto piece = std::make_shared<const std::vector<double>>(stepper.snapshot_chunk(k));
     writer_.put(sizeof(double) * piece->size(), [this, piece] { snapshots_.write(*piece); });
   }
 }

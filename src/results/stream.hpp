@@ -28,12 +28,12 @@ namespace slipfront::results {
 /// history.raw: per row time_s and each of record::history_fields [nodes];
 /// snapshots.raw: per snapshot time_s and u_x, u_y, v_x, v_y [nodes of the plate]; probes.raw, where there
 /// are probes: per row time_s and each of record::probe_fields [probes]; doubles as in memory.
-class ResultStream : public motion::Sink {
+class ResultStream : public motion::EventObserver {
  public:
   /// What the writer may hold at a time of blocks and snapshots that are not in their files yet; before more
   /// is handed to it, the steps wait. A snapshot that is larger by itself is handed over when the writer has
   /// nothing else.
-  static constexpr std::size_t most_bytes_waiting = 16U << 20U;
+  static constexpr std::size_t max_bytes_waiting = 16U << 20U;
 
   /// What a file of the stream holds so far.
   struct Extent {

@@ -46,9 +46,9 @@ void in_parallel(int threads, std::size_t n, const std::function<void(std::size_
 
 }  // namespace
 
-Batch::Batch(int threads, std::function<bool()> go_on, std::string interruption,
+Batch::Batch(int threads, std::function<bool()> may_continue, std::string interruption,
              const std::filesystem::path& kept)
-    : threads_(threads), go_on_(std::move(go_on)), interruption_(std::move(interruption)) {
+    : threads_(threads), may_continue_(std::move(may_continue)), interruption_(std::move(interruption)) {
   if (!kept.empty()) kept_.emplace(kept);
 }
 
@@ -101,7 +101,7 @@ void Batch::compute_initial_states(std::span<const input::Case* const> cases) {
 
 bool Batch::wanted() {
   const std::lock_guard lock(mutex_);
-  interrupted_ = interrupted_ || !go_on_();
+  interrupted_ = interrupted_ || !may_continue_();
   return !interrupted_;
 }
 

@@ -27,10 +27,10 @@ struct Counts {
 /// not depend on the number of threads.
 class Batch {
  public:
-  /// @param go_on         asked often, by one thread at a time; false interrupts all runs
+  /// @param may_continue         asked often, by one thread at a time; false interrupts all runs
   /// @param interruption  the message then
   /// @param kept          folder of the runs that are done; empty for none
-  Batch(int threads, std::function<bool()> go_on, std::string interruption,
+  Batch(int threads, std::function<bool()> may_continue, std::string interruption,
         const std::filesystem::path& kept = {});
 
   /// Called by the thread that ran case k, also where the event blew up; a run that was kept has no history
@@ -54,7 +54,7 @@ class Batch {
   motion::Monitor monitor();
 
   int threads_;
-  std::function<bool()> go_on_;
+  std::function<bool()> may_continue_;
   std::string interruption_;
   bool interrupted_ = false;
   Counts counts_;

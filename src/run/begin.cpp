@@ -18,10 +18,10 @@ namespace {
 
 using interface::is_at_edge;
 
-/// B at the nodes of the interface. [lower]
+/// B at the nodes of the interface. [interface nodes]
 std::vector<double> patch(const interface::Nucleation& nucleation, const mesh::Mesh& mesh) {
   std::vector<double> B;
-  for (const auto n : mesh.lower)
+  for (const auto n : mesh.interface_nodes)
     B.push_back(interface::nucleation_profile(nucleation, mesh.x_m[n], mesh.period_m));
   return B;
 }
@@ -56,7 +56,7 @@ std::vector<double> trigger_forces(const input::Case& config, const statics::Equ
   return forces;
 }
 
-/// The same, and of a patch that is overstressed. [lower]
+/// The same, and of a patch that is overstressed. [interface nodes]
 std::vector<double> starting_forces_N_per_m(const input::Case& config, const statics::Equilibrium& state,
                                             const PerNode& mu_s, const mesh::Mesh& mesh,
                                             std::span<const double> tributary_m) {
@@ -82,7 +82,7 @@ std::vector<double> intact_shares(const input::Case& config, const statics::Equi
     return shares;
   }
   if (!is_at_edge(config.event) || config.trigger.form != interface::TriggerForm::weakened) return {};
-  std::vector<double> shares(mesh.lower.size(), 1.0);
+  std::vector<double> shares(mesh.interface_nodes.size(), 1.0);
   for (const auto k : motion::trigger_zone(state, config.event, config.trigger.zone_m)) shares[k] = 0;
   return shares;
 }

@@ -59,22 +59,22 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   archive(initial);
-  const std::size_t n = initial.mesh.lower.size();
+  const std::size_t n = initial.mesh.interface_nodes.size();
   const auto fits = [&](const auto& states) {
     return statics::has_nodes(states.common, n) && statics::has_nodes(states.spontaneous, n);
   };
   const bool varies = config.friction_along_x.varies();
   if (initial.tributary_m.size() != n || initial.mu_s.size() != (varies ? n : 0) || !fits(initial) ||
       (initial.ramp && (!fits(*initial.ramp) || !record::is_consistent(initial.ramp->record))))
-    throw UserError("the state before the event that was kept is of another plate");
+    throw UserError("the saved initial state belongs to another plate");
   return initial;
 }
 
 void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper) {
-  const auto* parted = dynamic_cast<const motion::PartedStepper*>(&stepper);
-  archive(parted != nullptr ? parted->division().n_parts() : 0);
+  const auto* parted = dynamic_cast<const motion::DistributedStepper*>(&stepper);
+  archive(parted != nullptr ? parted->partition().n_subdomains() : 0);
   if (parted != nullptr)
-    parted->keep([&](const motion::KeptMotion& piece) { archive(piece); });
+    parted->keep([&](const motion::StateByNode& chunk) { archive(chunk); });
   else
     archive(dynamic_cast<motion::Stepper&>(stepper));
 }
@@ -83,7 +83,7 @@ namespace {
 
 /// The whole bodies of a stepper. Of a plate that repeats the last column has no cells, and nothing of it is
 /// kept by several processes.
-motion::PlaceInWhole whole_of(const motion::Stepper& stepper) {
+motion::SubdomainPlace whole_of(const motion::Stepper& stepper) {
   const auto& plate = stepper.bodies().front();
   const auto& columns = plate.columns();
   const int n = columns.n_columns();
@@ -92,27 +92,27 @@ motion::PlaceInWhole whole_of(const motion::Stepper& stepper) {
     const auto last = columns.nodes(r, {n - 1, n});
     has_cells = has_cells || (last.count > 0 && !plate.levels().is_orphan[last.first]);
   }
-  return {.own = {0, has_cells ? n : n - 1}, .lower = {}};
+  return {.own = {0, has_cells ? n : n - 1}, .interface_nodes = {}};
 }
 
 }  // namespace
 
 void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
                  const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
-  int n_pieces = 0;
-  archive(n_pieces);
-  auto* parted = dynamic_cast<motion::PartedStepper*>(&stepper);
-  if (parted == nullptr && n_pieces == 0) {
+  int n_chunks = 0;
+  archive(n_chunks);
+  auto* parted = dynamic_cast<motion::DistributedStepper*>(&stepper);
+  if (parted == nullptr && n_chunks == 0) {
     archive(dynamic_cast<motion::Stepper&>(stepper));
     return;
   }
   const auto next = [&] {
-    motion::KeptMotion piece;
-    archive(piece);
-    piece.require_consistent();
-    return piece;
+    motion::StateByNode chunk;
+    archive(chunk);
+    chunk.require_consistent();
+    return chunk;
   };
-  if (parted != nullptr && n_pieces > 0) return parted->restore(n_pieces, next);
+  if (parted != nullptr && n_chunks > 0) return parted->restore(n_chunks, next);
   if (parted != nullptr) {
     auto by_one = make_whole();
     archive(*by_one);
@@ -121,8 +121,8 @@ void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
     return parted->restore(1, [&] { return std::move(kept); });
   }
   auto& by_one = dynamic_cast<motion::Stepper&>(stepper);
-  motion::KeptMotion kept;
-  for (int k = 0; k < n_pieces; ++k) kept.add(next(), n_pieces);
+  motion::StateByNode kept;
+  for (int k = 0; k < n_chunks; ++k) kept.add(next(), n_chunks);
   kept.sort();
   motion::restore(kept, by_one, whole_of(by_one));
 }
@@ -141,12 +141,12 @@ void Checkpoints::keep(const CheckpointHead& head,
   }
 }
 
-std::unique_ptr<Checkpoints::Kept> Checkpoints::last(
+std::unique_ptr<Checkpoints::Checkpoint> Checkpoints::last(
     const std::function<void(const std::string&)>& note) const {
   const auto files = numbered(dir_);
   for (auto k = files.rbegin(); k != files.rend(); ++k) {
     try {
-      auto kept = std::make_unique<Kept>(k->second);
+      auto kept = std::make_unique<Checkpoint>(k->second);
       std::string begin;
       kept->rest(begin);
       if (begin != magic) throw UserError("{}: is damaged or of another version", k->second.string());

@@ -52,13 +52,13 @@ class Checkpoints {
   /// @throws WriteError, the earlier ones being left.
   void keep(const CheckpointHead& head, const std::function<void(results::OutputArchive&)>& write);
 
-  struct Kept {
-    explicit Kept(const std::filesystem::path& file) : rest(file) {}
+  struct Checkpoint {
+    explicit Checkpoint(const std::filesystem::path& file) : rest(file) {}
     CheckpointHead head;
     results::InputArchive rest;
   };
-  /// The last one that is intact, null where there is none; of others behind it `note` is told.
-  std::unique_ptr<Kept> last(const std::function<void(const std::string&)>& note) const;
+  /// The last one that is intact, null where there is none; `note` receives a message for each damaged one.
+  std::unique_ptr<Checkpoint> last(const std::function<void(const std::string&)>& note) const;
 
  private:
   std::filesystem::path dir_;

@@ -41,10 +41,10 @@ Unknowns approximate_unknowns(const input::Case& config) {
 
 int suitable_threads(const input::Case& config) {
   constexpr double nodes_per_thread = 20'000;
-  constexpr unsigned most_threads = 4;
+  constexpr unsigned max_threads = 4;
   const auto unknowns = approximate_unknowns(config);
   const double useful = 0.5 * (unknowns.of_plate + unknowns.of_base) / nodes_per_thread;
-  const double most = std::clamp(std::thread::hardware_concurrency(), 1U, most_threads);
+  const double most = std::clamp(std::thread::hardware_concurrency(), 1U, max_threads);
   return static_cast<int>(std::clamp(useful, 1.0, most));
 }
 
@@ -87,7 +87,7 @@ bool has_snapshots(const input::Case& config) {
   return !config.output.snapshot_times_s.empty() || std::isfinite(config.output.snapshot_interval_s);
 }
 
-bool leads_by_interface(const input::Case& config, int n_processes, bool may_keep) {
+bool leader_has_interface_only(const input::Case& config, int n_processes, bool may_stay_distributed) {
   const auto is_of_many_squares = [](const mesh::Plate& plate) {
     const double columns = std::round(plate.width_m / plate.element_size_m);
     const double rows = std::round(plate.height_m / plate.element_size_m);
@@ -106,13 +106,13 @@ bool leads_by_interface(const input::Case& config, int n_processes, bool may_kee
     return solid::takes_frequency_bound(n_nodes, std::span(&grid, 1));
   };
   const bool is_kept_elsewhere =
-      is_prestressed(config) || (may_keep && keeps_displacements(config, n_processes));
+      is_prestressed(config) || (may_stay_distributed && has_distributed_displacements(config, n_processes));
   return n_processes > 1 && is_kept_elsewhere && input::has_equal_elements(config) &&
          is_of_many_squares(config.plate) &&
          (!input::has_base_body(config) || is_of_many_squares(input::base_plate(config)));
 }
 
-bool keeps_displacements(const input::Case& config, int n_processes) {
+bool has_distributed_displacements(const input::Case& config, int n_processes) {
   return n_processes > 1 && config.loading.solver == statics::StaticSolver::petsc &&
          config.loading.method == statics::LoadingMethod::direct &&
          config.loading.top_during_tilt == statics::TopEdge::held;
@@ -129,7 +129,7 @@ record::StaticState prescribed_tractions(const input::Prestress& prestress, cons
 
 std::vector<double> interface_x_m(const mesh::Mesh& mesh) {
   std::vector<double> x_m;
-  for (const auto n : mesh.lower) x_m.push_back(mesh.x_m[n]);
+  for (const auto n : mesh.interface_nodes) x_m.push_back(mesh.x_m[n]);
   return x_m;
 }
 

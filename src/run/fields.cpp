@@ -14,9 +14,9 @@
 
 #include "base/error.hpp"
 #include "files/files.hpp"
-#include "motion/part.hpp"
+#include "motion/subdomain.hpp"
 #include "results/stream.hpp"
-#include "run/case_parcel.hpp"
+#include "run/case_message.hpp"
 #include "run/run.hpp"
 #include "run/snapshot_mesh.hpp"
 
@@ -33,13 +33,13 @@ struct Order {
   mesh::Grid plate;
   std::optional<mesh::Grid> base;
 
-  void put(Parcel& to) const {
+  void put(MessageBuffer& to) const {
     for (const auto& path : {file, raw, sign}) to.put(path.string());
     to.put(raw_bytes).put(n_snapshots).put(sign_text).put(plate);
     to.put(static_cast<std::uint8_t>(base.has_value()));
     if (base) to.put(*base);
   }
-  static Order take(Parcel& from) {
+  static Order take(MessageBuffer& from) {
     Order order;
     for (auto* path : {&order.file, &order.raw, &order.sign}) *path = from.take_text();
     order.raw_bytes = from.take<std::uint64_t>();
@@ -99,7 +99,7 @@ void write(const Order& order, const input::Case& config, const std::function<Sn
 void write_share(const Order& order, const input::Case& config, Processes& processes) {
   const auto is_any = [&](bool here) {
     double value = here ? 1 : 0;
-    processes.take_largest(std::span(&value, 1));
+    processes.reduce_max(std::span(&value, 1));
     return value > 0;
   };
   const auto make_mesh = [&] {
@@ -113,18 +113,18 @@ void write_share(const Order& order, const input::Case& config, Processes& proce
 bool begin_together(const Order& order, const input::Case& config, Processes& processes) {
   files::write_text(order.sign, order.sign_text);
   for (int rank = 1; rank < processes.size(); ++rank) {
-    Parcel parcel;
-    parcel.put(motion::PartCommand::fields);
-    put_case(config, parcel);
-    order.put(parcel);
-    processes.send(rank, parcel);
+    MessageBuffer buffer;
+    buffer.put(motion::SubdomainCommand::fields);
+    pack_case(config, buffer);
+    order.put(buffer);
+    processes.send(rank, buffer);
   }
   bool all_see = true;
   for (int rank = 1; rank < processes.size(); ++rank)
     all_see = processes.receive(rank).take<std::uint8_t>() != 0 && holds_sign(sign_of(order, rank), order) &&
               all_see;
   for (int rank = 1; rank < processes.size(); ++rank)
-    processes.send(rank, Parcel().put(static_cast<std::uint8_t>(all_see)));
+    processes.send(rank, MessageBuffer().put(static_cast<std::uint8_t>(all_see)));
   return all_see;
 }
 
@@ -177,10 +177,10 @@ void write_fields(const results::ResultFolder& folder, const input::Case& config
   write(order, config, make_mesh, {});
 }
 
-void carry_out_fields(Processes& processes, Parcel& given) {
-  const auto config = take_case(given);
+void carry_out_fields(Processes& processes, MessageBuffer& given) {
+  const auto config = unpack_case(given);
   const auto order = Order::take(given);
-  processes.send(0, Parcel().put(static_cast<std::uint8_t>(answers_sign(order, processes.rank()))));
+  processes.send(0, MessageBuffer().put(static_cast<std::uint8_t>(answers_sign(order, processes.rank()))));
   if (processes.receive(0).take<std::uint8_t>() == 0) return;
   std::string reason;
   try {
@@ -189,7 +189,7 @@ void carry_out_fields(Processes& processes, Parcel& given) {
   } catch (const std::exception& error) {
     reason = reason_of(error);
   }
-  processes.send(0, Parcel().put(reason));
+  processes.send(0, MessageBuffer().put(reason));
 }
 
 }  // namespace slipfront::run

@@ -16,12 +16,12 @@ namespace slipfront::run {
 /// and all processes see the folder, each writes some of them.
 /// @param bodies     of the run; of their meshes the grids are looked at
 /// @param processes  of which this one leads; null for this one alone
-/// @param note       is told why the others do not help
+/// @param note       receives the reason why the others do not help
 /// @throws WriteError
 void write_fields(const results::ResultFolder& folder, const input::Case& config, const InitialState& bodies,
                   Processes* processes, const std::function<void(const std::string&)>& note);
 
 /// What another process does for it, after the command.
-void carry_out_fields(Processes& processes, Parcel& given);
+void carry_out_fields(Processes& processes, MessageBuffer& given);
 
 }  // namespace slipfront::run

@@ -10,11 +10,11 @@
 
 #include "base/clock.hpp"
 #include "input/friction_along_x.hpp"
-#include "mesh/part.hpp"
+#include "mesh/node_columns.hpp"
 #include "motion/stepper.hpp"
 #include "run/choices.hpp"
-#include "run/parts.hpp"
 #include "run/run.hpp"
+#include "run/subdomains.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/prestress.hpp"
 
@@ -81,7 +81,7 @@ struct Timed {
 void add_sizes(const input::Case& config, const Meshes& meshes, Info& info) {
   info.n_nodes = n_nodes_of(meshes.plate);
   info.n_cells = n_cells_of(meshes.plate);
-  info.n_interface = std::ssize(meshes.plate.lower);
+  info.n_interface = std::ssize(meshes.plate.interface_nodes);
   if (!meshes.base) return;
   info.base_speeds = wave_speeds(input::base_material(config));
   info.generalised_rayleigh_speed_m_per_s =
@@ -134,11 +134,11 @@ double looks_of(const input::Case& config, const Needs& needs) {
 /// sliding, which takes longer than to stick; beside the programs that run now.
 /// @param n_steps  at once
 double measured_rate_per_s(const input::Case& config, const Timed& timed, std::int64_t n_steps) {
-  constexpr double least_s = 20e-3, most_s = 0.5;
+  constexpr double min_s = 20e-3, max_s = 0.5;
   const double mu_s = interface::static_coefficient(config.friction);
   auto& stepper = *timed.stepper;
   const auto& plate = *timed.plate;
-  const auto n = plate.lower.size();
+  const auto n = plate.interface_nodes.size();
   record::StaticState tractions;
   tractions.x_m = interface_x_m(plate);
   tractions.p_s_Pa.assign(n, mean_pressure_Pa(config, plate));
@@ -154,7 +154,7 @@ double measured_rate_per_s(const input::Case& config, const Timed& timed, std::i
     stepper.advance(recorder, n_steps, {});
     ++times;
     spent_s = seconds_since(start);
-  } while (spent_s < least_s || (times < 3 && spent_s < most_s));
+  } while (spent_s < min_s || (times < 3 && spent_s < max_s));
   return times * static_cast<double>(n_steps) * stepper.node_updates_per_step() / spent_s;
 }
 
@@ -180,23 +180,24 @@ Timed whole_to_time(const input::Case& config, const Meshes& meshes) {
 }
 
 /// The columns of a part, no more than show the rate.
-Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_processes, LonePart& part) {
-  constexpr double most_nodes = 4e6;
-  constexpr int least_columns = 64;
-  const WholeBodies whole(config, interfaces.plate, interfaces.base);
+Timed part_to_time(const input::Case& config, const Meshes& interfaces, int n_processes,
+                   IsolatedSubdomain& part) {
+  constexpr double max_nodes = 4e6;
+  constexpr int min_columns = 64;
+  const GlobalBodies whole(config, interfaces.plate, interfaces.base);
   const auto steps = whole.steps();
-  const auto division = whole.divided(n_processes, steps);
-  const auto own = division.own(n_processes / 2);
+  const auto partition = whole.divided(n_processes, steps);
+  const auto own = partition.own(n_processes / 2);
   double per_column = 0;
   for (const auto& body : whole.bodies()) per_column += body.mesh.grid.rows + 1;
-  const int most = std::max(least_columns, static_cast<int>(most_nodes / per_column));
+  const int most = std::max(min_columns, static_cast<int>(max_nodes / per_column));
   const int width = std::min(own.end - own.begin, most);
-  part = make_lone_part(config, interfaces.plate, steps, {own.begin, own.begin + width});
+  part = make_isolated_subdomain(config, interfaces.plate, steps, {own.begin, own.begin + width});
   Timed timed;
   timed.stepper = std::move(part.stepper);
   timed.plate = &part.plate;
   timed.base = part.base ? &*part.base : nullptr;
-  timed.share = static_cast<double>(width) / division.first.back();
+  timed.share = static_cast<double>(width) / partition.first.back();
   return timed;
 }
 
@@ -211,26 +212,26 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
   /// Of a node: u and v, as they are sent. Packed, passed on and joined by the leader, of each byte.
   constexpr double sent_bytes_per_node = 32, s_per_byte = 1 / 0.8e9;
   const int n_processes = sharing.n_processes;
-  const WholeBodies whole(config, meshes.plate, meshes.base);
+  const GlobalBodies whole(config, meshes.plate, meshes.base);
   std::vector<motion::BodySteps> body_steps;
   for (const auto& body : timed.stepper->bodies()) body_steps.push_back(body.steps());
   Info::Shared shared;
-  shared.division = whole.divided(n_processes, body_steps);
+  shared.partition = whole.divided(n_processes, body_steps);
 
-  const auto& division = shared.division;
+  const auto& partition = shared.partition;
   const int middle = n_processes / 2;  // with a neighbour on each side, where any part has
-  const double own_columns = division.own(middle).end - division.own(middle).begin;
-  const double halo_columns = division.halo_below(middle) + division.halo_above(middle);
+  const double own_columns = partition.own(middle).end - partition.own(middle).begin;
+  const double halo_columns = partition.halo_below(middle) + partition.halo_above(middle);
   const auto steps = static_cast<double>(info.n_steps), n_nodes = static_cast<double>(info.n_nodes);
-  const double n_columns = division.n_columns();
+  const double n_columns = partition.n_columns();
   const double processes_each = std::max(1.0, static_cast<double>(n_processes) / sharing.n_processors);
   const double column_s = info.node_updates / n_columns / info.node_updates_per_s * processes_each;
   const double own_s = own_columns * column_s;
   double event_s = own_s + halo_columns * column_s;
   const double halo_bytes = halo_columns * n_nodes / n_columns * sent_bytes_per_node;
-  shared.bytes_per_step = halo_bytes / division.steps_per_exchange;
+  shared.bytes_per_step = halo_bytes / partition.steps_per_exchange;
   if (halo_columns > 0)
-    event_s += steps / division.steps_per_exchange *
+    event_s += steps / partition.steps_per_exchange *
                (sharing.network.latency_s + halo_bytes / sharing.network.bandwidth_bytes_per_s);
   const bool is_shared = n_processes > 1;
   if (is_shared)
@@ -255,7 +256,7 @@ Info::Shared shared_by(const input::Case& config, const Meshes& meshes, const Ti
 Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   Info info;
   info.speeds = wave_speeds(config.material);
-  const bool is_by_interface = sharing && leads_by_interface(config, sharing->n_processes);
+  const bool is_by_interface = sharing && leader_has_interface_only(config, sharing->n_processes);
   const auto meshes = is_by_interface ? check_interfaces(config) : check(config);
   add_sizes(config, meshes, info);
   info.rupture = rupture_outlook(config, meshes);
@@ -263,7 +264,7 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   // About as long as making the stepper.
   auto sliding = std::async(std::launch::async | std::launch::deferred,
                             [&] { add_well_posedness(config, meshes.plate, info); });
-  LonePart part;
+  IsolatedSubdomain part;
   const auto timed = is_by_interface ? part_to_time(config, meshes, sharing->n_processes, part)
                                      : whole_to_time(config, meshes);
   sliding.get();

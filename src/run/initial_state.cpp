@@ -16,7 +16,7 @@
 #include "run/begin.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
-#include "run/parts.hpp"
+#include "run/subdomains.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/prestress.hpp"
 
@@ -26,7 +26,7 @@ namespace {
 
 std::vector<double> at_all_nodes(const PerNode& values, const mesh::Mesh& mesh) {
   std::vector<double> all;
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) all.push_back(values[k]);
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) all.push_back(values[k]);
   return all;
 }
 
@@ -120,8 +120,8 @@ std::vector<motion::Probe> probes_among_columns(const input::Case& config, const
       bodies.push_back({*base, base_material});
     }
     auto probe = motion::locate_probes(std::span(&place, 1), bodies).front();
-    const mesh::NodeColumns of_part(bodies[probe.body].mesh, columns, grid.stride());
-    for (auto& n : probe.node) n = of_part.number_in_whole(n);
+    const mesh::NodeColumns of_subdomain(bodies[probe.body].mesh, columns, grid.stride());
+    for (auto& n : probe.node) n = of_subdomain.global_number(n);
     probes.push_back(probe);
   }
   return probes;
@@ -167,11 +167,11 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
 
 }  // namespace
 
-Meshes check(const input::Case& config, const Processes* processes, bool may_keep) {
+Meshes check(const input::Case& config, const Processes* processes, bool may_stay_distributed) {
   require_numbers_of_petsc(config);
-  require_memory_fits(config, processes, may_keep);
+  require_memory_fits(config, processes, may_stay_distributed);
   const int n_processes = processes != nullptr ? processes->size() : 1;
-  return checked_meshes(config, leads_by_interface(config, n_processes, may_keep));
+  return checked_meshes(config, leader_has_interface_only(config, n_processes, may_stay_distributed));
 }
 
 Meshes check_interfaces(const input::Case& config) {
@@ -193,11 +193,11 @@ std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const me
 
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
                                 const motion::Execution& execution, const RampBegins& ramp_begins,
-                                Processes* processes, bool may_keep) {
+                                Processes* processes, bool may_stay_distributed) {
   const auto start = Clock::now();
   const double margin = config.loading.critical_margin;
   InitialState initial;
-  auto meshes = check(config, processes, may_keep);
+  auto meshes = check(config, processes, may_stay_distributed);
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   initial.n_nodes = n_nodes_of(initial.mesh) + (initial.base ? n_nodes_of(*initial.base) : 0);
@@ -219,8 +219,9 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   if (initial.base) base.emplace(statics::ElasticBody{*initial.base, base_material});
   const bool is_shared = config.loading.solver == statics::StaticSolver::petsc;
   const SharedStatics helpers(is_shared ? processes : nullptr);
-  if (may_keep && processes != nullptr && keeps_displacements(config, processes->size()))
-    initial.kept = std::make_shared<statics::KeptDisplacements>();
+  if (may_stay_distributed && processes != nullptr &&
+      has_distributed_displacements(config, processes->size()))
+    initial.kept = std::make_shared<statics::DistributedFields>();
   statics::SharedBy shared{is_shared ? processes : nullptr, initial.kept.get()};
   if (initial.mesh.is_interface()) {
     shared.plates.push_back(config.plate);

@@ -22,19 +22,19 @@ struct InitialState {
   mesh::Mesh mesh;                        ///< of the plate
   std::optional<mesh::Mesh> base;         ///< of the body below, upside down; none on the rigid plane
   std::int64_t n_nodes = 0, n_cells = 0;  ///< of both
-  std::vector<double> tributary_m;        ///< [lower]
+  std::vector<double> tributary_m;        ///< [interface nodes]
   statics::Equilibrium common;            ///< at t/p = (1 - critical_margin) mu_s inside
   statics::Equilibrium spontaneous;       ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
   bool prescribed = false;                ///< loading.method is prestress: no statics, no critical shear
-  std::vector<double> mu_s;     ///< [lower] where friction varies along x; else none, and it is the case's
-  double critical_shear_m = 0;  ///< shear at t/p = mu_s inside, found directly
+  std::vector<double> mu_s;               ///< [interface nodes] where friction varies along x, else none
+  double critical_shear_m = 0;            ///< shear at t/p = mu_s inside, found directly
   std::int64_t n_unknowns = 0;
   statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                          ///< held by it
   double wall_s = 0;
   std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
   /// This process's share of the displacements where processes keep them; else null.
-  std::shared_ptr<statics::KeptDisplacements> kept;
+  std::shared_ptr<statics::DistributedFields> kept;
 
   /// All but the meshes and what processes keep.
   template <class Archive>
@@ -52,11 +52,12 @@ struct Meshes {
 };
 
 /// Checks what can be checked without solving anything: memory, geometry, rows of the interface layer. The
-/// meshes are those of the interfaces alone where leads_by_interface says so.
+/// meshes are those of the interfaces alone where leader_has_interface_only says so.
 /// @param processes  that share the run, of which this one leads; null for this one alone
-/// @param may_keep   see make_initial_state
+/// @param may_stay_distributed   see make_initial_state
 /// @throws UserError
-Meshes check(const input::Case& config, const Processes* processes = nullptr, bool may_keep = true);
+Meshes check(const input::Case& config, const Processes* processes = nullptr,
+             bool may_stay_distributed = true);
 
 /// The same of the interfaces alone, whatever the memory.
 Meshes check_interfaces(const input::Case& config);
@@ -69,11 +70,12 @@ std::int64_t n_cells_of(const mesh::Mesh& mesh);
 using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun& ramp)>;
 
 /// @param processes  that share statics by PETSc, all in `serve`; null for this one alone
-/// @param may_keep   whether these may keep the displacements that they find, for an event that they share
+/// @param may_stay_distributed   whether these may keep the displacements that they find, for an event that
+/// they share
 /// @throws UserError, BlowUp, Interrupted as its parts do.
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
                                 const motion::Execution& execution = {}, const RampBegins& ramp_begins = {},
-                                Processes* processes = nullptr, bool may_keep = false);
+                                Processes* processes = nullptr, bool may_stay_distributed = false);
 
 /// A text that is the same for two cases if and only if they share their initial state.
 std::string initial_state_key(const input::Case& config);

@@ -67,10 +67,10 @@ constexpr double s_by_multigrid = 1.1e-6,
 constexpr double many_for_caches = 3e6;
 
 /// A machine takes some 1e5 steps of the smallest plate in a second: these are four months.
-constexpr double most_steps = 1e12;
+constexpr double max_steps = 1e12;
 
 std::int64_t countable(double steps, const Message& what, const Message& remedy) {
-  if (!(steps <= most_steps)) throw UserError("{} takes {:g} steps; choose {}", what, steps, remedy);
+  if (!(steps <= max_steps)) throw UserError("{} takes {:g} steps; choose {}", what, steps, remedy);
   return static_cast<std::int64_t>(steps);
 }
 
@@ -119,7 +119,7 @@ double record_bytes(const input::Case& config, double n_interface) {
 struct Shares {
   double of_all = 1;                         ///< of the processes
   double n_moving = 0;                       ///< nodes, those of halos counted by each
-  bool by_interface = false, keeps = false;  ///< see leads_by_interface, keeps_displacements
+  bool by_interface = false, keeps = false;  ///< see leader_has_interface_only, has_distributed_displacements
   bool has_leader = false;                   ///< of several
 };
 
@@ -130,8 +130,8 @@ Shares shares_of(const input::Case& config, const Size& size, const Holder& hold
   s.of_all = static_cast<double>(holder.n_here) / holder.n_processes;
   const double halo_columns = 2.0 * (config.time.interface_substeps + 2);
   s.n_moving *= s.of_all + std::min(1.0, halo_columns / size.n_interface) * holder.n_here;
-  s.by_interface = leads_by_interface(config, holder.n_processes, holder.may_keep);
-  s.keeps = holder.may_keep && keeps_displacements(config, holder.n_processes);
+  s.by_interface = leader_has_interface_only(config, holder.n_processes, holder.may_stay_distributed);
+  s.keeps = holder.may_stay_distributed && has_distributed_displacements(config, holder.n_processes);
   s.has_leader = holder.leads;
   return s;
 }
@@ -162,7 +162,7 @@ double statics_bytes_of(const input::Case& config, const Size& size, const Share
   if (!holder.leads) return 0;
   if (solver != statics::StaticSolver::direct) return statics_bytes(solver, n, size.n_interface);
   double bytes = statics_bytes(solver, n - n_base, size.n_interface);
-  if (config.loading.top_during_tilt == statics::TopEdge::free) bytes *= 2;  // with a factor of its own
+  if (config.loading.top_during_tilt == statics::TopEdge::free) bytes *= 2;  // with a separate factor
   return bytes + (n_base > 0 ? statics_bytes(solver, n_base, size.n_interface) : 0);
 }
 
@@ -217,9 +217,9 @@ Size estimated_mesh_size(const input::Case& config) {
 }
 
 /// The processes of this machine, of which one leads.
-Holder this_machine(const Processes* processes, bool may_keep) {
+Holder this_machine(const Processes* processes, bool may_stay_distributed) {
   if (processes == nullptr) return {};
-  return {processes->size(), processes->on_this_machine(), true, may_keep};
+  return {processes->size(), processes->on_this_machine(), true, may_stay_distributed};
 }
 
 void require_memory_for(const Budget& memory, const Size& size, const Processes* processes) {
@@ -229,17 +229,17 @@ void require_memory_for(const Budget& memory, const Size& size, const Processes*
 
 /// Nodes of a body that is held as a whole are numbered by one process.
 void require_numbers(const input::Case& config, int n_processes) {
-  if (!input::can_be_held_in_parts(config) || leads_by_interface(config, n_processes)) return;
-  constexpr double most_nodes = std::numeric_limits<mesh::Node>::max();
+  if (!input::can_be_held_in_parts(config) || leader_has_interface_only(config, n_processes)) return;
+  constexpr double max_nodes = std::numeric_limits<mesh::Node>::max();
   const double h = config.plate.element_size_m;
   const double height_m =
       std::max(config.plate.height_m, input::has_base_body(config) ? config.base.plate.height_m : 0);
   const double n_nodes = (config.plate.width_m / h + 1) * (height_m / h + 1);
-  if (n_nodes > most_nodes)
+  if (n_nodes > max_nodes)
     throw UserError("{} is {} m; that makes {:.3g} nodes, more than the {:.3g} that one process can number{}",
-                    Key("plate.element_size_m"), h, n_nodes, most_nodes,
-                    leads_by_interface(config, 2) ? "; use more processes, or choose a larger one"
-                                                  : "; choose a larger one")
+                    Key("plate.element_size_m"), h, n_nodes, max_nodes,
+                    leader_has_interface_only(config, 2) ? "; use more processes, or choose a larger one"
+                                                         : "; choose a larger one")
         .about("plate.width_m", "plate.height_m");
 }
 
@@ -325,26 +325,26 @@ void require_numbers_of_petsc(const input::Case& config) {
   if (is_prestressed(config) || config.loading.solver != statics::StaticSolver::petsc) return;
   const auto unknowns = approximate_unknowns(config);
   const double n_nodes = 0.5 * (unknowns.of_plate + unknowns.of_base);
-  if (n_nodes > statics::most_petsc_nodes)
+  if (n_nodes > statics::max_petsc_nodes)
     throw UserError(
         "{} is {} m; that makes {:.3g} nodes, more than the {:.3g} whose unknowns PETSc can "
         "number; choose a larger one, or {} = prestress, which needs no statics",
         Key("plate.element_size_m"), config.plate.element_size_m, n_nodes,
-        static_cast<double>(statics::most_petsc_nodes), Key("loading.method"))
+        static_cast<double>(statics::max_petsc_nodes), Key("loading.method"))
         .about("loading.solver");
 }
 
-void require_memory_fits(const input::Case& config, const Processes* processes, bool may_keep) {
+void require_memory_fits(const input::Case& config, const Processes* processes, bool may_stay_distributed) {
   require_numbers(config, processes != nullptr ? processes->size() : 1);
   const auto size = estimated_mesh_size(config);
-  require_memory_for(memory(config, size, this_machine(processes, may_keep), 0), size, processes);
+  require_memory_for(memory(config, size, this_machine(processes, may_stay_distributed), 0), size, processes);
 }
 
 void require_fit(const input::Case& config, const std::filesystem::path& folder, const Processes* processes,
-                 bool may_keep) {
+                 bool may_stay_distributed) {
   require_numbers(config, processes != nullptr ? processes->size() : 1);
   const auto size = estimated_size(config);
-  const Needs n = needs(config, size, this_machine(processes, may_keep));
+  const Needs n = needs(config, size, this_machine(processes, may_stay_distributed));
   require_memory_for(n.memory, size, processes);
   require_disk(n, folder);
 }

@@ -27,9 +27,9 @@ Size estimated_size(const input::Case& config);
 /// Whose memory it is: of one process, or of some of several that share a run.
 struct Holder {
   int n_processes = 1;
-  int n_here = 1;        ///< of these
-  bool leads = true;     ///< whether the leader is among them
-  bool may_keep = true;  ///< see make_initial_state
+  int n_here = 1;                    ///< of these
+  bool leads = true;                 ///< whether the leader is among them
+  bool may_stay_distributed = true;  ///< see make_initial_state
 };
 
 struct Needs {
@@ -63,16 +63,16 @@ void require_numbers_of_petsc(const input::Case& config);
 /// Refuses a case that would not fit into the memory, or has more nodes than can be numbered, before anything
 /// is built; what grows with its steps is left out.
 /// @param processes  that share the run, of which this one leads; null for this one alone
-/// @param may_keep   see make_initial_state
+/// @param may_stay_distributed   see make_initial_state
 /// @throws UserError naming what to change.
 void require_memory_fits(const input::Case& config, const Processes* processes = nullptr,
-                         bool may_keep = true);
+                         bool may_stay_distributed = true);
 
 /// Refuses a case whose run would not fit into the memory or onto the disk of `folder`, which need not exist
 /// yet.
 /// @param processes  as above
 /// @throws UserError naming what to change.
 void require_fit(const input::Case& config, const std::filesystem::path& folder,
-                 const Processes* processes = nullptr, bool may_keep = true);
+                 const Processes* processes = nullptr, bool may_stay_distributed = true);
 
 }  // namespace slipfront::run

@@ -91,12 +91,12 @@ std::string doubt_of_length(const input::Case& config, const RuptureOutlook& o) 
   if (!of.griffith_half_length_m) return {};
   const double critical_m = 2 * *of.griffith_half_length_m;
   // At a free edge half a crack does.
-  const double least_m = interface::is_at_edge(config.event) ? 0.5 * critical_m : critical_m;
-  if (o.trigger_length_m && *o.trigger_length_m < least_m)
+  const double min_m = interface::is_at_edge(config.event) ? 0.5 * critical_m : critical_m;
+  if (o.trigger_length_m && *o.trigger_length_m < min_m)
     return fmt::format(
         "the trigger's {:.3g} m are less than the {:.3g} m from which a crack runs (Griffith): slip may stop "
         "near them",
-        *o.trigger_length_m, least_m);
+        *o.trigger_length_m, min_m);
   if (critical_m > config.plate.width_m)
     return fmt::format("a crack runs from {:.3g} m on (Griffith), longer than the interface", critical_m);
   return {};

@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "base/memory.hpp"
 #include "base/per_node.hpp"
-#include "motion/parted_stepper.hpp"
+#include "motion/distributed_stepper.hpp"
 #include "motion/stepper.hpp"
 #include "run/begin.hpp"
 #include "run/choices.hpp"
@@ -112,14 +112,14 @@ std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, 
                                                      Processes* processes) {
   const auto& state = event_state(config, initial);
   const auto start = [&](auto stepper) {
-    stepper->watch(probes_of(config, initial.mesh, initial.base));
+    stepper->set_probes(probes_of(config, initial.mesh, initial.base));
     stepper->start(state, top_speed_m_per_s(config),
                    starting_loads(config, state, initial.mesh, initial.mu_s));
     return stepper;
   };
   if (processes != nullptr)
-    return start(
-        new_parted_stepper(config, initial.mesh, initial.base, *processes, execution, initial.kept.get()));
+    return start(new_distributed_stepper(config, initial.mesh, initial.base, *processes, execution,
+                                         initial.kept.get()));
   return start(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
@@ -160,13 +160,13 @@ std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, Init
 std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, InitialState& initial,
                                                   const motion::Execution& execution, Processes* processes) {
   const auto make = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
-    stepper->watch(probes_of(config, initial.mesh, initial.base));
+    stepper->set_probes(probes_of(config, initial.mesh, initial.base));
     release_nodes(initial.mesh);
     if (initial.base) release_nodes(*initial.base);
     return stepper;
   };
   if (processes != nullptr)
-    return make(new_parted_stepper(config, initial.mesh, initial.base, *processes, execution));
+    return make(new_distributed_stepper(config, initial.mesh, initial.base, *processes, execution));
   return make(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
@@ -194,9 +194,9 @@ Result run_from(const input::Case& config, const InitialState& initial, const mo
 }
 
 Result run_from(const input::Case& config, const InitialState& initial, motion::TimeStepper& stepper,
-                const motion::Monitor& monitor, motion::Sink* sink) {
+                const motion::Monitor& monitor, motion::EventObserver* observer) {
   const auto start = Clock::now();
-  auto result = unmeasured(config, stepper, begin_event(config, initial, stepper).run(monitor, sink));
+  auto result = unmeasured(config, stepper, begin_event(config, initial, stepper).run(monitor, observer));
   result.stepping_wall_s = seconds_since(start);
   measure(result, initial);
   return result;
@@ -210,8 +210,8 @@ Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper,
   result.step_s = stepper.step_s();
   result.substep_s = stepper.substep_s();
   result.node_updates_per_step = stepper.node_updates_per_step();
-  if (const auto* parted = dynamic_cast<const motion::PartedStepper*>(&stepper); parted != nullptr)
-    result.shared = SharedCost{parted->division(), parted->costs()};
+  if (const auto* parted = dynamic_cast<const motion::DistributedStepper*>(&stepper); parted != nullptr)
+    result.shared = SharedCost{parted->partition(), parted->costs()};
   result.event = std::move(event);
   return result;
 }

@@ -16,8 +16,8 @@
 #include "run/initial_state.hpp"
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
-#include "run/parts.hpp"
 #include "run/snapshot_mesh.hpp"
+#include "run/subdomains.hpp"
 #include "stability/verdict.hpp"
 #include "statics/statics.hpp"
 
@@ -31,8 +31,8 @@ WaveSpeeds wave_speeds(const solid::Material& material);
 
 /// What several processes have spent on an event, since they began or went on with it.
 struct SharedCost {
-  motion::Division division;
-  std::vector<motion::PartCost> of_parts;
+  motion::Partition partition;
+  std::vector<motion::SubdomainCost> of_subdomains;
 };
 
 /// A run with all it found.
@@ -76,11 +76,11 @@ Result unmeasured(const input::Case& config, const motion::TimeStepper& stepper,
 void measure(Result& result, const InitialState& initial);
 
 /// Computes the event of a case from its initial state and finds its fronts. A blow-up or an interruption
-/// ends the event early and is told by event.end.
+/// ends the event early; event.end says which.
 /// @param started  by start_event
-/// @param sink     takes samples and snapshots; without one the event keeps them
+/// @param observer     takes samples and snapshots; without one the event keeps them
 Result run_from(const input::Case& config, const InitialState& initial, motion::TimeStepper& started,
-                const motion::Monitor& monitor, motion::Sink* sink = nullptr);
+                const motion::Monitor& monitor, motion::EventObserver* observer = nullptr);
 /// Starts the event as well, and leaves the initial state as it is.
 Result run_from(const input::Case& config, const InitialState& initial, const motion::Monitor& monitor,
                 const motion::Execution& execution = {});
@@ -132,7 +132,7 @@ void write_status(const std::filesystem::path& dir, const input::Case& config, c
 struct Info {
   /// A division among processes, and what a run by them takes.
   struct Shared {
-    motion::Division division;
+    motion::Partition partition;
     double bytes_per_step = 0;  ///< that the process with most neighbours sends in exchanges
     double expected_s = 0;
     double efficiency =
@@ -174,7 +174,7 @@ struct Sharing {
   int n_processes = 2, n_processors = 2;
   Network network = {};
 };
-/// Of a case that leads_by_interface only columns of one process are made.
+/// Of a case that leader_has_interface_only only columns of one process are made.
 /// @throws UserError where the plate cannot be divided among so many
 Info info(const input::Case& config, const std::optional<Sharing>& sharing = {});
 

@@ -21,8 +21,8 @@ namespace slipfront::run {
 namespace {
 
 /// Wall time between two looks of the outside at a run; longer where writing them takes long.
-constexpr double least_tell_interval_s = 2;
-constexpr double tell_share = 0.02;
+constexpr double min_report_interval_s = 2;
+constexpr double report_share = 0.02;
 
 class Session {
  public:
@@ -42,19 +42,19 @@ class Session {
   }
 
   /// From a checkpoint, or from the beginning.
-  Finished run(std::unique_ptr<Checkpoints::Kept> kept);
+  Finished run(std::unique_ptr<Checkpoints::Checkpoint> kept);
 
  private:
   /// Solved, or taken from the shared ones.
-  InitialState initial_state(Checkpoints::Kept* kept);
-  void begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, motion::RampRun& ramp);
-  void begin_event(Checkpoints::Kept* kept);
+  InitialState initial_state(Checkpoints::Checkpoint* kept);
+  void begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp);
+  void begin_event(Checkpoints::Checkpoint* kept);
   /// Between linear solutions. @return whether the run goes on
   bool look_at_statics();
   /// Between steps. @return whether the run goes on
   bool look(const char* part, std::int64_t step, std::int64_t total, double time_s);
   void keep();
-  void tell();
+  void write_progress();
   /// Of the event: by default each of several processes has threads for its part.
   motion::Execution event_execution() const {
     if (options_.threads || options_.processes == nullptr) return execution_;
@@ -74,10 +74,10 @@ class Session {
   motion::Execution execution_;
   Checkpoints checkpoints_;
   CheckpointHead head_;
-  Clock::time_point event_began_ = Clock::now(), kept_ = Clock::now(), told_ = Clock::now();
+  Clock::time_point event_began_ = Clock::now(), kept_ = Clock::now(), reported_ = Clock::now();
   bool resumed_;        ///< there is earlier work in the folder
   bool began_ = false;  ///< before that a new run has nothing to keep
-  double kept_time_s_ = 0, tell_interval_s_ = least_tell_interval_s;
+  double kept_time_s_ = 0, report_interval_s_ = min_report_interval_s;
 
   InitialState initial_;
   motion::TimeStepper* stepper_ = nullptr;   ///< of the ramp or of the event
@@ -88,7 +88,7 @@ class Session {
   std::optional<results::ResultStream> stream_;
 };
 
-Finished Session::run(std::unique_ptr<Checkpoints::Kept> kept) {
+Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
   try {
     if (kept) {
       head_.sessions = kept->head.sessions + 1;
@@ -132,7 +132,7 @@ void Session::fail(const char* status, const std::string& reason) noexcept {
   }
 }
 
-InitialState Session::initial_state(Checkpoints::Kept* kept) {
+InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
   std::optional<SharedStates> shared;
   if (options_.shared_states) shared.emplace(*options_.shared_states);
   if (shared)
@@ -148,7 +148,7 @@ InitialState Session::initial_state(Checkpoints::Kept* kept) {
   return initial;
 }
 
-void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
+void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
   if (kept != nullptr) {
     kept->rest(stepper, ramp);
     kept->rest.close();
@@ -159,7 +159,7 @@ void Session::begin_ramp(Checkpoints::Kept* kept, motion::Stepper& stepper, moti
   kept_time_s_ = stepper.time_s();
 }
 
-void Session::begin_event(Checkpoints::Kept* kept) {
+void Session::begin_event(Checkpoints::Checkpoint* kept) {
   if (kept != nullptr) {
     initial_ = read_initial_state(kept->rest, config_, options_.processes);
     const auto make_whole = [&] {
@@ -186,12 +186,12 @@ void Session::begin_event(Checkpoints::Kept* kept) {
   stepper_ = event_stepper_.get();
   kept_time_s_ = stepper_->time_s();
   event_began_ = kept_ = Clock::now();
-  tell();
+  write_progress();
 }
 
 bool Session::look_at_statics() {
   const Request request = hooks_.request();
-  if (request == Request::keep) hooks_.note("no checkpoint: there is nothing to keep before the first step");
+  if (request == Request::keep) hooks_.note("no checkpoint: there is nothing to save before the first step");
   return request != Request::stop;
 }
 
@@ -203,7 +203,7 @@ bool Session::look(const char* part, std::int64_t step, std::int64_t total, doub
     keep();
   if (request == Request::keep)
     hooks_.note(fmt::format("checkpoint at t = {:.6g} s of the {}", time_s, part));
-  if (event_ && seconds_since(told_) >= tell_interval_s_) tell();
+  if (event_ && seconds_since(reported_) >= report_interval_s_) write_progress();
   return request != Request::stop;
 }
 
@@ -226,7 +226,7 @@ void Session::keep() {
   kept_time_s_ = stepper_->time_s();
 }
 
-void Session::tell() {
+void Session::write_progress() {
   const auto start = Clock::now();
   stream_->hand_over();
   motion::Event so_far;
@@ -239,8 +239,8 @@ void Session::tell() {
   result.stepping_wall_s = wall_s();
   measure(result, initial_);
   write_so_far(dir_, result, energies, initial_, {"running", "", head_.sessions});
-  told_ = Clock::now();
-  tell_interval_s_ = std::max(least_tell_interval_s, seconds_since(start) / tell_share);
+  reported_ = Clock::now();
+  report_interval_s_ = std::max(min_report_interval_s, seconds_since(start) / report_share);
 }
 
 Finished Session::finish(motion::Event event) {
@@ -286,13 +286,13 @@ std::string first_difference(const std::string& text, const std::string& other) 
 
 void require_same(const std::string& wanted, const std::string& kept, const std::string& name) {
   if (wanted != kept)
-    throw UserError("{}: is another case than the one that was begun, which has \"{}\"; begin anew", name,
-                    first_difference(kept, wanted));
+    throw UserError("{}: is another case than the one that was begun, which has \"{}\"; start a new run",
+                    name, first_difference(kept, wanted));
 }
 
 void require_unchanged(const std::string& table, const std::string& kept, const std::string& file) {
   if (table != kept)
-    throw UserError("{}: was changed since the run was begun; put it back, or begin anew", file);
+    throw UserError("{}: was changed since the run was begun; restore it, or start a new run", file);
 }
 
 }  // namespace
@@ -309,18 +309,18 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
   return Session(folder, config, options, hooks, false).run({});
 }
 
-Finished go_on(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
-               const SessionHooks& hooks) {
+Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
+                const SessionHooks& hooks) {
   const auto file = folder.unfinished() / case_file;
   if (!folder.has_unfinished() || !files::is_there(file))
-    throw UserError("{}: holds no unfinished run to go on with", folder.dir().string());
+    throw UserError("{}: holds no unfinished run to continue", folder.dir().string());
   const input::Case config = input::read_case(file);
   const std::string text = resolved_text(config);
   if (expected != nullptr) require_same_case(*expected, folder.unfinished());
   auto kept = Checkpoints(folder.state()).last(hooks.note);
   if (kept) {
     if (kept->head.program != program_identity())
-      throw UserError("{}: was begun by {}, and this is {}; go on with that one, or begin anew",
+      throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
                       folder.unfinished().string(), kept->head.program, program_identity());
     require_same(text, kept->head.case_text, file.string());
     require_unchanged(config.prestress.table.text, kept->head.prestress_table, config.prestress.file);
@@ -334,10 +334,10 @@ Finished go_on(results::ResultFolder& folder, const input::Case* expected, const
 }
 
 std::string what_was_kept(const results::ResultFolder& folder) {
-  return fmt::format("what there is was kept in {}", folder.unfinished().string());
+  return fmt::format("the partial results are in {}", folder.unfinished().string());
 }
 
-std::string how_to_go_on(const results::ResultFolder& folder) {
+std::string how_to_resume(const results::ResultFolder& folder) {
   return fmt::format("{}; slipfront run --restart {} goes on with it", what_was_kept(folder),
                      folder.dir().string());
 }
@@ -346,7 +346,7 @@ void require_came_to_end(const Result& result, const results::ResultFolder& fold
   const auto& event = result.event;
   if (event.end == motion::EventEnd::blow_up) throw BlowUp(event.blow_up + "; " + what_was_kept(folder));
   if (event.end == motion::EventEnd::interrupted)
-    throw Interrupted(fmt::format("interrupted at t = {:.4g} s; {}", event.time_s, how_to_go_on(folder)));
+    throw Interrupted(fmt::format("interrupted at t = {:.4g} s; {}", event.time_s, how_to_resume(folder)));
 }
 
 void require_same_case(const input::Case& wanted, const std::filesystem::path& dir) {

@@ -45,7 +45,7 @@ struct Finished {
 inline constexpr const char* run_work = "run";
 
 /// Runs a case into its folder. While it goes, DIR/unfinished has the case, run.json with its status, and
-/// what there is of the results; every now and then a checkpoint is kept there, from which go_on goes on. A
+/// what there is of the results; every now and then a checkpoint is kept there, from which resume goes on. A
 /// run that is complete is published to DIR; one that was interrupted or blew up stays where it is.
 /// @throws UserError and BlowUp, nothing being kept but the reason where there was no event yet;
 /// Interrupted in ramp or statics; WriteError, what there is being kept.
@@ -56,12 +56,12 @@ Finished run_into(results::ResultFolder& folder, const input::Case& config, cons
 /// intact, or from its beginning where there is none. Ramps solve their statics again.
 /// @param expected  a case that it must be, or null
 /// @throws UserError where there is none, or it is one of another program or case
-Finished go_on(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
-               const SessionHooks& hooks);
+Finished resume(results::ResultFolder& folder, const input::Case* expected, const SessionOptions& options,
+                const SessionHooks& hooks);
 
 /// What to tell of a run that has not come to its end, and how to go on with it.
 std::string what_was_kept(const results::ResultFolder& folder);
-std::string how_to_go_on(const results::ResultFolder& folder);
+std::string how_to_resume(const results::ResultFolder& folder);
 /// @throws BlowUp, Interrupted where the event ended so, with what was kept.
 void require_came_to_end(const Result& result, const results::ResultFolder& folder);
 

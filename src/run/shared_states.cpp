@@ -52,7 +52,7 @@ std::optional<InitialState> SharedStates::take(const input::Case& config,
 void SharedStates::keep(const input::Case& config, InitialState& initial) const {
   make_shared_folder(dir_);
   const auto key = state_key(config);
-  // Under a name of its own until it is complete: others may be writing the same state.
+  // Under a separate name until it is complete: others may be writing the same state.
   char host[256] = {};
   ::gethostname(host, sizeof(host) - 1);
   const auto own = dir_ / fmt::format("writing-{}-{}-{}.bin", key.substr(0, 8), host, ::getpid());

@@ -18,7 +18,7 @@ class SharedStates {
   /// @param dir  made when the first state is kept
   explicit SharedStates(std::filesystem::path dir) : dir_(std::move(dir)) {}
 
-  /// What was kept for a case, with its mesh; none where there is none. `note` is told of a file that is
+  /// The saved state of a case, with its mesh, if there is one. `note` receives a message for a file that is
   /// damaged or of another case.
   std::optional<InitialState> take(const input::Case& config,
                                    const std::function<void(const std::string&)>& note) const;

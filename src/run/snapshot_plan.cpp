@@ -21,13 +21,13 @@ struct Asked {
 
 /// All of them, ascending.
 std::vector<Asked> asked_snapshots(const input::Case& config, double step_s) {
-  constexpr double most_snapshots = 1e7;
+  constexpr double max_snapshots = 1e7;
   std::vector<Asked> asked;
   for (const double time_s : config.output.snapshot_times_s) asked.push_back({time_s, true});
   const double interval_s = std::max(config.output.snapshot_interval_s, step_s);
   if (std::isinf(interval_s)) return asked;
   const double n = std::floor(config.time.end_s / interval_s * (1 + 1e-12));
-  if (n > most_snapshots)
+  if (n > max_snapshots)
     throw UserError("{} = {:g} s gives {:.3g} snapshots until {} = {:g} s; choose a longer one",
                     Key("output.snapshot_interval_s"), config.output.snapshot_interval_s, n,
                     Key("time.end_s"), config.time.end_s);

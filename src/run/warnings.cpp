@@ -22,7 +22,7 @@ std::string table_warning(const char* key, const std::vector<double>& x_m, doubl
       key, x_m.front(), x_m.back(), width_m, n_beyond, x_m.size());
 }
 
-constexpr double most_strain = 0.03;  ///< of linear elasticity
+constexpr double max_strain = 0.03;  ///< of linear elasticity
 
 using Warnings = std::vector<std::string>;
 
@@ -45,20 +45,20 @@ void add_odd_units(const input::Case& config, Warnings& warnings) {
       add(key.c_str(), value, "more than a thousandth of plate.width_m; is it in m?");
   }
   if (is_prestressed(config) && config.prestress.file.empty() &&
-      config.prestress.p_Pa > most_strain * m.youngs_modulus_Pa)
+      config.prestress.p_Pa > max_strain * m.youngs_modulus_Pa)
     add("prestress.p_Pa", config.prestress.p_Pa, "beyond small strains of the plate; is it in Pa?");
 }
 
 /// Lengths that do not suit the plate or its elements.
 void add_lengths(const input::Case& config, Warnings& warnings) {
   constexpr double fewest_elements = 2;
-  const double least_m = fewest_elements * config.plate.element_size_m;
+  const double min_m = fewest_elements * config.plate.element_size_m;
   const auto add_short = [&](const char* key, double length_m) {
-    if (length_m < (1 - 1e-9) * least_m)
+    if (length_m < (1 - 1e-9) * min_m)
       warnings.push_back(
           fmt::format("{} = {:.4g} m is less than two elements, {:.4g} m: the mesh does not "
                       "resolve it",
-                      key, length_m, least_m));
+                      key, length_m, min_m));
   };
   if (interface::is_at_edge(config.event)) add_short("event.trigger_zone_m", config.trigger.zone_m);
   if (config.event == interface::EventKind::nucleation)
@@ -109,7 +109,7 @@ std::vector<std::string> warnings_of_case(const input::Case& config) {
                     along_x.random_correlation_length_m));
   if (!is_prestressed(config)) {
     const double strain = nominal_pressure_Pa(config) / config.material.youngs_modulus_Pa;
-    if (strain > most_strain)
+    if (strain > max_strain)
       warnings.push_back(
           fmt::format("the tilt presses the plate by {:.3g} of Young's modulus, beyond small strains: are "
                       "loading.tilt_left_m and loading.tilt_right_m in m?",

@@ -135,37 +135,37 @@ Json rupture_json(const RuptureOutlook& rupture) {
 
 /// Columns are of nodes; what a process has sent counts as its messages and bytes.
 Json processes_json(const SharedCost& shared) {
-  const auto& division = shared.division;
+  const auto& partition = shared.partition;
   Json own = Json::array(), halo = Json::array(), computing_s = Json::array();
   Json exchange_s = Json::array(), command_s = Json::array();
-  double messages = 0, bytes = 0, most_messages = 0, most_bytes = 0, sum_s = 0, largest_s = 0;
-  for (int part = 0; part < division.n_parts(); ++part) {
-    const auto columns = division.own(part);
+  double messages = 0, bytes = 0, max_messages = 0, max_bytes = 0, sum_s = 0, largest_s = 0;
+  for (int part = 0; part < partition.n_subdomains(); ++part) {
+    const auto columns = partition.own(part);
     own.push_back(columns.end - columns.begin);
-    halo.push_back(division.halo_below(part) + division.halo_above(part));
-    const auto& cost = shared.of_parts[static_cast<std::size_t>(part)];
+    halo.push_back(partition.halo_below(part) + partition.halo_above(part));
+    const auto& cost = shared.of_subdomains[static_cast<std::size_t>(part)];
     computing_s.push_back(cost.computing_s);
     exchange_s.push_back(cost.exchange_s);
     command_s.push_back(cost.command_s);
     messages += static_cast<double>(cost.messages);
     bytes += static_cast<double>(cost.bytes);
-    most_messages = std::max(most_messages, static_cast<double>(cost.messages));
-    most_bytes = std::max(most_bytes, static_cast<double>(cost.bytes));
+    max_messages = std::max(max_messages, static_cast<double>(cost.messages));
+    max_bytes = std::max(max_bytes, static_cast<double>(cost.bytes));
     sum_s += cost.computing_s;
     largest_s = std::max(largest_s, cost.computing_s);
   }
-  const auto steps = shared.of_parts.front().steps;
+  const auto steps = shared.of_subdomains.front().steps;
   const auto per_step = [&](double n) { return steps > 0 ? Json(n / static_cast<double>(steps)) : Json(); };
-  const double mean_s = sum_s / division.n_parts();
-  return {{"count", division.n_parts()},
+  const double mean_s = sum_s / partition.n_subdomains();
+  return {{"count", partition.n_subdomains()},
           {"own_columns", own},
           {"halo_columns", halo},
-          {"steps_per_exchange", division.steps_per_exchange},
+          {"steps_per_exchange", partition.steps_per_exchange},
           {"steps", steps},
           {"messages_per_step", per_step(messages)},
-          {"messages_per_step_of_busiest", per_step(most_messages)},
+          {"messages_per_step_of_busiest", per_step(max_messages)},
           {"bytes_per_step", per_step(bytes)},
-          {"bytes_per_step_of_busiest", per_step(most_bytes)},
+          {"bytes_per_step_of_busiest", per_step(max_bytes)},
           {"computing_s", computing_s},
           {"waiting_in_exchanges_s", exchange_s},
           {"waiting_in_commands_s", command_s},

@@ -14,11 +14,11 @@ namespace slipfront::solid {
 /// The cells around each node of a mesh, ascending.
 class CellsOfNodes {
  public:
-  /// @param most_narrow  places in the list of all up to which 32 bits are taken for each
+  /// @param max_narrow  places in the list of all up to which 32 bits are taken for each
   explicit CellsOfNodes(const mesh::Mesh& mesh,
-                        std::size_t most_narrow = std::numeric_limits<std::uint32_t>::max()) {
+                        std::size_t max_narrow = std::numeric_limits<std::uint32_t>::max()) {
     cell_.resize(4 * mesh.cells.size());
-    if (cell_.size() <= most_narrow)
+    if (cell_.size() <= max_narrow)
       put_cells(mesh, narrow_);
     else
       put_cells(mesh, wide_);

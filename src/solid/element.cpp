@@ -42,10 +42,10 @@ CellShape cell_shape(const CellCoordinates& c, double xi, double eta) {
 }
 
 std::optional<CellShape> cell_shape_at(const CellCoordinates& c, double x_m, double y_m) {
-  constexpr int most_iterations = 30;
+  constexpr int max_iterations = 30;
   constexpr double converged = 1e-14, tolerance = 1e-9, far = 2;
   double xi = 0, eta = 0;
-  for (int k = 0; k < most_iterations; ++k) {
+  for (int k = 0; k < max_iterations; ++k) {
     std::array<double, 4> value{}, d_dxi{}, d_deta{};
     double x = -x_m, y = -y_m, x_xi = 0, x_eta = 0, y_xi = 0, y_eta = 0;
     for (int a = 0; a < 4; ++a) {

@@ -78,7 +78,7 @@ double smallest_side_of_interface_m(const mesh::Mesh& interface) {
     const double x_m = interface.x_m[n];
     smallest_m = std::min(smallest_m, x_m + mesh::distance_x_m(interface, n, next) - x_m);
   };
-  const auto& lower = interface.lower;
+  const auto& lower = interface.interface_nodes;
   for (std::size_t k = 0; k + 1 < lower.size(); ++k) look_at(lower[k], lower[k + 1]);
   if (interface.period_m > 0) look_at(lower.back(), lower.front());
   return smallest_m;

@@ -33,7 +33,7 @@ inline V component_of_pairs(const V& even, const V& odd) {
 /// Twice the places of one corner of each cell of a batch, and x and y there.
 using Places = std::array<std::int32_t, lanes>;
 struct LanePairs {
-  Lanes x, y;
+  SimdVector x, y;
 };
 
 /// x and y in turn at every second place from `lane` on.
@@ -47,7 +47,7 @@ inline Vector<double, n> gather_pairs(const double* w, const Places& at, int lan
   }
 }
 inline LanePairs gather(const double* w, const Places& at) {
-  const Lanes even = gather_pairs<lanes>(w, at, 0), odd = gather_pairs<lanes>(w, at, 1);
+  const SimdVector even = gather_pairs<lanes>(w, at, 0), odd = gather_pairs<lanes>(w, at, 1);
   return {component_of_pairs<0>(even, odd), component_of_pairs<1>(even, odd)};
 }
 
@@ -56,7 +56,7 @@ constexpr int pairs = 2 * lanes;
 constexpr int place_of_lane(int lane) {
   return lane % 2 * lanes + lane / 2 * 2;
 }
-inline void store_pairs(double* to, Lanes x, Lanes y) {
+inline void store_pairs(double* to, SimdVector x, SimdVector y) {
   store(to, component_of_pairs<0>(x, y));
   store(to + lanes, component_of_pairs<1>(x, y));
 }
@@ -132,13 +132,13 @@ struct Run {
 template <class Stiffness>
 void compute_batch(const Corners& corners, Stiffness&& stiffness, const double* w, double* force) {
   const LanePairs origin = gather(w, corners[0]);
-  std::array<Lanes, 6> d;
+  std::array<SimdVector, 6> d;
   for (int a = 1; a < 4; ++a) {
     const LanePairs at = gather(w, corners[a]);
     d[2 * a - 2] = at.x - origin.x;
     d[2 * a - 1] = at.y - origin.y;
   }
-  std::array<Lanes, 6> f{};
+  std::array<SimdVector, 6> f{};
   int k = 0;
   for (int r = 0; r < 6; ++r)
     for (int c = r; c < 6; ++c, ++k) {
@@ -260,7 +260,7 @@ class GeneralRows::Builder {
                        shape);
   }
 
-  /// Lanes without a cell have no stiffness.
+  /// SimdVector without a cell have no stiffness.
   void add_batch_of_own(std::span<const std::size_t> batch, std::span<const CellCoordinates> shape) {
     note_batch(batch, result_->n_batches());
     result_->own_corners.push_back(corners_of(batch));

@@ -82,7 +82,7 @@ void push_interior_row(const InteriorStencil& stencil, Span span, double time_st
                        ConstRowOf<Real> middle, ConstRowOf<Real> north, Real* __restrict v_x,
                        Real* __restrict v_y, Real* __restrict u_x, Real* __restrict u_y, KickSums& sums) {
   constexpr int n_lanes = lanes_of<Real>;
-  using V = LanesOf<Real>;
+  using V = SimdVectorOf<Real>;
   const StencilOf<Real> s(stencil);
   const auto dt = static_cast<Real>(time_step_s);
   const auto terms = [&](int i) { return stencil_terms<V>(s, i, south, middle, north); };
@@ -202,7 +202,7 @@ Pair side_kick(const EdgeStencil& s, int i, int inner, ConstRowOf<Real> south, C
 
 /// v += kick, u += dt v of such a node, which has half the mass of those in the sums.
 template <class Real>
-void push_side_node(const EdgeStencil& s, int i, int inner, double dt, ConstRowOf<Real> south,
+void kick_side_node(const EdgeStencil& s, int i, int inner, double dt, ConstRowOf<Real> south,
                     ConstRowOf<Real> middle, ConstRowOf<Real> north, Real* __restrict v_x,
                     Real* __restrict v_y, Real* __restrict u_x, Real* __restrict u_y, KickSums& sums) {
   const Pair d = side_kick(s, i, inner, south, middle, north);

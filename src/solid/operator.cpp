@@ -144,10 +144,10 @@ Operator make_operator(const mesh::Mesh& mesh, const Material& material) {
   op.blocks = grids_of(mesh);
   op.rows = rows_of(mesh, op.blocks);
   op.mass_kg = lumped_mass(mesh, material);
-  op.is_top = mesh::marked(mesh, mesh.top);
+  op.is_far_edge = mesh::marked(mesh, mesh.far_edge_nodes);
   if (!op.blocks.empty()) set_stencils(op, material);
   op.whole = make_partial_stiffness(mesh, material, op, std::vector<bool>(mesh.cells.size(), true), 0);
-  op.top = assemble_rows(mesh, material, mesh.top);
+  op.far_edge_rows = assemble_rows(mesh, material, mesh.far_edge_nodes);
   return op;
 }
 
@@ -164,7 +164,7 @@ class RowKinds {
         edge_row_(edge_row),
         regular_cell_(mesh.cells.size()),
         is_general_(mesh.n_nodes(), false),
-        is_boundary_(mesh::marked(mesh, mesh.lower)),
+        is_boundary_(mesh::marked(mesh, mesh.interface_nodes)),
         around_(mesh) {
     const auto block_of = block_of_nodes(mesh, op.blocks);
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -179,8 +179,8 @@ class RowKinds {
     for (const auto& absorbing : mesh.absorbing) is_boundary_[absorbing.node] = true;
   }
 
-  bool is_general(mesh::Node n) const { return is_general_[n] && !op_.is_top[n] && touches_part(n); }
-  bool is_on_grid(mesh::Node n) const { return !is_general_[n] && !op_.is_top[n] && touches_part(n); }
+  bool is_general(mesh::Node n) const { return is_general_[n] && !op_.is_far_edge[n] && touches_part(n); }
+  bool is_on_grid(mesh::Node n) const { return !is_general_[n] && !op_.is_far_edge[n] && touches_part(n); }
   bool has_four_cells(mesh::Node n) const { return n_cells(n) == 4; }
 
   /// The squares of the part around a node with a stencil; nothing for a node that needs a block row.
@@ -322,8 +322,8 @@ double strain_energy_J_per_m(const Operator& op, const Field& u) {
   apply(op, u, a);
   double energy = 0;
   for (std::size_t n = 0; n < u.size(); ++n) energy += op.mass_kg[n] * (u.x[n] * a.x[n] + u.y[n] * a.y[n]);
-  for_each_row_product(op.top, u, [&](std::size_t r, double x, double y) {
-    energy += u.x[op.top.node[r]] * x + u.y[op.top.node[r]] * y;
+  for_each_row_product(op.far_edge_rows, u, [&](std::size_t r, double x, double y) {
+    energy += u.x[op.far_edge_rows.node[r]] * x + u.y[op.far_edge_rows.node[r]] * y;
   });
   return 0.5 * energy;
 }
@@ -336,7 +336,7 @@ double kinetic_energy_J_per_m(const Operator& op, const Field& v) {
 
 double top_force_x_N_per_m(const Operator& op, const Field& w) {
   double force = 0;
-  for_each_row_product(op.top, w, [&](std::size_t, double x, double) { force += x; });
+  for_each_row_product(op.far_edge_rows, w, [&](std::size_t, double x, double) { force += x; });
   return force;
 }
 
@@ -386,7 +386,7 @@ class Lanczos {
     };
     double norm2 = 0;
     for (std::size_t k = 0; k < n_; ++k) {
-      if (op_.is_top[k] || op_.mass_kg[k] == 0) continue;
+      if (op_.is_far_edge[k] || op_.mass_kg[k] == 0) continue;
       q_.x[k] = random();
       q_.y[k] = random();
       norm2 += q_.x[k] * q_.x[k] + q_.y[k] * q_.y[k];
@@ -447,13 +447,13 @@ class Lanczos {
 }  // namespace
 
 double largest_frequency_rad_per_s(const Operator& op) {
-  constexpr int most_rows = 300;
+  constexpr int max_rows = 300;
   constexpr double tolerance = 1e-3;
   Lanczos lanczos(op);
   Lanczos::RitzValue largest;
-  for (int row = 1; row <= most_rows; ++row) {
+  for (int row = 1; row <= max_rows; ++row) {
     lanczos.add_row();
-    if (row % 10 != 0 && row != most_rows && !lanczos.is_exhausted()) continue;
+    if (row % 10 != 0 && row != max_rows && !lanczos.is_exhausted()) continue;
     largest = lanczos.largest();
     if (lanczos.is_exhausted() || largest.residual < tolerance * largest.value) break;
   }

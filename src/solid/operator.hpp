@@ -148,12 +148,12 @@ struct Operator {
   int n_rows() const { return static_cast<int>(rows.size()); }
   int row_of(mesh::Node n) const;
   int widest_row() const;
-  std::vector<double> mass_kg;  ///< [nodes], per unit thickness; 0 for orphans
-  InteriorStencil interior{};   ///< of the lowest block
-  EdgeStencil edge{};           ///< over the mass of a node on a straight edge
-  PartialStiffness whole;       ///< all cells
-  BlockRows top;                ///< K (no mass) of the loaded edge's nodes, N/m
-  std::vector<bool> is_top;     ///< [nodes]
+  std::vector<double> mass_kg;    ///< [nodes], per unit thickness; 0 for orphans
+  InteriorStencil interior{};     ///< of the lowest block
+  EdgeStencil edge{};             ///< over the mass of a node on a straight edge
+  PartialStiffness whole;         ///< all cells
+  BlockRows far_edge_rows;        ///< K (no mass) of the loaded edge's nodes, N/m
+  std::vector<bool> is_far_edge;  ///< [nodes]
 };
 
 Operator make_operator(const mesh::Mesh& mesh, const Material& material);

@@ -24,15 +24,15 @@ GridLevel make_level_of_bodies(const ElasticBody& plate, const std::optional<Ela
 }
 
 std::vector<mesh::Node> BodiesOnGrid::interface() const {
-  if (base_ == nullptr) return plate_.lower;
+  if (base_ == nullptr) return plate_.interface_nodes;
   std::vector<mesh::Node> nodes;
-  for (const auto n : plate_.lower) nodes.push_back(plate_.grid.node(n, interface_row()));
+  for (const auto n : plate_.interface_nodes) nodes.push_back(plate_.grid.node(n, interface_row()));
   return nodes;
 }
 
 double BodiesOnGrid::share_of_height(mesh::Node n) const {
   const auto share = [&](mesh::Node in_plate) {
-    return plate_.y_m[in_plate] / plate_.y_m[plate_.top.front()];
+    return plate_.y_m[in_plate] / plate_.y_m[plate_.far_edge_nodes.front()];
   };
   if (base_ == nullptr) return share(n);
   const auto& grid = plate_.grid;

@@ -31,7 +31,7 @@ class BodiesOnGrid {
   double share_of_height(mesh::Node n) const;
 
   bool has_base() const { return base_ != nullptr; }
-  /// Grid node with the relative displacement of each of mesh.lower.
+  /// Grid node with the relative displacement of each of mesh.interface_nodes.
   std::vector<mesh::Node> interface() const;
   /// Of the plate's relative displacement, and of the force of the contact on it, from the grid's, along x;
   /// along y they are the same.

@@ -7,8 +7,8 @@
 namespace slipfront::statics {
 
 /// A plate, or a base below one. A base is described upside down: y points away from the interface into it,
-/// mesh.lower are its interface nodes at the places of the plate's along x, and mesh.top is its far edge,
-/// which is held still.
+/// mesh.interface_nodes are its interface nodes at the places of the plate's along x, and mesh.far_edge_nodes
+/// is its far edge, which is held still.
 struct ElasticBody {
   const mesh::Mesh& mesh;
   const solid::Material& material;

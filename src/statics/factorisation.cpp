@@ -18,7 +18,7 @@ namespace {
 
 /// Those whose rows of K feel the loaded edge: its own nodes and their neighbours.
 std::vector<mesh::Node> nodes_near_top(const mesh::Mesh& mesh) {
-  const auto is_loaded = mesh::marked(mesh, mesh.top);
+  const auto is_loaded = mesh::marked(mesh, mesh.far_edge_nodes);
   std::vector<bool> feels(mesh.n_nodes(), false);
   for (const auto& cell : mesh.cells)
     if (std::ranges::any_of(cell, [&](mesh::Node n) { return is_loaded[n]; }))
@@ -45,8 +45,8 @@ Factorisation::Factorisation(const mesh::Mesh& mesh, const solid::Material& mate
 
 std::vector<std::int32_t> Factorisation::number_unknowns() {
   SLIPFRONT_ASSERT(mesh_.n_nodes() < std::numeric_limits<std::int32_t>::max() / 2, "too many unknowns");
-  const auto is_loaded = mesh::marked(mesh_, mesh_.top);
-  const auto order = dissect(mesh_, mesh_.lower);
+  const auto is_loaded = mesh::marked(mesh_, mesh_.far_edge_nodes);
+  const auto order = dissect(mesh_, mesh_.interface_nodes);
   unknown_.assign(2 * static_cast<std::size_t>(mesh_.n_nodes()), -1);
   std::vector<std::int32_t> block_ends;
   std::size_t k = 0;
@@ -83,7 +83,7 @@ void Factorisation::factorise(const solid::Material& material) {
     }
     return K;
   };
-  Eigen::VectorXd springs = Eigen::VectorXd::Zero(2 * mesh_.lower.size());
+  Eigen::VectorXd springs = Eigen::VectorXd::Zero(2 * mesh_.interface_nodes.size());
   for (Eigen::Index k = 0; k < springs.size(); k += 2) springs(k) = spring_;
   auto condensed = factor_->factorise(stiffness_of, springs);
   SLIPFRONT_ASSERT(condensed, "stiffness is not positive definite");
@@ -92,16 +92,17 @@ void Factorisation::factorise(const solid::Material& material) {
 }
 
 Eigen::VectorXd Factorisation::at_interface(const solid::Field& u) const {
-  Eigen::VectorXd u_i(2 * mesh_.lower.size());
-  for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
-    u_i(2 * k) = u.x[mesh_.lower[k]];
-    u_i(2 * k + 1) = u.y[mesh_.lower[k]];
+  Eigen::VectorXd u_i(2 * mesh_.interface_nodes.size());
+  for (std::size_t k = 0; k < mesh_.interface_nodes.size(); ++k) {
+    u_i(2 * k) = u.x[mesh_.interface_nodes[k]];
+    u_i(2 * k + 1) = u.y[mesh_.interface_nodes[k]];
   }
   return u_i;
 }
 
 Factorisation::Load Factorisation::load(const Top& top) const {
-  const Eigen::VectorXd u_i = at_interface(solve(top, Eigen::VectorXd::Zero(2 * mesh_.lower.size())));
+  const Eigen::VectorXd u_i =
+      at_interface(solve(top, Eigen::VectorXd::Zero(2 * mesh_.interface_nodes.size())));
   Eigen::VectorXd g = condensed_ * u_i;
   for (Eigen::Index k = 0; k < g.size(); k += 2) g(k) += spring_ * u_i(k);
   return {top, g};
@@ -115,17 +116,18 @@ solid::Field Factorisation::displacement(const Load& load, const Eigen::VectorXd
 
 solid::Field Factorisation::displacement(const Eigen::VectorXd& interface_force_N) const {
   SLIPFRONT_ASSERT(top_ == TopConstraint::both, "forces on a plate that nothing holds along x");
-  const std::vector<double> held(mesh_.top.size(), 0.0);
+  const std::vector<double> held(mesh_.far_edge_nodes.size(), 0.0);
   return solve({held, held}, interface_force_N);
 }
 
 solid::Field Factorisation::solve(const Top& top, const Eigen::VectorXd& interface_force) const {
-  SLIPFRONT_ASSERT(top.u_x_m.size() == mesh_.top.size() && top.u_y_m.size() == mesh_.top.size(),
-                   "size of the loaded edge");
+  SLIPFRONT_ASSERT(
+      top.u_x_m.size() == mesh_.far_edge_nodes.size() && top.u_y_m.size() == mesh_.far_edge_nodes.size(),
+      "size of the loaded edge");
   solid::Field u(mesh_.n_nodes());
-  for (std::size_t k = 0; k < mesh_.top.size(); ++k) {
-    if (top_ == TopConstraint::both) u.x[mesh_.top[k]] = top.u_x_m[k];
-    u.y[mesh_.top[k]] = top.u_y_m[k];
+  for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
+    if (top_ == TopConstraint::both) u.x[mesh_.far_edge_nodes[k]] = top.u_x_m[k];
+    u.y[mesh_.far_edge_nodes[k]] = top.u_y_m[k];
   }
   std::vector<double> f(n_unknowns_);
   solid::for_each_row_product(near_top_, u, [&](std::size_t r, double x, double y) {
@@ -133,9 +135,9 @@ solid::Field Factorisation::solve(const Top& top, const Eigen::VectorXd& interfa
     if (unknown_[2 * n] >= 0) f[unknown_[2 * n]] -= x;
     if (unknown_[2 * n + 1] >= 0) f[unknown_[2 * n + 1]] -= y;
   });
-  for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
-    f[unknown_[2 * mesh_.lower[k]]] += interface_force(2 * k);
-    f[unknown_[2 * mesh_.lower[k] + 1]] += interface_force(2 * k + 1);
+  for (std::size_t k = 0; k < mesh_.interface_nodes.size(); ++k) {
+    f[unknown_[2 * mesh_.interface_nodes[k]]] += interface_force(2 * k);
+    f[unknown_[2 * mesh_.interface_nodes[k] + 1]] += interface_force(2 * k + 1);
   }
   factor_->solve(f);
   for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {

@@ -23,7 +23,8 @@ namespace slipfront::statics {
 /// interface nodes are then f = S u_i - g, with u_i their displacements and g the load that the loaded edge
 /// sends to the interface. Contact states change on this small dense system without another factorisation.
 ///
-/// Vectors over the interface hold x and y of each node of mesh.lower in turn. Forces are per unit thickness.
+/// Vectors over the interface hold x and y of each node of mesh.interface_nodes in turn. Forces are per unit
+/// thickness.
 class Factorisation {
  public:
   /// @throws UserError where the factor does not fit into the memory at hand, with the figures.

@@ -434,7 +434,7 @@ class GalerkinRows {
   const GridLevel& fine_;
   const Transfer& t_;
   const GridLevel& coarse_;
-  /// Finer nodes that interpolate from a coarse node by a row of their own.
+  /// Finer nodes that interpolate from a coarse node by a separate row.
   std::unordered_map<mesh::Node, std::vector<std::pair<mesh::Node, float>>> special_of_;
 };
 

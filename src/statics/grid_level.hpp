@@ -46,7 +46,7 @@ struct GridLevel {
     return j < interface_row ? stencil_below : stencil;
   }
   /// Rows of cells of the body that has fewer of them.
-  int least_rows() const {
+  int min_rows() const {
     return interface_row > 0 ? std::min(interface_row - 1, rows - interface_row) : rows;
   }
   bool has_stencil(int i, int j) const;

@@ -46,8 +46,8 @@ template <class T>
 class RowRing {
  public:
   RowRing() = default;
-  RowRing(int least_rows, int longest_row) {
-    while (rows_ < least_rows) rows_ *= 2;
+  RowRing(int min_rows, int longest_row) {
+    while (rows_ < min_rows) rows_ *= 2;
     field_ = GridField<T>(static_cast<std::size_t>(rows_) * longest_row);
   }
   Rows<T> on(const GridLevel& level) { return {field_.x.data(), field_.y.data(), level.stride(), rows_ - 1}; }
@@ -62,9 +62,9 @@ template <class T>
 class RowsBeside {
  public:
   RowsBeside() = default;
-  RowsBeside(int most_rows, int longest_row) : field_(2UL * most_rows * longest_row) {}
+  RowsBeside(int max_rows, int longest_row) : field_(2UL * max_rows * longest_row) {}
   /// Copies up to n rows before and after the part.
-  void copy(const GridLevel& level, const Rows<const T>& from, threads::PartOf part, int n) {
+  void copy(const GridLevel& level, const Rows<const T>& from, threads::LoopChunk part, int n) {
     part_ = part;
     n_ = n;
     stride_ = level.stride();
@@ -86,7 +86,7 @@ class RowsBeside {
   std::ptrdiff_t place(int j) const {
     return (j < part_.begin ? j - part_.begin + n_ : n_ + j - part_.end) * stride_;
   }
-  threads::PartOf part_{0, 0, 1};
+  threads::LoopChunk part_{0, 0, 1};
   int n_ = 0;
   std::ptrdiff_t stride_ = 0;
   GridField<T> field_;
@@ -129,8 +129,8 @@ class RowSum {
   Doubles several_{};
 };
 
-/// Calls f(i, a_x, a_y) with the stencil's products in columns [begin, end) of row j, of type LanesOf<T> for
-/// the columns from i on, or T.
+/// Calls f(i, a_x, a_y) with the stencil's products in columns [begin, end) of row j, of type SimdVectorOf<T>
+/// for the columns from i on, or T.
 template <class T, class In, class F>
 void for_stencil_products(const solid::InteriorStencil& stencil, solid::Span span, int j,
                           const Rows<const In>& field, F&& f) {
@@ -140,7 +140,7 @@ void for_stencil_products(const solid::InteriorStencil& stencil, solid::Span spa
   // Nothing is read beyond the neighbours: that may be beyond the field.
   constexpr int n_lanes = lanes_of<T>;
   if (i + 2 * n_lanes <= span.end + 1) {
-    using V = LanesOf<T>;
+    using V = SimdVectorOf<T>;
     const auto before = solid::stencil_terms<T>(s, i - 1, south, middle, north);
     solid::StencilTerms<V> left{};
     left.to_right_x[n_lanes - 1] = before.to_right_x;

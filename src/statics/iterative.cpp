@@ -16,9 +16,9 @@ namespace slipfront::statics {
 
 namespace {
 
-constexpr int most_cycles = 400;
+constexpr int max_cycles = 400;
 /// Columns of the coarsest level that finds contact states.
-constexpr int least_interface_cells = 64;
+constexpr int min_interface_cells = 64;
 
 /// Node of the finest level at the place of a level's node.
 mesh::Node finest_node(const Multigrid& multigrid, int level, mesh::Node n) {
@@ -30,22 +30,22 @@ mesh::Node finest_node(const Multigrid& multigrid, int level, mesh::Node n) {
   return n;
 }
 
-/// The level's nodes at places of the interface, in the order of mesh.lower, and these places.
-struct LowerNodes {
+/// The level's nodes at places of the interface, in the order of mesh.interface_nodes, and these places.
+struct LevelInterfaceNodes {
   std::vector<mesh::Node> node;
-  std::vector<std::size_t> in_mesh_lower;
+  std::vector<std::size_t> in_mesh_interface;
 };
-LowerNodes lower_nodes(const BodiesOnGrid& bodies, const Multigrid& multigrid, int level) {
+LevelInterfaceNodes level_interface_nodes(const BodiesOnGrid& bodies, const Multigrid& multigrid, int level) {
   const auto& grid = multigrid.grid(level);
   std::map<mesh::Node, mesh::Node> at;  // by the finest node
   for (const auto n : grid.block.node) at[finest_node(multigrid, level, n)] = n;
-  LowerNodes lower;
+  LevelInterfaceNodes lower;
   const auto interface = bodies.interface();
   for (std::size_t k = 0; k < interface.size(); ++k) {
     const auto found = at.find(interface[k]);
     if (found == at.end()) continue;
     lower.node.push_back(found->second);
-    lower.in_mesh_lower.push_back(k);
+    lower.in_mesh_interface.push_back(k);
   }
   return lower;
 }
@@ -112,11 +112,11 @@ class IterativeLoadCase : public LoadCase {
     if (solved_ == support && accuracy >= solved_accuracy_) return;
     solved_ = support;
     solved_accuracy_ = accuracy;
-    const auto& lower = equations_.lower();
+    const auto& lower = equations_.interface_nodes();
     for (std::size_t k = 0; k < lower.size(); ++k) {
       const auto n = lower[k];
       if (support.contact[k] == Contact::open) continue;
-      u0_.y[n] = -gap_m_[equations_.in_mesh_lower()[k]];
+      u0_.y[n] = -gap_m_[equations_.in_mesh_interface()[k]];
       if (sheared_) u1_.y[n] = 0;
       if (support.contact[k] != Contact::stick) continue;
       u0_.x[n] = bodies_.x_sign() * support.anchor_x_m[k];
@@ -179,7 +179,7 @@ class IterativeLoadCase : public LoadCase {
   }
 
   const BodiesOnGrid& bodies_;
-  const std::vector<double>& gap_m_;  ///< [lower]
+  const std::vector<double>& gap_m_;  ///< [interface nodes]
   LevelEquations equations_;
   TopConstraint constraint_;
   TopDisplacement top_;
@@ -205,9 +205,9 @@ IterativeSolver::IterativeSolver(const ElasticBody& plate, const std::optional<E
       team_(threads),
       multigrid_(make_level_of_bodies(plate, base), team_) {
   const auto& grid = multigrid_.grid(0);
-  const auto n_prescribed = plate.mesh.top.size() + (base ? base->mesh.top.size() : 0);
+  const auto n_prescribed = plate.mesh.far_edge_nodes.size() + (base ? base->mesh.far_edge_nodes.size() : 0);
   n_unknowns_ = 2 * static_cast<std::int64_t>(grid.n_nodes() - grid.unused.size() - n_prescribed);
-  while (n_levels_ < multigrid_.n_levels() && multigrid_.grid(n_levels_).columns >= least_interface_cells)
+  while (n_levels_ < multigrid_.n_levels() && multigrid_.grid(n_levels_).columns >= min_interface_cells)
     ++n_levels_;
 }
 
@@ -219,7 +219,7 @@ std::unique_ptr<LoadCase> IterativeSolver::load_case(TopConstraint constraint, c
 }
 
 std::vector<std::size_t> IterativeSolver::interface_of(int level) const {
-  return lower_nodes(bodies_, multigrid_, level).in_mesh_lower;
+  return level_interface_nodes(bodies_, multigrid_, level).in_mesh_interface;
 }
 
 LevelEquations::LevelEquations(const BodiesOnGrid& bodies, Multigrid& multigrid, threads::Team& team,
@@ -239,9 +239,9 @@ LevelEquations::LevelEquations(const BodiesOnGrid& bodies, Multigrid& multigrid,
       row_sum_(grid_.rows + 1),
       residual_(grid_.n_nodes()),
       direction_(grid_.n_nodes()) {
-  auto lower = lower_nodes(bodies, multigrid, level);
-  lower_ = std::move(lower.node);
-  in_mesh_lower_ = std::move(lower.in_mesh_lower);
+  auto lower = level_interface_nodes(bodies, multigrid, level);
+  interface_nodes_ = std::move(lower.node);
+  in_mesh_interface_ = std::move(lower.in_mesh_interface);
   const auto edge = [&](bool is_last) {
     std::vector<mesh::Node> nodes;
     for (int i = 0; i <= grid_.columns; ++i) nodes.push_back(grid_.node(i, is_last ? grid_.rows : 0));
@@ -256,15 +256,15 @@ mesh::Node LevelEquations::finest(mesh::Node n) const {
 }
 
 void LevelEquations::fix(TopConstraint constraint, const Support& support) {
-  SLIPFRONT_ASSERT(support.contact.size() == lower_.size(), "size of the interface");
+  SLIPFRONT_ASSERT(support.contact.size() == interface_nodes_.size(), "size of the interface");
   BoundaryNodes boundary;
   boundary.fixed_x = held_;
   boundary.fixed_y = held_;
   boundary.fixed_y.insert(boundary.fixed_y.end(), loaded_.begin(), loaded_.end());
   if (constraint == TopConstraint::both)
     boundary.fixed_x.insert(boundary.fixed_x.end(), loaded_.begin(), loaded_.end());
-  for (std::size_t k = 0; k < lower_.size(); ++k) {
-    const auto n = lower_[k];
+  for (std::size_t k = 0; k < interface_nodes_.size(); ++k) {
+    const auto n = interface_nodes_[k];
     if (support.contact[k] == Contact::stick) boundary.fixed_x.push_back(n);
     if (support.contact[k] != Contact::open) boundary.fixed_y.push_back(n);
     if (support.contact[k] == Contact::slip)
@@ -294,7 +294,7 @@ void LevelEquations::for_products(int j, const Rows<const P>& p, F&& f) const {
 template <class F>
 std::array<double, 2> LevelEquations::sum_rows(F&& f) {
   team_.run(parts_, [&](int part) {
-    const threads::PartOf own(grid_.rows + 1, part, parts_);
+    const threads::LoopChunk own(grid_.rows + 1, part, parts_);
     for (int j = own.begin; j < own.end; ++j) row_sum_[j] = f(j);
   });
   std::array<double, 2> sum{};
@@ -336,7 +336,7 @@ double LevelEquations::next_direction(double beta) {
   team_.run(parts_, [&](int part) {
     auto& work = workspace_[part];
     const auto next = work.direction.on(grid_);
-    const threads::PartOf own(grid_.rows + 1, part, parts_);
+    const threads::LoopChunk own(grid_.rows + 1, part, parts_);
     work.beside.copy(grid_, p.as_const(), own, reach);
     team_.meet(parts_);
     for (int j = std::max(0, own.begin - reach); j < own.end + reach; ++j) {
@@ -424,7 +424,7 @@ void LevelEquations::conjugate_gradients(double accuracy, solid::Field& u) {
   const double scale = std::sqrt(std::abs(start_residual(u)));
   const auto r = all_rows(std::as_const(residual_), grid_);
   double error2_before = 0;
-  for (int cycle = 1; cycle <= most_cycles; ++cycle) {
+  for (int cycle = 1; cycle <= max_cycles; ++cycle) {
     const double error2 = multigrid_.apply(r);
     if (std::sqrt(std::abs(error2)) <= accuracy * scale) {
       add_z(u);
@@ -517,7 +517,7 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
     add_z(u);
     return;
   }
-  for (int cycle = 1; cycle <= most_cycles; cycle += 2) {
+  for (int cycle = 1; cycle <= max_cycles; cycle += 2) {
     const double alpha = rho / multiply_z();
     take_step(alpha, z, u);
     if (is_small(multigrid_.apply(r))) {
@@ -534,19 +534,19 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
 }
 
 Eigen::VectorXd LevelEquations::at_interface(const solid::Field& u) const {
-  Eigen::VectorXd v(2 * lower_.size());
-  for (std::size_t k = 0; k < lower_.size(); ++k) {
-    v(2 * k) = bodies_.x_sign() * u.x[lower_[k]];
-    v(2 * k + 1) = u.y[lower_[k]];
+  Eigen::VectorXd v(2 * interface_nodes_.size());
+  for (std::size_t k = 0; k < interface_nodes_.size(); ++k) {
+    v(2 * k) = bodies_.x_sign() * u.x[interface_nodes_[k]];
+    v(2 * k + 1) = u.y[interface_nodes_[k]];
   }
   return v;
 }
 
 Eigen::VectorXd LevelEquations::interface_forces(const solid::Field& u) const {
   const auto& rows = grid_.block;
-  Eigen::VectorXd f(2 * lower_.size());
-  for (std::size_t k = 0; k < lower_.size(); ++k) {
-    const auto r = grid_.block_row(lower_[k]);
+  Eigen::VectorXd f(2 * interface_nodes_.size());
+  for (std::size_t k = 0; k < interface_nodes_.size(); ++k) {
+    const auto r = grid_.block_row(interface_nodes_[k]);
     double x = 0, y = 0;
     for (auto e = rows.first[r]; e < rows.first[r + 1]; ++e) {
       const auto& b = rows.block[e];

@@ -37,8 +37,8 @@ class LevelEquations {
   mesh::Node finest(mesh::Node n) const;  ///< the finest grid's node at the place of the level's node
   const std::vector<mesh::Node>& loaded() const { return loaded_; }  ///< nodes of the loaded edge
   const std::vector<mesh::Node>& held() const { return held_; }      ///< nodes at which a base is held
-  const std::vector<mesh::Node>& lower() const { return lower_; }
-  const std::vector<std::size_t>& in_mesh_lower() const { return in_mesh_lower_; }
+  const std::vector<mesh::Node>& interface_nodes() const { return interface_nodes_; }
+  const std::vector<std::size_t>& in_mesh_interface() const { return in_mesh_interface_; }
 
  private:
   /// Calls f(i, a_x, a_y) with row j of A p in the precision T: friction added, 0 at fixed displacements. i
@@ -79,8 +79,8 @@ class LevelEquations {
   int level_;
   const GridLevel& grid_;
   int parts_;
-  std::vector<mesh::Node> lower_, loaded_, held_;  ///< the level's nodes
-  std::vector<std::size_t> in_mesh_lower_;         ///< [lower] places in mesh.lower
+  std::vector<mesh::Node> interface_nodes_, loaded_, held_;  ///< the level's nodes
+  std::vector<std::size_t> in_mesh_interface_;  ///< [interface nodes] places in mesh.interface_nodes
   std::vector<std::array<float, 4>> blocks_f_;
   std::vector<std::uint8_t> fixed_;  ///< [block rows] bit 0: x, bit 1: y
   std::vector<double> slip_;         ///< [block rows] factor of f_y, 0 where the node does not slip
@@ -114,7 +114,7 @@ class IterativeSolver : public PlateSolver {
   threads::Team& team() { return team_; }
 
  private:
-  std::vector<double> gap_m_;  ///< [lower]
+  std::vector<double> gap_m_;  ///< [interface nodes]
   BodiesOnGrid bodies_;
   threads::Team team_;
   Multigrid multigrid_;

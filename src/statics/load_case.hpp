@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "solid/operator.hpp"
-#include "statics/kept_displacements.hpp"
+#include "statics/distributed_field.hpp"
 #include "statics/plate_solver.hpp"
 
 namespace slipfront::statics {
@@ -14,7 +14,7 @@ namespace slipfront::statics {
 /// where they are kept by the processes that have found them.
 struct Displacement {
   solid::Field above, below;
-  std::optional<KeptDisplacement> kept = {};
+  std::optional<DistributedField> kept = {};
 };
 
 /// The plate under its loaded edge, held by what it stands on: displacements of the interface, relative to

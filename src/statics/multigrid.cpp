@@ -12,13 +12,13 @@ namespace slipfront::statics {
 
 namespace {
 
-constexpr std::size_t most_coarsest_nodes = 400;
-constexpr int least_cells = 4;  ///< a level is made coarser only where it has as many in both directions
+constexpr std::size_t max_coarsest_nodes = 400;
+constexpr int min_cells = 4;  ///< a level is made coarser only where it has as many in both directions
 /// The smoother acts on the eigenvalues of D^-1 K from this fraction of the largest one; the coarse grid
 /// takes the rest.
 constexpr double smoothed_fraction = 0.1;
 constexpr double eigenvalue_margin = 1.05;
-constexpr std::size_t least_nodes_for_threads = 40000;  ///< of a level
+constexpr std::size_t min_nodes_for_threads = 40000;  ///< of a level
 
 /// Reproducible numbers between -1/2 and 1/2.
 class RandomNumbers {
@@ -37,7 +37,7 @@ class RandomNumbers {
 struct Multigrid::Level {
   GridLevel grid;
   Transfer transfer;                  ///< from the next coarser level
-  std::vector<mesh::Node> special;    ///< nodes with an interpolation of their own, ascending
+  std::vector<mesh::Node> special;    ///< nodes with a separate interpolation, ascending
   GridField<float> special_residual;  ///< of these nodes
   std::vector<std::array<float, 4>> blocks;
   std::vector<std::uint8_t> fixed;      ///< [block rows] bit 0: x, bit 1: y
@@ -244,7 +244,7 @@ Multigrid::~Multigrid() = default;
 Multigrid::Multigrid(GridLevel finest, threads::Team& team) : team_(team) {
   levels_.push_back(std::make_unique<Level>(std::move(finest), true));
   const auto is_coarse = [](const GridLevel& g) {
-    return g.n_nodes() <= most_coarsest_nodes || std::min(g.columns, g.least_rows()) < least_cells;
+    return g.n_nodes() <= max_coarsest_nodes || std::min(g.columns, g.min_rows()) < min_cells;
   };
   while (!is_coarse(levels_.back()->grid)) {
     auto& fine = *levels_.back();
@@ -264,7 +264,7 @@ Multigrid::Multigrid(GridLevel finest, threads::Team& team) : team_(team) {
 }
 
 int Multigrid::parts(int level) const {
-  return levels_[level]->grid.n_nodes() >= least_nodes_for_threads ? team_.size() : 1;
+  return levels_[level]->grid.n_nodes() >= min_nodes_for_threads ? team_.size() : 1;
 }
 
 const GridLevel& Multigrid::grid(int level) const {
@@ -349,7 +349,7 @@ void restrict_row(const Transfer1D& t, int columns, int coarse_columns, const fl
 void interpolate_row(const Transfer1D& t, int columns, int coarse_columns, const float* __restrict c,
                      const float* __restrict start, float* __restrict u) {
   const int n_pairs = columns % 2 == 0 ? coarse_columns : coarse_columns - 1;
-  using V = LanesOf<float>;
+  using V = SimdVectorOf<float>;
   int I = 0;
   for (; I + length<V> <= n_pairs; I += length<V>) {
     const V here = load_as<V>(c + I), between = 0.5F * (here + load_as<V>(c + I + 1));
@@ -385,7 +385,7 @@ void sweep(const GridLevel& grid, int begin, int end, First&& first, Second&& se
 }  // namespace
 
 void Multigrid::add_restricted(const Level& fine, int j, const float* r_x, const float* r_y,
-                               std::vector<float>& coarse_row, threads::PartOf rows, Level& coarse) {
+                               std::vector<float>& coarse_row, threads::LoopChunk rows, Level& coarse) {
   const auto& t = fine.transfer;
   const float w = t.y.weight[j];
   const int below = t.y.left[j];
@@ -427,7 +427,7 @@ void Multigrid::smooth_and_restrict(std::size_t l, const Rows<const B>& b) {
     auto& work = workspace_[part];
     const auto change = work.change.on(grid), smoothed = work.smoothed.on(grid);
     // Own coarse rows, the finer rows that lie on or above them, and those whose residual they take.
-    const threads::PartOf own(coarse.grid.rows + 1, part, n_parts);
+    const threads::LoopChunk own(coarse.grid.rows + 1, part, n_parts);
     const auto first_above = [&](int J) {
       const auto& left = fine.transfer.y.left;
       return static_cast<int>(std::ranges::lower_bound(left, J) - left.begin());
@@ -503,7 +503,7 @@ double Multigrid::prolong_and_smooth(std::size_t l, const Rows<const B>& b) {
   team_.run(n_parts, [&](int part) {
     auto& work = workspace_[part];
     const auto start = work.start.on(grid), change = work.change.on(grid), smoothed = work.smoothed.on(grid);
-    const threads::PartOf own(grid.rows + 1, part, n_parts);
+    const threads::LoopChunk own(grid.rows + 1, part, n_parts);
     work.beside.copy(grid, u.as_const(), own, 2 * grid.reach);
     team_.meet(n_parts);
 

@@ -65,7 +65,7 @@ class Multigrid {
   void smooth_and_restrict(std::size_t l, const Rows<const B>& b);
   /// Restricts row j of the residual r to the coarse right-hand side, to `rows` of it.
   static void add_restricted(const Level& fine, int j, const float* r_x, const float* r_y,
-                             std::vector<float>& coarse_row, threads::PartOf rows, Level& coarse);
+                             std::vector<float>& coarse_row, threads::LoopChunk rows, Level& coarse);
   static void add_special_residuals(const Level& fine, Level& coarse);
   template <class B>
   double prolong_and_smooth(std::size_t l, const Rows<const B>& b);

@@ -28,9 +28,9 @@ namespace slipfront::statics {
 
 namespace {
 
-constexpr int most_iterations = 2000;
-/// What is solved with more than one beginning: after rounding, or where the first norm told too little.
-constexpr int most_attempts = 8;
+constexpr int max_iterations = 2000;
+/// What is solved with more than one beginning: after rounding, or where the first norm was too coarse.
+constexpr int max_attempts = 8;
 /// Of the error wanted, to which a solution goes on in a norm that only resembles it.
 constexpr double margin = 0.3;
 /// Finest levels on which aggregates have nodes two edges apart: more cycles, which take less each.
@@ -38,7 +38,7 @@ constexpr int aggressive_levels = 1;
 /// What is taken for the least eigenvalue of the preconditioned equations until a less one is seen.
 constexpr double first_eigenvalue = 0.25;
 /// A displacement's norm over its guess's below which it is a motion as a whole.
-constexpr double least_norm = 1e-3;
+constexpr double min_norm = 1e-3;
 /// Decrease of the residual in the short solution that sees it where nodes slip.
 constexpr double glance = 1e-3;
 
@@ -47,7 +47,7 @@ std::string& last_error() {
   return text;
 }
 
-/// Keeps what is told first; the rest is how PETSc came there.
+/// Keeps PETSc's first message; the rest is its call stack.
 PetscErrorCode keep_error(MPI_Comm, int, const char*, const char*, PetscErrorCode code, PetscErrorType type,
                           const char* message, void*) {
   if (type == PETSC_ERROR_INITIAL && message != nullptr) last_error() = message;
@@ -62,7 +62,7 @@ void check(PetscErrorCode code) {
   throw std::runtime_error(fmt::format("PETSc error {}: {}", static_cast<int>(code), text));
 }
 
-/// PETSc from its first use to the end of MPI, with a communicator of its own. Neither the environment nor a
+/// PETSc from its first use to the end of MPI, with a separate communicator. Neither the environment nor a
 /// file of options nor the command line changes what it does.
 class Library {
  public:
@@ -183,7 +183,7 @@ struct CellRows {
 
 class CellAssembly {
  public:
-  explicit CellAssembly(const Piece::Body& body) : body_(body) {}
+  explicit CellAssembly(const Subdomain::Body& body) : body_(body) {}
 
   const CellRows& rows(const mesh::Cell& cell) {
     solid::CellCoordinates c{};
@@ -227,7 +227,7 @@ class CellAssembly {
     return static_cast<std::size_t>(found);
   }
 
-  const Piece::Body& body_;
+  const Subdomain::Body& body_;
   CellRows rows_;
 };
 
@@ -241,22 +241,23 @@ std::string_view petsc_version() {
 
 class PetscEquations::Impl {
  public:
-  explicit Impl(const Piece& piece)
+  explicit Impl(const Subdomain& subdomain)
       : comm_(Library::comm()),
-        first_(2 * piece.first),
-        n_(2 * piece.count),
-        lower_(piece.lower),
-        gap_m_(piece.gap_m),
-        top_(piece.top),
-        held_(piece.held) {
-    assemble(piece);
+        first_(2 * subdomain.first),
+        n_(2 * subdomain.count),
+        interface_nodes_(subdomain.interface_nodes),
+        gap_m_(subdomain.gap_m),
+        top_(subdomain.top),
+        held_(subdomain.held) {
+    assemble(subdomain);
     check(MatCreateVecs(K_, u0_.renew(), f_.renew()));
     for (auto* vector : {&u1_, &r_, &z_}) check(VecDuplicate(u0_, vector->renew()));
-    make_rigid_modes(piece);
+    make_rigid_modes(subdomain);
     check(MatDuplicate(K_, MAT_COPY_VALUES, A_.renew()));
     check(MatSetOption(A_, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
     check(MatSetNearNullSpace(A_, rigid_));
-    for (const auto& body : piece.bodies) diagonal_ = std::max(diagonal_, body.material.youngs_modulus_Pa);
+    for (const auto& body : subdomain.bodies)
+      diagonal_ = std::max(diagonal_, body.material.youngs_modulus_Pa);
   }
 
   void begin(TopConstraint constraint, std::span<const double> u0, std::span<const double> u1) {
@@ -292,26 +293,26 @@ class PetscEquations::Impl {
  private:
   std::size_t local(PetscInt unknown) const { return static_cast<std::size_t>(unknown - first_); }
 
-  void assemble(const Piece& piece) {
+  void assemble(const Subdomain& subdomain) {
     // Pairs that share a cell.
-    std::vector<std::vector<PetscInt>> neighbours(static_cast<std::size_t>(piece.count));
+    std::vector<std::vector<PetscInt>> neighbours(static_cast<std::size_t>(subdomain.count));
     const auto for_cells = [&](auto&& f) {
-      for (const auto& body : piece.bodies) {
+      for (const auto& body : subdomain.bodies) {
         CellAssembly assembly(body);
         for (const auto& cell : body.cells) f(assembly.rows(cell));
       }
     };
     for_cells([&](const CellRows& cell) {
       for (const auto pair : cell.pair) {
-        if (!piece.has(pair)) continue;
-        auto& of_pair = neighbours[static_cast<std::size_t>(pair - piece.first)];
+        if (!subdomain.has(pair)) continue;
+        auto& of_pair = neighbours[static_cast<std::size_t>(pair - subdomain.first)];
         for (const auto other : cell.pair)
           if (std::ranges::find(of_pair, other) == of_pair.end()) of_pair.push_back(other);
       }
     });
     std::vector<PetscInt> n_own, n_others;
     for (const auto& of_pair : neighbours) {
-      const auto own = std::ranges::count_if(of_pair, [&](PetscInt pair) { return piece.has(pair); });
+      const auto own = std::ranges::count_if(of_pair, [&](PetscInt pair) { return subdomain.has(pair); });
       n_own.push_back(static_cast<PetscInt>(own));
       n_others.push_back(static_cast<PetscInt>(std::ssize(of_pair) - own));
     }
@@ -325,7 +326,7 @@ class PetscEquations::Impl {
     std::vector<PetscInt> rows;
     for_cells([&](const CellRows& cell) {
       rows.clear();  // those of other processes are left out
-      for (const auto pair : cell.pair) rows.push_back(piece.has(pair) ? pair : -1);
+      for (const auto pair : cell.pair) rows.push_back(subdomain.has(pair) ? pair : -1);
       const auto width = static_cast<PetscInt>(cell.pair.size());
       check(MatSetValuesBlocked(K_, width, rows.data(), width, cell.pair.data(), cell.entries.data(),
                                 ADD_VALUES));
@@ -335,15 +336,15 @@ class PetscEquations::Impl {
   }
 
   /// Of the bodies moving together: no relative displacement.
-  void make_rigid_modes(const Piece& piece) {
+  void make_rigid_modes(const Subdomain& subdomain) {
     std::array<Vector, 3> modes;
     for (auto& mode : modes) check(VecDuplicate(u0_, mode.renew()));
     {
       Entries x(modes[0]), y(modes[1]), turned(modes[2]);
-      for (const auto& body : piece.bodies) {
+      for (const auto& body : subdomain.bodies) {
         const double sign = body.is_base ? -1 : 1;
         for (const auto& node : body.nodes) {
-          if (!piece.has(node.pair)) continue;
+          if (!subdomain.has(node.pair)) continue;
           const auto k = local(2 * node.pair);
           const double is_absolute = node.opposite < 0 ? 1 : 0;
           x[k] = is_absolute;
@@ -405,9 +406,9 @@ class PetscEquations::Impl {
     slip_.clear();
     {
       Entries u0(u0_), u1(u1_);
-      for (std::size_t k = 0; k < lower_.size(); ++k) {
-        const auto place = static_cast<std::size_t>(lower_[k].place);
-        const PetscInt x = 2 * lower_[k].pair, y = x + 1;
+      for (std::size_t k = 0; k < interface_nodes_.size(); ++k) {
+        const auto place = static_cast<std::size_t>(interface_nodes_[k].place);
+        const PetscInt x = 2 * interface_nodes_[k].pair, y = x + 1;
         if (support.contact[place] == Contact::open) continue;
         prescribed.push_back(y);
         u0[local(y)] = -gap_m_[k];
@@ -511,7 +512,7 @@ class PetscEquations::Impl {
   /// Friction may enlarge the error further: as much as it did that of the last attempt, whose correction was
   /// the error.
   Outcome iterate(Vec u, double first_norm, double accuracy) {
-    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    for (int attempt = 0; attempt < max_attempts; ++attempt) {
       set_residual();
       if (slips_ && !has_seen_eigenvalue_ && !solve_without_friction(glance))
         return Outcome::preconditioner_fails;
@@ -519,10 +520,10 @@ class PetscEquations::Impl {
       ++n_iterations_;
       // That of the guess where the displacement itself takes no energy.
       const double norm = std::sqrt(std::abs(dot(u, f_)));
-      const double wanted = accuracy * (norm > least_norm * first_norm ? norm : first_norm);
+      const double wanted = accuracy * (norm > min_norm * first_norm ? norm : first_norm);
       const double error2 = dot(r_, z_);
       if (error2 < 0) return Outcome::preconditioner_fails;
-      const double error = std::sqrt(error2 / least_eigenvalue_);
+      const double error = std::sqrt(error2 / min_eigenvalue_);
       if (!std::isfinite(error)) return Outcome::too_slow;
       if (error <= wanted) {
         clear_prescribed(z_);
@@ -536,14 +537,14 @@ class PetscEquations::Impl {
       check(VecAXPY(u, 1, z_));
       check(MatMult(K_, z_, r_));
       check(VecAXPY(f_, 1, r_));
-      least_eigenvalue_ = std::min(least_eigenvalue_, error2 / std::abs(dot(z_, r_)));
+      min_eigenvalue_ = std::min(min_eigenvalue_, error2 / std::abs(dot(z_, r_)));
     }
     return Outcome::too_slow;
   }
 
   /// z from r. @return iterations, none where it goes no further
   std::optional<PetscInt> solve_by(KSP solver, double reduction) {
-    check(KSPSetTolerances(solver, reduction, std::numeric_limits<double>::min(), 1e10, most_iterations));
+    check(KSPSetTolerances(solver, reduction, std::numeric_limits<double>::min(), 1e10, max_iterations));
     check(KSPSolve(solver, r_, z_));
     PetscInt n = 0;
     check(KSPGetIterationNumber(solver, &n));
@@ -563,7 +564,7 @@ class PetscEquations::Impl {
     if (*n < 2) return true;
     double largest = 0, least = 0;
     check(KSPComputeExtremeSingularValues(cg_, &largest, &least));
-    if (least > 0) least_eigenvalue_ = std::min(least_eigenvalue_, least);
+    if (least > 0) min_eigenvalue_ = std::min(min_eigenvalue_, least);
     has_seen_eigenvalue_ = true;
     return true;
   }
@@ -571,7 +572,7 @@ class PetscEquations::Impl {
   void take_at_interface(Vec u, std::vector<double>& displacements, std::vector<double>& forces) {
     check(MatMult(K_, u, f_));
     const auto of_u = entries_of(u), of_f = entries_of(f_);
-    for (const auto& [pair, place] : lower_)
+    for (const auto& [pair, place] : interface_nodes_)
       for (const PetscInt unknown : {2 * pair, 2 * pair + 1}) {
         displacements.push_back(of_u[local(unknown)]);
         forces.push_back(of_f[local(unknown)]);
@@ -580,9 +581,9 @@ class PetscEquations::Impl {
 
   MPI_Comm comm_;
   PetscInt first_, n_;
-  std::vector<Piece::Place> lower_;
+  std::vector<Subdomain::Place> interface_nodes_;
   std::vector<double> gap_m_;
-  std::vector<Piece::Place> top_;
+  std::vector<Subdomain::Place> top_;
   std::vector<std::int32_t> held_;
   Matrix K_;  ///< of all unknowns, none prescribed
   Matrix A_;  ///< the same with rows and columns of prescribed unknowns cleared
@@ -590,8 +591,8 @@ class PetscEquations::Impl {
   NullSpace rigid_;
   Solver cg_, bicgstab_;
   Vector u0_, u1_, f_, r_, z_;
-  double diagonal_ = 0;                         ///< of A for prescribed unknowns
-  double least_eigenvalue_ = first_eigenvalue;  ///< of B A, as far as seen
+  double diagonal_ = 0;                       ///< of A for prescribed unknowns
+  double min_eigenvalue_ = first_eigenvalue;  ///< of B A, as far as seen
   TopConstraint constraint_ = TopConstraint::both;
   bool is_sheared_ = false, slips_ = false;
   bool has_seen_eigenvalue_ = false;  ///< in this load case
@@ -614,7 +615,7 @@ std::string_view petsc_version() {
 
 class PetscEquations::Impl {
  public:
-  explicit Impl(const Piece&) { SLIPFRONT_ASSERT(false, "built without PETSc"); }
+  explicit Impl(const Subdomain&) { SLIPFRONT_ASSERT(false, "built without PETSc"); }
   void begin(TopConstraint, std::span<const double>, std::span<const double>) {}
   std::optional<AtInterface> solve(const Support&, double) { return std::nullopt; }
   std::vector<double> own_u0() const { return {}; }
@@ -624,7 +625,7 @@ class PetscEquations::Impl {
 
 #endif
 
-PetscEquations::PetscEquations(const Piece& piece) : impl_(std::make_unique<Impl>(piece)) {}
+PetscEquations::PetscEquations(const Subdomain& subdomain) : impl_(std::make_unique<Impl>(subdomain)) {}
 PetscEquations::~PetscEquations() = default;
 void PetscEquations::begin(TopConstraint constraint, std::span<const double> u0, std::span<const double> u1) {
   impl_->begin(constraint, u0, u1);

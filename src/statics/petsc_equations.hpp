@@ -7,20 +7,20 @@
 #include <string_view>
 #include <vector>
 
-#include "statics/pieces.hpp"
 #include "statics/plate_solver.hpp"
+#include "statics/subdomains.hpp"
 
 namespace slipfront::statics {
 
 /// "3.18.5", or nothing where the program was built without PETSc.
 std::string_view petsc_version();
 
-/// A piece's share of the equations of all pieces: rows of their matrices, entries of their vectors. All
-/// processes have one and call the same functions at the same time. By PETSc: conjugate gradients, BiCGStab
-/// where nodes slip, with smoothed aggregation as preconditioner.
+/// A subdomain's share of the equations of all subdomains: rows of their matrices, entries of their vectors.
+/// All processes have one and call the same functions at the same time. By PETSc: conjugate gradients,
+/// BiCGStab where nodes slip, with smoothed aggregation as preconditioner.
 class PetscEquations {
  public:
-  explicit PetscEquations(const Piece& piece);
+  explicit PetscEquations(const Subdomain& subdomain);
   ~PetscEquations();
   PetscEquations(const PetscEquations&) = delete;
   PetscEquations& operator=(const PetscEquations&) = delete;

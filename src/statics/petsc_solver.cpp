@@ -15,11 +15,11 @@ namespace slipfront::statics {
 
 namespace {
 
-void put_support(const Support& support, Parcel& to) {
+void put_support(const Support& support, MessageBuffer& to) {
   to.put(support.contact).put(support.slip_sign).put(support.anchor_x_m).put(support.mu_s);
 }
 
-Support take_support(Parcel& from) {
+Support take_support(MessageBuffer& from) {
   Support support;
   support.contact = from.take_all<Contact>();
   support.slip_sign = from.take_all<double>();
@@ -36,7 +36,7 @@ class PetscLoadCase : public LoadCase {
                 const DisplacementOfBodies* start)
       : solver_(solver), is_sheared_(sheared) {
     const auto& loaded = solver.loaded_;
-    Parcel given;
+    MessageBuffer given;
     given.put(constraint).put(static_cast<std::uint8_t>(sheared)).put(start != nullptr ? start->kept : -1);
     given.put(loaded.from_m).put(loaded.to_m - loaded.from_m).put(loaded.y_m);
     given.put(top.u_x_m).put(top.u_y_m);
@@ -44,22 +44,22 @@ class PetscLoadCase : public LoadCase {
   }
 
   void solve(const Support& support, double accuracy) override {
-    Parcel given;
+    MessageBuffer given;
     put_support(support, given);
     given.put(accuracy);
-    const auto n = static_cast<Eigen::Index>(2 * solver_.plate_.lower.size());
+    const auto n = static_cast<Eigen::Index>(2 * solver_.plate_.interface_nodes.size());
     for (auto* values : {&u0, &u1, &f0, &f1}) *values = Eigen::VectorXd::Zero(n);
     bool converges = true;
     solver_.ask(
         PetscSolver::Command::solve, [&](int) { return given; },
-        [&](int piece, Parcel& answer) {
+        [&](int subdomain, MessageBuffer& answer) {
           converges &= answer.take<std::uint8_t>() != 0;
           if (!converges) return;
-          const auto& lower = solver_.lower_[static_cast<std::size_t>(piece)];
+          const auto& lower = solver_.interface_nodes_[static_cast<std::size_t>(subdomain)];
           for (auto* values : {&u0, &u1, &f0, &f1}) {
-            const auto of_piece = answer.take_all<double>();
-            for (std::size_t k = 0; k < of_piece.size(); ++k)
-              (*values)(2 * lower[k / 2] + static_cast<Eigen::Index>(k % 2)) = of_piece[k];
+            const auto of_subdomain = answer.take_all<double>();
+            for (std::size_t k = 0; k < of_subdomain.size(); ++k)
+              (*values)(2 * lower[k / 2] + static_cast<Eigen::Index>(k % 2)) = of_subdomain[k];
           }
         });
     if (!converges)
@@ -76,27 +76,28 @@ class PetscLoadCase : public LoadCase {
   Displacement kept(double factor_0, double factor_1) const {
     int number = -1;
     solver_.ask(
-        PetscSolver::Command::keep, [&](int) { return std::move(Parcel().put(factor_0).put(factor_1)); },
-        [&](int rank, Parcel& answer) {
+        PetscSolver::Command::keep,
+        [&](int) { return std::move(MessageBuffer().put(factor_0).put(factor_1)); },
+        [&](int rank, MessageBuffer& answer) {
           const int of_process = answer.take<int>();
           SLIPFRONT_ASSERT(rank == 0 || of_process == number, "the same number in all processes");
           number = of_process;
         });
-    if (!solver_.gathers_) return {{}, {}, KeptDisplacement{number, solver_.divided_.cut()}};
+    if (!solver_.gathers_) return {{}, {}, DistributedField{number, solver_.divided_.partition()}};
     std::vector<double> all;
     solver_.ask(
-        PetscSolver::Command::gather, [&](int) { return std::move(Parcel().put(number)); },
-        [&](int, Parcel& answer) {
-          const auto of_piece = answer.take_all<double>();
+        PetscSolver::Command::gather, [&](int) { return std::move(MessageBuffer().put(number)); },
+        [&](int, MessageBuffer& answer) {
+          const auto of_subdomain = answer.take_all<double>();
           answer = {};
-          all.insert(all.end(), of_piece.begin(), of_piece.end());
+          all.insert(all.end(), of_subdomain.begin(), of_subdomain.end());
         });
     auto u = solver_.divided_.displacement(all);
     // The sheared plate begins from the tilted one; nothing from the sheared one.
     if (is_sheared_)
-      solver_.ask(PetscSolver::Command::forget, [&](int) { return std::move(Parcel().put(number)); });
+      solver_.ask(PetscSolver::Command::forget, [&](int) { return std::move(MessageBuffer().put(number)); });
     else
-      u.kept = {number, solver_.divided_.cut()};
+      u.kept = {number, solver_.divided_.partition()};
     return u;
   }
 
@@ -104,15 +105,15 @@ class PetscLoadCase : public LoadCase {
   bool is_sheared_;
 };
 
-void PetscShare::build(const Piece& piece) {
-  kept_.clear();  // of another solver's pieces
-  equations_ = std::make_unique<PetscEquations>(piece);
-  first_ = piece.first;
-  top_ = piece.top;
-  x_m_.assign(static_cast<std::size_t>(piece.count), 0.0);
+void PetscSubdomain::build(const Subdomain& subdomain) {
+  kept_.clear();  // of another solver's subdomains
+  equations_ = std::make_unique<PetscEquations>(subdomain);
+  first_ = subdomain.first;
+  top_ = subdomain.top;
+  x_m_.assign(static_cast<std::size_t>(subdomain.count), 0.0);
   y_m_ = x_m_;
-  for (const auto& node : piece.bodies.front().nodes)
-    if (piece.has(node.pair)) {
+  for (const auto& node : subdomain.bodies.front().nodes)
+    if (subdomain.has(node.pair)) {
       x_m_[node.pair - first_] = node.x_m;
       y_m_[node.pair - first_] = node.y_m;
     }
@@ -120,7 +121,7 @@ void PetscShare::build(const Piece& piece) {
 
 /// Begins at displacements that are kept, or at uniform strain from the interface to the loaded edge, whose
 /// nodes have the same places along x; a base at rest.
-void PetscShare::begin(Parcel& given) {
+void PetscSubdomain::begin(MessageBuffer& given) {
   const auto constraint = given.take<TopConstraint>();
   const bool sheared = given.take<std::uint8_t>() != 0;
   const int start = given.take<int>();
@@ -148,15 +149,15 @@ void PetscShare::begin(Parcel& given) {
   equations_->begin(constraint, u0, u1);
 }
 
-Parcel PetscShare::carry_out(Command command, Parcel& given) {
-  Parcel answer;
+MessageBuffer PetscSubdomain::execute(Command command, MessageBuffer& given) {
+  MessageBuffer answer;
   switch (command) {
     case Command::build: {
       const bool is_planned = given.take<bool>();
-      const auto piece = is_planned ? PiecePlan::take(given).make() : Piece::take(given);
+      const auto subdomain = is_planned ? SubdomainPlan::take(given).make() : Subdomain::take(given);
       given = {};
-      build(piece);
-      answer.put(piece.lower);
+      build(subdomain);
+      answer.put(subdomain.interface_nodes);
       break;
     }
     case Command::begin:
@@ -196,7 +197,7 @@ PetscSolver::Edge PetscSolver::loaded_edge(const mesh::Mesh& plate, std::span<co
   const auto between = [](const mesh::Mesh& mesh, mesh::Node first, mesh::Node last) {
     return Edge{mesh.x_m[first], mesh.x_m[last], mesh.y_m[first]};
   };
-  if (!plate.is_interface()) return between(plate, plate.top.front(), plate.top.back());
+  if (!plate.is_interface()) return between(plate, plate.far_edge_nodes.front(), plate.far_edge_nodes.back());
   const auto row = mesh::make_rows(plates.front(), plate.grid.rows, plate.grid.rows);
   return between(row, 0, row.n_nodes() - 1);
 }
@@ -215,23 +216,23 @@ PetscSolver::PetscSolver(const ElasticBody& plate, const std::optional<ElasticBo
   ask(
       Command::build,
       [&](int rank) {
-        Parcel parcel;
-        parcel.put(!divided_.are_held());
+        MessageBuffer buffer;
+        buffer.put(!divided_.are_held());
         if (divided_.are_held())
-          divided_.piece(rank).put(parcel);
+          divided_.subdomain(rank).put(buffer);
         else
-          divided_.plan(rank).put(parcel);
-        return parcel;
+          divided_.plan(rank).put(buffer);
+        return buffer;
       },
-      [&](int, Parcel& answer) {
-        auto& places = lower_.emplace_back();
-        for (const auto& place : answer.take_all<Piece::Place>()) places.push_back(place.place);
+      [&](int, MessageBuffer& answer) {
+        auto& places = interface_nodes_.emplace_back();
+        for (const auto& place : answer.take_all<Subdomain::Place>()) places.push_back(place.place);
       });
 }
 
 // PETSc's objects go at the same time everywhere.
 PetscSolver::~PetscSolver() {
-  ask(Command::drop, [](int) { return Parcel(); });
+  ask(Command::drop, [](int) { return MessageBuffer(); });
 }
 
 std::unique_ptr<LoadCase> PetscSolver::load_case(TopConstraint constraint, const TopDisplacement& top,
@@ -245,22 +246,22 @@ double PetscSolver::bytes() const {
 }
 
 std::vector<std::size_t> PetscSolver::interface_of(int) const {
-  std::vector<std::size_t> all(plate_.lower.size());
+  std::vector<std::size_t> all(plate_.interface_nodes.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return all;
 }
 
-void PetscSolver::ask(Command command, const std::function<Parcel(int rank)>& given,
-                      const std::function<void(int rank, Parcel& answer)>& take) {
+void PetscSolver::ask(Command command, const std::function<MessageBuffer(int rank)>& given,
+                      const std::function<void(int rank, MessageBuffer& answer)>& take) {
   const auto own = [&] {
-    auto parcel = given(0);
-    auto answer = share_.carry_out(command, parcel);
+    auto buffer = given(0);
+    auto answer = share_.execute(command, buffer);
     take(0, answer);
   };
   if (processes_ == nullptr) return own();
   or_fail(*processes_, [&] {
     for (int rank = 1; rank < processes_->size(); ++rank)
-      processes_->send(rank, Parcel().put(command).append(given(rank)));
+      processes_->send(rank, MessageBuffer().put(command).append(given(rank)));
     own();
     for (int rank = 1; rank < processes_->size(); ++rank) {
       auto answer = processes_->receive(rank);
@@ -269,13 +270,13 @@ void PetscSolver::ask(Command command, const std::function<Parcel(int rank)>& gi
   });
 }
 
-void serve_statics(Processes& processes, KeptDisplacements& kept) try {
-  PetscShare share(kept);
+void serve_statics(Processes& processes, DistributedFields& kept) try {
+  PetscSubdomain share(kept);
   for (;;) {
     auto given = processes.receive(0);
-    const auto command = given.take<PetscShare::Command>();
-    if (command == PetscShare::Command::release) return;
-    processes.send(0, share.carry_out(command, given));
+    const auto command = given.take<PetscSubdomain::Command>();
+    if (command == PetscSubdomain::Command::release) return;
+    processes.send(0, share.execute(command, given));
   }
 } catch (const std::exception& error) {
   processes.fail(reason_of(error));
@@ -283,7 +284,7 @@ void serve_statics(Processes& processes, KeptDisplacements& kept) try {
 
 void release_statics(Processes& processes) {
   for (int rank = 1; rank < processes.size(); ++rank)
-    processes.send(rank, Parcel().put(PetscShare::Command::release));
+    processes.send(rank, MessageBuffer().put(PetscSubdomain::Command::release));
 }
 
 }  // namespace slipfront::statics

@@ -10,33 +10,33 @@
 #include <vector>
 
 #include "processes/processes.hpp"
-#include "statics/kept_displacements.hpp"
+#include "statics/distributed_field.hpp"
 #include "statics/petsc_equations.hpp"
-#include "statics/pieces.hpp"
 #include "statics/plate_solver.hpp"
+#include "statics/subdomains.hpp"
 
 namespace slipfront::statics {
 
 /// One process's share in PETSc's equations.
-class PetscShare {
+class PetscSubdomain {
  public:
   /// @param kept  where it keeps what is found
-  explicit PetscShare(KeptDisplacements& kept) : kept_(kept) {}
+  explicit PetscSubdomain(DistributedFields& kept) : kept_(kept) {}
 
   enum class Command : int { build, begin, solve, keep, gather, forget, drop, release };
   /// Carries out a command that all are given at the same time, but for release.
-  Parcel carry_out(Command command, Parcel& given);
+  MessageBuffer execute(Command command, MessageBuffer& given);
   int n_iterations() const { return equations_->n_iterations(); }
 
  private:
-  void build(const Piece& piece);
-  void begin(Parcel& given);
+  void build(const Subdomain& subdomain);
+  void begin(MessageBuffer& given);
 
-  KeptDisplacements& kept_;
+  DistributedFields& kept_;
   std::unique_ptr<PetscEquations> equations_;
   std::int32_t first_ = 0;
   std::vector<double> x_m_, y_m_;  ///< [own pairs] of the plate's nodes; 0 for those of a base
-  std::vector<Piece::Place> top_;
+  std::vector<Subdomain::Place> top_;
 };
 
 /// Equilibria by PetscEquations: the leader's end, which divides the bodies, gives all processes the same
@@ -57,32 +57,33 @@ class PetscSolver : public PlateSolver {
 
  private:
   friend class PetscLoadCase;
-  using Command = PetscShare::Command;
+  using Command = PetscSubdomain::Command;
 
   struct Edge {
     double from_m = 0, to_m = 0, y_m = 0;
   };
   static Edge loaded_edge(const mesh::Mesh& plate, std::span<const mesh::Plate> plates);
 
-  /// Gives each process a parcel, carries out the own share and shows all answers, one by one.
+  /// Gives each process a buffer, carries out the own share and shows all answers, one by one.
   void ask(
-      Command command, const std::function<Parcel(int rank)>& given,
-      const std::function<void(int rank, Parcel& answer)>& take = [](int, Parcel&) {});
+      Command command, const std::function<MessageBuffer(int rank)>& given,
+      const std::function<void(int rank, MessageBuffer& answer)>& take = [](int, MessageBuffer&) {});
 
   const mesh::Mesh& plate_;
-  DividedBodies divided_;
+  PartitionedBodies divided_;
   Processes* processes_;
   bool gathers_;
-  KeptDisplacements own_kept_;  ///< where it gathers
-  PetscShare share_;
+  DistributedFields own_kept_;  ///< where it gathers
+  PetscSubdomain share_;
   Edge loaded_;
-  std::vector<std::vector<std::int32_t>> lower_;  ///< [pieces] places in mesh.lower of each
+  std::vector<std::vector<std::int32_t>>
+      interface_nodes_;  ///< [subdomains] places in mesh.interface_nodes of each
   std::int64_t n_unknowns_ = 0;
 };
 
 /// What the other processes do while the leader has a PetscSolver, until it releases them.
 /// @param kept  where this one keeps its share of what is found
-void serve_statics(Processes& processes, KeptDisplacements& kept);
+void serve_statics(Processes& processes, DistributedFields& kept);
 void release_statics(Processes& processes);
 
 }  // namespace slipfront::statics

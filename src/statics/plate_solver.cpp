@@ -117,7 +117,7 @@ class DirectSolver : public PlateSolver {
   int n_cycles() const override { return 0; }
   int n_levels() const override { return 1; }
   std::vector<std::size_t> interface_of(int) const override {
-    std::vector<std::size_t> all(mesh_.lower.size());
+    std::vector<std::size_t> all(mesh_.interface_nodes.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
     return all;
   }
@@ -132,13 +132,15 @@ class DirectSolver : public PlateSolver {
 };
 
 void require_base_fits(const mesh::Mesh& plate, const mesh::Mesh& base) {
-  SLIPFRONT_ASSERT(base.is_interface() || !base.top.empty(),
+  SLIPFRONT_ASSERT(base.is_interface() || !base.far_edge_nodes.empty(),
                    "a base that nothing holds cannot be in equilibrium");
-  SLIPFRONT_ASSERT(base.lower.size() == plate.lower.size(), "interfaces of different nodes");
-  const double width_m = plate.x_m[plate.lower.back()] - plate.x_m[plate.lower.front()];
-  for (std::size_t k = 0; k < plate.lower.size(); ++k)
-    SLIPFRONT_ASSERT(std::abs(base.x_m[base.lower[k]] - plate.x_m[plate.lower[k]]) <= 1e-9 * width_m,
-                     "interface nodes that do not face each other");
+  SLIPFRONT_ASSERT(base.interface_nodes.size() == plate.interface_nodes.size(),
+                   "interfaces of different nodes");
+  const double width_m = plate.x_m[plate.interface_nodes.back()] - plate.x_m[plate.interface_nodes.front()];
+  for (std::size_t k = 0; k < plate.interface_nodes.size(); ++k)
+    SLIPFRONT_ASSERT(
+        std::abs(base.x_m[base.interface_nodes[k]] - plate.x_m[plate.interface_nodes[k]]) <= 1e-9 * width_m,
+        "interface nodes that do not face each other");
 }
 
 Shape shape_of(const mesh::Mesh& mesh) {
@@ -149,18 +151,19 @@ Shape shape_of(const mesh::Mesh& mesh) {
 
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base) {
   std::vector<double> gap_m;
-  for (const auto n : plate.lower) gap_m.push_back(plate.y_m[n]);
-  for (std::size_t k = 0; base != nullptr && k < gap_m.size(); ++k) gap_m[k] += base->y_m[base->lower[k]];
+  for (const auto n : plate.interface_nodes) gap_m.push_back(plate.y_m[n]);
+  for (std::size_t k = 0; base != nullptr && k < gap_m.size(); ++k)
+    gap_m[k] += base->y_m[base->interface_nodes[k]];
   return gap_m;
 }
 
 const std::vector<mesh::Node>& loaded_nodes(const mesh::Mesh& mesh) {
-  return mesh.is_interface() ? mesh.lower : mesh.top;
+  return mesh.is_interface() ? mesh.interface_nodes : mesh.far_edge_nodes;
 }
 
 StaticSolver choose_solver(StaticSolver wanted, double n_unknowns) {
   if (wanted != StaticSolver::automatic) return wanted;
-  return n_unknowns <= most_direct_unknowns ? StaticSolver::direct : StaticSolver::iterative;
+  return n_unknowns <= max_direct_unknowns ? StaticSolver::direct : StaticSolver::iterative;
 }
 
 StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate, const std::optional<Shape>& base) {
@@ -168,10 +171,10 @@ StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate, const st
   if (plate.is_graded || (base && base->is_graded)) return StaticSolver::direct;
   if (wanted != StaticSolver::automatic) return wanted;
   const double rows = plate.rows + (base ? base->rows : 0);
-  if (rows > most_iterative_slenderness * plate.columns) return StaticSolver::direct;
-  if (plate.columns > most_direct_columns) return StaticSolver::iterative;
+  if (rows > max_iterative_slenderness * plate.columns) return StaticSolver::direct;
+  if (plate.columns > max_direct_columns) return StaticSolver::iterative;
   const auto [thinner, thicker] = std::minmax(plate.rows, base ? base->rows : plate.rows);
-  return thicker > most_iterative_height_ratio * thinner ? StaticSolver::direct : wanted;
+  return thicker > max_iterative_height_ratio * thinner ? StaticSolver::direct : wanted;
 }
 
 std::string_view name_of(StaticSolver solver) {

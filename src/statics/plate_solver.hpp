@@ -23,14 +23,15 @@ enum class Contact : std::uint8_t { stick, slip, open };
 /// Which displacements of the loaded edge are prescribed.
 enum class TopConstraint { both, vertical };
 
-/// Prescribed displacements of the loaded edge, in the order of mesh.top (u_x is ignored where only the
-/// vertical is prescribed).
+/// Prescribed displacements of the loaded edge, in the order of mesh.far_edge_nodes (u_x is ignored where
+/// only the vertical is prescribed).
 struct TopDisplacement {
   std::vector<double> u_x_m, u_y_m;
 };
 
-/// What the contact does to each node of mesh.lower: u_y = -gap unless open, u_x = anchor where it sticks,
-/// f_x = -slip_sign mu_s f_y where it slips. u is the displacement relative to the rigid plane, or to a base.
+/// What the contact does to each node of mesh.interface_nodes: u_y = -gap unless open, u_x = anchor where it
+/// sticks, f_x = -slip_sign mu_s f_y where it slips. u is the displacement relative to the rigid plane, or to
+/// a base.
 struct Support {
   std::vector<Contact> contact;
   std::vector<double> slip_sign;   ///< of t where the node slips
@@ -39,7 +40,7 @@ struct Support {
   bool operator==(const Support&) const = default;
 };
 
-/// How far the interface of the undeformed bodies is open. [lower]
+/// How far the interface of the undeformed bodies is open. [interface nodes]
 std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base);
 
 /// Nodes of the loaded edge or, of a plate of equal elements whose interface alone is held, those of the
@@ -47,20 +48,20 @@ std::vector<double> gaps_m(const mesh::Mesh& plate, const mesh::Mesh* base);
 const std::vector<mesh::Node>& loaded_nodes(const mesh::Mesh& mesh);
 
 class LoadCase;           // load_case.hpp
-class KeptDisplacements;  // kept_displacements.hpp
+class DistributedFields;  // kept_displacements.hpp
 
 /// The processes that solve together, by PETSc.
 struct SharedBy {
   Processes* processes = nullptr;  ///< all others are in serve_statics; null for this one alone
   /// Where this one keeps its share of what is found, which is gathered nowhere; null to gather it here.
-  KeptDisplacements* kept = nullptr;
+  DistributedFields* kept = nullptr;
   /// Where the meshes are those of the interfaces alone: the bodies of equal elements, of which each process
   /// makes what it needs; displacements are kept then.
   std::vector<mesh::Plate> plates = {};
 };
 
 /// Displacements of all nodes that are kept elsewhere: of the plate, and of the base where there is one; for
-/// PETSc their number, see KeptDisplacements.
+/// PETSc their number, see DistributedFields.
 struct DisplacementOfBodies {
   const solid::Field* above;
   const solid::Field* below = nullptr;
@@ -76,7 +77,7 @@ class PlateSolver {
   virtual std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top,
                                               bool sheared, const DisplacementOfBodies* start, int level) = 0;
   virtual int n_levels() const = 0;
-  /// Interface nodes of a level, as places in mesh.lower.
+  /// Interface nodes of a level, as places in mesh.interface_nodes.
   virtual std::vector<std::size_t> interface_of(int level) const = 0;
   virtual std::int64_t n_unknowns() const = 0;
   /// Bytes it holds.
@@ -90,7 +91,7 @@ class PlateSolver {
 
 /// Up to here a factorisation is chosen by StaticSolver::automatic: elements of 0.333 mm on the paper's plate
 /// are the finest ones for which it takes seconds.
-inline constexpr double most_direct_unknowns = 400e3;
+inline constexpr double max_direct_unknowns = 400e3;
 /// `wanted`, or what suits the number of unknowns.
 StaticSolver choose_solver(StaticSolver wanted, double n_unknowns);
 
@@ -109,12 +110,12 @@ StaticSolver solver_for_shapes(StaticSolver wanted, const Shape& plate,
                                const std::optional<Shape>& base = std::nullopt);
 
 /// Two unknowns of each have numbers of 32 bits.
-inline constexpr std::int64_t most_petsc_nodes = std::numeric_limits<std::int32_t>::max() / 2;
+inline constexpr std::int64_t max_petsc_nodes = std::numeric_limits<std::int32_t>::max() / 2;
 
 /// Rows over columns, and of one body over the other's, up to which automatic takes multigrid, and columns up
 /// to which it takes a factorisation.
-inline constexpr double most_iterative_slenderness = 10, most_iterative_height_ratio = 16,
-                        most_direct_columns = 1500;
+inline constexpr double max_iterative_slenderness = 10, max_iterative_height_ratio = 16,
+                        max_direct_columns = 1500;
 
 std::string_view name_of(StaticSolver solver);
 

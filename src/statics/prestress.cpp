@@ -9,15 +9,15 @@ Equilibrium prestressed(const mesh::Mesh& mesh, record::StaticState tractions, c
   Equilibrium e;
   if (!mesh.is_interface()) {
     e.u_m = e.u_per_shear = solid::Field(mesh.n_nodes());
-    for (const auto n : mesh.top) e.u_per_shear.x[n] = 1;
+    for (const auto n : mesh.far_edge_nodes) e.u_per_shear.x[n] = 1;
     if (below != nullptr) e.below_u_m = e.below_u_per_shear = solid::Field(below->n_nodes());
   }
-  e.contact.assign(mesh.lower.size(), Contact::stick);
+  e.contact.assign(mesh.interface_nodes.size(), Contact::stick);
   e.tractions = std::move(tractions);
   e.inside_from_m = e.tractions.x_m.front();
   e.inside_to_m = e.tractions.x_m.back();
   e.peak_x_m = e.inside_from_m;
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
     const double ratio = e.tractions.t_s_Pa[k] / e.tractions.p_s_Pa[k];
     if (ratio <= e.peak_ratio) continue;
     e.peak_ratio = ratio;

@@ -10,10 +10,10 @@
 
 namespace slipfront::statics {
 
-bool has_nodes(const Equilibrium& state, std::size_t n_lower) {
+bool has_nodes(const Equilibrium& state, std::size_t n_interface_nodes) {
   const auto& [x_m, t_s_Pa, p_s_Pa] = state.tractions;
-  return state.contact.size() == n_lower && x_m.size() == n_lower && t_s_Pa.size() == n_lower &&
-         p_s_Pa.size() == n_lower;
+  return state.contact.size() == n_interface_nodes && x_m.size() == n_interface_nodes &&
+         t_s_Pa.size() == n_interface_nodes && p_s_Pa.size() == n_interface_nodes;
 }
 
 bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double other_mu_s) {
@@ -34,7 +34,7 @@ InterfaceNodes interface_nodes(const mesh::Mesh& mesh, const mesh::Mesh* base,
   const auto gap_m = gaps_m(mesh, base);
   InterfaceNodes nodes;
   for (const auto place : places) {
-    nodes.x_m.push_back(mesh.x_m[mesh.lower[place]]);
+    nodes.x_m.push_back(mesh.x_m[mesh.interface_nodes[place]]);
     nodes.gap_m.push_back(gap_m[place]);
     nodes.tributary_m.push_back(tributary_m[place]);
   }
@@ -161,8 +161,8 @@ constexpr double guess_accuracy = 2e-4;
 constexpr double state_tolerance = 1e-9;
 
 [[noreturn]] void contact_does_not_settle() {
-  throw UserError("the static contact states do not settle; change {}, {} or {}", Key("loading.tilt_left_m"),
-                  Key("loading.tilt_right_m"), Key("plate.corner"));
+  throw UserError("the static contact iteration does not converge; change {}, {} or {}",
+                  Key("loading.tilt_left_m"), Key("loading.tilt_right_m"), Key("plate.corner"));
 }
 
 /// Solves and corrects the contact states until nothing changes; `find_shear()` is called after each
@@ -170,9 +170,9 @@ constexpr double state_tolerance = 1e-9;
 /// @return the shear.
 template <class FindShear, class MaySlip>
 double settle(ContactProblem& problem, double accuracy, double final, FindShear&& find_shear,
-              MaySlip&& may_slip, const Statics::GoOn& go_on) {
+              MaySlip&& may_slip, const Statics::MayContinue& may_continue) {
   for (int iteration = 1; iteration <= max_iterations; ++iteration) {
-    if (!go_on()) throw Interrupted("interrupted in the statics");
+    if (!may_continue()) throw Interrupted("interrupted in the statics");
     problem.solve(accuracy);
     const double shear = find_shear();
     const bool is_final = accuracy <= final;
@@ -204,7 +204,7 @@ Inside inside_contact(const ContactProblem& problem, double margin_m) {
   return {first + margin_m, last - margin_m};
 }
 
-/// Interface nodes' displacement along x, relative to that of a base. [lower]
+/// Interface nodes' displacement along x, relative to that of a base. [interface nodes]
 std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Displacement& u,
                                    const LoadCase& of_interface) {
   std::vector<double> u_x_m;
@@ -212,8 +212,9 @@ std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* bas
     for (Eigen::Index k = 0; k < of_interface.u0.size(); k += 2) u_x_m.push_back(of_interface.u0(k));
     return u_x_m;
   }
-  for (const auto n : mesh.lower) u_x_m.push_back(u.above.x[n]);
-  for (std::size_t k = 0; base != nullptr && k < u_x_m.size(); ++k) u_x_m[k] -= u.below.x[base->lower[k]];
+  for (const auto n : mesh.interface_nodes) u_x_m.push_back(u.above.x[n]);
+  for (std::size_t k = 0; base != nullptr && k < u_x_m.size(); ++k)
+    u_x_m[k] -= u.below.x[base->interface_nodes[k]];
   return u_x_m;
 }
 
@@ -290,7 +291,7 @@ TopDisplacement tilt_of(const mesh::Mesh& mesh, const Loading& loading) {
 }
 
 DisplacementOfBodies displacement_of(const Equilibrium& e) {
-  return {&e.u_m, &e.below_u_m, e.kept_u_m ? e.kept_u_m->number : -1};
+  return {&e.u_m, &e.below_u_m, e.distributed_u_m ? e.distributed_u_m->number : -1};
 }
 
 /// Nodes without a gap stick where they are.
@@ -309,21 +310,21 @@ ContactStates states_before(const std::vector<double>& gap_m, const std::vector<
 }  // namespace
 
 Statics::Statics(const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
-                 std::string mu_s_key, GoOn go_on)
-    : Statics({mesh, material}, std::nullopt, loading, std::vector<double>(mesh.lower.size(), mu_s),
-              std::move(mu_s_key), std::move(go_on)) {}
+                 std::string mu_s_key, MayContinue may_continue)
+    : Statics({mesh, material}, std::nullopt, loading, std::vector<double>(mesh.interface_nodes.size(), mu_s),
+              std::move(mu_s_key), std::move(may_continue)) {}
 
 Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>& base,
-                 const Loading& loading, std::vector<double> mu_s, std::string mu_s_key, GoOn go_on,
-                 const SharedBy& shared)
+                 const Loading& loading, std::vector<double> mu_s, std::string mu_s_key,
+                 MayContinue may_continue, const SharedBy& shared)
     : mesh_(plate_body.mesh),
       base_mesh_(base ? &base->mesh : nullptr),
       loading_(loading),
       mu_s_(std::move(mu_s)),
       mu_s_key_(std::move(mu_s_key)),
-      go_on_(std::move(go_on)) {
+      may_continue_(std::move(may_continue)) {
   const auto& mesh = mesh_;
-  SLIPFRONT_ASSERT(mu_s_.size() == mesh.lower.size(), "mu_s of another interface");
+  SLIPFRONT_ASSERT(mu_s_.size() == mesh.interface_nodes.size(), "mu_s of another interface");
   const bool is_free = loading.top_during_tilt == TopEdge::free;
   solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base, shared);
 
@@ -340,13 +341,13 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
   double accuracy = solver_->iterates() ? first_accuracy : final_accuracy;
   auto states = start;
   const auto settle_coarse = [&](ContactProblem& coarse) {
-    settle(coarse, first_accuracy, guess_accuracy, no_shear, may_slip, go_on_);
+    settle(coarse, first_accuracy, guess_accuracy, no_shear, may_slip, may_continue_);
   };
   if (begin_on_coarse_levels(mesh, base_mesh_, *solver_, start, make_case, settle_coarse, *plate, states))
     accuracy = guess_accuracy;
   ContactProblem problem(interface_nodes(mesh, base_mesh_, solver_->interface_of(0)), *plate,
                          std::move(states));
-  settle(problem, accuracy, final_accuracy, no_shear, may_slip, go_on_);
+  settle(problem, accuracy, final_accuracy, no_shear, may_slip, may_continue_);
   tilted_ = make_equilibrium(problem, 0, loading.edge_margin_m);
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
     throw UserError("the tilt leaves the plate without contact; increase {} or {}",
@@ -356,12 +357,13 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
   plate.reset();
   tilted_.u_m = std::move(u.above);
   tilted_.below_u_m = std::move(u.below);
-  tilted_.kept_u_m = std::move(u.kept);
+  tilted_.distributed_u_m = std::move(u.kept);
   tilted_.u_per_shear = solid::Field(tilted_.u_m.size());
   tilted_.below_u_per_shear = solid::Field(tilted_.below_u_m.size());
 
   if (is_free)
-    for (std::size_t k = 0; k < mesh.top.size(); ++k) tilt.u_x_m[k] = tilted_.u_m.x[mesh.top[k]];
+    for (std::size_t k = 0; k < mesh.far_edge_nodes.size(); ++k)
+      tilt.u_x_m[k] = tilted_.u_m.x[mesh.far_edge_nodes[k]];
   tilted_top_ = tilt;
   const auto tilted_u = displacement_of(tilted_);
   sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_u, 0);
@@ -379,14 +381,14 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
           inside = inside_contact(problem, loading_.edge_margin_m);
           return find_shear(problem, inside);
         },
-        [&](std::size_t k) { return !inside.contains(problem.nodes.x_m[k]); }, go_on_);
+        [&](std::size_t k) { return !inside.contains(problem.nodes.x_m[k]); }, may_continue_);
   };
   ContactStates states;
   double accuracy = final_accuracy;
   if (last_) {
     states = *last_;
   } else {
-    const std::size_t n = mesh_.lower.size();
+    const std::size_t n = mesh_.interface_nodes.size();
     states = {{tilted_.contact, std::vector<double>(n, 0.0), std::vector<double>(n, 0.0), mu_s_},
               std::vector<std::uint8_t>(n, 0)};
     states.support.anchor_x_m = tilted_u_x_m_;
@@ -416,8 +418,8 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
   auto u = sheared_->displacement(shear), per_shear = sheared_->displacement_per_shear();
   e.u_m = std::move(u.above);
   e.below_u_m = std::move(u.below);
-  e.kept_u_m = std::move(u.kept);
-  e.kept_u_per_shear = std::move(per_shear.kept);
+  e.distributed_u_m = std::move(u.kept);
+  e.distributed_u_per_shear = std::move(per_shear.kept);
   e.u_per_shear = std::move(per_shear.above);
   e.below_u_per_shear = std::move(per_shear.below);
   return e;

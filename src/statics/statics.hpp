@@ -11,13 +11,13 @@
 #include "record/record.hpp"
 #include "solid/material.hpp"
 #include "solid/operator.hpp"
-#include "statics/kept_displacements.hpp"
+#include "statics/distributed_field.hpp"
 #include "statics/plate_solver.hpp"
 #include "statics/settings.hpp"
 
 namespace slipfront::statics {
 
-/// Contact of the interface nodes and where they have been. [lower]
+/// Contact of the interface nodes and where they have been. [interface nodes]
 struct ContactStates {
   Support support;
   std::vector<std::uint8_t> has_touched;  ///< whether the node has been in contact
@@ -34,10 +34,10 @@ struct Equilibrium {
   /// The same of a base, described upside down; empty for the rigid plane.
   solid::Field below_u_m, below_u_per_shear;
   /// Where the processes that have found them keep both, perhaps they alone; not in archives.
-  std::optional<KeptDisplacement> kept_u_m = {}, kept_u_per_shear = {};
+  std::optional<DistributedField> distributed_u_m = {}, distributed_u_per_shear = {};
   double shear_m = 0;                         ///< displacement of the loaded edge along x since the tilt
-  std::vector<Contact> contact;               ///< [lower]
-  record::StaticState tractions;              ///< [lower]
+  std::vector<Contact> contact;               ///< [interface nodes]
+  record::StaticState tractions;              ///< [interface nodes]
   double peak_ratio = 0;                      ///< t/p where t/(mu_s p) is largest inside
   double peak_x_m = 0;                        ///< where that is
   double inside_from_m = 0, inside_to_m = 0;  ///< the part of the contact that counts as inside
@@ -51,7 +51,7 @@ struct Equilibrium {
 };
 
 /// Whether an equilibrium has a contact and tractions at each of so many interface nodes.
-bool has_nodes(const Equilibrium& state, std::size_t n_lower);
+bool has_nodes(const Equilibrium& state, std::size_t n_interface_nodes);
 
 /// Whether a ratio t/p is a larger share of its mu_s than another one of its own.
 bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double other_mu_s);
@@ -64,23 +64,23 @@ bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double oth
 class Statics {
  public:
   /// Asked before each linear solution; where it says no, Interrupted is thrown.
-  using GoOn = std::function<bool()>;
+  using MayContinue = std::function<bool()>;
 
   /// @param base      what the plate stands on; nothing for the rigid plane
-  /// @param mu_s      coefficient at rest of each interface node. [lower]
+  /// @param mu_s      coefficient at rest of each interface node. [interface nodes]
   /// @param mu_s_key  key of mu_s in the case file, for messages
-  /// @param go_on     of all solutions, those of later calls included
+  /// @param may_continue of all solutions, those of later calls included
   /// @param shared     by whom, for loading.solver = petsc
   /// @throws UserError where the tilt leaves the plate without contact, or where `loading` asks for an
   /// iterative solution on a base; Interrupted.
   Statics(
       const ElasticBody& plate, const std::optional<ElasticBody>& base, const Loading& loading,
-      std::vector<double> mu_s, std::string mu_s_key = "friction.mu_s", GoOn go_on = [] { return true; },
-      const SharedBy& shared = {});
+      std::vector<double> mu_s, std::string mu_s_key = "friction.mu_s",
+      MayContinue may_continue = [] { return true; }, const SharedBy& shared = {});
   /// On the rigid plane, with one coefficient everywhere.
   Statics(
       const mesh::Mesh& mesh, const solid::Material& material, const Loading& loading, double mu_s,
-      std::string mu_s_key = "friction.mu_s", GoOn go_on = [] { return true; });
+      std::string mu_s_key = "friction.mu_s", MayContinue may_continue = [] { return true; });
   ~Statics();
 
   /// The tilted plate before any shear.
@@ -106,14 +106,14 @@ class Statics {
   const mesh::Mesh& mesh_;
   const mesh::Mesh* base_mesh_;  ///< null on the rigid plane
   Loading loading_;
-  std::vector<double> mu_s_;  ///< [lower]
+  std::vector<double> mu_s_;  ///< [interface nodes]
   std::string mu_s_key_;
-  GoOn go_on_;
+  MayContinue may_continue_;
   std::unique_ptr<PlateSolver> solver_;
   TopDisplacement tilted_top_;         ///< the loaded edge after the tilt
   std::unique_ptr<LoadCase> sheared_;  ///< the loaded edge where it stands after the tilt, then moved along x
   Equilibrium tilted_;
-  std::vector<double> tilted_u_x_m_;  ///< [lower] relative to a base
+  std::vector<double> tilted_u_x_m_;  ///< [interface nodes] relative to a base
   /// Contact states of the last shear, where beginning with them pays.
   mutable std::optional<ContactStates> last_;
 };

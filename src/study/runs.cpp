@@ -18,7 +18,7 @@ std::vector<Run> run_cases(std::span<const input::Case> cases, int threads, cons
   std::atomic<std::size_t> done = 0;
   run::Batch batch(
       threads, [&] { return monitor(done, cases.size()); },
-      "interrupted; the runs that were done are kept: give the same command again to go on", kept);
+      "interrupted; completed runs are saved: repeat the command to continue", kept);
   batch.run(cases, [&](std::size_t k, const run::Result& r, const run::InitialState& initial, bool) {
     auto& run = runs[k];
     run.main.options = run::front_options(cases[k], initial);

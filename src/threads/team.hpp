@@ -39,9 +39,9 @@ class Team {
 };
 
 /// Numbers [begin, end) that are one part of n.
-struct PartOf {
+struct LoopChunk {
   int begin, end;
-  PartOf(int n, int part, int parts)
+  LoopChunk(int n, int part, int parts)
       : begin(static_cast<int>(static_cast<std::int64_t>(n) * part / parts)),
         end(static_cast<int>(static_cast<std::int64_t>(n) * (part + 1) / parts)) {}
 };

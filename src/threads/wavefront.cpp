@@ -13,7 +13,7 @@ namespace slipfront::threads {
 namespace {
 
 /// Looks at a condition before the processor is left to others.
-constexpr int most_looks = 2000;
+constexpr int max_looks = 2000;
 
 void pause() {
 #ifdef __x86_64__
@@ -72,7 +72,7 @@ bool Wavefront::wait_for(int thread, std::int64_t value) const {
   const auto& ended = ended_[static_cast<std::size_t>(thread)].value;
   for (int looks = 0; ended.load(std::memory_order_acquire) < value; ++looks) {
     if (failed_.load(std::memory_order_relaxed)) return false;
-    if (looks < most_looks) {
+    if (looks < max_looks) {
       pause();
     } else {
       std::this_thread::yield();

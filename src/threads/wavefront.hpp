@@ -28,11 +28,11 @@ class Wavefront {
   Wavefront(const Wavefront&) = delete;
   Wavefront& operator=(const Wavefront&) = delete;
 
-  /// As many as were asked for, or as there are to be had.
+  /// As many as asked for, or fewer if no more are available.
   int threads() const { return static_cast<int>(workers_.size()) + 1; }
   int depth() const { return depth_; }
   /// Steps that may be under way at a time: steps that differ by this much never are.
-  int most_steps() const { return threads() * depth_; }
+  int max_steps() const { return threads() * depth_; }
 
   /// Takes steps first ... first + n - 1, or fewer where a unit 0 asks for it.
   /// @return the number of steps taken, all of their units done.

@@ -6,7 +6,7 @@
 
 namespace slipfront::threads {
 
-Writer::Writer(std::size_t most_bytes) : most_bytes_(most_bytes) {
+Writer::Writer(std::size_t max_bytes) : max_bytes_(max_bytes) {
   try {
     thread_ = std::thread([this] { loop(); });
   } catch (const std::system_error&) {
@@ -49,7 +49,7 @@ void Writer::wait_for_room(std::size_t bytes) {
 }
 
 void Writer::wait_for_room(std::unique_lock<std::mutex>& lock, std::size_t bytes) {
-  changed_.wait(lock, [&] { return failure_ || bytes_ == 0 || bytes_ + bytes <= most_bytes_; });
+  changed_.wait(lock, [&] { return failure_ || bytes_ == 0 || bytes_ + bytes <= max_bytes_; });
   if (failure_) std::rethrow_exception(failure_);
 }
 

@@ -11,12 +11,12 @@
 
 namespace slipfront::threads {
 
-/// Does jobs one after the other in a thread of its own while the caller goes on. The memory that waiting
+/// Does jobs one after the other in a separate thread while the caller goes on. The memory that waiting
 /// jobs hold is bounded: where there is no room for another one, the caller waits. Used by one thread.
 class Writer {
  public:
-  /// @param most_bytes  that the jobs which wait or are under way may hold together; one job may hold more
-  explicit Writer(std::size_t most_bytes);
+  /// @param max_bytes  that the jobs which wait or are under way may hold together; one job may hold more
+  explicit Writer(std::size_t max_bytes);
   /// Waits for the job under way; those that have not begun are dropped.
   ~Writer();
   Writer(const Writer&) = delete;
@@ -41,7 +41,7 @@ class Writer {
   void loop();
   void wait_for_room(std::unique_lock<std::mutex>& lock, std::size_t bytes);
 
-  const std::size_t most_bytes_;
+  const std::size_t max_bytes_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Job> waiting_;

@@ -29,15 +29,15 @@ void for_each_pair(F&& f) {
   for (const double a : special)
     for (const double b : special)
       for (int k = 0; k < lanes; ++k) {
-        Lanes many_a = Lanes{} + 7, many_b = Lanes{} - 3;
+        SimdVector many_a = SimdVector{} + 7, many_b = SimdVector{} - 3;
         many_a[k] = a;
         many_b[k] = b;
         f(a, b, many_a, many_b, k);
       }
 }
 
-TEST(Lanes, FunctionsAreThoseOfDoublesBitByBit) {
-  for_each_pair([](double a, double b, Lanes many_a, Lanes many_b, int k) {
+TEST(SimdVector, FunctionsAreThoseOfDoublesBitByBit) {
+  for_each_pair([](double a, double b, SimdVector many_a, SimdVector many_b, int k) {
     EXPECT_EQ(bits_of(absolute(many_a)[k]), bits_of(absolute(a)));
     EXPECT_EQ(bits_of(copy_sign(many_a, many_b)[k]), bits_of(copy_sign(a, b)));
     EXPECT_EQ(bits_of(positive_part(many_a)[k]), bits_of(positive_part(a)));
@@ -48,16 +48,16 @@ TEST(Lanes, FunctionsAreThoseOfDoublesBitByBit) {
   });
 }
 
-TEST(Lanes, PositivePartOfWhatIsNotANumberIsNone) {
+TEST(SimdVector, PositivePartOfWhatIsNotANumberIsNone) {
   EXPECT_EQ(positive_part(std::nan("")), 0);
   EXPECT_EQ(positive_part(-1.0), 0);
   EXPECT_EQ(positive_part(2.0), 2);
 }
 
-TEST(Lanes, AnySeesEachLane) {
-  EXPECT_FALSE(any(LanesMask{}));
+TEST(SimdVector, AnySeesEachLane) {
+  EXPECT_FALSE(any(SimdMask{}));
   for (int k = 0; k < lanes; ++k) {
-    Lanes one{};
+    SimdVector one{};
     one[k] = 1;
     EXPECT_TRUE(any(one > 0)) << k;
   }
@@ -65,7 +65,7 @@ TEST(Lanes, AnySeesEachLane) {
   EXPECT_FALSE(any(false));
 }
 
-TEST(Lanes, AreLoadedAndStoredAnywhere) {
+TEST(SimdVector, AreLoadedAndStoredAnywhere) {
   std::vector<double> from(3 * lanes);
   for (std::size_t i = 0; i < from.size(); ++i) from[i] = static_cast<double>(i) + 1;
   for (int begin = 0; begin <= lanes; ++begin) {
@@ -89,7 +89,7 @@ using Precisions = testing::Types<float, double>;
 TYPED_TEST_SUITE(LanesOfEach, Precisions);
 
 TYPED_TEST(LanesOfEach, AreLoadedAndStoredInEitherPrecision) {
-  using V = LanesOf<TypeParam>;
+  using V = SimdVectorOf<TypeParam>;
   constexpr int n = length<V>;
   static_assert(n == lanes_of<TypeParam> && n * sizeof(TypeParam) == vector_bytes);
   const auto check = [](auto number) {
@@ -108,7 +108,7 @@ TYPED_TEST(LanesOfEach, AreLoadedAndStoredInEitherPrecision) {
 }
 
 TYPED_TEST(LanesOfEach, AreShiftedAndInterleaved) {
-  using V = LanesOf<TypeParam>;
+  using V = SimdVectorOf<TypeParam>;
   constexpr int n = length<V>;
   const auto first = counting<V>(1), second = counting<V>(1 + n);
   const auto left = from_left(first, second), right = from_right(first, second);
@@ -123,7 +123,7 @@ TYPED_TEST(LanesOfEach, AreShiftedAndInterleaved) {
   EXPECT_EQ(from_right(TypeParam(2), TypeParam(3)), 3);
 }
 
-TEST(Lanes, PartsRepeatTheirLastValueAndLeaveTheRestAlone) {
+TEST(SimdVector, PartsRepeatTheirLastValueAndLeaveTheRestAlone) {
   for (int count = 1; count < lanes; ++count) {
     // Just as long as needed, so that a read or write beyond the end shows under the sanitizers.
     std::vector<double> from(count), to(count, -1.0);
@@ -132,27 +132,27 @@ TEST(Lanes, PartsRepeatTheirLastValueAndLeaveTheRestAlone) {
       from[k] = k + 1;
       flags[k] = static_cast<std::uint8_t>((count - k) % 2);
     }
-    const Lanes values = load_part(from.data(), count);
-    const LanesMask mask = load_part(flags.data(), count);
+    const SimdVector values = load_partial(from.data(), count);
+    const SimdMask mask = load_partial(flags.data(), count);
     for (int k = 0; k < lanes; ++k) {
       EXPECT_EQ(values[k], std::min(k + 1, count));
       EXPECT_EQ(mask[k], flags[std::min(k, count - 1)] != 0 ? -1 : 0);
     }
-    store_part(to.data(), values, count);
-    store_part(flags_to.data(), mask, count);
+    store_partial(to.data(), values, count);
+    store_partial(flags_to.data(), mask, count);
     EXPECT_EQ(to, from);
     EXPECT_EQ(flags_to, flags);
     std::vector<double> longer(lanes, -1.0);
-    store_part(longer.data(), values, count);
+    store_partial(longer.data(), values, count);
     for (int k = 0; k < lanes; ++k) EXPECT_EQ(longer[k], k < count ? k + 1 : -1);
   }
 }
 
-TEST(Lanes, FlagsBecomeMasksAndBack) {
+TEST(SimdVector, FlagsBecomeMasksAndBack) {
   for (int set = 0; set < lanes; ++set) {
     std::vector<std::uint8_t> flags(lanes), back(lanes, 9);
     flags[set] = 1;
-    const LanesMask mask = load(flags.data());
+    const SimdMask mask = load(flags.data());
     for (int k = 0; k < lanes; ++k) EXPECT_EQ(mask[k], k == set ? -1 : 0);
     store(back.data(), mask);
     EXPECT_EQ(back, flags);

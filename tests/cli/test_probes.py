@@ -115,7 +115,7 @@ def test_times_after_the_end_are_told(program, coarse, tmp_path):
     [
         ("x_m = [0.1, 0.3]\ny_m = [0.01, 0.0]", 1, "probes.x_m has 0.3 m; it must be in the plate"),
         ("x_m = [0.1]\ny_m = [-0.01]", 2, "probes.y_m has -0.01 m; it must be in the plate"),
-        ("x_m = [0.1]\ny_m = [0.01, 0.0]", 1, "write as many of both"),
+        ("x_m = [0.1]\ny_m = [0.01, 0.0]", 1, "give both the same number of values"),
         ('x_m = [0.1]\ny_m = [0.0]\nnames = ["a", "b"]', 3, "has 2 names for 1 places"),
         ('x_m = [0, 0.1]\ny_m = [0.1, 0]\nnames = ["a", "a"]', 3, 'has the name "a" twice'),
         ("x_m = [0.1]\ny_m = [0.0]\nnames = [1]", 3, "must be a list of strings, is a list of numbers"),

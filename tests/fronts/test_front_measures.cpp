@@ -64,7 +64,7 @@ TEST(TipSpeed, AcceleratingFront) {
 }
 
 TEST(TipSpeed, MayBeThatOfTheApproach) {
-  // Each element at a speed of its own, from the right: the speed at a node is that of the element behind the
+  // Each element at a separate speed, from the right: the speed at a node is that of the element behind the
   // tip.
   const auto x = nodes(31, h);
   std::vector<double> tau(x.size(), 0);

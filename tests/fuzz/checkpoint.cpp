@@ -107,8 +107,8 @@ std::string checkpoint_of(const input::Case& config) {
   return content;
 }
 
-/// Goes on as run::go_on does, for some steps.
-void go_on(const input::Case& config, run::Checkpoints::Kept& kept) {
+/// Goes on as run::resume does, for some steps.
+void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
   if (kept.head.in_event) {
     auto initial = run::read_initial_state(kept.rest, config);
     const auto stepper = run::make_stepper(config, initial);

@@ -84,7 +84,7 @@ TEST(Registry, ParametersReachTheirMembers) {
       law.*p.member = value;
       value += 0.125;
     }
-    // Each parameter has a member of its own, and there is no other member.
+    // Each parameter has a separate member, and there is no other member.
     value = 0.25;
     for (const auto& p : Law::parameters()) {
       EXPECT_EQ(law.*p.member, value) << p.key;

@@ -24,7 +24,7 @@ std::vector<double> results_at(const Interface& s, std::size_t i) {
           s.u_y_m[i],
           s.t_Pa[i],
           s.p_Pa[i],
-          s.demand_Pa[i],
+          s.trial_traction_Pa[i],
           s.strength_Pa[i],
           s.slip_m[i],
           s.slip_rate_m_per_s[i],
@@ -35,7 +35,7 @@ std::vector<double> results_at(const Interface& s, std::size_t i) {
           double(s.slipping[i])};
 }
 
-/// A node of its own, in the state of one of many.
+/// A separate node, in the state of one of many.
 Interface alone(const Interface& s, std::size_t i) {
   Interface one(1);
   const auto take = [i](auto& to, const auto& from) { to[0] = from[i]; };

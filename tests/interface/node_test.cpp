@@ -27,7 +27,7 @@ std::vector<std::vector<double>> arrays(const Interface& s) {
           s.slip_rate_m_per_s,
           s.t_Pa,
           s.p_Pa,
-          s.demand_Pa,
+          s.trial_traction_Pa,
           s.strength_Pa,
           s.slip_m,
           s.relaxed_Pa,
@@ -75,7 +75,7 @@ bool update_one_by_one(const Law& law, const Form& form, Interface& s) {
                    s.slip_rate_m_per_s[i],
                    s.t_Pa[i],
                    s.p_Pa[i],
-                   s.demand_Pa[i],
+                   s.trial_traction_Pa[i],
                    s.strength_Pa[i],
                    s.slipping[i] != 0,
                    s.slip_m[i],
@@ -89,7 +89,7 @@ bool update_one_by_one(const Law& law, const Form& form, Interface& s) {
     s.slip_rate_m_per_s[i] = n.slip_rate_m_per_s;
     s.t_Pa[i] = n.t_Pa;
     s.p_Pa[i] = n.p_Pa;
-    s.demand_Pa[i] = n.demand_Pa;
+    s.trial_traction_Pa[i] = n.trial_traction_Pa;
     s.strength_Pa[i] = n.strength_Pa;
     s.slipping[i] = n.slipping;
     s.slip_m[i] = n.slip_m;
@@ -176,8 +176,8 @@ TEST(NodeUpdate, DoesNotDependOnThePlaceInTheArray) {
       for (auto* values :
            {&part.initial_gap_m, &part.mass_per_length_kg_m2, &part.tangential_mass_ratio, &part.intact,
             &part.v_x_m_per_s, &part.v_y_m_per_s, &part.u_y_m, &part.slip_rate_m_per_s, &part.t_Pa,
-            &part.p_Pa, &part.demand_Pa, &part.strength_Pa, &part.slip_m, &part.relaxed_Pa, &part.target_Pa,
-            &part.acceleration_m_per_s2})
+            &part.p_Pa, &part.trial_traction_Pa, &part.strength_Pa, &part.slip_m, &part.relaxed_Pa,
+            &part.target_Pa, &part.acceleration_m_per_s2})
         cut(*values);
       cut(part.slipping);
       cut(part.locked);

@@ -129,15 +129,15 @@ TEST(OpenChoices, SpaceFillingReachesEveryTenthOfEveryRange) {
 TEST(OpenChoices, TheRegionAgreesWithFig6WhereThereIsSuchASample) {
   std::vector<SampleOutcome> outcomes(5);
   EXPECT_THAT(region_of(outcomes), testing::IsEmpty());
-  EXPECT_EQ(least_extreme(outcomes), -1);
+  EXPECT_EQ(min_extreme(outcomes), -1);
   outcomes[0].agrees_with_fig6 = true;  // though another claim fails
   for (const std::size_t k : {1, 2, 3, 4}) outcomes[k].is_constrained = true;
   for (const std::size_t k : {1, 2, 3, 4}) outcomes[k].extremity = k == 2 ? 0.2 : 0.3;
   EXPECT_THAT(region_of(outcomes), testing::ElementsAre(1, 2, 3, 4));
-  EXPECT_EQ(least_extreme(outcomes), 2);
+  EXPECT_EQ(min_extreme(outcomes), 2);
   outcomes[3].agrees_with_fig6 = outcomes[4].agrees_with_fig6 = true;
   EXPECT_THAT(region_of(outcomes), testing::ElementsAre(3, 4));
-  EXPECT_EQ(least_extreme(outcomes), 3);  // the first of two
+  EXPECT_EQ(min_extreme(outcomes), 3);  // the first of two
 }
 
 TEST(OpenChoices, EvidenceIsOfTheSamplesWhoseConstrainingClaimsHold) {

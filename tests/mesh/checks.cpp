@@ -102,7 +102,7 @@ std::vector<Node> boundary_loop(const Mesh& mesh) {
     ++n_boundary;
   }
   std::vector<Node> loop;
-  Node n = mesh.lower.front();
+  Node n = mesh.interface_nodes.front();
   do {
     loop.push_back(n);
     n = next[n];
@@ -123,7 +123,7 @@ std::vector<int> valences(const Mesh& mesh) {
 
 void expect_mirror_symmetry(const Mesh& mesh) {
   const Grid& grid = mesh.grid;
-  const double width = mesh.x_m[mesh.top.back()];
+  const double width = mesh.x_m[mesh.far_edge_nodes.back()];
   const auto twin = [&](Node n) { return grid.node(grid.columns - n % grid.stride(), n / grid.stride()); };
   double largest_x = 0, largest_y = 0;
   for (Node n = 0; n < mesh.n_nodes(); ++n) {

@@ -14,9 +14,9 @@ double area_m2(const Mesh& mesh);
 /// convex, counterclockwise cells.
 double min_relative_jacobian(const Mesh& mesh);
 
-/// The nodes of the boundary in the order of its counterclockwise walk, from mesh.lower's first node. Empty,
-/// with a test failure, unless every edge has one cell or two that run through it in opposite directions, and
-/// the edges with one cell form a single closed loop.
+/// The nodes of the boundary in the order of its counterclockwise walk, from mesh.interface_nodes's first
+/// node. Empty, with a test failure, unless every edge has one cell or two that run through it in opposite
+/// directions, and the edges with one cell form a single closed loop.
 std::vector<Node> boundary_loop(const Mesh& mesh);
 
 /// Number of cells at each node.

@@ -37,7 +37,7 @@ class Fillet : public ::testing::TestWithParam<std::tuple<int, int>> {
   }
   /// Chords of one quarter circle, from the lower nodes left of its end.
   int n_chords() const {
-    return static_cast<int>(std::count_if(mesh.lower.begin(), mesh.lower.end(),
+    return static_cast<int>(std::count_if(mesh.interface_nodes.begin(), mesh.interface_nodes.end(),
                                           [&](Node n) { return mesh.x_m[n] <= radius_m * (1 + 1e-9); })) -
            1;
   }
@@ -52,32 +52,33 @@ TEST_P(Fillet, IsOneConformingSymmetricPiece) {
   expect_no_duplicates(mesh);
   expect_mirror_symmetry(mesh);
   const std::vector<Node> loop = boundary_loop(mesh);
-  ASSERT_GE(loop.size(), mesh.lower.size());
-  EXPECT_TRUE(std::equal(mesh.lower.begin(), mesh.lower.end(), loop.begin()));
-  EXPECT_NE(std::search(loop.begin(), loop.end(), mesh.top.rbegin(), mesh.top.rend()), loop.end());
+  ASSERT_GE(loop.size(), mesh.interface_nodes.size());
+  EXPECT_TRUE(std::equal(mesh.interface_nodes.begin(), mesh.interface_nodes.end(), loop.begin()));
+  EXPECT_NE(std::search(loop.begin(), loop.end(), mesh.far_edge_nodes.rbegin(), mesh.far_edge_nodes.rend()),
+            loop.end());
 }
 
 TEST_P(Fillet, LowerSideIsBaseAndArcs) {
-  for (std::size_t i = 1; i < mesh.lower.size(); ++i)
-    EXPECT_LT(mesh.x_m[mesh.lower[i - 1]], mesh.x_m[mesh.lower[i]]);
+  for (std::size_t i = 1; i < mesh.interface_nodes.size(); ++i)
+    EXPECT_LT(mesh.x_m[mesh.interface_nodes[i - 1]], mesh.x_m[mesh.interface_nodes[i]]);
   const int n = n_chords();
   EXPECT_EQ(n % 2, 0);
-  const std::size_t last = mesh.lower.size() - 1;
+  const std::size_t last = mesh.interface_nodes.size() - 1;
   const double tolerance = 1e-12 * radius_m;
   for (int a = 0; a <= n; ++a) {  // equal angles from the vertical edge to the base
     const double angle = pi / 2 * a / n;
-    const Node left = mesh.lower[a];
-    const Node right = mesh.lower[last - a];
+    const Node left = mesh.interface_nodes[a];
+    const Node right = mesh.interface_nodes[last - a];
     EXPECT_NEAR(mesh.x_m[left], radius_m * (1 - std::cos(angle)), tolerance);
     EXPECT_NEAR(mesh.y_m[left], radius_m * (1 - std::sin(angle)), tolerance);
     EXPECT_NEAR(mesh.x_m[right], 0.08 - radius_m * (1 - std::cos(angle)), tolerance);
     EXPECT_NEAR(mesh.y_m[right], radius_m * (1 - std::sin(angle)), tolerance);
   }
   // The ends are the tangent points, exactly.
-  EXPECT_EQ(mesh.x_m[mesh.lower[0]], 0);
-  EXPECT_EQ(mesh.y_m[mesh.lower[0]], radius_m);
-  EXPECT_EQ(mesh.x_m[mesh.lower[n]], radius_m);
-  for (std::size_t i = n; i <= last - n; ++i) EXPECT_EQ(mesh.y_m[mesh.lower[i]], 0);
+  EXPECT_EQ(mesh.x_m[mesh.interface_nodes[0]], 0);
+  EXPECT_EQ(mesh.y_m[mesh.interface_nodes[0]], radius_m);
+  EXPECT_EQ(mesh.x_m[mesh.interface_nodes[n]], radius_m);
+  for (std::size_t i = n; i <= last - n; ++i) EXPECT_EQ(mesh.y_m[mesh.interface_nodes[i]], 0);
 }
 
 TEST_P(Fillet, AreaAndLengthAreThoseOfThePolygon) {
@@ -90,7 +91,7 @@ TEST_P(Fillet, AreaAndLengthAreThoseOfThePolygon) {
 
   const double length = 0.08 - 2 * radius_m + 2 * n * 2 * radius_m * std::sin(angle / 2);
   const std::vector<double> tributary = tributary_lengths_m(mesh);
-  ASSERT_EQ(tributary.size(), mesh.lower.size());
+  ASSERT_EQ(tributary.size(), mesh.interface_nodes.size());
   EXPECT_NEAR(std::accumulate(tributary.begin(), tributary.end(), 0.0), length,
               static_cast<double>(tributary.size()) * eps * length);
   EXPECT_NEAR(tributary.front(), radius_m * std::sin(angle / 2), 1e-12 * radius_m);

@@ -52,11 +52,12 @@ TEST_P(Graded, OneConformingPieceOfTheWholePlate) {
   expect_no_duplicates(mesh_);
   const auto loop = boundary_loop(mesh_);  // fails on a hanging node: its edges would be a boundary
   ASSERT_FALSE(loop.empty());
-  EXPECT_TRUE(std::equal(mesh_.lower.begin(), mesh_.lower.end(), loop.begin()));
-  EXPECT_NE(std::search(loop.begin(), loop.end(), mesh_.top.rbegin(), mesh_.top.rend()), loop.end());
-  EXPECT_EQ(mesh_.x_m[mesh_.top.front()], 0);
-  EXPECT_DOUBLE_EQ(mesh_.x_m[mesh_.top.back()], plate_.width_m);
-  for (const Node n : mesh_.top) EXPECT_DOUBLE_EQ(mesh_.y_m[n], plate_.height_m);
+  EXPECT_TRUE(std::equal(mesh_.interface_nodes.begin(), mesh_.interface_nodes.end(), loop.begin()));
+  EXPECT_NE(std::search(loop.begin(), loop.end(), mesh_.far_edge_nodes.rbegin(), mesh_.far_edge_nodes.rend()),
+            loop.end());
+  EXPECT_EQ(mesh_.x_m[mesh_.far_edge_nodes.front()], 0);
+  EXPECT_DOUBLE_EQ(mesh_.x_m[mesh_.far_edge_nodes.back()], plate_.width_m);
+  for (const Node n : mesh_.far_edge_nodes) EXPECT_DOUBLE_EQ(mesh_.y_m[n], plate_.height_m);
   // The same polygon as without grading.
   auto plain = plate_;
   plain.coarsenings = 0;

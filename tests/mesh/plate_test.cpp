@@ -54,8 +54,8 @@ TEST(Plate, NumbersNodesAndCellsRowByRow) {
   EXPECT_THAT(mesh.y_m, ElementsAre(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2));
   EXPECT_THAT(mesh.cells, ElementsAre(Cell{0, 1, 5, 4}, Cell{1, 2, 6, 5}, Cell{2, 3, 7, 6}, Cell{4, 5, 9, 8},
                                       Cell{5, 6, 10, 9}, Cell{6, 7, 11, 10}));
-  EXPECT_THAT(mesh.lower, ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(mesh.top, ElementsAre(8, 9, 10, 11));
+  EXPECT_THAT(mesh.interface_nodes, ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(mesh.far_edge_nodes, ElementsAre(8, 9, 10, 11));
   EXPECT_THAT(tributary_lengths_m(mesh), ElementsAre(0.5, 1, 1, 0.5));
 }
 
@@ -69,7 +69,7 @@ TEST(Plate, CellsAreCongruentToRounding) {
   }
   EXPECT_LE(worst, 2 * eps * 0.04);  // two coordinates, each of a rounded product and a rounded quotient
   EXPECT_EQ(mesh.x_m[mesh.grid.columns], 0.04);
-  EXPECT_EQ(mesh.y_m[mesh.top.front()], 0.02);
+  EXPECT_EQ(mesh.y_m[mesh.far_edge_nodes.front()], 0.02);
 }
 
 TEST(Plate, TakesAnElementSizeThatFitsToOneInAMillion) {
@@ -89,7 +89,7 @@ TEST(Plate, ReliefIsACircleTangentToTheBase) {
   const double radius = (length * length + height * height) / (2 * height);
   EXPECT_DOUBLE_EQ(radius, 25.25e-3);
   int n_on_arc = 0;
-  for (const Node n : mesh.lower) {
+  for (const Node n : mesh.interface_nodes) {
     const double d = length - std::min(mesh.x_m[n], plate.width_m - mesh.x_m[n]);
     if (d > 0) {
       // The centre is right above the tangent point.
@@ -135,13 +135,14 @@ TEST_P(WellFormed, OneConformingSymmetricPiece) {
   expect_no_duplicates(mesh);
   expect_mirror_symmetry(mesh);
   const std::vector<Node> loop = boundary_loop(mesh);
-  ASSERT_GE(loop.size(), mesh.lower.size());
-  EXPECT_TRUE(std::equal(mesh.lower.begin(), mesh.lower.end(), loop.begin()));
-  EXPECT_NE(std::search(loop.begin(), loop.end(), mesh.top.rbegin(), mesh.top.rend()), loop.end());
-  for (std::size_t i = 1; i < mesh.lower.size(); ++i)
-    EXPECT_LT(mesh.x_m[mesh.lower[i - 1]], mesh.x_m[mesh.lower[i]]);
-  EXPECT_EQ(mesh.x_m[mesh.lower.front()], 0);
-  EXPECT_DOUBLE_EQ(mesh.x_m[mesh.lower.back()], plate.width_m);
+  ASSERT_GE(loop.size(), mesh.interface_nodes.size());
+  EXPECT_TRUE(std::equal(mesh.interface_nodes.begin(), mesh.interface_nodes.end(), loop.begin()));
+  EXPECT_NE(std::search(loop.begin(), loop.end(), mesh.far_edge_nodes.rbegin(), mesh.far_edge_nodes.rend()),
+            loop.end());
+  for (std::size_t i = 1; i < mesh.interface_nodes.size(); ++i)
+    EXPECT_LT(mesh.x_m[mesh.interface_nodes[i - 1]], mesh.x_m[mesh.interface_nodes[i]]);
+  EXPECT_EQ(mesh.x_m[mesh.interface_nodes.front()], 0);
+  EXPECT_DOUBLE_EQ(mesh.x_m[mesh.interface_nodes.back()], plate.width_m);
 }
 
 INSTANTIATE_TEST_SUITE_P(Corners, WellFormed,
@@ -160,7 +161,7 @@ TEST(Plate, OrphansAreNodesWithoutCells) {
 TEST(Plate, FreeTopIsNeitherLoadedNorAbsorbs) {
   auto plate = small_plate(Corner::none);
   plate.top = Top::free;
-  EXPECT_TRUE(make_plate(plate).top.empty());
+  EXPECT_TRUE(make_plate(plate).far_edge_nodes.empty());
   EXPECT_TRUE(make_plate(plate).absorbing.empty());
   // The upper ends of absorbing sides move and so absorb, too.
   plate.sides = Sides::absorbing;

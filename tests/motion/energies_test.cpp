@@ -68,7 +68,7 @@ class Books : public ::testing::TestWithParam<std::tuple<Corner, int, int>> {
       for (const double term : {now.kinetic, now.strain, now.top_work, now.trigger_work, now.friction_work})
         balance.largest_J = std::max(balance.largest_J, std::abs(term));
     }
-    balance.n_onsets = recorder.take(stepper.time_s()).onsets.size();
+    balance.n_onsets = recorder.record_until(stepper.time_s()).onsets.size();
     return balance;
   }
 };

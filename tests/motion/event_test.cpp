@@ -36,10 +36,10 @@ class EventRun : public ::testing::Test {
 
   Event run(
       const statics::Equilibrium& state, const Monitor& monitor = [](auto, auto) { return true; },
-      Sink* sink = nullptr) {
+      EventObserver* observer = nullptr) {
     Stepper stepper(mesh_, material_, support::paper_law, time_);
     stepper.start(state, 1e-6 * c_L_);
-    return run_event(stepper, state, mu_s, waves_, none_, time_, sampling_, 2, monitor, sink);
+    return run_event(stepper, state, mu_s, waves_, none_, time_, sampling_, 2, monitor, observer);
   }
   double step_s() { return Stepper(mesh_, material_, support::paper_law, time_).step_s(); }
 };
@@ -160,7 +160,7 @@ TEST_F(EventRun, SamplesAreSpacedAsAsked) {
     EXPECT_GE(event.history.time_s[k], asked * (1 - 1e-12));
     EXPECT_LT(event.history.time_s[k], asked + step);
   }
-  const std::size_t n = 9 * mesh_.lower.size();
+  const std::size_t n = 9 * mesh_.interface_nodes.size();
   for (const auto* matrix :
        {&event.history.slip_m, &event.history.slip_rate_m_per_s, &event.history.t_Pa, &event.history.p_Pa})
     EXPECT_EQ(matrix->size(), n);
@@ -185,7 +185,7 @@ TEST_F(EventRun, SnapshotsAreTakenAtTheTimesAsked) {
 }
 
 /// Keeps what it is given, and may fail.
-class KeepingSink : public Sink {
+class KeepingObserver : public EventObserver {
  public:
   void sample(const record::History& row) override {
     if (history_.time_s.size() == fails_after_) throw std::runtime_error("no room");
@@ -210,33 +210,33 @@ class KeepingSink : public Sink {
 TEST_F(EventRun, ASinkIsGivenWhatTheEventWouldKeep) {
   sampling_.snapshot_times_s = {0, 10e-6, 10.001e-6, 33e-6, 1};
   const Event kept = run(calm_);
-  KeepingSink sink;
+  KeepingObserver observer;
   const Event event = run(
-      calm_, [](auto, auto) { return true; }, &sink);
+      calm_, [](auto, auto) { return true; }, &observer);
   EXPECT_TRUE(event.history.time_s.empty());
   EXPECT_TRUE(event.snapshots.empty());
   EXPECT_EQ(event.steps, kept.steps);
   ASSERT_GT(kept.history.time_s.size(), 10U);
-  EXPECT_EQ(sink.history_.time_s, kept.history.time_s);
-  EXPECT_EQ(sink.history_.slip_m, kept.history.slip_m);
-  EXPECT_EQ(sink.history_.slip_rate_m_per_s, kept.history.slip_rate_m_per_s);
-  EXPECT_EQ(sink.history_.t_Pa, kept.history.t_Pa);
-  EXPECT_EQ(sink.history_.p_Pa, kept.history.p_Pa);
-  ASSERT_EQ(sink.snapshots_.size(), kept.snapshots.size());
+  EXPECT_EQ(observer.history_.time_s, kept.history.time_s);
+  EXPECT_EQ(observer.history_.slip_m, kept.history.slip_m);
+  EXPECT_EQ(observer.history_.slip_rate_m_per_s, kept.history.slip_rate_m_per_s);
+  EXPECT_EQ(observer.history_.t_Pa, kept.history.t_Pa);
+  EXPECT_EQ(observer.history_.p_Pa, kept.history.p_Pa);
+  ASSERT_EQ(observer.snapshots_.size(), kept.snapshots.size());
   for (std::size_t k = 0; k < kept.snapshots.size(); ++k) {
-    EXPECT_EQ(sink.snapshots_[k].time_s, kept.snapshots[k].time_s);
-    EXPECT_EQ(sink.snapshots_[k].u_m.x, kept.snapshots[k].u_m.x);
-    EXPECT_EQ(sink.snapshots_[k].v_m_per_s.y, kept.snapshots[k].v_m_per_s.y);
+    EXPECT_EQ(observer.snapshots_[k].time_s, kept.snapshots[k].time_s);
+    EXPECT_EQ(observer.snapshots_[k].u_m.x, kept.snapshots[k].u_m.x);
+    EXPECT_EQ(observer.snapshots_[k].v_m_per_s.y, kept.snapshots[k].v_m_per_s.y);
   }
 }
 
 TEST_F(EventRun, AFailingSinkEndsTheEvent) {
-  KeepingSink sink;
-  sink.fails_after_ = 5;
+  KeepingObserver observer;
+  observer.fails_after_ = 5;
   EXPECT_THROW(run(
-                   calm_, [](auto, auto) { return true; }, &sink),
+                   calm_, [](auto, auto) { return true; }, &observer),
                std::runtime_error);
-  EXPECT_EQ(sink.history_.time_s.size(), 5U);
+  EXPECT_EQ(observer.history_.time_s.size(), 5U);
 }
 
 TEST_F(EventRun, TopWorkIsTheReactionTimesThePath) {
@@ -377,7 +377,7 @@ TEST(Ramp, ReachesTheStaticStates) {
   EXPECT_GE(ramp.spontaneous.peak_ratio, (1 - ramp_handover) * mu_s);
   EXPECT_GT(ramp.spontaneous.shear_m, ramp.common.shear_m);
   const double p_max = *std::ranges::max_element(expected.tractions.p_s_Pa);
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
     EXPECT_NEAR(ramp.common.tractions.t_s_Pa[k], expected.tractions.t_s_Pa[k], 2e-3 * p_max) << k;
     EXPECT_NEAR(ramp.common.tractions.p_s_Pa[k], expected.tractions.p_s_Pa[k], 2e-3 * p_max) << k;
   }

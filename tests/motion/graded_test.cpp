@@ -70,7 +70,7 @@ TEST_P(GradedPlate, LargerElementsTakeLargerSteps) {
       const auto n = grids[k].node(2, grids[k].rows - 1);
       EXPECT_DOUBLE_EQ(stepper.step_s(n), (time_.local_steps && damping_s > 0 ? 1 << k : 1) * lowest_s);
     }
-    EXPECT_DOUBLE_EQ(stepper.step_s(mesh_.lower[4]), lowest_s / time_.interface_substeps);
+    EXPECT_DOUBLE_EQ(stepper.step_s(mesh_.interface_nodes[4]), lowest_s / time_.interface_substeps);
     EXPECT_DOUBLE_EQ(stepper.lowest_step_s(), lowest_s);
   }
 }
@@ -94,7 +94,7 @@ TEST_P(GradedPlate, TheBooksCloseWithEverythingOn) {
       for (const double term : {now.kinetic, now.strain, now.top_work, now.trigger_work, now.friction_work})
         largest_J = std::max(largest_J, std::abs(term));
     }
-    EXPECT_GT(recorder.take(stepper.time_s()).onsets.size(), 5);
+    EXPECT_GT(recorder.record_until(stepper.time_s()).onsets.size(), 5);
     EXPECT_LT(now.friction_work, -1e-6 * largest_J);
     EXPECT_LT(now.damping_work, -1e-6 * largest_J);
     EXPECT_EQ(now.coupling_work != 0, !is_plain());
@@ -112,7 +112,7 @@ TEST_P(GradedPlate, FlightDoesNotGrow) {
   solid::Field u(mesh_.n_nodes()), v(mesh_.n_nodes());
   std::ranges::fill(u.y, 0.01);
   for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) v.x[n] = random(), v.y[n] = random();
-  for (const auto n : mesh_.top) v.x[n] = v.y[n] = 0;
+  for (const auto n : mesh_.far_edge_nodes) v.x[n] = v.y[n] = 0;
   const auto rough = support::in_flight(mesh_, u, v);
   stepper.start(rough, 1);
   Recorder recorder(rough, mu_s, 0);
@@ -159,7 +159,7 @@ TEST(Graded, SinglePrecisionOfTheCoarsestBlockDiffersByRounding) {
     e.u_per_shear.x[n] = random();
     e.u_per_shear.y[n] = random();
   }
-  for (const auto n : mesh.top) e.u_m.y[n] = e.u_per_shear.x[n] = e.u_per_shear.y[n] = 0;
+  for (const auto n : mesh.far_edge_nodes) e.u_m.y[n] = e.u_per_shear.x[n] = e.u_per_shear.y[n] = 0;
   solid::Field v[2];
   constexpr int n_steps = 40;
   for (const int k : {0, 1}) {

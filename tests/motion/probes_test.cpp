@@ -142,12 +142,12 @@ record::ProbeRecord take_steps(Stepper& stepper, Recorder& recorder, std::int64_
   for (std::size_t k = 0; k < v.size(); ++k) before_m[k] -= stepper.step_s() * v[k];
   ProbeRecorder probes(stepper.probes(), stepper.step_s(), interval_s, before_m, stepper.probed_u_m());
   record::ProbeRecord rows;
-  Between between;
-  between.displacements = [&](std::int64_t step) { return probes.room_for(step); };
+  StepCallbacks callbacks;
+  callbacks.displacements = [&](std::int64_t step) { return probes.room_for(step); };
   while (stepper.step() < n) {
     const auto most = std::min(at_once, n - stepper.step());
     probes.expect(stepper.step(), most);
-    stepper.advance(recorder, most, between);
+    stepper.advance(recorder, most, callbacks);
     if (const double* shown = at_once == 1 ? probes.room_for(stepper.step()) : nullptr) {
       EXPECT_TRUE(std::ranges::equal(stepper.probed_u_m(), std::span(shown, v.size()))) << stepper.step();
     }
@@ -172,7 +172,7 @@ class PassingPulse {
 
   record::ProbeRecord run(const std::vector<ProbePlace>& places, std::int64_t at_once, double interval_s) {
     const std::vector<BodySource> bodies = {{mesh_, above_material}};
-    stepper_->watch(locate_probes(places, bodies));
+    stepper_->set_probes(locate_probes(places, bodies));
     solid::Field u(mesh_.n_nodes()), v(mesh_.n_nodes());
     for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {
       const double dt = stepper_->step_s(n);

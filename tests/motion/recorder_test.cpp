@@ -29,13 +29,13 @@ interface::Interface unchanged() {
   interface::Interface s(n_nodes);
   s.t_Pa.assign(n_nodes, 1.0);
   s.p_Pa.assign(n_nodes, 4.0);
-  s.demand_Pa.assign(n_nodes, 1.0);
+  s.trial_traction_Pa.assign(n_nodes, 1.0);
   s.strength_Pa.assign(n_nodes, mu_s * 4.0);
   return s;
 }
 
 void set(interface::Interface& s, std::size_t node, double demand, double t, double p, bool slips) {
-  s.demand_Pa[node] = demand;
+  s.trial_traction_Pa[node] = demand;
   s.t_Pa[node] = t;
   s.p_Pa[node] = p;
   s.strength_Pa[node] = mu_s * p;
@@ -52,7 +52,7 @@ TEST(Recorder, LocatesTheOnsetInsideTheStep) {
   set(s, 1, 3, 3, 12, false);
   set(s, 3, 1.8, 1.8, 3.6, false);
   recorder.observe(3, s, true);
-  const auto record = recorder.take(4);
+  const auto record = recorder.record_until(4);
   ASSERT_EQ(record.onsets.size(), 1);
   EXPECT_EQ(record.onsets[0].node, 2);
   EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 1.5);
@@ -76,7 +76,7 @@ TEST(Recorder, KeepsTheSignOfTheTraction) {
   auto s = unchanged();
   set(s, 2, 6, -2, 4, true);
   recorder.observe(1, s, true);
-  EXPECT_DOUBLE_EQ(recorder.take(1).around_onset(0)[0].t_Pa, -mu_s * 4);
+  EXPECT_DOUBLE_EQ(recorder.record_until(1).around_onset(0)[0].t_Pa, -mu_s * 4);
 }
 
 TEST(Recorder, HasNoTractionsBeyondTheEnds) {
@@ -86,7 +86,7 @@ TEST(Recorder, HasNoTractionsBeyondTheEnds) {
   set(s, 1, 4, 2, 4, true);
   set(s, 4, 6, 2, 4, true);
   recorder.observe(1, s, true);
-  const auto record = recorder.take(1);
+  const auto record = recorder.record_until(1);
   ASSERT_EQ(record.onsets.size(), 2);
   ASSERT_EQ(record.around.size(), 10);
   // The node at the right end passes its strength first (ratio to 3, against 2).
@@ -116,7 +116,7 @@ TEST(Recorder, ANodeThatWasNotPressedBeginsNow) {
   recorder.observe(0, s, false);
   set(s, 3, 6, 2, 4, true);
   recorder.observe(2, s, true);
-  const auto record = recorder.take(2);
+  const auto record = recorder.record_until(2);
   ASSERT_EQ(record.onsets.size(), 1);
   EXPECT_EQ(record.onsets[0].time_s, 2);
 }
@@ -126,7 +126,7 @@ TEST(Recorder, SlipInTheFirstUpdateBeginsAtTimeZero) {
   auto s = unchanged();
   set(s, 0, 6, 2, 4, true);
   recorder.observe(0, s, true);
-  const auto record = recorder.take(1);
+  const auto record = recorder.record_until(1);
   ASSERT_EQ(record.onsets.size(), 1);
   EXPECT_EQ(record.onsets[0].time_s, 0);
 }
@@ -146,7 +146,7 @@ TEST(Recorder, InitiallySlippingNodesHaveNoOnsetUntilTheySlipAnew) {
   recorder.observe(2, s, true);
   EXPECT_EQ(recorder.n_slipping(), 1);
   recorder.observe(3, s, false);
-  const auto record = recorder.take(3);
+  const auto record = recorder.record_until(3);
   ASSERT_EQ(record.stops.size(), 1);
   EXPECT_EQ(record.stops[0].node, 2);
   EXPECT_EQ(record.stops[0].time_s, 1);
@@ -207,7 +207,7 @@ TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
   set(s, 2, 1.92, 1.6, 4, true);
   s.strength_Pa[2] = 1.6;
   recorder.observe(1, s, true);
-  const auto record = recorder.take(1);
+  const auto record = recorder.record_until(1);
   ASSERT_EQ(record.onsets.size(), 1);
   EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 0.5);
   EXPECT_DOUBLE_EQ(record.around_onset(0)[0].t_Pa, 1.8);
@@ -227,7 +227,7 @@ TEST(Recorder, TimesAscend) {
   recorder.observe(2, s, true);
   set(s, 1, 1, 1, 4, false);
   recorder.observe(3, s, true);
-  const auto record = recorder.take(3);
+  const auto record = recorder.record_until(3);
   std::vector<int> order;
   double last = 0;
   for (const auto& onset : record.onsets) {
@@ -267,7 +267,7 @@ class EveryChange {
     time_s_ = time_s;
   }
 
-  record::SlipRecord take(double end_time_s) {
+  record::SlipRecord record_until(double end_time_s) {
     record_.end_time_s = end_time_s;
     return record_;
   }
@@ -286,7 +286,7 @@ class EveryChange {
     state.slipping.assign(state.size(), 0);
     state.slipping[i] = 1;
     recorder.observe(time_s, state, true);
-    const auto one = recorder.take(time_s);
+    const auto one = recorder.record_until(time_s);
     record_.onsets.push_back(one.onsets.at(0));
     record_.around.insert(record_.around.end(), one.around.begin(), one.around.end());
   }
@@ -348,7 +348,7 @@ struct RandomSlip {
       if (reached) state.slipping[k] = random() > (step / 40 % 2 == 0 ? 0.2 : -0.6);
       const double ratio = random();
       state.t_Pa[k] = state.slipping[k] != 0 ? 2 : ratio > 0.5 ? 2 : 1 + ratio;
-      state.demand_Pa[k] = state.slipping[k] == 0 ? state.t_Pa[k] : ratio < -0.5 ? 2 : 3 + ratio;
+      state.trial_traction_Pa[k] = state.slipping[k] == 0 ? state.t_Pa[k] : ratio < -0.5 ? 2 : 3 + ratio;
     }
   }
 
@@ -373,7 +373,7 @@ TEST(Recorder, LeavesOutWhatNoFrontNeeds) {
       recorder.observe(step, slip.state, true);
       every.observe(step, slip.state);
     }
-    const auto record = recorder.take(2000), all = every.take(2000);
+    const auto record = recorder.record_until(2000), all = every.record_until(2000);
     EXPECT_EQ(record.n_onsets(), all.onsets.size());
     EXPECT_LT(10 * record.onsets.size(), all.onsets.size());
     EXPECT_LT(10 * record.stops.size(), all.stops.size());
@@ -430,7 +430,7 @@ TEST(Recorder, GoesOnFromWhatItHasWritten) {
       whole.observe(step, slip.state, true);
       if (step >= stop) second.observe(step, slip.state, true);
     }
-    auto a = whole.take(600), b = second.take(600);
+    auto a = whole.record_until(600), b = second.record_until(600);
     std::vector<double> of_a, of_b;
     NumberList<false> write_a(of_a), write_b(of_b);
     a.serialize(write_a);

@@ -41,7 +41,7 @@ statics::Equilibrium random_flight(const mesh::Mesh& mesh, double amplitude_m, d
     v.x[n] = speed_m_per_s * random();
     v.y[n] = speed_m_per_s * random();
   }
-  for (const auto n : mesh.top) u.x[n] = u.y[n] = v.x[n] = v.y[n] = 0;
+  for (const auto n : mesh.far_edge_nodes) u.x[n] = u.y[n] = v.x[n] = v.y[n] = 0;
   for (double& y : u.y) y += height_m;
   return in_flight(mesh, u, v);
 }
@@ -179,7 +179,7 @@ class PlainScheme {
         tributary_(mesh::tributary_lengths_m(mesh)) {
     // Fine cells: as near to the interface, counted in cells.
     std::vector<int> distance(mesh.n_nodes(), 1000);
-    for (const auto n : mesh.lower) distance[n] = 0;
+    for (const auto n : mesh.interface_nodes) distance[n] = 0;
     for (int round = 0; round < settings.interface_rows; ++round) {
       const auto last = distance;
       for (const auto& cell : mesh.cells)
@@ -198,8 +198,8 @@ class PlainScheme {
       if (has_fine[n]) kind_[n] = has_coarse[n] ? shared : fine;
       if (mass_[n] == 0) kind_[n] = none;
     }
-    for (const auto n : mesh.lower) kind_[n] = contact;
-    for (const auto n : mesh.top) kind_[n] = top;
+    for (const auto n : mesh.interface_nodes) kind_[n] = contact;
+    for (const auto n : mesh.far_edge_nodes) kind_[n] = top;
   }
 
   void start(const statics::Equilibrium& e, double top_speed) {
@@ -210,7 +210,7 @@ class PlainScheme {
       for (std::size_t n = 0; n < u.size(); ++n) (u_before_.*component)[n] -= step_s_ * (v.*component)[n];
     }
     steady_ = force(false, v);
-    trigger_force.assign(mesh_.lower.size(), 0);
+    trigger_force.assign(mesh_.interface_nodes.size(), 0);
   }
 
   void advance() {
@@ -267,8 +267,8 @@ class PlainScheme {
 
   void touch(double dt, double now) {
     const auto mu = gentle_law.law.as<interface::VelocityWeakening>().evaluator();
-    for (std::size_t i = 0; i < mesh_.lower.size(); ++i) {
-      const auto n = mesh_.lower[i];
+    for (std::size_t i = 0; i < mesh_.interface_nodes.size(); ++i) {
+      const auto n = mesh_.interface_nodes[i];
       const double m = mass_[n], B = tributary_[i];
       const double x = v.x[n] + dt * trigger_factor(trigger, now) * trigger_force[i] / m, y = v.y[n];
       const double gap = mesh_.y_m[n] + u.y[n];
@@ -324,8 +324,8 @@ TEST_P(Scheme, EqualsThePlainAlgorithm) {
   PlainScheme plain(mesh, material, time, stepper.step_s());
   stepper.start(e, 0.2);
   plain.start(e, 0.2);
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k)
-    plain.slip_rate[k] = 0.2 * e.u_per_shear.x[mesh.lower[k]];
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k)
+    plain.slip_rate[k] = 0.2 * e.u_per_shear.x[mesh.interface_nodes[k]];
   plain.trigger = {.zone_m = 3e-3, .ramp_s = 1e-6};
   plain.trigger_force =
       trigger_forces(e, mesh::tributary_lengths_m(mesh), interface::EventKind::left, plain.trigger, mu_s);
@@ -338,7 +338,7 @@ TEST_P(Scheme, EqualsThePlainAlgorithm) {
     u_worst = std::max(u_worst, max_difference(stepper.u_m(), plain.u));
     v_worst = std::max(v_worst, max_difference(stepper.v_m_per_s(), plain.v));
   }
-  const auto record = recorder.take(stepper.time_s());
+  const auto record = recorder.record_until(stepper.time_s());
   EXPECT_GT(record.onsets.size(), 5);
   EXPECT_GT(max_abs(plain.v), 0.1);
   EXPECT_LE(u_worst, rounding_m);
@@ -379,7 +379,7 @@ TEST_P(Substeps, APlateAtRestStaysAtRest) {
   const statics::Statics statics(mesh, material, {.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3}, mu_s);
   const auto e = statics.shear_by(0.02e-3);
   double p_max = 0;
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
     ASSERT_NE(e.contact[k], statics::Contact::slip);
     p_max = std::max(p_max, e.tractions.p_s_Pa[k]);
   }
@@ -389,10 +389,10 @@ TEST_P(Substeps, APlateAtRestStaysAtRest) {
   stepper.start(e, 0);
   Recorder recorder(e, mu_s, 0);
   for (int step = 0; step < 500; ++step) stepper.advance(recorder);
-  EXPECT_EQ(recorder.take(0).onsets.size(), 0);
+  EXPECT_EQ(recorder.record_until(0).onsets.size(), 0);
   const auto& s = stepper.interface_state();
   // The static solution's residual (1e-11 of the forces) is all that moves.
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
     EXPECT_NEAR(s.t_Pa[k], e.tractions.t_s_Pa[k], 1e-9 * p_max) << k;
     EXPECT_NEAR(s.p_Pa[k], e.tractions.p_s_Pa[k], 1e-9 * p_max) << k;
   }
@@ -434,7 +434,7 @@ TEST(Stepper, TriggerWorkIsForceTimesPath) {
   std::ranges::fill(u.y, 1e-3);
   const auto e = in_flight(mesh, u, solid::Field(mesh.n_nodes()));
   const interface::Trigger trigger { .ramp_s = 10e-6, .duration_s = 30e-6 };
-  std::vector<double> force(mesh.lower.size());
+  std::vector<double> force(mesh.interface_nodes.size());
   for (std::size_t k = 0; k < force.size(); ++k) force[k] = 100.0 * static_cast<double>(k + 1);
   stepper.start(e, 0, {.trigger_force_N_per_m = force, .trigger = trigger});
   Recorder recorder(e, mu_s, 0);
@@ -444,7 +444,7 @@ TEST(Stepper, TriggerWorkIsForceTimesPath) {
     const auto before = stepper.v_m_per_s().x;
     stepper.advance(recorder);
     for (std::size_t k = 0; k < force.size(); ++k) {
-      const auto n = mesh.lower[k];
+      const auto n = mesh.interface_nodes[k];
       work += factor * force[k] * 0.5 * (before[n] + stepper.v_m_per_s().x[n]) * stepper.step_s();
     }
   }
@@ -489,9 +489,9 @@ TEST_P(Execute, GivesTheSameNumbersWithAnyThreadsAndDepth) {
   };
   const auto run = [&](const Execution& execution, int block) {
     Stepper stepper(mesh, {}, law, {.precision = precision, .interface_substeps = substeps}, execution);
-    stepper.start(
-        e, 0,
-        {.trigger_force_N_per_m = std::vector<double>(mesh.lower.size(), 1.0), .trigger = {.ramp_s = 1e-6}});
+    stepper.start(e, 0,
+                  {.trigger_force_N_per_m = std::vector<double>(mesh.interface_nodes.size(), 1.0),
+                   .trigger = {.ramp_s = 1e-6}});
     Recorder recorder(e, mu_s, 1);
     record::History history;
     while (stepper.step() < n_steps) {
@@ -573,8 +573,8 @@ TEST(Stepper, SamplesBelongToTheBeginningOfTheStep) {
   ASSERT_EQ(history.time_s.size(), 2);
   EXPECT_EQ(history.time_s[0], 0);
   EXPECT_DOUBLE_EQ(history.time_s[1], 2 * stepper.step_s());
-  EXPECT_EQ(history.t_Pa.size(), 2 * mesh.lower.size());
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+  EXPECT_EQ(history.t_Pa.size(), 2 * mesh.interface_nodes.size());
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
     EXPECT_EQ(history.slip_m[k], 0);
     EXPECT_NEAR(history.t_Pa[k], e.tractions.t_s_Pa[k], 1e-9 * e.tractions.p_s_Pa[0]);
     EXPECT_NEAR(history.p_Pa[k], e.tractions.p_s_Pa[k], 1e-9 * e.tractions.p_s_Pa[0]);

@@ -15,9 +15,9 @@ inline statics::Equilibrium in_flight(const mesh::Mesh& mesh, solid::Field u, so
   statics::Equilibrium e;
   e.u_m = std::move(u);
   e.u_per_shear = std::move(v);
-  const std::size_t n = mesh.lower.size();
+  const std::size_t n = mesh.interface_nodes.size();
   e.contact.assign(n, statics::Contact::open);
-  for (const auto node : mesh.lower) e.tractions.x_m.push_back(mesh.x_m[node]);
+  for (const auto node : mesh.interface_nodes) e.tractions.x_m.push_back(mesh.x_m[node]);
   e.tractions.t_s_Pa.assign(n, 0);
   e.tractions.p_s_Pa.assign(n, 0);
   return e;

@@ -56,9 +56,9 @@ class Rupture {
     stepper_ = below == nullptr ? std::make_unique<Stepper>(mesh_, above, law, time)
                                 : std::make_unique<Stepper>(BodySource{mesh_, above},
                                                             BodySource{mesh_below_, *below}, law, time);
-    const std::size_t n = mesh_.lower.size();
+    const std::size_t n = mesh_.interface_nodes.size();
     record::StaticState tractions;
-    for (const auto node : mesh_.lower) tractions.x_m.push_back(mesh_.x_m[node]);
+    for (const auto node : mesh_.interface_nodes) tractions.x_m.push_back(mesh_.x_m[node]);
     tractions.t_s_Pa.assign(n, 1.2 * p0_Pa);
     tractions.p_s_Pa.assign(n, p0_Pa);
     auto state = statics::prestressed(mesh_, tractions);
@@ -78,7 +78,7 @@ class Rupture {
   }
   Stepper& stepper() { return *stepper_; }
   const Body& body(int b) { return stepper_->bodies()[b]; }
-  std::size_t n_onsets() const { return recorder_->take(stepper_->time_s()).onsets.size(); }
+  std::size_t n_onsets() const { return recorder_->record_until(stepper_->time_s()).onsets.size(); }
 
  private:
   mesh::Mesh mesh_, mesh_below_;
@@ -229,11 +229,12 @@ TEST_P(Pulse, IsReflectedAndTransmittedByTheImpedances) {
     (shear ? u.x : u.y)[k] = peak_m_per_s / c * width_m * std::sqrt(M_PI) / 2 * (1 + std::erf(x));
   }
   auto state = support::in_flight(mesh, u, v);
-  state.contact.assign(mesh.lower.size(), statics::Contact::stick);
-  state.tractions.p_s_Pa.assign(mesh.lower.size(), p0_Pa);
+  state.contact.assign(mesh.interface_nodes.size(), statics::Contact::stick);
+  state.tractions.p_s_Pa.assign(mesh.interface_nodes.size(), p0_Pa);
   state.below_u_m = state.below_u_per_shear = solid::Field(mesh.n_nodes());
   stepper.start(state, 1,
-                {std::vector<double>(mesh.lower.size(), 0.0), std::vector<double>(mesh.lower.size(), p0_Pa)});
+                {std::vector<double>(mesh.interface_nodes.size(), 0.0),
+                 std::vector<double>(mesh.interface_nodes.size(), p0_Pa)});
   Recorder recorder(state, 100, 0);
   const double incident = momentum(stepper.bodies()[0], shear);
   // Until both have left the interface, and none has come to an end.
@@ -244,7 +245,7 @@ TEST_P(Pulse, IsReflectedAndTransmittedByTheImpedances) {
   // Upside down: y is reversed.
   EXPECT_NEAR((shear ? 1 : -1) * momentum(stepper.bodies()[1], shear) / incident, 2 * Z_2 / (Z_1 + Z_2),
               1e-6);
-  EXPECT_TRUE(recorder.take(stepper.time_s()).onsets.empty());
+  EXPECT_TRUE(recorder.record_until(stepper.time_s()).onsets.empty());
 }
 
 mesh::Mesh loaded_plate(double height_m, mesh::Corner corner, int coarsenings = 0) {
@@ -283,7 +284,7 @@ TEST_P(AtRest, StaticEquilibriumOfTwoBodiesStaysAtRest) {
   const auto base = loaded_plate(0.024, mesh::Corner::none, coarsenings);
   const statics::Loading loading{.tilt_left_m = 0.08e-3, .tilt_right_m = 0.06e-3};
   const statics::Statics statics({mesh, pmma}, statics::ElasticBody{base, material}, loading,
-                                 std::vector<double>(mesh.lower.size(), mu_s));
+                                 std::vector<double>(mesh.interface_nodes.size(), mu_s));
   const auto e = statics.shear_by(0.02e-3);
   EXPECT_GT(std::ranges::count(e.contact, statics::Contact::open), 0);
   ASSERT_EQ(std::ranges::count(e.contact, statics::Contact::slip), 0);
@@ -297,12 +298,12 @@ TEST_P(AtRest, StaticEquilibriumOfTwoBodiesStaysAtRest) {
     for (const auto& body : stepper.bodies())
       v_m_per_s = std::max({v_m_per_s, largest(body.v_m_per_s().x), largest(body.v_m_per_s().y)});
   }
-  EXPECT_EQ(recorder.take(stepper.time_s()).onsets.size(), 0U);
+  EXPECT_EQ(recorder.record_until(stepper.time_s()).onsets.size(), 0U);
   const double strain = loading.tilt_left_m / 0.02;
   EXPECT_LE(v_m_per_s, 1e-12 * strain * solid::longitudinal_speed_m_per_s(pmma));
   const double p_max = largest(e.tractions.p_s_Pa);
   const auto& s = stepper.interface_state();
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
     EXPECT_NEAR(s.t_Pa[k], e.tractions.t_s_Pa[k], 1e-9 * p_max) << k;
     EXPECT_NEAR(s.p_Pa[k], e.tractions.p_s_Pa[k], 1e-9 * p_max) << k;
   }

@@ -140,7 +140,7 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
       q += dt * rate;
       stepper.advance(recorder);
       least = std::min(least, q);
-      for (const auto n : mesh.lower) {
+      for (const auto n : mesh.interface_nodes) {
         worst = std::max(worst, std::abs(stepper.u_m().y[n] - lift_m - sign * q));
         lateral = std::max(lateral, std::abs(stepper.u_m().x[n]));
       }

@@ -81,7 +81,7 @@ Support mixed_support(std::size_t n) {
 
 TopDisplacement tilt_of(const mesh::Mesh& mesh) {
   TopDisplacement top;
-  for (const auto n : mesh.top) {
+  for (const auto n : mesh.far_edge_nodes) {
     top.u_x_m.push_back(2e-6);
     top.u_y_m.push_back(-1e-4 * (1.3 - 10 * mesh.x_m[n]));
   }
@@ -143,7 +143,7 @@ TEST_P(Equilibria, AreThoseOfTheFactorisation) {
   const auto& bodies = GetParam();
   PetscSolver petsc({bodies.plate, pmma}, bodies.base_body(), {processes.get()});
   const auto direct = make_plate_solver(bodies.plate, pmma, StaticSolver::direct, bodies.base_body());
-  const auto n = bodies.plate.lower.size();
+  const auto n = bodies.plate.interface_nodes.size();
   const auto top = tilt_of(bodies.plate);
   const auto mixed = mixed_support(n);
   auto stick = mixed;
@@ -168,7 +168,7 @@ TEST_P(Equilibria, LooserOnesAreLessAccurate) {
   PetscSolver petsc({bodies.plate, pmma}, bodies.base_body(), {processes.get()});
   const auto direct = make_plate_solver(bodies.plate, pmma, StaticSolver::direct, bodies.base_body());
   const auto top = tilt_of(bodies.plate);
-  const auto support = mixed_support(bodies.plate.lower.size());
+  const auto support = mixed_support(bodies.plate.interface_nodes.size());
   const auto exact_case = direct->load_case(TopConstraint::both, top, false, nullptr, 0);
   exact_case->solve(support, 0);
   const auto exact = exact_case->displacement(0);
@@ -200,7 +200,7 @@ TEST(Contact, SettlesAsByTheFactorisation) {
       Loading loading;
       loading.top_during_tilt = top;
       const auto statics_by = [&](StaticSolver solver, double coefficient) {
-        const std::vector<double> mu_s(mesh.lower.size(), coefficient);
+        const std::vector<double> mu_s(mesh.interface_nodes.size(), coefficient);
         loading.solver = solver;
         return Statics({mesh, pmma}, std::nullopt, loading, mu_s, "friction.mu_s", [] { return true; },
                        {processes.get()});
@@ -226,16 +226,16 @@ struct Found {
 
 Found found_by(const ElasticBody& plate, const std::optional<ElasticBody>& base,
                const std::vector<mesh::Plate>& plates) {
-  KeptDisplacements kept;
+  DistributedFields kept;
   Loading loading;
   loading.solver = StaticSolver::petsc;
-  const std::vector<double> mu_s(plate.mesh.lower.size(), 0.8);
+  const std::vector<double> mu_s(plate.mesh.interface_nodes.size(), 0.8);
   const Statics statics(plate, base, loading, mu_s, "friction.mu_s", [] { return true; },
                         {processes.get(), &kept, plates});
   Found found{statics.tilted(), statics.shear_to(1), {}, {}, {}};
-  found.tilted_m = kept.own(found.tilted.kept_u_m->number);
-  found.sheared_m = kept.own(found.sheared.kept_u_m->number);
-  found.per_shear = kept.own(found.sheared.kept_u_per_shear->number);
+  found.tilted_m = kept.own(found.tilted.distributed_u_m->number);
+  found.sheared_m = kept.own(found.sheared.distributed_u_m->number);
+  found.per_shear = kept.own(found.sheared.distributed_u_per_shear->number);
   return found;
 }
 
@@ -273,7 +273,7 @@ int main(int argc, char** argv) {
   slipfront::statics::processes = slipfront::join_processes(argc, argv);
   auto* processes = slipfront::statics::processes.get();
   if (processes != nullptr && processes->rank() > 0) {
-    slipfront::statics::KeptDisplacements kept;
+    slipfront::statics::DistributedFields kept;
     slipfront::statics::serve_statics(*processes, kept);
     slipfront::statics::processes.reset();
     return 0;

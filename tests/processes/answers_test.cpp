@@ -15,7 +15,7 @@ namespace {
 
 class OfThree : public testing::Test {
  protected:
-  void answer(int rank, const std::function<void(Parcel&)>& work) {
+  void answer(int rank, const std::function<void(MessageBuffer&)>& work) {
     test::ThreadProcess process(mail_, rank);
     process.send(0, answer_of(process, work));
   }
@@ -24,7 +24,8 @@ class OfThree : public testing::Test {
     std::vector<int> numbers;
     Answers answers(leader_);
     answers.unless_failed(own);
-    for (const int rank : {1, 2}) answers.take(rank, [&](Parcel& a) { numbers.push_back(a.take<int>()); });
+    for (const int rank : {1, 2})
+      answers.take(rank, [&](MessageBuffer& a) { numbers.push_back(a.take<int>()); });
     answers.end();
     return numbers;
   }
@@ -34,14 +35,14 @@ class OfThree : public testing::Test {
 };
 
 TEST_F(OfThree, AreTakenInOrder) {
-  answer(2, [](Parcel& to) { to.put(22); });
-  answer(1, [](Parcel& to) { to.put(11); });
+  answer(2, [](MessageBuffer& to) { to.put(22); });
+  answer(1, [](MessageBuffer& to) { to.put(11); });
   EXPECT_THAT(taken(), testing::ElementsAre(11, 22));
 }
 
 TEST_F(OfThree, TellWhichProcessFailed) {
-  answer(1, [](Parcel& to) { to.put(11); });
-  answer(2, [](Parcel& to) {
+  answer(1, [](MessageBuffer& to) { to.put(11); });
+  answer(2, [](MessageBuffer& to) {
     to.put(22);
     throw std::bad_alloc();
   });
@@ -54,8 +55,8 @@ TEST_F(OfThree, TellWhichProcessFailed) {
 }
 
 TEST_F(OfThree, PassOnWhatAnotherOneTold) {
-  answer(1, [](Parcel&) { throw ProcessError("process 7 of 9: lost"); });
-  answer(2, [](Parcel& to) { to.put(22); });
+  answer(1, [](MessageBuffer&) { throw ProcessError("process 7 of 9: lost"); });
+  answer(2, [](MessageBuffer& to) { to.put(22); });
   try {
     taken();
     FAIL();
@@ -65,9 +66,9 @@ TEST_F(OfThree, PassOnWhatAnotherOneTold) {
 }
 
 TEST_F(OfThree, AreAllTakenWhereTheLeaderFails) {
-  for (const int rank : {1, 2}) answer(rank, [rank](Parcel& to) { to.put(rank); });
+  for (const int rank : {1, 2}) answer(rank, [rank](MessageBuffer& to) { to.put(rank); });
   EXPECT_THROW(taken([] { throw std::runtime_error("own"); }), std::runtime_error);
-  for (const int rank : {1, 2}) answer(rank, [rank](Parcel& to) { to.put(10 * rank); });
+  for (const int rank : {1, 2}) answer(rank, [rank](MessageBuffer& to) { to.put(10 * rank); });
   EXPECT_THAT(taken(), testing::ElementsAre(10, 20));
 }
 

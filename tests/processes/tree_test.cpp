@@ -13,7 +13,7 @@ namespace {
 /// A process and all below it, in the order in which their answers are joined.
 std::vector<int> with_all_below(int rank, int size) {
   std::vector<int> all = {rank};
-  for (const int below : below_in_tree(rank, size))
+  for (const int below : children_in_tree(rank, size))
     for (const int each : with_all_below(below, size)) all.push_back(each);
   return all;
 }
@@ -29,14 +29,14 @@ TEST(Tree, ReachesEachProcessOnceInTheOrderOfNumbers) {
 TEST(Tree, AboveIsWhereItIsBelow) {
   constexpr int size = 45;
   for (int rank = 1; rank < size; ++rank)
-    EXPECT_THAT(below_in_tree(above_in_tree(rank), size), testing::Contains(rank));
+    EXPECT_THAT(children_in_tree(parent_in_tree(rank), size), testing::Contains(rank));
 }
 
 TEST(Tree, NoProcessHasMoreNeighboursThanDigits) {
   constexpr int size = 10'000;
   const auto digits = static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(size - 1)));
   for (int rank = 0; rank < size; ++rank)
-    EXPECT_LE(below_in_tree(rank, size).size() + (rank > 0 ? 1 : 0), digits) << rank;
+    EXPECT_LE(children_in_tree(rank, size).size() + (rank > 0 ? 1 : 0), digits) << rank;
 }
 
 }  // namespace

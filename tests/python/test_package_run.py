@@ -233,7 +233,7 @@ def test_ctrl_c_keeps_a_checkpoint_and_resume_goes_on(tmp_path, threads):
 def test_resume_opens_what_is_complete(tmp_path):
     slipfront.run(write_case(tmp_path), output=tmp_path / "out")
     assert slipfront.resume(tmp_path / "out").status == "complete"
-    with pytest.raises(slipfront.CaseError, match="no unfinished run to go on with"):
+    with pytest.raises(slipfront.CaseError, match="no unfinished run to continue"):
         slipfront.resume(tmp_path / "nothing")
 
 

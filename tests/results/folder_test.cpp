@@ -257,7 +257,7 @@ TEST(ResultFolder, WhatCannotBeAFolderIsRefused) {
   EXPECT_THAT(error_of([&] { ResultFolder(folder / "loop", "test"); }), HasSubstr("; choose another place"));
   // Nobody, root included, makes folders in /proc.
   EXPECT_THAT(error_of([] { ResultFolder("/proc/slipfront", "test"); }),
-              StartsWith("output folder /proc/slipfront: cannot be made ("));
+              StartsWith("output folder /proc/slipfront: cannot be created ("));
 }
 
 TEST(ResultFolder, IsHeldByOneProcessAtATime) {

@@ -192,8 +192,8 @@ TEST(Writing, IntoAMissingFolderIsRefused) {
                 ": cannot be created; check that its folder exists and can be written");
   EXPECT_THAT(
       error_of([&] { write_static(none / "static.csv", {}); }),
-      HasSubstr(": cannot be made (No such file or directory); check that its folder can be written"));
-  EXPECT_THAT(error_of([&] { write_fronts(none / "fronts.csv", {}); }), HasSubstr("cannot be made"));
+      HasSubstr(": cannot be created (No such file or directory); check that its folder can be written"));
+  EXPECT_THAT(error_of([&] { write_fronts(none / "fronts.csv", {}); }), HasSubstr("cannot be created"));
   EXPECT_THAT(error_of([&] {
                 write_snapshots(none / "fields.vtkhdf",
                                 mesh::in_one_slab(std::make_shared<const mesh::Mesh>()), SnapshotSeries());

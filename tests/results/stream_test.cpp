@@ -40,7 +40,7 @@ class Stream : public testing::Test {
     mesh_ = mesh::in_one_slab(mesh);
     stepper_.emplace(*mesh, solid::Material{}, interface::ContactModel{interface::VelocityWeakening{}},
                      motion::TimeStepping{});
-    for (const auto n : mesh->lower) x_m_.push_back(mesh->x_m[n]);
+    for (const auto n : mesh->interface_nodes) x_m_.push_back(mesh->x_m[n]);
   }
 
   record::History row(int k) const {
@@ -117,7 +117,7 @@ TEST_F(Stream, GoesOnInNoFileThatIsTooShort) {
   EXPECT_THAT(error_of([&] {
                 ResultStream(folder_.path(), {{8, ""}, {0, ""}, {}});
               }),
-              HasSubstr("is shorter than when"));
+              HasSubstr("is shorter than at"));
   std::filesystem::remove(ResultStream::history_file(folder_.path()));
   EXPECT_THAT(error_of([&] {
                 ResultStream(folder_.path(), {{0, files::sha256("")}, {0, files::sha256("")}, {}});
@@ -156,7 +156,7 @@ TEST_F(Stream, AFileThatIsThereOrALinkIsNotReplaced) {
   const test::TemporaryFolder elsewhere;
   std::filesystem::create_symlink(elsewhere / "target", ResultStream::history_file(folder_.path()));
   EXPECT_THAT(error_of([&] { ResultStream stream(folder_.path()); }),
-              HasSubstr("cannot be made (File exists)"));
+              HasSubstr("cannot be created (File exists)"));
   EXPECT_FALSE(std::filesystem::exists(elsewhere / "target"));
 }
 

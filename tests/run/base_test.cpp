@@ -73,8 +73,9 @@ TEST(Base, SnapshotsHoldBothBodies) {
   });
   ASSERT_EQ(snapshots.front().u_m.size(), mesh.x_m.size());
   // At the middle of the interface both bodies move apart along x, and together along y.
-  const auto above = initial.mesh.lower[initial.mesh.lower.size() / 2];
-  const auto below = initial.mesh.n_nodes() + initial.base->lower[initial.base->lower.size() / 2];
+  const auto above = initial.mesh.interface_nodes[initial.mesh.interface_nodes.size() / 2];
+  const auto below =
+      initial.mesh.n_nodes() + initial.base->interface_nodes[initial.base->interface_nodes.size() / 2];
   EXPECT_EQ(mesh.x_m[above], mesh.x_m[below]);
   EXPECT_EQ(mesh.y_m[below], 0);
   const auto& u = snapshots.front().u_m;

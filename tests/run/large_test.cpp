@@ -8,11 +8,11 @@
 #include "cases.hpp"
 #include "interface/friction/slip_weakening.hpp"
 #include "mesh/plate.hpp"
-#include "motion/kept_motion.hpp"
+#include "motion/state_by_node.hpp"
 #include "run/choices.hpp"
 #include "run/needs.hpp"
-#include "run/parts.hpp"
 #include "run/snapshot_mesh.hpp"
+#include "run/subdomains.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -94,7 +94,7 @@ TEST(LargePlate, InfoCountsItsNodes) {
   EXPECT_EQ(info.n_cells, 2 * (n_columns - 1) * (of_column - 1));
   EXPECT_EQ(info.n_interface, n_columns);
   ASSERT_TRUE(info.shared);
-  EXPECT_EQ(info.shared->division.n_columns(), n_columns);
+  EXPECT_EQ(info.shared->partition.n_columns(), n_columns);
   // In a step each node moves once but for those of the two loaded edges.
   const double moved = 2.0 * n_columns * (of_column - 1);
   EXPECT_NEAR(info.node_updates / static_cast<double>(info.n_steps), moved, 1e-3 * moved);
@@ -107,16 +107,16 @@ TEST(LargePlate, APartAtTheFarEndIsThatOfTheWhole) {
   const auto config = two_bodies();
   const auto meshes = check_interfaces(config);
   EXPECT_EQ(n_nodes_of(meshes.plate), n_columns * of_column);
-  const WholeBodies whole(config, meshes.plate, meshes.base);
+  const GlobalBodies whole(config, meshes.plate, meshes.base);
   const solid::Span columns = {static_cast<int>(n_columns) - 6, static_cast<int>(n_columns)};
-  auto part = make_lone_part(config, meshes.plate, whole.steps(), columns);
+  auto part = make_isolated_subdomain(config, meshes.plate, whole.steps(), columns);
   const auto& body = part.stepper->bodies().back().columns();
   EXPECT_EQ(body.n_nodes(), 6 * of_column);
-  EXPECT_EQ(body.number_in_whole(body.n_nodes() - 1), n_columns * of_column - 1);
+  EXPECT_EQ(body.global_number(body.n_nodes() - 1), n_columns * of_column - 1);
   EXPECT_EQ(part.plate.x_m.back(), config.plate.width_m);
 
   // What it keeps goes back to it by its numbers.
-  const motion::PlaceInWhole place{columns, mesh::Subset({{columns.begin, columns.end}})};
+  const motion::SubdomainPlace place{columns, mesh::Subset({{columns.begin, columns.end}})};
   auto kept = motion::keep(*part.stepper, place);
   kept.sort();
   std::int64_t largest = 0;
@@ -126,7 +126,7 @@ TEST(LargePlate, APartAtTheFarEndIsThatOfTheWhole) {
   std::vector<mesh::NodeColumns> bodies;
   for (const auto& of : whole.bodies()) bodies.emplace_back(mesh::blocks(of.mesh));
   const auto all = mesh::Subset({{columns.begin, columns.end}});
-  const auto again = kept.in(all, place.lower, bodies, true);
+  const auto again = kept.in(all, place.interface_nodes, bodies, true);
   for (std::size_t l = 0; l < kept.values.size(); ++l) EXPECT_EQ(again.values[l].key, kept.values[l].key);
   EXPECT_NO_THROW(motion::restore(again, *part.stepper, place));
   const auto elsewhere =

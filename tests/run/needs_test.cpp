@@ -67,7 +67,7 @@ TEST(Needs, OfOneAmongManyIsItsPart) {
 TEST(Info, OfProcessesFollowsTheirNetwork) {
   const auto config = coarse_case(interface::EventKind::left, 1e-3);
   const auto shared = [&](const Network& network) { return *info(config, Sharing{3, 3, network}).shared; };
-  EXPECT_EQ(shared({}).division.n_parts(), 3);
+  EXPECT_EQ(shared({}).partition.n_subdomains(), 3);
   EXPECT_LT(shared({}).memory_bytes, shared({}).leader_memory_bytes);
   // So slow that no computing meanwhile hides it.
   EXPECT_GT(shared({1e3, 10e9}).expected_s, shared({}).expected_s);

@@ -338,9 +338,10 @@ TEST(Memory, AnEventHoldsWhatIsSaid) {
   // sides and of the loaded edge, once of the plate and once of a level: 9 blocks of 36 bytes each, in
   // vectors that may have room for twice as many; and some 60 numbers for each interface node.
   const auto& plate = dynamic_cast<const motion::Stepper&>(*stepper).plate();
-  const auto rows = static_cast<double>(plate.whole.irregular.size() + plate.top.size());
+  const auto rows = static_cast<double>(plate.whole.irregular.size() + plate.far_edge_rows.size());
   EXPECT_GT(held, 40 * n);
-  EXPECT_LT(held, 44 * n + 2 * (2 * 9 * 36 * rows + 60 * 8 * static_cast<double>(initial.mesh.lower.size())));
+  EXPECT_LT(held, 44 * n + 2 * (2 * 9 * 36 * rows +
+                                60 * 8 * static_cast<double>(initial.mesh.interface_nodes.size())));
 }
 #endif
 

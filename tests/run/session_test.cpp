@@ -69,10 +69,10 @@ Finished start(const fs::path& dir, const input::Case& config, const SessionHook
   return run_into(held, config, with_threads(1), hooks);
 }
 
-Finished go_on(const fs::path& dir, const SessionHooks& hooks = undisturbed,
-               const input::Case* expected = nullptr, int threads = 1) {
+Finished resume(const fs::path& dir, const SessionHooks& hooks = undisturbed,
+                const input::Case* expected = nullptr, int threads = 1) {
   results::ResultFolder held(dir, run_work);
-  return run::go_on(held, expected, with_threads(threads), hooks);
+  return run::resume(held, expected, with_threads(threads), hooks);
 }
 
 /// Results of a whole run.
@@ -153,8 +153,8 @@ TEST(Session, GoesOnAsIfItHadNeverStopped) {
     const test::TemporaryFolder folder;
     EXPECT_EQ(start(folder.path(), config, stopping_at("event", 50)).result.event.end,
               motion::EventEnd::interrupted);
-    EXPECT_EQ(go_on(folder.path(), stopping_at("event", 100), nullptr, 2).result.event.steps, 100);
-    go_on(folder.path(), undisturbed, &config);
+    EXPECT_EQ(resume(folder.path(), stopping_at("event", 100), nullptr, 2).result.event.steps, 100);
+    resume(folder.path(), undisturbed, &config);
     expect_same(results_in(folder.path()), results_of(config));
     EXPECT_EQ(nlohmann::json::parse(test::read_file(folder / "run.json"))["sessions"], 3);
     files::require_intact(folder.path());
@@ -172,8 +172,8 @@ TEST(Session, GoesOnWithARamp) {
   };
   EXPECT_THROW(start(folder.path(), config, hooks), Interrupted);
   // Behind the common state, which then has to be kept as well.
-  EXPECT_THROW(go_on(folder.path(), stopping_at("ramp", total - 1000)), Interrupted);
-  go_on(folder.path());
+  EXPECT_THROW(resume(folder.path(), stopping_at("ramp", total - 1000)), Interrupted);
+  resume(folder.path());
   expect_same(results_in(folder.path()), results_of(config));
 }
 
@@ -193,11 +193,11 @@ class InterruptedRun : public testing::Test {
     std::ranges::sort(files);
     return files;
   }
-  std::string go_on_error(const input::Case* expected = nullptr) {
+  std::string resume_error(const input::Case* expected = nullptr) {
     return error_of([&] {
       auto hooks = undisturbed;
       hooks.note = [&](const std::string& note) { notes_ += note; };
-      go_on(folder_.path(), hooks, expected);
+      resume(folder_.path(), hooks, expected);
     });
   }
   input::Case config_ = coarse_case();
@@ -211,25 +211,25 @@ TEST_F(InterruptedRun, TakesTheCheckpointBeforeADamagedOne) {
   auto bytes = test::read_file(last);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x10);
   test::write_file(last, bytes);
-  EXPECT_EQ(go_on_error(), test::accepted);
+  EXPECT_EQ(resume_error(), test::accepted);
   EXPECT_THAT(notes_, HasSubstr("is damaged"));
   expect_same(results_in(folder_.path()), results_of(config_));
 }
 
 TEST_F(InterruptedRun, BeginsAnewWithoutAnyCheckpoint) {
   for (const auto& file : checkpoints()) fs::remove(file);
-  EXPECT_EQ(go_on_error(), test::accepted);
+  EXPECT_EQ(resume_error(), test::accepted);
   expect_same(results_in(folder_.path()), results_of(config_));
 }
 
 TEST_F(InterruptedRun, RefusesAnotherCase) {
   auto other = config_;
   other.friction = interface::VelocityWeakening { .mu_k = 0.8 };
-  EXPECT_THAT(go_on_error(&other),
+  EXPECT_THAT(resume_error(&other),
               HasSubstr("is another case than the one that was begun, which has \"mu_k = "));
   const auto file = folder_ / "unfinished/case.resolved.toml";
   test::write_file(file, input::to_toml(other));
-  EXPECT_THAT(go_on_error(), StartsWith(file.string() + ": is another case"));
+  EXPECT_THAT(resume_error(), StartsWith(file.string() + ": is another case"));
 }
 
 TEST(Session, RefusesAnotherTableOfFriction) {
@@ -239,8 +239,8 @@ TEST(Session, RefusesAnotherTableOfFriction) {
   start(folder.path(), config, stopping_at("event", 50));
   const auto unfinished = folder / "unfinished", file = unfinished / friction_file;
   test::write_file(file, "x_m,mu_k\n0,0.6\n0.2,0.8\n");
-  EXPECT_EQ(error_of([&] { go_on(folder.path()); }),
-            file.string() + ": was changed since the run was begun; put it back, or begin anew");
+  EXPECT_EQ(error_of([&] { resume(folder.path()); }),
+            file.string() + ": was changed since the run was begun; restore it, or start a new run");
   EXPECT_THAT(error_of([&] { require_same_case(config, unfinished); }),
               HasSubstr("the table of its friction: is another case"));
 }
@@ -250,7 +250,7 @@ TEST_F(InterruptedRun, RefusesAnotherProgram) {
   CheckpointHead head;
   head.program = "slipfront 0.0.1";
   checkpoints.keep(head, [](results::OutputArchive&) {});
-  EXPECT_THAT(go_on_error(), HasSubstr("was begun by slipfront 0.0.1, and this is slipfront "));
+  EXPECT_THAT(resume_error(), HasSubstr("was begun by slipfront 0.0.1, and this is slipfront "));
 }
 
 TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
@@ -273,20 +273,20 @@ TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
     InitialState initial = whole;
     change(initial);
     keep(initial);
-    EXPECT_EQ(go_on_error(), "the state before the event that was kept is of another plate");
+    EXPECT_EQ(resume_error(), "the saved initial state belongs to another plate");
   }
   keep(whole, std::vector<double>(7));  // another event's state
-  EXPECT_NE(go_on_error(), test::accepted);
+  EXPECT_NE(resume_error(), test::accepted);
 }
 
 TEST_F(InterruptedRun, RefusesAHistoryThatIsShorterThanItWas) {
   fs::resize_file(folder_ / "unfinished/state/history.raw", 80);
-  EXPECT_THAT(go_on_error(), HasSubstr("is shorter than when the run was kept"));
+  EXPECT_THAT(resume_error(), HasSubstr("is shorter than at the last checkpoint"));
 }
 
 TEST(Session, ThereMustBeARunToGoOnWith) {
   const test::TemporaryFolder folder;
-  EXPECT_THAT(error_of([&] { go_on(folder.path()); }), HasSubstr("holds no unfinished run"));
+  EXPECT_THAT(error_of([&] { resume(folder.path()); }), HasSubstr("holds no unfinished run"));
 }
 
 TEST(Session, TellsHowItStands) {

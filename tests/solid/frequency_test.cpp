@@ -16,7 +16,7 @@ double dense_largest_frequency(const mesh::Mesh& mesh, const Material& m) {
   const auto mass = lumped_mass(mesh, m);
   std::vector<Eigen::Index> free;
   std::vector<bool> held(mesh.n_nodes(), false);
-  for (const auto n : mesh.top) held[n] = true;
+  for (const auto n : mesh.far_edge_nodes) held[n] = true;
   for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
     if (!held[n] && mass[n] > 0) free.insert(free.end(), {2 * n, 2 * n + 1});
   const Eigen::MatrixXd K = reference::assembled_stiffness(mesh, m);

@@ -28,9 +28,9 @@ class OnPlate : public ::testing::TestWithParam<Form> {
     apply(op_, w, a);
     Eigen::VectorXd f = flat(a);
     for (std::size_t n = 0; n < n_; ++n) f.segment<2>(2 * n) *= op_.mass_kg[n];
-    for_each_row_product(op_.top, w, [&](std::size_t r, double x, double y) {
-      f(2 * op_.top.node[r]) += x;
-      f(2 * op_.top.node[r] + 1) += y;
+    for_each_row_product(op_.far_edge_rows, w, [&](std::size_t r, double x, double y) {
+      f(2 * op_.far_edge_rows.node[r]) += x;
+      f(2 * op_.far_edge_rows.node[r] + 1) += y;
     });
     return f;
   }
@@ -65,7 +65,7 @@ TEST_P(OnPlate, LeavesTheLoadedEdgeAndOrphansAlone) {
   const auto orphan = mesh::orphans(mesh_);
   int n_orphans = 0;
   for (std::size_t n = 0; n < n_; ++n) {
-    if (!orphan[n] && !op_.is_top[n]) continue;
+    if (!orphan[n] && !op_.is_far_edge[n]) continue;
     EXPECT_EQ(a.x[n], 0);
     EXPECT_EQ(a.y[n], 0);
     n_orphans += orphan[n];
@@ -82,7 +82,7 @@ TEST_P(OnPlate, EachMovingNodeHasAStencilOrBlockRows) {
   for (const auto n : op_.whole.irregular.node) ++times[n];
   for (const auto n : op_.whole.general.node()) ++times[n];
   for (std::size_t n = 0; n < n_; ++n)
-    EXPECT_EQ(times[n], op_.is_top[n] || op_.mass_kg[n] == 0 ? 0 : 1) << "node " << n;
+    EXPECT_EQ(times[n], op_.is_far_edge[n] || op_.mass_kg[n] == 0 ? 0 : 1) << "node " << n;
   // 39 inner columns and the sides above the plane; 20 rows below the loaded edge. The graded plate's lowest
   // block has 6 rows.
   EXPECT_EQ(n_stencils == 39 * 20 + 2 * 19, GetParam() == Form::none);

@@ -22,11 +22,11 @@ class FactorisedPlate : public ::testing::TestWithParam<Corner> {
   mesh::Mesh mesh_ = test::tiny_plate(GetParam());
   solid::Material material_;
   test::Sparse K_ = test::assembled_stiffness(mesh_, material_);
-  Eigen::Index n_interface_ = static_cast<Eigen::Index>(2 * mesh_.lower.size());
+  Eigen::Index n_interface_ = static_cast<Eigen::Index>(2 * mesh_.interface_nodes.size());
 
   std::vector<Eigen::Index> interface_unknowns() const {
     std::vector<Eigen::Index> d;
-    for (const auto n : mesh_.lower) d.insert(d.end(), {2 * n, 2 * n + 1});
+    for (const auto n : mesh_.interface_nodes) d.insert(d.end(), {2 * n, 2 * n + 1});
     return d;
   }
 
@@ -38,9 +38,9 @@ class FactorisedPlate : public ::testing::TestWithParam<Corner> {
     };
     std::vector<Eigen::Index> d;
     for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {
-      if (orphan[n] || is(mesh_.lower, n)) continue;
-      if (!is(mesh_.top, n) || top == TopConstraint::vertical) d.push_back(2 * n);
-      if (!is(mesh_.top, n)) d.push_back(2 * n + 1);
+      if (orphan[n] || is(mesh_.interface_nodes, n)) continue;
+      if (!is(mesh_.far_edge_nodes, n) || top == TopConstraint::vertical) d.push_back(2 * n);
+      if (!is(mesh_.far_edge_nodes, n)) d.push_back(2 * n + 1);
     }
     return d;
   }
@@ -48,7 +48,7 @@ class FactorisedPlate : public ::testing::TestWithParam<Corner> {
   Factorisation::Top random_top() const {
     test::Random random(7);
     Factorisation::Top top;
-    for (std::size_t k = 0; k < mesh_.top.size(); ++k) {
+    for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
       top.u_x_m.push_back(random());
       top.u_y_m.push_back(random());
     }
@@ -64,15 +64,15 @@ INSTANTIATE_TEST_SUITE_P(Corners, FactorisedPlate, ::testing::Values(Corner::rel
                          [](const auto& corner) { return test::name_of(corner.param); });
 
 TEST_P(FactorisedPlate, DissectionIsAPermutationWithTheInterfaceLast) {
-  const auto order = dissect(mesh_, mesh_.lower).nodes;
+  const auto order = dissect(mesh_, mesh_.interface_nodes).nodes;
   const auto orphan = mesh::orphans(mesh_);
   std::vector<int> times(mesh_.n_nodes(), 0);
   for (const auto n : order) ++times[n];
   for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) EXPECT_EQ(times[n], orphan[n] ? 0 : 1) << n;
-  const std::vector<mesh::Node> tail(order.end() - static_cast<std::ptrdiff_t>(mesh_.lower.size()),
+  const std::vector<mesh::Node> tail(order.end() - static_cast<std::ptrdiff_t>(mesh_.interface_nodes.size()),
                                      order.end());
-  EXPECT_EQ(tail, mesh_.lower);
-  EXPECT_EQ(order, dissect(mesh_, mesh_.lower).nodes);
+  EXPECT_EQ(tail, mesh_.interface_nodes);
+  EXPECT_EQ(order, dissect(mesh_, mesh_.interface_nodes).nodes);
 }
 
 TEST_P(FactorisedPlate, CondensedStiffnessIsTheSchurComplement) {
@@ -105,10 +105,10 @@ TEST_P(FactorisedPlate, DisplacementIsInEquilibrium) {
       EXPECT_NEAR(flat(u)(i[k]), u_i(k), 1e-11);
       EXPECT_NEAR(force(i[k]), expected(k), tolerance);
     }
-    for (std::size_t k = 0; k < mesh_.top.size(); ++k) {
-      EXPECT_EQ(u.y[mesh_.top[k]], load.top.u_y_m[k]);
+    for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
+      EXPECT_EQ(u.y[mesh_.far_edge_nodes[k]], load.top.u_y_m[k]);
       if (top == TopConstraint::both) {
-        EXPECT_EQ(u.x[mesh_.top[k]], load.top.u_x_m[k]);
+        EXPECT_EQ(u.x[mesh_.far_edge_nodes[k]], load.top.u_x_m[k]);
       }
     }
   }
@@ -118,7 +118,7 @@ TEST(Factorisation, OfSeveralThreadsAtOnceIsThatOfOne) {
   const auto mesh = test::make_plate(0.2, 0.1, 2e-3, Corner::relief);
   const auto solved = [&] {
     const Factorisation f(mesh, {}, TopConstraint::both);
-    const std::vector<double> sheared(mesh.top.size(), 1e-4);
+    const std::vector<double> sheared(mesh.far_edge_nodes.size(), 1e-4);
     const Eigen::VectorXd force = f.load({sheared, sheared}).g_N;
     return std::pair<Eigen::MatrixXd, Eigen::VectorXd>(f.condensed_stiffness(), force);
   };

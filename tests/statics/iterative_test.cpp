@@ -181,11 +181,11 @@ TEST_P(PairLevels, CoarseOnesAreGalerkinProducts) {
 }
 
 Support mixed_support(const mesh::Mesh& mesh, bool with_slip) {
-  const std::size_t n = mesh.lower.size();
+  const std::size_t n = mesh.interface_nodes.size();
   Support s{std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 1.0), std::vector<double>(n, 0.0),
             std::vector<double>(n, mu_s)};
   for (std::size_t k = 0; k < n; ++k) {
-    if (mesh.y_m[mesh.lower[k]] > 0 || k < n / 10) s.contact[k] = Contact::open;
+    if (mesh.y_m[mesh.interface_nodes[k]] > 0 || k < n / 10) s.contact[k] = Contact::open;
     if (with_slip && k > n - n / 4 && s.contact[k] != Contact::open) s.contact[k] = Contact::slip;
     s.anchor_x_m[k] = 1e-6 * static_cast<double>(k % 3);
   }
@@ -218,13 +218,13 @@ TEST_P(Levels, CycleIsASymmetricPositiveInverse) {
   apply(b);
   EXPECT_GT(a_B_a, 0);
   EXPECT_NEAR(product(a), b_B_a, 1e-5 * a_B_a);  // single precision
-  for (const auto n : mesh.top) EXPECT_EQ(cycle.z().x[n], 0);
+  for (const auto n : mesh.far_edge_nodes) EXPECT_EQ(cycle.z().x[n], 0);
 }
 
 TopDisplacement uneven_top(const mesh::Mesh& mesh) {
   test::Random random(5);
   TopDisplacement top;
-  for (std::size_t k = 0; k < mesh.top.size(); ++k) {
+  for (std::size_t k = 0; k < mesh.far_edge_nodes.size(); ++k) {
     top.u_x_m.push_back(1e-4 * random());
     top.u_y_m.push_back(-1e-3 + 1e-4 * random());
   }
@@ -266,8 +266,8 @@ TEST_P(Corners, EquilibriumIsThatOfTheFactorisation) {
 
 TEST_P(Corners, ResultIsTheSameForAnyNumberOfThreads) {
   const auto mesh = test::make_plate(0.2, 0.1, 0.5e-3, GetParam());
-  const TopDisplacement top{std::vector<double>(mesh.top.size(), 1e-4),
-                            std::vector<double>(mesh.top.size(), -1e-4)};
+  const TopDisplacement top{std::vector<double>(mesh.far_edge_nodes.size(), 1e-4),
+                            std::vector<double>(mesh.far_edge_nodes.size(), -1e-4)};
   for (const bool slip : {false, true}) {
     const auto solved = [&](int threads) {
       IterativeSolver solver({mesh, pmma}, std::nullopt, threads);
@@ -371,8 +371,8 @@ TEST_P(OnABaseByMultigrid, CyclesDoNotGrowWithTheMesh) {
     for (const double element_m : {4e-3, 1e-3, 0.5e-3}) {
       const auto mesh = test::make_plate(0.2, 0.1, element_m, Corner::relief), base_mesh = base_of(element_m);
       IterativeSolver solver({mesh, pmma}, ElasticBody{base_mesh, GetParam().material});
-      const TopDisplacement top{std::vector<double>(mesh.top.size(), 1e-4),
-                                std::vector<double>(mesh.top.size(), -1e-4)};
+      const TopDisplacement top{std::vector<double>(mesh.far_edge_nodes.size(), 1e-4),
+                                std::vector<double>(mesh.far_edge_nodes.size(), -1e-4)};
       auto plate = solver.load_case(TopConstraint::both, top, false, nullptr, 0);
       plate->solve(mixed_support(mesh, slip), 1e-10);
       least = std::min(least, solver.multigrid().n_cycles());
@@ -385,8 +385,8 @@ TEST_P(OnABaseByMultigrid, CyclesDoNotGrowWithTheMesh) {
 
 TEST_P(OnABaseByMultigrid, ResultIsTheSameForAnyNumberOfThreads) {
   const auto mesh = test::make_plate(0.2, 0.1, 0.5e-3, Corner::relief), base_mesh = base_of(0.5e-3);
-  const TopDisplacement top{std::vector<double>(mesh.top.size(), 1e-4),
-                            std::vector<double>(mesh.top.size(), -1e-4)};
+  const TopDisplacement top{std::vector<double>(mesh.far_edge_nodes.size(), 1e-4),
+                            std::vector<double>(mesh.far_edge_nodes.size(), -1e-4)};
   const auto solved = [&](int threads) {
     IterativeSolver solver({mesh, pmma}, ElasticBody{base_mesh, GetParam().material}, threads);
     EXPECT_EQ(solver.multigrid().parts(0), threads);
@@ -402,7 +402,7 @@ TEST_P(OnABaseByMultigrid, ResultIsTheSameForAnyNumberOfThreads) {
 TEST(VaryingFriction, IsThatOfTheFactorisation) {
   const auto mesh = test::make_plate(0.2, 0.1, 1e-3, Corner::relief);
   std::vector<double> mu;
-  for (const auto n : mesh.lower) mu.push_back(mu_s * (1.3 - 3 * mesh.x_m[n]));
+  for (const auto n : mesh.interface_nodes) mu.push_back(mu_s * (1.3 - 3 * mesh.x_m[n]));
   const solid::Material material;
   const Statics direct({mesh, material}, std::nullopt, {.solver = StaticSolver::direct}, mu);
   const Statics iterative({mesh, material}, std::nullopt, {.solver = StaticSolver::iterative}, mu);

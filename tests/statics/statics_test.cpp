@@ -43,8 +43,8 @@ void expect_equilibrium(const mesh::Mesh& mesh, const Equilibrium& e) {
   const auto tributary = mesh::tributary_lengths_m(mesh);
   const double tolerance = 1e-10 * solid::Material{}.youngs_modulus_Pa * max_abs(flat(e.u_m));
   double push = 0, weight = 0, moment = 0;
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
-    const auto n = mesh.lower[k];
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
+    const auto n = mesh.interface_nodes[k];
     const double f_x = -e.tractions.t_s_Pa[k] * tributary[k], f_y = e.tractions.p_s_Pa[k] * tributary[k];
     EXPECT_NEAR(f(2 * n), f_x, tolerance) << k;
     EXPECT_NEAR(f(2 * n + 1), f_y, tolerance) << k;
@@ -54,7 +54,7 @@ void expect_equilibrium(const mesh::Mesh& mesh, const Equilibrium& e) {
     f.segment<2>(2 * n).setZero();
   }
   double top_x = 0, top_y = 0, top_moment = 0;
-  for (const auto n : mesh.top) {
+  for (const auto n : mesh.far_edge_nodes) {
     top_x += f(2 * n);
     top_y += f(2 * n + 1);
     top_moment += mesh.x_m[n] * f(2 * n + 1) - mesh.y_m[n] * f(2 * n);
@@ -73,9 +73,9 @@ void expect_equilibrium(const mesh::Mesh& mesh, const Equilibrium& e) {
 void expect_complementarity(const mesh::Mesh& mesh, const Equilibrium& e, const std::vector<double>& start_x,
                             double ratio) {
   const double p_tolerance = 2e-9 * largest_pressure(e), u_tolerance = 2e-9 * max_abs(flat(e.u_m));
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
     SCOPED_TRACE(k);
-    const auto n = mesh.lower[k];
+    const auto n = mesh.interface_nodes[k];
     const double t = e.tractions.t_s_Pa[k], p = e.tractions.p_s_Pa[k];
     const double gap = mesh.y_m[n] + e.u_m.y[n], moved = e.u_m.x[n] - start_x[k];
     if (e.contact[k] == Contact::open) {
@@ -99,7 +99,7 @@ void expect_complementarity(const mesh::Mesh& mesh, const Equilibrium& e, const 
 
 std::vector<double> lower_x(const mesh::Mesh& mesh, const Equilibrium& e) {
   std::vector<double> x;
-  for (const auto n : mesh.lower) x.push_back(e.u_m.x[n]);
+  for (const auto n : mesh.interface_nodes) x.push_back(e.u_m.x[n]);
   return x;
 }
 
@@ -110,7 +110,7 @@ TEST(Statics, UniformCompressionIsExact) {
   const Statics statics(mesh, m, {.tilt_left_m = pressed, .tilt_right_m = pressed}, mu_s);
   const auto& e = statics.tilted();
   const double p = 2.6e9 * pressed / 0.1;
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
     EXPECT_EQ(e.contact[k], Contact::stick);
     EXPECT_NEAR(e.tractions.p_s_Pa[k] / p, 1, 1e-12);
     EXPECT_NEAR(e.tractions.t_s_Pa[k] / p, 0, 1e-12);
@@ -129,7 +129,8 @@ class PaperTilt : public ::testing::Test {
 
 TEST_F(PaperTilt, StatesObeyContactAndEquilibrium) {
   expect_equilibrium(mesh_, statics_.tilted());
-  expect_complementarity(mesh_, statics_.tilted(), std::vector<double>(mesh_.lower.size(), 0.0), mu_s);
+  expect_complementarity(mesh_, statics_.tilted(), std::vector<double>(mesh_.interface_nodes.size(), 0.0),
+                         mu_s);
   const auto put_down = lower_x(mesh_, statics_.tilted());
   for (const double ratio : {0.9 * mu_s, 0.999 * mu_s, 1.001 * mu_s}) {
     SCOPED_TRACE(ratio);
@@ -140,7 +141,7 @@ TEST_F(PaperTilt, StatesObeyContactAndEquilibrium) {
     EXPECT_GT(std::ranges::count(e.contact, Contact::open), 0);
     EXPECT_GT(std::ranges::count(e.contact, Contact::stick), 0);
     EXPECT_EQ(std::ranges::count(e.contact, Contact::slip) > 0, ratio > 0.9 * mu_s);
-    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
+    for (std::size_t k = 0; k < mesh_.interface_nodes.size(); ++k) {
       if (e.contact[k] != Contact::slip) continue;
       EXPECT_FALSE(e.tractions.x_m[k] >= e.inside_from_m && e.tractions.x_m[k] <= e.inside_to_m);
     }
@@ -153,7 +154,7 @@ TEST_F(PaperTilt, ShearEndsAtTheRatioAskedFor) {
     const auto e = statics_.shear_to(ratio / mu_s);
     EXPECT_NEAR(e.peak_ratio, ratio, 1e-11);
     double peak = 0, peak_x = 0;
-    for (std::size_t k = 0; k < mesh_.lower.size(); ++k) {
+    for (std::size_t k = 0; k < mesh_.interface_nodes.size(); ++k) {
       const double x = e.tractions.x_m[k];
       if (e.contact[k] == Contact::open || x < e.inside_from_m || x > e.inside_to_m) continue;
       const double here = e.tractions.t_s_Pa[k] / e.tractions.p_s_Pa[k];
@@ -180,7 +181,7 @@ TEST_F(PaperTilt, MotionUnderShearIsTheDerivativeOfTheDisplacement) {
   const Eigen::VectorXd slope = (flat(further.u_m) - flat(e.u_m)) / increment;
   // Affine between: only the rounding of u, magnified by u over the increment.
   EXPECT_LE(max_abs(slope - flat(e.u_per_shear)), 1e-11 * 1e6);
-  for (const auto n : mesh_.top) {
+  for (const auto n : mesh_.far_edge_nodes) {
     EXPECT_EQ(e.u_per_shear.x[n], 1);
     EXPECT_EQ(e.u_per_shear.y[n], 0);
   }
@@ -197,7 +198,8 @@ TEST(Statics, ShearReleasesTheHeavyCorner) {
   };
   const auto before = first_touching(statics.tilted()), after = first_touching(e);
   EXPECT_GT(after, before);
-  for (auto k = before; k < after; ++k) EXPECT_GT(mesh.y_m[mesh.lower[k]] + e.u_m.y[mesh.lower[k]], 0) << k;
+  for (auto k = before; k < after; ++k)
+    EXPECT_GT(mesh.y_m[mesh.interface_nodes[k]] + e.u_m.y[mesh.interface_nodes[k]], 0) << k;
   EXPECT_GT(e.tractions.x_m[after], 1e-3);
   EXPECT_LT(e.tractions.x_m[after], 10e-3);
 }
@@ -226,12 +228,12 @@ TEST(Statics, CriticalShearOfACoarsePlateByDenseSolution) {
       b(d, 0) = K(d, d) * u0;
       b(d, 1) = K(d, d) * u1;
     };
-    for (const auto n : mesh.top) {
+    for (const auto n : mesh.far_edge_nodes) {
       prescribe(2 * n, 0, 1);
       prescribe(2 * n + 1, -(0.37e-3 + (0.037e-3 - 0.37e-3) * mesh.x_m[n] / 0.2), 0);
     }
-    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
-      const auto n = mesh.lower[k];
+    for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
+      const auto n = mesh.interface_nodes[k];
       if (e.contact[k] == Contact::open) continue;
       if (e.contact[k] == Contact::stick) prescribe(2 * n, put_down[k], 0);
       if (e.contact[k] == Contact::slip)
@@ -241,8 +243,8 @@ TEST(Statics, CriticalShearOfACoarsePlateByDenseSolution) {
     const Eigen::MatrixXd u = A.partialPivLu().solve(b);
     const Eigen::MatrixXd f = K * u;
     double shear = 1;
-    for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
-      const auto n = mesh.lower[k];
+    for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
+      const auto n = mesh.interface_nodes[k];
       const double x = mesh.x_m[n], r = 0.999 * mu_s;
       if (x < e.inside_from_m || x > e.inside_to_m) continue;
       // -(f_x0 + s f_x1) = r (f_y0 + s f_y1)
@@ -262,20 +264,20 @@ TEST(Statics, FreeLoadedEdgeCarriesNoHorizontalForceDuringTheTilt) {
   const Statics held(mesh, {}, {}, mu_s);
   const Statics free(mesh, {}, {.top_during_tilt = TopEdge::free}, mu_s);
   const Eigen::VectorXd f_held = force(mesh, held.tilted()), f_free = force(mesh, free.tilted());
-  double most_held = 0;
-  for (const auto n : mesh.top) {
-    most_held = std::max(most_held, std::abs(f_held(2 * n)));
+  double max_held = 0;
+  for (const auto n : mesh.far_edge_nodes) {
+    max_held = std::max(max_held, std::abs(f_held(2 * n)));
     EXPECT_NEAR(f_free(2 * n), 0, 1e-10 * max_abs(f_free)) << n;
     EXPECT_EQ(held.tilted().u_m.x[n], 0);
   }
-  EXPECT_GT(most_held, 1e-3 * max_abs(f_held));
+  EXPECT_GT(max_held, 1e-3 * max_abs(f_held));
   expect_equilibrium(mesh, free.tilted());
-  expect_complementarity(mesh, free.tilted(), std::vector<double>(mesh.lower.size(), 0.0), mu_s);
+  expect_complementarity(mesh, free.tilted(), std::vector<double>(mesh.interface_nodes.size(), 0.0), mu_s);
 
   // The shear starts from where the edge stands.
   const auto put_down = lower_x(mesh, free.tilted());
   const auto e = free.shear_to(0.999);
-  for (const auto n : mesh.top) EXPECT_NEAR(e.u_m.x[n], free.tilted().u_m.x[n] + e.shear_m, 1e-15);
+  for (const auto n : mesh.far_edge_nodes) EXPECT_NEAR(e.u_m.x[n], free.tilted().u_m.x[n] + e.shear_m, 1e-15);
   expect_equilibrium(mesh, e);
   expect_complementarity(mesh, e, put_down, 0.999 * mu_s);
 }
@@ -314,7 +316,7 @@ TEST(VaryingFriction, OfOneValueIsTheUniformOne) {
   const auto mesh = paper_plate(4e-3);
   const Statics uniform(mesh, {}, {}, mu_s);
   const Statics varying({mesh, solid::Material{}}, std::nullopt, {},
-                        std::vector<double>(mesh.lower.size(), mu_s));
+                        std::vector<double>(mesh.interface_nodes.size(), mu_s));
   for (const double share : {0.9, 1.001}) {
     const auto a = uniform.shear_to(share), b = varying.shear_to(share);
     EXPECT_EQ(a.shear_m, b.shear_m);
@@ -335,7 +337,7 @@ class FrictionAlong : public ::testing::Test {
   /// mu_s as a function of x.
   Statics statics(const std::function<double(double)>& mu) {
     mu_s_.clear();
-    for (const auto n : mesh_.lower) mu_s_.push_back(mu(mesh_.x_m[n]));
+    for (const auto n : mesh_.interface_nodes) mu_s_.push_back(mu(mesh_.x_m[n]));
     return {{mesh_, material_}, std::nullopt, {}, mu_s_};
   }
   /// t/(mu_s p) of a node in contact.

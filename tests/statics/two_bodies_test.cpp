@@ -28,7 +28,7 @@ const solid::Material pmma{};
 const solid::Material gel{.youngs_modulus_Pa = 0.3e9, .poissons_ratio = 0.45, .density_kg_per_m3 = 800};
 
 std::vector<double> uniform_mu_s(const mesh::Mesh& mesh) {
-  return std::vector<double>(mesh.lower.size(), mu_s);
+  return std::vector<double>(mesh.interface_nodes.size(), mu_s);
 }
 
 std::shared_ptr<const Factorisation> factorised(const mesh::Mesh& mesh, const solid::Material& material,
@@ -39,7 +39,7 @@ std::shared_ptr<const Factorisation> factorised(const mesh::Mesh& mesh, const so
 TEST(CondensedPair, CompliancesOfUnlikeBodiesAdd) {
   const auto mesh = test::tiny_plate(Corner::relief);
   const auto base_mesh = test::make_plate(0.02, 0.014, 1e-3, Corner::none);
-  const Eigen::Index n = 2 * static_cast<Eigen::Index>(mesh.lower.size());
+  const Eigen::Index n = 2 * static_cast<Eigen::Index>(mesh.interface_nodes.size());
   Eigen::VectorXd D = Eigen::VectorXd::Ones(n);
   for (Eigen::Index k = 0; k < n; k += 2) D(k) = -1;
   for (const double factor : {1e-4, 1e4}) {
@@ -63,7 +63,7 @@ TEST(CondensedPair, OfAPlateFreeAlongXSlidesWithoutForce) {
 
 TopDisplacement tilted_and_sheared(const mesh::Mesh& mesh) {
   TopDisplacement top;
-  for (const auto n : mesh.top) {
+  for (const auto n : mesh.far_edge_nodes) {
     top.u_x_m.push_back(1e-4);
     top.u_y_m.push_back(-2e-4 + 5e-3 * mesh.x_m[n]);
   }
@@ -71,7 +71,7 @@ TopDisplacement tilted_and_sheared(const mesh::Mesh& mesh) {
 }
 
 Support bonded(const mesh::Mesh& mesh) {
-  const std::size_t n = mesh.lower.size();
+  const std::size_t n = mesh.interface_nodes.size();
   return {std::vector<Contact>(n, Contact::stick), std::vector<double>(n, 0.0), std::vector<double>(n, 0.0),
           uniform_mu_s(mesh)};
 }
@@ -120,13 +120,13 @@ void expect_body_in_equilibrium(const mesh::Mesh& mesh, const solid::Material& m
     sum += Eigen::Vector3d(f(2 * n), f(2 * n + 1), mesh.x_m[n] * f(2 * n + 1) - mesh.y_m[n] * f(2 * n));
     f.segment<2>(2 * n).setZero();
   };
-  for (std::size_t k = 0; k < mesh.lower.size(); ++k) {
-    const auto n = mesh.lower[k];
+  for (std::size_t k = 0; k < mesh.interface_nodes.size(); ++k) {
+    const auto n = mesh.interface_nodes[k];
     EXPECT_NEAR(f(2 * n), f_x_N[k], tolerance_N) << k;
     EXPECT_NEAR(f(2 * n + 1), f_y_N[k], tolerance_N) << k;
     take(n);
   }
-  for (const auto n : mesh.top) take(n);
+  for (const auto n : mesh.far_edge_nodes) take(n);
   EXPECT_LE(max_abs(f), tolerance_N);
   EXPECT_LE(max_abs(sum), 100 * tolerance_N);  // some hundred nodes
 }
@@ -172,10 +172,10 @@ class OnABase : public ::testing::TestWithParam<Pair> {
                    uniform_mu_s(plate_)};
 
   double relative_x_m(const Equilibrium& e, std::size_t k) const {
-    return e.u_m.x[plate_.lower[k]] - e.below_u_m.x[base_.lower[k]];
+    return e.u_m.x[plate_.interface_nodes[k]] - e.below_u_m.x[base_.interface_nodes[k]];
   }
   double opening_m(const Equilibrium& e, std::size_t k) const {
-    const auto a = plate_.lower[k], b = base_.lower[k];
+    const auto a = plate_.interface_nodes[k], b = base_.interface_nodes[k];
     return plate_.y_m[a] + base_.y_m[b] + e.u_m.y[a] + e.below_u_m.y[b];
   }
   double tolerance_N(const Equilibrium& e) const {
@@ -195,7 +195,7 @@ class OnABase : public ::testing::TestWithParam<Pair> {
     EXPECT_GT(*std::ranges::max_element(f_y_N), 1e4 * tolerance);
     expect_body_in_equilibrium(plate_, pmma, e.u_m, f_x_N, f_y_N, tolerance);
     expect_body_in_equilibrium(base_, GetParam().base_material, e.below_u_m, minus_f_x_N, f_y_N, tolerance);
-    for (const auto n : base_.top) {
+    for (const auto n : base_.far_edge_nodes) {
       EXPECT_EQ(e.below_u_m.x[n], 0);
       EXPECT_EQ(e.below_u_m.y[n], 0);
     }
@@ -233,7 +233,8 @@ INSTANTIATE_TEST_SUITE_P(Pairs, OnABase, ::testing::ValuesIn(pairs()),
 TEST_P(OnABase, StatesObeyContactAndEquilibriumOfBothBodies) {
   const auto& tilted = statics_.tilted();
   std::vector<double> put_down_m;
-  for (std::size_t k = 0; k < plate_.lower.size(); ++k) put_down_m.push_back(relative_x_m(tilted, k));
+  for (std::size_t k = 0; k < plate_.interface_nodes.size(); ++k)
+    put_down_m.push_back(relative_x_m(tilted, k));
   expect_equilibrium(tilted);
   expect_complementarity(tilted, std::vector<double>(put_down_m.size(), 0.0));
   for (const double share : GetParam().shares) {

@@ -25,29 +25,29 @@ class Mailboxes {
   explicit Mailboxes(int size) : size_(size) {}
   int size() const { return size_; }
   static constexpr int of_parcels = -1;
-  void put(int from, int to, Parcel parcel, int channel = of_parcels) {
+  void put(int from, int to, MessageBuffer buffer, int channel = of_parcels) {
     const std::scoped_lock lock(mutex_);
-    boxes_[{from, to, channel}].push_back(std::move(parcel));
+    boxes_[{from, to, channel}].push_back(std::move(buffer));
     changed_.notify_all();
   }
-  Parcel take(int from, int to, int channel = of_parcels) {
+  MessageBuffer take(int from, int to, int channel = of_parcels) {
     std::unique_lock lock(mutex_);
     auto& box = boxes_[{from, to, channel}];
     changed_.wait(lock, [&] { return !box.empty(); });
-    auto parcel = std::move(box.front());
+    auto buffer = std::move(box.front());
     box.pop_front();
-    return parcel;
+    return buffer;
   }
   /// A parcel of whichever sender.
-  Parcel take_any(int to) {
+  MessageBuffer take_any(int to) {
     std::unique_lock lock(mutex_);
     for (;;) {
       for (int from = 0; from < size_; ++from) {
         auto& box = boxes_[{from, to, of_parcels}];
         if (box.empty()) continue;
-        auto parcel = std::move(box.front());
+        auto buffer = std::move(box.front());
         box.pop_front();
-        return parcel;
+        return buffer;
       }
       changed_.wait(lock);
     }
@@ -57,14 +57,14 @@ class Mailboxes {
   int size_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::map<std::tuple<int, int, int>, std::deque<Parcel>> boxes_;
+  std::map<std::tuple<int, int, int>, std::deque<MessageBuffer>> boxes_;
 };
 
 class Sent final : public Processes::Transfer {
  public:
   Sent(Mailboxes& mail, int from, int to, int channel, std::span<const std::byte> bytes)
       : mail_(mail), from_(from), to_(to), channel_(channel), bytes_(bytes) {}
-  void begin() override { mail_.put(from_, to_, Parcel({bytes_.begin(), bytes_.end()}), channel_); }
+  void begin() override { mail_.put(from_, to_, MessageBuffer({bytes_.begin(), bytes_.end()}), channel_); }
   void finish() override {}
 
  private:
@@ -84,9 +84,9 @@ class Received final : public Processes::Transfer {
   void finish() override {
     if (!is_under_way_) return;
     is_under_way_ = false;
-    const auto parcel = mail_.take(from_, to_, channel_);
-    SLIPFRONT_ASSERT(parcel.bytes().size() == bytes_.size(), "a transfer of other lengths");
-    std::ranges::copy(parcel.bytes(), bytes_.begin());
+    const auto buffer = mail_.take(from_, to_, channel_);
+    SLIPFRONT_ASSERT(buffer.bytes().size() == bytes_.size(), "a transfer of other lengths");
+    std::ranges::copy(buffer.bytes(), bytes_.begin());
   }
 
  private:
@@ -101,18 +101,18 @@ class ThreadProcess final : public Processes {
   ThreadProcess(Mailboxes& mail, int rank) : mail_(mail), rank_(rank) {}
   int rank() const override { return rank_; }
   int size() const override { return mail_.size(); }
-  void send(int to, const Parcel& parcel) override { mail_.put(rank_, to, parcel); }
-  Parcel receive(int from) override { return mail_.take(from, rank_); }
-  Parcel receive_any() override { return mail_.take_any(rank_); }
+  void send(int to, const MessageBuffer& buffer) override { mail_.put(rank_, to, buffer); }
+  MessageBuffer receive(int from) override { return mail_.take(from, rank_); }
+  MessageBuffer receive_any() override { return mail_.take_any(rank_); }
   std::unique_ptr<Transfer> transfer_to(int rank, int channel, std::span<const std::byte> bytes) override {
     return std::make_unique<Sent>(mail_, rank_, rank, channel, bytes);
   }
   std::unique_ptr<Transfer> transfer_from(int rank, int channel, std::span<std::byte> bytes) override {
     return std::make_unique<Received>(mail_, rank, rank_, channel, bytes);
   }
-  void take_largest(std::span<double> values) override {
+  void reduce_max(std::span<double> values) override {
     for (int other = 0; other < size(); ++other)
-      if (other != rank_) send(other, Parcel().put(std::span<const double>(values)));
+      if (other != rank_) send(other, MessageBuffer().put(std::span<const double>(values)));
     for (int other = 0; other < size(); ++other) {
       if (other == rank_) continue;
       const auto theirs = receive(other).take_all<double>();

@@ -23,9 +23,9 @@ std::vector<double> diffused(int threads, int depth, int units, int steps) {
   std::vector<double> value(n + 2, 0.0);
   for (std::size_t k = 0; k < n; ++k) value[k + 1] = static_cast<double>(k * k % 11);
   Wavefront wavefront(threads, depth);
-  std::vector<double> below(static_cast<std::size_t>(wavefront.most_steps()));
+  std::vector<double> below(static_cast<std::size_t>(wavefront.max_steps()));
   const auto taken = wavefront.run(0, steps, units, [&](std::int64_t step, int unit) {
-    double& old_below = below[static_cast<std::size_t>(step % wavefront.most_steps())];
+    double& old_below = below[static_cast<std::size_t>(step % wavefront.max_steps())];
     if (unit == 0) old_below = 0;
     double& here = value[static_cast<std::size_t>(unit) + 1];
     const double old = here;

@@ -21,7 +21,7 @@ struct FrictionTableLaw {
   static constexpr const char* help =
       over_slip ? "mu over the slip path, by a table" : "mu over the slip rate, by a table";
   static constexpr SlipMemory memory = slip_memory;
-  static constexpr std::size_t most_rows = 32;
+  static constexpr std::size_t max_rows = 32;
 
   static constexpr std::array<double, 3> default_at =
       over_slip ? std::array{0.0, 2e-6, 1e-5} : std::array{0.0, 0.1, 1.0};
@@ -41,8 +41,8 @@ struct FrictionTableLaw {
   Message inconsistency() const {
     const Key rows(over_slip ? "friction.table_slip_m" : "friction.table_slip_rate_m_per_s");
     const Key coefficients("friction.table_mu");
-    if (at.size() < 2 || at.size() > most_rows || at.size() != mu.size())
-      return Message("{} and {} must be of one length, 2 to {} numbers", rows, coefficients, most_rows);
+    if (at.size() < 2 || at.size() > max_rows || at.size() != mu.size())
+      return Message("{} and {} must be of one length, 2 to {} numbers", rows, coefficients, max_rows);
     if (at.front() != 0 || std::ranges::adjacent_find(at, std::greater_equal()) != at.end())
       return Message("{} must begin with 0 and ascend", rows);
     if (mu.front() < std::ranges::max(mu))
@@ -66,7 +66,7 @@ struct FrictionTableLaw {
   /// same for all nodes. Rows that the table has not lose nothing.
   template <class V>
   struct Evaluator {
-    using Rows = std::array<V, most_rows - 1>;
+    using Rows = std::array<V, max_rows - 1>;
     V at_rest, least;
     Rows from, per_width, drop;
 

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/blow_up_monitor.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace slipfront::motion {
+
+namespace {
+
+/// Most steps between two looks at the energy.
+constexpr std::int64_t energy_check_interval = 100;
+
+/// Energy may exceed what was supplied by this part of it,
+constexpr double tolerated_excess = 0.01;
+/// and by the coupling's work up to this part. That work swings with waves as short as the elements, by 1.2 %
+/// where an undamped plate's edge is set in motion at once; where sub-cycling is unstable it grows beyond all
+/// bounds.
+constexpr double tolerated_coupling = 0.1;
+
+/// A part of the energy that the tractions could bring about. They cancel at a node that sticks, but for
+/// rounding, 1e-16 of them; the plate then moves with at most 1e-16 times the number of steps of the velocity
+/// that they could give it, and has the square of that as its energy: 1e-12 leaves room for 1e10 steps. Slip
+/// that matters releases far more: a drop of 1 % of the stress over 1 % of the plate's area is 1e-6.
+constexpr double negligible_part = 1e-12;
+
+double supplied_J_per_m(const record::Energies& now, const record::Energies& start) {
+  // Of a plate at rest rounding may leave less than nothing.
+  return std::max(0.0, start.stored()) + std::abs(now.top_work) + std::abs(now.trigger_work) +
+         std::abs(now.prestress_work);
+}
+
+/// What of the case gives the plate most of its energy.
+const char* strongest_load(const record::Energies& now, const record::Energies& start) {
+  struct Load {
+    double energy_J_per_m;
+    const char* keys;
+  };
+  const std::array<Load, 4> loads = {{
+      {std::abs(now.trigger_work), "event.trigger_amount, or nucleation.overstress_Pa of a patch"},
+      {std::abs(now.prestress_work), "prestress.t_Pa, or the tractions in prestress.file"},
+      {std::abs(now.top_work), "loading.shear_speed_over_c_L"},
+      {start.stored(), "loading.tilt_left_m and loading.tilt_right_m"},
+  }};
+  return std::ranges::max_element(loads, {}, &Load::energy_J_per_m)->keys;
+}
+
+}  // namespace
+
+BlowUpMonitor::BlowUpMonitor(TimeStepper& stepper, double c_L_m_per_s)
+    : BlowUpMonitor(stepper, c_L_m_per_s, stepper.energies(), 0) {}
+
+BlowUpMonitor::BlowUpMonitor(TimeStepper& stepper, double c_L_m_per_s, const record::Energies& start,
+                             std::int64_t checked_step)
+    : stepper_(stepper), c_L_m_per_s_(c_L_m_per_s), start_(start), checked_step_(checked_step) {}
+
+bool BlowUpMonitor::check(const SlipRates& rates) {
+  fastest_slip_m_per_s_ = rates.fastest_slipping_m_per_s;
+  if (!rates.finite) {
+    failure_ = "the slip rate is not a number";
+  } else if (rates.fastest_m_per_s > c_L_m_per_s_) {
+    failure_ = fmt::format("the slip rate has grown to {:.3g} m/s, above c_L", rates.fastest_m_per_s);
+  }
+  return failure_.empty();
+}
+
+std::int64_t BlowUpMonitor::steps_to_check() const {
+  return checked_step_ + energy_check_interval - stepper_.step();
+}
+
+std::string BlowUpMonitor::failure(const record::Energies* known) {
+  if (failure_.empty() && known == nullptr && steps_to_check() > 0) return {};
+  checked_step_ = stepper_.step();
+  last_ = known != nullptr ? *known : stepper_.energies();
+  if (failure_.empty()) failure_ = energy_failure(*last_);
+  if (failure_.empty()) return {};
+  return failure_ + "; " + remedy(*last_);
+}
+
+std::string BlowUpMonitor::energy_failure(const record::Energies& now) const {
+  const double total = now.stored();
+  if (!std::isfinite(total)) return "the energy is not a number";
+  if (!is_from_nowhere(total, now)) return {};
+  return fmt::format("the energy has grown to {:.4g} J/m with {:.4g} J/m supplied", total,
+                     supplied_J_per_m(now, start_));
+}
+
+bool BlowUpMonitor::is_from_nowhere(double energy_J_per_m, const record::Energies& now) const {
+  const double supplied = supplied_J_per_m(now, start_);
+  return energy_J_per_m > (1 + tolerated_excess) * supplied +
+                              std::clamp(now.coupling_work, 0.0, tolerated_coupling * supplied) +
+                              negligible_part * stepper_.energy_of_tractions_J_per_m();
+}
+
+std::string BlowUpMonitor::remedy(const record::Energies& now) const {
+  // Above the stable step, the strain energy between two places falls as the kinetic energy grows: their sum
+  // tells nothing.
+  const bool numerical = stepper_.lowest_step_s() > (1 + 1e-9) * stepper_.stable_step_s() ||
+                         is_from_nowhere(std::max(now.kinetic, now.stored()), now);
+  if (numerical) return "reduce time.step_factor";
+  return fmt::format("the work of the loads accounts for the energy: reduce {}", strongest_load(now, start_));
+}
+
+std::string blow_up_message(const TimeStepper& stepper, const std::string& failure) {
+  return fmt::format("the run blew up at step {} (t = {:.6g} s): {}", stepper.step(), stepper.time_s(),
+                     failure);
+}
+
+}  // namespace slipfront::motion

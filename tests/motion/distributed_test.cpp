@@ -1,0 +1,704 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+#include "base/error.hpp"
+#include "mesh/node_columns.hpp"
+#include "motion/distributed_stepper.hpp"
+#include "motion/event.hpp"
+#include "motion/support.hpp"
+#include "statics/prestress.hpp"
+#include "support/processes.hpp"
+
+namespace slipfront::motion {
+namespace {
+
+const solid::Material pmma{.youngs_modulus_Pa = 5.6e9,
+                           .poissons_ratio = 0.37,
+                           .density_kg_per_m3 = 1190,
+                           .plane = solid::Plane::strain,
+                           .stiffness_damping_s = 7e-9};
+const solid::Material gel{.youngs_modulus_Pa = 1.4e9,
+                          .poissons_ratio = 0.30,
+                          .density_kg_per_m3 = 1100,
+                          .plane = solid::Plane::strain,
+                          .stiffness_damping_s = 7e-9};
+
+/// A rupture from a weakened patch under uniform tractions.
+struct Problem {
+  mesh::Plate plate{.width_m = 0.2, .height_m = 0.03, .element_size_m = 1e-3, .corner = mesh::Corner::none};
+  bool is_strained = false;  ///< before the event
+  const solid::Material* below = nullptr;
+  double height_below_m = plate.height_m;
+  double stiffness_damping_s = pmma.stiffness_damping_s;
+  int coarsenings_below = 0;
+  TimeStepping time{.interface_rows = 2, .interface_substeps = 4};
+  Execution execution{.halo_stage_bytes = 1};  ///< of the parts; as many stages as there are
+  interface::ContactModel contact = support::paper_law;
+  double t_over_p = 1.2;
+  double patch = 1.0 / 3;  ///< its middle, in lengths of the plate
+  int halo = 3;            ///< nodes around an onset whose tractions are recorded
+  std::vector<record::ProbePlace> probes = {{"a", 0.0501, 0.0049}, {"b", 0.1004, 0.0102}};
+};
+
+struct Bodies {
+  explicit Bodies(const Problem& problem) : above(mesh::make_plate(problem.plate)), material(pmma) {
+    material.stiffness_damping_s = problem.stiffness_damping_s;
+    plates.push_back(problem.plate);
+    if (problem.below != nullptr) add_below(problem);
+  }
+  void add_below(const Problem& problem) {
+    auto plate = problem.plate;
+    plate.corner = mesh::Corner::none;
+    plate.coarsenings = problem.coarsenings_below;
+    plate.height_m = problem.height_below_m;
+    plates.push_back(plate);
+    below = mesh::make_plate(plate);
+    material_below = *problem.below;
+    material_below.stiffness_damping_s = problem.stiffness_damping_s;
+  }
+  std::vector<BodySource> sources() const {
+    std::vector<BodySource> sources = {{above, material}};
+    if (below) sources.push_back({*below, material_below});
+    return sources;
+  }
+  std::vector<mesh::Plate> plates;
+  mesh::Mesh above;
+  solid::Material material, material_below;
+  std::optional<mesh::Mesh> below;
+};
+
+struct Begin {
+  int halo = 0;
+  statics::Equilibrium state;
+  Loads loads;
+};
+
+constexpr double p_Pa = 5e6;
+
+Begin begin_of(const Problem& problem, const Bodies& bodies) {
+  const auto n = bodies.above.interface_nodes.size();
+  record::StaticState tractions;
+  for (const auto node : bodies.above.interface_nodes) tractions.x_m.push_back(bodies.above.x_m[node]);
+  for (std::size_t i = 0; i < n; ++i)
+    tractions.t_s_Pa.push_back(problem.t_over_p * p_Pa * (1 + 1e-2 * std::sin(0.1 * static_cast<double>(i))));
+  tractions.p_s_Pa.assign(n, p_Pa);
+  Begin begin{
+      problem.halo, statics::prestressed(bodies.above, tractions), {tractions.t_s_Pa, tractions.p_s_Pa}};
+  if (bodies.below)
+    begin.state.below_u_m = begin.state.below_u_per_shear = solid::Field(bodies.below->n_nodes());
+  begin.loads.intact.assign(n, 1.0);
+  if (problem.is_strained) {
+    begin.state.u_m = begin.state.u_per_shear = solid::Field(bodies.above.n_nodes());
+    for (mesh::Node k = 0; k < bodies.above.n_nodes(); ++k) {
+      begin.state.u_m.x[k] = 1e-8 * std::sin(300 * bodies.above.x_m[k] + 100 * bodies.above.y_m[k]);
+      begin.state.u_per_shear.x[k] = bodies.above.y_m[k] / problem.plate.height_m;
+    }
+  }
+  const auto middle = static_cast<std::size_t>(problem.patch * static_cast<double>(n));
+  for (std::size_t i = middle - 6; i < middle + 6; ++i) begin.loads.intact[i % n] = 0;
+  return begin;
+}
+
+/// What a run of some steps leaves.
+struct Outcome {
+  Snapshot snapshot;
+  record::SlipRecord record;
+  record::History history;
+  record::ProbeRecord probes;
+  record::Energies energies;
+  double node_updates = 0;
+};
+
+/// A run that may change its stepper on the way.
+struct Journey {
+  explicit Journey(const Begin& begin) : recorder(begin.state, 1.3, begin.halo, 1e-6) {}
+  Recorder recorder;
+  Outcome outcome;
+};
+
+void take_steps(Journey& journey, TimeStepper& stepper, std::int64_t n_steps) {
+  auto& [recorder, outcome] = journey;
+  auto before_m = stepper.probed_u_m();
+  ProbeRecorder probes(stepper.probes(), stepper.step_s(), 3 * stepper.step_s(), before_m, before_m);
+  StepCallbacks callbacks;
+  callbacks.sample = [&]() -> record::History* {
+    return stepper.step() % 7 == 0 ? &journey.outcome.history : nullptr;
+  };
+  callbacks.displacements = [&](std::int64_t step) { return probes.room_for(step); };
+  callbacks.guaranteed_steps = [] { return std::int64_t{1000}; };
+  for (std::int64_t done = 0; done < n_steps;) {
+    const auto n = std::min<std::int64_t>(23, n_steps - done);
+    probes.expect(stepper.step(), n);
+    done += stepper.advance(recorder, n, callbacks);
+    probes.take_rows(stepper.step(), outcome.probes);
+  }
+  outcome.snapshot = stepper.snapshot();
+  outcome.record = recorder.record_until(stepper.time_s());
+  outcome.energies = stepper.energies();
+  outcome.node_updates = stepper.node_updates_per_step();
+}
+
+Outcome run(TimeStepper& stepper, const Begin& begin, std::int64_t n_steps) {
+  Journey journey(begin);
+  take_steps(journey, stepper, n_steps);
+  return journey.outcome;
+}
+
+Outcome run_by_one(const Problem& problem, std::int64_t n_steps) {
+  const Bodies bodies(problem);
+  const auto begin = begin_of(problem, bodies);
+  const auto sources = bodies.sources();
+  Stepper stepper(sources, problem.contact, problem.time, {});
+  stepper.set_probes(locate_probes(problem.probes, sources));
+  stepper.start(begin.state, 0, begin.loads);
+  return run(stepper, begin, n_steps);
+}
+
+/// Cuts a process's part out of the whole bodies.
+class OwnPart {
+ public:
+  OwnPart(const Problem& problem, const Bodies& bodies, Processes& processes, const Partition& partition,
+          std::span<const BodySteps> steps) {
+    const auto all = partition.all(processes.rank());
+    const auto own = partition.own(processes.rank());
+    const auto whole = bodies.sources();
+    meshes_.reserve(2);
+    parts_.reserve(2);
+    for (std::size_t b = 0; b < whole.size(); ++b) {
+      meshes_.push_back(mesh::make_columns(bodies.plates[b], all));
+      parts_.push_back({all, partition.n_columns(), own, steps[b],
+                        [&](std::span<double> values) { processes.reduce_max(values); }});
+      sources_.push_back({meshes_[b], whole[b].material, &parts_[b]});
+    }
+    part_ = std::make_unique<Subdomain>(processes, partition, sources_, problem.contact, problem.time,
+                                        problem.execution, interface_nodes_in(bodies.above, all));
+  }
+  std::unique_ptr<Subdomain> take() { return std::move(part_); }
+
+ private:
+  std::vector<mesh::Mesh> meshes_;
+  std::vector<BodySubdomain> parts_;
+  std::vector<BodySource> sources_;
+  std::unique_ptr<Subdomain> part_;
+};
+
+/// The bodies on several processes; the state before the event is in them.
+class Team {
+ public:
+  Team(int n_processes, const Problem& problem)
+      : problem_(problem), bodies_(problem), mail_(n_processes), leader_(mail_, 0) {
+    const auto sources = bodies_.sources();
+    for (const auto& source : sources) steps_.push_back(body_steps(source, problem.time));
+    partition_ = partition_bodies(sources, steps_, problem.time, n_processes);
+    for (int rank = 1; rank < n_processes; ++rank)
+      others_.emplace_back([this, rank] {
+        test::ThreadProcess process(mail_, rank);
+        OwnPart own(problem_, bodies_, process, partition_, steps_);
+        const auto part = own.take();
+        serve(process, *part);
+      });
+    std::vector<const mesh::Mesh*> meshes = {&bodies_.above};
+    if (bodies_.below) meshes.push_back(&*bodies_.below);
+    OwnPart own(problem_, bodies_, leader_, partition_, steps_);
+    stepper_ = std::make_unique<DistributedStepper>(leader_, partition_, own.take(), meshes);
+    stepper_->set_probes(locate_probes(problem.probes, sources));
+    const auto begin = begin_of(problem, bodies_);
+    stepper_->start(begin.state, 0, begin.loads);
+  }
+  ~Team() { stepper_.reset(); }
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+  DistributedStepper& stepper() { return *stepper_; }
+  Begin begin() const { return begin_of(problem_, bodies_); }
+
+ private:
+  Problem problem_;
+  Bodies bodies_;
+  test::Mailboxes mail_;
+  test::ThreadProcess leader_;
+  std::vector<BodySteps> steps_;
+  Partition partition_;
+  std::vector<std::jthread> others_;
+  std::unique_ptr<DistributedStepper> stepper_;
+};
+
+Outcome run_by(int n_processes, const Problem& problem, std::int64_t n_steps) {
+  Team team(n_processes, problem);
+  return run(team.stepper(), team.begin(), n_steps);
+}
+
+/// @param rounding  of the sums over nodes
+void expect_same(const Outcome& one, const Outcome& several, double rounding) {
+  EXPECT_EQ(one.snapshot.time_s, several.snapshot.time_s);
+  EXPECT_EQ(one.snapshot.u_m.x, several.snapshot.u_m.x);
+  EXPECT_EQ(one.snapshot.u_m.y, several.snapshot.u_m.y);
+  EXPECT_EQ(one.snapshot.v_m_per_s.x, several.snapshot.v_m_per_s.x);
+  EXPECT_EQ(one.snapshot.v_m_per_s.y, several.snapshot.v_m_per_s.y);
+  ASSERT_EQ(one.record.onsets.size(), several.record.onsets.size());
+  for (std::size_t k = 0; k < one.record.onsets.size(); ++k) {
+    EXPECT_EQ(one.record.onsets[k].node, several.record.onsets[k].node);
+    EXPECT_EQ(one.record.onsets[k].time_s, several.record.onsets[k].time_s);
+    for (int a = 0; a < 2 * one.record.halo + 1; ++a) {
+      const auto& x = one.record.around_onset(k)[a];
+      const auto& y = several.record.around_onset(k)[a];
+      if (std::isnan(x.t_Pa)) {
+        EXPECT_TRUE(std::isnan(y.t_Pa));
+        continue;
+      }
+      EXPECT_EQ(x.t_Pa, y.t_Pa);
+      EXPECT_EQ(x.p_Pa, y.p_Pa);
+    }
+  }
+  ASSERT_EQ(one.record.stops.size(), several.record.stops.size());
+  for (std::size_t k = 0; k < one.record.stops.size(); ++k) {
+    EXPECT_EQ(one.record.stops[k].node, several.record.stops[k].node);
+    EXPECT_EQ(one.record.stops[k].time_s, several.record.stops[k].time_s);
+  }
+  EXPECT_EQ(one.record.n_onsets_left_out, several.record.n_onsets_left_out);
+  EXPECT_EQ(one.record.resolution_s, several.record.resolution_s);
+  EXPECT_EQ(one.history.time_s, several.history.time_s);
+  for (const auto& field : record::history_fields)
+    EXPECT_EQ(one.history.*field.member, several.history.*field.member) << field.name;
+  EXPECT_EQ(one.probes.time_s, several.probes.time_s);
+  for (const auto& field : record::probe_fields)
+    EXPECT_EQ(one.probes.*field.member, several.probes.*field.member) << field.name;
+  double largest = 0;
+  for (const auto& term : record::energy_terms)
+    largest = std::max(largest, std::abs(one.energies.*term.member));
+  for (const auto& term : record::energy_terms)
+    EXPECT_NEAR(one.energies.*term.member, several.energies.*term.member, rounding * largest) << term.name;
+  EXPECT_EQ(one.node_updates, several.node_updates);
+}
+
+constexpr std::int64_t n_steps = 150;
+
+void expect_parts_change_nothing(const Problem& problem, std::vector<int> numbers = {2, 3}) {
+  const auto one = run_by_one(problem, n_steps);
+  EXPECT_GT(one.record.onsets.size(), 20U);
+  for (const int n : numbers) {
+    SCOPED_TRACE(fmt::format("{} processes", n));
+    const bool is_single = problem.time.precision == Precision::single_precision;
+    expect_same(one, run_by(n, problem, n_steps), is_single ? 1e-7 : 1e-13);
+  }
+}
+
+/// Three sizes of elements; local steps need the damping.
+Problem graded() {
+  Problem problem;
+  problem.plate.coarsenings = problem.coarsenings_below = 2;
+  problem.plate.fine_height_m = 4e-3;
+  problem.stiffness_damping_s = 1e-7;
+  problem.probes = {{"a", 0.0501, 0.0049}, {"b", 0.1004, 0.0102}, {"c", 0.0672, 0.0201}};
+  return problem;
+}
+
+struct Variant {
+  const char* name;
+  void (*change)(Problem&);
+  std::vector<int> numbers = {2, 3};
+};
+
+void without_substeps(Problem& p) {
+  p.time.interface_substeps = p.time.interface_rows = 1;
+}
+
+void with_threads(Problem& p) {
+  p.plate.height_m = 0.2;
+  p.execution.threads = 2;
+  without_substeps(p);
+}
+
+void between_absorbing_edges(Problem& p) {
+  p.plate.sides = mesh::Sides::absorbing;
+  p.plate.top = mesh::Top::absorbing;
+}
+
+/// The rupture passes the sides.
+void repeating(Problem& p) {
+  p.below = &gel;
+  p.plate.sides = mesh::Sides::periodic;
+  p.plate.top = mesh::Top::absorbing;
+  p.patch = 0.97;
+}
+
+void of_heights(Problem& p, double height_m, double height_below_m) {
+  p.below = &pmma;
+  p.plate.height_m = height_m;
+  p.height_below_m = height_below_m;
+  p.probes.clear();
+  without_substeps(p);
+}
+
+void graded_bodies(Problem& p, const solid::Material& below, int coarsenings, int coarsenings_below) {
+  p = graded();
+  p.below = &below;
+  p.plate.width_m = 0.4;
+  p.plate.coarsenings = coarsenings;
+  p.coarsenings_below = coarsenings_below;
+}
+
+void repeating_alone(Problem& p) {
+  p.plate.sides = mesh::Sides::periodic;
+}
+/// Nodes around an onset: five parts have 40 columns each.
+constexpr int beyond_a_part = 60;
+
+constexpr auto single = Precision::single_precision;
+constexpr auto predictor_corrector = interface::ContactAlgorithm::predictor_corrector;
+
+const Variant variants[] = {
+    {"Plain", [](Problem&) {}, {2, 3, 4, 5}},
+    {"Strained", [](Problem& p) { p.is_strained = true; }},
+    {"Threads", with_threads},
+    {"ThreadsSingle", [](Problem& p) { with_threads(p), p.time.precision = single; }},
+    {"Relief", [](Problem& p) { p.plate.corner = mesh::Corner::relief; }},
+    {"ReliefSingle", [](Problem& p) { p.plate.corner = mesh::Corner::relief, p.time.precision = single; }},
+    {"Fillet", [](Problem& p) { p.plate.corner = mesh::Corner::fillet; }},
+    {"AbsorbingEdges", between_absorbing_edges},
+    {"Repeating", repeating, {2, 3, 4}},
+    {"TwoBodies", [](Problem& p) { p.below = &gel, p.contact.algorithm = predictor_corrector; }},
+    {"LowOnLow", [](Problem& p) { of_heights(p, 7e-3, 6e-3); }, {2}},
+    {"LowOnHigh", [](Problem& p) { of_heights(p, 9e-3, 60e-3); }, {2}},
+    {"TractionsOfOnsetsAlone", [](Problem& p) { p.halo = 0; }, {2, 5}},
+    {"TractionsFarAround", [](Problem& p) { p.halo = beyond_a_part; }, {2, 5}},
+    {"RepeatingTractionsOfOnsetsAlone", [](Problem& p) { repeating_alone(p), p.halo = 0; }, {2, 5}},
+    {"RepeatingTractionsFarAround", [](Problem& p) { repeating_alone(p), p.halo = beyond_a_part; }, {2, 5}},
+    {"Regularised",
+     [](Problem& p) {
+       p.contact.regularisation = {.relaxed = interface::Relaxed::strength, .time_s = 0.5e-6};
+     }},
+    {"Graded", [](Problem& p) { p = graded(); }, {2, 3, 4, 5}},
+    {"GradedOneStep", [](Problem& p) { p = graded(), p.time.local_steps = false, without_substeps(p); }},
+    {"GradedFillet",
+     [](Problem& p) {
+       p = graded();
+       p.plate.corner = mesh::Corner::fillet;
+       p.plate.fine_height_m = 9e-3;
+       p.plate.coarsenings = 1;
+     }},
+    {"GradedHalfUnits",
+     [](Problem& p) { p = graded(), p.plate.width_m = 0.204, between_absorbing_edges(p); }},
+    {"GradedRepeating", [](Problem& p) { graded_bodies(p, gel, 2, 2), repeating(p); }, {2, 3, 4}},
+    {"GradedSingle", [](Problem& p) { p = graded(), p.plate.height_m = 0.1, p.time.precision = single; }},
+    {"EvenOnGradedOneStep",
+     [](Problem& p) { graded_bodies(p, pmma, 0, 2), p.time.local_steps = false; },
+     {2}},
+    {"GradedOnEven",
+     [](Problem& p) { graded_bodies(p, gel, 2, 0), p.contact.algorithm = predictor_corrector; }},
+    {"GradedOnMoreGraded",
+     [](Problem& p) { graded_bodies(p, gel, 1, 2), p.contact.algorithm = predictor_corrector; }},
+};
+
+class PartsOf : public ::testing::TestWithParam<Variant> {};
+INSTANTIATE_TEST_SUITE_P(Variants, PartsOf, ::testing::ValuesIn(variants),
+                         [](const auto& variant) { return variant.param.name; });
+
+TEST_P(PartsOf, ABodyMoveAsItDoes) {
+  Problem problem;
+  GetParam().change(problem);
+  expect_parts_change_nothing(problem, GetParam().numbers);
+}
+
+TEST(Subdomains, ShareTheStepsBetweenExchangesAmongThreads) {
+  Problem problem;
+  problem.plate.height_m = 0.2;
+  const Bodies bodies(problem);
+  for (const auto& [max_steps, per_sweep] :
+       {std::pair{0, 16}, std::pair{16, 8}, std::pair{5, 3}, std::pair{1, 1}}) {
+    const Execution execution{.threads = 2, .steps_per_sweep = 16, .max_steps = max_steps};
+    EXPECT_EQ(Stepper(bodies.sources(), problem.contact, problem.time, execution).steps_per_sweep(),
+              per_sweep);
+  }
+}
+
+/// Wrong numbers put into the first columns of whole bodies, as far as they have come after a step.
+TEST(Subdomains, AreWrongNoFartherThanTheColumnsOfAStep) {
+  auto even = graded(), of_one_step = graded(), of_two = graded(), without_sub_steps = graded();
+  even.plate.coarsenings = 0;
+  of_one_step.time.local_steps = false;
+  of_two.below = &gel;
+  of_two.plate.coarsenings = 1;
+  without_sub_steps.time.interface_substeps = without_sub_steps.time.interface_rows = 1;
+  for (const auto& problem : {even, graded(), of_one_step, of_two, without_sub_steps}) {
+    const Bodies bodies(problem);
+    const auto sources = bodies.sources();
+    const auto begin = begin_of(problem, bodies);
+    Stepper stepper(sources, problem.contact, problem.time, {});
+    stepper.start(begin.state, 0, begin.loads);
+    const int n_wrong = 16;
+    stepper.visit_columns({0, n_wrong}, []<class T>(T* values, std::size_t n) {
+      if constexpr (std::is_floating_point_v<T>) std::fill_n(values, n, std::numeric_limits<T>::quiet_NaN());
+    });
+    Journey journey(begin);
+    stepper.advance(journey.recorder, 1, {});
+    int end = 0;
+    std::vector<BodySteps> steps;
+    for (const auto& body : stepper.bodies()) {
+      steps.push_back(body.steps());
+      for (std::size_t n = 0; n < body.u_m().size(); ++n)
+        if (!std::isfinite(body.u_m().x[n]) || !std::isfinite(body.v_m_per_s().x[n]))
+          end = std::max(end, body.columns().column_of(static_cast<mesh::Node>(n)) + 1);
+    }
+    const int most = columns_per_step(sources, steps, problem.time);
+    EXPECT_LE(end, n_wrong + most);
+    EXPECT_GT(end, n_wrong);
+  }
+}
+
+std::vector<StateByNode> pieces_of(const DistributedStepper& stepper) {
+  std::vector<StateByNode> pieces;
+  stepper.keep([&](const StateByNode& piece) { pieces.push_back(piece); });
+  return pieces;
+}
+
+void restore_pieces(DistributedStepper& stepper, const std::vector<StateByNode>& pieces) {
+  auto next = pieces.begin();
+  stepper.restore(static_cast<int>(pieces.size()), [&] { return *next++; });
+}
+
+TEST(Subdomains, GoOnWithWhatAnyNumberOfThemKept) {
+  Problem even, of_two, of_graded = graded(), of_two_graded = graded(), repeating = graded();
+  of_two.below = of_two_graded.below = &gel;
+  of_two_graded.plate.coarsenings = 1;
+  of_two_graded.plate.width_m = 0.4;
+  for (auto* problem : {&even, &of_two, &of_graded, &of_two_graded})
+    problem->plate.corner = mesh::Corner::relief;
+  repeating.plate.sides = mesh::Sides::periodic;
+  repeating.plate.top = mesh::Top::absorbing;
+  for (auto problem : {even, of_two, of_graded, of_two_graded, repeating}) {
+    problem.contact.algorithm = interface::ContactAlgorithm::predictor_corrector;
+    const auto one = run_by_one(problem, n_steps);
+    Team two(2, problem), three(3, problem);
+    Journey journey(two.begin());
+    // Probes' velocities begin anew with each stepper.
+    const auto compare = [&] {
+      journey.outcome.probes = one.probes;
+      expect_same(one, journey.outcome, 1e-13);
+    };
+    const std::int64_t first = 49, second = 47;
+    take_steps(journey, two.stepper(), first);
+    restore_pieces(three.stepper(), pieces_of(two.stepper()));
+    take_steps(journey, three.stepper(), second);
+    const Bodies bodies(problem);
+    Stepper by_one(bodies.sources(), problem.contact, problem.time, {});
+    // The last column of a plate that repeats has no cells.
+    const int n_columns = mesh::NodeColumns(bodies.above).n_columns() - (bodies.above.period_m > 0 ? 1 : 0);
+    const SubdomainPlace whole{.own = {0, n_columns}, .interface_nodes = {}};
+    StateByNode kept;
+    for (auto& piece : pieces_of(three.stepper())) kept.add(std::move(piece), 3);
+    kept.sort();
+    restore(kept, by_one, whole);
+    restore_pieces(two.stepper(), {keep(by_one, whole)});
+    auto by_two = journey;
+    take_steps(journey, by_one, n_steps - first - second);
+    compare();
+    journey = by_two;
+    take_steps(journey, two.stepper(), n_steps - first - second);
+    compare();
+  }
+}
+
+TEST(Subdomains, DoNotGoOnWithOtherBodies) {
+  Problem narrow, wide;
+  wide.plate.width_m = 0.21;
+  const Bodies bodies(narrow), others(wide);
+  Stepper stepper(bodies.sources(), narrow.contact, narrow.time, {});
+  Stepper other(others.sources(), wide.contact, wide.time, {});
+  const auto kept = keep(stepper, {});
+  EXPECT_THROW(restore(kept, other, {}), UserError);
+}
+
+TEST(BodySteps, OfManySquaresFollowFromInterfaceAndCorners) {
+  // Sides that rounding makes unequal.
+  mesh::Plate even{.width_m = 0.7, .element_size_m = 0.7 / 859, .corner = mesh::Corner::none};
+  even.height_m = 600 * even.element_size_m;
+  auto repeating = even, steep = even;
+  repeating.sides = mesh::Sides::periodic;
+  steep.corner = mesh::Corner::relief;
+  steep.relief_length_m = 5e-3;
+  steep.relief_height_m = 2e-3;
+  steep.relief_depth_m = 9e-3;
+  auto flat = steep;
+  flat.relief_height_m = 1e-5;
+  for (const auto* plate : {&even, &repeating, &steep, &flat}) {
+    const auto whole = mesh::make_plate(*plate), interface = mesh::make_interface(*plate);
+    std::optional<mesh::Mesh> corners;
+    if (plate->corner == mesh::Corner::relief)
+      corners = mesh::make_corners(*plate, solid::rings_around_others);
+    ASSERT_TRUE(solid::takes_frequency_bound(whole.n_nodes(), mesh::blocks(whole)));
+    const auto expected = body_steps({whole, pmma}, {});
+    const auto found = body_steps({interface, pmma, nullptr, corners ? &*corners : nullptr}, {});
+    EXPECT_EQ(found.stable_step_s, expected.stable_step_s);
+    EXPECT_EQ(found.multiples, expected.multiples);
+    // Of the steep reliefs the corners have the highest frequency, elsewhere squares.
+    if (plate == &steep) {
+      EXPECT_GT(body_steps({interface, pmma}, {}).stable_step_s, expected.stable_step_s);
+    }
+  }
+}
+
+/// How 1e10 nodes are divided that no process has, of plates of other measures as many as they have.
+Partition divided(const mesh::Plate& plate, int n_subdomains) {
+  const auto interface = mesh::make_interface(plate);
+  const TimeStepping time{.interface_rows = 1, .interface_substeps = 1};
+  const std::vector<BodySource> bodies = {{interface, pmma}};
+  return partition_bodies(bodies, std::vector{body_steps(bodies.front(), time)}, time, n_subdomains);
+}
+
+TEST(Partition, OfAPlateThatNoneHoldsHasPartsThatCanBeNumbered) {
+  const mesh::Plate plate{
+      .width_m = 141.421, .height_m = 70.71, .element_size_m = 1e-3, .corner = mesh::Corner::none};
+  for (const int n_subdomains : {5, 1000, 10000}) {
+    const auto partition = divided(plate, n_subdomains);
+    EXPECT_EQ(partition.n_columns(), 141422);
+    for (int part = 0; part < n_subdomains; ++part)
+      ASSERT_LT(partition.all(part).count() * std::int64_t{70711}, std::int64_t{1} << 31);
+  }
+  const auto refusal = [](const mesh::Plate& of, int n_subdomains) -> std::string {
+    try {
+      divided(of, n_subdomains);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  for (const int n_subdomains : {2, 4})
+    EXPECT_THAT(refusal(plate, n_subdomains), testing::HasSubstr("number; use more processes, at least 5"));
+  // No narrower than their halos, parts of 1e9 nodes to a column have too many.
+  auto high = plate;
+  high.width_m = 0.04;
+  high.height_m = 1e6;
+  EXPECT_THAT(refusal(high, 2), testing::HasSubstr("more processes would have too few columns"));
+}
+
+TEST(SnapshotPieces, AreAllOfTheNodesOneAfterTheOther) {
+  // 1e11 nodes, a body of as many columns below; rows of half a million, and of almost as many as there
+  // may be.
+  const std::vector<std::vector<mesh::Grid>> bodies = {
+      {{.columns = 447213, .rows = 223606}, {.columns = 447213, .rows = 1000}},
+      {{.columns = 5000, .rows = 500000}},
+      {{.columns = 2147483645, .rows = 3}}};
+  for (const auto& grids : bodies) {
+    std::vector<mesh::NodeColumns> columns;
+    for (const auto& grid : grids) columns.emplace_back(std::span(&grid, 1));
+    const auto pieces = snapshot_chunks(columns);
+    auto piece = pieces.begin();
+    for (int component = 0; component < n_motion_components; ++component)
+      for (std::size_t b = 0; b < grids.size(); ++b) {
+        std::int64_t next = 0;
+        for (int row = 0; row <= grids[b].rows; row = (piece++)->end_row) {
+          ASSERT_EQ(piece->component, MotionComponent{component});
+          ASSERT_EQ(piece->body, static_cast<int>(b));
+          ASSERT_EQ(piece->first_row, row);
+          const auto nodes = nodes_of(*piece, columns);
+          ASSERT_EQ(nodes.first, next);
+          ASSERT_EQ(nodes.count, std::int64_t{grids[b].stride()} * (piece->end_row - row));
+          ASSERT_LE(nodes.count, std::max(nodes_of_snapshot_chunk, grids[b].stride()));
+          next = nodes.end();
+        }
+        EXPECT_EQ(next, grids[b].n_nodes());
+      }
+    EXPECT_EQ(piece, pieces.end());
+  }
+}
+
+TEST(LowerIn, OfAnInterfaceIsThatOfThePlate) {
+  for (const auto sides : {mesh::Sides::free, mesh::Sides::periodic}) {
+    const mesh::Plate plate{.width_m = 0.05,
+                            .height_m = 0.01,
+                            .element_size_m = 1e-3,
+                            .corner = mesh::Corner::none,
+                            .sides = sides};
+    const auto whole = mesh::make_plate(plate), interface = mesh::make_interface(plate);
+    for (const auto& columns : {mesh::Subset({{0, 20}}), mesh::Subset({{17, 51}}), mesh::Subset({{3, 4}}),
+                                mesh::Subset({{0, 9}, {40, 51}})}) {
+      const auto of_whole = interface_nodes_in(whole, columns),
+                 of_interface = interface_nodes_in(interface, columns);
+      ASSERT_EQ(of_interface.count(), of_whole.count());
+      for (int k = 0; k < of_whole.count(); ++k) EXPECT_EQ(of_interface.number_at(k), of_whole.number_at(k));
+    }
+  }
+}
+
+/// How many processes a refusal of n allows.
+int allowed_instead(int n, const Problem& problem, const std::string& why) {
+  try {
+    const Team team(n, problem);
+  } catch (const UserError& error) {
+    const std::string text = error.what();
+    EXPECT_THAT(text, testing::HasSubstr(why));
+    const auto at = text.rfind("choose at most ");
+    return at == std::string::npos ? 0 : std::stoi(text.substr(at + 15));
+  }
+  return n;
+}
+
+/// As many processes as are allowed instead of each number change nothing.
+/// @return how many these are
+std::set<int> expect_allowed_change_nothing(const Problem& problem, std::initializer_list<int> numbers,
+                                            const std::string& why) {
+  std::set<int> allowed;
+  for (const int n : numbers) allowed.insert(allowed_instead(n, problem, why));
+  EXPECT_GT(*allowed.begin(), 0);
+  expect_parts_change_nothing(problem, std::vector<int>(allowed.begin(), allowed.end()));
+  return allowed;
+}
+
+TEST(Subdomains, DoNotEndAtARoundedCorner) {
+  Problem problem;
+  problem.plate.corner = mesh::Corner::fillet;
+  const auto numbers = {6, 7, 9, 11, 13, 15};
+  std::ptrdiff_t n_refused = 0;
+  for (const int interface_rows : {2, 10}) {
+    problem.time.interface_rows = interface_rows;
+    const auto allowed = expect_allowed_change_nothing(problem, numbers, "rounded corner");
+    EXPECT_GT(allowed.size(), 1U);
+    n_refused += std::ranges::count_if(numbers, [&](int n) { return !allowed.contains(n); });
+  }
+  EXPECT_GT(n_refused, 1);
+}
+
+TEST(Subdomains, OfARingHaveHalosThatDoNotMeet) {
+  Problem problem;
+  problem.plate.sides = mesh::Sides::periodic;
+  problem.plate.coarsenings = 3;
+  problem.plate.height_m = 0.12;
+  problem.plate.fine_height_m = 6e-3;
+  problem.time.interface_substeps = 1;
+  std::set<int> allowed_of_all;
+  for (const int columns : {128, 208, 256}) {
+    SCOPED_TRACE(fmt::format("{} columns", columns));
+    problem.plate.width_m = columns * problem.plate.element_size_m;
+    allowed_of_all.merge(expect_allowed_change_nothing(problem, {2, 3, 4}, "fewer than"));
+  }
+  EXPECT_GT(allowed_of_all.size(), 2U);
+}
+
+TEST(Subdomains, AreNoNarrowerThanTheirHalo) {
+  const Problem problem;
+  const int most = allowed_instead(40, problem, "fewer than");
+  EXPECT_LT(most, 40);
+  EXPECT_EQ(allowed_instead(most, problem, ""), most);
+  mesh::Mesh mesh;
+  mesh.grid.columns = 2000;
+  const auto partition = partition_columns(mesh, 8, 5, 3);
+  for (int part = 0; part < 8; ++part) {
+    EXPECT_GE(partition.own(part).end - partition.own(part).begin, partition.halo);
+    EXPECT_GE(partition.halo, 5 * partition.steps_per_exchange + 3);
+  }
+}
+
+}  // namespace
+}  // namespace slipfront::motion

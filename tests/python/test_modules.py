@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each module of the program includes what the plan names for it, and nothing else."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+
+def built() -> dict[str, set[str]]:
+    """What src/CMakeLists.txt lets each module see, in its order."""
+    text = (ROOT / "src/CMakeLists.txt").read_text(encoding="utf-8")
+    calls = re.findall(r"^slipfront_module\((\w+)([^)]*)\)", text, re.MULTILINE)
+    return {name: set(rest.partition("SEES")[2].partition("USES")[0].split()) for name, rest in calls}
+
+
+def folder(module: str) -> Path:
+    """Modules lie in src, uses of the library beside it."""
+    return {
+        "kammer2012": ROOT / "papers/kammer2012",
+        "verification": ROOT / "verification",
+    }.get(module, ROOT / "src" / module)
+
+
+def planned() -> dict[str, set[str]]:
+    """The table of docs/architecture.md."""
+    text = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\w+)` \| ([^|]*)\|", text, re.MULTILINE)
+    return {name: set(re.findall(r"\w+", sees)) for name, sees in rows}
+
+
+def included(module: str) -> set[str]:
+    """Modules of which a module includes headers."""
+    seen = set()
+    for file in folder(module).rglob("*.[ch]pp"):
+        seen |= set(
+            re.findall(r'^#include "(?:papers/)?(\w+)/', file.read_text(encoding="utf-8"), re.MULTILINE)
+        )
+    return seen - {module}
+
+
+def test_the_plan_is_what_is_built():
+    assert built() == planned()
+    assert list(built()) == list(planned())
+
+
+def test_modules_include_what_they_are_named_and_nothing_else():
+    modules = {path.name for path in (ROOT / "src").iterdir() if path.is_dir()}
+    modules |= {path.name for path in (ROOT / "papers").iterdir()} | {"verification"}
+    assert modules == set(built())
+    # base brings errors and assertions: every module may use it.
+    assert {module: included(module) | {"base"} for module in modules} == {
+        module: sees | {"base"} for module, sees in built().items()
+    }
+
+
+def test_the_way_is_one_way():
+    above: set[str] = set()
+    for module, sees in built().items():
+        assert sees <= above, module
+        above.add(module)
+
+
+# For use from outside, by docs/installing.md, and what their headers need where they are installed.
+OUTSIDE = ["base", "mesh", "solid/material.hpp", "fronts", "record", "input", "run/run.hpp"]
+INSTALLED_WITH = {"fmt", "unistd.h", "immintrin.h"}
+
+
+def test_headers_for_programs_outside_need_no_library_but_fmt():
+    src = ROOT / "src"
+    named = [src / name for name in OUTSIDE]
+    headers = [h for place in named for h in ([place] if place.is_file() else place.rglob("*.hpp"))]
+    libraries: dict[str, Path] = {}
+    seen: set[Path] = set()
+    while headers:
+        header = headers.pop()
+        if header in seen:
+            continue
+        seen.add(header)
+        text = header.read_text(encoding="utf-8")
+        headers += [src / name for name in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE)]
+        for name in re.findall(r"^#include <([^>]+)>", text, re.MULTILINE):
+            if "." in name or "/" in name:
+                libraries[name.split("/")[0]] = header
+    assert src / "motion/event.hpp" in seen
+    assert set(libraries) <= INSTALLED_WITH, libraries
