@@ -17,7 +17,7 @@ COMMANDS = {
     "report": "slipfront.report.command",
     "sweep": "slipfront.sweep.command",
 }
-USAGE = f"usage: python -m slipfront {{{','.join(COMMANDS)}}} ARGS; each tells its own with --help"
+USAGE = f"usage: python -m slipfront {{{','.join(COMMANDS)}}} ARGS; COMMAND --help prints them"
 
 
 def missing(name: str, package: str) -> str:

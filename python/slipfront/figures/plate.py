@@ -62,7 +62,7 @@ def draw_edges(ax: Axes, segments: np.ndarray, **look: Any) -> None:
 def draw_mesh(ax: Axes, fields: Fields, columns: int, rows: int) -> int:
     """Outline, every k-th grid line, and a magnified lower left corner with every cell; returns k."""
     if not (0 < columns <= len(fields.cells) and 0 < rows <= len(fields.cells)):
-        raise DataError(f"{fields.file}: not the mesh of {columns} x {rows} cells that run.json tells")
+        raise DataError(f"{fields.file}: not the mesh of {columns} x {rows} cells that run.json gives")
     points = style.mm(fields.points_m)
     ends, boundary = edges(fields.cells)
     every = coarsening(columns, rows)

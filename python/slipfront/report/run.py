@@ -51,7 +51,7 @@ def is_kind(folder: Path) -> bool:
 
 
 def number_words(value: Any, form: str, factor: float = 1.0, unit: str = "") -> str:
-    return f"{factor * value:{form}}{unit}" if is_number(value) else "not told"
+    return f"{factor * value:{form}}{unit}" if is_number(value) else "not given"
 
 
 def mesh_words(run: Run) -> str:
@@ -71,7 +71,7 @@ def ending(run: Run) -> str:
     if STATUSES[run.status] is not None:
         return f"<b>{words(run.mark)}</b>" + (f": {words(run.reason)}" if run.reason else "")
     end = str(run.info.get("end", ""))
-    return "complete: " + words(ENDS.get(end, end) or "why it ended is not told")
+    return "complete: " + words(ENDS.get(end, end) or "why it ended is not given")
 
 
 def waves_words(run: Run) -> str:
@@ -96,7 +96,7 @@ def rupture_words(run: Run) -> str:
     """S before the event, and what it lets expect; of runs that tell it."""
     rupture = run.info.get("rupture")
     if not isinstance(rupture, dict):
-        return "not told"
+        return "not given"
     S = rupture.get("strength_excess_S")
     spread = [
         number_words(S.get(k) if isinstance(S, dict) else None, ".3g") for k in ("min", "median", "max")
