@@ -132,7 +132,8 @@ void add_extrapolated(InterfaceStep& result) {
     }
 }
 
-/// The cheapest that is within the tolerance at nine tenths of the stations or more; -1: none.
+}  // namespace
+
 int cheapest(const InterfaceStep& result) {
   int chosen = -1;
   const auto within = [&](const Stepping& s) {
@@ -144,8 +145,6 @@ int cheapest(const InterfaceStep& result) {
       chosen = static_cast<int>(k);
   return chosen;
 }
-
-}  // namespace
 
 InterfaceStep study_interface_step(const input::Case& config, const InterfaceStepOptions& options,
                                    const StudyMonitor& monitor) {

@@ -55,6 +55,10 @@ struct InterfaceStep {
 InterfaceStep study_interface_step(const input::Case& config, const InterfaceStepOptions& options,
                                    const StudyMonitor& monitor);
 
+/// Place in `all` of the cheapest way within the tolerance at nine tenths of the stations or more, without
+/// extrapolation; -1: none.
+int cheapest(const InterfaceStep& result);
+
 /// interface_step.csv (a row per way of stepping), interface_step.json, and chosen.toml, the case with the
 /// chosen rows and sub-steps, where one is within the tolerance.
 void write_interface_step(const std::filesystem::path& dir, const input::Case& config,

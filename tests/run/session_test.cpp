@@ -216,6 +216,13 @@ TEST_F(InterruptedRun, TakesTheCheckpointBeforeADamagedOne) {
   expect_same(results_in(folder_.path()), results_of(config_));
 }
 
+TEST_F(InterruptedRun, AddsTheWallTimeOfItsSessions) {
+  const double before_s =
+      Checkpoints(folder_ / "unfinished/state").last([](const std::string&) {})->head.wall_s;
+  EXPECT_GT(before_s, 0);
+  EXPECT_GT(resume(folder_.path(), stopping_at("event", 101)).result.stepping_wall_s, before_s);
+}
+
 TEST_F(InterruptedRun, BeginsAnewWithoutAnyCheckpoint) {
   for (const auto& file : checkpoints()) fs::remove(file);
   EXPECT_EQ(resume_error(), test::accepted);

@@ -120,6 +120,21 @@ TEST_F(CoarseStudy, ChoosesTheCheapestOfWhatItTries) {
   }
 }
 
+TEST(InterfaceStepStudy, ChoosesAWayThatIsComparedAtNineTenthsOfTheStations) {
+  InterfaceStep result;
+  result.options.tolerance = 0.01;
+  result.stations.resize(20);
+  const auto way = [](Kind kind, double cost, double p90_error, int n_stations) {
+    return Stepping{.kind = kind, .cost = cost, .p90_error = p90_error, .n_stations = n_stations};
+  };
+  result.all = {way(Kind::layer, 1, 0.01, 17), way(Kind::layer, 2, 0.011, 20),
+                way(Kind::extrapolated, 3, 0, 20)};
+  EXPECT_EQ(cheapest(result), -1);
+  result.all.push_back(way(Kind::plain, 5, 0, 20));
+  result.all.push_back(way(Kind::layer, 4, 0.01, 18));
+  EXPECT_EQ(cheapest(result), 4);
+}
+
 TEST(InterfaceStepStudy, CanBeInterrupted) {
   EXPECT_THROW(study_interface_step(coarse_case(), {}, [](std::size_t, std::size_t) { return false; }),
                Interrupted);
