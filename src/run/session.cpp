@@ -338,7 +338,7 @@ std::string what_was_kept(const results::ResultFolder& folder) {
 }
 
 std::string how_to_resume(const results::ResultFolder& folder) {
-  return fmt::format("{}; slipfront run --restart {} goes on with it", what_was_kept(folder),
+  return fmt::format("{}; slipfront run --restart {} continues the run", what_was_kept(folder),
                      folder.dir().string());
 }
 

@@ -37,6 +37,11 @@ def test_deaths_while_results_are_made_and_published(bench, over_results):
     all_hold(faults.trials(setting, faults.DEATHS, every=5, among=slice(-60, None)))
 
 
+def test_power_lost_between_checkpoints(bench):
+    setting = faults.run_setting(bench, False)
+    all_hold(faults.trials(setting, [("power", 0)], every=7))
+
+
 def test_deaths_while_earlier_work_is_removed(bench):
     setting = faults.run_over_work_setting(bench)
     all_hold(faults.trials(setting, faults.DEATHS[:1] + faults.FAILURES[:1], among=slice(24)))

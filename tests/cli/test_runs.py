@@ -213,7 +213,7 @@ def test_blow_up_keeps_what_there_is(program, coarse, tmp_path):
     assert len(lines) == 1
     step = int(re.search(r"\bstep (\d+)\b", lines[0])[1])
     assert "time.step_factor" in lines[0]
-    assert "kept in out/unfinished" in lines[0]
+    assert "results are in out/unfinished" in lines[0]
     assert files_in(tmp_path / "out/unfinished") == SO_FAR | {"state"}
     run = summary(tmp_path / "out/unfinished")
     assert run["end"] == "blow_up"
@@ -235,7 +235,7 @@ def test_interruption_keeps_what_there_is(program, coarse, tmp_path, sent):
     assert output == ""
     last = errors.splitlines()[-1]
     assert "interrupted at t = " in last
-    assert "kept in out/unfinished" in last
+    assert "results are in out/unfinished" in last
     assert "slipfront run --restart out" in last
     assert files_in(tmp_path / "out/unfinished") == SO_FAR | {"state"}
     run = summary(tmp_path / "out/unfinished")

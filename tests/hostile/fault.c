@@ -5,15 +5,18 @@
  * FAULT_BELOW  the folder, an absolute path without links
  * FAULT_AT     which call, counted from 1
  * FAULT_MODE   once: this call fails; on: so does every later one; short: it writes half of its bytes and
- * succeeds; kill: the process is killed before it; tear: it writes half of its bytes, and the process is
- * killed FAULT_ERROR  errno of the calls that fail FAULT_COUNT  file of 8 bytes that receives the number of
- * calls, readable however the process ends
+ *              succeeds; kill: the process is killed before it; tear: it writes half of its bytes, and the
+ *              process is killed; power: before it the power fails, so that files lose what was written to
+ *              them since they were last synchronised
+ * FAULT_ERROR  errno of the calls that fail
+ * FAULT_COUNT  file of 8 bytes that receives the number of calls, readable however the process ends
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -22,11 +25,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/types.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
-enum mode { none, once, on, cut_short, die, tear };
+enum mode { none, once, on, cut_short, die, tear, power };
 
 static char below[PATH_MAX];
 static size_t below_length;
@@ -38,8 +42,8 @@ static _Atomic long* count;
 #define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 
 static enum mode mode_of(const char* name) {
-  static const char* const names[] = {"none", "once", "on", "short", "kill", "tear"};
-  for (int k = 0; name != NULL && k <= tear; ++k)
+  static const char* const names[] = {"none", "once", "on", "short", "kill", "tear", "power"};
+  for (int k = 0; name != NULL && k <= power; ++k)
     if (strcmp(name, names[k]) == 0) return (enum mode)k;
   return none;
 }
@@ -105,10 +109,48 @@ static bool fd_is_written(int fd) {
   return flags >= 0 && writes(flags) && fd_is_ours(fd);
 }
 
+/* The files that were written to, and their lengths when they were last synchronised. */
+static struct {
+  dev_t device;
+  ino_t inode;
+  int fd; /* a copy, so that it outlives close, rename and unlink */
+  off_t safe_length;
+} written[256];
+static int n_written;
+static pthread_mutex_t written_mutex = PTHREAD_MUTEX_INITIALIZER;
+
+/* To be called before a write, and after the file was synchronised. */
+static void note_file(int fd, bool synchronised) {
+  struct stat file;
+  if (mode != power || fstat(fd, &file) != 0 || !S_ISREG(file.st_mode)) return;
+  pthread_mutex_lock(&written_mutex);
+  int k = 0;
+  while (k < n_written && (written[k].device != file.st_dev || written[k].inode != file.st_ino)) ++k;
+  if (k == n_written) {
+    if (n_written == sizeof(written) / sizeof(*written)) abort();
+    ++n_written;
+    written[k].device = file.st_dev;
+    written[k].inode = file.st_ino;
+    written[k].fd = fcntl(fd, F_DUPFD_CLOEXEC, 100);
+    written[k].safe_length = file.st_size;
+  } else if (synchronised) {
+    written[k].safe_length = file.st_size;
+  }
+  pthread_mutex_unlock(&written_mutex);
+}
+
+static void lose_power(void) {
+  pthread_mutex_lock(&written_mutex);
+  for (int k = 0; k < n_written; ++k)
+    if (REAL(ftruncate)(written[k].fd, written[k].safe_length) != 0) abort();
+  raise(SIGKILL);
+}
+
 /* Counts a call. Returns whether it is to fail. */
 static bool fails(void) {
   const long n = atomic_fetch_add(count, 1) + 1;
   if (n == at && mode == die) raise(SIGKILL);
+  if (n == at && mode == power) lose_power();
   if ((n == at && mode == once) || (n >= at && mode == on)) {
     errno = error;
     return true;
@@ -117,7 +159,8 @@ static bool fails(void) {
 }
 
 /* The same for a call that writes. `bytes` becomes less where the call is to be cut short. */
-static bool write_fails(size_t* bytes, bool* torn) {
+static bool write_fails(int fd, size_t* bytes, bool* torn) {
+  note_file(fd, false);
   const bool now = atomic_load(count) + 1 == at;
   *torn = now && mode == tear;
   if (now && (mode == cut_short || mode == tear) && *bytes > 1) *bytes /= 2;
@@ -155,21 +198,21 @@ OPENAT(openat64)
 
 ssize_t write(int fd, const void* data, size_t bytes) {
   bool torn = false;
-  if (fd_is_ours(fd) && write_fails(&bytes, &torn)) return -1;
+  if (fd_is_ours(fd) && write_fails(fd, &bytes, &torn)) return -1;
   return end_of_write(REAL(write)(fd, data, bytes), torn);
 }
 
 ssize_t writev(int fd, const struct iovec* pieces, int n) {
   size_t bytes = 0;
   bool torn = false;
-  if (fd_is_ours(fd) && write_fails(&bytes, &torn)) return -1;
+  if (fd_is_ours(fd) && write_fails(fd, &bytes, &torn)) return -1;
   return end_of_write(REAL(writev)(fd, pieces, n), torn);
 }
 
 #define PWRITE(name)                                                   \
   ssize_t name(int fd, const void* data, size_t bytes, off_t offset) { \
     bool torn = false;                                                 \
-    if (fd_is_ours(fd) && write_fails(&bytes, &torn)) return -1;       \
+    if (fd_is_ours(fd) && write_fails(fd, &bytes, &torn)) return -1;   \
     return end_of_write(REAL(name)(fd, data, bytes, offset), torn);    \
   }
 PWRITE(pwrite)
@@ -184,11 +227,15 @@ int close(int fd) {
   return -1;
 }
 
+static int end_of_sync(int fd, int result) {
+  if (result == 0 && fd_is_ours(fd)) note_file(fd, true);
+  return result;
+}
 int fsync(int fd) {
-  return fd_is_ours(fd) && fails() ? -1 : REAL(fsync)(fd);
+  return fd_is_ours(fd) && fails() ? -1 : end_of_sync(fd, REAL(fsync)(fd));
 }
 int fdatasync(int fd) {
-  return fd_is_ours(fd) && fails() ? -1 : REAL(fdatasync)(fd);
+  return fd_is_ours(fd) && fails() ? -1 : end_of_sync(fd, REAL(fdatasync)(fd));
 }
 int ftruncate(int fd, off_t length) {
   return fd_is_ours(fd) && fails() ? -1 : REAL(ftruncate)(fd, length);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs of which one call to the system fails, or that are killed at one: each that changes files, in turn."""
+"""Runs of which one call to the system fails, or that die at one, of a signal or with the power: each that changes files, in turn."""
 
 import errno
 import shutil
@@ -33,7 +33,7 @@ FAILURES = [
     ("on", errno.EIO),
     ("short", 0),
 ]
-DEATHS = [("kill", 0), ("tear", 0)]
+DEATHS = [("kill", 0), ("tear", 0), ("power", 0)]
 
 
 @dataclass
@@ -94,7 +94,7 @@ class Setting:
         if process.returncode == 0:
             (folder / LOCK).unlink(missing_ok=True)  # its removal may be what failed
             require_same(alone(folder), self.new, "done, and other results")
-        elif mode in ("kill", "tear"):
+        elif mode in ("kill", "tear", "power"):
             require(
                 process.returncode == -signal.SIGKILL, f"exit {process.returncode}: {process.stderr_text}"
             )

@@ -187,7 +187,7 @@ def test_refused_cases(mpirun, case, tmp_path, n, setting, told):
 def test_blow_up(mpirun, case, tmp_path):
     unstable = ("--set", "time.allow_unstable=true", "--set", "time.step_factor=1.4")
     result = mpirun(2, "run", case, "-o", "out", "-q", *unstable)
-    assert "kept in out/unfinished" in one_line(result, 3)
+    assert "results are in out/unfinished" in one_line(result, 3)
     assert (tmp_path / "out/unfinished/run.json").is_file()
 
 
@@ -276,7 +276,7 @@ def test_interrupted_leader(mpirun, case, undisturbed):
     process, pids = in_event(mpirun, case)
     send(pids[0], signal.SIGTERM)
     if line := interrupted_line(finished(process)):
-        assert "kept in out/unfinished" in line
+        assert "results are in out/unfinished" in line
         assert "--restart out" in line
     require_goes_on(mpirun, case, undisturbed)
 

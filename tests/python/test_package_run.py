@@ -208,7 +208,7 @@ def test_ctrl_c_keeps_a_checkpoint_and_resume_goes_on(tmp_path, threads):
     last = process.communicate(timeout=HANG_S)[0].splitlines()[-1]
     assert process.returncode == 0
     assert last.startswith("KeyboardInterrupt: interrupted at t = ")
-    assert last.endswith(f"slipfront run --restart {tmp_path / 'out'} goes on with it")
+    assert last.endswith(f"slipfront run --restart {tmp_path / 'out'} continues the run")
 
     so_far = slipfront.open(tmp_path / "out")
     assert so_far.status == "interrupted"
