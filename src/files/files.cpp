@@ -137,6 +137,7 @@ void write_text(const std::filesystem::path& file, const std::function<void(Outp
   try {
     OutputFile output = OutputFile::create(fresh);
     write(output);
+    output.sync();
     output.close();
     move_file(fresh, file);
   } catch (const WriteError&) {

@@ -72,7 +72,8 @@ class PlacedFile {
   Descriptor file_;
 };
 
-/// Writes a text file that is there completely, or not at all: under another name first.
+/// Writes a text file that is there completely, or not at all, after a loss of power too: under another name
+/// first.
 void write_text(const std::filesystem::path& file, std::string_view text);
 /// The same piece by piece.
 void write_text(const std::filesystem::path& file, const std::function<void(OutputFile&)>& write);

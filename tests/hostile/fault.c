@@ -113,7 +113,7 @@ static bool fd_is_written(int fd) {
 static struct {
   dev_t device;
   ino_t inode;
-  int fd; /* a copy, so that it outlives close, rename and unlink */
+  int fd; /* opened anew, without the locks of the other: it outlives close, rename and unlink */
   off_t safe_length;
 } written[256];
 static int n_written;
@@ -131,7 +131,9 @@ static void note_file(int fd, bool synchronised) {
     ++n_written;
     written[k].device = file.st_dev;
     written[k].inode = file.st_ino;
-    written[k].fd = fcntl(fd, F_DUPFD_CLOEXEC, 100);
+    char link[64];
+    snprintf(link, sizeof(link), "/proc/self/fd/%d", fd);
+    written[k].fd = REAL(open)(link, O_RDWR | O_CLOEXEC);
     written[k].safe_length = file.st_size;
   } else if (synchronised) {
     written[k].safe_length = file.st_size;
