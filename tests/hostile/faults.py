@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs of which one call to the system fails, or that die at one, of a signal or with the power: each that changes files, in turn."""
+"""Runs of which one call to the system fails, or that die at one, killed or with the power: each call that
+changes files, in turn."""
 
 import errno
 import shutil
