@@ -15,7 +15,9 @@ volatile std::sig_atomic_t checkpoint = 0;
 
 void on_end(int signal) {
   ended_by = signal;
-  for (const int each : {SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU}) std::signal(each, SIG_DFL);
+  // A second key ends the program at once. The other signals may come twice for one event: HUP of kernel and shell,
+  // TERM once for each thread of a parent that is killed (PR_SET_PDEATHSIG), XCPU each second.
+  for (const int each : {SIGINT, SIGQUIT}) std::signal(each, SIG_DFL);
 }
 
 void on_refused_write(int signal, siginfo_t* info, void* /*context*/) {

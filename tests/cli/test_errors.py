@@ -264,7 +264,7 @@ def test_file_that_cannot_grow(program, coarse, tmp_path, file_bytes, settings, 
     assert f"out/unfinished/{file}" in line
     assert "File too large" in line
     if file.startswith("state"):  # the event had begun
-        assert "slipfront run --restart out goes on" in line
+        assert "slipfront run --restart out continues the run" in line
         assert program("run", "--restart", "out", "-q").returncode == 0
         assert program("run", coarse, "-o", "again", "-q", *arguments).returncode == 0
         for name in ("interface.h5", "fronts.csv", "energy.csv"):
