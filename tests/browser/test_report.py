@@ -9,11 +9,11 @@ import time
 from pathlib import Path
 
 import pytest
-from hostile.trials import HANG_S
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
+from shared import HANG_S
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")

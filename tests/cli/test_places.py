@@ -2,12 +2,9 @@
 """What is found wrong after a case was read is told with the line of the key at fault."""
 
 import re
-from pathlib import Path
 
 import pytest
-from test_commands import one_line
-
-ROOT = Path(__file__).resolve().parents[2]
+from shared import ROOT, refusal, sets
 
 COARSE = "[plate]\nelement_size_m = 5e-3\n"
 SQUARE = COARSE + 'corner = "none"\n'
@@ -88,7 +85,7 @@ def place(case, text, override):
 def test_the_line_is_that_of_the_key_at_fault(program, write_case, tmp_path, text, override):
     (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.1,2.1e6,5e6\n")
     case = write_case(text)
-    told = one_line(program("validate", case, *(["--set", override] if override else [])))
+    told = refusal(program("validate", case, *sets(*filter(None, [override]))))
     assert told.startswith(place(case, text, override))
 
 
@@ -123,7 +120,7 @@ LATE = {
 def test_the_line_is_that_of_what_only_the_statics_find(program, write_case, tmp_path, text, override, words):
     text = COARSE + "[friction]\n" + text
     case = write_case(text)
-    told = one_line(program("run", case, "-o", "out", *(["--set", override] if override else [])))
+    told = refusal(program("run", case, "-o", "out", *sets(*filter(None, [override]))))
     assert told.startswith(place(case, text, override))
     for word in words:
         assert word in told

@@ -7,7 +7,7 @@ import os
 import subprocess
 from pathlib import Path
 
-from hostile.trials import HANG_S
+from shared import HANG_S
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 
 import pytest
-from hostile.trials import HANG_S
+from shared import HANG_S
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs/notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))

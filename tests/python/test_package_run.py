@@ -15,8 +15,8 @@ import tomllib
 import numpy as np
 import pytest
 import slipfront
-from hostile.trials import HANG_S
 from package_cases import CASE, ROOT, program, write_case
+from shared import HANG_S
 from slipfront.running import flattened, toml_text
 
 # What does not depend on when and where a run was done.

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from hostile.trials import HANG_S
+from shared import HANG_S
 from synthetic import write_checksums
 from synthetic_study import write_open_choices
 
