@@ -7,7 +7,7 @@ import signal
 import threading
 
 import pytest
-from shared import HANG_S, as_from_a_terminal, built, finished, start
+from common import HANG_S, as_from_a_terminal, built, finished, start
 
 as_from_a_terminal()
 

@@ -4,7 +4,7 @@
 import re
 
 import pytest
-from shared import ROOT, refusal, require_done, run_json, sets
+from common import ROOT, refusal, require_done, run_json, sets
 
 COMMANDS = ["run", "reproduce", "study", "verify", "info", "bench", "validate", "keys"]
 PYTHON_COMMANDS = ["report", "fronts", "sweep"]

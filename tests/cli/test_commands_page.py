@@ -4,7 +4,7 @@
 import re
 
 import pytest
-from shared import ROOT, require_done
+from common import ROOT, require_done
 
 PAGE = (ROOT / "docs/commands.md").read_text(encoding="utf-8")
 

@@ -2,7 +2,7 @@
 """What a user may do wrong: exit code 2, one line that says where and what to do, nothing written."""
 
 import pytest
-from shared import one_line, refusal, require_done, require_same_bytes, sets
+from common import one_line, refusal, require_done, require_same_bytes, sets
 
 GOOD = """\
 [plate]

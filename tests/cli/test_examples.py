@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from shared import ROOT, call, require_done, sets
+from common import ROOT, call, require_done, sets
 from slipfront.read import Front, Run, read_run
 
 pytestmark = pytest.mark.slow

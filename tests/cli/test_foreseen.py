@@ -6,7 +6,7 @@ import re
 import sys
 
 import pytest
-from shared import PEAK_BYTES, call, one_line, refusal, require_done, run_json, settings
+from common import PEAK_BYTES, call, one_line, refusal, require_done, run_json, settings
 
 
 def test_a_history_too_large_for_the_disk_is_refused(program, coarse, tmp_path):

@@ -6,7 +6,7 @@ import csv
 import h5py
 import numpy as np
 import pytest
-from shared import refusal, require_done, require_same_bytes, sets
+from common import refusal, require_done, require_same_bytes, sets
 
 CASE = """\
 [plate]

@@ -5,7 +5,7 @@ import os
 import re
 
 import pytest
-from shared import finished, one_line, refusal, require_done, require_same_bytes, run_json, sets
+from common import finished, one_line, refusal, require_done, require_same_bytes, run_json, sets
 
 PRESTRESSED = """\
 [plate]

@@ -5,7 +5,7 @@ import re
 import shutil
 
 import pytest
-from shared import call, require_done
+from common import call, require_done
 from test_commands import COMMANDS, PYTHON_COMMANDS
 
 STUDIES = ["convergence", "interface-step", "open-choices", "base"]

@@ -4,7 +4,7 @@
 import re
 
 import pytest
-from shared import ROOT, refusal, sets
+from common import ROOT, refusal, sets
 
 COARSE = "[plate]\nelement_size_m = 5e-3\n"
 SQUARE = COARSE + 'corner = "none"\n'

@@ -4,8 +4,8 @@
 import h5py
 import numpy as np
 import pytest
+from common import refusal, require_done, run_json, sets
 from conftest import COARSE
-from shared import refusal, require_done, run_json, sets
 from slipfront.read import PROBE_FIELDS, read_probes
 
 PROBES = '[probes]\nx_m = [0.1, 0.05]\ny_m = [0.01, 0.0]\nnames = ["SG 1", "Kante ä"]\ninterval_s = 2e-6\n'

@@ -7,7 +7,7 @@ import signal
 import sys
 
 import pytest
-from shared import ROOT, finished, one_line, refusal, require_done
+from common import ROOT, finished, one_line, refusal, require_done
 from test_commands import PYTHON_COMMANDS
 
 ECHO = '#!/bin/sh\nshift 2\nprintf "%s|" "$@"\nprintf "%s" "$PYTHONPATH"\n'

@@ -18,7 +18,7 @@ import termios
 import h5py
 import numpy as np
 import pytest
-from shared import (
+from common import (
     ROOT,
     catches_interrupts,
     finished,

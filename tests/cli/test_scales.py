@@ -4,7 +4,7 @@
 import re
 
 import pytest
-from shared import refusal, require_done, run_json, sets
+from common import refusal, require_done, run_json, sets
 
 STEEL = """\
 title = "steel block"

@@ -2,8 +2,8 @@
 """`slipfront run --state-dir`: runs that share the state before the event."""
 
 import pytest
+from common import require_done, run_json, sets
 from hostile.trials import alone
-from shared import require_done, run_json, sets
 
 SHARED = ("--state-dir", "s")
 

@@ -7,7 +7,7 @@ import sys
 from dataclasses import dataclass
 
 import pytest
-from shared import ROOT, WITH_PACKAGE, call, require_done
+from common import ROOT, WITH_PACKAGE, call, require_done
 from slipfront.read import read_run
 
 pytestmark = pytest.mark.slow

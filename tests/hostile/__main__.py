@@ -6,7 +6,7 @@ The last line tells how many held."""
 import sys
 from pathlib import Path
 
-from shared import as_from_a_terminal
+from common import as_from_a_terminal
 
 from . import damage, disk, energy, faults, folders, kills, repeats
 from .trials import Bench, hold, remove, scratch_folder

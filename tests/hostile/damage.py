@@ -7,7 +7,7 @@ import random
 import shutil
 import signal
 
-from shared import finished, one_line, require_done, wait_until_or_over
+from common import finished, one_line, require_done, wait_until_or_over
 
 from .cases import long
 from .trials import TRIES, Trial, Wrong, alone, remove, require, require_same, stopped_under_way

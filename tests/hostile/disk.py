@@ -7,7 +7,7 @@ import subprocess
 import threading
 import time
 
-from shared import one_line, require_done
+from common import one_line, require_done
 
 from .cases import COARSE
 from .trials import Trial, alone, difference, remove, require, require_same, visible

@@ -7,7 +7,7 @@ import signal
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from shared import finished, one_line, require_done, wait_until_or_over
+from common import finished, one_line, require_done, wait_until_or_over
 
 from .cases import COARSE, EARLIER, long
 from .trials import LOCK, TRIES, Bench, Trial, alone, difference, remove, require, require_same, visible

@@ -6,7 +6,7 @@ import shutil
 import signal
 import time
 
-from shared import HANG_S, call, catches_interrupts, finished, one_line, require_done, wait_until_or_over
+from common import HANG_S, call, catches_interrupts, finished, one_line, require_done, wait_until_or_over
 
 from .cases import COARSE, EARLIER, long
 from .trials import LOCK, TRIES, Trial, Wrong, alone, remove, require, require_same, stopped_under_way

@@ -5,7 +5,7 @@ import random
 import signal
 import time
 
-from shared import finished, require_done
+from common import finished, require_done
 
 from .cases import KINDS, long
 from .trials import Trial, alone, remove, require, require_same

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from shared import finished, freeze, require_done, start, wait_until_or_over
+from common import finished, freeze, require_done, start, wait_until_or_over
 
 CHECKSUMS = "checksums.sha256"
 LOCK = ".slipfront.lock"

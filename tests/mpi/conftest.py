@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from shared import as_from_a_terminal, built, call, finished, start
+from common import as_from_a_terminal, built, call, finished, start
 
 as_from_a_terminal()
 

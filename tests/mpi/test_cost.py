@@ -6,8 +6,8 @@ import re
 import statistics
 
 import pytest
+from common import ROOT, refusal, require_done, run_json, sets
 from conftest import Mpirun
-from shared import ROOT, refusal, require_done, run_json, sets
 
 CASE = (
     ROOT / "cases/reference/rigid_flat_a.toml",

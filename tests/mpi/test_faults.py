@@ -11,9 +11,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from conftest import own, send
-from hostile.trials import TRIES, alone, difference, remove
-from shared import (
+from common import (
     ROOT,
     call,
     finished,
@@ -25,6 +23,8 @@ from shared import (
     wait_until,
     wait_until_or_over,
 )
+from conftest import own, send
+from hostile.trials import TRIES, alone, difference, remove
 
 # Elements of 4 mm and 2000 steps: some tenths of a second on idle processors.
 CASE = """\

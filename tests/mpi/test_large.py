@@ -5,7 +5,7 @@ import re
 import sys
 
 import pytest
-from shared import PEAK_BYTES, require_done, run_json
+from common import PEAK_BYTES, require_done, run_json
 from test_same import require_same, stop_after_checkpoint
 
 # 600,000 nodes.

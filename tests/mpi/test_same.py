@@ -5,8 +5,8 @@ import csv
 import signal
 
 import pytest
+from common import finished, require_done, require_same_bytes, run_json, wait_until_or_over
 from conftest import send
-from shared import finished, require_done, require_same_bytes, run_json, wait_until_or_over
 
 # Elements of 2 mm: a run takes a tenth of a second.
 PLATE = """\

@@ -6,8 +6,8 @@ import tomllib
 
 import numpy as np
 import pytest
+from common import require_done, require_same_bytes, run_json, sets
 from conftest import Mpirun
-from shared import require_done, require_same_bytes, run_json, sets
 
 CASE = """\
 title = "shared statics"

@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from common import ROOT
 
 
 def built() -> dict[str, set[str]]:

@@ -16,8 +16,8 @@ HANG_S = 900
 #: Python's environment with this source tree's package.
 WITH_PACKAGE = {**os.environ, "PYTHONPATH": str(ROOT / "python"), "SLIPFRONT_PYTHON": sys.executable}
 
-#: Runs a command, and prints its peak of resident memory, B. A process counts what its parent held when it was
-#: forked as its own: this one, which is small, stands between. Linux gives kB.
+#: Runs a command, and prints its peak of resident memory, B. What its parent held when it was forked counts
+#: as its own: this one, which is small, stands between. Linux gives kB.
 PEAK_BYTES = """\
 import resource, subprocess, sys
 subprocess.run(sys.argv[1:], check=True)
