@@ -14,10 +14,7 @@ from selenium.webdriver.common.by import By
 
 CASES = {
     "probes": ["cases/reference/gauges.toml"],
-    "one body": [
-        "papers/kammer2012/left.toml",
-        *sets("plate.element_size_m=2e-3", "fronts.l_star_m=2e-3"),
-    ],
+    "one body": ["papers/kammer2012/left.toml", *sets("plate.element_size_m=2e-3", "fronts.l_star_m=2e-3")],
     "two bodies": [
         "cases/reference/bimaterial_f.toml",
         *sets("plate.element_size_m=2e-3", "output.history_interval_s=1e-6"),

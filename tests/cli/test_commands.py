@@ -4,7 +4,7 @@
 import re
 
 import pytest
-from common import ROOT, refusal, require_done, run_json, sets
+from common import ROOT, refusal, require_done, sets
 
 COMMANDS = ["run", "reproduce", "study", "verify", "info", "bench", "validate", "keys"]
 PYTHON_COMMANDS = ["report", "fronts", "sweep"]
@@ -72,19 +72,6 @@ def test_papers_cases_are_valid(program, case):
     assert result.stdout.startswith(f"{case}: valid")
 
 
-@pytest.mark.parametrize("text", ["", "# nothing yet\n", "[plate]\n"])
-def test_case_without_a_key_is_refused(program, write_case, text):
-    case = write_case(text)
-    for arguments in ([], sets("plate.element_size_m=5e-3")):
-        assert refusal(program("validate", case, *arguments)).startswith(
-            f"{case}: sets no key; write at least one"
-        )
-
-
-def test_case_with_other_line_ends_is_valid(program, write_case):
-    require_done(program("validate", write_case("[plate]\r\nelement_size_m = 2e-3\r\n")))
-
-
 def test_info_tells_what_follows(program):
     told = require_done(program("info", ROOT / "papers/kammer2012/left.toml")).stdout
     # Kammer et al. (2012), Table 1: c_L = 1584 m/s, c_S = 890 m/s.
@@ -97,31 +84,11 @@ def test_info_tells_what_follows(program):
 
 
 def test_info_tells_whether_sliding_is_well_posed(program, coarse):
-    def verdict(mu, damping_s):
-        case = sets("friction.law=coulomb", f"friction.mu={mu}", f"material.stiffness_damping_s={damping_s}")
+    # On a rigid plane waves grow from mu = 1 on.
+    for mu, verdict in ((0.9, "well-posed"), (1.3, "ill-posed")):
+        case = sets("friction.law=coulomb", f"friction.mu={mu}", "material.stiffness_damping_s=0")
         told = require_done(program("info", coarse, *case)).stdout
-        return re.search(r"^uniform sliding +(.+)$", told, re.MULTILINE)[1]
-
-    # On a rigid plane waves grow from mu = 1 on, and damping bounds their growth.
-    assert verdict(0.9, 0).startswith("well-posed")
-    assert verdict(1.3, 0).startswith("ill-posed")
-    assert verdict(1.3, 1e-6).startswith("well-posed")
-
-
-def test_nominal_pressure_is_that_of_a_free_column(program, coarse):
-    text = program("info", coarse, *sets("loading.tilt_left_m=3e-4", "loading.tilt_right_m=1e-4")).stdout
-    # E times the mean of the two over the height of 0.1 m.
-    assert float(re.search(r"nominal pressure +(\S+) Pa", text)[1]) == pytest.approx(2.6e9 * 2e-4 / 0.1)
-
-
-def test_info_agrees_with_the_run(program, coarse, tmp_path):
-    info = program("info", coarse).stdout
-    require_done(program("run", coarse, "-o", "out", "-q", "--set", "time.quiet_s=inf"))
-    run = run_json(tmp_path / "out")
-    assert int(re.search(r"steps to the end +(\d+)", info)[1]) == run["steps"]
-    assert int(re.search(r"nodes +(\d+)", info)[1]) == run["mesh"]["nodes"]
-    # Printed to four digits.
-    assert float(re.search(r"^step +(\S+) s", info, re.MULTILINE)[1]) == pytest.approx(run["dt_s"], rel=1e-3)
+        assert re.search(rf"^uniform sliding +{verdict}", told, re.MULTILINE)
 
 
 def test_the_reference_page_is_current(program):

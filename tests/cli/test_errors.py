@@ -13,42 +13,15 @@ mu_s = 1.3
 """
 
 
-FILLET = '[plate]\nelement_size_m = 5e-3\ncorner = "fillet"\n'
-
-# The case file, the part of it that stands in the line to be named, and words that tell what to do.
+# The case file, the part of it that stands in the line to be named, and words that tell what to do. What else
+# the schema, its relations and the mesh refuse: tests/input and tests/mesh.
 CASES = [
     ("[plate]\nelement_size_mm = 5e-3\n", "element_size_mm", ["element_size_m?"]),
-    ("[plate]\nqqqqqqqqqqqqqqqqq = 1\n", "qqqqqqqqqqqqqqqqq", ["keys"]),
-    ("[plate]\nmu_s = 1.3\n", "mu_s", ["friction.mu_s"]),
-    ("width_m = 0.2\n", "width_m", ["plate.width_m"]),
-    ("[plates]\nwidth_m = 0.2\n", "[plates]", ["[plate]"]),
     ('[plate]\nwidth_m = "0.2"\n', "width_m", ["number", "width_m = 0.2"]),
-    ("title = 3\n", "title", ["string"]),
-    ("[time]\ninterface_rows = 2.5\n", "interface_rows", ["integer"]),
-    ('[time]\nallow_unstable = "yes"\n', "allow_unstable", ["true or false"]),
-    ('[event]\nkind = "lefft"\n', "lefft", ["left", "right", "spontaneous", "none"]),
-    ('[friction]\nlaw = "amontons"\n', "amontons", ["coulomb", "velocity_weakening"]),
-    ("[plate]\nwidth_m = -0.2\n", "width_m", ["greater than 0"]),
-    ("[material]\npoissons_ratio = 0.5\n", "poissons_ratio", ["less than 0.5"]),
-    ("[friction]\nmu_s = nan\n", "mu_s", ["at least"]),
-    ("[time]\nend_s = inf\n", "end_s", ["finite"]),
-    ("[friction]\nmu_s = 0.5\nmu_k = 0.6\n", "mu_s", ["mu_k", "mu_s"]),
     ('[friction]\nlaw = "coulomb"\nmu_k = 0.6\n', "mu_k", ["velocity_weakening", "remove"]),
-    ("[output]\nsnapshot_times_s = [2e-5, 1e-5]\n", "snapshot_times_s", ["ascend"]),
-    ("[time]\nstep_factor = 1.01\n", "step_factor", ["at most 1", "allow_unstable"]),
+    ("[friction]\nmu_s = 0.5\nmu_k = 0.6\n", "mu_s", ["mu_k", "mu_s"]),
     ("[plate]\nwidth_m = = 0.2\n", "width_m", ["TOML"]),
-    ("[plate\nwidth_m = 0.2\n", "[plate", ["TOML"]),
-    ('title = "coarse\n', "title", ["TOML"]),
-    ("[plate]\nwidth_m = 0.2\nheight_m = 0.1\nwidth_m = 0.3 # again\n", "again", ["one of the two"]),
     ("[plate]\nelement_size_m = 3e-3\n", "element_size_m", ["nearest", "0.00"]),
-    ("[plate]\nelement_size_m = 0.3\n", "element_size_m", ["at most"]),
-    ("[plate]\nelement_size_m = 5e-3\nrelief_height_m = 4e-3\n", "relief_height_m", ["at most half"]),
-    ("[plate]\nelement_size_m = 5e-3\nrelief_length_m = 0.1\n", "relief_length_m", ["less than 0.1"]),
-    (FILLET + "fillet_radius_m = 0.2\n", "fillet_radius_m", ["at most"]),
-    (FILLET + "fillet_radius_m = 1e-3\n", "fillet_radius_m", ["at least"]),
-    ("[loading]\ntilt_left_m = 0.1\n", "tilt_left_m", ["less than"]),
-    ("[fronts]\nl_star_m = 1e6\n", "l_star_m", ["less than"]),
-    ("[plate]\nelement_size_m = 5e-3\n[time]\ninterface_rows = 20\n", "interface_rows", ["fewer"]),
 ]
 
 
@@ -74,17 +47,9 @@ def test_place_is_the_path_as_it_was_given(program, write_case):
     "override, words",
     [
         ("friction.mu_kk=1.0", ["unknown key", "friction.mu_k?"]),
-        ("mu_k=1.0", ["friction.mu_k"]),
-        ("friction.mu_k=fast", ["number"]),
-        ("friction.mu_k=-1", ["at least 0"]),
-        ("friction.mu_k=", ["number"]),
         ("friction.mu_k=2", ["mu_s"]),
-        ("friction.mu=0.9", ["coulomb"]),
-        ("plate=1", ["plate"]),
         ("plate.element_size_m=3e-3", ["nearest"]),
-        ("time.step_factor=1.4", ["allow_unstable"]),
-        ("event.kind=top", ["left"]),
-        *((text, ["of the form key=value"]) for text in ("friction.mu_k", "", "=1", "friction.mu_k 1")),
+        ("", ["of the form key=value"]),
     ],
 )
 def test_wrong_override(program, write_case, tmp_path, override, words):

@@ -79,8 +79,6 @@ def test_a_table_may_be_a_pipe(program, case, pipe, tmp_path):
             "x_m,mu\n0,1\n",
             'friction.csv:1: has a column "mu"; the first line must be the header x_m and any of',
         ),
-        ("x_m,mu_s\n0,0.6\n0.1,0.2\n", "friction.csv:3: mu_k must be at most mu_s (mu_s = 0.2, mu_k = 0.3"),
-        ("x_m,mu_s\n0,0.6\n0.05,0.6\n", "friction.csv: covers x = 0 to 0.05 m, the interface reaches"),
         (None, "friction.csv: cannot be read"),
     ],
 )
@@ -153,14 +151,7 @@ def test_a_table_varies_along_the_interface_by_its_factor(program, write_case, t
 
 
 def test_tables_that_are_none_are_refused_with_their_line(program, write_case):
-    for good, wrong, words in (
-        ("[0.6, 0.3]", "[0.6, 0.3, 0.2]", "must be of one length"),
-        ("[0.6, 0.3]", "[0.3, 0.6]", "must be largest in its first row"),
-        ("[0, 4e-6]", "[4e-6, 0]", "must begin with 0 and ascend"),
-        ("[0.6, 0.3]", "[0.6, -0.3]", "it must be at least 0"),
-        ("[0.6, 0.3]", '"0.6"', "must be a list of numbers"),
-    ):
-        line = refusal(program("validate", write_case(BY_TABLE.replace(good, wrong))))
-        assert words in line and "case.toml:" in line
+    line = refusal(program("validate", write_case(BY_TABLE.replace("[0.6, 0.3]", "[0.6, 0.3, 0.2]"))))
+    assert "must be of one length" in line and "case.toml:" in line
     random = program("validate", write_case(BY_TABLE), "--set", "friction.random_key=table_mu")
     assert "the friction law slip_table has mu_factor" in refusal(random)

@@ -146,9 +146,6 @@ def test_keys_that_an_override_excludes_are_named(program, write_case):
     assert "note: base.height_m, base.youngs_modulus_Pa, " in told
     assert "do not apply with --set base.kind=rigid and are left out\n" in told
     assert "left out" not in program("validate", case).stdout
-    case = write_case("[friction]\nalpha_m2_per_s2 = 1\n")
-    law = program("validate", case, *sets("friction.law=coulomb")).stdout
-    assert "alpha_m2_per_s2 of the case file does not apply with --set friction.law=coulomb" in law
 
 
 @pytest.mark.parametrize(
