@@ -93,12 +93,6 @@ def test_criteria(run):
     assert np.allclose(U, fronts.U_s_J_per_m3, rtol=1e-14, equal_nan=True)
 
 
-def test_energy_density():
-    U = energy_density_J_per_m3([[1e6], [2e6]], [3e6, 4e6], youngs_modulus_Pa=2e9, poissons_ratio=0.25)
-    t, p = np.array([[1e6], [2e6]]), np.array([3e6, 4e6])
-    assert np.allclose(U, (2.5 * t**2 + p**2) / 4e9, rtol=1e-15)
-
-
 def test_arrays_of_the_module_are_views():
     options = SETTINGS.options()
     from slipfront import _core
