@@ -4,9 +4,9 @@
 namespace slipfront::cli {
 
 /// From now on the signals that would end the program (HUP, INT, QUIT, TERM, XCPU; PIPE and XFSZ where
-/// somebody sends them) only set a flag, so that what there is can be kept; a second one ends it. USR1 asks
-/// for a checkpoint. A reader who has gone or a file that grows beyond its limit make writing fail, and no
-/// more.
+/// somebody sends them) only set a flag, so that what there is can be kept; a second INT or QUIT ends it.
+/// USR1 asks for a checkpoint. A reader who has gone or a file that grows beyond its limit make writing fail,
+/// and no more.
 void catch_interrupts();
 
 /// Whether an end was asked for.

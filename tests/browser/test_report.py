@@ -3,79 +3,59 @@
 plot is marked in all. Screenshots go to the folder that SLIPFRONT_SCREENSHOTS names."""
 
 import os
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
-from hostile.trials import HANG_S
+from common import HANG_S, ROOT, WITH_PACKAGE, built, call, require_done, sets, wait_until
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
-ROOT = Path(__file__).parents[2]
-PROGRAM = os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")
 CASES = {
-    "probes": ("cases/reference/gauges.toml", []),
-    "one body": (
-        "papers/kammer2012/left.toml",
-        ["plate.element_size_m=2e-3", "fronts.l_star_m=2e-3"],
-    ),
-    "two bodies": (
+    "probes": ["cases/reference/gauges.toml"],
+    "one body": ["papers/kammer2012/left.toml", *sets("plate.element_size_m=2e-3", "fronts.l_star_m=2e-3")],
+    "two bodies": [
         "cases/reference/bimaterial_f.toml",
-        [
-            "plate.element_size_m=2e-3",
-            "output.history_interval_s=1e-6",
-            "output.snapshot_times_s=[5e-5, 1e-4, 1.5e-4]",
-        ],
-    ),
+        *sets("plate.element_size_m=2e-3", "output.history_interval_s=1e-6"),
+        *sets("output.snapshot_times_s=[5e-5, 1e-4, 1.5e-4]"),
+    ],
 }
-#: Traces of the space-time diagram: the mark's x and y.
-MARK = (
-    "return document.getElementById(arguments[0]).data.filter(t => t.meta?.mark).map(t => [t.x[0], t.y[0]])"
-)
 
 
-def call(*arguments):
-    environment = {**os.environ, "SLIPFRONT_PYTHON": sys.executable}
-    subprocess.run(
-        [PROGRAM, *map(str, arguments)],
-        cwd=ROOT,
-        env=environment,
-        check=True,
-        capture_output=True,
-        timeout=HANG_S,
-    )
+def data(plot):
+    """What a plot draws, in the page's language."""
+    return f"document.getElementById('{plot}-plot').data"
+
+
+def mark(plot):
+    """The mark's x and y in each panel."""
+    return f"return {data(plot)}.filter(t => t.meta?.mark).map(t => [t.x[0], t.y[0]])"
+
+
+FRONTS = f"{data('criteria')}.filter(t => t.meta?.front !== undefined)"
 
 
 @pytest.fixture(scope="session")
 def pages(tmp_path_factory):
     """Pages of a run on a rigid plane, of one of two bodies, and of a reproduction."""
     folder = tmp_path_factory.mktemp("pages")
+    commands = {name: ["run", *case, "--quiet"] for name, case in CASES.items()}
+    commands["reproduction"] = ["reproduce", "--quick"]
     found = {}
-    for name, (case, settings) in CASES.items():
+    for name, command in commands.items():
         results = folder / name.replace(" ", "_")
-        call("run", case, "-o", results, "--quiet", *(word for s in settings for word in ("--set", s)))
-        found[name] = results
-    call("reproduce", "--quick", "-o", folder / "reproduction")
-    found["reproduction"] = folder / "reproduction"
-    for results in found.values():
-        call("report", results)
-    return {name: results / "report.html" for name, results in found.items()}
+        for words in ([*command, "-o", results], ["report", results]):
+            require_done(call(built(), *words, cwd=ROOT, env=WITH_PACKAGE))
+        found[name] = results / "report.html"
+    return found
 
 
 @pytest.fixture(scope="session")
 def browser():
     options = webdriver.ChromeOptions()
-    for argument in (
-        "--headless=new",
-        "--no-sandbox",
-        "--window-size=1366,900",
-        "--force-color-profile=srgb",
-    ):
-        options.add_argument(argument)
+    for argument in ("headless=new", "no-sandbox", "window-size=1366,900", "force-color-profile=srgb"):
+        options.add_argument(f"--{argument}")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(options=options, service=Service("/usr/bin/chromedriver"))
     driver.set_page_load_timeout(HANG_S)
@@ -91,18 +71,11 @@ def opened(browser, pages):
     def open_page(name):
         browser.get_log("browser")
         browser.get(pages[name].as_uri())
-        wait(lambda: browser.execute_script("return document.body.dataset.drawn"))
+        wait_until(lambda: browser.execute_script("return document.body.dataset.drawn"))
         assert browser.execute_script("return document.body.dataset.drawn") == "all"
         return browser
 
     return open_page
-
-
-def wait(condition):
-    end = time.monotonic() + HANG_S
-    while not condition():
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.05)
 
 
 def screenshot(browser, name):
@@ -117,21 +90,23 @@ def screenshot(browser, name):
     browser.set_window_size(1366, 900)
 
 
-def point_in(browser, plot, x, y, axis=""):
+def point_in(browser, plot, x, y):
     """Moves the mouse to a place of a plot, given in the units of its axes."""
     element = browser.find_element(By.ID, plot)
     browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", element)
     left, top = browser.execute_script(
-        "const p = arguments[0]._fullLayout, x = p['xaxis' + arguments[3]], y = p['yaxis' + arguments[3]];"
+        "const {xaxis: x, yaxis: y} = arguments[0]._fullLayout;"
         "return [x._offset + x.d2p(arguments[1]), y._offset + y.d2p(arguments[2])]",
-        *(element, x, y, axis),
+        *(element, x, y),
     )
-    size = element.size
-    actions = ActionChains(browser)
-    actions.move_to_element_with_offset(
-        element, round(left - size["width"] / 2), round(top - size["height"] / 2)
-    )
-    return actions
+    from_centre = round(left - element.size["width"] / 2), round(top - element.size["height"] / 2)
+    ActionChains(browser).move_to_element_with_offset(element, *from_centre).perform()
+
+
+def change(browser, control, value, event):
+    """Gives a control another value; `value` may speak of it as s."""
+    element = f"const s = document.getElementById('{control}'); s.value = {value};"
+    browser.execute_script(f"{element} s.dispatchEvent(new Event('{event}'))")
 
 
 @pytest.mark.parametrize("name", [*CASES, "reproduction"])
@@ -154,63 +129,54 @@ def test_a_page_draws_without_errors_and_without_a_network(opened, name):
 def test_a_node_that_is_pointed_at_is_marked_everywhere(opened):
     browser = opened("one body")
     front = browser.execute_script(
-        "const t = document.getElementById('criteria-plot').data.filter(t => t.meta?.front !== undefined);"
-        "const k = t[0].y.findLastIndex(v => v > 0.7); return t.map(t => [t.x[k], t.y[k]])"
+        f"const t = {FRONTS}[0], k = t.y.findLastIndex(v => v > 0.7); return [t.x[k], t.y[k]]"
     )
-    point_in(browser, "criteria-plot", *front[0]).perform()
-    wait(lambda: browser.execute_script(MARK, "criteria-plot")[0][0] is not None)
-    marks = browser.execute_script(MARK, "criteria-plot")
+    point_in(browser, "criteria-plot", *front)
+    wait_until(lambda: browser.execute_script(mark("criteria"))[0][0] is not None)
+    marks = browser.execute_script(mark("criteria"))
     words = browser.find_element(By.ID, "criteria-point").text
     assert len(marks) == 4 and len({y for _, y in marks}) == 1 and "V_tip" in words
     here = browser.execute_script(
-        "const [x] = arguments; const t = document.getElementById('criteria-plot').data"
-        ".filter(t => t.meta?.front !== undefined); const k = t[0].x.indexOf(x);"
-        "return t.map(t => [t.x[k], t.y[k]])",
+        f"const t = {FRONTS}, k = t[0].x.indexOf(arguments[0]); return t.map(t => [t.x[k], t.y[k]])",
         marks[0][0],
     )
     assert here == marks
-    assert browser.execute_script(MARK, "space-time-plot")[0][0] == marks[0][0]
+    assert browser.execute_script(mark("space-time"))[0][0] == marks[0][0]
 
 
 def test_points_selected_in_one_panel_are_selected_in_all(opened):
     browser = opened("one body")
     browser.execute_script(
-        "const p = document.getElementById('criteria-plot');"
-        "const data = p.data.find(t => t.meta?.front !== undefined);"
+        f"const data = {FRONTS}[0], p = document.getElementById('criteria-plot');"
         "p.emit('plotly_selected', {points: [3, 5].map(pointNumber => ({data, pointNumber}))})"
     )
-    selected = browser.execute_script(
-        "return document.getElementById('criteria-plot').data.filter(t => t.meta?.front === 0)"
-        ".map(t => t.selectedpoints)"
-    )
-    assert selected == [[3, 5]] * 4
+    selected = f"return {data('criteria')}.filter(t => t.meta?.front === 0).map(t => t.selectedpoints)"
+    assert browser.execute_script(selected) == [[3, 5]] * 4
 
 
 def test_the_slider_changes_the_curves_and_the_line_in_the_diagram(opened):
     browser = opened("one body")
-    curve = "return Array.from(document.getElementById('profiles-plot').data.at(-3).y)"
+    curve = f"return Array.from({data('profiles')}.at(-3).y)"
     line = "return document.getElementById('space-time-plot').layout.shapes[0].y0"
     before, time_before = browser.execute_script(curve), browser.execute_script(line)
-    browser.execute_script(
-        "const s = document.getElementById('profiles-time'); s.value = Number(s.value) + 20;"
-        "s.dispatchEvent(new Event('input'))"
-    )
+    change(browser, "profiles-time", "Number(s.value) + 20", "input")
     assert browser.execute_script(curve) != before
     now = browser.execute_script(line)
     assert now > time_before
     assert float(browser.find_element(By.ID, "profiles-now").text.split()[0]) == pytest.approx(now, rel=1e-2)
     browser.find_element(By.ID, "profiles-keep").click()
-    kept = browser.execute_script("return document.getElementById('profiles-plot').data.length")
+    number = f"return {data('profiles')}.length"
+    kept = browser.execute_script(number)
     browser.find_element(By.ID, "profiles-clear").click()
-    assert browser.execute_script("return document.getElementById('profiles-plot').data.length") == kept - 2
+    assert browser.execute_script(number) == kept - 2
 
 
 def test_the_diagram_shows_the_field_that_is_chosen(opened):
     browser = opened("two bodies")
-    name = "return document.getElementById('space-time-plot').data[0].name"
+    name = f"return {data('space-time')}[0].name"
     for field in ("ratio", "p", "slip", "slip_rate"):
         browser.find_element(By.CSS_SELECTOR, f"[data-field={field}]").click()
-        wait(lambda field=field: browser.execute_script(name) == field)
+        wait_until(lambda field=field: browser.execute_script(name) == field)
         pressed = browser.find_elements(By.CSS_SELECTOR, "[aria-pressed=true]")
         assert [button.get_attribute("data-field") for button in pressed] == [field]
     assert browser.get_log("browser") == []
@@ -218,9 +184,7 @@ def test_the_diagram_shows_the_field_that_is_chosen(opened):
 
 def test_the_snapshots_play_and_show_both_bodies(opened):
     browser = opened("two bodies")
-    low, high = browser.execute_script(
-        "const y = document.getElementById('snapshots-plot').data[0].y; return [y[0], y.at(-1)]"
-    )
+    low, high = browser.execute_script(f"const y = {data('snapshots')}[0].y; return [y[0], y.at(-1)]")
     assert low < -140 and high > 140
     darkest = "return document.getElementById('snapshots-plot')._fullData[0].colorscale[0]"
     assert browser.execute_script(darkest) == [0, "#000004"]  # the page's own scale was understood
@@ -228,7 +192,7 @@ def test_the_snapshots_play_and_show_both_bodies(opened):
     before = now.text
     button = browser.find_element(By.ID, "snapshots-play")
     browser.execute_script("arguments[0].click()", button)
-    wait(lambda: now.text != before)
+    wait_until(lambda: now.text != before)
     browser.execute_script("arguments[0].click()", button)
     assert button.text == "play"
 
@@ -236,25 +200,23 @@ def test_the_snapshots_play_and_show_both_bodies(opened):
 def test_the_records_of_probes_are_chosen(opened):
     browser = opened("probes")
     title = "return document.getElementById('probes-plot').layout.yaxis.title.text"
-    first = (
-        "return document.getElementById('probes-plot').data.filter(t => t.meta.panel === 0).map(t => t.y[0])"
-    )
+    first = f"return {data('probes')}.filter(t => t.meta.panel === 0).map(t => t.y[0])"
     assert "v<sub>x</sub> (m/s)" in browser.execute_script(title)
     button = browser.find_element(By.CSS_SELECTOR, "[data-probes=stress]")
     browser.execute_script("arguments[0].click()", button)
-    wait(lambda: "σ<sub>xx</sub> (MPa)" in browser.execute_script(title))
+    wait_until(lambda: "σ<sub>xx</sub> (MPa)" in browser.execute_script(title))
     assert button.get_attribute("aria-pressed") == "true"
     before = browser.execute_script(first)
     assert len(before) == 5 and all(abs(value) > 0.1 for value in before)
     browser.execute_script("document.getElementById('probes-change').click()")
-    wait(lambda: browser.execute_script(first) == [0] * 5)
+    wait_until(lambda: browser.execute_script(first) == [0] * 5)
     assert browser.get_log("browser") == []
 
 
 def test_the_snapshots_open_where_something_moves(opened):
     browser = opened("probes")
     slowest, fastest = browser.execute_script(
-        "const z = document.getElementById('snapshots-plot').data[0].z.flat().filter(v => v !== null);"
+        f"const z = {data('snapshots')}[0].z.flat().filter(v => v !== null);"
         "return [Math.min(...z), Math.max(...z)]"
     )
     assert fastest > 120 > slowest
@@ -263,22 +225,22 @@ def test_the_snapshots_open_where_something_moves(opened):
 
 def test_a_front_has_one_colour_in_all_plots(opened):
     browser = opened("two bodies")
-    colours = (
-        "const d = document.getElementById(arguments[0]).data.filter(t => t.meta?.front !== undefined);"
-        "return Object.fromEntries(d.map(t => [t.meta.front, t[arguments[1]].color]))"
-    )
-    lines = browser.execute_script(colours, "space-time-plot", "line")
+
+    def colours(plot, drawn):
+        return browser.execute_script(
+            f"const d = {data(plot)}.filter(t => t.meta?.front !== undefined);"
+            f"return Object.fromEntries(d.map(t => [t.meta.front, t.{drawn}.color]))"
+        )
+
+    lines = colours("space-time", "line")
     assert len(set(lines.values())) == 2  # one for each direction
-    assert lines == browser.execute_script(colours, "criteria-plot", "marker")
+    assert lines == colours("criteria", "marker")
 
 
 def test_another_run_of_a_reproduction_is_shown(opened):
     browser = opened("reproduction")
-    data = "document.getElementById('space-time-plot').data"
-    x = f"return {data}.find(t => t.meta?.front !== undefined).x[0]"
+    x = f"return {data('space-time')}.find(t => t.meta?.front !== undefined).x[0]"
     left = browser.execute_script(x)
-    browser.execute_script(
-        "const s = document.getElementById('run'); s.value = '2'; s.dispatchEvent(new Event('change'))"
-    )
-    wait(lambda: browser.execute_script(x) > 100)
+    change(browser, "run", "'2'", "change")
+    wait_until(lambda: browser.execute_script(x) > 100)
     assert left < 50 and browser.get_log("browser") == []

@@ -4,14 +4,10 @@
 import os
 import resource
 import signal
-import subprocess
-import sys
-from pathlib import Path
+import threading
 
 import pytest
-from hostile.trials import HANG_S, as_from_a_terminal
-
-ROOT = Path(__file__).resolve().parents[2]
+from common import HANG_S, as_from_a_terminal, built, finished, start
 
 as_from_a_terminal()
 
@@ -28,25 +24,12 @@ mu_s = 1.3
 mu_k = 0.6
 """
 
-# A command's peak; Linux gives kB.
-PEAK_BYTES = """\
-import resource, subprocess, sys
-subprocess.run(sys.argv[1:], check=True)
-print(1024 * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
-"""
-
-
-def settings(values):
-    """Options that set keys of a case."""
-    text = {key: f'"{value}"' if isinstance(value, str) else repr(value) for key, value in values.items()}
-    return [part for key, value in text.items() for part in ("--set", f"{key}={value}")]
-
 
 class Program:
     """Runs the program in a folder of its own."""
 
-    def __init__(self, path, folder):
-        self.path = path
+    def __init__(self, folder):
+        self.path = built()
         self.folder = folder
         self.started = []
 
@@ -58,61 +41,21 @@ class Program:
                 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails instead
                 resource.setrlimit(resource.RLIMIT_FSIZE, (file_bytes, file_bytes))
 
-        return subprocess.run(
-            [self.path, *map(str, arguments)],
-            cwd=self.folder,
-            capture_output=True,
-            text=True,
-            timeout=HANG_S,
-            stdin=subprocess.DEVNULL,
-            preexec_fn=limit,
-        )
+        return finished(self.start(*arguments, preexec_fn=limit))
 
     def start(self, *arguments, **options):
         """What has not ended by the end of the test is killed."""
-        process = subprocess.Popen(
-            [self.path, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL, **options
-        )
-        self.started.append(process)
-        return process
-
-    def peak_bytes(self, *arguments) -> int:
-        """Resident memory of a run at its peak. A process counts what its parent held when it was forked as
-        its own: a small one between this one and the program keeps that out."""
-        told = subprocess.run(
-            [sys.executable, "-c", PEAK_BYTES, self.path, *map(str, arguments)],
-            cwd=self.folder,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            text=True,
-            check=True,
-            timeout=HANG_S,
-        )
-        return int(told.stdout.splitlines()[-1])
+        self.started.append(start(self.path, *arguments, cwd=self.folder, **options))
+        return self.started[-1]
 
 
 @pytest.fixture
 def program(tmp_path):
-    path = Path(os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")).resolve()
-    if not (path.is_file() and os.access(path, os.X_OK)):
-        pytest.fail(
-            f"{path} is no program: build it (cmake --preset release && cmake --build --preset release) "
-            "or set SLIPFRONT to its path",
-            pytrace=False,
-        )
-    program = Program(path, tmp_path)
+    program = Program(tmp_path)
     yield program
     for process in program.started:
         process.kill()
         process.wait()
-
-
-@pytest.fixture
-def coarse(tmp_path):
-    """A case file that takes a moment to run."""
-    case = tmp_path / "coarse.toml"
-    case.write_text(COARSE)
-    return case
 
 
 @pytest.fixture
@@ -123,3 +66,27 @@ def write_case(tmp_path):
         return case
 
     return write
+
+
+@pytest.fixture
+def coarse(write_case):
+    """A case file that takes a moment to run."""
+    return write_case(COARSE, "coarse.toml")
+
+
+@pytest.fixture
+def pipe(tmp_path):
+    """Makes a pipe in the file system that gives a text to the first who reads it."""
+    writers = []
+
+    def make(name, text):
+        path = tmp_path / name
+        os.mkfifo(path)
+        writers.append(threading.Thread(target=lambda: path.write_text(text), daemon=True))
+        writers[-1].start()
+        return path
+
+    yield make
+    for writer in writers:
+        writer.join(timeout=HANG_S)
+        assert not writer.is_alive(), "nobody read the pipe"

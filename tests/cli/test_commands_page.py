@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """docs/commands.md names every command and option; commands of other pages run."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 
 import pytest
+from common import ROOT, require_done
 
-ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs/commands.md").read_text(encoding="utf-8")
 
 
@@ -18,10 +15,9 @@ def subcommands(text: str) -> list[str]:
 
 
 def helps(program, words=()) -> dict[str, str]:
-    done = program(*words, "--help")
-    assert done.returncode == 0
-    found = {" ".join(words): done.stdout}
-    for name in subcommands(done.stdout):
+    told = require_done(program(*words, "--help")).stdout
+    found = {" ".join(words): told}
+    for name in subcommands(told):
         found |= helps(program, (*words, name))
     return found
 
@@ -36,39 +32,36 @@ def test_every_command_and_option_is_named(program):
         assert [o for o in options if o not in ("--help", "--version") and f"`{o}" not in PAGE] == [], name
 
 
-def commands(page: str) -> list[str]:
-    """Lines of the page's shell blocks, continued ones joined."""
-    text = (ROOT / page).read_text(encoding="utf-8")
-    blocks = re.findall(r"^```sh\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
-    return [line for block in blocks for line in block.replace("\\\n", " ").splitlines()]
+@pytest.fixture
+def run_commands(program, write_case):
+    """Runs the lines of a page's shell blocks, continued ones joined, on the tutorial's case."""
+
+    def run(page: str, most=None) -> None:
+        tutorial = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
+        write_case(re.search(r"^```toml\n(.*?)^```$", tutorial, re.MULTILINE | re.DOTALL)[1], "my.toml")
+        text = (ROOT / page).read_text(encoding="utf-8")
+        blocks = re.findall(r"^```sh\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
+        lines = [line for block in blocks for line in block.replace("\\\n", " ").splitlines()]
+        assert lines
+        for line in lines[:most]:
+            name, *words = line.replace("'", "").replace(", ", ",").split()
+            assert name == "slipfront"
+            require_done(program(*words))
+
+    return run
 
 
 @pytest.mark.parametrize("page", ["docs/prestress.md", "docs/paraview.md"])
-def test_commands_on_the_tutorials_case_run(program, tmp_path, page):
-    tutorial = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
-    (tmp_path / "my.toml").write_text(
-        re.search(r"^```toml\n(.*?)^```$", tutorial, re.MULTILINE | re.DOTALL)[1]
-    )
-    lines = commands(page)
-    assert lines
-    for line in lines:
-        words = line.replace("'", "").replace(", ", ",").split()
-        assert words[0] == "slipfront"
-        done = program(*words[1:])
-        assert done.returncode == 0, done.stderr
+def test_commands_on_the_tutorials_case_run(run_commands, page):
+    run_commands(page)
 
 
-def test_vtk_opens_the_fields(program, tmp_path):
+def test_vtk_opens_the_fields(run_commands, tmp_path):
     """VTK's reader of these files is ParaView's."""
     vtk = pytest.importorskip("vtk")
     from vtk.util.numpy_support import vtk_to_numpy
 
-    tutorial = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
-    (tmp_path / "my.toml").write_text(
-        re.search(r"^```toml\n(.*?)^```$", tutorial, re.MULTILINE | re.DOTALL)[1]
-    )
-    words = commands("docs/paraview.md")[0].replace("'", "").replace(", ", ",").split()
-    assert program(*words[1:]).returncode == 0
+    run_commands("docs/paraview.md", most=1)
     reader = vtk.vtkHDFReader()
     reader.SetFileName(str(tmp_path / "movie/fields.vtkhdf"))
     reader.UpdateInformation()

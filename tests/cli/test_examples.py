@@ -1,20 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The worked cases of examples/ on coarser meshes: they run to their end and show what their pages say."""
 
-from __future__ import annotations
-
-import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-from hostile.trials import HANG_S
+from common import ROOT, call, require_done, sets
 from slipfront.read import Front, Run, read_run
 
 pytestmark = pytest.mark.slow
 
-ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
 
 # Twice to four times the case's own; with the base's, which follows.
@@ -60,13 +55,9 @@ def modes(run: Run) -> set[str]:
 @pytest.fixture
 def run(program, tmp_path):
     def go(name: str, *changes: str) -> Run:
-        words = [word for change in changes for word in ("--set", change)]
-        size = f"plate.element_size_m={COARSE_M[name]}"
-        done = program(
-            "run", EXAMPLES / name / "case.toml", "-o", tmp_path / name, "--overwrite", "--set", size, *words
-        )
-        assert done.returncode == 0, done.stderr
-        assert done.stderr.count("\nwarning") == 0, done.stderr
+        case = [EXAMPLES / name / "case.toml", *sets(f"plate.element_size_m={COARSE_M[name]}", *changes)]
+        told = require_done(program("run", *case, "-o", tmp_path / name, "--overwrite")).stderr
+        assert "\nwarning" not in told, told
         return read_run(tmp_path / name)
 
     return go
@@ -145,8 +136,7 @@ def test_two_bodies_prefer_a_direction(run):
 
 def test_the_record_tells_d_c(program, tmp_path):
     command = [sys.executable, EXAMPLES / "experiment/compare.py", tmp_path, "--program", program.path]
-    coarse = ["--set", f"plate.element_size_m={COARSE_M['experiment']}"]
-    done = subprocess.run(command + coarse, capture_output=True, text=True, timeout=HANG_S, check=True)
-    rows = [tuple(map(float, line.split())) for line in done.stdout.splitlines()[1:]]
+    told = require_done(call(*command, *sets(f"plate.element_size_m={COARSE_M['experiment']}"))).stdout
+    rows = [tuple(map(float, line.split())) for line in told.splitlines()[1:]]
     nearest = min(rows, key=lambda row: row[1])
     assert len(rows) == 5 and nearest[0] in (1.2, 1.45) and nearest[1] < 0.6

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.slow
 def bench(program):
     shim = program.path.with_name("slipfront_fault.so")
     if not shim.is_file():
-        pytest.fail(f"{shim} is missing: build it (cmake --build --preset release)", pytrace=False)
+        pytest.fail(f"{shim} is missing: build slipfront_fault", pytrace=False)
     bench = Bench(program.path, shim, scratch_folder())
     yield bench
     remove(bench.scratch)

@@ -2,12 +2,9 @@
 """What is found wrong after a case was read is told with the line of the key at fault."""
 
 import re
-from pathlib import Path
 
 import pytest
-from test_commands import one_line
-
-ROOT = Path(__file__).resolve().parents[2]
+from common import ROOT, refusal, sets
 
 COARSE = "[plate]\nelement_size_m = 5e-3\n"
 SQUARE = COARSE + 'corner = "none"\n'
@@ -20,61 +17,40 @@ STEEL = (
 )
 
 # The line to be named ends with "# here"; where none does, it is the override.
-CASES = {
-    "a_width_of_no_whole_elements": (COARSE, "plate.width_m=0.2001"),
-    "the_default_elements": ("[plate]\nheight_m = 0.1003 # here\n", None),
-    "columns_not_halved": (COARSE + "coarsenings = 5 # here\nfine_height_m = 5e-3\n", None),
-    "no_room_above": (COARSE + "coarsenings = 1\nfine_height_m = 0.01\n", "plate.fine_height_m=0.09"),
-    "short_relief": (COARSE + "relief_length_m = 1e-3 # here\n", None),
-    "long_relief": (COARSE + "relief_length_m = 0.06\n", "plate.width_m=0.1"),
-    "steep_relief": (COARSE + "relief_height_m = 5e-3 # here\nrelief_length_m = 9e-3\n", None),
-    "steep_relief_by_its_length": (
-        COARSE + "relief_height_m = 5e-3\nrelief_length_m = 0.02\n",
-        "plate.relief_length_m=9e-3",
-    ),
-    "deep_relief": (COARSE + "relief_depth_m = 0.2 # here\n", None),
-    "shallow_relief": (COARSE + "relief_depth_m = 1e-4 # here\n", None),
-    "absorbing_with_relief": (COARSE + 'sides = "absorbing" # here\n', None),
-    "relief_of_absorbing": (SQUARE + 'sides = "absorbing"\n', "plate.corner=relief"),
-    "coarse_fillet": ('[plate]\ncorner = "fillet"\nelement_size_m = 0.05 # here\n', None),
-    "ring_of_two_columns": (
-        '[plate]\nelement_size_m = 0.1\ncorner = "none"\nsides = "periodic" # here\n' + PRESSED,
-        None,
-    ),
-    "rows_of_substeps": (SQUARE + "[time]\ninterface_rows = 3\n", "time.interface_rows=30"),
-    "default_rows_of_a_coarse_plate": (
-        '[plate]\nwidth_m = 0.2\ncorner = "none"\nelement_size_m = 0.05 # here\n',
-        None,
-    ),
-    "default_relief_of_a_coarse_plate": ("[plate]\nelement_size_m = 0.05 # here\n", None),
-    "untilted": (COARSE + "[loading]\ntilt_left_m = 0.0 # here\ntilt_right_m = 0.0\n", None),
-    "base_of_one_row": (COARSE + "[time]\ninterface_rows = 1 # here\n" + STEEL + "height_m = 5e-3\n", None),
-    "tilted_ring": (SQUARE + 'sides = "periodic" # here\n', None),
-    "tilted_free_top": (SQUARE + 'top = "free" # here\n', None),
-    "free_base": (COARSE + STEEL + 'height_m = 0.1\nbottom = "free" # here\n', None),
-    "base_of_no_whole_elements": (COARSE + STEEL + "height_m = 0.1001 # here\n", None),
-    "single_with_absorbing": (
-        SQUARE + 'sides = "absorbing"\n' + PRESSED + '[time]\nprecision = "single" # here\n',
-        None,
-    ),
-    "single_made_absorbing": (
-        SQUARE + PRESSED + '[time]\nprecision = "single"\n',
-        "plate.sides=absorbing",
-    ),
-    "table_too_short": (SQUARE + TABLED, None),
-    "table_that_is_not_there": (SQUARE + TABLED.replace(" # here", ""), "prestress.file=none.csv"),
-    "random_share": (COARSE + WEAKENING + 'random_key = "mu_k"\nrandom_share = 0.5 # here\n', None),
-    "random_share_by_default": (COARSE + WEAKENING + 'random_key = "mu_k" # here\n', None),
-    "random_key": (COARSE + WEAKENING, "friction.random_key=mu_k"),
-    "iteration_on_a_graded_base": (
-        COARSE + '[loading]\nsolver = "iterative" # here\n' + STEEL + "coarsenings = 1\n",
-        None,
-    ),
-    "graded_base_of_an_iteration": (
-        COARSE + '[loading]\nsolver = "iterative"\n' + STEEL,
-        "base.coarsenings=1",
-    ),
-}
+CASES = [
+    (COARSE, "plate.width_m=0.2001"),
+    ("[plate]\nheight_m = 0.1003 # here\n", None),
+    (COARSE + "coarsenings = 5 # here\nfine_height_m = 5e-3\n", None),
+    (COARSE + "coarsenings = 1\nfine_height_m = 0.01\n", "plate.fine_height_m=0.09"),
+    (COARSE + "relief_length_m = 1e-3 # here\n", None),
+    (COARSE + "relief_length_m = 0.06\n", "plate.width_m=0.1"),
+    (COARSE + "relief_height_m = 5e-3 # here\nrelief_length_m = 9e-3\n", None),
+    (COARSE + "relief_height_m = 5e-3\nrelief_length_m = 0.02\n", "plate.relief_length_m=9e-3"),
+    (COARSE + "relief_depth_m = 0.2 # here\n", None),
+    (COARSE + "relief_depth_m = 1e-4 # here\n", None),
+    (COARSE + 'sides = "absorbing" # here\n', None),
+    (SQUARE + 'sides = "absorbing"\n', "plate.corner=relief"),
+    ('[plate]\ncorner = "fillet"\nelement_size_m = 0.05 # here\n', None),
+    ('[plate]\nelement_size_m = 0.1\ncorner = "none"\nsides = "periodic" # here\n' + PRESSED, None),
+    (SQUARE + "[time]\ninterface_rows = 3\n", "time.interface_rows=30"),
+    ('[plate]\nwidth_m = 0.2\ncorner = "none"\nelement_size_m = 0.05 # here\n', None),
+    ("[plate]\nelement_size_m = 0.05 # here\n", None),
+    (COARSE + "[loading]\ntilt_left_m = 0.0 # here\ntilt_right_m = 0.0\n", None),
+    (COARSE + "[time]\ninterface_rows = 1 # here\n" + STEEL + "height_m = 5e-3\n", None),
+    (SQUARE + 'sides = "periodic" # here\n', None),
+    (SQUARE + 'top = "free" # here\n', None),
+    (COARSE + STEEL + 'height_m = 0.1\nbottom = "free" # here\n', None),
+    (COARSE + STEEL + "height_m = 0.1001 # here\n", None),
+    (SQUARE + 'sides = "absorbing"\n' + PRESSED + '[time]\nprecision = "single" # here\n', None),
+    (SQUARE + PRESSED + '[time]\nprecision = "single"\n', "plate.sides=absorbing"),
+    (SQUARE + TABLED, None),
+    (SQUARE + TABLED.replace(" # here", ""), "prestress.file=none.csv"),
+    (COARSE + WEAKENING + 'random_key = "mu_k"\nrandom_share = 0.5 # here\n', None),
+    (COARSE + WEAKENING + 'random_key = "mu_k" # here\n', None),
+    (COARSE + WEAKENING, "friction.random_key=mu_k"),
+    (COARSE + '[loading]\nsolver = "iterative" # here\n' + STEEL + "coarsenings = 1\n", None),
+    (COARSE + '[loading]\nsolver = "iterative"\n' + STEEL, "base.coarsenings=1"),
+]
 
 
 def place(case, text, override):
@@ -84,46 +60,38 @@ def place(case, text, override):
     return f"{case}:{line}: "
 
 
-@pytest.mark.parametrize("text, override", CASES.values(), ids=CASES.keys())
+@pytest.mark.parametrize("text, override", CASES)
 def test_the_line_is_that_of_the_key_at_fault(program, write_case, tmp_path, text, override):
     (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.1,2.1e6,5e6\n")
     case = write_case(text)
-    told = one_line(program("validate", case, *(["--set", override] if override else [])))
+    told = refusal(program("validate", case, *(sets(override) if override else [])))
     assert told.startswith(place(case, text, override))
 
 
 # And what the message says.
-LATE = {
-    "trigger": (
+LATE = [
+    (
         'mu_s = 1.3\n[event]\nkind = "right"\ntrigger_form = "raised"\ntrigger_amount = 1e-3 # here\n',
         None,
         ["event.trigger_amount = 0.001 adds no traction", "choose more than"],
     ),
-    "trigger_form": (
-        'mu_s = 1.3\n[event]\nkind = "right"\ntrigger_amount = 1e-3\n',
-        "event.trigger_form=raised",
-        [],
-    ),
+    ('mu_s = 1.3\n[event]\nkind = "right"\ntrigger_amount = 1e-3\n', "event.trigger_form=raised", []),
     # At this strength slip spreads from the edges before t/p inside reaches it.
-    "strength": ("mu_s = 100 # here\n[loading]\nedge_margin_m = 5e-3\n", None, ["mu_s"]),
+    ("mu_s = 100 # here\n[loading]\nedge_margin_m = 5e-3\n", None, ["mu_s"]),
     # The peak t/p of the tilted plate is about 0.5.
-    "strength_below_the_tilts": ("mu_s = 0.1 # here\nmu_k = 0.05\n", None, ["tilt"]),
+    ("mu_s = 0.1 # here\nmu_k = 0.05\n", None, ["tilt"]),
     # The margins at both ends leave nothing inside; mu_s comes first, or the margin that is set.
-    "margin_and_strength": (
-        "mu_s = 1.2 # here\n[loading]\nedge_margin_m = 0.0999\n",
-        None,
-        ["mu_s", "edge_margin_m"],
-    ),
-    "margin": ("mu_s = 1.2\n", "loading.edge_margin_m=0.0999", []),
-    "margin_alone": ("law = 'velocity_weakening'\n[loading]\nedge_margin_m = 0.0999 # here\n", None, []),
-}
+    ("mu_s = 1.2 # here\n[loading]\nedge_margin_m = 0.0999\n", None, ["mu_s", "edge_margin_m"]),
+    ("mu_s = 1.2\n", "loading.edge_margin_m=0.0999", []),
+    ("law = 'velocity_weakening'\n[loading]\nedge_margin_m = 0.0999 # here\n", None, []),
+]
 
 
-@pytest.mark.parametrize("text, override, words", LATE.values(), ids=LATE.keys())
+@pytest.mark.parametrize("text, override, words", LATE)
 def test_the_line_is_that_of_what_only_the_statics_find(program, write_case, tmp_path, text, override, words):
     text = COARSE + "[friction]\n" + text
     case = write_case(text)
-    told = one_line(program("run", case, "-o", "out", *(["--set", override] if override else [])))
+    told = refusal(program("run", case, "-o", "out", *(sets(override) if override else [])))
     assert told.startswith(place(case, text, override))
     for word in words:
         assert word in told

@@ -1,30 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Probes, snapshots at an interval with strain and stress, and what HDF5 files say of themselves."""
 
-import json
-
 import h5py
 import numpy as np
 import pytest
+from common import refusal, require_done, run_json, sets
+from conftest import COARSE
 from slipfront.read import PROBE_FIELDS, read_probes
 
 PROBES = '[probes]\nx_m = [0.1, 0.05]\ny_m = [0.01, 0.0]\nnames = ["SG 1", "Kante ä"]\ninterval_s = 2e-6\n'
 
 
 @pytest.fixture
-def probed(coarse, tmp_path):
-    file = tmp_path / "probed.toml"
-    file.write_text((tmp_path / coarse).read_text() + "\n" + PROBES, encoding="utf-8")
-    return file
+def probed(write_case):
+    return write_case(COARSE + "\n" + PROBES)
 
 
 def test_probes_have_names_places_units_and_rows(program, probed, tmp_path):
-    assert program("run", probed, "-o", "out", "-q").returncode == 0
+    require_done(program("run", probed, "-o", "out", "-q"))
     probes = read_probes(tmp_path / "out/probes.h5")
     assert probes.names == ("SG 1", "Kante ä")
     assert probes.x_m.tolist() == [0.1, 0.05] and probes.y_m.tolist() == [0.01, 0]
     assert probes.time_s[0] == 0 and np.all(np.diff(probes.time_s) > 1e-6)
-    end_s = json.loads((tmp_path / "out/run.json").read_text())["time_s"]
+    end_s = run_json(tmp_path / "out")["time_s"]
     assert end_s - 4e-6 < probes.time_s[-1] < end_s
     assert set(probes.fields) == set(PROBE_FIELDS)
     with h5py.File(tmp_path / "out/probes.h5") as file:
@@ -42,10 +40,9 @@ def test_probes_have_names_places_units_and_rows(program, probed, tmp_path):
 
 
 def test_every_hdf5_file_says_where_it_comes_from(program, probed, tmp_path):
-    keys = ("--set", "output.snapshot_interval_s=20e-6")
-    assert program("run", probed, "-o", "out", "-q", *keys).returncode == 0
+    require_done(program("run", probed, "-o", "out", "-q", *sets("output.snapshot_interval_s=20e-6")))
     case = (tmp_path / "out/case.resolved.toml").read_text(encoding="utf-8")
-    version = json.loads((tmp_path / "out/run.json").read_text())["version"]
+    version = run_json(tmp_path / "out")["version"]
     for name in ("interface.h5", "probes.h5", "fields.vtkhdf"):
         with h5py.File(tmp_path / "out" / name) as file:
             assert file.attrs["program"] == "slipfront" and file.attrs["version"] == version
@@ -55,8 +52,8 @@ def test_every_hdf5_file_says_where_it_comes_from(program, probed, tmp_path):
 
 @pytest.mark.parametrize("plane", ["stress", "strain"])
 def test_snapshots_have_strain_and_stress_of_the_cells(program, coarse, tmp_path, plane):
-    keys = ("--set", "output.snapshot_interval_s=20e-6", "--set", f"material.plane={plane}")
-    assert program("run", coarse, "-o", "out", "-q", *keys).returncode == 0
+    keys = sets("output.snapshot_interval_s=20e-6", f"material.plane={plane}")
+    require_done(program("run", coarse, "-o", "out", "-q", *keys))
     with h5py.File(tmp_path / "out/fields.vtkhdf") as file:
         group = file["VTKHDF"]
         times = group["Steps/Values"][:]
@@ -90,22 +87,21 @@ def test_snapshots_have_strain_and_stress_of_the_cells(program, coarse, tmp_path
 
 
 def test_strain_and_stress_can_be_left_out(program, coarse, tmp_path):
-    keys = ("--set", "output.snapshot_interval_s=50e-6", "--set", "output.snapshot_stress=false")
-    assert program("run", coarse, "-o", "out", "-q", *keys).returncode == 0
+    keys = sets("output.snapshot_interval_s=50e-6", "output.snapshot_stress=false")
+    require_done(program("run", coarse, "-o", "out", "-q", *keys))
     with h5py.File(tmp_path / "out/fields.vtkhdf") as file:
         assert "CellData" not in file["VTKHDF"]
 
 
 def test_times_after_the_end_are_told(program, coarse, tmp_path):
     # Tractions below the strength under a still edge: the event ends at once.
-    keys = (
+    keys = sets(
         *("plate.corner=none", "loading.method=prestress", "prestress.t_Pa=1e6", "prestress.p_Pa=5e6"),
         *("event.kind=none", "time.end_s=1", "output.snapshot_times_s=[1e-5, 0.7, 0.9]"),
     )
-    done = program("run", coarse, "-o", "out", *(word for key in keys for word in ("--set", key)))
-    assert done.returncode == 0
+    done = require_done(program("run", coarse, "-o", "out", *keys))
     assert "2 of 3 output.snapshot_times_s are after the end of the event" in done.stdout
-    run = json.loads((tmp_path / "out/run.json").read_text())
+    run = run_json(tmp_path / "out")
     assert run["snapshot_times_after_the_event_s"] == [0.7, 0.9]
     assert any("2 of 3 output.snapshot_times_s" in warning for warning in run["warnings"])
 
@@ -119,25 +115,14 @@ def test_times_after_the_end_are_told(program, coarse, tmp_path):
         ('x_m = [0.1]\ny_m = [0.0]\nnames = ["a", "b"]', 3, "has 2 names for 1 places"),
         ('x_m = [0, 0.1]\ny_m = [0.1, 0]\nnames = ["a", "a"]', 3, 'has the name "a" twice'),
         ("x_m = [0.1]\ny_m = [0.0]\nnames = [1]", 3, "must be a list of strings, is a list of numbers"),
+        # Beyond a rounded corner.
+        ("x_m = [1e-4]\ny_m = [1e-5]", 1, "the probe 1 at (0.0001, 1e-05) m lies outside the plate; move it"),
     ],
 )
-def test_wrong_probes_are_refused_with_their_line(program, coarse, tmp_path, table, line, says):
-    text = (tmp_path / coarse).read_text() + "\n[probes]\n"
-    file = tmp_path / "wrong.toml"
-    file.write_text(text + table + "\n")
-    done = program("run", file, "-o", "out")
-    assert done.returncode == 2 and done.stderr.count("\n") == 1
-    assert f"wrong.toml:{text.count(chr(10)) + line}: " in done.stderr and says in done.stderr
+def test_wrong_probes_are_refused_with_their_line(program, write_case, tmp_path, table, line, says):
+    text = COARSE + "\n[probes]\n"
+    case = write_case(text + table + "\n")
+    for command in (("run", case, "-o", "out"), ("validate", case)):
+        told = refusal(program(*command, "--set", "plate.corner=relief"))
+        assert told.startswith(f"{case}:{text.count(chr(10)) + line}: ") and says in told
     assert not (tmp_path / "out").exists()
-
-
-def test_a_probe_beyond_a_rounded_corner_is_refused_with_its_line(program, coarse, tmp_path):
-    text = (tmp_path / coarse).read_text() + "\n[probes]\n"
-    file = tmp_path / "wrong.toml"
-    file.write_text(text + "x_m = [1e-4]\ny_m = [1e-5]\n")
-    keys = ("--set", "plate.corner=relief")
-    for command in (("run", file, "-o", "out"), ("validate", file)):
-        done = program(*command, *keys)
-        assert done.returncode == 2 and done.stderr.count("\n") == 1
-        assert f"wrong.toml:{text.count(chr(10)) + 1}: " in done.stderr
-        assert "the probe 1 at (0.0001, 1e-05) m lies outside the plate; move it inside" in done.stderr

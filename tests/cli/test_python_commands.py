@@ -4,27 +4,30 @@
 import os
 import shutil
 import signal
-import subprocess
 import sys
 
 import pytest
-from conftest import ROOT
-from hostile.trials import HANG_S
-from test_commands import PYTHON_COMMANDS, one_line
+from common import ROOT, finished, one_line, refusal, require_done
+from test_commands import PYTHON_COMMANDS
 
 ECHO = '#!/bin/sh\nshift 2\nprintf "%s|" "$@"\nprintf "%s" "$PYTHONPATH"\n'
+BARE = f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n'  # without installed packages
 
 
 @pytest.fixture
 def interpreter(tmp_path, monkeypatch):
-    """Makes a script the interpreter."""
+    """Makes a script the interpreter: the one that is named, or python3 of the path."""
 
-    def make(text):
-        script = tmp_path / "interpreter"
+    def make(text, is_named=True):
+        script = tmp_path / "bin/python3"
+        script.parent.mkdir()
         script.write_text(text)
         script.chmod(0o755)
-        monkeypatch.setenv("SLIPFRONT_PYTHON", str(script))
-        return script
+        if is_named:
+            monkeypatch.setenv("SLIPFRONT_PYTHON", str(script))
+        else:
+            monkeypatch.delenv("SLIPFRONT_PYTHON", raising=False)
+            monkeypatch.setenv("PATH", f"{script.parent}:{os.environ['PATH']}")
 
     return make
 
@@ -46,9 +49,7 @@ def test_arguments_are_passed_on_as_they_are(program, interpreter, monkeypatch, 
     interpreter(ECHO)
     monkeypatch.setenv("PYTHONPATH", "/mine")
     arguments = ["--help", "a b", "-o", "", "--", "--set", "*", "ä"]
-    result = program(command, *arguments)
-    assert result.returncode == 0
-    *passed, path = result.stdout.split("|")
+    *passed, path = require_done(program(command, *arguments)).stdout.split("|")
     assert passed == [command, *arguments]
     first = f"{program.path.parents[2] / 'python'}:" if in_tree(program) else ""
     assert path == first + "/mine"
@@ -60,57 +61,42 @@ def test_outside_its_tree_the_program_leaves_the_path_alone(elsewhere, interpret
     assert elsewhere("report", "DIR").stdout == "report|DIR|"
 
 
-def test_without_a_name_python3_of_the_path_is_taken(elsewhere, tmp_path, monkeypatch):
-    monkeypatch.delenv("SLIPFRONT_PYTHON", raising=False)
-    (tmp_path / "bin").mkdir()
-    python = tmp_path / "bin/python3"
-    python.write_text("#!/bin/sh\necho mine\n")
-    python.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:{os.environ['PATH']}")
+def test_without_a_name_python3_of_the_path_is_taken(elsewhere, interpreter):
+    interpreter("#!/bin/sh\necho mine\n", is_named=False)
     assert elsewhere("report", "DIR").stdout == "mine\n"
 
 
-@pytest.mark.parametrize("code", [0, 77])
-def test_exit_codes_are_the_modules(program, interpreter, code):
-    interpreter(f"#!/bin/sh\nexit {code}\n")
+@pytest.mark.parametrize("script, code", [("exit 77", 77), ("kill -TERM $$", -signal.SIGTERM)])
+def test_exit_codes_and_signals_are_the_modules(program, interpreter, script, code):
+    interpreter(f"#!/bin/sh\n{script}\n")
     assert program("report", "DIR").returncode == code
-
-
-def test_signals_are_the_modules(program, interpreter):
-    interpreter("#!/bin/sh\nkill -TERM $$\n")
-    assert program("report", "DIR").returncode == -signal.SIGTERM
 
 
 def test_an_interpreter_that_is_not_there_is_told(program, monkeypatch):
     monkeypatch.setenv("SLIPFRONT_PYTHON", "/nonexistent/python")
-    line = one_line(program("report", "DIR"))
+    line = refusal(program("report", "DIR"))
     assert "/nonexistent/python cannot be started: No such file" in line and "SLIPFRONT_PYTHON" in line
 
 
 def test_a_missing_package_is_told(elsewhere, interpreter, tmp_path, monkeypatch):
-    interpreter(f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n')  # without installed packages
+    interpreter(BARE)
     monkeypatch.delenv("PYTHONPATH", raising=False)
     elsewhere.folder = tmp_path / "here"
     (elsewhere.folder / "slipfront").mkdir(parents=True)  # results of that name are no package
-    line = one_line(elsewhere("report", "DIR"))
+    line = refusal(elsewhere("report", "DIR"))
     assert "report needs the Python package slipfront" in line and "-m pip install ." in line
 
 
-def test_a_source_tree_without_packages_names_its_target(program, tmp_path, monkeypatch):
+def test_a_source_tree_without_packages_names_its_target(program, interpreter, tmp_path, monkeypatch):
     tree = tmp_path / "tree"
     (tree / "build/release").mkdir(parents=True)
     (tree / "python").mkdir()
     (tree / "python/slipfront").symlink_to(ROOT / "python/slipfront")
     shutil.copy(program.path, tree / "build/release/slipfront")
-    python = tmp_path / "bin/python3"
-    python.parent.mkdir()
-    python.write_text(f'#!/bin/sh\nexec "{sys.executable}" -S "$@"\n')
-    python.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{python.parent}:{os.environ['PATH']}")
-    monkeypatch.delenv("SLIPFRONT_PYTHON", raising=False)
+    interpreter(BARE, is_named=False)
     monkeypatch.delenv("PYTHONPATH", raising=False)
     program.path = tree / "build/release/slipfront"
-    assert f"'make module' in {tree} installs them all" in one_line(program("report", "DIR"))
+    assert f"'make module' in {tree} installs them all" in refusal(program("report", "DIR"))
 
 
 ONSETS = "x_m,time_s\n0,0\n1e-2,1e-5\n2e-2,2e-5\n"
@@ -120,40 +106,36 @@ TELLING += [["sweep", "--help"]]
 
 
 @pytest.fixture
-def telling(program, coarse, monkeypatch):
-    """The program among what its commands in Python work on."""
+def with_run(program, coarse, monkeypatch):
+    """The program with its package, and a run in `out`."""
     monkeypatch.setenv("SLIPFRONT_PYTHON", sys.executable)
     monkeypatch.setenv("PYTHONPATH", str(ROOT / "python"))
-    (program.folder / "onsets.csv").write_text(ONSETS)
-    assert program("run", "coarse.toml", "-o", "out").returncode == 0
-    assert program(*SWEEP[:-1], "done").returncode == 0
+    require_done(program("run", "coarse.toml", "-o", "out"))
     return program
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("is_closed", [False, True], ids=["full", "closed"])
-def test_standard_output_that_cannot_be_written(telling, is_closed):
+def test_standard_output_that_cannot_be_written(with_run, is_closed):
     """Exit code 1 and one line, for whatever is printed; what a command writes into files is there."""
+    (with_run.folder / "onsets.csv").write_text(ONSETS)
+    require_done(with_run(*SWEEP[:-1], "done"))
     for arguments in TELLING:
         reading, writing = os.pipe() if is_closed else (-1, os.open("/dev/full", os.O_WRONLY))
         if is_closed:
             os.close(reading)
-        command = telling.start(*arguments, stdout=writing, stderr=subprocess.PIPE, text=True)
+        command = with_run.start(*arguments, stdout=writing)
         os.close(writing)
-        (line,) = command.communicate(timeout=HANG_S)[1].splitlines()
-        assert command.returncode == 1, arguments
+        line = one_line(finished(command), 1)
         why = "Broken pipe" if is_closed else "No space left on device"
         assert line == f"slipfront {arguments[0]}: error: standard output: {why}"
-    assert (telling.folder / "out/report.html").is_file()
-    assert (telling.folder / "done/sweep.csv").is_file()
-    assert len(list(telling.folder.glob("sweep/points/*/run.json"))) == 2
+    assert (with_run.folder / "out/report.html").is_file()
+    assert (with_run.folder / "done/sweep.csv").is_file()
+    assert len(list(with_run.folder.glob("sweep/points/*/run.json"))) == 2
 
 
-def test_a_page_is_written(program, coarse, monkeypatch):
-    monkeypatch.setenv("SLIPFRONT_PYTHON", sys.executable)
-    monkeypatch.setenv("PYTHONPATH", str(ROOT / "python"))
-    assert program("run", "coarse.toml", "-o", "out").returncode == 0
-    result = program("report", "out", "-o", "page.html")
+def test_a_page_is_written(with_run):
+    result = with_run("report", "out", "-o", "page.html")
     assert (result.returncode, result.stderr) == (0, "")
-    assert (program.folder / "page.html").read_text(encoding="utf-8").count("<section") > 0
-    assert "no such folder" in one_line(program("report", "nothing"))
+    assert "<section" in (with_run.folder / "page.html").read_text(encoding="utf-8")
+    assert "no such folder" in refusal(with_run("report", "nothing"))

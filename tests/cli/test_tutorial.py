@@ -1,23 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The commands and files of docs/tutorial.md, as a reader enters them."""
 
-from __future__ import annotations
-
-import os
 import re
 import shutil
-import subprocess
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 
 import pytest
-from hostile.trials import HANG_S
+from common import ROOT, WITH_PACKAGE, call, require_done
 from slipfront.read import read_run
 
 pytestmark = pytest.mark.slow
 
-ROOT = Path(__file__).resolve().parents[2]
 TUTORIAL = ROOT / "docs/tutorial.md"
 
 CHECK = """\
@@ -63,22 +57,10 @@ def shell(program, tmp_path):
     (names / "python").chmod(0o755)
     work = tmp_path / "work"
     work.mkdir()
-    environment = {
-        **os.environ,
-        "PATH": f"{names}:{os.environ['PATH']}",
-        "PYTHONPATH": str(ROOT / "python"),
-        "MPLBACKEND": "agg",
-    }
+    environment = WITH_PACKAGE | {"PATH": f"{names}:{WITH_PACKAGE['PATH']}", "MPLBACKEND": "agg"}
 
-    def run(text: str) -> subprocess.CompletedProcess:
-        return subprocess.run(
-            ["bash", "-euo", "pipefail", "-c", text],
-            cwd=work,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=HANG_S,
-        )
+    def run(text: str):
+        return call("bash", "-euo", "pipefail", "-c", text, cwd=work, env=environment)
 
     run.folder = work
     return run
@@ -89,19 +71,11 @@ def test_all_of_it_runs(shell):
         if block.language in ("toml", "python"):
             (shell.folder / block.file).write_text(block.text)
         elif block.language == "sh" and not block.left_out:
-            done = shell(block.text)
-            assert done.returncode == 0, block.text + done.stderr
-    for picture in (
-        "first.png",
-        "picture.png",
-        "aluminium.png",
-        "tail.png",
-        "fine/figures/energy_balance.png",
-    ):
-        assert (shell.folder / picture).stat().st_size > 10_000
-    reached = {
-        name: read_run(shell.folder / name) for name in ("first", "aluminium", "stuck", "tail", "fine")
-    }
+            require_done(shell(block.text))
+    for picture in ("first", "picture", "aluminium", "tail", "fine/figures/energy_balance"):
+        assert (shell.folder / f"{picture}.png").stat().st_size > 10_000
+    runs = ("first", "aluminium", "stuck", "tail", "fine")
+    reached = {name: read_run(shell.folder / name) for name in runs}
     for name, run in reached.items():
         ends_m = [f.x_m[-1] for f in run.fronts]
         assert (max(ends_m) > 0.19 and min(ends_m) < 0.01) == (name != "stuck"), name
@@ -132,18 +106,8 @@ def test_the_law_in_cpp_compiles(tmp_path):
     header.parent.mkdir(parents=True)
     header.write_text(law.text)
     (tmp_path / "check.cpp").write_text(CHECK)
-    command = [
-        "g++",
-        "-std=c++20",
-        "-Wall",
-        "-Werror",
-        "-Wno-psabi",
-        f"-I{tmp_path}/src",
-        f"-I{ROOT}/src",
-        tmp_path / "check.cpp",
-    ]
-    done = subprocess.run(
-        [*command, "-o", tmp_path / "check"], capture_output=True, text=True, timeout=HANG_S
-    )
-    assert done.returncode == 0, done.stderr
-    assert subprocess.run([tmp_path / "check"], timeout=HANG_S).returncode == 0
+    warnings = ("-Wall", "-Werror", "-Wno-psabi")
+    includes = (f"-I{tmp_path}/src", f"-I{ROOT}/src")
+    files = (tmp_path / "check.cpp", "-o", tmp_path / "check")
+    require_done(call("g++", "-std=c++20", *warnings, *includes, *files))
+    require_done(call(tmp_path / "check"))

@@ -6,8 +6,10 @@ The last line tells how many held."""
 import sys
 from pathlib import Path
 
+from common import as_from_a_terminal
+
 from . import damage, disk, energy, faults, folders, kills, repeats
-from .trials import Bench, as_from_a_terminal, hold, remove, scratch_folder
+from .trials import Bench, hold, remove, scratch_folder
 
 #: At every call; the other ways at every fifth.
 AT_EVERY_CALL = [faults.FAILURES[0], faults.FAILURES[3], faults.DEATHS[0]]

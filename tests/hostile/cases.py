@@ -2,11 +2,7 @@
 """Cases that take a moment, of every kind of state that a run carries."""
 
 # Elements of 5 mm and two snapshots: a tenth of a second.
-COARSE = {
-    "plate.element_size_m": 5e-3,
-    "event.kind": "left",
-    "output.snapshot_times_s": [2e-5, 1e-4],
-}
+COARSE = {"plate.element_size_m": 5e-3, "event.kind": "left", "output.snapshot_times_s": [2e-5, 1e-4]}
 # What a folder may hold before.
 EARLIER = {"plate.element_size_m": 5e-3, "friction.mu_k": 0.9}
 

@@ -6,10 +6,11 @@ import os
 import random
 import shutil
 import signal
-import time
+
+from common import finished, one_line, require_done, wait_until_or_over
 
 from .cases import long
-from .trials import TRIES, Trial, Wrong, alone, freeze, one_line, remove, require, require_same
+from .trials import TRIES, Trial, Wrong, alone, remove, require, require_same, stopped_under_way
 
 SUM_DIGITS = 64  # at the end of a checkpoint
 FEW = ("--checkpoint-every", "1e9", "--checkpoint-every-simulated")
@@ -41,14 +42,13 @@ def interrupted(bench, case):
     for _ in range(TRIES):
         folder = bench.folder()
         process = bench.start("run", case, "-o", folder, "-q", *FEW, "2e-5")
-        while process.poll() is None and not (folder / "unfinished/state/checkpoint-000002.bin").exists():
-            time.sleep(0.001)
+        wait_until_or_over((folder / "unfinished/state/checkpoint-000002.bin").exists, process)
         process.send_signal(signal.SIGTERM)
-        _, errors = process.communicate()
-        if process.returncode != 0:
-            break
-    require(process.returncode == 128 + signal.SIGTERM, f"exit {process.returncode}: {errors}")
-    return folder
+        ended = finished(process)
+        if ended.returncode != 0:
+            require(ended.returncode == 128 + signal.SIGTERM, ended)
+            return folder
+    raise Wrong("over too soon, each time")
 
 
 class Setting:
@@ -70,10 +70,10 @@ class Setting:
         state = folder / "unfinished/state"
         damage(folder / "unfinished", state, sorted(state.glob("checkpoint-*.bin")))
         process = self.bench.run("run", "--restart", folder, "-q")
-        lines = process.stderr_text.splitlines()
+        lines = process.stderr.splitlines()
         errors = [line for line in lines if not line.startswith("note: ")]
-        require(process.returncode in may_be, f"exit {process.returncode}: {process.stderr_text}")
-        require(len(errors) == (1 if process.returncode else 0), process.stderr_text)
+        require(process.returncode in may_be, process)
+        require(len(errors) == (1 if process.returncode else 0), process.stderr)
         if process.returncode == 0:
             require_same(alone(folder), self.expected, "done, and other results")
         else:
@@ -172,12 +172,10 @@ def changed_table(bench, name, text, changed):
     own = folder / f"unfinished/{name}.csv"
     require(own.read_text() == text, "the table is not kept")
     own.write_text(changed)
-    process = bench.run("run", "--restart", folder, "-q")
-    require(process.returncode == 2, f"exit {process.returncode}: {process.stderr_text}")
-    require(str(own) in one_line(process), process.stderr_text)
+    line = one_line(bench.run("run", "--restart", folder, "-q"), 2)
+    require(str(own) in line, line)
     own.write_text(text)
-    process = bench.run("run", "--restart", folder, "-q")
-    require(process.returncode == 0, f"exit {process.returncode}: {process.stderr_text}")
+    require_done(bench.run("run", "--restart", folder, "-q"))
     require_same(alone(folder), expected, "other results")
 
 
@@ -200,44 +198,26 @@ def meddlings():
     yield "a file of its own", lambda u, s: (u / "interface.h5").write_text("mine\n"), 0
 
 
-def stopped_under_way(setting):
-    """The folder and process of a run that stands still; again where it was over before it was stopped."""
-    for _ in range(TRIES):
-        folder = setting.bench.folder()
-        process = setting.bench.start("run", setting.case, "-o", folder, "-q")
-        state = folder / "unfinished/state"
-        raw = [state / name for name in ("history.raw", "snapshots.raw")]
-
-        def is_under_way(folder=folder, raw=raw):
-            begun = (folder / "unfinished/fronts.csv").exists()
-            return begun and all(path.exists() and path.stat().st_size >= 16 for path in raw)
-
-        try:
-            while process.poll() is None and not is_under_way():
-                time.sleep(0.001)
-            if freeze(process) and is_under_way():
-                return folder, process
-        except FileNotFoundError:  # published between two looks
-            pass
-        process.send_signal(signal.SIGCONT)
-        process.communicate()
-        remove(folder.parent)
-    raise Wrong("over too soon, each time")
+def is_under_way(folder):
+    """Rows of both records are there."""
+    raw = [folder / f"unfinished/state/{name}.raw" for name in ("history", "snapshots")]
+    begun = (folder / "unfinished/fronts.csv").exists()
+    return begun and all(path.exists() and path.stat().st_size >= 16 for path in raw)
 
 
 def meddle(setting, how, may_be):
     """The same while the run goes on."""
-    folder, process = stopped_under_way(setting)
+    process, folder = stopped_under_way(setting.bench, setting.case, is_under_way)
     state = folder / "unfinished/state"
     how(folder / "unfinished", state)
     process.send_signal(signal.SIGCONT)
-    _, errors = process.communicate()
+    ended = finished(process)
     # Where it was done with the file before, the results are right all the same.
-    require(process.returncode in (0, may_be), f"exit {process.returncode}: {errors}")
-    if process.returncode == 0:
+    require(ended.returncode in (0, may_be), ended)
+    if ended.returncode == 0:
         require_same(alone(folder), setting.expected, "done, and other results")
     else:
-        require(len(errors.splitlines()) == 1 and str(folder) in errors, errors)
+        require(str(folder) in one_line(ended, may_be), ended)
         require(not (folder / "run.json").exists(), "results after a refusal")
     remove(folder.parent)
 

@@ -125,9 +125,7 @@ def balance(bench, seed):
         process = bench.run("run", case, "-o", folder, "-q")
         if process.returncode != 2:
             break
-    require(
-        process.returncode == 0, f"exit {process.returncode}: {process.stderr_text} of {json.dumps(settings)}"
-    )
+    require(process.returncode == 0, f"{process} of {json.dumps(settings)}")
     bound = SINGLE_BOUND if settings.get("time.precision") == "single" else BOUND
     found = relative_imbalance(folder, settings)
     require(found < bound, f"imbalance {found:.3g} of {json.dumps(settings)}")

@@ -5,24 +5,13 @@ changes files, in turn."""
 import errno
 import shutil
 import signal
-import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from common import finished, one_line, require_done, wait_until_or_over
+
 from .cases import COARSE, EARLIER, long
-from .trials import (
-    LOCK,
-    TRIES,
-    Bench,
-    Trial,
-    alone,
-    difference,
-    one_line,
-    remove,
-    require,
-    require_same,
-    visible,
-)
+from .trials import LOCK, TRIES, Bench, Trial, alone, difference, remove, require, require_same, visible
 
 CHECKPOINTS = ("--checkpoint-every-simulated", "1e-4")
 #: Mode and errno: what the n-th call does.
@@ -51,8 +40,7 @@ class Setting:
 
     def __post_init__(self):
         folder = self.prepared_folder()
-        process = self.bench.run(*self.command, "-o", folder)
-        require(process.returncode == 0, process.stderr_text)
+        require_done(self.bench.run(*self.command, "-o", folder))
         self.new = alone(folder)
         self.old = visible(self.old_folder) if self.old_folder else None
 
@@ -85,7 +73,7 @@ class Setting:
         """How many calls an undisturbed run makes."""
         folder = self.prepared_folder()
         process, n = self.disturbed(folder, 0, "none", 0)
-        require(process.returncode == 0, process.stderr_text)
+        require_done(process)
         require(n > 20, f"only {n} calls were seen: is the library loaded?")
         return n
 
@@ -96,9 +84,7 @@ class Setting:
             (folder / LOCK).unlink(missing_ok=True)  # its removal may be what failed
             require_same(alone(folder), self.new, "done, and other results")
         elif mode in ("kill", "tear", "power"):
-            require(
-                process.returncode == -signal.SIGKILL, f"exit {process.returncode}: {process.stderr_text}"
-            )
+            require(process.returncode == -signal.SIGKILL, process)
         else:
             self.require_refusal(process, folder)
         if folder.exists():
@@ -113,8 +99,7 @@ class Setting:
         remove(folder.parent)
 
     def require_refusal(self, process, folder):
-        line = one_line(process)
-        require(process.returncode in (1, 2), f"exit {process.returncode}: {line}")
+        line = one_line(process, 1, 2)
         require(str(folder) in line, f"names no file: {line}")
         if process.returncode == 2:
             require("cannot be" in line, line)
@@ -126,13 +111,9 @@ class Setting:
             process = self.bench.run("run", "--restart", folder, "-q")
             done = process.returncode == 0 and difference(visible(folder), self.old)
             if process.returncode != 0:
-                require(
-                    process.returncode == 2, f"--restart: exit {process.returncode}: {process.stderr_text}"
-                )
-                require("holds no unfinished run" in one_line(process), process.stderr_text)
+                require("holds no unfinished run" in one_line(process, 2), process)
         if not done:
-            process = self.bench.run(*self.command, "-o", folder)
-            require(process.returncode == 0, f"run again: exit {process.returncode}: {process.stderr_text}")
+            require_done(self.bench.run(*self.command, "-o", folder))
         require_same(alone(folder), self.new, "other results after all")
 
 
@@ -150,10 +131,9 @@ def run_over_work_setting(bench):
     case, state = bench.case(long("triggered")), old_folder / "unfinished/state"
     for _ in range(TRIES):
         process = bench.start("run", case, "-o", old_folder, "-q", "--overwrite")
-        while process.poll() is None and not (state / "history.raw").exists():
-            time.sleep(0.005)
+        wait_until_or_over((state / "history.raw").exists, process)
         process.terminate()
-        process.communicate()
+        finished(process)
         if (state / "checkpoint-000001.bin").exists():
             break
     require((state / "checkpoint-000001.bin").exists(), "over too soon, each time")

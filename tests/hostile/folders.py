@@ -2,14 +2,14 @@
 """What a machine does to a run: two processes in one folder, foreign files, signals, closed streams."""
 
 import os
-import re
 import shutil
 import signal
-import subprocess
 import time
 
+from common import HANG_S, call, catches_interrupts, finished, one_line, require_done, wait_until_or_over
+
 from .cases import COARSE, EARLIER, long
-from .trials import HANG_S, LOCK, TRIES, Trial, Wrong, alone, freeze, one_line, remove, require, require_same
+from .trials import LOCK, TRIES, Trial, Wrong, alone, remove, require, require_same, stopped_under_way
 
 RESERVED = ("unfinished", "publishing", LOCK)
 
@@ -33,41 +33,23 @@ def two_at_once(setting, overwrites):
     if overwrites:
         shutil.copytree(setting.old_folder, folder)
     command = ("run", setting.case, "-o", folder, "-q", *(["--overwrite"] if overwrites else []))
-    both = [setting.bench.start(*command) for _ in range(2)]
+    both = [finished(process) for process in [setting.bench.start(*command) for _ in range(2)]]
+    require(0 in [p.returncode for p in both], f"neither is done: {both}")
     for process in both:
-        _, process.stderr_text = process.communicate(timeout=HANG_S)
-    require(0 in [p.returncode for p in both], f"neither is done: {[p.stderr_text for p in both]}")
-    for process in both:
-        if process.returncode == 0:
-            continue
-        require(process.returncode == 2, f"exit {process.returncode}: {process.stderr_text}")
-        line = one_line(process)
-        require("is in use by" in line or "is not empty" in line or "unfinished" in line, line)
+        if process.returncode != 0:
+            line = one_line(process, 2)
+            require("is in use by" in line or "is not empty" in line or "unfinished" in line, line)
     require_same(alone(folder), setting.expected, "other results")
     remove(folder.parent)
-
-
-def frozen_in_event(bench, case):
-    """The process and folder of a run that stands still in its event; again where it was over before."""
-    for _ in range(TRIES):
-        folder = bench.folder()
-        history = folder / "unfinished/state/history.raw"
-        process = bench.start("run", case, "-o", folder, "-q")
-        while process.poll() is None and not history.exists():
-            time.sleep(0.005)
-        if freeze(process) and history.exists():
-            return process, folder
-        process.send_signal(signal.SIGCONT)
-        process.communicate()
-        remove(folder.parent)
-    raise Wrong("over too soon, each time")
 
 
 def while_one_runs(setting):
     """Every command that would write there is refused while a run goes on."""
     bench = setting.bench
     case = bench.case(long("triggered"))
-    process, folder = frozen_in_event(bench, case)
+    process, folder = stopped_under_way(
+        bench, case, lambda out: (out / "unfinished/state/history.raw").exists()
+    )
     try:
         for command in (
             ("run", case, "-o", folder, "--overwrite"),
@@ -77,13 +59,10 @@ def while_one_runs(setting):
             ("study", "convergence", case, "--overwrite", "-o", folder),
             ("study", "interface-step", case, "--overwrite", "-o", folder),
         ):
-            other = bench.run(*command)
-            require(other.returncode == 2, f"{command[0]}: exit {other.returncode}: {other.stderr_text}")
-            line = one_line(other)
+            line = one_line(bench.run(*command), 2)
             require(f"in use by process {process.pid}" in line, line)
         process.send_signal(signal.SIGCONT)
-        _, errors = process.communicate()
-        require(process.returncode == 0, f"exit {process.returncode}: {errors}")
+        require_done(finished(process))
     finally:
         process.kill()
     alone(folder)
@@ -174,9 +153,7 @@ def foreign(setting, name, make, options, over_results):
         if "--restart" in options
         else ("run", setting.case, "-o", folder, *options)
     )
-    process = setting.bench.run(*command, "-q")
-    require(process.returncode == 2, f"exit {process.returncode}: {process.stderr_text}")
-    line = one_line(process)
+    line = one_line(setting.bench.run(*command, "-q"), 2)
     require("move it away" in line or "is not empty" in line, line)
     after = entries(folder.parent)
     require(after == before, f"changed: {sorted(k for k in before | after if before.get(k) != after.get(k))}")
@@ -201,16 +178,9 @@ class Long:
     def start(self, until):
         folder = self.bench.folder()
         process = self.bench.start("run", self.case, "-o", folder, "-q")
-        while process.poll() is None and not (catches_signals(process.pid) and (folder / until).exists()):
-            time.sleep(0.005)
+        wait_until_or_over(lambda: catches_interrupts(process.pid) and (folder / until).exists(), process)
         time.sleep(0.1)  # some way into it, or to its end
         return process, folder
-
-
-def catches_signals(pid):
-    with open(f"/proc/{pid}/status") as status:
-        caught = int(re.search(r"^SigCgt:\s*([0-9a-f]+)", status.read(), re.MULTILINE)[1], 16)
-    return bool(caught >> (signal.SIGINT - 1) & 1)
 
 
 def stopped(run, until, name):
@@ -218,12 +188,10 @@ def stopped(run, until, name):
     number = getattr(signal, f"SIG{name}")
     process, folder = run.start(until)
     process.send_signal(number)
-    _, process.stderr_text = process.communicate(timeout=HANG_S)
-    if process.returncode != 0:  # else it was done before
-        require(process.returncode == 128 + number, f"exit {process.returncode}: {process.stderr_text}")
-        require("interrupted" in one_line(process), process.stderr_text)
-        again = run.bench.run("run", "--restart", folder, "-q")
-        require(again.returncode == 0, f"--restart: exit {again.returncode}: {again.stderr_text}")
+    ended = finished(process)
+    if ended.returncode != 0:  # else it was done before
+        require("interrupted" in one_line(ended, 128 + number), ended)
+        require_done(run.bench.run("run", "--restart", folder, "-q"))
     require_same(alone(folder), run.expected, "other results")
     remove(folder.parent)
 
@@ -238,8 +206,7 @@ def asked_to_keep(run, until):
                 process.send_signal(signal.SIGUSR1)
             seen = seen or (folder / "unfinished/state/checkpoint-000001.bin").exists()
             time.sleep(0.005)
-        _, errors = process.communicate()
-        require(process.returncode == 0, f"exit {process.returncode}: {errors}")
+        require_done(finished(process))
         require_same(alone(folder), run.expected, "other results")
         remove(folder.parent)
         if seen:
@@ -262,15 +229,13 @@ def commands(setting, folder):
 def closed(setting, name, streams):
     """Nothing of what is printed gets into a file."""
     folder = setting.bench.folder()
-    process = subprocess.run(
-        [setting.bench.program, *map(str, commands(setting, folder)[name])],
+    process = call(
+        setting.bench.program,
+        *commands(setting, folder)[name],
         cwd=setting.bench.scratch,
         preexec_fn=lambda: [os.close(stream) for stream in streams],
-        capture_output=True,
-        timeout=HANG_S,
     )
-    require(process.returncode in (0, 1), f"exit {process.returncode}: {process.stderr}")
-    require(name != "run" or process.returncode == 0, f"exit {process.returncode}: {process.stderr}")
+    require(process.returncode in ((0,) if name == "run" else (0, 1)), process)
     if name == "run":
         require_same(alone(folder), setting.expected, "other results")
     remove(folder.parent)
@@ -286,9 +251,9 @@ def reader_goes(setting, name, lines):
     errors = process.stderr.read()
     process.wait(timeout=HANG_S)
     process.stderr.close()
-    require(process.returncode in (0, 1, -signal.SIGPIPE), f"exit {process.returncode}: {errors}")
+    expected = (0,) if name == "run" else (0, 1, -signal.SIGPIPE)
+    require(process.returncode in expected, f"exit {process.returncode}: {errors}")
     if name == "run":
-        require(process.returncode == 0, f"exit {process.returncode}: {errors}")
         require_same(alone(folder), setting.expected, "other results")
     remove(folder.parent)
 

@@ -5,6 +5,8 @@ import random
 import signal
 import time
 
+from common import finished, require_done
+
 from .cases import KINDS, long
 from .trials import Trial, alone, remove, require, require_same
 
@@ -32,18 +34,18 @@ class Setting:
             process = self.bench.start(*command, *OFTEN, "--threads", dice.randint(1, 3))
             time.sleep(dice.uniform(0, 1.1 * self.duration_s))
             process.send_signal(signal.SIGKILL)
-            _, errors = process.communicate()
-            if process.returncode == 2 and command != begin:
-                require("holds no unfinished run" in errors, errors)
+            killed = finished(process)
+            if killed.returncode == 2 and command != begin:
+                require("holds no unfinished run" in killed.stderr, killed)
                 command = begin
             else:
-                require(process.returncode in (-signal.SIGKILL, 0), f"exit {process.returncode}: {errors}")
+                require(killed.returncode in (-signal.SIGKILL, 0), killed)
                 if folder.exists():
                     command = ("run", "--restart", folder, "-q")
         process = self.bench.run(*command, "--threads", dice.randint(1, 3))
-        if process.returncode == 2 and "holds no unfinished run" in process.stderr_text:
+        if process.returncode == 2 and "holds no unfinished run" in process.stderr:
             process = self.bench.run(*begin)
-        require(process.returncode == 0, f"exit {process.returncode}: {process.stderr_text}")
+        require_done(process)
         require_same(alone(folder), self.expected, "other results")
         remove(folder.parent)
 

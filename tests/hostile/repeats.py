@@ -5,8 +5,10 @@ import random
 import signal
 import time
 
+from common import finished, require_done
+
 from .cases import COARSE
-from .trials import HANG_S, Trial, alone, remove, require, require_same
+from .trials import Trial, alone, remove, require, require_same
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 KINDS = ("reproduce", "study", "verify")
@@ -31,7 +33,7 @@ class Setting:
         start = time.monotonic()
         process = bench.run(*self.command, "-o", folder)
         self.duration_s = time.monotonic() - start
-        require(process.returncode == 0, process.stderr_text)
+        require_done(process)
         self.expected = alone(folder)
 
     def interrupted(self, folder, dice):
@@ -40,7 +42,7 @@ class Setting:
         time.sleep(dice.uniform(0, self.duration_s))
         sent = dice.choice(SIGNALS)
         process.send_signal(sent)
-        _, process.stderr_text = process.communicate(timeout=HANG_S)
+        process = finished(process)
         # By the signal itself before the program has taken it into its own hands.
         if process.returncode in (128 + sent, -sent):
             return False
@@ -49,8 +51,8 @@ class Setting:
 
     def require_done(self, process):
         """Now, or by one that was killed when its results were complete: these are refused to be replaced."""
-        refused = process.returncode == 2 and "is not empty" in process.stderr_text
-        require(process.returncode == 0 or refused, f"exit {process.returncode}: {process.stderr_text}")
+        refused = process.returncode == 2 and "is not empty" in process.stderr
+        require(process.returncode == 0 or refused, process)
 
     def trial(self, seed):
         dice = random.Random(seed)

@@ -7,17 +7,17 @@ import json
 import os
 import shutil
 import signal
-import subprocess
 import tempfile
-import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+
+from common import finished, freeze, require_done, start, wait_until_or_over
 
 CHECKSUMS = "checksums.sha256"
 LOCK = ".slipfront.lock"
-#: What takes longer hangs.
-HANG_S = 900
 #: Of a run that is to be met under way: it may be over before.
 TRIES = 1000
 #: What run.json, and the files of studies and verifications, say of the computation but not of its results.
@@ -31,31 +31,6 @@ class Wrong(AssertionError):
 def require(condition, what):
     if not condition:
         raise Wrong(what)
-
-
-def as_from_a_terminal():
-    """In the background of a shell some signals are ignored, and the program leaves them so."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    for each in (signal.SIGQUIT, signal.SIGHUP, signal.SIGTERM):
-        signal.signal(each, signal.SIG_DFL)
-
-
-def wait_until(condition, process=None):
-    """Without the process, if there is one, ending before."""
-    end = time.monotonic() + HANG_S
-    while not condition():
-        assert process is None or process.poll() is None, "ended before"
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.002)
-
-
-def freeze(process):
-    """Lets a process stand still, with all its threads, until SIGCONT. @return False where it is over"""
-    process.send_signal(signal.SIGSTOP)
-    if process.returncode is not None:
-        return False
-    state = os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
-    return state.si_code == os.CLD_STOPPED
 
 
 @dataclass
@@ -82,29 +57,16 @@ class Bench:
         environment = dict(os.environ)
         if disturbance:
             environment |= disturbance | {"LD_PRELOAD": str(self.shim)}
-        options = {
-            "stdout": subprocess.PIPE,
-            "stderr": subprocess.PIPE,
-            "stdin": subprocess.DEVNULL,
-        } | options
-        return subprocess.Popen(
-            [self.program, *map(str, arguments)], env=environment, cwd=self.scratch, text=True, **options
-        )
+        return start(self.program, *arguments, env=environment, cwd=self.scratch, **options)
 
     def run(self, *arguments, disturbance=None):
         with self.start(*arguments, disturbance=disturbance) as process:
-            try:
-                process.stdout_text, process.stderr_text = process.communicate(timeout=HANG_S)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                raise Wrong(f"does not end: {process.args}") from None
-        return process
+            return finished(process)
 
-    def result(self, case, *arguments, folder=None):
+    def result(self, case, *arguments):
         """The folder of an undisturbed run."""
-        folder = folder or self.folder()
-        process = self.run("run", case, "-o", folder, "-q", *arguments)
-        require(process.returncode == 0, f"an undisturbed run fails: {process.stderr_text}")
+        folder = self.folder()
+        require_done(self.run("run", case, "-o", folder, "-q", *arguments))
         return folder
 
 
@@ -114,15 +76,6 @@ def toml(value):
     if isinstance(value, list):
         return "[" + ", ".join(map(toml, value)) + "]"
     return json.dumps(value) if isinstance(value, str) else repr(value)
-
-
-def one_line(process):
-    """All that a process says on its standard error, which must be a single line."""
-    lines = process.stderr_text.splitlines()
-    require(
-        len(lines) == 1, f"exit {process.returncode} with {len(lines)} lines: {process.stderr_text[-600:]}"
-    )
-    return lines[0]
 
 
 # --- Sets of results
@@ -198,17 +151,15 @@ def require_same(contents, expected, what):
 class Trial:
     name: str
     run: object  # called without arguments; raises where something is wrong
-    bench: Bench | None = None
 
 
 @dataclass
 class Outcome:
-    passed: int = 0
-    skipped: str = ""
-    failures: list = field(default_factory=list)
+    passed: int
+    failures: list
 
 
-def hold(title, trials, jobs=None):
+def hold(title, trials):
     """Runs trials side by side and tells how many held."""
 
     def attempt(trial):
@@ -219,17 +170,32 @@ def hold(title, trials, jobs=None):
         return None
 
     trials = list(trials)
-    with ThreadPoolExecutor(jobs or 2 * os.cpu_count()) as pool:  # they wait for the disk, too
+    with ThreadPoolExecutor(2 * os.cpu_count()) as pool:  # they wait for the disk, too
         failures = [failure for failure in pool.map(attempt, trials) if failure]
     print(f"{title}: {len(trials)} trials, {len(failures)} failed", flush=True)
     for failure in failures[:20]:
         print(f"  {failure}", flush=True)
-    return Outcome(len(trials) - len(failures), "", failures)
+    return Outcome(len(trials) - len(failures), failures)
 
 
 def scratch_folder():
     """Of real path, for a library that compares paths."""
     return Path(tempfile.mkdtemp(prefix="slipfront-hostile-")).resolve()
+
+
+def stopped_under_way(bench, case, is_under_way):
+    """The process of a run that stands still, and its folder; again where it was over too soon."""
+    for _ in range(TRIES):
+        folder = bench.folder()
+        process = bench.start("run", case, "-o", folder, "-q")
+        with suppress(FileNotFoundError):  # published between two looks
+            wait_until_or_over(partial(is_under_way, folder), process)
+            if freeze(process) and is_under_way(folder):
+                return process, folder
+        process.send_signal(signal.SIGCONT)
+        finished(process)
+        remove(folder.parent)
+    raise Wrong("over too soon, each time")
 
 
 def remove(folder):

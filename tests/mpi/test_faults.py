@@ -8,12 +8,23 @@ import re
 import resource
 import shutil
 import signal
-import subprocess
 from pathlib import Path
 
 import pytest
-from conftest import AS_ROOT, ROOT, finished, send
-from hostile.trials import HANG_S, TRIES, alone, difference, remove, wait_until
+from common import (
+    ROOT,
+    call,
+    finished,
+    one_line,
+    refusal,
+    require_done,
+    require_same_bytes,
+    sets,
+    wait_until,
+    wait_until_or_over,
+)
+from conftest import own, send
+from hostile.trials import TRIES, alone, difference, remove
 
 # Elements of 4 mm and 2000 steps: some tenths of a second on idle processors.
 CASE = """\
@@ -36,14 +47,8 @@ snapshot_times_s = [1e-3, 3e-3]
 OFTEN = ("--checkpoint-every-simulated", "2e-4")
 # The statics take seconds, by the leader alone or shared; the event few steps.
 SLOW_STATICS = {
-    "direct": ("--set", "plate.element_size_m=5e-4", "--set", "loading.solver=direct"),
-    "petsc": ("--set", "plate.element_size_m=5e-4", "--set", "loading.solver=petsc"),
+    solver: sets("plate.element_size_m=5e-4", f"loading.solver={solver}") for solver in ("direct", "petsc")
 }
-# What mpirun, and not the program, says; it names the program's node before what its libraries tell.
-OF_MPIRUN = re.compile(
-    r"^(-{10,}|mpirun|\[|Primary job|a non-zero exit|the job to be terminated|\s*(Process name|Exit code):"
-    r"|MPI_ABORT|with errorcode|NOTE: invoking|You may or may not|exactly when|$)"
-)
 
 
 @pytest.fixture
@@ -60,43 +65,22 @@ def undisturbed(tmp_path_factory):
 
     def results(mpirun, case):
         if not folder.exists():
-            result = mpirun(2, "run", case, "-o", folder, "-q")
-            assert result.returncode == 0, result.stderr
+            require_done(mpirun(2, "run", case, "-o", folder, "-q"))
         return folder
 
     return results
-
-
-def own_lines(result):
-    """Lines on standard error that are not mpirun's."""
-    return [line for line in result.stderr.splitlines() if not OF_MPIRUN.match(line)]
-
-
-def one_line(result, code):
-    """The only line of a run that ended with this code."""
-    lines = own_lines(result)
-    assert result.returncode == code, (result.returncode, result.stderr)
-    assert len(lines) == 1, result.stderr
-    return lines[0]
-
-
-def wait_until_or_over(condition, process):
-    wait_until(lambda: process.poll() is not None or condition())
 
 
 def met(mpirun, condition, *arguments):
     """A run of two processes once a condition holds, and its own; again where it was over before. It may be
     over by the time that something is done to it."""
     for _ in range(TRIES):
-        process = mpirun.start(
-            2, "run", *arguments, "-o", "out", "-q", stdout=subprocess.PIPE, stderr=subprocess.PIPE
-        )
+        process = mpirun.start(2, "run", *arguments, "-o", "out", "-q")
         wait_until_or_over(condition, process)
         pids = mpirun.processes()
         if len(pids) == 2:
             return process, pids
-        result = finished(process)
-        assert result.returncode == 0, result.stderr
+        require_done(finished(process))
         remove(mpirun.folder / "out")
     pytest.fail("over too soon, each time")
 
@@ -108,19 +92,21 @@ def in_event(mpirun, case):
 
 
 def in_statics(mpirun, case, solver="direct"):
-    settings = (*SLOW_STATICS[solver], "--set", "time.end_s=2e-5")
-    return met(mpirun, (mpirun.folder / "out/unfinished/run.json").exists, case, *settings)
+    short = sets("time.end_s=2e-5")
+    return met(
+        mpirun, (mpirun.folder / "out/unfinished/run.json").exists, case, *SLOW_STATICS[solver], *short
+    )
 
 
 def interrupted_line(result):
     """The only line of a run that SIGTERM has ended; none where it was done before."""
-    return one_line(result, 128 + signal.SIGTERM) if result.returncode else ""
+    return one_line(own(result), 128 + signal.SIGTERM) if result.returncode else ""
 
 
 def require_killed(result, pids):
     """Or done before; no process is left in any case."""
     assert result.returncode in (0, 128 + signal.SIGKILL), result.stderr
-    assert not own_lines(result)
+    assert not own(result).stderr
     require_ended(pids.values())
 
 
@@ -138,9 +124,8 @@ def require_ended(pids):
 
 def require_goes_on(mpirun, case, undisturbed):
     """Going on with what was kept gives what an undisturbed run gives, bit for bit."""
-    result = mpirun(2, "run", "--restart", "out", "-q")
-    assert result.returncode == 0, result.stderr
-    assert not own_lines(result)
+    result = require_done(mpirun(2, "run", "--restart", "out", "-q"))
+    assert not own(result).stderr
     require_undisturbed(mpirun, case, undisturbed)
 
 
@@ -155,39 +140,34 @@ def require_no_core(folder):
 
 # --- Command lines and cases
 
+RUN = ["run", "case.toml", "-o", "out", "--state-dir", "states"]
+
 
 def test_one_process_answers(mpirun):
-    result = mpirun(2, "--version")
-    assert result.returncode == 0
+    result = require_done(mpirun(2, "--version"))
     assert result.stdout == mpirun.alone("--version").stdout
-    assert not own_lines(result)
-
-
-@pytest.mark.parametrize("command", [["validate", "case.toml"], ["sweep", "case.toml"]])
-def test_other_commands_are_refused(mpirun, case, command):
-    result = mpirun(2, *command)
-    assert f"start {command[0]} alone" in one_line(result, 2)
-    assert result.stdout == ""
+    assert not own(result).stderr
 
 
 @pytest.mark.parametrize(
-    "n, setting, told",
+    "n, command, told",
     [
-        (2, "plate.sids=free", "did you mean plate.sides?"),
-        (4, "title=x", "choose at most 2"),
+        (2, ["validate", "case.toml"], "start validate alone"),
+        (2, ["sweep", "case.toml"], "start sweep alone"),
+        (2, [*RUN, "--set", "plate.sids=free"], "did you mean plate.sides?"),
+        (4, RUN, "choose at most 2"),
     ],
 )
-def test_refused_cases(mpirun, case, tmp_path, n, setting, told):
-    result = mpirun(n, "run", case, "-o", "out", "--set", setting, "--state-dir", "states")
-    assert told in one_line(result, 2)
+def test_refused_commands_and_cases(mpirun, case, tmp_path, n, command, told):
+    assert told in refusal(own(mpirun(n, *command)))
     # Before the statics, which would have been kept.
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["case.toml"]
+    assert list(tmp_path.iterdir()) == [case]
 
 
 def test_blow_up(mpirun, case, tmp_path):
-    unstable = ("--set", "time.allow_unstable=true", "--set", "time.step_factor=1.4")
+    unstable = sets("time.allow_unstable=true", "time.step_factor=1.4")
     result = mpirun(2, "run", case, "-o", "out", "-q", *unstable)
-    assert "results are in out/unfinished" in one_line(result, 3)
+    assert "results are in out/unfinished" in one_line(own(result), 3)
     assert (tmp_path / "out/unfinished/run.json").is_file()
 
 
@@ -196,14 +176,7 @@ def test_different_programs(mpirun, case, tmp_path):
     shutil.copy(mpirun.program, other)
     with other.open("ab") as file:
         file.write(b"another build")
-    process = mpirun.start(
-        2,
-        *("run", case, "-o", "out"),
-        programs=[[mpirun.program], [other]],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    line = one_line(finished(process), 2)
+    line = refusal(own(mpirun(2, "run", case, "-o", "out", programs=[[mpirun.program], [other]])))
     assert "start the same program everywhere" in line
     assert len(set(re.findall(r"build ([0-9a-f]{16})", line))) == 2
     assert not (tmp_path / "out").exists()
@@ -217,19 +190,12 @@ def test_other_processes_read_no_file(mpirun, case, tmp_path):
     leader, other = tmp_path / "leader", tmp_path / "other"
     leader.mkdir()
     other.mkdir()
-    process = mpirun.start(
-        2,
-        *with_table,
-        programs=[["-wdir", folder, mpirun.program] for folder in (leader, other)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    result = finished(process)
-    assert result.returncode == 0, result.stderr
+    programs = [["-wdir", folder, mpirun.program] for folder in (leader, other)]
+    require_done(mpirun(2, *with_table, programs=programs))
     assert not list(other.iterdir())
-    assert mpirun.alone(*with_table).returncode == 0
-    for name in ("interface.h5", "fields.vtkhdf", "fronts.csv", "static.csv"):
-        assert (leader / "out" / name).read_bytes() == (tmp_path / "out" / name).read_bytes(), name
+    require_done(mpirun.alone(*with_table))
+    names = ("interface.h5", "fields.vtkhdf", "fronts.csv", "static.csv")
+    require_same_bytes(leader / "out", tmp_path / "out", *names)
 
 
 # --- Processes that die
@@ -276,8 +242,7 @@ def test_interrupted_leader(mpirun, case, undisturbed):
     process, pids = in_event(mpirun, case)
     send(pids[0], signal.SIGTERM)
     if line := interrupted_line(finished(process)):
-        assert "results are in out/unfinished" in line
-        assert "--restart out" in line
+        assert "results are in out/unfinished" in line and "--restart out" in line
     require_goes_on(mpirun, case, undisturbed)
 
 
@@ -293,11 +258,10 @@ def test_checkpoint_on_request(mpirun, case, undisturbed):
     """Again where it was over before it was asked."""
     state = mpirun.folder / "out/unfinished/state"
     for _ in range(TRIES):
-        process = mpirun.start(2, "run", case, "-o", "out", stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process = mpirun.start(2, "run", case, "-o", "out")
         wait_until_or_over((state / "history.raw").exists, process)
         process.send_signal(signal.SIGUSR1)
-        result = finished(process)
-        assert result.returncode == 0, result.stderr
+        result = require_done(finished(process))
         require_undisturbed(mpirun, case, undisturbed)
         if re.search(r"note: checkpoint at t = \S+ s of the event", result.stderr):
             return
@@ -312,23 +276,25 @@ def test_checkpoint_on_request(mpirun, case, undisturbed):
 def fault_library(tmp_path_factory):
     """Put before the system's, it lets writing below a folder fail."""
     library = tmp_path_factory.mktemp("fault") / "fault.so"
-    subprocess.run(
-        ["cc", "-shared", "-fPIC", ROOT / "tests/hostile/fault.c", "-o", library, "-ldl"], check=True
-    )
+    require_done(call("cc", "-shared", "-fPIC", ROOT / "tests/hostile/fault.c", "-o", library, "-ldl"))
     return library
 
 
-def test_full_disk(mpirun, case, undisturbed, tmp_path, fault_library):
-    settings = {"FAULT_BELOW": tmp_path / "out", "FAULT_AT": 200, "FAULT_MODE": "on", "FAULT_ERROR": 28}
-    options = [text for name, value in settings.items() for text in ("-x", f"{name}={value}")]
-    process = mpirun.start(
-        2,
-        *("run", case, "-o", "out", "-q", *OFTEN),
-        starter=["-x", f"LD_PRELOAD={fault_library}", *options],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    line = one_line(finished(process), 1)
+@pytest.fixture
+def faulty(mpirun, fault_library):
+    """The program of which a call to the system goes wrong below a path, from that call on."""
+
+    def command(below, at, mode="on"):
+        fault = {"LD_PRELOAD": fault_library, "FAULT_BELOW": mpirun.folder / below, "FAULT_AT": at}
+        fault |= {"FAULT_MODE": mode, "FAULT_ERROR": 28}
+        return ["env", *(f"{name}={value}" for name, value in fault.items()), mpirun.program]
+
+    return command
+
+
+def test_full_disk(mpirun, case, undisturbed, faulty):
+    result = mpirun(2, "run", case, "-o", "out", "-q", *OFTEN, programs=2 * [faulty("out", 200)])
+    line = one_line(own(result), 1)
     assert "No space left on device" in line
     assert "--restart out" in line
     require_goes_on(mpirun, case, undisturbed)
@@ -337,15 +303,7 @@ def test_full_disk(mpirun, case, undisturbed, tmp_path, fault_library):
 def test_limit_of_file_sizes(mpirun, case, undisturbed):
     """It is below that of the files by which MPI shares memory, too."""
     limited = ["bash", "-c", 'ulimit -f 16; exec "$0" "$@"', mpirun.program]
-    command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", "2", *limited]
-    result = subprocess.run(
-        [*map(str, command), "run", case, "-o", "out", "-q", *OFTEN],
-        cwd=mpirun.folder,
-        env=os.environ | AS_ROOT,
-        capture_output=True,
-        text=True,
-        timeout=HANG_S,
-    )
+    result = mpirun(2, "run", case, "-o", "out", "-q", *OFTEN, programs=[limited, limited])
     assert result.returncode == 1
     assert "(File too large)" in result.stderr
     assert "--restart out" in result.stderr
@@ -355,30 +313,17 @@ def test_limit_of_file_sizes(mpirun, case, undisturbed):
 # --- fields.vtkhdf, which all processes write
 
 
-def fails_in_fields(mpirun, fault_library, case, rank, at, mode):
+def fails_in_fields(mpirun, faulty, case, rank, *fault):
     """A run of two processes, of which one cannot write fields.vtkhdf from a call of the system on."""
-    settings = {
-        "LD_PRELOAD": fault_library,
-        "FAULT_BELOW": mpirun.folder / "out/unfinished/fields.vtkhdf",
-        "FAULT_AT": at,
-        "FAULT_MODE": mode,
-        "FAULT_ERROR": 28,
-    }
     programs = [[mpirun.program], [mpirun.program]]
-    programs[rank] = ["env", *(f"{name}={value}" for name, value in settings.items()), mpirun.program]
-    process = mpirun.start(
-        *(2, "run", case, "-o", "out", "-q", *OFTEN),
-        programs=programs,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    return finished(process)
+    programs[rank] = faulty("out/unfinished/fields.vtkhdf", *fault)
+    return own(mpirun(2, "run", case, "-o", "out", "-q", *OFTEN, programs=programs))
 
 
 # Each process writes some 25 times, the leader after it has made the file.
 @pytest.mark.parametrize(("rank", "at"), [(0, 1), (0, 40), (1, 1), (1, 24)])
-def test_fields_that_one_process_cannot_write(mpirun, fault_library, case, undisturbed, rank, at):
-    line = one_line(fails_in_fields(mpirun, fault_library, case, rank, at, "on"), 1)
+def test_fields_that_one_process_cannot_write(mpirun, faulty, case, undisturbed, rank, at):
+    line = one_line(fails_in_fields(mpirun, faulty, case, rank, at), 1)
     assert "fields.vtkhdf: cannot " in line
     assert ("process 1: " in line) == (rank == 1)
     assert "--restart out" in line
@@ -386,10 +331,9 @@ def test_fields_that_one_process_cannot_write(mpirun, fault_library, case, undis
 
 
 @pytest.mark.parametrize(("rank", "at"), [(0, 20), (1, 10)])
-def test_killed_while_fields_are_written(mpirun, fault_library, case, undisturbed, rank, at):
-    result = fails_in_fields(mpirun, fault_library, case, rank, at, "kill")
-    assert result.returncode == 128 + signal.SIGKILL
-    assert not own_lines(result)
+def test_killed_while_fields_are_written(mpirun, faulty, case, undisturbed, rank, at):
+    result = fails_in_fields(mpirun, faulty, case, rank, at, "kill")
+    assert (result.returncode, result.stderr) == (128 + signal.SIGKILL, "")
     require_goes_on(mpirun, case, undisturbed)
 
 
@@ -398,53 +342,28 @@ OTHERS_DO_NOT_SEE = (
 )
 
 
-def test_folder_that_others_do_not_see(mpirun, case, undisturbed):
-    """As on machines without a common file system: the leader writes all files."""
-    if subprocess.run(["unshare", "-m", "true"], capture_output=True).returncode != 0:
-        pytest.skip("no file system can be mounted here")
-    folder = mpirun.folder / "out"
-    folder.mkdir()
-    elsewhere = f'mount -t tmpfs none {folder} && exec "$0" "$@"'
-    process = mpirun.start(
-        *(2, "run", case, "-o", "out"),
-        programs=[[mpirun.program], ["unshare", "-m", "bash", "-c", elsewhere, mpirun.program]],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    result = finished(process)
-    assert result.returncode == 0, result.stderr
-    assert OTHERS_DO_NOT_SEE in result.stderr
-    require_undisturbed(mpirun, case, undisturbed)
-
-
-# The other process sees the files of the leader, and not the other way round, or cannot write there.
 @pytest.mark.parametrize(
     "view",
     [
+        # As on machines without a common file system.
+        "mount -t tmpfs none {out}",
+        # The other process sees the files of the leader, and not the other way round, or cannot write there.
         "mount -t tmpfs none {own} && mkdir {own}/up {own}/work &&"
         " mount -t overlay none -o lowerdir={out},upperdir={own}/up,workdir={own}/work {out}",
         "mount --bind {out} {out} && mount -o remount,ro,bind {out}",
     ],
-    ids=["overlay", "read-only"],
+    ids=["unseen", "overlay", "read-only"],
 )
 def test_folder_that_others_see_otherwise(mpirun, case, undisturbed, tmp_path, view):
-    folder, own = mpirun.folder / "out", tmp_path / "own"
+    """The leader writes all files."""
+    folder, own_folder = mpirun.folder / "out", tmp_path / "own"
     folder.mkdir()
-    own.mkdir()
-    script = view.format(out=folder, own=own)
-    if subprocess.run(["unshare", "-m", "bash", "-c", script], capture_output=True).returncode != 0:
+    own_folder.mkdir()
+    script = view.format(out=folder, own=own_folder)
+    if call("unshare", "-m", "bash", "-c", script).returncode != 0:
         pytest.skip("no such file system can be mounted here")
-    process = mpirun.start(
-        *(2, "run", case, "-o", "out"),
-        programs=[
-            [mpirun.program],
-            ["unshare", "-m", "bash", "-c", script + ' && exec "$0" "$@"', mpirun.program],
-        ],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )
-    result = finished(process)
-    assert result.returncode == 0, result.stderr
+    elsewhere = ["unshare", "-m", "bash", "-c", script + ' && exec "$0" "$@"', mpirun.program]
+    result = require_done(mpirun(2, "run", case, "-o", "out", programs=[[mpirun.program], elsewhere]))
     assert OTHERS_DO_NOT_SEE in result.stderr
     require_undisturbed(mpirun, case, undisturbed)
 
@@ -452,16 +371,9 @@ def test_folder_that_others_see_otherwise(mpirun, case, undisturbed, tmp_path, v
 @pytest.mark.parametrize("out", ["closed", "full"])
 def test_output_that_nobody_takes(mpirun, case, undisturbed, out):
     """What one process prints of its run may be lost, too."""
+    close = (lambda: os.close(1)) if out == "closed" else None
     with open("/dev/full", "w") as full:
-        process = mpirun.start(
-            2,
-            *("run", case, "-o", "out"),
-            stdout=full,
-            stderr=subprocess.PIPE,
-            preexec_fn=(lambda: os.close(1)) if out == "closed" else None,
-        )
-        result = finished(process)
-    assert result.returncode == 0, result.stderr
+        require_done(mpirun(2, "run", case, "-o", "out", stdout=full, preexec_fn=close))
     require_undisturbed(mpirun, case, undisturbed)
 
 
@@ -481,6 +393,6 @@ def test_no_memory(mpirun, case, rank, code, told):
         resource.prlimit(pids[rank], resource.RLIMIT_AS, (limit, limit))
     result = finished(process)
     if result.returncode != 0:
-        assert re.search(told, one_line(result, code))
+        assert re.search(told, one_line(own(result), code))
     require_ended(pids.values())
     require_no_core(mpirun.folder)

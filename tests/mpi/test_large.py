@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plates of so many squares, under given tractions, that the leader knows only their interfaces."""
 
-import json
-import os
 import re
-import subprocess
+import sys
 
 import pytest
-from conftest import AS_ROOT
-from hostile.trials import HANG_S
-from test_same import require_done, require_same, stop_after_checkpoint
+from common import PEAK_BYTES, require_done, run_json
+from test_same import require_same, stop_after_checkpoint
 
 # 600,000 nodes.
 PLATE = """\
@@ -83,17 +80,8 @@ PROCESSES = dict.fromkeys(CASES, 3) | {"periodic, two bodies": 2}
 
 
 def write_case(folder, name, **changes):
-    values = {
-        "width_m": 1.0,
-        "plate": "",
-        "prestress": UNIFORM,
-        "x_m": 0.34,
-        "end_s": 3e-5,
-        "time": "",
-        "output": "",
-        "rest": "",
-    }
-    values |= {"y_m": 0.2} | CASES[name] | changes
+    values = {"width_m": 1.0, "prestress": UNIFORM, "x_m": 0.34, "y_m": 0.2, "end_s": 3e-5}
+    values |= dict.fromkeys(("plate", "time", "output", "rest"), "") | CASES[name] | changes
     (folder / "prestress.csv").write_text("x_m,t_Pa,p_Pa\n0,0.4e6,1e6\n0.6,0.46e6,1e6\n1,0.43e6,1.1e6\n")
     (folder / "case.toml").write_text(PLATE.format(**values))
     return folder / "case.toml"
@@ -125,8 +113,7 @@ def test_any_number_of_processes_goes_on(tmp_path, mpirun):
 
 
 def told_by_info(mpirun, case, *options):
-    result = mpirun.alone("info", case, *options)
-    require_done(result)
+    result = require_done(mpirun.alone("info", case, *options))
     return dict(re.findall(r"^ *(.+?) {2,}(.+)$", result.stdout, re.MULTILINE))
 
 
@@ -140,39 +127,18 @@ def test_info_is_of_the_run(tmp_path, mpirun):
     updates = [told["node updates"].split(" at ")[0] for told in (alone, shared)]
     assert updates[0] == updates[1]
     require_done(mpirun(3, "run", case, "-o", "out", "-q"))
-    run = json.loads((tmp_path / "out/run.json").read_text())
+    run = run_json(tmp_path / "out")
     assert shared["steps to the end"] == str(run["steps"])
     assert shared["exchange every"] == f"{run['processes']['steps_per_exchange']} steps"
 
 
-def peak_mb_of_leader(mpirun, case, n_processes, out):
-    """The starter of its only child is measured."""
-    measured = (
-        "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
-        "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)"
-    )
-    program = (mpirun.program, "run", case, "-o", out, "-q")
-    command = [
-        *("mpirun", "--oversubscribe", "--bind-to", "none"),
-        *("-n", "1", "python3", "-c", measured, *program),
-        *((":", "-n", n_processes - 1, *program) if n_processes > 1 else ()),
-    ]
-    result = subprocess.run(
-        list(map(str, command)),
-        cwd=mpirun.folder,
-        env=os.environ | AS_ROOT,
-        capture_output=True,
-        text=True,
-        timeout=HANG_S,
-    )
-    require_done(result)
-    return float(result.stdout)
-
-
 def test_the_leader_holds_its_part_alone(tmp_path, mpirun):
-    def peak_mb(n_processes, output=""):
+    def peak_mb(n, output=""):
         case = write_case(tmp_path, "absorbing edges", end_s=3e-6, output=output)
-        return peak_mb_of_leader(mpirun, case, n_processes, tmp_path / f"by-{n_processes}-{len(output)}")
+        measured = [sys.executable, "-c", PEAK_BYTES, mpirun.program]
+        programs = [measured, *([mpirun.program] for _ in range(n - 1))]
+        run = ("run", case, "-o", f"by-{n}-{len(output)}", "-q")
+        return 1e-6 * int(require_done(mpirun(n, *run, programs=programs)).stdout)
 
     mesh_and_state_mb = 64e-6 * 1001 * 601
     by_four = peak_mb(4)
@@ -212,9 +178,7 @@ def test_statics_of_what_no_process_holds(tmp_path, mpirun):
     states = ("--state-dir", tmp_path / "states")
     require_done(mpirun(2, "run", case, "-o", "gathered", "-q", *states))
     require_same(tmp_path / "gathered", tmp_path / "kept", 0)
-    statics = [
-        json.loads((tmp_path / name / "run.json").read_text())["statics"] for name in ("kept", "gathered")
-    ]
+    statics = [run_json(tmp_path / name)["statics"] for name in ("kept", "gathered")]
     for of_run in statics:
         del of_run["wall_s"]
     assert statics[0] == statics[1]

@@ -2,13 +2,11 @@
 """What several processes find is what one finds: the files of a run byte by byte, energies to rounding."""
 
 import csv
-import json
 import signal
-import subprocess
-import time
 
 import pytest
-from conftest import finished, send
+from common import finished, require_done, require_same_bytes, run_json, wait_until_or_over
+from conftest import send
 
 # Elements of 2 mm: a run takes a tenth of a second.
 PLATE = """\
@@ -151,14 +149,13 @@ def require_same(one, several, rounding=1e-13):
     """All files but run.json's times, and energies to a part of the largest."""
     names = {path.name for path in one.iterdir()}
     assert {path.name for path in several.iterdir()} == names
-    for name in names - {"run.json", "energy.csv", "checksums.sha256"}:
-        assert (several / name).read_bytes() == (one / name).read_bytes(), name
+    require_same_bytes(one, several, *(names - {"run.json", "energy.csv", "checksums.sha256"}))
     first, second = energies(one), energies(several)
     assert len(first) == len(second)
     largest = max(abs(value) for row in first for value in row)
     for row, other in zip(first, second, strict=True):
         assert row == pytest.approx(other, rel=0, abs=rounding * largest)
-    of_one, of_several = (json.loads((folder / "run.json").read_text()) for folder in (one, several))
+    of_one, of_several = run_json(one), run_json(several)
     for key in ("status", "fronts", "steps", "end", "warnings"):
         assert of_one.get(key) == of_several.get(key), key
 
@@ -168,9 +165,8 @@ def stop_after_checkpoint(mpirun, n, folder, *arguments):
     @return whether it was stopped; else it was done before"""
     state = folder / "unfinished/state"
     before = set(state.glob("*checkpoint*"))
-    with mpirun.start(n, *arguments, "-q", stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        while process.poll() is None and not set(state.glob("*checkpoint*")) - before:
-            time.sleep(0.002)
+    with mpirun.start(n, *arguments, "-q") as process:
+        wait_until_or_over(lambda: set(state.glob("*checkpoint*")) - before, process)
         # The leader and not mpirun, which takes a second to end its processes.
         send(mpirun.processes().get(0), signal.SIGTERM)
         result = finished(process)
@@ -178,17 +174,12 @@ def stop_after_checkpoint(mpirun, n, folder, *arguments):
         return result.returncode != 0
 
 
-def require_done(run):
-    assert run.returncode == 0, run.stderr
-
-
 @pytest.mark.parametrize("name", CASES)
 def test_processes_change_nothing(name, tmp_path, mpirun):
     case = write_case(tmp_path, name)
     one = tmp_path / "one"
     require_done(mpirun.alone("run", case, "-o", one, "-q"))
-    with open(one / "fronts.csv", encoding="utf-8") as stream:
-        assert len(stream.readlines()) > 10
+    assert (one / "fronts.csv").read_text().count("\n") > 10
     # Where a step is single precision's, so are its sums.
     rounding = 1e-7 if "single" in name else 1e-13
     for n in PROCESSES[name]:
@@ -211,4 +202,4 @@ def test_any_number_of_processes_goes_on(tmp_path, mpirun):
         stops += stop_after_checkpoint(mpirun, n, several, "run", "--restart", several, *often)
     require_done(mpirun(2, "run", "--restart", several, *often))
     require_same(one, several)
-    assert json.loads((several / "run.json").read_text())["sessions"] == 1 + stops
+    assert run_json(several)["sessions"] == 1 + stops

@@ -1,16 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Statics by PETSc, shared by processes, against the factorisation of one process."""
 
-import json
 import math
-import os
-import subprocess
 import tomllib
 
 import numpy as np
 import pytest
-from conftest import AS_ROOT
-from hostile.trials import HANG_S
+from common import require_done, require_same_bytes, run_json, sets
+from conftest import Mpirun
 
 CASE = """\
 title = "shared statics"
@@ -30,27 +27,13 @@ quiet_s = inf
 """
 # docs/statics-petsc.md: of a displacement in the energy norm, over the displacement's.
 ACCURACY = 1e-10
-GRADED = (
-    "--set",
-    "plate.coarsenings=2",
-    "--set",
-    "plate.fine_height_m=0.02",
-    "--set",
-    "time.interface_substeps=2",
+GRADED = sets("plate.coarsenings=2", "plate.fine_height_m=0.02", "time.interface_substeps=2")
+ON_BASE = sets(
+    *("base.kind=body", "base.height_m=0.06", "base.youngs_modulus_Pa=5e9", "base.poissons_ratio=0.3"),
+    *("base.density_kg_per_m3=1500", "base.stiffness_damping_s=1e-7"),
 )
-ON_BASE = tuple(
-    word
-    for setting in (
-        "kind=body",
-        "height_m=0.06",
-        "youngs_modulus_Pa=5e9",
-        "poissons_ratio=0.3",
-        "density_kg_per_m3=1500",
-        "stiffness_damping_s=1e-7",
-    )
-    for word in ("--set", f"base.{setting}")
-)
-FILLET = ("--set", "plate.corner=fillet")
+FILLET = sets("plate.corner=fillet")
+PETSC = sets("loading.solver=petsc")
 
 
 @pytest.fixture
@@ -69,7 +52,7 @@ def traction_tolerance_pa(folder):
     energy is at most that of the loaded edge's largest displacement over the whole plate; K_kk is about E."""
     case = tomllib.loads((folder / "case.resolved.toml").read_text())
     plate, youngs_modulus_pa = case["plate"], case["material"]["youngs_modulus_Pa"]
-    shear_m = json.loads((folder / "run.json").read_text())["statics"]["critical_shear_m"]
+    shear_m = run_json(folder)["statics"]["critical_shear_m"]
     tilt_m = max(case["loading"]["tilt_left_m"], case["loading"]["tilt_right_m"])
     strain = (tilt_m + shear_m) / plate["height_m"]
     norm = math.sqrt(youngs_modulus_pa * strain**2 * plate["height_m"] * plate["width_m"])
@@ -92,15 +75,14 @@ def require_same_state(found, expected):
 def require_same_fronts(found, expected):
     a, b = table(found, "fronts.csv"), table(expected, "fronts.csv")
     assert a.size == b.size > 3
-    step_s = json.loads((expected / "run.json").read_text())["dt_s"]
+    step_s = run_json(expected)["dt_s"]
     assert np.array_equal(a["x_m"], b["x_m"])
     assert np.abs(a["onset_s"] - b["onset_s"]).max() <= 2 * step_s
 
 
 def run(mpirun, n, case, out, *settings):
     arguments = ("run", case, "-o", out, "-q", *settings)
-    result = mpirun.alone(*arguments) if n == 0 else mpirun(n, *arguments)
-    assert result.returncode == 0, result.stderr
+    require_done(mpirun.alone(*arguments) if n == 0 else mpirun(n, *arguments))
     return mpirun.folder / out
 
 
@@ -113,7 +95,7 @@ def test_as_the_factorisation(mpirun, case, settings, processes):
     """0: without mpirun."""
     expected = run(mpirun, 0, case, "direct", *settings)
     for n in processes:
-        found = run(mpirun, n, case, f"petsc-{n}", *settings, "--set", "loading.solver=petsc")
+        found = run(mpirun, n, case, f"petsc-{n}", *settings, *PETSC)
         require_same_state(found, expected)
         require_same_fronts(found, expected)
 
@@ -161,57 +143,46 @@ interface_substeps = 3
 
 def test_edges_that_were_free(mpirun, case):
     case.write_text(LONG_ON_BASE)
-    expected = run(mpirun, 0, case, "direct", "--set", "loading.solver=direct")
-    found = run(mpirun, 2, case, "petsc", "--set", "loading.solver=petsc")
+    expected = run(mpirun, 0, case, "direct", *sets("loading.solver=direct"))
+    found = run(mpirun, 2, case, "petsc", *PETSC)
     require_same_state(found, expected)
 
 
 @pytest.mark.parametrize("n", [2, 3])
 def test_equilibria(mpirun, n):
     """Each kind of body and contact, node by node: petsc_test.cpp."""
-    program = mpirun.program.with_name("test_petsc")
-    result = subprocess.run(
-        ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(n), program],
-        env=os.environ | AS_ROOT,
-        capture_output=True,
-        text=True,
-        timeout=HANG_S,
-    )
+    result = Mpirun(mpirun.folder, mpirun.program.with_name("test_petsc"))(n)
     assert result.returncode == 0, result.stdout[-4000:] + result.stderr
     assert "[  PASSED  ]" in result.stdout
 
 
 def test_options_of_petsc_change_nothing(mpirun, case, tmp_path, monkeypatch):
-    petsc = ("--set", "loading.solver=petsc")
-    plain = run(mpirun, 0, case, "plain", *petsc)
+    plain = run(mpirun, 0, case, "plain", *PETSC)
     options = "-log_view -info -mg_levels_ksp_max_it 7 -pc_gamg_agg_nsmooths 0 -malloc_view -no_such_option"
     monkeypatch.setenv("PETSC_OPTIONS", options)
     monkeypatch.setenv("HOME", str(tmp_path))
     for name in (".petscrc", "petscrc"):
         (tmp_path / name).write_text(options.replace(" -", "\n-") + "\n")
-    result = mpirun.alone("run", case, "-o", "set", "-q", *petsc)
+    result = mpirun.alone("run", case, "-o", "set", "-q", *PETSC)
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
-    assert (tmp_path / "set/static.csv").read_bytes() == (plain / "static.csv").read_bytes()
+    require_same_bytes(tmp_path / "set", plain, "static.csv")
 
 
 def test_as_many_processes_give_the_same_again(mpirun, case):
-    petsc = ("--set", "loading.solver=petsc")
-    first, again = (run(mpirun, 2, case, name, *petsc) for name in ("first", "again"))
-    for name in ("static.csv", "fronts.csv", "interface.h5"):
-        assert (first / name).read_bytes() == (again / name).read_bytes(), name
+    first, again = (run(mpirun, 2, case, name, *PETSC) for name in ("first", "again"))
+    require_same_bytes(first, again, "static.csv", "fronts.csv", "interface.h5")
 
 
 @pytest.mark.parametrize(
     "settings, n",
-    [((), 3), (GRADED, 3), ((*ON_BASE, "--set", "base.youngs_modulus_Pa=1e9"), 2)],
+    [((), 3), (GRADED, 3), ((*ON_BASE, *sets("base.youngs_modulus_Pa=1e9")), 2)],
     ids=["relief", "graded", "soft base"],
 )
 def test_displacements_stay_where_they_are_found(mpirun, case, settings, n):
     """Where the state before the event is to be used again, the leader gathers them."""
-    settings = (*settings, "--set", "loading.solver=petsc", "--set", "output.snapshot_times_s=[0, 1e-4]")
+    settings = (*settings, *PETSC, *sets("output.snapshot_times_s=[0, 1e-4]"))
     kept = run(mpirun, n, case, "kept", *settings)
     gathered = run(mpirun, n, case, "gathered", *settings, "--state-dir", "states")
     again = run(mpirun, 1, case, "again", *settings, "--state-dir", "states")
     for other in (gathered, again):
-        for name in ("static.csv", "fronts.csv", "interface.h5", "fields.vtkhdf"):
-            assert (kept / name).read_bytes() == (other / name).read_bytes(), (other, name)
+        require_same_bytes(kept, other, "static.csv", "fronts.csv", "interface.h5", "fields.vtkhdf")

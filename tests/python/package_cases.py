@@ -3,13 +3,10 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 from pathlib import Path
 
-from hostile.trials import HANG_S
-
-ROOT = Path(__file__).resolve().parents[2]
+from common import built, call
 
 # A few hundredths of a second.
 CASE = """\
@@ -27,10 +24,7 @@ snapshot_times_s = [20e-6, 60e-6]
 
 
 def program(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-    path = Path(os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")).resolve()
-    return subprocess.run(
-        [path, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=HANG_S
-    )
+    return call(built(), *arguments, cwd=cwd)
 
 
 def write_case(folder: Path, text: str = CASE) -> Path:

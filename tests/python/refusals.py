@@ -16,6 +16,13 @@ def replace(file, old, new) -> None:
     file.write_text(text.replace(old, new, 1))
 
 
+def flip(file) -> None:
+    """A bit of the byte in the middle."""
+    data = bytearray(file.read_bytes())
+    data[len(data) // 2] ^= 1
+    file.write_bytes(data)
+
+
 def change_json(file, change) -> None:
     """Rewrites a file after change(content)."""
     content = json.loads(file.read_text())

@@ -3,12 +3,9 @@
 
 import os
 import re
-import subprocess
-from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).parents[2]
+from common import ROOT, call, require_done
 
 
 def test_the_page_has_the_script():
@@ -26,13 +23,8 @@ def test_the_script_goes_on_with_what_was_begun(tmp_path, begun):
     srun.chmod(0o755)
     if begun is not None:
         (tmp_path / "out" / begun).mkdir(parents=True)
-    result = subprocess.run(
-        ["bash", ROOT / "scripts/slurm-run.sh", "case.toml", "out"],
-        cwd=tmp_path,
-        env=os.environ | {"PATH": f"{srun.parent}:{os.environ['PATH']}"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    environment = os.environ | {"PATH": f"{srun.parent}:{os.environ['PATH']}"}
+    script = ("bash", ROOT / "scripts/slurm-run.sh", "case.toml", "out")
+    result = require_done(call(*script, cwd=tmp_path, env=environment))
     goes_on = begun in ("unfinished", "publishing", "run.json")
     assert ("run --restart out " if goes_on else "run case.toml -o out ") in result.stdout

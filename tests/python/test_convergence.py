@@ -9,17 +9,7 @@ from refusals import artist, change_json, gids, one_error, replace
 from slipfront.figures import convergence
 from slipfront.figures.__main__ import main
 from synthetic import write_csv
-from synthetic_study import (
-    C_L,
-    HEADER,
-    OWN,
-    SIZES,
-    WITHOUT,
-    X_LEFT_M,
-    X_RIGHT_M,
-    limit_left,
-    write_study,
-)
+from synthetic_study import C_L, HEADER, OWN, SIZES, WITHOUT, X_LEFT_M, X_RIGHT_M, limit_left, write_study
 
 
 @pytest.fixture
@@ -31,6 +21,14 @@ def bars(ax, gid) -> np.ndarray:
     """Bottom and top of the bars."""
     segments = artist(ax, gid).get_segments()
     return np.array([[s[0][1], s[1][1]] for s in segments])
+
+
+def without(folder, *directions) -> None:
+    """Forgets what the study says of fronts in some directions."""
+    change_json(
+        folder / "convergence.json",
+        lambda study: [s.update(dict.fromkeys(directions, WITHOUT)) for s in study["sequences"]],
+    )
 
 
 def panels(folder):
@@ -61,10 +59,7 @@ def test_error_bars_reach_from_the_cases_own_speed_to_the_limit(study):
 
 def test_titles_tell_the_verdict(study):
     titles = [[ax.get_title(loc="left").replace("\n", " ") for ax in row[:2]] for row in panels(study)]
-    assert titles[0] == [
-        "to $-x$: not converged, error 8 %",
-        "to $+x$: no limit, error at least 17 %",
-    ]
+    assert titles[0] == ["to $-x$: not converged, error 8 %", "to $+x$: no limit, error at least 17 %"]
     assert titles[2] == ["to $-x$: converged, error 0.99 %", "to $+x$: too few stations"]
     assert "made up" in convergence.convergence(study).figure.get_suptitle()
 
@@ -99,11 +94,7 @@ def test_the_limit_itself_has_no_place_on_the_axis_of_errors(study):
 
 
 def test_a_direction_without_enough_stations_is_left_out(study):
-    def forget(result):
-        for s in result["sequences"]:
-            s["direction_+1"] = WITHOUT
-
-    change_json(study / "convergence.json", forget)
+    without(study, "direction_+1")
     axes = convergence.convergence(study).figure.axes
     assert len(axes) == 6
     assert "median:1" not in gids(axes[1])
@@ -135,11 +126,5 @@ def test_damaged_folder_gives_one_line(study, capsys, file, old, new, says):
 
 def test_study_without_fronts_gives_one_line(study, capsys):
     write_csv(study / "convergence.csv", HEADER, [])
-
-    def forget(result):
-        for s in result["sequences"]:
-            s["direction_+1"] = s["direction_-1"] = WITHOUT
-
-    change_json(study / "convergence.json", forget)
-    assert main([str(study)]) == 2
-    assert "no front has a station" in capsys.readouterr().err
+    without(study, "direction_+1", "direction_-1")
+    assert "no front has a station" in one_error(capsys, study)

@@ -7,8 +7,8 @@ import re
 from pathlib import Path
 
 import pytest
+from common import ROOT
 
-ROOT = Path(__file__).parents[2]
 DOCS = [ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *DOCS]
 PROBLEMS = sorted(page.stem for page in (ROOT / "verification").glob("*.md") if page.stem != "README")

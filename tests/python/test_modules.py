@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from common import ROOT
 
 
 def built() -> dict[str, set[str]]:
@@ -18,10 +18,9 @@ def built() -> dict[str, set[str]]:
 
 def folder(module: str) -> Path:
     """Modules lie in src, uses of the library beside it."""
-    return {
-        "kammer2012": ROOT / "papers/kammer2012",
-        "verification": ROOT / "verification",
-    }.get(module, ROOT / "src" / module)
+    return {"kammer2012": ROOT / "papers/kammer2012", "verification": ROOT / "verification"}.get(
+        module, ROOT / "src" / module
+    )
 
 
 def planned() -> dict[str, set[str]]:

@@ -3,16 +3,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
-from pathlib import Path
 
 import pytest
-from hostile.trials import HANG_S
+from common import HANG_S, ROOT
 
-FOLDER = Path(__file__).resolve().parents[2] / "docs/notebooks"
+FOLDER = ROOT / "docs/notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
-PYTHON = FOLDER.parents[1] / "python"
 
 
 def test_they_are_named_on_their_page():
@@ -35,12 +32,11 @@ def test_stored_output_is_small_and_whole(notebook):
 @pytest.mark.slow
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda n: n.stem)
 def test_it_runs(notebook, monkeypatch):
-    if importlib.util.find_spec("slipfront._core") is None:
-        pytest.skip("no compiled module")
+    pytest.importorskip("slipfront._core")
     nbformat = pytest.importorskip("nbformat")
     nbclient = pytest.importorskip("nbclient")
     pytest.importorskip("ipykernel")
-    monkeypatch.setenv("PYTHONPATH", str(PYTHON))
+    monkeypatch.setenv("PYTHONPATH", str(ROOT / "python"))
     book = nbformat.read(notebook, as_version=4)
     where = {"metadata": {"path": str(FOLDER)}}
     nbclient.NotebookClient(book, timeout=HANG_S, kernel_name="python3", resources=where).execute()

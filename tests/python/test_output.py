@@ -9,11 +9,12 @@ import os
 import resource
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import slipfront.command
+from common import WITH_PACKAGE, call
+from common import one_line as line_of
 from refusals import one_error, one_line
 from slipfront.figures import interface_step, open_choices, verification
 from slipfront.figures.__main__ import main
@@ -22,7 +23,6 @@ from slipfront.read import read_experiment, read_fronts, read_history
 from synthetic import ENERGY_HEADER, energy_rows, write_csv, write_run
 from synthetic_study import write_interface_step, write_open_choices, write_study, write_verification
 
-PACKAGE = Path(__file__).parents[2] / "python"
 NOBODY = 65534
 
 
@@ -33,18 +33,15 @@ def run(tmp_path):
 
 
 def command(*arguments, module="slipfront.figures", **options) -> subprocess.CompletedProcess:
-    environment = {**os.environ, "PYTHONPATH": str(PACKAGE), "MPLCONFIGDIR": options.pop("config", "/tmp")}
-    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "timeout": 900} | options
-    return subprocess.run(
-        [sys.executable, "-m", module, *map(str, arguments)], text=True, env=environment, **options
+    return call(
+        sys.executable, "-m", module, *arguments, env=WITH_PACKAGE | {"MPLCONFIGDIR": "/tmp"}, **options
     )
 
 
-def refused(done: subprocess.CompletedProcess, *says: str, code: int = 2) -> None:
-    assert done.returncode == code, done.stderr
-    assert done.stderr.count("\n") == 1 and done.stderr.startswith("slipfront.figures: error: "), done.stderr
-    for part in says:
-        assert part in done.stderr
+def not_written(done: subprocess.CompletedProcess, *says: str) -> None:
+    line = line_of(done, 1)
+    for part in ("slipfront.figures: error: ", *says):
+        assert part in line
 
 
 # Where there is no file
@@ -101,8 +98,8 @@ def test_what_may_not_be_read_is_refused(run, capsys, closed):
         (run / closed).chmod(0o755)
         for parent in parents:
             parent.chmod(parent.stat().st_mode & ~0o011)
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and str(run / closed) in error and "Permission denied" in error
+    error = one_line(capsys)
+    assert str(run / closed) in error and "Permission denied" in error
 
 
 # Text
@@ -146,20 +143,20 @@ def test_a_cell_that_is_no_number_is_refused(tmp_path, cell):
         read_table(file).numbers("a")
 
 
-@pytest.mark.parametrize("text", ["[" * 100_000, '{"a": NaN}', '{"a": Infinity}', "1" * 10_000, "{", ""])
-def test_what_is_no_json_is_refused(tmp_path, text):
-    file = tmp_path / "file.json"
-    file.write_text(text)
-    with pytest.raises(DataError, match="file.json: not JSON"):
-        read_json(file)
-
-
-@pytest.mark.parametrize("text", ["a = " + "[" * 100_000, "a = 2020-13-45", "a = 1\na = 2", "a"])
-def test_what_is_no_toml_is_refused(tmp_path, text):
-    file = tmp_path / "file.toml"
-    file.write_text(text)
-    with pytest.raises(DataError, match=r"file.toml(:\d+)?: not TOML"):
-        read_toml(file)
+@pytest.mark.parametrize(
+    "read, name, texts",
+    [
+        (read_json, "JSON", ["[" * 100_000, '{"a": NaN}', '{"a": Infinity}', "1" * 10_000, "{", ""]),
+        (read_toml, "TOML", ["a = " + "[" * 100_000, "a = 2020-13-45", "a = 1\na = 2", "a"]),
+    ],
+    ids=["json", "toml"],
+)
+def test_what_is_no_json_or_toml_is_refused(tmp_path, read, name, texts):
+    file = tmp_path / "file"
+    for text in texts:
+        file.write_text(text)
+        with pytest.raises(DataError, match=rf"file(:\d+)?: not {name}"):
+            read(file)
 
 
 def test_a_front_that_turns_back_is_refused(run):
@@ -241,8 +238,7 @@ def test_what_is_no_regular_file_is_not_replaced(tmp_path, capsys, module, make)
     make(picture)
     kind = os.lstat(picture).st_mode
     assert draws(module, picture, PICTURES[module](tmp_path / "study")) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and f"{picture}: is there and not a regular file" in error
+    assert f"{picture}: is there and not a regular file" in one_line(capsys)
     assert os.lstat(picture).st_mode == kind
 
 
@@ -257,28 +253,23 @@ def limit_files():
 
 
 def test_a_full_disk_leaves_what_was_there(run):
-    refused(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large", code=1)
+    not_written(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large")
     assert not (run / "figures").exists()
     assert main([str(run)]) == 0
     before = {f.name: f.read_bytes() for f in (run / "figures").iterdir()}
     write_csv(run / "energy.csv", ENERGY_HEADER, energy_rows(12))
-    refused(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large", code=1)
+    not_written(command(run, preexec_fn=limit_files), str(run / "figures"), "File too large")
     assert {f.name: f.read_bytes() for f in (run / "figures").iterdir()} == before
 
 
-def test_a_full_standard_output_is_told(run):
+def test_a_standard_output_that_takes_nothing_is_told(run):
     with open("/dev/full", "w") as full:
-        refused(command(run, stdout=full), "standard output", "No space left", code=1)
+        not_written(command(run, stdout=full), "standard output", "No space left")
     assert (run / "figures/energy_balance.png").is_file()
-
-
-def test_a_closed_pipe_is_told(run):
     read_end, write_end = os.pipe()
     os.close(read_end)
-    try:
-        refused(command(run, stdout=write_end), "standard output", "Broken pipe", code=1)
-    finally:
-        os.close(write_end)
+    not_written(command(run, stdout=write_end), "standard output", "Broken pipe")
+    os.close(write_end)
 
 
 def test_closed_streams_do_not_matter(run):

@@ -4,15 +4,14 @@
 from __future__ import annotations
 
 import csv
-import os
 import re
-import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
-from package_cases import ROOT, write_case
+from common import ROOT, WITH_PACKAGE, built, call, refusal, require_done
+from package_cases import write_case
+from refusals import one_line
 from slipfront import fronts_command
 from slipfront.__main__ import main
 from slipfront.read import read_experiment
@@ -93,34 +92,24 @@ def test_a_material_and_tractions_make_an_experiment_for_the_scorecard(onsets, t
 def test_mistakes_are_one_line(onsets, capsys, text, options, message):
     onsets.write_text(text)
     assert fronts_command.main([str(onsets), *options]) == 2
-    error = capsys.readouterr().err
-    assert error.startswith("slipfront fronts: error: ")
-    assert message in error
-    assert error.count("\n") == 1
+    error = one_line(capsys)
+    assert error.startswith("slipfront fronts: error: ") and message in error
 
 
 def test_other_commands_are_the_programs(tmp_path):
     """Of the program that is tested, wherever it was built."""
-    program = Path(os.environ.get("SLIPFRONT", ROOT / "build/release/slipfront")).resolve()
-    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
     code = (
-        f"import slipfront.program; slipfront.program.PLACES = ({str(program)!r},); "
+        f"import slipfront.program; slipfront.program.PLACES = ({str(built())!r},); "
         "from slipfront.__main__ import console; exit(console())"
     )
-    command = [sys.executable, "-c", code, "validate", "nowhere.toml"]
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
-    assert done.returncode == 2
-    assert done.stderr.startswith("nowhere.toml: ")
+    command = (sys.executable, "-c", code, "validate", "nowhere.toml")
+    assert refusal(call(*command, cwd=tmp_path, env=WITH_PACKAGE)).startswith("nowhere.toml: ")
 
 
 def test_the_stubs_are_the_modules(tmp_path):
-    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
     stub = tmp_path / "_core.pyi"
-    subprocess.run(
-        [sys.executable, "-m", "nanobind.stubgen", "-q", "-m", "slipfront._core", "-o", stub],
-        env=environment,
-        check=True,
-    )
+    stubgen = (sys.executable, "-m", "nanobind.stubgen", "-q", "-m", "slipfront._core", "-o", stub)
+    require_done(call(*stubgen, env=WITH_PACKAGE))
     assert stub.read_text() == (ROOT / "python/slipfront/_core.pyi").read_text(), "make stubs renews it"
 
 
@@ -129,8 +118,7 @@ def test_figures_need_neither_xarray_nor_the_module():
         "import sys; import slipfront.figures.__main__, slipfront.read; "
         "sys.exit(any(name in sys.modules for name in ('xarray', 'slipfront._core')))"
     )
-    environment = {**os.environ, "PYTHONPATH": str(ROOT / "python")}
-    assert subprocess.run([sys.executable, "-c", code], env=environment).returncode == 0
+    require_done(call(sys.executable, "-c", code, env=WITH_PACKAGE))
 
 
 def test_the_names_of_the_package_are_all_there():
@@ -139,8 +127,7 @@ def test_the_names_of_the_package_are_all_there():
     text = (ROOT / "python/slipfront/__init__.py").read_text()
     typed = re.findall(r"import \w+ as (\w+)", text)
     assert sorted(typed) == sorted(slipfront.__all__)
-    for name in slipfront.__all__:
-        assert getattr(slipfront, name) is not None
+    assert all(getattr(slipfront, name) is not None for name in slipfront.__all__)
     with pytest.raises(AttributeError, match="no attribute 'fly'"):
         _ = slipfront.fly
 

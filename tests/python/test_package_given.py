@@ -95,28 +95,19 @@ def test_options_of_a_run(arguments, said):
 
 
 @pytest.mark.parametrize(
-    ("x_m", "onset_s", "said"),
+    ("given", "said"),
     [
-        (None, ONSET_S, "x_m is None; it must be an array of numbers"),
-        (["a", "b"], [0, 1], "x_m is not an array of numbers: could not convert"),
-        (X_M[None], ONSET_S, "x_m has 2 dimensions; it must have 1"),
-        ([], [], "x_m has fewer than two values"),
-        (X_M[::-1], ONSET_S, "x_m must ascend strictly"),
-        (np.where(X_M > 0.1, np.nan, X_M), ONSET_S, "x_m holds a value that is not finite"),
-        (X_M, ONSET_S[1:], "onset_s has 100 values, not 101"),
-        (X_M, ONSET_S + 0j, "onset_s holds complex numbers"),
-        (X_M, np.arange(101).astype("timedelta64[us]"), "onset_s is "),
-        ({}, ONSET_S, "x_m is not an array of numbers"),
-        ([[1], [1, 2]], [0, 1], "x_m is not an array of numbers"),
-    ],
-)
-def test_arrays_that_are_none(x_m, onset_s, said):
-    assert said in refusal(lambda: slipfront.find_fronts(x_m, onset_s))
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
+        ({"x_m": None}, "x_m is None; it must be an array of numbers"),
+        ({"x_m": ["a", "b"]}, "x_m is not an array of numbers: could not convert"),
+        ({"x_m": X_M[None]}, "x_m has 2 dimensions; it must have 1"),
+        ({"x_m": [], "onset_s": []}, "x_m has fewer than two values"),
+        ({"x_m": X_M[::-1]}, "x_m must ascend strictly"),
+        ({"x_m": np.where(X_M > 0.1, np.nan, X_M)}, "x_m holds a value that is not finite"),
+        ({"x_m": {}}, "x_m is not an array of numbers"),
+        ({"x_m": [[1], [1, 2]]}, "x_m is not an array of numbers"),
+        ({"onset_s": ONSET_S[1:]}, "onset_s has 100 values, not 101"),
+        ({"onset_s": ONSET_S + 0j}, "onset_s holds complex numbers"),
+        ({"onset_s": np.arange(101).astype("timedelta64[us]")}, "onset_s is "),
         ({"settings": {"l_star_m": 1}}, "it must be a slipfront.FrontSettings"),
         ({"resolution_s": "fast"}, "resolution_s is 'fast'; it must be a number"),
         ({"resolution_s": np.nan}, "resolution_s is nan"),
@@ -130,8 +121,8 @@ def test_arrays_that_are_none(x_m, onset_s, said):
         ({"settings": slipfront.FrontSettings(crack_share=0.1)}, "pulse_share 0.2 is above crack_share 0.1"),
     ],
 )
-def test_options_of_fronts(options, said):
-    assert said in refusal(lambda: slipfront.find_fronts(X_M, ONSET_S, **options))
+def test_arrays_and_options_of_fronts(given, said):
+    assert said in refusal(lambda: slipfront.find_fronts(**{"x_m": X_M, "onset_s": ONSET_S} | given))
 
 
 @pytest.mark.parametrize(
@@ -144,6 +135,7 @@ def test_options_of_fronts(options, said):
         (HISTORY | {"p_Pa": None}, "history['p_Pa'] is None"),
         (HISTORY | {"p_Pa": np.ones(4)}, "history['p_Pa'] has 1 dimensions; it must have 2"),
         (HISTORY | {"p_Pa": np.empty((0, 3))}, "p_Pa must be an array [times, nodes]"),
+        (HISTORY | {"t_Pa": np.ones((3, 4))}, "t_Pa must be an array [times, nodes]"),
         (HISTORY | {"slip_rate_m_per_s": np.full((4, 3), np.nan)}, "holds a value that is not finite"),
     ],
 )
@@ -194,7 +186,9 @@ def test_events_are_outcomes():
     assert said == "spontaneous is 'left.toml'; it must be a slipfront.Outcome"
 
 
-@pytest.mark.parametrize("size_m", ["a", None, np.nan, np.inf, 0, [1], 10**400, True, np.array([1.0, 2.0])])
+@pytest.mark.parametrize(
+    "size_m", ["a", None, np.nan, np.inf, 0, -1, [1], 10**400, True, np.array([1.0, 2.0])]
+)
 def test_sizes(size_m):
     assert "element_size_m is " in refusal(lambda: slipfront.stable_step_s(size_m))
     assert "pressure_Pa is " in refusal(
@@ -257,12 +251,7 @@ def test_a_fit_is_a_function_of_numbers_and_arrays():
 
 
 def test_speeds_are_printed_with_names_values_and_units():
-    assert repr(slipfront.wave_speeds()).splitlines() == [
-        "WaveSpeeds",
-        "  c_L_m_per_s  1584.4 m/s   longitudinal, in the plane chosen",
-        "  c_S_m_per_s  889.244 m/s  shear",
-        "  c_R_m_per_s  820.475 m/s  Rayleigh, on a free surface",
-    ]
+    assert "\n  c_S_m_per_s  889.244 m/s  shear\n" in repr(slipfront.wave_speeds())
 
 
 def test_no_result_is_printed_as_an_address():

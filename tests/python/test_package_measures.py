@@ -23,8 +23,7 @@ def test_speeds_of_a_front_to_both_sides():
         v = v[np.isfinite(v)]
         assert v.size > 20
         assert np.allclose(v, speed, rtol=1e-9)
-    assert np.isnan(found.t_s_Pa).all()
-    assert np.isnan(found.p_s_Pa).all()
+    assert np.isnan(found.t_s_Pa).all() and np.isnan(found.p_s_Pa).all()
     assert found.v_tip_m_per_s.attrs["unit"] == "m/s"
 
 
@@ -60,17 +59,13 @@ def run():
     return slipfront.run(CASE, {"output.history_interval_s": 1e-7})
 
 
-def settings_of(run):
-    material = run.case["material"]
-    return slipfront.FrontSettings(
-        mu_s=run.case["friction"]["mu_s"],
-        youngs_modulus_Pa=material["youngs_modulus_Pa"],
-        poissons_ratio=material["poissons_ratio"],
-    )
+def elastic(run):
+    return {name: run.case["material"][name] for name in ("youngs_modulus_Pa", "poissons_ratio")}
 
 
 def test_fronts_in_a_history_are_those_of_the_run(run):
-    found = slipfront.find_fronts_in_history(run.history, run.tractions, settings=settings_of(run))
+    settings = slipfront.FrontSettings(mu_s=run.case["friction"]["mu_s"], **elastic(run))
+    found = slipfront.find_fronts_in_history(run.history, run.tractions, settings=settings)
     longest = int(run.fronts.front_id.to_series().value_counts().index[0])
     # Nodes of the trigger zone slip at once, and in which order the history does not tell.
     ours, theirs = (
@@ -94,20 +89,8 @@ def test_criteria(run):
     assert np.array_equal(values.energy_rise, rise, equal_nan=True)
     assert np.isfinite(values.energy_rise).any()
     # U of the run's own points.
-    material = run.case["material"]
-    U = energy_density_J_per_m3(
-        fronts.t_d_Pa,
-        fronts.p_d_Pa,
-        youngs_modulus_Pa=material["youngs_modulus_Pa"],
-        poissons_ratio=material["poissons_ratio"],
-    )
+    U = energy_density_J_per_m3(fronts.t_d_Pa, fronts.p_d_Pa, **elastic(run))
     assert np.allclose(U, fronts.U_s_J_per_m3, rtol=1e-14, equal_nan=True)
-
-
-def test_energy_density():
-    U = energy_density_J_per_m3([[1e6], [2e6]], [3e6, 4e6], youngs_modulus_Pa=2e9, poissons_ratio=0.25)
-    t, p = np.array([[1e6], [2e6]]), np.array([3e6, 4e6])
-    assert np.allclose(U, (2.5 * t**2 + p**2) / 4e9, rtol=1e-15)
 
 
 def test_arrays_of_the_module_are_views():
@@ -180,13 +163,10 @@ def test_wave_speeds_are_those_of_a_run(run):
     material = run.case["material"]
     speeds = slipfront.wave_speeds(**material)
     told = run.info["wave_speeds"]
-    assert speeds.c_L_m_per_s == told["c_L_m_per_s"]
-    assert speeds.c_S_m_per_s == told["c_S_m_per_s"]
-    assert speeds.c_R_m_per_s == told["c_R_m_per_s"]
+    for name in ("c_L_m_per_s", "c_S_m_per_s", "c_R_m_per_s"):
+        assert getattr(speeds, name) == told[name]
     with pytest.raises(slipfront.CaseError, match="material.poissons_ratio"):
         slipfront.wave_speeds(poissons_ratio=0.7)
-    with pytest.raises(slipfront.CaseError, match="element_size_m is -1"):
-        slipfront.stable_step_s(-1)
 
 
 def test_stable_step_of_a_plate_without_corners():
@@ -199,15 +179,10 @@ def test_stable_step_of_a_plate_without_corners():
 
 
 def test_well_posedness_is_that_of_the_case():
-    info = slipfront.info(CASE)
-    friction = {"law": "velocity_weakening"}
-    verdict = slipfront.well_posedness(
-        friction, pressure_Pa=5e6, element_size_m=5e-3, longest_wavelength_m=0.2
-    )
-    assert verdict.unbounded == info.well_posedness.unbounded
-    stable = slipfront.well_posedness(
-        {"law": "coulomb", "mu": 0.1}, pressure_Pa=5e6, element_size_m=5e-3, longest_wavelength_m=0.2
-    )
+    plate = {"pressure_Pa": 5e6, "element_size_m": 5e-3, "longest_wavelength_m": 0.2}
+    verdict = slipfront.well_posedness({"law": "velocity_weakening"}, **plate)
+    assert verdict.unbounded == slipfront.info(CASE).well_posedness.unbounded
+    stable = slipfront.well_posedness({"law": "coulomb", "mu": 0.1}, **plate)
     assert stable.weakening_over_radiation == 0
     assert stable.statement != verdict.statement
 
@@ -242,10 +217,5 @@ def test_datasets_of_others_do():
     )
     found = slipfront.find_fronts_in_history(history, settings=slipfront.FrontSettings(min_length_m=1.0))
     assert np.array_equal(np.unique(found.t_s_Pa), [1.0])
-    tractions = {"t_s_Pa": np.ones(3), "p_s_Pa": np.ones(3)}
-    with pytest.raises(ValueError, match=r"t_Pa must be an array \[times, nodes\]"):
-        slipfront.find_fronts_in_history(
-            {**history, "time_s": history.time_s, "x_m": history.x_m, "t_Pa": np.ones((3, 4))}, tractions
-        )
     with pytest.raises(ValueError, match="threshold_m_per_s is 0; it must be above 0"):
         slipfront.find_fronts_in_history(history, threshold_m_per_s=0)

@@ -50,10 +50,7 @@ def test_the_history_is_the_files_and_read_when_used(folder):
 
 def test_tables_are_the_files(folder):
     run = slipfront.open(folder)
-    for found, name, dim in (
-        (run.tractions, "static.csv", "x_m"),
-        (run.energies, "energy.csv", "time_s"),
-    ):
+    for found, name, dim in ((run.tractions, "static.csv", "x_m"), (run.energies, "energy.csv", "time_s")):
         expected = columns(folder / name)
         assert set(found.variables) == set(expected)
         for column, values in expected.items():

@@ -6,43 +6,36 @@ from __future__ import annotations
 import _thread
 import gc
 import signal
-import subprocess
 import sys
 import threading
-import time
 import tomllib
 
 import numpy as np
 import pytest
 import slipfront
-from hostile.trials import HANG_S
-from package_cases import CASE, ROOT, program, write_case
+from common import WITH_PACKAGE, finished, refusal, require_done, require_same_bytes, sets, start, wait_until
+from package_cases import CASE, program, write_case
 from slipfront.running import flattened, toml_text
 
 # What does not depend on when and where a run was done.
-SAME_FILES = (
-    "case.resolved.toml",
-    "interface.h5",
-    "fronts.csv",
-    "energy.csv",
-    "static.csv",
-    "fields.vtkhdf",
-)
+SAME_FILES = ("case.resolved.toml", "interface.h5", "fronts.csv", "energy.csv", "static.csv", "fields.vtkhdf")
 # Long enough to be interrupted.
 LONG = CASE.replace("5e-3", "2e-3") + "\n[time]\nend_s = 1.0\nquiet_s = inf\n"
 
 
-def contents(folder):
-    return {name: (folder / name).read_bytes() for name in SAME_FILES}
+def refused(work) -> str:
+    """The line that the program would tell of the mistake."""
+    with pytest.raises(slipfront.CaseError) as error:
+        work()
+    assert isinstance(error.value, ValueError)
+    return str(error.value)
 
 
 def test_a_run_has_the_bytes_of_the_programs(tmp_path):
     case = write_case(tmp_path)
-    assert (
-        program("run", case, "-q", "-o", "theirs", "--set", "friction.mu_k=0.8", cwd=tmp_path).returncode == 0
-    )
+    require_done(program("run", case, "-q", "-o", "theirs", *sets("friction.mu_k=0.8"), cwd=tmp_path))
     run = slipfront.run(case, friction={"mu_k": 0.8}, output=tmp_path / "ours")
-    assert contents(tmp_path / "ours") == contents(tmp_path / "theirs")
+    require_same_bytes(tmp_path / "ours", tmp_path / "theirs", *SAME_FILES)
     assert run.status == "complete"
     assert run.case["friction"]["mu_k"] == 0.8
 
@@ -68,55 +61,37 @@ def test_a_case_may_be_given_as(tmp_path, given):
 def test_the_resolved_case_runs_again(tmp_path):
     first = slipfront.run(write_case(tmp_path), output=tmp_path / "first")
     slipfront.run(first.case, output=tmp_path / "second")
-    assert contents(tmp_path / "first") == contents(tmp_path / "second")
+    require_same_bytes(tmp_path / "first", tmp_path / "second", *SAME_FILES)
 
 
 @pytest.mark.parametrize(
-    "arguments",
-    [
-        ["friction.mu_j=0.8"],
-        ["friction.mu_k=9"],
-        ["friction.law=glue"],
-        ["plate.width_m=true"],
-    ],
+    "key, value",
+    [("friction.mu_j", 0.8), ("friction.mu_k", 9), ("friction.law", "glue"), ("plate.width_m", True)],
 )
-def test_errors_are_those_of_the_program(tmp_path, arguments):
+def test_errors_are_those_of_the_program(tmp_path, key, value):
     case = write_case(tmp_path)
-    pairs = [text.split("=") for text in arguments]
-    theirs = program("run", case, "-o", "out", *(f"--set={text}" for text in arguments), cwd=tmp_path)
-    assert theirs.returncode == 2
-    with pytest.raises(slipfront.CaseError) as error:
-        values = {"true": True, "9": 9, "0.8": 0.8}
-        slipfront.run(case, {key: values.get(value, value) for key, value in pairs}, output=tmp_path / "ours")
-    assert f"{error.value}\n" == theirs.stderr
-    assert isinstance(error.value, ValueError)
+    theirs = program("run", case, "-o", "out", *sets(f"{key}={toml_text(value)}"), cwd=tmp_path)
+    assert refused(lambda: slipfront.run(case, {key: value}, output=tmp_path / "ours")) == refusal(theirs)
     assert not (tmp_path / "ours").exists()
 
 
 def test_errors_in_files_and_folders(tmp_path):
     case = write_case(tmp_path, "[plate]\nwidht_m = 0.2\n")
-    theirs = program("run", case, "-o", "out", cwd=tmp_path)
-    with pytest.raises(slipfront.CaseError) as error:
-        slipfront.run(case)
-    assert f"{error.value}\n" == theirs.stderr
-    with pytest.raises(slipfront.CaseError, match=r"^case:2: unknown key plate.widht_m; did you mean"):
-        slipfront.run(case.read_text())
-    with pytest.raises(slipfront.CaseError, match="^case: sets no key"):
-        slipfront.run({})
-    with pytest.raises(slipfront.CaseError, match="plate.width_m is None: no value of a case file"):
-        slipfront.run({"plate.width_m": None})
-    with pytest.raises(slipfront.CaseError, match=r"keys of \[output\] dotted"):
-        slipfront.run(CASE, output={"history_interval_s": 1e-6})
+    theirs = refusal(program("run", case, "-o", "out", cwd=tmp_path))
+    assert refused(lambda: slipfront.run(case)) == theirs
+    by_text = "case:2: unknown key plate.widht_m; did you mean"
+    assert refused(lambda: slipfront.run(case.read_text())).startswith(by_text)
+    assert refused(lambda: slipfront.run({})).startswith("case: sets no key")
+    dotted = "keys of [output] dotted"
+    assert dotted in refused(lambda: slipfront.run(CASE, output={"history_interval_s": 1e-6}))
 
 
 def test_results_are_not_overwritten_unless_asked(tmp_path):
-    case = write_case(tmp_path)
-    slipfront.run(case, output=tmp_path / "out")
-    theirs = program("run", case, "-o", tmp_path / "out", cwd=tmp_path)
-    with pytest.raises(slipfront.CaseError) as error:
-        slipfront.run(case, output=tmp_path / "out")
-    assert f"{error.value}\n" == theirs.stderr
-    slipfront.run(case, output=tmp_path / "out", overwrite=True)
+    case, out = write_case(tmp_path), tmp_path / "out"
+    slipfront.run(case, output=out)
+    theirs = refusal(program("run", case, "-o", out, cwd=tmp_path))
+    assert refused(lambda: slipfront.run(case, output=out)) == theirs
+    slipfront.run(case, output=out, overwrite=True)
 
 
 def test_a_folder_in_use_is_refused(tmp_path):
@@ -125,9 +100,7 @@ def test_a_folder_in_use_is_refused(tmp_path):
 
     def again(part, step, total):
         if not errors:
-            with pytest.raises(slipfront.CaseError) as error:
-                slipfront.run(case, output=tmp_path / "out", overwrite=True)
-            errors.append(str(error.value))
+            errors.append(refused(lambda: slipfront.run(case, output=tmp_path / "out", overwrite=True)))
 
     slipfront.run(case, output=tmp_path / "out", progress=again)
     assert "in use" in errors[0]
@@ -136,7 +109,7 @@ def test_a_folder_in_use_is_refused(tmp_path):
 
 def test_blow_up(tmp_path):
     case = write_case(tmp_path)
-    unstable = ["--set", "time.allow_unstable=true", "--set", "time.step_factor=1.4"]
+    unstable = sets("time.allow_unstable=true", "time.step_factor=1.4")
     theirs = program("run", case, "-q", "-o", tmp_path / "theirs", *unstable, cwd=tmp_path)
     assert theirs.returncode == 3
     with pytest.raises(slipfront.BlowUpError) as error:
@@ -167,8 +140,7 @@ def test_other_threads_go_on_meanwhile(tmp_path):
     """Another thread interrupts a long run from within; with Python's lock held it could not."""
 
     def interrupt():
-        while not (tmp_path / "out/unfinished/energy.csv").exists() and not ended.is_set():
-            time.sleep(0.01)
+        wait_until(lambda: (tmp_path / "out/unfinished/energy.csv").exists() or ended.is_set())
         if not ended.is_set():
             _thread.interrupt_main()
 
@@ -196,17 +168,11 @@ except KeyboardInterrupt as error:
 @pytest.mark.parametrize("threads", [1, 2])
 def test_ctrl_c_keeps_a_checkpoint_and_resume_goes_on(tmp_path, threads):
     case = write_case(tmp_path, LONG)
-    process = subprocess.Popen(
-        [sys.executable, "-c", INTERRUPTED, case, tmp_path / "out", str(threads)],
-        stdout=subprocess.PIPE,
-        text=True,
-        env={"PYTHONPATH": str(ROOT / "python"), "PATH": ""},
-    )
+    process = start(sys.executable, "-c", INTERRUPTED, case, tmp_path / "out", threads, env=WITH_PACKAGE)
     while not process.stdout.readline().startswith("event"):
         assert process.poll() is None
     process.send_signal(signal.SIGINT)
-    last = process.communicate(timeout=HANG_S)[0].splitlines()[-1]
-    assert process.returncode == 0
+    last = require_done(finished(process)).stdout.splitlines()[-1]
     assert last.startswith("KeyboardInterrupt: interrupted at t = ")
     assert last.endswith(f"slipfront run --restart {tmp_path / 'out'} continues the run")
 
@@ -250,12 +216,10 @@ def test_without_a_folder_results_go_with_what_was_read(tmp_path):
 
 
 def test_values_as_toml():
-    assert toml_text(True) == "true"
-    assert toml_text(np.float32(0.5)) == "0.5"
-    assert toml_text(1e-6) == "1e-06"
-    assert toml_text(float("inf")) == "inf"
-    assert toml_text("left") == "left"
-    assert toml_text("true") == '"true"'
-    assert toml_text('a "b"\n') == '"a \\"b\\"\\n"'
-    assert toml_text(np.array([1.0, 2.0])) == "[1.0, 2.0]"
+    for value, text in (
+        *((True, "true"), (np.float32(0.5), "0.5"), (1e-6, "1e-06"), (float("inf"), "inf")),
+        *(("left", "left"), ("true", '"true"'), ('a "b"\n', '"a \\"b\\"\\n"')),
+        (np.array([1.0, 2.0]), "[1.0, 2.0]"),
+    ):
+        assert toml_text(value) == text
     assert list(flattened({"a": {"b.c": 1}, "d": False})) == [("a.b.c", "1"), ("d", "false")]

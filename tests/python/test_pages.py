@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from hostile.trials import HANG_S
+from common import ROOT, call, one_line, refusal
 from synthetic import write_checksums
 from synthetic_study import write_open_choices
 
-SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+SCRIPTS = ROOT / "scripts"
 OLD = "x" * 8192 + "\n"  # of a page's text: more than a file may have on the full disk below
 TEXTS = 3 * ("stale", "kept")  # within and behind a pair of marks
 
@@ -33,16 +33,15 @@ class Pages:
     marks: list[str]
 
     def run(self, **options) -> subprocess.CompletedProcess:
-        command = [sys.executable, SCRIPTS / self.script, self.results, self.target]
-        return subprocess.run(command, capture_output=True, text=True, timeout=HANG_S, **options)
+        return call(sys.executable, SCRIPTS / self.script, self.results, self.target, **options)
 
     def refused(self, *says: str, code: int = 2, **options) -> None:
         before = self.page.read_bytes()
         done = self.run(**options)
-        assert done.returncode == code and done.stdout == ""
-        assert done.stderr.count("\n") == 1 and done.stderr.startswith(f"{self.script}: error: "), done.stderr
+        line = one_line(done, code)
+        assert not done.stdout and line.startswith(f"{self.script}: error: ")
         for part in says:
-            assert part in done.stderr
+            assert part in line
         assert self.page.read_bytes() == before
         assert not list(self.page.parent.glob(".unfinished-*"))
 
@@ -54,11 +53,15 @@ def open_choices(folder: Path) -> Pages:
     return Pages("open-choices-page.py", results, "open_choices.json", page, page, marks)
 
 
-def scorecard(folder: Path) -> Pages:
+def claim(name: str, holds: bool | None, **more) -> dict:
+    row = {"id": name, "claim": "a|b", "paper": "Fig. 1", "measured": "0.79", "holds": holds, "how": "x"}
+    return row | more
+
+
+def scorecard(folder: Path, claims: list[dict] | None = None) -> Pages:
     results, page = folder / "results", folder / "page.md"
     results.mkdir()
-    row = {"id": "C1", "claim": "a", "paper": "Fig. 1", "measured": "0.79", "holds": True, "how": "x"}
-    (results / "scorecard.json").write_text(json.dumps([row]))
+    (results / "scorecard.json").write_text(json.dumps(claims or [claim("C1", True)]))
     marks = ["<!-- table -->", "<!-- end of table -->"]
     return Pages("scorecard-page.py", results, "scorecard.json", page, page, marks)
 
@@ -111,6 +114,51 @@ def test_the_tables_of_the_open_choices(tmp_path):
     assert "| difference between kinds of slip (C21+) | 0.20 c_L (0.10 to 0.30) | - |" in lines
 
 
+@pytest.fixture
+def write_scorecard(tmp_path):
+    """The table of a page renewed from these claims."""
+
+    def write(claims: list[dict]) -> list[str]:
+        pages = scorecard(tmp_path, claims)
+        pages.page.write_text("\n".join(pages.marks))
+        assert pages.run().returncode == 0
+        return pages.page.read_text().split("\n")[1:-1]
+
+    return write
+
+
+def test_table_of_claims_and_variations(write_scorecard):
+    mesh = {"parameter": "plate.element_size_m", "value": 1e-3, "moves": "0.11; there does not hold"}
+    rows = write_scorecard([claim("C1", True, mesh_variation=mesh), claim("C2", False), claim("E1", None)])
+    assert rows == [
+        "| id | claim | our figure | verdict | moves by, at plate.element_size_m = 0.001 | test |",
+        "|---|---|---|---|---|---|",
+        "| C1 | a\\|b (Fig. 1) | 0.79 | holds | 0.11; **there does not hold** | x |",
+        "| C2 | a\\|b (Fig. 1) | 0.79 | **does not hold** | - | x |",
+        "| E1 | a\\|b (Fig. 1) | 0.79 | not tested | - | x |",
+    ]
+
+
+def test_table_tells_which_of_two_verdicts_counts(write_scorecard):
+    second = {"second_test_of": "C2", "why": "the first | was blunt"}
+    untested = {"second_test_of": "C1", "why": "nobody tried"}
+    assert write_scorecard(
+        [
+            claim("C1", True, counts=True),
+            claim("C1b", None, counts=False, **untested),
+            claim("C2", False, counts=False),
+            claim("C2+", False, counts=False),
+            claim("C2b", True, counts=True, **second),
+        ]
+    )[2:] == [
+        "| C1 | a\\|b (Fig. 1) | 0.79 | holds | x |",
+        "| C1b | a\\|b (Fig. 1) | 0.79 | not tested | x. Instead of C1: nobody tried |",
+        "| C2 | a\\|b (Fig. 1) | 0.79 | **does not hold**; C2b counts | x |",
+        "| C2+ | a\\|b (Fig. 1) | 0.79 | **does not hold** | x |",
+        "| C2b | a\\|b (Fig. 1) | 0.79 | holds | x. Instead of C2: the first \\| was blunt |",
+    ]
+
+
 def test_all_pages_of_the_problems_are_renewed(tmp_path):
     pages = verification(tmp_path)
     pages.page.write_text("<!-- numbers -->")
@@ -119,23 +167,17 @@ def test_all_pages_of_the_problems_are_renewed(tmp_path):
     assert (pages.target / "README.md").read_text().endswith("| [Column](column.md) | 1 of 1 |\n")
 
 
-def test_damaged_results_are_refused(pages):
+def test_results_that_are_damaged_or_missing_are_refused(pages):
     file = pages.results / pages.file
     file.write_text(file.read_text().replace("1", "2", 1) + " ")
     pages.refused(f"{file}: does not match checksums.sha256")
-
-
-def test_results_that_are_not_there_are_refused(pages):
-    pages.results = pages.results / "nowhere"
-    pages.refused(f"{pages.results / pages.file}: No such file or directory")
-
-
-@pytest.mark.parametrize("text, says", [("[{", "not JSON"), ('{"checks": 1}', "not a"), ("[1]", "not a")])
-def test_results_that_are_not_as_expected_are_refused(pages, text, says):
-    """In a folder of an older program, without checksums."""
+    # In a folder of an older program, without checksums.
     (pages.results / "checksums.sha256").unlink()
-    (pages.results / pages.file).write_text(text)
-    pages.refused(f"{pages.results / pages.file}: {says}")
+    for text, says in (("[{", "not JSON"), ('{"checks": 1}', "not a"), ("[1]", "not a")):
+        file.write_text(text)
+        pages.refused(f"{file}: {says}")
+    file.unlink()
+    pages.refused(f"{file}: No such file or directory")
 
 
 def test_a_page_without_its_marks_is_refused(pages):
@@ -166,7 +208,7 @@ def test_a_full_disk_leaves_the_page_as_it_was(pages):
     "script", ["energy-criterion.py", "open-choices-page.py", "scorecard-page.py", "verification-pages.py"]
 )
 def test_without_arguments_the_usage_is_told(script):
-    done = subprocess.run([sys.executable, SCRIPTS / script], capture_output=True, text=True, timeout=HANG_S)
+    done = call(sys.executable, SCRIPTS / script)
     assert done.returncode == 2 and "usage:" in done.stderr and "Traceback" not in done.stderr
 
 
@@ -175,7 +217,5 @@ def test_without_arguments_the_usage_is_told(script):
 def test_scripts_that_draw_replace_pictures_alone(tmp_path, script, name, says):
     (tmp_path / "mine").write_text("mine")
     (tmp_path / name).symlink_to(tmp_path / "mine")
-    command = [sys.executable, SCRIPTS / script, tmp_path / "table.csv", tmp_path / name]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and says in done.stderr
+    assert says in refusal(call(sys.executable, SCRIPTS / script, tmp_path / "table.csv", tmp_path / name))
     assert (tmp_path / name).is_symlink() and (tmp_path / "mine").read_text() == "mine"

@@ -6,13 +6,14 @@ from __future__ import annotations
 import base64
 import json
 import re
-import subprocess
 import sys
 from pathlib import Path
 
+import common
 import h5py
 import numpy as np
 import pytest
+from refusals import change_json, flip, one_line
 from slipfront import __main__ as package
 from slipfront.read import PROBE_FIELDS, Fields, read_balance
 from slipfront.report import history, picture_grid, run_data
@@ -96,12 +97,10 @@ def test_a_page_needs_no_network(run):
 
 
 def test_facts_and_warnings_are_told(run, capsys):
-    info = json.loads((run / "run.json").read_text())
-    info |= {"title": "my case", "status": "interrupted", "reason": "signal 15", "steps": 1234}
-    info |= {"warnings": ["mind this"]}
-    info["rupture"] = {"strength_excess_S": {"min": 0.5, "median": 1.25, "max": 4}, "regime": "sub-Rayleigh"}
-    info["rupture"] |= {"nucleation_length_m": 0.0125, "griffith_half_length_m": 0.02, "process_zone_m": None}
-    (run / "run.json").write_text(json.dumps(info))
+    told = {"title": "my case", "status": "interrupted", "reason": "signal 15", "steps": 1234}
+    rupture = {"strength_excess_S": {"min": 0.5, "median": 1.25, "max": 4}, "regime": "sub-Rayleigh"}
+    rupture |= {"nucleation_length_m": 0.0125, "griffith_half_length_m": 0.02, "process_zone_m": None}
+    change_json(run / "run.json", lambda i: i.update(told, warnings=["mind this"], rupture=rupture))
     text = page_of(run)
     for part in (
         "my case",
@@ -117,9 +116,8 @@ def test_facts_and_warnings_are_told(run, capsys):
 
 
 def test_text_of_the_case_is_escaped(run):
-    info = json.loads((run / "run.json").read_text())
-    info |= dict.fromkeys(("title", "compiler", "reason"), HOSTILE)
-    (run / "run.json").write_text(json.dumps(info | {"warnings": [HOSTILE], "status": "failed"}))
+    told = dict.fromkeys(("title", "compiler", "reason"), HOSTILE) | {"warnings": [HOSTILE]}
+    change_json(run / "run.json", lambda info: info.update(told, status="failed"))
     odd = run.rename(run.parent / "<!--<script>")
     text = page_of(odd)
     assert "alert(1)" in text and "<script>alert" not in text and "<b>&quot;" not in text
@@ -187,8 +185,7 @@ def test_probes_that_are_not_finite_are_refused(run, capsys):
     with h5py.File(run / "probes.h5", "r+") as file:
         file["strain_xx"][3, 1] = np.nan
     assert "probes.h5: a value of strain_xx is not finite" in refusal(capsys, run)
-    info = json.loads((run / "run.json").read_text()) | {"status": "blew_up"}
-    (run / "run.json").write_text(json.dumps(info))
+    change_json(run / "run.json", lambda info: info.update(status="blew_up"))
     assert len(data_of(page_of(run))["runs"][0]["probes"]["time"]) == 3
 
 
@@ -217,9 +214,7 @@ def test_what_holds_no_results_is_refused(tmp_path, capsys):
 @pytest.mark.parametrize("name", ["interface.h5", "fronts.csv", "energy.csv", "static.csv", "fields.vtkhdf"])
 def test_a_damaged_folder_is_refused(run, capsys, name):
     write_checksums(run)
-    data = bytearray((run / name).read_bytes())
-    data[len(data) // 2] ^= 1
-    (run / name).write_bytes(data)
+    flip(run / name)
     assert f"{run / name}: does not match checksums.sha256" in refusal(capsys, run)
     assert not (run / "report.html").exists()
 
@@ -319,9 +314,8 @@ def test_two_bodies_do_not_mix_in_a_pixel():
 
 
 def test_pixels_without_material_are_empty():
-    grid = grid_of(
-        [(0, 0), (1, 0), (1, 1), (0, 1), (2, 0), (3, 0), (3, 1), (2, 1)], [[0, 1, 2, 3], [4, 5, 6, 7]]
-    )
+    points = [(0, 0), (1, 0), (1, 1), (0, 1), (2, 0), (3, 0), (3, 1), (2, 1)]
+    grid = grid_of(points, [[0, 1, 2, 3], [4, 5, 6, 7]])
     codes = picture_grid.codes(grid.means(np.ones(8)), 4.0)
     gap = (grid.x_m > 1) & (grid.x_m < 2)
     assert (codes[:, gap] == picture_grid.EMPTY).all()
@@ -357,16 +351,12 @@ def test_a_command_is_found_by_its_name(run, capsys):
 @pytest.mark.parametrize("arguments, told", [([], "usage"), (["frobnicate"], "frobnicate"), (["-x"], "-x")])
 def test_an_unknown_command_is_refused(capsys, arguments, told):
     assert package.main(arguments) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1 and told in error and "report" in error
+    error = one_line(capsys)
+    assert told in error and "report" in error
 
 
 def test_a_missing_package_is_named(run):
     without = "import sys; sys.modules['plotly'] = None; from slipfront.__main__ import main; "
     script = without + "sys.exit(main(['report', 'x']))"
-    python = Path(__file__).parents[2] / "python"
-    done = subprocess.run(
-        [sys.executable, "-c", script], env={"PYTHONPATH": str(python)}, capture_output=True, text=True
-    )
-    assert done.returncode == 2 and done.stderr.count("\n") == 1
-    assert f"report: needs the Python package plotly: install it with '{sys.executable} -m pip" in done.stderr
+    line = common.refusal(common.call(sys.executable, "-c", script, env=common.WITH_PACKAGE))
+    assert f"report: needs the Python package plotly: install it with '{sys.executable} -m pip" in line

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from hostile.trials import HANG_S, wait_until
+from common import HANG_S, wait_until
 from slipfront.files import DataError
 from slipfront.folder import verify_checksums
 from slipfront.sweep import engine, maps, notebook, report
