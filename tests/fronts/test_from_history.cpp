@@ -7,8 +7,6 @@
 namespace slipfront::fronts::testing {
 namespace {
 
-constexpr double h = 0.2 / 300;
-constexpr double V = 1000.0;
 constexpr double threshold = 0.01;
 
 TEST(RecordFromHistory, EqualsTheDirectRecord) {
@@ -70,8 +68,7 @@ TEST(RecordFromHistory, EqualsTheDirectRecord) {
     }
   }
 
-  const auto fronts = find(record);
-  const auto expected = find(direct);
+  const auto fronts = find(record), expected = find(direct);
   ASSERT_EQ(fronts.size(), 2u);
   ASSERT_EQ(expected.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
