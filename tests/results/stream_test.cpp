@@ -46,11 +46,15 @@ class Stream : public testing::Test {
   record::History row(int k) const {
     record::History h;
     h.time_s = {1e-6 * k};
-    h.slip_m.assign(x_m_.size(), k + 0.1);
-    h.slip_rate_m_per_s.assign(x_m_.size(), k + 0.2);
-    h.t_Pa.assign(x_m_.size(), k + 0.3);
-    h.p_Pa.assign(x_m_.size(), k + 0.4);
+    double value = k;
+    for (const auto& field : record::history_fields) (h.*field.member).assign(x_m_.size(), value += 0.1);
     return h;
+  }
+
+  /// What is read from the file that is made of the rows.
+  record::History written_history() const {
+    write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
+    return read_history(folder_ / "interface.h5");
   }
 
   mesh::Slabs mesh_;
@@ -71,15 +75,14 @@ TEST_F(Stream, KeepsAllItWasGiven) {
     const auto lengths = stream.keep();
     EXPECT_EQ(lengths.history.bytes, n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
   }
-  write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
-  const auto history = read_history(folder_ / "interface.h5");
+  const auto history = written_history();
   EXPECT_EQ(history.x_m, x_m_);
   ASSERT_EQ(history.time_s.size(), static_cast<std::size_t>(n_rows));
   for (int k = 0; k < n_rows; ++k) {
     ASSERT_EQ(history.time_s[k], 1e-6 * k);
     for (std::size_t i = 0; i < x_m_.size(); ++i) {
-      ASSERT_EQ(history.slip_m[k * x_m_.size() + i], k + 0.1);
-      ASSERT_EQ(history.p_Pa[k * x_m_.size() + i], k + 0.4);
+      ASSERT_EQ(history.slip_m[k * x_m_.size() + i], row(k).slip_m[i]);
+      ASSERT_EQ(history.p_Pa[k * x_m_.size() + i], row(k).p_Pa[i]);
     }
   }
   const auto n_snapshots = static_cast<std::size_t>((n_rows + 999) / 1000);
@@ -105,8 +108,7 @@ TEST_F(Stream, GoesOnWhereItWasKept) {
     for (int k = 3; k < 5; ++k) stream.sample(row(k));
     stream.keep();
   }
-  write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
-  const auto history = read_history(folder_ / "interface.h5");
+  const auto history = written_history();
   ASSERT_EQ(history.time_s.size(), 5U);
   for (int k = 0; k < 5; ++k) EXPECT_EQ(history.time_s[k], 1e-6 * k);
   EXPECT_EQ(read_snapshots(ResultStream::snapshot_file(folder_.path()), mesh_.n_nodes).time_s.size(), 1U);
@@ -133,8 +135,7 @@ TEST_F(Stream, LeavesOutARecordThatWasCutOff) {
   }
   const auto raw = ResultStream::history_file(folder_.path());
   std::filesystem::resize_file(raw, std::filesystem::file_size(raw) - 1);
-  write_history(folder_ / "interface.h5", raw, x_m_);
-  EXPECT_EQ(read_history(folder_ / "interface.h5").time_s.size(), 2U);
+  EXPECT_EQ(written_history().time_s.size(), 2U);
 }
 
 TEST_F(Stream, AFullDiskIsToldByTheFilesName) {

@@ -37,6 +37,12 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// Tests with a fresh folder.
+class InFolder : public ::testing::Test {
+ protected:
+  const TemporaryFolder folder_;
+};
+
 inline void write_file(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
 }
