@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <set>
 
 namespace slipfront::verification {
 namespace {
@@ -43,15 +41,6 @@ TEST(Check, HoldsWithinItsToleranceOnly) {
 
 TEST(Outcome, WithoutChecksDoesNotHold) {
   EXPECT_FALSE(Outcome{}.holds());
-}
-
-TEST(Verifications, HavePagesOfTheirOwn) {
-  std::set<std::string> names;
-  for (const auto& v : verifications()) {
-    EXPECT_TRUE(names.insert(v.name).second) << v.name;
-    EXPECT_TRUE(std::filesystem::exists(fmt::format("{}/verification/{}.md", SLIPFRONT_SOURCE_DIR, v.name)))
-        << v.name;
-  }
 }
 
 }  // namespace
