@@ -4,11 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include "layer_by_elements.hpp"
 
 namespace slipfront::stability {
 namespace {
@@ -45,6 +44,19 @@ TEST(Rupture, TheModulusIsThatOfThePlaneState) {
 TEST(Rupture, TheProcessZoneIsThePublishedOne) {
   // Day et al. (2005), for this problem in mode II: 827 m.
   EXPECT_NEAR(process_zone_m(modulus_Pa({rock(), rock()}), 81.24e6 - 63e6, 0.4), 827, 1);
+}
+
+/// Smallest eigenvalue of the static stiffness of a slip zone of half-length 1 under mu* = 1, in n elements
+/// of constant slip.
+double smallest_stiffness(int n) {
+  const double e = 1.0 / n;  // half an element
+  Eigen::MatrixXd stiffness(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double d = 2 * e * (i - j);
+      stiffness(i, j) = (1 / (d + e) - 1 / (d - e)) / (2 * std::numbers::pi);
+    }
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(stiffness).eigenvalues()(0);
 }
 
 TEST(Rupture, TheNucleationLengthIsWhereWeakeningOutrunsTheStiffness) {
