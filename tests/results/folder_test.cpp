@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <set>
 #include <thread>
 
 #include "files/checksum.hpp"
@@ -18,19 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::error_of;
+using test::names_below;
 using ::testing::Each;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
-
-std::set<std::string> below(const fs::path& dir) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(dir))
-    names.insert(fs::relative(entry.path(), dir).string());
-  return names;
-}
 
 /// Publishes files, each with its name as its content.
 void publish(const fs::path& dir, const std::vector<std::string>& names, bool adds = false) {
@@ -60,7 +53,7 @@ TEST_F(ResultFolders, IsMadeWithItsParentsAndGoesAgainUnused) {
   }
   EXPECT_FALSE(fs::exists(folder_ / "a"));
   publish(folder_ / "a" / "b", {"run.json"});
-  EXPECT_THAT(below(folder_ / "a" / "b"), UnorderedElementsAre("run.json", "checksums.sha256"));
+  EXPECT_THAT(names_below(folder_ / "a" / "b"), UnorderedElementsAre("run.json", "checksums.sha256"));
 }
 
 TEST_F(ResultFolders, IsRefusedWhereItHoldsAnything) {
@@ -72,7 +65,7 @@ TEST_F(ResultFolders, IsRefusedWhereItHoldsAnything) {
                   ": is not empty; choose another or pass --overwrite to replace a run's results");
     EXPECT_EQ(error_of([&] { taken.require_empty(true); }), "(nothing thrown)");
   }
-  EXPECT_THAT(below(folder_.path()), UnorderedElementsAre("notes.txt"));
+  EXPECT_THAT(names_below(folder_.path()), UnorderedElementsAre("notes.txt"));
 }
 
 TEST_F(ResultFolders, UnfinishedWorkIsNotLostByAccident) {
@@ -107,7 +100,6 @@ TEST_F(ResultFolders, WorkOfAnotherKindIsNotResumed) {
 TEST_F(ResultFolders, EarlierResultsStayUntilTheNewOnesAreComplete) {
   publish(folder_.path(), {"run.json", "fields.vtkhdf"});
   test::write_file(folder_ / "notes.txt", "mine");
-  const auto before = below(folder_.path());
   ResultFolder next(folder_.path(), "test");
   next.begin();
   files::write_text(next.unfinished() / "run.json", "new");
@@ -127,7 +119,7 @@ TEST_F(ResultFolders, ReplacesTheResultsOfFoldersWithoutAListAndNothingElse) {
   fs::create_directory(folder_ / "figures");
   test::write_file(folder_ / "figures" / "fronts.csv", "x");
   publish(folder_.path(), {"run.json"});
-  EXPECT_THAT(below(folder_.path()),
+  EXPECT_THAT(names_below(folder_.path()),
               UnorderedElementsAre("run.json", "checksums.sha256", "notes.txt", "old.interface.h5", "figures",
                                    "figures/fronts.csv"));
 }
@@ -145,20 +137,21 @@ TEST_F(ResultFolders, ASetMayHaveFoldersWithSetsOfTheirOwn) {
     held.publish();
   };
   with_runs({"left", "studies/a/right"});
-  EXPECT_THAT(below(folder_.path()),
+  EXPECT_THAT(names_below(folder_.path()),
               UnorderedElementsAre("checksums.sha256", "scorecard.json", "left", "left/run.json",
                                    "left/checksums.sha256", "studies", "studies/a", "studies/a/right",
                                    "studies/a/right/run.json", "studies/a/right/checksums.sha256"));
   for (const char* run : {"", "left", "studies/a/right"}) files::require_intact(folder_ / run);
   with_runs({"left"});
-  EXPECT_THAT(below(folder_.path()), UnorderedElementsAre("checksums.sha256", "scorecard.json", "left",
-                                                          "left/run.json", "left/checksums.sha256"));
+  EXPECT_THAT(names_below(folder_.path()), UnorderedElementsAre("checksums.sha256", "scorecard.json", "left",
+                                                                "left/run.json", "left/checksums.sha256"));
 }
 
 TEST_F(ResultFolders, ASetMayBeAddedTo) {
   publish(folder_.path(), {"a.json", "b.json"});
   publish(folder_.path(), {"b.json", "c.json"}, true);
-  EXPECT_THAT(below(folder_.path()), UnorderedElementsAre("a.json", "b.json", "c.json", "checksums.sha256"));
+  EXPECT_THAT(names_below(folder_.path()),
+              UnorderedElementsAre("a.json", "b.json", "c.json", "checksums.sha256"));
   EXPECT_EQ(files::read_checksums(folder_.path()).size(), 3U);
   files::require_intact(folder_.path());
 }
@@ -186,7 +179,8 @@ TEST_F(ResultFolders, APublicationThatWasCutOffIsEnded) {
       fs::remove_all(folder / "publishing/state");
     }
     { const ResultFolder claimed(folder.path(), "test"); }
-    EXPECT_THAT(below(folder.path()), UnorderedElementsAre("run.json", "fronts.csv", "checksums.sha256"));
+    EXPECT_THAT(names_below(folder.path()),
+                UnorderedElementsAre("run.json", "fronts.csv", "checksums.sha256"));
     EXPECT_EQ(test::read_file(folder / "run.json"), "new");
     files::require_intact(folder.path());
   }
@@ -265,7 +259,7 @@ TEST_F(ResultFolders, IsHeldByOneProcessAtATime) {
   EXPECT_EQ(WEXITSTATUS(status), 1);
   EXPECT_TRUE(fs::exists(folder_ / ".slipfront.lock"));  // a file that is left is no lock
   { const ResultFolder taken(folder_.path(), "test"); }
-  EXPECT_THAT(below(folder_.path()), IsEmpty());
+  EXPECT_THAT(names_below(folder_.path()), IsEmpty());
 }
 
 TEST_F(ResultFolders, OfManyThatWantItAtOnceEachHasItOrIsToldWhoHas) {

@@ -302,6 +302,7 @@ TopDisplacement pressed_and_sheared(const mesh::Mesh& mesh) {
 TEST_P(ByMultigrid, ResultIsTheSameForAnyNumberOfThreads) {
   const Bodies bodies(GetParam(), 0.5e-3);
   for (const bool slip : {false, true}) {
+    if (bodies.base && !slip) continue;  // to save time
     const auto solved = [&](int threads) {
       IterativeSolver solver({bodies.plate, pmma}, bodies.base, threads);
       EXPECT_EQ(solver.team().size(), threads);
