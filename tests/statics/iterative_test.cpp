@@ -260,12 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(ByMultigrid, EquilibriumIsThatOfTheFactorisation) {
   const Bodies bodies(GetParam(), 2e-3);
-  test::Random random(5);
-  TopDisplacement top;
-  for (std::size_t k = 0; k < bodies.plate.far_edge_nodes.size(); ++k) {
-    top.u_x_m.push_back(1e-4 * random());
-    top.u_y_m.push_back(-1e-3 + 1e-4 * random());
-  }
+  const auto top = uneven_top(bodies.plate);
   const auto direct = make_plate_solver(bodies.plate, pmma, StaticSolver::direct, bodies.base);
   const auto iterative = make_plate_solver(bodies.plate, pmma, StaticSolver::iterative, bodies.base);
   EXPECT_TRUE(iterative->iterates());
