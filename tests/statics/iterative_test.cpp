@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -78,11 +77,7 @@ class Levels : public ::testing::TestWithParam<PlateShape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, Levels,
                          ::testing::Values(PlateShape{23, 13, Corner::none},
                                            PlateShape{24, 12, Corner::relief},
-                                           PlateShape{25, 13, Corner::fillet}),
-                         [](const auto& s) {
-                           return test::name_of(s.param.corner) + std::to_string(s.param.columns) + "x" +
-                                  std::to_string(s.param.rows);
-                         });
+                                           PlateShape{25, 13, Corner::fillet}));
 
 TEST_P(Levels, FinestIsTheAssembledStiffness) {
   const auto mesh = plate_of(GetParam());
@@ -135,11 +130,7 @@ class PairLevels : public ::testing::TestWithParam<PairShape> {
 };
 INSTANTIATE_TEST_SUITE_P(Shapes, PairLevels,
                          ::testing::Values(PairShape{{25, 13, Corner::relief}, {25, 11, Corner::none}},
-                                           PairShape{{24, 15, Corner::relief}, {24, 10, Corner::relief}}),
-                         [](const auto& s) {
-                           return std::to_string(s.param.upper.rows) + "_on_" +
-                                  std::to_string(s.param.lower.rows);
-                         });
+                                           PairShape{{24, 15, Corner::relief}, {24, 10, Corner::relief}}));
 
 TEST_P(PairLevels, FinestIsTheAssembledStiffnessOfBoth) {
   const auto pair = make_level({upper_, pmma}, {lower_, steel});
@@ -231,9 +222,6 @@ struct BodiesCase {
   Corner base_corner = Corner::none;
   double base_height_m = 0.06;
 };
-void PrintTo(const BodiesCase& bodies, std::ostream* to) {
-  *to << bodies.name;
-}
 
 /// Meshes of the bodies.
 struct Bodies {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -105,18 +104,13 @@ struct Pair {
   /// Shares of mu_s to shear to: 1 is reached only where slip does not spread from an edge before.
   std::vector<double> shares = {0.7, 0.999, 1.001};
 };
-void PrintTo(const Pair& pair, std::ostream* to) {
-  *to << pair.name;
-}
 
 mesh::Mesh graded_base() {
-  mesh::Plate plate;
-  plate.height_m = 0.096;
-  plate.element_size_m = 4e-3;
-  plate.coarsenings = 1;
-  plate.fine_height_m = 16e-3;
-  plate.corner = Corner::none;
-  return mesh::make_plate(plate);
+  return mesh::make_plate({.height_m = 0.096,
+                           .element_size_m = 4e-3,
+                           .coarsenings = 1,
+                           .fine_height_m = 16e-3,
+                           .corner = Corner::none});
 }
 
 std::vector<Pair> pairs() {
@@ -227,9 +221,11 @@ TEST(TwoBodies, OnABaseEverStifferComeToTheRigidPlane) {
 
 TEST(TwoBodies, NeedABaseThatIsHeldAndFacesThePlate) {
   const auto mesh = test::tiny_plate(Corner::none);
-  mesh::Plate plate{.width_m = 0.02, .height_m = 0.01, .element_size_m = 1e-3, .corner = Corner::none};
-  plate.top = mesh::Top::free;
-  const auto free = mesh::make_plate(plate);
+  const auto free = mesh::make_plate({.width_m = 0.02,
+                                      .height_m = 0.01,
+                                      .element_size_m = 1e-3,
+                                      .corner = Corner::none,
+                                      .top = mesh::Top::free});
   const auto shorter = test::make_plate(0.019, 0.01, 1e-3, Corner::none);
   const auto solve = [&](const mesh::Mesh& base) {
     make_plate_solver(mesh, pmma, StaticSolver::direct, ElasticBody{base, pmma});
