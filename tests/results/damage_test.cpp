@@ -19,11 +19,12 @@ using test::error_of;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-class DamagedHistory : public testing::Test {
+using DamagedFiles = test::InFolder;
+
+class DamagedHistory : public test::InFolder {
  protected:
   DamagedHistory() { write_history(file_, history_); }
 
-  test::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "interface.h5";
   record::History history_ = made_history(100, 40);
 };
@@ -98,10 +99,9 @@ TEST_F(DamagedHistory, InAnEarlierFormatIsRefused) {
       file_.string() + ": is in a format of HDF5 before 1.10, in which damage goes unnoticed; convert it");
 }
 
-TEST(DataSets, WithoutTheValuesTheyClaimAreRefused) {
-  const test::TemporaryFolder folder;
+TEST_F(DamagedFiles, DataSetsWithoutTheValuesTheyClaimAreRefused) {
   for (const hsize_t rows : {hsize_t{2}, hsize_t{1} << 33U, hsize_t{1} << 61U}) {
-    const auto path = folder / "claims.h5";
+    const auto path = folder_ / "claims.h5";
     auto file = hdf5::create_file(path);
     hdf5::create_growing(file, "values", {8}, 1);
     hdf5::add_rows(file, "values", rows);
@@ -111,9 +111,8 @@ TEST(DataSets, WithoutTheValuesTheyClaimAreRefused) {
   }
 }
 
-TEST(DataSets, RowsBeyondTheEndAreRefused) {
-  const test::TemporaryFolder folder;
-  const auto path = folder / "rows.h5";
+TEST_F(DamagedFiles, DataSetsRowsBeyondTheEndAreRefused) {
+  const auto path = folder_ / "rows.h5";
   hdf5::write(hdf5::create_file(path), "values", std::vector<double>{1, 2, 3, 4}, {2, 2});
   const auto file = hdf5::open_file(path);
   EXPECT_EQ(hdf5::read_rows(file, "values", 1, 1).values, (std::vector<double>{3, 4}));
@@ -123,10 +122,9 @@ TEST(DataSets, RowsBeyondTheEndAreRefused) {
                 HasSubstr("cannot be read"));
 }
 
-TEST(TextAttributes, OfAnotherKindAreRefused) {
+TEST_F(DamagedFiles, TextAttributesOfAnotherKindAreRefused) {
   using hdf5::Handle;
-  const test::TemporaryFolder folder;
-  const auto file = hdf5::create_file(folder / "texts.h5");
+  const auto file = hdf5::create_file(folder_ / "texts.h5");
   hdf5::create_group(file, "group");
   hdf5::set_attribute(file, "group", "unit", std::string("m/s"));
   EXPECT_EQ(hdf5::text_attribute(file, "group", "unit"), "m/s");
@@ -146,9 +144,8 @@ TEST(TextAttributes, OfAnotherKindAreRefused) {
                 HasSubstr(": group has no text attribute " + std::string(name)));
 }
 
-TEST(Groups, CarryNoTime) {
-  const test::TemporaryFolder folder;
-  const auto file = hdf5::create_file(folder / "groups.h5");
+TEST_F(DamagedFiles, GroupsCarryNoTime) {
+  const auto file = hdf5::create_file(folder_ / "groups.h5");
   hdf5::create_group(file, "/group");
   for (const char* name : {"/", "/group"}) {
     const hdf5::Handle group(H5Gopen2(file.handle.get(), name, H5P_DEFAULT), H5Gclose);
@@ -158,9 +155,8 @@ TEST(Groups, CarryNoTime) {
   }
 }
 
-TEST(ArchiveOfFlags, HoldsNothingButTrueAndFalse) {
-  const test::TemporaryFolder folder;
-  const auto path = folder / "flags.bin";
+TEST_F(DamagedFiles, FlagsHoldNothingButTrueAndFalse) {
+  const auto path = folder_ / "flags.bin";
   const auto read = [&](std::uint8_t byte) {
     {
       OutputArchive archive(path);

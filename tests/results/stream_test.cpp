@@ -23,7 +23,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// A plate at rest, whose samples are made up.
-class Stream : public testing::Test {
+class Stream : public test::InFolder {
  protected:
   Stream() {
     mesh::Plate plate;
@@ -48,7 +48,6 @@ class Stream : public testing::Test {
   mesh::Slabs mesh_;
   std::optional<motion::Stepper> stepper_;
   std::vector<double> x_m_;
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(Stream, KeepsAllItWasGiven) {
