@@ -81,19 +81,21 @@ TEST(TipSpeed, AccelerationIsSmoothed) {
 TEST(TipSpeed, MayBeThatOfTheApproach) {
   // Each element at a separate speed, from the right: the speed at a node is that of the element behind the
   // tip.
-  std::vector<double> tau(x.size(), 0);
+  const auto places = nodes(31, h);
+  std::vector<double> tau(places.size(), 0);
   const auto speed_m_per_s = [](std::size_t element) {
     return 500.0 + 20.0 * static_cast<double>(element % 7);
   };
-  for (std::size_t k = x.size() - 1; k-- > 0;) tau[k] = tau[k + 1] + h / speed_m_per_s(k);
+  for (std::size_t k = places.size() - 1; k-- > 0;) tau[k] = tau[k + 1] + h / speed_m_per_s(k);
+  const auto record = make_record(places, tau);
   auto options = make_options(h);
   options.speed_interval = SpeedInterval::approach;
-  const auto front = front_of(tau, {}, options);
-  ASSERT_EQ(front.points.size(), x.size());
+  const auto front = find(record, options).at(0), centred = find(record, make_options(h)).at(0);
+  ASSERT_EQ(front.points.size(), places.size());
   EXPECT_TRUE(std::isnan(front.points[0].v_tip_m_per_s));
   for (std::size_t k = 1; k < front.points.size(); ++k)
-    EXPECT_NEAR(front.points[k].v_tip_m_per_s, speed_m_per_s(x.size() - 1 - k), 1e-6) << k;
-  EXPECT_NE(front_of(tau, {}, make_options(h)).points[5].v_tip_m_per_s, front.points[5].v_tip_m_per_s);
+    EXPECT_NEAR(front.points[k].v_tip_m_per_s, speed_m_per_s(places.size() - 1 - k), 1e-6) << k;
+  EXPECT_NE(centred.points[5].v_tip_m_per_s, front.points[5].v_tip_m_per_s);
 }
 
 TEST(TipSpeed, WhereTheTipJumps) {

@@ -287,7 +287,7 @@ TEST_F(FrictionAlong, ShearEndsWhereTheNodeNearestToSlipHasTheShareAskedFor) {
   for (const double slope_per_m : {0.0, 3.0}) {
     const auto with = statics([&](double x) { return mu_s * (slope_per_m > 0 ? 0.7 + slope_per_m * x : 1); });
     double shear_m = 0;
-    for (const double at : {0.62, 0.77, 0.999, 1.001}) {
+    for (const double at : {0.62, 0.999, 1.001}) {
       const auto e = with.shear_to(at);
       std::size_t peak = 0;
       double most = 0;
