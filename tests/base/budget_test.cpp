@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.hpp"
+#include "support/files.hpp"
 
 namespace slipfront {
 namespace {
@@ -11,21 +11,18 @@ namespace {
 const Budget two = {{"the mesh", 2e9, "a larger size"}, {"the rows", 3e9, "a larger interval"}};
 
 std::string refusal(const Budget& budget, double available) {
-  try {
+  return test::error_of([&] {
     require_room(budget, available, "the run", "on disk", "out has 4 GB free", " or another folder");
-  } catch (const UserError& error) {
-    return error.what();
-  }
-  return {};
+  });
 }
 
 TEST(Budget, IsRefusedByItsLargestItemAndThatOnesRemedy) {
-  EXPECT_EQ(refusal(two, 5e9), "");
+  EXPECT_EQ(refusal(two, 5e9), "(nothing thrown)");
   EXPECT_EQ(
       refusal(two, 4.999e9),
       "the run needs about 5 GB on disk, 3 GB of it for the rows, and out has 4 GB free; choose a larger "
       "interval or another folder");
-  EXPECT_EQ(refusal({}, 0), "");
+  EXPECT_EQ(refusal({}, 0), "(nothing thrown)");
 }
 
 TEST(Budget, OfMemoryIsComparedWithWhatThereIs) {

@@ -75,14 +75,15 @@ TEST_F(ProgressLines, SayWhereWorkEndedEarly) {
 }
 
 TEST(Durations, AreReadable) {
-  EXPECT_EQ(duration_text(0.04), "0.0 s");
-  EXPECT_EQ(duration_text(2.5), "2.5 s");
-  EXPECT_EQ(duration_text(9.94), "9.9 s");
-  EXPECT_EQ(duration_text(9.96), "10 s");
-  EXPECT_EQ(duration_text(59.4), "59 s");
-  EXPECT_EQ(duration_text(59.6), "1:00");
-  EXPECT_EQ(duration_text(187), "3:07");
-  EXPECT_EQ(duration_text(3723), "1:02:03");
+  for (const auto& [seconds, text] : {std::pair{0.04, "0.0 s"},
+                                      {2.5, "2.5 s"},
+                                      {9.94, "9.9 s"},
+                                      {9.96, "10 s"},
+                                      {59.4, "59 s"},
+                                      {59.6, "1:00"},
+                                      {187, "3:07"},
+                                      {3723, "1:02:03"}})
+    EXPECT_EQ(duration_text(seconds), text);
 }
 
 }  // namespace

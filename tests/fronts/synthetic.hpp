@@ -11,6 +11,8 @@
 
 namespace slipfront::fronts::testing {
 
+constexpr double h = 0.2 / 300;
+constexpr double V = 1000.0;
 constexpr double never = std::numeric_limits<double>::infinity();
 
 inline std::vector<double> nodes(int n, double spacing_m) {
@@ -73,10 +75,11 @@ inline record::StaticState make_state(const std::vector<double>& x) {
   return {x, std::vector<double>(x.size(), 4e6), std::vector<double>(x.size(), 5e6)};
 }
 
-inline FrontOptions make_options() {
+inline FrontOptions make_options(double l_star_m = FrontOptions{}.l_star_m) {
   FrontOptions options;
   options.mu_s = 1.3;
   options.elasticity = {2.6e9, 0.37, false};
+  options.l_star_m = l_star_m;
   return options;
 }
 

@@ -96,19 +96,16 @@ TEST(FitExponential, IntervalsHoldTheTruth) {
   // Of 95 % intervals some miss. 40 independent data sets: fewer than 32 hits have a probability of 0.01 %
   // for a coverage of 0.95, and of 5 % for one of 0.87, as a percentile bootstrap of this many points may
   // have.
-  int hits_a = 0, hits_b = 0, hits_c = 0, hits_curve = 0;
+  std::array<int, 4> hits{};
   for (unsigned seed = 0; seed < 40; ++seed) {
     const std::vector<Series> series{noisy(200, 0.05, 0.6, 2 * seed), noisy(200, 0.05, 0.6, 2 * seed + 1)};
     const ExponentialFit fit = fit_exponential(series, {.resamples = 200});
-    hits_a += holds(fit.a, a);
-    hits_b += holds(fit.b, b);
-    hits_c += holds(fit.c, c);
-    hits_curve += holds(fit.curve[30].y, law(fit.curve[30].x));
+    hits[0] += holds(fit.a, a);
+    hits[1] += holds(fit.b, b);
+    hits[2] += holds(fit.c, c);
+    hits[3] += holds(fit.curve[30].y, law(fit.curve[30].x));
   }
-  EXPECT_GE(hits_a, 32);
-  EXPECT_GE(hits_b, 32);
-  EXPECT_GE(hits_c, 32);
-  EXPECT_GE(hits_curve, 32);
+  for (const int n : hits) EXPECT_GE(n, 32);
 }
 
 TEST(FitExponential, CurveIsThatOfTheParameters) {
@@ -197,25 +194,19 @@ TEST(FitExponential, TooFewPoints) {
 }
 
 TEST(RankCorrelation, HandValues) {
-  EXPECT_DOUBLE_EQ(rank_correlation(std::vector{1.0, 2.0, 3.0, 4.0}, std::vector{1.0, 8.0, 27.0, 64.0}), 1.0);
-  EXPECT_DOUBLE_EQ(rank_correlation(std::vector{1.0, 2.0, 3.0}, std::vector{5.0, 4.0, 1.0}), -1.0);
+  const auto of = [](const std::vector<double>& x, const std::vector<double>& y) {
+    return rank_correlation(x, y);
+  };
+  EXPECT_DOUBLE_EQ(of({1, 2, 3, 4}, {1, 8, 27, 64}), 1.0);
+  EXPECT_DOUBLE_EQ(of({1, 2, 3}, {5, 4, 1}), -1.0);
   // Ranks 1 2 3 4 5 against 2 1 4 3 5: 1 - 6 * 4 / (5 * 24) = 0.8.
-  EXPECT_NEAR(
-      rank_correlation(std::vector{10.0, 20.0, 30.0, 40.0, 50.0}, std::vector{2.0, 1.0, 4.0, 3.0, 5.0}), 0.8,
-      1e-15);
-}
-
-TEST(RankCorrelation, Ties) {
-  // Ranks 1, 2.5, 2.5, 4 against 1, 2, 3, 4: covariance 4.5, sums of squares 4.5 and 5.
-  EXPECT_NEAR(rank_correlation(std::vector{1.0, 2.0, 2.0, 3.0}, std::vector{1.0, 2.0, 3.0, 4.0}),
-              4.5 / std::sqrt(4.5 * 5.0), 1e-15);
-}
-
-TEST(RankCorrelation, Undefined) {
-  EXPECT_TRUE(std::isnan(rank_correlation({}, {})));
-  EXPECT_TRUE(std::isnan(rank_correlation(std::vector{1.0, 2.0}, std::vector{1.0, 2.0})));
-  EXPECT_TRUE(std::isnan(rank_correlation(std::vector{1.0, 1.0, 1.0}, std::vector{1.0, 2.0, 3.0})));
-  EXPECT_DOUBLE_EQ(rank_correlation(std::vector{1.0, 2.0, nan, 3.0}, std::vector{1.0, 2.0, -9.0, 3.0}), 1.0);
+  EXPECT_NEAR(of({10, 20, 30, 40, 50}, {2, 1, 4, 3, 5}), 0.8, 1e-15);
+  // Ties: ranks 1, 2.5, 2.5, 4 against 1, 2, 3, 4: covariance 4.5, sums of squares 4.5 and 5.
+  EXPECT_NEAR(of({1, 2, 2, 3}, {1, 2, 3, 4}), 4.5 / std::sqrt(4.5 * 5.0), 1e-15);
+  EXPECT_TRUE(std::isnan(of({}, {})));
+  EXPECT_TRUE(std::isnan(of({1, 2}, {1, 2})));
+  EXPECT_TRUE(std::isnan(of({1, 1, 1}, {1, 2, 3})));
+  EXPECT_DOUBLE_EQ(of({1, 2, nan, 3}, {1, 2, -9, 3}), 1.0);
 }
 
 TEST(Median, HandValues) {

@@ -8,16 +8,19 @@
 namespace slipfront::fronts::testing {
 namespace {
 
-constexpr double h = 0.2 / 300;
-constexpr double V = 1000.0;
+const std::vector<double> x = nodes(301, h);
+
+/// The one front from the left end, or whose onsets these are.
+Front front_of(const std::vector<double>& tau = bilateral(x, 0.0, V), const Recipe& recipe = {},
+               const FrontOptions& options = make_options()) {
+  return find(make_record(x, tau, recipe), options).at(0);
+}
 
 /// Constant speed from a nucleation in the middle, whatever the mesh and l*: the answer is exact, as tau is
 /// linear.
 void expect_constant_speed(int n, double spacing_m, double l_star_m) {
-  const auto x = nodes(n, spacing_m);
-  FrontOptions options = make_options();
-  options.l_star_m = l_star_m;
-  const auto fronts = find(make_record(x, bilateral(x, x[n / 2], V)), options);
+  const auto places = nodes(n, spacing_m);
+  const auto fronts = find(make_record(places, bilateral(places, places[n / 2], V)), make_options(l_star_m));
   ASSERT_EQ(fronts.size(), 2u);
   const double half_m = 0.5 * std::max(l_star_m, spacing_m) * (1 - 1e-9);
   for (const Front& front : fronts) {
@@ -39,97 +42,88 @@ TEST(TipSpeed, ConstantSpeedIsExact) {
   expect_constant_speed(101, 2e-3, 0.67e-3);  // one element
 }
 
+constexpr double V0 = 500.0, rise_per_s = 1e4;
+
+/// When a front is at x whose speed is V0 + rise_per_s x.
+double accelerating(double x_m) {
+  return std::log(1 + rise_per_s * x_m / V0) / rise_per_s;
+}
+
 TEST(TipSpeed, AcceleratingFront) {
-  // dx/dt = V0 + k x, so tau = log(1 + k x / V0) / k.
-  constexpr double V0 = 500.0, k = 1e4;
-  const auto x = nodes(301, h);
-  std::vector<double> tau;
-  for (const double place : x) tau.push_back(std::log(1 + k * place / V0) / k);
-  const auto front = find(make_record(x, tau)).at(0);
+  std::vector<double> tau, reversed;
+  for (const double place : x) {
+    tau.push_back(accelerating(place));
+    reversed.push_back(accelerating(x.back()) - accelerating(x.back() - place));
+  }
+  const auto front = front_of(tau);
   for (std::size_t i = 1; i + 1 < front.points.size(); ++i) {
-    const double speed = V0 + k * x[i];
-    // Linear interpolation of tau is off by up to h^2/8 |tau''| = h^2/8 k/V^2 at each end of l*, here taken
-    // as h; the mean over l* instead of the value at x adds an order less. The speed at the near end is the
-    // lowest.
-    const double slowest = speed - k * h;
-    EXPECT_NEAR(front.points[i].v_tip_m_per_s / speed, 1.0, 2 * h / 8 * k / slowest);
+    const double speed = V0 + rise_per_s * x[i];
+    // Linear interpolation of tau is off by up to h^2/8 |tau''| = h^2/8 k/V^2, k the rise, at each end of l*,
+    // here taken as h; the mean over l* instead of the value at x adds an order less. The speed at the near
+    // end is the lowest.
+    const double slowest = speed - rise_per_s * h;
+    EXPECT_NEAR(front.points[i].v_tip_m_per_s / speed, 1.0, 2 * h / 8 * rise_per_s / slowest);
     EXPECT_TRUE(front.points[i].accelerating);
   }
-
   // The same path run backwards slows down.
-  std::vector<double> reversed;
-  for (const double place : x) reversed.push_back(tau.back() - std::log(1 + k * (x.back() - place) / V0) / k);
-  const auto slowing = find(make_record(x, reversed)).at(0);
-  for (const FrontPoint& point : slowing.points) EXPECT_FALSE(point.accelerating);
+  for (const FrontPoint& point : front_of(reversed).points) EXPECT_FALSE(point.accelerating);
+}
+
+TEST(TipSpeed, AccelerationIsSmoothed) {
+  std::vector<double> tau;
+  // Onsets late and early by 2 % of a node's time in turn, which alternates the speed by 4 % about a rise
+  // of 1.3 % a node at the slow end.
+  for (const double place : x)
+    tau.push_back(accelerating(place) + (tau.size() % 2 == 0 ? 0.02 : -0.02) * h / (V0 + rise_per_s * place));
+  for (const FrontPoint& point : front_of(tau).points) EXPECT_TRUE(point.accelerating);
 }
 
 TEST(TipSpeed, MayBeThatOfTheApproach) {
   // Each element at a separate speed, from the right: the speed at a node is that of the element behind the
   // tip.
-  const auto x = nodes(31, h);
-  std::vector<double> tau(x.size(), 0);
+  const auto places = nodes(31, h);
+  std::vector<double> tau(places.size(), 0);
   const auto speed_m_per_s = [](std::size_t element) {
     return 500.0 + 20.0 * static_cast<double>(element % 7);
   };
-  for (std::size_t k = x.size() - 1; k-- > 0;) tau[k] = tau[k + 1] + h / speed_m_per_s(k);
-  auto options = make_options();
-  options.l_star_m = h;
+  for (std::size_t k = places.size() - 1; k-- > 0;) tau[k] = tau[k + 1] + h / speed_m_per_s(k);
+  const auto record = make_record(places, tau);
+  auto options = make_options(h);
   options.speed_interval = SpeedInterval::approach;
-  const auto front = find(make_record(x, tau), options).at(0);
-  ASSERT_EQ(front.points.size(), x.size());
+  const auto front = find(record, options).at(0), centred = find(record, make_options(h)).at(0);
+  ASSERT_EQ(front.points.size(), places.size());
   EXPECT_TRUE(std::isnan(front.points[0].v_tip_m_per_s));
   for (std::size_t k = 1; k < front.points.size(); ++k)
-    EXPECT_NEAR(front.points[k].v_tip_m_per_s, speed_m_per_s(x.size() - 1 - k), 1e-6) << k;
-  options.speed_interval = SpeedInterval::centred;
-  const auto centred = find(make_record(x, tau), options).at(0);
+    EXPECT_NEAR(front.points[k].v_tip_m_per_s, speed_m_per_s(places.size() - 1 - k), 1e-6) << k;
   EXPECT_NE(centred.points[5].v_tip_m_per_s, front.points[5].v_tip_m_per_s);
 }
 
-TEST(TipSpeed, AccelerationIsSmoothed) {
-  constexpr double V0 = 500.0, k = 1e4;
-  const auto x = nodes(301, h);
-  std::vector<double> tau;
-  // Onsets late and early by 2 % of a node's time in turn, which alternates the speed by 4 % about a rise
-  // of 1.3 % a node at the slow end.
-  for (int i = 0; i < 301; ++i) {
-    const double noise = (i % 2 == 0 ? 0.02 : -0.02) * h / (V0 + k * x[i]);
-    tau.push_back(std::log(1 + k * x[i] / V0) / k + noise);
-  }
-  const auto front = find(make_record(x, tau)).at(0);
-  for (const FrontPoint& point : front.points) EXPECT_TRUE(point.accelerating);
-}
-
 TEST(TipSpeed, WhereTheTipJumps) {
-  const auto x = nodes(301, h);
   auto tau = bilateral(x, 0.0, V);
   tau[102] = tau[100] + 0.01e-6;  // the tip jumps from node 100 to 102; node 101 slips in its own time
-  const auto record = make_record(x, tau);
-  FrontOptions options = make_options();
-  options.l_star_m = h;
-  const auto front = find(record, options).at(0);
-  ASSERT_EQ(front.points.size(), 301u);
-  for (const FrontPoint& point : front.points) EXPECT_FALSE(point.v_tip_m_per_s <= 0.0);
+  const auto points = [&] { return front_of(tau, {}, make_options(h)).points; };
+  const auto jumping = points();
+  ASSERT_EQ(jumping.size(), 301u);
+  for (const FrontPoint& point : jumping) EXPECT_FALSE(point.v_tip_m_per_s <= 0.0);
   // From half-way between 100 and 101 to half-way between 101 and 102 it needs half of 0.01 us.
-  EXPECT_NEAR(front.points[101].v_tip_m_per_s, h / 0.005e-6, 1e-6 * h / 0.005e-6);
-  EXPECT_TRUE(std::isfinite(front.points[101].t_d_Pa));
-  EXPECT_TRUE(std::isnan(front.points[102].t_d_Pa));  // it is never l* before node 102
-  EXPECT_TRUE(std::isfinite(front.points[103].t_d_Pa));
+  EXPECT_NEAR(jumping[101].v_tip_m_per_s, h / 0.005e-6, 1e-6 * h / 0.005e-6);
+  EXPECT_TRUE(std::isfinite(jumping[101].t_d_Pa));
+  EXPECT_TRUE(std::isnan(jumping[102].t_d_Pa));  // it is never l* before node 102
+  EXPECT_TRUE(std::isfinite(jumping[103].t_d_Pa));
 
   tau = bilateral(x, 0.0, V);
   tau[101] = tau[102];  // no time between them
-  EXPECT_TRUE(std::isfinite(find(make_record(x, tau), options).at(0).points[101].v_tip_m_per_s));
+  EXPECT_TRUE(std::isfinite(points()[101].v_tip_m_per_s));
   tau[100] = tau[101] = tau[102];
-  EXPECT_TRUE(std::isnan(find(make_record(x, tau), options).at(0).points[101].v_tip_m_per_s));
+  EXPECT_TRUE(std::isnan(points()[101].v_tip_m_per_s));
 }
 
 TEST(TipSpeed, IsUndefinedWhereTheTimeIsNotResolved) {
-  const auto x = nodes(301, h);
   auto tau = bilateral(x, 0.0, V);
   tau[101] = tau[100] + 1e-12;
   tau[102] = tau[101] + 1e-12;
   for (int k = 103; k < 301; ++k) tau[k] = tau[102] + (x[k] - x[102]) / V;
-  FrontOptions options = make_options();
-  options.l_star_m = h;
+  auto options = make_options(h);
   auto record = make_record(x, tau);
   const auto speeds = [&] { return find(record, options).at(0).points; };
   EXPECT_NEAR(speeds()[101].v_tip_m_per_s, h / 1e-12, 1e-3 * h / 1e-12);
@@ -148,27 +142,22 @@ TEST(TipSpeed, IsUndefinedWhereTheTimeIsNotResolved) {
 
 TEST(TipSpeed, IsUndefinedWhereNothingIsPassedOn) {
   // Slip passed on over n elements, one in a resolution's time, takes more than n - 1 of these times.
-  const auto x = nodes(301, h);
-  FrontOptions options = make_options();
-  for (const int n : {4, 10}) {
-    options.l_star_m = n * h;
-    auto record = make_record(x, bilateral(x, 0.0, V));
-    record.resolution_s = 0.999 * n / (n - 1) * h / V;
-    const auto kind_at_50 = [&] { return find(record, options).at(0).points[50].speed_kind; };
-    EXPECT_EQ(kind_at_50(), SpeedKind::front) << n;
-    record.resolution_s = 1.001 * n / (n - 1) * h / V;
-    EXPECT_EQ(kind_at_50(), SpeedKind::simultaneous) << n;
-  }
+  auto record = make_record(x, bilateral(x, 0.0, V));
+  for (const int n : {4, 10})
+    for (const double share : {0.999, 1.001}) {
+      record.resolution_s = share * n / (n - 1) * h / V;
+      EXPECT_EQ(find(record, make_options(n * h)).at(0).points[50].speed_kind,
+                share < 1 ? SpeedKind::front : SpeedKind::simultaneous)
+          << n;
+    }
 }
 
 TEST(TipSpeed, HasItsKind) {
-  const auto x = nodes(301, h);
   auto tau = bilateral(x, 0.0, V);
   tau[201] = tau[202] = tau[200];
   auto record = make_record(x, tau);
   record.resolution_s = 1e-9;
-  FrontOptions options = make_options();
-  options.l_star_m = h;
+  auto options = make_options(h);
   options.driven = {{x[0], x[20]}};
   const auto points = find(record, options).at(0).points;
   EXPECT_EQ(points[0].speed_kind, SpeedKind::triggered);
@@ -186,13 +175,10 @@ TEST(TipSpeed, HasItsKind) {
 }
 
 TEST(TipSpeed, IsUndefinedWhereTheTriggerDrives) {
-  const auto x = nodes(301, h);
-  const auto record = make_record(x, bilateral(x, 0.0, V));
-  FrontOptions options = make_options();
-  const auto before = find(record, options).at(0);
   // Zones whose ends are nodes, which belong to them; the length at the nodes beside them begins within.
+  auto options = make_options();
   options.driven = {{x[10], x[30]}, {x[100], x[110]}};
-  const auto after = find(record, options).at(0);
+  const auto before = front_of(), after = front_of(bilateral(x, 0.0, V), {}, options);
   for (int k = 0; k < 301; ++k) {
     const bool inside = (k >= 9 && k <= 31) || (k >= 99 && k <= 111);
     const double v = after.points[k].v_tip_m_per_s, v_before = before.points[k].v_tip_m_per_s;
@@ -208,12 +194,8 @@ record::Traction ahead_of_tip(double x_m, double time_s) {
 
 TEST(TipTractions, LinearInTipPosition) {
   constexpr double l_star_m = 1.15e-3;
-  const auto x = nodes(301, h);
-  FrontOptions options = make_options();
-  options.l_star_m = l_star_m;
-  const auto fronts =
-      find(make_record(x, bilateral(x, 0.0, V), {.halo = 3, .traction = ahead_of_tip}), options);
-  for (const FrontPoint& point : fronts.at(0).points) {
+  const auto front = front_of(bilateral(x, 0.0, V), {.traction = ahead_of_tip}, make_options(l_star_m));
+  for (const FrontPoint& point : front.points) {
     const double rounding_Pa = 1e-3;  // of values of 1e6
     EXPECT_NEAR(point.t_r_Pa, 5.2e6, rounding_Pa);
     EXPECT_NEAR(point.p_r_Pa, 4e6, rounding_Pa);
@@ -236,46 +218,34 @@ TEST(TipTractions, LinearInTipPosition) {
 }
 
 TEST(TipTractions, RoundedLStarIsOneElement) {
-  const auto x = nodes(301, h);
-  const auto record = make_record(x, bilateral(x, 0.0, V), {.halo = 1, .traction = ahead_of_tip});
-  const auto front =
-      find(record).at(0);  // l* = 0.67 mm on elements of 0.6667 mm, tractions of the next node only
+  // l* = 0.67 mm on elements of 0.6667 mm, tractions of the next node only.
+  const auto front = front_of(bilateral(x, 0.0, V), {.halo = 1, .traction = ahead_of_tip});
   EXPECT_TRUE(std::isnan(front.points[1].t_d_Pa));
-  for (std::size_t k = 2; k < front.points.size(); ++k) {
+  for (std::size_t k = 2; k < front.points.size(); ++k)
     EXPECT_NEAR(front.points[k].t_d_Pa, 5.2e6 - 1e9 * h, 1e-3);  // rounding of values of 1e6
-  }
 }
 
 TEST(TipTractions, LeftGoingFront) {
-  const auto x = nodes(301, h);
-  const auto traction = [&](double x_m, double time_s) { return ahead_of_tip(x.back() - x_m, time_s); };
-  FrontOptions options = make_options();
-  options.l_star_m = 1e-3;
-  const auto front =
-      find(make_record(x, bilateral(x, x.back(), V), {.halo = 3, .traction = traction}), options).at(0);
+  const auto traction = [](double x_m, double time_s) { return ahead_of_tip(x.back() - x_m, time_s); };
+  const auto front = front_of(bilateral(x, x.back(), V), {.traction = traction}, make_options(1e-3));
   ASSERT_EQ(front.direction, -1);
-  for (std::size_t k = 2; k < front.points.size(); ++k) {
+  for (std::size_t k = 2; k < front.points.size(); ++k)
     EXPECT_NEAR(front.points[k].t_d_Pa, 5.2e6 - 1e9 * 1e-3, 1e-3);
-  }
 }
 
 TEST(TipTractions, HaloTooSmall) {
-  const auto x = nodes(301, h);
-  FrontOptions options = make_options();
-  options.l_star_m = 1.15e-3;  // lies between the second and the first node before
-  const auto front = find(make_record(x, bilateral(x, 0.0, V), {.halo = 1}), options).at(0);
+  // l* lies between the second and the first node before.
+  const auto front = front_of(bilateral(x, 0.0, V), {.halo = 1}, make_options(1.15e-3));
   for (const FrontPoint& point : front.points)
     EXPECT_TRUE(std::isnan(point.t_d_Pa) && std::isnan(point.U_s_J_per_m3));
   EXPECT_TRUE(std::isfinite(front.points[10].t_r_Pa));
 }
 
 TEST(TipTractions, ExcludedZones) {
-  const auto x = nodes(301, h);
   FrontOptions options = make_options();
   options.exclude_left_m = 20.1e-3;
   options.exclude_right_m = 180.1e-3;
-  const auto front = find(make_record(x, bilateral(x, 0.0, V)), options).at(0);
-  for (const FrontPoint& point : front.points) {
+  for (const FrontPoint& point : front_of(bilateral(x, 0.0, V), {}, options).points) {
     const bool inside = point.x_m > 20.1e-3 && point.x_m < 180.1e-3;
     EXPECT_EQ(std::isfinite(point.t_d_Pa), inside);
     EXPECT_EQ(std::isfinite(point.U_s_J_per_m3), inside);
@@ -291,82 +261,67 @@ TEST(EnergyDensity, PlaneStressAndPlaneStrain) {
   EXPECT_NEAR(energy_density_J_per_m3({-2e6, 3e6}, {2.6e9, 0.37, true}), 18.7279e12 / 5.2e9, 1e-9);
 }
 
-TEST(SlippingShare, Crack) {
-  const auto x = nodes(301, h);
-  const auto front = find(make_record(x, bilateral(x, 0.0, V))).at(0);
-  EXPECT_EQ(front.mode, SlipMode::crack);
-  for (const FrontPoint& point : front.points) {
-    if (point.x_m < 5 * 0.67e-3) {
-      EXPECT_TRUE(std::isnan(point.slipping_share));
-    } else {
-      EXPECT_DOUBLE_EQ(point.slipping_share, 1.0);
+/// A node is 5.1 us from onset to stop: at speed V the 7 nodes behind the tip slip, 4.67 mm.
+double pulse(double) {
+  return 5.1e-6;
+}
+
+TEST(SlippingShare, TellsCracksFromPulses) {
+  const auto crack = [](double) { return never; };
+  const auto both = [](double x_m) { return x_m < 0.1 ? 150e-6 : pulse(x_m); };
+  const struct {
+    std::function<double(double)> duration_s;
+    SlipMode mode;
+    int last_of_crack, first_of_pulse;
+  } cases[] = {{crack, SlipMode::crack, 300, 301},
+               {pulse, SlipMode::pulse, -1, 20},  // below 0.2 from x = 23.3 mm on, 88 % of the path
+               {both, SlipMode::mixed, 140, 290}};
+  for (const auto& c : cases) {
+    const auto front = front_of(bilateral(x, 0.0, V), {.duration_s = c.duration_s});
+    EXPECT_EQ(front.mode, c.mode);
+    for (int k = 0; k < 301; ++k) {
+      const double share = front.points[k].slipping_share;
+      if (x[k] < 5 * 0.67e-3) {
+        EXPECT_TRUE(std::isnan(share));
+      } else if (k <= c.last_of_crack) {
+        EXPECT_DOUBLE_EQ(share, 1.0);
+      } else if (k >= c.first_of_pulse) {
+        EXPECT_NEAR(share, 7 * h / x[k], 1e-12);
+      }
     }
   }
 }
 
-TEST(SlippingShare, Pulse) {
-  const auto x = nodes(301, h);
-  // Nodes slip for 5.1 us: at speed V the 7 nodes behind the tip slip, 4.67 mm.
-  const auto front =
-      find(make_record(x, bilateral(x, 0.0, V), {.duration_s = [](double) { return 5.1e-6; }})).at(0);
-  EXPECT_EQ(front.mode, SlipMode::pulse);  // below 0.2 from x = 23.3 mm on, 88 % of the path
-  for (std::size_t k = 20; k < front.points.size(); ++k) {
-    EXPECT_NEAR(front.points[k].slipping_share, 7 * h / x[k], 1e-12);
-  }
-}
-
-TEST(SlippingShare, Mixed) {
-  const auto x = nodes(301, h);
-  const auto duration_s = [](double x_m) { return x_m < 0.1 ? 150e-6 : 5.1e-6; };  // a crack, then a pulse
-  const auto front = find(make_record(x, bilateral(x, 0.0, V), {.duration_s = duration_s})).at(0);
-  EXPECT_EQ(front.mode, SlipMode::mixed);
-  EXPECT_DOUBLE_EQ(front.points[140].slipping_share, 1.0);
-  EXPECT_NEAR(front.points[290].slipping_share, 7 * h / x[290], 1e-12);
-}
-
 TEST(SlippingShare, ZoneIsContiguousButForShortGaps) {
-  const auto x = nodes(301, h);
-  const auto tau = bilateral(x, 0.0, V);
   const auto with_sticking = [&](int first, int last) {
-    return find(make_record(x, tau,
-                            {.duration_s =
-                                 [&, first, last](double x_m) {
-                                   const bool sticks = x_m > x[first] - 0.1 * h && x_m < x[last] + 0.1 * h;
-                                   return sticks ? 0.5e-6 : never;
-                                 }}))
-        .at(0);
+    const auto duration_s = [=](double x_m) {
+      return x_m > x[first] - 0.1 * h && x_m < x[last] + 0.1 * h ? 0.5e-6 : never;
+    };
+    return front_of(bilateral(x, 0.0, V), {.duration_s = duration_s}).points[200].slipping_share;
   };
-  EXPECT_DOUBLE_EQ(with_sticking(100, 100).points[200].slipping_share, 1.0);
-  EXPECT_NEAR(with_sticking(100, 102).points[200].slipping_share, 97 * h / x[200], 1e-12);
+  EXPECT_DOUBLE_EQ(with_sticking(100, 100), 1.0);
+  EXPECT_NEAR(with_sticking(100, 102), 97 * h / x[200], 1e-12);
+}
+
+/// A pulse from the left end, and all nodes up to one slip again.
+std::vector<FrontPoint> pulse_and_slip_again(int last, double time_s) {
+  auto record = make_record(x, bilateral(x, 0.0, V), {.halo = 0, .duration_s = pulse});
+  for (int k = 0; k <= last; ++k) {
+    record.onsets.push_back({k, time_s});
+    record.around.push_back({4e6, 5e6});
+  }
+  std::ranges::stable_sort(record.onsets, {}, &record::Onset::time_s);
+  return find(record).at(0).points;
 }
 
 TEST(SlippingShare, SlipAgain) {
-  const auto x = nodes(301, h);
-  auto record =
-      make_record(x, bilateral(x, 0.0, V), {.halo = 0, .duration_s = [](double) { return 5.1e-6; }});
-  // All nodes behind x[150] slip again from 110 us on.
-  for (int k = 0; k <= 150; ++k) {
-    record.onsets.push_back({k, 110e-6});
-    record.around.push_back({4e6, 5e6});
-  }
-  std::ranges::stable_sort(record.onsets, {}, &record::Onset::time_s);
-  const auto front = find(record).at(0);
-  ASSERT_EQ(front.points.size(), 301u);
-  EXPECT_NEAR(front.points[164].slipping_share, 7 * h / x[164], 1e-12);             // at 109 us
-  EXPECT_NEAR(front.points[290].slipping_share, 7 * h / x[290], 1e-12);             // 150 to 283 stick
-  EXPECT_DOUBLE_EQ(find(record).at(0).points[166].slipping_share, 7 * h / x[166]);  // 151 to 158 stick
-}
-
-TEST(SlippingShare, RejoinsSlipBehind) {
-  const auto x = nodes(301, h);
-  auto record =
-      make_record(x, bilateral(x, 0.0, V), {.halo = 0, .duration_s = [](double) { return 5.1e-6; }});
-  for (int k = 0; k <= 160; ++k) {  // once the front is at node 165, in contact with its slipping zone
-    record.onsets.push_back({k, 110.01e-6});
-    record.around.push_back({4e6, 5e6});
-  }
-  std::ranges::stable_sort(record.onsets, {}, &record::Onset::time_s);
-  EXPECT_DOUBLE_EQ(find(record).at(0).points[166].slipping_share, 1.0);
+  const auto points = pulse_and_slip_again(150, 110e-6);
+  ASSERT_EQ(points.size(), 301u);
+  // At 109 us; then 151 to 158 stick, and 150 to 283.
+  for (const int k : {164, 290}) EXPECT_NEAR(points[k].slipping_share, 7 * h / x[k], 1e-12);
+  EXPECT_DOUBLE_EQ(points[166].slipping_share, 7 * h / x[166]);
+  // Once the front is at node 165, in contact with its slipping zone.
+  EXPECT_DOUBLE_EQ(pulse_and_slip_again(160, 110.01e-6)[166].slipping_share, 1.0);
 }
 
 TEST(SpeedSummary, LeavesOutTheStart) {
@@ -389,8 +344,7 @@ TEST(SpeedSummary, LeavesOutTheStart) {
 }
 
 TEST(LocalSlopes, WindowReachesHalfWidth) {
-  // |s| by hand: at s = 1 with half-width 2 the points -1 ... 3 have y = 1 0 1 2 3, slope (2*2 + 1*2 - 2 - 0)
-  // / 10.
+  // |s| by hand: at s = 1 with half-width 2 the points -1 ... 3 have y = 1 0 1 2 3, slope (2*3 + 1*2 - 2)/10.
   std::vector<double> s, y;
   for (int k = -10; k <= 10; ++k) {
     s.push_back(k);

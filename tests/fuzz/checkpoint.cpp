@@ -139,20 +139,10 @@ std::string damaged(std::string content, std::string_view changes) {
     const std::size_t length = std::min<std::size_t>(byte(2) & 0x3fU, content.size() - at);
     changes.remove_prefix(3);
     const auto bytes = changes.substr(0, length);
-    switch (kind) {
-      case overwrite:
-        content.replace(at, bytes.size(), bytes);
-        break;
-      case insert:
-        content.insert(at, bytes);
-        break;
-      case erase:
-        content.erase(at, length);
-        break;
-      case cut:
-        content.resize(at);
-        break;
-    }
+    if (kind == overwrite) content.replace(at, bytes.size(), bytes);
+    if (kind == insert) content.insert(at, bytes);
+    if (kind == erase) content.erase(at, length);
+    if (kind == cut) content.resize(at);
     if (kind == overwrite || kind == insert) changes.remove_prefix(bytes.size());
   }
   return content;

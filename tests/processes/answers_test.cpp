@@ -40,29 +40,24 @@ TEST_F(OfThree, AreTakenInOrder) {
   EXPECT_THAT(taken(), testing::ElementsAre(11, 22));
 }
 
-TEST_F(OfThree, TellWhichProcessFailed) {
-  answer(1, [](MessageBuffer& to) { to.put(11); });
-  answer(2, [](MessageBuffer& to) {
-    to.put(22);
-    throw std::bad_alloc();
-  });
-  try {
-    taken();
-    FAIL();
-  } catch (const ProcessError& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith("process 2 of 3: not enough memory"));
-  }
-}
-
-TEST_F(OfThree, PassOnWhatAnotherOneTold) {
-  answer(1, [](MessageBuffer&) { throw ProcessError("process 7 of 9: lost"); });
-  answer(2, [](MessageBuffer& to) { to.put(22); });
-  try {
-    taken();
-    FAIL();
-  } catch (const ProcessError& error) {
-    EXPECT_STREQ(error.what(), "process 7 of 9: lost");
-  }
+TEST_F(OfThree, TellWhichProcessFailedAndPassOnWhatAnotherOneTold) {
+  const auto failure = [&](const std::function<void(MessageBuffer&)>& work) -> std::string {
+    answer(1, work);
+    answer(2, [](MessageBuffer& to) { to.put(22); });
+    try {
+      taken();
+    } catch (const ProcessError& error) {
+      return error.what();
+    }
+    return "(nothing thrown)";
+  };
+  EXPECT_THAT(failure([](MessageBuffer& to) {
+                to.put(11);
+                throw std::bad_alloc();
+              }),
+              testing::StartsWith("process 1 of 3: not enough memory"));
+  EXPECT_EQ(failure([](MessageBuffer&) { throw ProcessError("process 7 of 9: lost"); }),
+            "process 7 of 9: lost");
 }
 
 TEST_F(OfThree, AreAllTakenWhereTheLeaderFails) {

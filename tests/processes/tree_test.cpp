@@ -26,17 +26,15 @@ TEST(Tree, ReachesEachProcessOnceInTheOrderOfNumbers) {
   }
 }
 
-TEST(Tree, AboveIsWhereItIsBelow) {
-  constexpr int size = 45;
-  for (int rank = 1; rank < size; ++rank)
-    EXPECT_THAT(children_in_tree(parent_in_tree(rank), size), testing::Contains(rank));
-}
-
-TEST(Tree, NoProcessHasMoreNeighboursThanDigits) {
+TEST(Tree, AboveIsWhereItIsBelowAndNoProcessHasMoreNeighboursThanDigits) {
   constexpr int size = 10'000;
   const auto digits = static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(size - 1)));
-  for (int rank = 0; rank < size; ++rank)
+  for (int rank = 0; rank < size; ++rank) {
     EXPECT_LE(children_in_tree(rank, size).size() + (rank > 0 ? 1 : 0), digits) << rank;
+    if (rank > 0) {
+      EXPECT_THAT(children_in_tree(parent_in_tree(rank), size), testing::Contains(rank));
+    }
+  }
 }
 
 }  // namespace

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "record/energies.hpp"
 #include "record/record.hpp"
+#include "support/files.hpp"
 
 namespace slipfront::record {
 namespace {
 
+using ::testing::HasSubstr;
+
 std::string page(const std::string& name) {
-  std::ifstream file(std::string(SLIPFRONT_SOURCE_DIR) + "/docs/" + name);
-  return {std::istreambuf_iterator<char>(file), {}};
+  return test::read_file(std::string(SLIPFRONT_SOURCE_DIR) + "/docs/" + name);
 }
 
 template <class T>
@@ -23,22 +24,12 @@ std::string row_of(const T& column) {
   return std::string("| `") + column.name + "` | " + column.unit + " | " + column.description + " |\n";
 }
 
-/// Whether a page has these rows one right after the other.
-testing::AssertionResult has_table(const std::string& page, const std::string& rows) {
-  if (page.find(rows) != std::string::npos) return testing::AssertionSuccess();
-  return testing::AssertionFailure() << "the page has not these rows:\n" << rows;
-}
-
-TEST(Columns, OfTheHistoryAreThoseOfThePage) {
-  std::string rows = row_of(history_time) + row_of(history_place);
-  for (const auto& field : history_fields) rows += row_of(field);
-  EXPECT_TRUE(has_table(page("files.md"), "|---|---|---|\n" + rows + "\n"));
-}
-
-TEST(Columns, OfTheEnergiesAreThoseOfThePage) {
-  std::string rows = row_of(energy_time);
-  for (const auto& term : energy_terms) rows += row_of(term);
-  EXPECT_TRUE(has_table(page("files.md"), "|---|---|---|\n" + rows + "| `" + imbalance_name + "`"));
+TEST(Columns, AreThoseOfThePage) {
+  std::string history = row_of(history_time) + row_of(history_place), energies = row_of(energy_time);
+  for (const auto& field : history_fields) history += row_of(field);
+  for (const auto& term : energy_terms) energies += row_of(term);
+  EXPECT_THAT(page("files.md"), HasSubstr("|---|---|---|\n" + history + "\n"));
+  EXPECT_THAT(page("files.md"), HasSubstr("|---|---|---|\n" + energies + "| `" + imbalance_name + "`"));
 }
 
 TEST(Columns, NamesEndWithTheUnit) {
@@ -121,7 +112,7 @@ TEST(History, RowsOfTheRawFileAreThoseOfThePage) {
              : k + 1 < history_fields.size() ? ", `"
                                              : " and `") +
             std::string(history_fields[k].name) + "`";
-  EXPECT_NE(page("checkpoints.md").find(rows + " at all nodes"), std::string::npos) << rows;
+  EXPECT_THAT(page("checkpoints.md"), HasSubstr(rows + " at all nodes"));
 }
 
 }  // namespace

@@ -14,20 +14,17 @@ TEST(Record, IsConsistentWhereItsNodesAndLengthsAre) {
   good.around.resize(3);
   good.stops = {{0, 1}};
   EXPECT_TRUE(is_consistent(good));
-  for (const int node : {-1, 2}) {
+  const auto expect_bad = [&](auto spoil) {
     SlipRecord bad = good;
-    bad.onsets[0].node = node;
-    EXPECT_FALSE(is_consistent(bad)) << node;
-    bad = good;
-    bad.stops[0].node = node;
-    EXPECT_FALSE(is_consistent(bad)) << node;
+    spoil(bad);
+    EXPECT_FALSE(is_consistent(bad));
+  };
+  for (const int node : {-1, 2}) {
+    expect_bad([&](SlipRecord& r) { r.onsets[0].node = node; });
+    expect_bad([&](SlipRecord& r) { r.stops[0].node = node; });
   }
-  SlipRecord bad = good;
-  bad.around.resize(2);
-  EXPECT_FALSE(is_consistent(bad));
-  bad = good;
-  bad.halo = -1;
-  EXPECT_FALSE(is_consistent(bad));
+  expect_bad([](SlipRecord& r) { r.around.resize(2); });
+  expect_bad([](SlipRecord& r) { r.halo = -1; });
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "files/checksum.hpp"
+#include "histories.hpp"
 #include "results/archive.hpp"
 #include "results/hdf5.hpp"
 #include "results/history.hpp"
@@ -18,24 +19,14 @@ using test::error_of;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-record::History history_of(std::size_t rows) {
-  record::History history;
-  for (int i = 0; i < 40; ++i) history.x_m.push_back(1e-3 * i);
-  for (std::size_t k = 0; k < rows; ++k) {
-    history.time_s.push_back(1e-6 * static_cast<double>(k));
-    for (auto* matrix : {&history.slip_m, &history.slip_rate_m_per_s, &history.t_Pa, &history.p_Pa})
-      for (const double x : history.x_m) matrix->push_back(history.time_s.back() + x);
-  }
-  return history;
-}
+using DamagedFiles = test::InFolder;
 
-class DamagedHistory : public testing::Test {
+class DamagedHistory : public test::InFolder {
  protected:
   DamagedHistory() { write_history(file_, history_); }
 
-  test::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "interface.h5";
-  record::History history_ = history_of(100);
+  record::History history_ = made_history(100, 40);
 };
 
 TEST_F(DamagedHistory, IsRefusedWhereverItMatters) {
@@ -50,11 +41,7 @@ TEST_F(DamagedHistory, IsRefusedWhereverItMatters) {
     damaged[place] = static_cast<char>(damaged[place] ^ 0x10);
     test::write_file(file_, damaged);
     try {
-      const auto read = read_history(file_);
-      EXPECT_TRUE(read.time_s == history_.time_s && read.x_m == history_.x_m &&
-                  read.slip_m == history_.slip_m && read.slip_rate_m_per_s == history_.slip_rate_m_per_s &&
-                  read.t_Pa == history_.t_Pa && read.p_Pa == history_.p_Pa)
-          << "byte " << place;
+      EXPECT_TRUE(equal(read_history(file_), history_)) << "byte " << place;
     } catch (const UserError&) {
       ++refused;
     }
@@ -112,10 +99,9 @@ TEST_F(DamagedHistory, InAnEarlierFormatIsRefused) {
       file_.string() + ": is in a format of HDF5 before 1.10, in which damage goes unnoticed; convert it");
 }
 
-TEST(DataSets, WithoutTheValuesTheyClaimAreRefused) {
-  const test::TemporaryFolder folder;
+TEST_F(DamagedFiles, DataSetsWithoutTheValuesTheyClaimAreRefused) {
   for (const hsize_t rows : {hsize_t{2}, hsize_t{1} << 33U, hsize_t{1} << 61U}) {
-    const auto path = folder / "claims.h5";
+    const auto path = folder_ / "claims.h5";
     auto file = hdf5::create_file(path);
     hdf5::create_growing(file, "values", {8}, 1);
     hdf5::add_rows(file, "values", rows);
@@ -125,9 +111,8 @@ TEST(DataSets, WithoutTheValuesTheyClaimAreRefused) {
   }
 }
 
-TEST(DataSets, RowsBeyondTheEndAreRefused) {
-  const test::TemporaryFolder folder;
-  const auto path = folder / "rows.h5";
+TEST_F(DamagedFiles, DataSetsRowsBeyondTheEndAreRefused) {
+  const auto path = folder_ / "rows.h5";
   hdf5::write(hdf5::create_file(path), "values", std::vector<double>{1, 2, 3, 4}, {2, 2});
   const auto file = hdf5::open_file(path);
   EXPECT_EQ(hdf5::read_rows(file, "values", 1, 1).values, (std::vector<double>{3, 4}));
@@ -137,10 +122,9 @@ TEST(DataSets, RowsBeyondTheEndAreRefused) {
                 HasSubstr("cannot be read"));
 }
 
-TEST(TextAttributes, OfAnotherKindAreRefused) {
+TEST_F(DamagedFiles, TextAttributesOfAnotherKindAreRefused) {
   using hdf5::Handle;
-  const test::TemporaryFolder folder;
-  const auto file = hdf5::create_file(folder / "texts.h5");
+  const auto file = hdf5::create_file(folder_ / "texts.h5");
   hdf5::create_group(file, "group");
   hdf5::set_attribute(file, "group", "unit", std::string("m/s"));
   EXPECT_EQ(hdf5::text_attribute(file, "group", "unit"), "m/s");
@@ -160,9 +144,8 @@ TEST(TextAttributes, OfAnotherKindAreRefused) {
                 HasSubstr(": group has no text attribute " + std::string(name)));
 }
 
-TEST(Groups, CarryNoTime) {
-  const test::TemporaryFolder folder;
-  const auto file = hdf5::create_file(folder / "groups.h5");
+TEST_F(DamagedFiles, GroupsCarryNoTime) {
+  const auto file = hdf5::create_file(folder_ / "groups.h5");
   hdf5::create_group(file, "/group");
   for (const char* name : {"/", "/group"}) {
     const hdf5::Handle group(H5Gopen2(file.handle.get(), name, H5P_DEFAULT), H5Gclose);
@@ -172,9 +155,8 @@ TEST(Groups, CarryNoTime) {
   }
 }
 
-TEST(ArchiveOfFlags, HoldsNothingButTrueAndFalse) {
-  const test::TemporaryFolder folder;
-  const auto path = folder / "flags.bin";
+TEST_F(DamagedFiles, FlagsHoldNothingButTrueAndFalse) {
+  const auto path = folder_ / "flags.bin";
   const auto read = [&](std::uint8_t byte) {
     {
       OutputArchive archive(path);
@@ -189,15 +171,6 @@ TEST(ArchiveOfFlags, HoldsNothingButTrueAndFalse) {
   EXPECT_FALSE(read(0));
   EXPECT_TRUE(read(1));
   EXPECT_EQ(error_of([&] { read(2); }), path.string() + ": is damaged or of another version");
-}
-
-TEST(ChecksumList, WithANameThatCannotBeShownIsRefused) {
-  const test::TemporaryFolder folder;
-  for (const char* name : {"run\r.json", "\x1b[2J", "../run.json"}) {
-    test::write_file(folder / files::checksum_list, files::sha256("") + "  " + name + "\n");
-    EXPECT_EQ(error_of([&] { files::read_checksums(folder.path()); }),
-              (folder / files::checksum_list).string() + ": is not a list of checksums; run the case again");
-  }
 }
 
 }  // namespace

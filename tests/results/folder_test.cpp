@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <set>
 #include <thread>
 
 #include "files/checksum.hpp"
@@ -18,19 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::error_of;
+using test::names_below;
 using ::testing::Each;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
-
-std::set<std::string> below(const fs::path& dir) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(dir))
-    names.insert(fs::relative(entry.path(), dir).string());
-  return names;
-}
 
 /// Publishes files, each with its name as its content.
 void publish(const fs::path& dir, const std::vector<std::string>& names, bool adds = false) {
@@ -43,38 +35,41 @@ void publish(const fs::path& dir, const std::vector<std::string>& names, bool ad
   folder.publish(adds);
 }
 
-TEST(ResultFolder, IsMadeWithItsParentsAndGoesAgainUnused) {
-  const test::TemporaryFolder folder;
-  {
-    const ResultFolder made(folder / "a" / "b", "test");
-    EXPECT_TRUE(fs::is_directory(folder / "a" / "b"));
-  }
-  EXPECT_FALSE(fs::exists(folder / "a"));
-  publish(folder / "a" / "b", {"run.json"});
-  EXPECT_THAT(below(folder / "a" / "b"), UnorderedElementsAre("run.json", "checksums.sha256"));
+/// Begins work of a kind, and leaves it.
+void leave_unfinished(const fs::path& dir, const char* kind) {
+  ResultFolder left(dir, kind);
+  left.begin();
+  files::write_text(left.unfinished() / "run.json", "so far");
 }
 
-TEST(ResultFolder, IsRefusedWhereItHoldsAnything) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "notes.txt", "mine");
+using ResultFolders = test::InFolder;
+using Checksums = test::InFolder;
+
+TEST_F(ResultFolders, IsMadeWithItsParentsAndGoesAgainUnused) {
   {
-    const ResultFolder taken(folder.path(), "test");
+    const ResultFolder made(folder_ / "a" / "b", "test");
+    EXPECT_TRUE(fs::is_directory(folder_ / "a" / "b"));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
+  publish(folder_ / "a" / "b", {"run.json"});
+  EXPECT_THAT(names_below(folder_ / "a" / "b"), UnorderedElementsAre("run.json", "checksums.sha256"));
+}
+
+TEST_F(ResultFolders, IsRefusedWhereItHoldsAnything) {
+  test::write_file(folder_ / "notes.txt", "mine");
+  {
+    const ResultFolder taken(folder_.path(), "test");
     EXPECT_EQ(error_of([&] { taken.require_empty(false); }),
-              "output folder " + folder.path().string() +
+              "output folder " + folder_.path().string() +
                   ": is not empty; choose another or pass --overwrite to replace a run's results");
     EXPECT_EQ(error_of([&] { taken.require_empty(true); }), "(nothing thrown)");
   }
-  EXPECT_THAT(below(folder.path()), UnorderedElementsAre("notes.txt"));
+  EXPECT_THAT(names_below(folder_.path()), UnorderedElementsAre("notes.txt"));
 }
 
-TEST(ResultFolder, UnfinishedWorkIsNotLostByAccident) {
-  const test::TemporaryFolder folder;
-  {
-    ResultFolder left(folder.path(), "one");
-    left.begin();
-    files::write_text(left.unfinished() / "run.json", "so far");
-  }
-  ResultFolder again(folder.path(), "one");
+TEST_F(ResultFolders, UnfinishedWorkIsNotLostByAccident) {
+  leave_unfinished(folder_.path(), "one");
+  ResultFolder again(folder_.path(), "one");
   EXPECT_FALSE(again.has_results());
   EXPECT_TRUE(again.has_unfinished());
   EXPECT_THAT(error_of([&] { again.require_empty(false); }), HasSubstr("holds unfinished work"));
@@ -83,67 +78,54 @@ TEST(ResultFolder, UnfinishedWorkIsNotLostByAccident) {
   EXPECT_EQ(test::read_file(again.unfinished() / "run.json"), "so far");
 }
 
-TEST(ResultFolder, APipeIsNoKindOfWork) {
-  const test::TemporaryFolder folder;
-  {
-    ResultFolder left(folder.path(), "one");
-    left.begin();
-    files::write_text(left.unfinished() / "run.json", "so far");
-    fs::remove(left.state() / "kind");
-    ASSERT_EQ(mkfifo((left.state() / "kind").c_str(), 0600), 0);
-  }
-  const ResultFolder again(folder.path(), "one");
+TEST_F(ResultFolders, APipeIsNoKindOfWork) {
+  leave_unfinished(folder_.path(), "one");
+  const auto kind = folder_ / "unfinished/state/kind";
+  ASSERT_TRUE(fs::remove(kind));
+  ASSERT_EQ(mkfifo(kind.c_str(), 0600), 0);
+  const ResultFolder again(folder_.path(), "one");
   EXPECT_FALSE(again.has_unfinished());  // nor does it wait for someone to write into it
 }
 
-TEST(ResultFolder, WorkOfAnotherKindIsNotResumed) {
-  const test::TemporaryFolder folder;
-  {
-    ResultFolder one(folder.path(), "one");
-    one.begin();
-    files::write_text(one.unfinished() / "run.json", "so far");
-  }
-  ResultFolder other(folder.path(), "another");
+TEST_F(ResultFolders, WorkOfAnotherKindIsNotResumed) {
+  leave_unfinished(folder_.path(), "one");
+  ResultFolder other(folder_.path(), "another");
   EXPECT_FALSE(other.has_unfinished());
   EXPECT_THAT(error_of([&] { other.require_empty(false, true); }), HasSubstr("holds unfinished work"));
   other.begin_or_resume();
   EXPECT_FALSE(fs::exists(other.unfinished() / "run.json"));
 }
 
-TEST(ResultFolder, EarlierResultsStayUntilTheNewOnesAreComplete) {
-  const test::TemporaryFolder folder;
-  publish(folder.path(), {"run.json", "fields.vtkhdf"});
-  test::write_file(folder / "notes.txt", "mine");
-  const auto before = below(folder.path());
-  ResultFolder next(folder.path(), "test");
+TEST_F(ResultFolders, EarlierResultsStayUntilTheNewOnesAreComplete) {
+  publish(folder_.path(), {"run.json", "fields.vtkhdf"});
+  test::write_file(folder_ / "notes.txt", "mine");
+  ResultFolder next(folder_.path(), "test");
   next.begin();
   files::write_text(next.unfinished() / "run.json", "new");
-  EXPECT_EQ(test::read_file(folder / "run.json"), "run.json");
+  EXPECT_EQ(test::read_file(folder_ / "run.json"), "run.json");
   next.publish();
-  EXPECT_EQ(test::read_file(folder / "run.json"), "new");
+  EXPECT_EQ(test::read_file(folder_ / "run.json"), "new");
   // The earlier set's fields are not the new one's; what is nobody's stays.
-  EXPECT_FALSE(fs::exists(folder / "fields.vtkhdf"));
-  EXPECT_TRUE(fs::exists(folder / "notes.txt"));
-  files::require_intact(folder.path());
+  EXPECT_FALSE(fs::exists(folder_ / "fields.vtkhdf"));
+  EXPECT_TRUE(fs::exists(folder_ / "notes.txt"));
+  files::require_intact(folder_.path());
 }
 
-TEST(ResultFolder, ReplacesTheResultsOfFoldersWithoutAListAndNothingElse) {
-  const test::TemporaryFolder folder;
+TEST_F(ResultFolders, ReplacesTheResultsOfFoldersWithoutAListAndNothingElse) {
   for (const char* name : {"case.resolved.toml", "run.json", "interface.h5", "fronts.csv", "static.csv",
                            "energy.csv", "fields.vtkhdf", "notes.txt", "old.interface.h5"})
-    test::write_file(folder / name, "x");
-  fs::create_directory(folder / "figures");
-  test::write_file(folder / "figures" / "fronts.csv", "x");
-  publish(folder.path(), {"run.json"});
-  EXPECT_THAT(below(folder.path()),
+    test::write_file(folder_ / name, "x");
+  fs::create_directory(folder_ / "figures");
+  test::write_file(folder_ / "figures" / "fronts.csv", "x");
+  publish(folder_.path(), {"run.json"});
+  EXPECT_THAT(names_below(folder_.path()),
               UnorderedElementsAre("run.json", "checksums.sha256", "notes.txt", "old.interface.h5", "figures",
                                    "figures/fronts.csv"));
 }
 
-TEST(ResultFolder, ASetMayHaveFoldersWithSetsOfTheirOwn) {
-  const test::TemporaryFolder folder;
+TEST_F(ResultFolders, ASetMayHaveFoldersWithSetsOfTheirOwn) {
   const auto with_runs = [&](const std::vector<std::string>& runs) {
-    ResultFolder held(folder.path(), "test");
+    ResultFolder held(folder_.path(), "test");
     held.begin();
     for (const auto& run : runs) {
       fs::create_directories(held.unfinished() / run);
@@ -154,27 +136,27 @@ TEST(ResultFolder, ASetMayHaveFoldersWithSetsOfTheirOwn) {
     held.publish();
   };
   with_runs({"left", "studies/a/right"});
-  EXPECT_THAT(below(folder.path()),
+  EXPECT_THAT(names_below(folder_.path()),
               UnorderedElementsAre("checksums.sha256", "scorecard.json", "left", "left/run.json",
                                    "left/checksums.sha256", "studies", "studies/a", "studies/a/right",
                                    "studies/a/right/run.json", "studies/a/right/checksums.sha256"));
-  for (const char* run : {"", "left", "studies/a/right"}) files::require_intact(folder / run);
+  for (const char* run : {"", "left", "studies/a/right"}) files::require_intact(folder_ / run);
   with_runs({"left"});
-  EXPECT_THAT(below(folder.path()), UnorderedElementsAre("checksums.sha256", "scorecard.json", "left",
-                                                         "left/run.json", "left/checksums.sha256"));
+  EXPECT_THAT(names_below(folder_.path()), UnorderedElementsAre("checksums.sha256", "scorecard.json", "left",
+                                                                "left/run.json", "left/checksums.sha256"));
 }
 
-TEST(ResultFolder, ASetMayBeAddedTo) {
-  const test::TemporaryFolder folder;
-  publish(folder.path(), {"a.json", "b.json"});
-  publish(folder.path(), {"b.json", "c.json"}, true);
-  EXPECT_THAT(below(folder.path()), UnorderedElementsAre("a.json", "b.json", "c.json", "checksums.sha256"));
-  EXPECT_EQ(files::read_checksums(folder.path()).size(), 3U);
-  files::require_intact(folder.path());
+TEST_F(ResultFolders, ASetMayBeAddedTo) {
+  publish(folder_.path(), {"a.json", "b.json"});
+  publish(folder_.path(), {"b.json", "c.json"}, true);
+  EXPECT_THAT(names_below(folder_.path()),
+              UnorderedElementsAre("a.json", "b.json", "c.json", "checksums.sha256"));
+  EXPECT_EQ(files::read_checksums(folder_.path()).size(), 3U);
+  files::require_intact(folder_.path());
 }
 
 /// A publication that is cut off after the set was made complete, with some files moved and some not.
-TEST(ResultFolder, APublicationThatWasCutOffIsEnded) {
+TEST_F(ResultFolders, APublicationThatWasCutOffIsEnded) {
   for (const bool listed : {true, false}) {
     const test::TemporaryFolder folder;
     publish(folder.path(), {"run.json", "fronts.csv", "fields.vtkhdf"});
@@ -196,13 +178,14 @@ TEST(ResultFolder, APublicationThatWasCutOffIsEnded) {
       fs::remove_all(folder / "publishing/state");
     }
     { const ResultFolder claimed(folder.path(), "test"); }
-    EXPECT_THAT(below(folder.path()), UnorderedElementsAre("run.json", "fronts.csv", "checksums.sha256"));
+    EXPECT_THAT(names_below(folder.path()),
+                UnorderedElementsAre("run.json", "fronts.csv", "checksums.sha256"));
     EXPECT_EQ(test::read_file(folder / "run.json"), "new");
     files::require_intact(folder.path());
   }
 }
 
-TEST(ResultFolder, ForeignFoldersAndLinksOfItsNamesAreLeftAlone) {
+TEST_F(ResultFolders, ForeignFoldersAndLinksOfItsNamesAreLeftAlone) {
   for (const char* name : {"unfinished", "publishing"}) {
     const test::TemporaryFolder folder, elsewhere;
     test::write_file(elsewhere / "precious", "x");
@@ -217,81 +200,74 @@ TEST(ResultFolder, ForeignFoldersAndLinksOfItsNamesAreLeftAlone) {
   }
 }
 
-TEST(ResultFolder, IsNotMadeInsideAnothersWork) {
-  const test::TemporaryFolder folder;
-  ResultFolder other(folder / "a", "test");
+TEST_F(ResultFolders, IsNotMadeInsideAnothersWork) {
+  ResultFolder other(folder_ / "a", "test");
   other.begin();
-  EXPECT_THAT(error_of([&] { ResultFolder(folder / "a" / "unfinished" / "b" / "c", "test"); }),
-              HasSubstr("is inside " + (folder / "a" / "unfinished").string()));
-  fs::create_directories(folder / "unfinished");  // somebody's, who likes the name
-  EXPECT_NO_THROW(ResultFolder(folder / "unfinished" / "d", "test"));
+  EXPECT_THAT(error_of([&] { ResultFolder(folder_ / "a" / "unfinished" / "b" / "c", "test"); }),
+              HasSubstr("is inside " + (folder_ / "a" / "unfinished").string()));
+  fs::create_directories(folder_ / "unfinished");  // somebody's, who likes the name
+  EXPECT_NO_THROW(ResultFolder(folder_ / "unfinished" / "d", "test"));
 }
 
-TEST(ResultFolder, LeavesTheTargetOfALinkAlone) {
-  const test::TemporaryFolder folder, elsewhere;
+TEST_F(ResultFolders, LeavesTheTargetOfALinkAlone) {
+  const test::TemporaryFolder elsewhere;
   test::write_file(elsewhere / "run.json", "precious");
-  fs::create_symlink(elsewhere / "run.json", folder / "run.json");
-  publish(folder.path(), {"run.json"});
-  EXPECT_FALSE(fs::is_symlink(folder / "run.json"));
+  fs::create_symlink(elsewhere / "run.json", folder_ / "run.json");
+  publish(folder_.path(), {"run.json"});
+  EXPECT_FALSE(fs::is_symlink(folder_ / "run.json"));
   EXPECT_EQ(test::read_file(elsewhere / "run.json"), "precious");
 }
 
-TEST(ResultFolder, AFolderInPlaceOfAResultIsRefused) {
-  const test::TemporaryFolder folder;
-  fs::create_directory(folder / "run.json");
-  EXPECT_THAT(error_of([&] { ResultFolder(folder.path(), "test"); }),
+TEST_F(ResultFolders, AFolderInPlaceOfAResultIsRefused) {
+  fs::create_directory(folder_ / "run.json");
+  EXPECT_THAT(error_of([&] { ResultFolder(folder_.path(), "test"); }),
               HasSubstr("is a folder where a result"));
-  EXPECT_TRUE(fs::is_directory(folder / "run.json"));
+  EXPECT_TRUE(fs::is_directory(folder_ / "run.json"));
 }
 
-TEST(ResultFolder, WhatCannotBeAFolderIsRefused) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "file", "x");
-  EXPECT_THAT(error_of([&] { ResultFolder(folder / "file", "test"); }),
-              EndsWith(": is a file; choose another name"));
-  EXPECT_THAT(error_of([&] { ResultFolder(folder / "file" / "inner", "test"); }),
-              HasSubstr("; choose another place"));
-  EXPECT_THAT(error_of([&] { ResultFolder(folder / std::string(300, 'a'), "test"); }),
-              HasSubstr("; choose another place"));
-  fs::create_symlink(folder / "loop", folder / "loop");
-  EXPECT_THAT(error_of([&] { ResultFolder(folder / "loop", "test"); }), HasSubstr("; choose another place"));
-  // Nobody, root included, makes folders in /proc.
-  EXPECT_THAT(error_of([] { ResultFolder("/proc/slipfront", "test"); }),
-              StartsWith("output folder /proc/slipfront: cannot be created ("));
+TEST_F(ResultFolders, WhatCannotBeAFolderIsRefused) {
+  test::write_file(folder_ / "file", "x");
+  fs::create_symlink(folder_ / "loop", folder_ / "loop");
+  for (const auto& [name, message] :
+       {std::pair<fs::path, const char*>{"file", ": is a file; choose another name"},
+        {"file/inner", "; choose another place"},
+        {std::string(300, 'a'), "; choose another place"},
+        {"loop", "; choose another place"},
+        // Nobody, root included, makes folders in /proc.
+        {"/proc/slipfront", "output folder /proc/slipfront: cannot be created ("}})
+    EXPECT_THAT(error_of([&, &to = name] { ResultFolder(folder_ / to, "test"); }), HasSubstr(message));
 }
 
-TEST(ResultFolder, IsHeldByOneProcessAtATime) {
-  const test::TemporaryFolder folder;
+TEST_F(ResultFolders, IsHeldByOneProcessAtATime) {
   int ready[2], leave[2];
   ASSERT_EQ(pipe(ready), 0);
   ASSERT_EQ(pipe(leave), 0);
   const pid_t child = fork();
   if (child == 0) {
-    const ResultFolder held(folder.path(), "test");
+    const ResultFolder held(folder_.path(), "test");
     char c = 'x';
     _exit(write(ready[1], &c, 1) == 1 && read(leave[0], &c, 1) == 1 ? 1 : 2);  // as by a kill: not given back
   }
   char c = 'x';
   ASSERT_EQ(read(ready[0], &c, 1), 1);
-  EXPECT_THAT(error_of([&] { ResultFolder(folder.path(), "test"); }),
+  EXPECT_THAT(error_of([&] { ResultFolder(folder_.path(), "test"); }),
               HasSubstr(fmt::format("is in use by process {} on ", child)));
   ASSERT_EQ(write(leave[1], &c, 1), 1);
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 1);
-  EXPECT_TRUE(fs::exists(folder / ".slipfront.lock"));  // a file that is left is no lock
-  { const ResultFolder taken(folder.path(), "test"); }
-  EXPECT_THAT(below(folder.path()), IsEmpty());
+  EXPECT_TRUE(fs::exists(folder_ / ".slipfront.lock"));  // a file that is left is no lock
+  { const ResultFolder taken(folder_.path(), "test"); }
+  EXPECT_THAT(names_below(folder_.path()), IsEmpty());
 }
 
-TEST(ResultFolder, OfManyThatWantItAtOnceEachHasItOrIsToldWhoHas) {
-  const test::TemporaryFolder folder;
+TEST_F(ResultFolders, OfManyThatWantItAtOnceEachHasItOrIsToldWhoHas) {
   std::vector<std::string> refusals(4);
   std::vector<std::thread> threads;
   for (auto& refusal : refusals)
-    threads.emplace_back([&folder, &refusal] {
+    threads.emplace_back([this, &refusal] {
       for (int k = 0; k < 200 && refusal.empty(); ++k) {
-        const auto error = error_of([&] { ResultFolder(folder.path(), "test"); });
+        const auto error = error_of([&] { ResultFolder(folder_.path(), "test"); });
         if (error != "(nothing thrown)" && error.find("is in use by") == std::string::npos) refusal = error;
       }
     });
@@ -299,34 +275,31 @@ TEST(ResultFolder, OfManyThatWantItAtOnceEachHasItOrIsToldWhoHas) {
   EXPECT_THAT(refusals, Each(IsEmpty()));
 }
 
-TEST(Checksums, AreThoseOfSha256sum) {
+TEST_F(Checksums, AreThoseOfSha256sum) {
   // Of "abc", FIPS 180-4.
   EXPECT_EQ(files::sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "abc", "abc");
-  EXPECT_EQ(files::sha256_of_file(folder / "abc"), files::sha256("abc"));
-  seal(folder.path());
-  EXPECT_EQ(test::read_file(folder / files::checksum_list), files::sha256("abc") + "  abc\n");
+  test::write_file(folder_ / "abc", "abc");
+  EXPECT_EQ(files::sha256_of_file(folder_ / "abc"), files::sha256("abc"));
+  seal(folder_.path());
+  EXPECT_EQ(test::read_file(folder_ / files::checksum_list), files::sha256("abc") + "  abc\n");
 }
 
-TEST(Checksums, TellDamage) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "a", "abc");
-  seal(folder.path());
-  test::write_file(folder / "a", "abd");
-  EXPECT_EQ(error_of([&] { files::require_intact(folder.path()); }),
-            (folder / "a").string() +
+TEST_F(Checksums, TellDamage) {
+  test::write_file(folder_ / "a", "abc");
+  seal(folder_.path());
+  test::write_file(folder_ / "a", "abd");
+  EXPECT_EQ(error_of([&] { files::require_intact(folder_.path()); }),
+            (folder_ / "a").string() +
                 ": does not match checksums.sha256: it was changed or damaged; run the case again");
-  fs::remove(folder / "a");
-  EXPECT_THAT(error_of([&] { files::require_intact(folder.path()); }), HasSubstr("a: is missing"));
+  fs::remove(folder_ / "a");
+  EXPECT_THAT(error_of([&] { files::require_intact(folder_.path()); }), HasSubstr("a: is missing"));
 }
 
-TEST(Checksums, ListsThatNameOtherPlacesAreRefused) {
-  const test::TemporaryFolder folder;
-  for (const char* name : {"../a", "/etc/passwd", "a/../../b", ""}) {
-    test::write_file(folder / files::checksum_list, files::sha256("") + "  " + name + "\n");
-    EXPECT_THAT(error_of([&] { files::read_checksums(folder.path()); }),
-                HasSubstr("is not a list of checksums"));
+TEST_F(Checksums, ListsWithNamesOfOtherPlacesOrThatCannotBeShownAreRefused) {
+  for (const char* name : {"../a", "/etc/passwd", "a/../../b", "", "run\r.json", "\x1b[2J"}) {
+    test::write_file(folder_ / files::checksum_list, files::sha256("") + "  " + name + "\n");
+    EXPECT_EQ(error_of([&] { files::read_checksums(folder_.path()); }),
+              (folder_ / files::checksum_list).string() + ": is not a list of checksums; run the case again");
   }
 }
 

@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 #include <memory>
 
 #include "files/files.hpp"
+#include "histories.hpp"
 #include "mesh/plate.hpp"
 #include "results/hdf5.hpp"
 #include "results/history.hpp"
@@ -23,38 +25,18 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// Two times, three nodes; values that no shorter decimal stands for.
-record::History small_history() {
-  record::History history;
-  history.time_s = {0, 1e-6 / 3};
-  history.x_m = {0, 0.1, 0.2};
-  history.slip_m = {0, 1e-9, 2e-9, 1.0 / 3, 4e-9, 5e-9};
-  history.slip_rate_m_per_s = {0, 0.1, 0.2, 0.3, 0.4, 0.5};
-  history.t_Pa = {1e6, 2e6, 3e6, -4e6, 5e6, 6e6};
-  history.p_Pa = {7e6, 8e6, 9e6, 10e6, 11e6, 0};
-  return history;
-}
+using HistoryFiles = test::InFolder;
+using TextFiles = test::InFolder;
+using SnapshotFiles = test::InFolder;
 
 void write_axes(const hdf5::File& file) {
   hdf5::write(file, "time_s", std::vector<double>{0, 1}, {2});
   hdf5::write(file, "x_m", std::vector<double>{0, 1, 2}, {3});
 }
 
-TEST(HistoryFile, ReadsBackBitwise) {
-  const test::TemporaryFolder folder;
-  const record::History history = small_history();
-  write_history(folder / "interface.h5", history);
-  const record::History read = read_history(folder / "interface.h5");
-  EXPECT_EQ(read.time_s, history.time_s);
-  EXPECT_EQ(read.x_m, history.x_m);
-  for (const auto& field : record::history_fields)
-    EXPECT_EQ(read.*field.member, history.*field.member) << field.name;
-}
-
-TEST(HistoryFile, DataSetsHaveShapeUnitAndDescription) {
-  const test::TemporaryFolder folder;
-  write_history(folder / "interface.h5", small_history());
-  const hdf5::File file = hdf5::open_file(folder / "interface.h5");
+TEST_F(HistoryFiles, DataSetsHaveShapeUnitAndDescription) {
+  write_history(folder_ / "interface.h5", made_history(2, 3));
+  const hdf5::File file = hdf5::open_file(folder_ / "interface.h5");
   const std::vector<std::pair<std::string, std::string>> units = {
       {"time_s", "s"}, {"x_m", "m"},  {"slip_m", "m"}, {"slip_rate_m_per_s", "m/s"},
       {"t_Pa", "Pa"},  {"p_Pa", "Pa"}};
@@ -65,129 +47,95 @@ TEST(HistoryFile, DataSetsHaveShapeUnitAndDescription) {
   EXPECT_THAT(hdf5::read(file, "time_s").shape, ElementsAre(2));
   EXPECT_THAT(hdf5::read(file, "x_m").shape, ElementsAre(3));
   EXPECT_THAT(hdf5::read(file, "t_Pa").shape, ElementsAre(2, 3));
-  EXPECT_EQ(hdf5::read(file, "t_Pa").values[3], -4e6);  // row 1, column 0
+  EXPECT_EQ(hdf5::read(file, "t_Pa").values[3], 3.4);  // row 1, column 0
 }
 
-/// Any numbers, all different. [rows, nodes]
-record::History counting_history(std::size_t n_rows, std::size_t n_nodes, std::size_t first_row = 0) {
-  record::History h;
-  for (std::size_t i = 0; i < n_nodes; ++i) h.x_m.push_back(0.1 * static_cast<double>(i));
-  for (std::size_t k = first_row; k < first_row + n_rows; ++k) {
-    h.time_s.push_back(1e-6 * static_cast<double>(k));
-    for (std::size_t i = 0; i < n_nodes; ++i) {
-      const auto value = static_cast<double>(k * n_nodes + i);
-      h.slip_m.push_back(value);
-      h.slip_rate_m_per_s.push_back(value + 0.2);
-      h.t_Pa.push_back(value + 0.4);
-      h.p_Pa.push_back(value + 0.6);
-    }
-  }
-  return h;
-}
-
-TEST(HistoryFile, GrowsToTheSameAsWrittenAtOnce) {
-  const test::TemporaryFolder folder;
+TEST_F(HistoryFiles, GrowsToTheSameAsWrittenAtOnce) {
   constexpr std::size_t n_nodes = 100;
   const std::size_t block = history_block_rows(n_nodes);
   ASSERT_GT(block, 1U);
   // Blocks shorter and longer than a chunk, more than one chunk of times, and an end within a chunk.
-  HistoryFile file(folder / "grown.h5", counting_history(0, n_nodes).x_m);
+  HistoryFile file(folder_ / "grown.h5", made_history(0, n_nodes).x_m);
   std::size_t rows = 0;
   for (const std::size_t n : {std::size_t{1}, block, 2 * block + 3, std::size_t{1500}, std::size_t{0}}) {
-    file.append(counting_history(n, n_nodes, rows));
+    file.append(made_history(n, n_nodes, rows));
     rows += n;
   }
   file.close();
-  const auto whole = counting_history(rows, n_nodes);
-  const auto read = read_history(folder / "grown.h5");
-  EXPECT_EQ(read.time_s, whole.time_s);
-  EXPECT_EQ(read.x_m, whole.x_m);
-  for (const auto& field : record::history_fields)
-    EXPECT_EQ(read.*field.member, whole.*field.member) << field.name;
+  EXPECT_TRUE(equal(read_history(folder_ / "grown.h5"), made_history(rows, n_nodes)));
 }
 
-TEST(HistoryFile, EqualHistoriesMakeEqualFiles) {
-  const test::TemporaryFolder folder;
-  for (const char* name : {"a.h5", "b.h5"}) write_history(folder / name, counting_history(70, 50));
-  EXPECT_EQ(test::read_file(folder / "a.h5"), test::read_file(folder / "b.h5"));
+TEST_F(HistoryFiles, EqualHistoriesMakeEqualFiles) {
+  for (const char* name : {"a.h5", "b.h5"}) write_history(folder_ / name, made_history(70, 50));
+  EXPECT_EQ(test::read_file(folder_ / "a.h5"), test::read_file(folder_ / "b.h5"));
 }
 
-TEST(HistoryFile, AnEmptyHistoryReadsBack) {
-  const test::TemporaryFolder folder;
-  record::History history;
-  history.x_m = {0, 1};
-  write_history(folder / "interface.h5", history);
-  const record::History read = read_history(folder / "interface.h5");
-  EXPECT_TRUE(read.time_s.empty());
-  EXPECT_EQ(read.x_m, history.x_m);
-  EXPECT_TRUE(read.t_Pa.empty());
+TEST_F(HistoryFiles, ReadsBackBitwise) {
+  for (const std::size_t rows : {0, 2}) {
+    write_history(folder_ / "interface.h5", made_history(rows, 3));
+    EXPECT_TRUE(equal(read_history(folder_ / "interface.h5"), made_history(rows, 3))) << rows;
+  }
 }
 
-TEST(HistoryFile, OtherNumericTypesAreRead) {
-  const test::TemporaryFolder folder;
-  hdf5::File file = hdf5::create_file(folder / "other.h5");
+TEST_F(HistoryFiles, OtherNumericTypesAreRead) {
+  hdf5::File file = hdf5::create_file(folder_ / "other.h5");
   write_axes(file);
   for (const char* name : {"slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa"})
     hdf5::write(file, name, std::vector<std::int64_t>{1, 2, 3, 4, 5, 6}, {2, 3});
   hdf5::close(std::move(file));
-  EXPECT_THAT(read_history(folder / "other.h5").p_Pa, ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(read_history(folder_ / "other.h5").p_Pa, ElementsAre(1, 2, 3, 4, 5, 6));
 }
 
-TEST(HistoryFile, MissingOrMisshapedDataIsNamed) {
-  const test::TemporaryFolder folder;
-  const auto path = folder / "interface.h5";
-  const auto error = [&](auto fill) {
+TEST_F(HistoryFiles, MissingOrMisshapedDataIsNamed) {
+  const auto path = folder_ / "interface.h5";
+  const std::vector<double> six = {1, 2, 3, 4, 5, 6};
+  const std::pair<std::function<void(const hdf5::File&)>, const char*> cases[] = {
+      {[](const hdf5::File&) {}, "has no data set time_s; check that it is the right file"},
+      {write_axes, "has no data set slip_m; check that it is the right file"},
+      {[&](const hdf5::File& file) {
+         write_axes(file);
+         hdf5::write(file, "slip_m", six, {3, 2});
+       },
+       "slip_m has the shape [3, 2]; with time_s and x_m it must be [2, 3]"},
+      {[&](const hdf5::File& file) {
+         hdf5::write(file, "time_s", six, {2, 3});
+       },
+       "time_s has 2 dimensions; it must have one"},
+      {[](const hdf5::File& file) {
+         hdf5::write(file, "time_s", std::vector<double>{0, 2, 2}, {3});
+       },
+       "time_s is 2 at index 2; its values must be finite and ascending"},
+      {[](const hdf5::File& file) { hdf5::create_group(file, "time_s"); },
+       "has no data set time_s; check that it is the right file"}};
+  for (const auto& [fill, message] : cases) {
     hdf5::File file = hdf5::create_file(path);
     fill(file);
     hdf5::close(std::move(file));
-    return error_of([&] { read_history(path); });
-  };
-  const std::vector<double> six = {1, 2, 3, 4, 5, 6};
-  EXPECT_EQ(error([](const hdf5::File&) {}),
-            path.string() + ": has no data set time_s; check that it is the right file");
-  EXPECT_EQ(error([](const hdf5::File& file) { write_axes(file); }),
-            path.string() + ": has no data set slip_m; check that it is the right file");
-  EXPECT_EQ(error([&](const hdf5::File& file) {
-              write_axes(file);
-              hdf5::write(file, "slip_m", six, {3, 2});
-            }),
-            path.string() + ": slip_m has the shape [3, 2]; with time_s and x_m it must be [2, 3]");
-  EXPECT_EQ(error([&](const hdf5::File& file) {
-              hdf5::write(file, "time_s", six, {2, 3});
-            }),
-            path.string() + ": time_s has 2 dimensions; it must have one");
-  EXPECT_EQ(error([&](const hdf5::File& file) {
-              hdf5::write(file, "time_s", std::vector<double>{0, 2, 2}, {3});
-            }),
-            path.string() + ": time_s is 2 at index 2; its values must be finite and ascending");
-  EXPECT_EQ(error([](const hdf5::File& file) { hdf5::create_group(file, "time_s"); }),
-            path.string() + ": has no data set time_s; check that it is the right file");
+    EXPECT_EQ(error_of([&] { read_history(path); }), path.string() + ": " + message);
+  }
 }
 
-TEST(HistoryFile, ForeignAndTruncatedFilesAreRefused) {
-  const test::TemporaryFolder folder;
-  const auto path = folder / "interface.h5";
+TEST_F(HistoryFiles, ForeignAndTruncatedFilesAreRefused) {
+  const auto path = folder_ / "interface.h5";
   EXPECT_EQ(error_of([&] { read_history(path); }), path.string() + ": does not exist; check the path");
   test::write_file(path, "no HDF5");
   EXPECT_EQ(error_of([&] { read_history(path); }),
             path.string() + ": cannot be read; check that it is a complete HDF5 file");
-  write_history(path, small_history());
+  write_history(path, made_history(2, 3));
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   EXPECT_THAT(error_of([&] { read_history(path); }), StartsWith(path.string() + ": cannot be read"));
 }
 
-TEST(HistoryFile, HDF5PrintsNothingItself) {
-  const test::TemporaryFolder folder;
+TEST_F(HistoryFiles, HDF5PrintsNothingItself) {
   testing::internal::CaptureStderr();
-  error_of([&] { read_history(folder / "none.h5"); });
-  error_of([&] { write_history(folder / "none" / "interface.h5", small_history()); });
+  error_of([&] { read_history(folder_ / "none.h5"); });
+  error_of([&] { write_history(folder_ / "none" / "interface.h5", made_history(2, 3)); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(Writing, IntoAMissingFolderIsRefused) {
-  const test::TemporaryFolder folder;
-  const auto none = folder / "none";
-  EXPECT_EQ(error_of([&] { write_history(none / "interface.h5", small_history()); }),
+TEST_F(TextFiles, IntoAMissingFolderIsRefused) {
+  const auto none = folder_ / "none";
+  EXPECT_EQ(error_of([&] { write_history(none / "interface.h5", made_history(2, 3)); }),
             (none / "interface.h5").string() +
                 ": cannot be created; check that its folder exists and can be written");
   EXPECT_THAT(
@@ -201,52 +149,43 @@ TEST(Writing, IntoAMissingFolderIsRefused) {
               HasSubstr("cannot be created"));
 }
 
-TEST(Writing, AFullDiskIsNoticed) {
-  const test::TemporaryFolder folder;
-  record::History history;
-  history.time_s = {0};
-  record::StaticState state;
-  for (int i = 0; i < 20000; ++i) history.x_m.push_back(i);
-  for (auto* matrix : {&history.slip_m, &history.slip_rate_m_per_s, &history.t_Pa, &history.p_Pa})
-    matrix->assign(history.x_m.size(), 0);
-  state.x_m = state.t_s_Pa = state.p_s_Pa = history.x_m;
+TEST_F(TextFiles, AFullDiskIsNoticed) {
+  const auto history = made_history(1, 20000);
+  const record::StaticState state = {history.x_m, history.x_m, history.x_m};
   std::string history_error, static_error;
   {
     const FileSizeLimit limit(64 * 1024);
-    history_error = error_of([&] { write_history(folder / "interface.h5", history); });
-    static_error = error_of([&] { write_static(folder / "static.csv", state); });
+    history_error = error_of([&] { write_history(folder_ / "interface.h5", history); });
+    static_error = error_of([&] { write_static(folder_ / "static.csv", state); });
   }
   EXPECT_THAT(history_error, HasSubstr("check that the disk is not full"));
   EXPECT_THAT(static_error,
               HasSubstr("static.csv.new: cannot be written (File too large); free space there"));
 }
 
-TEST(Writing, OfTextThatFailsLeavesWhatWasThere) {
-  const test::TemporaryFolder folder;
-  files::write_text(folder / "a.csv", "earlier");
+TEST_F(TextFiles, OfTextThatFailsLeavesWhatWasThere) {
+  files::write_text(folder_ / "a.csv", "earlier");
   const auto write = [&] {
-    files::write_text(folder / "a.csv", [](files::OutputFile& output) {
+    files::write_text(folder_ / "a.csv", [](files::OutputFile& output) {
       output.write("half");
       throw WriteError("a full disk");
     });
   };
   EXPECT_EQ(error_of(write), "a full disk");
-  EXPECT_EQ(test::read_file(folder / "a.csv"), "earlier");
-  EXPECT_FALSE(std::filesystem::exists(folder / "a.csv.new"));
+  EXPECT_EQ(test::read_file(folder_ / "a.csv"), "earlier");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.csv.new"));
 }
 
-TEST(StaticFile, HasARowPerNodeAtFullPrecision) {
-  const test::TemporaryFolder folder;
-  write_static(folder / "static.csv",
+TEST_F(TextFiles, HasARowPerNodeAtFullPrecision) {
+  write_static(folder_ / "static.csv",
                {{0, 0.1}, {1.0 / 3, -2}, {4e6, std::numeric_limits<double>::quiet_NaN()}});
-  EXPECT_EQ(test::read_file(folder / "static.csv"),
+  EXPECT_EQ(test::read_file(folder_ / "static.csv"),
             "x_m,t_s_Pa,p_s_Pa\n"
             "0,0.3333333333333333,4000000\n"
             "0.1,-2,\n");
 }
 
-TEST(FrontsFile, HasARowPerFrontAndNodeWithUndefinedValuesEmpty) {
-  const test::TemporaryFolder folder;
+TEST_F(TextFiles, HasARowPerFrontAndNodeWithUndefinedValuesEmpty) {
   fronts::FrontPoint first, second;
   first.x_m = 0.1;
   first.onset_s = 1e-6;
@@ -258,9 +197,9 @@ TEST(FrontsFile, HasARowPerFrontAndNodeWithUndefinedValuesEmpty) {
   right.id = 1;
   right.direction = 1;
   right.points = {first, second};
-  write_fronts(folder / "fronts.csv", std::vector{left, right});
+  write_fronts(folder_ / "fronts.csv", std::vector{left, right});
   EXPECT_EQ(
-      test::read_file(folder / "fronts.csv"),
+      test::read_file(folder_ / "fronts.csv"),
       "front_id,x_m,onset_s,direction,v_tip_m_per_s,t_s_Pa,p_s_Pa,t_d_Pa,p_d_Pa,t_r_Pa,p_r_Pa,U_s_J_per_m3,"
       "U_r_J_per_m3,speed_kind\n"
       "0,0.1,1e-06,-1,,,,,,,,,,path_end\n"
@@ -290,9 +229,8 @@ motion::Snapshot snapshot(double time_s, double offset) {
 }
 
 // The layout is that of the VTKHDF specification, version 2.0, for a temporal unstructured grid.
-TEST(SnapshotFile, WritesTheMeshOnceAndAStepPerSnapshot) {
-  const test::TemporaryFolder folder;
-  const auto path = folder / "fields.vtkhdf";
+TEST_F(SnapshotFiles, WritesTheMeshOnceAndAStepPerSnapshot) {
+  const auto path = folder_ / "fields.vtkhdf";
   write_snapshots(path, two_cells(), series_of(std::vector{snapshot(1e-5, 100), snapshot(2e-5, 200)}));
   const hdf5::File file = hdf5::open_file(path);
   const auto values = [&](const std::string& name) { return hdf5::read(file, "/VTKHDF/" + name).values; };
@@ -322,8 +260,7 @@ TEST(SnapshotFile, WritesTheMeshOnceAndAStepPerSnapshot) {
   EXPECT_EQ(values("PointData/velocity_m_per_s")[3 * (7 + 6) + 1], 1994.0);
 }
 
-TEST(SnapshotFile, LargeFieldsArePutTogetherFromPieces) {
-  const test::TemporaryFolder folder;
+TEST_F(SnapshotFiles, LargeFieldsArePutTogetherFromPieces) {
   mesh::Plate plate;
   plate.element_size_m = plate.width_m / 400;
   plate.corner = mesh::Corner::none;
@@ -337,9 +274,9 @@ TEST(SnapshotFile, LargeFieldsArePutTogetherFromPieces) {
     snapshot.u_m.x[k] = static_cast<double>(k);
     snapshot.v_m_per_s.y[k] = -static_cast<double>(k);
   }
-  write_snapshots(folder / "fields.vtkhdf", mesh::in_one_slab(std::make_shared<const mesh::Mesh>(mesh)),
+  write_snapshots(folder_ / "fields.vtkhdf", mesh::in_one_slab(std::make_shared<const mesh::Mesh>(mesh)),
                   series_of(std::vector{snapshot, snapshot}));
-  const hdf5::File file = hdf5::open_file(folder / "fields.vtkhdf");
+  const hdf5::File file = hdf5::open_file(folder_ / "fields.vtkhdf");
   const auto points = hdf5::read(file, "/VTKHDF/Points").values;
   const auto connectivity = hdf5::read(file, "/VTKHDF/Connectivity").values;
   const auto offsets = hdf5::read(file, "/VTKHDF/Offsets").values;
@@ -369,10 +306,9 @@ TEST(SnapshotFile, LargeFieldsArePutTogetherFromPieces) {
   }
 }
 
-TEST(SnapshotFile, WithoutSnapshotsHoldsTheMesh) {
-  const test::TemporaryFolder folder;
-  write_snapshots(folder / "fields.vtkhdf", two_cells(), SnapshotSeries());
-  const hdf5::File file = hdf5::open_file(folder / "fields.vtkhdf");
+TEST_F(SnapshotFiles, WithoutSnapshotsHoldsTheMesh) {
+  write_snapshots(folder_ / "fields.vtkhdf", two_cells(), SnapshotSeries());
+  const hdf5::File file = hdf5::open_file(folder_ / "fields.vtkhdf");
   EXPECT_THAT(hdf5::read(file, "/VTKHDF/Points").shape, ElementsAre(7, 3));
   EXPECT_THAT(error_of([&] { hdf5::read(file, "/VTKHDF/Steps/Values"); }), HasSubstr("has no data set"));
 }

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <set>
 
 #include "files/checksum.hpp"
+#include "histories.hpp"
 #include "interface/friction/velocity_weakening.hpp"
 #include "mesh/plate.hpp"
 #include "results/hdf5.hpp"
@@ -22,15 +22,8 @@ using test::error_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::set<std::string> names_in(const std::filesystem::path& dir) {
-  std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(dir))
-    names.insert(entry.path().filename().string());
-  return names;
-}
-
 /// A plate at rest, whose samples are made up.
-class Stream : public testing::Test {
+class Stream : public test::InFolder {
  protected:
   Stream() {
     mesh::Plate plate;
@@ -43,27 +36,25 @@ class Stream : public testing::Test {
     for (const auto n : mesh->interface_nodes) x_m_.push_back(mesh->x_m[n]);
   }
 
-  record::History row(int k) const {
-    record::History h;
-    h.time_s = {1e-6 * k};
-    h.slip_m.assign(x_m_.size(), k + 0.1);
-    h.slip_rate_m_per_s.assign(x_m_.size(), k + 0.2);
-    h.t_Pa.assign(x_m_.size(), k + 0.3);
-    h.p_Pa.assign(x_m_.size(), k + 0.4);
-    return h;
+  record::History row(int k) const { return made_history(1, x_m_.size(), k); }
+
+  void expect_rows(int n) const {
+    write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
+    auto expected = made_history(n, x_m_.size());
+    expected.x_m = x_m_;
+    EXPECT_TRUE(equal(read_history(folder_ / "interface.h5"), expected));
   }
 
   mesh::Slabs mesh_;
   std::optional<motion::Stepper> stepper_;
   std::vector<double> x_m_;
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(Stream, KeepsAllItWasGiven) {
   const auto n_rows = static_cast<int>(3 * history_block_rows(x_m_.size()) + 1);  // the last block is short
   {
     ResultStream stream(folder_.path());
-    EXPECT_THAT(names_in(folder_.path()), ElementsAre("history.raw", "snapshots.raw"));
+    EXPECT_THAT(test::names_below(folder_.path()), ElementsAre("history.raw", "snapshots.raw"));
     for (int k = 0; k < n_rows; ++k) {
       stream.sample(row(k));
       if (k % 1000 == 0) stream.snapshot(*stepper_);
@@ -71,17 +62,7 @@ TEST_F(Stream, KeepsAllItWasGiven) {
     const auto lengths = stream.keep();
     EXPECT_EQ(lengths.history.bytes, n_rows * (1 + 4 * x_m_.size()) * sizeof(double));
   }
-  write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
-  const auto history = read_history(folder_ / "interface.h5");
-  EXPECT_EQ(history.x_m, x_m_);
-  ASSERT_EQ(history.time_s.size(), static_cast<std::size_t>(n_rows));
-  for (int k = 0; k < n_rows; ++k) {
-    ASSERT_EQ(history.time_s[k], 1e-6 * k);
-    for (std::size_t i = 0; i < x_m_.size(); ++i) {
-      ASSERT_EQ(history.slip_m[k * x_m_.size() + i], k + 0.1);
-      ASSERT_EQ(history.p_Pa[k * x_m_.size() + i], k + 0.4);
-    }
-  }
+  expect_rows(n_rows);
   const auto n_snapshots = static_cast<std::size_t>((n_rows + 999) / 1000);
   write_snapshots(folder_ / "fields.vtkhdf", mesh_,
                   read_snapshots(ResultStream::snapshot_file(folder_.path()), mesh_.n_nodes));
@@ -105,10 +86,7 @@ TEST_F(Stream, GoesOnWhereItWasKept) {
     for (int k = 3; k < 5; ++k) stream.sample(row(k));
     stream.keep();
   }
-  write_history(folder_ / "interface.h5", ResultStream::history_file(folder_.path()), x_m_);
-  const auto history = read_history(folder_ / "interface.h5");
-  ASSERT_EQ(history.time_s.size(), 5U);
-  for (int k = 0; k < 5; ++k) EXPECT_EQ(history.time_s[k], 1e-6 * k);
+  expect_rows(5);
   EXPECT_EQ(read_snapshots(ResultStream::snapshot_file(folder_.path()), mesh_.n_nodes).time_s.size(), 1U);
 }
 
@@ -133,8 +111,7 @@ TEST_F(Stream, LeavesOutARecordThatWasCutOff) {
   }
   const auto raw = ResultStream::history_file(folder_.path());
   std::filesystem::resize_file(raw, std::filesystem::file_size(raw) - 1);
-  write_history(folder_ / "interface.h5", raw, x_m_);
-  EXPECT_EQ(read_history(folder_ / "interface.h5").time_s.size(), 2U);
+  expect_rows(2);
 }
 
 TEST_F(Stream, AFullDiskIsToldByTheFilesName) {

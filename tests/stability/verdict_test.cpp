@@ -14,36 +14,31 @@ namespace slipfront::stability {
 namespace {
 
 using interface::Coulomb;
-using interface::Relaxed;
 using interface::VelocityWeakening;
 using testing::StartsWith;
 
 constexpr double h = 0.667e-3;
 constexpr double width = 0.2;
 
-solid::Material undamped() {
-  solid::Material m;
-  m.stiffness_damping_s = 0;
-  return m;
-}
+const solid::Material undamped{.stiffness_damping_s = 0};
 
 TEST(WellPosedness, CoulombOnARigidPlane) {
-  const auto low = well_posedness(undamped(), Coulomb{0.9}, 5e6, h, width);
+  const auto low = well_posedness(undamped, Coulomb{0.9}, 5e6, h, width);
   EXPECT_FALSE(low.unbounded);
   EXPECT_EQ(low.growth_at_grid_per_s, 0);
   EXPECT_THAT(low.statement, StartsWith("well-posed"));
-  const auto high = well_posedness(undamped(), Coulomb{1.3}, 5e6, h, width);
+  const auto high = well_posedness(undamped, Coulomb{1.3}, 5e6, h, width);
   EXPECT_TRUE(high.unbounded);
   EXPECT_THAT(high.statement, StartsWith("ill-posed"));
   // 0.106 k c_S, to the three decimals of the reference.
-  const double k_c_S = std::numbers::pi / h * solid::shear_speed_m_per_s(undamped());
+  const double k_c_S = std::numbers::pi / h * solid::shear_speed_m_per_s(undamped);
   EXPECT_NEAR(high.growth_at_grid_per_s / k_c_S, 0.106, 5e-4);
   EXPECT_EQ(high.weakening_over_radiation, 0);
 }
 
 TEST(WellPosedness, VelocityWeakeningAgainstRadiation) {
   // mu'(0) = -(mu_s - mu_k)^1.5/sqrt(alpha), G/c_S = sqrt(rho G).
-  const solid::Material m = undamped();
+  const auto& m = undamped;
   const auto w = well_posedness(m, VelocityWeakening{.mu_s = 0.9, .mu_k = 0.5}, 5e6, h, width);
   const double expected =
       std::pow(0.4, 1.5) / std::sqrt(0.1) * 5e6 / std::sqrt(m.density_kg_per_m3 * solid::shear_modulus_Pa(m));
@@ -51,27 +46,6 @@ TEST(WellPosedness, VelocityWeakeningAgainstRadiation) {
   EXPECT_GT(expected, 1);
   EXPECT_TRUE(w.unbounded);
   EXPECT_TRUE(std::isinf(w.fastest_growth_per_s));
-}
-
-TEST(WellPosedness, LimitsAgreeWithGrowthFollowedToShortWaves) {
-  for (const auto relaxed : {Relaxed::none, Relaxed::strength, Relaxed::pressure})
-    for (const double beta : {0.0, 1e-7})
-      for (const double mu : {0.6, 1.3})
-        for (const double slope : {0.0, -0.5, -2.0}) {
-          solid::Material m;
-          m.stiffness_damping_s = beta;
-          const double radiation = solid::shear_modulus_Pa(m) / solid::shear_speed_m_per_s(m);
-          const Sliding s{mu, slope, 0, radiation, 1e6, relaxed};
-          const auto growth = [&](double k) {
-            const auto mode = fastest_growing_mode(m, s, k);
-            return mode ? mode->growth_per_s() : 0;
-          };
-          // Both ends lie far beyond the rates 1e6 and 1e7 per second, k c_S = 1e10 and 1e12. Unbounded
-          // growth rises in proportion to k at least; bounded growth does not rise tenfold over two decades.
-          EXPECT_EQ(growth_is_unbounded(m, s), growth(1e9) > 10 * growth(1e7))
-              << static_cast<int>(relaxed) << " beta " << beta << " mu " << mu << " slope " << slope << ": "
-              << growth(1e7) << ", " << growth(1e9);
-        }
 }
 
 TEST(WellPosedness, DampingGivesTheFastestWaveALength) {

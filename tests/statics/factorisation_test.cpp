@@ -19,7 +19,7 @@ using test::max_abs;
 
 class FactorisedPlate : public ::testing::TestWithParam<Corner> {
  protected:
-  mesh::Mesh mesh_ = test::tiny_plate(GetParam());
+  const mesh::Mesh mesh_ = test::tiny_plate(GetParam());
   solid::Material material_;
   test::Sparse K_ = test::assembled_stiffness(mesh_, material_);
   Eigen::Index n_interface_ = static_cast<Eigen::Index>(2 * mesh_.interface_nodes.size());
@@ -33,30 +33,14 @@ class FactorisedPlate : public ::testing::TestWithParam<Corner> {
   /// Unknowns that are neither prescribed nor of the interface.
   std::vector<Eigen::Index> inner_unknowns(TopConstraint top) const {
     const auto orphan = mesh::orphans(mesh_);
-    const auto is = [](const std::vector<mesh::Node>& set, mesh::Node n) {
-      return std::ranges::count(set, n) > 0;
-    };
     std::vector<Eigen::Index> d;
     for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {
-      if (orphan[n] || is(mesh_.interface_nodes, n)) continue;
-      if (!is(mesh_.far_edge_nodes, n) || top == TopConstraint::vertical) d.push_back(2 * n);
-      if (!is(mesh_.far_edge_nodes, n)) d.push_back(2 * n + 1);
+      if (orphan[n] || std::ranges::count(mesh_.interface_nodes, n) > 0) continue;
+      const bool is_loaded = std::ranges::count(mesh_.far_edge_nodes, n) > 0;
+      if (!is_loaded || top == TopConstraint::vertical) d.push_back(2 * n);
+      if (!is_loaded) d.push_back(2 * n + 1);
     }
     return d;
-  }
-
-  Factorisation::Top random_top() const {
-    test::Random random(7);
-    Factorisation::Top top;
-    for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
-      top.u_x_m.push_back(random());
-      top.u_y_m.push_back(random());
-    }
-    return top;
-  }
-  Eigen::VectorXd random_interface() const {
-    test::Random random(8);
-    return Eigen::VectorXd::NullaryExpr(n_interface_, [&] { return random(); });
   }
 };
 
@@ -90,10 +74,16 @@ TEST_P(FactorisedPlate, CondensedStiffnessIsTheSchurComplement) {
 }
 
 TEST_P(FactorisedPlate, DisplacementIsInEquilibrium) {
+  test::Random random(7);
+  Factorisation::Top edge;
+  for (std::size_t k = 0; k < mesh_.far_edge_nodes.size(); ++k) {
+    edge.u_x_m.push_back(random());
+    edge.u_y_m.push_back(random());
+  }
+  const Eigen::VectorXd u_i = Eigen::VectorXd::NullaryExpr(n_interface_, [&] { return random(); });
   for (const auto top : {TopConstraint::both, TopConstraint::vertical}) {
     const Factorisation f(mesh_, material_, top);
-    const auto load = f.load(random_top());
-    const Eigen::VectorXd u_i = random_interface();
+    const auto load = f.load(edge);
     const solid::Field u = f.displacement(load, u_i);
     const Eigen::VectorXd force = K_ * flat(u);
     // Rounding of a direct solution, against the stiffness times the displacement.

@@ -112,12 +112,11 @@ TEST(Subdomains, OwnRowsMakeTheProductOfThePlate) {
   }
 }
 
-bool same_node(const Subdomain::Node& a, const Subdomain::Node& b) {
-  return a.x_m == b.x_m && a.y_m == b.y_m && a.pair == b.pair && a.opposite == b.opposite;
-}
-
 /// All of a piece, to the last bit.
 void expect_same(const Subdomain& a, const Subdomain& b) {
+  const auto same_node = [](const Subdomain::Node& p, const Subdomain::Node& q) {
+    return p.x_m == q.x_m && p.y_m == q.y_m && p.pair == q.pair && p.opposite == q.opposite;
+  };
   const auto same_place = [](const Subdomain::Place& p, const Subdomain::Place& q) {
     return p.pair == q.pair && p.place == q.place;
   };

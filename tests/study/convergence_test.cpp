@@ -50,14 +50,9 @@ TEST(ConvergencePlan, TakesTheStepItselfWithoutSubCyclingAndLeavesOutDampingThat
 }
 
 TEST(ConvergencePlan, RefusesElementSizesThatMakeNoSequence) {
-  for (const std::vector<double>& sizes : {std::vector<double>{5e-3, 2.5e-3},
-                                           {4e-3, 2e-3, 1e-3},
-                                           {5e-3, 2.5e-3, 2.5e-3},
-                                           {5e-3, 2.5e-3, -1e-3}}) {
-    ConvergenceOptions options;
-    options.element_sizes_m = sizes;
-    EXPECT_THROW(plan_convergence(coarse_case(), options), UserError);
-  }
+  for (const std::vector<double>& sizes :
+       {std::vector{5e-3, 2.5e-3}, {4e-3, 2e-3, 1e-3}, {5e-3, 2.5e-3, 2.5e-3}, {5e-3, 2.5e-3, -1e-3}})
+    EXPECT_THROW(plan_convergence(coarse_case(), {.element_sizes_m = sizes}), UserError);
 }
 
 TEST(FrontSpeed, IsLinearBetweenThePointsOfAFront) {

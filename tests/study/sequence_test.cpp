@@ -13,9 +13,11 @@ namespace {
 
 using Three = std::array<double, 3>;
 
-Three power_law(const Three& q, double limit, double factor, double order) {
+constexpr Three q{4, 2, 1};
+
+Three power_law(const Three& at, double limit, double factor, double order) {
   Three f{};
-  for (std::size_t k = 0; k < 3; ++k) f[k] = limit + factor * std::pow(q[k], order);
+  for (std::size_t k = 0; k < 3; ++k) f[k] = limit + factor * std::pow(at[k], order);
   return f;
 }
 
@@ -23,10 +25,10 @@ Three power_law(const Three& q, double limit, double factor, double order) {
 constexpr double rounding = 1e-9;
 
 TEST(Extrapolation, FindsOrderAndLimitOfAPowerLaw) {
-  for (const Three& q : {Three{4, 2, 1}, Three{0.3, 0.2, 0.15}, Three{1, 0.9, 0.2}})
+  for (const Three& at : {q, Three{0.3, 0.2, 0.15}, Three{1, 0.9, 0.2}})
     for (const double order : {0.5, 1.0, 1.7, 2.0})
       for (const double factor : {0.3, -0.02}) {
-        const auto limit = extrapolate(q, power_law(q, 5, factor, order));
+        const auto limit = extrapolate(at, power_law(at, 5, factor, order));
         EXPECT_EQ(limit.trend, Trend::monotone);
         EXPECT_NEAR(limit.order, order, rounding);
         EXPECT_NEAR(limit.value, 5, rounding);
@@ -34,14 +36,13 @@ TEST(Extrapolation, FindsOrderAndLimitOfAPowerLaw) {
 }
 
 TEST(Extrapolation, TrustsNoOrderAboveTheSchemes) {
-  const Three q{4, 2, 1}, f = power_law(q, 5, 0.1, 6);
+  const Three f = power_law(q, 5, 0.1, 6);
   const auto limit = extrapolate(q, f);
   EXPECT_NEAR(limit.order, 6, rounding);
   EXPECT_NEAR(limit.value, f[2] - (f[1] - f[2]) / 3, rounding);  // 2^2 - 1
 }
 
 TEST(Extrapolation, SeesNoLimitWhereDifferencesGrow) {
-  const Three q{4, 2, 1};
   const Three logarithm{-std::log(4), -std::log(2), 0};  // equal differences
   for (const Three& f : {power_law(q, 5, 0.1, -1), logarithm, Three{1, 1.1, 0.9}}) {
     const auto limit = extrapolate(q, f);
@@ -52,7 +53,7 @@ TEST(Extrapolation, SeesNoLimitWhereDifferencesGrow) {
 }
 
 TEST(Extrapolation, PutsTheLimitOfAlternatingValuesBetweenTheLastTwo) {
-  const Three q{4, 2, 1}, f{1.4, 0.8, 1.1};
+  const Three f{1.4, 0.8, 1.1};
   const auto limit = extrapolate(q, f);
   EXPECT_EQ(limit.trend, Trend::alternating);
   EXPECT_DOUBLE_EQ(limit.value, 0.95);
@@ -61,7 +62,6 @@ TEST(Extrapolation, PutsTheLimitOfAlternatingValuesBetweenTheLastTwo) {
 }
 
 TEST(Extrapolation, TakesEqualValuesForTheirLimitAndMissingOnesForUnknown) {
-  const Three q{4, 2, 1};
   const auto limit = extrapolate(q, Three{3, 3, 3});
   EXPECT_EQ(limit.value, 3);
   EXPECT_EQ(limit.order, highest_order);
@@ -71,53 +71,48 @@ TEST(Extrapolation, TakesEqualValuesForTheirLimitAndMissingOnesForUnknown) {
 }
 
 TEST(Extrapolation, ErrorIsTheDistanceFromTheLimitOrWithoutOneTheSpread) {
-  const Three q{4, 2, 1}, f = power_law(q, 5, 0.1, 1), wild{1, 1.1, 0.7};
+  const Three f = power_law(q, 5, 0.1, 1), wild{1, 1.1, 0.7};
   EXPECT_NEAR(error_of(f[1], extrapolate(q, f), f), 0.2, rounding);
   EXPECT_NEAR(error_of(wild[1], extrapolate(q, wild), wild), 0.4, rounding);
 }
 
+constexpr Three halved{2, 1, 0.5};
+
 /// Stations of one sequence, as the study makes them: the case is the middle value.
 template <class Values>
-Summary summary_of(int n, const Three& q, Values&& values, double tolerance) {
+Summary summary_of(int n, Values&& values, double tolerance = 0.02) {
   std::vector<StationSummary> stations;
   for (int k = 0; k < n; ++k) {
     const Three f = values(k);
-    const auto limit = extrapolate(q, f);
+    const auto limit = extrapolate(halved, f);
     stations.push_back({error_of(f[1], limit, f) / f[1], limit.order,
-                        std::abs(f[0] - f[1]) / f[1] / std::log(q[0] / q[1]),
-                        std::abs(f[1] - f[2]) / f[1] / std::log(q[1] / q[2])});
+                        std::abs(f[0] - f[1]) / f[1] / std::log(2),
+                        std::abs(f[1] - f[2]) / f[1] / std::log(2)});
   }
   return summarise(stations, n, tolerance);
 }
 
 TEST(Verdict, FollowsFromErrorAndGrowth) {
-  const Three q{2, 1, 0.5};
   const auto second = [&](double factor) {
-    return summary_of(
-        20, q, [&](int k) { return power_law(q, 1 + 0.1 * k, factor, 2); }, 0.02);
+    return summary_of(20, [&](int k) { return power_law(halved, 1 + 0.1 * k, factor, 2); });
   };
   EXPECT_EQ(second(0.01).verdict, Verdict::converged);
   EXPECT_NEAR(second(0.01).median_order, 2, 1e-6);
   EXPECT_NEAR(second(0.01).growth, 0.25, rounding);
   EXPECT_EQ(second(0.2).verdict, Verdict::not_converged);
-  const auto diverging = summary_of(
-      20, q, [&](int k) { return power_law(q, 1 + 0.1 * k, 0.2, -1); }, 0.02);
+  const auto diverging = summary_of(20, [&](int k) { return power_law(halved, 1 + 0.1 * k, 0.2, -1); });
   EXPECT_EQ(diverging.verdict, Verdict::no_limit);
   EXPECT_NEAR(diverging.growth, 2, rounding);
 }
 
 TEST(Verdict, NoiseOnAFirstOrderSequenceDoesNotTurnIt) {
-  const Three q{2, 1, 0.5};
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0, 0.003);
-  const auto s = summary_of(
-      80, q,
-      [&](int) {
-        auto f = power_law(q, 1, 0.1, 1);
-        for (double& v : f) v += noise(random);
-        return f;
-      },
-      0.02);
+  const auto s = summary_of(80, [&](int) {
+    auto f = power_law(halved, 1, 0.1, 1);
+    for (double& v : f) v += noise(random);
+    return f;
+  });
   EXPECT_EQ(s.verdict, Verdict::not_converged);
   // A difference of 0.05 carries noise of 0.003 sqrt(2), a tenth: the order is known to about 0.2 at one
   // station; the median of 80 to a small part of that, and biased by less than it.
@@ -126,15 +121,14 @@ TEST(Verdict, NoiseOnAFirstOrderSequenceDoesNotTurnIt) {
 }
 
 TEST(Verdict, NeedsEnoughStations) {
-  const Three q{2, 1, 0.5};
-  const auto good = [&](int) { return power_law(q, 1, 0.01, 2); };
-  EXPECT_EQ(summary_of(fewest_stations - 1, q, good, 0.02).verdict, Verdict::too_few_stations);
+  const auto good = [&](int) { return power_law(halved, 1, 0.01, 2); };
+  EXPECT_EQ(summary_of(fewest_stations - 1, good, 0.02).verdict, Verdict::too_few_stations);
   const auto every_third = [&](int k) {
     auto f = good(k);
     if (k % 3 != 0) f[2] = undefined;
     return f;
   };
-  const auto s = summary_of(30, q, every_third, 0.02);
+  const auto s = summary_of(30, every_third);
   EXPECT_EQ(s.n_stations, 10);
   EXPECT_EQ(s.verdict, Verdict::too_few_stations);
 }

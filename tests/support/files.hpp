@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 
 #include "base/error.hpp"
@@ -37,6 +38,12 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// Tests with a fresh folder.
+class InFolder : public ::testing::Test {
+ protected:
+  const TemporaryFolder folder_;
+};
+
 inline void write_file(const std::filesystem::path& file, const std::string& text) {
   std::ofstream(file, std::ios::binary) << text;
 }
@@ -44,6 +51,14 @@ inline void write_file(const std::filesystem::path& file, const std::string& tex
 inline std::string read_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// All files and folders below one, by their paths in it.
+inline std::set<std::string> names_below(const std::filesystem::path& dir) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(dir))
+    names.insert(std::filesystem::relative(entry.path(), dir).string());
+  return names;
 }
 
 /// While it lives, a file of this process cannot grow beyond `bytes`: writing fails as on a full disk.

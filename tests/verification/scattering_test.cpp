@@ -58,35 +58,27 @@ TEST(Scattering, OnNothingIsThatOfAFreeEdge) {
               1e-10);
 }
 
+/// With an elastic line at the interface it does to first order.
 TEST(Scattering, KeepsTheFluxOfEnergy) {
+  const std::array bodies = {pmma, aluminium};
   for (const Kind kind : kinds)
     for (const double angle : {0.1, 0.4, 0.8, 1.2}) {  // below and beyond the critical angles
       const double omega = omega_at(pmma, kind, angle);
-      const std::array bodies = {pmma, aluminium};
-      const auto a = scattered(bodies, kind, k_x, omega);
-      double sum = 0;
-      for (int body = 0; body < 2; ++body)
-        for (const Kind out : kinds) sum += std::norm(of(a, body, out)) * flux(bodies[body], out, omega);
-      EXPECT_NEAR(sum / flux(pmma, kind, omega), 1, 1e-13);
-    }
-}
-
-TEST(Scattering, ByAnElasticLineKeepsTheFluxToFirstOrder) {
-  const std::array bodies = {pmma, aluminium};
-  for (const Kind kind : kinds)
-    for (const double angle : {0.1, 0.4, 0.8}) {
-      const double omega = omega_at(pmma, kind, angle);
       const auto a = scattered(bodies, kind, k_x, omega);
       const auto change = change_by({{{0.01, 1e-12, 3e-12}, {0.02, 2e-13, 1e-13}}}, bodies, kind, k_x, omega);
-      double sum = 0, size = 0;
+      double sum = 0, changed = 0, size = 0;
       for (int body = 0; body < 2; ++body)
         for (const Kind out : kinds) {
           const Complex both = std::conj(of(a, body, out)) * of(change, body, out);
-          sum += both.real() * flux(bodies[body], out, omega);
-          size += std::abs(both) * flux(bodies[body], out, omega);
+          const double flux_out = flux(bodies[body], out, omega);
+          sum += std::norm(of(a, body, out)) * flux_out;
+          changed += both.real() * flux_out;
+          size += std::abs(both) * flux_out;
         }
+      EXPECT_NEAR(sum / flux(pmma, kind, omega), 1, 1e-13);
+      if (angle > 1) continue;
       EXPECT_GT(size, 0);
-      EXPECT_LT(std::abs(sum), 1e-12 * size);
+      EXPECT_LT(std::abs(changed), 1e-12 * size);
     }
 }
 

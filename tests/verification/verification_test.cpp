@@ -5,9 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <set>
 
 namespace slipfront::verification {
 namespace {
@@ -33,25 +31,11 @@ INSTANTIATE_TEST_SUITE_P(Verifications, Quick, ::testing::ValuesIn(verifications
 TEST(Check, HoldsWithinItsToleranceOnly) {
   Check check{.quantity = "q", .measured = 1.5, .expected = 1, .tolerance = 0.5};
   EXPECT_TRUE(check.holds());
-  for (const double outside : {1.6, 0.4}) {
+  for (const double outside : {1.6, 0.4, std::numeric_limits<double>::quiet_NaN()}) {
     check.measured = outside;
     EXPECT_FALSE(check.holds());
   }
-  check.measured = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(check.holds());
-}
-
-TEST(Outcome, WithoutChecksDoesNotHold) {
-  EXPECT_FALSE(Outcome{}.holds());
-}
-
-TEST(Verifications, HavePagesOfTheirOwn) {
-  std::set<std::string> names;
-  for (const auto& v : verifications()) {
-    EXPECT_TRUE(names.insert(v.name).second) << v.name;
-    EXPECT_TRUE(std::filesystem::exists(fmt::format("{}/verification/{}.md", SLIPFRONT_SOURCE_DIR, v.name)))
-        << v.name;
-  }
+  EXPECT_FALSE(Outcome{}.holds());  // without checks
 }
 
 }  // namespace
