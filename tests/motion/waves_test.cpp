@@ -18,15 +18,14 @@ using support::one_substep;
 
 constexpr double lift_m = 1e-5;
 
-enum class Wave { longitudinal, shear };
-
-class PlaneWave : public ::testing::TestWithParam<Wave> {
+/// Longitudinal or shear.
+class PlaneWave : public ::testing::TestWithParam<bool> {
  protected:
   static constexpr double h_ = 1e-3, width_ = 4e-3, height_ = 0.055, amplitude_ = 1e-6;
   mesh::Mesh mesh_ = support::make_plate(0.2, 0.1, h_, Corner::none);
   solid::Material material_{.stiffness_damping_s = 0};
   Stepper stepper_{mesh_, material_, support::paper_law, one_substep()};
-  bool shear_ = GetParam() == Wave::shear;
+  bool shear_ = GetParam();
   double c_ = shear_ ? solid::shear_speed_m_per_s(material_) : solid::longitudinal_speed_m_per_s(material_);
 
   /// A Gaussian pulse of uniform motion along x or y that moves down from 55 mm, in a wide plate in the air.
@@ -69,10 +68,7 @@ class PlaneWave : public ::testing::TestWithParam<Wave> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Kinds, PlaneWave, ::testing::Values(Wave::longitudinal, Wave::shear),
-                         [](const auto& kind) {
-                           return kind.param == Wave::shear ? "shear" : "longitudinal";
-                         });
+INSTANTIATE_TEST_SUITE_P(Kinds, PlaneWave, ::testing::Bool());
 
 TEST_P(PlaneWave, TravelsAtItsSpeed) {
   const auto e = pulse();
@@ -116,15 +112,11 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
   // nu = 0: the sides do not matter, and sin(k (H - y)) with k = (2 m + 1) pi / (2 H) is an exact mode of the
   // free lower edge under the held top: a single oscillator.
   const auto mesh = support::make_plate(0.02, 0.02, 1e-3, Corner::none);
-  struct Case {
-    int mode;
-    double damping_s;
-  };
-  for (const Case& c : {Case{3, 0}, Case{0, 1e-7}, Case{3, 1e-7}, Case{0, 1e-6}}) {
-    SCOPED_TRACE(testing::Message() << "mode " << c.mode << ", damping " << c.damping_s << " s");
-    const solid::Material material{.poissons_ratio = 0, .stiffness_damping_s = c.damping_s};
+  for (const auto& [mode, damping_s] : {std::pair(3, 0.0), {0, 1e-7}, {3, 1e-7}, {0, 1e-6}}) {
+    SCOPED_TRACE(testing::Message() << "mode " << mode << ", damping " << damping_s << " s");
+    const solid::Material material{.poissons_ratio = 0, .stiffness_damping_s = damping_s};
     Stepper stepper(mesh, material, support::paper_law, one_substep());
-    const double k = (2 * c.mode + 1) * std::numbers::pi / (2 * 0.02), amplitude = 1e-6;
+    const double k = (2 * mode + 1) * std::numbers::pi / (2 * 0.02), amplitude = 1e-6;
     solid::Field u(mesh.n_nodes());
     for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
       u.y[n] = lift_m + amplitude * std::sin(k * (0.02 - mesh.y_m[n]));
@@ -134,9 +126,9 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
     const double dt = stepper.step_s();
     const double omega = 2 * solid::longitudinal_speed_m_per_s(material) / 1e-3 * std::sin(k * 1e-3 / 2);
     double q = amplitude, rate = 0, worst = 0, least = amplitude, lateral = 0;
-    const double sign = c.mode % 2 == 0 ? 1 : -1;
+    const double sign = mode % 2 == 0 ? 1 : -1;
     for (int step = 0; step < 2000; ++step) {
-      rate -= dt * omega * omega * (q + c.damping_s * rate);
+      rate -= dt * omega * omega * (q + damping_s * rate);
       q += dt * rate;
       stepper.advance(recorder);
       least = std::min(least, q);
@@ -149,9 +141,7 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
     EXPECT_LE(lateral, 1e-9 * amplitude);
     EXPECT_LT(least, -0.1 * amplitude);  // it oscillates
     // The damping is no small thing: the amplitude falls by exp(-beta_R omega^2 t / 2).
-    if (c.mode == 3 && c.damping_s > 0) {
-      EXPECT_LT(std::abs(q), 1e-3 * amplitude);
-    }
+    EXPECT_TRUE(std::abs(q) < 1e-3 * amplitude || mode == 0 || damping_s == 0);
   }
 }
 
