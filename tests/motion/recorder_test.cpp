@@ -15,13 +15,13 @@ namespace {
 constexpr double mu_s = 0.5;
 constexpr std::size_t n_nodes = 5;
 
-/// Five nodes 1 mm apart under p = 4 Pa, each at t/p = 0.25, half of mu_s.
-statics::Equilibrium at_rest() {
+/// Nodes 1 mm apart under p = 4 Pa, each at t/p = 0.25, half of mu_s.
+statics::Equilibrium at_rest(std::size_t n = n_nodes, statics::Contact contact = statics::Contact::stick) {
   statics::Equilibrium e;
-  for (std::size_t k = 0; k < n_nodes; ++k) e.tractions.x_m.push_back(1e-3 * static_cast<double>(k));
-  e.tractions.t_s_Pa.assign(n_nodes, 1.0);
-  e.tractions.p_s_Pa.assign(n_nodes, 4.0);
-  e.contact.assign(n_nodes, statics::Contact::stick);
+  for (std::size_t k = 0; k < n; ++k) e.tractions.x_m.push_back(1e-3 * static_cast<double>(k));
+  e.tractions.t_s_Pa.assign(n, 1.0);
+  e.tractions.p_s_Pa.assign(n, 4.0);
+  e.contact.assign(n, contact);
   return e;
 }
 
@@ -34,8 +34,8 @@ interface::Interface unchanged() {
   return s;
 }
 
-void set(interface::Interface& s, std::size_t node, double demand, double t, double p, bool slips) {
-  s.trial_traction_Pa[node] = demand;
+void set(interface::Interface& s, std::size_t node, double trial, double t, double p, bool slips) {
+  s.trial_traction_Pa[node] = trial;
   s.t_Pa[node] = t;
   s.p_Pa[node] = p;
   s.strength_Pa[node] = mu_s * p;
@@ -70,15 +70,6 @@ TEST(Recorder, LocatesTheOnsetInsideTheStep) {
   EXPECT_DOUBLE_EQ(around[2].p_Pa, 3.9);
 }
 
-TEST(Recorder, KeepsTheSignOfTheTraction) {
-  Recorder recorder(at_rest(), mu_s, 0);
-  recorder.observe(0, unchanged(), false);
-  auto s = unchanged();
-  set(s, 2, 6, -2, 4, true);
-  recorder.observe(1, s, true);
-  EXPECT_DOUBLE_EQ(recorder.record_until(1).around_onset(0)[0].t_Pa, -mu_s * 4);
-}
-
 TEST(Recorder, HasNoTractionsBeyondTheEnds) {
   Recorder recorder(at_rest(), mu_s, 2);
   recorder.observe(0, unchanged(), false);
@@ -106,19 +97,44 @@ TEST(Recorder, HasNoTractionsBeyondTheEnds) {
   EXPECT_DOUBLE_EQ(at_end[1].t_Pa, 1);
 }
 
+/// Node 2 between two observations 2 s apart.
+record::SlipRecord record_of(const statics::Equilibrium& before, const interface::Interface& first,
+                             const interface::Interface& second) {
+  Recorder recorder(before, mu_s, 0);
+  recorder.observe(0, first, false);
+  recorder.observe(2, second, true);
+  const auto record = recorder.record_until(2);
+  EXPECT_EQ(record.onsets.size(), 1);
+  return record;
+}
+
+TEST(Recorder, KeepsTheSignOfTheTraction) {
+  auto s = unchanged();
+  set(s, 2, 6, -2, 4, true);
+  EXPECT_DOUBLE_EQ(record_of(at_rest(), unchanged(), s).around_onset(0)[0].t_Pa, -mu_s * 4);
+}
+
 TEST(Recorder, ANodeThatWasNotPressedBeginsNow) {
   auto before = at_rest();
-  before.contact[3] = statics::Contact::open;
-  before.tractions.t_s_Pa[3] = before.tractions.p_s_Pa[3] = 0;
-  Recorder recorder(before, mu_s, 0);
-  auto s = unchanged();
-  set(s, 3, 0, 0, 0, false);
-  recorder.observe(0, s, false);
-  set(s, 3, 6, 2, 4, true);
-  recorder.observe(2, s, true);
-  const auto record = recorder.record_until(2);
-  ASSERT_EQ(record.onsets.size(), 1);
-  EXPECT_EQ(record.onsets[0].time_s, 2);
+  before.contact[2] = statics::Contact::open;
+  before.tractions.t_s_Pa[2] = before.tractions.p_s_Pa[2] = 0;
+  auto first = unchanged(), second = unchanged();
+  set(first, 2, 0, 0, 0, false);
+  set(second, 2, 6, 2, 4, true);
+  EXPECT_EQ(record_of(before, first, second).onsets[0].time_s, 2);
+}
+
+TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
+  // A strength that is not mu_s p: relaxed, or of a weakened node. It falls from 2 Pa to 1.6 Pa while the
+  // trial traction rises from 1.6 Pa to 1.92 Pa: the ratio from 0.8 to 1.2, through 1 after half of the step.
+  auto first = unchanged(), second = unchanged();
+  first.t_Pa[2] = 1.6;
+  set(second, 2, 1.92, 1.6, 4, true);
+  second.strength_Pa[2] = 1.6;
+  const auto record = record_of(at_rest(), first, second);
+  EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 1);
+  EXPECT_DOUBLE_EQ(record.around_onset(0)[0].t_Pa, 1.8);
+  EXPECT_DOUBLE_EQ(record.around_onset(0)[0].p_Pa, 4);
 }
 
 TEST(Recorder, SlipInTheFirstUpdateBeginsAtTimeZero) {
@@ -177,12 +193,7 @@ TEST(Recorder, SeesTheMotionOfAnyNode) {
   // More nodes than the vectors of the search hold, and a rest.
   constexpr std::size_t n = 19;
   for (std::size_t node = 0; node < n; ++node) {
-    statics::Equilibrium e;
-    e.tractions.x_m.assign(n, 0.0);
-    e.tractions.t_s_Pa.assign(n, 1.0);
-    e.tractions.p_s_Pa.assign(n, 4.0);
-    e.contact.assign(n, statics::Contact::slip);
-    Recorder recorder(e, mu_s, 0, 0.01);
+    Recorder recorder(at_rest(n, statics::Contact::slip), mu_s, 0, 0.01);
     interface::Interface s(n);
     s.slipping.assign(n, 1);
     s.slip_rate_m_per_s.assign(n, -0.009);
@@ -195,23 +206,6 @@ TEST(Recorder, SeesTheMotionOfAnyNode) {
     recorder.observe(2, s, true);
     EXPECT_EQ(recorder.last_motion_s(), 2) << node;
   }
-}
-
-TEST(Recorder, TheOnsetIsWhereTheStrengthIsPassed) {
-  // A strength that is not mu_s p: relaxed, or of a weakened node. It falls from 2 Pa to 1.6 Pa while the
-  // demand rises from 1.6 Pa to 1.92 Pa: the ratio from 0.8 to 1.2, through 1 after half of the step.
-  Recorder recorder(at_rest(), mu_s, 0);
-  auto s = unchanged();
-  s.t_Pa[2] = 1.6;
-  recorder.observe(0, s, false);
-  set(s, 2, 1.92, 1.6, 4, true);
-  s.strength_Pa[2] = 1.6;
-  recorder.observe(1, s, true);
-  const auto record = recorder.record_until(1);
-  ASSERT_EQ(record.onsets.size(), 1);
-  EXPECT_DOUBLE_EQ(record.onsets[0].time_s, 0.5);
-  EXPECT_DOUBLE_EQ(record.around_onset(0)[0].t_Pa, 1.8);
-  EXPECT_DOUBLE_EQ(record.around_onset(0)[0].p_Pa, 4);
 }
 
 TEST(Recorder, TimesAscend) {
@@ -229,13 +223,9 @@ TEST(Recorder, TimesAscend) {
   recorder.observe(3, s, true);
   const auto record = recorder.record_until(3);
   std::vector<int> order;
-  double last = 0;
-  for (const auto& onset : record.onsets) {
-    order.push_back(onset.node);
-    EXPECT_GE(onset.time_s, last);
-    last = onset.time_s;
-  }
+  for (const auto& onset : record.onsets) order.push_back(onset.node);
   EXPECT_EQ(order, (std::vector<int>{2, 1, 0, 4, 3}));
+  EXPECT_TRUE(std::ranges::is_sorted(record.onsets, {}, &record::Onset::time_s));
   ASSERT_EQ(record.stops.size(), 2);
   EXPECT_EQ(record.stops[0].node, 0);
   EXPECT_EQ(record.stops[1].node, 1);
@@ -331,13 +321,11 @@ struct RandomSlip {
     state.p_Pa.assign(n, 4);
   }
   statics::Equilibrium make_before() {
-    statics::Equilibrium e;
-    for (std::size_t k = 0; k < n; ++k) e.tractions.x_m.push_back(1e-3 * static_cast<double>(k));
-    e.tractions.t_s_Pa.assign(n, 1.0);
-    e.tractions.p_s_Pa.assign(n, 4.0);
-    for (std::size_t k = 0; k < n; ++k)
-      e.contact.push_back(random() > 0.9 ? statics::Contact::slip : statics::Contact::stick);
-    for (std::size_t k = 0; k < n; ++k) state.slipping[k] = e.contact[k] == statics::Contact::slip;
+    auto e = at_rest(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      state.slipping[k] = random() > 0.9;
+      if (state.slipping[k] != 0) e.contact[k] = statics::Contact::slip;
+    }
     return e;
   }
   /// Onsets at the step's beginning, its end and in between.
