@@ -15,6 +15,7 @@ namespace {
 using test::dt;
 using test::for_each_model;
 using test::many_nodes;
+using test::Motion;
 using test::results_at;
 
 /// A separate node, in the state of one of many.
@@ -38,23 +39,6 @@ std::vector<FrictionLaw> random_laws(const ContactModel& model, std::size_t n, s
     } while (!inconsistency(law).text.empty());
   return laws;
 }
-
-/// Trial motions that make nodes stick, slip, open, land and turn round, the same for all that take them.
-struct Motion {
-  double v_x, v_y, u_y;
-  static std::vector<Motion> of(std::size_t n, std::mt19937_64& random) {
-    std::uniform_real_distribution<double> within(-1, 1);
-    std::vector<Motion> motions;
-    for (std::size_t i = 0; i < n; ++i)
-      motions.push_back({within(random), within(random) - 0.6, dt * (within(random) + 0.3)});
-    return motions;
-  }
-  void push(Interface& s, std::size_t i) const {
-    s.v_x_m_per_s[i] = 0.8 * s.slip_rate_m_per_s[i] + v_x;
-    s.v_y_m_per_s[i] = v_y;
-    s.u_y_m[i] += u_y;
-  }
-};
 
 TEST(NodeLaws, EqualLawsAreTheOneLawBitByBit) {
   for_each_model([](const ContactModel& one) {

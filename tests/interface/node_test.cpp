@@ -85,19 +85,14 @@ bool update_one_by_one(const ContactModel& model, double since_last_s, Interface
   });
 }
 
-/// A motion that makes nodes stick, slip, open, land and turn round; every 50th is not a number.
-struct Motion {
-  std::mt19937_64 random{1};
-  void push(Interface& s) {
-    std::uniform_real_distribution<double> within(-1, 1);
-    for (std::size_t i = 0; i < s.size(); ++i) {
-      s.v_x_m_per_s[i] = 4 * s.slip_rate_m_per_s[i] / 5 + within(random);
-      s.v_y_m_per_s[i] = within(random) - 0.6;
-      s.u_y_m[i] += dt * (within(random) + 0.3);
-      if (i % 50 == 49) (i % 100 == 49 ? s.v_x_m_per_s : s.v_y_m_per_s)[i] = std::nan("");
-    }
+/// Every 50th node's motion is not a number.
+void push(Interface& s, std::mt19937_64& random) {
+  const auto motions = test::Motion::of(s.size(), random);
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    motions[i].push(s, i);
+    if (i % 50 == 49) (i % 100 == 49 ? s.v_x_m_per_s : s.v_y_m_per_s)[i] = std::nan("");
   }
-};
+}
 
 Interface nodes(std::size_t n, const ContactModel& model) {
   auto s = test::many_nodes(n);
@@ -109,10 +104,10 @@ Interface nodes(std::size_t n, const ContactModel& model) {
 TEST(NodeUpdate, OfLanesIsThatOfDoubles) {
   for_each_model([](const ContactModel& model) {
     auto s = nodes(203, model);
-    Motion motion;
+    std::mt19937_64 random(1);
     int n_slip = 0, n_stick = 0, n_open = 0, n_changes = 0;
     for (int k = 0; k < 20; ++k) {
-      motion.push(s);
+      push(s, random);
       auto one_by_one = s;
       const bool changed = update_one_by_one(model, k == 0 ? 0 : dt, one_by_one);
       EXPECT_EQ(update_contact(model, dt, s), changed);
@@ -131,10 +126,10 @@ TEST(NodeUpdate, DoesNotDependOnThePlaceInTheArray) {
   for_each_model([](const ContactModel& model) {
     const std::size_t n = 3 * lanes;
     Interface before = nodes(n, model);
-    Motion motion;
-    motion.push(before);
+    std::mt19937_64 random(1);
+    push(before, random);
     update_contact(model, dt, before);
-    motion.push(before);
+    push(before, random);
     auto whole = before;
     update_contact(model, dt, whole);
     for (std::size_t begin = 1; begin < n; ++begin) {
@@ -155,8 +150,8 @@ TEST(NodeUpdate, DoesNotDependOnThePlaceInTheArray) {
 TEST(NodeUpdate, MotionThatIsNotANumberShowsUpAsASlipRate) {
   for_each_model([](const ContactModel& model) {
     auto s = nodes(2 * lanes, model);
-    Motion motion;
-    motion.push(s);
+    std::mt19937_64 random(1);
+    push(s, random);
     s.v_x_m_per_s[3] = std::nan("");
     update_contact(model, dt, s);
     for (std::size_t i = 0; i < s.size(); ++i) EXPECT_EQ(std::isnan(s.slip_rate_m_per_s[i]), i == 3);

@@ -169,13 +169,8 @@ TEST(Quality, OfAHandMadeCell) {
   EXPECT_NEAR(q.min_angle_deg, 45, 1e-12);
   EXPECT_NEAR(q.max_angle_deg, 135, 1e-12);
   EXPECT_NEAR(q.min_side_m, 1, 1e-15);
-}
-
-TEST(Quality, SeesAReflexAngle) {
-  Mesh mesh;
   mesh.x_m = {0, 2, 0.5, 0};
   mesh.y_m = {0, 0, 0.5, 2};  // an arrowhead with its notch at (0.5, 0.5)
-  mesh.cells = {{0, 1, 2, 3}};
   EXPECT_GT(quality(mesh).max_angle_deg, 180);
 }
 

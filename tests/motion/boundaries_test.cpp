@@ -30,33 +30,21 @@ class Absorption : public ::testing::TestWithParam<std::tuple<bool, int>> {
   /// it over its amplitude among `nodes` when its reflection would be back where it started.
   double reflected(const mesh::Mesh& mesh, bool along_x, const std::vector<mesh::Node>& nodes,
                    double edge_m) const {
-    constexpr double width = 4e-3, distance = 15e-3, amplitude = 1e-6, lift = 1e-4;
+    constexpr double distance = 15e-3, lift = 1e-4;
     const solid::Material material{.stiffness_damping_s = 0};
     const double c =
         shear_ ? solid::shear_speed_m_per_s(material) : solid::longitudinal_speed_m_per_s(material);
     Stepper stepper(mesh, material, support::paper_law, time_);
-    solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
-    const bool moves_x = along_x != shear_;
-    const auto orphan = mesh::orphans(mesh);
-    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
-      if (orphan[n]) continue;
-      const auto at = [&](double time) {
-        const double s = ((along_x ? mesh.x_m[n] : mesh.y_m[n]) - edge_m + distance - c * time) / width;
-        return amplitude * std::exp(-0.5 * s * s);
-      };
-      u.y[n] = lift;  // in the air
-      (moves_x ? u.x : u.y)[n] += at(0);
-      (moves_x ? v.x : v.y)[n] = (at(0) - at(-stepper.step_s())) / stepper.step_s();
-    }
-    const auto e = support::in_flight(mesh, u, v);
+    const support::GaussianPulse pulse{shear_, along_x, edge_m - distance, c, lift};
+    const auto e = pulse.on(mesh, stepper.step_s());
     stepper.start(e, 1);
     Recorder recorder(e, 1.3, 0);
     while (c * stepper.time_s() < 2 * distance) stepper.advance(recorder);
     double largest = 0;
     for (const auto n : nodes)
       largest =
-          std::max(largest, std::abs(moves_x ? stepper.u_m().x[n] : stepper.u_m().y[n] - lift) / amplitude);
-    return largest;
+          std::max(largest, std::abs(along_x != shear_ ? stepper.u_m().x[n] : stepper.u_m().y[n] - lift));
+    return largest / pulse.amplitude_m;
   }
 };
 INSTANTIATE_TEST_SUITE_P(Waves, Absorption, ::testing::Combine(::testing::Bool(), ::testing::Values(1, 5)));

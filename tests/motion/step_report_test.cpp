@@ -96,24 +96,5 @@ TEST(StepReport, AreTheSameJoinedInAnyGroups) {
   EXPECT_EQ(all.displacements[32 * 3 + 23], 6315);
 }
 
-TEST(StepReport, AreShownUpdateByUpdate) {
-  const auto report = of_nodes(0, 9, 0);
-  SlipUpdateIterator slips(report.seen, n_around);
-  for (int update = 0; update < n_steps * substeps; ++update) {
-    const auto& seen = slips.next();
-    EXPECT_EQ(seen.time_s, update);
-    EXPECT_EQ(seen.moves, update == 0);
-    std::size_t beginning = 0;
-    ASSERT_EQ(seen.changes.size(), 3U);
-    for (const auto& change : seen.changes) {
-      EXPECT_EQ(change.time_s, 10.0 * update);
-      if (!change.begins) continue;
-      EXPECT_EQ(seen.around[n_around * beginning].t_Pa, 100.0 * update + change.node);
-      ++beginning;
-    }
-    EXPECT_EQ(seen.around.size(), n_around * beginning);
-  }
-}
-
 }  // namespace
 }  // namespace slipfront::motion
