@@ -113,12 +113,6 @@ TEST(Laws, RefuseAKineticCoefficientAboveTheStaticOne) {
   EXPECT_EQ(SlipWeakeningHealing({.mu_s = 0.7, .mu_k = 0.8}).inconsistency().text, problem);
 }
 
-TEST(Coulomb, DoesNotKnowTheSpeed) {
-  const Coulomb law{.mu = 0.4};
-  EXPECT_EQ(law.static_coefficient(), 0.4);
-  for (const double v : {0.0, 1e-6, 1.0, 1e6}) EXPECT_EQ(law.evaluator()(v, 0), 0.4);
-}
-
 TEST(SlipWeakening, FallsLinearlyOverTheCriticalSlip) {
   const SlipWeakening law{.mu_s = 0.75, .mu_k = 0.25, .d_c_m = 4e-6};
   const auto mu = law.evaluator();

@@ -80,13 +80,5 @@ TEST(Intact, InterpolatesBetweenTheKineticCoefficientAndTheLaw) {
   }
 }
 
-TEST(Intact, DoesNothingWhereTheLawDoesNotWeaken) {
-  const ContactModel model{Coulomb{.mu = 0.4}};
-  auto s = resting_node(model, 1e6);
-  s.intact[0] = 0;
-  pull(model, s, 1e6, 1e6);
-  EXPECT_NEAR(s.t_Pa[0], 0.4e6, rounding_Pa);
-}
-
 }  // namespace
 }  // namespace slipfront::interface

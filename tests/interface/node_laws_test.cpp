@@ -95,20 +95,5 @@ TEST(NodeLaws, EachNodeFollowsItsOwn) {
   });
 }
 
-TEST(NodeLaws, WeakenedNodesFallToTheirOwnKineticCoefficient) {
-  ContactModel model{SlipWeakening{}};
-  model.of_nodes = NodeLaws({SlipWeakening{0.6, 0.3, 1e-6}, SlipWeakening{0.6, 0.1, 1e-6}});
-  Interface s(2);
-  s.mass_per_length_kg_m2 = {test::mass, test::mass};
-  s.p_Pa = {1e6, 1e6};
-  start_contact(model, s);
-  s.intact = {0, 0};
-  s.v_x_m_per_s.assign(2, 0.5e6 / test::impedance);
-  s.v_y_m_per_s.assign(2, -1e6 / test::impedance);
-  update_contact(model, dt, s);
-  EXPECT_NEAR(s.t_Pa[0], 0.3e6, test::rounding_Pa);
-  EXPECT_NEAR(s.t_Pa[1], 0.1e6, test::rounding_Pa);
-}
-
 }  // namespace
 }  // namespace slipfront::interface
