@@ -6,6 +6,7 @@
 
 #include "interface/interface.hpp"
 #include "one_node.hpp"
+#include "support/random.hpp"
 
 namespace slipfront::interface {
 namespace {
@@ -13,21 +14,19 @@ namespace {
 using test::dt;
 using test::impedance;
 using test::mass;
+using test::move;
+using test::one_node;
+using test::pull;
+using test::strength_under_way;
 using test::weakening;
+using test::weakening_mu;
 
-/// One node on the plane that the trial velocity presses with p and drags with t_stop.
-Interface one_node(double t_stop_Pa, double p_Pa) {
-  Interface s(1);
-  s.mass_per_length_kg_m2[0] = mass;
-  s.v_x_m_per_s[0] = t_stop_Pa / impedance;
-  s.v_y_m_per_s[0] = -p_Pa / impedance;
-  return s;
-}
+const ContactModel model{weakening};
 
 TEST(Contact, FrictionStopsANodeWhereItCan) {
   for (const double sign : {1.0, -1.0}) {
-    auto s = one_node(sign * 1.2e6, 1e6);
-    EXPECT_FALSE(update_contact({weakening}, dt, s));
+    auto s = one_node();
+    EXPECT_FALSE(pull(model, s, sign * 1.2e6, 1e6));
     EXPECT_NEAR(s.p_Pa[0], 1e6, 1e-8);
     EXPECT_NEAR(s.t_Pa[0], sign * 1.2e6, 1e-8);
     EXPECT_NEAR(s.trial_traction_Pa[0], 1.2e6, 1e-8);
@@ -40,11 +39,10 @@ TEST(Contact, FrictionStopsANodeWhereItCan) {
 
 TEST(Contact, ANodeBeyondItsStrengthSlipsAgainstTheTraction) {
   for (const double sign : {1.0, -1.0}) {
-    auto s = one_node(sign * 1.5e6, 1e6);
-    EXPECT_TRUE(update_contact({weakening}, dt, s));
+    auto s = one_node();
+    EXPECT_TRUE(pull(model, s, sign * 1.5e6, 1e6));
     // It weakens as it begins to move.
-    const auto mu = [](double v) { return 0.6 + 0.7 * std::exp(-v * std::sqrt(7.0)); };
-    const double first = test::strength_under_way(mu, 0, 1.5e6, 1e6);
+    const double first = strength_under_way(weakening_mu, 0, 1.5e6, 1e6);
     EXPECT_LT(first, 1.2e6);
     EXPECT_NEAR(s.t_Pa[0], sign * first, 1e-8);
     EXPECT_NEAR(s.trial_traction_Pa[0], 1.5e6, 1e-8);
@@ -54,76 +52,61 @@ TEST(Contact, ANodeBeyondItsStrengthSlipsAgainstTheTraction) {
 
     // The next step knows the slip rate.
     const double rate = std::abs(s.slip_rate_m_per_s[0]);
-    s.v_x_m_per_s[0] = sign * 1.4e6 / impedance;
-    s.v_y_m_per_s[0] = -1e6 / impedance;
-    EXPECT_FALSE(update_contact({weakening}, dt, s));
-    EXPECT_NEAR(s.t_Pa[0], sign * test::strength_under_way(mu, rate, 1.4e6, 1e6), 1e-7);
+    EXPECT_FALSE(pull(model, s, sign * 1.4e6, 1e6));
+    EXPECT_NEAR(s.t_Pa[0], sign * strength_under_way(weakening_mu, rate, 1.4e6, 1e6), 1e-7);
     EXPECT_EQ(s.slipping[0], 1);
   }
 }
 
 TEST(Contact, ASlippingNodeSticksAgainAndRegainsItsStrength) {
-  auto s = one_node(1.5e6, 1e6);
-  EXPECT_TRUE(update_contact({weakening}, dt, s));
-  // The weakened strength can stop it now.
-  s.v_x_m_per_s[0] = 0.5e6 / impedance;
-  s.v_y_m_per_s[0] = -1e6 / impedance;
-  EXPECT_TRUE(update_contact({weakening}, dt, s));
+  auto s = one_node();
+  EXPECT_TRUE(pull(model, s, 1.5e6, 1e6));
+  EXPECT_TRUE(pull(model, s, 0.5e6, 1e6));  // the weakened strength can stop it now
   EXPECT_EQ(s.slipping[0], 0);
   EXPECT_EQ(s.slip_rate_m_per_s[0], 0);
   EXPECT_NEAR(s.t_Pa[0], 0.5e6, 1e-8);
   // Above mu_k p and the strength at the old slip rate, but below mu_s p.
-  s.v_x_m_per_s[0] = 1.29e6 / impedance;
-  s.v_y_m_per_s[0] = -1e6 / impedance;
-  EXPECT_FALSE(update_contact({weakening}, dt, s));
+  EXPECT_FALSE(pull(model, s, 1.29e6, 1e6));
   EXPECT_EQ(s.slipping[0], 0);
 }
 
 TEST(Contact, ASeparatingNodeIsReleased) {
-  auto s = one_node(1.5e6, 1e6);
-  update_contact({weakening}, dt, s);
+  auto s = one_node();
+  pull(model, s, 1.5e6, 1e6);
   ASSERT_EQ(s.slipping[0], 1);
-  s.v_x_m_per_s[0] = 0.3;
-  s.v_y_m_per_s[0] = 0.1;
-  EXPECT_TRUE(update_contact({weakening}, dt, s));  // it ceases to slip by leaving the plane
+  EXPECT_TRUE(move(model, s, 0.3, 0.1));  // it ceases to slip by leaving the plane
   EXPECT_EQ(s.p_Pa[0], 0);
   EXPECT_EQ(s.t_Pa[0], 0);
   EXPECT_EQ(s.slipping[0], 0);
   EXPECT_EQ(s.v_x_m_per_s[0], 0.3);
   EXPECT_EQ(s.v_y_m_per_s[0], 0.1);
-  EXPECT_FALSE(update_contact({weakening}, dt, s));
+  EXPECT_FALSE(update_contact(model, dt, s));
 }
 
 TEST(Contact, AGapClosesExactlyAtTheStepsEnd) {
-  auto s = one_node(0, 0);
+  auto s = one_node();
   s.initial_gap_m[0] = 3e-7;
   s.u_y_m[0] = -2e-7;
-  s.v_y_m_per_s[0] = -0.5;  // would go 0.4 um below the plane
-  update_contact({weakening}, dt, s);
+  move(model, s, 0, -0.5);  // would go 0.4 um below the plane
   EXPECT_NEAR(s.p_Pa[0], 0.4 * impedance, 1e-8);
   const double gap = s.initial_gap_m[0] + s.u_y_m[0] + dt * s.v_y_m_per_s[0];
   EXPECT_NEAR(gap, 0, 1e-22);  // rounding of 1e-7
 
   // In contact at rest afterwards.
   s.u_y_m[0] += dt * s.v_y_m_per_s[0];
-  s.v_y_m_per_s[0] = -0.01;
-  update_contact({weakening}, dt, s);
+  move(model, s, s.v_x_m_per_s[0], -0.01);
   EXPECT_NEAR(s.p_Pa[0], 0.01 * impedance, 1e-8);
   EXPECT_NEAR(s.v_y_m_per_s[0], 0, 1e-15);
 }
 
 TEST(Contact, AReturningNodeSlipsAtTheSpeedItHas) {
-  auto s = one_node(0, 0);
-  s.v_x_m_per_s[0] = 2;
-  s.v_y_m_per_s[0] = 0.1;
-  update_contact({weakening}, dt, s);  // in the air: moves at 2 m/s
+  auto s = one_node();
+  move(model, s, 2, 0.1);  // in the air: moves at 2 m/s
   s.u_y_m[0] += dt * s.v_y_m_per_s[0];
-  s.v_y_m_per_s[0] = -1;
-  EXPECT_TRUE(update_contact({weakening}, dt, s));
+  EXPECT_TRUE(move(model, s, 2, -1));
   EXPECT_EQ(s.slipping[0], 1);
   EXPECT_NEAR(s.p_Pa[0], 0.9 * impedance, 1e-8);
-  const auto mu = [](double v) { return 0.6 + 0.7 * std::exp(-v * std::sqrt(7.0)); };
-  const double strength = test::strength_under_way(mu, 2, 2 * impedance, s.p_Pa[0]);
+  const double strength = strength_under_way(weakening_mu, 2, 2 * impedance, s.p_Pa[0]);
   EXPECT_NEAR(s.t_Pa[0], strength, 1e-12 * strength);
 }
 
@@ -133,15 +116,14 @@ TEST(Contact, FrictionThatWeakensWithTheRateIsOfSecondOrderInTheStep) {
   const double p = 1e6, T = 1.25e6, end = 8e-6, start = 0.05;
   const auto final_rate = [&](int n) {
     const double step = end / n;
-    Interface s(1);
-    s.mass_per_length_kg_m2[0] = mass;
+    auto s = one_node();
     s.slip_rate_m_per_s[0] = start;
     // Kicks of half a step first and last, so that all runs go from time 0 to the end.
     for (int k = 0; k <= n; ++k) {
       const double kick = k == 0 || k == n ? step / 2 : step;
       s.v_x_m_per_s[0] = s.slip_rate_m_per_s[0] + kick * T / mass;
       s.v_y_m_per_s[0] = -p * kick / mass;
-      update_contact({weakening}, kick, s);
+      update_contact(model, kick, s);
     }
     return s.slip_rate_m_per_s[0];
   };
@@ -154,31 +136,22 @@ TEST(Contact, FrictionThatWeakensWithTheRateIsOfSecondOrderInTheStep) {
 }
 
 TEST(Contact, TellsWhetherAnyNodeChanged) {
-  // Two changes in one step must not cancel.
+  // Two changes in one step must not cancel; nor may one that begins while another ceases.
+  using Flags = std::vector<std::uint8_t>;
   Interface s(3);
-  for (int i = 0; i < 3; ++i) {
-    s.mass_per_length_kg_m2[i] = mass;
-    s.v_y_m_per_s[i] = -1e6 / impedance;
-    s.v_x_m_per_s[i] = (i == 1 ? 0.5e6 : 1.5e6) / impedance;
+  s.mass_per_length_kg_m2.assign(3, mass);
+  for (const auto& [drag_Pa, expected] : {std::pair(std::vector{1.5e6, 0.5e6, 1.5e6}, Flags{1, 0, 1}),
+                                          std::pair(std::vector{0.1e6, 2e6, 2e6}, Flags{0, 1, 1})}) {
+    for (std::size_t i = 0; i < 3; ++i) s.v_x_m_per_s[i] = drag_Pa[i] / impedance;
+    s.v_y_m_per_s.assign(3, -1e6 / impedance);
+    EXPECT_TRUE(update_contact(model, dt, s));
+    EXPECT_EQ(s.slipping, expected);
   }
-  EXPECT_TRUE(update_contact({weakening}, dt, s));
-  EXPECT_EQ(s.slipping, (std::vector<std::uint8_t>{1, 0, 1}));
-  // One begins while another ceases.
-  for (int i = 0; i < 3; ++i) {
-    s.v_y_m_per_s[i] = -1e6 / impedance;
-    s.v_x_m_per_s[i] = (i == 0 ? 0.1e6 : 2e6) / impedance;
-  }
-  EXPECT_TRUE(update_contact({weakening}, dt, s));
-  EXPECT_EQ(s.slipping, (std::vector<std::uint8_t>{0, 1, 1}));
 }
 
 TEST(Contact, ObeysItsConditionsWhateverTheTrial) {
   // Signorini's and Coulomb's conditions at the step's end, and friction that never drives.
-  std::uint64_t state = 1;
-  const auto random = [&state] {
-    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-    return static_cast<double>(state >> 11) / 4503599627370496.0 - 1;
-  };
+  slipfront::test::Random random(1);
   const int n = 10000;
   Interface s(n);
   for (int i = 0; i < n; ++i) {
@@ -190,7 +163,7 @@ TEST(Contact, ObeysItsConditionsWhateverTheTrial) {
     s.slipping[i] = i % 3 == 1;
   }
   const Interface trial = s;
-  update_contact({weakening}, dt, s);
+  update_contact(model, dt, s);
   int n_stick = 0, n_slip = 0, n_open = 0;
   for (int i = 0; i < n; ++i) {
     const double scale = s.mass_per_length_kg_m2[i] / dt;  // Pa per m/s

@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <random>
 #include <vector>
 
-#include "interface/friction/slip_weakening.hpp"
 #include "interface/interface.hpp"
 #include "one_node.hpp"
 
@@ -16,24 +14,9 @@ namespace {
 
 using test::dt;
 using test::for_each_model;
-
-/// All that an update writes of a node.
-std::vector<double> results_at(const Interface& s, std::size_t i) {
-  return {s.v_x_m_per_s[i],
-          s.v_y_m_per_s[i],
-          s.u_y_m[i],
-          s.t_Pa[i],
-          s.p_Pa[i],
-          s.trial_traction_Pa[i],
-          s.strength_Pa[i],
-          s.slip_m[i],
-          s.slip_rate_m_per_s[i],
-          s.relaxed_Pa[i],
-          s.target_Pa[i],
-          s.acceleration_m_per_s2[i],
-          double(s.locked[i]),
-          double(s.slipping[i])};
-}
+using test::many_nodes;
+using test::Motion;
+using test::results_at;
 
 /// A separate node, in the state of one of many.
 Interface alone(const Interface& s, std::size_t i) {
@@ -57,40 +40,13 @@ std::vector<FrictionLaw> random_laws(const ContactModel& model, std::size_t n, s
   return laws;
 }
 
-Interface nodes(std::size_t n) {
-  Interface s(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    s.mass_per_length_kg_m2[i] = test::mass * (1 + 0.01 * static_cast<double>(i));
-    s.intact[i] = i % 7 == 0 ? 0.5 : 1;
-    s.p_Pa[i] = i % 9 == 0 ? 0 : 0.5e6;
-  }
-  return s;
-}
-
-/// Trial motions that make nodes stick, slip, open, land and turn round, the same for all that take them.
-struct Motion {
-  double v_x, v_y, u_y;
-  static std::vector<Motion> of(std::size_t n, std::mt19937_64& random) {
-    std::uniform_real_distribution<double> within(-1, 1);
-    std::vector<Motion> motions;
-    for (std::size_t i = 0; i < n; ++i)
-      motions.push_back({within(random), within(random) - 0.6, dt * (within(random) + 0.3)});
-    return motions;
-  }
-  void push(Interface& s, std::size_t i) const {
-    s.v_x_m_per_s[i] = 0.8 * s.slip_rate_m_per_s[i] + v_x;
-    s.v_y_m_per_s[i] = v_y;
-    s.u_y_m[i] += u_y;
-  }
-};
-
 TEST(NodeLaws, EqualLawsAreTheOneLawBitByBit) {
   for_each_model([](const ContactModel& one) {
     std::mt19937_64 random(2);
     const std::size_t n = 5 * lanes + 3;
     auto varying = one;
     varying.of_nodes = NodeLaws(std::vector<FrictionLaw>(n, one.law));
-    auto a = nodes(n), b = nodes(n);
+    auto a = many_nodes(n), b = many_nodes(n);
     start_contact(one, a);
     start_contact(varying, b);
     for (int k = 0; k < 20; ++k) {
@@ -113,13 +69,13 @@ TEST(NodeLaws, EachNodeFollowsItsOwn) {
       const auto laws = random_laws(model, n, random);
       auto varying = model;
       varying.of_nodes = NodeLaws(laws);
-      auto together = nodes(n);
+      auto together = many_nodes(n);
       start_contact(varying, together);
       std::vector<ContactModel> models(n, model);
       std::vector<Interface> single;
       for (std::size_t i = 0; i < n; ++i) {
         models[i].law = laws[i];
-        single.push_back(alone(nodes(n), i));
+        single.push_back(alone(many_nodes(n), i));
         start_contact(models[i], single[i]);
         EXPECT_EQ(results_at(together, i), results_at(single[i], 0));
       }
@@ -137,21 +93,6 @@ TEST(NodeLaws, EachNodeFollowsItsOwn) {
       }
     }
   });
-}
-
-TEST(NodeLaws, WeakenedNodesFallToTheirOwnKineticCoefficient) {
-  ContactModel model{SlipWeakening{}};
-  model.of_nodes = NodeLaws({SlipWeakening{0.6, 0.3, 1e-6}, SlipWeakening{0.6, 0.1, 1e-6}});
-  Interface s(2);
-  s.mass_per_length_kg_m2 = {test::mass, test::mass};
-  s.p_Pa = {1e6, 1e6};
-  start_contact(model, s);
-  s.intact = {0, 0};
-  s.v_x_m_per_s = {0.5e6 / test::impedance, 0.5e6 / test::impedance};
-  s.v_y_m_per_s = {-1e6 / test::impedance, -1e6 / test::impedance};
-  update_contact(model, dt, s);
-  EXPECT_NEAR(s.t_Pa[0], 0.3e6, test::rounding_Pa);
-  EXPECT_NEAR(s.t_Pa[1], 0.1e6, test::rounding_Pa);
 }
 
 }  // namespace

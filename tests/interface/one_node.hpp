@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 #include "interface/friction/coulomb.hpp"
 #include "interface/friction/slip_weakening.hpp"
@@ -18,6 +20,10 @@ inline constexpr double impedance = mass / dt;  // Pa s/m
 
 inline constexpr double rounding_Pa = 1e-8;  // tractions of 1e6 Pa through a velocity and back
 inline const VelocityWeakening weakening{.mu_s = 1.3, .mu_k = 0.6, .alpha_m2_per_s2 = 0.1};
+/// Its coefficient, by hand.
+inline double weakening_mu(double v_m_per_s) {
+  return 0.6 + 0.7 * std::exp(-v_m_per_s * std::sqrt(7.0));
+}
 
 /// All laws under both algorithms, without and with a delayed response.
 template <class F>
@@ -33,19 +39,30 @@ void for_each_model(F&& f) {
     }
 }
 
-/// Trial motion that presses the node with p and drags it with t_stop.
-inline void pull(Interface& s, double t_stop_Pa, double p_Pa) {
-  s.v_x_m_per_s[0] = t_stop_Pa / impedance;
-  s.v_y_m_per_s[0] = -p_Pa / impedance;
+inline Interface one_node() {
+  Interface s(1);
+  s.mass_per_length_kg_m2[0] = mass;
+  return s;
 }
 
 /// One node at rest on the plane under p.
 inline Interface resting_node(const ContactModel& model, double p_Pa) {
-  Interface s(1);
-  s.mass_per_length_kg_m2[0] = mass;
+  auto s = one_node();
   s.p_Pa[0] = p_Pa;
   start_contact(model, s);
   return s;
+}
+
+/// A step with this trial velocity; whether a node began or ceased to slip.
+inline bool move(const ContactModel& model, Interface& s, double v_x_m_per_s, double v_y_m_per_s) {
+  s.v_x_m_per_s[0] = v_x_m_per_s;
+  s.v_y_m_per_s[0] = v_y_m_per_s;
+  return update_contact(model, dt, s);
+}
+
+/// A step whose trial motion presses the node with p and drags it with t_stop.
+inline bool pull(const ContactModel& model, Interface& s, double t_stop_Pa, double p_Pa) {
+  return move(model, s, t_stop_Pa / impedance, -p_Pa / impedance);
 }
 
 /// Strength of a slipping node in a step: the coefficient at the mean of the last and the new slip rate, the
@@ -59,5 +76,50 @@ double strength_under_way(Coefficient mu, double last_rate, double t_stop_Pa, do
   }
   return strength;
 }
+
+/// What an update only reads, and what it writes beside the flags.
+inline constexpr std::vector<double> Interface::*fixed[] = {
+    &Interface::initial_gap_m, &Interface::mass_per_length_kg_m2, &Interface::tangential_mass_ratio,
+    &Interface::intact};
+inline constexpr std::vector<double> Interface::*written[] = {
+    &Interface::v_x_m_per_s,       &Interface::v_y_m_per_s, &Interface::u_y_m,
+    &Interface::slip_rate_m_per_s, &Interface::t_Pa,        &Interface::p_Pa,
+    &Interface::trial_traction_Pa, &Interface::strength_Pa, &Interface::slip_m,
+    &Interface::relaxed_Pa,        &Interface::target_Pa,   &Interface::acceleration_m_per_s2};
+
+/// All that an update writes of a node.
+inline std::vector<double> results_at(const Interface& s, std::size_t i) {
+  std::vector<double> all{double(s.slipping[i]), double(s.locked[i])};
+  for (const auto values : written) all.push_back((s.*values)[i]);
+  return all;
+}
+
+/// Nodes of different masses, some weakened, some open.
+inline Interface many_nodes(std::size_t n) {
+  Interface s(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    s.mass_per_length_kg_m2[i] = mass * (1 + 0.01 * static_cast<double>(i));
+    s.intact[i] = i % 7 == 0 ? 0.5 : 1;
+    s.p_Pa[i] = i % 9 == 0 ? 0 : 0.5e6;
+  }
+  return s;
+}
+
+/// Trial motions that make nodes stick, slip, open, land and turn round, the same for all that take them.
+struct Motion {
+  double v_x, v_y, u_y;
+  static std::vector<Motion> of(std::size_t n, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> within(-1, 1);
+    std::vector<Motion> motions;
+    for (std::size_t i = 0; i < n; ++i)
+      motions.push_back({within(random), within(random) - 0.6, dt * (within(random) + 0.3)});
+    return motions;
+  }
+  void push(Interface& s, std::size_t i) const {
+    s.v_x_m_per_s[i] = 0.8 * s.slip_rate_m_per_s[i] + v_x;
+    s.v_y_m_per_s[i] = v_y;
+    s.u_y_m[i] += u_y;
+  }
+};
 
 }  // namespace slipfront::interface::test

@@ -71,16 +71,6 @@ double area_m2(const Mesh& mesh) {
   return area;
 }
 
-double min_relative_jacobian(const Mesh& mesh) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Cell& cell : mesh.cells) {
-    const Corners at = corners(mesh, cell);
-    for (int a = 0; a < 4; ++a)
-      least = std::min(least, cross(at.row((a + 1) % 4) - at.row(a), at.row((a + 3) % 4) - at.row(a)));
-  }
-  return least / (mesh.grid.spacing_m * mesh.grid.spacing_m);
-}
-
 std::vector<Node> boundary_loop(const Mesh& mesh) {
   std::vector<std::pair<Node, Node>> edges;
   for (const Cell& cell : mesh.cells)
@@ -146,13 +136,31 @@ void expect_mirror_symmetry(const Mesh& mesh) {
   EXPECT_TRUE(cells == twins);
 }
 
-void expect_no_duplicates(const Mesh& mesh) {
+void expect_one_piece(const Mesh& mesh) {
+  double least_jacobian_m2 = std::numeric_limits<double>::infinity();  // positive for convex cells
+  for (const Cell& cell : mesh.cells) {
+    const Corners at = corners(mesh, cell);
+    for (int a = 0; a < 4; ++a)
+      least_jacobian_m2 = std::min(least_jacobian_m2,
+                                   cross(at.row((a + 1) % 4) - at.row(a), at.row((a + 3) % 4) - at.row(a)));
+  }
+  EXPECT_GT(least_jacobian_m2, 0);
+
   const std::vector<bool> orphan = orphans(mesh);
   std::vector<std::pair<double, double>> places;
   for (Node n = 0; n < mesh.n_nodes(); ++n)
     if (!orphan[n]) places.emplace_back(mesh.x_m[n], mesh.y_m[n]);
   std::sort(places.begin(), places.end());
   EXPECT_TRUE(std::adjacent_find(places.begin(), places.end()) == places.end());
+
+  const auto &interface = mesh.interface_nodes, &far = mesh.far_edge_nodes;
+  for (std::size_t i = 1; i < interface.size(); ++i)
+    EXPECT_LT(mesh.x_m[interface[i - 1]], mesh.x_m[interface[i]]);
+  // A hanging node is seen here: its edges would be a boundary.
+  const std::vector<Node> loop = boundary_loop(mesh);
+  ASSERT_GE(loop.size(), interface.size());
+  EXPECT_TRUE(std::equal(interface.begin(), interface.end(), loop.begin()));
+  EXPECT_NE(std::search(loop.begin(), loop.end(), far.rbegin(), far.rend()), loop.end());
 }
 
 double relative_stable_step(const Mesh& mesh) {

@@ -10,14 +10,14 @@ namespace slipfront::mesh {
 /// Sum of the cells' areas, m2.
 double area_m2(const Mesh& mesh);
 
-/// Smallest Jacobian determinant at any corner of any cell, relative to the regular square's; positive for
-/// convex, counterclockwise cells.
-double min_relative_jacobian(const Mesh& mesh);
-
 /// The nodes of the boundary in the order of its counterclockwise walk, from mesh.interface_nodes's first
 /// node. Empty, with a test failure, unless every edge has one cell or two that run through it in opposite
 /// directions, and the edges with one cell form a single closed loop.
 std::vector<Node> boundary_loop(const Mesh& mesh);
+
+/// Fails unless the mesh is one conforming piece of convex cells without two nodes at a place, whose boundary
+/// runs along the interface nodes from left to right and back along the far edge.
+void expect_one_piece(const Mesh& mesh);
 
 /// Number of cells at each node.
 std::vector<int> valences(const Mesh& mesh);
@@ -25,9 +25,6 @@ std::vector<int> valences(const Mesh& mesh);
 /// Fails unless the mesh equals its mirror image about the plate's middle: coordinates to rounding, cells
 /// exactly.
 void expect_mirror_symmetry(const Mesh& mesh);
-
-/// Fails if two nodes in use have the same place.
-void expect_no_duplicates(const Mesh& mesh);
 
 /// The largest free-vibration frequency of a cell (2x2 Gauss points, plane stress, nu = 0.37, row-sum lumped
 /// mass) over all cells, as the regular square's frequency divided by it: a lower bound of the stable time

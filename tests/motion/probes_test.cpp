@@ -25,11 +25,7 @@ const solid::Material below_material{
     .youngs_modulus_Pa = 9e9, .density_kg_per_m3 = 2000, .stiffness_damping_s = 0};
 
 mesh::Mesh small_plate(Corner corner, int coarsenings = 0, mesh::Sides sides = mesh::Sides::free) {
-  mesh::Plate plate;
-  plate.width_m = 0.048;
-  plate.height_m = 0.036;
-  plate.element_size_m = 1e-3;
-  plate.corner = corner;
+  auto plate = support::plate_of(0.048, 0.036, 1e-3, corner);
   plate.fillet_radius_m = 5e-3;
   plate.coarsenings = coarsenings;
   plate.fine_height_m = 0.01;
@@ -102,13 +98,9 @@ void expect_linear(const std::vector<BodySource>& bodies, bool below) {
 }
 
 TEST(Probes, AreExactInUniformStrain) {
-  for (const auto corner : {Corner::relief, Corner::fillet}) {
-    const auto mesh = small_plate(corner);
-    expect_linear({{mesh, above_material}}, false);
-  }
-  const auto graded = small_plate(Corner::none, 1);
-  expect_linear({{graded, above_material}}, false);
-  const auto below = small_plate(Corner::none);
+  const auto relief = small_plate(Corner::relief), fillet = small_plate(Corner::fillet),
+             graded = small_plate(Corner::none, 1), below = small_plate(Corner::none);
+  for (const auto* mesh : {&relief, &fillet, &graded}) expect_linear({{*mesh, above_material}}, false);
   expect_linear({{graded, above_material}, {below, below_material}}, true);
 }
 
@@ -123,15 +115,10 @@ TEST(Probes, OutsideAreRefused) {
   const auto mesh = small_plate(Corner::fillet);
   const std::vector<BodySource> bodies = {{mesh, above_material}};
   for (const ProbePlace& place :
-       {ProbePlace{"gauge", 1e-4, 1e-4}, ProbePlace{"gauge", 0.05, 0.01}, ProbePlace{"gauge", 0.01, -1e-4}}) {
-    try {
-      locate_probes(std::vector{place}, bodies);
-      ADD_FAILURE() << "not refused";
-    } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("the probe gauge at ("));
-      EXPECT_THAT(error.what(), HasSubstr("lies outside the plate"));
-    }
-  }
+       {ProbePlace{"gauge", 1e-4, 1e-4}, ProbePlace{"gauge", 0.05, 0.01}, ProbePlace{"gauge", 0.01, -1e-4}})
+    EXPECT_THAT([&] { locate_probes(std::vector{place}, bodies); },
+                ::testing::ThrowsMessage<UserError>(::testing::AllOf(HasSubstr("the probe gauge at ("),
+                                                                     HasSubstr("lies outside the plate"))));
 }
 
 /// Takes n steps, at most `at_once` in one call.
@@ -163,10 +150,7 @@ class PassingPulse {
   explicit PassingPulse(double h, int substeps, Precision precision = Precision::double_precision,
                         const Execution& execution = {})
       : mesh_(support::make_plate(0.16, 0.08, h, Corner::none)) {
-    TimeStepping time;
-    time.interface_rows = 4;
-    time.interface_substeps = substeps;
-    time.precision = precision;
+    const TimeStepping time{.precision = precision, .interface_substeps = substeps};
     stepper_.emplace(mesh_, above_material, support::paper_law, time, execution);
   }
 

@@ -45,15 +45,11 @@ Measurement measure(PlaneWave incident, int columns, double wavelength, const so
   // that a shear wave leaves behind is faster by less than c_L/c_S.
   const double sigma = 1.5 * 2 * pi / q_0, distance = 5 * sigma;
   const double height = h * std::ceil((shear ? c_L / c_S : 1.0) * 10.5 * sigma / h);
-  const auto mesh = mesh::make_plate({.width_m = std::max(columns, 4) * h,
-                                      .height_m = height,
-                                      .element_size_m = h,
-                                      .corner = mesh::Corner::none,
-                                      .sides = mesh::Sides::periodic,
-                                      .top = mesh::Top::absorbing});
-  TimeStepping time;
-  time.interface_substeps = 1;
-  Stepper stepper(mesh, material, support::paper_law, time);
+  auto plate = support::plate_of(std::max(columns, 4) * h, height, h);
+  plate.sides = mesh::Sides::periodic;
+  plate.top = mesh::Top::absorbing;
+  const auto mesh = mesh::make_plate(plate);
+  Stepper stepper(mesh, material, support::paper_law, {.interface_substeps = 1});
 
   const auto spectrum = [&](double q) { return std::exp(-0.5 * std::pow((q - q_0) * sigma, 2)); };
   // Displacement and velocity by row, over exp(-i k_x x).

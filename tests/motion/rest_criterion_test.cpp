@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "motion/support.hpp"
@@ -21,11 +22,8 @@ class QuietRule : public ::testing::Test {
 };
 
 TEST_F(QuietRule, SlipThatGrowsIsNotQuietHoweverSlow) {
-  double v = 1e-9;
-  for (int step = 1; step < 100; ++step) {
-    rest_criterion_.see_slip_rate(step, v);
-    v *= 1.01;  // a tenth in ten steps
-  }
+  for (int step = 1; step < 100; ++step)
+    rest_criterion_.see_slip_rate(step, 1e-9 * std::pow(1.01, step));  // a tenth in ten steps
   EXPECT_GE(rest_criterion_.since_s(), 90);
 }
 
@@ -40,11 +38,10 @@ TEST_F(QuietRule, SteadyAndDyingSlipIsLeftToItsSpeed) {
 }
 
 TEST_F(QuietRule, WavesCountUntilAHundredthOfTheirVelocityIsLeft) {
-  const double large = mass_kg_;
-  rest_criterion_.see_kinetic_energy(1, large);
-  rest_criterion_.see_kinetic_energy(2, 1.01e-4 * large);
+  rest_criterion_.see_kinetic_energy(1, mass_kg_);
+  rest_criterion_.see_kinetic_energy(2, 1.01e-4 * mass_kg_);
   EXPECT_EQ(rest_criterion_.since_s(), 2);
-  rest_criterion_.see_kinetic_energy(3, 0.99e-4 * large);
+  rest_criterion_.see_kinetic_energy(3, 0.99e-4 * mass_kg_);
   EXPECT_EQ(rest_criterion_.since_s(), 2);
 }
 

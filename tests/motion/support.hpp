@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "interface/friction/velocity_weakening.hpp"
 #include "motion/event.hpp"
 #include "motion/stepper.hpp"
@@ -10,27 +14,71 @@ namespace slipfront::motion::support {
 
 using namespace slipfront::test;
 
+inline record::StaticState uniform_tractions(const mesh::Mesh& mesh, double t_Pa, double p_Pa) {
+  record::StaticState tractions;
+  for (const auto node : mesh.interface_nodes) tractions.x_m.push_back(mesh.x_m[node]);
+  tractions.t_s_Pa.assign(tractions.x_m.size(), t_Pa);
+  tractions.p_s_Pa.assign(tractions.x_m.size(), p_Pa);
+  return tractions;
+}
+
 /// A state of motion that is no equilibrium: displacement u, velocity v at a top speed of 1, no contact.
 inline statics::Equilibrium in_flight(const mesh::Mesh& mesh, solid::Field u, solid::Field v) {
   statics::Equilibrium e;
   e.u_m = std::move(u);
   e.u_per_shear = std::move(v);
-  const std::size_t n = mesh.interface_nodes.size();
-  e.contact.assign(n, statics::Contact::open);
-  for (const auto node : mesh.interface_nodes) e.tractions.x_m.push_back(mesh.x_m[node]);
-  e.tractions.t_s_Pa.assign(n, 0);
-  e.tractions.p_s_Pa.assign(n, 0);
+  e.contact.assign(mesh.interface_nodes.size(), statics::Contact::open);
+  e.tractions = uniform_tractions(mesh, 0, 0);
   return e;
 }
 
+/// The same with random velocities and displacements around a lift; the loaded edge rests.
+inline statics::Equilibrium random_flight(const mesh::Mesh& mesh, std::uint64_t seed, double amplitude_m,
+                                          double speed_m_per_s, double lift_m) {
+  Random random(seed);
+  solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
+  for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+    u.x[n] = amplitude_m * random();
+    u.y[n] = amplitude_m * random();
+    v.x[n] = speed_m_per_s * random();
+    v.y[n] = speed_m_per_s * random();
+  }
+  for (const auto n : mesh.far_edge_nodes) u.x[n] = u.y[n] = v.x[n] = v.y[n] = 0;
+  for (double& y : u.y) y += lift_m;
+  return in_flight(mesh, u, v);
+}
+
+/// A Gaussian pulse of uniform motion along x or y.
+struct GaussianPulse {
+  bool shear, along_x;
+  double middle_m, c_m_per_s, lift_m;
+  static constexpr double width_m = 4e-3, amplitude_m = 1e-6;
+
+  statics::Equilibrium on(const mesh::Mesh& mesh, double step_s) const {
+    solid::Field u(mesh.n_nodes()), v(mesh.n_nodes());
+    const auto orphan = mesh::orphans(mesh);
+    for (mesh::Node n = 0; n < mesh.n_nodes(); ++n) {
+      if (orphan[n]) continue;
+      const auto at = [&](double time_s) {
+        const double s = ((along_x ? mesh.x_m[n] : mesh.y_m[n]) - middle_m - c_m_per_s * time_s) / width_m;
+        return amplitude_m * std::exp(-0.5 * s * s);
+      };
+      u.y[n] = lift_m;
+      (along_x != shear ? u.x : u.y)[n] += at(0);
+      // The velocity belongs to half a step earlier.
+      (along_x != shear ? v.x : v.y)[n] = (at(0) - at(-step_s)) / step_s;
+    }
+    return in_flight(mesh, u, v);
+  }
+};
+
 /// Plain scheme: the interface layer in step with the rest.
 inline TimeStepping one_substep(double step_factor = 0.9) {
-  TimeStepping time;
-  time.step_factor = step_factor;
-  time.interface_rows = 1;
-  time.interface_substeps = 1;
-  return time;
+  return {.step_factor = step_factor, .interface_rows = 1, .interface_substeps = 1};
 }
+
+inline constexpr std::array algorithms = {interface::ContactAlgorithm::direct,
+                                          interface::ContactAlgorithm::predictor_corrector};
 
 inline interface::ContactModel with_algorithm(interface::ContactModel model,
                                               interface::ContactAlgorithm algorithm) {
@@ -52,6 +100,9 @@ inline const interface::ContactModel gentle_law {
   }
 };
 
+/// Of tiny plates.
+inline const statics::Loading tilted{.tilt_left_m = 0.05e-3, .tilt_right_m = 0.02e-3, .edge_margin_m = 2e-3};
+
 /// A trigger at the left edge of the state.
 inline Loads left_trigger(const statics::Equilibrium& state, const mesh::Mesh& mesh, double mu_s) {
   const interface::Trigger trigger { .zone_m = 3e-3, .ramp_s = 1e-6 };
@@ -59,5 +110,24 @@ inline Loads left_trigger(const statics::Equilibrium& state, const mesh::Mesh& m
                                                   interface::EventKind::left, trigger, mu_s),
           .trigger = trigger};
 }
+
+inline bool touches(const Stepper& stepper) {
+  return std::ranges::any_of(stepper.interface_state().p_Pa, [](double p) { return p > 0; });
+}
+
+/// The balance of energies since the start, step by step.
+struct Balance {
+  record::Energies start, last = start;
+  double worst_J = 0;    ///< largest imbalance
+  double largest_J = 0;  ///< largest single term
+
+  void look(const record::Energies& now) {
+    last = now;
+    worst_J = std::max(worst_J, std::abs(record::imbalance_J_per_m(now, start)));
+    for (const double term :
+         {now.kinetic, now.strain, now.top_work, now.trigger_work, now.prestress_work, now.friction_work})
+      largest_J = std::max(largest_J, std::abs(term));
+  }
+};
 
 }  // namespace slipfront::motion::support

@@ -18,32 +18,19 @@ using support::one_substep;
 
 constexpr double lift_m = 1e-5;
 
-enum class Wave { longitudinal, shear };
-
-class PlaneWave : public ::testing::TestWithParam<Wave> {
+/// Longitudinal or shear.
+class PlaneWave : public ::testing::TestWithParam<bool> {
  protected:
-  static constexpr double h_ = 1e-3, width_ = 4e-3, height_ = 0.055, amplitude_ = 1e-6;
+  static constexpr double h_ = 1e-3;
   mesh::Mesh mesh_ = support::make_plate(0.2, 0.1, h_, Corner::none);
   solid::Material material_{.stiffness_damping_s = 0};
   Stepper stepper_{mesh_, material_, support::paper_law, one_substep()};
-  bool shear_ = GetParam() == Wave::shear;
+  bool shear_ = GetParam();
   double c_ = shear_ ? solid::shear_speed_m_per_s(material_) : solid::longitudinal_speed_m_per_s(material_);
 
-  /// A Gaussian pulse of uniform motion along x or y that moves down from 55 mm, in a wide plate in the air.
-  statics::Equilibrium pulse() const {
-    solid::Field u(mesh_.n_nodes()), v(mesh_.n_nodes());
-    std::ranges::fill(u.y, lift_m);
-    for (mesh::Node n = 0; n < mesh_.n_nodes(); ++n) {
-      const auto at = [&](double time) {
-        const double s = (mesh_.y_m[n] - height_ + c_ * time) / width_;
-        return amplitude_ * std::exp(-0.5 * s * s);
-      };
-      // The velocity belongs to half a step earlier.
-      (shear_ ? u.x : u.y)[n] += at(0);
-      (shear_ ? v.x : v.y)[n] = (at(0) - at(-stepper_.step_s())) / stepper_.step_s();
-    }
-    return in_flight(mesh_, u, v);
-  }
+  /// Moves down from 55 mm, in a wide plate in the air.
+  statics::Equilibrium pulse_ =
+      support::GaussianPulse{shear_, false, 0.055, -c_, lift_m}.on(mesh_, stepper_.step_s());
 
   /// Displacement in the middle column, where nothing from the sides has arrived yet, from below.
   std::vector<double> column() const {
@@ -69,15 +56,11 @@ class PlaneWave : public ::testing::TestWithParam<Wave> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Kinds, PlaneWave, ::testing::Values(Wave::longitudinal, Wave::shear),
-                         [](const auto& kind) {
-                           return kind.param == Wave::shear ? "shear" : "longitudinal";
-                         });
+INSTANTIATE_TEST_SUITE_P(Kinds, PlaneWave, ::testing::Bool());
 
 TEST_P(PlaneWave, TravelsAtItsSpeed) {
-  const auto e = pulse();
-  stepper_.start(e, 1);
-  Recorder recorder(e, 1.3, 0);
+  stepper_.start(pulse_, 1);
+  Recorder recorder(pulse_, 1.3, 0);
   const double before = centroid();
   while (c_ * stepper_.time_s() < 0.02) stepper_.advance(recorder);
   // The centroid moves with the group velocity of infinite wavelength, which no scheme of second order
@@ -89,12 +72,10 @@ TEST_P(PlaneWave, TravelsAtItsSpeed) {
 TEST_P(PlaneWave, DispersesAsTheSchemeMust) {
   // Uniform motion across makes the rows a chain: sin(omega dt/2) = (c dt/h) sin(k h/2). With
   // u(t) = A e^(i omega t) + B e^(-i omega t), cos(omega T) = (u(t - T) + u(t + T)) / (2 u(t)).
-  const auto e = pulse();
-  stepper_.start(e, 1);
-  Recorder recorder(e, 1.3, 0);
+  Recorder recorder(pulse_, 1.3, 0);
   for (const double kh : {0.1, 0.2, 0.4}) {
     SCOPED_TRACE(kh);
-    stepper_.start(e, 1);
+    stepper_.start(pulse_, 1);
     std::array<std::complex<double>, 3> u;
     const int n_steps = shear_ ? 6 : 4;
     for (auto& value : u) {
@@ -116,15 +97,11 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
   // nu = 0: the sides do not matter, and sin(k (H - y)) with k = (2 m + 1) pi / (2 H) is an exact mode of the
   // free lower edge under the held top: a single oscillator.
   const auto mesh = support::make_plate(0.02, 0.02, 1e-3, Corner::none);
-  struct Case {
-    int mode;
-    double damping_s;
-  };
-  for (const Case& c : {Case{3, 0}, Case{0, 1e-7}, Case{3, 1e-7}, Case{0, 1e-6}}) {
-    SCOPED_TRACE(testing::Message() << "mode " << c.mode << ", damping " << c.damping_s << " s");
-    const solid::Material material{.poissons_ratio = 0, .stiffness_damping_s = c.damping_s};
+  for (const auto& [mode, damping_s] : {std::pair(3, 0.0), {0, 1e-7}, {3, 1e-7}, {0, 1e-6}}) {
+    SCOPED_TRACE(testing::Message() << "mode " << mode << ", damping " << damping_s << " s");
+    const solid::Material material{.poissons_ratio = 0, .stiffness_damping_s = damping_s};
     Stepper stepper(mesh, material, support::paper_law, one_substep());
-    const double k = (2 * c.mode + 1) * std::numbers::pi / (2 * 0.02), amplitude = 1e-6;
+    const double k = (2 * mode + 1) * std::numbers::pi / (2 * 0.02), amplitude = 1e-6;
     solid::Field u(mesh.n_nodes());
     for (mesh::Node n = 0; n < mesh.n_nodes(); ++n)
       u.y[n] = lift_m + amplitude * std::sin(k * (0.02 - mesh.y_m[n]));
@@ -134,9 +111,9 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
     const double dt = stepper.step_s();
     const double omega = 2 * solid::longitudinal_speed_m_per_s(material) / 1e-3 * std::sin(k * 1e-3 / 2);
     double q = amplitude, rate = 0, worst = 0, least = amplitude, lateral = 0;
-    const double sign = c.mode % 2 == 0 ? 1 : -1;
+    const double sign = mode % 2 == 0 ? 1 : -1;
     for (int step = 0; step < 2000; ++step) {
-      rate -= dt * omega * omega * (q + c.damping_s * rate);
+      rate -= dt * omega * omega * (q + damping_s * rate);
       q += dt * rate;
       stepper.advance(recorder);
       least = std::min(least, q);
@@ -149,9 +126,7 @@ TEST(StandingWave, OfAPlateWithoutPoissonEffectIsTheChainsRecurrence) {
     EXPECT_LE(lateral, 1e-9 * amplitude);
     EXPECT_LT(least, -0.1 * amplitude);  // it oscillates
     // The damping is no small thing: the amplitude falls by exp(-beta_R omega^2 t / 2).
-    if (c.mode == 3 && c.damping_s > 0) {
-      EXPECT_LT(std::abs(q), 1e-3 * amplitude);
-    }
+    EXPECT_TRUE(std::abs(q) < 1e-3 * amplitude || mode == 0 || damping_s == 0);
   }
 }
 

@@ -45,9 +45,8 @@ TEST(Element, EqualsTheReferenceIntegration) {
       EXPECT_LE(reference::max_abs(matrix(cell_stiffness(cell, m)) - reference::stiffness(cell, m, 2)),
                 tolerance);
     // On a parallelogram the integrand is a polynomial that two points a side integrate exactly.
-    EXPECT_LE((matrix(cell_stiffness(parallelogram, m)) - reference::stiffness(parallelogram, m, 3))
-                  .cwiseAbs()
-                  .maxCoeff(),
+    EXPECT_LE(reference::max_abs(matrix(cell_stiffness(parallelogram, m)) -
+                                 reference::stiffness(parallelogram, m, 3)),
               tolerance);
   }
 }
@@ -131,7 +130,6 @@ TEST(Element, LumpedMassIsTheRowSumAndWeighsTheCell) {
     for (int a = 0; a < 4; ++a) EXPECT_NEAR(mass[a] / total, expected(a) / total, 1e-15);
     EXPECT_NEAR(std::accumulate(mass.begin(), mass.end(), 0.0) / total, 1, 1e-14);
   }
-  for (const double part : cell_mass(square, m)) EXPECT_NEAR(part / (1200 * 1e-6 / 4), 1, 1e-14);
 }
 
 TEST(Element, PlatesWeighTheirArea) {
@@ -140,15 +138,9 @@ TEST(Element, PlatesWeighTheirArea) {
     const auto mesh = reference::small_plate(corner);
     const auto mass = lumped_mass(mesh, m);
     const auto orphan = mesh::orphans(mesh);
-    for (std::size_t n = 0; n < mass.size(); ++n) {
-      EXPECT_EQ(mass[n] == 0, orphan[n]);
-      EXPECT_GE(mass[n], 0);
-    }
+    for (std::size_t n = 0; n < mass.size(); ++n) EXPECT_TRUE(orphan[n] ? mass[n] == 0 : mass[n] > 0) << n;
     const double total = std::accumulate(mass.begin(), mass.end(), 0.0);
     EXPECT_NEAR(total / (m.density_kg_per_m3 * reference::area_m2(mesh)), 1, 1e-13);
-    if (corner == mesh::Corner::none) {
-      EXPECT_NEAR(total / (1200 * 0.04 * 0.02), 1, 1e-13);
-    }
   }
 }
 

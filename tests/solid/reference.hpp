@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -28,14 +28,14 @@ using test::Random;
 
 inline Eigen::Matrix3d elasticity(const Material& m) {
   // The inverse of the compliance, so that nothing is shared with the code under test.
-  const double E = m.youngs_modulus_Pa, nu = m.poissons_ratio;
+  const double nu = m.poissons_ratio;
   Eigen::Matrix3d compliance;
   if (m.plane == Plane::stress) {
     compliance << 1, -nu, 0, -nu, 1, 0, 0, 0, 2 * (1 + nu);
   } else {
     compliance << 1 - nu * nu, -nu * (1 + nu), 0, -nu * (1 + nu), 1 - nu * nu, 0, 0, 0, 2 * (1 + nu);
   }
-  return (compliance / E).inverse();
+  return (compliance / m.youngs_modulus_Pa).inverse();
 }
 
 /// Points and weights on [-1, 1].
@@ -102,25 +102,9 @@ inline Eigen::SparseMatrix<double> assembled_stiffness(const mesh::Mesh& mesh, c
   return K;
 }
 
-/// Boundary edges (those with one cell only), counterclockwise.
-inline std::vector<std::array<mesh::Node, 2>> boundary_edges(const mesh::Mesh& mesh) {
-  std::map<std::array<mesh::Node, 2>, int> uses;
-  for (const auto& cell : mesh.cells)
-    for (int a = 0; a < 4; ++a) ++uses[{cell[a], cell[(a + 1) % 4]}];
-  std::vector<std::array<mesh::Node, 2>> edges;
-  for (const auto& [edge, n] : uses)
-    if (!uses.contains({edge[1], edge[0]})) edges.push_back(edge);
-  return edges;
-}
-
 /// A plate of 40 mm x 20 mm with 1 mm cells.
 inline mesh::Mesh small_plate(mesh::Corner corner) {
-  mesh::Plate plate;
-  plate.width_m = 0.04;
-  plate.height_m = 0.02;
-  plate.element_size_m = 1e-3;
-  plate.corner = corner;
-  return mesh::make_plate(plate);
+  return test::make_plate(0.04, 0.02, 1e-3, corner);
 }
 
 /// The plates on which the operator is tested: plain ones by their corners, a graded one, one numbered at
@@ -147,7 +131,7 @@ inline void shuffle(mesh::Mesh& mesh, std::uint64_t seed) {
     return static_cast<std::size_t>(0.5 * (random() + 1) * static_cast<double>(n));
   };
   std::vector<mesh::Node> number(mesh.x_m.size());
-  for (std::size_t k = 0; k < number.size(); ++k) number[k] = static_cast<mesh::Node>(k);
+  std::iota(number.begin(), number.end(), 0);
   for (std::size_t k = number.size(); k > 1; --k) std::swap(number[k - 1], number[below(k)]);
   mesh::renumber(mesh, number);
   for (std::size_t k = mesh.cells.size(); k > 1; --k) std::swap(mesh.cells[k - 1], mesh.cells[below(k)]);
@@ -168,10 +152,7 @@ inline void distort(mesh::Mesh& mesh, double share, std::uint64_t seed) {
 inline mesh::Mesh small_plate(Form form) {
   if (form <= Form::fillet) return small_plate(static_cast<mesh::Corner>(form));
   if (form == Form::graded) {
-    mesh::Plate plate;
-    plate.width_m = 0.04;
-    plate.height_m = 0.032;
-    plate.element_size_m = 1e-3;
+    auto plate = test::plate_of(0.04, 0.032, 1e-3, mesh::Corner::relief);
     plate.coarsenings = 2;
     plate.fine_height_m = 5e-3;
     plate.relief_depth_m = 8e-3;  // bends the lower transition

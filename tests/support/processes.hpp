@@ -31,29 +31,24 @@ class Mailboxes {
     changed_.notify_all();
   }
   MessageBuffer take(int from, int to, int channel = of_parcels) {
-    std::unique_lock lock(mutex_);
-    auto& box = boxes_[{from, to, channel}];
-    changed_.wait(lock, [&] { return !box.empty(); });
-    auto buffer = std::move(box.front());
-    box.pop_front();
-    return buffer;
+    return take_first_of(from, from + 1, to, channel);
   }
   /// A parcel of whichever sender.
-  MessageBuffer take_any(int to) {
+  MessageBuffer take_any(int to) { return take_first_of(0, size_, to, of_parcels); }
+
+ private:
+  MessageBuffer take_first_of(int begin, int end, int to, int channel) {
     std::unique_lock lock(mutex_);
-    for (;;) {
-      for (int from = 0; from < size_; ++from) {
-        auto& box = boxes_[{from, to, of_parcels}];
+    for (;; changed_.wait(lock))
+      for (int from = begin; from < end; ++from) {
+        auto& box = boxes_[{from, to, channel}];
         if (box.empty()) continue;
         auto buffer = std::move(box.front());
         box.pop_front();
         return buffer;
       }
-      changed_.wait(lock);
-    }
   }
 
- private:
   int size_;
   std::mutex mutex_;
   std::condition_variable changed_;
