@@ -15,8 +15,8 @@ volatile std::sig_atomic_t checkpoint = 0;
 
 void on_end(int signal) {
   ended_by = signal;
-  // A second key ends the program at once. The other signals may come twice for one event: HUP of kernel and shell,
-  // TERM once for each thread of a parent that is killed (PR_SET_PDEATHSIG), XCPU each second.
+  // A second key ends the program at once. The other signals may come twice for one event: HUP of kernel and
+  // shell, TERM once for each thread of a parent that is killed (PR_SET_PDEATHSIG), XCPU each second.
   for (const int each : {SIGINT, SIGQUIT}) std::signal(each, SIG_DFL);
 }
 
