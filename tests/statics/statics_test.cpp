@@ -31,7 +31,8 @@ Eigen::VectorXd force(const mesh::Mesh& mesh, const Equilibrium& e) {
 }
 
 void expect_equilibrium(const mesh::Mesh& mesh, const Equilibrium& e) {
-  expect_body_in_equilibrium(mesh, pmma, e.u_m, e, -1, 1e-10 * pmma.youngs_modulus_Pa * max_abs(e.u_m));
+  const double tolerance_N = 1e-10 * pmma.youngs_modulus_Pa * max_abs(e.u_m);
+  expect_body_in_equilibrium(mesh, pmma, e.u_m, e, mesh::tributary_lengths_m(mesh), -1, tolerance_N);
 }
 
 /// `start_x`: where a sticking node was put down.

@@ -142,8 +142,9 @@ class OnABase : public ::testing::TestWithParam<Pair> {
     const auto& of_base = GetParam().base_material;
     const double tolerance_N = 1e-10 * std::max(pmma.youngs_modulus_Pa * max_abs(e.u_m),
                                                 of_base.youngs_modulus_Pa * max_abs(e.below_u_m));
-    expect_body_in_equilibrium(plate_, pmma, e.u_m, e, -1, tolerance_N);
-    expect_body_in_equilibrium(base_, of_base, e.below_u_m, e, 1, tolerance_N);
+    const auto tributary_m = mesh::tributary_lengths_m(plate_);
+    expect_body_in_equilibrium(plate_, pmma, e.u_m, e, tributary_m, -1, tolerance_N);
+    expect_body_in_equilibrium(base_, of_base, e.below_u_m, e, tributary_m, 1, tolerance_N);
     for (const auto n : base_.far_edge_nodes) {
       EXPECT_EQ(e.below_u_m.x[n], 0);
       EXPECT_EQ(e.below_u_m.y[n], 0);
