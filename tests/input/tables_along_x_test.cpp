@@ -127,7 +127,8 @@ TEST_F(Table, ErrorsNameFileAndLine) {
            {"x_m,t_Pa,p_Pa\n0,0,0\n", ":2: p_Pa is 0; it must be greater than 0"},
            {"x_m,t_Pa,p_Pa\n", ": holds no rows"},
        })
-    expect_message(error_of([&] { tractions(text); }), "prestress.file: " + file_.string() + error);
+    expect_message(error_of([&, &text = text] { tractions(text); }),
+                   "prestress.file: " + file_.string() + error);
   for (const auto& [text, error] : {
            Wrong{"x,mu_s\n",
                  ":1: the first line must be the header x_m and any of mu_s, mu_k, alpha_m2_per_s2"},
@@ -142,7 +143,8 @@ TEST_F(Table, ErrorsNameFileAndLine) {
            {"x_m,mu_k\n0,1.31\n", ":2: mu_k must be at most mu_s"},
            {"x_m,mu_k\n", ": holds no rows"},
        })
-    expect_message(error_of([&] { friction(text); }), "friction.file: " + file_.string() + error);
+    expect_message(error_of([&, &text = text] { friction(text); }),
+                   "friction.file: " + file_.string() + error);
   expect_message(error_of([&] { read_prestress(folder_ / "none.csv"); }),
                  "prestress.file: " + (folder_ / "none.csv").string(), ": cannot be read (No such file");
   EXPECT_THAT(error_of([&] { read_prestress(folder_.path()); }), HasSubstr("is a folder"));
