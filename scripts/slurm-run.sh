@@ -9,8 +9,8 @@
 #SBATCH --open-mode=append
 # One event shared by several processes, over as many jobs as it takes:
 #   sbatch slurm-run.sh CASE DIR
-# 300 s before its limit the job gets a signal to stop. The run then keeps a checkpoint, ends with exit code 143, and the job
-# puts itself back into the queue, to go on with it.
+# 300 s before its limit the job gets a signal to stop. The run then keeps a checkpoint, ends with exit code 143, and
+# the job puts itself back into the queue, to go on with it.
 set -u
 case=$1
 dir=$2

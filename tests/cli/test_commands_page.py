@@ -15,9 +15,9 @@ def subcommands(text: str) -> list[str]:
 
 
 def helps(program, words=()) -> dict[str, str]:
-    told = require_done(program(*words, "--help")).stdout
-    found = {" ".join(words): told}
-    for name in subcommands(told):
+    printed = require_done(program(*words, "--help")).stdout
+    found = {" ".join(words): printed}
+    for name in subcommands(printed):
         found |= helps(program, (*words, name))
     return found
 

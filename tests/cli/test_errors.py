@@ -89,7 +89,7 @@ def tree(folder):
 
 @pytest.mark.parametrize("command", [["run", "coarse.toml"], ["reproduce", "--quick"]], ids=lambda c: c[0])
 @pytest.mark.parametrize(
-    "place, told",
+    "place, expected",
     [
         ("coarse.toml/out", "choose another place"),
         ("/proc/none", "choose another place"),
@@ -100,13 +100,13 @@ def tree(folder):
         ("lost", "choose another place"),
     ],
 )
-def test_output_folder_that_is_refused(program, coarse, tmp_path, command, place, told):
+def test_output_folder_that_is_refused(program, coarse, tmp_path, command, place, expected):
     (tmp_path / "filled").mkdir()
     (tmp_path / "filled/notes.txt").write_text("mine")
     (tmp_path / "lost").symlink_to("nowhere")
     before = tree(tmp_path)
     line = refusal(program(*command, "-o", place))
-    assert place in line and told in line
+    assert place in line and expected in line
     assert ("--overwrite" in line) == (place == "filled")
     assert tree(tmp_path) == before
 
@@ -169,7 +169,7 @@ def test_file_that_cannot_grow(program, coarse, tmp_path, file_bytes, snapshots,
     line = one_line(program("run", *case, "-o", "out", file_bytes=file_bytes), 1)
     assert f"out/unfinished/{file}" in line and "File too large" in line
     if file.startswith("state"):  # the event had begun
-        assert "slipfront run --restart out" in line
+        assert "slipfront run --restart out continues the run" in line
         (tmp_path / "out/figures").mkdir()
         assert "holds unfinished work" in refusal(program("run", coarse, "-o", "out"))
         require_done(program("run", "--restart", "out", "-q"))
@@ -214,10 +214,10 @@ def test_work_is_kept_where_a_result_cannot_be_made(program, coarse, tmp_path):
 def test_wrong_experiment_file(program, tmp_path, text, place, words):
     if text:
         (tmp_path / "points.csv").write_text(text)
-    told = refusal(program("reproduce", "--quick", "-o", "out", "--experiment", "points.csv"))
-    assert told.startswith(f"points.csv{place}")
+    printed = refusal(program("reproduce", "--quick", "-o", "out", "--experiment", "points.csv"))
+    assert printed.startswith(f"points.csv{place}")
     for word in words:
-        assert word in told
+        assert word in printed
     assert not (tmp_path / "out").exists()
 
 

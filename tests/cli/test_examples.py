@@ -56,8 +56,8 @@ def modes(run: Run) -> set[str]:
 def run(program, tmp_path):
     def go(name: str, *changes: str) -> Run:
         case = [EXAMPLES / name / "case.toml", *sets(f"plate.element_size_m={COARSE_M[name]}", *changes)]
-        told = require_done(program("run", *case, "-o", tmp_path / name, "--overwrite")).stderr
-        assert "\nwarning" not in told, told
+        printed = require_done(program("run", *case, "-o", tmp_path / name, "--overwrite")).stderr
+        assert "\nwarning" not in printed, printed
         return read_run(tmp_path / name)
 
     return go
@@ -136,7 +136,7 @@ def test_two_bodies_prefer_a_direction(run):
 
 def test_the_record_tells_d_c(program, tmp_path):
     command = [sys.executable, EXAMPLES / "experiment/compare.py", tmp_path, "--program", program.path]
-    told = require_done(call(*command, *sets(f"plate.element_size_m={COARSE_M['experiment']}"))).stdout
-    rows = [tuple(map(float, line.split())) for line in told.splitlines()[1:]]
+    printed = require_done(call(*command, *sets(f"plate.element_size_m={COARSE_M['experiment']}"))).stdout
+    rows = [tuple(map(float, line.split())) for line in printed.splitlines()[1:]]
     nearest = min(rows, key=lambda row: row[1])
     assert len(rows) == 5 and nearest[0] in (1.2, 1.45) and nearest[1] < 0.6

@@ -41,11 +41,11 @@ LARGE = {
 def test_a_plate_that_no_process_holds_is_foretold(program, coarse):
     case = settings(PRESSED | LARGE)
     info = require_done(program("info", coarse, *case, "--processes", "10")).stdout
-    told = dict(re.findall(r"^ *(.+?) {2,}(.+)$", info, re.MULTILINE))
+    printed = dict(re.findall(r"^ *(.+?) {2,}(.+)$", info, re.MULTILINE))
     n_nodes = 141422 * 70711
-    assert told["nodes"] == f"{n_nodes} (141422 on the interface)"
-    assert told["cells"] == str(141421 * 70710)
-    snapshot_gb = float(re.search(r"1 snapshots ([\d.e+]+)", told["disk"])[1])
+    assert printed["nodes"] == f"{n_nodes} (141422 on the interface)"
+    assert printed["cells"] == str(141421 * 70710)
+    snapshot_gb = float(re.search(r"1 snapshots ([\d.e+]+)", printed["disk"])[1])
     # Places and cells, raw displacements and velocities and those of the file, strain and stress.
     assert snapshot_gb == pytest.approx(n_nodes * (24 + 41 + 32 + 48 + 56) * 1e-9, rel=0.3)
 
@@ -160,9 +160,9 @@ SIZED = {
 def test_a_limit_of_the_process_counts(program, coarse):
     """`ulimit -v`."""
     case = settings(SIZED["direct"])
-    told = refusal(program("run", coarse, "-o", "out", *case, memory_bytes=300_000_000))
-    assert "needs about" in told
-    available = re.search(r"(\S+) GB are available", told)
+    printed = refusal(program("run", coarse, "-o", "out", *case, memory_bytes=300_000_000))
+    assert "needs about" in printed
+    available = re.search(r"(\S+) GB are available", printed)
     assert 0.1 < float(available[1]) < 0.4
 
 
@@ -170,8 +170,8 @@ def test_a_limit_of_the_process_counts(program, coarse):
 def test_memory_is_foretold(program, coarse, tmp_path, name):
     """Within 30 % of what the process takes."""
     case = settings(SIZED[name])
-    told = program("info", coarse, *case).stdout
-    announced = 1e9 * float(re.search(r"^memory +(\S+) GB", told, re.MULTILINE)[1])
+    printed = program("info", coarse, *case).stdout
+    announced = 1e9 * float(re.search(r"^memory +(\S+) GB", printed, re.MULTILINE)[1])
     run = (program.path, "run", coarse, "-o", tmp_path / "out", "-q", *case)
     peak = int(require_done(call(sys.executable, "-c", PEAK_BYTES, *run)).stdout)
     assert peak > 0.15e9, "too small a case to tell"

@@ -103,14 +103,14 @@ def test_a_random_field_out_of_range_is_named_with_its_place(program, case):
 def test_what_is_hardly_meant_is_told(program, case, tmp_path):
     (tmp_path / "friction.csv").write_text("x_m,mu_s\n0,0.6\n100,0.6\n")
     short = sets("friction.random_correlation_length_m=1e-5", "friction.random_share=0.01")
-    told = program("validate", case, *sets("friction.random_key=mu_s"), *short).stdout
-    assert "the table of friction.file reaches from x = 0 to 100 m" in told
-    assert "random_correlation_length_m = 1e-05 m is below the element size" in told
+    printed = program("validate", case, *sets("friction.random_key=mu_s"), *short).stdout
+    assert "the table of friction.file reaches from x = 0 to 100 m" in printed
+    assert "random_correlation_length_m = 1e-05 m is below the element size" in printed
 
 
 def test_a_tilt_beyond_small_strains_is_told(program, coarse):
-    told = program("validate", coarse, "--set", "loading.tilt_left_m=0.03").stdout
-    assert "presses the plate by 0.15 of Young's modulus, beyond small strains" in told
+    printed = program("validate", coarse, "--set", "loading.tilt_left_m=0.03").stdout
+    assert "presses the plate by 0.15 of Young's modulus, beyond small strains" in printed
     assert "small strains" not in program("validate", coarse).stdout
 
 

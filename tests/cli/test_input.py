@@ -65,8 +65,8 @@ def test_special_files_as_a_case(program):
 
 
 def test_title_that_is_no_utf8(program, coarse):
-    told = refusal(program("run", coarse, "-o", "out", "--set", os.fsdecode(b"title=\xff")))
-    assert told.startswith("--set title=?: holds bytes that are no utf-8")
+    printed = refusal(program("run", coarse, "-o", "out", "--set", os.fsdecode(b"title=\xff")))
+    assert printed.startswith("--set title=?: holds bytes that are no utf-8")
 
 
 # --- Numbers
@@ -133,8 +133,8 @@ TELLING += [["info", "coarse.toml"], ["validate", "coarse.toml"]]
 class TestStandardOutput:
     def test_that_is_full(self, program, coarse, arguments):
         with open("/dev/full", "w") as full:
-            told = one_line(finished(program.start(*arguments, stdout=full)), 1)
-        assert told == "slipfront: standard output cannot be written (No space left on device)"
+            printed = one_line(finished(program.start(*arguments, stdout=full)), 1)
+        assert printed == "slipfront: standard output cannot be written (No space left on device)"
 
     @pytest.mark.parametrize("ignored", [False, True])
     def test_whose_reader_has_gone(self, program, coarse, arguments, ignored):

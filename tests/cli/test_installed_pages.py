@@ -47,8 +47,8 @@ def complete(page):
 
 
 def options_in_help(program, *command):
-    told = program(*command, "--help").stdout
-    return set(re.findall(r"^  (?:-\w,)?(--[a-z-]+)", told, re.MULTILINE))
+    printed = program(*command, "--help").stdout
+    return set(re.findall(r"^  (?:-\w,)?(--[a-z-]+)", printed, re.MULTILINE))
 
 
 def test_the_command_is_not_in_the_help(program):

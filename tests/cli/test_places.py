@@ -64,8 +64,8 @@ def place(case, text, override):
 def test_the_line_is_that_of_the_key_at_fault(program, write_case, tmp_path, text, override):
     (tmp_path / "table.csv").write_text("x_m,t_Pa,p_Pa\n0,2.1e6,5e6\n0.1,2.1e6,5e6\n")
     case = write_case(text)
-    told = refusal(program("validate", case, *(sets(override) if override else [])))
-    assert told.startswith(place(case, text, override))
+    printed = refusal(program("validate", case, *(sets(override) if override else [])))
+    assert printed.startswith(place(case, text, override))
 
 
 # And what the message says.
@@ -91,10 +91,10 @@ LATE = [
 def test_the_line_is_that_of_what_only_the_statics_find(program, write_case, tmp_path, text, override, words):
     text = COARSE + "[friction]\n" + text
     case = write_case(text)
-    told = refusal(program("run", case, "-o", "out", *(sets(override) if override else [])))
-    assert told.startswith(place(case, text, override))
+    printed = refusal(program("run", case, "-o", "out", *(sets(override) if override else [])))
+    assert printed.startswith(place(case, text, override))
     for word in words:
-        assert word in told
+        assert word in printed
     assert not (tmp_path / "out").exists()
 
 

@@ -123,6 +123,6 @@ def test_wrong_probes_are_refused_with_their_line(program, write_case, tmp_path,
     text = COARSE + "\n[probes]\n"
     case = write_case(text + table + "\n")
     for command in (("run", case, "-o", "out"), ("validate", case)):
-        told = refusal(program(*command, "--set", "plate.corner=relief"))
-        assert told.startswith(f"{case}:{text.count(chr(10)) + line}: ") and says in told
+        printed = refusal(program(*command, "--set", "plate.corner=relief"))
+        assert printed.startswith(f"{case}:{text.count(chr(10)) + line}: ") and says in printed
     assert not (tmp_path / "out").exists()

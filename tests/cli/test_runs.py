@@ -190,9 +190,9 @@ def has_checkpoint(folder):
 def test_interruption_keeps_what_there_is(program, coarse, tmp_path, sent):
     process = program.start("run", coarse, "-o", "out", *LONG, "--checkpoint-every-simulated", "1e-4")
     wait_until(lambda: has_checkpoint(tmp_path), process)
-    told = ended_by(process, sent)
+    printed = ended_by(process, sent)
     for part in ("interrupted at t = ", "results are in out/unfinished", "slipfront run --restart out"):
-        assert part in told
+        assert part in printed
     assert files_in(tmp_path / "out/unfinished") == SO_FAR | {"state"}
     run = run_json(tmp_path / "out/unfinished")
     assert run["end"] == run["status"] == "interrupted"
@@ -269,9 +269,9 @@ PROGRESS = r"event: \d+ %, [0-9.e+]+ steps/s, \S+( s)? to go"
 
 
 def test_progress_without_a_terminal_is_plain_lines(program, coarse):
-    told = require_done(program("run", coarse, "-o", "out", *with_end(0.1))).stderr
-    assert "\r" not in told and "\033" not in told
-    lines = told.splitlines()
+    printed = require_done(program("run", coarse, "-o", "out", *with_end(0.1))).stderr
+    assert "\r" not in printed and "\033" not in printed
+    lines = printed.splitlines()
     assert 1 <= len(lines) <= 10
     assert all(re.fullmatch(PROGRESS, line) for line in lines)
 
@@ -359,14 +359,14 @@ def test_convergence_study_and_its_figure_agree(program, coarse, tmp_path, event
     printed = require_done(program("study", "convergence", coarse, "-o", "out", *options)).stdout
     assert f"\n9 runs, {n_quiet} of which ended before time.end_s since nothing moved\n" in printed
     assert ("note: no front of the case's own run" in printed) == (event == "none")
-    told = json.loads((tmp_path / "out/convergence.json").read_text())
-    assert (told["n_runs"], told["n_quiet"]) == (9, n_quiet)
+    written = json.loads((tmp_path / "out/convergence.json").read_text())
+    assert (written["n_runs"], written["n_quiet"]) == (9, n_quiet)
     if event == "none":
         return
     study = read_study(tmp_path / "out")
-    assert [s.parameter for s in study.sequences] == [s["parameter"] for s in told["sequences"]]
+    assert [s.parameter for s in study.sequences] == [s["parameter"] for s in written["sequences"]]
     compared = 0
-    for entry, sequence in zip(told["sequences"], study.sequences, strict=True):
+    for entry, sequence in zip(written["sequences"], study.sequences, strict=True):
         for direction in study.directions():
             error = entry[f"direction_{direction:+d}"]["median_relative_error"]
             if error is not None:
@@ -378,9 +378,9 @@ def test_convergence_study_and_its_figure_agree(program, coarse, tmp_path, event
 
 def test_sizes_of_a_study_that_do_not_fit_are_the_options(program, coarse):
     sizes = ("--element-sizes", "5e-3,7e-3,2.5e-3")
-    told = refusal(program("study", "convergence", coarse, "-o", "out", *sizes))
+    printed = refusal(program("study", "convergence", coarse, "-o", "out", *sizes))
     size = "element size 0.007 m of the study, see --element-sizes: plate.element_size_m = 0.007 does not"
-    assert size in told
+    assert size in printed
 
 
 PRESTRESSED = """

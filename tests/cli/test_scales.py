@@ -92,27 +92,27 @@ def test_a_process_zone_that_is_not_resolved(program, write_case, tmp_path):
     note = "below 3 the mesh decides on fronts and their speeds"
     for command in (["validate", case], ["info", case], ["run", case, "-o", "out", "--overwrite"]):
         assert note not in program(*command).stdout
-        told = program(*command, *sets("friction.d_c_m=1e-6")).stdout
-        assert f"note: the process zone has 0.766 elements at rest and fewer in motion; {note}\n" in told
+        printed = program(*command, *sets("friction.d_c_m=1e-6")).stdout
+        assert f"note: the process zone has 0.766 elements at rest and fewer in motion; {note}\n" in printed
 
 
 def test_slip_that_stays_where_it_is_triggered_has_no_speed(program, write_case):
-    told = program("run", write_case(PRESTRESSED.format(t=1.6e6, half=20e-3)), "-o", "out").stdout
-    assert re.search(r"front 0: .*, nowhere beyond what triggers it, \w+, ends: arrest\n", told), told
-    told = program("run", write_case(PRESTRESSED.format(t=2.1e6, half=20e-3)), "-o", "runs").stdout
-    c_L, c_S = map(float, re.search(r"front 0: .*, median speed (\S+) c_L, (\S+) c_S, ", told).groups())
+    printed = program("run", write_case(PRESTRESSED.format(t=1.6e6, half=20e-3)), "-o", "out").stdout
+    assert re.search(r"front 0: .*, nowhere beyond what triggers it, \w+, ends: arrest\n", printed), printed
+    printed = program("run", write_case(PRESTRESSED.format(t=2.1e6, half=20e-3)), "-o", "runs").stdout
+    c_L, c_S = map(float, re.search(r"front 0: .*, median speed (\S+) c_L, (\S+) c_S, ", printed).groups())
     assert c_S / c_L == pytest.approx(1584.4 / 889.2, rel=0.02)
 
 
 def test_what_info_tells_of_a_rupture(program, write_case):
-    told = program("info", write_case(PRESTRESSED.format(t=2.1e6, half=20e-3))).stdout
+    printed = program("info", write_case(PRESTRESSED.format(t=2.1e6, half=20e-3))).stdout
     # S = (3 - 2.1)/(2.1 - 1.5); mu* = E on the rigid plane in plane stress
-    assert "strength excess S               1.5, 1.5, 1.5" in told
-    assert "seismic ratio 1/(1 + S)         0.4, 0.4, 0.4" in told
-    assert f"nucleation length               {1.158 * 2.6e9 * 4e-6 / 1.5e6:.3g} m" in told
-    assert "critical crack length           0.0276 m" in told
-    assert "process zone at rest            0.00613 m, 3.06 elements" in told
-    assert "S < 1.77: fronts above c_S can form" in told
+    assert "strength excess S               1.5, 1.5, 1.5" in printed
+    assert "seismic ratio 1/(1 + S)         0.4, 0.4, 0.4" in printed
+    assert f"nucleation length               {1.158 * 2.6e9 * 4e-6 / 1.5e6:.3g} m" in printed
+    assert "critical crack length           0.0276 m" in printed
+    assert "process zone at rest            0.00613 m, 3.06 elements" in printed
+    assert "S < 1.77: fronts above c_S can form" in printed
 
 
 def test_odd_numbers_are_asked_about(program, write_case):
@@ -142,9 +142,9 @@ def test_keys_that_an_override_excludes_are_named(program, write_case):
         "poissons_ratio = 0.3\ndensity_kg_per_m3 = 7800\nstiffness_damping_s = 0\n"
     )
     case = write_case(base)
-    told = program("validate", case, *sets("base.kind=rigid")).stdout
-    assert "note: base.height_m, base.youngs_modulus_Pa, " in told
-    assert "do not apply with --set base.kind=rigid and are left out\n" in told
+    printed = program("validate", case, *sets("base.kind=rigid")).stdout
+    assert "note: base.height_m, base.youngs_modulus_Pa, " in printed
+    assert "do not apply with --set base.kind=rigid and are left out\n" in printed
     assert "left out" not in program("validate", case).stdout
 
 

@@ -35,8 +35,8 @@ def test_a_damaged_state_is_told_and_solved_again(program, coarse, tmp_path):
     whole = file.read_bytes()
     damaged = whole[:100] + b"x" + whole[101:]
     file.write_bytes(damaged)
-    told = require_done(program("run", coarse, "-o", "second", *SHARED)).stderr
-    assert "is damaged" in told and "solved again" in told
+    printed = require_done(program("run", coarse, "-o", "second", *SHARED)).stderr
+    assert "is damaged" in printed and "solved again" in printed
     assert alone(tmp_path / "second") == alone(tmp_path / "first")
     assert file.read_bytes() != damaged
 

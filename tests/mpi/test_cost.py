@@ -63,22 +63,22 @@ def test_bench_measures_between_neighbours_and_from_the_leader(mpirun):
     n = 3
     result = mpirun(n, "bench", "--network", "--json")
     assert (result.returncode, result.stderr) == (0, "")
-    told = json.loads(result.stdout)
-    assert told["processes"] == n
+    printed = json.loads(result.stdout)
+    assert printed["processes"] == n
     neighbours, of_leader = [(k, k + 1) for k in range(n - 1)], [(0, k) for k in range(2, n)]
-    assert [(link["from"], link["to"]) for link in told["links"]] == neighbours + of_leader
+    assert [(link["from"], link["to"]) for link in printed["links"]] == neighbours + of_leader
     for part in (neighbours, [(0, 1), *of_leader]):
-        in_part = [link for link in told["links"] if (link["from"], link["to"]) in part]
-        assert told["latency_s"] >= statistics.median(link["latency_s"] for link in in_part)
-    for link in [told, *told["links"]]:
+        in_part = [link for link in printed["links"] if (link["from"], link["to"]) in part]
+        assert printed["latency_s"] >= statistics.median(link["latency_s"] for link in in_part)
+    for link in [printed, *printed["links"]]:
         assert link["latency_s"] > 0 and link["bandwidth_bytes_per_s"] > 0
 
 
 def test_bench_prints_what_info_takes(mpirun):
     result = mpirun(2, "bench", "--network")
     assert (result.returncode, result.stderr) == (0, "")
-    told = re.search(r"^info (--latency-s \S+ --bandwidth-bytes-per-s \S+)$", result.stdout, re.MULTILINE)
-    require_done(mpirun.alone("info", *CASE, "--processes", 2, *told[1].split()))
+    printed = re.search(r"^info (--latency-s \S+ --bandwidth-bytes-per-s \S+)$", result.stdout, re.MULTILINE)
+    require_done(mpirun.alone("info", *CASE, "--processes", 2, *printed[1].split()))
 
 
 @pytest.mark.parametrize("words", ["--network", "--statics 50 --solver petsc"])
@@ -91,13 +91,13 @@ def test_bench_that_cannot_tell_fails(mpirun, words):
 
 
 def test_bench_tells_statics_as_json(mpirun):
-    told = json.loads(mpirun.alone("bench", "--statics", 50, "--solver", "direct", "--json").stdout)
-    assert (told["columns"], told["rows"], told["solver"]) == (50, 25, "direct")
-    assert told["critical_shear_m"] > 0
+    printed = json.loads(mpirun.alone("bench", "--statics", 50, "--solver", "direct", "--json").stdout)
+    assert (printed["columns"], printed["rows"], printed["solver"]) == (50, 25, "direct")
+    assert printed["critical_shear_m"] > 0
 
 
 @pytest.mark.parametrize(
-    "command, told",
+    "command, expected",
     [
         ("bench --network", "mpirun -n 2 or more"),
         ("bench --network --statics 50", "--network takes no --statics"),
@@ -109,14 +109,14 @@ def test_bench_tells_statics_as_json(mpirun):
         ("info --processes 2 --bandwidth-bytes-per-s inf", "finite"),
     ],
 )
-def test_bench_and_info_refuse(mpirun, command, told):
+def test_bench_and_info_refuse(mpirun, command, expected):
     name, *options = command.split()
-    assert told in refusal(mpirun.alone(name, *(CASE if name == "info" else ()), *options))
+    assert expected in refusal(mpirun.alone(name, *(CASE if name == "info" else ()), *options))
 
 
 def predicted(mpirun, n, *options):
-    told = require_done(mpirun.alone("info", *CASE, "--processes", n, *options)).stdout
-    return dict(re.findall(r"^  (.+?) {2,}(.+)$", told, re.MULTILINE))
+    printed = require_done(mpirun.alone("info", *CASE, "--processes", n, *options)).stdout
+    return dict(re.findall(r"^  (.+?) {2,}(.+)$", printed, re.MULTILINE))
 
 
 def test_info_predicts_what_a_run_counts(mpirun, runs):

@@ -150,7 +150,7 @@ def test_one_process_answers(mpirun):
 
 
 @pytest.mark.parametrize(
-    "n, command, told",
+    "n, command, expected",
     [
         (2, ["validate", "case.toml"], "start validate alone"),
         (2, ["sweep", "case.toml"], "start sweep alone"),
@@ -158,8 +158,8 @@ def test_one_process_answers(mpirun):
         (4, RUN, "choose at most 2"),
     ],
 )
-def test_refused_commands_and_cases(mpirun, case, tmp_path, n, command, told):
-    assert told in refusal(own(mpirun(n, *command)))
+def test_refused_commands_and_cases(mpirun, case, tmp_path, n, command, expected):
+    assert expected in refusal(own(mpirun(n, *command)))
     # Before the statics, which would have been kept.
     assert list(tmp_path.iterdir()) == [case]
 
@@ -378,14 +378,14 @@ def test_output_that_nobody_takes(mpirun, case, undisturbed, out):
 
 
 @pytest.mark.parametrize(
-    "rank, code, told",
+    "rank, code, expected",
     [
         # The limit may come before the statics ask how much memory there is, or after.
         (0, 2, "out of memory in the static solution|needs about .* GB of memory, .* are available"),
         (1, 1, "process 1: not enough memory"),
     ],
 )
-def test_no_memory(mpirun, case, rank, code, told):
+def test_no_memory(mpirun, case, rank, code, expected):
     process, pids = in_statics(mpirun, case)
     with contextlib.suppress(OSError):  # it has ended meanwhile
         pages = int(Path(f"/proc/{pids[rank]}/statm").read_text().split()[0])
@@ -393,6 +393,6 @@ def test_no_memory(mpirun, case, rank, code, told):
         resource.prlimit(pids[rank], resource.RLIMIT_AS, (limit, limit))
     result = finished(process)
     if result.returncode != 0:
-        assert re.search(told, one_line(own(result), code))
+        assert re.search(expected, one_line(own(result), code))
     require_ended(pids.values())
     require_no_core(mpirun.folder)

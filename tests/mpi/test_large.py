@@ -124,7 +124,7 @@ def test_info_is_of_the_run(tmp_path, mpirun):
     assert shared["nodes"] == f"{1001 * (601 + 551)} (1000 on the interface)"
     for key in ("cells", "largest stable step", "step", "steps to the end", "expected regime"):
         assert shared[key] == alone[key], key
-    updates = [told["node updates"].split(" at ")[0] for told in (alone, shared)]
+    updates = [printed["node updates"].split(" at ")[0] for printed in (alone, shared)]
     assert updates[0] == updates[1]
     require_done(mpirun(3, "run", case, "-o", "out", "-q"))
     run = run_json(tmp_path / "out")
@@ -171,9 +171,9 @@ def test_statics_of_what_no_process_holds(tmp_path, mpirun):
     """516,129 nodes. Where the state before the event is to be used again, the leader makes and holds all."""
     case = tmp_path / "statics.toml"
     case.write_text(STATICS)
-    told = told_by_info(mpirun, case, "--processes", 2)
-    assert told["nodes"] == f"{4001 * 129} (4001 on the interface)"
-    assert "irregular" not in told["nodes"]
+    printed = told_by_info(mpirun, case, "--processes", 2)
+    assert printed["nodes"] == f"{4001 * 129} (4001 on the interface)"
+    assert "irregular" not in printed["nodes"]
     require_done(mpirun(2, "run", case, "-o", "kept", "-q"))
     states = ("--state-dir", tmp_path / "states")
     require_done(mpirun(2, "run", case, "-o", "gathered", "-q", *states))

@@ -129,7 +129,10 @@ void expect_keys(const input::Case& config, std::span<const Change> changes, boo
 TEST(InitialStateKey, IgnoresWhatOnlyConcernsTheEvent) {
   const Change changes[] = {{"mu_k", [](auto& c) { law(c).mu_k = 1.0; }},
                             {"alpha", [](auto& c) { law(c).alpha_m2_per_s2 = 1.0; }},
-                            {"law", [](auto& c) { c.friction = interface::Coulomb{1.3}; }},
+                            {"law",
+                             [](auto& c) {
+                               c.friction = interface::Coulomb { 1.3 };
+                             }},
                             {"event", [](auto& c) { c.event = EventKind::right; }},
                             {"trigger", [](auto& c) { c.trigger.amount = 2; }},
                             {"time", [](auto& c) { c.time.step_factor = 0.1; }},
