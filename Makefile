@@ -90,9 +90,23 @@ module: program $(VENV)/.installed  ## build the Python module as well: python/s
 stubs: module  ## renew the types of the module, python/slipfront/_core.pyi
 	PYTHONPATH=python $(PYTHON) -m nanobind.stubgen -q -m slipfront._core -o python/slipfront/_core.pyi
 
-wheel: $(VENV)/.installed  ## the Python package for any x86-64 processor, build/slipfront-*.whl
-	rm -f build/slipfront-*.whl
-	$(PYTHON) -m pip wheel --quiet --no-deps --no-build-isolation -w build .
+# A wheel has all libraries within but those of C and C++, which auditwheel names.
+$(VENV)/.installed-wheel: $(VENV)/.installed
+	$(PYTHON) scripts/python-requirements.py wheel | $(PIP_INSTALL)
+	@touch $@
+
+build/static/lib/libhdf5.a: scripts/build-static-libraries | packages
+	@echo "== Building libraries into build/static"
+	scripts/build-static-libraries build/static
+
+wheel: $(VENV)/.installed-wheel build/static/lib/libhdf5.a  ## the Python package for any x86-64 processor, with all that it needs, build/slipfront-*.whl
+	rm -rf build/slipfront-*.whl build/unrepaired
+	$(PYTHON) -m pip wheel --quiet --no-deps --no-build-isolation -w build/unrepaired \
+	  -C build-dir=build/static/wheel \
+	  -C cmake.define.CMAKE_PREFIX_PATH=$(CURDIR)/build/static -C cmake.define.HDF5_USE_STATIC_LIBRARIES=ON \
+	  -C cmake.define.OPENSSL_USE_STATIC_LIBS=ON -C cmake.define.SLIPFRONT_LICENCES=$(CURDIR)/build/static/licences \
+	  -C cmake.define.CMAKE_CXX_STANDARD_LIBRARIES=$(CURDIR)/build/static/lib/libz.a .
+	PATH=$(CURDIR)/$(VENV)/bin:$$PATH $(VENV)/bin/auditwheel repair --wheel-dir build build/unrepaired/*.whl
 
 wheel-trial: wheel program  ## try it in an empty environment, and on an old processor that is emulated
 	@scripts/install-packages $(EMULATOR_PACKAGES)
@@ -206,11 +220,11 @@ $(VENV)/.installed-docs: $(VENV)/.installed
 
 # `make docs` renews pages of the sources; this makes a site of them.
 SPHINX = $(VENV)/bin/sphinx-build -c docs -q -W --keep-going
-site: $(VENV)/.installed-docs  ## the documentation as a site, build/site/index.html; any warning fails
+site: module $(VENV)/.installed-docs  ## the documentation as a site, build/site/index.html; any warning fails
 	$(SPHINX) -b html . build/site
 	@echo "site: build/site/index.html"
 
-site-links: $(VENV)/.installed-docs  ## fail where a link of the documentation to elsewhere leads nowhere; needs the network
+site-links: module $(VENV)/.installed-docs  ## fail where a link of the documentation to elsewhere leads nowhere; needs the network
 	$(SPHINX) -b linkcheck . build/site-links
 
 docs: sensitivity convergence  ## renew the pages and figures of docs/ that the program writes
@@ -288,7 +302,7 @@ package: packages  ## the program and libslipfront for any x86-64 processor, to 
 install-trial: package  ## install it into build/install-trial and use program and library from there
 	@scripts/install-trial build/package build/install-trial
 
-.PHONY: package install-trial deb deb-trial debian-trial source-archive
+.PHONY: package install-trial deb deb-trial debian-trial bare-wheel-trial source-archive
 deb: package  ## a Debian package: build/package/slipfront_VERSION_amd64.deb, looked over by lintian
 	@scripts/install-packages $(PACKAGING_PACKAGES)
 	cd build/package && rm -f slipfront_*.deb && cpack -G DEB
@@ -296,9 +310,13 @@ deb: package  ## a Debian package: build/package/slipfront_VERSION_amd64.deb, lo
 
 deb-trial: deb  ## install, run and remove it on a bare Debian 12; as root
 	@scripts/install-packages $(TRIAL_PACKAGES)
-	@scripts/deb-trial build/package/slipfront_*.deb build/deb-trial
+	@scripts/deb-trial build/package/slipfront_*.deb build/debian-trial
 
 DEBIAN ?= trixie
+bare-wheel-trial: wheel  ## install and use it on a bare Debian of this release, without any library; as root
+	@scripts/install-packages $(TRIAL_PACKAGES)
+	@scripts/bare-wheel-trial "$$(. /etc/os-release; echo $$VERSION_CODENAME)" build/debian-trial build/slipfront-*.whl
+
 debian-trial: packages  ## program and tests of the last commit on a bare Debian 13, or DEBIAN=bookworm; as root
 	@scripts/install-packages $(TRIAL_PACKAGES)
 	@scripts/debian-trial $(DEBIAN) build/debian-trial

@@ -38,6 +38,9 @@ install(FILES ${CMAKE_BINARY_DIR}/pages/bash RENAME slipfront
 if(SLIPFRONT_PYTHON)
   install(TARGETS slipfront_core LIBRARY DESTINATION slipfront COMPONENT python EXCLUDE_FROM_ALL)
   install(TARGETS slipfront RUNTIME DESTINATION slipfront/bin COMPONENT python EXCLUDE_FROM_ALL)
+  if(SLIPFRONT_LICENCES)
+    install(DIRECTORY ${SLIPFRONT_LICENCES}/ DESTINATION slipfront/licences COMPONENT python EXCLUDE_FROM_ALL)
+  endif()
 endif()
 
 if(NOT SLIPFRONT_SHARED)

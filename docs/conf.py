@@ -2,16 +2,18 @@
 """The documentation site. Its source folder is the repository: pages link to each other as they do on a Git
 host, README, CONTRIBUTING and CHANGELOG among them."""
 
-import importlib.util
 import re
 import sys
 from pathlib import Path
+
+from sphinx.util import logging
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "docs/_site")]
 
 project = "slipfront"
 author = "the slipfront authors"
+copyright = f"2026, {author}"
 version = release = re.search(
     r"project\(slipfront VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
 )[1]
@@ -39,8 +41,6 @@ nb_execution_mode = "off"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
-# Without the compiled module its functions have no text here, the rest of the package has.
-autodoc_mock_imports = [] if importlib.util.find_spec("slipfront._core") else ["slipfront._core"]
 
 html_theme = "furo"
 html_title = f"slipfront {version}"
@@ -57,5 +57,20 @@ def take_as_plain_text(app, what, name, object_, options, lines):
     lines[:] = [re.sub(r"([\\|*`_])", r"\\\1", line) for line in lines]
 
 
+def require_the_whole_package(app, error):
+    """Fails where the Python reference lacks a name of the package, as without the compiled module."""
+    if error is not None or app.builder.name != "html":
+        return
+    import slipfront
+
+    described = app.env.get_domain("py").objects
+    missing = [name for name in slipfront.__all__ if f"slipfront.{name}" not in described]
+    if missing:
+        told = f"docs/python-api.rst lacks {', '.join(missing)} of slipfront (make module)"
+        logging.getLogger(__name__).error(told)
+        app.statuscode = 1
+
+
 def setup(app):
     app.connect("autodoc-process-docstring", take_as_plain_text)
+    app.connect("build-finished", require_the_whole_package)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The table of docs/graded.md: V_tip of an event on graded plates against a uniform one, processor time.
+"""Front speeds in docs/mesh.md: V_tip of an event on graded plates against a uniform one, processor time.
 
     scripts/graded-table.py build/release/slipfront papers/kammer2012/left.toml
 

@@ -18,7 +18,8 @@ foreach(kind IN LISTS kinds)
   target_include_directories(lib${kind} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}>
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/slipfront>)
   # Copies of templates and inline functions stay within: a program's own may be compiled for another processor.
-  target_link_options(lib${kind} PRIVATE LINKER:--version-script,${symbols} LINKER:-Bsymbolic-functions)
+  target_link_options(lib${kind} PRIVATE LINKER:--version-script,${symbols} LINKER:-Bsymbolic-functions
+                      LINKER:-z,defs)
   string(REPLACE "slipfront-" "glibc-hwcaps/" folder ${kind})
   string(REPLACE "slipfront" "" folder ${folder})
   set_target_properties(lib${kind} PROPERTIES

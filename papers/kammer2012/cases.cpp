@@ -15,6 +15,8 @@ namespace slipfront::kammer2012 {
 namespace {
 
 constexpr double width_m = 0.2;
+/// All fronts have crossed the plate; the top goes on driving what slips.
+constexpr double end_s = 250e-6;
 
 /// The paper gives no triggers. Its statements about the left-triggered maximum (C11) and about Fig. 6 (C18b)
 /// ask for a stronger one than the default: papers/kammer2012/open-choices.md.
@@ -23,6 +25,7 @@ constexpr double inferred_left_zone_m = 20e-3, inferred_left_amount = 20;
 input::Case base_case(interface::EventKind event, bool quick) {
   input::Case c;  // the other defaults are the paper's
   c.event = event;
+  c.time.end_s = end_s;
   if (event == interface::EventKind::left) {
     c.trigger.zone_m = inferred_left_zone_m;
     c.trigger.amount = inferred_left_amount;

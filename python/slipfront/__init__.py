@@ -3,6 +3,7 @@
 
 Nothing is imported before it is used: figures and readers need neither xarray nor the compiled module."""
 
+from difflib import get_close_matches
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from slipfront.measures import fit_exponential as fit_exponential
     from slipfront.measures import rank_correlation as rank_correlation
     from slipfront.measures import spread_at_equal_x as spread_at_equal_x
+    from slipfront.onsets import read_onsets as read_onsets
     from slipfront.opened import OpenRun as OpenRun
     from slipfront.opened import open as open
     from slipfront.running import info as info
@@ -68,6 +70,7 @@ _PLACES = {
     "fit_exponential": "measures",
     "rank_correlation": "measures",
     "spread_at_equal_x": "measures",
+    "read_onsets": "onsets",
     "OpenRun": "opened",
     "open": "opened",
     "info": "running",
@@ -81,9 +84,11 @@ __all__ = tuple(_PLACES)
 
 def __getattr__(name: str) -> Any:
     if name not in _PLACES:
-        raise AttributeError(f"module 'slipfront' has no attribute '{name}'")
+        near = get_close_matches(name, _PLACES, n=1)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise AttributeError(f"module 'slipfront' has no attribute '{name}'{hint}")
     return getattr(import_module(f"slipfront.{_PLACES[name]}"), name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_PLACES})
+    return sorted(__all__)

@@ -15,6 +15,8 @@ def version() -> str:
     """Version and commit that the module was built from."""
 
 class WaveSpeeds:
+    """Wave speeds of a material."""
+
     @property
     def c_L_m_per_s(self) -> float:
         """longitudinal, in the plane chosen"""
@@ -28,6 +30,8 @@ class WaveSpeeds:
         """Rayleigh, on a free surface"""
 
 class WellPosedness:
+    """Growth of small waves on uniform sliding: docs/stability.md."""
+
     @property
     def statement(self) -> str:
         """the verdict, one plain line"""
@@ -144,7 +148,25 @@ class Rupture:
     def doubts(self) -> list[str]:
         """why nothing may rupture, a line each"""
 
+class MeshChoice:
+    """A mesh for a case's process zone."""
+
+    @property
+    def element_size_m(self) -> float: ...
+
+    @property
+    def coarsenings(self) -> int:
+        """of the plate, and of a base"""
+
+    @property
+    def process_zone_elements(self) -> float: ...
+
+    @property
+    def n_nodes(self) -> int: ...
+
 class Info:
+    """What a case needs and what is to be expected of it, before it runs."""
+
     @property
     def speeds(self) -> WaveSpeeds:
         """of the plate"""
@@ -203,8 +225,18 @@ class Info:
         """what is to be expected of it"""
 
     @property
+    def cheapest_mesh(self) -> MeshChoice | None:
+        """for arrivals to about 1 %, docs/mesh.md; None without a process zone"""
+
+    @property
     def well_posedness(self) -> WellPosedness:
         """of slow uniform sliding at the plate's nominal pressure"""
+
+    @property
+    def notes(self) -> list[str]:
+        """
+        what is hardly meant, decides physics unasked, or keeps it from a rupture
+        """
 
 class Case:
     """A case with its changes, checked."""
@@ -228,9 +260,6 @@ class Case:
 
     @property
     def static_coefficient(self) -> float: ...
-
-    @property
-    def warnings(self) -> list[str]: ...
 
     def info(self) -> Info:
         """What follows from the case without solving anything."""
@@ -349,6 +378,18 @@ class FrontOptions:
 
     @arrest_time_s.setter
     def arrest_time_s(self, arg: float, /) -> None: ...
+
+    @property
+    def arrest_time_by_event(self) -> bool: ...
+
+    @arrest_time_by_event.setter
+    def arrest_time_by_event(self, arg: bool, /) -> None: ...
+
+    @property
+    def whole_interface(self) -> bool: ...
+
+    @whole_interface.setter
+    def whole_interface(self, arg: bool, /) -> None: ...
 
     @property
     def min_length_m(self) -> float: ...

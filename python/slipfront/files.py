@@ -161,6 +161,7 @@ class Table:
     file: Path
     header: list[str]
     rows: list[tuple[int, list[str]]]  # the line's number and its cells
+    decimal_comma: bool = False  # numbers may have a comma in place of the point
 
     def index(self, column: str) -> int:
         if column not in self.header:
@@ -182,7 +183,8 @@ class Table:
         if not text:
             return np.nan
         try:
-            value = float(text) if text.isascii() and "_" not in text else None
+            decimal = text.replace(",", ".", 1) if self.decimal_comma else text
+            value = float(decimal) if text.isascii() and "_" not in text else None
         except ValueError:
             value = None
         if value is None or (finite and not np.isfinite(value)):
@@ -190,18 +192,20 @@ class Table:
         return value
 
 
-def split_line(file: Path, line: int, text: str) -> list[str]:
+def split_line(file: Path, line: int, text: str, separator: str = ",") -> list[str]:
     """Cells of one line: no quotation goes on into the next."""
     try:
-        return [cell.strip() for cell in next(csv.reader([text], strict=True), [])]
+        return [cell.strip() for cell in next(csv.reader([text], delimiter=separator, strict=True), [])]
     except csv.Error as error:
         raise DataError(f"{file}:{line}: not a line of CSV: {error}") from None
 
 
-def read_table(file: Path, by_hand: bool = False, growing: bool = False) -> Table:
+def read_table(file: Path, by_hand: bool = False, growing: bool = False, separators: str = ",") -> Table:
     """A table of the program ends with a whole line, or it was cut off; one made by hand need not.
 
     Of a growing one, which a run still appends to or was killed over, a cut line at the end is passed over.
+    Cells are separated by the first of the separators that the header has, the last where it has none;
+    numbers may have a decimal comma where that is no comma.
     """
     text = read_text(file)
     if growing:
@@ -209,25 +213,28 @@ def read_table(file: Path, by_hand: bool = False, growing: bool = False) -> Tabl
     elif text and not by_hand and not text.endswith("\n"):
         raise DataError(f"{file}: the last line is cut off")
     header: list[str] | None = None
+    separator = separators[-1]
     rows = []
     for line, content in enumerate(re.split(r"\r\n|\r|\n", text), start=1):
         if not content.strip() or content.lstrip().startswith("#"):
             continue
-        cells = split_line(file, line, content)
         if header is None:
-            header = cells
+            separator = next((sign for sign in separators if sign in content), separator)
+            header = split_line(file, line, content, separator)
             continue
+        cells = split_line(file, line, content, separator)
         if not any(cells):
             continue
         if len(cells) != len(header):
-            raise DataError(f"{file}:{line}: {len(cells)} cells, the header has {len(header)}")
+            commas = "; with decimal commas separate cells by semicolons" if separator == "," else ""
+            raise DataError(f"{file}:{line}: {len(cells)} cells, the header has {len(header)}{commas}")
         rows.append((line, cells))
     if header is None:
         raise DataError(f"{file}: empty")
     for name in header:
         if name and header.count(name) > 1:
             raise DataError(f"{file}: two columns '{one_line(name)}'")
-    return Table(file, header, rows)
+    return Table(file, header, rows, separator != ",")
 
 
 @contextmanager

@@ -1,47 +1,53 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`slipfront fronts ONSETS.csv`: fronts in the onsets of an experiment."""
+"""`slipfront fronts ONSETS`: fronts in the onsets of an experiment."""
 
 from __future__ import annotations
 
 import argparse
 import csv
 import io
+import re
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from slipfront import command
-from slipfront.files import DataError, Table, read_table
+from slipfront.files import DataError
 from slipfront.material import wave_speeds
-from slipfront.measures import FrontSettings, find_fronts
-from slipfront.read import require, require_ascending
+from slipfront.measures import LENGTHS_AND_TIMES, FrontSettings, find_fronts, slices_of
+from slipfront.onsets import NONE, read_onsets
 
 COLUMNS = ("front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s")
+SPEEDS = ("speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s")  # of the whole front
 TRACTIONS = ("t_s_Pa", "p_s_Pa")
+OPTIONS = (*LENGTHS_AND_TIMES, "never_slipped")  # by their names in Python
 MARK = "# fronts by slipfront fronts\n"  # by it a file is known that may be replaced
 MATERIAL = ("youngs_modulus_Pa", "poissons_ratio", "density_kg_per_m3")
 
 
 def parse(arguments: list[str]) -> argparse.Namespace:
-    settings = FrontSettings()
     parser = command.Parser(
         prog="slipfront fronts",
         description="Finds the fronts in the times at which slip begins along an interface: speeds, ends. "
-        "ONSETS.csv has the columns x_m and time_s, empty where a place never slips, perhaps t_s_Pa and "
-        "p_s_Pa, the tractions before the event. Lines that start with # are passed over.",
+        "ONSETS, a CSV or .mat file, has columns of places and times with their units, such as x_mm and "
+        "time_us, and perhaps t_s_MPa and p_s_MPa, the tractions before the event. Lines that start with # "
+        "are passed over.",
     )
-    parser.add_argument("onsets", metavar="ONSETS.csv", type=Path)
+    parser.add_argument("onsets", metavar="ONSETS", type=Path)
     parser.add_argument(
         "-o", "--output", metavar="FILE", type=Path, help="CSV table, a row per front and place"
     )
-    add = parser.add_argument_group("how fronts are found").add_argument
-    add("--l-star-m", type=float, default=settings.l_star_m, help="length for the speed (%(default)s m)")
-    add("--arrest-time-s", type=float, default=settings.arrest_time_s, help="longest wait (%(default)s s)")
-    add("--min-length-m", type=float, default=settings.min_length_m, help="of a front (%(default)s m)")
-    add("--speed-interval", choices=("centred", "approach"), default=settings.speed_interval)
-    add("--resolution-s", type=float, default=0.0, help="time between two frames; faster is not resolved")
+    add = parser.add_argument_group("how fronts are found; by default as the record suggests").add_argument
+    add("--l-star-m", type=float, help="length for v_tip; by default the median spacing")
+    add("--arrest-time-s", type=float, help="longest wait of a tip; by default 5 times what a front takes "
+        "for its least length or the largest gap")  # fmt: skip
+    add("--min-length-m", type=float, help="of a front; by default 2 median spacings")
+    add("--speed-interval", choices=("centred", "approach"), default="centred")
+    add("--resolution-s", type=float, help="time between two frames; faster is not resolved")
     add("--end-time-s", type=float, help="end of the record, by default the last onset")
+    add("--never-slipped", metavar="TIME", type=mark, help="what the file has in place of a time where "
+        "slip never begins, or none; by default -1, 999, 1e9 and the like if far from all times")  # fmt: skip
     speeds = parser.add_argument_group("wave speed, for V_tip/c_L: given, or of a material").add_argument
     speeds("--c-l-m-per-s", type=float, help="longitudinal wave speed")
     for name in MATERIAL:
@@ -70,25 +76,22 @@ def longitudinal_speed_m_per_s(options: argparse.Namespace) -> float | None:
         raise DataError(str(error)) from None
 
 
-def read_onsets(file: Path) -> Table:
-    table = read_table(file, by_hand=True)
-    require_ascending(file, "x_m", table.numbers("x_m"))
-    require(len(table.rows) >= 2, file, "fewer than two rows")
-    onset = table.numbers("time_s")
-    require(np.isfinite(onset).any(), file, "no row has a time: nothing slips")
-    return table
+def mark(text: str) -> float | str:
+    return NONE if text == NONE else float(text)
 
 
-def find(table: Table, options: argparse.Namespace) -> xr.Dataset:
-    tractions = {name: table.numbers(name) for name in TRACTIONS if name in table.header}
+def find(file: Path, options: argparse.Namespace) -> xr.Dataset:
+    record = read_onsets(file, never_slipped=options.never_slipped)
+    tractions = {name: record[name].to_numpy() for name in TRACTIONS if name in record}
     try:
-        return find_fronts(
-            table.numbers("x_m"),
-            table.numbers("time_s"),
+        found = find_fronts(
+            record["x_m"].to_numpy(),
+            record["onset_s"].to_numpy(),
             t_s_Pa=tractions.get("t_s_Pa"),
             p_s_Pa=tractions.get("p_s_Pa"),
             end_time_s=options.end_time_s,
             resolution_s=options.resolution_s,
+            never_slipped=NONE,
             settings=FrontSettings(
                 l_star_m=options.l_star_m,
                 speed_interval=options.speed_interval,
@@ -97,14 +100,19 @@ def find(table: Table, options: argparse.Namespace) -> xr.Dataset:
             ),
         )
     except ValueError as error:
-        raise DataError(f"{table.file}: {error}") from None
+        raise DataError(f"{file}: {error}") from None
+    own = [note for note in found.attrs["notes"] if "without a time" not in note]  # told by the record
+    found.attrs["notes"] = record.attrs["notes"] + own
+    return found
 
 
 def rows(fronts: xr.Dataset, c_L_m_per_s: float | None) -> str:
     """The table of points; what is undefined is empty."""
     columns = {name: fronts[name].to_numpy() for name in COLUMNS if name != "direction"}
     columns["direction"] = fronts["direction_of_point"].to_numpy()
-    names = list(COLUMNS)
+    sizes = [part.stop - part.start for part in slices_of(fronts)]
+    columns |= {name: np.repeat(fronts[name].to_numpy(), sizes) for name in SPEEDS}
+    names = [*COLUMNS, *SPEEDS]
     if c_L_m_per_s is not None:
         columns["v_over_c_L"] = columns["v_tip_m_per_s"] / c_L_m_per_s
         names.append("v_over_c_L")
@@ -120,24 +128,38 @@ def rows(fronts: xr.Dataset, c_L_m_per_s: float | None) -> str:
     return text.getvalue()
 
 
+def in_words(text: str) -> str:
+    """Options by their names on the command line."""
+    return re.sub("|".join(OPTIONS), lambda found: f"--{found[0].replace('_', '-')}", text)
+
+
+def speed_in_words(speed_and_interval: np.ndarray, c_L_m_per_s: float | None) -> str:
+    speed, low, high = speed_and_interval
+    if not np.isfinite(speed):
+        return "speed undefined"
+    share = f" ({speed / c_L_m_per_s:.2f} c_L)" if c_L_m_per_s is not None else ""
+    above = f" to {high:.4g}" if np.isfinite(high) else " or more"
+    interval = f", {low:.4g}{above}" if f"{low:.4g}" != f"{high:.4g}" else ""
+    return f"speed {speed:.4g} m/s{interval}{share}"
+
+
 def summary(fronts: xr.Dataset, c_L_m_per_s: float | None) -> list[str]:
     """A line for each front, as `slipfront run` prints them; the kind of slip needs a history."""
-    lines = []
-    for k, front in enumerate(fronts["front"].to_numpy()):
-        points = fronts.isel(point=fronts["front_id"].to_numpy() == front, front=k)
-        x, onset = points["x_m"].to_numpy(), points["onset_s"].to_numpy()
-        speeds = points["v_tip_m_per_s"].to_numpy()
-        speeds = speeds[np.isfinite(speeds)]
-        speed = "speed undefined"
-        if speeds.size > 0:
-            median = float(np.median(speeds))
-            share = f" ({median / c_L_m_per_s:.2f} c_L)" if c_L_m_per_s is not None else ""
-            speed = f"median speed {median:.4g} m/s{share}"
-        lines.append(
-            f"front {front}: x = {x[0]:.4f} to {x[-1]:.4f} m, {1e6 * onset[0]:.1f} to "
-            f"{1e6 * onset[-1]:.1f} us, {speed}, ends: {points['end'].item()}"
-        )
-    return lines or ["no fronts: no path of onsets is as long as --min-length-m"]
+    x, onset = fronts["x_m"].to_numpy(), fronts["onset_s"].to_numpy()
+    speeds = np.array([fronts[name].to_numpy() for name in SPEEDS]).T
+    ends = fronts["end"].to_numpy()
+    lines = [
+        f"front {k}: x = {x[part.start]:.4f} to {x[part.stop - 1]:.4f} m, {1e6 * onset[part.start]:.1f} to "
+        f"{1e6 * onset[part.stop - 1]:.1f} us, {speed_in_words(speed, c_L_m_per_s)}, ends: {end}"
+        for k, (part, speed, end) in enumerate(zip(slices_of(fronts), speeds, ends, strict=True))
+    ]
+    used = fronts.attrs
+    step = used["time_step_s"]
+    lines.append(
+        ", ".join(f"{name} {used[name]:.4g}" for name in LENGTHS_AND_TIMES)
+        + (f"; intervals of speeds: times right to half of {step:.4g} s" if step > 0 else "")
+    )
+    return [in_words(line) for line in [*(lines if ends.size else ["no fronts", *lines]), *used["notes"]]]
 
 
 def main(arguments: list[str]) -> int:
@@ -145,7 +167,7 @@ def main(arguments: list[str]) -> int:
 
     def work() -> list[str]:
         c_L_m_per_s = longitudinal_speed_m_per_s(options)
-        fronts = find(read_onsets(options.onsets), options)
+        fronts = find(options.onsets, options)
         if options.output is not None:
             write(options.output, rows(fronts, c_L_m_per_s))
         return summary(fronts, c_L_m_per_s)

@@ -6,8 +6,9 @@ Definitions: docs/theory.md. All raise CaseError, a ValueError, where arrays do 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,35 +19,44 @@ import slipfront.printed  # noqa: F401
 from slipfront import _core
 from slipfront.errors import CaseError
 from slipfront.given import array, column, instance, number, refusing, shown, whole
+from slipfront.onsets import NONE, without_marks
+from slipfront.units import attributes
 
 # Arrays by their names, such as a Dataset of OpenRun.
 Arrays = Mapping[Any, Any]
 NAN = float("nan")
+LENGTHS_AND_TIMES = ("l_star_m", "arrest_time_s", "min_length_m")  # of FrontSettings
+WAITS = 5  # of a tip, in times that a front of the record takes for its least length
+# Student's t for 95 %, in standard errors to each side, of 1, 2, ... degrees of freedom; the last for more.
+STUDENT_T = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
 
-POINT_UNITS = {
-    "x_m": "m",
-    "onset_s": "s",
-    "v_tip_m_per_s": "m/s",
-    "t_s_Pa": "Pa",
-    "p_s_Pa": "Pa",
-    "t_d_Pa": "Pa",
-    "p_d_Pa": "Pa",
-    "t_r_Pa": "Pa",
-    "p_r_Pa": "Pa",
-    "U_s_J_per_m3": "J/m3",
-    "U_r_J_per_m3": "J/m3",
-    "slipping_share": "1",
-}
+POINT_COLUMNS = (
+    "x_m",
+    "onset_s",
+    "v_tip_m_per_s",
+    "t_s_Pa",
+    "p_s_Pa",
+    "t_d_Pa",
+    "p_d_Pa",
+    "t_r_Pa",
+    "p_r_Pa",
+    "U_s_J_per_m3",
+    "U_r_J_per_m3",
+    "slipping_share",
+)
 
 
 @dataclass(frozen=True)
 class FrontSettings:
-    """How fronts are found and measured; the defaults are those of a case file."""
+    """How fronts are found and measured.
 
-    l_star_m: float = 0.67e-3  # length over which the speed is taken; one element where that is longer
+    Lengths and times that are None are, for onsets, of the record's own spacing and delays, see find_fronts;
+    for a history those of a case file, where a tip waits longer if slip spreads slowly."""
+
+    l_star_m: float | None = None  # length over which the speed is taken; one element where that is longer
     speed_interval: str = "centred"  # about x; or "approach": from l* before x to x
-    arrest_time_s: float = 20e-6  # a tip that waits longer for its next onset has arrested
-    min_length_m: float = 2e-3  # shorter paths, or jumps ahead no longer than this, are no fronts
+    arrest_time_s: float | None = None  # a tip that waits longer for its next onset has arrested
+    min_length_m: float | None = None  # shorter paths, or jumps ahead no longer than this, are no fronts
     crack_share: float = 0.5  # crack-like above this share of slipping length to distance run
     pulse_share: float = 0.2  # pulse-like below it
     # For the energy densities alone; NaN leaves them undefined.
@@ -63,8 +73,10 @@ class FrontSettings:
                 raise CaseError(f"{name} is {shown(getattr(self, name))}; it must be {words}")
         made.speed_interval = _core.SpeedInterval[self.speed_interval]
         made.plane_strain = self.plane == "strain"
-        for name in ("l_star_m", "arrest_time_s", "min_length_m"):
-            setattr(made, name, number(getattr(self, name), name, above=0))
+        for name in LENGTHS_AND_TIMES:
+            if getattr(self, name) is not None:
+                setattr(made, name, number(getattr(self, name), name, above=0))
+        made.arrest_time_by_event = self.arrest_time_s is None
         for name in ("crack_share", "pulse_share"):
             setattr(made, name, number(getattr(self, name), name, least=0))
         if made.pulse_share > made.crack_share:
@@ -80,28 +92,128 @@ def as_dataset(fronts: list[_core.Front]) -> xr.Dataset:
     def joined(name: str, dtype: Any = np.float64) -> np.ndarray:
         return np.concatenate([np.empty(0, dtype), *(getattr(front, name) for front in fronts)])
 
-    points = {
-        name: xr.Variable(("point",), joined(name), {"unit": unit}) for name, unit in POINT_UNITS.items()
-    }
     sizes = [len(front.x_m) for front in fronts]
     ids = np.array([front.id for front in fronts], dtype=np.int64)
-    coordinates = {name: points.pop(name) for name in ("x_m", "onset_s")}
-    coordinates["front_id"] = xr.Variable(("point",), np.repeat(ids, sizes))
-    coordinates["front"] = xr.Variable(("front",), ids)
-    points["accelerating"] = xr.Variable(("point",), joined("accelerating", np.bool_))
-    points["node"] = xr.Variable(("point",), joined("node", np.int32))
     directions = np.array([front.direction for front in fronts], dtype=np.int64)
-    points["direction_of_point"] = xr.Variable(("point",), np.repeat(directions, sizes))
-    points["direction"] = xr.Variable(("front",), directions)
-    points["end"] = xr.Variable(("front",), np.array([front.end for front in fronts], dtype=np.str_))
-    points["mode"] = xr.Variable(("front",), np.array([front.mode for front in fronts], dtype=np.str_))
+    of_points: dict[str, np.ndarray] = {
+        **{name: joined(name) for name in POINT_COLUMNS},
+        "front_id": np.repeat(ids, sizes),
+        "accelerating": joined("accelerating", np.bool_),
+        "node": joined("node", np.int32),
+        "direction_of_point": np.repeat(directions, sizes),
+    }
+    of_fronts = {
+        "front": ids,
+        "direction": directions,
+        "end": np.array([front.end for front in fronts], dtype=np.str_),
+        "mode": np.array([front.mode for front in fronts], dtype=np.str_),
+    }
+    points = {
+        name: xr.Variable((dim,), values, attributes(name))
+        for dim, columns in (("point", of_points), ("front", of_fronts))
+        for name, values in columns.items()
+    }
+    coordinates = {name: points.pop(name) for name in ("x_m", "onset_s", "front_id", "front")}
     return xr.Dataset(points, coordinates)
 
 
 def options_of(settings: FrontSettings | None) -> _core.FrontOptions:
-    if settings is None:
-        return FrontSettings().options()
-    return instance(settings, FrontSettings, "settings").options()
+    return checked(settings).options()
+
+
+def checked(settings: FrontSettings | None) -> FrontSettings:
+    return FrontSettings() if settings is None else instance(settings, FrontSettings, "settings")
+
+
+def settings_of_record(x_m: np.ndarray, onset_s: np.ndarray, given: FrontSettings) -> FrontSettings:
+    """What is None becomes what suits the record, as find_fronts says."""
+    spacing = np.diff(x_m)
+    usual = float(np.median(spacing)) if spacing.size else 1.0
+    with np.errstate(invalid="ignore"):
+        delay = np.abs(np.diff(onset_s))
+    moves = np.isfinite(delay) & (delay > 0)
+    least = 2 * usual if given.min_length_m is None else given.min_length_m
+    slowness = float(np.median(delay[moves] / spacing[moves])) if moves.any() else 1.0
+    length = max(least, min(float(spacing.max(initial=usual)), 5 * usual))
+    own: dict[str, Any] = {
+        "l_star_m": usual,
+        "min_length_m": least,
+        "arrest_time_s": WAITS * slowness * length,
+    }
+    return replace(given, **{name: value for name, value in own.items() if getattr(given, name) is None})
+
+
+def time_step_s(onset_s: np.ndarray) -> float:
+    """Smallest step between the times of which all are multiples, such as a camera's; 0 where none is."""
+    steps = np.diff(np.unique(onset_s[np.isfinite(onset_s)]))
+    steps = steps[steps > 1e-3 * steps.max(initial=0.0)]
+    if steps.size == 0:
+        return 0.0
+    least = float(steps.min())
+    parts = steps / least
+    return least if np.all(np.abs(parts - np.round(parts)) < 0.01) else 0.0
+
+
+def fitted_speed(run_m: np.ndarray, onset_s: np.ndarray, step_s: float) -> tuple[float, float, float]:
+    """Speed of the line through onset over distance run, and its interval: what times wrong by up to half
+    a step on either side can make of it, or, where that is wider, 95 % by the scatter about the line."""
+    x, t = run_m - run_m.mean(), onset_s - onset_s.mean()
+    weight = x / (x @ x)
+    slope = float(weight @ t)
+    scatter = t - slope * x
+    half = float(np.abs(weight).sum()) * step_s / 2
+    if (freedom := len(x) - 2) > 0:
+        error = float(np.sqrt(scatter @ scatter / freedom / (x @ x)))
+        half = max(half, STUDENT_T[min(freedom, len(STUDENT_T)) - 1] * error)
+    elif half == 0:  # nothing tells how wrong two times are
+        half = float("inf")
+    if slope <= 0:
+        return NAN, NAN, NAN
+    return 1 / slope, 1 / (slope + half), 1 / (slope - half) if slope > half else float("inf")
+
+
+def slices_of(fronts: xr.Dataset) -> list[slice]:
+    """The points of each front."""
+    ends = np.searchsorted(fronts["front_id"].to_numpy(), fronts["front"].to_numpy(), side="right")
+    return [slice(a, b) for a, b in zip([0, *ends], ends, strict=False)]
+
+
+def add_speeds(fronts: xr.Dataset, step_s: float) -> None:
+    x, onset = fronts["x_m"].to_numpy(), fronts["onset_s"].to_numpy()
+    speeds = [
+        fitted_speed(np.abs(x[part] - x[part.start]), onset[part], step_s) for part in slices_of(fronts)
+    ]
+    columns = np.array(speeds, dtype=float).reshape(-1, 3).T
+    for name, values in zip(
+        ("speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s"), columns, strict=True
+    ):
+        fronts[name] = ("front", values, attributes(name))
+
+
+def notes_of_record(onset_s: np.ndarray, fronts: xr.Dataset, settings: FrontSettings) -> list[str]:
+    """How many onsets are in no front, and why."""
+    slips = np.isfinite(onset_s)
+    alone = slips.copy()
+    alone[fronts["node"].to_numpy()] = False
+    n, n_alone = int(slips.sum()), int(alone.sum())
+    if n_alone == 0:
+        return []
+    with np.errstate(invalid="ignore"):
+        delay = np.abs(np.diff(onset_s))
+    late = np.pad(np.isfinite(delay) & (delay > settings.arrest_time_s), 1)
+    meets = np.pad(np.isfinite(delay) & (delay <= settings.arrest_time_s), 1)
+    waits = alone & (late[:-1] | late[1:]) & ~(meets[:-1] | meets[1:])
+    barred = alone & ~(late[:-1] | late[1:] | meets[:-1] | meets[1:])
+    why = [
+        f"{count} {text}"
+        for count, text in (
+            (waits.sum(), "whose neighbours slip more than arrest_time_s earlier or later"),
+            (barred.sum(), "between places that never slip"),
+            (n_alone - waits.sum() - barred.sum(), "on paths shorter than min_length_m"),
+        )
+        if count
+    ]
+    return [f"{n_alone} of {n} onset{'' if n == 1 else 's'} in no front: {', '.join(why)}"]
 
 
 def find_fronts(
@@ -111,7 +223,8 @@ def find_fronts(
     t_s_Pa: ArrayLike | None = None,
     p_s_Pa: ArrayLike | None = None,
     end_time_s: float | None = None,
-    resolution_s: float = 0.0,
+    resolution_s: float | None = None,
+    never_slipped: float | str | None = None,
     settings: FrontSettings | None = None,
 ) -> xr.Dataset:
     """Fronts in the times at which slip begins along an interface.
@@ -121,21 +234,47 @@ def find_fronts(
     are in contact and the static ratio is undefined. Tractions at the tip need a history:
     find_fronts_in_history.
     end_time_s: end of the record, by default the last onset. A front that might go on is then "record_end".
-    resolution_s: time between two looks at the interface, such as a camera's; speeds from onsets that are
-    less apart are undefined.
+    resolution_s: time between two looks at the interface, such as a camera's; v_tip_m_per_s from onsets
+    that are less apart are undefined. Without it that of the fronts' speeds is the smallest step of the
+    times, where all are multiples of it.
+    never_slipped: the number in onset_s that marks a place that never slips; "none" if every number is a
+    time. Without it -1 is such a mark where all others are at least 0, and so are 999, 1e9 and the like
+    farther from the others than these are from each other; a UserWarning says so.
+    settings: None in it are: l_star_m the median spacing; min_length_m twice that; arrest_time_s 5 times
+    what a front takes, at the median speed between neighbours, for min_length_m or the largest spacing
+    (at most 5 median ones) where that is longer.
 
-    Returns a Dataset over `point` (front_id, x_m, onset_s, v_tip_m_per_s, ...) and `front` (direction, mode,
-    end: arrest, meets_front, contact_end, record_end)."""
+    Returns a Dataset over `point` (front_id, x_m, onset_s, v_tip_m_per_s, ...) and `front`: direction, mode,
+    end (arrest, meets_front, contact_end, record_edge, record_end), speed_m_per_s of the line through its
+    onsets with speed_low_m_per_s and speed_high_m_per_s. Attributes: the settings used; `notes`, how many
+    places never slip and how many onsets are in no front, and why."""
     x, onset = array(x_m, "x_m", finite=True), array(onset_s, "onset_s")
     t_s = np.full_like(x, np.nan) if t_s_Pa is None else array(t_s_Pa, "t_s_Pa")
     p_s = np.ones_like(x) if p_s_Pa is None else array(p_s_Pa, "p_s_Pa")
-    last = float(onset[np.isfinite(onset)].max(initial=0.0))
+    if never_slipped is not None and never_slipped != NONE:
+        never_slipped = number(never_slipped, "never_slipped")
+    onset, notes = without_marks(onset, never_slipped)
+    for note in notes:
+        if "taken as" in note:
+            warnings.warn(note, stacklevel=2)
+    slips = onset[np.isfinite(onset)]
+    last = float(slips.max()) if slips.size else 0.0
     end = last if end_time_s is None else number(end_time_s, "end_time_s", least=last)
-    resolution = number(resolution_s, "resolution_s", least=0)
+    resolution = 0.0 if resolution_s is None else number(resolution_s, "resolution_s", least=0)
+    given = checked(settings)
+    given.options()  # refuses what is wrong before it is used
+    fits = len(x) == len(onset) > 1 and bool(np.all(np.diff(x) > 0))  # or the module refuses it
+    used = settings_of_record(x, onset, given) if fits else given
     with refusing():
-        found = as_dataset(_core.find_fronts(x, onset, t_s, p_s, end, resolution, options_of(settings)))
+        options = used.options()
+        options.whole_interface = False
+        found = as_dataset(_core.find_fronts(x, onset, t_s, p_s, end, resolution, options))
     if p_s_Pa is None:
         found["p_s_Pa"][:] = np.nan
+    step = time_step_s(onset) if resolution_s is None else resolution
+    add_speeds(found, step)
+    found.attrs = {name: getattr(used, name) for name in LENGTHS_AND_TIMES}
+    found.attrs |= {"time_step_s": step, "notes": [*notes, *notes_of_record(onset, found, used)]}
     return found
 
 
@@ -190,7 +329,7 @@ def criteria(fronts: Arrays) -> xr.Dataset:
         lengths = ", ".join(f"{name} {len(values)}" for name, values in columns.items())
         raise CaseError(f"fronts: its arrays differ in length: {lengths}")
     values = {
-        which.name: xr.Variable(("point",), _core.criterion(which=which, **columns), {"unit": "1"})
+        which.name: xr.Variable(("point",), _core.criterion(which=which, **columns), attributes(which.name))
         for which in _core.Criterion
     }
     coordinates = fronts.coords if isinstance(fronts, xr.Dataset) else {}

@@ -34,26 +34,10 @@ from slipfront.read import (
     require,
     require_ascending,
 )
+from slipfront.units import attributes
 
-# Endings of names, the longest first.
-UNITS = {
-    "_J_per_m3": "J/m3",
-    "_m2_per_s2": "m2/s2",
-    "_J_per_m": "J/m",
-    "_m_per_s": "m/s",
-    "_per_s": "1/s",
-    "_bytes": "bytes",
-    "_Pa": "Pa",
-    "_s": "s",
-    "_m": "m",
-}
-
-
-def unit_of(name: str) -> str:
-    """The unit that the name of a quantity ends with; "1" for a number without one."""
-    if name in ("mu_s", "mu_k"):  # static and kinetic
-        return "1"
-    return next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "1")
+STRESSES = ("stress_xx_Pa", "stress_yy_Pa", "stress_zz_Pa", "stress_xy_Pa")
+CHANGE = ", change since the start"
 
 
 class Kept:
@@ -96,10 +80,8 @@ class StoredArray(BackendArray):
             return self.read(hdf5, key)
 
 
-def stored(
-    dims: tuple[str, ...], array: StoredArray, name: str, attributes: dict[str, str] | None = None
-) -> xr.Variable:
-    return xr.Variable(dims, indexing.LazilyIndexedArray(array), attributes or {"unit": unit_of(name)})
+def stored(dims: tuple[str, ...], array: StoredArray, found: dict[str, str]) -> xr.Variable:
+    return xr.Variable(dims, indexing.LazilyIndexedArray(array), found)
 
 
 def text(value: Any) -> str:
@@ -107,8 +89,12 @@ def text(value: Any) -> str:
 
 
 def attributes_of(found: h5py.Dataset, name: str) -> dict[str, str]:
-    attributes = {key: text(found.attrs[key]) for key in ("unit", "description") if key in found.attrs}
-    return {"unit": unit_of(name), **attributes}
+    """Those of a data set of the program by their names of the CF conventions."""
+    told = {"units": "unit", "long_name": "description"}
+    stated = {cf: text(found.attrs[own]) for cf, own in told.items() if own in found.attrs}
+    if "long_name" in stated:
+        stated["long_name"] = stated["long_name"].partition(", [")[0]  # the dimensions are xarray's
+    return attributes(name, **stated)
 
 
 def table_variables(table: Table, dim: str, finite: bool = True) -> dict[str, xr.Variable]:
@@ -121,9 +107,7 @@ def table_variables(table: Table, dim: str, finite: bool = True) -> dict[str, xr
             if not any(cell and cell[0].isalpha() for cell in table.texts(name)):
                 raise
             values = np.array(table.texts(name), dtype=np.str_)
-            variables[name] = xr.Variable((dim,), values)
-            continue
-        variables[name] = xr.Variable((dim,), values, {"unit": unit_of(name)})
+        variables[name] = xr.Variable((dim,), values, attributes(name))
     return variables
 
 
@@ -157,8 +141,13 @@ class OpenRun:
 
     @cached_property
     def case(self) -> dict[str, Any]:
-        """Every key of the case, as nested dictionaries; `slipfront.run` takes it."""
-        return read_toml(result_file(self.folder / "case.resolved.toml"))
+        """Every key of the case, as nested dictionaries; `slipfront.run` takes it. Tables that it names
+        are the copies of the run, by their whole paths."""
+        case = read_toml(result_file(self.folder / "case.resolved.toml"))
+        for table in case.values():
+            if isinstance(table, dict) and table.get("file"):
+                table["file"] = str(self.folder.absolute() / table["file"])
+        return case
 
     @cached_property
     def tractions(self) -> xr.Dataset:
@@ -213,10 +202,10 @@ class OpenRun:
         plain = all(cell is None or isinstance(cell, int | str) for cell in told)
         require(plain, self.folder / "run.json", "an entry of 'fronts' is neither a number nor a text")
         coordinates = {name: points.pop(name) for name in ("front_id", "x_m", "onset_s")}
-        coordinates["front"] = xr.Variable(("front",), [f.get("id") for f in whole])
+        coordinates["front"] = xr.Variable(("front",), [f.get("id") for f in whole], attributes("front"))
         points["direction_of_point"] = points.pop("direction")
         for name in ("direction", "end", "mode"):
-            points[name] = xr.Variable(("front",), [f.get(name) for f in whole])
+            points[name] = xr.Variable(("front",), [f.get(name) for f in whole], attributes(name))
         return xr.Dataset(points, coordinates, self._attributes())
 
     @cached_property
@@ -232,7 +221,8 @@ class OpenRun:
 
     @cached_property
     def snapshots(self) -> xr.Dataset | None:
-        """fields.vtkhdf over time_s, node and component (x, y): displacement_m, velocity_m_per_s; x_m and
+        """fields.vtkhdf over time_s, node and component (x, y): displacement_m, velocity_m_per_s; over time_s
+        and cell strain and stress (see absolute_stress), where the case has output.snapshot_stress; x_m and
         y_m of the nodes, and cell_nodes, four of each cell counterclockwise. None of a run without
         snapshots."""
         if self._place.growing or not belongs(self.folder / "fields.vtkhdf"):
@@ -240,36 +230,57 @@ class OpenRun:
         mesh = read_fields(self.folder / "fields.vtkhdf")
         n_nodes = len(mesh.points_m)
         coordinates = {
-            "time_s": xr.Variable(("time_s",), mesh.time_s, {"unit": "s"}),
-            "x_m": xr.Variable(("node",), mesh.points_m[:, 0], {"unit": "m"}),
-            "y_m": xr.Variable(("node",), mesh.points_m[:, 1], {"unit": "m"}),
-            "component": xr.Variable(("component",), ["x", "y"]),
+            "time_s": xr.Variable(("time_s",), mesh.time_s, attributes("time_s")),
+            "x_m": xr.Variable(("node",), mesh.points_m[:, 0], attributes("x_m")),
+            "y_m": xr.Variable(("node",), mesh.points_m[:, 1], attributes("y_m")),
+            "component": xr.Variable(("component",), ["x", "y"], attributes("component")),
         }
-        variables = {"cell_nodes": xr.Variable(("cell", "corner"), mesh.cells)}
+        variables = {"cell_nodes": xr.Variable(("cell", "corner"), mesh.cells, attributes("cell_nodes"))}
         with open_hdf5(mesh.file) as hdf5:
-            for name in hdf5["VTKHDF/Steps/PointDataOffsets"]:
-                variables[name] = self._stored_snapshots(mesh.file, hdf5, name, len(mesh.time_s), n_nodes)
+            for kind, dim, size in (("Point", "node", n_nodes), ("Cell", "cell", len(mesh.cells))):
+                for name in hdf5["VTKHDF/Steps"].get(f"{kind}DataOffsets", ()):
+                    shape = len(mesh.time_s), size
+                    variables[name] = self._stored_snapshots(mesh.file, hdf5, f"{kind}Data", name, dim, shape)
         return xr.Dataset(variables, coordinates, self._attributes())
 
     @cached_property
     def probes(self) -> xr.Dataset | None:
         """probes.h5 over time_s and probe, by its name, with the places x_m and y_m: displacement, velocity,
-        strain, stress. None of a run without probes."""
+        strain, stress; with prescribed tractions the changes since the start (absolute_stress). None of a run
+        without probes."""
         file = self.folder / "probes.h5"
         if self._place.growing or not belongs(file):
             return None
         probes = read_probes(file)
         coordinates = {
-            "time_s": xr.Variable(("time_s",), probes.time_s, {"unit": "s"}),
-            "probe": xr.Variable(("probe",), list(probes.names)),
-            "x_m": xr.Variable(("probe",), probes.x_m, {"unit": "m"}),
-            "y_m": xr.Variable(("probe",), probes.y_m, {"unit": "m"}),
+            "time_s": xr.Variable(("time_s",), probes.time_s, attributes("time_s")),
+            "probe": xr.Variable(("probe",), list(probes.names), attributes("probe")),
+            "x_m": xr.Variable(("probe",), probes.x_m, attributes("x_m")),
+            "y_m": xr.Variable(("probe",), probes.y_m, attributes("y_m")),
         }
-        variables = {
-            name: xr.Variable(("time_s", "probe"), values, {"unit": unit_of(name)})
-            for name, values in probes.fields.items()
-        }
+        with open_hdf5(file) as hdf5:
+            variables = {
+                name: xr.Variable(("time_s", "probe"), values, self._of_motion(hdf5[name], name))
+                for name, values in probes.fields.items()
+            }
         return xr.Dataset(variables, coordinates, self._attributes())
+
+    def absolute_stress(self, records: xr.Dataset) -> xr.Dataset:
+        """The whole stress of `probes` or `snapshots`, Pa, positive in tension. The records hold it where
+        statics found the state before the event. With prescribed tractions they hold the change since, and
+        the uniform state of run.info["prestress"] is added: -p to stress_yy_Pa, t to stress_xy_Pa. NaN where
+        the tractions determine no state: stress_xx_Pa, stress_zz_Pa in plane strain, and all of tractions
+        that vary along x. Raises DataError where the records have no stress."""
+        before = self._place.prestress(self.case)
+        names = [name for name in STRESSES if name in records]
+        require(bool(names), self.folder, "these records have no stress")
+        whole = {}
+        for name in names:
+            told = records[name].attrs
+            long_name = str(told.get("long_name", "")).removesuffix(CHANGE)
+            added = 0.0 if before is None else before[name]
+            whole[name] = (records[name] + added).assign_attrs(told | {"long_name": f"{long_name}, absolute"})
+        return xr.Dataset(whole, attrs=records.attrs)
 
     def _attributes(self) -> dict[str, str]:
         return {"title": str(self.case.get("title", "")), "status": self.status, "folder": str(self.folder)}
@@ -283,17 +294,26 @@ class OpenRun:
     def _stored_field(self, file: Path, hdf5: h5py.File, name: str) -> xr.Variable:
         found = dataset(hdf5, name, 2)
         array = StoredArray(file, found.shape, found.dtype, lambda h, key: h[name][key], self._kept)
-        return stored(("time_s", "x_m"), array, name, attributes_of(found, name))
+        return stored(("time_s", "x_m"), array, attributes_of(found, name))
+
+    def _of_motion(self, found: h5py.Dataset, name: str) -> dict[str, str]:
+        """Attributes of what counts from the state before the event, where that is not the unloaded one."""
+        told = attributes_of(found, name)
+        counts = name.startswith(("u_", "displacement", "strain", "stress"))
+        if counts and self._place.prestress(self.case) is not None:
+            told["long_name"] += CHANGE
+        return told
 
     def _stored_snapshots(
-        self, file: Path, hdf5: h5py.File, name: str, n_times: int, n_nodes: int
+        self, file: Path, hdf5: h5py.File, kind: str, name: str, dim: str, shape: tuple[int, ...]
     ) -> xr.Variable:
-        starts = dataset(hdf5, f"VTKHDF/Steps/PointDataOffsets/{name}", 1)[()]
-        path = f"VTKHDF/PointData/{name}"
+        n_times, n_rows = shape
+        starts = dataset(hdf5, f"VTKHDF/Steps/{kind}Offsets/{name}", 1)[()]
+        path = f"VTKHDF/{kind}/{name}"
         found = hdf5[path]
         is_vector = found.ndim == 2
         dataset(hdf5, path, found.ndim)
-        inside = (starts >= 0) & (starts <= len(found) - n_nodes)
+        inside = (starts >= 0) & (starts <= len(found) - n_rows)
         require(len(starts) == n_times and inside.all(), file, f"a snapshot's {name} is not in the file")
 
         def read(h: h5py.File, key: tuple[Any, ...]) -> np.ndarray:
@@ -304,24 +324,24 @@ class OpenRun:
             return np.stack([snapshot(h, int(s), rest) for s in first])
 
         def snapshot(h: h5py.File, first: int, rest: tuple[Any, ...]) -> np.ndarray:
-            rows = h[path][first : first + n_nodes]
+            rows = h[path][first : first + n_rows]
             return (rows[:, :2] if is_vector else rows)[rest]
 
-        shape = (n_times, n_nodes, 2) if is_vector else (n_times, n_nodes)
-        dims = ("time_s", "node", "component")[: len(shape)]
+        shape = (*shape, 2) if is_vector else shape
+        dims = ("time_s", dim, "component")[: len(shape)]
         array = StoredArray(file, shape, found.dtype, read, self._kept)
-        return stored(dims, array, name, attributes_of(found, name))
+        return stored(dims, array, self._of_motion(found, name))
 
     def _raw_history(self, file: Path) -> xr.Dataset:
         x_m = self.tractions["x_m"].to_numpy()
         time_s, fields = raw_history(file, x_m)
         n = n_finite(time_s, *fields.values()) if self.status == BLEW_UP else len(time_s)
         variables = {
-            name: xr.Variable(("time_s", "x_m"), values[:n], {"unit": unit_of(name)})
+            name: xr.Variable(("time_s", "x_m"), values[:n], attributes(name))
             for name, values in fields.items()
         }
         coordinates = {
-            "time_s": xr.Variable(("time_s",), time_s[:n], {"unit": "s"}),
+            "time_s": xr.Variable(("time_s",), time_s[:n], attributes("time_s")),
             "x_m": self.tractions["x_m"].variable,
         }
         return xr.Dataset(variables, coordinates, self._attributes())

@@ -8,12 +8,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from slipfront import _core
-from slipfront.opened import unit_of
+from slipfront.units import unit_of
 
 LISTED = (
     _core.Collapse,
     _core.ExponentialFit,
     _core.Info,
+    _core.MeshChoice,
     _core.NodeSpread,
     _core.Rupture,
     _core.Spread,

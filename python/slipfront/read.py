@@ -20,6 +20,7 @@ from slipfront.files import (
     Table,
     dataset,
     is_folder,
+    is_number,
     number,
     open_hdf5,
     read_bytes,
@@ -198,6 +199,18 @@ class Place:
     def growing(self) -> bool:
         """Whether files may end within a row."""
         return self.status in WITHOUT_END
+
+    def prestress(self, case: dict[str, Any]) -> dict[str, float] | None:
+        """What recorded stress, a change with prescribed tractions, adds to, Pa by the names of the records;
+        NaN where they determine none. None where the records are the whole stress."""
+        if entry(case, "loading", "method") != "prestress":
+            return None
+        told = self.info.get("prestress")  # there was none in older files
+        found = told if isinstance(told, dict) else {}
+        before: dict[str, Any] = {n: found.get(n) for n in PROBE_FIELDS if n.startswith("stress")}
+        if entry(case, "material", "plane") == "stress":
+            before["stress_zz_Pa"] = 0.0
+        return {name: float(value) if is_number(value) else np.nan for name, value in before.items()}
 
     def mark(self, last_s: float) -> str:
         """How a run ended that did not come to its end, for titles; empty for a complete one."""

@@ -6,7 +6,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import re
 import shutil
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -29,14 +28,13 @@ CaseLike = str | os.PathLike[str] | Mapping[str, Any]
 # Called at times with the part ("ramp" or "event"), the steps done and their total.
 Progress = Callable[[str, int, int], None]
 
-WORDS_OF_TOML = ("true", "false", "inf", "nan")
 LARGEST_INTEGER = 2**63  # of TOML
 MOST_THREADS = 1024
 CHECKPOINT_EVERY_S = 300.0
 
 
 def toml_text(value: Any, key: str = "value") -> str:
-    """A value as TOML; a word stays without quotes, as on the command line."""
+    """A value as TOML."""
     if hasattr(value, "__array__"):  # NumPy's numbers and arrays, and what becomes one
         value = np.asarray(value).tolist()
     if isinstance(value, bool):
@@ -44,9 +42,7 @@ def toml_text(value: Any, key: str = "value") -> str:
     if isinstance(value, float) or isinstance(value, int) and abs(value) < LARGEST_INTEGER:
         return repr(value)
     if isinstance(value, str | os.PathLike):
-        words = text(os.fsdecode(value), key)
-        is_word = re.fullmatch(r"[A-Za-z_]\w*", words, re.ASCII) and words not in WORDS_OF_TOML
-        return words if is_word else json.dumps(words, ensure_ascii=False).replace("\x7f", "\\u007f")
+        return json.dumps(text(os.fsdecode(value), key), ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, list | tuple):
         return "[" + ", ".join(toml_text(each, key) for each in value) + "]"
     what = "no value of a case file: give a number, text, True, False or a list"

@@ -185,6 +185,7 @@ struct BenchArguments {
 void add_bench(CLI::App& app, Processes* processes) {
   CLI::App* command =
       app.add_subcommand("bench", "Measure node updates per second against the machine's bounds");
+  command->group("The program itself");
   auto arguments = std::make_shared<BenchArguments>();
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "Print JSON, for comparison between versions");

@@ -23,6 +23,7 @@ void add_info(CLI::App& app);
 /// @param processes  between which it may measure; null where this one is alone
 void add_bench(CLI::App& app, Processes* processes);
 void add_validate(CLI::App& app);
+void add_new(CLI::App& app);
 void add_keys(CLI::App& app);
 /// Hidden: prints what the installation takes from the program. @param program  with all its subcommands
 void add_page(CLI::App& app, const Program& program);

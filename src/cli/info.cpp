@@ -14,7 +14,6 @@
 #include "cli/output.hpp"
 #include "files/text.hpp"
 #include "run/run.hpp"
-#include "run/warnings.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -121,6 +120,22 @@ void add_rupture(const run::RuptureOutlook& rupture, Listing& list) {
   add_lengths(rupture, list);
 }
 
+void add_mesh_choice(const input::Case& config, const run::MeshChoice& mesh, Listing& list) {
+  const bool is_own = mesh.coarsenings == config.plate.coarsenings &&
+                      std::abs(mesh.element_size_m / config.plate.element_size_m - 1) < 1e-6;
+  if (is_own) {
+    list.add("cheapest mesh for this zone", "this one");
+    return;
+  }
+  list.add("cheapest mesh for this zone",
+           fmt::format(
+               "plate.element_size_m = {:.8g}, plate.coarsenings = {}{}: {:.3g} elements in the zone, "
+               "{} nodes",
+               mesh.element_size_m, mesh.coarsenings,
+               input::has_base_body(config) ? fmt::format(", base.coarsenings = {}", mesh.coarsenings) : "",
+               mesh.process_zone_elements, mesh.n_nodes));
+}
+
 void add_stability_of_sliding(const run::Info& info, Listing& list) {
   const auto& w = info.well_posedness;
   list.add("nominal pressure", fmt::format("{:.4g} Pa", w.sliding.pressure_Pa));
@@ -209,10 +224,9 @@ void print_info(const CaseArguments& arguments, const std::optional<run::Sharing
   if (sharing) add_shared(*info.shared, *sharing, list);
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
+  if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);
   for (const auto& note : arguments.notes()) list.text += fmt::format("note: {}\n", note);
-  for (const auto& doubt : info.rupture.doubts) list.text += fmt::format("note: {}\n", doubt);
-  if (!info.rupture.unresolved.empty()) list.text += fmt::format("note: {}\n", info.rupture.unresolved);
-  for (const auto& warning : run::warnings_of_case(config)) list.text += fmt::format("note: {}\n", warning);
+  for (const auto& note : info.notes) list.text += fmt::format("note: {}\n", note);
   print_output(list.text);
 }
 
@@ -222,6 +236,7 @@ void add_info(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "info",
       "Print what follows from a case: wave speeds, step, size, memory, expected time, stability of sliding");
+  command->group("Cases");
   const auto arguments = add_case_arguments(*command);
   auto shared = std::make_shared<SharingArguments>();
   command

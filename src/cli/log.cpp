@@ -13,7 +13,8 @@
 namespace slipfront::cli {
 namespace {
 
-constexpr std::chrono::milliseconds min_interval{100};
+constexpr std::chrono::milliseconds between_drawings{100};
+constexpr std::chrono::seconds between_lines{10};
 /// Nobody need be there to see it.
 void show(const std::string& text) {
   std::fputs(text.c_str(), stderr);
@@ -65,7 +66,7 @@ void Progress::update(std::int64_t step) {
   const std::int64_t tenth = 10 * step_ / total_;
   if (!terminal_ && (tenth <= tenth_ || tenth >= 10)) return;
   const Clock::time_point now = now_();
-  if (now - drawn_ < min_interval) return;
+  if (now - drawn_ < (terminal_ ? Clock::duration(between_drawings) : Clock::duration(between_lines))) return;
   drawn_ = now;
   tenth_ = tenth;
   show(fmt::format("{}{}{}", terminal_ ? clear_line : "", state(now), terminal_ ? "" : "\n"));

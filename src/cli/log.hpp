@@ -10,8 +10,8 @@
 namespace slipfront::cli {
 
 /// Progress of a known number of steps, or of what else `unit` names, on standard error: on a terminal one
-/// line that is redrawn with percentage, rate and time to go; otherwise a plain line every 10 %. Draws at
-/// most 10 times a second; silent where `quiet`.
+/// line with percentage, rate and time to go that is redrawn at most 10 times a second; otherwise a plain
+/// line every 10 %, at most one in 10 s. Silent where `quiet`.
 class Progress {
  public:
   /// @param first  steps that were done before: the rate is that of those since

@@ -78,7 +78,8 @@ void put_first_on_python_path(const fs::path& folder) {
 }  // namespace
 
 void add_python_commands(CLI::App& app) {
-  for (const PythonCommand& command : python_commands) app.add_subcommand(command.name, command.description);
+  for (const PythonCommand& command : python_commands)
+    app.add_subcommand(command.name, command.description)->group("Results, in Python");
 }
 
 bool is_python_command(int argc, char** argv) {

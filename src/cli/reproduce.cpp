@@ -39,6 +39,7 @@ void print_report(const kammer2012::ReproduceReport& report, const std::string& 
 
 void add_reproduce(CLI::App& app) {
   CLI::App* command = app.add_subcommand("reproduce", "Run everything behind the paper and test its claims");
+  command->group("Studies");
   auto options = std::make_shared<kammer2012::ReproduceOptions>();
   auto dir = std::make_shared<std::string>("results");
   auto experiment = std::make_shared<std::string>();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <thread>
 
@@ -28,6 +29,14 @@ struct RunArguments {
   run::SessionOptions session;
 
   const std::string& folder() const { return restart ? *restart : *dir; }
+  /// Without a folder, one beside what else is in the working folder, of the name of the case file.
+  void take_folder_of(const std::string& file) {
+    if (restart || dir) return;
+    if (!std::filesystem::is_regular_file(file))
+      throw UserError("slipfront: {} is no regular file, which would name the folder; give --output DIR",
+                      file);
+    dir = std::filesystem::path(file).stem().string();
+  }
 };
 
 void print_ramp(const motion::Ramp& ramp, double direct_shear_m) {
@@ -51,7 +60,7 @@ void print_rupture(const run::RuptureOutlook& rupture) {
     text += fmt::format(", critical crack {:.3g} m", 2 * *o.griffith_half_length_m);
   if (rupture.process_zone_elements)
     text += fmt::format(", process zone {:.3g} elements", *rupture.process_zone_elements);
-  print("{}\nwhat this lets expect: {}\n", text, o.regime);
+  print("{}\nexpected: {}\n", text, o.regime);
 }
 
 std::string speed_text(const fronts::Front& front, const run::WaveSpeeds& speeds) {
@@ -63,8 +72,7 @@ std::string speed_text(const fronts::Front& front, const run::WaveSpeeds& speeds
   const auto is_triggered = [](const auto& point) {
     return point.speed_kind == fronts::SpeedKind::triggered;
   };
-  return std::ranges::all_of(front.points, is_triggered) ? "nowhere beyond what triggers it"
-                                                         : "speed undefined";
+  return std::ranges::all_of(front.points, is_triggered) ? "did not leave the trigger" : "speed undefined";
 }
 
 void print_summary(const run::Result& result, const run::InitialState& initial, const std::string& dir) {
@@ -142,14 +150,15 @@ void require_fit(const CaseArguments& arguments, const input::Case& config, cons
   }
 }
 
-void run_case(const CaseArguments& arguments, const RunArguments& options) {
+void run_case(const CaseArguments& arguments, RunArguments& options) {
   std::optional<input::Case> config;
   if (!arguments.file.empty()) config = arguments.read();
   const bool compares_nothing = !config && !arguments.set.empty();
-  if (options.restart ? options.dir || options.overwrite || compares_nothing : !config || !options.dir)
+  if (options.restart ? options.dir || options.overwrite || compares_nothing : !config)
     throw UserError(
-        "slipfront: run takes CASE and --output DIR, or --restart DIR, perhaps with CASE to compare; see "
-        "slipfront run --help");
+        "slipfront: run takes CASE, or --restart DIR, perhaps with CASE to compare; see slipfront run "
+        "--help");
+  options.take_folder_of(arguments.file);
   results::ResultFolder folder(options.folder(), run::run_work);
   if (options.restart && !folder.has_unfinished() && run::is_complete(folder.dir())) {
     if (config) run::require_same_case(*config, folder.dir());
@@ -185,11 +194,15 @@ void run_case(const CaseArguments& arguments, const RunArguments& options) {
 
 void add_run(CLI::App& app, Processes* processes) {
   CLI::App* command = app.add_subcommand("run", "Run a case: statics, event, fronts");
+  command->group("Cases");
   const auto arguments = add_case_arguments(*command);
   auto options = std::make_shared<RunArguments>();
   options->session.processes = processes;
   command->get_option("CASE")->required(false);
-  command->add_option("-o,--output", options->dir, "Folder for the results")->type_name("DIR");
+  command
+      ->add_option("-o,--output", options->dir,
+                   "Folder for the results; by default the name of CASE without its ending")
+      ->type_name("DIR");
   command
       ->add_option("--restart", options->restart,
                    "Go on with the run that was left unfinished in this folder, as if it had never stopped")

@@ -335,6 +335,7 @@ void add_interface_step(CLI::App& group) {
 
 void add_study(CLI::App& app) {
   CLI::App* group = app.add_subcommand("study", "Vary the numerical parameters of a case");
+  group->group("Studies");
   group->require_subcommand(1);
   add_convergence(*group);
   add_interface_step(*group);

@@ -8,9 +8,8 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "run/needs.hpp"
+#include "run/notes.hpp"
 #include "run/run.hpp"
-#include "run/snapshot_plan.hpp"
-#include "run/warnings.hpp"
 
 namespace slipfront::cli {
 namespace {
@@ -25,11 +24,8 @@ void validate(const CaseArguments& arguments) {
   }
   std::string text = fmt::format("{}: valid\n", arguments.file);
   auto notes = arguments.notes();
-  for (auto& note : run::warnings_of_case(config)) notes.push_back(std::move(note));
-  for (auto& doubt : rupture.doubts) notes.push_back(std::move(doubt));
-  if (!rupture.unresolved.empty()) notes.push_back(rupture.unresolved);
-  for (auto& note : run::snapshot_plan(config, run::estimated_size(config).step_s).notes)
-    notes.push_back(std::move(note));
+  const double step_s = run::estimated_size(config).step_s;
+  for (auto& note : run::notes_of_case(config, rupture, step_s)) notes.push_back(std::move(note));
   for (const auto& note : notes) text += fmt::format("note: {}\n", note);
   print_output(text);
 }
@@ -38,6 +34,7 @@ void validate(const CaseArguments& arguments) {
 
 void add_validate(CLI::App& app) {
   CLI::App* command = app.add_subcommand("validate", "Check a case file without running it");
+  command->group("Cases");
   const auto arguments = add_case_arguments(*command);
   command->callback([arguments] { validate(*arguments); });
 }

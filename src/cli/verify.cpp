@@ -96,6 +96,7 @@ void run_verifications(const VerifyArguments& arguments) {
 
 void add_verify(CLI::App& app) {
   CLI::App* command = app.add_subcommand("verify", "Solve problems with known answers, compare");
+  command->group("The program itself");
   auto arguments = std::make_shared<VerifyArguments>();
   command->add_option("names", arguments->names, "Which ones; by default all")->type_name("NAME");
   command->add_option("-o,--output", arguments->dir, "Folder for the numbers and curves, a file each")

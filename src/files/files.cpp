@@ -13,6 +13,11 @@
 #include "base/error.hpp"
 
 namespace slipfront::files {
+
+bool is_full(int error) {
+  return error == ENOSPC || error == EDQUOT || error == EFBIG;
+}
+
 namespace {
 
 /// Largest piece handed to the system at once; Linux takes no more than 2 GiB.
@@ -20,9 +25,8 @@ constexpr std::size_t max_bytes_at_once = std::size_t{1} << 30U;
 
 [[noreturn]] void throw_write(const std::filesystem::path& file, const char* what) {
   const int error = errno;
-  const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
   throw WriteError("{}: cannot be {} ({}); {}", file.string(), what, std::strerror(error),
-                   full ? "free space there" : "check that its folder can be written");
+                   is_full(error) ? "free space there" : "check that its folder can be written");
 }
 
 Descriptor open(const std::filesystem::path& path, int flags) {

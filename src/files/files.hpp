@@ -13,6 +13,10 @@
 /// replaced by accident. Every function throws WriteError, naming the file, where the system refuses.
 namespace slipfront::files {
 
+/// Whether a number of errno says that there is no space: on the disk, in a quota, or below a limit of file
+/// sizes.
+bool is_full(int error);
+
 /// Owner of a file descriptor.
 class Descriptor {
  public:

@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "base/error.hpp"
+#include "fronts/fit.hpp"
 #include "fronts/measures.hpp"
+#include "fronts/pauses.hpp"
 #include "fronts/trace.hpp"
 
 namespace slipfront::fronts {
@@ -17,6 +21,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // mm stands for an element of 0.6667 mm).
 constexpr double position_tolerance = 0.02;
 constexpr double position_rounding = 1e-6;
+constexpr double waits = 3.0;  // of a tip, in times that a front of the event takes for its least length
 constexpr double share_from_l_star = 5.0;  // no slipping share nearer to the start
 constexpr double acceleration_half_width_m = 3e-3;
 constexpr int acceleration_side_points = 4;
@@ -197,19 +202,72 @@ record::Traction traction_ahead(const record::SlipRecord& record, const Passage&
           interpolate(behind.p_Pa, ahead.p_Pa, at.fraction)};
 }
 
-/// Length of the contiguous zone that slips behind a tip at `node`, not farther back than `start`.
-double slipping_length_m(std::span<const double> x_m, const SlipTimes& slip, int node, int start,
-                         double time_s, double tolerated_gap_m) {
-  const int back = start < node ? -1 : 1;
-  int rear = node;
-  for (int k = node; k != start;) {
-    k += back;
-    const bool near = k == rear + back || std::abs(x_m[k] - x_m[rear]) <= tolerated_gap_m;
-    if (!near) break;
-    if (is_slipping(slip, k, time_s)) rear = k;
+/// The zone that slips behind a tip, while the tip and the time go on along a path. Places are counted in
+/// nodes from the path's start.
+class SlippingZone {
+ public:
+  /// @param tolerated_gap_m  sticking nodes between slipping ones no farther apart do not end the zone
+  SlippingZone(std::span<const double> x_m, const SlipTimes& slip, const Path& path, double tolerated_gap_m)
+      : x_m_(x_m),
+        slip_(slip),
+        start_(path.nodes.front()),
+        direction_(path.direction),
+        gap_m_(tolerated_gap_m) {
+    const int n = std::abs(path.nodes.back() - start_) + 1;
+    for (int place = 0; place < n; ++place)
+      for (const auto* times_s : {&slip.begin_s[node(place)], &slip.end_s[node(place)]})
+        for (const double time_s : *times_s) changes_.emplace_back(time_s, place);
+    std::ranges::sort(changes_);
   }
-  return std::abs(x_m[node] - x_m[rear]);
-}
+
+  /// Length of the contiguous zone behind a tip at a node, not farther back than the start.
+  /// @pre time_s does not fall from call to call.
+  double length_m(int tip_node, double time_s) {
+    for (; next_ < changes_.size() && changes_[next_].first <= time_s; ++next_) {
+      const int place = changes_[next_].second;
+      is_slipping(slip_, node(place), time_s) ? begin(place) : end(place);
+    }
+    const int tip = std::abs(tip_node - start_);
+    const auto ahead = slipping_.lower_bound(tip);
+    if (ahead == slipping_.begin() || is_gap(*std::prev(ahead), tip)) return 0.0;
+    const int rear = *std::prev(rears_.upper_bound(*std::prev(ahead)));
+    return std::abs(x_m_[tip_node] - x_m_[node(rear)]);
+  }
+
+ private:
+  int node(int place) const { return start_ + direction_ * place; }
+  bool is_gap(int behind, int ahead) const {
+    return ahead - behind > 1 && std::abs(x_m_[node(ahead)] - x_m_[node(behind)]) > gap_m_;
+  }
+  void begin(int place) {
+    if (!slipping_.insert(place).second) return;
+    mark(slipping_.find(place));
+    mark(slipping_.upper_bound(place));
+  }
+  void end(int place) {
+    const auto found = slipping_.find(place);
+    if (found == slipping_.end()) return;
+    rears_.erase(place);
+    mark(slipping_.erase(found));
+  }
+  /// Whether a zone ends at a slipping place.
+  void mark(std::set<int>::const_iterator place) {
+    if (place == slipping_.end()) return;
+    const bool is_rear = place == slipping_.begin() || is_gap(*std::prev(place), *place);
+    if (is_rear)
+      rears_.insert(*place);
+    else
+      rears_.erase(*place);
+  }
+
+  std::span<const double> x_m_;
+  const SlipTimes& slip_;
+  int start_, direction_;
+  double gap_m_;
+  std::vector<std::pair<double, int>> changes_;  // times and places at which slip begins or ends
+  std::size_t next_ = 0;
+  std::set<int> slipping_, rears_;
+};
 
 SlipMode mode_of(const std::vector<FrontPoint>& points, const FrontOptions& options) {
   int defined = 0, crack = 0, pulse = 0;
@@ -226,13 +284,15 @@ SlipMode mode_of(const std::vector<FrontPoint>& points, const FrontOptions& opti
 }
 
 Front measure(const record::SlipRecord& record, const record::StaticState& state, const FirstOnsets& first,
-              const SlipTimes& slip, const Path& path, const FrontOptions& options) {
+              const SlipTimes& slip, const Path& path, const FrontOptions& options, Pauses& pauses) {
   Front front;
   front.direction = path.direction;
   front.end = path.end;
   const Passage tip = passage(record, first, path);
+  SlippingZone zone(record.x_m, slip, path, reach_m(options));
   std::vector<double> speed_m_per_s;
   for (std::size_t k = 0; k < path.nodes.size(); ++k) {
+    pauses.count();
     const int node = path.nodes[k];
     const double run_m = tip.run_m[k];
     const double l_star_m = local_l_star_m(record.x_m, node, options.l_star_m);
@@ -259,8 +319,7 @@ Front measure(const record::SlipRecord& record, const record::StaticState& state
       }
     }
     if (run_m >= share_from_l_star * l_star_m) {
-      point.slipping_share =
-          slipping_length_m(record.x_m, slip, node, path.nodes[0], tip.time_s[k], reach_m(options)) / run_m;
+      point.slipping_share = zone.length_m(node, tip.time_s[k]) / run_m;
     }
     speed_m_per_s.push_back(point.v_tip_m_per_s);
     front.points.push_back(point);
@@ -272,7 +331,28 @@ Front measure(const record::SlipRecord& record, const record::StaticState& state
   return front;
 }
 
+/// See arrest_time_s.
+double longest_wait_s(std::span<const double> x_m, std::span<const double> first_onset_s,
+                      const FrontOptions& options) {
+  if (!options.arrest_time_by_event) return options.arrest_time_s;
+  std::vector<double> spacing_m, slowness_s_per_m;
+  for (std::size_t k = 1; k < x_m.size(); ++k) {
+    spacing_m.push_back(x_m[k] - x_m[k - 1]);
+    const double delay_s = std::abs(first_onset_s[k] - first_onset_s[k - 1]);
+    if (delay_s > 0.0 && std::isfinite(delay_s) && !is_driven(options, x_m[k]) &&
+        !is_driven(options, x_m[k - 1]))
+      slowness_s_per_m.push_back(delay_s / spacing_m.back());
+  }
+  if (slowness_s_per_m.empty()) return options.arrest_time_s;
+  const double length_m = std::max(options.min_length_m, median(spacing_m));
+  return std::max(options.arrest_time_s, waits * length_m * median(slowness_s_per_m));
+}
+
 }  // namespace
+
+double arrest_time_s(const record::SlipRecord& record, const FrontOptions& options) {
+  return longest_wait_s(record.x_m, first_onsets(record).time_s, options);
+}
 
 double energy_density_J_per_m3(const record::Traction& traction, const Elasticity& elasticity) {
   const double nu = elasticity.poissons_ratio;
@@ -296,6 +376,8 @@ std::string_view name(End end) {
       return "meets_front";
     case End::contact_end:
       return "contact_end";
+    case End::record_edge:
+      return "record_edge";
     case End::record_end:
       return "record_end";
   }
@@ -340,11 +422,14 @@ std::vector<Front> find_fronts(const record::SlipRecord& record, const record::S
 
   const FirstOnsets first = first_onsets(record);
   const SlipTimes slip = slip_times(record);
+  FrontOptions tracing = options;
+  tracing.arrest_time_s = longest_wait_s(record.x_m, first.time_s, options);
   std::vector<Front> fronts;
-  for (const Path& path : trace_paths(record.x_m, first.time_s, state.p_s_Pa, record.end_time_s, options)) {
+  Pauses pauses(options.pause);
+  for (const Path& path : trace_paths(record.x_m, first.time_s, state.p_s_Pa, record.end_time_s, tracing)) {
     const double length_m = std::abs(record.x_m[path.nodes.back()] - record.x_m[path.nodes.front()]);
     if (path.nodes.size() < 2 || length_m < options.min_length_m * (1.0 - position_rounding)) continue;
-    fronts.push_back(measure(record, state, first, slip, path, options));
+    fronts.push_back(measure(record, state, first, slip, path, options, pauses));
   }
   std::ranges::stable_sort(fronts, {}, [](const Front& front) { return front.points.front().onset_s; });
   for (std::size_t k = 0; k < fronts.size(); ++k) fronts[k].id = static_cast<int>(k);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,8 @@ struct FrontOptions {
   double l_star_m = 0.67e-3;  ///< length over which the speed is taken; one element where that is longer
   SpeedInterval speed_interval = SpeedInterval::centred;
   double arrest_time_s = 20e-6;  ///< a tip that waits longer than this for its next onset has arrested
+  /// Whether a tip waits longer where the event is slow: see arrest_time_s().
+  bool arrest_time_by_event = false;
   double min_length_m =
       2e-3;                  ///< a shorter path, or a jump ahead no longer than this, is no front of its own
   double crack_share = 0.5;  ///< crack-like above this share of slipping length to distance run
@@ -49,7 +52,15 @@ struct FrontOptions {
   /// The trigger zone, or the nucleation patch itself: no v_tip there, both ends included.
   std::vector<Zone> driven;
   double mode_fraction = 0.8;  ///< of a front's points with a slipping share that must agree on its mode
+  /// Whether contact ends at the first and the last node; beyond those of an experiment nothing is known.
+  bool whole_interface = true;
+  std::function<void()> pause;  ///< called now and then; what it throws ends the search
 };
+
+/// The longest wait of a tip that has not arrested: options.arrest_time_s or, with arrest_time_by_event and
+/// where it is longer, 3 times what a front takes for min_length_m (the median spacing where that is longer)
+/// at the median speed between neighbours. Those that slip at the same time or lie in `driven` do not count.
+double arrest_time_s(const record::SlipRecord& record, const FrontOptions& options);
 
 /// Whether x lies in a zone that is left out.
 inline bool is_excluded(const FrontOptions& o, double x_m) {
@@ -65,6 +76,7 @@ enum class End {
   arrest,       ///< no onset ahead for arrest_time_s
   meets_front,  ///< the interface ahead has slipped already, or slips under another front
   contact_end,  ///< no node ahead, or the next one is out of contact before the event (p_s <= 0)
+  record_edge,  ///< the last place of a record that knows nothing of what is beyond
   record_end,   ///< the record ends while the front may still run
 };
 std::string_view name(End end);
@@ -110,12 +122,12 @@ struct Front {
 /// Finds all fronts in the first onsets of a record and measures them. Sorted by the time of their start.
 ///
 /// Paths. Onsets are taken in the order of time. An onset ahead of a tip belongs to that front if it is the
-/// next node, or no farther than min_length_m, and comes within arrest_time_s of the tip's last one; of
-/// several tips the nearest takes it (of two at the same distance the one that has waited longer). Any other
-/// onset is a nucleation, the start of one front to each side. So a node that slips a little early, late,
-/// long before or never does not split a front. A node that a front jumps over is a point of it if it slips
-/// within arrest_time_s of that; otherwise it is missing in it. Paths shorter than min_length_m are left out
-/// of the result.
+/// next node, or no farther than min_length_m, and comes within arrest_time_s (see arrest_time_s()) of the
+/// tip's last one; of several tips the nearest takes it (of two at the same distance the one that has waited
+/// longer). Any other onset is a nucleation, the start of one front to each side. So a node that slips a
+/// little early, late, long before or never does not split a front. A node that a front jumps over is a point
+/// of it if it slips within arrest_time_s of that; otherwise it is missing in it. Paths shorter than
+/// min_length_m are left out of the result.
 ///
 /// Measures. The tip passes x when the first node at or beyond x on the path slips; between nodes the time
 /// is linear in x. l* at a node is the longest of l_star_m and the elements beside the node.

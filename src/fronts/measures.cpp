@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.hpp"
 
 namespace slipfront::fronts {
 namespace {
 
+constexpr std::size_t most_added_up = 256;
 constexpr int stretch_side_points = 2;
 constexpr std::size_t max_undefined_in_stretch = 2;
 
@@ -26,6 +28,33 @@ double least_squares_slope(std::span<const double> s, std::span<const double> y)
   }
   return sy / ss;
 }
+
+/// Sums of the values before each place: slopes over many points without adding them up for each.
+class SlopeSums {
+ public:
+  SlopeSums(std::span<const double> s, std::span<const double> y) {
+    sums_.reserve(s.size() + 1);
+    Sums sum;
+    sums_.push_back(sum);
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      const long double here = s[k], value = y[k];
+      sum = {sum.s + here, sum.y + value, sum.ss + here * here, sum.sy + here * value};
+      sums_.push_back(sum);
+    }
+  }
+  double slope(std::size_t begin, std::size_t end) const {
+    const Sums &a = sums_[begin], &b = sums_[end];
+    const auto n = static_cast<long double>(end - begin);
+    const long double s = b.s - a.s, y = b.y - a.y;
+    return static_cast<double>((b.sy - a.sy - s * y / n) / (b.ss - a.ss - s * s / n));
+  }
+
+ private:
+  struct Sums {
+    long double s = 0, y = 0, ss = 0, sy = 0;
+  };
+  std::vector<Sums> sums_;
+};
 
 }  // namespace
 
@@ -71,6 +100,7 @@ std::vector<double> local_slopes(std::span<const double> s, std::span<const doub
     return std::ranges::upper_bound(s_defined, place) - s_defined.begin();
   };
 
+  std::optional<SlopeSums> sums;
   std::vector<double> slopes(s.size(), undefined);
   for (std::size_t k = 0; k < s.size(); ++k) {
     const std::ptrdiff_t begin =
@@ -79,7 +109,11 @@ std::vector<double> local_slopes(std::span<const double> s, std::span<const doub
         std::min(n, std::max(index_after(s[k] + half_width), index_after(s[k]) + side_points));
     if (end - begin < 3) continue;
     const auto count = static_cast<std::size_t>(end - begin);
-    slopes[k] = least_squares_slope({s_defined.data() + begin, count}, {y_defined.data() + begin, count});
+    if (count > most_added_up && !sums) sums.emplace(s_defined, y_defined);
+    slopes[k] =
+        count > most_added_up
+            ? sums->slope(static_cast<std::size_t>(begin), static_cast<std::size_t>(end))
+            : least_squares_slope({s_defined.data() + begin, count}, {y_defined.data() + begin, count});
   }
   return slopes;
 }

@@ -30,7 +30,8 @@ DefaultRule multiple_of(const Scale& scale, const std::string& key) {
   const Case paper;
   const double of_paper = std::get<double>(entry_of(key).get(paper));
   const double paper_scale = scale.of(paper);
-  return {key, fmt::format("{:.4g} {}", of_paper / paper_scale, scale.name), [=](const Case& config) {
+  return {key, fmt::format("{:.4g} {}", of_paper / paper_scale, scale.name),
+          [=](const Case& config) -> Value {
             const double of_case = scale.of(config);
             return of_case == paper_scale ? of_paper : of_paper * of_case / paper_scale;
           }};
@@ -45,9 +46,10 @@ double c_S_m_per_s(const Case& config) {
 
 /// Prescribed tractions are all the load there is.
 DefaultRule shear_speed_rule() {
-  return {"loading.shear_speed_over_c_L", "`1e-06`; `0` with loading.method = prestress", [](const Case& c) {
+  return {"loading.shear_speed_over_c_L", "`1e-06`; `0` with loading.method = prestress",
+          [](const Case& c) -> Value {
             return c.loading.method == statics::LoadingMethod::prestress
-                       ? 0
+                       ? 0.0
                        : Case{}.loading.shear_speed_over_c_L;
           }};
 }
@@ -62,8 +64,25 @@ DefaultRule element_size_rule(const Scale& width) {
 DefaultRule l_star_rule(const Scale& width) {
   auto rule = multiple_of(width, "fronts.l_star_m");
   rule.text += ", or element_size_m where that is larger";
-  rule.value = [share = rule.value](const Case& c) { return std::max(share(c), c.plate.element_size_m); };
+  rule.value = [share = rule.value](const Case& c) -> Value {
+    return std::max(std::get<double>(share(c)), c.plate.element_size_m);
+  };
   return rule;
+}
+
+/// The base's is the plate's.
+DefaultRule same_as(const std::string& plates_key, const std::string& key) {
+  return {key, fmt::format("that of `{}`", plates_key),
+          [&of = entry_of(plates_key)](const Case& c) { return of.get(c); }};
+}
+
+/// The plate's upper edge is loaded where the base's lower one is held.
+DefaultRule bottom_rule() {
+  return {"base.bottom", "as `plate.top`, `held` where that is loaded", [](const Case& c) {
+            Case with_bottom = c;
+            with_bottom.base.plate.top = c.plate.top;
+            return entry_of("base.bottom").get(with_bottom);
+          }};
 }
 
 std::vector<DefaultRule> make_default_rules() {
@@ -84,6 +103,10 @@ std::vector<DefaultRule> make_default_rules() {
   add(crossing, {"material.stiffness_damping_s", "event.trigger_ramp_s", "time.end_s", "time.quiet_s",
                  "fronts.arrest_time_s", "output.history_interval_s", "output.energy_interval_s"});
   rules.push_back(l_star_rule(width));
+  // A base is like the plate unless it is said otherwise: no default makes the two sides differ.
+  rules.push_back(same_as("plate.sides", "base.sides"));
+  rules.push_back(bottom_rule());
+  rules.push_back(same_as("material.stiffness_damping_s", "base.stiffness_damping_s"));
   return rules;
 }
 

@@ -10,12 +10,12 @@
 
 namespace slipfront::input {
 
-/// How the default of a key, a number, follows from plate and material. For the paper's plate it is the
+/// How the default of a key follows from plate and material. For the paper's plate it is the
 /// member's own default, to the last bit.
 struct DefaultRule {
   std::string key;   ///< dotted
   std::string text;  ///< "0.05 width_m"
-  std::function<double(const Case&)> value;
+  std::function<Value(const Case&)> value;
 };
 
 /// In an order in which none depends on a later one.

@@ -201,6 +201,11 @@ Entry only_with(Condition condition, Entry entry) {
   return entry;
 }
 
+Entry to_be_set(Entry entry) {
+  entry.has_to_be_set = true;
+  return entry;
+}
+
 using fronts::SpeedInterval;
 using interface::ContactAlgorithm;
 using interface::EventKind;
@@ -298,7 +303,7 @@ void add_plate(EntryList& list) {
           number("plate.element_size_m", at(&Case::plate, &Plate::element_size_m), above(0),
                  "side of the square elements; width and height are whole multiples of it"),
           integer("plate.coarsenings", at(&Case::plate, &Plate::coarsenings), between(0, 20),
-                  "how often the element size doubles on the way up from the interface, see graded.md"),
+                  "how often the element size doubles on the way up from the interface, see mesh.md"),
           only_with(graded(),
                     number("plate.fine_height_m", at(&Case::plate, &Plate::fine_height_m), above(0),
                            "least height of the elements of element_size_m, next to the interface")),
@@ -358,13 +363,13 @@ void add_base(EntryList& list) {
               {{"rigid", BaseKind::rigid}, {"body", BaseKind::body}},
               "what the plate lies on: a rigid plane, or a second body of the plate's width and elements, "
               "see two-bodies.md"),
-          only_with(on_body(),
-                    number("base.height_m", at(&Case::base, &Base::plate, &Plate::height_m), above(0),
-                           "depth of the body below, a whole multiple of plate.element_size_m; to be set")),
+          only_with(on_body(), to_be_set(number(
+                                   "base.height_m", at(&Case::base, &Base::plate, &Plate::height_m), above(0),
+                                   "depth of the body below, a whole multiple of plate.element_size_m"))),
           only_with(
               on_body(),
               integer("base.coarsenings", at(&Case::base, &Base::plate, &Plate::coarsenings), between(0, 20),
-                      "how often its element size doubles away from the interface, see graded.md")),
+                      "how often its element size doubles away from the interface, see mesh.md")),
           only_with(
               base_graded(),
               number("base.fine_height_m", at(&Case::base, &Base::plate, &Plate::fine_height_m), above(0),
@@ -380,24 +385,26 @@ void add_base(EntryList& list) {
                               "its lower edge: held still, free of traction, or with dashpots that let "
                               "waves out")),
       });
-  list.add(Stage::statics,
-           {
-               only_with(on_body(),
-                         number("base.youngs_modulus_Pa",
-                                at(&Case::base, &Base::material, &Material::youngs_modulus_Pa), above(0),
-                                "its Young's modulus; its plane is material.plane; to be set")),
-               only_with(on_body(), number("base.poissons_ratio",
-                                           at(&Case::base, &Base::material, &Material::poissons_ratio),
-                                           strictly_between(-1, 0.5), "its Poisson's ratio; to be set")),
-           });
+  list.add(
+      Stage::statics,
+      {
+          only_with(on_body(),
+                    to_be_set(number("base.youngs_modulus_Pa",
+                                     at(&Case::base, &Base::material, &Material::youngs_modulus_Pa), above(0),
+                                     "its Young's modulus; its plane is material.plane"))),
+          only_with(on_body(), to_be_set(number("base.poissons_ratio",
+                                                at(&Case::base, &Base::material, &Material::poissons_ratio),
+                                                strictly_between(-1, 0.5), "its Poisson's ratio"))),
+      });
   list.add(Stage::motion,
            {
-               only_with(on_body(), number("base.density_kg_per_m3",
-                                           at(&Case::base, &Base::material, &Material::density_kg_per_m3),
-                                           above(0), "its density; to be set")),
+               only_with(on_body(),
+                         to_be_set(number("base.density_kg_per_m3",
+                                          at(&Case::base, &Base::material, &Material::density_kg_per_m3),
+                                          above(0), "its density"))),
                only_with(on_body(), number("base.stiffness_damping_s",
                                            at(&Case::base, &Base::material, &Material::stiffness_damping_s),
-                                           at_least(0), "its Rayleigh damping; to be set")),
+                                           at_least(0), "its Rayleigh damping")),
            });
 }
 
@@ -605,7 +612,8 @@ void add_time(EntryList& list) {
                   between(1, 1e6), "sub-steps per time step there; 1 for none"),
           only_with(graded(), flag("time.local_steps", at(&Case::time, &TimeStepping::local_steps),
                                    "larger elements take larger time steps")),
-          number("time.end_s", at(&Case::time, &TimeStepping::end_s), above(0), "end of the event"),
+          number("time.end_s", at(&Case::time, &TimeStepping::end_s), above(0),
+                 "the event ends, unless it has come to rest before"),
           number("time.quiet_s", at(&Case::time, &TimeStepping::quiet_s), above_or_infinite(0),
                  "the event ends earlier when no node has slipped for this long"),
       });
@@ -622,7 +630,8 @@ void add_fronts(EntryList& list) {
               {{"centred", SpeedInterval::centred}, {"approach", SpeedInterval::approach}},
               "where l* lies: centred at the node, or from where t_d, p_d are taken to the node"),
           number("fronts.arrest_time_s", at(&Case::fronts, &FrontSettings::arrest_time_s), above(0),
-                 "a tip that waits longer than this for its next onset has arrested"),
+                 "a tip that waits longer than this for its next onset has arrested; where that is longer, "
+                 "than 3 times what a front takes for min_length_m at the median speed"),
           number("fronts.min_length_m", at(&Case::fronts, &FrontSettings::min_length_m), at_least(0),
                  "a shorter path is not a front of its own"),
           number("fronts.crack_share", at(&Case::fronts, &FrontSettings::crack_share), between(0, 1),
@@ -719,17 +728,16 @@ const Magnitudes& magnitudes_of(std::string_view unit) {
   return found == all.end() ? all.back() : *found;
 }
 
-std::string unit_of(std::string_view key) {
+NameAndUnit parts_of(std::string_view key) {
   static constexpr std::array<std::string_view, 9> units = {"m", "m2", "m3", "s", "s2", "Pa", "kg", "N", "J"};
-  std::string leaf = leaf_of(std::string(key));
-  if (leaf.rfind("mu_", 0) == 0) return "";
-  std::string unit;
+  NameAndUnit parts{leaf_of(std::string(key)), ""};
+  auto& [name, unit] = parts;
+  if (name.rfind("mu_", 0) == 0) return parts;
   bool after_unit = false;  // of the part to the right
   while (true) {
-    const std::size_t bar = leaf.rfind('_');
+    const std::size_t bar = name.rfind('_');
     if (bar == std::string::npos) break;
-    const std::string part = leaf.substr(bar + 1);
-    leaf.resize(bar);
+    const std::string part = name.substr(bar + 1);
     if (part == "per" && after_unit) {
       unit = "/" + unit;
       after_unit = false;
@@ -739,8 +747,14 @@ std::string unit_of(std::string_view key) {
     } else {
       break;
     }
+    name.resize(bar);
   }
-  return unit.rfind('/', 0) == 0 ? "1" + unit : unit;
+  if (unit.rfind('/', 0) == 0) unit = "1" + unit;
+  return parts;
+}
+
+std::string unit_of(std::string_view key) {
+  return parts_of(key).unit;
 }
 
 const std::vector<LawEntries>& friction_laws() {

@@ -69,11 +69,19 @@ struct Entry {
   /// The setting without which the key does nothing, and may not be set.
   std::optional<Condition> only_with = {};
   Stage stage = Stage::mesh;
+  /// Whether a case to which it applies has to set it: no default is meant.
+  bool has_to_be_set = false;
 };
 
 /// The unit that a key ends with: "m" for plate.width_m, "kg/m3" for density_kg_per_m3; empty for a plain
 /// number. Friction coefficients, mu..., have none.
 std::string unit_of(std::string_view key);
+
+/// The last part of a key: "width" and "m" of plate.width_m.
+struct NameAndUnit {
+  std::string name, unit;
+};
+NameAndUnit parts_of(std::string_view key);
 
 /// A friction law of the registry and the keys of its parameters.
 struct LawEntries {

@@ -48,14 +48,14 @@ void check_element_size(const Case& config) {
   const double h = plate.element_size_m, columns = plate.width_m / h + 1, rows = plate.height_m / h + 1;
   const bool in_parts = can_be_held_in_parts(config);
   if ((in_parts ? std::max(columns, rows) : columns * rows) > max_nodes)
-    throw UserError("{} is {} m; that makes more than {:.3g} nodes{}, choose a larger one{}", element_size, h,
-                    max_nodes, in_parts ? " in a row or a column" : "",
+    throw UserError("{} is {:.12g} m; that makes more than {:.3g} nodes{}, choose a larger one{}",
+                    element_size, h, max_nodes, in_parts ? " in a row or a column" : "",
                     is_tilted(config) ? "; under prescribed tractions several processes can share more" : "")
         .about("plate.width_m", "plate.height_m");
   const double shorter_m = std::min(plate.width_m, plate.height_m);
   if (h > shorter_m)
-    throw UserError("{} is {} m; it must be at most the plate's shorter side, {} m", element_size, h,
-                    shorter_m)
+    throw UserError("{} is {:.12g} m; it must be at most the plate's shorter side, {:.12g} m", element_size,
+                    h, shorter_m)
         .about("plate.width_m", "plate.height_m");
 }
 
@@ -95,18 +95,19 @@ void check_tilt(const Case& config) {
         "= prestress",
         Key("loading.tilt_left_m"), Key("loading.tilt_right_m"), Key("loading.method"));
   if (tilt_m >= plate.height_m)
-    throw UserError("{} and {:leaf} go up to {} m; they must be less than {}, {} m",
+    throw UserError("{} and {:leaf} go up to {:.12g} m; they must be less than {}, {:.12g} m",
                     Key("loading.tilt_left_m"), Key("loading.tilt_right_m"), tilt_m, Key("plate.height_m"),
                     plate.height_m);
   if (loading.edge_margin_m >= 0.5 * plate.width_m)
-    throw UserError("{} is {} m; it must be less than half of {}, {} m", Key("loading.edge_margin_m"),
-                    loading.edge_margin_m, Key("plate.width_m"), 0.5 * plate.width_m);
+    throw UserError("{} is {:.12g} m; it must be less than half of {}, {:.12g} m",
+                    Key("loading.edge_margin_m"), loading.edge_margin_m, Key("plate.width_m"),
+                    0.5 * plate.width_m);
 }
 
 void check_trigger_zone(const Case& config) {
   const bool counts = is_tilted(config) || interface::is_at_edge(config.event);
   if (counts && config.trigger.zone_m > config.plate.width_m)
-    throw UserError("{} is {} m; it must be at most {}, {} m", Key("event.trigger_zone_m"),
+    throw UserError("{} is {:.12g} m; it must be at most {}, {:.12g} m", Key("event.trigger_zone_m"),
                     config.trigger.zone_m, Key("plate.width_m"), config.plate.width_m);
 }
 
@@ -148,9 +149,9 @@ void check_base(const Case& config, const Document& document) {
     throw UserError("{} = fillet leaves nodes that face none of {} = body; choose none or relief",
                     Key("plate.corner"), kind);
   // The defaults are those of the paper's plate, which nobody means for a base.
-  for (const char* key : {"base.youngs_modulus_Pa", "base.poissons_ratio", "base.density_kg_per_m3",
-                          "base.stiffness_damping_s", "base.height_m"})
-    if (!document.find(key)) throw UserError("{} = body needs {}; set it", kind, Key(key));
+  for (const Entry& entry : common_entries())
+    if (entry.has_to_be_set && entry.only_with->holds(config) && !document.find(entry.key))
+      throw UserError("{} needs {}; set it", entry.only_with->setting, Key(entry.key));
 }
 
 /// Whether a weakened patch can do nothing, whatever the place; where friction varies, the nodes decide.
@@ -175,12 +176,12 @@ void check_nucleation(const Case& config) {
   const double width_m = config.plate.width_m, reach_m = n.half_length_m + n.taper_m;
   const Key half_length("nucleation.half_length_m"), taper("nucleation.taper_m"), width("plate.width_m");
   if (n.x_m < 0 || n.x_m > width_m)
-    throw UserError("{} is {} m; it must be on the interface, at 0 to {} m", Key("nucleation.x_m"), n.x_m,
-                    width_m)
+    throw UserError("{} is {:.12g} m; it must be on the interface, at 0 to {:.12g} m", Key("nucleation.x_m"),
+                    n.x_m, width_m)
         .about(width);
   if (reach_m <= 0) throw UserError("{} and {} are both 0; give the patch a length", half_length, taper);
   if (config.plate.sides == Sides::periodic && 2 * reach_m > width_m)
-    throw UserError("{} + {:leaf} is {} m; with {} = periodic it must be at most half of {}, {} m",
+    throw UserError("{} + {:leaf} is {:.12g} m; with {} = periodic it must be at most half of {}, {:.12g} m",
                     half_length, taper, reach_m, Key("plate.sides"), width, 0.5 * width_m);
   if (n.form == interface::NucleationForm::weakened && never_weakens(config))
     throw UserError(
@@ -204,8 +205,8 @@ void check_friction_along_x(const Case& config) {
 
 void check_fronts(const FrontSettings& fronts, const mesh::Plate& plate) {
   if (fronts.l_star_m >= plate.width_m)
-    throw UserError("{} is {} m; it must be less than {}, {} m", Key("fronts.l_star_m"), fronts.l_star_m,
-                    Key("plate.width_m"), plate.width_m);
+    throw UserError("{} is {:.12g} m; it must be less than {}, {:.12g} m", Key("fronts.l_star_m"),
+                    fronts.l_star_m, Key("plate.width_m"), plate.width_m);
   if (fronts.pulse_share > fronts.crack_share)
     throw UserError("{} is {}; it must be at most {}, {}", Key("fronts.pulse_share"), fronts.pulse_share,
                     Key("fronts.crack_share"), fronts.crack_share);
@@ -246,10 +247,11 @@ void check_probes(const Case& config) {
   const double from_m = has_base_body(config) ? -config.base.plate.height_m : 0;
   for (std::size_t k = 0; k < x_m.size(); ++k) {
     if (x_m[k] < 0 || x_m[k] > config.plate.width_m)
-      throw UserError("{} has {} m; it must be in the plate, at 0 to {} m", x, x_m[k], config.plate.width_m)
+      throw UserError("{} has {:.12g} m; it must be in the plate, at 0 to {:.12g} m", x, x_m[k],
+                      config.plate.width_m)
           .about("plate.width_m");
     if (y_m[k] < from_m || y_m[k] > config.plate.height_m)
-      throw UserError("{} has {} m; it must be in the {}, at {} to {} m", y, y_m[k],
+      throw UserError("{} has {:.12g} m; it must be in the {}, at {} to {:.12g} m", y, y_m[k],
                       from_m < 0 ? "two bodies" : "plate", from_m, config.plate.height_m)
           .about("plate.height_m", "base.height_m");
   }

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/caller.hpp"
 #include "base/error.hpp"
 #include "files/text.hpp"
 #include "input/default_rules.hpp"
@@ -62,6 +63,22 @@ std::optional<std::string> nearest(const std::string& text, const std::vector<st
     }
   }
   return best;
+}
+
+/// A key as who knows no more than its words may write it: without "_" and the unit at its end.
+std::string plain_key(const std::string& key) {
+  std::string plain = parts_of(key).name;
+  std::erase(plain, '_');
+  return table_of(key) + "." + plain;
+}
+
+/// The key nearest to one that is not known, if it is near enough to be meant.
+std::optional<std::string> nearest_key(const std::string& key, const std::vector<std::string>& keys) {
+  std::vector<std::string> plain;
+  for (const std::string& each : keys) plain.push_back(plain_key(each));
+  const auto found = nearest(plain_key(key), plain);
+  if (!found) return std::nullopt;
+  return keys[static_cast<std::size_t>(std::ranges::find(plain, *found) - plain.begin())];
 }
 
 const Entry* find_entry(const std::vector<Entry>& entries, const std::string& key) {
@@ -114,7 +131,7 @@ std::string_view kind_name(Kind kind) {
 // ---------------------------------------------------------------------------------------------------
 
 std::string place_of(const Override& override) {
-  return files::shortened(fmt::format("--set {}={}", override.first, override.second));
+  return files::shortened(for_caller("--set {}={}", "{} = {}", override.first, override.second));
 }
 
 bool takes_bare_text(const std::string& key) {
@@ -246,9 +263,16 @@ std::optional<std::string> key_of_short_name(const std::string& key) {
                       entry.key);
     keys.push_back(entry.key);
   }
-  if (const auto guess = nearest(key, keys))
-    throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, *guess);
-  throw UserError("{}: unknown key {}; `slipfront keys` lists all keys", setting.place,
+  const auto guess = nearest_key(key, keys);
+  // A parameter of another law, but for its unit, before one of this law that is only alike.
+  if (!guess || plain_key(*guess) != plain_key(key))
+    for (const LawEntries& law : friction_laws())
+      for (const Entry& entry : law.entries)
+        if (plain_key(entry.key) == plain_key(key))
+          throw UserError("{}: unknown key {}; did you mean {} of the friction law {}?", setting.place, key,
+                          entry.key, law.name);
+  if (guess) throw UserError("{}: unknown key {}; did you mean {}?", setting.place, key, *guess);
+  throw UserError("{}: unknown key {}; the command `slipfront keys` lists all", setting.place,
                   files::shortened(key));
 }
 
@@ -257,7 +281,7 @@ std::optional<std::string> key_of_short_name(const std::string& key) {
   const std::string value = entry.kind == Kind::numbers ? "[1e-5, 2e-5]"
                             : entry.kind == Kind::texts ? "[\"left\", \"right\"]"
                                                         : toml_text(default_value);
-  const std::string example = setting.is_override() ? fmt::format("--set {}={}", key, value)
+  const std::string example = setting.is_override() ? for_caller("--set {}={}", "{} = {}", key, value)
                                                     : fmt::format("{} = {}", leaf_of(key), value);
   throw UserError("{}: {} must be {}, is {}; write for example {}", setting.place, key, kind_name(entry.kind),
                   type_name(setting.value), example);
@@ -385,12 +409,49 @@ std::string reference_row(const Entry& entry, const Case& defaults) {
   for (const char c : entry.help) help += c == '|' ? std::string("\\|") : std::string(1, c);
   if (entry.only_with) help += "; only with " + entry.only_with->setting.text;
   const DefaultRule* rule = default_rule_of(entry.key);
+  const std::string standard = entry.has_to_be_set ? "none: to be set"
+                               : rule              ? rule->text
+                                                   : fmt::format("`{}`", toml_text(entry.get(defaults)));
   return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", leaf_of(entry.key), type, unit_of(entry.key),
-                     rule ? rule->text : fmt::format("`{}`", toml_text(entry.get(defaults))), allowed, help);
+                     standard, allowed, help);
 }
 
 constexpr std::string_view reference_head =
     "| key | type | unit | default | allowed | meaning |\n|---|---|---|---|---|---|\n";
+
+using Wanted = std::function<bool(const Entry&)>;
+
+/// Rows of the entries that are wanted below a heading; empty where none is.
+std::string section(const std::string& heading, const std::vector<Entry>& entries, const Case& defaults,
+                    const Wanted& is_wanted) {
+  std::string rows;
+  for (const Entry& entry : entries)
+    if (is_wanted(entry)) rows += reference_row(entry, defaults);
+  return rows.empty() ? "" : heading + std::string(reference_head) + rows;
+}
+
+/// Sections of the entries that are wanted.
+std::string reference_of(const Wanted& is_wanted) {
+  std::vector<std::string> tables = tables_of(common_entries());
+  tables.insert(tables.begin(), "");
+  std::string text;
+  for (const std::string& table : tables) {
+    const auto is_of_table = [&](const Entry& entry) {
+      return table_of(entry.key) == table && is_wanted(entry);
+    };
+    const auto between = [&] { return text.empty() ? "" : "\n"; };
+    text += section(table.empty() ? "" : fmt::format("{}## [{}]\n\n", between(), table), common_entries(),
+                    Case{}, is_of_table);
+    if (table != "friction") continue;
+    for (const LawEntries& law : friction_laws()) {
+      Case of_law;
+      of_law.friction = law.defaults;
+      text += section(fmt::format("{}With `law = \"{}\"` ({}):\n\n", between(), law.name, law.help),
+                      law.entries, of_law, is_wanted);
+    }
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -485,7 +546,7 @@ CaseFile::CaseFile(const CaseText& text, const std::vector<Override>& overrides)
 
 void CaseFile::require_a_key() const {
   if (document_.settings.empty())
-    throw UserError("{}: sets no key; write at least one, `slipfront keys` lists them", name_);
+    throw UserError("{}: sets no key; write at least one; the command `slipfront keys` lists all", name_);
 }
 
 void CaseFile::read(const std::filesystem::path& folder, const std::vector<Override>& overrides) {
@@ -531,31 +592,23 @@ std::string schema_reference() {
       "time width_m / c_S\nin which a shear wave crosses the plate (of two bodies with the slower one's "
       "c_S). "
       "The factors give the paper's plate,\nwidth 0.2 m and c_S 889 m/s, the values chosen for it: an end at "
-      "250 us, a quiet time of 30 us, l* = 0.67 mm and so on.\n`case.resolved.toml` beside the results has "
+      "1.1 ms, a quiet time of 30 us, l* = 0.67 mm and so on.\n`case.resolved.toml` beside the results has "
       "the "
       "values.\n\n";
-  text += reference_head;
-  const Case defaults;
-  std::string open_table;
-  const auto close_table = [&] {
-    if (open_table != "friction") return;
-    for (const LawEntries& law : friction_laws()) {
-      Case of_law;
-      of_law.friction = law.defaults;
-      text += fmt::format("\nWith `law = \"{}\"` ({}):\n\n{}", law.name, law.help, reference_head);
-      for (const Entry& parameter : law.entries) text += reference_row(parameter, of_law);
-    }
-  };
-  for (const Entry& entry : common_entries()) {
-    const std::string table = table_of(entry.key);
-    if (table != open_table) {
-      close_table();
-      text += fmt::format("\n## [{}]\n\n{}", table, reference_head);
-    }
-    open_table = table;
-    text += reference_row(entry, defaults);
-  }
-  return text;
+  return text + reference_of([](const Entry&) { return true; });
+}
+
+std::string schema_reference_of(const std::string& part) {
+  std::string text =
+      reference_of([&](const Entry& entry) { return entry.key == part || table_of(entry.key) == part; });
+  if (!text.empty()) return text;
+  std::vector<std::string> keys = tables_of(common_entries());
+  for (const Entry& entry : common_entries()) keys.push_back(entry.key);
+  for (const LawEntries& law : friction_laws())
+    for (const Entry& entry : law.entries) keys.push_back(entry.key);
+  const auto guess = nearest_key(part, keys);
+  throw UserError("slipfront: keys {}: is no table and no key; {}", files::shortened(part),
+                  guess ? fmt::format("did you mean {}?", *guess) : "slipfront keys lists all");
 }
 
 std::string CaseFile::place_of_key(const std::string& key) const {

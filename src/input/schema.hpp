@@ -73,5 +73,7 @@ std::string to_toml(const Case& config);
 
 /// Reference page of all keys (Markdown): per table a row per key with type, unit, default, range, meaning.
 std::string schema_reference();
+/// The part of it on a table, "friction", or a key, "friction.mu_k". @throws UserError where there is none
+std::string schema_reference_of(const std::string& part);
 
 }  // namespace slipfront::input

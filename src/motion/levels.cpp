@@ -28,7 +28,7 @@ std::vector<bool> cells_next_to_interface(const mesh::Mesh& mesh, int rows) {
 
 /// Least damping beta_R with which blocks take steps of their own, in steps of the lowest one. Undamped, the
 /// coupling feeds resonant modes, which grow by some thousandths in a step; 0.02 was enough wherever it was
-/// tried (docs/graded.md).
+/// tried (docs/mesh.md).
 constexpr double min_damping_in_steps = 0.05;
 
 /// The block to which each cell belongs; the transition between two blocks belongs to the lower one. All

@@ -26,7 +26,6 @@
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
 #include "run/session.hpp"
-#include "run/warnings.hpp"
 #include "solid/operator.hpp"
 #include "stability/rupture.hpp"
 #include "stability/verdict.hpp"
@@ -180,7 +179,7 @@ double stable_step_s(const input::CaseFile& given, double element_size_m) {
 }
 
 void bind_speeds(nb::module_& module) {
-  nb::class_<run::WaveSpeeds>(module, "WaveSpeeds")
+  nb::class_<run::WaveSpeeds>(module, "WaveSpeeds", "Wave speeds of a material.")
       .def_ro("c_L_m_per_s", &run::WaveSpeeds::c_L, "longitudinal, in the plane chosen")
       .def_ro("c_S_m_per_s", &run::WaveSpeeds::c_S, "shear")
       .def_ro("c_R_m_per_s", &run::WaveSpeeds::c_R, "Rayleigh, on a free surface");
@@ -188,7 +187,7 @@ void bind_speeds(nb::module_& module) {
 
 void bind_verdict(nb::module_& module) {
   using W = stability::WellPosedness;
-  nb::class_<W>(module, "WellPosedness")
+  nb::class_<W>(module, "WellPosedness", "Growth of small waves on uniform sliding: docs/stability.md.")
       .def_ro("statement", &W::statement, "the verdict, one plain line")
       .def_ro("unbounded", &W::unbounded, "growth has no bound as the wavelength goes to zero: ill-posed")
       .def_ro("grid_wavelength_m", &W::grid_wavelength_m, "2 h, the shortest that the mesh carries")
@@ -245,7 +244,13 @@ void bind_rupture(nb::module_& module) {
 
 void bind_info(nb::module_& module) {
   using I = run::Info;
-  nb::class_<I>(module, "Info")
+  using M = run::MeshChoice;
+  nb::class_<M>(module, "MeshChoice", "A mesh for a case's process zone.")
+      .def_ro("element_size_m", &M::element_size_m)
+      .def_ro("coarsenings", &M::coarsenings, "of the plate, and of a base")
+      .def_ro("process_zone_elements", &M::process_zone_elements)
+      .def_ro("n_nodes", &M::n_nodes);
+  nb::class_<I>(module, "Info", "What a case needs and what is to be expected of it, before it runs.")
       .def_ro("speeds", &I::speeds, "of the plate")
       .def_ro("base_speeds", &I::base_speeds, "of the body below; None on the rigid plane")
       .def_ro("generalised_rayleigh_speed_m_per_s", &I::generalised_rayleigh_speed_m_per_s,
@@ -263,8 +268,11 @@ void bind_info(nb::module_& module) {
       .def_ro("expected_s", &I::expected_s, "wall time, at the rate measured on the spot")
       .def_ro("node_updates_per_s", &I::node_updates_per_s, "measured on the spot")
       .def_ro("rupture", &I::rupture, "what is to be expected of it")
-      .def_ro("well_posedness", &I::well_posedness,
-              "of slow uniform sliding at the plate's nominal pressure");
+      .def_ro("cheapest_mesh", &I::cheapest_mesh,
+              "for arrivals to about 1 %, docs/mesh.md; None without a process zone")
+      .def_ro("well_posedness", &I::well_posedness, "of slow uniform sliding at the plate's nominal pressure")
+      .def_ro("notes", &I::notes,
+              "what is hardly meant, decides physics unasked, or keeps it from a rupture");
 }
 
 }  // namespace
@@ -294,7 +302,6 @@ void bind_cases(nb::module_& module) {
           "wave_speeds", [](const C& c) { return run::wave_speeds(c.config().material); }, "of the plate")
       .def_prop_ro("static_coefficient",
                    [](const C& c) { return interface::static_coefficient(c.config().friction); })
-      .def_prop_ro("warnings", [](const C& c) { return run::warnings_of_case(c.config()); })
       .def(
           "info", [](const C& c) { return at_its_place(c, [&] { return run::info(c.config()); }); },
           nb::call_guard<nb::gil_scoped_release>(), "What follows from the case without solving anything.")

@@ -2,6 +2,7 @@
 #include <exception>
 #include <new>
 
+#include "base/caller.hpp"
 #include "base/error.hpp"
 #include "python/bindings.hpp"
 
@@ -36,6 +37,7 @@ void translate(const std::exception_ptr& thrown, void* /*payload*/) {
 
 void bind_errors(nb::module_& /*module*/) {
   nb::register_exception_translator(translate);
+  set_caller(Caller::python);
 }
 
 }  // namespace slipfront::python

@@ -64,13 +64,14 @@ void bind_options(nb::module_& module) {
   nb::enum_<fronts::SpeedInterval>(module, "SpeedInterval", "Where l* lies against the node at x.")
       .value("centred", fronts::SpeedInterval::centred)
       .value("approach", fronts::SpeedInterval::approach);
-  const FrontOptions standard;
   nb::class_<FrontOptions>(module, "FrontOptions",
                            "How fronts are found and measured; lengths in m, times in s.")
       .def(nb::init<>())
       .def_rw("l_star_m", &FrontOptions::l_star_m)
       .def_rw("speed_interval", &FrontOptions::speed_interval)
       .def_rw("arrest_time_s", &FrontOptions::arrest_time_s)
+      .def_rw("arrest_time_by_event", &FrontOptions::arrest_time_by_event)
+      .def_rw("whole_interface", &FrontOptions::whole_interface)
       .def_rw("min_length_m", &FrontOptions::min_length_m)
       .def_rw("crack_share", &FrontOptions::crack_share)
       .def_rw("pulse_share", &FrontOptions::pulse_share)
@@ -105,9 +106,15 @@ record::SlipRecord record_of(const Values& x_m, const Values& onset_s, double en
   return record;
 }
 
+/// Lets a signal's handler, such as that of Ctrl-C, end the work by its exception.
+void interruptible() {
+  if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
 std::vector<Front> find_fronts(const Values& x_m, const Values& onset_s, const Values& t_s_Pa,
                                const Values& p_s_Pa, double end_time_s, double resolution_s,
-                               const FrontOptions& options) {
+                               FrontOptions options) {
+  options.pause = interruptible;
   const auto state = to_state(x_m, t_s_Pa, p_s_Pa);
   return fronts::find_fronts(record_of(x_m, onset_s, end_time_s, resolution_s), state, options);
 }
@@ -115,7 +122,8 @@ std::vector<Front> find_fronts(const Values& x_m, const Values& onset_s, const V
 std::vector<Front> find_fronts_in_history(const Values& time_s, const Values& x_m,
                                           const Rows& slip_rate_m_per_s, const Rows& t_Pa, const Rows& p_Pa,
                                           const Values& t_s_Pa, const Values& p_s_Pa,
-                                          double threshold_m_per_s, const FrontOptions& options) {
+                                          double threshold_m_per_s, FrontOptions options) {
+  options.pause = interruptible;
   const auto state = to_state(x_m, t_s_Pa, p_s_Pa);
   const auto history = to_history(time_s, x_m, slip_rate_m_per_s, t_Pa, p_Pa);
   const auto record = to_record(history, threshold_m_per_s, options.l_star_m);

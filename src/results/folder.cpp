@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/caller.hpp"
 #include "base/error.hpp"
 
 namespace slipfront::results {
@@ -35,7 +36,14 @@ constexpr std::array<const char*, 7> unlisted_results = {"case.resolved.toml", "
                                                          "fronts.csv",         "static.csv", "energy.csv",
                                                          "fields.vtkhdf"};
 
+std::string overwrite_option() {
+  return for_caller("--overwrite", "overwrite=True");
+}
+
 [[noreturn]] void throw_unusable(const fs::path& dir, const char* what, int error) {
+  if (files::is_full(error))
+    throw WriteError("output folder {}: cannot be {} ({}); free space there", dir.string(), what,
+                     std::strerror(error));
   throw UserError("output folder {}: cannot be {} ({}); choose another place", dir.string(), what,
                   std::strerror(error));
 }
@@ -278,10 +286,10 @@ void ResultFolder::lock() {
       break;  // else its holder removed it while we opened it
   }
   const std::string text = host_and_process() + "\n";
-  if (::ftruncate(lock_.get(), 0) != 0 ||
-      ::pwrite(lock_.get(), text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
-    throw_unusable(dir_, "written", errno);
-  }
+  if (::ftruncate(lock_.get(), 0) != 0) throw_unusable(dir_, "written", errno);
+  const auto n_written = ::pwrite(lock_.get(), text.data(), text.size(), 0);
+  if (n_written != static_cast<ssize_t>(text.size()))
+    throw_unusable(dir_, "written", n_written < 0 ? errno : ENOSPC);
 }
 
 bool ResultFolder::has_results() const {
@@ -299,21 +307,20 @@ void ResultFolder::require_empty(bool overwrite, bool resumes) const {
   const bool goes_on = resumes && has_unfinished();
   if (is_under_way(unfinished()) && !goes_on) {
     const std::string work = read_line(state() / kind_name), command = work.substr(0, work.find(" with "));
-    throw UserError(
-        "output folder {}: holds unfinished work; go on with it ({}) or pass --overwrite to begin anew",
-        dir_.string(),
-        command == "run" ? "slipfront run --restart"
-                         : fmt::format("slipfront {}, of the same program", command));
+    throw UserError("output folder {}: holds unfinished work; go on with it ({}) or pass {} to begin anew",
+                    dir_.string(),
+                    command == "run" ? for_caller("slipfront run --restart", "slipfront.resume")
+                                     : fmt::format("slipfront {}, of the same program", command),
+                    overwrite_option());
   }
   if (has_results() && goes_on)
     throw UserError(
         "output folder {}: holds results, and unfinished work that is to replace them; choose another or "
-        "pass --overwrite to go on with it",
-        dir_.string());
+        "pass {} to go on with it",
+        dir_.string(), overwrite_option());
   if (has_results())
-    throw UserError(
-        "output folder {}: is not empty; choose another or pass --overwrite to replace a run's results",
-        dir_.string());
+    throw UserError("output folder {}: is not empty; choose another or pass {} to replace a run's results",
+                    dir_.string(), overwrite_option());
 }
 
 void ResultFolder::begin() {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -13,6 +14,7 @@
 #include "mesh/node_columns.hpp"
 #include "motion/stepper.hpp"
 #include "run/choices.hpp"
+#include "run/notes.hpp"
 #include "run/run.hpp"
 #include "run/subdomains.hpp"
 #include "statics/plate_solver.hpp"
@@ -28,18 +30,47 @@ double mean_pressure_Pa(const input::Case& config, const mesh::Mesh& mesh) {
   return std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
 }
 
-/// Nodes where one of the three numbers by which friction enters the growth of waves is least or largest.
-std::set<std::size_t> extreme_nodes(const std::vector<interface::FrictionLaw>& laws, double pressure_Pa,
+/// Tractions before the event; under a tilt those of the nominal pressure when the weakest node slips.
+record::StaticState expected_tractions(const input::Case& config, const mesh::Mesh& mesh,
+                                       const std::vector<interface::FrictionLaw>& laws) {
+  if (is_prestressed(config)) return prescribed_tractions(config.prestress, mesh);
+  double least_mu = std::numeric_limits<double>::infinity();
+  for (const auto& law : laws) least_mu = std::min(least_mu, interface::static_coefficient(law));
+  const double p_Pa = nominal_pressure_Pa(config);
+  return {interface_x_m(mesh), std::vector(laws.size(), least_mu * p_Pa), std::vector(laws.size(), p_Pa)};
+}
+
+/// Nodes that a front can break: t is short of the strength by at most so many times the largest stress drop
+/// as a barrier is; all where t drops nowhere.
+std::vector<std::size_t> nodes_that_can_slip(const input::Case& config, const mesh::Mesh& mesh,
+                                             const std::vector<interface::FrictionLaw>& laws) {
+  const auto s = expected_tractions(config, mesh, laws);
+  double largest_drop_Pa = 0;
+  for (std::size_t k = 0; k < laws.size(); ++k)
+    largest_drop_Pa = std::max(largest_drop_Pa,
+                               std::abs(s.t_s_Pa[k]) - interface::kinetic_coefficient(laws[k]) * s.p_s_Pa[k]);
+  std::vector<std::size_t> nodes;
+  for (std::size_t k = 0; k < laws.size(); ++k) {
+    const double short_Pa = interface::static_coefficient(laws[k]) * s.p_s_Pa[k] - std::abs(s.t_s_Pa[k]);
+    if (largest_drop_Pa <= 0 || short_Pa <= stability::barrier_S * largest_drop_Pa) nodes.push_back(k);
+  }
+  return nodes;
+}
+
+/// Of some nodes those where one of the three numbers by which friction enters the growth of waves is least
+/// or largest.
+std::set<std::size_t> extreme_nodes(const std::vector<std::size_t>& among,
+                                    const std::vector<interface::FrictionLaw>& laws, double pressure_Pa,
                                     const interface::Regularisation& regularisation) {
   std::vector<stability::Sliding> sliding;
-  for (const auto& law : laws)
-    sliding.push_back(stability::uniform_sliding(law, 0, pressure_Pa, regularisation));
+  for (const auto node : among)
+    sliding.push_back(stability::uniform_sliding(laws[node], 0, pressure_Pa, regularisation));
   std::set<std::size_t> nodes;
   for (const auto member :
        {&stability::Sliding::mu, &stability::Sliding::slope_s_per_m, &stability::Sliding::slip_slope_per_m}) {
     for (const auto at :
          {std::ranges::min_element(sliding, {}, member), std::ranges::max_element(sliding, {}, member)})
-      nodes.insert(static_cast<std::size_t>(at - sliding.begin()));
+      nodes.insert(among[static_cast<std::size_t>(at - sliding.begin())]);
   }
   return nodes;
 }
@@ -62,7 +93,8 @@ void add_well_posedness(const input::Case& config, const mesh::Mesh& mesh, Info&
     info.well_posedness = of(config.friction);
     return;
   }
-  for (const auto node : extreme_nodes(laws, pressure_Pa, config.regularisation)) {
+  const auto can_slip = nodes_that_can_slip(config, mesh, laws);
+  for (const auto node : extreme_nodes(can_slip, laws, pressure_Pa, config.regularisation)) {
     const auto here = of(laws[node]);
     if (!std::isnan(info.well_posedness_x_m) && !is_worse(here, info.well_posedness)) continue;
     info.well_posedness = here;
@@ -260,6 +292,7 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   const auto meshes = is_by_interface ? check_interfaces(config) : check(config);
   add_sizes(config, meshes, info);
   info.rupture = rupture_outlook(config, meshes);
+  info.cheapest_mesh = cheapest_mesh(config, info.rupture);
 
   // About as long as making the stepper.
   auto sliding = std::async(std::launch::async | std::launch::deferred,
@@ -276,6 +309,7 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   info.node_updates_per_s = measured_rate_per_s(config, timed, std::max(1, static_cast<int>(steps)));
   info.expected_s =
       info.node_updates / info.node_updates_per_s + expected_statics_s(info) + expected_rest_s(info);
+  info.notes = notes_of_case(config, info.rupture, info.step_s);
   if (sharing) info.shared = shared_by(config, meshes, timed, *sharing, info);
   return info;
 }

@@ -130,7 +130,8 @@ std::vector<motion::Probe> probes_among_columns(const input::Case& config, const
 }  // namespace
 
 std::int64_t n_nodes_of(const mesh::Mesh& mesh) {
-  return mesh.is_interface() ? mesh.grid.n_nodes() : mesh.n_nodes();
+  const auto& highest = mesh.coarser.empty() ? mesh.grid : mesh.coarser.back();
+  return mesh.is_interface() ? highest.first + highest.n_nodes() : mesh.n_nodes();
 }
 std::int64_t n_cells_of(const mesh::Mesh& mesh) {
   return mesh.is_interface() ? std::int64_t{mesh.grid.columns} * mesh.grid.rows : std::ssize(mesh.cells);

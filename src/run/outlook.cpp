@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "input/friction_along_x.hpp"
@@ -64,10 +65,14 @@ double overstressed_share(const input::Case& config, const std::vector<Placed>& 
   return most;
 }
 
+std::int64_t n_beyond_strength(const std::vector<Placed>& nodes) {
+  return std::ranges::count_if(
+      nodes, [](const Placed& placed) { return placed.node.t_Pa > placed.node.strength_Pa; });
+}
+
 /// Empty, or why the event does not begin.
 std::string doubt_of_beginning(const input::Case& config, const std::vector<Placed>& nodes) {
-  const auto beyond = [](const Placed& placed) { return placed.node.t_Pa > placed.node.strength_Pa; };
-  const auto n_beyond = std::ranges::count_if(nodes, beyond);
+  const auto n_beyond = n_beyond_strength(nodes);
   if (2 * n_beyond > std::ssize(nodes))
     return fmt::format("t is beyond mu_s p at {} of {} nodes inside: they slip at once, without a front",
                        n_beyond, nodes.size());
@@ -115,8 +120,35 @@ std::vector<std::string> doubts_of_growth(const input::Case& config, const Ruptu
   return doubts;
 }
 
-/// Elements in a process zone at rest below which nobody calls it resolved (Day et al. 2005).
-constexpr double fewest_elements = 3;
+std::string caution_of_mesh(double zone_elements, double S) {
+  const auto is =
+      fmt::format("the process zone has {:.3g} elements at rest and fewer in motion", zone_elements);
+  if (zone_elements < fewest_elements) return is + "; below 3 the mesh decides on fronts and their speeds";
+  if (zone_elements < elements_for_peaks) return is + "; peaks of slip rate and traction need 6";
+  if (zone_elements < elements_for_transition && S < stability::supershear_S)
+    return is + "; the place where fronts pass c_S, with S < 1.77, needs 16";
+  return {};
+}
+
+double damping_length_m(const stability::Bodies& bodies) {
+  const auto of = [](const solid::Material& m) {
+    return m.stiffness_damping_s * solid::longitudinal_speed_m_per_s(m);
+  };
+  return std::max(of(bodies.above), bodies.below ? of(*bodies.below) : 0);
+}
+
+void add_cautions(const input::Case& config, RuptureOutlook& o) {
+  if (!o.process_zone_elements) return;
+  if (auto caution = caution_of_mesh(*o.process_zone_elements, o.of_nodes.S.median); !caution.empty())
+    o.cautions.push_back(std::move(caution));
+  const double length_m = damping_length_m(bodies_of(config)), zone_m = *o.of_nodes.process_zone_m;
+  if (length_m > harmless_damping * zone_m)
+    o.cautions.push_back(
+        fmt::format("damping: beta_R c_L = {:.3g} m is {:.2g} % of the process zone; beyond 2 % it changes "
+                    "speeds and whether "
+                    "and where fronts pass c_S; choose a smaller stiffness_damping_s, or compare with one",
+                    length_m, 100 * length_m / zone_m));
+}
 
 RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& placed) {
   std::vector<stability::NodeBefore> nodes;
@@ -126,12 +158,10 @@ RuptureOutlook outlook_of(const input::Case& config, const std::vector<Placed>& 
   o.trigger_length_m = trigger_length_m(config);
   if (o.of_nodes.process_zone_m)
     o.process_zone_elements = *o.of_nodes.process_zone_m / config.plate.element_size_m;
-  if (o.process_zone_elements.value_or(fewest_elements) < fewest_elements)
-    o.unresolved = fmt::format(
-        "the process zone has {:.3g} elements at rest and fewer in motion; below 3 the mesh decides on "
-        "fronts and "
-        "their speeds",
-        *o.process_zone_elements);
+  add_cautions(config, o);
+  if (const auto n_beyond = n_beyond_strength(placed); n_beyond > 0 && 2 * n_beyond <= std::ssize(placed))
+    o.cautions.push_back(fmt::format("t is beyond mu_s p at {} of {} nodes inside: they slip at once",
+                                     n_beyond, placed.size()));
   return o;
 }
 

@@ -19,10 +19,16 @@ struct RuptureOutlook {
   bool nominal = false;                    ///< tractions are not known yet
   std::optional<double> trigger_length_m;  ///< of the zone at an edge, or of the patch
   std::optional<double> process_zone_elements;
-  std::vector<std::string> doubts;  ///< why nothing may rupture, a line each
-  /// Empty, or that the mesh is too coarse for a process zone.
-  std::string unresolved;
+  std::vector<std::string> doubts;    ///< why nothing may rupture, a line each
+  std::vector<std::string> cautions;  ///< what mesh and damping decide of it, a line each
 };
+
+/// Elements in a process zone at rest below which nobody calls it resolved (Day et al. 2005), which peaks
+/// need, and which the place needs where fronts pass c_S.
+inline constexpr double fewest_elements = 3, elements_for_peaks = 6, elements_for_transition = 16;
+/// Damping length over the process zone; more moves the place where fronts pass c_S by more than some per
+/// cent.
+inline constexpr double harmless_damping = 0.02;
 
 /// Of a case that has its initial state.
 RuptureOutlook rupture_outlook(const input::Case& config, const InitialState& initial);

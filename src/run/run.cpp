@@ -13,8 +13,8 @@
 #include "motion/stepper.hpp"
 #include "run/begin.hpp"
 #include "run/choices.hpp"
+#include "run/notes.hpp"
 #include "run/snapshot_plan.hpp"
-#include "run/warnings.hpp"
 
 namespace slipfront::run {
 
@@ -24,16 +24,6 @@ using interface::is_at_edge;
 
 const statics::Equilibrium& event_state(const input::Case& config, const InitialState& initial) {
   return config.event == interface::EventKind::spontaneous ? initial.spontaneous : initial.common;
-}
-
-/// Prescribed tractions beyond the static strength, said in one line; empty where there are none.
-std::string prestress_warning(const statics::Equilibrium& state, const PerNode& mu_s) {
-  const auto& s = state.tractions;
-  std::int64_t n = 0;
-  for (std::size_t k = 0; k < s.x_m.size(); ++k) n += std::abs(s.t_s_Pa[k]) > mu_s[k] * s.p_s_Pa[k] ? 1 : 0;
-  if (n == 0) return {};
-  return fmt::format("the prestress is beyond mu_s p at {} of {} interface nodes: they slip at once", n,
-                     s.x_m.size());
 }
 
 /// Nodes in contact that slip or are open at rest, said in one line; empty where all stick.
@@ -71,6 +61,7 @@ fronts::FrontOptions front_options(const input::Case& config, const InitialState
   o.l_star_m = config.fronts.l_star_m;
   o.speed_interval = config.fronts.speed_interval;
   o.arrest_time_s = config.fronts.arrest_time_s;
+  o.arrest_time_by_event = true;
   o.min_length_m = config.fronts.min_length_m;
   o.crack_share = config.fronts.crack_share;
   o.pulse_share = config.fronts.pulse_share;
@@ -236,24 +227,21 @@ std::string end_of_event(const Result& result) {
 
 void measure(Result& result, const InitialState& initial) {
   const auto& config = result.config;
-  const auto& state = event_state(config, initial);
-  result.fronts =
-      fronts::find_fronts(result.event.record, initial.common.tractions, front_options(config, initial));
-  result.warnings = warnings_of_case(config);
+  const auto options = front_options(config, initial);
+  result.fronts = fronts::find_fronts(result.event.record, initial.common.tractions, options);
+  auto rupture = rupture_outlook(config, initial);
+  if (result.fronts.empty())
+    for (auto& doubt : rupture.doubts) doubt = "no rupture: " + doubt;
+  result.warnings = notes_of_case(config, rupture, result.step_s);
   if (auto warning = contact_warning(initial.common); !warning.empty()) result.warnings.push_back(warning);
   if (auto warning = ramp_warning(initial.ramp); !warning.empty()) result.warnings.push_back(warning);
-  if (initial.prescribed)
-    if (auto warning = prestress_warning(state, static_coefficients(config, initial.mu_s)); !warning.empty())
-      result.warnings.push_back(warning);
   const auto& before = result.event.energies.front();
   const auto& after = result.event.energies.back();
   if (!initial.prescribed && after.trigger_work > 0.1 * before.strain)
     result.warnings.push_back(
-        fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before: what "
-                    "happens behind the front is its doing",
+        fmt::format("the trigger has done {:.4g} J/m of work, {:.0f} % of the energy stored before, "
+                    "and drives the motion behind the front",
                     after.trigger_work, 100 * after.trigger_work / before.strain));
-  const auto snapshots = snapshot_plan(config, result.step_s);
-  for (const auto& note : snapshots.notes) result.warnings.push_back(note);
   const auto n_after = snapshots_after(config, result.event.time_s).size();
   const auto n_running = std::ranges::count(result.fronts, fronts::End::record_end, &fronts::Front::end);
   const bool quiet = result.event.end == motion::EventEnd::quiet;
@@ -263,20 +251,23 @@ void measure(Result& result, const InitialState& initial) {
     result.warnings.push_back(
         fmt::format("{} of {} output.snapshot_times_s are after the end of the event: {}", n_after,
                     config.output.snapshot_times_s.size(), end_of_event(result)));
+  if (const double wait_s = fronts::arrest_time_s(result.event.record, options);
+      wait_s > options.arrest_time_s)
+    result.warnings.push_back(
+        fmt::format("slip spreads slowly: a tip has arrested after a wait of {:.3g} s, not of "
+                    "fronts.arrest_time_s = {:g} s",
+                    wait_s, options.arrest_time_s));
+  const auto running = n_running == 1 ? std::string("1 front") : fmt::format("{} fronts", n_running);
   if (quiet && n_running > 0)
-    result.warnings.push_back(fmt::format(
-        "{} fronts may still have been under way when the event ended ({}); time.quiet_s = inf goes on "
-        "to time.end_s",
-        n_running, end_of_event(result)));
+    result.warnings.push_back(
+        fmt::format("{} may still have been under way when the event ended ({}); time.quiet_s = inf goes on "
+                    "to time.end_s",
+                    running, end_of_event(result)));
   if (result.event.end == motion::EventEnd::end_time && n_running > 0)
     result.warnings.push_back(
-        fmt::format("{} fronts may still be under way at time.end_s = {:g} s; choose a later end to see more",
-                    n_running, config.time.end_s));
+        fmt::format("{} may still be under way at time.end_s = {:g} s; choose a later end to see more",
+                    running, config.time.end_s));
   if (result.event.record.onsets.empty()) result.warnings.push_back("no node slipped");
-  const auto rupture = rupture_outlook(config, initial);
-  for (const auto& doubt : rupture.doubts)
-    result.warnings.push_back(result.fronts.empty() ? "no rupture: " + doubt : doubt);
-  if (!rupture.unresolved.empty()) result.warnings.push_back(rupture.unresolved);
 }
 
 }  // namespace slipfront::run

@@ -14,6 +14,7 @@
 #include "motion/event.hpp"
 #include "results/contents.hpp"
 #include "run/initial_state.hpp"
+#include "run/mesh_choice.hpp"
 #include "run/needs.hpp"
 #include "run/outlook.hpp"
 #include "run/snapshot_mesh.hpp"
@@ -156,10 +157,12 @@ struct Info {
   double expected_s = 0;          ///< at the kernel rate measured on the spot, statics estimated
   double node_updates_per_s = 0;  ///< measured on the spot
   RuptureOutlook rupture;
+  std::optional<MeshChoice> cheapest_mesh;
   stability::WellPosedness well_posedness;  ///< at the plate's nominal pressure
   /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
   double well_posedness_x_m = fronts::undefined;
   std::optional<Shared> shared;
+  std::vector<std::string> notes;  ///< see notes_of_case
 };
 
 /// What lies between two neighbouring processes, as `slipfront bench --network` measures it; by default those

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/caller.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
 #include "input/schema.hpp"
@@ -338,8 +339,9 @@ std::string what_was_kept(const results::ResultFolder& folder) {
 }
 
 std::string how_to_resume(const results::ResultFolder& folder) {
-  return fmt::format("{}; slipfront run --restart {} continues the run", what_was_kept(folder),
-                     folder.dir().string());
+  return fmt::format(
+      "{}; {} continues the run", what_was_kept(folder),
+      for_caller("slipfront run --restart {}", "slipfront.resume(\"{}\")", folder.dir().string()));
 }
 
 void require_came_to_end(const Result& result, const results::ResultFolder& folder) {

@@ -133,6 +133,15 @@ Json rupture_json(const RuptureOutlook& rupture) {
           {"doubts", rupture.doubts}};
 }
 
+/// What recorded stress under prescribed tractions, a change, adds to: the uniform state of the bulk that
+/// carries them, null where they do not determine it.
+Json prestress_json(const input::Prestress& prestress) {
+  const bool is_uniform = prestress.file.empty();
+  return {{"stress_xx_Pa", Json()},
+          {"stress_yy_Pa", is_uniform ? Json(-prestress.p_Pa) : Json()},
+          {"stress_xy_Pa", is_uniform ? Json(prestress.t_Pa) : Json()}};
+}
+
 /// Columns are of nodes; what a process has sent counts as its messages and bytes.
 Json processes_json(const SharedCost& shared) {
   const auto& partition = shared.partition;
@@ -212,6 +221,7 @@ Json run_json(const Result& result, const InitialState& initial, const Status& s
                 status.name == "running" ? Json() : Json(snapshots_after(result.config, event.time_s))},
                {"fronts", fronts_json(result.fronts)},
                {"warnings", warnings}});
+  if (initial.prescribed) json["prestress"] = prestress_json(result.config.prestress);
   if (result.shared) json["processes"] = processes_json(*result.shared);
   if (input::has_base_body(result.config)) json["mesh"]["base_rows"] = initial.base->grid.rows;
   if (input::has_base_body(result.config))

@@ -34,6 +34,15 @@ Compliance pair(const Compliance& a, const Compliance& b) {
 
 }  // namespace
 
+bool are_alike(const Bodies& bodies) {
+  if (!bodies.below) return false;
+  const auto is_near = [](double a, double b) { return std::abs(a - b) <= 1e-6 * std::abs(a); };
+  const auto& [above, below] = std::pair(bodies.above, *bodies.below);
+  return is_near(above.youngs_modulus_Pa, below.youngs_modulus_Pa) &&
+         is_near(above.poissons_ratio, below.poissons_ratio) &&
+         is_near(above.density_kg_per_m3, below.density_kg_per_m3);
+}
+
 Waves::Waves(const solid::Material& material, double wavenumber_per_m, Complex s_per_s)
     : eta2(solid::longitudinal_modulus_Pa(material) / solid::shear_modulus_Pa(material)),
       damped(1.0 + material.stiffness_damping_s * s_per_s) {

@@ -19,6 +19,10 @@ struct Bodies {
       : above(above_), below(below_) {}
 };
 
+/// Whether both bodies have the same stiffness and density, to 1e-6: slip between them does not change the
+/// pressure. Damping may differ.
+bool are_alike(const Bodies& bodies);
+
 /// The waves exp(i k x + s t) of a body, in units of k and c_S.
 struct Waves {
   Waves(const solid::Material& material, double wavenumber_per_m, Complex s_per_s);

@@ -43,7 +43,24 @@ std::optional<double> median_length_m(const std::vector<NodeBefore>& nodes, Leng
   return std::isfinite(median) ? std::optional(median) : std::nullopt;
 }
 
-std::string regime_of(const Outlook& o, bool on_rigid_plane) {
+/// On both sides of the interface.
+enum class Pair { equal, unlike, rigid };
+
+Pair pair_of(const Bodies& bodies) {
+  if (!bodies.below) return Pair::rigid;
+  return are_alike(bodies) ? Pair::equal : Pair::unlike;
+}
+
+/// Andrews's transition is that of equal bodies without damping.
+std::string supershear_regime(double half_length_m, Pair pair) {
+  const auto text = fmt::format("S < 1.77: fronts above c_S can form, {}{:.3g} m from the nucleation on",
+                                pair == Pair::equal ? "" : "between equal bodies ", half_length_m);
+  if (pair == Pair::rigid) return text + "; on a rigid plane much earlier";
+  if (pair == Pair::unlike) return text + "; between these no formula says where, often much earlier";
+  return text + " without damping";
+}
+
+std::string regime_of(const Outlook& o, Pair pair) {
   if (o.n_weakening == 0) return "none: friction does not weaken at any node";
   if (o.n_driven == 0)
     return "none: the residual strength is nowhere below t, a front would release no energy";
@@ -52,17 +69,15 @@ std::string regime_of(const Outlook& o, bool on_rigid_plane) {
   if (!o.nucleation_length_m)
     return o.S.median < supershear_S
                ? "S < 1.77, as for fronts above c_S; without a length in the law no transition can be "
-                 "foretold"
+                 "predicted"
                : "S > 1.77, as for fronts below the Rayleigh speed; the law has no length";
-  if (o.S.median >= supershear_S)
-    return on_rigid_plane
-               ? "S > 1.77: between equal bodies fronts stay below the Rayleigh speed; on a rigid plane they "
-                 "can pass c_S all the same"
-               : "sub-Rayleigh: S > 1.77";
-  return fmt::format("S < 1.77: fronts above c_S can form, {}{:.3g} m from the nucleation on{}",
-                     on_rigid_plane ? "between equal bodies " : "",
-                     o.supershear_half_length_m.value_or(infinity),
-                     on_rigid_plane ? "; on a rigid plane much earlier" : "");
+  if (o.S.median < supershear_S)
+    return supershear_regime(o.supershear_half_length_m.value_or(infinity), pair);
+  if (pair == Pair::equal) return "sub-Rayleigh: S > 1.77";
+  return fmt::format(
+      "S > 1.77: between equal bodies fronts stay below the Rayleigh speed; {} they can pass "
+      "c_S all the same",
+      pair == Pair::rigid ? "on a rigid plane" : "between unlike ones");
 }
 
 }  // namespace
@@ -134,7 +149,7 @@ Outlook outlook(const Bodies& bodies, const std::vector<NodeBefore>& all) {
   });
   if (o.griffith_half_length_m && o.S.median < supershear_S)
     o.supershear_half_length_m = supershear_half_length_m(*o.griffith_half_length_m, o.S.median);
-  o.regime = regime_of(o, !bodies.below);
+  o.regime = regime_of(o, pair_of(bodies));
   return o;
 }
 

@@ -149,6 +149,15 @@ WellPosedness well_posedness(const Bodies& bodies, const interface::FrictionLaw&
   return w;
 }
 
+double damping_of_grid_waves_s(const Bodies& bodies, const interface::FrictionLaw& law,
+                               const interface::Regularisation& regularisation, double element_size_m) {
+  if (are_alike(bodies) || regularisation.relaxed != Relaxed::none) return 0;
+  const bool weakens_with_rate = uniform_sliding(law, 0, 1).slope_s_per_m < 0;
+  double c_S = solid::shear_speed_m_per_s(bodies.above);
+  if (bodies.below) c_S = std::min(c_S, solid::shear_speed_m_per_s(*bodies.below));
+  return (weakens_with_rate ? 0.35 : 0.1) * element_size_m / c_S;
+}
+
 double nominal_pressure_Pa(const solid::Material& material, double mean_compression_m, double height_m) {
   const double P = solid::longitudinal_modulus_Pa(material);
   const double G = solid::shear_modulus_Pa(material);

@@ -41,6 +41,13 @@ double radiation_damping_Pa_s_per_m(const Bodies& bodies);
 /// Whether growth is unbounded as k grows, from the relation's limits (docs/stability.md).
 bool growth_is_unbounded(const Bodies& bodies, const Sliding& sliding);
 
+/// beta_R from which on waves of a few elements do not grow on the mesh alone: 0.1 h/c_S where friction
+/// follows the pressure at once and slip changes it, 0.35 h/c_S where friction weakens with the slip rate
+/// besides; of two bodies the slower one's c_S, and both need it. 0 between equal bodies, where slip does not
+/// change the pressure, and where the response is delayed. verification/growing_modes.md
+double damping_of_grid_waves_s(const Bodies& bodies, const interface::FrictionLaw& law,
+                               const interface::Regularisation& regularisation, double element_size_m);
+
 /// Mean pressure of a plate of a height whose top is pushed down by a mean amount, its sides free.
 double nominal_pressure_Pa(const solid::Material& material, double mean_compression_m, double height_m);
 

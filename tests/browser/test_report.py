@@ -19,8 +19,12 @@ CASES = {
         "cases/reference/bimaterial_f.toml",
         *sets("plate.element_size_m=2e-3", "output.history_interval_s=1e-6"),
         *sets("output.snapshot_times_s=[5e-5, 1e-4, 1.5e-4]"),
+        *sets("probes.x_m=[0.251, 0.301]", "probes.y_m=[0.005, -0.005]"),
     ],
 }
+
+
+SWEPT = ["--vary", "friction.mu_k=0.5,0.7", "--vary", "event.trigger_zone_m=0.02,0.03"]
 
 
 def data(plot):
@@ -42,6 +46,7 @@ def pages(tmp_path_factory):
     folder = tmp_path_factory.mktemp("pages")
     commands = {name: ["run", *case, "--quiet"] for name, case in CASES.items()}
     commands["reproduction"] = ["reproduce", "--quick"]
+    commands["sweep"] = ["sweep", *CASES["probes"], *SWEPT, "--quiet"]
     found = {}
     for name, command in commands.items():
         results = folder / name.replace(" ", "_")
@@ -177,7 +182,7 @@ def test_the_diagram_shows_the_field_that_is_chosen(opened):
     for field in ("ratio", "p", "slip", "slip_rate"):
         browser.find_element(By.CSS_SELECTOR, f"[data-field={field}]").click()
         wait_until(lambda field=field: browser.execute_script(name) == field)
-        pressed = browser.find_elements(By.CSS_SELECTOR, "[aria-pressed=true]")
+        pressed = browser.find_elements(By.CSS_SELECTOR, "[data-field][aria-pressed=true]")
         assert [button.get_attribute("data-field") for button in pressed] == [field]
     assert browser.get_log("browser") == []
 
@@ -210,6 +215,48 @@ def test_the_records_of_probes_are_chosen(opened):
     assert len(before) == 5 and all(abs(value) > 0.1 for value in before)
     browser.execute_script("document.getElementById('probes-change').click()")
     wait_until(lambda: browser.execute_script(first) == [0] * 5)
+    assert browser.get_log("browser") == []
+
+
+def test_prescribed_tractions_have_absolute_stress_and_changes(opened):
+    """Of uniform ones: -p and t before anything has changed; sigma_xx and strain as changes alone."""
+    browser = opened("two bodies")
+    titles = (
+        "const l = document.getElementById('probes-plot').layout;"
+        "return [l.yaxis, l.yaxis2, l.yaxis3].map(a => a.title.text)"
+    )
+    first = f"return [0, 1, 2].map(k => {data('probes')}.find(t => t.meta.panel === k).y[0])"
+    browser.execute_script("document.querySelector('[data-probes=stress]').click()")
+    whole = ["Δσ<sub>xx</sub> (MPa)", "σ<sub>yy</sub> (MPa)", "σ<sub>xy</sub> (MPa)"]
+    wait_until(lambda: browser.execute_script(titles) == whole)
+    assert browser.execute_script(first) == pytest.approx([0, -5, 2.1])
+    browser.execute_script("document.getElementById('probes-change').click()")
+    wait_until(lambda: all(title.startswith("Δ") for title in browser.execute_script(titles)))
+    assert browser.execute_script(first) == [0, 0, 0]
+
+
+def test_the_criteria_are_folded_under_uniform_tractions(opened):
+    browser = opened("two bodies")
+    panels = f"return new Set({FRONTS}.map(t => t.xaxis)).size"
+    assert browser.execute_script(panels) == 1
+    browser.execute_script("document.getElementById('criteria-more').click()")
+    wait_until(lambda: browser.execute_script(panels) == 3)  # the static ratio is one number
+    assert browser.get_log("browser") == []
+
+
+def test_a_sweep_has_values_in_its_cells_and_lines(browser, pages):
+    browser.get_log("browser")
+    browser.get(pages["sweep"].as_uri())
+    wait_until(lambda: browser.execute_script("return document.body.dataset.sweep"))
+    (drawn,) = browser.execute_script(f"return {data('sweep')}.map(t => [t.type, t.texttemplate, t.x, t.y])")
+    assert drawn == ["heatmap", "%{text}", [20, 30], [0.5, 0.7]]  # mm, and mu_k
+    cells = browser.execute_script(f"return {data('sweep')}[0].text.flat()")
+    rows = browser.find_elements(By.CSS_SELECTOR, "#sweep tbody tr")
+    assert len(rows) == len(cells) == 4 and all(any(cell in row.text for row in rows) for cell in cells)
+    change(browser, "sweep-y", "''", "change")
+    lines = f"return {data('sweep')}.map(t => [t.mode, t.name, t.x])"
+    expected = [["lines+markers", f"mu_k: {mu_k}", [20, 30]] for mu_k in (0.5, 0.7)]
+    wait_until(lambda: browser.execute_script(lines) == expected)
     assert browser.get_log("browser") == []
 
 

@@ -26,38 +26,38 @@ class ProgressLines : public testing::Test {
 TEST_F(ProgressLines, ArePlainWhereThereIsNoTerminal) {
   auto shown = progress("left", 1000);
   shown.update(5);
-  now_ += milliseconds(200);
+  now_ += std::chrono::seconds(20);
   shown.update(50);   // under 10 %
   shown.update(500);  // half
   shown.update(501);  // no further 10 %
-  now_ += milliseconds(200);
+  now_ += std::chrono::seconds(20);
   shown.update(1000);
   shown.finish();
   shown.finish();
-  EXPECT_EQ(text(), "left: 50 %, 2.5e+03 steps/s, 0.2 s to go\nleft: 1000 steps in 0.4 s\n");
+  EXPECT_EQ(text(), "left: 50 %, 25 steps/s, 20 s to go\nleft: 1000 steps in 40 s\n");
 }
 
 TEST_F(ProgressLines, OfWorkThatGoesOnHaveItsOwnRate) {
   auto shown = progress("event", 1'000'000'000, false, 999'999'000);
-  now_ += milliseconds(500);
+  now_ += std::chrono::seconds(20);
   shown.update(999'999'500);
-  EXPECT_EQ(text(), "event: 99 %, 1e+03 steps/s, 0.5 s to go\n");
+  EXPECT_EQ(text(), "event: 99 %, 25 steps/s, 20 s to go\n");
 }
 
-TEST_F(ProgressLines, AreDrawnAtMostTenTimesASecond) {
+TEST_F(ProgressLines, AreAtLeastTenSecondsApart) {
   auto shown = progress("fast", 100);
   for (int step = 1; step <= 50; ++step) {
-    now_ += milliseconds(1);
+    now_ += milliseconds(100);
     shown.update(step);
   }
-  now_ += milliseconds(50);
+  now_ += std::chrono::seconds(5);
   shown.update(60);
-  EXPECT_EQ(text(), "fast: 60 %, 600 steps/s, 0.1 s to go\n");
+  EXPECT_EQ(text(), "fast: 60 %, 6 steps/s, 6.7 s to go\n");
 }
 
 TEST_F(ProgressLines, DoNotAppearWhereQuiet) {
   auto shown = progress("quiet", 10, true);
-  now_ += milliseconds(200);
+  now_ += std::chrono::seconds(20);
   shown.update(5);
   shown.note("nobody sees it");
   shown.finish();

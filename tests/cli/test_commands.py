@@ -6,14 +6,13 @@ import re
 import pytest
 from common import ROOT, refusal, require_done, sets
 
-COMMANDS = ["run", "reproduce", "study", "verify", "info", "bench", "validate", "keys"]
+COMMANDS = ["run", "reproduce", "study", "verify", "info", "bench", "validate", "new", "keys"]
 PYTHON_COMMANDS = ["report", "fronts", "sweep"]
 CASES = sorted((ROOT / "papers/kammer2012").glob("*.toml"))
 
 
 def test_help_lists_every_command(program):
-    printed = require_done(program("--help")).stdout.split("Subcommands:")[1]
-    listed = re.findall(r"^  (\w+) {2,}\S", printed, re.MULTILINE)
+    listed = re.findall(r"^  ([a-z]\w+) {2,}\S", require_done(program("--help")).stdout, re.MULTILINE)
     assert sorted(listed) == sorted(COMMANDS + PYTHON_COMMANDS)
 
 
@@ -42,7 +41,6 @@ def test_version(program):
         (["frobnicate"], "frobnicate"),
         (["--frobnicate"], "--frobnicate"),
         (["run"], "CASE"),
-        (["run", "coarse.toml"], "--output"),
         (["run", "-o", "out"], "CASE"),
         (["run", "coarse.toml", "-o"], "--output"),
         (["run", "coarse.toml", "-o", "out", "--frobnicate"], "--frobnicate"),
@@ -50,7 +48,7 @@ def test_version(program):
         (["run", "coarse.toml", "-o", "out", "--set"], "--set"),
         (["info"], "CASE"),
         (["validate"], "CASE"),
-        (["keys", "plate"], "plate"),
+        (["new", "glue"], "two-bodies"),
         (["reproduce", "--threads", "0", "-o", "out"], "--threads"),
         (["reproduce", "--threads", "two", "-o", "out"], "--threads"),
         (["run", "--checkpoint-every", "-1", "-o", "out"], "--checkpoint-every: -1 is not"),
@@ -89,6 +87,51 @@ def test_info_tells_whether_sliding_is_well_posed(program, coarse):
         case = sets("friction.law=coulomb", f"friction.mu={mu}", "material.stiffness_damping_s=0")
         printed = require_done(program("info", coarse, *case)).stdout
         assert re.search(rf"^uniform sliding +{verdict}", printed, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    "part, least, most",
+    [("friction", 15, 40), ("friction.d_c_m", 2, 2), ("plate.width_m", 1, 1), ("title", 1, 1)],
+)
+def test_a_part_of_the_reference(program, part, least, most):
+    """Its rows are those of the whole, under the same headings."""
+    lines = require_done(program("keys", part)).stdout.splitlines()
+    assert set(lines) <= set(require_done(program("keys")).stdout.splitlines())
+    rows = [line for line in lines if line.startswith("| `")]
+    assert least <= len(rows) <= most
+    assert all(f"`{part.split('.')[-1]}`" in row for row in rows) or "." not in part
+
+
+def test_no_part_of_the_reference(program):
+    assert "did you mean friction.d_c_m?" in refusal(program("keys", "friction.dc"))
+    assert "did you mean friction?" in refusal(program("keys", "fricton"))
+
+
+KINDS = ("rigid", "two-bodies", "pressed", "gauges")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_new_case_runs(program, tmp_path, kind):
+    case = tmp_path / "mine.toml"
+    case.write_text(require_done(program("new", kind)).stdout)
+    assert require_done(program("validate", case)).stdout.startswith(f"{case}: valid")
+    coarse = sets("plate.element_size_m=2e-3", "time.end_s=20e-6")
+    require_done(program("run", case, "-q", "-o", "out", *coarse))
+
+
+def test_the_first_kind_is_the_default(program):
+    assert program("new").stdout == program("new", KINDS[0]).stdout
+
+
+def test_results_go_into_a_folder_of_the_cases_name(program, coarse, pipe, tmp_path):
+    (tmp_path / "cases").mkdir()
+    coarse.rename(tmp_path / "cases/my.coarse.toml")
+    require_done(program("run", "cases/my.coarse.toml", "-q"))
+    assert (tmp_path / "my.coarse/run.json").is_file()
+    assert "is not empty" in refusal(program("run", "cases/my.coarse.toml", "-q"))
+    assert "is no regular file" in refusal(
+        program("run", pipe("pipe", (tmp_path / "cases/my.coarse.toml").read_text()))
+    )
 
 
 def test_the_reference_page_is_current(program):

@@ -10,8 +10,7 @@ PAGE = (ROOT / "docs/commands.md").read_text(encoding="utf-8")
 
 
 def subcommands(text: str) -> list[str]:
-    _, _, listed = text.partition("Subcommands:\n")
-    return re.findall(r"^  ([\w-]+) ", listed, re.MULTILINE)
+    return re.findall(r"^  ([a-z][\w-]*) {2,}", text, re.MULTILINE)
 
 
 def helps(program, words=()) -> dict[str, str]:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a user may do wrong: exit code 2, one line that says where and what to do, nothing written."""
 
+import re
+
 import pytest
 from common import one_line, refusal, require_done, require_same_bytes, sets
 
@@ -109,6 +111,12 @@ def test_output_folder_that_is_refused(program, coarse, tmp_path, command, place
     assert place in line and expected in line
     assert ("--overwrite" in line) == (place == "filled")
     assert tree(tmp_path) == before
+
+
+def test_no_space_from_the_start_is_no_mistake_of_the_users(program, coarse):
+    result = program("run", coarse, "-o", "out", file_bytes=1)
+    assert (result.returncode, result.stdout) == (1, "")
+    assert re.fullmatch(r"slipfront: output folder out: cannot be .*; free space there\n", result.stderr)
 
 
 def test_output_folder_that_is_a_link(program, coarse, tmp_path):

@@ -114,8 +114,9 @@ def test_a_tilt_beyond_small_strains_is_told(program, coarse):
     assert "small strains" not in program("validate", coarse).stdout
 
 
-def test_info_names_the_worst_node(program, case):
-    assert "with the friction at          x = 0.07 m, the worst node" in program("info", case).stdout
+def test_info_names_the_worst_node(program, case, tmp_path):
+    (tmp_path / "friction.csv").write_text("x_m,mu_s,mu_k\n0,0.6,0.3\n0.05,0.6,0.1\n0.07,5,1\n0.1,5,1\n")
+    assert "with the friction at          x = 0.05 m, the worst node" in program("info", case).stdout
 
 
 # --- Laws that the case file gives as tables

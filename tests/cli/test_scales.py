@@ -2,6 +2,7 @@
 """Cases of any material and size: defaults that follow the plate, what is foreseen, and how events end."""
 
 import re
+from pathlib import Path
 
 import pytest
 from common import refusal, require_done, run_json, sets
@@ -98,7 +99,7 @@ def test_a_process_zone_that_is_not_resolved(program, write_case, tmp_path):
 
 def test_slip_that_stays_where_it_is_triggered_has_no_speed(program, write_case):
     printed = program("run", write_case(PRESTRESSED.format(t=1.6e6, half=20e-3)), "-o", "out").stdout
-    assert re.search(r"front 0: .*, nowhere beyond what triggers it, \w+, ends: arrest\n", printed), printed
+    assert re.search(r"front 0: .*, did not leave the trigger, \w+, ends: arrest\n", printed), printed
     printed = program("run", write_case(PRESTRESSED.format(t=2.1e6, half=20e-3)), "-o", "runs").stdout
     c_L, c_S = map(float, re.search(r"front 0: .*, median speed (\S+) c_L, (\S+) c_S, ", printed).groups())
     assert c_S / c_L == pytest.approx(1584.4 / 889.2, rel=0.02)
@@ -115,25 +116,115 @@ def test_what_info_tells_of_a_rupture(program, write_case):
     assert "S < 1.77: fronts above c_S can form" in printed
 
 
-def test_odd_numbers_are_asked_about(program, write_case):
+PRESSED = (
+    "plate.corner=none",
+    "plate.sides=absorbing",
+    "loading.method=prestress",
+    "prestress.p_Pa=5e6",
+    "prestress.t_Pa=2e6",
+    "event.kind=nucleation",
+)
+SLIP_WEAKENING = ("friction.law=slip_weakening", "material.stiffness_damping_s=1e-6")
+# From a patch 0.15 m from the farther end, at 889 m/s.
+PATCH = ("event.kind=nucleation", "nucleation.x_m=0.05", "nucleation.half_length_m=0.02")
+ODD = [
+    (["friction.mu_s=70"], "friction.mu_s = 70: "),
+    ([*SLIP_WEAKENING, "friction.d_c_m=1"], "friction.d_c_m = 1: "),
+    (["material.youngs_modulus_Pa=200"], "material.youngs_modulus_Pa = 200: "),
+    (["event.kind=left", "event.trigger_zone_m=4e-3"], "event.trigger_zone_m = 0.004 m is less than two"),
+    (["time.end_s=1e-4"], "time.end_s = 0.0001 s is before a shear wave has crossed"),
+    ([*PATCH, "time.end_s=168e-6"], "is before a shear wave from the patch has reached both ends"),
+    (["time.end_s=150"], "times what a shear wave takes to cross the plate; is it in s?"),
+    (["material.stiffness_damping_s=0.2", "time.end_s=1e-4"], "damps all waves shorter than 317 m"),
+    ([*PRESSED, "prestress.p_Pa=5", "prestress.t_Pa=2"], "prestress.p_Pa = 5: less than 1e-7 of Young's"),
+    ([*PRESSED, "nucleation.half_length_m=10"], "the patch is longer than the interface, 0.2 m"),
+    ([*PRESSED, "plate.sides=free"], "free sides bear no shear"),
+    ([*SLIP_WEAKENING, "material.stiffness_damping_s=5e-7"], "material.stiffness_damping_s = 5.6e-07 damps"),
+]
+
+
+@pytest.mark.parametrize(("settings", "note"), ODD)
+def test_odd_numbers_are_asked_about(program, write_case, settings, note):
     case = write_case("[plate]\nelement_size_m = 5e-3\n")
+    printed = program("validate", case, *sets(*settings)).stdout
+    assert any(note in line for line in printed.splitlines() if line.startswith("note: ")), printed
 
-    def notes(*settings):
-        return program("validate", case, *sets(*settings)).stdout
 
-    assert "friction.mu_s = 70: " in notes("friction.mu_s=70")
-    slip = ("friction.law=slip_weakening", "friction.d_c_m=1")
-    assert "friction.d_c_m = 1: " in notes(*slip)
-    assert "material.youngs_modulus_Pa = 200: " in notes("material.youngs_modulus_Pa=200")
-    assert "event.trigger_zone_m = 0.004 m is less than two" in notes(
-        "event.kind=left", "event.trigger_zone_m=4e-3"
-    )
-    assert "time.end_s = 0.0001 s is before a shear wave has crossed" in notes("time.end_s=1e-4")
-    # From a patch 0.15 m from the farther end, at 889 m/s.
-    patch = ("event.kind=nucleation", "nucleation.x_m=0.05", "nucleation.half_length_m=0.02")
-    assert "is before a shear wave from the patch has reached both ends" in notes(*patch, "time.end_s=168e-6")
-    assert "shear wave" not in notes(*patch, "time.end_s=169e-6")
-    assert notes() == f"{case}: valid\n"
+def test_a_sound_case_has_no_notes(program, write_case):
+    case = write_case("[plate]\nelement_size_m = 5e-3\n")
+    damped = "material.stiffness_damping_s=2e-6"
+    assert program("validate", case, *sets(damped)).stdout == f"{case}: valid\n"
+    printed = program("validate", case, *sets(*PATCH, damped, "time.end_s=169e-6")).stdout
+    assert "shear wave" not in printed
+
+
+CASES = Path(__file__).parent / "cases"
+
+
+def notes_of(program, file, *settings):
+    notes = []
+    for command in ("info", "validate"):
+        printed = require_done(program(command, file, *sets(*settings))).stdout
+        notes.append([line for line in printed.splitlines() if line.startswith("note: ")])
+    assert notes[0] == notes[1]
+    return "\n".join(notes[0])
+
+
+def test_the_base_is_damped_as_the_plate_unless_it_is_said(program, write_case):
+    case = CASES / "equal_bodies_unequal_damping.toml"
+    note = "of one material, but material.stiffness_damping_s is 3e-07 and base.stiffness_damping_s 1e-07"
+    assert note in notes_of(program, case)
+    same = write_case("".join(line for line in case.open() if "stiffness_damping_s" not in line))
+    assert "of one material" not in notes_of(program, same)
+
+
+def test_what_damping_and_mesh_decide_of_supershear(program):
+    case = CASES / "damping_supershear.toml"
+    both = ("material.stiffness_damping_s={0}", "base.stiffness_damping_s={0}")
+    damping = "it changes speeds and whether and where fronts pass c_S"
+    mesh = "the place where fronts pass c_S, with S < 1.77, needs 16"
+    for beta, is_noted in (("0", False), ("1e-7", True), ("3e-7", True)):
+        settings = [key.format(beta) for key in both]
+        notes = notes_of(program, case, *settings)
+        assert (damping in notes) == is_noted
+        assert mesh in notes
+        assert mesh not in notes_of(program, case, *settings, "friction.d_c_m=12e-6")
+
+
+def test_undamped_sliding_that_changes_the_pressure_needs_damping(program):
+    case = CASES / "undamped_coupled.toml"
+    note = "material.stiffness_damping_s = 5.6e-08 damps them"
+    assert note in notes_of(program, case)
+    assert "damps them" not in notes_of(program, case, "material.stiffness_damping_s=5.63e-8")
+    # Where the response is delayed there is nothing to damp.
+    delayed = ("friction.regularisation=pressure", "friction.relaxation_time_s=1e-6")
+    assert "damps them" not in notes_of(program, case, *delayed)
+
+
+def test_the_verdict_is_of_places_that_can_slip(program):
+    printed = program("info", CASES / "tpv6_barrier_verdict.toml").stdout
+    assert re.search(r"^uniform sliding +well-posed", printed, re.MULTILINE), printed
+    x_m = float(re.search(r"with the friction at +x = (\S+) m", printed)[1])
+    assert 15e3 <= x_m <= 45e3
+
+
+def test_no_formula_of_equal_bodies_is_taken_for_others(program):
+    case = CASES / "damping_supershear.toml"
+    equal = program("info", case).stdout
+    assert re.search(r"fronts above c_S can form, \S+ m from the nucleation on without damping", equal)
+    unlike = program(
+        "info", case, *sets("base.youngs_modulus_Pa=210e9", "base.density_kg_per_m3=7800")
+    ).stdout
+    assert "between equal bodies" in unlike and "no formula" in unlike
+
+
+def test_rows_of_a_stepwise_table_that_end_at_a_node_are_named(program, write_case, tmp_path):
+    (tmp_path / "mu.csv").write_text("x_m,mu_s\n0,0.7\n0.1000001,0.8\n0.152,0.7\n0.2,0.7\n")
+    case = write_case(PRESTRESSED.format(t=2.1e6, half=20e-3))
+    table = ("friction.file=mu.csv", "friction.between_rows=stepwise")
+    notes = notes_of(program, case, *table)
+    assert "the row at x = 0.1000001 m counts for the node at 0.1 m" in notes
+    assert notes.count("counts for the node") == 1
 
 
 def test_keys_that_an_override_excludes_are_named(program, write_case):

@@ -356,6 +356,20 @@ TEST(LocalSlopes, WindowReachesHalfWidth) {
   EXPECT_NEAR(slopes[20], 1.0, 1e-12);
 }
 
+TEST(LocalSlopes, OfManyPointsAreAsOfFew) {
+  // A parabola away from zero: at equal distances the least-squares slope is that of its middle.
+  std::vector<double> s, y;
+  for (int k = 0; k <= 4000; ++k) {
+    s.push_back(10.0 + 1e-3 * k);
+    y.push_back(s.back() * s.back());
+  }
+  const auto few = local_slopes(s, y, 0.1, 1), many = local_slopes(s, y, 0.5, 1);
+  for (const int k : {500, 2000, 3500}) {
+    EXPECT_NEAR(few[k], 2 * s[k], 1e-9);
+    EXPECT_NEAR(many[k], 2 * s[k], 1e-9);
+  }
+}
+
 /// Speed rises to 60 mm, falls after it; the ratio falls to 50 mm, rises up to `turn_m` and falls again.
 struct Curves {
   std::vector<double> s, speed, ratio;

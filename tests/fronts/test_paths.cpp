@@ -114,6 +114,43 @@ TEST(Paths, SlipAfterAnArrestIsAnotherFront) {
   EXPECT_EQ(fronts_of(tau).size(), 1u);
 }
 
+TEST(Paths, ATipWaitsLongerWhereSlipSpreadsSlowly) {
+  constexpr double slow = 30.0;  // 22 us from node to node
+  auto tau = bilateral(x, 0.0, slow);
+  const auto record = make_record(x, tau, {.end_time_s = 10e-3});
+  auto options = make_options();
+  EXPECT_TRUE(find(record, options).empty());
+  options.arrest_time_by_event = true;
+  EXPECT_NEAR(arrest_time_s(record, options), 3 * options.min_length_m / slow, 1e-12);
+  const auto fronts = find(record, options);
+  ASSERT_EQ(fronts.size(), 1u);
+  expect_front(fronts[0], 0, 300, End::contact_end);
+
+  for (int k = 201; k <= 300; ++k) tau[k] += 300e-6;
+  const auto two = find(make_record(x, tau, {.end_time_s = 10e-3}), options);
+  ASSERT_EQ(two.size(), 2u);
+  expect_front(two[0], 0, 200, End::arrest);
+
+  EXPECT_EQ(arrest_time_s(make_record(x, bilateral(x, 0.0, V)), options), options.arrest_time_s);
+}
+
+TEST(Paths, BeyondTheLastPlaceOfARecordNothingIsKnown) {
+  auto options = make_options();
+  options.whole_interface = false;
+  const auto fronts = find(make_record(x, bilateral(x, x[150], V)), options);
+  ASSERT_EQ(fronts.size(), 2u);
+  expect_front(fronts[0], 150, 0, End::record_edge);
+  expect_front(fronts[1], 150, 300, End::record_edge);
+}
+
+TEST(Paths, ASearchCanBeEnded) {
+  struct Interrupted {};
+  const auto many = nodes(20'000, h);
+  auto options = make_options();
+  options.pause = [] { throw Interrupted(); };
+  EXPECT_THROW(find(make_record(many, bilateral(many, 0.0, V)), options), Interrupted);
+}
+
 TEST(Paths, IsolatedNodesArePassed) {
   // That never slip, slip late, or slipped and healed long before the front comes.
   for (const auto& [begin_s, odd_s] : {std::pair{0.0, never}, {0.0, 250e-6}, {100e-6, 10e-6}}) {

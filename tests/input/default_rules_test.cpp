@@ -9,17 +9,37 @@
 namespace slipfront::input {
 namespace {
 
-double value_of(const Case& config, const std::string& key) {
+/// To the last bit.
+std::string value_of(const Case& config, const std::string& key) {
   for (const Entry& entry : common_entries())
-    if (entry.key == key) return std::get<double>(entry.get(config));
+    if (entry.key == key) return toml_text(entry.get(config));
   ADD_FAILURE() << key;
-  return 0;
+  return {};
 }
 
 TEST(DefaultRules, GiveThePapersPlateItsNumbersToTheLastBit) {
   const Case paper;
   for (const auto& rule : default_rules())
-    EXPECT_EQ(rule.value(paper), value_of(paper, rule.key)) << rule.key;
+    EXPECT_EQ(toml_text(rule.value(paper)), value_of(paper, rule.key)) << rule.key;
+}
+
+TEST(DefaultRules, ABaseIsLikeThePlate) {
+  const std::string base =
+      "[base]\nkind = 'body'\nheight_m = 0.1\nyoungs_modulus_Pa = 2e11\npoissons_ratio = 0.3\n"
+      "density_kg_per_m3 = 7800\n";
+  const std::string text =
+      "[plate]\ncorner = 'none'\nsides = 'absorbing'\ntop = 'absorbing'\n[material]\n"
+      "stiffness_damping_s = 3e-7\n[loading]\nmethod = 'prestress'\n[prestress]\nt_Pa = 1\np_Pa = "
+      "1\n[event]\nkind = 'nucleation'\n" +
+      base;
+  const Case c = parsed(text);
+  EXPECT_EQ(c.base.plate.sides, mesh::Sides::absorbing);
+  EXPECT_EQ(c.base.plate.top, mesh::Top::absorbing);
+  EXPECT_EQ(c.base.material.stiffness_damping_s, 3e-7);
+  const Case other = parsed(text + "sides = 'free'\nbottom = 'held'\nstiffness_damping_s = 0\n");
+  EXPECT_EQ(other.base.plate.sides, mesh::Sides::free);
+  EXPECT_EQ(other.base.plate.top, mesh::Top::loaded);
+  EXPECT_EQ(other.base.material.stiffness_damping_s, 0);
 }
 
 TEST(DefaultRules, ScaleWithThePlate) {
@@ -29,7 +49,7 @@ TEST(DefaultRules, ScaleWithThePlate) {
   EXPECT_EQ(c.trigger.zone_m, 2 * paper.trigger.zone_m);
   EXPECT_EQ(c.loading.edge_margin_m, 2 * paper.loading.edge_margin_m);
   EXPECT_EQ(c.fronts.min_length_m, 2 * paper.fronts.min_length_m);
-  EXPECT_EQ(c.time.end_s, 2 * paper.time.end_s);
+  EXPECT_DOUBLE_EQ(c.time.end_s, 2 * paper.time.end_s);
   EXPECT_NEAR(c.plate.relief_depth_m / paper.plate.relief_depth_m, 3, 1e-12);
 }
 

@@ -75,7 +75,6 @@ const Wrong wrong_cases[] = {
      "[event]\ntrigger_zone_m = 1e-3\n"},
     // Base
     {"PeriodicBase", on_steel + "sides = \"periodic\" # here\n"},
-    {"PeriodicPlate", on_steel + square, {{"plate.sides", "periodic"}}},
     {"FilletOnABase", on_steel + "[plate]\ncorner = \"fillet\" # here\n"},
     {"BaseWithoutItsMaterial", "[base]\nheight_m = 0.1\nkind = \"body\" # here\n"},
     {"GradedBaseIteratively",

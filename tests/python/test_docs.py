@@ -94,3 +94,11 @@ def test_every_problem_has_its_page_its_picture_and_its_row():
         assert f"](../verification/{name}.md) |" in trust
         page = (ROOT / f"verification/{name}.md").read_text(encoding="utf-8")
         assert f"figures/{name}.png" in page
+
+
+def test_the_version_is_the_same_everywhere():
+    version = re.search(r"project\(slipfront VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    date = re.search(r"^date-released: ([0-9-]+)$", citation, re.MULTILINE)[1]
+    assert f"\nversion: {version}\n" in citation
+    assert f"\n## {version} ({date})\n" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")

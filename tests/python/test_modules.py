@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Each module of the program includes what the plan names for it, and nothing else."""
+"""Each module of the program includes what the plan names for it; libraries that are missing are named."""
 
 from __future__ import annotations
 
 import re
+import subprocess
 from pathlib import Path
 
+import pytest
 from common import ROOT
 
 
@@ -85,3 +87,13 @@ def test_headers_for_programs_outside_need_no_library_but_fmt():
                 libraries[name.split("/")[0]] = header
     assert src / "motion/event.hpp" in seen
     assert set(libraries) <= INSTALLED_WITH, libraries
+
+
+@pytest.mark.slow
+def test_all_missing_libraries_are_named(tmp_path):
+    without = [f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in ("fmt", "HDF5", "GTest")]
+    command = ["cmake", "-S", str(ROOT), "-B", str(tmp_path), "-G", "Ninja", *without]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.returncode != 0
+    missing = re.findall(r"^    (\w+) [\d.]*: lib", result.stderr, re.MULTILINE)
+    assert missing == ["fmt", "HDF5", "GTest"], result.stderr

@@ -35,13 +35,18 @@ def test_fronts_of_an_experiment(onsets, tmp_path, capsys):
     out = tmp_path / "fronts.csv"
     assert main(["fronts", str(onsets), "-o", str(out), "--c-l-m-per-s", "2000"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    speed = "median speed 1000 m/s (0.50 c_L)"
+    # Slopes of lines through 21 and 31 times right to 1 us are right to 1/14 and 1/20.67 of 1 us/mm.
+    low, high = (f"speed 1000 m/s, {interval} (0.50 c_L)" for interval in ("933.3 to 1077", "953.8 to 1051"))
     assert lines == [
-        f"front 0: x = 0.0400 to 0.0000 m, 0.0 to 40.0 us, {speed}, ends: contact_end",
-        f"front 1: x = 0.0400 to 0.1000 m, 0.0 to 60.0 us, {speed}, ends: contact_end",
+        f"front 0: x = 0.0400 to 0.0000 m, 0.0 to 40.0 us, {low}, ends: record_edge",
+        f"front 1: x = 0.0400 to 0.1000 m, 0.0 to 60.0 us, {high}, ends: record_edge",
+        "--l-star-m 0.002, --arrest-time-s 2e-05, --min-length-m 0.004; intervals of speeds: times right to "
+        "half of 2e-06 s",
     ]
     found = rows(out)
-    assert list(found[0]) == ["front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s", "v_over_c_L"]
+    speeds = ["speed_m_per_s", "speed_low_m_per_s", "speed_high_m_per_s"]
+    columns = ["front_id", "x_m", "onset_s", "direction", "v_tip_m_per_s", *speeds, "v_over_c_L"]
+    assert list(found[0]) == columns
     speeds = [float(r["v_over_c_L"]) for r in found if r["v_over_c_L"]]
     assert len(speeds) > 40
     assert np.allclose(speeds, 0.5, rtol=1e-9)
@@ -78,7 +83,14 @@ def test_a_material_and_tractions_make_an_experiment_for_the_scorecard(onsets, t
         ("x_m,time_s\n0,0\n", [], "fewer than two rows"),
         ("x_m,time_s\n0,0\n0,1\n", [], "x_m does not ascend"),
         ("x_m,time_s\n0,\n1,\n", [], "no row has a time: nothing slips"),
-        ("x_m,onset\n0,0\n1,1\n", [], "no column 'time_s'"),
+        (
+            "x_m,time\n0,0\n1,1\n",
+            [],
+            "has the columns 'x_m', 'time'; wanted are x and time with their units, such as x_m or x (mm), "
+            "and time_s or time (us)",
+        ),
+        ("x_m,time_s,time_us\n0,0,0\n", [], "'time_s' and 'time_us' both may be onset_s; rename one of them"),
+        ("x_m,time_s\n0,5,0,1\n", [], ":2: 4 cells, the header has 2; with decimal commas separate cells by"),
         ("x_m,time_s\n0,0\n1,later\n", [], ":3: 'later' in column 'time_s' is not a number"),
         (
             ONSETS,
@@ -128,8 +140,11 @@ def test_the_names_of_the_package_are_all_there():
     typed = re.findall(r"import \w+ as (\w+)", text)
     assert sorted(typed) == sorted(slipfront.__all__)
     assert all(getattr(slipfront, name) is not None for name in slipfront.__all__)
-    with pytest.raises(AttributeError, match="no attribute 'fly'"):
+    assert dir(slipfront) == sorted(slipfront.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'fly'$"):
         _ = slipfront.fly
+    with pytest.raises(AttributeError, match="no attribute 'fronts'; did you mean find_fronts"):
+        _ = slipfront.fronts
 
 
 def test_the_page_runs(tmp_path, monkeypatch, capsys):
@@ -141,7 +156,7 @@ def test_the_page_runs(tmp_path, monkeypatch, capsys):
     for block in re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
         exec(block, names)
     assert names["run"].case["friction"]["mu_k"] == 0.8
-    assert names["run"].history.slip_m.attrs["unit"] == "m"
+    assert names["run"].history.slip_m.attrs["units"] == "m"
     assert list(names["found"].direction.values) == [-1, 1]
     assert np.nanmax(np.abs(names["found"].v_tip_m_per_s - 900)) < 1e-6
     assert names["fit"].n_points > 4

@@ -24,7 +24,7 @@ def test_speeds_of_a_front_to_both_sides():
         assert v.size > 20
         assert np.allclose(v, speed, rtol=1e-9)
     assert np.isnan(found.t_s_Pa).all() and np.isnan(found.p_s_Pa).all()
-    assert found.v_tip_m_per_s.attrs["unit"] == "m/s"
+    assert found.v_tip_m_per_s.attrs["units"] == "m/s"
 
 
 def test_ends_of_fronts():
@@ -204,6 +204,54 @@ def test_outlook_of_a_case_is_that_of_its_run():
         if isinstance(value, dict):
             ours = {key: getattr(ours, key) for key in value}
         assert ours == pytest.approx(value), name
+
+
+EQUAL = {
+    "kind": "body",
+    "height_m": 0.1,
+    "youngs_modulus_Pa": 2.6e9,
+    "poissons_ratio": 0.37,
+    "density_kg_per_m3": 1200,
+}
+
+
+@pytest.mark.parametrize(
+    ("changed", "least_elements"),
+    [
+        ({"base": EQUAL}, 6),  # S = 3
+        ({"prestress": {"t_Pa": 2.2e6, "p_Pa": 5e6}, "base": EQUAL}, 16),  # S = 0.6, equal bodies
+        # On a rigid plane 0.1 h/c_S of damping times c_L is 2 % of the zone: c_L/c_S = sqrt(2/(1 - nu)).
+        ({"plate": {"sides": "periodic"}}, 5 * np.sqrt(2 / (1 - 0.37))),
+    ],
+)
+def test_the_cheapest_mesh_resolves_the_process_zone(changed, least_elements):
+    case = {
+        "plate": {"element_size_m": 2e-3, "corner": "none"},
+        "loading": {"method": "prestress"},
+        "prestress": {"t_Pa": 1.75e6, "p_Pa": 5e6},
+        "friction": {
+            "law": "slip_weakening",
+            "mu_s": 0.5,
+            "mu_k": 0.3,
+            "d_c_m": 3e-6,
+            "regularisation": "none",
+        },
+        "event": {"kind": "nucleation"},
+    }
+    for table, keys in changed.items():
+        case[table] = {**case.get(table, {}), **keys}
+    info = slipfront.info(case)
+    found = info.cheapest_mesh
+    zone_m = info.rupture.process_zone_m
+    assert found.coarsenings == 2
+    assert found.process_zone_elements == pytest.approx(zone_m / found.element_size_m)
+    assert least_elements <= found.process_zone_elements < 1.1 * least_elements
+    case["plate"] |= {"element_size_m": found.element_size_m, "coarsenings": 2}
+    if "base" in case:
+        case["base"]["coarsenings"] = 2
+    taken = slipfront.info(case)
+    assert taken.n_nodes == found.n_nodes
+    assert taken.cheapest_mesh.element_size_m == pytest.approx(found.element_size_m, rel=1e-12)
 
 
 def test_datasets_of_others_do():

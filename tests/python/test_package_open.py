@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import slipfront
 from package_cases import CASE, program, write_case
-from slipfront.opened import unit_of
+from slipfront.units import unit_of
 
 
 @pytest.fixture(scope="module")
@@ -36,8 +36,8 @@ def test_the_history_is_the_files_and_read_when_used(folder):
         for name in ("slip_m", "slip_rate_m_per_s", "t_Pa", "p_Pa"):
             assert not history[name].variable._in_memory
             assert history[name].dims == ("time_s", "x_m")
-            assert history[name].attrs["unit"] == file[name].attrs["unit"]
-            assert history[name].attrs["description"]
+            assert history[name].attrs["units"] == file[name].attrs["unit"]
+            assert history[name].attrs["long_name"]
             part = history[name][3:20:4, ::-2]
             assert np.array_equal(part, file[name][3:20:4][:, ::-2])
             assert not history[name].variable._in_memory
@@ -55,7 +55,7 @@ def test_tables_are_the_files(folder):
         assert set(found.variables) == set(expected)
         for column, values in expected.items():
             assert found[column].dims == (dim,)
-            assert found[column].attrs["unit"] == unit_of(column)
+            assert found[column].attrs["units"] == unit_of(column)
             assert np.array_equal(found[column], values, equal_nan=True)
 
 
@@ -65,7 +65,7 @@ def test_fronts_are_the_files(folder):
     for column, values in expected.items():
         name = "direction_of_point" if column == "direction" else column
         assert np.array_equal(run.fronts[name], values, equal_nan=values.dtype.kind == "f")
-    assert run.fronts.v_tip_m_per_s.attrs["unit"] == "m/s"
+    assert run.fronts.v_tip_m_per_s.attrs["units"] == "m/s"
     assert [str(end) for end in run.fronts.end.values] == [f["end"] for f in run.info["fronts"]]
     assert list(run.fronts.front) == [f["id"] for f in run.info["fronts"]]
 
@@ -82,7 +82,7 @@ def test_snapshots(folder):
     assert np.array_equal(snapshots.velocity_m_per_s.sel(component="x"), velocity[:, :, 0])
     assert np.array_equal(snapshots.velocity_m_per_s, velocity)
     assert np.array_equal(snapshots.y_m, points[:n, 1])
-    assert snapshots.displacement_m.attrs["unit"] == "m"
+    assert snapshots.displacement_m.attrs["units"] == "m"
     assert snapshots.cell_nodes.sizes == {"cell": 40 * 20, "corner": 4}
 
 
@@ -95,7 +95,7 @@ def test_a_run_without_snapshots_and_probes(tmp_path):
 def test_friction_that_varies_is_there(tmp_path):
     (tmp_path / "friction.csv").write_text("x_m,mu_s\n0,1.2\n0.2,1.4\n")
     run = slipfront.run(write_case(tmp_path), {"friction.file": "friction.csv"})
-    assert run.tractions.mu_s.attrs["unit"] == "1"
+    assert run.tractions.mu_s.attrs["units"] == "1"
     assert np.interp(0.1, run.tractions.x_m, run.tractions.mu_s) == pytest.approx(1.3, rel=1e-12)
 
 
@@ -125,4 +125,4 @@ def test_probes(tmp_path):
     with h5py.File(tmp_path / "out/probes.h5") as file:
         assert np.array_equal(probes.stress_xy_Pa, file["stress_xy_Pa"])
         assert np.array_equal(probes.time_s, file["time_s"])
-    assert probes.stress_xy_Pa.sel(probe="middle").attrs["unit"] == "Pa"
+    assert probes.stress_xy_Pa.sel(probe="middle").attrs["units"] == "Pa"

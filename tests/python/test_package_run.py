@@ -5,17 +5,30 @@ from __future__ import annotations
 
 import _thread
 import gc
+import re
 import signal
 import sys
 import threading
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
 import slipfront
-from common import WITH_PACKAGE, finished, refusal, require_done, require_same_bytes, sets, start, wait_until
+from common import (
+    ROOT,
+    WITH_PACKAGE,
+    finished,
+    refusal,
+    require_done,
+    require_same_bytes,
+    sets,
+    start,
+    wait_until,
+)
 from package_cases import CASE, program, write_case
 from slipfront.running import flattened, toml_text
+from slipfront.sweep.definition import flattened as values
 
 # What does not depend on when and where a run was done.
 SAME_FILES = ("case.resolved.toml", "interface.h5", "fronts.csv", "energy.csv", "static.csv", "fields.vtkhdf")
@@ -70,8 +83,9 @@ def test_the_resolved_case_runs_again(tmp_path):
 )
 def test_errors_are_those_of_the_program(tmp_path, key, value):
     case = write_case(tmp_path)
-    theirs = program("run", case, "-o", "out", *sets(f"{key}={toml_text(value)}"), cwd=tmp_path)
-    assert refused(lambda: slipfront.run(case, {key: value}, output=tmp_path / "ours")) == refusal(theirs)
+    theirs = refusal(program("run", case, "-o", "out", *sets(f"{key}={toml_text(value)}"), cwd=tmp_path))
+    ours = refused(lambda: slipfront.run(case, {key: value}, output=tmp_path / "ours"))
+    assert ours == theirs.replace(f"--set {key}=", f"{key} = ")
     assert not (tmp_path / "ours").exists()
 
 
@@ -90,7 +104,7 @@ def test_results_are_not_overwritten_unless_asked(tmp_path):
     case, out = write_case(tmp_path), tmp_path / "out"
     slipfront.run(case, output=out)
     theirs = refusal(program("run", case, "-o", out, cwd=tmp_path))
-    assert refused(lambda: slipfront.run(case, output=out)) == theirs
+    assert refused(lambda: slipfront.run(case, output=out)) == theirs.replace("--overwrite", "overwrite=True")
     slipfront.run(case, output=out, overwrite=True)
 
 
@@ -174,7 +188,7 @@ def test_ctrl_c_keeps_a_checkpoint_and_resume_goes_on(tmp_path, threads):
     process.send_signal(signal.SIGINT)
     last = require_done(finished(process)).stdout.splitlines()[-1]
     assert last.startswith("KeyboardInterrupt: interrupted at t = ")
-    assert last.endswith(f"slipfront run --restart {tmp_path / 'out'} continues the run")
+    assert last.endswith(f'slipfront.resume("{tmp_path / "out"}") continues the run')
 
     so_far = slipfront.open(tmp_path / "out")
     assert so_far.status == "interrupted"
@@ -218,8 +232,182 @@ def test_without_a_folder_results_go_with_what_was_read(tmp_path):
 def test_values_as_toml():
     for value, text in (
         *((True, "true"), (np.float32(0.5), "0.5"), (1e-6, "1e-06"), (float("inf"), "inf")),
-        *(("left", "left"), ("true", '"true"'), ('a "b"\n', '"a \\"b\\"\\n"')),
-        (np.array([1.0, 2.0]), "[1.0, 2.0]"),
+        *(("left", '"left"'), ("true", '"true"'), ('a "b"\n', '"a \\"b\\"\\n"')),
+        *((np.array([1.0, 2.0]), "[1.0, 2.0]"), (["SG1", "true"], '["SG1", "true"]')),
     ):
         assert toml_text(value) == text
     assert list(flattened({"a": {"b.c": 1}, "d": False})) == [("a.b.c", "1"), ("d", "false")]
+
+
+# --- Every key
+
+BODIES = """
+event.kind = "left"
+plate = {width_m = 0.2, height_m = 0.1, element_size_m = 5e-3, corner = "none"}
+loading = {method = "prestress", shear_speed_over_c_L = 0.0}
+time.end_s = 1e-5
+[base]
+kind = "body"
+height_m = 0.08
+coarsenings = 1
+fine_height_m = 0.03
+sides = "free"
+bottom = "free"
+youngs_modulus_Pa = 5e9
+poissons_ratio = 0.3
+density_kg_per_m3 = 2000.0
+stiffness_damping_s = 2e-7
+"""
+UNIFORM = BODIES + "[prestress]\nt_Pa = 5e5\np_Pa = 2e6\n"
+# Between them they set every key, most to something else than its default.
+CASES = {
+    "ramp": """
+title = 'true, "in quotes" \\ and ü'
+contact.algorithm = "predictor_corrector"
+friction = {law = "velocity_weakening", mu_s = 1.2, mu_k = 0.7, alpha_m2_per_s2 = 0.2}
+[plate]
+width_m = 0.21
+height_m = 0.09
+element_size_m = 3e-3
+coarsenings = 1
+fine_height_m = 0.012
+corner = "relief"
+relief_length_m = 6e-3
+relief_height_m = 1e-4
+relief_depth_m = 0.01
+fillet_radius_m = 6e-3
+sides = "free"
+top = "loaded"
+[material]
+youngs_modulus_Pa = 3e9
+poissons_ratio = 0.35
+density_kg_per_m3 = 1180.0
+plane = "strain"
+stiffness_damping_s = 2e-7
+[loading]
+tilt_left_m = 3e-4
+tilt_right_m = 4e-5
+top_during_tilt = "free"
+method = "direct"
+solver = "direct"
+shear_speed_over_c_L = 2e-6
+edge_margin_m = 0.011
+critical_margin = 2e-3
+[event]
+kind = "right"
+trigger_form = "raised"
+trigger_zone_m = 0.02
+trigger_amount = 2.0
+trigger_ramp_s = 4e-6
+trigger_duration_s = 2e-5
+[time]
+step_factor = 0.8
+allow_unstable = true
+precision = "double"
+interface_rows = 3
+interface_substeps = 4
+local_steps = false
+end_s = 3e-5
+quiet_s = inf
+[fronts]
+l_star_m = 3e-3
+speed_interval = "approach"
+arrest_time_s = 1e-5
+min_length_m = 4e-3
+crack_share = 0.6
+pulse_share = 0.1
+trigger_margin_m = 5e-3
+[output]
+history_interval_s = 1e-6
+snapshot_times_s = [1e-5, 2e-5]
+snapshot_interval_s = 1.5e-5
+snapshot_stress = false
+energy_interval_s = 1e-5
+[probes]
+x_m = [0.05, 0.1, 0.15, 0.16]
+y_m = [0.01, 0.01, 0.02, 0.02]
+interval_s = 1e-6
+names = ["SG1", "true", "1e-3", "a, 'b' [c]"]
+""",
+    "bodies": UNIFORM.replace('event.kind = "left"', 'event.kind = "nucleation"')
+    + """
+[friction]
+law = "slip_weakening"
+mu_s = 0.7
+mu_k = 0.2
+d_c_m = 5e-6
+regularisation = "pressure"
+relaxation_length_m = 1e-4
+relaxation_slip_rate_m_per_s = 0.01
+relaxation_time_s = 1e-6
+random_key = "mu_s"
+random_share = 0.02
+random_correlation_length_m = 0.02
+random_seed = 7
+[nucleation]
+form = "overstress"
+x_m = 0.11
+half_length_m = 0.01
+taper_m = 5e-3
+overstress_Pa = 2e6
+""",
+    "tables": """
+prestress = {file = "tractions.csv"}
+friction = {law = "coulomb", mu = 0.5, file = "friction.csv", between_rows = "stepwise"}
+"""
+    + BODIES,
+    "healing": UNIFORM + '[friction]\nlaw = "slip_weakening_healing"\nmu_s = 0.7\nmu_k = 0.2\nd_c_m = 5e-6\n',
+    "slip_table": UNIFORM
+    + """
+[friction]
+law = "slip_table"
+mu_factor = 0.9
+table_slip_m = [0.0, 1e-6, 1e-5]
+table_mu = [0.7, 0.4, 0.3]
+""",
+    "slip_rate_table": UNIFORM
+    + """
+[friction]
+law = "slip_rate_table"
+mu_factor = 0.9
+table_slip_rate_m_per_s = [0.0, 0.2, 1.0]
+table_mu = [0.7, 0.4, 0.3]
+""",
+}
+
+
+@pytest.fixture
+def tables(tmp_path, monkeypatch):
+    """The tables of the cases, in the working folder."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "tractions.csv").write_text("x_m,t_Pa,p_Pa\n0,1e5,2e6\n0.2,2e5,2e6\n")
+    (tmp_path / "friction.csv").write_text("x_m,mu\n0,0.5\n0.1,0.6\n0.2,0.6\n")
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_case_comes_back_from_its_run_and_runs_again(tables, name):
+    given = values(tomllib.loads(CASES[name]))
+    first = slipfront.run(given)
+    second = slipfront.run(first.case)
+    resolved, again = values(first.case), values(second.case)
+    for key in resolved:
+        if key.endswith(".file") and given.get(key):  # each run has its copy
+            assert (
+                Path(resolved[key]).read_text()
+                == Path(again[key]).read_text()
+                == Path(given[key]).read_text()
+            )
+        else:
+            assert again[key] == resolved[key] == given.get(key, resolved[key]), key
+    assert given.keys() <= resolved.keys()
+
+
+def test_the_cases_set_every_key():
+    rows = re.findall(r"^(?:## \[(\w+)\]|\| `(\w+)` \|)", program("keys", cwd=ROOT).stdout, re.MULTILINE)
+    table, every = "", set()
+    for name, key in rows:
+        table = name or table
+        if key:
+            every.add(f"{table}.{key}" if table else key)
+    assert len(every) > 80
+    assert every - {key for case in CASES.values() for key in values(tomllib.loads(case))} == set()

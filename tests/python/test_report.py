@@ -92,7 +92,7 @@ def test_a_page_needs_no_network(run):
     assert not re.search(r'(?:src|href)="(?!#|data:)', text)
     # The plots that the script looks for, and controls that it wires.
     script = "".join(f.read_text() for f in Path(history.__file__).parent.glob("page/*.js"))
-    wanted = set(re.findall(r"byId\('([\w-]+)'\)", script)) - {"data", "run", *PROBE_PARTS}
+    wanted = set(re.findall(r"byId\('([\w-]+)'\)", script)) - {"data", "run", "criteria-more", *PROBE_PARTS}
     assert wanted and all(f'id="{name}"' in text for name in wanted)
 
 
@@ -108,7 +108,7 @@ def test_facts_and_warnings_are_told(run, capsys):
         "1,234 steps",
         "interrupted at t = 250 µs",
         "signal 15",
-        "S 0.5 to 4, median 1.25; nucleation length 12.5 mm; half the critical crack 20 mm; sub-Rayleigh",
+        "S 0.5 to 4, median 1.25; nucleation length 12.5 mm; critical crack length 40 mm; sub-Rayleigh",
         '<p class="warning">mind this</p>',
     ):
         assert part in text

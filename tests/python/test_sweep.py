@@ -9,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import types
 from pathlib import Path
 
 import numpy as np
@@ -204,6 +205,9 @@ def test_lines_of_a_file_are_those_of_its_keys():
         ("[vary]", "[sample]\ncount = true\n[vary]", 13, "sample.count is a whole number"),
         ('keep = "tables"', 'combine = "zip"\nsample.count = 1', 3, "exclude each other"),
         ('keep = "tables"', 'combine = "zip"', 12, "lists that go together have as many values each"),
+        ("time.end_s = 1e-4", "time.end_s = 2026-01-01", 6, "time.end_s is a date or a time"),
+        ('"0.4:1.2:9"', "[07:30:00]", 13, "friction.mu_k is a date or a time"),
+        ('"event.kind" =', '"friction.mu_k" =', 13, "friction.mu_k is there twice in [vary]"),
     ],
 )
 @pytest.mark.parametrize("newline", ["\n", "\r\n"])
@@ -301,6 +305,33 @@ def test_what_the_program_has_against_a_file_is_told_with_its_line(case, capsys,
 def test_what_is_wrong_is_told_in_one_line_before_anything_is_run(case, capsys, arguments, said):
     assert said in refused(capsys, case, *arguments, "-o", "out")
     assert not Path("out").exists()
+
+
+@pytest.mark.parametrize(
+    "entry", [{"vary": 5}, {"vary": {"friction.mu_k": None}}, {"set": None}, {"count": "1"}]
+)
+def test_a_damaged_definition_is_refused(case, capsys, in_this_process, entry):
+    assert main([str(case), *TWO, "-o", "out", "-q"]) == 0
+    file = Path("out/sweep.json")
+    file.write_text(json.dumps(json.loads(file.read_text()) | entry))
+    assert "not the definition of a sweep" in refused(capsys, "--restart", "out")
+
+
+@pytest.mark.parametrize("is_script", [False, True])
+def test_workers_that_do_not_start(monkeypatch, is_script):
+    """Only a script can be what a worker fails to import."""
+    main_module = types.ModuleType("__main__")
+    if is_script:
+        main_module.__file__ = "mine.py"
+    monkeypatch.setitem(sys.modules, "__main__", main_module)
+
+    def fail(**_):
+        raise RuntimeError("Nanny failed to start.")
+
+    monkeypatch.setattr("distributed.LocalCluster", fail)
+    with pytest.raises(DataError, match="Nanny failed to start") as error, engine.client_of(None, 1):
+        pass
+    assert ("__main__" in str(error.value)) == is_script
 
 
 def test_a_folder_of_something_else_is_left_alone(case, capsys):
@@ -575,10 +606,10 @@ def test_an_end_is_reached_where_slip_comes_to_it_without_a_gap(tmp_path, case, 
 def test_what_is_expected_of_the_rupture_is_run_jsons(tmp_path):
     """Lengths are null under a law that does not weaken over a slip."""
     rupture = {"strength_excess_S": {"min": 0.5, "median": 1.5, "max": 4.0}, "nucleation_length_m": 0.02}
-    names = ("strength_excess_S_median", "nucleation_length_m", "griffith_half_length_m")
+    names = ("strength_excess_S_median", "nucleation_length_m", "critical_crack_length_m")
     for k, (facts, expected) in enumerate(
         [
-            ({"rupture": rupture | {"griffith_half_length_m": 0.03}}, [1.5, 0.02, 0.03]),
+            ({"rupture": rupture | {"griffith_half_length_m": 0.03}}, [1.5, 0.02, 0.06]),
             ({"rupture": rupture | {"griffith_half_length_m": None}}, [1.5, 0.02, np.nan]),
             ({"rupture": {"strength_excess_S": {"median": None}}}, [np.nan] * 3),
             ({}, [np.nan] * 3),
@@ -719,7 +750,8 @@ def test_wave_speeds_are_marked_in_scales_of_speeds(done):
     assert list(waves) == ["c_R", "c_S", "c_L"] and waves["c_L"] == 1
     assert waves["c_S"] == pytest.approx(np.sqrt((1 - nu) / 2)) and 0.9 < waves["c_R"] / waves["c_S"] < 0.96
     assert maps.waves_of(data, "slipped_share") == {}
-    (told,) = (q for q in report.sweep_data(data)["quantities"] if q["name"] == "v_tip_largest_over_c_L")
+    told_all = report.sweep_data(data, done, done / "report.html")["quantities"]
+    (told,) = (q for q in told_all if q["name"] == "v_tip_largest_over_c_L")
     assert {wave["name"]: wave["level"] for wave in told["waves"]} == waves
 
 
@@ -731,7 +763,7 @@ def test_edges_lie_half_way_between_centres():
 
 def test_a_page_has_the_table_and_what_failed(done):
     dataset = read_dataset(done)
-    data = report.sweep_data(dataset)
+    data = report.sweep_data(dataset, done, done / "report.html")
     assert [key["axis"] for key in data["keys"]] == [[0.9, 1.5], ["left", "spontaneous"]]
     by_values = {tuple(point["values"].values()): point for point in data["points"]}
     for row in rows_of():
@@ -739,10 +771,60 @@ def test_a_page_has_the_table_and_what_failed(done):
         text = row["friction_work_J_per_m"]
         assert point["cells"]["friction_work_J_per_m"] == pytest.approx(float(text) if text else None)
         assert point["status"] == row["status"]
-    html = report.sweep_section(dataset)
-    assert "4 runs, 2 without results" in html and html.count("<td>points/") == 2
+    html = report.sweep_section(dataset, done, done / "report.html")
+    assert "4 runs, 2 without results" in html and html.count("<td>points/") == 2 + 4
     assert report.is_kind(done) and not report.is_kind(done / "points")
     assert "</script>" not in report.embedded({"message": "</script><script>"})
+
+
+def test_the_table_of_a_page_leads_to_the_reports_that_are_there(done, tmp_path):
+    dataset = read_dataset(done)
+    place = rows_of()[0]["folder"]
+    (done / place / "report.html").write_text("a page")
+    for page, address in (
+        (done / "report.html", f"{place.replace('=', '%3D').replace(',', '%2C')}/report.html"),
+        (
+            tmp_path / "elsewhere" / "page.html",
+            f"../out/{place.replace('=', '%3D').replace(',', '%2C')}/report.html",
+        ),
+    ):
+        points = report.sweep_data(dataset, done, page)["points"]
+        assert [point["report"] for point in points if point["report"]] == [address]
+        html = report.sweep_section(dataset, done, page)
+        assert f'<a href="{address}">{place}</a>' in html and html.count("<td><a href") == 1
+
+
+def test_axes_have_engineering_units_and_what_is_the_same_is_a_sentence(case, in_this_process):
+    vary = ["--vary", "event.trigger_zone_m=0.02,0.03", "--vary", "prestress.t_Pa=2.1e6,2.3e6"]
+    keys = [
+        "plate.corner=none",
+        "loading.method=prestress",
+        "prestress.p_Pa=4e6",
+        "friction.mu_k=0.3",
+        "event.kind=left",
+    ]
+    settings = [word for key in keys for word in ("--set", key)]
+    assert main([str(case), *vary, *settings, "-o", "out", "-q"]) == 0
+    dataset = read_dataset(Path("out"))
+    told = report.sweep_data(dataset, Path("out"), Path("out/report.html"))
+    assert [(key["label"], key["factor"]) for key in told["keys"]] == [
+        ("trigger zone (mm)", 1e3),
+        ("t (MPa)", 1e-6),
+    ]
+    same = {q["name"]: q["constant"] for q in told["quantities"]}
+    assert same["end_reason"] == "end time" and same["friction_work_J_per_m"] is None
+    html = report.sweep_section(dataset, Path("out"), Path("out/report.html"))
+    assert "why the event ended: end time" in html and "<th>t (MPa)</th>" in html
+    # A map: the values in its cells; what is the same below all.
+    drawn = maps.draw(Path("out"), ("friction_work_J_per_m", "end_reason")).figure
+    (panel, bar) = drawn.axes
+    work = [float(row["friction_work_J_per_m"]) for row in rows_of()]
+    assert sorted(text.get_text() for text in panel.texts) == sorted(f"{v:.3g}" for v in work)
+    assert (panel.get_xlabel(), panel.get_ylabel()) == ("t (MPa)", "trigger zone (mm)")
+    assert panel.get_xticks().tolist() == pytest.approx([2.1, 2.3])
+    assert drawn.get_supxlabel() == "the same at all points: why the event ended: end time"
+    with pytest.raises(DataError, match="nothing to draw: the same at all points"):
+        maps.draw(Path("out"), ("end_reason",))
 
 
 def test_a_damaged_table_is_refused(done, capsys):

@@ -14,6 +14,7 @@ inline input::Case coarse_case(interface::EventKind event = interface::EventKind
   input::Case config;
   config.plate.element_size_m = element_size_m;
   config.event = event;
+  config.time.end_s = 250e-6;
   return config;
 }
 

@@ -150,8 +150,7 @@ TEST(FrictionAlongX, WarningsAndTriggersGoByEachNode) {
   c.event = EventKind::none;
   c.time.end_s = 1e-6;
   EXPECT_THAT(run_case(c).warnings,
-              ::testing::Contains("the prestress is beyond mu_s p at 25 of 101 interface "
-                                  "nodes: they slip at once"));
+              ::testing::Contains("t is beyond mu_s p at 25 of 101 nodes inside: they slip at once"));
   c.event = EventKind::right;
   c.trigger.form = interface::TriggerForm::raised;
   c.trigger.amount = 0.7;

@@ -27,7 +27,7 @@ TERMS: dict[str, tuple[str, str, style.Line]] = {
     "prestress_work": ("prescribed tractions", "#56b4e9", (0, (1, 1.2))),
     "contact_work": ("closing gaps", "#aa4499", (0, (6, 1.5, 1, 1.5))),
     "boundary_work": ("absorbing edges", "#56b4e9", (0, (6, 1.5, 1, 1.5))),
-    "coupling_work": ("coupling of the layer", "#e69f00", "-"),
+    "coupling_work": ("sub-steps (error)", "#e69f00", "-"),
 }
 IMBALANCE: tuple[str, str, style.Line] = ("imbalance", "#cc3311", "-")
 assert set(TERMS) == set(ENERGY_TERMS)

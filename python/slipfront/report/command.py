@@ -16,7 +16,7 @@ from slipfront.report import reproduction, run, study
 from slipfront.report.page import require_replaceable, write_page
 from slipfront.sweep import report as sweep
 
-#: Kinds of folders, the first that is one of them makes the page: is_kind(folder), page(folder).
+#: Kinds of folders, the first that is one of them makes the page: is_kind(folder), page(folder, file).
 KINDS: tuple[ModuleType, ...] = (reproduction, study, sweep, run)
 DEFAULT_NAME = "report.html"
 
@@ -30,7 +30,7 @@ def write_report(folder: Path, file: Path) -> list[str]:
     if kind is None:
         raise DataError(f"{folder}: holds no results of a run, a study, a sweep or a reproduction")
     with matplotlib.rc_context(RC):
-        page = guarded(folder, lambda: kind.page(folder))
+        page = guarded(folder, lambda: kind.page(folder, file))
     return write_page(page, file)
 
 

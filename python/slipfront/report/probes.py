@@ -12,6 +12,7 @@ from slipfront.folder import belongs
 from slipfront.read import BLEW_UP, Place, Probes, n_finite, read_probes, require, require_ascending
 from slipfront.report.numbers import listed, packed, unit
 from slipfront.report.page import plot, section
+from slipfront.units import quantity
 
 MOST_PROBES, MOST_TIMES = 24, 1200
 #: What can be chosen: its name, the quantity of its unit, and the fields that are drawn below each other.
@@ -57,25 +58,50 @@ def step_of(n: int, most: int) -> int:
     return max(1, -(-n // most))
 
 
-def probe_data(probes: Probes, time_factor: float, length_factor: float) -> dict[str, Any]:
-    """The records as values of JSON, in units that suit them."""
+def before_start(field: str, before: dict[str, float] | None) -> float | None:
+    """What is to be added to the record of a field for the whole of it; None where that is not known.
+    `before`: what recorded stress adds to, or None where the records are whole."""
+    if before is None or field.startswith("v_"):
+        return 0.0
+    added = before.get(field, np.nan)
+    return float(added) if np.isfinite(added) else None
+
+
+def scaled(value: float | None, factor: float) -> float | None:
+    return None if value is None else factor * value
+
+
+def probe_data(
+    probes: Probes, time_factor: float, length_factor: float, before: dict[str, float] | None
+) -> dict[str, Any]:
+    """The records as values of JSON, in units that suit them; components that are zero throughout are only
+    named."""
     times = slice(None, None, step_of(len(probes.time_s), MOST_TIMES))
     every = slice(0, MOST_PROBES)
     choices = []
-    for name, (quantity, fields) in CHOICES.items():
+    for name, (measure, fields) in CHOICES.items():
         values = {field: probes.fields[field][times, every] for field in fields}
-        shown = unit(quantity, np.concatenate(list(values.values())))
+        added = {field: before_start(field, before) for field in fields}
+        shown = unit(measure, np.concatenate([values[field] + (added[field] or 0) for field in fields]))
+        zero = [label for field, label in fields.items() if not values[field].any() and not added[field]]
         choices.append(
             {
                 "name": name,
                 "unit": shown.name,
+                "zero": zero,
                 "parts": [
-                    {"label": label, "values": packed(shown.factor * values[field])}
+                    {
+                        "label": label,
+                        "values": packed(shown.factor * values[field]),
+                        "before": scaled(added[field], shown.factor),
+                    }
                     for field, label in fields.items()
+                    if label not in zero
                 ],
             }
         )
     return {
+        "are_changes": before is not None,
         "names": list(probes.names[every]),
         "x": listed(probes.x_m[every], length_factor),
         "y": listed(probes.y_m[every], length_factor),
@@ -95,17 +121,49 @@ def left_out(probes: Probes) -> str:
     return f" The page holds {' and '.join(skipped)}; all are in probes.h5." if skipped else ""
 
 
-def probes_section(probes: Probes) -> str:
-    buttons = "".join(
-        f'<button type="button" data-probes="{name}" aria-pressed="false">{name}</button>' for name in CHOICES
+def what_is_recorded(before: dict[str, float] | None) -> str:
+    """What strain and stress count from, by the loading."""
+    if before is None:
+        return (
+            "The records hold the whole strain and stress: the state before the event, from the unloaded "
+            "body on, "
+            "and what has changed since. The button leaves the change since the start (Δ)."
+        )
+    change = (
+        "With prescribed tractions displacement, strain and stress are recorded as changes since the "
+        "start of the "
+        "event (Δ)"
     )
+    yy, xy = (before[f"stress_{name}_Pa"] for name in ("yy", "xy"))
+    if not np.isfinite([yy, xy]).all():
+        return f"{change}: tractions that vary along the interface leave the state in the bulk unknown."
+    return (
+        f"{change}. Stress without Δ is absolute: the uniform state of the prescribed tractions, "
+        "σ<sub>yy</sub> = "
+        f"−p = {quantity(yy, 'Pa')} and σ<sub>xy</sub> = t = {quantity(xy, 'Pa')}, and the change. They "
+        "determine "
+        "neither σ<sub>xx</sub> nor the strain before the event. The button leaves the changes."
+    )
+
+
+def probes_section(probes: Probes, data: dict[str, Any], before: dict[str, float] | None) -> str:
+    choices = [choice for choice in data["choices"] if choice["parts"]]
+    buttons = "".join(
+        f'<button type="button" data-probes="{choice["name"]}" aria-pressed="false">{choice["name"]}</button>'
+        for choice in choices
+    )
+    has_both = before is None or any(part["before"] for choice in choices for part in choice["parts"])
     change = '<button type="button" id="probes-change" aria-pressed="false">change since the start</button>'
+    zero = [label for choice in data["choices"] for label in choice["zero"]]
+    told = f" {', '.join(zero)}: zero at all probes and times." if zero else ""
     return section(
         "probes",
         "Probes",
-        f'<p class="buttons" role="group" aria-label="what the probes record">{buttons}{change}</p>',
+        f'<p class="buttons" role="group" aria-label="what the probes record">{buttons}'
+        f"{change if has_both else ''}</p>",
         plot("probes-plot", "Records of the probes over time"),
-        "<p>At the places of [probes], as strain gauges record: the sum of the state before the event and of "
-        "what has changed since, or the change alone. Stress is positive in tension, ε<sub>xy</sub> half the "
-        f"engineering shear strain. A click on a name hides or shows the probe.{left_out(probes)}</p>",
+        f"<p>At the places of [probes]. {what_is_recorded(before)} Stress is positive in tension, "
+        "ε<sub>xy</sub> "
+        f"half the engineering shear strain.{told} A click on a name hides or shows the probe."
+        f"{left_out(probes)}</p>",
     )

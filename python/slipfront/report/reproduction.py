@@ -17,7 +17,14 @@ from slipfront.folder import belongs
 from slipfront.read import Front, Run
 from slipfront.report import run as single
 from slipfront.report.page import Page, section, warnings_list, words
-from slipfront.report.run_data import FrontLook, has_snapshots, history_of, run_data
+from slipfront.report.run_data import (
+    MEASURES,
+    FrontLook,
+    constant_fields,
+    has_snapshots,
+    history_of,
+    run_data,
+)
 
 MOST_TIMES, MOST_NODES = 220, 220  # of each run, so that the page stays small
 FIGURE_DPI = 160  # as wide as the page
@@ -115,16 +122,18 @@ def runs_parts(results: Results) -> list[str]:
     return [
         section("runs", "Runs", runs_table(results)),
         run_list(),
-        single.space_time_section(single.thinning(history_of(every[0]))),
-        single.profiles_section(),
+        single.space_time_section(single.thinning(history_of(every[0])), constant_fields(every)),
+        single.profiles_section(history_of(every[0])),
         single.energy_section(),
         single.snapshots_section(all_have_snapshots),
     ]
 
 
-def page(folder: Path) -> Page:
+def page(folder: Path, _file: Path) -> Page:
     results = read_results(folder, read=lambda place: single.thin_run(place, (MOST_TIMES, MOST_NODES)))
     runs = [run_data(run, look, label(name)) for name, run in results.runs.items()]
+    panels = [measure for measure in MEASURES if any(measure in run["panels"] for run in runs)]
+    constant = constant_fields(list(results.runs.values()))
     scorecard = section(
         "scorecard",
         "Scorecard",
@@ -139,7 +148,7 @@ def page(folder: Path) -> Page:
             warnings_list(results.remarks, "mark"),
             single.navigation(PLACES),
             scorecard,
-            single.criteria_section("Fronts of all four runs; a click on a name hides them."),
+            single.criteria_section(panels, more="Fronts of all four runs; a click on a name hides them."),
             *runs_parts(results),
             section("figures", "Figures", *figures(results)),
             section(
@@ -149,6 +158,12 @@ def page(folder: Path) -> Page:
             section("fronts", "Fronts", tables.front_table(results)),
             *tables.timing_section(results),
         ],
-        data={"runs": runs, "fits": fit_curves(results)},
+        data={
+            "runs": runs,
+            "fields": [field for field in single.FIELDS if field not in constant],
+            "panels": panels,
+            "folded": False,
+            "fits": fit_curves(results),
+        },
         notes=results.remarks,
     )

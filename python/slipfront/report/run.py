@@ -13,10 +13,19 @@ from slipfront.figures.report import front_row, table
 from slipfront.files import is_number
 from slipfront.folder import UNFINISHED, belongs
 from slipfront.read import STATUSES, Run, entry, read_run
+from slipfront.report import setup
 from slipfront.report.history import ThinHistory, thin_history
 from slipfront.report.page import Page, facts_table, plot, section, warnings_list, words
 from slipfront.report.probes import probe_data, probes_of, probes_section
-from slipfront.report.run_data import MOST_FRAMES, has_snapshots, history_of, run_data, units_of
+from slipfront.report.run_data import (
+    MOST_FRAMES,
+    constant_fields,
+    has_snapshots,
+    history_of,
+    run_data,
+    units_of,
+)
+from slipfront.report.sketch import sketch
 
 MOST_TIMES, MOST_NODES = 400, 320  # of a page with one run
 ENDS = {
@@ -25,19 +34,6 @@ ENDS = {
     "interrupted": "it was interrupted",
     "blow_up": "the motion blew up",
 }
-EVENTS = {
-    "left": "triggered at the left edge",
-    "right": "triggered at the right edge",
-    "spontaneous": "spontaneous",
-    "nucleation": "in a nucleation patch",
-}
-OF_RANDOM_FIELDS = (
-    "random_key",
-    "random_share",
-    "random_correlation_length_m",
-    "random_seed",
-    "between_rows",
-)
 DEFINITIONS = (
     "V<sub>tip</sub>: speed of the front's tip. t<sub>s</sub>, p<sub>s</sub>: tractions before the event; "
     "t<sub>d</sub>, p<sub>d</sub>: when the tip is l* short of the point; U<sub>s</sub>, U<sub>r</sub>: "
@@ -57,12 +53,10 @@ def number_words(value: Any, form: str, factor: float = 1.0, unit: str = "") -> 
 def mesh_words(run: Run) -> str:
     mesh = run.info.get("mesh", {})
     size = number_words(entry(run.case, "plate", "element_size_m"), ".4g", 1e3, " mm")
-    bodies = "two bodies" if entry(run.case, "base", "kind") == "body" else "one body on a rigid plane"
     counts = [number_words(mesh.get(key), ",.0f") for key in ("columns", "rows", "nodes", "cells")]
     return (
-        f"{counts[0]} × {counts[1]} cells of {size} at the interface; {counts[2]} nodes, {counts[3]} cells "
-        "in all; "
-        f"{bodies}"
+        f"plate of {counts[0]} × {counts[1]} cells, {size} at the interface; {counts[2]} nodes, {counts[3]} "
+        "cells in all"
     )
 
 
@@ -74,48 +68,6 @@ def ending(run: Run) -> str:
     return "complete: " + words(ENDS.get(end, end) or "why it ended is not given")
 
 
-def waves_words(run: Run) -> str:
-    names = {"c_L": "c<sub>L</sub>", "c_S": "c<sub>S</sub>", "c_R": "c<sub>R</sub>"}
-    speeds = (f"{name} = {run.fact(f'wave_speeds.{wave}_m_per_s'):.0f} m/s" for wave, name in names.items())
-    return ", ".join(speeds) + " (of the plate)"
-
-
-def settings_words(run: Run, table: str, left_out: tuple[str, ...] = ()) -> str:
-    """Words and numbers of a table of the case, by their keys."""
-    settings = run.case.get(table)
-    told = []
-    for key, value in settings.items() if isinstance(settings, dict) else ():
-        if is_number(value) and key not in left_out:
-            told.append(f"{key} = {value:g}")
-        elif isinstance(value, str) and value not in ("", "none") and key not in left_out:
-            told.append(value if key == "law" else f"{key} = {value}")
-    return words(", ".join(told))
-
-
-def rupture_words(run: Run) -> str:
-    """S before the event, and what it lets expect; of runs that tell it."""
-    rupture = run.info.get("rupture")
-    if not isinstance(rupture, dict):
-        return "not given"
-    S = rupture.get("strength_excess_S")
-    spread = [
-        number_words(S.get(k) if isinstance(S, dict) else None, ".3g") for k in ("min", "median", "max")
-    ]
-    lengths = [
-        f"{name} {number_words(rupture[key], '.3g', 1e3, ' mm')}"
-        for key, name in (
-            ("nucleation_length_m", "nucleation length"),
-            ("griffith_half_length_m", "half the critical crack"),
-            ("process_zone_m", "process zone"),
-        )
-        if is_number(rupture.get(key))
-    ]
-    least, median, most = spread
-    of_S = f"S {median}" if least == most else f"S {least} to {most}, median {median}"
-    told = [of_S, *lengths, str(rupture.get("regime", ""))]
-    return words("; ".join(text for text in told if text))
-
-
 def facts(run: Run) -> str:
     info, steps = run.info, number_words(run.info.get("steps"), ",.0f")
     step = number_words(info.get("dt_s"), ".3g", 1e6, " µs")
@@ -124,20 +76,14 @@ def facts(run: Run) -> str:
     sessions = f", in {n_sessions} parts" if isinstance(n_sessions, int) and n_sessions > 1 else ""
     return facts_table(
         [
-            ("Case", words(info.get("title", "") or "without a title")),
             ("Folder", words(run.name)),
             ("End", ending(run)),
-            ("Program", words(f"slipfront {info.get('version')}, commit {info.get('commit')}, "
-                              f"{info.get('compiler')}, on {info.get('host')}")),
             ("Mesh", mesh_words(run)),
-            ("Material", settings_words(run, "material")),
-            ("Friction", settings_words(run, "friction", OF_RANDOM_FIELDS)),
-            ("Before the event", rupture_words(run)),
-            ("Start of the event", EVENTS.get(run.kind, words(run.kind))),
             ("Time", f"{number_words(info.get('time_s'), '.4g', 1e6, ' µs')} in {steps} steps of {step}; "
                      f"{interface_step} at the interface"),
             ("Computed in", number_words(info.get("wall_s"), ".3g", 1, " s") + sessions),
-            ("Wave speeds", waves_words(run)),
+            ("Program", words(f"slipfront {info.get('version')}, commit {info.get('commit')}, "
+                              f"{info.get('compiler')}, on {info.get('host')}")),
         ]
     )  # fmt: skip
 
@@ -163,10 +109,15 @@ def thinning(history: ThinHistory) -> str:
     )
 
 
-FIELD_BUTTONS = "".join(
-    f'<button type="button" data-field="{field}" aria-pressed="false">{name}</button>'
-    for field, name in (("slip_rate", "slip rate"), ("ratio", "t/p"), ("p", "pressure p"), ("slip", "slip"))
-)
+#: What can be drawn along the interface over time, in the order of the buttons.
+FIELDS = {"slip_rate": "slip rate", "ratio": "t/p", "p": "pressure p", "slip": "slip"}
+
+
+def field_buttons(shown: list[str]) -> str:
+    return "".join(
+        f'<button type="button" data-field="{field}" aria-pressed="false">{FIELDS[field]}</button>'
+        for field in shown
+    )
 
 
 def time_slider(name: str, play: bool = False) -> str:
@@ -178,22 +129,33 @@ def time_slider(name: str, play: bool = False) -> str:
     )
 
 
-def space_time_section(note: str) -> str:
+def space_time_section(note: str, constant: dict[str, str]) -> str:
+    """Fields that are the same everywhere, by what to say of each, have no diagram."""
+    shown = [field for field in FIELDS if field not in constant]
+    told = "".join(f"<p>{words}</p>" for words in constant.values())
+    heading = "Along the interface over time"
+    if not shown:
+        return section("space-time", heading, told)
     return section(
         "space-time",
-        "Along the interface over time",
-        f'<p class="buttons" role="group" aria-label="what is drawn">{FIELD_BUTTONS}</p>',
+        heading,
+        f'<p class="buttons" role="group" aria-label="what is drawn">{field_buttons(shown)}</p>',
         plot("space-time-plot", "Field along the interface over time, with the fronts"),
         "<p>Lines: onsets of slip along the fronts of at least "
         f"{1e3 * DRAWN_LENGTH_M:g} mm; from the start of the first of them, what would run at a wave speed. "
-        "A click on "
-        "a name of the legend hides or shows its lines. Drag to zoom, double-click to go back. A click into "
-        "the "
-        f"diagram sets the time of the next plot. {note}</p>",
+        "A click on a name of the legend hides or shows its lines. Drag to zoom, double-click to go back. A "
+        f"click into the diagram sets the time of the next plot. {note}</p>",
+        told,
     )
 
 
-def profiles_section() -> str:
+def profiles_section(history: ThinHistory) -> str:
+    n_times, n_nodes = history.times_in_block, history.nodes_in_block
+    rate = (
+        ""
+        if n_times == n_nodes == 1
+        else f", of the slip rate the largest of {n_times} times and {n_nodes} nodes"
+    )
     return section(
         "profiles",
         "Tractions and slip rate at a time",
@@ -201,52 +163,68 @@ def profiles_section() -> str:
         '<p class="buttons"><button type="button" id="profiles-keep">keep this curve</button>'
         '<button type="button" id="profiles-clear">remove kept curves</button></p>',
         plot("profiles-plot", "Shear over normal traction, and slip rate, along the interface"),
-        "<p>t/p is left out where the contact is open. Triangles: tips of fronts, pointing where they "
-        "go.</p>",
+        f"<p>The data as computed, not smoothed{rate}: steps and ripples over a few elements are the mesh's. "
+        "t/p is left out where the contact is open. Triangles: tips of fronts, pointing where they go.</p>",
     )
 
 
-def criteria_section(more: str = "") -> str:
+def criteria_section(panels: list[str], folded: bool = False, more: str = "") -> str:
+    """`panels`: the measures that differ between points; folded: all but the first wait for a button."""
+    heading = "Front speed" if folded or len(panels) < 2 else "Front speed against position and criteria"
+    if not panels:
+        return section("criteria", heading, "<p>No front has a speed to be drawn.</p>")
+    unfold = (
+        '<p class="buttons"><button type="button" id="criteria-more" aria-pressed="false">against the '
+        "criteria "
+        "of Kammer et al. 2012</button></p>"
+    )
     return section(
         "criteria",
-        "Front speed against position and three criteria",
-        plot("criteria-plot", "Front speed against position, static ratio, dynamic ratio and energy rise"),
+        heading,
+        unfold if folded and len(panels) > 1 else "",
+        plot("criteria-plot", "Front speed against position and criteria"),
         '<p id="criteria-point" class="readout" aria-live="polite">Point at a node of a front: it is marked '
-        "in all "
-        "panels and in the diagrams above. A click keeps it. Box or lasso (in the bar above the plot) "
+        "in all panels and in the diagrams above. A click keeps it. Box or lasso (in the bar above the plot) "
         "select many.</p>",
-        f"<p>{DEFINITIONS} Strong points: main fronts, where they count for the criteria; pale: all others. "
-        f"Lines: wave speeds. {more}</p>",
+        f"<p>{DEFINITIONS} Full colour: nodes of main fronts, beyond the trigger and before they arrest; "
+        "pale: "
+        f"all others. Lines: wave speeds. {more}</p>",
     )
 
 
-def energy_section() -> str:
+def energy_section(is_zero: bool = False) -> str:
+    if is_zero:
+        return section("energy", "Energy", "<p>No energy changes and no work is done.</p>")
     return section(
         "energy",
         "Energy",
         plot("energy-plot", "Energies and works over time, stacked, and what they leave open"),
         "<p>Per unit thickness, since the start. Above zero: where energy comes from, such as strain "
-        "energy that is released; below: where it goes. "
-        "Both sides "
-        "are equally large but for the imbalance, which is drawn below over the largest term: each term is "
-        "computed by "
-        "itself. Closing gaps: what is lost where the bodies meet again. Coupling: between the layer at the "
-        "interface, which moves in smaller steps, and the rest; an error of the time stepping.</p>",
+        "energy that is released; below: where it goes. Both sides are equally large but for the imbalance, "
+        "which is drawn below over the largest term: each term is computed by itself. Closing gaps: kinetic "
+        "energy lost where the bodies meet again. Sub-steps: an error of the time stepping, where the "
+        "layer at "
+        "the interface moves in smaller steps than the rest.</p>",
     )
 
 
-def snapshots_section(has_any: bool, n_of: str = "") -> str:
+SNAPSHOTS = "Snapshots: particle velocity"
+
+
+def snapshots_section(has_any: bool, n_of: str = "", is_still: bool = False) -> str:
     if not has_any:
         text = "<p>The run has no snapshots; they come with output.snapshot_times_s in its case.</p>"
-        return section("snapshots", "Speed of the particles", text)
+        return section("snapshots", SNAPSHOTS, text)
+    if is_still:
+        return section("snapshots", SNAPSHOTS, "<p>Nothing moves in any snapshot.</p>")
     return section(
         "snapshots",
-        "Speed of the particles",
+        SNAPSHOTS,
         time_slider("snapshots", play=True),
-        plot("snapshots-plot", "Speed of the particles in the bodies"),
-        "<p>Means over square pixels; colours go with the square root of the speed, within 1 % of the "
-        "scale's end. "
-        f"Triangles: tips of fronts, pointing where they go. {n_of}</p>",
+        plot("snapshots-plot", "Magnitude of the particle velocity in the bodies"),
+        "<p>Means over square pixels; colours go with the square root of the velocity's magnitude, within "
+        "1 % "
+        f"of the scale's end. Triangles: tips of fronts, pointing where they go. {n_of}</p>",
     )
 
 
@@ -291,10 +269,11 @@ def navigation(places: list[tuple[str, str]]) -> str:
 
 
 PLACES = [
-    ("facts", "Facts"),
+    ("setup", "Set-up"),
+    ("computation", "Computation"),
     ("space-time", "Space-time"),
     ("profiles", "t/p at a time"),
-    ("criteria", "Criteria"),
+    ("criteria", "Front speed"),
     ("energy", "Energy"),
     ("snapshots", "Snapshots"),
     ("probes", "Probes"),
@@ -306,27 +285,38 @@ def thin_run(folder: Path, most: tuple[int, int] = (MOST_TIMES, MOST_NODES)) -> 
     return read_run(folder, thin_history(most))
 
 
-def page(folder: Path) -> Page:
+def page(folder: Path, _file: Path) -> Page:
     run = thin_run(folder)
     probes = probes_of(run.place)
     data = run_data(run)
+    constant = constant_fields([run])
+    before = run.place.prestress(run.case)
     if probes is not None:
         units = units_of(run)
-        data["probes"] = probe_data(probes, units["time"].factor, units["x"].factor)
+        data["probes"] = probe_data(probes, units["time"].factor, units["x"].factor, before)
+    snapshots = data["snapshots"]
     title = str(run.info.get("title", "")) or run.name
     return Page(
         title=f"{title}: {run.mark}" if run.mark else title,
         parts=[
             navigation([place for place in PLACES if place[0] != "probes" or probes is not None]),
-            section("facts", "Facts", warnings_of(run), facts(run)),
-            space_time_section(thinning(history_of(run))),
-            profiles_section(),
-            criteria_section(),
-            energy_section(),
-            snapshots_section(has_snapshots(run), frames_words(run)),
-            probes_section(probes) if probes is not None else "",
+            section("setup", "Set-up", warnings_of(run), sketch(run), facts_table(setup.rows(run))),
+            section("computation", "Computation", facts(run)),
+            space_time_section(thinning(history_of(run)), constant),
+            profiles_section(history_of(run)),
+            criteria_section(data["panels"], data["folded"]),
+            energy_section(not data["energy"]["terms"]),
+            snapshots_section(
+                has_snapshots(run), frames_words(run), snapshots is not None and snapshots["still"]
+            ),
+            probes_section(probes, data["probes"], before) if probes is not None else "",
             fronts_section(run),
         ],
-        data={"runs": [data]},
+        data={
+            "runs": [data],
+            "fields": [field for field in FIELDS if field not in constant],
+            "panels": data["panels"],
+            "folded": data["folded"],
+        },
         notes=run.remarks,
     )

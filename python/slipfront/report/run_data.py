@@ -19,6 +19,8 @@ from slipfront.read import Balance, Fields, Front, Run, entry, ratio
 from slipfront.report.history import ThinHistory
 from slipfront.report.numbers import Unit, listed, packed, packed_bytes, unit
 from slipfront.report.picture_grid import codes, pixel_grid
+from slipfront.report.setup import is_uniform
+from slipfront.units import quantity
 
 WAVES = ("c_L", "c_S", "c_R")
 MOST_FRAMES = 40
@@ -123,14 +125,72 @@ def front_data(run: Run, front: Front, units: Units, look: Look) -> dict[str, An
     }
 
 
-def wave_data(run: Run, units: Units) -> list[dict[str, Any]]:
-    """Speeds over c_L, and in the units of the space-time diagram."""
-    per_unit = units["x"].factor / units["time"].factor
+def wave_speeds(run: Run) -> dict[str, float]:
+    """By name, m/s: of the plate; of two bodies of different speeds also of the base, and the generalised
+    Rayleigh speed of both."""
     speeds = {wave: run.fact(f"wave_speeds.{wave}_m_per_s") for wave in WAVES}
+    below = run.info.get("base")
+    if not isinstance(below, dict):
+        return speeds
+    joint: Any = below.get("generalised_rayleigh_speed_m_per_s")
+    if is_number(joint) and not np.isclose(joint, speeds["c_R"], rtol=1e-3):
+        speeds["c_GR"] = float(joint)
+    of_base = {wave: run.fact(f"base.wave_speeds.{wave}_m_per_s") for wave in ("c_L", "c_S")}
+    if any(not np.isclose(v, speeds[wave], rtol=1e-3) for wave, v in of_base.items()):
+        speeds |= {f"{wave} of the base": v for wave, v in of_base.items()}
+    return speeds
+
+
+def wave_data(run: Run, units: Units) -> list[dict[str, Any]]:
+    """Speeds over c_L of the plate, and in the units of the space-time diagram."""
+    per_unit = units["x"].factor / units["time"].factor
     return [
         {"name": wave, "over_c_L": speed / run.c_L_m_per_s, "slope": speed * per_unit, "m_per_s": speed}
-        for wave, speed in speeds.items()
+        for wave, speed in wave_speeds(run).items()
     ]
+
+
+CONSTANT = 1e-3  # relative spread below which a field is told in words: half a unit of its third digit
+
+
+def constant_fields(runs: list[Run]) -> dict[str, str]:
+    """Fields along the interface that are the same everywhere in all runs, by what to say of each."""
+
+    def told(name: str, quantity_of: Callable[[ThinHistory], np.ndarray], unit: str) -> str | None:
+        fields = [quantity_of(history_of(run)) for run in runs]
+        finite = np.concatenate([values[np.isfinite(values)] for values in fields])
+        if len(finite) == 0:
+            return f"{name} is nowhere defined: the contact is open."
+        low, high = float(finite.min()), float(finite.max())
+        if high - low > CONSTANT * max(abs(low), abs(high)):
+            return None
+        complete = all(np.isfinite(values).all() for values in fields)
+        where = "everywhere and at all times" if complete else "wherever the contact is closed"
+        return f"{name} is {quantity(high, unit, 3)} {where}."
+
+    found = {
+        "slip_rate": told("The slip rate", lambda h: h.slip_rate_m_per_s, "m/s"),
+        "ratio": told("t/p", lambda h: ratio(h.t_Pa, h.p_Pa), "1"),
+        "p": told("The pressure p", lambda h: h.p_Pa, "Pa"),
+        # Rounding alone moves nodes that do not slip.
+        "slip": told("The slip", lambda h: h.slip_m if h.slip_rate_m_per_s.any() else 0 * h.slip_m, "m"),
+    }
+    return {field: words for field, words in found.items() if words is not None}
+
+
+MEASURES = ("x", "static", "dynamic", "rise")
+
+
+def panels(fronts: list[dict[str, Any]]) -> list[str]:
+    """Measures over which the fronts' speeds are worth a panel: they differ between points."""
+
+    def values(measure: str) -> list[float]:
+        return [
+            v for f in fronts for v, speed in zip(f[measure], f["v"], strict=True) if None not in (v, speed)
+        ]
+
+    found = {measure: values(measure) for measure in MEASURES}
+    return [m for m, v in found.items() if v and max(v) - min(v) > CONSTANT * max(map(abs, v))]
 
 
 def given_to_the_rest(balance: Balance) -> dict[str, np.ndarray]:
@@ -200,8 +260,10 @@ def snapshot_data(run: Run, fields: Fields, units: Units, look: Look) -> dict[st
     pictures = [grid.means(fields.speed_m_per_s(step)) for step in steps]
     # The scale leaves out the fastest thousandth, of the pixels of the fastest picture.
     fastest = np.array([np.nanquantile(picture, 0.999) for picture in pictures])
+    still = not fastest.any()
     largest = float(np.max(fastest)) or 1.0
     return {
+        "still": still,
         "x": listed(grid.x_m, units["x"].factor),
         "y": listed(grid.y_m, units["x"].factor),
         "two_bodies": bool(grid.y_m[0] < 0),
@@ -241,6 +303,7 @@ def run_data(run: Run, look: Look = look_by_direction, name: str = "") -> dict[s
     units, began = units_of(run), start(run)
     origin = None if began is None else [began[0] * units["x"].factor, began[1] * units["time"].factor]
     snapshots = run.fields if has_snapshots(run) else None
+    fronts = [front_data(run, front, units, look) for front in drawn_fronts(run)]
     return {
         "name": name,
         "units": {quantity: unit.name for quantity, unit in units.items()},
@@ -256,7 +319,9 @@ def run_data(run: Run, look: Look = look_by_direction, name: str = "") -> dict[s
         "opening": opening_s(run) * units["time"].factor,
         "highest_v": HIGHEST_V,
         "largest_rise": LARGEST_RISE,
-        "fronts": [front_data(run, front, units, look) for front in drawn_fronts(run)],
+        "fronts": fronts,
+        "panels": panels(fronts),
+        "folded": is_uniform(run),
         "energy": energy_data(run.balance, units),
         "snapshots": snapshot_data(run, snapshots, units, look) if snapshots is not None else None,
     }

@@ -159,7 +159,7 @@ def whole_table(file: Path) -> str:
     return more + table([words(name) for name in points.header], rows, kind="dense")
 
 
-def page(folder: Path) -> Page:
+def page(folder: Path, _file: Path) -> Page:
     study = study_of(folder)
     assert study is not None
     file = result_file(folder / study.summary)

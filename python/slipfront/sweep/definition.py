@@ -79,20 +79,41 @@ class Sweep:
         self.points()
 
 
-def flattened(table: dict[str, Any], before: str = "") -> dict[str, Any]:
-    """Values of tables in tables by dotted keys."""
-    flat: dict[str, Any] = {}
+def entries_of(table: dict[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys of a table and of those in it, the outer ones first; each as often as it is written."""
     for name, value in table.items():
-        flat |= flattened(value, f"{before}{name}.") if isinstance(value, dict) else {before + name: value}
-    return flat
-
-
-def keys_of(table: dict[str, Any], before: str = "") -> Iterator[str]:
-    """Dotted keys of a table and of those in it, the outer ones first."""
-    for name, value in table.items():
-        yield before + name
+        yield before + name, value
         if isinstance(value, dict):
-            yield from keys_of(value, f"{before}{name}.")
+            yield from entries_of(value, f"{before}{name}.")
+
+
+def flattened(table: dict[str, Any]) -> dict[str, Any]:
+    """Values of tables in tables by dotted keys."""
+    return {key: value for key, value in entries_of(table) if not isinstance(value, dict)}
+
+
+def is_value(value: Any) -> bool:
+    """Whether a key of a case file may be set to it, or to each of it."""
+    return (
+        all(map(is_value, value)) if isinstance(value, list) else isinstance(value, bool | int | float | str)
+    )
+
+
+def settings_of(name: str, table: dict[str, Any], lines: dict[str, str]) -> dict[str, Any]:
+    """Values of [set] or [vary] by dotted keys, each there once."""
+    found: dict[str, Any] = {}
+    for key, value in entries_of(table):
+        if isinstance(value, dict):
+            continue
+        line = lines.get(f"{name}.{key}", lines[name])
+        if key in found:
+            raise DataError(
+                f"{line}: {key} is there twice in [{name}], quoted and dotted; keep one of the two"
+            )
+        if not is_value(value):
+            raise DataError(f"{line}: {key} is a date or a time; give numbers, texts, true, false or a list")
+        found[key] = value
+    return found
 
 
 def lines_of(text: str) -> dict[str, int]:
@@ -102,7 +123,7 @@ def lines_of(text: str) -> dict[str, int]:
     for number, line in enumerate(text.split("\n"), start=1):
         statement += line + "\n"
         try:
-            keys = list(keys_of(tomllib.loads(statement)))
+            keys = [key for key, _ in entries_of(tomllib.loads(statement))]
         except tomllib.TOMLDecodeError:
             continue  # a bracket or a quotation is still open
         if statement.lstrip().startswith("["):
@@ -140,8 +161,8 @@ def read_sweep(file: Path) -> Sweep:
         raise DataError(f"{lines['combine']}: combine = '{table['combine']}' and [sample] exclude each other")
     return Sweep(
         case=file.parent / table["case"],
-        vary=flattened(table.get("vary", {})),
-        set=flattened(table.get("set", {})),
+        vary=settings_of("vary", table.get("vary", {}), lines),
+        set=settings_of("set", table.get("set", {}), lines),
         combine="sample" if "sample" in table else table.get("combine", "grid"),
         count=of_sample.get("count", 0),
         seed=of_sample.get("seed", 0),

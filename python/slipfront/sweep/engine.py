@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -50,6 +51,14 @@ def ignore_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+def advice() -> str:
+    """What to do where a local worker ends as it begins, by importing the script that started it."""
+    script = sys.modules["__main__"]
+    if getattr(script, "__file__", None) and script.__spec__ is None:
+        return "a script calls a sweep under `if __name__ == '__main__':`"
+    return "one has ended at its start: begin again, perhaps with fewer --workers"
+
+
 @contextmanager
 def client_of(scheduler: str | None, workers: int) -> Iterator[Any]:
     """A Dask client of a scheduler elsewhere, or of as many local processes as there are workers."""
@@ -75,9 +84,8 @@ def client_of(scheduler: str | None, workers: int) -> Iterator[Any]:
         except (OSError, TimeoutError, ValueError) as error:
             where = scheduler or "local workers"
             raise DataError(f"{where}: no Dask scheduler answers: {error}") from None
-        except RuntimeError as error:  # a worker begins by importing the script that started it
-            hint = "a script calls a sweep under `if __name__ == '__main__':`"
-            raise DataError(f"local workers do not start ({one_line(str(error))}); {hint}") from None
+        except RuntimeError as error:
+            raise DataError(f"local workers do not start ({one_line(str(error))}); {advice()}") from None
         yield client
 
 

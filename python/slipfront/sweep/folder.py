@@ -29,7 +29,7 @@ from slipfront.files import (
     read_toml,
 )
 from slipfront.folder import LIST, UNFINISHED, problem, read_list, sha256
-from slipfront.sweep.definition import Sweep, flattened
+from slipfront.sweep.definition import ENTRIES, Sweep, flattened, is_value
 from slipfront.sweep.points import Point
 from slipfront.sweep.program import version_of
 from slipfront.sweep.values import Value, text_of, value_of
@@ -40,6 +40,9 @@ STATES = "states"
 LOCK = ".sweep.lock"
 CASE = "case.resolved.toml"
 LEFT_OUT = ("interface.h5", "fields.vtkhdf")  # with keep = "tables"
+
+#: Types of its entries, beside the identity: those of a sweep's file, without the table of a sample.
+DEFINED = {entry.removeprefix("sample."): kind for entry, kind in ENTRIES.items() if entry != "sample"}
 
 #: What points of one folder have in common, and what is said of a folder where it is otherwise.
 IDENTITY = {
@@ -141,10 +144,11 @@ def read_definition(folder: Path) -> Sweep:
         raise DataError(f"{folder}: holds no sweep")
     entries = read_json_table(file)
     entries.pop("identity", None)
-    try:
-        return Sweep(**entries | {"case": Path(entries["case"])})
-    except (KeyError, TypeError):
-        raise DataError(f"{file}: not the definition of a sweep, or of another version") from None
+    known = all(type(value) is DEFINED.get(name) for name, value in entries.items())
+    settings = [value for name in ("vary", "set") if known for value in entries.get(name, {}).values()]
+    if not known or not {"case", "vary"} <= entries.keys() or not all(map(is_value, settings)):
+        raise DataError(f"{file}: not the definition of a sweep, or of another version")
+    return Sweep(**entries | {"case": Path(entries["case"])})
 
 
 def place_of(folder: Path, point: Point) -> Path:

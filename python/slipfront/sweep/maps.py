@@ -11,15 +11,26 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib import colormaps
-from matplotlib.axes import Axes
+from matplotlib.axes import Axes as MplAxes
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 
 from slipfront.figures import style
 from slipfront.figures.drawing import Drawing, plain
 from slipfront.figures.picture import command_to_draw, write_results
+from slipfront.files import DataError
 from slipfront.sweep.outcome import NONE
-from slipfront.sweep.tables import keys_of, read_dataset
+from slipfront.sweep.tables import (
+    UNDEFINED,
+    Axis,
+    axes_of,
+    cells_of,
+    constant,
+    keys_of,
+    read_dataset,
+    shown_in,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,6 +42,9 @@ COLOURS = ("#0072b2", "#d55e00", "#e8c35a", "#117733", "#dddddd")  # of words
 COLUMNS = 2
 PANEL_MM = 52.0
 LOG_RATIO = 20  # of two values of a key from which its axis is logarithmic
+MOST_VALUES = 100  # cells of a map whose values are written into them
+VALUE_SIZE = 6.0  # points
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 MOST_TICKS = 7  # values of a key that are all written at its axis
 WAVES = {
     "c_R": "top",
@@ -70,20 +84,20 @@ def axis_of(column: xr.DataArray) -> np.ndarray:
     return np.array(list(dict.fromkeys(values))) if is_text(values) else np.unique(values)
 
 
-def places(column: xr.DataArray) -> np.ndarray:
-    """Where the values of a key are on its axis: numbers at themselves, texts side by side."""
+def places(column: xr.DataArray, axis_shown: Axis) -> np.ndarray:
+    """Where the values of a key are on its axis: numbers at themselves in its unit, texts side by side."""
     values = column.to_numpy()
     if not is_text(values):
-        return values
+        return axis_shown.factor * values
     axis = list(axis_of(column))
     return np.array([float(axis.index(value)) for value in values])
 
 
 def numbers(result: xr.DataArray) -> np.ndarray:
-    """A result's numbers; of words their places in the list of them. NaN without."""
+    """A result's numbers in the unit that suits them; words' places in the list of them. NaN without."""
     words = result.attrs.get("words", "").split()
     if not words:
-        return result.to_numpy()
+        return shown_in(result).factor * result.to_numpy()
     found = [float(words.index(word)) if word in words else np.nan for word in result.to_numpy().flat]
     return np.reshape(found, result.shape)
 
@@ -96,13 +110,14 @@ def waves_of(data: xr.Dataset, name: str) -> dict[str, float]:
     return {wave: speed for wave, speed in speeds.items() if speed is not None}
 
 
-def name_axis(ax: Axes, which: str, column: xr.DataArray) -> None:
-    ax.set(**{f"{which}label": plain(column.attrs["key"])})
+def name_axis(ax: MplAxes, which: str, column: xr.DataArray, shown: Axis) -> None:
+    ax.set(**{f"{which}label": plain(shown.label)})
     axis = ax.xaxis if which == "x" else ax.yaxis
     values = axis_of(column)
     if is_text(values):
         axis.set_ticks(range(len(values)), [plain(value) for value in values])
         return
+    values = shown.factor * values
     if is_logarithmic(values):
         ax.set(**{f"{which}scale": "log"})
     if len(values) <= MOST_TICKS:
@@ -110,7 +125,7 @@ def name_axis(ax: Axes, which: str, column: xr.DataArray) -> None:
         axis.set_ticks([], minor=True)
 
 
-def mark_waves(ax: Axes, waves: dict[str, float]) -> None:
+def mark_waves(ax: MplAxes, waves: dict[str, float]) -> None:
     """Lines in the scale of a speed; a name stands at the side that has room."""
     is_bar = ax.get_label() == "<colorbar>"
     for wave, level in waves.items():
@@ -121,26 +136,51 @@ def mark_waves(ax: Axes, waves: dict[str, float]) -> None:
         )
 
 
-def draw_map(figure: Figure, ax: Axes, data: xr.Dataset, name: str, x: str, y: str) -> None:
+def write_values(
+    ax: MplAxes, drawn: QuadMesh, result: xr.DataArray, across: np.ndarray, up: np.ndarray
+) -> None:
+    """The value of each cell in it, dark on light or light on dark."""
+    texts = np.reshape(cells_of(result, 3), result.shape)
+    colours = np.reshape(drawn.to_rgba(numbers(result)), (*result.shape, 4))
+    for (row, column), told in np.ndenumerate(texts):
+        if told == UNDEFINED:
+            continue
+        light = colours[row, column, :3] @ LUMINANCE > 0.5
+        look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": VALUE_SIZE}
+        ax.text(
+            float(across[column]),
+            float(up[row]),
+            plain(told),
+            color="black" if light else "white",
+            **look,
+        )
+
+
+def draw_map(figure: Figure, ax: MplAxes, data: xr.Dataset, name: str, x: str, y: str) -> None:
     """A panel: cells of a grid, else a dot for each point."""
     result = data[name]
+    axes = axes_of(data)
     words = result.attrs.get("words", "").split()
     look: dict[str, Any] = {"cmap": colormaps["viridis"], "gid": name}
     if words:
         used = (*COLOURS[: len(words) - 1], COLOURS[-1]) if words[-1] == NONE else COLOURS[: len(words)]
         norm = BoundaryNorm(np.arange(len(words) + 1) - 0.5, len(words))
         look |= {"cmap": ListedColormap(used), "norm": norm}
-    across, up = (places(data[key]) for key in (x, y))
+    across, up = (places(data[key], axes[key]) for key in (x, y))
     if "point" in data.dims:
         values = numbers(result)
         drawn: Any = ax.scatter(across, up, c=values, s=14, **look)
     else:
-        values = numbers(result.transpose(y, x))
+        result = result.transpose(y, x)
+        values = numbers(result)
         sides = [edges(at, is_logarithmic(data[key].to_numpy())) for at, key in ((across, x), (up, y))]
         drawn = ax.pcolormesh(*sides, values, rasterized=True, **look)
-    name_axis(ax, "x", data[x])
-    name_axis(ax, "y", data[y])
-    if not np.isfinite(values).any():
+    name_axis(ax, "x", data[x], axes[x])
+    name_axis(ax, "y", data[y], axes[y])
+    if "point" not in data.dims and values.size <= MOST_VALUES:
+        write_values(ax, drawn, result, across, up)
+    finite = values[np.isfinite(values)]
+    if len(finite) == 0 or finite.min() == finite.max():
         return
     bar = figure.colorbar(drawn, ax=ax, ticks=range(len(words)) if words else None)
     if words:
@@ -149,14 +189,33 @@ def draw_map(figure: Figure, ax: Axes, data: xr.Dataset, name: str, x: str, y: s
     mark_waves(bar.ax, {wave: v for wave, v in waves_of(data, name).items() if low <= v <= high})
 
 
-def draw_line(ax: Axes, data: xr.Dataset, name: str, x: str) -> None:
+def draw_line(ax: MplAxes, data: xr.Dataset, name: str, x: str) -> None:
     """A panel over one key."""
     words = data[name].attrs.get("words", "").split()
-    ax.plot(places(data[x]), numbers(data[name]), "o", color=COLOURS[0], gid=name)
+    shown = axes_of(data)[x]
+    look = "o" if is_text(data[x]) or "point" in data.dims else "o-"
+    ax.plot(places(data[x], shown), numbers(data[name]), look, color=COLOURS[0], gid=name)
     mark_waves(ax, waves_of(data, name))
     if words:
         ax.set_yticks(range(len(words)), [word.replace("_", " ") for word in words])
-    name_axis(ax, "x", data[x])
+    name_axis(ax, "x", data[x], shown)
+
+
+def in_words(data: xr.Dataset, same: dict[str, str]) -> str:
+    """Results that are the same at all points."""
+    return "the same at all points: " + "; ".join(
+        f"{data[n].attrs['long_name']}: {v}" for n, v in same.items()
+    )
+
+
+def fixed(data: xr.Dataset, keys: list[str]) -> str:
+    """Values of keys that are the same in all panels."""
+    axes = axes_of(data)
+    values = (data[key].item() for key in keys)
+    return ", ".join(
+        f"{axes[key].label}: {value if isinstance(value, str) else f'{axes[key].factor * value:.4g}'}"
+        for key, value in zip(keys, values, strict=True)
+    )
 
 
 def draw(folder: Path, shown: tuple[str, ...] = SHOWN) -> Drawing:
@@ -164,21 +223,27 @@ def draw(folder: Path, shown: tuple[str, ...] = SHOWN) -> Drawing:
     keys of a grid are at their first value."""
     data = read_dataset(folder)
     keys = list(keys_of(data))
+    same = {name: told for name in shown if (told := constant(data[name])) is not None}
+    shown = tuple(name for name in shown if name not in same)
+    if not shown:
+        raise DataError(f"{folder}: nothing to draw: {in_words(data, same)}")
     n_rows = -(-len(shown) // COLUMNS)
     figure = style.new_figure(style.PAGE_MM, PANEL_MM * n_rows)
     if "point" not in data.dims:
         data = data.isel(dict.fromkeys(keys[2:], 0))
         data = data.sortby([key for key in keys[:2] if not is_text(data[key])])
         if keys[2:]:
-            figure.suptitle(plain(", ".join(f"{key} = {data[key].item()}" for key in keys[2:])))
+            figure.suptitle(plain(fixed(data, keys[2:])))
     for k, name in enumerate(shown):
         ax = figure.add_subplot(n_rows, COLUMNS, k + 1)
-        unit = data[name].attrs["units"].replace(" m-1", "/m")
+        unit = shown_in(data[name]).name
         ax.set_title(plain(data[name].attrs["long_name"]) + (f" ({unit})" if unit != "1" else ""), pad=3)
         if len(keys) == 1:
             draw_line(ax, data, name, keys[0])
         else:
             draw_map(figure, ax, data, name, keys[1], keys[0])
+    if same:
+        figure.supxlabel(plain(in_words(data, same)), fontsize=VALUE_SIZE, wrap=True)
     return Drawing(
         "sweep",
         figure,

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,13 +14,13 @@ import pandas as pd
 
 from slipfront.files import DataError, exists, is_folder
 from slipfront.folder import LIST, PUBLISHING, UNFINISHED, located, result_file, sha256
-from slipfront.opened import unit_of
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
 from slipfront.sweep.outcome import QUANTITIES, Cell, read_outcome, waves_over_c_L
 from slipfront.sweep.points import Point, short_names
 from slipfront.sweep.values import as_array, text_of, values_of
 from slipfront.sweep.work import DONE, FAILED
+from slipfront.units import Unit, engineering, name_of, unit_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 TABLE = "sweep.csv"
 DATA = "sweep.nc"
 MISSING = "missing"
+UNDEFINED = "undefined"
 MOST_ROWS = 30  # that are printed
 #: Printed results by the head of their column.
 PRINTED = {
@@ -191,6 +193,57 @@ def read_dataset(folder: Path) -> xr.Dataset:
     if not keys_of(found):
         raise DataError(f"{file}: not of a sweep")
     return found
+
+
+@dataclass(frozen=True)
+class Axis:
+    """How a key is written at an axis: its name with a unit that suits its values, `d_c (µm)`."""
+
+    label: str
+    factor: float  # from the values of the table
+
+
+def axes_of(data: xr.Dataset) -> dict[str, Axis]:
+    """By the names of the coordinates of keys_of."""
+    keys = keys_of(data)
+    names = {name: name_of(key) for name, key in keys.items()}
+    axes = {}
+    for name, key in keys.items():
+        is_alone = list(names.values()).count(names[name]) == 1
+        whole = names[name] if is_alone else f"{key.partition('.')[0]} {names[name]}"
+        is_text = data[name].dtype.kind not in "fiu"
+        shown = Unit("1", 1.0) if is_text else engineering(unit_of(key), data[name].to_numpy())
+        axes[name] = Axis(whole if shown.name == "1" else f"{whole} ({shown.name})", shown.factor)
+    return axes
+
+
+def cells_of(result: xr.DataArray, digits: int = 4) -> list[str]:
+    """What is read of a result at each point: words, or numbers in a unit that suits them all; `undefined`
+    without any."""
+    if "words" in result.attrs:
+        return [str(value).replace("_", " ") or UNDEFINED for value in result.to_numpy().flat]
+    factor = shown_in(result).factor
+    return [
+        f"{factor * value:.{digits}g}" if np.isfinite(value) else UNDEFINED
+        for value in result.to_numpy().flat
+    ]
+
+
+def shown_in(result: xr.DataArray) -> Unit:
+    """The unit that suits the numbers of a result."""
+    if "words" in result.attrs:
+        return Unit("1", 1.0)
+    return engineering(result.attrs["units"], result.to_numpy())
+
+
+def constant(result: xr.DataArray) -> str | None:
+    """What a result is at all points of a sweep, where it is the same; None where it differs."""
+    found = set(cells_of(result))
+    if len(found) > 1:
+        return None
+    unit = shown_in(result).name
+    told = found.pop() if found else UNDEFINED
+    return told if unit == "1" or told == UNDEFINED else f"{told} {unit}"
 
 
 def keys_of(data: xr.Dataset) -> dict[str, str]:

@@ -1,11 +1,16 @@
 // Front speed against position and three criteria. A node that is pointed at is marked wherever it is drawn.
 
-const PANELS = [
-  {measure: 'x', axis: '', label: (run) => `x (${run.units.x})`},
-  {measure: 'static', axis: '2', label: () => 'static ratio t<sub>s</sub>/p<sub>s</sub>'},
-  {measure: 'dynamic', axis: '3', label: () => 'dynamic ratio t<sub>d</sub>/p<sub>d</sub>'},
-  {measure: 'rise', axis: '4', label: () => 'energy rise (U<sub>r</sub> − U<sub>s</sub>)/U<sub>s</sub>'},
-];
+const LABELS = {
+  x: (run) => `x (${run.units.x})`,
+  static: () => 'static ratio t<sub>s</sub>/p<sub>s</sub>',
+  dynamic: () => 'dynamic ratio t<sub>d</sub>/p<sub>d</sub>',
+  rise: () => 'rise of the energy density (U<sub>r</sub> − U<sub>s</sub>)/U<sub>s</sub>',
+};
+let unfolded = !data.folded;
+
+/** Those of the page that are shown now. */
+const panelsNow = () => (data.panels ?? []).slice(0, unfolded ? undefined : 1)
+  .map((measure, k) => ({measure, axis: k === 0 ? '' : String(k + 1), label: LABELS[measure]}));
 const PALE = 0.22;
 let pinned = false;
 
@@ -25,10 +30,10 @@ function pointsOf({run, front}, panel, isFirst) {
 }
 
 function waveLevels(run, panel, isFirst) {
-  return run.waves.map((wave) => ({
+  return run.waves.filter((wave) => wave.over_c_L <= topSpeed()).map((wave) => ({
     type: 'scatter', mode: 'lines', name: waveName(wave.name), x: [-1e6, 1e6], y: [wave.over_c_L, wave.over_c_L],
     xaxis: `x${panel.axis}`, yaxis: `y${panel.axis}`, legendgroup: wave.name, showlegend: isFirst, hoverinfo: 'skip',
-    line: {color: '#555', width: 1, dash: WAVE_DASHES[wave.name]},
+    line: {color: waveColour(wave.name, '#555'), width: 1, dash: WAVE_DASHES[wave.name]},
   }));
 }
 
@@ -52,18 +57,26 @@ const countedValues = (measure) => everyFront.flatMap(({run, front}) => {
 });
 const most = (values, fallback) => values.reduce((a, b) => Math.max(a, b), -Infinity) || fallback;
 
-function criteriaLayout() {
-  const run = data.runs[0];
+/** End of the axes of the speed over c_L. */
+function topSpeed() {
   const v = most(countedValues('v'), 1);
-  const top = Math.min(Math.max(1.15, 1.08 * (Number.isFinite(v) ? v : 1)), run.highest_v);
+  return Math.min(Math.max(1.15, 1.08 * (Number.isFinite(v) ? v : 1)), data.runs[0].highest_v);
+}
+
+function criteriaLayout(panels) {
+  const run = data.runs[0];
+  const top = topSpeed();
   const ranges = {x: [run.static.x[0], run.static.x.at(-1)]};
   for (const measure of ['static', 'dynamic', 'rise']) {
     const right = most(countedValues(measure), 1);
     ranges[measure] = [0, Math.min(Number.isFinite(right) ? 1.05 * right : 1, measure === 'rise' ? run.largest_rise : 1e9)];
   }
-  const layout = layoutWith({grid: {rows: 2, columns: 2, pattern: 'independent', xgap: 0.12, ygap: 0.3},
-    legend: {orientation: 'h', y: -0.17}, dragmode: 'zoom', hovermode: 'closest'});
-  for (const panel of PANELS) {
+  const rows = panels.length > 3 ? 2 : 1;
+  const columns = Math.ceil(panels.length / rows);
+  byId('criteria-plot').style.height = rows > 1 ? '46em' : '28em';
+  const layout = layoutWith({grid: {rows, columns, pattern: 'independent', xgap: 0.12, ygap: 0.3},
+    legend: {orientation: 'h', y: rows > 1 ? -0.17 : -0.3}, dragmode: 'zoom', hovermode: 'closest'});
+  for (const panel of panels) {
     layout[`xaxis${panel.axis}`] = axis(panel.label(run), {range: ranges[panel.measure]});
     layout[`yaxis${panel.axis}`] = axis('V<sub>tip</sub> / c<sub>L</sub>', {range: [0, top], ...(panel.axis && {matches: 'y'})});
   }
@@ -71,11 +84,12 @@ function criteriaLayout() {
 }
 
 function drawCriteria() {
-  const traces = PANELS.flatMap((panel, k) => [
+  const panels = panelsNow();
+  const traces = panels.flatMap((panel, k) => [
     ...waveLevels(data.runs[0], panel, k === 0), ...fitCurves(panel),
     ...everyFront.map((which) => pointsOf(which, panel, k === 0)), panelMark(panel)]);
   const config = {...CONFIG, modeBarButtonsToAdd: ['select2d', 'lasso2d']};
-  return Plotly.react('criteria-plot', traces, criteriaLayout(), config);
+  return Plotly.react('criteria-plot', traces, criteriaLayout(panels), config);
 }
 
 function pointWords(run, front, point) {
@@ -110,7 +124,14 @@ function selectEverywhere(points) {
   Plotly.restyle(plot, {selectedpoints: selected}, drawn.map(([, k]) => k));
 }
 
+/** Nothing where no front has a speed. */
 function startCriteria() {
+  if (!byId('criteria-plot')) return null;
+  byId('criteria-more')?.addEventListener('click', ({currentTarget}) => {
+    unfolded = !unfolded;
+    currentTarget.setAttribute('aria-pressed', String(unfolded));
+    drawCriteria();
+  });
   const drawn = drawCriteria();
   const plot = byId('criteria-plot');
   const ofFront = (points) => points.find((point) => point.data.meta?.front !== undefined);

@@ -59,8 +59,12 @@ const CONFIG = {responsive: true, displaylogo: false, modeBarButtonsToRemove: ['
 const FONT = {family: 'system-ui, sans-serif', size: 14, color: '#111'};
 const OPEN = '#cccccc';
 const LOW_SHARE = 0.005; // of the numbers of a diagram that may lie below its axis
-const WAVE_DASHES = {c_L: 'solid', c_S: 'dash', c_R: 'dot'};
-const waveName = (wave) => `c<sub>${wave.slice(2)}</sub>`;
+const WAVE_DASHES = {c_L: 'solid', c_S: 'dash', c_R: 'dot', c_GR: 'dashdot', 'c_L of the base': 'solid', 'c_S of the base': 'dash'};
+const BASE_COLOUR = '#a0522d';
+const waveColour = (wave, own) => (wave.endsWith('base') ? BASE_COLOUR : own);
+
+/** c_GR and `c_L of the base` with their subscripts. */
+const waveName = (wave) => wave.replace(/^c_(\w+)/, 'c<sub>$1</sub>');
 
 function layoutWith(more) {
   return {font: FONT, paper_bgcolor: '#fff', plot_bgcolor: '#fff', margin: {l: 80, r: 20, t: 40, b: 60},

@@ -20,12 +20,13 @@ function stackedTerms(energy) {
 }
 
 function drawEnergy() {
+  if (!byId('energy-plot')) return null;
   const {energy, units} = current;
   const positive = (values) => values.map((v) => (v > 0 ? v : null));
   const line = (name, y, color, dash) => ({type: 'scatter', mode: 'lines+markers', name, x: energy.time, y: positive(y),
     xaxis: 'x', yaxis: 'y2', line: {color, dash, width: 1.5}, marker: {size: 5}, hovertemplate: `${name}: %{y:.2e}<extra></extra>`});
   const traces = [...stackedTerms(energy), line('imbalance / largest term', energy.imbalance, '#cc3311', 'solid'),
-    ...(energy.coupling.some((v) => v > 0) ? [line('coupling / largest term', energy.coupling, '#555', 'dot')] : [])];
+    ...(energy.coupling.some((v) => v > 0) ? [line('sub-steps / largest term', energy.coupling, '#555', 'dot')] : [])];
   const note = (text, y, yanchor) => ({text, xref: 'paper', x: 0.01, xanchor: 'left', yref: 'paper', y, yanchor, showarrow: false});
   const layout = layoutWith({
     xaxis: axis(`t (${units.time})`, {anchor: 'y2', range: [energy.time[0], energy.time.at(-1)]}),

@@ -21,6 +21,8 @@ async function start() {
 
 start().catch((error) => {
   document.body.dataset.drawn = 'failed';
-  byId('criteria-point').textContent = `This browser cannot draw the page: ${error.message}`;
+  const told = document.createElement('p');
+  told.textContent = `This browser cannot draw the page: ${error.message}`;
+  document.querySelector('h1').after(told);
   throw error;
 });

@@ -1,4 +1,4 @@
-// Speed of the particles in the bodies, snapshot by snapshot.
+// Magnitude of the particle velocity in the bodies, snapshot by snapshot.
 
 const EMPTY = 255; // code of a pixel without material
 const SCALE_END = 254;
@@ -36,7 +36,7 @@ function drawSnapshot() {
   const picture = {type: 'heatmap', x: snapshots.x, y: snapshots.y, z: rows, zmin: 0, zmax: SCALE_END, colorscale: DARK_TO_LIGHT,
     text: table(rows, (code) => (code === null ? '' : shown(speedOf(code, largest)))), hoverongaps: false,
     hovertemplate: `x = %{x:.4g}, y = %{y:.4g} ${units.x}<br>%{text} ${units.speed}<extra></extra>`,
-    colorbar: {title: {text: `speed (${units.speed})`, side: 'right'}, thickness: 16, tickvals: ticks.map((v) => codeOf(v, largest)),
+    colorbar: {title: {text: `particle velocity |v| (${units.speed})`, side: 'right'}, thickness: 16, tickvals: ticks.map((v) => codeOf(v, largest)),
       ticktext: ticks.map((v, k) => (k === ticks.length - 1 ? `≥ ${shown(v)}` : shown(v)))}};
   const side = snapshots.x[1] - snapshots.x[0];
   const layout = layoutWith({

@@ -9,7 +9,7 @@ const FIELDS = {
   p: {label: (units) => `p (${units.traction})`, colours: 'Cividis'},
   slip: {label: (units) => `slip (${units.slip})`, colours: 'Viridis'},
 };
-let field = 'slip_rate';
+let field = data.fields?.[0];
 
 function powersOfTen(low, high) {
   const first = Math.ceil(Math.log10(low) - 1e-9);
@@ -68,7 +68,7 @@ function wavePaths(run) {
   return run.waves.flatMap((wave) => outlined({
     type: 'scatter', mode: 'lines', name: `${waveName(wave.name)} = ${wave.m_per_s.toFixed(0)} m/s`,
     x: [left, x0, right], y: [t0 + (x0 - left) / wave.slope, t0, t0 + (right - x0) / wave.slope], legendgroup: wave.name,
-    line: {color: '#333', width: 1.5, dash: WAVE_DASHES[wave.name]}, hoverinfo: 'skip', meta: {wave: wave.name},
+    line: {color: waveColour(wave.name, '#333'), width: 1.5, dash: WAVE_DASHES[wave.name]}, hoverinfo: 'skip', meta: {wave: wave.name},
   }));
 }
 
@@ -85,6 +85,7 @@ const mark = {type: 'scatter', mode: 'markers', name: 'marked', x: [], y: [], sh
   marker: {symbol: 'circle-open', size: 16, color: '#111', line: {width: 3}}, meta: {mark: true}};
 
 function drawSpaceTime() {
+  if (!byId('space-time-plot')) return null;
   const run = current;
   const history = historyOf(run);
   const [first, last] = [history.time[0], history.time.at(-1)];
@@ -104,7 +105,9 @@ function chooseField(name) {
   return drawSpaceTime();
 }
 
+/** Nothing where all fields are the same everywhere. */
 function startSpaceTime() {
+  if (!byId('space-time-plot')) return null;
   const drawn = chooseField(field);
   document.querySelectorAll('[data-field]').forEach((button) =>
     button.addEventListener('click', () => chooseField(button.dataset.field)));
@@ -122,7 +125,7 @@ function startSpaceTime() {
 /** Marks a node of a front of the run that is shown; nothing for another run. */
 function markSpaceTime(run, front, point) {
   const plot = byId('space-time-plot');
-  if (!plot.data) return;
+  if (!plot?.data) return;
   const index = plot.data.findIndex((trace) => trace.meta?.mark);
   const here = run === current && front !== null ? run.fronts[front] : null;
   Plotly.restyle(plot, {x: [here ? [here.x[point]] : []], y: [here ? [here.time[point]] : []]}, [index]);
@@ -130,6 +133,7 @@ function markSpaceTime(run, front, point) {
 
 /** A line at a time. */
 function markTime(time) {
+  if (!byId('space-time-plot')) return;
   const line = {type: 'line', xref: 'paper', x0: 0, x1: 1, y0: time, y1: time};
   const shapes = [{...line, line: {color: '#fff', width: 3}}, {...line, line: {color: '#111', width: 1, dash: 'dot'}}];
   Plotly.relayout('space-time-plot', {shapes});

@@ -15,18 +15,24 @@ function chosenPoints(axes) {
 
 const fixed = Object.fromEntries(sweep.keys.map((key) => [key.name, key.axis[0]]));
 
+const MOST_CELLS = 100; // of a map whose values are written into it
+const LINES = ''; // chosen in place of a key that goes up
+const LINE_COLOURS = ['#0072b2', '#d55e00', '#117733', '#aa4499', '#e69f00', '#56b4e9', '#882255', '#555555'];
+const named = (quantity) => (quantity.unit === '1' ? quantity.long_name : `${quantity.long_name} (${quantity.unit})`);
+
+/** A value of a key in the unit of its label. */
+const scaled = (key, value) => (typeof value === 'number' ? Number((key.factor * value).toPrecision(6)) : value);
+
 /** Words become their place in the quantity's list, what is undefined null. */
 function number(quantity, point) {
   const value = point.cells[quantity.name];
-  if (!quantity.words.length) return value;
+  if (!quantity.words.length) return value === null ? null : quantity.factor * value;
   const place = quantity.words.indexOf(value);
   return place < 0 ? null : place;
 }
 
 function text(quantity, point) {
-  const value = point.cells[quantity.name];
-  if (value === null || value === '') return 'undefined';
-  return quantity.words.length ? value.replaceAll('_', ' ') : Number(value).toPrecision(4);
+  return point.texts[quantity.name];
 }
 
 /** The step of four to seven ticks over a range: 1, 2 or 5 times a power of ten. */
@@ -70,7 +76,7 @@ function ticksWithWaves(quantity) {
 function colours(quantity) {
   const n = quantity.words.length;
   if (!n) {
-    const unit = quantity.unit === '1' ? '' : quantity.unit.replace(' m-1', '/m');
+    const unit = quantity.unit === '1' ? '' : quantity.unit;
     return {colorscale: 'Viridis', colorbar: {title: {text: unit}, ...ticksWithWaves(quantity)}};
   }
   const used = quantity.words.at(-1) === 'none' ? [...COLOURS.slice(0, n - 1), COLOURS.at(-1)] : COLOURS.slice(0, n);
@@ -81,40 +87,55 @@ function colours(quantity) {
 }
 
 function axisOf(key) {
-  const values = key.axis;
+  const values = key.axis.map((v) => scaled(key, v));
   const numeric = values.every((v) => typeof v === 'number');
   const least = Math.min(...values);
   const log = numeric && least > 0 && Math.max(...values) / least >= 20;
   const ticks = numeric && values.length <= MOST_TICKS ? {tickvals: values, ticktext: values.map((v) => String(Number(v.toPrecision(4))))} : {};
-  return {title: {text: key.name}, type: numeric ? (log ? 'log' : 'linear') : 'category', ...ticks};
+  return {title: {text: key.label}, type: numeric ? (log ? 'log' : 'linear') : 'category', ...ticks};
 }
 
 function hoverOf(quantity, point) {
-  const values = sweep.keys.map((key) => `${key.name} = ${point.values[key.name]}`).join('<br>');
-  return `${values}<br>${point.status === 'done' ? text(quantity, point) : point.status}`;
+  const values = sweep.keys.map((key) => `${key.label}: ${scaled(key, point.values[key.name])}`).join('<br>');
+  return `${values}<br>${named(quantity)}: ${point.status === 'done' ? text(quantity, point) : point.status}`;
 }
 
 /** Cells of a grid, else a dot for each point. */
 function mapOf(quantity, x, y, points) {
   const look = colours(quantity);
   const range = quantity.words.length ? [-0.5, quantity.words.length - 0.5] : limitsWithWaves(quantity);
+  const found = new Set(points.map((p) => number(quantity, p)).filter((v) => v !== null));
+  const showscale = found.size > 1;
   if (!sweep.is_grid) {
-    return {type: 'scatter', mode: 'markers', x: points.map((p) => p.values[x.name]), y: points.map((p) => p.values[y.name]),
-      marker: {size: 11, color: points.map((p) => number(quantity, p)), cmin: range[0], cmax: range[1],
-        colorscale: look.colorscale, colorbar: look.colorbar, showscale: true},
+    return {type: 'scatter', mode: 'markers', x: points.map((p) => scaled(x, p.values[x.name])),
+      y: points.map((p) => scaled(y, p.values[y.name])), marker: {size: 11, color: points.map((p) => number(quantity, p)), cmin: range[0], cmax: range[1],
+        colorscale: look.colorscale, colorbar: look.colorbar, showscale},
       customdata: points.map((p) => p.index), text: points.map((p) => hoverOf(quantity, p)), hoverinfo: 'text'};
   }
   const at = new Map(points.map((p) => [JSON.stringify([p.values[y.name], p.values[x.name]]), p]));
   const rows = y.axis.map((v) => x.axis.map((u) => at.get(JSON.stringify([v, u]))));
   const each = (f) => rows.map((row) => row.map((p) => (p ? f(p) : null)));
-  return {type: 'heatmap', x: x.axis, y: y.axis, z: each((p) => number(quantity, p)), zmin: range[0], zmax: range[1],
+  const written = points.length <= MOST_CELLS;
+  return {type: 'heatmap', x: x.axis.map((v) => scaled(x, v)), y: y.axis.map((v) => scaled(y, v)), showscale, z: each((p) => number(quantity, p)), zmin: range[0], zmax: range[1],
     colorscale: look.colorscale, colorbar: look.colorbar, customdata: each((p) => p.index),
-    text: each((p) => hoverOf(quantity, p)), hoverinfo: 'text', xgap: 0.5, ygap: 0.5};
+    ...(written && {text: each((p) => (p.status === 'done' ? text(quantity, p) : p.status)), texttemplate: '%{text}'}),
+    hovertext: each((p) => hoverOf(quantity, p)), hoverinfo: 'text', xgap: 0.5, ygap: 0.5};
 }
 
-function lineOf(quantity, x, points) {
-  return {type: 'scatter', mode: 'markers', x: points.map((p) => p.values[x.name]), y: points.map((p) => number(quantity, p)),
-    customdata: points.map((p) => p.index), text: points.map((p) => hoverOf(quantity, p)), hoverinfo: 'text'};
+/** A result over one key: of a grid a line for each value of the first other key, else dots. */
+function linesOf(quantity, x, points) {
+  const other = sweep.is_grid ? sweep.keys.find((key) => key !== x) : undefined;
+  const groups = other ? other.axis : [null];
+  const isNumeric = x.axis.every((v) => typeof v === 'number');
+  return groups.map((value, k) => {
+    const own = points.filter((p) => !other || p.values[other.name] === value);
+    if (isNumeric) own.sort((a, b) => a.values[x.name] - b.values[x.name]);
+    const colour = LINE_COLOURS[k % LINE_COLOURS.length];
+    return {type: 'scatter', mode: sweep.is_grid && isNumeric ? 'lines+markers' : 'markers', name: other ? `${other.label}: ${scaled(other, value)}` : '',
+      showlegend: Boolean(other), x: own.map((p) => scaled(x, p.values[x.name])), y: own.map((p) => number(quantity, p)),
+      line: {color: colour, width: 1.5}, marker: {color: colour, size: 8},
+      customdata: own.map((p) => p.index), text: own.map((p) => hoverOf(quantity, p)), hoverinfo: 'text'};
+  });
 }
 
 function cell(tag, content) {
@@ -126,9 +147,9 @@ function cell(tag, content) {
 /** Everything known of a point, below the map. */
 function showPoint(index) {
   const point = sweep.points[index];
-  const rows = [...sweep.keys.map((key) => [key.name, String(point.values[key.name])]), ['status', point.status],
+  const rows = [...sweep.keys.map((key) => [key.label, String(scaled(key, point.values[key.name]))]), ['status', point.status],
     ['results', point.folder], ...(point.message ? [['message', point.message]] : []),
-    ...sweep.quantities.map((q) => [q.unit && q.unit !== '1' ? `${q.long_name} (${q.unit})` : q.long_name, text(q, point)])];
+    ...sweep.quantities.map((q) => [named(q), text(q, point)])];
   const table = document.createElement('table');
   table.className = 'facts';
   for (const [name, value] of rows) {
@@ -136,6 +157,10 @@ function showPoint(index) {
     row.append(cell('th', name), cell('td', value));
   }
   part('point').replaceChildren(table);
+  if (!point.report) return;
+  const link = cell('a', 'report of this run');
+  link.href = point.report;
+  part('point').prepend(link);
 }
 
 function keyNamed(name) {
@@ -146,20 +171,21 @@ async function draw() {
   const quantity = sweep.quantities.find((q) => q.name === part('quantity').value);
   const x = keyNamed(part('x').value);
   const y = keyNamed(part('y').value);
-  const two = x !== y;
+  const two = y !== undefined && x !== y;
+  const among = two || !sweep.is_grid ? y : sweep.keys.find((key) => key !== x);
   for (const key of sweep.keys) {
     const choice = document.getElementById(`sweep-at-${key.name}`);
-    if (choice) choice.parentElement.hidden = !sweep.is_grid || key === x || key === y;
+    if (choice) choice.parentElement.hidden = !sweep.is_grid || key === x || key === among;
   }
-  const points = chosenPoints([x.name, y.name]);
-  const yAxis = two ? axisOf(y) : {title: {text: quantity.long_name}};
+  const points = chosenPoints([x.name, among?.name]);
+  const yAxis = two ? axisOf(y) : {title: {text: named(quantity)}};
   if (!two && quantity.words.length) Object.assign(yAxis, {tickvals: quantity.words.map((_, k) => k), ticktext: quantity.words});
-  const trace = two ? mapOf(quantity, x, y, points) : lineOf(quantity, x, points);
+  const traces = two ? [mapOf(quantity, x, y, points)] : linesOf(quantity, x, points);
   const shapes = two ? [] : quantity.waves.map(({level}) => ({type: 'line', xref: 'paper', x0: 0, x1: 1, y0: level, y1: level, line: {color: '#555', width: 1}}));
   const annotations = two ? [] : quantity.waves.map(({name, level}) => ({text: `c<sub>${name.slice(2)}</sub>`, xref: 'paper', x: 1, xanchor: 'left',
     y: level, yanchor: name === 'c_R' ? 'top' : 'bottom', showarrow: false}));
-  const layout = {shapes, annotations, xaxis: axisOf(x), yaxis: yAxis, height: 520, margin: {t: 40, r: 40}, title: {text: quantity.long_name, font: {size: 14}}};
-  await Plotly.react(part('plot'), [trace], layout, {responsive: true, displaylogo: false});
+  const layout = {shapes, annotations, xaxis: axisOf(x), yaxis: yAxis, height: 520, margin: {t: 40, r: 40}, title: {text: named(quantity), font: {size: 14}}};
+  await Plotly.react(part('plot'), traces, layout, {responsive: true, displaylogo: false});
 }
 
 function fill(name, entries, chosen) {
@@ -170,10 +196,10 @@ function fill(name, entries, chosen) {
 function startFixed() {
   if (sweep.keys.length < 3 || !sweep.is_grid) return;
   for (const key of sweep.keys) {
-    const label = cell('label', `${key.name} `);
+    const label = cell('label', `${key.label} `);
     const choice = document.createElement('select');
     choice.id = `sweep-at-${key.name}`;
-    choice.replaceChildren(...key.axis.map((value, k) => new Option(String(value), String(k))));
+    choice.replaceChildren(...key.axis.map((value, k) => new Option(String(scaled(key, value)), String(k))));
     choice.addEventListener('change', () => {
       fixed[key.name] = key.axis[Number(choice.value)];
       draw();
@@ -184,10 +210,10 @@ function startFixed() {
 }
 
 async function start() {
-  const names = sweep.keys.map((key) => [key.name, key.name]);
-  fill('quantity', sweep.quantities.map((q) => [q.name, q.long_name]), sweep.first);
+  const names = sweep.keys.map((key) => [key.name, key.label]);
+  fill('quantity', sweep.quantities.filter((q) => q.constant === null).map((q) => [q.name, q.long_name]), sweep.first);
   fill('x', names, names[Math.min(1, names.length - 1)][0]);
-  fill('y', names, names[0][0]);
+  fill('y', [...names, [LINES, 'the result, as lines']], names.length > 1 ? names[0][0] : LINES);
   startFixed();
   await draw();
   part('plot').on('plotly_click', (event) => {

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Records of an experiment: the times at which slip began at places along an interface."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from slipfront.errors import CaseError
+from slipfront.files import DataError, one_line, open_file, read_table
+from slipfront.read import require, require_ascending
+from slipfront.units import attributes
+
+LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "km": 1e3}
+TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+PRESSURES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
+WORDS = {
+    "metres": "m", "meters": "m", "centimetres": "cm", "centimeters": "cm", "millimetres": "mm",
+    "millimeters": "mm", "micrometres": "um", "micrometers": "um", "kilometres": "km", "kilometers": "km",
+    "seconds": "s", "sec": "s", "milliseconds": "ms", "microseconds": "us", "nanoseconds": "ns",
+}  # fmt: skip
+#: Quantities by their names here: what a column of each may be called, and its units.
+QUANTITIES: dict[str, tuple[tuple[str, ...], dict[str, float]]] = {
+    "x_m": (("x", "position", "place", "distance"), LENGTHS),
+    "onset_s": (("time", "t", "onset", "onset_time", "arrival", "arrival_time"), TIMES),
+    "t_s_Pa": (("t_s",), PRESSURES),
+    "p_s_Pa": (("p_s",), PRESSURES),
+}
+WANTED = "x and time with their units, such as x_m or x (mm), and time_s or time (us)"
+NEVER = ("", "nan", "na", "n/a", "none", "-", "inf", "+inf", "-inf")
+NONE = "none"  # in place of a mark: every number is a time
+
+
+def name_and_unit(column: str) -> tuple[str, str]:
+    """Of `x_mm`, `x (mm)`, `x [mm]`, `x / mm` and `x mm`; the unit is empty where there is none."""
+    text = column.strip().replace("µ", "u").replace("μ", "u")
+    found = re.fullmatch(r"(.+?)(?:\s*[(\[]\s*|\s*/\s*|[_\s]+)([A-Za-z]+)\s*[)\]]?", text)
+    if found is None:
+        return text.lower(), ""
+    return found[1].strip().lower().replace(" ", "_"), WORDS.get(found[2].lower(), found[2])
+
+
+def columns_of(where: Any, names: list[str]) -> dict[str, tuple[str, float]]:
+    """The column of each quantity, and the factor to its SI unit."""
+    chosen: dict[str, tuple[str, float]] = {}
+    for name in names:
+        bare, unit = name_and_unit(name)
+        for quantity, (called, units) in QUANTITIES.items():
+            if bare not in called or unit not in units:
+                continue
+            if quantity in chosen:
+                raise DataError(
+                    f"{where}: '{chosen[quantity][0]}' and '{one_line(name)}' both may be {quantity}; "
+                    "rename one of them"
+                )
+            chosen[quantity] = name, units[unit]
+    if "x_m" not in chosen or "onset_s" not in chosen:
+        has = ", ".join(f"'{one_line(name)}'" for name in names) or "none"
+        raise DataError(f"{where}: has the columns {has}; wanted are {WANTED}")
+    return chosen
+
+
+def is_sentinel(value: float) -> bool:
+    """Whether a number is one that programs write for nothing: -1, nines, powers of ten from 1e6."""
+    size = f"{abs(value):.17g}"
+    return value == -1 or re.fullmatch(r"999+|1(0{6,}|e\+\d+)", size) is not None
+
+
+def without_marks(
+    times: np.ndarray, never_slipped: float | str | None, unit: str = "s"
+) -> tuple[Any, list[str]]:
+    """Times, NaN where a place never slips, and what is said of that.
+
+    never_slipped: the number that marks such a place; "none": there is none; None: -1 where all others are
+    at least 0, and 999, 1e9 and the like farther from the others than these are from each other."""
+    made = np.where(np.isfinite(times), times, np.nan)
+    missing = np.isnan(made)
+    notes = [f"{n_places(missing.sum())} without a time: never slipped"] if missing.any() else []
+    if never_slipped == NONE:
+        return made, notes
+    if isinstance(never_slipped, str):
+        raise CaseError(f"never_slipped is {never_slipped!r}; it must be a number or 'none'")
+    if never_slipped is not None:
+        marked = made == never_slipped
+        return np.where(marked, np.nan, made), [
+            *notes,
+            f"{n_places(marked.sum())} marked {never_slipped:g}: never slipped",
+        ]
+    for value in (np.nanmin(made), np.nanmax(made)) if not missing.all() else ():
+        rest = made[np.isfinite(made) & (made != value)]
+        if not is_sentinel(float(value)) or rest.size == 0:
+            continue
+        gap = max(rest.min() - value, value - rest.max())
+        if (value == -1 and rest.min() >= 0) or gap > rest.max() - rest.min():
+            marked = made == value
+            notes.append(
+                f"{n_places(marked.sum())} with the time {value:g} {unit} taken as never slipped; "
+                "if it is a time, set never_slipped to none"
+            )
+            made[marked] = np.nan
+    return made, notes
+
+
+def in_si(values: np.ndarray, factor: float) -> np.ndarray:
+    """Rounded once, as the decimal number in SI units would be."""
+    return values / round(1 / factor) if factor < 1 else values * factor
+
+
+def n_places(n: int) -> str:
+    return f"{n} place" if n == 1 else f"{n} places"
+
+
+def csv_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray]]:
+    table = read_table(file, by_hand=True, separators=";\t,")
+
+    def numbers(name: str, may_miss: bool) -> np.ndarray:
+        if not may_miss:
+            return table.numbers(name)
+        texts = ("" if cell.lower() in NEVER else cell for cell in table.texts(name))
+        return np.array(
+            [table.number(line, name, text, True) for (line, _), text in zip(table.rows, texts, strict=True)]
+        )
+
+    return [name for name in table.header if name], numbers
+
+
+def mat_columns(file: Path) -> tuple[list[str], Callable[[str, bool], np.ndarray]]:
+    try:
+        from scipy.io import loadmat
+    except ImportError:
+        raise DataError(
+            f"{file}: a .mat file needs scipy: pip install scipy; or write the record as CSV"
+        ) from None
+    with open_file(file) as stream:
+        try:
+            held = loadmat(stream)
+        except NotImplementedError:
+            raise DataError(f"{file}: a .mat file of version 7.3; save it with -v7, or as CSV") from None
+        except Exception as error:  # scipy raises what it happens to
+            raise DataError(f"{file}: damaged, or not a .mat file: {one_line(str(error))}") from None
+
+    def numbers(name: str, may_miss: bool) -> np.ndarray:
+        values = np.asarray(held[name])
+        if values.dtype.kind not in "fiu" or max(values.shape, default=0) != values.size:
+            raise DataError(f"{file}: '{name}' is not a vector of real numbers")
+        made = values.ravel().astype(float)
+        require(may_miss or bool(np.isfinite(made).all()), file, f"'{name}' holds a value that is not finite")
+        return made
+
+    return [name for name in held if not name.startswith("__")], numbers
+
+
+def read_onsets(file: str | Path, *, never_slipped: float | str | None = None) -> xr.Dataset:
+    """The record in a CSV file (commas, or semicolons or tabs with decimal points or commas) or a .mat file.
+
+    Columns are found by their names with their units: `x_m`, `x (mm)`, `time_us`, `onset [ms]`, and
+    perhaps `t_s_MPa`, `p_s_MPa`, the tractions before the event.
+    never_slipped: see find_fronts; in the file's unit. Empty cells, nan, inf, NA and - mean never slipped.
+
+    Returns a Dataset over `node`, in SI units: x_m, ascending; onset_s, NaN where a place never slips;
+    t_s_Pa and p_s_Pa. Its attribute `notes` says how many never slip, and by what mark.
+    Raises Error where the file is no such record."""
+    file = Path(file)
+    names, numbers = mat_columns(file) if file.suffix.lower() == ".mat" else csv_columns(file)
+    chosen = columns_of(file, names)
+    read = {quantity: numbers(name, quantity == "onset_s") for quantity, (name, _) in chosen.items()}
+    lengths = {len(values) for values in read.values()}
+    require(len(lengths) == 1, file, "its columns differ in length")
+    require_ascending(file, chosen["x_m"][0], read["x_m"])
+    require(len(read["x_m"]) >= 2, file, "fewer than two rows")
+    unit = name_and_unit(chosen["onset_s"][0])[1]
+    read["onset_s"], notes = without_marks(read["onset_s"], never_slipped, unit)
+    require(bool(np.isfinite(read["onset_s"]).any()), file, "no row has a time: nothing slips")
+    variables = {
+        quantity: ("node", in_si(values, chosen[quantity][1]), attributes(quantity))
+        for quantity, values in read.items()
+    }
+    return xr.Dataset(variables, attrs={"notes": notes})

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a run was of, in words and engineering units, as pieces of HTML."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from slipfront.files import is_number
+from slipfront.read import Run, entry, read_static
+from slipfront.report.page import words
+from slipfront.units import name_of, quantity, unit_of
+
+MU_S, MU_K = "μ<sub>s</sub>", "μ<sub>k</sub>"
+WAVES = {"c_L": "c<sub>L</sub>", "c_S": "c<sub>S</sub>", "c_R": "c<sub>R</sub>"}
+EDGES = {
+    "free": "free of traction",
+    "periodic": "periodic",
+    "absorbing": "absorbing",
+    "held": "held",
+    "loaded": "displacement prescribed",
+}
+
+
+def si(run: Run, table: str, key: str, digits: int = 4) -> str:
+    """A number of the case in engineering units."""
+    value = entry(run.case, table, key)
+    return quantity(value, unit_of(key), digits) if is_number(value) else "not given"
+
+
+def is_set(run: Run, table: str, key: str) -> bool:
+    """Whether a number of the case is neither zero nor infinite."""
+    value = entry(run.case, table, key)
+    return is_number(value) and value != 0
+
+
+def has_base(run: Run) -> bool:
+    return entry(run.case, "base", "kind") == "body"
+
+
+def is_uniform(run: Run) -> bool:
+    """Whether the tractions were prescribed, and equal along the interface."""
+    return run.prescribed and not entry(run.case, "prestress", "file")
+
+
+def edge(run: Run, table: str, key: str) -> str:
+    told = str(entry(run.case, table, key))
+    if told == "loaded" and run.prescribed and not is_set(run, "loading", "shear_speed_over_c_L"):
+        return "held"
+    return words(EDGES.get(told, told))
+
+
+def material(run: Run, table: str) -> str:
+    parts = [
+        f"E = {si(run, table, 'youngs_modulus_Pa')}",
+        f"ν = {si(run, table, 'poissons_ratio')}",
+        f"ρ = {si(run, table, 'density_kg_per_m3')}",
+    ]
+    damped = is_set(run, table, "stiffness_damping_s")
+    damping = f"stiffness damping {si(run, table, 'stiffness_damping_s')}" if damped else "no damping"
+    return ", ".join([*parts, damping])
+
+
+def plate(run: Run) -> str:
+    size = f"{si(run, 'plate', 'width_m')} × {si(run, 'plate', 'height_m')}"
+    plane = f"plane {words(entry(run.case, 'material', 'plane'))}"
+    edges = f"upper edge {edge(run, 'plate', 'top')}, sides {edge(run, 'plate', 'sides')}"
+    corner = entry(run.case, "plate", "corner")
+    rounded = {
+        "relief": f"; lower corners relieved over {si(run, 'plate', 'relief_length_m')}",
+        "fillet": f"; lower corners rounded, radius {si(run, 'plate', 'fillet_radius_m')}",
+    }
+    return f"{size}, {plane}; {material(run, 'material')}; {edges}{rounded.get(str(corner), '')}"
+
+
+def base(run: Run) -> str:
+    if not has_base(run):
+        return "rigid plane"
+    size = f"{si(run, 'plate', 'width_m')} × {si(run, 'base', 'height_m')}"
+    edges = f"lower edge {edge(run, 'base', 'bottom')}, sides {edge(run, 'base', 'sides')}"
+    return f"{size}; {material(run, 'base')}; {edges}"
+
+
+def waves(run: Run) -> str:
+    def told(speeds: Any) -> str:
+        speeds = speeds if isinstance(speeds, dict) else {}
+        found = ((name, speeds.get(f"{wave}_m_per_s")) for wave, name in WAVES.items())
+        return ", ".join(f"{name} = {v:.0f} m/s" for name, v in found if is_number(v))
+
+    of_plate = told(run.info.get("wave_speeds"))
+    below = run.info.get("base")
+    if not isinstance(below, dict):
+        return of_plate
+    joint = below.get("generalised_rayleigh_speed_m_per_s")
+    of_both = f"c<sub>GR</sub> = {joint:.0f} m/s" if is_number(joint) else "none, the bodies differ too much"
+    of_base = told(below.get("wave_speeds"))
+    return f"plate: {of_plate}<br>base: {of_base}<br>generalised Rayleigh speed: {of_both}"
+
+
+def spread(values: np.ndarray, unit: str) -> str:
+    low, high = float(values.min()), float(values.max())
+    if f"{low:.3g}" == f"{high:.3g}":
+        return quantity(low, unit, 3)
+    return f"{quantity(low, unit, 3)} to {quantity(high, unit, 3)}"
+
+
+def loads(run: Run) -> str:
+    """p and t before the event, and where they come from."""
+    speed = entry(run.case, "loading", "shear_speed_over_c_L")
+    moves = (
+        f"; upper edge moves to +x at {speed * run.c_L_m_per_s:.3g} m/s" if is_number(speed) and speed else ""
+    )
+    if is_uniform(run):
+        p, t = si(run, "prestress", "p_Pa"), si(run, "prestress", "t_Pa")
+        return f"pressure p = {p}, shear t = {t}, prescribed, uniform{moves}"
+    static = read_static(run.place.folder / "static.csv")
+    pressed = static["p_s_Pa"] > 0
+    of_nodes = "no contact"
+    if pressed.any():
+        p, t = spread(static["p_s_Pa"][pressed], "Pa"), spread(static["t_s_Pa"][pressed], "Pa")
+        of_nodes = f"pressure p {p}, shear t {t} along x"
+    if run.prescribed:
+        return f"{of_nodes}, prescribed by a table{moves}"
+    left, right = si(run, "loading", "tilt_left_m"), si(run, "loading", "tilt_right_m")
+    sheared = entry(run.info, "statics", "common_shear_m")
+    by = f"by {quantity(sheared, 'm')} " if is_number(sheared) else ""
+    pushed = left if left == right else f"{left} at its left end, {right} at its right"
+    return f"upper edge pressed down {pushed}, then moved {by}to +x; {of_nodes}"
+
+
+def table_of_mu(run: Run, over: str, unit: str) -> str:
+    places, mu = (entry(run.case, "friction", key) for key in (over, "table_mu"))
+    factor = entry(run.case, "friction", "mu_factor")
+    if not (isinstance(places, list) and isinstance(mu, list) and is_number(factor)):
+        return "not given"
+    rows = zip(places, mu, strict=False)
+    return ", ".join(
+        f"{factor * m:.3g} at {quantity(x, unit)}" for x, m in rows if is_number(x) and is_number(m)
+    )
+
+
+def law(run: Run) -> str:
+    def number(key: str) -> str:
+        return si(run, "friction", key)
+
+    def both() -> str:
+        return f"{MU_S} = {number('mu_s')}, {MU_K} = {number('mu_k')}"
+
+    match entry(run.case, "friction", "law"):
+        case "velocity_weakening":
+            return f"weakens with the slip rate: {both()}, α = {number('alpha_m2_per_s2')}"
+        case "coulomb":
+            return f"constant: μ = {number('mu')}"
+        case "slip_weakening":
+            return f"weakens linearly with slip: {both()}, d<sub>c</sub> = {number('d_c_m')}"
+        case "slip_weakening_healing":
+            told = f"{both()}, d<sub>c</sub> = {number('d_c_m')}"
+            return f"weakens linearly with slip, heals where a node sticks: {told}"
+        case "slip_table":
+            return f"μ over slip: {table_of_mu(run, 'table_slip_m', 'm')}"
+        case "slip_rate_table":
+            return f"μ over slip rate: {table_of_mu(run, 'table_slip_rate_m_per_s', 'm/s')}"
+        case other:  # a law that was added
+            settings = run.case.get("friction")
+            found = settings.items() if isinstance(settings, dict) else ()
+            parts = (f"{name_of(k)} = {quantity(v, unit_of(k))}" for k, v in found if is_number(v) and v)
+            return words(f"{other}: {', '.join(parts)}")
+
+
+def friction(run: Run) -> str:
+    parts = [law(run)]
+    delayed = entry(run.case, "friction", "regularisation")
+    if delayed in ("strength", "pressure"):
+        follows = "strength follows" if delayed == "strength" else "pressure in the strength follows"
+        rates = {
+            "relaxation_time_s": "t* =",
+            "relaxation_length_m": "L =",
+            "relaxation_slip_rate_m_per_s": "v* =",
+        }
+        told = [
+            f"{name} {si(run, 'friction', key)}"
+            for key, name in rates.items()
+            if is_set(run, "friction", key)
+        ]
+        parts.append(f"{follows} with a delay, {', '.join(told)}")
+    if entry(run.case, "friction", "file"):
+        parts.append("parameters vary along x by a table")
+    varied = entry(run.case, "friction", "random_key")
+    if isinstance(varied, str) and varied not in ("", "none"):
+        share = entry(run.case, "friction", "random_share")
+        by = f" by {100 * share:.3g} %" if is_number(share) else ""
+        length = si(run, "friction", "random_correlation_length_m")
+        parts.append(words(f"{name_of(varied)} varies at random{by}, correlation length {length}"))
+    return "; ".join(parts)
+
+
+def rise(run: Run) -> str:
+    ramp = (
+        f", rising over {si(run, 'event', 'trigger_ramp_s')}"
+        if is_set(run, "event", "trigger_ramp_s")
+        else ""
+    )
+    ends = (
+        f", for {si(run, 'event', 'trigger_duration_s')}"
+        if is_set(run, "event", "trigger_duration_s")
+        else ""
+    )
+    return ramp + ends
+
+
+def start(run: Run) -> str:
+    """What starts the event: form, zone, amount."""
+    amount = f"{entry(run.case, 'event', 'trigger_amount')}"
+    match run.kind, entry(run.case, "event", "trigger_form"):
+        case "none", _:
+            return "nothing but the loads"
+        case "spontaneous", _:
+            return "spontaneous: the shear just exceeds the critical one"
+        case ("left" | "right") as side, form:
+            forms = {
+                "added": f"shear added, {amount} times what is missing to {MU_S}p{rise(run)}",
+                "raised": f"shear raised to {amount} {MU_S}p{rise(run)}",
+                "weakened": f"μ = {MU_K} from the start",
+            }
+            zone = si(run, "event", "trigger_zone_m")
+            return f"trigger over {zone} at the {side} edge: {forms.get(str(form), words(form))}"
+        case "nucleation", _:
+            patch = (
+                f"patch around x = {si(run, 'nucleation', 'x_m')}, "
+                f"{si(run, 'nucleation', 'half_length_m')} to "
+                f"each side and a taper of {si(run, 'nucleation', 'taper_m')}"
+            )
+            if entry(run.case, "nucleation", "form") == "overstress":
+                return f"{patch}: shear of {si(run, 'nucleation', 'overstress_Pa')} added{rise(run)}"
+            return f"{patch}: μ = {MU_K} from the start"
+        case kind, _:
+            return words(kind)
+
+
+def rupture(run: Run) -> str:
+    """S before the event, and what it lets expect; of runs that tell it."""
+    told = run.info.get("rupture")
+    if not isinstance(told, dict):
+        return "not given"
+    S = told.get("strength_excess_S")
+    spread = [S.get(key) if isinstance(S, dict) else None for key in ("min", "median", "max")]
+    least, median, most = (f"{v:.3g}" if is_number(v) else "not given" for v in spread)
+    of_S = f"S {median}" if least == most else f"S {least} to {most}, median {median}"
+    lengths = [
+        f"{name} {quantity(factor * told[key], 'm', 3)}"
+        for key, name, factor in (
+            ("nucleation_length_m", "nucleation length", 1),
+            ("griffith_half_length_m", "critical crack length", 2),
+            ("process_zone_m", "process zone", 1),
+        )
+        if is_number(told.get(key))
+    ]
+    parts = [of_S, *lengths, str(told.get("regime", ""))]
+    return words("; ".join(part for part in parts if part))
+
+
+def rows(run: Run) -> list[tuple[str, str]]:
+    return [
+        ("Case", words(run.info.get("title", "") or "without a title")),
+        ("Plate", plate(run)),
+        ("Base", base(run)),
+        ("Loads", loads(run)),
+        ("Friction", friction(run)),
+        ("Start", start(run)),
+        ("Wave speeds", waves(run)),
+        ("Expected before the event", rupture(run)),
+    ]

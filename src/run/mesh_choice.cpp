@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/mesh_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/error.hpp"
+#include "mesh/plate.hpp"
+#include "run/choices.hpp"
+#include "stability/verdict.hpp"
+
+namespace slipfront::run {
+namespace {
+
+constexpr int most_coarsenings = 2;  // a third gains little: docs/mesh.md
+constexpr double max_columns = 1e6;
+
+/// Elements in a process zone of this length.
+double needed_elements(const input::Case& config, const RuptureOutlook& rupture) {
+  const auto bodies = bodies_of(config);
+  double n = elements_for_peaks;
+  if (stability::are_alike(bodies) && rupture.of_nodes.S.median < stability::supershear_S)
+    n = elements_for_transition;
+  // Damping of waves of the mesh, beta_R = a h/c_S, stays harmless to the zone Z, beta_R c_L <= b Z.
+  const double h_m = config.plate.element_size_m;
+  const double damping_s =
+      stability::damping_of_grid_waves_s(bodies, config.friction, config.regularisation, h_m);
+  double c_L = solid::longitudinal_speed_m_per_s(bodies.above);
+  if (bodies.below) c_L = std::max(c_L, solid::longitudinal_speed_m_per_s(*bodies.below));
+  return std::max(n, damping_s * c_L / (harmless_damping * h_m));
+}
+
+bool is_whole(double count) {
+  return std::abs(count - std::round(count)) <= 1e-6 * count && count > 0.5;
+}
+
+/// Of the plate and a base; none where the elements do not fit them.
+std::optional<std::int64_t> n_nodes(const input::Case& config) {
+  try {
+    auto n = n_nodes_of(mesh::make_interface(config.plate));
+    if (input::has_base_body(config))
+      n += n_nodes_of(mesh::make_interface(input::base_plate(config), "base"));
+    return n;
+  } catch (const UserError&) {
+    return {};
+  }
+}
+
+/// With plate.fine_height_m by default where it has not been asked for.
+void coarsen(mesh::Plate& plate, int coarsenings) {
+  const mesh::Plate standard;
+  if (plate.coarsenings == 0)
+    plate.fine_height_m = standard.fine_height_m / standard.height_m * plate.height_m;
+  plate.coarsenings = coarsenings;
+}
+
+}  // namespace
+
+std::optional<MeshChoice> cheapest_mesh(const input::Case& config, const RuptureOutlook& rupture) {
+  if (!rupture.of_nodes.process_zone_m || config.plate.corner == mesh::Corner::fillet) return {};
+  const double zone_m = *rupture.of_nodes.process_zone_m, width_m = config.plate.width_m;
+  const double least = needed_elements(config, rupture) * width_m / zone_m;
+  const int spare = config.plate.sides == mesh::Sides::periodic ? 1 : 0;
+  for (int coarsenings = most_coarsenings; coarsenings >= 0; --coarsenings) {
+    const double multiple = coarsenings == 0 ? 1 : 1 << (coarsenings + spare);
+    auto choice = config;
+    coarsen(choice.plate, coarsenings);
+    coarsen(choice.base.plate, coarsenings);
+    for (double columns = multiple * std::ceil(least / multiple * (1 - 1e-9));
+         columns <= std::min(max_columns, 2 * least + 100); columns += multiple) {
+      choice.plate.element_size_m = width_m / columns;
+      if (!is_whole(config.plate.height_m / choice.plate.element_size_m)) continue;
+      if (const auto n = n_nodes(choice))
+        return MeshChoice{choice.plate.element_size_m, coarsenings, zone_m / choice.plate.element_size_m, *n};
+    }
+  }
+  return {};
+}
+
+}  // namespace slipfront::run

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run/notes.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "input/table_along_x.hpp"
+#include "run/choices.hpp"
+#include "run/snapshot_plan.hpp"
+#include "stability/verdict.hpp"
+
+namespace slipfront::run {
+namespace {
+
+/// A table that reaches beyond the plate may have its positions in another unit; empty where it does not.
+std::string table_note(const char* key, const std::vector<double>& x_m, double width_m) {
+  const double tolerance_m = 1e-6 * width_m;
+  const auto is_beyond = [&](double x) { return x < -tolerance_m || x > width_m + tolerance_m; };
+  const auto n_beyond = std::ranges::count_if(x_m, is_beyond);
+  if (n_beyond == 0) return {};
+  return fmt::format(
+      "the table of {} reaches from x = {:.6g} to {:.6g} m, the plate from 0 to {:.6g} m: {} of "
+      "its {} rows lie beyond it; are its positions in m?",
+      key, x_m.front(), x_m.back(), width_m, n_beyond, x_m.size());
+}
+
+using Notes = std::vector<std::string>;
+
+/// A body with the names of its keys.
+struct NamedMaterial {
+  std::string table;
+  solid::Material material;
+};
+
+std::vector<NamedMaterial> materials_of(const input::Case& config) {
+  std::vector<NamedMaterial> materials = {{"material", config.material}};
+  if (has_base_body(config)) materials.push_back({"base", input::base_material(config)});
+  return materials;
+}
+
+void add_note(const std::string& key, double value, const char* question, Notes& notes) {
+  notes.push_back(fmt::format("{} = {:g}: {}", key, value, question));
+}
+
+/// Numbers of a body that may be in another unit than the key's.
+void add_odd_units(const NamedMaterial& body, double width_m, Notes& notes) {
+  const auto& [table, m] = body;
+  if (m.youngs_modulus_Pa < 1e4 || m.youngs_modulus_Pa > 2e12)
+    add_note(table + ".youngs_modulus_Pa", m.youngs_modulus_Pa, "no solid has this stiffness; is it in Pa?",
+             notes);
+  if (m.density_kg_per_m3 < 10 || m.density_kg_per_m3 > 3e4)
+    add_note(table + ".density_kg_per_m3", m.density_kg_per_m3, "no solid has this density; is it in kg/m3?",
+             notes);
+  const double damping_length_m = m.stiffness_damping_s * solid::longitudinal_speed_m_per_s(m);
+  if (damping_length_m > 0.1 * width_m)
+    notes.push_back(fmt::format(
+        "{}.stiffness_damping_s = {:g}: damps all waves shorter than {:.3g} m, the plate's width is {:g} m; "
+        "is it beta_R in s, no loss factor?",
+        table, m.stiffness_damping_s, damping_length_m, width_m));
+}
+
+/// Numbers of the interface that may be in another unit than the key's.
+void add_odd_units_of_friction(const input::Case& config, Notes& notes) {
+  for (const auto& parameter : description_of(config.friction).parameters) {
+    const std::string key = std::string("friction.") + parameter.key;
+    const double value = config.friction.parameter(parameter.key);
+    if (key.starts_with("friction.mu") && value > 5)
+      add_note(key, value, "hardly any pair of solids has such friction; is it in per cent?", notes);
+    if (key == "friction.d_c_m" && value > 1e-3 * config.plate.width_m)
+      add_note(key, value, "more than a thousandth of plate.width_m; is it in m?", notes);
+  }
+}
+
+/// Pressures in another unit than Pa, by what they strain the plate.
+void add_odd_pressures(const input::Case& config, Notes& notes) {
+  constexpr double max_strain = 0.03;  // of linear elasticity
+  constexpr double min_strain = 1e-7;  // a rock pressed by its own weight over some centimetres
+  const double E_Pa = config.material.youngs_modulus_Pa;
+  if (!is_prestressed(config)) {
+    const double strain = nominal_pressure_Pa(config) / E_Pa;
+    if (strain > max_strain)
+      notes.push_back(
+          fmt::format("the tilt presses the plate by {:.3g} of Young's modulus, beyond small strains: are "
+                      "loading.tilt_left_m and loading.tilt_right_m in m?",
+                      strain));
+    return;
+  }
+  const auto& prestress = config.prestress;
+  const auto& rows = prestress.table.rows;
+  const bool is_uniform = prestress.file.empty();
+  const double p_Pa = is_uniform ? prestress.p_Pa : *std::ranges::max_element(rows.p_s_Pa);
+  const auto key = is_uniform ? "prestress.p_Pa" : "p_Pa of prestress.file up to";
+  if (p_Pa > max_strain * E_Pa) add_note(key, p_Pa, "beyond small strains of the plate; is it in Pa?", notes);
+  if (p_Pa < min_strain * E_Pa)
+    add_note(key, p_Pa, "less than 1e-7 of Young's modulus; is it in Pa, 1 MPa = 1e6 Pa?", notes);
+}
+
+/// Lengths that do not suit the plate or its elements.
+void add_lengths(const input::Case& config, Notes& notes) {
+  constexpr double fewest_elements = 2;
+  const double min_m = fewest_elements * config.plate.element_size_m;
+  const auto add_short = [&](const char* key, double length_m) {
+    if (length_m < (1 - 1e-9) * min_m)
+      notes.push_back(
+          fmt::format("{} = {:.4g} m is less than two elements, {:.4g} m: the mesh does not "
+                      "resolve it",
+                      key, length_m, min_m));
+  };
+  if (interface::is_at_edge(config.event)) add_short("event.trigger_zone_m", config.trigger.zone_m);
+  if (config.event == interface::EventKind::nucleation)
+    add_short("2 nucleation.half_length_m + taper_m",
+              2 * config.nucleation.half_length_m + config.nucleation.taper_m);
+  if (config.event == interface::EventKind::nucleation &&
+      2 * config.nucleation.half_length_m > config.plate.width_m)
+    notes.push_back(fmt::format(
+        "nucleation.half_length_m = {:g}: the patch is longer than the interface, {:g} m; is it in m?",
+        config.nucleation.half_length_m, config.plate.width_m));
+  const double zone_m = interface::is_at_edge(config.event) ? config.trigger.zone_m : 0;
+  if (zone_m + config.fronts.trigger_margin_m > 0.5 * config.plate.width_m)
+    notes.push_back(
+        fmt::format("fronts.trigger_margin_m = {:.4g} m leaves less than half of the interface "
+                    "to t_d and p_d",
+                    config.fronts.trigger_margin_m));
+}
+
+/// Rows of a table that end where a node is, but for rounding: the node has the later row's values.
+void add_rows_beside_nodes(const input::Case& config, Notes& notes) {
+  const auto& along_x = config.friction_along_x;
+  if (along_x.file.empty() || along_x.between_rows != input::BetweenRows::stepwise) return;
+  const double h_m = config.plate.element_size_m;
+  for (const double x_m : along_x.table.x_m) {
+    const double node_x_m = h_m * std::round(x_m / h_m);
+    const double off_m = x_m - node_x_m;
+    if (off_m > 1e-9 * h_m && off_m <= input::position_tolerance * config.plate.width_m)
+      notes.push_back(
+          fmt::format("friction.file: the row at x = {} m counts for the node at {:g} m, {:.2g} m before it, "
+                      "as well; put "
+                      "rows of a stepwise table between nodes",
+                      x_m, node_x_m, off_m));
+  }
+}
+
+/// What damping decides.
+void add_damping(const input::Case& config, Notes& notes) {
+  const auto bodies = bodies_of(config);
+  const double of_plate_s = bodies.above.stiffness_damping_s;
+  if (bodies.below && stability::are_alike(bodies) && of_plate_s != bodies.below->stiffness_damping_s)
+    notes.push_back(
+        fmt::format("the two bodies are of one material, but material.stiffness_damping_s is {:g} and "
+                    "base.stiffness_damping_s {:g}: waves and slip are not symmetric",
+                    of_plate_s, bodies.below->stiffness_damping_s));
+  const double needed_s = stability::damping_of_grid_waves_s(bodies, config.friction, config.regularisation,
+                                                             config.plate.element_size_m);
+  const double least_s = std::min(of_plate_s, bodies.below ? bodies.below->stiffness_damping_s : of_plate_s);
+  if (least_s < (1 - 1e-9) * needed_s)
+    notes.push_back(fmt::format(
+        "friction follows the pressure at once between bodies that differ, with damping of {:g} s: waves of "
+        "3 "
+        "to 4 elements can grow on the mesh alone, and arrivals be wrong; {} = {:.2g} damps them (or use "
+        "[friction] regularisation)",
+        least_s, bodies.below ? "stiffness_damping_s of both bodies" : "material.stiffness_damping_s",
+        needed_s));
+}
+
+/// A free side bears no shear.
+void add_free_sides(const input::Case& config, Notes& notes) {
+  if (!is_prestressed(config)) return;
+  const bool is_free = config.plate.sides == mesh::Sides::free ||
+                       (has_base_body(config) && config.base.plate.sides == mesh::Sides::free);
+  const auto& t_Pa = config.prestress.table.rows.t_s_Pa;
+  const bool is_sheared =
+      config.prestress.file.empty() ? config.prestress.t_Pa != 0 : t_Pa.front() != 0 || t_Pa.back() != 0;
+  if (is_free && is_sheared)
+    notes.emplace_back(
+        "sides are free, but t is prescribed up to the corners: free sides bear no shear, so that this is no "
+        "state of equilibrium, and pressures at the corners are not those of a block; use absorbing sides, "
+        "or "
+        "loading.method = direct");
+}
+
+/// Times that do not suit the plate.
+void add_times(const input::Case& config, double step_s, Notes& notes) {
+  // From a patch to the end of the interface that is farther off; where else an event begins only its run
+  // tells.
+  const double width_m = config.plate.width_m, x_m = config.nucleation.x_m;
+  const double way_m =
+      config.event == interface::EventKind::nucleation ? std::max(x_m, width_m - x_m) : width_m;
+  const double arrival_s = way_m / solid::shear_speed_m_per_s(config.material);
+  if (config.time.end_s < arrival_s)
+    notes.push_back(fmt::format(
+        "time.end_s = {:.4g} s is before a shear wave {}, at {:.4g} s", config.time.end_s,
+        way_m < width_m ? "from the patch has reached both ends of the interface" : "has crossed the plate",
+        arrival_s));
+  constexpr double most_steps = 1e8;
+  if (config.time.end_s > 1e3 * width_m / solid::shear_speed_m_per_s(config.material) ||
+      config.time.end_s > most_steps * step_s)
+    notes.push_back(fmt::format(
+        "time.end_s = {:g} s is {:.2g} steps, and {:.2g} times what a shear wave takes to cross the "
+        "plate; is it in s?",
+        config.time.end_s, config.time.end_s / step_s,
+        config.time.end_s * solid::shear_speed_m_per_s(config.material) / width_m));
+  const bool ramps = interface::is_at_edge(config.event) || config.event == interface::EventKind::nucleation;
+  if (ramps && config.trigger.ramp_s > config.time.end_s)
+    notes.push_back(fmt::format("event.trigger_ramp_s = {:.4g} s is longer than the event, {:.4g} s",
+                                config.trigger.ramp_s, config.time.end_s));
+}
+
+}  // namespace
+
+std::vector<std::string> notes_of_case(const input::Case& config, const RuptureOutlook& rupture,
+                                       double step_s) {
+  Notes notes;
+  const auto add_table_note = [&](const char* key, const std::vector<double>& x_m) {
+    if (auto note = table_note(key, x_m, config.plate.width_m); !note.empty())
+      notes.push_back(std::move(note));
+  };
+  add_table_note("prestress.file", config.prestress.table.rows.x_m);
+  add_table_note("friction.file", config.friction_along_x.table.x_m);
+  add_rows_beside_nodes(config, notes);
+  const auto& along_x = config.friction_along_x;
+  if (along_x.random_key != "none" && along_x.random_correlation_length_m < config.plate.element_size_m)
+    notes.push_back(
+        fmt::format("friction.random_correlation_length_m = {:.4g} m is below the element size: the mesh "
+                    "does not resolve the field",
+                    along_x.random_correlation_length_m));
+  if (config.fronts.l_star_m < 0.99 * config.plate.element_size_m)
+    notes.push_back(fmt::format("fronts.l_star_m = {:.4g} m is below the element size: one element is used",
+                                config.fronts.l_star_m));
+  for (const auto& body : materials_of(config)) add_odd_units(body, config.plate.width_m, notes);
+  add_odd_units_of_friction(config, notes);
+  add_odd_pressures(config, notes);
+  add_lengths(config, notes);
+  add_times(config, step_s, notes);
+  add_free_sides(config, notes);
+  add_damping(config, notes);
+  if (config.time.step_factor > 1)
+    notes.emplace_back("the step is above the largest stable one (time.allow_unstable)");
+  for (const auto* more : {&rupture.doubts, &rupture.cautions})
+    notes.insert(notes.end(), more->begin(), more->end());
+  for (auto& note : snapshot_plan(config, step_s).notes) notes.push_back(std::move(note));
+  return notes;
+}
+
+}  // namespace slipfront::run

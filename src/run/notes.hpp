@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "input/case.hpp"
+#include "run/outlook.hpp"
+
+namespace slipfront::run {
+
+/// What is allowed in a case but is hardly meant, decides physics unasked, or keeps it from a rupture, a line
+/// each.
+/// @param step_s  of the run, or as estimated_size gives it
+std::vector<std::string> notes_of_case(const input::Case& config, const RuptureOutlook& rupture,
+                                       double step_s);
+
+}  // namespace slipfront::run

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Records of onsets: their forms and units, marks of places that never slip, settings of the record's own."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+import slipfront
+from common import ROOT
+from slipfront import fronts_command
+
+SLOW = ROOT / "tests/cli/cases/onsets_slow_30_m_per_s.csv"
+X_M = [-0.02, -0.01, 0.0, 0.01, 0.02]
+ONSET_S = [0.0, 1.25e-05, 2.5e-05, np.nan, 5e-05]
+
+
+def printed(capsys, file, *options):
+    assert fronts_command.main([str(file), *options]) == 0
+    return capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x_m,time_s\n-0.02,0\n-0.01,1.25e-5\n0,2.5e-5\n0.01,\n0.02,5e-5\n",
+        "x_mm,time_us\n-20,0\n-10,12.5\n0,25\n10,nan\n20,50\n",
+        "x (mm),onset [ms]\n-20,0\n-10,0.0125\n0,0.025\n10,-1\n20,0.05\n",
+        "x / cm;t / µs\n-2;0\n-1;12,5\n0;25,0\n1;1e9\n2;50\n",
+        "gauge\tposition_mm\tarrival_time_us\nA\t-20\t0\nB\t-10\t12,5\nC\t0\t25\nD\t10\tinf\nE\t20\t50\n",
+        "x_km,time_seconds\n-2e-5,0\n-1e-5,1.25e-5\n0,2.5e-5\n1e-5,-\n2e-5,5e-5\n",
+        "Position (mm),Time (us)\r\n-20,0\r\n-10,12.5\r\n0,25\r\n10,9999\r\n20,50\r\n",
+    ],
+)
+def test_forms_and_units(tmp_path, text):
+    file = tmp_path / "onsets.csv"
+    file.write_text(text, encoding="utf-8")
+    record = slipfront.read_onsets(file)
+    assert np.allclose(record.x_m, X_M, rtol=1e-15, atol=0)
+    assert np.allclose(record.onset_s, ONSET_S, rtol=1e-15, atol=0, equal_nan=True)
+    (note,) = record.notes
+    assert note.startswith("1 place ") and "never slipped" in note
+
+
+def test_a_file_of_matlab(tmp_path):
+    io = pytest.importorskip("scipy.io")
+    file = tmp_path / "onsets.mat"
+    io.savemat(file, {"x_mm": 1e3 * np.array([X_M]), "time_us": 1e6 * np.array([ONSET_S]).T, "fs": 1e6})
+    record = slipfront.read_onsets(file)
+    assert np.allclose(record.x_m, X_M, rtol=1e-15, atol=0)
+    assert np.allclose(record.onset_s, ONSET_S, rtol=1e-15, atol=0, equal_nan=True)
+    io.savemat(file, {"x": X_M, "time": ONSET_S})
+    with pytest.raises(slipfront.Error, match=r"has the columns 'x', 'time'; wanted are"):
+        slipfront.read_onsets(file)
+    file.write_text("x_mm")
+    with pytest.raises(slipfront.Error, match="damaged, or not a .mat file"):
+        slipfront.read_onsets(file)
+
+
+@pytest.mark.parametrize(
+    ("times", "mark", "never"),
+    [
+        ([0, 1, 2, -1, 4], None, 1),
+        ([0, 1, 2, -1, 4], "none", 0),
+        ([-2, -1, 0, 1, 2], None, 0),  # a clock that began later
+        ([0, 1, 2, 1e9, 1e9], None, 2),
+        ([0, 1, 999, -1, 9999], None, 2),  # 999 is no farther from 1 than 9999 from it
+        ([1e9, 1e9 + 1, 1e9 + 2, 1e9 + 3, 1e9 + 4], None, 0),
+        ([0, 1, 77, 3, 4], 77, 1),
+        ([0, np.inf, np.nan, 3, 4], None, 2),
+    ],
+)
+def test_marks_of_places_that_never_slip(times, mark, never):
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        found = slipfront.find_fronts(X_M, times, never_slipped=mark)
+    counted = sum(int(note.split()[0]) for note in found.notes if "never slipped" in note)
+    assert counted == never
+    guessed = [note for note in found.notes if "taken as never slipped" in note]
+    assert [str(each.message) for each in told] == guessed
+    assert bool(guessed) == (bool(never) and mark is None and bool(np.isfinite(times).all()))
+
+
+def test_a_slow_front_past_gauges(capsys):
+    front, _ = printed(capsys, SLOW)
+    assert front.startswith("front 0: x = 0.0000 to 0.2000 m, ")
+    assert ", speed 30 m/s, " in front and front.endswith(", ends: record_edge")
+
+
+def test_a_front_past_uneven_gauges():
+    x = np.cumsum([0, 7, 13, 9, 12, 8, 11, 7, 13, 10, 9, 12, 8]) * 1e-3
+    found = slipfront.find_fronts(x, x / 300)
+    assert found.sizes == {"point": 13, "front": 1}
+    assert float(found.speed_m_per_s[0]) == pytest.approx(300, rel=1e-9)
+    assert found.l_star_m == pytest.approx(9.5e-3)
+    assert found.min_length_m == pytest.approx(19e-3)
+    assert found.arrest_time_s == pytest.approx(5 * 19e-3 / 300)
+
+
+def test_options_that_lose_onsets_are_named(capsys):
+    lines = printed(capsys, SLOW, "--arrest-time-s", "20e-6")
+    assert lines[0] == "no fronts"
+    assert (
+        lines[-1]
+        == "41 of 41 onsets in no front: 41 whose neighbours slip more than --arrest-time-s earlier or later"
+    )
+    lines = printed(capsys, SLOW, "--min-length-m", "1")
+    assert lines[-1] == "41 of 41 onsets in no front: 41 on paths shorter than --min-length-m"
+
+
+def test_onsets_beside_a_front_are_told():
+    x = np.arange(40) * 1e-3
+    onset = x / 1000
+    onset[30:] = np.nan
+    onset[35] = 1e-3  # alone
+    onset[37:39] = 2e-3, 2.001e-3  # a pair
+    found = slipfront.find_fronts(x, onset)
+    assert list(found.end.values) == ["arrest"]
+    assert found.notes[-1] == (
+        "3 of 33 onsets in no front: 1 between places that never slip, 2 on paths shorter than min_length_m"
+    )
+
+
+@pytest.mark.parametrize("speed", [430.0, 900.0, 1310.0])
+def test_times_of_frames_give_an_interval(speed):
+    x = np.arange(200) * 1e-3
+    frame = 5e-6
+    onset = np.floor((x + 0.3e-3) / speed / frame) * frame
+    found = slipfront.find_fronts(x, onset)
+    assert found.time_step_s == pytest.approx(frame)
+    k = int(np.argmax(np.diff([*np.searchsorted(found.front_id, found.front), found.sizes["point"]])))
+    low, middle, high = (float(found[f"speed_{part}m_per_s"][k]) for part in ("low_", "", "high_"))
+    assert low < speed < high
+    # A line through times wrong by half a frame: 1.5 frames of the time that the front takes.
+    duration = 0.2 / speed
+    assert high - low < 1.1 * 2 * 1.5 * frame / duration * middle
+
+
+def test_intervals_of_few_onsets_are_wide():
+    def interval(onset_s):
+        x = np.arange(len(onset_s)) * 1e-3
+        return slipfront.find_fronts(
+            x, onset_s, resolution_s=0.0, settings=slipfront.FrontSettings(min_length_m=1e-3)
+        )
+
+    three = interval([0.0, 1e-6, 3e-6])
+    # Slope 1.5 us/mm; squares about the line 1/6 us2 of 1 degree of freedom over 2 mm2; Student's t 12.706.
+    assert float(three.speed_low_m_per_s[0]) == pytest.approx(1e3 / (1.5 + 12.706 / np.sqrt(12)), rel=1e-9)
+    assert float(three.speed_high_m_per_s[0]) == np.inf
+    two = interval([0.0, 1e-6])
+    assert (float(two.speed_low_m_per_s[0]), float(two.speed_high_m_per_s[0])) == (0, np.inf)
+
+
+def test_a_search_of_many_places_can_be_interrupted():
+    """The signal comes before the search looks for one."""
+    import signal
+
+    x = np.linspace(0, 1, 20_000)
+    handler = signal.getsignal(signal.SIGALRM)
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    from slipfront import _core
+
+    options = _core.FrontOptions()
+    ones = np.ones_like(x)
+    signal.signal(signal.SIGALRM, stop)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            signal.setitimer(signal.ITIMER_REAL, 1e-3)
+            while True:
+                _core.find_fronts(x, x / 1000, ones, ones, 1.0, 0.0, options)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, handler)

@@ -1,0 +1,335 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What reports and the package say of loads, stress and set-up of real runs, by the loading method."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import slipfront
+from common import require_done, run_json, sets
+from package_cases import CASE, program, write_case
+from slipfront.report import setup
+from slipfront.report.command import main
+from slipfront.report.run import thin_run
+from slipfront.report.run_data import wave_speeds
+from slipfront.units import attributes, engineering, name_of, quantity
+
+T_PA, P_PA = 2.4e6, 4e6
+PAIR = """\
+title = "polycarbonate on Homalite"
+[plate]
+width_m = 0.15
+height_m = 0.06
+element_size_m = 3e-3
+corner = "none"
+[material]
+youngs_modulus_Pa = 2.4e9
+poissons_ratio = 0.38
+density_kg_per_m3 = 1200
+stiffness_damping_s = 0
+[base]
+kind = "body"
+height_m = 0.03
+youngs_modulus_Pa = 4e9
+poissons_ratio = 0.35
+density_kg_per_m3 = 1230
+stiffness_damping_s = 1e-8
+bottom = "absorbing"
+[loading]
+method = "prestress"
+[prestress]
+t_Pa = 2.4e6
+p_Pa = 4e6
+[friction]
+law = "slip_weakening"
+mu_s = 0.7
+mu_k = 0.45
+d_c_m = 10e-6
+regularisation = "pressure"
+relaxation_time_s = 2e-6
+[event]
+kind = "left"
+trigger_zone_m = 30e-3
+trigger_amount = 2
+trigger_ramp_s = 2e-6
+[time]
+end_s = 100e-6
+[output]
+snapshot_times_s = [50e-6]
+[probes]
+x_m = [0.075, 0.0765]
+y_m = [0.0, -0.0015]
+names = ["interface", "base"]
+"""
+TABLE = "x_m,t_Pa,p_Pa\n0,2.0e6,4e6\n0.15,2.4e6,5e6\n"
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory):
+    place = tmp_path_factory.mktemp("pair")
+    require_done(program("run", write_case(place, PAIR), "-q", "-o", "out", cwd=place))
+    return place / "out"
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory):
+    place = tmp_path_factory.mktemp("table")
+    (place / "loads.csv").write_text(TABLE)
+    uniform = "t_Pa = 2.4e6\np_Pa = 4e6\n"
+    case = write_case(place, PAIR.replace(uniform, 'file = "loads.csv"\n'))
+    require_done(program("run", case, "-q", "-o", "out", cwd=place))
+    return place / "out"
+
+
+@pytest.fixture(scope="module")
+def tilted(tmp_path_factory):
+    place = tmp_path_factory.mktemp("tilted")
+    case = CASE + "\n[probes]\nx_m = [0.1]\ny_m = [0.0]\n"
+    require_done(program("run", write_case(place, case), "-q", "-o", "out", cwd=place))
+    return place / "out"
+
+
+def page_of(folder):
+    assert main([str(folder), "-o", str(folder.parent / "report.html")]) == 0
+    text = (folder.parent / "report.html").read_text(encoding="utf-8")
+    data = re.search(r'<script type="application/json" id="data">(.*?)</script>', text)[1]
+    return re.sub(r"<script[\s\S]*?</script>", "", text), json.loads(data)
+
+
+def parts_of(data, name):
+    (choice,) = (c for c in data["runs"][0]["probes"]["choices"] if c["name"] == name)
+    return {part["label"]: part for part in choice["parts"]}
+
+
+def first_row(part):
+    packed = part["values"]
+    return packed["largest"] * np.frombuffer(base64.b64decode(packed["f2"]), "<f2")[: packed["shape"][1]]
+
+
+# Stress
+
+
+def test_the_prestress_is_told_and_added(pair):
+    assert run_json(pair)["prestress"] == {"stress_xx_Pa": None, "stress_yy_Pa": -P_PA, "stress_xy_Pa": T_PA}
+    run = slipfront.open(pair)
+    probes, whole = run.probes, run.absolute_stress(run.probes)
+    assert (probes.stress_yy_Pa[0] == 0).all() and (probes.stress_xy_Pa[0] == 0).all()
+    assert (whole.stress_yy_Pa[0] == -P_PA).all() and (whole.stress_xy_Pa[0] == T_PA).all()
+    np.testing.assert_array_equal(whole.stress_xy_Pa - T_PA, probes.stress_xy_Pa + T_PA - T_PA)
+    assert np.isnan(whole.stress_xx_Pa).all() and (whole.stress_zz_Pa == 0).all()  # plane stress
+    assert probes.stress_yy_Pa.attrs["long_name"].endswith("change since the start")
+    assert "change" not in probes.v_x_m_per_s.attrs["long_name"]
+    assert whole.stress_yy_Pa.attrs["long_name"].endswith("absolute")
+    cells = run.snapshots
+    assert cells.stress_yy_Pa.sizes == {"time_s": 1, "cell": 50 * 30}
+    np.testing.assert_array_equal(run.absolute_stress(cells).stress_yy_Pa, cells.stress_yy_Pa - P_PA)
+    with pytest.raises(slipfront.DataError, match="no stress"):
+        run.absolute_stress(run.history)
+
+
+def test_the_absolute_stress_at_the_interface_is_its_tractions(pair):
+    """Behind the front, where both are smooth: the change alone is far off. A cell's stress belongs to its
+    centre in y, half an element of 3 mm away: 15 % of p."""
+    run = slipfront.open(pair)
+    whole = run.absolute_stress(run.probes).sel(probe="interface")
+    history = run.history.sel(x_m=0.075).interp(time_s=whole.time_s)
+    late = whole.time_s > 85e-6
+    assert late.sum() > 10
+    for stress, traction, sign in (("stress_yy_Pa", "p_Pa", -1), ("stress_xy_Pa", "t_Pa", 1)):
+        np.testing.assert_allclose(whole[stress][late], sign * history[traction][late], atol=0.15 * P_PA)
+        changed = run.probes[stress].sel(probe="interface")[late]
+        assert (abs(changed - sign * history[traction][late]) > 0.3 * P_PA).all()
+
+
+def test_tractions_that_vary_leave_the_change_alone(table):
+    assert set(run_json(table)["prestress"].values()) == {None}
+    run = slipfront.open(table)
+    whole = run.absolute_stress(run.probes)
+    assert all(np.isnan(whole[name]).all() for name in ("stress_xx_Pa", "stress_yy_Pa", "stress_xy_Pa"))
+    text, data = page_of(table)
+    assert all(part["before"] is None for part in parts_of(data, "stress").values())
+    assert data["runs"][0]["probes"]["are_changes"] and 'id="probes-change"' not in text
+    assert "vary along the interface leave the state in the bulk unknown" in text
+
+
+def test_statics_record_the_whole_stress(tilted):
+    assert "prestress" not in run_json(tilted)
+    run = slipfront.open(tilted)
+    whole = run.absolute_stress(run.probes)
+    for name in whole:
+        np.testing.assert_array_equal(whole[name], run.probes[name])
+    assert "change" not in run.probes.stress_yy_Pa.attrs["long_name"]
+    _, data = page_of(tilted)
+    assert not data["runs"][0]["probes"]["are_changes"]
+    assert {part["before"] for part in parts_of(data, "stress").values()} == {0}
+
+
+def test_the_report_has_the_change_and_what_is_added(pair):
+    text, data = page_of(pair)
+    parts = parts_of(data, "stress")
+    before = {label: part["before"] for label, part in parts.items()}
+    assert before == {"σ<sub>xx</sub>": None, "σ<sub>yy</sub>": -4, "σ<sub>xy</sub>": 2.4}  # MPa
+    assert all((first_row(part) == 0).all() for part in parts.values())
+    assert all(part["before"] is None for part in parts_of(data, "strain").values())
+    assert data["runs"][0]["probes"]["are_changes"] and 'id="probes-change"' in text
+    assert "= −p = -4 MPa" in text and "the sum of the state before" not in text
+
+
+# Set-up
+
+
+def rows(folder):
+    return dict(setup.rows(thin_run(folder)))
+
+
+def test_the_set_up_is_told_in_words_and_engineering_units(pair):
+    told = rows(pair)
+    material = "E = 2.4 GPa, ν = 0.38, ρ = 1200 kg/m³, no damping"
+    assert (
+        told["Plate"] == f"150 mm × 60 mm, plane stress; {material}; upper edge held, sides free of traction"
+    )
+    assert told["Base"] == (
+        "150 mm × 30 mm; E = 4 GPa, ν = 0.35, ρ = 1230 kg/m³, stiffness damping 10 ns; lower edge absorbing, "
+        "sides free of traction"
+    )
+    assert told["Loads"] == "pressure p = 4 MPa, shear t = 2.4 MPa, prescribed, uniform"
+    assert told["Friction"] == (
+        "weakens linearly with slip: μ<sub>s</sub> = 0.7, μ<sub>k</sub> = 0.45, d<sub>c</sub> = 10 µm; "
+        "pressure in "
+        "the strength follows with a delay, t* = 2 µs"
+    )
+    assert told["Start"] == (
+        "trigger over 30 mm at the left edge: shear added, 2 times what is missing to μ<sub>s</sub>p, "
+        "rising over "
+        "2 µs"
+    )
+
+
+def test_loads_of_other_methods_are_told(table, tilted):
+    assert (
+        rows(table)["Loads"]
+        == "pressure p 4 MPa to 5 MPa, shear t 2 MPa to 2.4 MPa along x, prescribed by a table"
+    )
+    told = rows(tilted)
+    assert told["Loads"].startswith(
+        "upper edge pressed down 370 µm at its left end, 37 µm at its right, then moved"
+    )
+    assert told["Base"] == "rigid plane" and told["Friction"].startswith("weakens with the slip rate")
+
+
+def test_the_critical_crack_is_that_of_info(pair):
+    lines = program("info", pair / "case.resolved.toml", cwd=pair).stdout
+    whole_m = float(re.search(r"critical crack length\s+([\d.]+) m ", lines)[1])
+    assert f"critical crack length {1e3 * whole_m:.3g} mm" in rows(pair)["Expected before the event"]
+
+
+@pytest.mark.parametrize(
+    ("table_name", "changes", "says"),
+    [
+        ("event", {"kind": "spontaneous"}, "spontaneous: the shear just exceeds the critical one"),
+        ("event", {"trigger_form": "weakened"}, "30 mm at the left edge: μ = μ<sub>k</sub> from the start"),
+        ("event", {"trigger_form": "raised", "trigger_amount": 1.2}, "shear raised to 1.2 μ<sub>s</sub>p"),
+        (
+            "event",
+            {"kind": "nucleation"},
+            "patch around x = 75 mm, 7.5 mm to each side and a taper of 3.75 mm",
+        ),
+    ],
+)
+def test_starts_are_told(pair, table_name, changes, says):
+    run = thin_run(pair)
+    nucleation = {"form": "weakened", "x_m": 0.075, "half_length_m": 7.5e-3, "taper_m": 3.75e-3}
+    case = run.case | {table_name: run.case[table_name] | changes, "nucleation": nucleation}
+    assert says in setup.start(replace(run, case=case))
+
+
+def test_the_sketch_is_to_scale(pair):
+    text, _ = page_of(pair)
+    svg = re.search(r"<svg[\s\S]*?</svg>", text)[0]
+    (w, h), (base_w, base_h) = (
+        map(float, size) for size in re.findall(r'<rect [^>]*width="([\d.]+)" height="([\d.]+)"', svg)
+    )
+    assert w / h == pytest.approx(150 / 60, rel=1e-2)
+    assert base_w == w and h / base_h == pytest.approx(2, rel=1e-2)
+    assert svg.count("<circle") == 2 and "p = 4 MPa" in svg and ">base</text>" in svg
+
+
+# Panels
+
+
+def test_waves_of_both_bodies_and_of_the_pair_are_drawn(pair, tilted):
+    info = run_json(pair)
+    speeds = wave_speeds(thin_run(pair))
+    assert list(speeds) == ["c_L", "c_S", "c_R", "c_GR", "c_L of the base", "c_S of the base"]
+    assert speeds["c_GR"] == info["base"]["generalised_rayleigh_speed_m_per_s"]
+    assert speeds["c_L of the base"] == info["base"]["wave_speeds"]["c_L_m_per_s"]
+    assert list(wave_speeds(thin_run(tilted))) == ["c_L", "c_S", "c_R"]
+
+
+def test_what_does_not_vary_is_no_panel(pair, tilted):
+    """Uniform tractions: one static ratio, and the criteria are folded."""
+    _, data = page_of(pair)
+    assert data["folded"] and "static" not in data["panels"] and data["panels"][0] == "x"
+    _, data = page_of(tilted)
+    assert not data["folded"] and data["panels"] == ["x", "static", "dynamic", "rise"]
+
+
+def test_constant_fields_are_sentences(tmp_path):
+    """Nothing starts: the slip rate, the slip, p and t/p are the same everywhere."""
+    keys = sets("event.kind=none", "time.end_s=1e-5")
+    require_done(program("run", write_case(tmp_path, PAIR), "-q", "-o", "out", *keys, cwd=tmp_path))
+    text, data = page_of(tmp_path / "out")
+    assert data["fields"] == [] and data["panels"] == [] and 'id="space-time-plot"' not in text
+    assert "The pressure p is 4 MPa everywhere and at all times." in text
+    assert "t/p is 0.6 everywhere and at all times." in text
+    assert "No front has a speed to be drawn." in text and "Nothing moves in any snapshot." not in text
+
+
+# Names and units
+
+
+def test_every_data_set_has_the_attributes_of_cf(pair):
+    run = slipfront.open(pair)
+    for data in (run.history, run.tractions, run.fronts, run.energies, run.snapshots, run.probes):
+        for name, variable in data.variables.items():
+            assert variable.attrs.keys() >= {"units", "long_name"}, name
+            assert "unit" not in variable.attrs and "description" not in variable.attrs
+    assert run.history.slip_rate_m_per_s.attrs == {
+        "units": "m/s",
+        "long_name": "velocity of the plate along x relative to its base",
+    }
+
+
+def test_only_public_names_are_listed():
+    assert dir(slipfront) == sorted(slipfront.__all__)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "told"),
+    [
+        (2.4e9, "Pa", "2.4 GPa"),
+        (0.15, "m", "150 mm"),
+        (1.5, "m", "1.5 m"),
+        (0.9999999, "m", "1 m"),
+        (4e-6, "m", "4 µm"),
+        (0.0, "Pa", "0 Pa"),
+        (-4e6, "Pa", "-4 MPa"),
+        (3e-12, "s", "0.003 ns"),
+        (1200.0, "kg/m3", "1200 kg/m³"),
+        (0.38, "1", "0.38"),
+    ],
+)
+def test_quantities_are_in_engineering_units(value, unit, told):
+    assert quantity(value, unit) == told
+
+
+def test_keys_become_names_and_units():
+    names = ("friction.d_c_m", "prestress.t_Pa", "friction.mu_k", "plate.element_size_m", "event.kind")
+    assert [name_of(name) for name in names] == ["d_c", "t", "mu_k", "element size", "kind"]
+    assert engineering("m", [1e-6, 9e-6]).name == "µm"
+    assert attributes("t_s_Pa") == {"units": "Pa", "long_name": "tangential traction before the event"}
