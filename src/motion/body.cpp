@@ -62,16 +62,16 @@ Body::Body(const BodySource& source, const TimeStepping& time)
                  : steps_of(source,
                             solid::largest_frequency_rad_per_s(source.mesh, source.material, motion_.op),
                             time)),
-      finer_w_(rolling_columns(motion_.op)),
-      interface_nodes_(source.mesh.interface_nodes),
-      interface_runs_(runs_of(source.mesh.interface_nodes, motion_)),
-      tributary_m_(mesh::tributary_lengths_m(source.mesh)) {
-  for (const auto n : interface_nodes_) {
-    interface_mass_kg_.push_back(motion_.op.mass_kg[n]);
-    interface_y_m_.push_back(source.mesh.y_m[n]);
+      finer_w_(rolling_columns(motion_.op)) {
+  interface_.nodes = source.mesh.interface_nodes;
+  interface_.runs = runs_of(interface_.nodes, motion_);
+  interface_.tributary_m = mesh::tributary_lengths_m(source.mesh);
+  for (const auto n : interface_.nodes) {
+    interface_.mass_kg.push_back(motion_.op.mass_kg[n]);
+    interface_.y_m.push_back(source.mesh.y_m[n]);
   }
-  own_interface_nodes_ = source.part != nullptr ? interface_nodes_in(source.part->own)
-                                                : solid::Span{0, static_cast<int>(interface_nodes_.size())};
+  interface_.own = source.part != nullptr ? interface_nodes_in(source.part->own)
+                                          : solid::Span{0, static_cast<int>(interface_.nodes.size())};
 }
 
 solid::Span Body::interface_nodes_in(solid::Span columns) const {
@@ -79,10 +79,10 @@ solid::Span Body::interface_nodes_in(solid::Span columns) const {
     const int column = motion_.columns.column_of(n);
     return column >= columns.begin && column < columns.end;
   };
-  const auto begin = std::ranges::find_if(interface_nodes_, is_in);
-  const auto end = std::find_if_not(begin, interface_nodes_.end(), is_in);
-  return {static_cast<int>(begin - interface_nodes_.begin()),
-          static_cast<int>(end - interface_nodes_.begin())};
+  const auto begin = std::ranges::find_if(interface_.nodes, is_in);
+  const auto end = std::find_if_not(begin, interface_.nodes.end(), is_in);
+  return {static_cast<int>(begin - interface_.nodes.begin()),
+          static_cast<int>(end - interface_.nodes.begin())};
 }
 
 void Body::divide(const BodySource& source, const TimeStepping& time, double step_s, int substeps) {
@@ -90,6 +90,7 @@ void Body::divide(const BodySource& source, const TimeStepping& time, double ste
   stepping.interface_substeps = substeps;
   levels_ = make_levels(source.mesh, source.material, motion_, stepping, step_s, steps_.multiples,
                         source.part == nullptr ? MaxOverSubdomains{} : source.part->largest);
+  interface_.dashpots = std::move(levels_.contact_dashpots);
   if (time.precision == Precision::single_precision)
     single_ = make_single_rows(levels_.level.front(), motion_.op);
 }
@@ -171,15 +172,15 @@ void Body::find_equilibrium_load(StepLevel& level) {
 }
 
 void Body::begin_damping_work() {
-  landing_.clear();
+  interface_.landing.clear();
   for (auto& level : levels_.level)
     level.damping_work.begin(stiffness_product_before(level, motion_, level.step_s));
 }
 
 void Body::take_landing(const StepLevel& level, ImpulseProducts& products) {
   if (&level != &levels_.level.back()) return;
-  landing_.add_to(products);
-  landing_.clear();
+  interface_.landing.add_to(products);
+  interface_.landing.clear();
 }
 
 void Body::apply_impulse(StepLevel& level, record::Energies& works) {
@@ -238,7 +239,7 @@ record::Energies Body::energies() {
       ImpulseProducts since_last;
       for (const auto& band : level.bands)
         since_last.next_velocity_K_w += next_velocity_product(level, band, motion_);
-      if (&level == &levels_.level.back()) landing_.add_to(since_last);
+      if (&level == &levels_.level.back()) interface_.landing.add_to(since_last);
       e.damping_work += level.damping_work.of_last_push(since_last, u_K_u, v_K_u);
     }
     restore_velocities(level, motion_);

@@ -7,7 +7,7 @@
 
 #include "base/state.hpp"
 #include "mesh/mesh.hpp"
-#include "motion/landing.hpp"
+#include "motion/interface_side.hpp"
 #include "motion/level.hpp"
 #include "motion/probes.hpp"
 #include "motion/settings.hpp"
@@ -93,23 +93,13 @@ class Body {
   /// Copies rows in single precision into u_m and v_m_per_s; needed before these are read.
   void sync_to_double() { to_double(single_, motion_); }
 
-  /// Interface nodes, and their data for the contact. [interface nodes]
-  const std::vector<mesh::Node>& interface_nodes() const { return interface_nodes_; }
-  const std::vector<NodeRun>& interface_runs() const { return interface_runs_; }
-  /// Owned nodes, which enter energies and works; see BodyMotion.
-  solid::Span own_interface_nodes() const { return own_interface_nodes_; }
-  const std::vector<double>& interface_mass_kg() const { return interface_mass_kg_; }
-  const std::vector<double>& interface_y_m() const { return interface_y_m_; }
-  const std::vector<double>& tributary_m() const { return tributary_m_; }
-  const std::vector<Dashpot>& contact_dashpots() const { return levels_.contact_dashpots; }
-  /// Motion of the interface nodes, which the contact moves.
-  solid::Field& u_m() { return motion_.u_m; }
-  solid::Field& v_m_per_s() { return motion_.v_m_per_s; }
+  const InterfaceSide& interface_side() const { return interface_; }
+  /// What the contact moves.
+  ContactBody contact() { return {&interface_, &motion_.u_m, &motion_.v_m_per_s}; }
   /// Prepares the work of shifts by the contact, see Landing.
   void expect_landings(const mesh::Mesh& mesh, const solid::Material& material) {
-    landing_ = Landing(mesh, material, interface_nodes_, own_interface_nodes_);
+    interface_.landing = Landing(mesh, material, interface_.nodes, interface_.own);
   }
-  Landing& landing() { return landing_; }
 
   int n_rows() const { return motion_.columns.n_rows(); }
   /// See Stepper::visit_columns. @param with_shared  also what levels keep of shared nodes
@@ -117,7 +107,7 @@ class Body {
   void visit_columns(solid::Span columns, solid::Span rows, bool with_shared, Visit&& visit);
   /// After other values have been put into u_m, v_m_per_s.
   void update_after_restore() { to_single(motion_, single_); }
-  /// Places in interface_nodes() of the nodes in some columns.
+  /// Places along the interface of the nodes in some columns.
   solid::Span interface_nodes_in(solid::Span columns) const;
 
   /// See Stepper::visit_state. @param b  number of the body
@@ -143,7 +133,7 @@ class Body {
     archive_field(archive, motion_.u_m, motion_.u_m.size());
     archive_field(archive, motion_.v_m_per_s, motion_.v_m_per_s.size());
     for (auto& level : levels_.level) archive(level);
-    archive(landing_, works_);
+    archive(interface_.landing, works_);
     if constexpr (Archive::is_loading::value) to_single(motion_, single_);
   }
 
@@ -168,11 +158,7 @@ class Body {
   solid::RollingRows finer_w_;  ///< of u + beta_R v, of the other levels' sweeps
   std::vector<BodyStep> steps_in_flight_;
 
-  std::vector<mesh::Node> interface_nodes_;
-  std::vector<NodeRun> interface_runs_;
-  solid::Span own_interface_nodes_;
-  std::vector<double> tributary_m_, interface_mass_kg_, interface_y_m_;  ///< [interface nodes]
-  Landing landing_;
+  InterfaceSide interface_;
   record::Energies works_;  ///< the works alone
 };
 
@@ -272,7 +258,7 @@ void Body::visit_state(Visitor& visitor, std::size_t b) {
         });
     level.damping_work.visit_state(visitor);
   }
-  landing_.visit_state(visitor);
+  interface_.landing.visit_state(visitor);
   for (const auto& term : record::energy_terms) visitor.sum(works_.*term.member);
 }
 

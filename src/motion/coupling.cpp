@@ -17,25 +17,26 @@ double dashpot_work(const Dashpot& dashpot, double mass_kg, double mean_x, doubl
 
 }  // namespace
 
-Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body> bodies)
-    : contact_(contact),
-      interface_(bodies.front().interface_nodes().size()),
-      tributary_m_(bodies.front().tributary_m()),
+Coupling::Coupling(const interface::ContactModel& contact, std::vector<ContactBody> bodies)
+    : bodies_(std::move(bodies)),
+      contact_(contact),
+      interface_(bodies_.front().side->nodes.size()),
+      tributary_m_(bodies_.front().side->tributary_m),
       v_x_before_(interface_.size()),
       v_y_before_(interface_.size()),
       v_x_trial_(interface_.size()),
       v_y_trial_(interface_.size()),
       trigger_force_N_(interface_.size(), 0.0),
       start_u_x_m_(interface_.size()),
-      own_begin_(static_cast<std::size_t>(bodies.front().own_interface_nodes().begin)),
-      own_end_(static_cast<std::size_t>(bodies.front().own_interface_nodes().end)) {
+      own_begin_(static_cast<std::size_t>(bodies_.front().side->own.begin)),
+      own_end_(static_cast<std::size_t>(bodies_.front().side->own.end)) {
   // Effective masses along x and y of each body.
   std::vector<std::vector<double>> mass_x, mass_y;
-  for (const auto& body : bodies) {
-    SLIPFRONT_ASSERT(body.interface_nodes().size() == interface_.size(), "interfaces of different nodes");
-    auto x = body.interface_mass_kg();
+  for (const auto& body : bodies_) {
+    SLIPFRONT_ASSERT(body.side->nodes.size() == interface_.size(), "interfaces of different nodes");
+    auto x = body.side->mass_kg;
     auto y = x;
-    for (const auto& dashpot : body.contact_dashpots()) {
+    for (const auto& dashpot : body.side->dashpots) {
       x[dashpot.at] *= 1 + dashpot.d_x;
       y[dashpot.at] *= 1 + dashpot.d_y;
     }
@@ -44,14 +45,14 @@ Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body>
   }
   contact_mass_kg_ = mass_y.front();
   for (std::size_t i = 0; i < interface_.size(); ++i) {
-    interface_.initial_gap_m[i] = bodies.front().interface_y_m()[i];
-    interface_.mass_per_length_kg_m2[i] = bodies.front().interface_mass_kg()[i] / tributary_m_[i];
+    interface_.initial_gap_m[i] = bodies_.front().side->y_m[i];
+    interface_.mass_per_length_kg_m2[i] = bodies_.front().side->mass_kg[i] / tributary_m_[i];
   }
-  for (const auto& dashpot : bodies.front().contact_dashpots()) {
+  for (const auto& dashpot : bodies_.front().side->dashpots) {
     interface_.mass_per_length_kg_m2[dashpot.at] *= 1 + dashpot.d_y;
     interface_.tangential_mass_ratio[dashpot.at] = (1 + dashpot.d_x) / (1 + dashpot.d_y);
   }
-  if (bodies.size() == 1) return;
+  if (bodies_.size() == 1) return;
   const auto of_pair = [](double a, double b) { return a * b / (a + b); };
   for (std::size_t s = 0; s < 2; ++s) {
     Side side;
@@ -65,29 +66,29 @@ Coupling::Coupling(const interface::ContactModel& contact, std::span<const Body>
     sides_.push_back(std::move(side));
   }
   for (std::size_t i = 0; i < interface_.size(); ++i) {
-    interface_.initial_gap_m[i] += bodies[1].interface_y_m()[i];
+    interface_.initial_gap_m[i] += bodies_[1].side->y_m[i];
     contact_mass_kg_[i] = of_pair(mass_y[0][i], mass_y[1][i]);
     interface_.mass_per_length_kg_m2[i] = contact_mass_kg_[i] / tributary_m_[i];
     interface_.tangential_mass_ratio[i] = of_pair(mass_x[0][i], mass_x[1][i]) / contact_mass_kg_[i];
   }
 }
 
-double Coupling::relative_u_x_m(std::span<const Body> bodies, std::size_t i) const {
-  const double above = bodies[0].u_m().x[bodies[0].interface_nodes()[i]];
-  return bodies.size() == 1 ? above : above - bodies[1].u_m().x[bodies[1].interface_nodes()[i]];
+double Coupling::relative_u_x_m(std::size_t i) const {
+  const auto u_x_m = [&](const ContactBody& body) { return body.u_m->x[body.side->nodes[i]]; };
+  return bodies_.size() == 1 ? u_x_m(bodies_[0]) : u_x_m(bodies_[0]) - u_x_m(bodies_[1]);
 }
 
-void Coupling::start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium, Loads loads) {
-  const auto& above = bodies.front();
+void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
+  const auto& above = bodies_.front();
   for (std::size_t i = 0; i < interface_.size(); ++i) {
-    start_u_x_m_[i] = relative_u_x_m(bodies, i);
-    interface_.v_x_m_per_s[i] = above.v_m_per_s().x[above.interface_nodes()[i]];
-    interface_.v_y_m_per_s[i] = above.v_m_per_s().y[above.interface_nodes()[i]];
+    start_u_x_m_[i] = relative_u_x_m(i);
+    interface_.v_x_m_per_s[i] = above.v_m_per_s->x[above.side->nodes[i]];
+    interface_.v_y_m_per_s[i] = above.v_m_per_s->y[above.side->nodes[i]];
   }
   for (std::size_t s = 0; s < sides_.size(); ++s) {
     for (std::size_t i = 0; i < interface_.size(); ++i) {
-      sides_[s].v_x[i] = bodies[s].v_m_per_s().x[bodies[s].interface_nodes()[i]];
-      sides_[s].v_y[i] = bodies[s].v_m_per_s().y[bodies[s].interface_nodes()[i]];
+      sides_[s].v_x[i] = bodies_[s].v_m_per_s->x[bodies_[s].side->nodes[i]];
+      sides_[s].v_y[i] = bodies_[s].v_m_per_s->y[bodies_[s].side->nodes[i]];
     }
     if (s == 0) continue;
     for (std::size_t i = 0; i < interface_.size(); ++i) {
@@ -129,24 +130,24 @@ void Coupling::set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa)
   prestress_p_Pa_ = std::move(p_Pa);
 }
 
-void Coupling::update(std::span<Body> bodies, double time_s, double dt_s, UpdateObserver& observer,
+void Coupling::update(double time_s, double dt_s, UpdateObserver& observer,
                       record::History* sample, record::Energies& works) {
   const double impulse_s = dt_s * trigger_factor(trigger_, time_s);
   std::swap(interface_.v_x_m_per_s, v_x_before_);
   std::swap(interface_.v_y_m_per_s, v_y_before_);
   if (sides_.empty())
-    gather(bodies.front(), dt_s, impulse_s);
+    gather(dt_s, impulse_s);
   else
-    gather_both(bodies, dt_s, impulse_s);
+    gather_both(dt_s, impulse_s);
   std::ranges::copy(interface_.v_y_m_per_s, v_y_trial_.begin());
   const bool changed = interface::update_contact(contact_, dt_s, interface_);
   observer.observe(time_s, interface_, changed);
-  if (sample != nullptr) append_sample(bodies, time_s, *sample);
+  if (sample != nullptr) append_sample(time_s, *sample);
   if (sides_.empty())
-    scatter(bodies.front(), dt_s, works);
+    scatter(dt_s, works);
   else
-    scatter_both(bodies, dt_s, works);
-  add_works_of_loads(bodies, dt_s, impulse_s, works);
+    scatter_both(dt_s, works);
+  add_works_of_loads(dt_s, impulse_s, works);
 }
 
 SlipRates Coupling::slip_rates() const {
@@ -169,60 +170,61 @@ double Coupling::largest_acceleration_m_per_s2() const {
   return a;
 }
 
-void Coupling::take_trial(const Body& body, double sign, double dt_s, double impulse_s,
+void Coupling::take_trial(const ContactBody& body, double sign, double dt_s, double impulse_s,
                           const std::vector<double>& v_x_before, const std::vector<double>& v_y_before,
                           std::vector<double>& v_x, std::vector<double>& v_y) const {
-  for (const auto& run : body.interface_runs()) {
-    std::copy_n(&body.v_m_per_s().x[run.first], run.count, &v_x[run.at]);
-    std::copy_n(&body.v_m_per_s().y[run.first], run.count, &v_y[run.at]);
+  for (const auto& run : body.side->runs) {
+    std::copy_n(&body.v_m_per_s->x[run.first], run.count, &v_x[run.at]);
+    std::copy_n(&body.v_m_per_s->y[run.first], run.count, &v_y[run.at]);
   }
-  const auto& mass = body.interface_mass_kg();
+  const auto& mass = body.side->mass_kg;
   for (const auto i : trigger_nodes_) v_x[i] += sign * impulse_s * trigger_force_N_[i] / mass[i];
   for (std::size_t i = 0; i < prestress_t_Pa_.size(); ++i) {
     const double per_pressure = dt_s * tributary_m_[i] / mass[i];
     v_x[i] += sign * per_pressure * prestress_t_Pa_[i];
     v_y[i] -= per_pressure * prestress_p_Pa_[i];
   }
-  for (const auto& [i, n, d_x, d_y] : body.contact_dashpots()) {
+  for (const auto& [i, n, d_x, d_y] : body.side->dashpots) {
     // The contact's tractions act on the effective mass m (1 + d).
     v_x[i] = (v_x[i] - d_x * v_x_before[i]) / (1 + d_x);
     v_y[i] = (v_y[i] - d_y * v_y_before[i]) / (1 + d_y);
   }
 }
 
-void Coupling::gather(const Body& body, double dt_s, double impulse_s) {
-  for (const auto& run : body.interface_runs())
-    std::copy_n(&body.u_m().y[run.first], run.count, &interface_.u_y_m[run.at]);
+void Coupling::gather(double dt_s, double impulse_s) {
+  const auto& body = bodies_.front();
+  for (const auto& run : body.side->runs)
+    std::copy_n(&body.u_m->y[run.first], run.count, &interface_.u_y_m[run.at]);
   take_trial(body, 1, dt_s, impulse_s, v_x_before_, v_y_before_, interface_.v_x_m_per_s,
              interface_.v_y_m_per_s);
 }
 
-void Coupling::gather_both(std::span<const Body> bodies, double dt_s, double impulse_s) {
+void Coupling::gather_both(double dt_s, double impulse_s) {
   for (std::size_t s = 0; s < 2; ++s) {
     auto& side = sides_[s];
     std::swap(side.v_x, side.v_x_before);
     std::swap(side.v_y, side.v_y_before);
-    take_trial(bodies[s], side.sign, dt_s, impulse_s, side.v_x_before, side.v_y_before, side.v_x, side.v_y);
+    take_trial(bodies_[s], side.sign, dt_s, impulse_s, side.v_x_before, side.v_y_before, side.v_x, side.v_y);
   }
   for (std::size_t i = 0; i < interface_.size(); ++i) {
     interface_.v_x_m_per_s[i] = v_x_trial_[i] = sides_[0].v_x[i] - sides_[1].v_x[i];
     interface_.v_y_m_per_s[i] = sides_[0].v_y[i] + sides_[1].v_y[i];
-    interface_.u_y_m[i] =
-        bodies[0].u_m().y[bodies[0].interface_nodes()[i]] + bodies[1].u_m().y[bodies[1].interface_nodes()[i]];
+    interface_.u_y_m[i] = u_y_m(0, i) + u_y_m(1, i);
   }
 }
 
-void Coupling::scatter(Body& body, double dt_s, record::Energies& works) {
-  auto& u = body.u_m();
-  auto& v = body.v_m_per_s();
+void Coupling::scatter(double dt_s, record::Energies& works) {
+  const auto& body = bodies_.front();
+  auto& u = *body.u_m;
+  auto& v = *body.v_m_per_s;
   if (contact_.algorithm == interface::ContactAlgorithm::predictor_corrector) {
     for (std::size_t i = 0; i < interface_.size(); ++i) {
-      const double shift_m = interface_.u_y_m[i] - u.y[body.interface_nodes()[i]];
-      if (shift_m != 0) body.landing().add(i, shift_m);
+      const double shift_m = interface_.u_y_m[i] - u.y[body.side->nodes[i]];
+      if (shift_m != 0) body.side->landing.add(i, shift_m);
     }
   }
   double all_contact_work = 0, all_friction_work = 0;
-  for (const auto& run : body.interface_runs()) {
+  for (const auto& run : body.side->runs) {
     double contact_work = all_contact_work, friction_work = all_friction_work;
     const auto at = run.at, count = run.count;
     const auto first = run.first;
@@ -253,11 +255,11 @@ void Coupling::scatter(Body& body, double dt_s, record::Energies& works) {
     all_contact_work = contact_work;
     all_friction_work = friction_work;
   }
-  works.contact_work += all_contact_work + body.landing().work(u, v, dt_s);
+  works.contact_work += all_contact_work + body.side->landing.work(u, v, dt_s);
   works.friction_work += all_friction_work;
 }
 
-void Coupling::scatter_both(std::span<Body> bodies, double dt_s, record::Energies& works) {
+void Coupling::scatter_both(double dt_s, record::Energies& works) {
   const bool shifts = contact_.algorithm == interface::ContactAlgorithm::predictor_corrector;
   for (std::size_t i = 0; i < interface_.size(); ++i) {
     if (is_own(i)) {
@@ -266,42 +268,40 @@ void Coupling::scatter_both(std::span<Body> bodies, double dt_s, record::Energie
       works.friction_work -=
           0.5 * dt_s * tributary_m_[i] * interface_.t_Pa[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
     }
-    const double shift_m = shifts ? interface_.u_y_m[i] - (bodies[0].u_m().y[bodies[0].interface_nodes()[i]] +
-                                                           bodies[1].u_m().y[bodies[1].interface_nodes()[i]])
-                                  : 0;
+    const double shift_m = shifts ? interface_.u_y_m[i] - (u_y_m(0, i) + u_y_m(1, i)) : 0;
     const double change_x = interface_.v_x_m_per_s[i] - v_x_trial_[i];
     const double change_y = interface_.v_y_m_per_s[i] - v_y_trial_[i];
     for (std::size_t s = 0; s < 2; ++s) {
       auto& side = sides_[s];
-      auto& body = bodies[s];
-      const auto n = body.interface_nodes()[i];
+      const auto& body = bodies_[s];
+      const auto n = body.side->nodes[i];
       side.v_x[i] += side.sign * side.share_x[i] * change_x;
       side.v_y[i] += side.share_y[i] * change_y;
-      body.v_m_per_s().x[n] = side.v_x[i];
-      body.v_m_per_s().y[n] = side.v_y[i];
-      body.u_m().x[n] += dt_s * side.v_x[i];
-      body.u_m().y[n] += side.share_y[i] * shift_m + dt_s * side.v_y[i];
-      if (shift_m != 0) body.landing().add(i, side.share_y[i] * shift_m);
+      body.v_m_per_s->x[n] = side.v_x[i];
+      body.v_m_per_s->y[n] = side.v_y[i];
+      body.u_m->x[n] += dt_s * side.v_x[i];
+      body.u_m->y[n] += side.share_y[i] * shift_m + dt_s * side.v_y[i];
+      if (shift_m != 0) body.side->landing.add(i, side.share_y[i] * shift_m);
     }
   }
-  for (auto& body : bodies) works.contact_work += body.landing().work(body.u_m(), body.v_m_per_s(), dt_s);
+  for (const auto& body : bodies_) works.contact_work += body.side->landing.work(*body.u_m, *body.v_m_per_s, dt_s);
 }
 
-void Coupling::add_works_of_loads(std::span<const Body> bodies, double dt_s, double impulse_s,
+void Coupling::add_works_of_loads(double dt_s, double impulse_s,
                                   record::Energies& works) const {
-  const auto add_dashpots = [&](const Body& body, const auto& v_x, const auto& v_y, const auto& v_x_before,
+  const auto add_dashpots = [&](const ContactBody& body, const auto& v_x, const auto& v_y, const auto& v_x_before,
                                 const auto& v_y_before) {
-    for (const auto& dashpot : body.contact_dashpots()) {
+    for (const auto& dashpot : body.side->dashpots) {
       const auto i = dashpot.at;
       if (!is_own(i)) continue;
-      works.boundary_work += dashpot_work(dashpot, body.interface_mass_kg()[i],
+      works.boundary_work += dashpot_work(dashpot, body.side->mass_kg[i],
                                           0.5 * (v_x[i] + v_x_before[i]), 0.5 * (v_y[i] + v_y_before[i]));
     }
   };
   if (sides_.empty())
-    add_dashpots(bodies.front(), interface_.v_x_m_per_s, interface_.v_y_m_per_s, v_x_before_, v_y_before_);
+    add_dashpots(bodies_.front(), interface_.v_x_m_per_s, interface_.v_y_m_per_s, v_x_before_, v_y_before_);
   for (std::size_t s = 0; s < sides_.size(); ++s)
-    add_dashpots(bodies[s], sides_[s].v_x, sides_[s].v_y, sides_[s].v_x_before, sides_[s].v_y_before);
+    add_dashpots(bodies_[s], sides_[s].v_x, sides_[s].v_y, sides_[s].v_x_before, sides_[s].v_y_before);
   for (std::size_t i = own_begin_; i < std::min(own_end_, prestress_t_Pa_.size()); ++i)
     works.prestress_work += 0.5 * dt_s * tributary_m_[i] *
                             (prestress_t_Pa_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]) -
@@ -312,10 +312,10 @@ void Coupling::add_works_of_loads(std::span<const Body> bodies, double dt_s, dou
           0.5 * impulse_s * trigger_force_N_[i] * (interface_.v_x_m_per_s[i] + v_x_before_[i]);
 }
 
-void Coupling::append_sample(std::span<const Body> bodies, double time_s, record::History& history) const {
+void Coupling::append_sample(double time_s, record::History& history) const {
   history.time_s.push_back(time_s);
   for (std::size_t i = 0; i < interface_.size(); ++i)
-    history.slip_m.push_back(relative_u_x_m(bodies, i) - start_u_x_m_[i]);
+    history.slip_m.push_back(relative_u_x_m(i) - start_u_x_m_[i]);
   const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
     to.insert(to.end(), from.begin(), from.end());
   };

@@ -7,8 +7,9 @@
 #include "base/state.hpp"
 #include "interface/interface.hpp"
 #include "interface/trigger.hpp"
-#include "mesh/mesh.hpp"
-#include "motion/body.hpp"
+#include "mesh/node_columns.hpp"
+#include "motion/interface_side.hpp"
+#include "motion/probes.hpp"
 #include "motion/recorder.hpp"
 #include "motion/time_stepper.hpp"
 #include "record/energies.hpp"
@@ -38,18 +39,19 @@ struct Loads {
 /// their momentum is exchanged.
 class Coupling {
  public:
-  /// @param bodies  the one above, and the one below where there is one, with as many interface nodes
-  Coupling(const interface::ContactModel& contact, std::span<const Body> bodies);
+  /// @param bodies  the one above, and the one below where there is one, with as many interface nodes; they
+  ///                have to stay where they are
+  Coupling(const interface::ContactModel& contact, std::vector<ContactBody> bodies);
 
   /// Begins with the bodies' motion, the tractions of an equilibrium, and the loads.
-  void start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium, Loads loads);
+  void start(const statics::Equilibrium& equilibrium, Loads loads);
   /// Changes the prescribed tractions between two steps.
   void set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa);
 
   /// The sub-step of length dt_s that begins at time_s: finds the tractions and moves the interface nodes.
   /// @param sample  where to put the state at time_s, or null
-  void update(std::span<Body> bodies, double time_s, double dt_s, UpdateObserver& observer,
-              record::History* sample, record::Energies& works);
+  void update(double time_s, double dt_s, UpdateObserver& observer, record::History* sample,
+              record::Energies& works);
 
   /// Turns the relative motion round.
   void reverse();
@@ -78,7 +80,7 @@ class Coupling {
 
   /// See Stepper::visit_state.
   template <class Visitor>
-  void visit_state(Visitor& visitor, const Body& plate, const SubdomainPlace& place);
+  void visit_state(Visitor& visitor, const mesh::NodeColumns& columns, const SubdomainPlace& place);
   void update_after_restore() { set_trigger(trigger_, std::vector<double>(trigger_force_N_)); }
 
   template <class Archive>
@@ -108,21 +110,22 @@ class Coupling {
 
   bool is_own(std::size_t i) const { return i >= own_begin_ && i < own_end_; }
   void set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m);
-  double relative_u_x_m(std::span<const Body> bodies, std::size_t i) const;
+  double relative_u_x_m(std::size_t i) const;
+  double u_y_m(std::size_t body, std::size_t i) const { return bodies_[body].u_m->y[bodies_[body].side->nodes[i]]; }
   /// The trial motion of the interface nodes, all forces but the contact's included.
-  void gather(const Body& body, double dt_s, double impulse_s);
-  void gather_both(std::span<const Body> bodies, double dt_s, double impulse_s);
+  void gather(double dt_s, double impulse_s);
+  void gather_both(double dt_s, double impulse_s);
   /// That of one body. @param sign  of its velocity along x in the relative one
-  void take_trial(const Body& body, double sign, double dt_s, double impulse_s,
+  void take_trial(const ContactBody& body, double sign, double dt_s, double impulse_s,
                   const std::vector<double>& v_x_before, const std::vector<double>& v_y_before,
                   std::vector<double>& v_x, std::vector<double>& v_y) const;
   /// Gives the corrected velocities to the bodies and moves their nodes.
-  void scatter(Body& body, double dt_s, record::Energies& works);
-  void scatter_both(std::span<Body> bodies, double dt_s, record::Energies& works);
-  void add_works_of_loads(std::span<const Body> bodies, double dt_s, double impulse_s,
-                          record::Energies& works) const;
-  void append_sample(std::span<const Body> bodies, double time_s, record::History& history) const;
+  void scatter(double dt_s, record::Energies& works);
+  void scatter_both(double dt_s, record::Energies& works);
+  void add_works_of_loads(double dt_s, double impulse_s, record::Energies& works) const;
+  void append_sample(double time_s, record::History& history) const;
 
+  std::vector<ContactBody> bodies_;
   interface::ContactModel contact_;
   interface::Interface interface_;
   std::vector<double> tributary_m_;      ///< [nodes]
@@ -138,7 +141,7 @@ class Coupling {
 };
 
 template <class Visitor>
-void Coupling::visit_state(Visitor& visitor, const Body& plate, const SubdomainPlace& place) {
+void Coupling::visit_state(Visitor& visitor, const mesh::NodeColumns& columns, const SubdomainPlace& place) {
   bool has_prestress = !prestress_t_Pa_.empty();
   visitor.flag(has_prestress);
   if (has_prestress) {
@@ -148,7 +151,7 @@ void Coupling::visit_state(Visitor& visitor, const Body& plate, const SubdomainP
   visitor.list(
       StateKey::place, 0, interface_.size(),
       [&](std::size_t k) { return place.interface_nodes.number_at(static_cast<int>(k)); },
-      [&](std::size_t k) { return plate.columns().column_of(plate.interface_nodes()[k]); },
+      [&](std::size_t k) { return columns.column_of(bodies_.front().side->nodes[k]); },
       [&](std::size_t k, auto&& f) {
         for (auto* values :
              {&interface_.intact, &interface_.v_x_m_per_s, &interface_.v_y_m_per_s, &interface_.u_y_m,

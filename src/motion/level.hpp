@@ -148,6 +148,10 @@ struct StepLevels {
   double node_updates_per_step = 0;
 };
 
+/// The dashpot of an absorbing node that moves with steps step_s; at is 0.
+Dashpot make_dashpot(const mesh::AbsorbingNode& absorbing, const solid::Material& material, double mass_kg,
+                     double step_s);
+
 /// @throws UserError where the interface rows do not fit into the mesh.
 /// @param table  of the case file that describes the body
 void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::string_view table = "plate");
@@ -157,6 +161,15 @@ void require_rows_fit(const mesh::Mesh& mesh, const TimeStepping& time, std::str
 /// @param stable_step_s  of the whole body
 std::vector<int> step_multiples(const mesh::Mesh& mesh, const solid::Material& material,
                                 const TimeStepping& time, double stable_step_s);
+
+/// A body's cells divided into levels, coarsest first.
+struct CellLevels {
+  std::vector<int> periods;  ///< steps of the levels, in steps of the last one
+  /// [cells], [nodes]: a node moves with the finest of its cells; orphans count to the first level.
+  std::vector<std::uint8_t> of_cell, of_node;
+};
+/// @param multiples  of step_multiples
+CellLevels cell_levels(const mesh::Mesh& mesh, const TimeStepping& time, std::span<const int> multiples);
 
 /// How often a level's cells kick their nodes, in steps of the last level, and over how many columns they
 /// reach.

@@ -105,12 +105,11 @@ void set_bands(StepLevel& level, const solid::Operator& op, const std::vector<in
 /// nodes, or with its level.
 void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Material& material,
                   const BodyMotion& body) {
-  const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
-  for (const auto& [n, side_m, top_m] : mesh.absorbing) {
+  for (const auto& absorbing : mesh.absorbing) {
+    const auto n = absorbing.node;
     const std::size_t l = levels.level_of_node[n];
     auto& level = levels.level[l];
-    const double factor = 0.5 * level.step_s * material.density_kg_per_m3 / body.op.mass_kg[n];
-    Dashpot dashpot{0, n, factor * (c_L * side_m + c_S * top_m), factor * (c_S * side_m + c_L * top_m)};
+    auto dashpot = make_dashpot(absorbing, material, body.op.mass_kg[n], level.step_s);
     if (const auto i = place(mesh.interface_nodes, n)) {
       dashpot.at = *i;
       levels.contact_dashpots.push_back(dashpot);
@@ -134,6 +133,14 @@ void set_dashpots(StepLevels& levels, const mesh::Mesh& mesh, const solid::Mater
 }
 
 }  // namespace
+
+Dashpot make_dashpot(const mesh::AbsorbingNode& absorbing, const solid::Material& material, double mass_kg,
+                     double step_s) {
+  const double c_L = solid::longitudinal_speed_m_per_s(material), c_S = solid::shear_speed_m_per_s(material);
+  const auto& [node, side_m, top_m] = absorbing;
+  const double factor = 0.5 * step_s * material.density_kg_per_m3 / mass_kg;
+  return {0, node, factor * (c_L * side_m + c_S * top_m), factor * (c_S * side_m + c_L * top_m)};
+}
 
 std::vector<NodeRun> runs_of(std::span<const mesh::Node> nodes, const BodyMotion& body) {
   std::vector<NodeRun> runs;
@@ -350,6 +357,13 @@ void set_coarsest_bands(const mesh::Mesh& mesh, const BodyMotion& body, StepLeve
 
 }  // namespace
 
+CellLevels cell_levels(const mesh::Mesh& mesh, const TimeStepping& time, std::span<const int> multiples) {
+  CellLevels levels{periods_of_levels(time, multiples), {}, {}};
+  levels.of_cell = levels_of_cells(mesh, time, multiples, levels.periods);
+  levels.of_node = levels_of_nodes(mesh, levels.of_cell);
+  return levels;
+}
+
 std::vector<LevelReach> reach_of_levels(const mesh::Mesh& mesh, const TimeStepping& time,
                                         std::span<const int> multiples) {
   std::vector<LevelReach> levels;
@@ -382,12 +396,11 @@ StepLevels make_levels(const mesh::Mesh& mesh, const solid::Material& material, 
                        const MaxOverSubdomains& largest) {
   require_rows_fit(mesh, time);
   const auto& op = body.op;
-  const auto periods = periods_of_levels(time, multiples);
+  const auto [periods, level_of_cell, level_of_node] = cell_levels(mesh, time, multiples);
   const int substeps = periods.front();
-  const auto level_of_cell = levels_of_cells(mesh, time, multiples, periods);
   StepLevels levels;
   levels.level.resize(periods.size());
-  levels.level_of_node = levels_of_nodes(mesh, level_of_cell);
+  levels.level_of_node = level_of_node;
   levels.is_orphan = mesh::orphans(mesh);
   const auto in_contact = mesh::marked(mesh, mesh.interface_nodes);
   std::vector<bool> is_shared(mesh.n_nodes(), false);  // by a coarser level or this one

@@ -55,6 +55,12 @@ double divide(std::vector<Body>& bodies, std::span<const BodySource> sources, co
   return lowest_s;
 }
 
+std::vector<ContactBody> contacts_of(std::vector<Body>& bodies) {
+  std::vector<ContactBody> contacts;
+  for (auto& body : bodies) contacts.push_back(body.contact());
+  return contacts;
+}
+
 }  // namespace
 
 int step_ratio(double stable_step_s, double min_s) {
@@ -74,7 +80,7 @@ Stepper::Stepper(std::span<const BodySource> sources, const interface::ContactMo
                  const TimeStepping& time, const Execution& execution)
     : bodies_(make_bodies(sources, time)),
       lowest_step_s_(divide(bodies_, sources, time)),
-      coupling_(contact, bodies_) {
+      coupling_(contact, contacts_of(bodies_)) {
   stable_step_s_ = bodies_.front().stable_step_s();
   for (const auto& body : bodies_) {
     stable_step_s_ = std::min(stable_step_s_, body.stable_step_s());
@@ -113,7 +119,7 @@ void Stepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_
   if (bodies_.size() > 1)
     bodies_.back().start(equilibrium.below_u_m, equilibrium.below_u_per_shear,
                          equilibrium.below_u_m.size() > 0 ? top_speed_m_per_s : 0);
-  coupling_.start(bodies_, equilibrium, std::move(loads));
+  coupling_.start(equilibrium, std::move(loads));
   step_ = 0;
 }
 
@@ -126,7 +132,7 @@ void Stepper::advance_interface(std::int64_t step, int n_substeps, UpdateObserve
   for (int k = 0; k < n_substeps; ++k) {
     // All forces are those of the places and velocities before the sub-step.
     for (auto& body : bodies_) body.apply_due_impulses(body.step_in_flight(step), k, has_global_step(body));
-    coupling_.update(bodies_, time_s() + k * substep_s(), substep_s(), observer, k == 0 ? sample : nullptr,
+    coupling_.update(time_s() + k * substep_s(), substep_s(), observer, k == 0 ? sample : nullptr,
                      bodies_.front().step_in_flight(step).works);
   }
   for (auto& body : bodies_)

@@ -175,7 +175,7 @@ class Stepper : public TimeStepper {
   template <class Visitor>
   void visit_state(Visitor& visitor, const SubdomainPlace& place) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) bodies_[b].visit_state(visitor, b);
-    coupling_.visit_state(visitor, bodies_.front(), place);
+    coupling_.visit_state(visitor, bodies_.front().columns(), place);
   }
   /// After other values have been put there.
   void update_after_restore(std::int64_t step) {

@@ -184,8 +184,8 @@ void Subdomain::start(MessageBuffer& given) {
     const auto& bodies = stepper_->bodies();
     if (bodies.size() > 1)
       for (std::size_t k = 0; k < 2; ++k)
-        statics::make_absolute(placed_[0][k], bodies.front().interface_nodes(), placed_[1][k],
-                               bodies.back().interface_nodes(), base_is_relative);
+        statics::make_absolute(placed_[0][k], bodies.front().interface_side().nodes, placed_[1][k],
+                               bodies.back().interface_side().nodes, base_is_relative);
     e.u_m = std::exchange(placed_[0][0], {});
     e.u_per_shear = std::exchange(placed_[0][1], {});
     e.below_u_m = std::exchange(placed_[1][0], {});
@@ -231,7 +231,7 @@ void Subdomain::make_finder(MessageBuffer& given) {
   memory.slipping = given.take_all<std::uint8_t>();
   const int halo = given.take<int>();
   const auto creep_m_per_s = given.take<double>();
-  const auto own = stepper_->bodies().front().own_interface_nodes();
+  const auto own = stepper_->bodies().front().interface_side().own;
   finder_.emplace(std::move(memory), static_cast<std::size_t>(own.begin), static_cast<std::size_t>(own.end),
                   halo, creep_m_per_s);
   log_ = TractionLog(own, halo);
@@ -265,7 +265,7 @@ void Subdomain::advance(MessageBuffer& given, MessageBuffer& answer) {
   halo_->advance(log, n_steps, callbacks);
   const auto& memory = finder_->memory();
   // Of nodes along the interface only own ones.
-  const auto own = stepper_->bodies().front().own_interface_nodes();
+  const auto own = stepper_->bodies().front().interface_side().own;
   const auto width = stepper_->interface_state().size();
   const auto append_own = [&]<class T>(const std::vector<T>& values, std::size_t row, std::vector<T>& to) {
     const auto begin = values.begin() + static_cast<std::ptrdiff_t>(row * width);

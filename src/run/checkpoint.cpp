@@ -75,6 +75,8 @@ void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper)
   archive(parted != nullptr ? parted->partition().n_subdomains() : 0);
   if (parted != nullptr)
     parted->keep([&](const motion::StateByNode& chunk) { archive(chunk); });
+  else if (auto* plain = dynamic_cast<motion::PlainStepper*>(&stepper))
+    archive(*plain);
   else
     archive(dynamic_cast<motion::Stepper&>(stepper));
 }
@@ -101,6 +103,7 @@ void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
                  const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
   int n_chunks = 0;
   archive(n_chunks);
+  if (auto* plain = dynamic_cast<motion::PlainStepper*>(&stepper)) return archive(*plain);
   auto* parted = dynamic_cast<motion::DistributedStepper*>(&stepper);
   if (parted == nullptr && n_chunks == 0) {
     archive(dynamic_cast<motion::Stepper&>(stepper));

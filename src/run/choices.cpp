@@ -79,6 +79,10 @@ double nominal_pressure_Pa(const input::Case& config) {
   return compression_m * per_compression;
 }
 
+bool is_plain(const input::Case& config) {
+  return config.time.stepper == motion::StepperKind::plain;
+}
+
 bool is_prestressed(const input::Case& config) {
   return config.loading.method == statics::LoadingMethod::prestress;
 }

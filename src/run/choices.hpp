@@ -43,6 +43,8 @@ double nominal_pressure_Pa(const input::Case& config);
 
 /// Whether the tractions of the interface are given: no statics, no ramp.
 bool is_prestressed(const input::Case& config);
+/// Whether steps are computed as the scheme is written.
+bool is_plain(const input::Case& config);
 
 /// Whether the output asks for fields of all nodes.
 bool has_snapshots(const input::Case& config);

@@ -165,10 +165,11 @@ double looks_of(const input::Case& config, const Needs& needs) {
 /// Node updates/s of this machine, from a few steps: under the mean pressure, with half of the interface
 /// sliding, which takes longer than to stick; beside the programs that run now.
 /// @param n_steps  at once
-double measured_rate_per_s(const input::Case& config, const Timed& timed, std::int64_t n_steps) {
+template <class Stepper>
+double measured_rate_per_s(const input::Case& config, const Timed& timed, Stepper& stepper,
+                           std::int64_t n_steps) {
   constexpr double min_s = 20e-3, max_s = 0.5;
   const double mu_s = interface::static_coefficient(config.friction);
-  auto& stepper = *timed.stepper;
   const auto& plate = *timed.plate;
   const auto n = plate.interface_nodes.size();
   record::StaticState tractions;
@@ -306,7 +307,13 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   add_needs(config, meshes, node_updates_per_step / timed.share, info);
   // As many at once as between two looks.
   const double steps = static_cast<double>(info.n_steps) / looks_of(config, info.needs);
-  info.node_updates_per_s = measured_rate_per_s(config, timed, std::max(1, static_cast<int>(steps)));
+  if (is_plain(config)) {
+    const auto plain = new_plain_stepper(config, meshes.plate, meshes.base);
+    info.node_updates_per_s = measured_rate_per_s(config, timed, *plain, 1);
+  } else {
+    info.node_updates_per_s =
+        measured_rate_per_s(config, timed, *timed.stepper, std::max(1, static_cast<int>(steps)));
+  }
   info.expected_s =
       info.node_updates / info.node_updates_per_s + expected_statics_s(info) + expected_rest_s(info);
   info.notes = notes_of_case(config, info.rupture, info.step_s);

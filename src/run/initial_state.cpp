@@ -74,6 +74,19 @@ void require_edges_to_tilt(const input::Case& config) {
                     Key("loading.method"));
 }
 
+void require_possible_by_plain_scheme(const input::Case& config, const Processes* processes) {
+  if (!is_plain(config)) return;
+  const Key stepper("time.stepper");
+  if (config.time.precision == motion::Precision::single_precision)
+    throw UserError("{} = plain computes in double precision; choose {} = double, or fast", stepper,
+                    Key("time.precision"));
+  if (config.loading.method == statics::LoadingMethod::ramp)
+    throw UserError("{} = plain computes no ramp; choose {} = direct, or fast", stepper, Key("loading.method"));
+  if (processes != nullptr && processes->size() > 1)
+    throw UserError("{} = plain runs in one process, not {}; start one, or choose fast", stepper,
+                    processes->size());
+}
+
 void require_free_sides_for_single(const input::Case& config) {
   if (config.time.precision != motion::Precision::single_precision) return;
   const auto require = [](const mesh::Plate& plate, const char* sides) {
@@ -170,6 +183,7 @@ Meshes checked_meshes(const input::Case& config, bool only_interface) {
 
 Meshes check(const input::Case& config, const Processes* processes, bool may_stay_distributed) {
   require_numbers_of_petsc(config);
+  require_possible_by_plain_scheme(config, processes);
   require_memory_fits(config, processes, may_stay_distributed);
   const int n_processes = processes != nullptr ? processes->size() : 1;
   return checked_meshes(config, leader_has_interface_only(config, n_processes, may_stay_distributed));
@@ -180,16 +194,33 @@ Meshes check_interfaces(const input::Case& config) {
   return checked_meshes(config, true);
 }
 
+namespace {
+
+/// Calls f with the bodies of a case.
+template <class F>
+auto with_bodies(const input::Case& config, const mesh::Mesh& plate, const std::optional<mesh::Mesh>& base,
+                 F&& f) {
+  const auto material = input::base_material(config);
+  std::vector<motion::BodySource> bodies = {{plate, config.material}};
+  if (base) bodies.push_back({*base, material});
+  return f(bodies, input::contact_model(config, interface_x_m(plate)));
+}
+
+}  // namespace
+
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,
                                              const motion::Execution& execution) {
-  const auto contact = input::contact_model(config, interface_x_m(plate));
-  if (!base)
-    return std::make_unique<motion::Stepper>(plate, config.material, contact, config.time, execution);
-  const auto material = input::base_material(config);
-  return std::make_unique<motion::Stepper>(motion::BodySource{plate, config.material},
-                                           motion::BodySource{*base, material}, contact, config.time,
-                                           execution);
+  return with_bodies(config, plate, base, [&](const auto& bodies, const auto& contact) {
+    return std::make_unique<motion::Stepper>(bodies, contact, config.time, execution);
+  });
+}
+
+std::unique_ptr<motion::PlainStepper> new_plain_stepper(const input::Case& config, const mesh::Mesh& plate,
+                                                        const std::optional<mesh::Mesh>& base) {
+  return with_bodies(config, plate, base, [&](const auto& bodies, const auto& contact) {
+    return std::make_unique<motion::PlainStepper>(bodies, contact, config.time);
+  });
 }
 
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,

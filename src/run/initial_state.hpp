@@ -10,6 +10,7 @@
 #include "input/case.hpp"
 #include "mesh/mesh.hpp"
 #include "motion/event.hpp"
+#include "motion/plain_stepper.hpp"
 #include "processes/processes.hpp"
 #include "statics/statics.hpp"
 
@@ -89,5 +90,8 @@ std::vector<motion::Probe> probes_of(const input::Case& config, const mesh::Mesh
 std::unique_ptr<motion::Stepper> new_stepper(const input::Case& config, const mesh::Mesh& plate,
                                              const std::optional<mesh::Mesh>& base,
                                              const motion::Execution& execution = {});
+/// The same by the plain scheme.
+std::unique_ptr<motion::PlainStepper> new_plain_stepper(const input::Case& config, const mesh::Mesh& plate,
+                                                        const std::optional<mesh::Mesh>& base);
 
 }  // namespace slipfront::run

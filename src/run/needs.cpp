@@ -35,6 +35,8 @@ double program_bytes() {
 /// Of a node of bodies whose motion is made: mesh, state before the event, mass and motion. In small meshes
 /// four fields more, with which the largest frequency is found.
 constexpr double in_motion = 135, in_motion_of_few = 180;
+/// The same by the plain scheme, and in its checkpoints: stiffnesses of cells, fields of two levels.
+constexpr double in_plain_motion = 1000, in_plain_checkpoint = 210;
 constexpr double state_before = 32;  ///< of these u before and its change with the shear
 constexpr double in_ramp = 128;      ///< of a node under a ramp, besides: four states
 /// Of an unknown: what each solver takes, the equilibria included.
@@ -141,7 +143,7 @@ double bytes_of_node(double of_all_nodes) {
 }
 
 double motion_bytes_of(const input::Case& config, const Size& size, const Shares& s) {
-  double bytes = s.n_moving * bytes_of_node(size.n_nodes);
+  double bytes = s.n_moving * (is_plain(config) ? in_plain_motion : bytes_of_node(size.n_nodes));
   if (s.by_interface && is_prestressed(config)) bytes -= state_before * s.n_moving;  // there is none
   if (s.has_leader && !s.by_interface)
     bytes += size.n_nodes * (mesh_of_leader + (s.keeps ? 0 : state_before));
@@ -302,7 +304,8 @@ Needs needs(const input::Case& config, const Size& size, const Holder& holder) {
   const double of_stress = output.snapshot_stress ? results::tensor_values_per_cell * number : 0;
   if (n.snapshots > 0)
     n.snapshot_bytes = size.n_nodes * (of_snapshot_mesh + n.snapshots * (raw_and_written + of_stress));
-  n.checkpoint_bytes = checkpoints * (in_checkpoint * size.n_nodes + record_bytes(config, size.n_interface));
+  const double in_one = is_plain(config) ? in_plain_checkpoint : in_checkpoint;
+  n.checkpoint_bytes = checkpoints * (in_one * size.n_nodes + record_bytes(config, size.n_interface));
   if (const auto n_probes = config.probes.x_m.size(); n_probes > 0)
     n.probe_bytes = 2 * rows_of(end_s, config.probes.interval_s, size.step_s) * number *
                     static_cast<double>(record::probe_row_values(n_probes));

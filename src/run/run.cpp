@@ -102,7 +102,7 @@ std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, 
                                                      const motion::Execution& execution,
                                                      Processes* processes) {
   const auto& state = event_state(config, initial);
-  const auto start = [&](auto stepper) {
+  const auto start = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
     stepper->set_probes(probes_of(config, initial.mesh, initial.base));
     stepper->start(state, top_speed_m_per_s(config),
                    starting_loads(config, state, initial.mesh, initial.mu_s));
@@ -111,6 +111,7 @@ std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, 
   if (processes != nullptr)
     return start(new_distributed_stepper(config, initial.mesh, initial.base, *processes, execution,
                                          initial.kept.get()));
+  if (is_plain(config)) return start(new_plain_stepper(config, initial.mesh, initial.base));
   return start(new_stepper(config, initial.mesh, initial.base, execution));
 }
 
@@ -158,6 +159,7 @@ std::unique_ptr<motion::TimeStepper> make_stepper(const input::Case& config, Ini
   };
   if (processes != nullptr)
     return make(new_distributed_stepper(config, initial.mesh, initial.base, *processes, execution));
+  if (is_plain(config)) return make(new_plain_stepper(config, initial.mesh, initial.base));
   return make(new_stepper(config, initial.mesh, initial.base, execution));
 }
 

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/plain_stepper.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "base/error.hpp"
+#include "mesh/plate.hpp"
+#include "motion/body.hpp"
+#include "motion/stepper.hpp"
+
+namespace slipfront::motion {
+
+namespace {
+
+/// Sum of a.b over the nodes.
+double dot(const solid::Field& a, const solid::Field& b) {
+  return std::inner_product(a.x.begin(), a.x.end(), b.x.begin(), 0.0) +
+         std::inner_product(a.y.begin(), a.y.end(), b.y.begin(), 0.0);
+}
+
+InterfaceSide make_side(const mesh::Mesh& mesh, const solid::Material& material,
+                        const std::vector<double>& mass_kg) {
+  InterfaceSide side;
+  side.nodes = mesh.interface_nodes;
+  for (std::size_t i = 0; i < side.nodes.size(); ++i) {
+    const auto n = side.nodes[i];
+    if (i > 0 && n == side.nodes[i - 1] + 1)
+      ++side.runs.back().count;
+    else
+      side.runs.push_back({i, n, 1, true});
+    side.mass_kg.push_back(mass_kg[n]);
+    side.y_m.push_back(mesh.y_m[n]);
+  }
+  side.own = {0, static_cast<int>(side.nodes.size())};
+  side.tributary_m = mesh::tributary_lengths_m(mesh);
+  side.landing = Landing(mesh, material, side.nodes);
+  return side;
+}
+
+/// @param substep_s, substeps  the last level's step, and how many make a step of the coarsest one
+PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const int> multiples,
+                    double substep_s, int substeps) {
+  const auto& mesh = source.mesh;
+  const auto& material = source.material;
+  time.interface_substeps = substeps;
+  require_rows_fit(mesh, time);
+  const auto n = static_cast<std::size_t>(mesh.n_nodes());
+  PlainBody body;
+  body.cells = mesh.cells;
+  for (const auto& cell : mesh.cells)
+    body.stiffness_N_per_m.push_back(solid::cell_stiffness(solid::cell_coordinates(mesh, cell), material));
+  body.mass_kg = solid::lumped_mass(mesh, material);
+  body.damping_s = material.stiffness_damping_s;
+  body.is_in_contact = mesh::marked(mesh, mesh.interface_nodes);
+  body.is_loaded = mesh::marked(mesh, mesh.far_edge_nodes);
+  body.side = make_side(mesh, material, body.mass_kg);
+  const auto levels = cell_levels(mesh, time, multiples);
+  for (std::size_t l = 0; l < levels.periods.size(); ++l) {
+    PlainLevel level;
+    level.period = levels.periods[l];
+    level.step_s = substep_s * level.period;
+    level.is_shared.resize(n);
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+      if (levels.of_cell[c] != l) continue;
+      level.cells.push_back(static_cast<std::int32_t>(c));
+      for (const auto a : mesh.cells[c])
+        if (levels.of_node[a] > l && !body.is_loaded[a]) level.is_shared[a] = true;
+    }
+    for (std::size_t a = 0; a < n; ++a)
+      if (levels.of_node[a] == l && body.mass_kg[a] > 0) level.nodes.push_back(static_cast<mesh::Node>(a));
+    body.levels.push_back(std::move(level));
+  }
+  body.dashpots.resize(n);
+  for (const auto& absorbing : mesh.absorbing) {
+    const auto a = absorbing.node;
+    auto dashpot =
+        make_dashpot(absorbing, material, body.mass_kg[a], body.levels[levels.of_node[a]].step_s);
+    if (!body.is_in_contact[a]) {
+      body.dashpots[a] = dashpot;
+      continue;
+    }
+    dashpot.at = static_cast<std::size_t>(std::ranges::find(body.side.nodes, a) - body.side.nodes.begin());
+    body.side.dashpots.push_back(dashpot);
+  }
+  return body;
+}
+
+/// @param lowest_step_s  set to the step of the lowest block of the fastest body
+std::vector<PlainBody> make_bodies(std::span<const BodySource> sources, const TimeStepping& time,
+                                   double& stable_step_s, double& lowest_step_s) {
+  std::vector<BodySteps> steps;
+  for (const auto& source : sources) steps.push_back(body_steps(source, time));
+  stable_step_s = std::ranges::min(steps, {}, &BodySteps::stable_step_s).stable_step_s;
+  lowest_step_s = time.step_factor * stable_step_s;
+  std::vector<PlainBody> bodies;
+  for (std::size_t b = 0; b < sources.size(); ++b)
+    bodies.push_back(make_body(sources[b], time, steps[b].multiples, lowest_step_s / time.interface_substeps,
+                               step_ratio(steps[b].stable_step_s, stable_step_s) * time.interface_substeps));
+  return bodies;
+}
+
+std::vector<ContactBody> contacts_of(std::vector<PlainBody>& bodies) {
+  std::vector<ContactBody> contacts;
+  for (auto& body : bodies) contacts.push_back({&body.side, &body.u_m, &body.v_m_per_s});
+  return contacts;
+}
+
+}  // namespace
+
+solid::Field stiffness_product(const PlainBody& body, const PlainLevel& level, const solid::Field& w) {
+  solid::Field product(w.size());
+  for (const auto c : level.cells) {
+    const auto& cell = body.cells[c];
+    const auto& K = body.stiffness_N_per_m[c];
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b) {
+        const double x = w.x[cell[b]], y = w.y[cell[b]];
+        product.x[cell[a]] += K[16 * a + 2 * b] * x + K[16 * a + 2 * b + 1] * y;
+        product.y[cell[a]] += K[16 * a + 8 + 2 * b] * x + K[16 * a + 8 + 2 * b + 1] * y;
+      }
+  }
+  return product;
+}
+
+solid::Field velocities_seen(const PlainBody& body, const PlainLevel& level) {
+  auto v = body.v_m_per_s;
+  for (const auto component : components)
+    for (std::size_t n = 0; n < v.size(); ++n)
+      if (level.is_shared[n])
+        (v.*component)[n] =
+            ((body.u_m.*component)[n] - (level.u_before_m.*component)[n]) / level.step_s;
+  return v;
+}
+
+void add_works(const PlainBody& body, const PlainLevel& level, const solid::Field& v_seen_m_per_s,
+               record::Energies& works) {
+  const double half_step_s = 0.5 * level.step_s;
+  works.damping_work -= half_step_s * (dot(level.damping_force_N, level.v_seen_m_per_s) +
+                                       dot(level.damping_force_N, v_seen_m_per_s));
+  // The level's force on shared nodes does its work through the finer velocities, see move: not here.
+  for (const auto component : components)
+    for (std::size_t n = 0; n < body.mass_kg.size(); ++n)
+      if (level.is_shared[n])
+        works.coupling_work += half_step_s * (level.force_N.*component)[n] *
+                               ((level.v_seen_m_per_s.*component)[n] + (v_seen_m_per_s.*component)[n]);
+}
+
+PlainStepper::PlainStepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
+                           const TimeStepping& time)
+    : bodies_(make_bodies(sources, time, stable_step_s_, lowest_step_s_)),
+      coupling_(contact, contacts_of(bodies_)) {
+  for (const auto& body : bodies_) substeps_ = std::lcm(substeps_, body.levels.front().period);
+  step_s_ = lowest_step_s_ * (substeps_ / time.interface_substeps);
+}
+
+void PlainStepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    auto& body = bodies_[b];
+    const auto n = body.mass_kg.size();
+    const auto& u = b == 0 ? equilibrium.u_m : equilibrium.below_u_m;
+    const auto& per_shear = b == 0 ? equilibrium.u_per_shear : equilibrium.below_u_per_shear;
+    const bool is_strained = u.size() > 0;
+    const double speed = b == 0 || is_strained ? top_speed_m_per_s : 0;
+    body.u_m = is_strained ? u : solid::Field(n);
+    body.v_m_per_s = is_strained ? per_shear : solid::Field(n);
+    for (std::size_t a = 0; a < n; ++a)
+      if (!is_strained && body.is_loaded[a]) body.v_m_per_s.x[a] = 1;
+    for (const auto component : components)
+      for (double& value : body.v_m_per_s.*component) value *= speed;
+    body.v_last_m_per_s = body.v_m_per_s;
+    body.load_m_per_s2 = body.impulse_m_per_s = solid::Field(n);
+    body.works = {};
+    for (auto& level : body.levels) {
+      level.force_N = level.damping_force_N = level.v_seen_m_per_s = solid::Field(n);
+      level.u_before_m = body.u_m;
+      auto w = body.u_m;
+      for (const auto component : components)
+        for (std::size_t a = 0; a < n; ++a) {
+          (level.u_before_m.*component)[a] -= level.step_s * (body.v_m_per_s.*component)[a];
+          (w.*component)[a] += body.damping_s * (body.v_m_per_s.*component)[a];
+        }
+      const auto force_N = stiffness_product(body, level, w);
+      for (const auto component : components)
+        for (std::size_t a = 0; a < n; ++a)
+          if (level.is_shared[a])
+            (body.load_m_per_s2.*component)[a] = -(force_N.*component)[a] / body.mass_kg[a];
+    }
+  }
+  coupling_.start(equilibrium, std::move(loads));
+  step_ = 0;
+}
+
+std::int64_t PlainStepper::advance(Recorder& recorder, std::int64_t max_steps,
+                                   const StepCallbacks& callbacks) {
+  for (std::int64_t taken = 0; taken < max_steps;) {
+    record::History* sample = callbacks.sample();
+    take_step(std::span(bodies_), substeps_, [&](int k) {
+      coupling_.update(time_s() + k * substep_s(), substep_s(), recorder, k == 0 ? sample : nullptr,
+                       bodies_.front().works);
+    });
+    if (double* to = probes_.empty() ? nullptr : callbacks.displacements(step_ + 1); to != nullptr)
+      std::ranges::copy(probed_u_m(), to);
+    ++step_;
+    ++taken;
+    if (!callbacks.may_continue(coupling_.slip_rates())) return taken;
+  }
+  return max_steps;
+}
+
+record::Energies PlainStepper::energies() {
+  record::Energies sum;
+  for (const auto& body : bodies_) {
+    add_terms(sum, body.works);
+    for (const auto& level : body.levels) {
+      const auto v = velocities_seen(body, level);
+      add_works(body, level, v, sum);
+      // 1/2 u K u' between the level's last two places.
+      const auto K_u = stiffness_product(body, level, body.u_m);
+      sum.strain += 0.5 * (dot(body.u_m, K_u) - level.step_s * dot(v, K_u));
+    }
+  }
+  sum.kinetic = kinetic_energy_J_per_m();
+  sum.time_s = time_s();
+  return sum;
+}
+
+double PlainStepper::kinetic_energy_J_per_m() const {
+  double energy = 0;
+  for (const auto& body : bodies_) {
+    const auto& [x, y] = body.v_m_per_s;
+    for (std::size_t n = 0; n < x.size(); ++n) energy += 0.5 * body.mass_kg[n] * (x[n] * x[n] + y[n] * y[n]);
+  }
+  return energy;
+}
+
+double PlainStepper::mass_kg_per_m() const {
+  double mass = 0;
+  for (const auto& body : bodies_) mass += std::reduce(body.mass_kg.begin(), body.mass_kg.end());
+  return mass;
+}
+
+double PlainStepper::energy_of_tractions_J_per_m() const {
+  const auto& mass_kg = bodies_.front().mass_kg;
+  const double v = stable_step_s_ * coupling_.largest_acceleration_m_per_s2();
+  return 0.5 * std::reduce(mass_kg.begin(), mass_kg.end()) * v * v;
+}
+
+std::int64_t PlainStepper::n_nodes() const {
+  std::int64_t n = 0;
+  for (const auto& body : bodies_) n += std::ssize(body.mass_kg);
+  return n;
+}
+
+double PlainStepper::node_updates_per_step() const {
+  double updates = 0;
+  for (const auto& body : bodies_)
+    for (const auto& level : body.levels)
+      for (const auto n : level.nodes)
+        if (!body.is_loaded[n]) updates += substeps_ / level.period;
+  return updates;
+}
+
+std::vector<double> PlainStepper::probed_u_m() const {
+  std::vector<double> values;
+  for (const auto& probe : probes_)
+    for (const auto n : probe.node) {
+      const auto& u_m = bodies_[probe.body].u_m;
+      values.insert(values.end(), {u_m.x[n], u_m.y[n]});
+    }
+  return values;
+}
+
+std::vector<double> PlainStepper::probed_v_m_per_s() const {
+  std::vector<double> values;
+  for (const auto& probe : probes_)
+    for (const auto n : probe.node) {
+      const auto& v = bodies_[probe.body].v_m_per_s;
+      values.insert(values.end(), {v.x[n], v.y[n]});
+    }
+  return values;
+}
+
+std::size_t PlainStepper::snapshot_chunk_bytes() const {
+  return n_motion_components * sizeof(double) * static_cast<std::size_t>(n_nodes());
+}
+
+std::vector<double> PlainStepper::snapshot_chunk(int /*k*/) const {
+  std::vector<double> all;
+  for (const bool is_velocity : {false, true})
+    for (const auto component : components)
+      for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const auto& body = bodies_[b];
+        auto values = (is_velocity ? body.v_m_per_s : body.u_m).*component;
+        // Of shared nodes the mean over the level's step, as its cells see them.
+        for (const auto& level : body.levels)
+          for (std::size_t n = 0; is_velocity && n < values.size(); ++n)
+            if (level.is_shared[n]) values[n] = ((body.u_m.*component)[n] - (level.u_before_m.*component)[n]) / level.step_s;
+        // Bodies below are described upside down.
+        const double sign = b > 0 && component == &solid::Field::y ? -1 : 1;
+        for (const double value : values) all.push_back(sign * value);
+      }
+  return all;
+}
+
+}  // namespace slipfront::motion

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "motion/coupling.hpp"
+#include "motion/probes.hpp"
+#include "motion/settings.hpp"
+#include "motion/step.hpp"
+#include "motion/time_stepper.hpp"
+#include "statics/statics.hpp"
+
+namespace slipfront::motion {
+
+/// The scheme of step.hpp as it is written: cell by cell, on one thread, some hundred times slower than
+/// Stepper, which computes the same. For experiments with the scheme, and to test Stepper against.
+class PlainStepper : public TimeStepper {
+ public:
+  /// @param sources  one whole body or two, the one above first
+  /// @throws UserError where the interface rows do not fit into the mesh.
+  PlainStepper(std::span<const BodySource> sources, const interface::ContactModel& contact,
+               const TimeStepping& time);
+  PlainStepper(const PlainStepper&) = delete;
+  PlainStepper& operator=(const PlainStepper&) = delete;
+
+  /// See Stepper::start.
+  void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {});
+
+  double stable_step_s() const override { return stable_step_s_; }
+  double step_s() const override { return step_s_; }
+  double lowest_step_s() const override { return lowest_step_s_; }
+  double substep_s() const override { return step_s_ / substeps_; }
+  double node_updates_per_step() const override;
+  std::int64_t n_nodes() const override;
+  std::int64_t step() const override { return step_; }
+
+  void set_probes(std::vector<Probe> probes) { probes_ = std::move(probes); }
+  const std::vector<Probe>& probes() const override { return probes_; }
+  std::vector<double> probed_u_m() const override;
+  std::vector<double> probed_v_m_per_s() const override;
+
+  std::int64_t advance(Recorder& recorder, std::int64_t max_steps, const StepCallbacks& callbacks) override;
+
+  std::span<const PlainBody> bodies() const { return bodies_; }
+  const interface::Interface& interface_state() const { return coupling_.state(); }
+  record::Energies energies() override;
+  double kinetic_energy_J_per_m() const override;
+  double mass_kg_per_m() const override;
+  double energy_of_tractions_J_per_m() const override;
+
+  int n_snapshot_chunks() const override { return 1; }
+  std::size_t snapshot_chunk_bytes() const override;
+  std::vector<double> snapshot_chunk(int k) const override;
+
+  /// All that changes, between two calls of advance; see Stepper.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    for (auto& body : bodies_) {
+      const auto n = body.mass_kg.size();
+      for (auto* field : {&body.u_m, &body.v_m_per_s, &body.load_m_per_s2, &body.impulse_m_per_s,
+                          &body.v_last_m_per_s})
+        archive_field(archive, *field, n);
+      for (auto& level : body.levels)
+        for (auto* field :
+             {&level.u_before_m, &level.v_seen_m_per_s, &level.force_N, &level.damping_force_N})
+          archive_field(archive, *field, n);
+      archive(body.side.landing, body.works);
+    }
+    archive(coupling_, step_);
+  }
+
+ private:
+  double stable_step_s_ = 0, lowest_step_s_ = 0, step_s_ = 0;
+  std::vector<PlainBody> bodies_;
+  int substeps_ = 1;  ///< in a step
+  Coupling coupling_;
+  std::vector<Probe> probes_;
+  std::int64_t step_ = 0;
+};
+
+}  // namespace slipfront::motion
