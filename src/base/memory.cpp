@@ -46,8 +46,15 @@ double available_memory_bytes() {
   return std::min(free_memory_bytes(), left_by_limit_bytes());
 }
 
+// Sanitizers have their own allocator, beside which the C library's is not set up.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define SLIPFRONT_OTHER_ALLOCATOR
+#endif
+#endif
+
 void return_freed_memory() {
-#ifdef __GLIBC__
+#if defined(__GLIBC__) && !defined(SLIPFRONT_OTHER_ALLOCATOR) && !defined(__SANITIZE_ADDRESS__)
   malloc_trim(0);
 #endif
 }

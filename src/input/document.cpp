@@ -43,13 +43,40 @@ std::size_t end_of_string(std::string_view text, std::size_t i) {
   return text.size();
 }
 
-/// The line, from 1, in which tables or lists are nested too deeply, by brackets or by the parts of a key.
-std::optional<std::ptrdiff_t> line_nested_too_deeply(std::string_view text) {
+/// What the parser must not be given: tables or lists nested too deeply, by brackets or by the parts of a
+/// key; and characters beyond ASCII where it looks for blanks, which leaves its behaviour undefined
+/// (toml++ 3.3, 3.4).
+struct Fault {
+  enum Kind { too_deep, beyond_ascii } kind;
+  std::ptrdiff_t line;  ///< from 1
+};
+
+bool is_ascii(char c) {
+  return static_cast<unsigned char>(c) < 0x80;
+}
+
+/// Whether the parser looks for blanks beyond ASCII within a string: where its line is continued.
+bool continues_beyond_ascii(std::string_view string) {
+  for (auto i = string.find('\\'); i != std::string_view::npos; i = string.find('\\', i + 2)) {
+    const auto next = string.find_first_not_of(" \t\r\n", i + 1);
+    if (next != std::string_view::npos && !is_ascii(string[next])) return true;
+  }
+  return false;
+}
+
+std::optional<Fault> find_fault(std::string_view text) {
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   int brackets = 0, dots = 0;
-  for (std::size_t i = 0; i < text.size();) {
+  const auto fault_at = [&](Fault::Kind kind, std::size_t i) {
+    return Fault{kind, 1 + std::ranges::count(text.substr(0, i), '\n')};
+  };
+  for (std::size_t i = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0; i < text.size();) {
     const char c = text[i];
     if (c == '"' || c == '\'') {
-      i = end_of_string(text, i);
+      const auto end = end_of_string(text, i);
+      if (c == '"' && continues_beyond_ascii(text.substr(i, end - i)))
+        return fault_at(Fault::beyond_ascii, i);
+      i = end;
       continue;
     }
     if (c == '#') {
@@ -62,7 +89,8 @@ std::optional<std::ptrdiff_t> line_nested_too_deeply(std::string_view text) {
       ++dots;
     else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == '{')
       dots = 0;
-    if (brackets > max_levels || dots >= max_levels) return 1 + std::ranges::count(text.substr(0, i), '\n');
+    if (brackets > max_levels || dots >= max_levels) return fault_at(Fault::too_deep, i);
+    if (!is_ascii(c)) return fault_at(Fault::beyond_ascii, i);
     ++i;
   }
   return std::nullopt;
@@ -135,9 +163,14 @@ const Setting* Document::find(const std::string& key) const {
 Document parse_document(const std::string& text, const std::string& name) {
   if (const int line = files::line_outside_utf8(text); line > 0)
     throw UserError("{}:{}: holds bytes that are no utf-8; save the file in that encoding", name, line);
-  if (const auto line = line_nested_too_deeply(text))
-    throw UserError("{}:{}: is nested more than {} levels deep; keys are of the form table.key = value", name,
-                    *line, max_levels);
+  if (const auto fault = find_fault(text)) {
+    if (fault->kind == Fault::too_deep)
+      throw UserError("{}:{}: is nested more than {} levels deep; keys are of the form table.key = value",
+                      name, fault->line, max_levels);
+    throw UserError(
+        "{}:{}: has a character beyond ASCII outside quotes, a letter or a blank; retype the line", name,
+        fault->line);
+  }
   Document document;
   try {
     flatten(toml::parse(text, name), "", name, document);
@@ -154,8 +187,10 @@ Document parse_document(const std::string& text, const std::string& name) {
 }
 
 Value parse_value(const std::string& text) {
-  if (line_nested_too_deeply(text))
+  if (const auto fault = find_fault(text)) {
+    if (fault->kind == Fault::beyond_ascii) return text;
     return Unsupported{fmt::format("nested more than {} levels deep", max_levels)};
+  }
   try {
     const toml::table table = toml::parse("value = " + text);
     if (table.size() == 1) return to_value(table.begin()->second);

@@ -145,10 +145,12 @@ struct LawOverArrays {
 };
 
 // Flattened: the compiler would keep the nodes in memory between these functions. The constants are copied:
-// what is written to the nodes cannot be theirs then, and they stay in registers.
+// what is written to the nodes cannot be theirs then, and they stay in registers. Not as an argument: clang
+// 14 aligns those on the stack to 32 bytes, where vectors may need 64.
 template <ContactAlgorithm algorithm, class Law, class Form>
-[[gnu::flatten, gnu::noinline]] bool update(Law law, const Form form, double dt_s, Interface& s) {
+[[gnu::flatten, gnu::noinline]] bool update(const Law& given, const Form form, double dt_s, Interface& s) {
   constexpr bool remembers = Form::remembers;
+  Law law = given;
   SimdMask changed{};
   const auto update_at = [&](auto at) {
     auto nodes = read_nodes<algorithm, remembers>(s, at);
