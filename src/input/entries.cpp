@@ -220,6 +220,7 @@ using mesh::Plate;
 using mesh::Sides;
 using mesh::Top;
 using motion::Precision;
+using motion::StepperKind;
 using motion::TimeStepping;
 using solid::Material;
 using solid::Plane;
@@ -602,10 +603,11 @@ void add_time(EntryList& list) {
                  "time step over the largest stable one; above 1 only with time.allow_unstable"),
           flag("time.allow_unstable", at(&Case::time, &TimeStepping::allow_unstable),
                "accept a step_factor above 1"),
-          word<StepperKind>("time.stepper", at(&Case::time, &TimeStepping::stepper),
-                            {{"fast", StepperKind::fast}, {"plain", StepperKind::plain}},
-                            "how steps are computed; plain: cell by cell as src/motion/step.hpp has it, for "
-                            "experiments with the scheme, a hundred times slower, with loading.method not ramp"),
+          word<StepperKind>(
+              "time.stepper", at(&Case::time, &TimeStepping::stepper),
+              {{"fast", StepperKind::fast}, {"plain", StepperKind::plain}},
+              "how steps are computed; plain: cell by cell as src/motion/step.hpp has it, for "
+              "experiments with the scheme, a hundred times slower, with loading.method not ramp"),
           word<Precision>("time.precision", at(&Case::time, &TimeStepping::precision),
                           {{"double", Precision::double_precision}, {"single", Precision::single_precision}},
                           "numbers for rows of the plate beyond those next to the interface; single with "

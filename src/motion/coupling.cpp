@@ -130,8 +130,8 @@ void Coupling::set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa)
   prestress_p_Pa_ = std::move(p_Pa);
 }
 
-void Coupling::update(double time_s, double dt_s, UpdateObserver& observer,
-                      record::History* sample, record::Energies& works) {
+void Coupling::update(double time_s, double dt_s, UpdateObserver& observer, record::History* sample,
+                      record::Energies& works) {
   const double impulse_s = dt_s * trigger_factor(trigger_, time_s);
   std::swap(interface_.v_x_m_per_s, v_x_before_);
   std::swap(interface_.v_y_m_per_s, v_y_before_);
@@ -284,18 +284,18 @@ void Coupling::scatter_both(double dt_s, record::Energies& works) {
       if (shift_m != 0) body.side->landing.add(i, side.share_y[i] * shift_m);
     }
   }
-  for (const auto& body : bodies_) works.contact_work += body.side->landing.work(*body.u_m, *body.v_m_per_s, dt_s);
+  for (const auto& body : bodies_)
+    works.contact_work += body.side->landing.work(*body.u_m, *body.v_m_per_s, dt_s);
 }
 
-void Coupling::add_works_of_loads(double dt_s, double impulse_s,
-                                  record::Energies& works) const {
-  const auto add_dashpots = [&](const ContactBody& body, const auto& v_x, const auto& v_y, const auto& v_x_before,
-                                const auto& v_y_before) {
+void Coupling::add_works_of_loads(double dt_s, double impulse_s, record::Energies& works) const {
+  const auto add_dashpots = [&](const ContactBody& body, const auto& v_x, const auto& v_y,
+                                const auto& v_x_before, const auto& v_y_before) {
     for (const auto& dashpot : body.side->dashpots) {
       const auto i = dashpot.at;
       if (!is_own(i)) continue;
-      works.boundary_work += dashpot_work(dashpot, body.side->mass_kg[i],
-                                          0.5 * (v_x[i] + v_x_before[i]), 0.5 * (v_y[i] + v_y_before[i]));
+      works.boundary_work += dashpot_work(dashpot, body.side->mass_kg[i], 0.5 * (v_x[i] + v_x_before[i]),
+                                          0.5 * (v_y[i] + v_y_before[i]));
     }
   };
   if (sides_.empty())

@@ -111,7 +111,9 @@ class Coupling {
   bool is_own(std::size_t i) const { return i >= own_begin_ && i < own_end_; }
   void set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m);
   double relative_u_x_m(std::size_t i) const;
-  double u_y_m(std::size_t body, std::size_t i) const { return bodies_[body].u_m->y[bodies_[body].side->nodes[i]]; }
+  double u_y_m(std::size_t body, std::size_t i) const {
+    return bodies_[body].u_m->y[bodies_[body].side->nodes[i]];
+  }
   /// The trial motion of the interface nodes, all forces but the contact's included.
   void gather(double dt_s, double impulse_s);
   void gather_both(double dt_s, double impulse_s);

@@ -75,8 +75,7 @@ PlainBody make_body(const BodySource& source, TimeStepping time, std::span<const
   body.dashpots.resize(n);
   for (const auto& absorbing : mesh.absorbing) {
     const auto a = absorbing.node;
-    auto dashpot =
-        make_dashpot(absorbing, material, body.mass_kg[a], body.levels[levels.of_node[a]].step_s);
+    auto dashpot = make_dashpot(absorbing, material, body.mass_kg[a], body.levels[levels.of_node[a]].step_s);
     if (!body.is_in_contact[a]) {
       body.dashpots[a] = dashpot;
       continue;
@@ -129,8 +128,7 @@ solid::Field velocities_seen(const PlainBody& body, const PlainLevel& level) {
   for (const auto component : components)
     for (std::size_t n = 0; n < v.size(); ++n)
       if (level.is_shared[n])
-        (v.*component)[n] =
-            ((body.u_m.*component)[n] - (level.u_before_m.*component)[n]) / level.step_s;
+        (v.*component)[n] = ((body.u_m.*component)[n] - (level.u_before_m.*component)[n]) / level.step_s;
   return v;
 }
 
@@ -296,7 +294,8 @@ std::vector<double> PlainStepper::snapshot_chunk(int /*k*/) const {
         // Of shared nodes the mean over the level's step, as its cells see them.
         for (const auto& level : body.levels)
           for (std::size_t n = 0; is_velocity && n < values.size(); ++n)
-            if (level.is_shared[n]) values[n] = ((body.u_m.*component)[n] - (level.u_before_m.*component)[n]) / level.step_s;
+            if (level.is_shared[n])
+              values[n] = ((body.u_m.*component)[n] - (level.u_before_m.*component)[n]) / level.step_s;
         // Bodies below are described upside down.
         const double sign = b > 0 && component == &solid::Field::y ? -1 : 1;
         for (const double value : values) all.push_back(sign * value);

@@ -59,12 +59,11 @@ class PlainStepper : public TimeStepper {
   void serialize(Archive& archive) {
     for (auto& body : bodies_) {
       const auto n = body.mass_kg.size();
-      for (auto* field : {&body.u_m, &body.v_m_per_s, &body.load_m_per_s2, &body.impulse_m_per_s,
-                          &body.v_last_m_per_s})
+      for (auto* field :
+           {&body.u_m, &body.v_m_per_s, &body.load_m_per_s2, &body.impulse_m_per_s, &body.v_last_m_per_s})
         archive_field(archive, *field, n);
       for (auto& level : body.levels)
-        for (auto* field :
-             {&level.u_before_m, &level.v_seen_m_per_s, &level.force_N, &level.damping_force_N})
+        for (auto* field : {&level.u_before_m, &level.v_seen_m_per_s, &level.force_N, &level.damping_force_N})
           archive_field(archive, *field, n);
       archive(body.side.landing, body.works);
     }

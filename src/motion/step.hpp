@@ -23,8 +23,8 @@
 //
 // Cells are divided into levels, each with its own step: that of the cells next to the interface is one
 // sub-step, the others' are multiples. A level kicks when its step begins, by its force times its step: the
-// asynchronous variational integrator of Lew et al. (2003). A node moves with the finest of its cells; where a
-// coarser level has cells there, too, the node is shared. That level sees the node's mean velocity over its
+// asynchronous variational integrator of Lew et al. (2003). A node moves with the finest of its cells; where
+// a coarser level has cells there, too, the node is shared. That level sees the node's mean velocity over its
 // own step. Its force on the node acts as a constant load, as large as in the equilibrium at the start, in
 // every finer step, and what it has changed since comes as an impulse in the first of them; without this a
 // stressed body at rest would not stay at rest.

@@ -103,7 +103,10 @@ void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
                  const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
   int n_chunks = 0;
   archive(n_chunks);
-  if (auto* plain = dynamic_cast<motion::PlainStepper*>(&stepper)) return archive(*plain);
+  if (auto* plain = dynamic_cast<motion::PlainStepper*>(&stepper)) {
+    archive(*plain);
+    return;
+  }
   auto* parted = dynamic_cast<motion::DistributedStepper*>(&stepper);
   if (parted == nullptr && n_chunks == 0) {
     archive(dynamic_cast<motion::Stepper&>(stepper));

@@ -81,7 +81,8 @@ void require_possible_by_plain_scheme(const input::Case& config, const Processes
     throw UserError("{} = plain computes in double precision; choose {} = double, or fast", stepper,
                     Key("time.precision"));
   if (config.loading.method == statics::LoadingMethod::ramp)
-    throw UserError("{} = plain computes no ramp; choose {} = direct, or fast", stepper, Key("loading.method"));
+    throw UserError("{} = plain computes no ramp; choose {} = direct, or fast", stepper,
+                    Key("loading.method"));
   if (processes != nullptr && processes->size() > 1)
     throw UserError("{} = plain runs in one process, not {}; start one, or choose fast", stepper,
                     processes->size());

@@ -13,15 +13,15 @@
 namespace slipfront::motion::support {
 
 inline const solid::Material pmma{.youngs_modulus_Pa = 5.6e9,
-                           .poissons_ratio = 0.37,
-                           .density_kg_per_m3 = 1190,
-                           .plane = solid::Plane::strain,
-                           .stiffness_damping_s = 7e-9};
+                                  .poissons_ratio = 0.37,
+                                  .density_kg_per_m3 = 1190,
+                                  .plane = solid::Plane::strain,
+                                  .stiffness_damping_s = 7e-9};
 inline const solid::Material gel{.youngs_modulus_Pa = 1.4e9,
-                          .poissons_ratio = 0.30,
-                          .density_kg_per_m3 = 1100,
-                          .plane = solid::Plane::strain,
-                          .stiffness_damping_s = 7e-9};
+                                 .poissons_ratio = 0.30,
+                                 .density_kg_per_m3 = 1100,
+                                 .plane = solid::Plane::strain,
+                                 .stiffness_damping_s = 7e-9};
 
 /// A rupture from a weakened patch under uniform tractions.
 struct Problem {
