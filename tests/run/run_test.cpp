@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run/run.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include "cases.hpp"
 #include "fronts/measures.hpp"
 #include "interface/friction/coulomb.hpp"
+#include "interface/friction/slip_weakening.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -370,6 +372,40 @@ TEST(Ramp, ReachesTheDirectCriticalShear) {
     ASSERT_NE(front, nullptr);
     EXPECT_NEAR(front->points.front().x_m, initial.common.peak_x_m, 5e-3 * (1 + 1e-9));
   }
+}
+
+TEST(PlainStepper, RunsACaseAsTheFastOneDoes) {
+  auto config = coarse_case(EventKind::left, 5e-3);
+  config.friction = interface::SlipWeakening {};
+  config.probes.x_m = {0.1013};
+  config.probes.y_m = {0.0123};
+  const auto fast = run_case(config);
+  EXPECT_GT(fast.event.record.onsets.size(), 20U);
+  config.time.stepper = motion::StepperKind::plain;
+  EXPECT_GT(info(config).expected_s, 0);
+  const auto plain = run_case(config);
+  EXPECT_EQ(plain.event.steps, fast.event.steps);
+  EXPECT_EQ(plain.node_updates_per_step, fast.node_updates_per_step);
+  const auto &a = plain.event.history, &b = fast.event.history;
+  ASSERT_EQ(a.slip_m.size(), b.slip_m.size());
+  const double slip_m = std::ranges::max(b.slip_m);
+  for (std::size_t k = 0; k < a.slip_m.size(); ++k) EXPECT_NEAR(a.slip_m[k], b.slip_m[k], 1e-9 * slip_m);
+  const auto &last = plain.event.energies.back(), &start = plain.event.energies.front();
+  EXPECT_LE(std::abs(record::imbalance_J_per_m(last, start)), 1e-12 * start.strain);
+}
+
+TEST(PlainStepper, RefusesWhatItDoesNotCompute) {
+  const auto refusal = [](auto&& change) {
+    auto config = coarse_case(EventKind::left, 5e-3);
+    config.time.stepper = motion::StepperKind::plain;
+    change(config);
+    return test::check_error(config);
+  };
+  EXPECT_EQ(refusal([](input::Case&) {}), test::accepted);
+  EXPECT_THAT(refusal([](input::Case& c) { c.time.precision = motion::Precision::single_precision; }),
+              testing::HasSubstr("time.precision = double"));
+  EXPECT_THAT(refusal([](input::Case& c) { c.loading.method = statics::LoadingMethod::ramp; }),
+              testing::HasSubstr("loading.method = direct"));
 }
 
 TEST(Check, SinglePrecisionNeedsFreeSides) {

@@ -144,6 +144,7 @@ std::vector<std::pair<const char*, input::Case>> kinds() {
   });
   add("single precision", coarse_case(),
       [](input::Case& c) { c.time.precision = motion::Precision::single_precision; });
+  add("plain stepper", coarse_case(), [](input::Case& c) { c.time.stepper = motion::StepperKind::plain; });
   return list;
 }
 
