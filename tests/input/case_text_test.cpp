@@ -55,11 +55,11 @@ TEST(CaseText, DeepNestingIsRefused) {
 }
 
 TEST(CaseText, CharactersBeyondAsciiStandInQuotesAndComments) {
-  for (const std::string& line : {"width\xc3\xa9_m = 0.2",
-                                  "width_m =\xc2\xa0"
-                                  "0.2",
-                                  "\xef\xbb\xb7width_m = 0.2", "[plate\xe2\x80\x89]",
-                                  "title = \"\"\"a\\ \n \xc3\xa9\"\"\"", "title = \"\\\xc3\xa9\""})
+  for (const std::string line : {"width\xc3\xa9_m = 0.2",
+                                 "width_m =\xc2\xa0"
+                                 "0.2",
+                                 "\xef\xbb\xb7width_m = 0.2", "[plate\xe2\x80\x89]",
+                                 "title = \"\"\"a\\ \n \xc3\xa9\"\"\"", "title = \"\\\xc3\xa9\""})
     EXPECT_THAT(parse_error("[plate]\n# \xc3\xa9\n" + line),
                 StartsWith("c.toml:3: has a character beyond ASCII outside quotes"))
         << line;
