@@ -486,14 +486,18 @@ Case case_of(Document document, const std::string& name, std::vector<std::string
   if (const Setting* law = document.find("friction.law"))
     assign(*find_entry(common_entries(), "friction.law"), *law, config);
   notes.push_back(drop_parameters_of_other_laws(config, document));
-  // Overrides first: they win over those keys of the file that exclude them.
-  for (const bool overrides_alone : {true, false})
+  const auto decide = [&](auto&& counts) {
     for (const char* key : deciding_keys) {
       const Entry& entry = *find_entry(common_entries(), key);
-      const Setting* setting = document.find(key);
-      if (setting && (setting->is_override() || !overrides_alone) && applies(entry, config))
+      if (const Setting* setting = document.find(key);
+          setting && counts(entry, *setting) && applies(entry, config))
         assign(entry, *setting, config);
     }
+  };
+  decide([](const Entry& entry, const Setting&) { return !entry.is_set; });
+  // Keys that decide by being set exclude others of their kind: overrides win.
+  decide([](const Entry& entry, const Setting& setting) { return entry.is_set && setting.is_override(); });
+  decide([](const Entry& entry, const Setting&) { return static_cast<bool>(entry.is_set); });
   notes.push_back(drop_keys_that_overrides_exclude(config, document));
   std::erase(notes, "");
   const std::vector<Entry> entries = entries_of(config);
