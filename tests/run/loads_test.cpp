@@ -151,6 +151,17 @@ TEST(Loads, OfOneStateMayBeGivenInEveryWay) {
   }
 }
 
+TEST(Loads, SolversFindTheSame) {
+  for (const auto& row : rows) {
+    if (row.tolerance < 1e-8) continue;  // those of a factorisation
+    SCOPED_TRACE(row.name);
+    auto c = case_of(row);
+    const auto iterative = make_initial_state(c, go_on);
+    c.loading.solver = statics::StaticSolver::direct;
+    expect_same_state(iterative.common, make_initial_state(c, go_on).common, row.tolerance);
+  }
+}
+
 TEST(Loads, TheWholeCriticalOneIsThatOfTheMargin) {
   auto c = case_of(rows[2]);
   c.loading.shear_over_critical = 1;

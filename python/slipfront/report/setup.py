@@ -107,11 +107,11 @@ def spread(values: np.ndarray, unit: str) -> str:
 
 def forces(found: dict[str, Any]) -> list[str]:
     """Those that a case gives, in words; none of other cases."""
-    names = ("normal_force_N_per_m", "mean_pressure_Pa", "shear_force_N_per_m", "critical_shear_force_N_per_m")
-    numbers = [found.get(name) for name in names]
+    names = ("normal_force", "shear_force", "critical_shear_force")
+    numbers = [found.get(key) for key in ("mean_pressure_Pa", *(f"{name}_N_per_m" for name in names))]
     if not all(is_number(number) for number in numbers):
         return []
-    normal, mean, shear, critical = numbers
+    mean, normal, shear, critical = numbers
     return [
         f"normal force {quantity(normal, 'N/m')}, a mean pressure of {quantity(mean, 'Pa')}",
         f"shear force {quantity(shear, 'N/m')}, {shear / critical:.4g} of the critical one",
