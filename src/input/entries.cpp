@@ -467,17 +467,18 @@ void add_loading(EntryList& list) {
           only_with(tilted_without("loading.mean_pressure_Pa", &Loading::mean_pressure_Pa),
                     optional_number("loading.normal_force_N_per_m",
                                     at(&Case::loading, &Loading::normal_force_N_per_m), above(0), 1e5,
-                                    "instead of both: force that presses the interface before any shear, per "
-                                    "metre of thickness; the displacement is found")),
+                                    "force that presses the interface before any shear, per metre of "
+                                    "thickness, instead of the two displacements, which are found")),
           only_with(tilted_without("loading.normal_force_N_per_m", &Loading::normal_force_N_per_m),
                     optional_number("loading.mean_pressure_Pa",
                                     at(&Case::loading, &Loading::mean_pressure_Pa), above(0), 1e6,
-                                    "the same force over plate.width_m, what is not in contact included")),
+                                    "mean pressure of the interface before any shear, normal force over "
+                                    "plate.width_m, instead of the two displacements, which are found")),
           only_with(
               pressed_by_force(),
               number("loading.tilt_difference_m", at(&Case::loading, &Loading::tilt_difference_m), any(),
-                     "with such a force: downward displacement of the top edge at its left end "
-                     "less that at its right end")),
+                     "downward displacement of the top edge at its left end less that at its "
+                     "right end")),
           only_with(tilted(),
                     word<TopEdge>("loading.top_during_tilt", at(&Case::loading, &Loading::top_during_tilt),
                                   {{"held", TopEdge::held}, {"free", TopEdge::free}},
@@ -524,14 +525,14 @@ void add_loading(EntryList& list) {
           only_with(sheared_without("loading.shear_over_critical", &Loading::shear_over_critical),
                     optional_number("loading.shear_force_N_per_m",
                                     at(&Case::loading, &Loading::shear_force_N_per_m), above(0), 1e5,
-                                    "instead of the margin: sum of t over the interface in the common state, "
-                                    "per metre of thickness, at most the critical one")),
+                                    "t summed over the interface in the common state, per metre of "
+                                    "thickness, instead of the margin; at most the critical one")),
           only_with(
               sheared_without("loading.shear_force_N_per_m", &Loading::shear_force_N_per_m),
               optional_number("loading.shear_over_critical",
                               at(&Case::loading, &Loading::shear_over_critical), {0, 1, true, false}, 0.9,
-                              "the same force over the critical one, at which t/p first reaches mu_s "
-                              "inside")),
+                              "the same sum over the critical one, at which t/p first reaches mu_s "
+                              "inside, instead of the margin")),
       });
 }
 

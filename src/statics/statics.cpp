@@ -504,6 +504,7 @@ Equilibrium Statics::shear_to_force(double force_N_per_m) const {
         "it or "
         "change {}, or {}",
         key, of_tilt, force_N_per_m, keys_of_tilt(loading_), Key("loading.top_during_tilt"));
+  last_.reset();  // the way begins at the tilt: back from a larger shear contact ends in other states
   bool reached = true;
   Equilibrium e = shear([&](const ContactProblem& problem, const Inside&) {
     const double found = problem.shear_at(&ContactProblem::t_Pa, force_N_per_m);

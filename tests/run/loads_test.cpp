@@ -39,7 +39,12 @@ const Row rows[] = {
     {"relieved corners", [](input::Case&) {}},
     {"tilted", [](input::Case& c) { c.loading.tilt_difference_m = 0.3e-3; }},
     {"tilted the other way", [](input::Case& c) { c.loading.tilt_difference_m = -0.3e-3; }},
-    {"tilted until it opens", [](input::Case& c) { c.loading.tilt_difference_m = 0.7e-3; }, true},
+    {"tilted until it opens",
+     [](input::Case& c) {
+       c.loading.tilt_difference_m = 0.7e-3;
+       c.loading.edge_margin_m = 0.05;
+     },
+     true},
     {"free top",
      [](input::Case& c) {
        c.loading.tilt_difference_m = 0.3e-3;
