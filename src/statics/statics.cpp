@@ -501,8 +501,7 @@ Equilibrium Statics::shear_to_force(double force_N_per_m) const {
   if (of_tilt > force_N_per_m)
     throw UserError(
         "{}: the interface bears a shear force of {:.6g} N/m before any shear, more than {:.6g} N/m; raise "
-        "it or "
-        "change {}, or {}",
+        "it, or change {}, or {}",
         key, of_tilt, force_N_per_m, keys_of_tilt(loading_), Key("loading.top_during_tilt"));
   last_.reset();  // the way begins at the tilt: back from a larger shear contact ends in other states
   bool reached = true;
