@@ -94,7 +94,7 @@ def test_cases_without_forces_tell_nothing_of_them(program, coarse, tmp_path):
 
 def test_an_override_takes_the_place_of_the_displacements(program, coarse):
     result = require_done(program("validate", coarse, *sets("loading.mean_pressure_Pa=5e6")))
-    assert "note" not in result.stdout
+    assert "not apply" not in result.stdout
     by_displacement = coarse.read_text() + "[loading]\ntilt_left_m = 1e-4\ntilt_right_m = 1e-4\n"
     coarse.write_text(by_displacement)
     result = require_done(program("validate", coarse, *sets("loading.mean_pressure_Pa=5e6")))
