@@ -20,7 +20,10 @@ class CondensedLoadCase : public LoadCase {
  public:
   CondensedLoadCase(std::vector<double> gap_m, std::shared_ptr<const CondensedInterface> interface,
                     const TopDisplacement& top, EdgeMotion motion)
-      : gap_m_(std::move(gap_m)), interface_(std::move(interface)), load_(interface_->load(top)) {
+      : gap_m_(std::move(gap_m)),
+        interface_(std::move(interface)),
+        motion_(motion),
+        load_(interface_->load(top)) {
     const auto n = top.u_x_m.size();
     unit_shear_ = {{std::vector<double>(n, motion == EdgeMotion::along_x ? 1.0 : 0.0),
                     std::vector<double>(n, motion == EdgeMotion::down ? -1.0 : 0.0)},
@@ -74,10 +77,9 @@ class CondensedLoadCase : public LoadCase {
 
   Displacement displacement(double shear) const override {
     auto load = load_;
-    for (std::size_t k = 0; k < load.top.u_x_m.size(); ++k) {
-      load.top.u_x_m[k] += shear * unit_shear_.top.u_x_m[k];
-      load.top.u_y_m[k] += shear * unit_shear_.top.u_y_m[k];
-    }
+    const auto moves = motion_ == EdgeMotion::down ? &TopDisplacement::u_y_m : &TopDisplacement::u_x_m;
+    for (std::size_t k = 0; k < (load.top.*moves).size(); ++k)
+      (load.top.*moves)[k] += shear * (unit_shear_.top.*moves)[k];
     load.g_N += shear * unit_shear_.g_N;
     return interface_->displacement(load, u0 + shear * u1);
   }
@@ -87,6 +89,7 @@ class CondensedLoadCase : public LoadCase {
  private:
   std::vector<double> gap_m_;
   std::shared_ptr<const CondensedInterface> interface_;
+  EdgeMotion motion_;
   Factorisation::Load load_;        ///< the loaded edge where it stands without shear
   Factorisation::Load unit_shear_;  ///< the loaded edge moved on by 1 m
   Eigen::VectorXd g0_N_, g1_N_;     ///< what the two send to the interface
