@@ -238,10 +238,11 @@ Inside inside_contact(const ContactProblem& problem, double margin_m) {
 
 /// Interface nodes' displacement along x, relative to that of a base. [interface nodes]
 std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Displacement& u,
-                                   const LoadCase& of_interface) {
+                                   const LoadCase& of_interface, double shear) {
   std::vector<double> u_x_m;
   if (u.kept) {
-    for (Eigen::Index k = 0; k < of_interface.u0.size(); k += 2) u_x_m.push_back(of_interface.u0(k));
+    for (Eigen::Index k = 0; k < of_interface.u0.size(); k += 2)
+      u_x_m.push_back(of_interface.u0(k) + shear * of_interface.u1(k));
     return u_x_m;
   }
   for (const auto n : mesh.interface_nodes) u_x_m.push_back(u.above.x[n]);
@@ -418,7 +419,7 @@ void Statics::press_down(double compliance_m_per_Pa) {
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
     throw UserError("the tilt leaves the plate without contact; increase {}", keys_of_tilt(loading_));
   auto u = plate->displacement(pressed_m);
-  tilted_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u, *plate);
+  tilted_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u, *plate, pressed_m);
   plate.reset();
   tilted_.u_m = std::move(u.above);
   tilted_.below_u_m = std::move(u.below);
