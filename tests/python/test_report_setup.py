@@ -232,6 +232,11 @@ def test_forces_are_told_with_their_displacements(tmp_path):
         r"upper edge pressed down [0-9.]+ µm, then moved by [0-9.]+ µm to \+x; pressure p "
     )
     assert re.match(pattern, told), told
+    found = slipfront.info(case).loads
+    of_run = run_json(tmp_path / "out")["statics"]["loads"]
+    assert {name: getattr(found, name) for name in of_run} == of_run
+    assert "mean_pressure_Pa" in repr(slipfront.info(case))
+    assert slipfront.info(CASE).loads is None
 
 
 def test_the_critical_crack_is_that_of_info(pair):
