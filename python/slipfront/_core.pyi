@@ -164,6 +164,42 @@ class MeshChoice:
     @property
     def n_nodes(self) -> int: ...
 
+class Loads:
+    """
+    Forces of the interface per metre of thickness, and the displacements that give them.
+    """
+
+    @property
+    def normal_force_N_per_m(self) -> float:
+        """before any shear"""
+
+    @property
+    def mean_pressure_Pa(self) -> float:
+        """the same over plate.width_m"""
+
+    @property
+    def tilt_left_m(self) -> float:
+        """downward displacement of the top edge at its left end"""
+
+    @property
+    def tilt_right_m(self) -> float:
+        """the same at its right end"""
+
+    @property
+    def shear_force_N_per_m(self) -> float:
+        """before triggered events"""
+
+    @property
+    def shear_m(self) -> float:
+        """displacement of the top edge to +x that gives it"""
+
+    @property
+    def critical_shear_force_N_per_m(self) -> float:
+        """at which t/p first reaches mu_s inside"""
+
+    @property
+    def critical_shear_m(self) -> float: ...
+
 class Info:
     """What a case needs and what is to be expected of it, before it runs."""
 
@@ -233,6 +269,10 @@ class Info:
         """of slow uniform sliding at the plate's nominal pressure"""
 
     @property
+    def loads(self) -> Loads | None:
+        """of a case that gives forces, by its statics; else None"""
+
+    @property
     def notes(self) -> list[str]:
         """
         what is hardly meant, decides physics unasked, or keeps it from a rupture
@@ -262,7 +302,9 @@ class Case:
     def static_coefficient(self) -> float: ...
 
     def info(self) -> Info:
-        """What follows from the case without solving anything."""
+        """
+        What follows from the case; only loads that are forces take its statics.
+        """
 
     def stable_step_s(self, element_size_m: float) -> float:
         """Largest stable step of the case's material in square elements, s."""

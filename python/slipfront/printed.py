@@ -14,6 +14,7 @@ LISTED = (
     _core.Collapse,
     _core.ExponentialFit,
     _core.Info,
+    _core.Loads,
     _core.MeshChoice,
     _core.NodeSpread,
     _core.Rupture,

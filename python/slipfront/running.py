@@ -258,5 +258,6 @@ def run_with_law(
 
 def info(case: CaseLike, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> _core.Info:
     """What follows from a case without running it: wave speeds, steps, size, memory, expected time,
-    stability of uniform sliding. Case and changes as for `run`; raises CaseError."""
+    stability of uniform sliding; of loads given as forces the displacements, by statics. Case and changes as
+    for `run`; raises CaseError."""
     return make_case(case, changes, tables).info()

@@ -81,6 +81,20 @@ void add_costs(const run::Info& info, Listing& list) {
   list.add("expected time", fmt::format("{:.2g} s", info.expected_s));
 }
 
+/// The forces and the displacements that give them.
+void add_loads(const run::FoundLoads& loads, Listing& list) {
+  list.add("normal force", fmt::format("{:.6g} N/m, a mean pressure of {:.6g} Pa", loads.normal_force_N_per_m,
+                                       loads.mean_pressure_Pa));
+  list.add("  upper edge pressed down", fmt::format("{:.6g} m at its left end, {:.6g} m at its right one",
+                                                    loads.tilt_left_m, loads.tilt_right_m));
+  list.add("shear force",
+           fmt::format("{:.6g} N/m, {:.6g} of the critical one, {:.6g} N/m", loads.shear_force_N_per_m,
+                       loads.shear_force_N_per_m / loads.critical_shear_force_N_per_m,
+                       loads.critical_shear_force_N_per_m));
+  list.add("  upper edge then moved to +x",
+           fmt::format("{:.6g} m, critical {:.6g} m", loads.shear_m, loads.critical_shear_m));
+}
+
 std::string text_of(double number) {
   return std::isfinite(number) ? fmt::format("{:.3g}", number) : "unbounded";
 }
@@ -222,6 +236,7 @@ void print_info(const CaseArguments& arguments, const std::optional<run::Sharing
   add_steps(config, info, list);
   add_costs(info, list);
   if (sharing) add_shared(*info.shared, *sharing, list);
+  if (info.loads) add_loads(*info.loads, list);
   add_stability_of_sliding(info, list);
   add_rupture(info.rupture, list);
   if (info.cheapest_mesh) add_mesh_choice(config, *info.cheapest_mesh, list);

@@ -83,6 +83,11 @@ void print_summary(const run::Result& result, const run::InitialState& initial, 
         result.config.prestress.file.empty() ? "" : fmt::format(" at x = {:.4g} m", initial.common.peak_x_m));
   else if (initial.ramp)
     print_ramp(*initial.ramp, initial.critical_shear_m);
+  else if (statics::is_sheared_by_force(result.config.loading))
+    print("shear force {:.5g} N/m, {:.4g} of the critical one, t/p up to {:.4g} at x = {:.4g} m\n",
+          initial.loads->shear_force_N_per_m,
+          initial.loads->shear_force_N_per_m / initial.loads->critical_shear_force_N_per_m,
+          initial.common.peak_ratio, initial.common.peak_x_m);
   else
     print("t/p inside reaches mu_s at x = {:.4g} m, at a shear of {:.5g} m\n", initial.common.peak_x_m,
           initial.critical_shear_m);

@@ -66,6 +66,20 @@ Entry number(std::string key, Ref ref, Range range, std::string help) {
           [ref](Case& config, const Value& value) { ref(config) = std::get<double>(value); }};
 }
 
+/// Of a member that is a std::optional<double>.
+template <class Ref>
+Entry optional_number(std::string key, Ref ref, Range range, double example, std::string help) {
+  Entry entry{std::move(key),
+              Kind::number,
+              range,
+              {},
+              std::move(help),
+              [ref, example](const Case& config) -> Value { return ref(config).value_or(example); },
+              [ref](Case& config, const Value& value) { ref(config) = std::get<double>(value); }};
+  entry.is_set = [ref](const Case& config) { return ref(config).has_value(); };
+  return entry;
+}
+
 template <class Ref>
 Entry integer(std::string key, Ref ref, Range range, std::string help) {
   return {std::move(key),
@@ -231,9 +245,41 @@ using statics::TopEdge;
 
 // Settings on which keys depend.
 
+bool is_tilted(const Case& c) {
+  return c.loading.method != LoadingMethod::prestress;
+}
 Condition tilted() {
-  return {Message("{} = direct or ramp", Key("loading.method")),
-          [](const Case& c) { return c.loading.method != LoadingMethod::prestress; }};
+  return {Message("{} = direct or ramp", Key("loading.method")), is_tilted};
+}
+bool is_pressed_by_force(const Case& c) {
+  return c.loading.mean_pressure_Pa || c.loading.normal_force_N_per_m;
+}
+Condition pressed_by_force() {
+  return {Message("{} or {:leaf}", Key("loading.normal_force_N_per_m"), Key("loading.mean_pressure_Pa")),
+          [](const Case& c) { return is_tilted(c) && is_pressed_by_force(c); }};
+}
+Condition pressed_by_displacement() {
+  return {Message("{} = direct or ramp and neither {} nor {:leaf}", Key("loading.method"),
+                  Key("loading.normal_force_N_per_m"), Key("loading.mean_pressure_Pa")),
+          [](const Case& c) { return is_tilted(c) && !is_pressed_by_force(c); }};
+}
+/// The other way to give one load.
+Condition tilted_without(const char* key, std::optional<double> Loading::*other) {
+  return {Message("{} = direct or ramp and no {}", Key("loading.method"), Key(key)),
+          [other](const Case& c) { return is_tilted(c) && !(c.loading.*other); }};
+}
+Condition sheared_without(const char* key, std::optional<double> Loading::*other) {
+  return {Message("{} = direct, {} other than spontaneous and no {}", Key("loading.method"),
+                  Key("event.kind"), Key(key)),
+          [other](const Case& c) {
+            return c.loading.method == LoadingMethod::direct && c.event != EventKind::spontaneous &&
+                   !(c.loading.*other);
+          }};
+}
+Condition sheared_to_margin() {
+  return {Message("{} = direct or ramp and neither {} nor {:leaf}", Key("loading.method"),
+                  Key("loading.shear_force_N_per_m"), Key("loading.shear_over_critical")),
+          [](const Case& c) { return is_tilted(c) && !statics::is_sheared_by_force(c.loading); }};
 }
 Condition prestressed() {
   return {Message("{} = prestress", Key("loading.method")),
@@ -413,11 +459,27 @@ void add_loading(EntryList& list) {
   list.add(
       Stage::statics,
       {
-          only_with(tilted(),
+          only_with(pressed_by_displacement(),
                     number("loading.tilt_left_m", at(&Case::loading, &Loading::tilt_left_m), at_least(0),
                            "downward displacement of the top edge at its left end, linear between the ends")),
-          only_with(tilted(), number("loading.tilt_right_m", at(&Case::loading, &Loading::tilt_right_m),
-                                     at_least(0), "the same at its right end")),
+          only_with(pressed_by_displacement(),
+                    number("loading.tilt_right_m", at(&Case::loading, &Loading::tilt_right_m), at_least(0),
+                           "the same at its right end")),
+          only_with(tilted_without("loading.mean_pressure_Pa", &Loading::mean_pressure_Pa),
+                    optional_number("loading.normal_force_N_per_m",
+                                    at(&Case::loading, &Loading::normal_force_N_per_m), above(0), 1e5,
+                                    "force that presses the interface before any shear, per metre of "
+                                    "thickness, instead of the two displacements, which are found")),
+          only_with(tilted_without("loading.normal_force_N_per_m", &Loading::normal_force_N_per_m),
+                    optional_number("loading.mean_pressure_Pa",
+                                    at(&Case::loading, &Loading::mean_pressure_Pa), above(0), 1e6,
+                                    "mean pressure of the interface before any shear, normal force over "
+                                    "plate.width_m, instead of the two displacements, which are found")),
+          only_with(
+              pressed_by_force(),
+              number("loading.tilt_difference_m", at(&Case::loading, &Loading::tilt_difference_m), any(),
+                     "downward displacement of the top edge at its left end less that at its "
+                     "right end")),
           only_with(tilted(),
                     word<TopEdge>("loading.top_during_tilt", at(&Case::loading, &Loading::top_during_tilt),
                                   {{"held", TopEdge::held}, {"free", TopEdge::free}},
@@ -457,10 +519,21 @@ void add_loading(EntryList& list) {
                     number("loading.edge_margin_m", at(&Case::loading, &Loading::edge_margin_m), at_least(0),
                            "length at each end of the contact that does not count for the critical shear")),
           only_with(
-              tilted(),
+              sheared_to_margin(),
               number("loading.critical_margin", at(&Case::loading, &Loading::critical_margin),
                      strictly_between(0, 1),
                      "common state at t/p = (1 - margin) mu_s, spontaneous event at (1 + margin) mu_s")),
+          only_with(sheared_without("loading.shear_over_critical", &Loading::shear_over_critical),
+                    optional_number("loading.shear_force_N_per_m",
+                                    at(&Case::loading, &Loading::shear_force_N_per_m), above(0), 1e5,
+                                    "t summed over the interface in the common state, per metre of "
+                                    "thickness, instead of the margin; at most the critical one")),
+          only_with(
+              sheared_without("loading.shear_force_N_per_m", &Loading::shear_force_N_per_m),
+              optional_number("loading.shear_over_critical",
+                              at(&Case::loading, &Loading::shear_over_critical), {0, 1, true, false}, 0.9,
+                              "the same sum over the critical one, at which t/p first reaches mu_s "
+                              "inside, instead of the margin")),
       });
 }
 
@@ -703,6 +776,10 @@ std::vector<Entry> make_common_entries() {
 
 }  // namespace
 
+bool has_value(const Entry& entry, const Case& config) {
+  return !entry.is_set || entry.is_set(config);
+}
+
 bool contains(const Range& range, double value) {
   const bool above_min = range.min_open ? value > range.min : value >= range.min;
   const bool below_max = range.max_open ? value < range.max : value <= range.max;
@@ -723,8 +800,8 @@ std::string describe(const Range& range, const std::string& unit) {
 
 const std::vector<Magnitudes>& all_magnitudes() {
   static const std::vector<Magnitudes> all = {
-      {"m", 1e-12, 1e6},   {"s", 1e-15, 1e6},      {"Pa", 1e-6, 1e15}, {"kg/m3", 1e-6, 1e6},
-      {"m/s", 1e-12, 1e6}, {"m2/s2", 1e-12, 1e12}, {"", 1e-18, 1e9}};
+      {"m", 1e-12, 1e6},   {"s", 1e-15, 1e6},      {"Pa", 1e-6, 1e15},   {"kg/m3", 1e-6, 1e6},
+      {"m/s", 1e-12, 1e6}, {"m2/s2", 1e-12, 1e12}, {"N/m", 1e-12, 1e18}, {"", 1e-18, 1e9}};
   return all;
 }
 
@@ -797,7 +874,8 @@ std::string text_of_stages(const Case& config, const std::vector<Stage>& stages)
   const auto counts = [&](Stage stage) { return std::ranges::count(stages, stage) > 0; };
   std::string text;
   for (const Entry& entry : entries_of(config))
-    if (counts(entry.stage)) text += fmt::format("{} = {}\n", entry.key, toml_text(entry.get(config)));
+    if (counts(entry.stage) && has_value(entry, config))
+      text += fmt::format("{} = {}\n", entry.key, toml_text(entry.get(config)));
   if (counts(Stage::tractions)) text += config.prestress.table.text;
   if (counts(Stage::motion)) text += config.friction_along_x.table.text;
   return text;

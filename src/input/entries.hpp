@@ -71,7 +71,13 @@ struct Entry {
   Stage stage = Stage::mesh;
   /// Whether a case to which it applies has to set it: no default is meant.
   bool has_to_be_set = false;
+  /// Of a key without a default, which decides by being set: whether a case has it. `get` gives an example
+  /// else.
+  std::function<bool(const Case&)> is_set = {};
 };
+
+/// Whether a case has a value of a key that applies to it.
+bool has_value(const Entry& entry, const Case& config);
 
 /// The unit that a key ends with: "m" for plate.width_m, "kg/m3" for density_kg_per_m3; empty for a plain
 /// number. Friction coefficients, mu..., have none.

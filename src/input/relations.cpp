@@ -88,8 +88,14 @@ void check_tilt(const Case& config) {
   if (!is_tilted(config)) return;
   const auto& loading = config.loading;
   const auto& plate = config.plate;
-  const double tilt_m = std::max(loading.tilt_left_m, loading.tilt_right_m);
-  if (tilt_m == 0)
+  const bool by_force = statics::normal_force_N_per_m(loading, plate.width_m).has_value();
+  const double tilt_m =
+      by_force ? std::abs(loading.tilt_difference_m) : std::max(loading.tilt_left_m, loading.tilt_right_m);
+  if (by_force && tilt_m >= plate.height_m)
+    throw UserError("{} is {:.12g} m; its magnitude must be less than {}, {:.12g} m",
+                    Key("loading.tilt_difference_m"), loading.tilt_difference_m, Key("plate.height_m"),
+                    plate.height_m);
+  if (tilt_m == 0 && !by_force)
     throw UserError(
         "{} and {:leaf} are both 0: that leaves the plate without contact; increase one of them, or set {} "
         "= prestress",

@@ -159,9 +159,20 @@ void apply(const std::vector<Override>& overrides, Document& document) {
 }
 
 /// Keys whose values decide which later ones of these, and which other keys, there are.
-constexpr std::array deciding_keys = {
-    "plate.coarsenings", "base.kind",           "base.coarsenings", "loading.method",     "prestress.file",
-    "friction.file",     "friction.random_key", "event.kind",       "event.trigger_form", "nucleation.form"};
+constexpr std::array deciding_keys = {"plate.coarsenings",
+                                      "base.kind",
+                                      "base.coarsenings",
+                                      "loading.method",
+                                      "prestress.file",
+                                      "friction.file",
+                                      "friction.random_key",
+                                      "event.kind",
+                                      "event.trigger_form",
+                                      "nucleation.form",
+                                      "loading.normal_force_N_per_m",
+                                      "loading.mean_pressure_Pa",
+                                      "loading.shear_force_N_per_m",
+                                      "loading.shear_over_critical"};
 
 bool applies(const Entry& entry, const Case& config) {
   return !entry.only_with || entry.only_with->holds(config);
@@ -410,6 +421,7 @@ std::string reference_row(const Entry& entry, const Case& defaults) {
   if (entry.only_with) help += "; only with " + entry.only_with->setting.text;
   const DefaultRule* rule = default_rule_of(entry.key);
   const std::string standard = entry.has_to_be_set ? "none: to be set"
+                               : entry.is_set      ? "none"
                                : rule              ? rule->text
                                                    : fmt::format("`{}`", toml_text(entry.get(defaults)));
   return fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", leaf_of(entry.key), type, unit_of(entry.key),
@@ -474,11 +486,18 @@ Case case_of(Document document, const std::string& name, std::vector<std::string
   if (const Setting* law = document.find("friction.law"))
     assign(*find_entry(common_entries(), "friction.law"), *law, config);
   notes.push_back(drop_parameters_of_other_laws(config, document));
-  for (const char* key : deciding_keys) {
-    const Entry& entry = *find_entry(common_entries(), key);
-    if (const Setting* setting = document.find(key); setting && applies(entry, config))
-      assign(entry, *setting, config);
-  }
+  const auto decide = [&](auto&& counts) {
+    for (const char* key : deciding_keys) {
+      const Entry& entry = *find_entry(common_entries(), key);
+      if (const Setting* setting = document.find(key);
+          setting && counts(entry, *setting) && applies(entry, config))
+        assign(entry, *setting, config);
+    }
+  };
+  decide([](const Entry& entry, const Setting&) { return !entry.is_set; });
+  // Keys that decide by being set exclude others of their kind: overrides win.
+  decide([](const Entry& entry, const Setting& setting) { return entry.is_set && setting.is_override(); });
+  decide([](const Entry& entry, const Setting&) { return static_cast<bool>(entry.is_set); });
   notes.push_back(drop_keys_that_overrides_exclude(config, document));
   std::erase(notes, "");
   const std::vector<Entry> entries = entries_of(config);
@@ -567,6 +586,7 @@ std::string to_toml(const Case& config) {
   std::string text;
   std::string open_table;
   for (const Entry& entry : entries_of(config)) {
+    if (!has_value(entry, config)) continue;
     const std::string table = table_of(entry.key);
     if (table != open_table) text += fmt::format("\n[{}]\n", table);
     open_table = table;

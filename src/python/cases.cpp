@@ -244,12 +244,24 @@ void bind_rupture(nb::module_& module) {
 
 void bind_info(nb::module_& module) {
   using I = run::Info;
+  using L = run::FoundLoads;
   using M = run::MeshChoice;
   nb::class_<M>(module, "MeshChoice", "A mesh for a case's process zone.")
       .def_ro("element_size_m", &M::element_size_m)
       .def_ro("coarsenings", &M::coarsenings, "of the plate, and of a base")
       .def_ro("process_zone_elements", &M::process_zone_elements)
       .def_ro("n_nodes", &M::n_nodes);
+  nb::class_<L>(module, "Loads",
+                "Forces of the interface per metre of thickness, and the displacements that give them.")
+      .def_ro("normal_force_N_per_m", &L::normal_force_N_per_m, "before any shear")
+      .def_ro("mean_pressure_Pa", &L::mean_pressure_Pa, "the same over plate.width_m")
+      .def_ro("tilt_left_m", &L::tilt_left_m, "downward displacement of the top edge at its left end")
+      .def_ro("tilt_right_m", &L::tilt_right_m, "the same at its right end")
+      .def_ro("shear_force_N_per_m", &L::shear_force_N_per_m, "before triggered events")
+      .def_ro("shear_m", &L::shear_m, "displacement of the top edge to +x that gives it")
+      .def_ro("critical_shear_force_N_per_m", &L::critical_shear_force_N_per_m,
+              "at which t/p first reaches mu_s inside")
+      .def_ro("critical_shear_m", &L::critical_shear_m);
   nb::class_<I>(module, "Info", "What a case needs and what is to be expected of it, before it runs.")
       .def_ro("speeds", &I::speeds, "of the plate")
       .def_ro("base_speeds", &I::base_speeds, "of the body below; None on the rigid plane")
@@ -271,6 +283,7 @@ void bind_info(nb::module_& module) {
       .def_ro("cheapest_mesh", &I::cheapest_mesh,
               "for arrivals to about 1 %, docs/mesh.md; None without a process zone")
       .def_ro("well_posedness", &I::well_posedness, "of slow uniform sliding at the plate's nominal pressure")
+      .def_ro("loads", &I::loads, "of a case that gives forces, by its statics; else None")
       .def_ro("notes", &I::notes,
               "what is hardly meant, decides physics unasked, or keeps it from a rupture");
 }
@@ -304,7 +317,8 @@ void bind_cases(nb::module_& module) {
                    [](const C& c) { return interface::static_coefficient(c.config().friction); })
       .def(
           "info", [](const C& c) { return at_its_place(c, [&] { return run::info(c.config()); }); },
-          nb::call_guard<nb::gil_scoped_release>(), "What follows from the case without solving anything.")
+          nb::call_guard<nb::gil_scoped_release>(),
+          "What follows from the case; only loads that are forces take its statics.")
       .def("stable_step_s", &stable_step_s, "element_size_m"_a,
            "Largest stable step of the case's material in square elements, s.")
       .def("well_posedness", &well_posedness, "pressure_Pa"_a, "element_size_m"_a, "longest_wavelength_m"_a,

@@ -37,8 +37,8 @@ stability::Bodies bodies_of(const input::Case& config);
 /// What the plate's shape leaves of loading.solver.
 statics::StaticSolver wanted_solver(const input::Case& config);
 
-/// Mean pressure of the interface under the tilt, the bodies' sides free; a base takes its share of the
-/// compression.
+/// Mean pressure of the interface: of the normal force where the case gives it, else under the tilt, the
+/// bodies' sides free; a base takes its share of the compression.
 double nominal_pressure_Pa(const input::Case& config);
 
 /// Whether the tractions of the interface are given: no statics, no ramp.

@@ -35,6 +35,7 @@ InitialState at_interface(const InitialState& state) {
   light.solver = state.solver;
   light.solver_bytes = state.solver_bytes;
   light.wall_s = state.wall_s;
+  light.loads = state.loads;
   if (state.ramp)
     light.ramp = motion::Ramp{at_interface(state.ramp->common), at_interface(state.ramp->spontaneous),
                               state.ramp->record, state.ramp->steps, state.ramp->interrupted};

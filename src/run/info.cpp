@@ -316,6 +316,7 @@ Info info(const input::Case& config, const std::optional<Sharing>& sharing) {
   }
   info.expected_s =
       info.node_updates / info.node_updates_per_s + expected_statics_s(info) + expected_rest_s(info);
+  info.loads = find_loads(config, meshes);
   info.notes = notes_of_case(config, info.rupture, info.step_s);
   if (sharing) info.shared = shared_by(config, meshes, timed, *sharing, info);
   return info;

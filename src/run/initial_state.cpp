@@ -228,7 +228,6 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
                                 const motion::Execution& execution, const RampBegins& ramp_begins,
                                 Processes* processes, bool may_stay_distributed) {
   const auto start = Clock::now();
-  const double margin = config.loading.critical_margin;
   InitialState initial;
   auto meshes = check(config, processes, may_stay_distributed);
   initial.mesh = std::move(meshes.plate);
@@ -266,10 +265,13 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
   initial.n_unknowns = statics.solver().n_unknowns();
   initial.solver = statics::choose_solver(wanted_solver(config), 2.0 * static_cast<double>(initial.n_nodes));
   initial.solver_bytes = statics.solver().bytes();
-  initial.critical_shear_m = statics.shear_to(1).shear_m;
+  auto critical = statics.shear_to(1);
+  initial.critical_shear_m = critical.shear_m;
   if (config.loading.method == statics::LoadingMethod::direct) {
-    initial.common = statics.shear_to(1 - margin);
-    initial.spontaneous = statics.shear_to(1 + margin);
+    initial.common = common_state(config, statics, critical, initial.tributary_m);
+    initial.spontaneous = statics::is_sheared_by_force(config.loading)
+                              ? initial.common
+                              : statics.shear_to(1 + config.loading.critical_margin);
   } else {
     auto of_ramp = config;
     of_ramp.time.interface_substeps = 1;
@@ -285,8 +287,25 @@ InitialState make_initial_state(const input::Case& config, const motion::Monitor
     initial.common = initial.ramp->common;
     initial.spontaneous = initial.ramp->spontaneous;
   }
+  if (has_forces(config))
+    initial.loads = found_loads(config, statics, critical, initial.common, initial.tributary_m);
   initial.wall_s = seconds_since(start);
   return initial;
+}
+
+std::optional<FoundLoads> find_loads(const input::Case& config, const Meshes& meshes) {
+  if (!has_forces(config) || meshes.plate.is_interface()) return {};
+  const auto base_material = input::base_material(config);
+  std::optional<statics::ElasticBody> base;
+  if (meshes.base) base.emplace(statics::ElasticBody{*meshes.base, base_material});
+  const auto mu_s = static_coefficients(config, meshes.mu_s);
+  const statics::Statics statics({meshes.plate, config.material}, base, config.loading,
+                                 at_all_nodes(mu_s, meshes.plate),
+                                 interface::static_coefficient_key(config.friction));
+  const auto tributary_m = mesh::tributary_lengths_m(meshes.plate);
+  const auto critical = statics.shear_to(1);
+  return found_loads(config, statics, critical, common_state(config, statics, critical, tributary_m),
+                     tributary_m);
 }
 
 }  // namespace slipfront::run

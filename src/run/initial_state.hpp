@@ -12,6 +12,7 @@
 #include "motion/event.hpp"
 #include "motion/plain_stepper.hpp"
 #include "processes/processes.hpp"
+#include "run/loads.hpp"
 #include "statics/statics.hpp"
 
 namespace slipfront::run {
@@ -24,16 +25,18 @@ struct InitialState {
   std::optional<mesh::Mesh> base;         ///< of the body below, upside down; none on the rigid plane
   std::int64_t n_nodes = 0, n_cells = 0;  ///< of both
   std::vector<double> tributary_m;        ///< [interface nodes]
-  statics::Equilibrium common;            ///< at t/p = (1 - critical_margin) mu_s inside
-  statics::Equilibrium spontaneous;       ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s
-  bool prescribed = false;                ///< loading.method is prestress: no statics, no critical shear
-  std::vector<double> mu_s;               ///< [interface nodes] where friction varies along x, else none
-  double critical_shear_m = 0;            ///< shear at t/p = mu_s inside, found directly
+  statics::Equilibrium common;  ///< at t/p = (1 - critical_margin) mu_s inside, or under a given shear force
+  statics::Equilibrium spontaneous;  ///< at (1 + critical_margin) mu_s; by the ramp: just before mu_s;
+                                     ///< under a given shear force the common one
+  bool prescribed = false;           ///< loading.method is prestress: no statics, no critical shear
+  std::vector<double> mu_s;          ///< [interface nodes] where friction varies along x, else none
+  double critical_shear_m = 0;       ///< shear at t/p = mu_s inside, found directly
   std::int64_t n_unknowns = 0;
   statics::StaticSolver solver = statics::StaticSolver::automatic;  ///< of the statics, auto without any
   double solver_bytes = 0;                                          ///< held by it
   double wall_s = 0;
   std::optional<motion::Ramp> ramp;  ///< where loading.method is ramp
+  std::optional<FoundLoads> loads;   ///< where the case gives forces
   /// This process's share of the displacements where processes keep them; else null.
   std::shared_ptr<statics::DistributedFields> kept;
 
@@ -41,7 +44,7 @@ struct InitialState {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(n_nodes, n_cells, tributary_m, common, spontaneous, prescribed, mu_s, critical_shear_m,
-            n_unknowns, solver, solver_bytes, wall_s, ramp);
+            n_unknowns, solver, solver_bytes, wall_s, ramp, loads);
   }
 };
 
@@ -77,6 +80,10 @@ using RampBegins = std::function<void(motion::Stepper& stepper, motion::RampRun&
 InitialState make_initial_state(const input::Case& config, const motion::Monitor& monitor,
                                 const motion::Execution& execution = {}, const RampBegins& ramp_begins = {},
                                 Processes* processes = nullptr, bool may_stay_distributed = false);
+
+/// What the forces of a case come to, by its statics; under loading.method = ramp as if it was direct. None
+/// where it gives none, or where the meshes are those of the interfaces alone.
+std::optional<FoundLoads> find_loads(const input::Case& config, const Meshes& meshes);
 
 /// A text that is the same for two cases if and only if they share their initial state.
 std::string initial_state_key(const input::Case& config);

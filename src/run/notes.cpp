@@ -81,10 +81,14 @@ void add_odd_pressures(const input::Case& config, Notes& notes) {
   if (!is_prestressed(config)) {
     const double strain = nominal_pressure_Pa(config) / E_Pa;
     if (strain > max_strain)
-      notes.push_back(
-          fmt::format("the tilt presses the plate by {:.3g} of Young's modulus, beyond small strains: are "
-                      "loading.tilt_left_m and loading.tilt_right_m in m?",
-                      strain));
+      notes.push_back(fmt::format(
+          "the {} the plate by {:.3g} of Young's modulus, beyond small strains: {}?",
+          config.loading.mean_pressure_Pa || config.loading.normal_force_N_per_m ? "normal force presses"
+                                                                                 : "tilt presses",
+          strain,
+          config.loading.mean_pressure_Pa       ? "is loading.mean_pressure_Pa in Pa"
+          : config.loading.normal_force_N_per_m ? "is loading.normal_force_N_per_m in N per m of thickness"
+                                                : "are loading.tilt_left_m and loading.tilt_right_m in m"));
     return;
   }
   const auto& prestress = config.prestress;

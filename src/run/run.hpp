@@ -129,7 +129,7 @@ void write_so_far(const std::filesystem::path& dir, const Result& result,
 /// run.json of a run without an event yet, or that has come to none.
 void write_status(const std::filesystem::path& dir, const input::Case& config, const Status& status);
 
-/// Derived quantities of a case, found without solving anything.
+/// Derived quantities of a case, found without solving anything but the statics of loads given as forces.
 struct Info {
   /// A division among processes, and what a run by them takes.
   struct Shared {
@@ -162,7 +162,8 @@ struct Info {
   /// Where friction varies along x the node of which that is, with the fastest growth; else not a number.
   double well_posedness_x_m = fronts::undefined;
   std::optional<Shared> shared;
-  std::vector<std::string> notes;  ///< see notes_of_case
+  std::optional<FoundLoads> loads;  ///< see find_loads
+  std::vector<std::string> notes;   ///< see notes_of_case
 };
 
 /// What lies between two neighbouring processes, as `slipfront bench --network` measures it; by default those

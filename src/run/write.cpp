@@ -50,6 +50,17 @@ Json energy_json(const record::Energies& e) {
   return json;
 }
 
+Json loads_json(const FoundLoads& loads) {
+  return {{"normal_force_N_per_m", loads.normal_force_N_per_m},
+          {"mean_pressure_Pa", loads.mean_pressure_Pa},
+          {"tilt_left_m", loads.tilt_left_m},
+          {"tilt_right_m", loads.tilt_right_m},
+          {"shear_force_N_per_m", loads.shear_force_N_per_m},
+          {"shear_m", loads.shear_m},
+          {"critical_shear_force_N_per_m", loads.critical_shear_force_N_per_m},
+          {"critical_shear_m", loads.critical_shear_m}};
+}
+
 Json statics_json(const InitialState& initial) {
   if (initial.prescribed)
     return {{"common_peak_t_over_p", initial.common.peak_ratio},
@@ -66,6 +77,7 @@ Json statics_json(const InitialState& initial) {
                {"solver", statics::name_of(initial.solver)},
                {"solver_bytes", std::llround(initial.solver_bytes)},
                {"wall_s", initial.wall_s}};
+  if (initial.loads) json["loads"] = loads_json(*initial.loads);
   if (initial.ramp) {
     const auto& ramp = *initial.ramp;
     Json slip = Json::object();

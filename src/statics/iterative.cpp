@@ -78,23 +78,27 @@ class IterativeLoadCase : public LoadCase {
  public:
   IterativeLoadCase(const BodiesOnGrid& bodies, const std::vector<double>& gap_m, Multigrid& multigrid,
                     threads::Team& team, int level, TopConstraint constraint, const TopDisplacement& top,
-                    bool sheared, const DisplacementOfBodies* start)
+                    EdgeMotion motion, const DisplacementOfBodies* start)
       : bodies_(bodies),
         gap_m_(gap_m),
         equations_(bodies, multigrid, team, level),
         constraint_(constraint),
         top_(top),
-        sheared_(sheared) {
+        sheared_(motion != EdgeMotion::none),
+        u1_of_edge_{motion == EdgeMotion::along_x ? 1.0 : 0.0,
+                    motion == EdgeMotion::down ? -bodies.y_sign() : 0.0} {
     const auto& grid = equations_.grid();
     u0_ = solid::Field(grid.n_nodes());
-    u1_ = solid::Field(sheared ? grid.n_nodes() : 0);
+    u1_ = solid::Field(sheared_ ? grid.n_nodes() : 0);
     for (mesh::Node n = 0; n < static_cast<mesh::Node>(grid.n_nodes()); ++n) {
       const auto finest = equations_.finest(n);
       const double share = bodies.share_of_height(finest);
       const auto u = start != nullptr ? bodies.on_grid(*start, finest) : uniform_strain(finest, share);
       u0_.x[n] = u.x;
       u0_.y[n] = u.y;
-      if (sheared) u1_.x[n] = share;
+      if (!sheared_) continue;
+      u1_.x[n] = share * u1_of_edge_.x;
+      u1_.y[n] = share * u1_of_edge_.y;
     }
     set_fixed();
   }
@@ -164,8 +168,8 @@ class IterativeLoadCase : public LoadCase {
       const int i = column(equations_.finest(n));
       if (constraint_ == TopConstraint::both) u0_.x[n] = top_.u_x_m[i];
       u0_.y[n] = bodies_.y_sign() * top_.u_y_m[i];
-      if (sheared_) u1_.x[n] = 1;
-      if (sheared_) u1_.y[n] = 0;
+      if (sheared_) u1_.x[n] = u1_of_edge_.x;
+      if (sheared_) u1_.y[n] = u1_of_edge_.y;
     }
     set_to_zero(equations_.held());
     set_to_zero(equations_.grid().unused);
@@ -183,7 +187,8 @@ class IterativeLoadCase : public LoadCase {
   LevelEquations equations_;
   TopConstraint constraint_;
   TopDisplacement top_;
-  bool sheared_;
+  bool sheared_;                     ///< whether the edge moves on
+  BodiesOnGrid::Vector u1_of_edge_;  ///< by which displacement of the grid
   solid::Field u0_, u1_;
   std::optional<Support> solved_;  ///< last one
   double solved_accuracy_ = 0;
@@ -212,10 +217,10 @@ IterativeSolver::IterativeSolver(const ElasticBody& plate, const std::optional<E
 }
 
 std::unique_ptr<LoadCase> IterativeSolver::load_case(TopConstraint constraint, const TopDisplacement& top,
-                                                     bool sheared, const DisplacementOfBodies* start,
+                                                     EdgeMotion motion, const DisplacementOfBodies* start,
                                                      int level) {
   return std::make_unique<IterativeLoadCase>(bodies_, gap_m_, multigrid_, team_, level, constraint, top,
-                                             sheared, start);
+                                             motion, start);
 }
 
 std::vector<std::size_t> IterativeSolver::interface_of(int level) const {

@@ -100,7 +100,7 @@ class IterativeSolver : public PlateSolver {
   IterativeSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base,
                   int threads = threads::Team::processors());
 
-  std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
+  std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, EdgeMotion motion,
                                       const DisplacementOfBodies* start, int level) override;
   std::int64_t n_unknowns() const override { return n_unknowns_; }
   double bytes() const override;

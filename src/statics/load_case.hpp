@@ -18,9 +18,9 @@ struct Displacement {
 };
 
 /// The plate under its loaded edge, held by what it stands on: displacements of the interface, relative to
-/// those of a base, and forces of the contact on the plate, affine in the shear: u0 + shear u1, f0 + shear
-/// f1. Vectors over the interface hold x and y of each of the level's interface nodes in turn. Forces are per
-/// unit thickness.
+/// those of a base, and forces of the contact on the plate, affine in the shear, the length by which the edge
+/// moves on along x, or down: u0 + shear u1, f0 + shear f1. Vectors over the interface hold x and y of each
+/// of the level's interface nodes in turn. Forces are per unit thickness.
 class LoadCase {
  public:
   virtual ~LoadCase() = default;

@@ -32,12 +32,12 @@ Support take_support(MessageBuffer& from) {
 
 class PetscLoadCase : public LoadCase {
  public:
-  PetscLoadCase(PetscSolver& solver, TopConstraint constraint, const TopDisplacement& top, bool sheared,
+  PetscLoadCase(PetscSolver& solver, TopConstraint constraint, const TopDisplacement& top, EdgeMotion motion,
                 const DisplacementOfBodies* start)
-      : solver_(solver), is_sheared_(sheared) {
+      : solver_(solver), is_sheared_(motion == EdgeMotion::along_x) {
     const auto& loaded = solver.loaded_;
     MessageBuffer given;
-    given.put(constraint).put(static_cast<std::uint8_t>(sheared)).put(start != nullptr ? start->kept : -1);
+    given.put(constraint).put(motion).put(start != nullptr ? start->kept : -1);
     given.put(loaded.from_m).put(loaded.to_m - loaded.from_m).put(loaded.y_m);
     given.put(top.u_x_m).put(top.u_y_m);
     solver.ask(PetscSolver::Command::begin, [&](int) { return given; });
@@ -123,17 +123,19 @@ void PetscSubdomain::build(const Subdomain& subdomain) {
 /// nodes have the same places along x; a base at rest.
 void PetscSubdomain::begin(MessageBuffer& given) {
   const auto constraint = given.take<TopConstraint>();
-  const bool sheared = given.take<std::uint8_t>() != 0;
+  const auto motion = given.take<EdgeMotion>();
+  const bool moves_on = motion != EdgeMotion::none;
   const int start = given.take<int>();
   const auto x0_m = given.take<double>(), width_m = given.take<double>(), height_m = given.take<double>();
   const auto u_x_m = given.take_all<double>(), u_y_m = given.take_all<double>();
   const std::size_t n = x_m_.size();
   std::vector<double> u0 = start >= 0 ? kept_.own(start) : std::vector<double>(2 * n, 0.0);
-  std::vector<double> u1(sheared ? 2 * n : 0, 0.0);
+  std::vector<double> u1(moves_on ? 2 * n : 0, 0.0);
   const auto last = static_cast<double>(u_y_m.size() - 1);
   for (std::size_t k = 0; k < n; ++k) {
     const double share_of_height = y_m_[k] / height_m;
-    if (sheared) u1[2 * k] = share_of_height;
+    if (motion == EdgeMotion::along_x) u1[2 * k] = share_of_height;
+    if (motion == EdgeMotion::down) u1[2 * k + 1] = -share_of_height;
     if (start >= 0) continue;
     const auto above =
         static_cast<std::size_t>(std::clamp(std::round((x_m_[k] - x0_m) / width_m * last), 0.0, last));
@@ -144,7 +146,8 @@ void PetscSubdomain::begin(MessageBuffer& given) {
     const auto at = 2 * static_cast<std::size_t>(pair - first_);
     if (constraint == TopConstraint::both) u0[at] = u_x_m[place];
     u0[at + 1] = u_y_m[place];
-    if (sheared) u1[at] = 1;
+    if (motion == EdgeMotion::along_x) u1[at] = 1;
+    if (motion == EdgeMotion::down) u1[at + 1] = -1;
   }
   equations_->begin(constraint, u0, u1);
 }
@@ -236,8 +239,8 @@ PetscSolver::~PetscSolver() {
 }
 
 std::unique_ptr<LoadCase> PetscSolver::load_case(TopConstraint constraint, const TopDisplacement& top,
-                                                 bool sheared, const DisplacementOfBodies* start, int) {
-  return std::make_unique<PetscLoadCase>(*this, constraint, top, sheared, start);
+                                                 EdgeMotion motion, const DisplacementOfBodies* start, int) {
+  return std::make_unique<PetscLoadCase>(*this, constraint, top, motion, start);
 }
 
 double PetscSolver::bytes() const {

@@ -46,7 +46,7 @@ class PetscSolver : public PlateSolver {
   PetscSolver(const ElasticBody& plate, const std::optional<ElasticBody>& base, const SharedBy& shared);
   ~PetscSolver() override;
 
-  std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
+  std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, EdgeMotion motion,
                                       const DisplacementOfBodies* start, int level) override;
   std::int64_t n_unknowns() const override { return n_unknowns_; }
   double bytes() const override;

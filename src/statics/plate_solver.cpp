@@ -19,12 +19,16 @@ namespace {
 class CondensedLoadCase : public LoadCase {
  public:
   CondensedLoadCase(std::vector<double> gap_m, std::shared_ptr<const CondensedInterface> interface,
-                    const TopDisplacement& top, bool sheared)
-      : gap_m_(std::move(gap_m)), interface_(std::move(interface)), load_(interface_->load(top)) {
+                    const TopDisplacement& top, EdgeMotion motion)
+      : gap_m_(std::move(gap_m)),
+        interface_(std::move(interface)),
+        motion_(motion),
+        load_(interface_->load(top)) {
     const auto n = top.u_x_m.size();
-    unit_shear_ = {{std::vector<double>(n, sheared ? 1.0 : 0.0), std::vector<double>(n, 0.0)},
+    unit_shear_ = {{std::vector<double>(n, motion == EdgeMotion::along_x ? 1.0 : 0.0),
+                    std::vector<double>(n, motion == EdgeMotion::down ? -1.0 : 0.0)},
                    Eigen::VectorXd::Zero(load_.g_N.size())};
-    if (sheared) unit_shear_ = interface_->load(unit_shear_.top);
+    if (motion != EdgeMotion::none) unit_shear_ = interface_->load(unit_shear_.top);
     g0_N_ = interface_->relative_load(load_);
     g1_N_ = interface_->relative_load(unit_shear_);
   }
@@ -73,8 +77,9 @@ class CondensedLoadCase : public LoadCase {
 
   Displacement displacement(double shear) const override {
     auto load = load_;
-    for (std::size_t k = 0; k < load.top.u_x_m.size(); ++k)
-      load.top.u_x_m[k] += shear * unit_shear_.top.u_x_m[k];
+    const auto moves = motion_ == EdgeMotion::down ? &TopDisplacement::u_y_m : &TopDisplacement::u_x_m;
+    for (std::size_t k = 0; k < (load.top.*moves).size(); ++k)
+      (load.top.*moves)[k] += shear * (unit_shear_.top.*moves)[k];
     load.g_N += shear * unit_shear_.g_N;
     return interface_->displacement(load, u0 + shear * u1);
   }
@@ -84,8 +89,9 @@ class CondensedLoadCase : public LoadCase {
  private:
   std::vector<double> gap_m_;
   std::shared_ptr<const CondensedInterface> interface_;
+  EdgeMotion motion_;
   Factorisation::Load load_;        ///< the loaded edge where it stands without shear
-  Factorisation::Load unit_shear_;  ///< the loaded edge moved by 1 m along x
+  Factorisation::Load unit_shear_;  ///< the loaded edge moved on by 1 m
   Eigen::VectorXd g0_N_, g1_N_;     ///< what the two send to the interface
 };
 
@@ -101,13 +107,13 @@ class DirectSolver : public PlateSolver {
     held_ = std::make_shared<CondensedInterface>(held_plate_, base_);
   }
 
-  std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, bool sheared,
+  std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top, EdgeMotion motion,
                                       const DisplacementOfBodies*, int) override {
     auto interface = held_;
     if (constraint == TopConstraint::vertical)
       interface = std::make_shared<CondensedInterface>(
           std::make_shared<Factorisation>(mesh_, material_, constraint), base_);
-    return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top, sheared);
+    return std::make_unique<CondensedLoadCase>(gap_m_, std::move(interface), top, motion);
   }
   std::int64_t n_unknowns() const override {
     return held_plate_->n_unknowns() + (base_ ? base_->n_unknowns() : 0);

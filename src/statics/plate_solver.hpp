@@ -23,6 +23,9 @@ enum class Contact : std::uint8_t { stick, slip, open };
 /// Which displacements of the loaded edge are prescribed.
 enum class TopConstraint { both, vertical };
 
+/// How the loaded edge moves on from its prescribed displacements, by a length that LoadCase calls the shear.
+enum class EdgeMotion : std::uint8_t { none, along_x, down };
+
 /// Prescribed displacements of the loaded edge, in the order of mesh.far_edge_nodes (u_x is ignored where
 /// only the vertical is prescribed).
 struct TopDisplacement {
@@ -72,10 +75,11 @@ struct DisplacementOfBodies {
 class PlateSolver {
  public:
   virtual ~PlateSolver() = default;
-  /// The loaded edge at `top`, and where `sheared` moved on along x by the shear. `start`: a guess of the
-  /// displacement without shear on the finest level, or null.
+  /// The loaded edge at `top`, and moved on by `motion`. `start`: a guess of the displacement at `top` on the
+  /// finest level, or null.
   virtual std::unique_ptr<LoadCase> load_case(TopConstraint constraint, const TopDisplacement& top,
-                                              bool sheared, const DisplacementOfBodies* start, int level) = 0;
+                                              EdgeMotion motion, const DisplacementOfBodies* start,
+                                              int level) = 0;
   virtual int n_levels() const = 0;
   /// Interface nodes of a level, as places in mesh.interface_nodes.
   virtual std::vector<std::size_t> interface_of(int level) const = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 namespace slipfront::statics {
 
 /// How the state before the event comes about: by tilt and shear of the top edge, or prescribed.
@@ -22,7 +24,8 @@ enum class StaticSolver {
   petsc,      ///< conjugate gradients of PETSc, shared by the processes of a run
 };
 
-/// Displacements of the top edge: pushed down along a line, then moved to +x.
+/// Displacements of the top edge: pushed down along a line, then moved to +x; or the forces of the interface
+/// that they are to give. Forces are per unit thickness.
 struct Loading {
   double tilt_left_m = 0.37e-3;    ///< downward displacement at the left end
   double tilt_right_m = 0.037e-3;  ///< ... at the right end, linear between
@@ -33,6 +36,22 @@ struct Loading {
   double edge_margin_m = 10e-3;  ///< "inside" the interface leaves out this much at each end of the contact
   double critical_margin =
       1e-3;  ///< common state at t/p = (1 - margin) mu_s inside, spontaneous event at (1 + margin)
+  /// At most one of the two, of the state before any shear; then tilt_left_m and tilt_right_m do not count.
+  std::optional<double> normal_force_N_per_m = {}, mean_pressure_Pa = {};
+  double tilt_difference_m = 0;  ///< with these: how much further down the left end goes than the right one
+  /// Of the common state, at most one of the two; then critical_margin does not count.
+  std::optional<double> shear_force_N_per_m = {}, shear_over_critical = {};
 };
+
+/// The normal force that is asked for, of an interface of a given width; none where displacements are.
+inline std::optional<double> normal_force_N_per_m(const Loading& loading, double width_m) {
+  if (loading.mean_pressure_Pa) return *loading.mean_pressure_Pa * width_m;
+  return loading.normal_force_N_per_m;
+}
+
+/// Whether the shear of the common state is asked for by its force.
+inline bool is_sheared_by_force(const Loading& loading) {
+  return loading.shear_force_N_per_m || loading.shear_over_critical;
+}
 
 }  // namespace slipfront::statics

@@ -21,6 +21,15 @@ bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double oth
   return ratio * other_mu_s > other_ratio * mu_s;
 }
 
+ContactForce contact_force(const Equilibrium& state, std::span<const double> tributary_m) {
+  ContactForce force;
+  for (std::size_t k = 0; k < tributary_m.size(); ++k) {
+    force.normal_N_per_m += state.tractions.p_s_Pa[k] * tributary_m[k];
+    force.shear_N_per_m += state.tractions.t_s_Pa[k] * tributary_m[k];
+  }
+  return force;
+}
+
 namespace {
 
 /// The interface of one level of the solver. [nodes]
@@ -89,6 +98,20 @@ class ContactProblem {
   }
   double p_Pa(std::size_t k, double shear) const {
     return (plate_.f0(2 * k + 1) + shear * plate_.f1(2 * k + 1)) / nodes.tributary_m[k];
+  }
+
+  using Traction = double (ContactProblem::*)(std::size_t k, double shear) const;
+  /// The shear at which a traction adds up to a force with the states as they are; infinite where the force
+  /// does not grow with it.
+  double shear_at(Traction traction, double force_N_per_m) const {
+    double at_0 = 0, at_1 = 0;
+    for (std::size_t k = 0; k < n_; ++k) {
+      if (contact[k] == Contact::open) continue;
+      at_0 += (this->*traction)(k, 0) * nodes.tributary_m[k];
+      at_1 += (this->*traction)(k, 1) * nodes.tributary_m[k];
+    }
+    const double growth = at_1 - at_0;
+    return growth > 0 ? (force_N_per_m - at_0) / growth : std::numeric_limits<double>::infinity();
   }
 
   /// Corrects the states that the solution at `shear` contradicts; `may_slip(k)`: whether node k may pass
@@ -160,17 +183,26 @@ constexpr double guess_accuracy = 2e-4;
 /// Contradictions of a contact state that count, over the largest pressure or displacement.
 constexpr double state_tolerance = 1e-9;
 
-[[noreturn]] void contact_does_not_settle() {
-  throw UserError("the static contact iteration does not converge; change {}, {} or {}",
-                  Key("loading.tilt_left_m"), Key("loading.tilt_right_m"), Key("plate.corner"));
+/// The keys that press the bodies together.
+Message keys_of_tilt(const Loading& loading) {
+  const Key difference("loading.tilt_difference_m");
+  if (loading.mean_pressure_Pa) return Message("{} or {}", Key("loading.mean_pressure_Pa"), difference);
+  if (loading.normal_force_N_per_m)
+    return Message("{} or {}", Key("loading.normal_force_N_per_m"), difference);
+  return Message("{} or {}", Key("loading.tilt_left_m"), Key("loading.tilt_right_m"));
+}
+
+[[noreturn]] void contact_does_not_settle(const Loading& loading) {
+  throw UserError("the static contact iteration does not converge; change {}, or {}", keys_of_tilt(loading),
+                  Key("plate.corner"));
 }
 
 /// Solves and corrects the contact states until nothing changes; `find_shear()` is called after each
 /// solution. An iterative solution is only made as accurate as the states at that point deserve.
 /// @return the shear.
 template <class FindShear, class MaySlip>
-double settle(ContactProblem& problem, double accuracy, double final, FindShear&& find_shear,
-              MaySlip&& may_slip, const Statics::MayContinue& may_continue) {
+double settle(ContactProblem& problem, const Loading& loading, double accuracy, double final,
+              FindShear&& find_shear, MaySlip&& may_slip, const Statics::MayContinue& may_continue) {
   for (int iteration = 1; iteration <= max_iterations; ++iteration) {
     if (!may_continue()) throw Interrupted("interrupted in the statics");
     problem.solve(accuracy);
@@ -185,7 +217,7 @@ double settle(ContactProblem& problem, double accuracy, double final, FindShear&
       accuracy = is_final ? std::max(guess_accuracy, final) : std::max(accuracy_decrease * accuracy, final);
     }
   }
-  contact_does_not_settle();
+  contact_does_not_settle(loading);
 }
 
 /// First and last coordinate of the contact, less the margin at each end.
@@ -206,10 +238,11 @@ Inside inside_contact(const ContactProblem& problem, double margin_m) {
 
 /// Interface nodes' displacement along x, relative to that of a base. [interface nodes]
 std::vector<double> relative_u_x_m(const mesh::Mesh& mesh, const mesh::Mesh* base, const Displacement& u,
-                                   const LoadCase& of_interface) {
+                                   const LoadCase& of_interface, double shear) {
   std::vector<double> u_x_m;
   if (u.kept) {
-    for (Eigen::Index k = 0; k < of_interface.u0.size(); k += 2) u_x_m.push_back(of_interface.u0(k));
+    for (Eigen::Index k = 0; k < of_interface.u0.size(); k += 2)
+      u_x_m.push_back(of_interface.u0(k) + shear * of_interface.u1(k));
     return u_x_m;
   }
   for (const auto n : mesh.interface_nodes) u_x_m.push_back(u.above.x[n]);
@@ -290,6 +323,12 @@ TopDisplacement tilt_of(const mesh::Mesh& mesh, const Loading& loading) {
   return tilt;
 }
 
+double height_over_modulus(const ElasticBody& body) {
+  double height_m = body.mesh.grid.rows * body.mesh.grid.spacing_m;
+  for (const auto& grid : body.mesh.coarser) height_m += grid.rows * grid.spacing_m;
+  return height_m / body.material.youngs_modulus_Pa;
+}
+
 DisplacementOfBodies displacement_of(const Equilibrium& e) {
   return {&e.u_m, &e.below_u_m, e.distributed_u_m ? e.distributed_u_m->number : -1};
 }
@@ -325,35 +364,62 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
       may_continue_(std::move(may_continue)) {
   const auto& mesh = mesh_;
   SLIPFRONT_ASSERT(mu_s_.size() == mesh.interface_nodes.size(), "mu_s of another interface");
-  const bool is_free = loading.top_during_tilt == TopEdge::free;
   solver_ = make_plate_solver(mesh, plate_body.material, loading.solver, base, shared);
+  press_down(height_over_modulus(plate_body) + (base ? height_over_modulus(*base) : 0));
+}
 
-  auto tilt = tilt_of(mesh, loading);
+void Statics::press_down(double compliance_m_per_Pa) {
+  const auto& mesh = mesh_;
+  const bool is_free = loading_.top_during_tilt == TopEdge::free;
+  const auto& loaded = loaded_nodes(mesh);
+  const double width_m = mesh.x_m[loaded.back()] - mesh.x_m[loaded.front()];
+  const auto force_N_per_m = normal_force_N_per_m(loading_, width_m);
+  if (force_N_per_m) {
+    const double guess_m = *force_N_per_m / width_m * compliance_m_per_Pa;
+    loading_.tilt_left_m = guess_m + 0.5 * loading_.tilt_difference_m;
+    loading_.tilt_right_m = guess_m - 0.5 * loading_.tilt_difference_m;
+  }
+
+  auto tilt = tilt_of(mesh, loading_);
   const auto make_case = [&](int level) {
-    return solver_->load_case(is_free ? TopConstraint::vertical : TopConstraint::both, tilt, false, nullptr,
-                              level);
+    return solver_->load_case(is_free ? TopConstraint::vertical : TopConstraint::both, tilt,
+                              force_N_per_m ? EdgeMotion::down : EdgeMotion::none, nullptr, level);
   };
   auto plate = make_case(0);
 
   const auto start = states_before(gaps_m(mesh, base_mesh_), mu_s_);
-  const auto no_shear = [] { return 0.0; };
+  bool reached = true;
+  const auto press_m = [&](const ContactProblem& problem) {
+    const double found = force_N_per_m ? problem.shear_at(&ContactProblem::p_Pa, *force_N_per_m) : 0.0;
+    reached = std::isfinite(found);
+    return reached ? found : 0.0;
+  };
   const auto may_slip = [](std::size_t) { return true; };
   double accuracy = solver_->iterates() ? first_accuracy : final_accuracy;
   auto states = start;
   const auto settle_coarse = [&](ContactProblem& coarse) {
-    settle(coarse, first_accuracy, guess_accuracy, no_shear, may_slip, may_continue_);
+    settle(
+        coarse, loading_, first_accuracy, guess_accuracy, [&] { return press_m(coarse); }, may_slip,
+        may_continue_);
   };
   if (begin_on_coarse_levels(mesh, base_mesh_, *solver_, start, make_case, settle_coarse, *plate, states))
     accuracy = guess_accuracy;
   ContactProblem problem(interface_nodes(mesh, base_mesh_, solver_->interface_of(0)), *plate,
                          std::move(states));
-  settle(problem, accuracy, final_accuracy, no_shear, may_slip, may_continue_);
-  tilted_ = make_equilibrium(problem, 0, loading.edge_margin_m);
+  const double pressed_m = settle(
+      problem, loading_, accuracy, final_accuracy, [&] { return press_m(problem); }, may_slip, may_continue_);
+  tilted_ = make_equilibrium(problem, pressed_m, loading_.edge_margin_m);
+  tilted_.shear_m = 0;
+  loading_.tilt_left_m += pressed_m;
+  loading_.tilt_right_m += pressed_m;
+  for (double& u_y_m : tilt.u_y_m) u_y_m -= pressed_m;
+  if (!reached)
+    throw UserError("no displacement of the top edge gives the normal force; change {}",
+                    keys_of_tilt(loading_));
   if (std::ranges::all_of(tilted_.tractions.p_s_Pa, [](double p) { return p <= 0; }))
-    throw UserError("the tilt leaves the plate without contact; increase {} or {}",
-                    Key("loading.tilt_left_m"), Key("loading.tilt_right_m"));
-  auto u = plate->displacement(0);
-  tilted_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u, *plate);
+    throw UserError("the tilt leaves the plate without contact; increase {}", keys_of_tilt(loading_));
+  auto u = plate->displacement(pressed_m);
+  tilted_u_x_m_ = relative_u_x_m(mesh, base_mesh_, u, *plate, pressed_m);
   plate.reset();
   tilted_.u_m = std::move(u.above);
   tilted_.below_u_m = std::move(u.below);
@@ -366,7 +432,7 @@ Statics::Statics(const ElasticBody& plate_body, const std::optional<ElasticBody>
       tilt.u_x_m[k] = tilted_.u_m.x[mesh.far_edge_nodes[k]];
   tilted_top_ = tilt;
   const auto tilted_u = displacement_of(tilted_);
-  sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_u, 0);
+  sheared_ = solver_->load_case(TopConstraint::both, tilted_top_, EdgeMotion::along_x, &tilted_u, 0);
 }
 
 Statics::~Statics() = default;
@@ -376,7 +442,7 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
   Inside inside{};
   const auto settle_problem = [&](ContactProblem& problem, double accuracy, double final) {
     return settle(
-        problem, accuracy, final,
+        problem, loading_, accuracy, final,
         [&] {
           inside = inside_contact(problem, loading_.edge_margin_m);
           return find_shear(problem, inside);
@@ -400,7 +466,7 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
     const auto start = states;
     const auto tilted_u = displacement_of(tilted_);
     const auto make_case = [&](int level) {
-      return solver_->load_case(TopConstraint::both, tilted_top_, true, &tilted_u, level);
+      return solver_->load_case(TopConstraint::both, tilted_top_, EdgeMotion::along_x, &tilted_u, level);
     };
     const auto settle_coarse = [&](ContactProblem& coarse) {
       settle_problem(coarse, first_accuracy, guess_accuracy);
@@ -427,6 +493,28 @@ Equilibrium Statics::shear(FindShear&& find_shear) const {
 
 Equilibrium Statics::shear_by(double shear_m) const {
   return shear([shear_m](const ContactProblem&, const Inside&) { return shear_m; });
+}
+
+Equilibrium Statics::shear_to_force(double force_N_per_m) const {
+  const double of_tilt = contact_force(tilted_, mesh::tributary_lengths_m(mesh_)).shear_N_per_m;
+  const auto key =
+      Key(loading_.shear_over_critical ? "loading.shear_over_critical" : "loading.shear_force_N_per_m");
+  if (of_tilt > force_N_per_m)
+    throw UserError(
+        "{}: the interface bears a shear force of {:.6g} N/m before any shear, more than {:.6g} N/m; raise "
+        "it, or change {}, or {}",
+        key, of_tilt, force_N_per_m, keys_of_tilt(loading_), Key("loading.top_during_tilt"));
+  last_.reset();  // the way begins at the tilt: back from a larger shear contact ends in other states
+  bool reached = true;
+  Equilibrium e = shear([&](const ContactProblem& problem, const Inside&) {
+    const double found = problem.shear_at(&ContactProblem::t_Pa, force_N_per_m);
+    reached = std::isfinite(found);
+    return reached ? found : 0.0;
+  });
+  if (!reached)
+    throw UserError("{}: no shear gives a force of {:.6g} N/m; reduce it, or raise {}", key, force_N_per_m,
+                    Key(mu_s_key_));
+  return e;
 }
 
 double Statics::ratio_at_peak(const Equilibrium& state, double share) const {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,11 +54,21 @@ struct Equilibrium {
 /// Whether an equilibrium has a contact and tractions at each of so many interface nodes.
 bool has_nodes(const Equilibrium& state, std::size_t n_interface_nodes);
 
+/// Sums of the tractions over the interface, per unit thickness, with their signs.
+struct ContactForce {
+  double normal_N_per_m = 0, shear_N_per_m = 0;
+};
+/// @param tributary_m  [interface nodes]
+ContactForce contact_force(const Equilibrium& state, std::span<const double> tributary_m);
+
 /// Whether a ratio t/p is a larger share of its mu_s than another one of its own.
 bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double other_mu_s);
 
 /// Loading of the plate at rest: tilt, then shear until t/p reaches a given share of mu_s somewhere inside
-/// the interface.
+/// the interface, or until the tractions add up to a given force.
+///
+/// Where `loading` gives the normal force, the tilt is the one that it takes: with the contact as it is the
+/// force is linear in how far the edge is pressed down, and both are corrected in turn until they agree.
 ///
 /// Nodes stick where they touch; a node whose pressure would be tensile is released; a node beyond mu_s slips
 /// at mu_s p, but inside only sticking is possible since the shear ends where mu_s is reached there.
@@ -93,9 +104,19 @@ class Statics {
   /// Equilibrium at a given shear since the tilt.
   Equilibrium shear_by(double shear_m) const;
 
+  /// Equilibrium at the shear at which the shear tractions add up to a force, per unit thickness.
+  /// @throws UserError where the tilt alone has a larger one, or no shear gives it.
+  Equilibrium shear_to_force(double force_N_per_m) const;
+
+  /// The loading with the displacements that give its normal force.
+  const Loading& loading() const { return loading_; }
+
   const PlateSolver& solver() const { return *solver_; }
 
  private:
+  /// Tilts the plate.
+  /// @param compliance_m_per_Pa  about: displacement of the loaded edge over the mean pressure
+  void press_down(double compliance_m_per_Pa);
   template <class FindShear>
   Equilibrium shear(FindShear&& find_shear) const;
   /// The share of mu_s where `state` has its peak.

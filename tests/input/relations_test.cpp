@@ -65,6 +65,7 @@ const Wrong wrong_cases[] = {
     {"EdgeMadePeriodic", uniform + "[event]\nkind = \"left\"\n" + square, {{"plate.sides", "periodic"}}},
     {"Tilt", "[loading]\ntilt_left_m = 0.1 # here\n"},
     {"TiltOfALowerPlate", "[plate]\nelement_size_m = 1e-4\nheight_m = 3e-4 # here\n"},
+    {"TiltWithAForce", "[loading]\nmean_pressure_Pa = 1e6\ntilt_difference_m = -0.1 # here\n"},
     {"EdgeMargin", "[plate]\nwidth_m = 0.2\n[loading]\nedge_margin_m = 0.1 # here\n"},
     {"EdgeMarginOfANarrowPlate", "[loading]\nedge_margin_m = 0.05\n", {{"plate.width_m", "0.1"}}},
     {"TriggerZone", "[event]\ntrigger_zone_m = 0.3 # here\n"},

@@ -151,15 +151,18 @@ TEST_P(Equilibria, AreThoseOfTheFactorisation) {
   for (auto& contact : slips.contact)
     if (contact == Contact::stick) contact = Contact::slip;
   {
-    const auto sheared = petsc.load_case(TopConstraint::both, top, true, nullptr, 0);
-    const auto expected = direct->load_case(TopConstraint::both, top, true, nullptr, 0);
+    const auto sheared = petsc.load_case(TopConstraint::both, top, EdgeMotion::along_x, nullptr, 0);
+    const auto expected = direct->load_case(TopConstraint::both, top, EdgeMotion::along_x, nullptr, 0);
     // Nodes that were fixed are freed, and the other way round.
     for (const auto& support : {stick, mixed, slips, mixed, stick})
       expect_same(bodies, *sheared, *expected, support, true);
   }
-  const auto tilted = petsc.load_case(TopConstraint::vertical, top, false, nullptr, 0);
-  const auto expected = direct->load_case(TopConstraint::vertical, top, false, nullptr, 0);
-  for (const auto& support : {mixed, stick}) expect_same(bodies, *tilted, *expected, support, false);
+  for (const auto motion : {EdgeMotion::none, EdgeMotion::down}) {
+    const auto tilted = petsc.load_case(TopConstraint::vertical, top, motion, nullptr, 0);
+    const auto expected = direct->load_case(TopConstraint::vertical, top, motion, nullptr, 0);
+    for (const auto& support : {mixed, stick})
+      expect_same(bodies, *tilted, *expected, support, motion != EdgeMotion::none);
+  }
 }
 
 TEST_P(Equilibria, LooserOnesAreLessAccurate) {
@@ -168,13 +171,13 @@ TEST_P(Equilibria, LooserOnesAreLessAccurate) {
   const auto direct = make_plate_solver(bodies.plate, pmma, StaticSolver::direct, bodies.base_body());
   const auto top = tilt_of(bodies.plate);
   const auto support = mixed_support(bodies.plate.interface_nodes.size());
-  const auto exact_case = direct->load_case(TopConstraint::both, top, false, nullptr, 0);
+  const auto exact_case = direct->load_case(TopConstraint::both, top, EdgeMotion::none, nullptr, 0);
   exact_case->solve(support, 0);
   const auto exact = exact_case->displacement(0);
   const double norm = std::sqrt(energy(bodies, exact));
   double last = 0;
   for (const double wanted : {1e-8, 1e-5, 1e-2}) {
-    const auto load_case = petsc.load_case(TopConstraint::both, top, false, nullptr, 0);
+    const auto load_case = petsc.load_case(TopConstraint::both, top, EdgeMotion::none, nullptr, 0);
     load_case->solve(support, wanted);
     const double reached = std::sqrt(energy(bodies, load_case->displacement(0), exact)) / norm;
     EXPECT_LE(reached, wanted);

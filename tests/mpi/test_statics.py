@@ -52,8 +52,10 @@ def traction_tolerance_pa(folder):
     energy is at most that of the loaded edge's largest displacement over the whole plate; K_kk is about E."""
     case = tomllib.loads((folder / "case.resolved.toml").read_text())
     plate, youngs_modulus_pa = case["plate"], case["material"]["youngs_modulus_Pa"]
-    shear_m = run_json(folder)["statics"]["critical_shear_m"]
-    tilt_m = max(case["loading"]["tilt_left_m"], case["loading"]["tilt_right_m"])
+    statics = run_json(folder)["statics"]
+    shear_m = statics["critical_shear_m"]
+    tilts = statics.get("loads", case["loading"])
+    tilt_m = max(tilts["tilt_left_m"], tilts["tilt_right_m"])
     strain = (tilt_m + shear_m) / plate["height_m"]
     norm = math.sqrt(youngs_modulus_pa * strain**2 * plate["height_m"] * plate["width_m"])
     return 2 * math.sqrt(youngs_modulus_pa) * ACCURACY * norm / plate["element_size_m"]
@@ -186,3 +188,21 @@ def test_displacements_stay_where_they_are_found(mpirun, case, settings, n):
     again = run(mpirun, 1, case, "again", *settings, "--state-dir", "states")
     for other in (gathered, again):
         require_same_bytes(kept, other, "static.csv", "fronts.csv", "interface.h5", "fields.vtkhdf")
+
+
+@pytest.mark.parametrize("settings", [(), ON_BASE], ids=["relief", "base"])
+def test_forces_as_the_factorisation(mpirun, case, settings):
+    forces = sets("loading.mean_pressure_Pa=5e6", "loading.tilt_difference_m=3e-4")
+    forces += sets("loading.shear_over_critical=0.9")
+    expected = run(mpirun, 0, case, "direct", *settings, *forces)
+    statics, nodes = run_json(expected)["statics"], table(expected, "static.csv")
+    # The critical shear is that of the node at the peak, where t = mu_s p but for the errors of both.
+    p_pa = nodes["p_s_Pa"][np.abs(nodes["x_m"] - statics["peak_x_m"]).argmin()]
+    tolerance = 4 * traction_tolerance_pa(expected) / p_pa
+    assert tolerance < 1e-5
+    for n in (1, 3):
+        found = run_json(run(mpirun, n, case, f"petsc-{n}", *settings, *forces, *PETSC))["statics"]["loads"]
+        assert found["mean_pressure_Pa"] == pytest.approx(5e6, rel=1e-9)
+        assert found == pytest.approx(statics["loads"], rel=tolerance)
+    require_done(mpirun(3, "run", case, "-o", "again", "-q", *settings, *forces, *PETSC))
+    require_same_bytes(mpirun.folder / "petsc-3", mpirun.folder / "again", "static.csv", "interface.h5")

@@ -329,6 +329,18 @@ y_m = [0.01, 0.01, 0.02, 0.02]
 interval_s = 1e-6
 names = ["SG1", "true", "1e-3", "a, 'b' [c]"]
 """,
+    "pressure": """
+event.kind = "right"
+plate = {element_size_m = 5e-3}
+time.end_s = 1e-5
+loading = {mean_pressure_Pa = 5e6, tilt_difference_m = 2e-4, shear_over_critical = 0.8}
+""",
+    "force": """
+event.kind = "left"
+plate = {element_size_m = 5e-3}
+time.end_s = 1e-5
+loading = {normal_force_N_per_m = 1e6, shear_force_N_per_m = 5e5}
+""",
     "bodies": UNIFORM.replace('event.kind = "left"', 'event.kind = "nucleation"')
     + """
 [friction]

@@ -222,6 +222,23 @@ def test_loads_of_other_methods_are_told(table, tilted):
     assert told["Base"] == "rigid plane" and told["Friction"].startswith("weakens with the slip rate")
 
 
+def test_forces_are_told_with_their_displacements(tmp_path):
+    loading = "[loading]\nmean_pressure_Pa = 5e6\nshear_over_critical = 0.8\n"
+    case = write_case(tmp_path, '[plate]\nelement_size_m = 5e-3\n[event]\nkind = "left"\n' + loading)
+    require_done(program("run", case, "-q", "-o", "out", "--set", "time.end_s=1e-5", cwd=tmp_path))
+    told = rows(tmp_path / "out")["Loads"]
+    pattern = (
+        r"normal force 1 MN/m, a mean pressure of 5 MPa; shear force [0-9.]+ kN/m, 0\.8 of the critical one; "
+        r"upper edge pressed down [0-9.]+ µm, then moved by [0-9.]+ µm to \+x; pressure p "
+    )
+    assert re.match(pattern, told), told
+    found = slipfront.info(case).loads
+    of_run = run_json(tmp_path / "out")["statics"]["loads"]
+    assert {name: getattr(found, name) for name in of_run} == of_run
+    assert "mean_pressure_Pa" in repr(slipfront.info(case))
+    assert slipfront.info(CASE).loads is None
+
+
 def test_the_critical_crack_is_that_of_info(pair):
     lines = program("info", pair / "case.resolved.toml", cwd=pair).stdout
     whole_m = float(re.search(r"critical crack length\s+([\d.]+) m ", lines)[1])

@@ -258,16 +258,16 @@ TEST_P(ByMultigrid, EquilibriumIsThatOfTheFactorisation) {
   for (const auto constraint : {TopConstraint::both, TopConstraint::vertical})
     for (const bool slip : {false, true}) {
       SCOPED_TRACE(slip);
-      const bool sheared = constraint == TopConstraint::both;
-      const auto a = direct->load_case(constraint, top, sheared, nullptr, 0);
-      const auto b = iterative->load_case(constraint, top, sheared, nullptr, 0);
+      const auto motion = constraint == TopConstraint::both ? EdgeMotion::along_x : EdgeMotion::down;
+      const auto a = direct->load_case(constraint, top, motion, nullptr, 0);
+      const auto b = iterative->load_case(constraint, top, motion, nullptr, 0);
       a->solve(mixed_support(bodies.plate, slip), 0);
       b->solve(mixed_support(bodies.plate, slip), 1e-11);
       EXPECT_LE(max_abs(a->u0 - b->u0), tolerance * max_abs(a->u0));
       EXPECT_LE(max_abs(a->f0 - b->f0), tolerance * max_abs(a->f0));
       EXPECT_LE(max_abs(a->u1 - b->u1), tolerance);
       EXPECT_LE(max_abs(a->f1 - b->f1), tolerance * max_abs(a->f1));
-      const double shear = sheared ? 1e-3 : 0;
+      const double shear = 1e-3;
       const auto u = a->displacement(shear), v = b->displacement(shear);
       expect_near(u.above, v.above, tolerance * max_abs(u.above));
       expect_near(u.below, v.below, tolerance * max_abs(u.above));
@@ -290,8 +290,8 @@ TEST_P(ByMultigrid, ResultIsTheSameForAnyNumberOfThreads) {
       IterativeSolver solver({bodies.plate, pmma}, bodies.base, threads);
       EXPECT_EQ(solver.team().size(), threads);
       EXPECT_EQ(solver.multigrid().parts(0), threads);
-      auto plate =
-          solver.load_case(TopConstraint::both, pressed_and_sheared(bodies.plate), false, nullptr, 0);
+      auto plate = solver.load_case(TopConstraint::both, pressed_and_sheared(bodies.plate), EdgeMotion::none,
+                                    nullptr, 0);
       plate->solve(mixed_support(bodies.plate, slip), 1e-8);
       return plate->displacement(0);
     };
@@ -311,8 +311,8 @@ TEST_P(ByMultigrid, CyclesDoNotGrowWithTheMeshOfTwoBodies) {
     for (const double element_m : {4e-3, 1e-3, 0.5e-3}) {
       const Bodies bodies(GetParam(), element_m);
       IterativeSolver solver({bodies.plate, pmma}, bodies.base);
-      auto plate =
-          solver.load_case(TopConstraint::both, pressed_and_sheared(bodies.plate), false, nullptr, 0);
+      auto plate = solver.load_case(TopConstraint::both, pressed_and_sheared(bodies.plate), EdgeMotion::none,
+                                    nullptr, 0);
       plate->solve(mixed_support(bodies.plate, slip), 1e-10);
       least = std::min(least, solver.multigrid().n_cycles());
       most = std::max(most, solver.multigrid().n_cycles());

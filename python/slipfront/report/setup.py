@@ -105,6 +105,19 @@ def spread(values: np.ndarray, unit: str) -> str:
     return f"{quantity(low, unit, 3)} to {quantity(high, unit, 3)}"
 
 
+def forces(found: dict[str, Any]) -> list[str]:
+    """Those that a case gives, in words; none of other cases."""
+    names = ("normal_force", "shear_force", "critical_shear_force")
+    numbers = [found.get(key) for key in ("mean_pressure_Pa", *(f"{name}_N_per_m" for name in names))]
+    if not all(is_number(number) for number in numbers):
+        return []
+    mean, normal, shear, critical = numbers
+    return [
+        f"normal force {quantity(normal, 'N/m')}, a mean pressure of {quantity(mean, 'Pa')}",
+        f"shear force {quantity(shear, 'N/m')}, {shear / critical:.4g} of the critical one",
+    ]
+
+
 def loads(run: Run) -> str:
     """p and t before the event, and where they come from."""
     speed = entry(run.case, "loading", "shear_speed_over_c_L")
@@ -122,11 +135,18 @@ def loads(run: Run) -> str:
         of_nodes = f"pressure p {p}, shear t {t} along x"
     if run.prescribed:
         return f"{of_nodes}, prescribed by a table{moves}"
-    left, right = si(run, "loading", "tilt_left_m"), si(run, "loading", "tilt_right_m")
+    found = entry(run.info, "statics", "loads")
+    found = found if isinstance(found, dict) else {}
+
+    def told(key: str) -> str:
+        return quantity(found[key], unit_of(key)) if is_number(found.get(key)) else si(run, "loading", key)
+
+    left, right = told("tilt_left_m"), told("tilt_right_m")
     sheared = entry(run.info, "statics", "common_shear_m")
     by = f"by {quantity(sheared, 'm')} " if is_number(sheared) else ""
     pushed = left if left == right else f"{left} at its left end, {right} at its right"
-    return f"upper edge pressed down {pushed}, then moved {by}to +x; {of_nodes}"
+    moves = f"upper edge pressed down {pushed}, then moved {by}to +x"
+    return "; ".join([*forces(found), moves, of_nodes])
 
 
 def table_of_mu(run: Run, over: str, unit: str) -> str:
