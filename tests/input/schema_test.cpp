@@ -80,7 +80,7 @@ auto members(const Case& c) {
   return std::tuple(title, members<12>(plate), members<5>(material), members(base), members<13>(loading),
                     members(prestress), members(friction), members(friction_along_x),
                     members<4>(regularisation), contact, event, members<5>(trigger), members<5>(nucleation),
-                    members<8>(time), members<7>(fronts), members<5>(output), members<4>(probes));
+                    members<9>(time), members<7>(fronts), members<5>(output), members<4>(probes));
 }
 
 void expect_equal(const Case& a, const Case& b) {
