@@ -379,11 +379,11 @@ TEST(PlainStepper, RunsACaseAsTheFastOneDoes) {
   config.friction = interface::SlipWeakening {};
   config.probes.x_m = {0.1013};
   config.probes.y_m = {0.0123};
-  const auto fast = run_case(config);
+  const auto fast = test::run_case(config);
   EXPECT_GT(fast.event.record.onsets.size(), 20U);
   config.time.stepper = motion::StepperKind::plain;
   EXPECT_GT(info(config).expected_s, 0);
-  const auto plain = run_case(config);
+  const auto plain = test::run_case(config);
   EXPECT_EQ(plain.event.steps, fast.event.steps);
   EXPECT_EQ(plain.node_updates_per_step, fast.node_updates_per_step);
   const auto &a = plain.event.history, &b = fast.event.history;
