@@ -341,6 +341,29 @@ def test_a_folder_of_something_else_is_left_alone(case, capsys):
     assert [p.name for p in Path("out").iterdir()] == ["mine.txt"]
 
 
+@pytest.mark.parametrize(
+    "name", ["points", "points/mu_k=0.5", "states", ".sweep.lock", "sweep.json", "unfinished", "publishing"]
+)
+def test_no_link_in_its_folder_is_followed(case, capsys, in_this_process, name):
+    """Be the folder itself one, as its user wants it."""
+    assert main([str(case), *TWO, "-o", "elsewhere", "-q"]) == 0
+    before = states_of("elsewhere")
+    assert main([str(case), *TWO, "-o", "place", "-q"]) == 0
+    Path("out").symlink_to("place")
+    link = Path("place", name)
+    if link.is_dir():
+        shutil.rmtree(link)
+    link.unlink(missing_ok=True)
+    target = Path("elsewhere", name).absolute()
+    link.symlink_to(target if target.exists() else target.parent / "points")
+    said = "not a regular file" if name == "sweep.json" else "is a link, which is not followed"
+    arguments = [case, *TWO, "--keep", "tables", "-o", "out"]
+    assert said in refused(capsys, *arguments)
+    assert link.is_symlink() and states_of("elsewhere") == before
+    link.unlink()
+    assert main([*map(str, arguments), "-q"]) == 0
+
+
 def test_a_sweep_by_dask_and_its_tables(case):
     """2 x 2 points by local workers; the numbers are those of the runs."""
     data = notebook.run(case, TWO_BY_TWO, "out", workers=2, quiet=True)
