@@ -43,6 +43,8 @@ class Coupling {
 
   /// Begins with the bodies' motion, the tractions of an equilibrium, and the loads.
   void start(std::span<const Body> bodies, const statics::Equilibrium& equilibrium, Loads loads);
+  /// Whether it began with these loads.
+  bool has_loads(const Loads& loads) const;
   /// Changes the prescribed tractions between two steps.
   void set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa);
 

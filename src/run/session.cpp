@@ -89,6 +89,18 @@ class Session {
   std::optional<results::ResultStream> stream_;
 };
 
+/// Reads the rest of a checkpoint, to its end. @throws UserError naming its file
+template <class Read>
+void read_rest(Checkpoints::Checkpoint& kept, Read&& read) {
+  try {
+    read(kept.rest);
+    kept.rest.close();
+  } catch (const UserError& error) {
+    const std::string told = error.what(), file = kept.rest.path().string();
+    throw UserError("{}{}; start a new run", told.starts_with(file) ? "" : file + ": ", told);
+  }
+}
+
 Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
   try {
     if (kept) {
@@ -111,7 +123,8 @@ Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
         &*stream_));
   } catch (const Interrupted& error) {
     fail("interrupted", error.what());
-    throw;
+    if (!began_) throw;
+    throw Interrupted(fmt::format("{}; {}", error.what(), how_to_resume(folder_)));
   } catch (const BlowUp& error) {
     fail("blew_up", error.what());
     throw;
@@ -151,8 +164,7 @@ InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
 
 void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
   if (kept != nullptr) {
-    kept->rest(stepper, ramp);
-    kept->rest.close();
+    read_rest(*kept, [&](auto& rest) { rest(stepper, ramp); });
   }
   began_ = true;
   stepper_ = ramp_stepper_ = &stepper;
@@ -162,17 +174,19 @@ void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper
 
 void Session::begin_event(Checkpoints::Checkpoint* kept) {
   if (kept != nullptr) {
-    initial_ = read_initial_state(kept->rest, config_, options_.processes);
-    const auto make_whole = [&] {
-      const auto meshes = check(config_);
-      return new_stepper(config_, meshes.plate, meshes.base, execution_);
-    };
-    event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);
-    read_motion(kept->rest, *event_stepper_, make_whole);
-    event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
     results::ResultStream::Extents extents;
-    kept->rest(*event_, extents);
-    kept->rest.close();
+    read_rest(*kept, [&](auto& rest) {
+      initial_ = read_initial_state(rest, config_, options_.processes);
+      const auto make_whole = [&] {
+        const auto meshes = check(config_);
+        return new_stepper(config_, meshes.plate, meshes.base, execution_);
+      };
+      const auto loads = loads_of_event(config_, initial_);
+      event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);
+      read_motion(rest, *event_stepper_, loads, make_whole);
+      event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
+      rest(*event_, extents);
+    });
     stream_.emplace(folder_.state(), extents, !config_.probes.x_m.empty());
   } else {
     files::remove_file(results::ResultStream::history_file(folder_.state()));

@@ -50,8 +50,10 @@ struct Equilibrium {
   }
 };
 
-/// Whether an equilibrium has a contact and tractions at each of so many interface nodes.
-bool has_nodes(const Equilibrium& state, std::size_t n_interface_nodes);
+/// Whether an equilibrium that was kept can be one of these interface nodes, with finite numbers, and with
+/// displacements, if any, of so many nodes of the plate and of the base.
+bool is_possible(const Equilibrium& state, const std::vector<double>& x_m, std::size_t n_nodes,
+                 std::size_t n_below);
 
 /// Whether a ratio t/p is a larger share of its mu_s than another one of its own.
 bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double other_mu_s);

@@ -71,6 +71,10 @@ def test_damaged_states(bench):
     all_hold(damage.trials(bench, every=4))
 
 
+def test_forged_checkpoints(bench):
+    all_hold(damage.forged_trials(bench, 12))
+
+
 def test_two_processes_in_one_folder(bench):
     all_hold(folders.process_trials(bench, 4))
 

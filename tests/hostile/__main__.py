@@ -39,6 +39,7 @@ def parts(bench):
     yield "cut off and given again", repeats.trials(bench, 8)
     yield "damaged states, event", damage.trials(bench)
     yield "damaged states, prestressed", damage.trials(bench, seed=2, kind="prestressed_absorbing", every=3)
+    yield "forged checkpoints", damage.forged_trials(bench, 100)
     yield "two processes", folders.process_trials(bench, 20)
     yield "foreign files", folders.foreign_trials(bench)
     yield "signals", folders.signal_trials(bench)
