@@ -20,6 +20,7 @@
 
 #include "base/caller.hpp"
 #include "base/error.hpp"
+#include "files/text.hpp"
 
 namespace slipfront::results {
 namespace {
@@ -53,7 +54,7 @@ std::string read_line(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
   std::getline(stream, line);
-  return line;
+  return files::one_line(line);
 }
 
 std::string host_and_process() {

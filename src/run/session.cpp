@@ -9,6 +9,7 @@
 #include "base/caller.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "files/text.hpp"
 #include "input/schema.hpp"
 #include "results/results.hpp"
 #include "results/stream.hpp"
@@ -296,7 +297,7 @@ std::string first_difference(const std::string& text, const std::string& other) 
   while (k < text.size() && k < other.size() && text[k] == other[k]) ++k;
   const auto begin = text.rfind('\n', k == 0 ? 0 : k - 1) + 1;
   std::string line = text.substr(begin, text.find('\n', k) - begin);
-  return line.substr(0, line.find("  #"));
+  return files::one_line(line.substr(0, line.find("  #")));
 }
 
 void require_same(const std::string& wanted, const std::string& kept, const std::string& name) {
@@ -336,7 +337,7 @@ Finished resume(results::ResultFolder& folder, const input::Case* expected, cons
   if (kept) {
     if (kept->head.program != program_identity())
       throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
-                      folder.unfinished().string(), kept->head.program, program_identity());
+                      folder.unfinished().string(), files::one_line(kept->head.program), program_identity());
     require_same(text, kept->head.case_text, file.string());
     require_unchanged(config.prestress.table.text, kept->head.prestress_table, config.prestress.file);
     require_unchanged(config.friction_along_x.table.text, kept->head.friction_table,

