@@ -3,7 +3,7 @@
 `make hostile` does them all."""
 
 import pytest
-from hostile import damage, disk, energy, faults, folders, kills, repeats
+from hostile import damage, disk, energy, faults, folders, kills, repeats, sweeps
 from hostile.trials import Bench, hold, remove, scratch_folder
 
 pytestmark = pytest.mark.slow
@@ -89,6 +89,10 @@ def test_signals(bench):
 
 def test_closed_streams_and_readers_who_go(bench):
     all_hold(folders.stream_trials(bench))
+
+
+def test_sweeps(bench):
+    all_hold(sweeps.trials(bench, 1, n_points=40))
 
 
 def test_energy_balance_of_random_cases(bench):

@@ -357,11 +357,8 @@ def test_no_link_in_its_folder_is_followed(case, capsys, in_this_process, name):
     target = Path("elsewhere", name).absolute()
     link.symlink_to(target if target.exists() else target.parent / "points")
     said = "not a regular file" if name == "sweep.json" else "is a link, which is not followed"
-    arguments = [case, *TWO, "--keep", "tables", "-o", "out"]
-    assert said in refused(capsys, *arguments)
+    assert said in refused(capsys, case, *TWO, "--keep", "tables", "-o", "out")
     assert link.is_symlink() and states_of("elsewhere") == before
-    link.unlink()
-    assert main([*map(str, arguments), "-q"]) == 0
 
 
 def test_a_sweep_by_dask_and_its_tables(case):
