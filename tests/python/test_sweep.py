@@ -334,6 +334,16 @@ def test_workers_that_do_not_start(monkeypatch, is_script):
     assert ("__main__" in str(error.value)) == is_script
 
 
+@pytest.mark.parametrize("error", [BlockingIOError(), RuntimeError("can't start new thread")])
+def test_a_limit_of_processes_is_told(case, capsys, monkeypatch, error):
+    def fail(*_, **__):
+        raise error
+
+    monkeypatch.setattr("subprocess.Popen", fail)
+    assert "as by ulimit -u" in refused(capsys, case, *TWO, "-o", "out")
+    assert not Path("out").exists()
+
+
 def test_a_folder_of_something_else_is_left_alone(case, capsys):
     Path("out").mkdir()
     Path("out/mine.txt").write_text("mine")
