@@ -85,10 +85,10 @@ def run(name: str, work: Callable[[], list[str]], output: Output | None = None) 
     except KeyboardInterrupt:
         report_error(name, "interrupted")
         return INTERRUPTED
-    except (BlockingIOError, RuntimeError) as error:
-        if not isinstance(error, BlockingIOError) and str(error) != "can't start new thread":
+    except RuntimeError as error:
+        if str(error) != "can't start new thread":
             raise
-        report_error(name, "no more processes or threads can be started; allow more, as by ulimit -u")
+        report_error(name, "no more threads can be started; allow more, as by ulimit -u")
         return REFUSED
     for line in lines:
         output.say(line)
