@@ -20,19 +20,24 @@ bool is_possible(const T& value) {
   return true;
 }
 
-/// Refuses a saved state that no run comes to.
+/// A saved state does not fit the case that reads it.
+struct StateError : UserError {
+  using UserError::UserError;
+};
+
+/// Refuses a saved state that its case does not come to. @throws StateError
 inline void require_possible(bool is_possible, const char* what) {
-  if (!is_possible) throw UserError("the saved state has {} of another case, or was changed", what);
+  if (!is_possible) throw StateError("the saved state has {} of another case, or was changed", what);
 }
 
 /// Writes to or reads from an archive (cereal's, whose vectors the archive's owner includes) a vector of
-/// known length. @throws UserError where one of another length is read, or of impossible values.
+/// known length. @throws StateError where one of another length is read, or of impossible values.
 template <class Archive, class T>
 void archive_vector(Archive& archive, std::vector<T>& values, std::size_t length) {
   archive(values);
   if (values.size() != length)
-    throw UserError("the saved state has {} values, this case has {}: it belongs to another case",
-                    values.size(), length);
+    throw StateError("the saved state has {} values, this case has {}: it belongs to another case",
+                     values.size(), length);
   if constexpr (Archive::is_loading::value)
     require_possible(std::ranges::all_of(values, is_possible<T>), "numbers");
 }

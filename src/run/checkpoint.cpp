@@ -120,6 +120,7 @@ void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper, c
                  const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
   int n_chunks = 0;
   archive(n_chunks);
+  archive.require(static_cast<std::uint64_t>(n_chunks));
   auto* parted = dynamic_cast<motion::DistributedStepper*>(&stepper);
   const auto read_whole = [&](motion::Stepper& by_one) {
     archive(by_one);

@@ -9,6 +9,7 @@
 #include "base/caller.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/state.hpp"
 #include "files/text.hpp"
 #include "input/schema.hpp"
 #include "results/results.hpp"
@@ -96,9 +97,8 @@ void read_rest(Checkpoints::Checkpoint& kept, Read&& read) {
   try {
     read(kept.rest);
     kept.rest.close();
-  } catch (const UserError& error) {
-    const std::string told = error.what(), file = kept.rest.path().string();
-    throw UserError("{}{}; start a new run", told.starts_with(file) ? "" : file + ": ", told);
+  } catch (const StateError& error) {
+    throw UserError("{}: {}; start a new run", kept.rest.path().string(), error.what());
   }
 }
 
