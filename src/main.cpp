@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -58,6 +59,15 @@ int code_of(int signal) {
 void hold_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDONLY) != stream) std::_Exit(internal_error);
+}
+
+/// Beyond its end there is no message.
+void require_stack() {
+  constexpr rlim_t least_bytes = 1U << 20U;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= least_bytes) return;
+  throw slipfront::UserError("slipfront: a stack of {} KiB is too small; allow {} or more, as by ulimit -s",
+                             limit.rlim_cur / 1024, least_bytes / 1024);
 }
 
 /// A user's error starts with its place, FILE:LINE, so that editors find it; the rest with the program's
@@ -125,6 +135,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) try {
   hold_standard_streams();
+  require_stack();
   return run(argc, argv);
 } catch (const slipfront::UserError& error) {
   return report(user_error, error.what());

@@ -82,10 +82,8 @@ class Runner {
 
   static void write(const std::filesystem::path& dir, const run::Result& result,
                     const run::InitialState& initial) {
-    std::error_code error;
-    std::filesystem::remove_all(dir, error);  // what an interruption has left
-    if (!error) std::filesystem::create_directories(dir, error);
-    if (error) throw WriteError("{}: cannot be created ({})", dir.string(), error.message());
+    results::remove_tree(dir);  // what an interruption has left
+    files::make_folders(dir);
     run::write(dir, result, initial);
   }
 

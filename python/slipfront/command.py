@@ -85,6 +85,11 @@ def run(name: str, work: Callable[[], list[str]], output: Output | None = None) 
     except KeyboardInterrupt:
         report_error(name, "interrupted")
         return INTERRUPTED
+    except RuntimeError as error:
+        if str(error) != "can't start new thread":
+            raise
+        report_error(name, "no more threads can be started; allow more, as by ulimit -u")
+        return REFUSED
     for line in lines:
         output.say(line)
     if output.problem is not None:

@@ -20,6 +20,16 @@ PUBLISHING = "publishing"
 UNFINISHED = "unfinished"
 
 
+def inside(folder: Path, *names: str) -> Path:
+    """A path below a folder to write or remove; refused where a link would lead it elsewhere."""
+    path = folder
+    for name in names:
+        path /= name
+        if path.is_symlink():
+            raise DataError(f"{path}: is a link, which is not followed; move it away")
+    return path
+
+
 def located(path: Path) -> Path:
     """Where a file of a folder is now: a set that is being moved into the folder wins over what is there."""
     moving = path.parent / PUBLISHING / path.name

@@ -6,6 +6,8 @@
 #include <csignal>
 #include <initializer_list>
 
+#include "base/interruption.hpp"
+
 namespace slipfront::cli {
 
 namespace {
@@ -48,6 +50,7 @@ void catch_interrupts() {
   action.sa_sigaction = on_refused_write;
   action.sa_flags |= SA_SIGINFO;
   for (const int signal : {SIGPIPE, SIGXFSZ}) take(signal);
+  ask_for_interruption(interrupt_wanted);
 }
 
 bool interrupt_wanted() {

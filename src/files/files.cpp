@@ -29,8 +29,26 @@ constexpr std::size_t max_bytes_at_once = std::size_t{1} << 30U;
                    is_full(error) ? "free space there" : "check that its folder can be written");
 }
 
+/// The folder of a path; invalid, with errno, where it is not there or a link leads to it.
+Descriptor folder_of(const std::filesystem::path& path) {
+  constexpr int flags = O_PATH | O_DIRECTORY | O_CLOEXEC;
+  Descriptor folder(::open(path.is_absolute() ? "/" : ".", flags));
+  for (const auto& part : path.relative_path().parent_path())
+    if (folder.valid()) folder = Descriptor(::openat(folder.get(), part.c_str(), flags | O_NOFOLLOW));
+  return folder;
+}
+
+/// Calls call(folder, name) of the system.
+template <class F>
+int at(const std::filesystem::path& path, F&& call) {
+  const Descriptor folder = folder_of(path);
+  return folder.valid() ? call(folder.get(), path.filename().c_str()) : -1;
+}
+
 Descriptor open(const std::filesystem::path& path, int flags) {
-  return Descriptor(::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW, 0666));
+  return Descriptor(at(path, [&](int folder, const char* name) {
+    return ::openat(folder, name, flags | O_CLOEXEC | O_NOFOLLOW, 0666);
+  }));
 }
 
 /// Writes piece by piece. @param write  as the system's, of data and their number
@@ -72,6 +90,11 @@ OutputFile OutputFile::create(const std::filesystem::path& path) {
   Descriptor file = open(path, O_WRONLY | O_CREAT | O_EXCL);
   if (!file.valid()) throw_write(path, "created");
   return {path, std::move(file), 0};
+}
+
+OutputFile OutputFile::replace(const std::filesystem::path& path) {
+  remove_file(path);
+  return create(path);
 }
 
 OutputFile OutputFile::resume(const std::filesystem::path& path, std::uint64_t length) {
@@ -137,35 +160,58 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
 
 void write_text(const std::filesystem::path& file, const std::function<void(OutputFile&)>& write) {
   const std::filesystem::path fresh = file.string() + ".new";
-  remove_file(fresh);
   try {
-    OutputFile output = OutputFile::create(fresh);
+    OutputFile output = OutputFile::replace(fresh);
     write(output);
     output.sync();
     output.close();
     move_file(fresh, file);
   } catch (const WriteError&) {
-    std::error_code ignored;
-    std::filesystem::remove(fresh, ignored);
+    try_to_remove(fresh);
     throw;
   }
 }
 
 void sync_file(const std::filesystem::path& file) {
-  Descriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  Descriptor opened = open(file, O_RDONLY);
   if (!opened.valid() || ::fsync(opened.get()) != 0 || !opened.close()) throw_write(file, "written");
 }
 
 void move_file(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (::rename(from.c_str(), to.c_str()) != 0) throw_write(to, "put in its place");
+  const auto rename = [&](int folder, const char* name) {
+    return at(from, [&](int old, const char* old_name) { return ::renameat(old, old_name, folder, name); });
+  };
+  if (at(to, rename) != 0) throw_write(to, "put in its place");
 }
 
 void remove_file(const std::filesystem::path& file) {
-  if (std::remove(file.c_str()) != 0 && errno != ENOENT) throw_write(file, "removed");
+  if (!try_to_remove(file, is_folder(file)) && errno != ENOENT) throw_write(file, "removed");
+}
+
+bool try_to_remove(const std::filesystem::path& path, bool is_folder) {
+  const int flags = is_folder ? AT_REMOVEDIR : 0;
+  return at(path, [&](int folder, const char* name) { return ::unlinkat(folder, name, flags); }) == 0;
 }
 
 void make_folder(const std::filesystem::path& dir) {
-  if (::mkdir(dir.c_str(), 0777) != 0) throw_write(dir, "created");
+  if (at(dir, [](int folder, const char* name) { return ::mkdirat(folder, name, 0777); }) != 0)
+    throw_write(dir, "created");
+}
+
+void make_folders(const std::filesystem::path& dir) {
+  if (is_folder(dir)) return;
+  if (dir.has_parent_path()) make_folders(dir.parent_path());
+  make_folder(dir);
+}
+
+std::filesystem::path resolved(std::filesystem::path path) {
+  if (!path.has_filename()) path = path.parent_path();
+  std::error_code ignored;
+  std::filesystem::path begin;
+  for (const auto& part : path)
+    if (std::filesystem::is_symlink(begin /= part, ignored))
+      return std::filesystem::weakly_canonical(path, ignored);
+  return path;
 }
 
 bool is_there(const std::filesystem::path& path) {
@@ -175,7 +221,10 @@ bool is_there(const std::filesystem::path& path) {
 
 bool is_folder(const std::filesystem::path& path) {
   struct stat status {};
-  return ::lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+  const auto look = [&](int folder, const char* name) {
+    return ::fstatat(folder, name, &status, AT_SYMLINK_NOFOLLOW);
+  };
+  return at(path, look) == 0 && S_ISDIR(status.st_mode);
 }
 
 bool is_file(const std::filesystem::path& path) {

@@ -10,7 +10,9 @@
 #include <string_view>
 
 /// Files that are written for good: every call to the system is checked, nothing that is there is followed or
-/// replaced by accident. Every function throws WriteError, naming the file, where the system refuses.
+/// replaced by accident. What writes, makes, renames or removes follows no link, at no part of a path: a name
+/// that a user gave is to be resolved before. Every function throws WriteError, naming the file, where the
+/// system refuses.
 namespace slipfront::files {
 
 /// Whether a number of errno says that there is no space: on the disk, in a quota, or below a limit of file
@@ -40,6 +42,8 @@ class OutputFile {
  public:
   /// Makes a new file; one of this name must not be there, not even as a link.
   static OutputFile create(const std::filesystem::path& path);
+  /// Makes a new file in place of what has its name.
+  static OutputFile replace(const std::filesystem::path& path);
   /// Goes on at `length` in a file of this program's own; what it holds beyond is cut off.
   /// @throws UserError where it is missing or shorter
   static OutputFile resume(const std::filesystem::path& path, std::uint64_t length);
@@ -90,13 +94,20 @@ void move_file(const std::filesystem::path& from, const std::filesystem::path& t
 
 /// Removes a file or an empty folder; it may be gone already.
 void remove_file(const std::filesystem::path& file);
+/// The same without a message. @return whether it was removed
+bool try_to_remove(const std::filesystem::path& path, bool is_folder = false);
 
 /// Makes a folder whose parent is there.
 void make_folder(const std::filesystem::path& dir);
+/// Makes a folder, and its parents, where they are missing.
+void make_folders(const std::filesystem::path& dir);
+
+/// A path, or where it leads if there are links on it.
+std::filesystem::path resolved(std::filesystem::path path);
 
 /// Whether something of this name is there, be it a link to nowhere.
 bool is_there(const std::filesystem::path& path);
-/// Whether it is a folder itself, not a link to one.
+/// Whether it is a folder, reached without any link.
 bool is_folder(const std::filesystem::path& path);
 /// Whether it is a file with an end, or a link to one: no device, no pipe.
 bool is_file(const std::filesystem::path& path);

@@ -28,6 +28,9 @@ constexpr double tolerated_coupling = 0.1;
 /// that matters releases far more: a drop of 1 % of the stress over 1 % of the plate's area is 1e-6.
 constexpr double negligible_part = 1e-12;
 
+/// Every step leaves 1e-16 of the terms: room for 1e10 steps. Single precision leaves more.
+constexpr double balance_tolerance = 1e-6;
+
 double supplied_J_per_m(const record::Energies& now, const record::Energies& start) {
   // Of a plate at rest rounding may leave less than nothing.
   return std::max(0.0, start.stored()) + std::abs(now.top_work) + std::abs(now.trigger_work) +
@@ -70,6 +73,19 @@ bool BlowUpMonitor::check(const SlipRates& rates) {
 
 std::int64_t BlowUpMonitor::steps_to_check() const {
   return checked_step_ + energy_check_interval - stepper_.step();
+}
+
+bool BlowUpMonitor::is_possible(Precision precision) {
+  if (steps_to_check() <= 0) return false;
+  const auto now = stepper_.energies();
+  double largest = 0;
+  for (const auto& term : record::energy_terms)
+    largest = std::max({largest, std::abs(now.*term.member), std::abs(start_.*term.member)});
+  const double imbalance = std::abs(record::imbalance_J_per_m(now, start_));
+  return precision == Precision::single_precision
+             ? std::isfinite(imbalance)
+             : imbalance <=
+                   balance_tolerance * largest + negligible_part * stepper_.energy_of_tractions_J_per_m();
 }
 
 std::string BlowUpMonitor::failure(const record::Energies* known) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "motion/settings.hpp"
 #include "motion/time_stepper.hpp"
 
 namespace slipfront::motion {
@@ -23,6 +24,8 @@ class BlowUpMonitor {
   std::int64_t checked_step() const { return checked_step_; }
   /// The energies of that check, if this monitor made it.
   const std::optional<record::Energies>& last() const { return last_; }
+  /// Whether a saved motion can be one: it is not to be checked yet, and its energies balance.
+  bool is_possible(Precision precision);
   /// Largest slip rate of nodes that slip, in the last check of the interface.
   double fastest_slip_m_per_s() const { return fastest_slip_m_per_s_; }
 

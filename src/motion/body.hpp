@@ -49,6 +49,7 @@ class Body {
   void divide(const BodySource& source, const TimeStepping& time, double step_s, int substeps);
   /// Single precision needs stepping band by band, which only a body with the global step has.
   void disable_single_precision() { single_ = {}; }
+  bool has_single_precision() const { return !single_.u_x_m.empty(); }
   void reserve_steps_in_flight(int n);
 
   const solid::Operator& op() const { return motion_.op; }

@@ -115,6 +115,15 @@ void Coupling::start(const statics::Equilibrium& equilibrium, Loads loads) {
   if (!loads.intact.empty()) interface_.intact = std::move(loads.intact);
 }
 
+bool Coupling::has_loads(const Loads& loads) const {
+  const auto at_all_nodes = [&](const std::vector<double>& values, double otherwise) {
+    return values.empty() ? std::vector<double>(interface_.size(), otherwise) : values;
+  };
+  return prestress_t_Pa_ == loads.prestress_t_Pa && prestress_p_Pa_ == loads.prestress_p_Pa &&
+         trigger_ == loads.trigger && trigger_force_N_ == at_all_nodes(loads.trigger_force_N_per_m, 0) &&
+         interface_.intact == at_all_nodes(loads.intact, 1);
+}
+
 void Coupling::set_trigger(const interface::Trigger& trigger, std::vector<double> force_N_per_m) {
   trigger_ = trigger;
   trigger_force_N_ = std::move(force_N_per_m);

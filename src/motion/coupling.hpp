@@ -45,6 +45,8 @@ class Coupling {
 
   /// Begins with the bodies' motion, the tractions of an equilibrium, and the loads.
   void start(const statics::Equilibrium& equilibrium, Loads loads);
+  /// Whether it began with these loads.
+  bool has_loads(const Loads& loads) const;
   /// Changes the prescribed tractions between two steps.
   void set_prestress(std::vector<double> t_Pa, std::vector<double> p_Pa);
 
@@ -93,9 +95,9 @@ class Coupling {
         archive_vector(archive, *values);
     archive(prestress_t_Pa_, prestress_p_Pa_, trigger_);
     if constexpr (Archive::is_loading::value) {
-      if (prestress_t_Pa_.size() != prestress_p_Pa_.size() ||
-          (!prestress_t_Pa_.empty() && prestress_t_Pa_.size() != interface_.size()))
-        throw UserError("the saved state has tractions of another interface");
+      require_possible(prestress_t_Pa_.size() == prestress_p_Pa_.size() &&
+                           (prestress_t_Pa_.empty() || prestress_t_Pa_.size() == interface_.size()),
+                       "tractions");
       set_trigger(trigger_, std::vector<double>(trigger_force_N_));
     }
   }

@@ -276,7 +276,7 @@ std::int64_t DistributedStepper::advance(Recorder& recorder, std::int64_t max_st
     const auto n = std::min({max_steps - taken, callbacks.guaranteed_steps(), at_once});
     const auto steps = advance_guaranteed(recorder, n, callbacks);
     taken += steps.taken;
-    if (!steps.goes_on) break;
+    if (!steps.goes_on || callbacks.interrupted()) break;
   }
   return taken;
 }

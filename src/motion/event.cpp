@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/interruption.hpp"
+#include "base/state.hpp"
 #include "motion/blow_up_monitor.hpp"
 
 namespace slipfront::motion {
@@ -138,12 +141,36 @@ EventRun::EventRun(TimeStepper& stepper, const statics::Equilibrium& state, cons
   event_.energies.push_back(blow_up_monitor_->start());
 }
 
-void EventRun::require_possible(std::int64_t checked_step) const {
-  const auto step = stepper_.step();
-  const auto is_count = [step](std::int64_t rows) { return rows >= 0 && rows <= step + 2; };
-  if (step < 0 || step > n_steps_ || checked_step < 0 || checked_step > step || !is_count(n_samples_) ||
-      !is_count(n_energies_) || next_snapshot_ > snapshot_times_s_.size() || event_.energies.empty())
-    throw UserError("this checkpoint belongs to another case (number of steps differs); start a new run");
+void EventRun::require_possible() {
+  const auto step = stepper_.step(), checked_step = blow_up_monitor_->checked_step();
+  slipfront::require_possible(step >= 0 && step <= n_steps_ && checked_step >= 0 && checked_step <= step,
+                              "steps");
+  const double now_s = stepper_.time_s();
+  slipfront::require_possible(recorder_.is_possible_at(now_s) && rest_criterion_.is_possible_at(now_s),
+                              "times of motion");
+  // Of rows at multiples of an interval the next one is due within a step or later, not the one before it.
+  const auto is_next = [&](double before_s, double next_s) {
+    return before_s < now_s + 2 * stepper_.step_s() && next_s > now_s - 2 * stepper_.step_s();
+  };
+  const auto is_next_row = [&](std::int64_t n, double interval_s) {
+    return n >= 0 && is_next(static_cast<double>(n - 1) * interval_s, static_cast<double>(n) * interval_s);
+  };
+  slipfront::require_possible(is_next_row(n_samples_, sample_interval_s_) &&
+                                  is_next_row(n_energies_, energy_interval_s_) &&
+                                  next_snapshot_ <= snapshot_times_s_.size(),
+                              "counts of rows");
+  constexpr double never_s = std::numeric_limits<double>::infinity();
+  const auto& times_s = snapshot_times_s_;
+  slipfront::require_possible(is_next(next_snapshot_ > 0 ? times_s[next_snapshot_ - 1] : 0,
+                                      next_snapshot_ < times_s.size() ? times_s[next_snapshot_] : never_s),
+                              "snapshots");
+  const auto& rows = event_.energies;
+  const auto are_ascending = [](const auto& a, const auto& b) { return a.time_s < b.time_s; };
+  slipfront::require_possible(!rows.empty() && rows.front() == blow_up_monitor_->start() &&
+                                  rows.back().time_s <= now_s &&
+                                  std::ranges::adjacent_find(rows, std::not_fn(are_ascending)) == rows.end(),
+                              "energies");
+  slipfront::require_possible(blow_up_monitor_->is_possible(time_.precision), "a motion");
 }
 
 void EventRun::take_snapshots(EventObserver* observer) {
@@ -202,6 +229,7 @@ StepCallbacks EventRun::callbacks(EventObserver* observer, record::History& row)
     rest_criterion_.see_slip_rate(stepper_.time_s(), blow_up_monitor_->fastest_slip_m_per_s());
     return physical && !is_at_rest();
   };
+  callbacks.interrupted = is_interruption_wanted;
   // A step less, since the sum may be rounded up.
   callbacks.guaranteed_steps = [this] {
     return std::max<std::int64_t>(steps_until(stepper_, moved_s() + time_.quiet_s) - 1, 1);
@@ -244,7 +272,8 @@ Event EventRun::run(const Monitor& monitor, EventObserver* observer) {
     stepper_.advance(recorder_, max_steps, samples);
     take_probe_rows(observer);
     if (!check_motion()) break;
-    if (stepper_.step() % monitor_interval == 0 && !monitor(stepper_.step(), n_steps_)) {
+    const bool is_asked = stepper_.step() % monitor_interval == 0 || is_interruption_wanted();
+    if (is_asked && !monitor(stepper_.step(), n_steps_)) {
       event_.end = EventEnd::interrupted;
       break;
     }
@@ -292,13 +321,25 @@ RampRun::RampRun(Stepper& stepper, const statics::Equilibrium& tilted, const sta
       from_m_(tilted.inside_from_m),
       to_m_(tilted.inside_to_m) {}
 
-void RampRun::require_possible(std::int64_t checked_step) const {
-  const auto step = stepper_.step();
-  const auto& u_m = ramp_.common.u_m;
-  if (step < 0 || step > max_steps_ + 1 || checked_step < 0 || checked_step > step ||
-      (has_common_ && (!statics::has_nodes(ramp_.common, tilted_.contact.size()) ||
-                       u_m.size() != tilted_.u_m.size() || u_m.y.size() != u_m.x.size())))
-    throw UserError("this checkpoint belongs to another case (ramp or mesh differs); start a new run");
+void RampRun::require_possible() {
+  const auto step = stepper_.step(), checked_step = blow_up_monitor_->checked_step();
+  slipfront::require_possible(
+      step >= 0 && step <= max_steps_ + 1 && checked_step >= 0 && checked_step <= step, "steps");
+  slipfront::require_possible(
+      recorder_.is_possible_at(stepper_.time_s()) && std::isfinite(from_m_) && std::isfinite(to_m_),
+      "times of motion");
+  const auto& common = ramp_.common;
+  slipfront::require_possible(
+      !has_common_ || (statics::is_possible(common, tilted_.tractions.x_m, tilted_.u_m.size(),
+                                            tilted_.below_u_m.size()) &&
+                       common.u_m.size() == tilted_.u_m.size()),
+      "an equilibrium");
+  slipfront::require_possible(stepper_.has_loads({}), "loads");
+  const bool is_single =
+      std::ranges::any_of(stepper_.bodies(), [](const Body& body) { return body.has_single_precision(); });
+  slipfront::require_possible(
+      blow_up_monitor_->is_possible(is_single ? Precision::single_precision : Precision::double_precision),
+      "a motion");
 }
 
 /// The motion where t/p inside passes a given ratio, in the form of an equilibrium under way.
@@ -367,6 +408,7 @@ Ramp RampRun::run(const Monitor& monitor) {
     reaches_handover = reaches_common && reaches(1 - ramp_handover);
     return blow_up_monitor_->check(rates) && !(has_common_ ? reaches_handover : reaches_common);
   };
+  callbacks.interrupted = is_interruption_wanted;
   for (;;) {
     if (stepper_.step() > max_steps_)
       throw UserError(
@@ -387,14 +429,15 @@ Ramp RampRun::run(const Monitor& monitor) {
       ramp_.spontaneous = state_now();
       break;
     }
-    if (stepper_.step() % renewal_interval == 0) {
+    const bool is_renewed = stepper_.step() % renewal_interval == 0;
+    if (is_renewed) {
       const statics::Equilibrium e = state_now();
       from_m_ = e.inside_from_m;
       to_m_ = e.inside_to_m;
-      if (!monitor(stepper_.step(), expected_steps())) {
-        ramp_.interrupted = true;
-        break;
-      }
+    }
+    if ((is_renewed || is_interruption_wanted()) && !monitor(stepper_.step(), expected_steps())) {
+      ramp_.interrupted = true;
+      break;
     }
   }
   ramp_.steps = stepper_.step();

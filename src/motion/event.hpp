@@ -112,14 +112,14 @@ class EventRun {
             next_snapshot_);
     if (probes_) archive(*probes_);
     if constexpr (Archive::is_loading::value) {
-      require_possible(checked_step);
       blow_up_monitor_.emplace(stepper_, waves_.c_L_m_per_s, start, checked_step);
+      require_possible();
     }
   }
 
  private:
-  /// Refuses counts that no event of this length comes to.
-  void require_possible(std::int64_t checked_step) const;
+  /// Refuses what no event comes to at the stepper's time.
+  void require_possible();
   void take_snapshots(EventObserver* observer);
   void take_probe_rows(EventObserver* observer);
   /// When something has last moved, as far as the interface tells.
@@ -196,14 +196,14 @@ class RampRun {
     auto checked_step = blow_up_monitor_->checked_step();
     archive(recorder_, start, checked_step, ramp_, has_common_, from_m_, to_m_);
     if constexpr (Archive::is_loading::value) {
-      require_possible(checked_step);
       blow_up_monitor_.emplace(stepper_, c_L_m_per_s_, start, checked_step);
+      require_possible();
     }
   }
 
  private:
-  /// Refuses counts that no ramp comes to, and a state of another plate.
-  void require_possible(std::int64_t checked_step) const;
+  /// Refuses what no ramp comes to at the stepper's time.
+  void require_possible();
   statics::Equilibrium state_now() const;
   /// Whether t/p is so large a share of mu_s anywhere inside, or a node there slips.
   bool reaches(double share) const;

@@ -28,6 +28,8 @@ class PlainStepper : public TimeStepper {
   /// See Stepper::start.
   void start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads = {});
 
+  bool has_loads(const Loads& loads) const { return coupling_.has_loads(loads); }
+
   double stable_step_s() const override { return stable_step_s_; }
   double step_s() const override { return step_s_; }
   double lowest_step_s() const override { return lowest_step_s_; }

@@ -156,6 +156,17 @@ void Recorder::consume(const SlipUpdate& seen) {
   });
 }
 
+bool Recorder::is_possible_at(double time_s) const {
+  // Times within a sub-step are rounded.
+  const auto is_past = [time_s](double past_s) { return past_s <= (1 + 1e-12) * time_s; };
+  const auto is_change = [&](const auto& change) { return is_past(change.time_s); };
+  return std::isfinite(time_s) && record::is_consistent(record_) && n_slipping_ <= record_.x_m.size() &&
+         is_past(last_motion_s_) && is_past(last_onset_s_) && is_past(previous_time_s_) &&
+         is_past(last_first_onset_s_) && std::ranges::all_of(record_.onsets, is_change) &&
+         std::ranges::all_of(record_.stops, is_change) && std::ranges::all_of(waiting_, is_change) &&
+         std::ranges::all_of(waiting_, [](const Waiting& waiting) { return waiting.change <= stop; });
+}
+
 void Recorder::take_change(std::size_t node, const Waiting& change,
                            std::span<const record::Traction> around) {
   auto& waiting = waiting_[node];

@@ -124,20 +124,23 @@ class Recorder : public UpdateObserver {
   /// The whole record up to now.
   record::SlipRecord record_until(double end_time_s) const;
 
+  /// Whether all that it knows can be known at a time.
+  bool is_possible_at(double time_s) const;
+
   /// All that changes while a run goes.
   /// @throws UserError where what is read is of another interface
   template <class Archive>
   void serialize(Archive& archive) {
-    const std::size_t n_nodes = record_.x_m.size();
+    const auto x_m = record_.x_m;
     const int halo = record_.halo;
     archive(last_motion_s_, last_onset_s_, record_, previous_time_s_, n_slipping_, last_first_onset_s_,
             finder_);
-    if (Archive::is_loading::value &&
-        (record_.x_m.size() != n_nodes || record_.halo != halo || !record::is_consistent(record_)))
-      throw UserError("the saved state has the slip record of another interface");
     archive_vector(archive, has_slipped_);
     archive_vector(archive, waiting_);
     archive_vector(archive, around_waiting_);
+    if constexpr (Archive::is_loading::value)
+      require_possible(record_.x_m == x_m && record_.halo == halo && is_possible_at(finder_.memory().time_s),
+                       "a slip record");
   }
 
  private:

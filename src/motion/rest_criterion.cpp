@@ -14,7 +14,7 @@ double slip_rate_scale_m_per_s(const statics::Equilibrium& state, const PerNode&
 }
 
 RestCriterion::RestCriterion(const TimeStepper& stepper, double slip_rate_scale_m_per_s, double from_s)
-    : since_s_(from_s) {
+    : from_s_(from_s), since_s_(from_s) {
   const double v = rest_slip_fraction * slip_rate_scale_m_per_s;
   negligible_kinetic_J_per_m_ = 0.5 * stepper.mass_kg_per_m() * v * v;
 }

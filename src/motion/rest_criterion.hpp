@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/per_node.hpp"
 #include "motion/settings.hpp"
 #include "motion/time_stepper.hpp"
@@ -44,6 +47,13 @@ class RestCriterion {
   /// Since when there has been nothing of all this.
   double since_s() const { return since_s_; }
 
+  /// Whether all that it knows can be known at a time; its trigger may yet act.
+  bool is_possible_at(double time_s) const {
+    return since_s_ >= from_s_ && since_s_ <= std::max(time_s, from_s_) && slowest_m_per_s_ >= 0 &&
+           std::isfinite(slowest_m_per_s_) && largest_kinetic_J_per_m_ >= 0 &&
+           std::isfinite(largest_kinetic_J_per_m_);
+  }
+
   template <class Archive>
   void serialize(Archive& archive) {
     archive(since_s_, slowest_m_per_s_, largest_kinetic_J_per_m_);
@@ -51,7 +61,7 @@ class RestCriterion {
 
  private:
   double negligible_kinetic_J_per_m_;
-  double since_s_;
+  double from_s_, since_s_;
   double slowest_m_per_s_ = 0;  ///< the least of the fastest slip rates since then
   double largest_kinetic_J_per_m_ = 0;
 };

@@ -5,14 +5,14 @@
 #include <numeric>
 #include <utility>
 
-#include "base/error.hpp"
+#include "base/state.hpp"
 
 namespace slipfront::motion {
 
 namespace {
 
 [[noreturn]] void throw_of_others() {
-  throw UserError("the saved state belongs to other bodies (number of nodes differs)");
+  throw StateError("the saved state belongs to other bodies (number of nodes differs)");
 }
 
 /// Those of all subdomains together.
@@ -131,7 +131,7 @@ void StateByNode::add(StateByNode subdomain, int n_subdomains) {
     }
     return;
   }
-  SLIPFRONT_ASSERT(subdomain.values.size() == values.size(), "of one stepper");
+  if (subdomain.values.size() != values.size()) throw_of_others();
   for (std::size_t l = 0; l < values.size(); ++l) {
     auto& to = values[l];
     const auto& from = subdomain.values[l];

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/interruption.hpp"
 
 namespace slipfront::motion {
 
@@ -14,6 +15,8 @@ namespace {
 /// Bytes of the last cache that may be counted on.
 constexpr double cache_bytes = 16e6;
 constexpr int max_steps_per_sweep = 16;
+/// Steps of so many sub-steps are not waited for where the run is to end.
+constexpr int substeps_between_looks = 1000;
 
 /// A mesh that fits into the cache itself gains nothing from several steps in one sweep, but what is on its
 /// way from one call to the next has most time in a single sweep.
@@ -130,6 +133,7 @@ void Stepper::advance_interface(std::int64_t step, int n_substeps, UpdateObserve
     body.step_in_flight(step).works = {};
   }
   for (int k = 0; k < n_substeps; ++k) {
+    if ((k + 1) % substeps_between_looks == 0) require_no_interruption("interrupted within a step");
     // All forces are those of the places and velocities before the sub-step.
     for (auto& body : bodies_) body.apply_due_impulses(body.step_in_flight(step), k, has_global_step(body));
     coupling_.update(time_s() + k * substep_s(), substep_s(), observer, k == 0 ? sample : nullptr,
@@ -210,7 +214,7 @@ std::int64_t Stepper::advance(UpdateObserver& observer, std::int64_t max_steps,
     if (number == last && band_callbacks.after_last) band_callbacks.after_last(band);
     if (band > 0) return true;
     ++step_;
-    return callbacks.may_continue(coupling_.slip_rates());
+    return callbacks.may_continue(coupling_.slip_rates()) && !callbacks.interrupted();
   };
   const auto taken = wavefront_->run(step_, max_steps, n_bands_, unit);
   SLIPFRONT_ASSERT(!band_callbacks.after_last || taken == max_steps, "all steps are taken");

@@ -126,6 +126,8 @@ class Stepper : public TimeStepper {
   solid::Field mean_velocity_m_per_s() const { return bodies_.front().mean_velocity_m_per_s(); }
   const interface::Interface& interface_state() const { return coupling_.state(); }
 
+  bool has_loads(const Loads& loads) const { return coupling_.has_loads(loads); }
+
   SlipRates slip_rates() const { return coupling_.slip_rates(); }
   double largest_acceleration_m_per_s2() const { return coupling_.largest_acceleration_m_per_s2(); }
   double energy_J_per_m() const;  ///< strain and kinetic, each of its own instant

@@ -35,6 +35,8 @@ struct StepCallbacks {
   std::function<record::History*()> sample = [] { return nullptr; };
   /// After the interface's part of a step: whether another one may follow.
   std::function<bool(const SlipRates& rates)> may_continue = [](const SlipRates&) { return true; };
+  /// After a step: whether no more are wanted. Steps that are guaranteed may follow.
+  std::function<bool()> interrupted = [] { return false; };
   /// Where to put the displacements of the nodes of the stepper's probes at a step, see displacement_values;
   /// null for nowhere. Asked for in each part of the step, from the thread that takes it.
   std::function<double*(std::int64_t step)> displacements = [](std::int64_t) { return nullptr; };

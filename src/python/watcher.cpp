@@ -2,6 +2,9 @@
 #include "python/watcher.hpp"
 
 #include <string>
+#include <utility>
+
+#include "base/interruption.hpp"
 
 namespace slipfront::python {
 namespace {
@@ -11,7 +14,23 @@ namespace nb = nanobind;
 /// Taking Python's lock is cheap beside so much work, and nobody waits so long for Ctrl-C.
 constexpr double ask_every_s = 0.05;
 
+/// Of the run that this thread has begun.
+thread_local Watcher* own_watcher = nullptr;
+
+bool is_stop_wanted() {
+  return own_watcher != nullptr && own_watcher->is_stopped();
+}
+
 }  // namespace
+
+Watcher::Watcher(nb::object progress)
+    : outer_(std::exchange(own_watcher, this)), progress_(std::move(progress)) {
+  ask_for_interruption(is_stop_wanted);
+}
+
+Watcher::~Watcher() {
+  own_watcher = outer_;
+}
 
 run::SessionHooks Watcher::hooks() {
   run::SessionHooks hooks;
@@ -21,26 +40,25 @@ run::SessionHooks Watcher::hooks() {
     step_ = step;
     total_ = total;
   };
-  hooks.request = [this] {
-    if (stopped_) return run::Request::stop;
-    if (seconds_since(asked_) < ask_every_s) return run::Request::none;
-    return ask_python();
-  };
+  hooks.request = [this] { return is_stopped() ? run::Request::stop : run::Request::none; };
   hooks.note = [](const std::string&) {};
   return hooks;
 }
 
-run::Request Watcher::ask_python() {
+bool Watcher::is_stopped() {
+  if (!stopped_ && seconds_since(asked_) >= ask_every_s) ask_python();
+  return stopped_;
+}
+
+void Watcher::ask_python() {
   const nb::gil_scoped_acquire locked;
   asked_ = Clock::now();
   try {
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     if (part_ != nullptr && !progress_.is_none()) progress_(part_, step_, total_);
-    return run::Request::none;
   } catch (const nb::python_error& error) {
     stopped_ = true;
     if (!error.matches(PyExc_KeyboardInterrupt)) raised_ = std::current_exception();
-    return run::Request::stop;
   }
 }
 

@@ -15,16 +15,23 @@ namespace slipfront::python {
 class Watcher {
  public:
   /// @param progress  called with part, step and total; or None
-  explicit Watcher(nanobind::object progress) : progress_(std::move(progress)) {}
+  explicit Watcher(nanobind::object progress);
+  ~Watcher();
+  Watcher(const Watcher&) = delete;
+  Watcher& operator=(const Watcher&) = delete;
 
   run::SessionHooks hooks();
   /// Raises what Python code has raised meanwhile, but for Ctrl-C: it becomes the run's own interruption,
   /// which says what was kept.
   void rethrow() const;
 
- private:
-  run::Request ask_python();
+  /// Whether the run is to end; Python is asked once in a while.
+  bool is_stopped();
 
+ private:
+  void ask_python();
+
+  Watcher* outer_;  ///< of a run that calls Python, which begins this one
   nanobind::object progress_;
   const char* part_ = nullptr;  ///< "ramp" or "event", of static storage
   std::int64_t step_ = 0, total_ = 0;

@@ -28,6 +28,7 @@ struct Energies {
 
   template <class Archive>
   void serialize(Archive& archive);
+  bool operator==(const Energies&) const = default;
   double stored() const;
   double work() const;
 };

@@ -69,7 +69,7 @@ struct SlipRecord {
   }
 };
 
-/// Whether a record's parts fit each other: lengths, and nodes that there are.
+/// Whether a record's parts fit each other: lengths, nodes that there are, and times.
 bool is_consistent(const SlipRecord& record);
 
 /// Time history of an interface, from a run or from elsewhere. Matrices are row-major [times x nodes].

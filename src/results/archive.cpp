@@ -19,14 +19,12 @@ OutputArchive::OutputArchive(const std::filesystem::path& file)
     : cereal::OutputArchive<OutputArchive, cereal::AllowEmptyClassElision>(this),
       path_(file),
       fresh_(file.string() + ".new"),
-      file_((files::remove_file(fresh_), files::OutputFile::create(fresh_))) {
+      file_(files::OutputFile::replace(fresh_)) {
   waiting_.reserve(buffer_bytes);
 }
 
 OutputArchive::~OutputArchive() {
-  if (fresh_.empty()) return;
-  std::error_code ignored;
-  std::filesystem::remove(fresh_, ignored);
+  if (!fresh_.empty()) files::try_to_remove(fresh_);
 }
 
 void OutputArchive::save(const void* data, std::size_t bytes) {

@@ -46,6 +46,7 @@ class InputArchive : public cereal::InputArchive<InputArchive, cereal::AllowEmpt
   /// @throws UserError where the file is missing, damaged, or no such file; loading does so where there is
   /// less than is asked for
   explicit InputArchive(const std::filesystem::path& file);
+  const std::filesystem::path& path() const { return path_; }
   void load(void* data, std::size_t bytes);
   void load(bool& flag);
   /// Refuses a length that what is left of the file cannot hold.

@@ -20,6 +20,7 @@
 
 #include "base/caller.hpp"
 #include "base/error.hpp"
+#include "files/text.hpp"
 
 namespace slipfront::results {
 namespace {
@@ -53,7 +54,7 @@ std::string read_line(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
   std::getline(stream, line);
-  return line;
+  return files::one_line(line);
 }
 
 std::string host_and_process() {
@@ -107,12 +108,15 @@ void walk(const fs::path& dir, const std::string& prefix, const std::function<vo
   }
 }
 
-/// Names in the folder's list of checksums, in the lists that it names, and these lists.
+/// Names in the folder's list of checksums, in the lists that it names, and these lists. What is not in a
+/// folder below it, but behind a link, is none of the set.
 std::set<std::string> set_of(const fs::path& dir, const std::string& prefix = "") {
   std::set<std::string> names;
   for (const auto& [name, sum] : files::read_checksums(dir / prefix)) {
     const fs::path path(name);
-    if (path.filename() == files::checksum_list)
+    const bool is_inner = path.has_parent_path();
+    if (is_inner && !files::is_folder((dir / prefix / path).parent_path())) continue;
+    if (is_inner && path.filename() == files::checksum_list)
       names.merge(set_of(dir, prefix + path.parent_path().string() + "/"));
     else
       names.insert(prefix + name);
@@ -143,17 +147,9 @@ void remove_cut_off(const fs::path& dir) {
 }
 
 void remove_empty_folders(const fs::path& dir, const std::set<std::string>& files) {
-  std::error_code ignored;
   for (const auto& name : files)
     for (auto parent = fs::path(name).parent_path(); !parent.empty(); parent = parent.parent_path())
-      fs::remove(dir / parent, ignored);
-}
-
-/// Removes a folder or file of this program's own with all that is in it; links are not followed.
-void remove_tree(const fs::path& dir) {
-  std::error_code error;
-  fs::remove_all(dir, error);
-  if (error) throw WriteError("{}: cannot be removed ({}); remove it by hand", dir.string(), error.message());
+      files::try_to_remove(dir / parent, true);
 }
 
 /// Removes what a folder holds but for one name.
@@ -209,7 +205,8 @@ bool is_own_publication(const fs::path& publishing) {
 
 }  // namespace
 
-ResultFolder::ResultFolder(const fs::path& dir, std::string work) : dir_(dir), work_(std::move(work)) {
+ResultFolder::ResultFolder(const fs::path& dir, std::string work)
+    : dir_(files::resolved(dir)), work_(std::move(work)) {
   try {
     make();
     lock();
@@ -226,11 +223,10 @@ ResultFolder::~ResultFolder() {
 }
 
 void ResultFolder::give_back() {
-  std::error_code ignored;
-  if (lock_.valid()) fs::remove(dir_ / lock_name, ignored);  // before the lock goes: nobody else can hold it
+  if (lock_.valid()) files::try_to_remove(dir_ / lock_name);  // before the lock goes: nobody else can hold it
   lock_.close();
   for (auto p = dir_; !outermost_made_.empty(); p = p.parent_path())
-    if (!fs::remove(p, ignored) || ignored || p == outermost_made_) return;
+    if (!files::try_to_remove(p, true) || p == outermost_made_) return;
 }
 
 void ResultFolder::make() {
@@ -339,6 +335,12 @@ void ResultFolder::abandon() {
 }
 
 void ResultFolder::publish(bool adds) {
+  walk(
+      unfinished(), "", [](const std::string&) {},
+      [&](const std::string& name) {
+        if (files::is_there(dir_ / name) && !files::is_folder(dir_ / name))
+          throw UserError("{}: is no folder, where one is to go; move it away", (dir_ / name).string());
+      });
   seal(unfinished(), adds ? files::read_checksums(dir_) : files::Checksums{});
   walk(
       unfinished(), "", [&](const std::string& name) { files::sync_file(unfinished() / name); },
@@ -369,9 +371,7 @@ void ResultFolder::finish_publication() {
         publishing(), "",
         [&](const std::string& name) {
           if (name == files::checksum_list) return;
-          std::error_code error;
-          fs::create_directories((dir_ / name).parent_path(), error);
-          if (error) throw_unusable((dir_ / name).parent_path(), "created", error.value());
+          files::make_folders((dir_ / name).parent_path());
           files::move_file(publishing() / name, dir_ / name);
         },
         [&](const std::string& name) { files::remove_file(publishing() / name); });
@@ -380,6 +380,12 @@ void ResultFolder::finish_publication() {
   }
   files::remove_file(publishing());
   files::sync_file(dir_);
+}
+
+void remove_tree(const fs::path& path) {
+  if (files::is_folder(path))
+    for (const auto& name : names_in(path)) remove_tree(path / name);
+  files::remove_file(path);
 }
 
 void seal(const fs::path& dir, const files::Checksums& others) {

@@ -50,7 +50,8 @@ class ResultFolder {
   /// Publishes all files below `unfinished` but for `state`; files of an earlier set that the new one lacks
   /// are removed, and no others.
   /// @param adds  they are not removed, but belong to the new set
-  /// @throws WriteError; before the set is complete all is left as it was, after it the set is kept.
+  /// @throws UserError where one of its folders has the name of something else, WriteError; before the set is
+  /// complete all is left as it was, after it the set is kept.
   void publish(bool adds = false);
 
  private:
@@ -64,6 +65,9 @@ class ResultFolder {
   std::string work_;
   files::Descriptor lock_;
 };
+
+/// Removes a file or a folder with all that is in it, as far as it is there; links are not followed.
+void remove_tree(const std::filesystem::path& path);
 
 /// Writes the list of checksums of a folder's files; of a folder in it that has a separate list only that
 /// list. Lists end the writing of a set: what has one is complete.

@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/version.hpp"
+#include "files/files.hpp"
 
 namespace slipfront::results::hdf5 {
 namespace {
@@ -166,6 +167,7 @@ void silence() {
 
 File create_file(const std::filesystem::path& path) {
   silence();
+  files::OutputFile::replace(path).close();  // HDF5 would follow a link
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   if (!access.valid() || H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
     throw_write(path, "its head");

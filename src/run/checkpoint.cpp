@@ -4,12 +4,16 @@
 #include <dlfcn.h>
 
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <system_error>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/state.hpp"
 #include "base/version.hpp"
+#include "run/begin.hpp"
+#include "run/choices.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -59,14 +63,29 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
   initial.mesh = std::move(meshes.plate);
   initial.base = std::move(meshes.base);
   archive(initial);
-  const std::size_t n = initial.mesh.interface_nodes.size();
-  const auto fits = [&](const auto& states) {
-    return statics::has_nodes(states.common, n) && statics::has_nodes(states.spontaneous, n);
+  const auto x_m = interface_x_m(initial.mesh);
+  const auto n_nodes = [](const mesh::Mesh& mesh) { return static_cast<std::size_t>(mesh.n_nodes()); };
+  const auto is_possible = [&](const auto& states) {
+    const auto n_below = initial.base ? n_nodes(*initial.base) : 0;
+    return statics::is_possible(states.common, x_m, n_nodes(initial.mesh), n_below) &&
+           statics::is_possible(states.spontaneous, x_m, n_nodes(initial.mesh), n_below);
   };
-  const bool varies = config.friction_along_x.varies();
-  if (initial.tributary_m.size() != n || initial.mu_s.size() != (varies ? n : 0) || !fits(initial) ||
-      (initial.ramp && (!fits(*initial.ramp) || !record::is_consistent(initial.ramp->record))))
-    throw UserError("the saved initial state belongs to another plate");
+  const bool by_ramp = config.loading.method == statics::LoadingMethod::ramp;
+  const auto count = [&](auto&& count_of) {
+    return count_of(initial.mesh) + (initial.base ? count_of(*initial.base) : 0);
+  };
+  require_possible(initial.n_nodes == count(n_nodes_of) && initial.n_cells == count(n_cells_of) &&
+                       initial.tributary_m == mesh::tributary_lengths_m(initial.mesh) &&
+                       initial.mu_s == meshes.mu_s,
+                   "a plate");
+  require_possible(is_possible(initial) && initial.prescribed == is_prestressed(config) &&
+                       initial.ramp.has_value() == by_ramp &&
+                       initial.solver <= statics::StaticSolver::petsc &&
+                       (initial.prescribed || std::isfinite(initial.critical_shear_m)),
+                   "an initial state");
+  require_possible(!by_ramp || (is_possible(*initial.ramp) && initial.ramp->record.x_m == x_m &&
+                                record::is_consistent(initial.ramp->record)),
+                   "a ramp");
   return initial;
 }
 
@@ -99,19 +118,18 @@ motion::SubdomainPlace whole_of(const motion::Stepper& stepper) {
 
 }  // namespace
 
-void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
+void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper, const motion::Loads& loads,
                  const std::function<std::unique_ptr<motion::Stepper>()>& make_whole) {
   int n_chunks = 0;
   archive(n_chunks);
-  if (auto* plain = dynamic_cast<motion::PlainStepper*>(&stepper)) {
-    archive(*plain);
-    return;
-  }
+  archive.require(static_cast<std::uint64_t>(n_chunks));
   auto* parted = dynamic_cast<motion::DistributedStepper*>(&stepper);
-  if (parted == nullptr && n_chunks == 0) {
-    archive(dynamic_cast<motion::Stepper&>(stepper));
-    return;
-  }
+  const auto read_whole = [&](auto& by_one) {
+    archive(by_one);
+    require_possible(by_one.has_loads(loads), "loads");
+  };
+  if (auto* plain = dynamic_cast<motion::PlainStepper*>(&stepper)) return read_whole(*plain);
+  if (parted == nullptr && n_chunks == 0) return read_whole(dynamic_cast<motion::Stepper&>(stepper));
   const auto next = [&] {
     motion::StateByNode chunk;
     archive(chunk);
@@ -121,7 +139,7 @@ void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
   if (parted != nullptr && n_chunks > 0) return parted->restore(n_chunks, next);
   if (parted != nullptr) {
     auto by_one = make_whole();
-    archive(*by_one);
+    read_whole(*by_one);
     auto kept = motion::keep(*by_one, whole_of(*by_one));
     by_one.reset();
     return parted->restore(1, [&] { return std::move(kept); });
@@ -131,6 +149,7 @@ void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
   for (int k = 0; k < n_chunks; ++k) kept.add(next(), n_chunks);
   kept.sort();
   motion::restore(kept, by_one, whole_of(by_one));
+  require_possible(by_one.has_loads(loads), "loads");
 }
 
 void Checkpoints::keep(const CheckpointHead& head,
@@ -157,6 +176,8 @@ std::unique_ptr<Checkpoints::Checkpoint> Checkpoints::last(
       kept->rest(begin);
       if (begin != magic) throw UserError("{}: is damaged or of another version", k->second.string());
       kept->rest(kept->head);
+      require_possible(kept->head.sessions > 0 && kept->head.wall_s >= 0 && std::isfinite(kept->head.wall_s),
+                       "a session");
       return kept;
     } catch (const UserError& error) {
       const bool is_last = std::next(k) == files.rend();

@@ -39,8 +39,10 @@ InitialState read_initial_state(results::InputArchive& archive, const input::Cas
 /// The motion in an event, as it is kept.
 void write_motion(results::OutputArchive& archive, motion::TimeStepper& stepper);
 /// Whatever the number of processes that kept it, and of those that go on.
+/// @param loads       that the event began with
 /// @param make_whole  makes a stepper of one process of the same bodies
-void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper,
+/// @throws UserError where it is of another case
+void read_motion(results::InputArchive& archive, motion::TimeStepper& stepper, const motion::Loads& loads,
                  const std::function<std::unique_ptr<motion::Stepper>()>& make_whole);
 
 /// The checkpoints in a folder: the last two are kept, numbered as they come.

@@ -67,7 +67,10 @@ bool FinishedRuns::take(const input::Case& config, Result& result, InitialState&
     archive(result);
     initial = read_initial_state(archive, config);
     archive.close();
-    if (result.event.energies.empty() || !record::is_consistent(result.event.record)) return false;
+    const auto& event = result.event;
+    if (event.energies.empty() || event.record.x_m != initial.common.tractions.x_m ||
+        !record::is_consistent(event.record) || event.end > motion::EventEnd::blow_up)
+      return false;
   } catch (const UserError&) {
     return false;
   }

@@ -104,8 +104,7 @@ std::unique_ptr<motion::TimeStepper> started_stepper(const input::Case& config, 
   const auto& state = event_state(config, initial);
   const auto start = [&](auto stepper) -> std::unique_ptr<motion::TimeStepper> {
     stepper->set_probes(probes_of(config, initial.mesh, initial.base));
-    stepper->start(state, top_speed_m_per_s(config),
-                   starting_loads(config, state, initial.mesh, initial.mu_s));
+    stepper->start(state, top_speed_m_per_s(config), loads_of_event(config, initial));
     return stepper;
   };
   if (processes != nullptr)
@@ -131,6 +130,10 @@ void release_nodes(mesh::Mesh& mesh) {
 }
 
 }  // namespace
+
+motion::Loads loads_of_event(const input::Case& config, const InitialState& initial) {
+  return starting_loads(config, event_state(config, initial), initial.mesh, initial.mu_s);
+}
 
 std::unique_ptr<motion::TimeStepper> start_event(const input::Case& config, InitialState& initial,
                                                  const motion::Execution& execution, Processes* processes) {

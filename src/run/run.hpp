@@ -55,6 +55,9 @@ struct Result {
   }
 };
 
+/// With which a case's event begins.
+motion::Loads loads_of_event(const input::Case& config, const InitialState& initial);
+
 /// The bodies in a case's initial state, about to move. Takes what only this needs out of the initial state:
 /// displacements, nodes and cells, near 100 bytes a node. The initial state then serves for this event alone.
 /// @param processes  that share it; null where it is one's

@@ -9,6 +9,8 @@
 #include "base/caller.hpp"
 #include "base/clock.hpp"
 #include "base/error.hpp"
+#include "base/state.hpp"
+#include "files/text.hpp"
 #include "input/schema.hpp"
 #include "results/results.hpp"
 #include "results/stream.hpp"
@@ -89,6 +91,17 @@ class Session {
   std::optional<results::ResultStream> stream_;
 };
 
+/// Reads the rest of a checkpoint, to its end. @throws UserError naming its file
+template <class Read>
+void read_rest(Checkpoints::Checkpoint& kept, Read&& read) {
+  try {
+    read(kept.rest);
+    kept.rest.close();
+  } catch (const StateError& error) {
+    throw UserError("{}: {}; start a new run", kept.rest.path().string(), error.what());
+  }
+}
+
 Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
   try {
     if (kept) {
@@ -111,7 +124,8 @@ Finished Session::run(std::unique_ptr<Checkpoints::Checkpoint> kept) {
         &*stream_));
   } catch (const Interrupted& error) {
     fail("interrupted", error.what());
-    throw;
+    if (!began_) throw;
+    throw Interrupted(fmt::format("{}; {}", error.what(), how_to_resume(folder_)));
   } catch (const BlowUp& error) {
     fail("blew_up", error.what());
     throw;
@@ -151,8 +165,7 @@ InitialState Session::initial_state(Checkpoints::Checkpoint* kept) {
 
 void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper, motion::RampRun& ramp) {
   if (kept != nullptr) {
-    kept->rest(stepper, ramp);
-    kept->rest.close();
+    read_rest(*kept, [&](auto& rest) { rest(stepper, ramp); });
   }
   began_ = true;
   stepper_ = ramp_stepper_ = &stepper;
@@ -162,17 +175,19 @@ void Session::begin_ramp(Checkpoints::Checkpoint* kept, motion::Stepper& stepper
 
 void Session::begin_event(Checkpoints::Checkpoint* kept) {
   if (kept != nullptr) {
-    initial_ = read_initial_state(kept->rest, config_, options_.processes);
-    const auto make_whole = [&] {
-      const auto meshes = check(config_);
-      return new_stepper(config_, meshes.plate, meshes.base, execution_);
-    };
-    event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);
-    read_motion(kept->rest, *event_stepper_, make_whole);
-    event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
     results::ResultStream::Extents extents;
-    kept->rest(*event_, extents);
-    kept->rest.close();
+    read_rest(*kept, [&](auto& rest) {
+      initial_ = read_initial_state(rest, config_, options_.processes);
+      const auto make_whole = [&] {
+        const auto meshes = check(config_);
+        return new_stepper(config_, meshes.plate, meshes.base, execution_);
+      };
+      const auto loads = loads_of_event(config_, initial_);
+      event_stepper_ = make_stepper(config_, initial_, event_execution(), options_.processes);
+      read_motion(rest, *event_stepper_, loads, make_whole);
+      event_.emplace(run::begin_event(config_, initial_, *event_stepper_));
+      rest(*event_, extents);
+    });
     stream_.emplace(folder_.state(), extents, !config_.probes.x_m.empty());
   } else {
     files::remove_file(results::ResultStream::history_file(folder_.state()));
@@ -282,7 +297,7 @@ std::string first_difference(const std::string& text, const std::string& other) 
   while (k < text.size() && k < other.size() && text[k] == other[k]) ++k;
   const auto begin = text.rfind('\n', k == 0 ? 0 : k - 1) + 1;
   std::string line = text.substr(begin, text.find('\n', k) - begin);
-  return line.substr(0, line.find("  #"));
+  return files::one_line(line.substr(0, line.find("  #")));
 }
 
 void require_same(const std::string& wanted, const std::string& kept, const std::string& name) {
@@ -322,7 +337,7 @@ Finished resume(results::ResultFolder& folder, const input::Case* expected, cons
   if (kept) {
     if (kept->head.program != program_identity())
       throw UserError("{}: was begun by {}, and this is {}; continue with that one, or start a new run",
-                      folder.unfinished().string(), kept->head.program, program_identity());
+                      folder.unfinished().string(), files::one_line(kept->head.program), program_identity());
     require_same(text, kept->head.case_text, file.string());
     require_unchanged(config.prestress.table.text, kept->head.prestress_table, config.prestress.file);
     require_unchanged(config.friction_along_x.table.text, kept->head.friction_table,

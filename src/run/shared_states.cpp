@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "base/error.hpp"
+#include "base/state.hpp"
 #include "results/archive.hpp"
 #include "run/checkpoint.hpp"
 
@@ -42,6 +43,9 @@ std::optional<InitialState> SharedStates::take(const input::Case& config,
     if (key != wanted) throw UserError("{}: is the state of another case", file.string());
     auto initial = read_initial_state(archive, config);
     archive.close();
+    require_possible(
+        initial.prescribed || (initial.common.u_m.size() > 0 && initial.spontaneous.u_m.size() > 0),
+        "displacements");
     return initial;
   } catch (const UserError& error) {
     note(fmt::format("{}; the state before the event is solved again", error.what()));

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "files/files.hpp"
 #include "run/initial_state.hpp"
 
 namespace slipfront::run {
@@ -16,7 +17,7 @@ namespace slipfront::run {
 class SharedStates {
  public:
   /// @param dir  made when the first state is kept
-  explicit SharedStates(std::filesystem::path dir) : dir_(std::move(dir)) {}
+  explicit SharedStates(std::filesystem::path dir) : dir_(files::resolved(std::move(dir))) {}
 
   /// The saved state of a case, with its mesh, if there is one. `note` receives a message for a file that is
   /// damaged or of another case.

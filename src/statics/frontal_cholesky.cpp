@@ -5,7 +5,9 @@
 #include <numeric>
 #include <utility>
 
+#include "base/interruption.hpp"
 #include "statics/libraries.hpp"
+#include "statics/settings.hpp"
 
 namespace slipfront::statics {
 
@@ -152,6 +154,7 @@ std::optional<Eigen::MatrixXd> FrontalCholesky::factorise(const StiffnessOf& sti
   std::vector<Eigen::MatrixXd> rests(blocks_.size());
   Eigen::MatrixXd last;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    require_no_interruption(interrupted_in_statics);
     const auto& block = blocks_[b];
     Columns columns(values_.data() + block.first_value, block.height(), block.n_columns());
     rests[b].setZero(block.n_rows, block.n_rows);

@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/interruption.hpp"
 #include "base/lanes.hpp"
 #include "statics/load_case.hpp"
+#include "statics/settings.hpp"
 
 namespace slipfront::statics {
 
@@ -430,6 +432,7 @@ void LevelEquations::conjugate_gradients(double accuracy, solid::Field& u) {
   const auto r = all_rows(std::as_const(residual_), grid_);
   double error2_before = 0;
   for (int cycle = 1; cycle <= max_cycles; ++cycle) {
+    require_no_interruption(interrupted_in_statics);
     const double error2 = multigrid_.apply(r);
     if (std::sqrt(std::abs(error2)) <= accuracy * scale) {
       add_z(u);
@@ -523,6 +526,7 @@ void LevelEquations::bicgstab(double accuracy, solid::Field& u) {
     return;
   }
   for (int cycle = 1; cycle <= max_cycles; cycle += 2) {
+    require_no_interruption(interrupted_in_statics);
     const double alpha = rho / multiply_z();
     take_step(alpha, z, u);
     if (is_small(multigrid_.apply(r))) {

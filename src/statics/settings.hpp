@@ -5,6 +5,8 @@
 
 namespace slipfront::statics {
 
+inline constexpr const char* interrupted_in_statics = "interrupted in the statics";
+
 /// How the state before the event comes about: by tilt and shear of the top edge, or prescribed.
 enum class LoadingMethod {
   direct,  ///< tilt, then shear by static equilibria from a sparse factorisation

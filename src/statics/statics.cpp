@@ -10,10 +10,26 @@
 
 namespace slipfront::statics {
 
-bool has_nodes(const Equilibrium& state, std::size_t n_interface_nodes) {
-  const auto& [x_m, t_s_Pa, p_s_Pa] = state.tractions;
-  return state.contact.size() == n_interface_nodes && x_m.size() == n_interface_nodes &&
-         t_s_Pa.size() == n_interface_nodes && p_s_Pa.size() == n_interface_nodes;
+bool is_possible(const Equilibrium& state, const std::vector<double>& x_m, std::size_t n_nodes,
+                 std::size_t n_below) {
+  const auto are_finite = [](const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  };
+  const auto is_field_of = [&](std::size_t n) {
+    return [&are_finite, n](const solid::Field& u) {
+      return (u.x.empty() || u.x.size() == n) && u.y.size() == u.x.size() && are_finite(u.x) &&
+             are_finite(u.y);
+    };
+  };
+  const auto is_of_plate = is_field_of(n_nodes), is_of_base = is_field_of(n_below);
+  const auto& s = state.tractions;
+  return state.contact.size() == x_m.size() && std::ranges::max(state.contact) <= Contact::open &&
+         s.x_m == x_m && s.t_s_Pa.size() == x_m.size() && s.p_s_Pa.size() == x_m.size() &&
+         are_finite(s.t_s_Pa) && are_finite(s.p_s_Pa) &&
+         are_finite(
+             {state.shear_m, state.peak_ratio, state.peak_x_m, state.inside_from_m, state.inside_to_m}) &&
+         is_of_plate(state.u_m) && is_of_plate(state.u_per_shear) && is_of_base(state.below_u_m) &&
+         is_of_base(state.below_u_per_shear);
 }
 
 bool is_nearer_to_slip(double ratio, double mu_s, double other_ratio, double other_mu_s) {
@@ -204,7 +220,7 @@ template <class FindShear, class MaySlip>
 double settle(ContactProblem& problem, const Loading& loading, double accuracy, double final,
               FindShear&& find_shear, MaySlip&& may_slip, const Statics::MayContinue& may_continue) {
   for (int iteration = 1; iteration <= max_iterations; ++iteration) {
-    if (!may_continue()) throw Interrupted("interrupted in the statics");
+    if (!may_continue()) throw Interrupted(interrupted_in_statics);
     problem.solve(accuracy);
     const double shear = find_shear();
     const bool is_final = accuracy <= final;

@@ -51,8 +51,10 @@ struct Equilibrium {
   }
 };
 
-/// Whether an equilibrium has a contact and tractions at each of so many interface nodes.
-bool has_nodes(const Equilibrium& state, std::size_t n_interface_nodes);
+/// Whether an equilibrium that was kept can be one of these interface nodes, with finite numbers, and with
+/// displacements, if any, of so many nodes of the plate and of the base.
+bool is_possible(const Equilibrium& state, const std::vector<double>& x_m, std::size_t n_nodes,
+                 std::size_t n_below);
 
 /// Sums of the tractions over the interface, per unit thickness, with their signs.
 struct ContactForce {

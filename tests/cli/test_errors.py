@@ -246,6 +246,14 @@ def test_restart_takes_no_other_folder_and_no_changes(program, tmp_path, argumen
     assert not (tmp_path / "out").exists()
 
 
+def test_a_small_stack(program, coarse, tmp_path):
+    assert "a stack of 128 KiB is too small" in refusal(
+        program("run", coarse, "-o", "out", stack_bytes=128 << 10)
+    )
+    assert not (tmp_path / "out").exists()
+    require_done(program("run", coarse, "-o", "out", "-q", "--threads", "2", stack_bytes=1 << 20))
+
+
 def test_restart_where_there_is_nothing(program, tmp_path):
     assert "holds no unfinished run" in refusal(program("run", "--restart", "out"))
     assert not (tmp_path / "out").exists()

@@ -3,7 +3,7 @@
 `make hostile` does them all."""
 
 import pytest
-from hostile import damage, disk, energy, faults, folders, kills, repeats
+from hostile import damage, disk, energy, faults, folders, kills, repeats, sweeps
 from hostile.trials import Bench, hold, remove, scratch_folder
 
 pytestmark = pytest.mark.slow
@@ -71,6 +71,10 @@ def test_damaged_states(bench):
     all_hold(damage.trials(bench, every=4))
 
 
+def test_forged_checkpoints(bench):
+    all_hold(damage.forged_trials(bench, 12))
+
+
 def test_two_processes_in_one_folder(bench):
     all_hold(folders.process_trials(bench, 4))
 
@@ -85,6 +89,10 @@ def test_signals(bench):
 
 def test_closed_streams_and_readers_who_go(bench):
     all_hold(folders.stream_trials(bench))
+
+
+def test_sweeps(bench):
+    all_hold(sweeps.trials(bench, 1, n_points=40))
 
 
 def test_energy_balance_of_random_cases(bench):

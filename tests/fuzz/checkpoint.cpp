@@ -111,8 +111,9 @@ std::string checkpoint_of(const input::Case& config) {
 void go_on(const input::Case& config, run::Checkpoints::Checkpoint& kept) {
   if (kept.head.in_event) {
     auto initial = run::read_initial_state(kept.rest, config);
+    const auto loads = run::loads_of_event(config, initial);
     const auto stepper = run::make_stepper(config, initial);
-    run::read_motion(kept.rest, *stepper,
+    run::read_motion(kept.rest, *stepper, loads,
                      [&] { return run::new_stepper(config, initial.mesh, initial.base); });
     auto event = run::begin_event(config, initial, *stepper);
     results::ResultStream::Extents extents;

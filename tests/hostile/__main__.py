@@ -8,7 +8,7 @@ from pathlib import Path
 
 from common import as_from_a_terminal
 
-from . import damage, disk, energy, faults, folders, kills, repeats
+from . import damage, disk, energy, faults, folders, kills, repeats, sweeps
 from .trials import Bench, hold, remove, scratch_folder
 
 #: At every call; the other ways at every fifth.
@@ -39,10 +39,12 @@ def parts(bench):
     yield "cut off and given again", repeats.trials(bench, 8)
     yield "damaged states, event", damage.trials(bench)
     yield "damaged states, prestressed", damage.trials(bench, seed=2, kind="prestressed_absorbing", every=3)
+    yield "forged checkpoints", damage.forged_trials(bench, 100)
     yield "two processes", folders.process_trials(bench, 20)
     yield "foreign files", folders.foreign_trials(bench)
     yield "signals", folders.signal_trials(bench)
     yield "streams", folders.stream_trials(bench)
+    yield "sweeps", sweeps.trials(bench, 10)
     yield "energy balance", energy.balance_trials(bench, 200)
     yield "numbers of threads", energy.thread_trials(bench)
 

@@ -2,17 +2,21 @@
 """Unfinished runs that somebody damages, and then goes on with: refused in one line, or the same results."""
 
 import hashlib
+import math
 import os
 import random
 import shutil
 import signal
+import struct
 
 from common import finished, one_line, require_done, wait_until_or_over
 
 from .cases import long
+from .energy import relative_imbalance
 from .trials import TRIES, Trial, Wrong, alone, remove, require, require_same, stopped_under_way
 
 SUM_DIGITS = 64  # at the end of a checkpoint
+LEFT_BY_FORGERY = 2e-6  # of the largest term of the energies: the program refuses from 1e-6 on
 FEW = ("--checkpoint-every", "1e9", "--checkpoint-every-simulated")
 
 
@@ -56,7 +60,8 @@ class Setting:
 
     def __init__(self, bench, kind):
         self.bench = bench
-        self.case = bench.case(long(kind))
+        self.settings = long(kind)
+        self.case = bench.case(self.settings)
         whole = bench.result(self.case)
         self.expected = alone(whole)
         remove(whole.parent)
@@ -152,6 +157,48 @@ def damages(dice, other):
         lambda u, s, c: [(u / n).write_text("x") for n in ("run.json.new", "interface.h5.new")],
         {0},
     )
+
+
+#: Put in place of eight bytes of a checkpoint.
+_ODD = [
+    *(struct.pack("<d", value) for value in (math.nan, math.inf, -math.inf, 0, -1, 1e300, 5e-324)),
+    *(struct.pack("<q", value) for value in (1, 2, -1, 2**31 - 1, 2**31, 2**63 - 1)),
+]
+
+
+def forged(setting, seed):
+    """A checkpoint with other numbers and a checksum that fits is refused, or the run goes on with them to
+    results whose energies balance, or is seen to blow up."""
+    dice = random.Random(seed)
+    folder = setting.bench.folder()
+    shutil.copytree(setting.folder, folder)
+    last = max((folder / "unfinished/state").glob("checkpoint-*.bin"))
+    contents = bytearray(last.read_bytes()[:-SUM_DIGITS])
+    for _ in range(dice.choice((1, 1, 4))):
+        # Counts and single numbers are near the ends, in between is motion.
+        n = dice.choice((len(contents), 1 << 13)) - 8
+        place = dice.choice((dice.randrange(n), len(contents) - 8 - dice.randrange(n)))
+        flipped = flip(dice)(contents[place : place + 8])
+        contents[place : place + 8] = dice.choice((dice.choice(_ODD), flipped))
+    last.write_bytes(sealed(bytes(contents)))
+    process = setting.bench.run("run", "--restart", folder, "-q")
+    require(process.returncode in (0, 2, 3), process)
+    errors = [line for line in process.stderr.splitlines() if not line.startswith("note: ")]
+    require(len(errors) == (process.returncode != 0), process.stderr)
+    if process.returncode == 0:
+        alone(folder)
+        imbalance = relative_imbalance(folder, setting.settings)
+        require(imbalance < LEFT_BY_FORGERY, f"imbalance {imbalance:.3g}")
+    else:
+        require(str(folder) in errors[0], f"names no file: {errors[0]}")
+    remove(folder.parent)
+
+
+def forged_trials(bench, n, kinds=("triggered", "prestressed_absorbing", "predictor_corrector", "graded")):
+    for kind in kinds:
+        setting = Setting(bench, kind)
+        for seed in range(n):
+            yield Trial(f"forged {kind} {seed}", lambda s=setting, seed=seed: forged(s, seed))
 
 
 _UNIFORM = ("prestress.t_Pa", "prestress.p_Pa")

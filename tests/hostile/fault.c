@@ -256,6 +256,14 @@ int fallocate64(int fd, int how, off64_t from, off64_t length) {
 int rename(const char* from, const char* to) {
   return (path_is_ours(from) || path_is_ours(to)) && fails() ? -1 : REAL(rename)(from, to);
 }
+int renameat(int from_folder, const char* from, int to_folder, const char* to) {
+  return (at_is_ours(from_folder, from) || at_is_ours(to_folder, to)) && fails()
+             ? -1
+             : REAL(renameat)(from_folder, from, to_folder, to);
+}
+int mkdirat(int folder, const char* path, mode_t bits) {
+  return at_is_ours(folder, path) && fails() ? -1 : REAL(mkdirat)(folder, path, bits);
+}
 int mkdir(const char* path, mode_t bits) {
   return path_is_ours(path) && fails() ? -1 : REAL(mkdir)(path, bits);
 }

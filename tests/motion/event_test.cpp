@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "interface/friction/coulomb.hpp"
 #include "motion/support.hpp"
+#include "support/interruption.hpp"
 
 namespace slipfront::motion {
 namespace {
@@ -116,6 +117,29 @@ TEST_F(EventRun, EndsWhenTheMonitorSaysSo) {
   EXPECT_THAT(asked, ElementsAre(50, 100, 150));
   EXPECT_EQ(event.steps, 150);
   EXPECT_EQ(total, static_cast<std::int64_t>(std::ceil(1e-3 / step_s())));
+}
+
+TEST_F(EventRun, IsInterruptedAfterAnyStep) {
+  time_.end_s = 1e-3;
+  sampling_.energy_interval_s = 1e300;
+  for (const int steps : {1, 49, 73}) {
+    const test::InterruptionAfter after(steps - 1);
+    std::int64_t asked_at = 0;
+    const Event event = run(calm_, [&](std::int64_t step, std::int64_t) {
+      asked_at = step;
+      return !after.is_wanted();
+    });
+    EXPECT_EQ(event.end, EventEnd::interrupted);
+    EXPECT_EQ(event.steps, steps);
+    EXPECT_EQ(asked_at, steps);
+  }
+}
+
+TEST_F(EventRun, IsInterruptedWithinAStepOfManySubSteps) {
+  time_.interface_substeps = 5000;
+  const test::InterruptionAfter after(2);
+  EXPECT_THROW(run(calm_), Interrupted);
+  EXPECT_EQ(after.asked(), 3);
 }
 
 TEST_F(EventRun, EndsWhenItBlowsUp) {
@@ -338,6 +362,13 @@ TEST(Ramp, ReachesTheStaticStates) {
   EXPECT_TRUE(run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m, [](auto, auto) {
                 return false;
               }).interrupted);
+  {
+    const test::InterruptionAfter after(72);
+    const auto begun = run_ramp(stepper, tilted, loading, mu_s, speed, c_L, expected.shear_m,
+                                [&](auto, auto) { return !after.is_wanted(); });
+    EXPECT_TRUE(begun.interrupted);
+    EXPECT_EQ(begun.steps, 73);
+  }
   EXPECT_THAT([&] { run_ramp(stepper, tilted, loading, mu_s, speed, c_L, 0.1 * expected.shear_m, always); },
               ::testing::ThrowsMessage<UserError>(
                   HasSubstr("the ramp does not bring t/p inside the interface to mu_s")));

@@ -20,6 +20,7 @@ from slipfront.figures import interface_step, open_choices, verification
 from slipfront.figures.__main__ import main
 from slipfront.figures.results import read_results
 from slipfront.files import DataError
+from slipfront.report.command import main as report
 from synthetic import interrupt, seal, write_output
 from synthetic_study import write_interface_step, write_open_choices, write_study, write_verification
 
@@ -143,6 +144,21 @@ def test_a_damaged_study_is_drawn_or_refused(tmp_path, kind):
     folder, picture = write(tmp_path / kind), tmp_path / "picture.png"
     assert draw(folder, picture) == 0
     fuzz(folder, done_or_refused(lambda: draw(folder, picture)))
+
+
+PAGES = {
+    "reproduction": write_output,
+    "run": lambda folder: write_output(folder, columns=10, rows=5, n_times=6, snapshots=3) / "left",
+    "study": write_study,
+    "step": write_interface_step,
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", PAGES)
+def test_a_damaged_folder_is_reported_or_refused(tmp_path, kind):
+    folder, page = PAGES[kind](tmp_path / kind), tmp_path / "page.html"
+    fuzz(folder, done_or_refused(lambda: report([str(folder), "-o", str(page)])))
 
 
 def test_no_change_to_a_file_with_a_checksum_is_accepted(output):

@@ -600,6 +600,13 @@ def test_a_missing_file_gives_one_line(output, capsys, file):
     assert not (output / "figures").exists()
 
 
+def test_a_link_in_place_of_the_figures_is_not_followed(output, tmp_path_factory, capsys):
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    (output / "figures").symlink_to(elsewhere)
+    assert f"{output / 'figures'}: is a link, which is not followed" in one_error(capsys, output)
+    assert list(elsewhere.iterdir()) == []
+
+
 def test_a_missing_folder_gives_one_line(output, capsys):
     shutil.rmtree(output / "right")
     assert f"{output / 'right'}: no such folder" in one_error(capsys, output)

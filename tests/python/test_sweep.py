@@ -334,11 +334,40 @@ def test_workers_that_do_not_start(monkeypatch, is_script):
     assert ("__main__" in str(error.value)) == is_script
 
 
+def test_a_limit_of_threads_is_told(case, capsys, monkeypatch):
+    def fail(*_, **__):
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr("subprocess.Popen", fail)
+    assert "as by ulimit -u" in refused(capsys, case, *TWO, "-o", "out")
+    assert not Path("out").exists()
+
+
 def test_a_folder_of_something_else_is_left_alone(case, capsys):
     Path("out").mkdir()
     Path("out/mine.txt").write_text("mine")
     assert "holds something" in refused(capsys, case, *TWO, "-o", "out")
     assert [p.name for p in Path("out").iterdir()] == ["mine.txt"]
+
+
+@pytest.mark.parametrize(
+    "name", ["points", "points/mu_k=0.5", "states", ".sweep.lock", "sweep.json", "unfinished", "publishing"]
+)
+def test_no_link_in_its_folder_is_followed(case, capsys, in_this_process, name):
+    """Be the folder itself one, as its user wants it."""
+    assert main([str(case), *TWO, "-o", "elsewhere", "-q"]) == 0
+    before = states_of("elsewhere")
+    assert main([str(case), *TWO, "-o", "place", "-q"]) == 0
+    Path("out").symlink_to("place")
+    link = Path("place", name)
+    if link.is_dir():
+        shutil.rmtree(link)
+    link.unlink(missing_ok=True)
+    target = Path("elsewhere", name).absolute()
+    link.symlink_to(target if target.exists() else target.parent / "points")
+    said = "not a regular file" if name == "sweep.json" else "is a link, which is not followed"
+    assert said in refused(capsys, case, *TWO, "--keep", "tables", "-o", "out")
+    assert link.is_symlink() and states_of("elsewhere") == before
 
 
 def test_a_sweep_by_dask_and_its_tables(case):

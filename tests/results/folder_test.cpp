@@ -218,6 +218,69 @@ TEST_F(ResultFolders, LeavesTheTargetOfALinkAlone) {
   EXPECT_EQ(test::read_file(elsewhere / "run.json"), "precious");
 }
 
+/// A file of the text beside others, named by an earlier set that a link or a file has come into.
+TEST_F(ResultFolders, FollowsNoLinkBelowIt) {
+  const auto sum = files::sha256("precious") + "  ";
+  for (const auto& [link, listed] : {std::pair<const char*, const char*>{"sub", "sub/a.txt"},
+                                     {"sub/inner", "sub/inner/a.txt"},
+                                     {"sub", "sub/inner/a.txt"},
+                                     {"sub", "sub/checksums.sha256"},
+                                     {"a.txt", "a.txt"}}) {
+    const test::TemporaryFolder folder, elsewhere;
+    for (const auto& place : {elsewhere.path(), elsewhere / "inner"}) {
+      fs::create_directories(place);
+      test::write_file(place / "a.txt", "precious");
+      test::write_file(place / files::checksum_list, sum + "a.txt\n");
+    }
+    const auto before = names_below(elsewhere.path());
+    publish(folder.path(), {"run.json"});
+    const auto target = std::string(link) == listed ? elsewhere / "a.txt" : elsewhere.path();
+    fs::create_directories((folder / link).parent_path());
+    fs::create_symlink(target, folder / link);
+    std::ofstream(folder / files::checksum_list, std::ios::app) << sum << listed << "\n";
+    publish(folder.path(), {"run.json"});
+    EXPECT_EQ(names_below(elsewhere.path()), before) << listed;
+    // What the list names goes: here the link itself.
+    EXPECT_EQ(fs::is_symlink(folder / link), std::string(link) != listed) << listed;
+  }
+}
+
+TEST_F(ResultFolders, NeitherFilesNorLinksAreTakenForItsFolders) {
+  for (const bool is_link : {true, false}) {
+    const test::TemporaryFolder folder, elsewhere;
+    if (is_link)
+      fs::create_directory_symlink(elsewhere.path(), folder / "sub");
+    else
+      test::write_file(folder / "sub", "mine");
+    test::write_file(folder / files::checksum_list, files::sha256("") + "  sub/a.txt\n");
+    EXPECT_EQ(error_of([&] { publish(folder.path(), {"sub/run.json"}); }),
+              (folder / "sub").string() + ": is no folder, where one is to go; move it away");
+    EXPECT_THAT(names_below(elsewhere.path()), IsEmpty());
+    publish(folder.path(), {"run.json"});
+    EXPECT_TRUE(fs::exists(folder / "sub"));
+  }
+}
+
+TEST_F(ResultFolders, MayBeReachedByLinks) {
+  const auto place = folder_ / "place";
+  fs::create_directory(place);
+  fs::create_directory_symlink(place, folder_ / "link");
+  publish(folder_ / "link/", {"run.json"});
+  publish(folder_ / "link" / "new", {"a/b/run.json"});
+  publish(folder_ / "link" / "new", {"a/run.json"});
+  EXPECT_THAT(names_below(place), UnorderedElementsAre("run.json", "checksums.sha256", "new", "new/a",
+                                                       "new/a/run.json", "new/checksums.sha256"));
+}
+
+TEST_F(ResultFolders, ListsThatNameThemselvesAreRead) {
+  fs::create_directory(folder_ / "a");
+  const auto own = files::sha256("") + "  checksums.sha256\n";
+  test::write_file(folder_ / "a" / files::checksum_list, own);
+  test::write_file(folder_ / files::checksum_list, own + files::sha256("") + "  a/checksums.sha256\n");
+  publish(folder_.path(), {"run.json"});
+  EXPECT_THAT(names_below(folder_.path()), UnorderedElementsAre("run.json", "checksums.sha256"));
+}
+
 TEST_F(ResultFolders, AFolderInPlaceOfAResultIsRefused) {
   fs::create_directory(folder_ / "run.json");
   EXPECT_THAT(error_of([&] { ResultFolder(folder_.path(), "test"); }),

@@ -137,7 +137,7 @@ TEST_F(TextFiles, IntoAMissingFolderIsRefused) {
   const auto none = folder_ / "none";
   EXPECT_EQ(error_of([&] { write_history(none / "interface.h5", made_history(2, 3)); }),
             (none / "interface.h5").string() +
-                ": cannot be created; check that its folder exists and can be written");
+                ": cannot be created (No such file or directory); check that its folder can be written");
   EXPECT_THAT(
       error_of([&] { write_static(none / "static.csv", {}); }),
       HasSubstr(": cannot be created (No such file or directory); check that its folder can be written"));
@@ -147,6 +147,35 @@ TEST_F(TextFiles, IntoAMissingFolderIsRefused) {
                                 mesh::in_one_slab(std::make_shared<const mesh::Mesh>()), SnapshotSeries());
               }),
               HasSubstr("cannot be created"));
+}
+
+TEST_F(TextFiles, FollowNoLink) {
+  const test::TemporaryFolder elsewhere;
+  test::write_file(elsewhere / "precious", "x");
+  std::filesystem::create_directory_symlink(elsewhere.path(), folder_ / "link");
+  const std::vector<std::function<void(const std::filesystem::path&)>> writers = {
+      [](const auto& file) { write_history(file, made_history(2, 3)); },
+      [](const auto& file) { write_static(file, {}); },
+      [](const auto& file) {
+        write_snapshots(file, mesh::in_one_slab(std::make_shared<const mesh::Mesh>()), SnapshotSeries());
+      },
+      [](const auto& file) { files::make_folder(file); },
+      [&](const auto& file) { files::move_file(folder_ / "file", file); },
+      [&](const auto& file) { files::move_file(file, folder_ / "file"); },
+      [](const auto& file) { files::remove_file(file); },
+      [](const auto& file) { files::PlacedFile{file}; },
+      [](const auto& file) { files::sync_file(file); }};
+  test::write_file(folder_ / "file", "x");
+  for (std::size_t k = 0; k < writers.size(); ++k)
+    EXPECT_THAT(error_of([&, k] { writers[k](folder_ / "link" / "precious"); }),
+                HasSubstr("(Not a directory); check"))
+        << k;
+  for (const char* name : {"interface.h5", "static.csv"})
+    std::filesystem::create_symlink(elsewhere / "precious", folder_ / name);
+  write_history(folder_ / "interface.h5", made_history(2, 3));
+  write_static(folder_ / "static.csv", {});
+  EXPECT_EQ(test::read_file(elsewhere / "precious"), "x");
+  EXPECT_THAT(test::names_below(elsewhere.path()), ElementsAre("precious"));
 }
 
 TEST_F(TextFiles, AFullDiskIsNoticed) {

@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cases.hpp"
 #include "files/checksum.hpp"
@@ -14,6 +16,7 @@
 #include "interface/friction/velocity_weakening.hpp"
 #include "run/checkpoint.hpp"
 #include "support/files.hpp"
+#include "support/interruption.hpp"
 
 namespace slipfront::run {
 namespace {
@@ -162,6 +165,24 @@ TEST(Session, GoesOnAsIfItHadNeverStopped) {
   }
 }
 
+TEST(Session, GoesOnFromAnyStep) {
+  for (const auto& [name, config] : kinds()) {
+    SCOPED_TRACE(name);
+    const test::TemporaryFolder folder;
+    std::optional<test::InterruptionAfter> after;
+    const auto at_50 = [&](const char*, std::int64_t, std::int64_t) {
+      if (!after) after.emplace(22);
+    };
+    const auto stop = [&] { return after && after->is_wanted() ? Request::stop : Request::none; };
+    const auto begun = start(folder.path(), config, {at_50, stop, [](const std::string&) {}});
+    EXPECT_EQ(begun.result.event.end, motion::EventEnd::interrupted);
+    EXPECT_NE(begun.result.event.steps % 50, 0);
+    after.reset();
+    resume(folder.path());
+    expect_same(results_in(folder.path()), results_of(config));
+  }
+}
+
 TEST(Session, GoesOnWithARamp) {
   const auto config = test::ramped_case();
   const test::TemporaryFolder folder;
@@ -270,18 +291,28 @@ TEST_F(InterruptedRun, RefusesAStateThatDoesNotFit) {
       archive(parts...);
     });
   };
-  const std::function<void(InitialState&)> changes[] = {
-      [](InitialState& s) { s.tributary_m.pop_back(); }, [](InitialState& s) { s.common.contact.pop_back(); },
-      [](InitialState& s) { s.spontaneous.tractions.p_s_Pa.pop_back(); },
-      [](InitialState& s) {
-        s.ramp.emplace(motion::Ramp{s.common, s.spontaneous, {}, 0, false});
-        s.ramp->record.onsets.push_back({7, 0});
-      }};
-  for (const auto& change : changes) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::pair<const char*, std::function<void(InitialState&)>> changes[] = {
+      {"a plate", [](InitialState& s) { s.tributary_m.pop_back(); }},
+      {"a plate", [](InitialState& s) { ++s.n_nodes; }},
+      {"a plate", [](InitialState& s) { s.mu_s.push_back(1); }},
+      {"an initial state", [](InitialState& s) { s.common.contact.pop_back(); }},
+      {"an initial state", [](InitialState& s) { s.common.contact[1] = statics::Contact{7}; }},
+      {"an initial state", [](InitialState& s) { s.common.tractions.x_m[1] *= 1.01; }},
+      {"an initial state", [](InitialState& s) { s.spontaneous.tractions.p_s_Pa.pop_back(); }},
+      {"an initial state", [](InitialState& s) { s.spontaneous.tractions.t_s_Pa[1] = nan; }},
+      {"an initial state", [](InitialState& s) { s.spontaneous.u_m.x.push_back(0); }},
+      {"an initial state", [](InitialState& s) { s.critical_shear_m = nan; }},
+      {"an initial state", [](InitialState& s) {
+         s.ramp.emplace(motion::Ramp{s.common, s.spontaneous, {}, 0, false});
+       }}};
+  for (const auto& [what, change] : changes) {
     InitialState initial = whole;
     change(initial);
     keep(initial);
-    EXPECT_EQ(resume_error(), "the saved initial state belongs to another plate");
+    EXPECT_EQ(resume_error(), fmt::format("{}: the saved state has {} of another case, or was changed; start "
+                                          "a new run",
+                                          checkpoints().back().string(), what));
   }
   keep(whole, std::vector<double>(7));  // another event's state
   EXPECT_NE(resume_error(), test::accepted);

@@ -11,6 +11,7 @@
 
 #include "equilibria.hpp"
 #include "support/files.hpp"
+#include "support/interruption.hpp"
 
 namespace slipfront::statics {
 namespace {
@@ -212,6 +213,15 @@ TEST(Statics, CanBeInterruptedBetweenSolutions) {
   for (int last = 0; last < all; ++last) {
     EXPECT_THROW(solve_statics(last), Interrupted) << last;
     EXPECT_EQ(asked, last + 1);
+  }
+}
+
+TEST(Statics, IsInterruptedWithinASolution) {
+  const auto mesh = paper_plate(4e-3);
+  for (const auto solver : {StaticSolver::direct, StaticSolver::iterative}) {
+    const test::InterruptionAfter after(5);
+    EXPECT_THROW(Statics(mesh, {}, {.solver = solver}, mu_s), Interrupted);
+    EXPECT_EQ(after.asked(), 6);
   }
 }
 

@@ -27,7 +27,7 @@ from slipfront.figures.picture import FIXED_NAMES
 from slipfront.figures.report import write_report
 from slipfront.figures.results import Results, read_results
 from slipfront.figures.style import RC
-from slipfront.folder import UNFINISHED, belongs
+from slipfront.folder import UNFINISHED, belongs, inside
 
 BOTH = ("png", "pdf")
 
@@ -61,7 +61,7 @@ def write_single(
 ) -> list[str]:
     """The one figure of a run or a study; returns what to print."""
     drawing, remarks = guarded(folder, draw)
-    with command.publishing_into(folder / "figures") as made:
+    with command.publishing_into(inside(folder, "figures")) as made:
         drawing.save(made, kinds)
     others = f" (and {list_of(kinds[1:])})" if len(kinds) > 1 else ""
     lines = [f"figure: {folder / 'figures' / drawing.name}.{kinds[0]}{others}"]
@@ -72,7 +72,7 @@ def write_reproduction(folder: Path, kinds: Sequence[str], experiment: Path | No
     """All figures of a reproduction and, with PNG among them, the report; returns what to print."""
     results = read_results(folder, experiment)
     drawings = guarded(folder, lambda: draw_all(results))
-    with command.publishing_into(folder / "figures") as made:
+    with command.publishing_into(inside(folder, "figures")) as made:
         for drawing in drawings:
             drawing.save(made, kinds)
         if "png" in kinds:

@@ -108,8 +108,9 @@ def spread(values: np.ndarray, unit: str) -> str:
 def forces(found: dict[str, Any]) -> list[str]:
     """Those that a case gives, in words; none of other cases."""
     names = ("normal_force", "shear_force", "critical_shear_force")
-    numbers = [found.get(key) for key in ("mean_pressure_Pa", *(f"{name}_N_per_m" for name in names))]
-    if not all(is_number(number) for number in numbers):
+    keys = ("mean_pressure_Pa", *(f"{name}_N_per_m" for name in names))
+    numbers = [float(found[key]) for key in keys if is_number(found.get(key))]
+    if len(numbers) < len(keys):
         return []
     mean, normal, shear, critical = numbers
     return [

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import signal
 import sys
@@ -81,6 +82,7 @@ def client_of(scheduler: str | None, workers: int) -> Iterator[Any]:
                 client.run(ignore_interrupts)
             else:
                 client = stack.enter_context(Client(scheduler, timeout=ANSWER_S))
+                logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what is told is told here
         except (OSError, TimeoutError, ValueError) as error:
             where = scheduler or "local workers"
             raise DataError(f"{where}: no Dask scheduler answers: {error}") from None
@@ -96,11 +98,12 @@ def outcomes(tasks: list[Task], scheduler: str | None, workers: int) -> Iterator
     with client_of(scheduler, workers) as client:
         futures = client.map(run_point, tasks, pure=False)
         for future in as_completed(futures):
-            error = future.exception()
-            if error is None:
+            error = None if future.cancelled() else future.exception()
+            if future.status == "finished":
                 yield future.result()
             else:
-                yield Outcome(tasks[futures.index(future)].point, FAILED, f"its worker ended: {error}")
+                told = "the Dask scheduler is gone" if error is None else f"its worker ended: {error}"
+                yield Outcome(tasks[futures.index(future)].point, FAILED, told)
 
 
 def one_by_one(tasks: list[Task]) -> Iterator[Outcome]:

@@ -28,7 +28,7 @@ from slipfront.files import (
     read_text,
     read_toml,
 )
-from slipfront.folder import LIST, UNFINISHED, problem, read_list, sha256
+from slipfront.folder import LIST, UNFINISHED, inside, problem, read_list, sha256
 from slipfront.sweep.definition import ENTRIES, Sweep, flattened, is_value
 from slipfront.sweep.points import Point
 from slipfront.sweep.program import version_of
@@ -77,8 +77,8 @@ def held(folder: Path, shared: bool = False) -> Iterator[None]:
     Those that take shares of one sweep hold it together."""
     try:
         for name in (POINTS, STATES):
-            (folder / name).mkdir(parents=True, exist_ok=True)
-        lock = open(folder / LOCK, "a")  # noqa: SIM115
+            inside(folder, name).mkdir(parents=True, exist_ok=True)
+        lock = open(inside(folder, LOCK), "a")  # noqa: SIM115
     except OSError as error:
         raise DataError(f"{folder}: cannot be written: {error.strerror}") from None
     with lock:
@@ -115,6 +115,7 @@ def write_whole(file: Path, text: str) -> None:
     """A file that is there completely, or not at all."""
     fresh = command.replaceable(file).with_name(f".{file.name}.{os.getpid()}")
     try:
+        fresh.unlink(missing_ok=True)
         fresh.write_text(text, encoding="utf-8")
         os.replace(fresh, file)
     except OSError as error:
@@ -152,7 +153,7 @@ def read_definition(folder: Path) -> Sweep:
 
 
 def place_of(folder: Path, point: Point) -> Path:
-    return folder / POINTS / point.name
+    return inside(folder, POINTS, point.name)
 
 
 def error_file(folder: Path, point: Point) -> Path:
@@ -181,8 +182,9 @@ def what_is_wrong(place: Path, point: Point) -> str | None:
 
 
 def is_done(folder: Path, point: Point) -> bool:
+    place = place_of(folder, point)
     try:
-        return what_is_wrong(place_of(folder, point), point) is None
+        return what_is_wrong(place, point) is None
     except DataError:
         return False
 

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from slipfront.files import DataError, exists, is_folder
-from slipfront.folder import LIST, PUBLISHING, UNFINISHED, located, result_file, sha256
+from slipfront.folder import LIST, PUBLISHING, UNFINISHED, inside, located, result_file, sha256
 from slipfront.sweep import folder as places
 from slipfront.sweep.definition import Sweep
 from slipfront.sweep.outcome import QUANTITIES, Cell, read_outcome, waves_over_c_L
@@ -135,7 +135,7 @@ def listed(folder: Path, made: Path, table: pd.DataFrame) -> str:
 
 def end_publication(folder: Path) -> None:
     """Moves a complete set, whose move may have been cut off, to its place; its list comes last."""
-    publishing = folder / PUBLISHING
+    publishing = inside(folder, PUBLISHING)
     if not is_folder(publishing):
         return
     for file in sorted(publishing.iterdir(), key=lambda file: file.name == LIST):
@@ -145,7 +145,7 @@ def end_publication(folder: Path) -> None:
 
 def publish(folder: Path, table: pd.DataFrame, data: xr.Dataset) -> None:
     """Both files and their list appear together; earlier ones stay until then."""
-    made = folder / UNFINISHED
+    made = inside(folder, UNFINISHED)
     try:
         end_publication(folder)
         shutil.rmtree(made, ignore_errors=True)
