@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/interruption.hpp"
 #include "mesh/plate.hpp"
 #include "motion/body.hpp"
 #include "motion/stepper.hpp"
@@ -196,7 +195,6 @@ std::int64_t PlainStepper::advance(Recorder& recorder, std::int64_t max_steps,
   for (std::int64_t taken = 0; taken < max_steps;) {
     record::History* sample = callbacks.sample();
     take_step(std::span(bodies_), substeps_, [&](int k) {
-      require_no_interruption("interrupted within a step");
       coupling_.update(time_s() + k * substep_s(), substep_s(), recorder, k == 0 ? sample : nullptr,
                        bodies_.front().works);
     });
