@@ -332,7 +332,7 @@ names = ["SG1", "true", "1e-3", "a, 'b' [c]"]
     "pressure": """
 event.kind = "right"
 plate = {element_size_m = 5e-3}
-time.end_s = 1e-5
+time = {end_s = 1e-5, stepper = "plain"}
 loading = {mean_pressure_Pa = 5e6, tilt_difference_m = 2e-4, shear_over_critical = 0.8}
 """,
     "force": """
