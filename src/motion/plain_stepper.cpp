@@ -150,7 +150,8 @@ PlainStepper::PlainStepper(std::span<const BodySource> sources, const interface:
     : bodies_(make_bodies(sources, time, stable_step_s_, lowest_step_s_)),
       coupling_(contact, contacts_of(bodies_)) {
   for (const auto& body : bodies_) substeps_ = std::lcm(substeps_, body.levels.front().period);
-  step_s_ = lowest_step_s_ * (substeps_ / time.interface_substeps);
+  const int lowest_steps = substeps_ / time.interface_substeps;
+  step_s_ = lowest_step_s_ * lowest_steps;
 }
 
 void PlainStepper::start(const statics::Equilibrium& equilibrium, double top_speed_m_per_s, Loads loads) {
@@ -254,9 +255,11 @@ std::int64_t PlainStepper::n_nodes() const {
 double PlainStepper::node_updates_per_step() const {
   double updates = 0;
   for (const auto& body : bodies_)
-    for (const auto& level : body.levels)
+    for (const auto& level : body.levels) {
+      const int steps = substeps_ / level.period;
       for (const auto n : level.nodes)
-        if (!body.is_loaded[n]) updates += substeps_ / level.period;
+        if (!body.is_loaded[n]) updates += steps;
+    }
   return updates;
 }
 
